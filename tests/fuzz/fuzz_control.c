@@ -84,7 +84,7 @@ static void check_text(const char *text, struct playback *playback)
         return;
     }
     check_line(&line);
-    playback_take(playback, &line);
+    playback_execute_line(playback, &line);
     frame = playback_next(playback, .04);
     require(frame >= 0 && frame <= playback->last);
 }

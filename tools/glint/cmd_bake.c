@@ -271,8 +271,8 @@ static int bake_lens_by_name(struct tool *tool, struct bake *b,
 
     if (!lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    apart_read(&files, NULL, name);
-    apart_write(&files, "-o", b->output);
+    apart_add_input(&files, NULL, name);
+    apart_add_output(&files, "-o", b->output);
     code = apart_check(tool, &files);
     if (code == EXIT_OK)
         code = tool_lens(tool, name, lens);

@@ -279,8 +279,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     if (o->output && !glint_ends_in(o->output, ".svg"))
         return tool_usage(tool, "the plot must be a .svg, not '%s'", o->output);
     if (o->output && o->surface >= 0)
-        apart_read(&files, NULL, argv[optind]);
-    apart_write(&files, "-o", o->output);
+        apart_add_input(&files, NULL, argv[optind]);
+    apart_add_output(&files, "-o", o->output);
     code = apart_check(tool, &files);
     if (code == EXIT_OK && o->output)
         code = tool_check_output(tool, o->output);

@@ -102,8 +102,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         return tool_usage(tool, "needs -o, a .svg");
     if (o->drawing.angle_deg >= 0 && o->drawing.ghost < 0)
         return tool_usage(tool, "--angle needs --ghost");
-    apart_read(&files, NULL, argv[optind]);
-    apart_write(&files, "-o", o->output);
+    apart_add_input(&files, NULL, argv[optind]);
+    apart_add_output(&files, "-o", o->output);
     code = apart_check(tool, &files);
     if (code == EXIT_OK)
         code = tool_check_ending(tool, o->output, ".svg", "a figure");

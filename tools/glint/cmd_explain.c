@@ -333,7 +333,7 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
         printf("}\n");
     if (status == GLINT_OK && drawing->run.n_lamps == 0 && !tool->quiet) {
         fflush(stdout); /* standard error follows the report */
-        overlay_say_none(drawing, false, stderr);
+        overlay_print_no_light(drawing, false, stderr);
     }
     if (code == EXIT_OK && c->output && !drawing->files.scene.is_open)
         code = save_picture(tool, c, &e, &title, NULL);
@@ -363,11 +363,11 @@ static int check_outputs_differ_from_inputs(const struct tool *tool,
 {
     struct apart files = {.n_read = 0};
 
-    apart_read(&files, NULL, c->input);
-    apart_write(&files, "-o", c->output);
-    apart_write(&files, "--save-ghosts", c->ghosts);
-    apart_write(&files, "--ghost-sheet", c->sheet);
-    apart_line(&files, &c->drawing.line);
+    apart_add_input(&files, NULL, c->input);
+    apart_add_output(&files, "-o", c->output);
+    apart_add_output(&files, "--save-ghosts", c->ghosts);
+    apart_add_output(&files, "--ghost-sheet", c->sheet);
+    apart_add_drawing_files(&files, &c->drawing.line);
     return apart_check(tool, &files);
 }
 

@@ -128,8 +128,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         return tool_usage(tool,
                           "%s: the format is ambiguous; choose --format %s",
                           argv[optind], values_of("import", "format"));
-    apart_read(&files, NULL, argv[optind]);
-    apart_write(&files, "-o", o->output);
+    apart_add_input(&files, NULL, argv[optind]);
+    apart_add_output(&files, "-o", o->output);
     code = apart_check(tool, &files);
     if (code == EXIT_OK)
         code = tool_check_output(tool, o->output);

@@ -294,7 +294,7 @@ static int print_file_that_is_not_lens(const struct tool *tool,
 {
     const bool is_motion =
         motion_file_is_source(path) || motion_file_is_baked(path);
-    const bool is_scene = !is_motion && baked_scene_is(path);
+    const bool is_scene = !is_motion && baked_scene_is_file(path);
     const bool is_around =
         !is_motion && !is_scene &&
         (environment_file_is_source(path) || environment_file_is_baked(path));

@@ -311,12 +311,12 @@ static int check_outputs_differ_from_inputs(const struct tool *tool,
     struct live_output output = {.path = NULL};
     int code;
 
-    apart_read(&files, "--device", o->input.camera.device);
-    apart_read(&files, "--config", config);
+    apart_add_input(&files, "--device", o->input.camera.device);
+    apart_add_input(&files, "--config", config);
     if (live_output_parse(&output, o->output) && output.kind == LIVE_OUTPUT_Y4M)
-        apart_write(&files, "-o", output.path);
-    apart_write(&files, "--snapshot", o->snapshot);
-    apart_line(&files, &o->drawing.line);
+        apart_add_output(&files, "-o", output.path);
+    apart_add_output(&files, "--snapshot", o->snapshot);
+    apart_add_drawing_files(&files, &o->drawing.line);
     code = apart_check(tool, &files);
     return code == EXIT_OK ? -1 : code;
 }

@@ -252,7 +252,7 @@ static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
         return code;
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0) {
-        if (c == ENGINE_OPTION_OF(zoom) && zoom_clip_take(&o->zoom, optarg))
+        if (c == ENGINE_OPTION_OF(zoom) && zoom_clip_parse(&o->zoom, optarg))
             continue;
         code = drawing_line_option(tool, &o->drawing.line, c, optarg);
         if (code >= 0)
@@ -272,7 +272,7 @@ static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
     if (optind == argc)
         return tool_inputs(tool, argc, argv, 1,
                            "needs a picture, a sequence or a video");
-    if (!output && o->output && folder_is(o->output)) {
+    if (!output && o->output && folder_is_folder(o->output)) {
         *folder = o->output;
         code = check_folder_options(tool, o, argc - optind);
         return code == EXIT_OK ? -1 : code;
@@ -313,7 +313,7 @@ static void print_overlay_json(const struct overlay *o,
                o->input, o->output, drawn, 1e3 * seconds, drawn / seconds,
                o->figures.find_ms / n, o->figures.flare_ms / n,
                o->figures.most_lights, o->figures.n_reused);
-    overlay_json(&json, o, light);
+    overlay_write_json(&json, o, light);
     settings_json(&json, &o->drawing.run.report);
     json_write(&json, "}\n");
 }
@@ -328,11 +328,11 @@ static void print_overlay_result(const struct tool *tool, struct overlay *o)
     settings_warn_lights(tool, &o->figures.worst);
     if (tool->quiet && !json)
         return;
-    light = overlay_light(o);
+    light = overlay_measure_light(o);
     if (json)
         print_overlay_json(o, &light);
     else
-        overlay_say(o, &light, stderr);
+        overlay_print_summary(o, &light, stderr);
     if (tool->verbose && !tool->quiet)
         print_overlay_statistics(o);
 }
@@ -504,7 +504,7 @@ static int overlay_inputs_to_folder(const struct tool *tool, char **argv,
         memcpy(line, argv, (size_t)first * sizeof *line);
         line[first] = argv[first + i];
         optind = 0;
-        if (folder_path(path, folder, argv[first + i]))
+        if (folder_make_output_path(path, folder, argv[first + i]))
             one = overlay_command_line(first + 1, line, path, n);
         else
             tool_error(tool, "%s: the name is too long", argv[first + i]);

@@ -318,11 +318,11 @@ static int check_output_differs_from_inputs(const struct tool *tool,
 {
     struct apart files = {.n_read = 0};
 
-    apart_read(&files, NULL, lens);
-    apart_read(&files, "--lights", r->lights_file);
-    apart_read(&files, "--ghosts", r->settings.options.ghosts);
-    apart_read(&files, "--stop-mask", r->settings.options.stop_mask);
-    apart_write(&files, "-o", r->output);
+    apart_add_input(&files, NULL, lens);
+    apart_add_input(&files, "--lights", r->lights_file);
+    apart_add_input(&files, "--ghosts", r->settings.options.ghosts);
+    apart_add_input(&files, "--stop-mask", r->settings.options.stop_mask);
+    apart_add_output(&files, "-o", r->output);
     return apart_check(tool, &files);
 }
 
@@ -359,8 +359,8 @@ static int render_lens_flare(struct tool *tool, struct render *r,
     snprintf(what, sizeof what, "%s, %s", r->lens.table.name,
              chosen_ray_method(r, "baked model", "exact rays"));
     if (code == EXIT_OK)
-        render_file_say(tool, r->output, r->width, r->height, what,
-                        tool_clock_s() - start);
+        render_file_print_summary(tool, r->output, r->width, r->height, what,
+                                  tool_clock_s() - start);
     free(r->image.rgb);
     return code;
 }

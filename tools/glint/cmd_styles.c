@@ -270,9 +270,9 @@ static int check_output_differs_from_inputs(const struct tool *tool,
 {
     struct apart files = {.n_read = 0};
 
-    apart_read(&files, NULL, c->input);
-    apart_write(&files, "-o", c->output);
-    apart_line(&files, &drawing->line);
+    apart_add_input(&files, NULL, c->input);
+    apart_add_output(&files, "-o", c->output);
+    apart_add_drawing_files(&files, &drawing->line);
     return apart_check(tool, &files);
 }
 

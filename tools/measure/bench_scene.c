@@ -110,7 +110,7 @@ static bool set_dials(const struct bench *b, const struct bench_variation *v,
     struct glint_error error;
     char text[16];
 
-    scene_dials_choose(&plain, &options);
+    scene_dials_set_defaults(&plain, &options);
     *dials = plain;
     if (v->option && strcmp(v->option, "shading") == 0)
         glint_options_set(&options, v->option, v->value, &error);
@@ -118,7 +118,7 @@ static bool set_dials(const struct bench *b, const struct bench_variation *v,
         snprintf(text, sizeof text, "%g", v->value);
         glint_options_set_text(&options, v->option, text, &error);
     }
-    scene_dials_choose(dials, &options);
+    scene_dials_set_defaults(dials, &options);
     if (v->width) {
         dials->width = v->width;
         dials->height = v->height;
@@ -151,7 +151,7 @@ static int add_case(struct bench *b, const struct bench_variation *v)
     if (code == EXIT_OK && o->bare.data)
         code = open_frame(t, &t->bare, &o->bare.model, &dials);
     if (code == EXIT_OK)
-        t->covered_px = scene_covered_px(&t->frame);
+        t->covered_px = scene_count_covered_px(&t->frame);
     return code;
 }
 

@@ -232,25 +232,27 @@ TEST(lines_that_fail_change_nothing)
         uint64_t hash;
 
         control_parse(before[i], "f:1", &line, &error);
-        assert_ok(steer_take(&steer, d->frame.scene, &line, "", &error));
+        assert_ok(
+            steer_execute_line(&steer, d->frame.scene, &line, "", &error));
         moving_draw(d);
         hash = hash_image(d);
         was = steer;
         control_parse("distance 9e5", "f:2", &line, &error);
-        assert_int_equal(steer_take(&steer, d->frame.scene, &line, "", &error),
-                         GLINT_E_FORMAT);
+        assert_int_equal(
+            steer_execute_line(&steer, d->frame.scene, &line, "", &error),
+            GLINT_E_FORMAT);
         assert_memory_equal(&steer, &was, sizeof was);
         assert_int_equal(
-            steer_take(&steer, d->frame.scene, &bright, "", &error),
+            steer_execute_line(&steer, d->frame.scene, &bright, "", &error),
             GLINT_E_FORMAT);
         moving_draw(d);
         assert_true(hash_image(d) == hash);
-        steer_apply(&steer, d->frame.scene);
+        steer_apply_state(&steer, d->frame.scene);
         moving_draw(d);
         assert_true(hash_image(d) == hash);
     }
     control_parse("orbit 30 20", "f:3", &line, &error);
-    assert_ok(steer_take(&steer, d->frame.scene, &line, "", &error));
+    assert_ok(steer_execute_line(&steer, d->frame.scene, &line, "", &error));
     steer_close(&steer);
     moving_close(d);
 }

@@ -454,7 +454,7 @@ TEST(account)
 
     open_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
     drawn_draw(&d, 32, 32, light_q20);
-    assert_ok(scene_account_make(&account, &d.frame));
+    assert_ok(scene_account_collect(&account, &d.frame));
     /* objects 0 .. 3: steel, brushed, old, white */
     for (int i = 0; i < 4; i++) {
         const int64_t *n = account.objects[i].count;

@@ -159,7 +159,7 @@ TEST(keys)
 static int play_line(struct playback *p, const char *text, double elapsed_s)
 {
     assert_ok(control_parse(text, "f:1", &line, &error));
-    assert_int_equal(playback_take(p, &line), *text != 0);
+    assert_int_equal(playback_execute_line(p, &line), *text != 0);
     return playback_next(p, elapsed_s);
 }
 
@@ -217,12 +217,12 @@ TEST(file)
     char where[CONTROL_WHERE], wanted[CONTROL_WHERE];
 
     assert_ok(read_text("orbit 1 2\n\n# none\n3 stop\nplay\n2 pause"));
-    assert_int_equal(controls_row(&input, 3)->verb, CONTROL_PAUSE);
-    assert_null(controls_row(&input, 4));
+    assert_int_equal(controls_get_line(&input, 3)->verb, CONTROL_PAUSE);
+    assert_null(controls_get_line(&input, 4));
     expect_next(0, CONTROL_ORBIT);
     assert_null(controls_next(&input, 2));
     expect_next(3, CONTROL_STOP);
-    controls_where(&input, -1, where);
+    controls_format_location(&input, -1, where);
     snprintf(wanted, sizeof wanted, "%s:4", scratch_file);
     assert_string_equal(where, wanted);
     expect_next(3, CONTROL_PLAY);

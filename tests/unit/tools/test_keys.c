@@ -25,19 +25,20 @@ TEST(values)
                          "# remark\nframe, gain ,exposure,x,y\n10,1,-2,0,0\n"
                          "20,3,,100,\n\n30,,8,,50\r\n",
                          &error));
-    assert_true(keys_has(&k, KEYS_GAIN) && !keys_has(&k, KEYS_STRENGTH));
-    assert_true(keys_at(&k, KEYS_STRENGTH, 15, 7) == 7);
-    assert_true(keys_at(&k, KEYS_GAIN, 0, 7) == 1);
-    assert_true(keys_at(&k, KEYS_GAIN, 10, 7) == 1);
-    assert_true(keys_at(&k, KEYS_GAIN, 15, 7) == 2);
-    assert_true(keys_at(&k, KEYS_GAIN, 20, 7) == 3);
-    assert_true(keys_at(&k, KEYS_GAIN, 1000000, 7) == 3);
+    assert_true(keys_has_column(&k, KEYS_GAIN) &&
+                !keys_has_column(&k, KEYS_STRENGTH));
+    assert_true(keys_interpolate_at(&k, KEYS_STRENGTH, 15, 7) == 7);
+    assert_true(keys_interpolate_at(&k, KEYS_GAIN, 0, 7) == 1);
+    assert_true(keys_interpolate_at(&k, KEYS_GAIN, 10, 7) == 1);
+    assert_true(keys_interpolate_at(&k, KEYS_GAIN, 15, 7) == 2);
+    assert_true(keys_interpolate_at(&k, KEYS_GAIN, 20, 7) == 3);
+    assert_true(keys_interpolate_at(&k, KEYS_GAIN, 1000000, 7) == 3);
     /* an empty field is not a key: interpolates from frame 10 to 30 */
-    assert_true(keys_at(&k, KEYS_EXPOSURE, 20, 7) == 3);
-    assert_true(keys_at(&k, KEYS_X, 15, 7) == 50);
-    assert_true(keys_at(&k, KEYS_Y, 20, 7) == 25);
+    assert_true(keys_interpolate_at(&k, KEYS_EXPOSURE, 20, 7) == 3);
+    assert_true(keys_interpolate_at(&k, KEYS_X, 15, 7) == 50);
+    assert_true(keys_interpolate_at(&k, KEYS_Y, 20, 7) == 25);
     keys_free(&k);
-    assert_false(keys_has(&k, KEYS_GAIN));
+    assert_false(keys_has_column(&k, KEYS_GAIN));
 }
 
 /* Checks that the right two of many keys are used. */
@@ -56,8 +57,8 @@ TEST(many)
     }
     assert_ok(parse_text(&k, text, &error));
     for (int i = 0; i < 999; i++) {
-        assert_true(keys_at(&k, KEYS_GAIN, 3 * i, 0) == i * i);
-        assert_true(keys_at(&k, KEYS_GAIN, 3 * i + 1, 0) ==
+        assert_true(keys_interpolate_at(&k, KEYS_GAIN, 3 * i, 0) == i * i);
+        assert_true(keys_interpolate_at(&k, KEYS_GAIN, 3 * i + 1, 0) ==
                     i * i + (2 * i + 1) * 1.0 / 3);
     }
     keys_free(&k);

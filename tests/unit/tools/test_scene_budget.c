@@ -24,13 +24,13 @@ TEST(qualities)
         struct scene_dials dials = {.width = WIDTH, .height = HEIGHT};
         struct scene_budget budget;
 
-        scene_dials_be(&dials, quality[i]);
+        scene_dials_set_quality(&dials, quality[i]);
         scene_budget_init(&budget, &dials);
-        assert_true(scene_budget_quality(&budget) == quality[i]);
-        assert_int_equal(scene_budget_level(quality[i]), i);
+        assert_true(scene_budget_flare_quality(&budget) == quality[i]);
+        assert_int_equal(scene_budget_level_of_quality(quality[i]), i);
         for (int k = 0; k < SCENE_BUDGET_LEVELS; k++) {
             budget.level = k;
-            assert_true(scene_budget_quality(&budget) ==
+            assert_true(scene_budget_flare_quality(&budget) ==
                         fmin(quality[i], quality[k]));
         }
     }
@@ -72,17 +72,17 @@ TEST(coarser)
     struct over_scene over = {.file = "tests/data/balls.scene"};
 
     assert_ok(over_scene_open(&over, &tool));
-    scene_dials_be(&dials, 0);
-    assert_ok(over_scene_size(&over, &dials));
+    scene_dials_set_quality(&dials, 0);
+    assert_ok(over_scene_allocate(&over, &dials));
     draw_scene(&over, coarse);
     dials = (struct scene_dials){.width = WIDTH, .height = HEIGHT};
-    assert_ok(over_scene_size(&over, &dials));
+    assert_ok(over_scene_allocate(&over, &dials));
     draw_scene(&over, fine);
     assert_memory_not_equal(fine, coarse, BYTES);
-    assert_ok(over_scene_coarsen(&over, 0));
+    assert_ok(over_scene_set_quality(&over, 0));
     draw_scene(&over, got);
     assert_memory_equal(got, coarse, BYTES);
-    assert_ok(over_scene_coarsen(&over, 1));
+    assert_ok(over_scene_set_quality(&over, 1));
     draw_scene(&over, got);
     assert_memory_equal(got, fine, BYTES);
     over_scene_close(&over);
@@ -113,7 +113,7 @@ static int count_late(struct scene_budget *b, int n, double slower,
         const double ms = slower * level_ms[b->level];
 
         late += ms > limit_ms;
-        scene_budget_follow(b, ms, limit_ms);
+        scene_budget_update_level(b, ms, limit_ms);
     }
     return late;
 }
@@ -158,7 +158,7 @@ TEST(one_slow)
 
     count_late(&b, 12, 1, 30);
     assert_int_equal(b.level, 2);
-    assert_false(scene_budget_follow(&b, 300, 30));
+    assert_false(scene_budget_update_level(&b, 300, 30));
     assert_int_equal(count_late(&b, 100, 1, 30), 0);
     assert_int_equal(b.level, 2);
 }
@@ -177,8 +177,8 @@ static void check_shared_budget(double least_ms, double most_ms, int level)
         const double scene_ms = level_ms[b.level], left_ms = 60 - scene_ms;
 
         if (i > 0)
-            scene_budget_follow(&b, scene_ms,
-                                scene_budget_limit(60, flare_ms, quality));
+            scene_budget_update_level(
+                &b, scene_ms, scene_budget_limit_flare(60, flare_ms, quality));
         flare_ms = fmax(least_ms, fmin(most_ms, left_ms));
         quality = fmax(0, fmin(1, (left_ms - least_ms) / (most_ms - least_ms)));
         late += i >= 20 && scene_ms + flare_ms > 60;
@@ -193,7 +193,7 @@ TEST(shares)
     check_shared_budget(10, 200, 2); /* a flare that could use all the time */
     check_shared_budget(30, 200, 2); /* a flare that leaves half of the time */
     check_shared_budget(50, 200, 4); /* a flare that leaves almost no time */
-    assert_true(scene_budget_limit(60, 59, 0) == 6);
+    assert_true(scene_budget_limit_flare(60, 59, 0) == 6);
 }
 
 static double now_s, step_s;
@@ -216,19 +216,19 @@ TEST(draws)
 
     step_s = 1e-3;
     assert_ok(over_scene_open(&over, &tool));
-    scene_dials_be(&dials, 0);
-    assert_ok(over_scene_size(&over, &dials));
+    scene_dials_set_quality(&dials, 0);
+    assert_ok(over_scene_allocate(&over, &dials));
     draw_scene(&over, coarse);
     dials = (struct scene_dials){.width = WIDTH, .height = HEIGHT};
-    assert_ok(over_scene_size(&over, &dials));
+    assert_ok(over_scene_allocate(&over, &dials));
     over.budget_ms = 2 * over.ms;
     for (int i = 0; i < 20; i++)
         draw_scene(&over, got);
-    assert_true(scene_budget_quality(&over.budget) == .5);
+    assert_true(scene_budget_flare_quality(&over.budget) == .5);
     step_s = 3e-3;
     for (int i = 0; i < 20; i++)
         draw_scene(&over, got);
-    assert_true(scene_budget_quality(&over.budget) == 0);
+    assert_true(scene_budget_flare_quality(&over.budget) == 0);
     assert_memory_equal(got, coarse, BYTES);
     over_scene_close(&over);
 }

@@ -61,7 +61,7 @@ TEST(what_is_drawn)
     const uint8_t *px = image.plane[0];
     int n_green = 0;
 
-    show_light(&image, &track);
+    show_lamp_mark(&image, &track);
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         n_green += px[3 * i] == 0 && px[3 * i + 1] == 255;
     assert_int_equal(n_green, 9 + 4 * 16 + 31);
@@ -111,7 +111,7 @@ TEST(colours_of_formats)
 
         image.matrix = i & 1 ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
         image.range = i & 1 ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED;
-        show_light(&image, &track);
+        show_lamp_mark(&image, &track);
         for (int c = 0; c < 3; c++)
             assert_int_equal(mem[GUARD + at[i / 2].offset[c]],
                              expected[at[i / 2].is_rgb ? 0 : 1 + (i & 1)][c]);
@@ -126,7 +126,7 @@ TEST(writes_565)
     struct glint_image image = new_image(GLINT_RGB565, &mem);
 
     track.state = GLINT_LAMP_FADING;
-    show_light(&image, &track);
+    show_lamp_mark(&image, &track);
     assert_int_equal(mem[GUARD + 3900], 0x00); /* red: 0xf800 */
     assert_int_equal(mem[GUARD + 3901], 0xf8);
     free(mem);
@@ -147,7 +147,7 @@ TEST(clipped_at_the_borders)
 
         track.id = UINT32_MAX;
         track.size_q8 = i % 7 ? 512 : 1 << 21;
-        show_light(&image, &track);
+        show_lamp_mark(&image, &track);
         assert_guards(&image, mem);
         free(mem);
     }

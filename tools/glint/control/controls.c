@@ -87,8 +87,9 @@ struct reader {
     struct glint_error *error;
 };
 
-enum glint_status control_fail(struct glint_error *error, const char *where,
-                               int column, const char *format, ...)
+enum glint_status control_report_error(struct glint_error *error,
+                                       const char *where, int column,
+                                       const char *format, ...)
 {
     char cause[sizeof error->text], place[sizeof error->text];
     va_list values;
@@ -142,10 +143,10 @@ static enum glint_status report_unknown_word(const struct reader *r,
         if (can_control_change_option(glint_option(i)))
             suggest_consider(&suggest, glint_option(i)->name,
                              strlen(glint_option(i)->name));
-    return control_fail(r->error, r->where, r->column,
-                        "'%.24s' is not a %s%s%s", r->word,
-                        before ? "word of " : "command", before ? before : "",
-                        suggest_from_words(&suggest));
+    return control_report_error(
+        r->error, r->where, r->column, "'%.24s' is not a %s%s%s", r->word,
+        before ? "word of " : "command", before ? before : "",
+        suggest_from_words(&suggest));
 }
 
 /* Returns the first form at index I or later whose first word is WORD, or
@@ -165,11 +166,11 @@ static enum glint_status read_form_names(struct reader *r,
 {
     for (int i = 0; i < n; i++) {
         if (!read_next_word(r))
-            return control_fail(r->error, r->where, r->column, "expected %s",
-                                form->usage);
+            return control_report_error(r->error, r->where, r->column,
+                                        "expected %s", form->usage);
         if (strlen(r->word) >= CONTROL_NAME)
-            return control_fail(r->error, r->where, r->column,
-                                "a name has at most 31 letters");
+            return control_report_error(r->error, r->where, r->column,
+                                        "a name has at most 31 letters");
         memcpy(line->name[i], r->word, strlen(r->word) + 1);
         line->name_column[i] = r->column;
     }
@@ -186,8 +187,8 @@ static enum glint_status read_optional_clause(struct reader *r,
     if (!f->clause)
         return GLINT_OK;
     if (!read_next_word(r))
-        return control_fail(r->error, r->where, r->column, "expected %s",
-                            f->usage);
+        return control_report_error(r->error, r->where, r->column,
+                                    "expected %s", f->usage);
     for (; f; f = find_command_form(f->word, (int)(f - control_forms) + 1))
         if (strcmp(f->clause, r->word) == 0) {
             *form = f;
@@ -205,22 +206,24 @@ static enum glint_status read_form_numbers(struct reader *r,
         double v;
 
         if (!tool_parse_number(r->word, &v))
-            return control_fail(r->error, r->where, r->column,
-                                "'%.24s' is not a number; expected %s", r->word,
-                                form->usage);
+            return control_report_error(r->error, r->where, r->column,
+                                        "'%.24s' is not a number; expected %s",
+                                        r->word, form->usage);
         if (!(v >= form->lowest && v <= form->highest))
-            return control_fail(r->error, r->where, r->column,
-                                "%s must be %.9g to %.9g, not %.9g",
-                                form->usage, form->lowest, form->highest, v);
+            return control_report_error(r->error, r->where, r->column,
+                                        "%s must be %.9g to %.9g, not %.9g",
+                                        form->usage, form->lowest,
+                                        form->highest, v);
         if (form->is_whole && v != rint(v))
-            return control_fail(r->error, r->where, r->column,
-                                "%s needs whole numbers, not %.9g", form->usage,
-                                v);
+            return control_report_error(r->error, r->where, r->column,
+                                        "%s needs whole numbers, not %.9g",
+                                        form->usage, v);
         line->v[line->n++] = v;
     }
-    return line->n >= form->least ? GLINT_OK
-                                  : control_fail(r->error, r->where, r->column,
-                                                 "expected %s", form->usage);
+    return line->n >= form->least
+               ? GLINT_OK
+               : control_report_error(r->error, r->where, r->column,
+                                      "expected %s", form->usage);
 }
 
 /* -------------------------------------------------------------------- line */
@@ -237,7 +240,7 @@ static enum glint_status read_frame_number(struct reader *r,
     *r = ahead;
     if (!tool_parse_number(r->word, &v) ||
         !(v >= 0 && v <= CONTROL_MOST_FRAME) || v != rint(v))
-        return control_fail(
+        return control_report_error(
             r->error, r->where, r->column,
             "a frame must be a whole number from 0, not '%.24s'", r->word);
     line->frame = (int)v;
@@ -263,8 +266,9 @@ static enum glint_status read_option_value(struct reader *r,
                                                 line->v[0], &error) == GLINT_OK)
         return status;
     glint_option_accepts(option, accepts, sizeof accepts);
-    return control_fail(r->error, r->where, line->column, "%s is %s, not %.9g",
-                        option->name, accepts, line->v[0]);
+    return control_report_error(r->error, r->where, line->column,
+                                "%s is %s, not %.9g", option->name, accepts,
+                                line->v[0]);
 }
 
 /* Reads the command after the frame number. */
@@ -281,8 +285,8 @@ static enum glint_status read_command_words(struct reader *r,
     if (!read_next_word(r))
         return line->frame < 0
                    ? GLINT_OK
-                   : control_fail(r->error, r->where, r->column,
-                                  "a command must follow the frame");
+                   : control_report_error(r->error, r->where, r->column,
+                                          "a command must follow the frame");
     option = glint_option_named(r->word);
     if (option && can_control_change_option(option)) {
         snprintf(usage, sizeof usage, "%s %s", option->name, option->value);
@@ -301,9 +305,9 @@ static enum glint_status read_command_words(struct reader *r,
             status = read_form_numbers(r, form, line);
     }
     if (status == GLINT_OK && read_next_word(r))
-        status = control_fail(r->error, r->where, r->column,
-                              "'%.24s' is one value too many; expected %s",
-                              r->word, form->usage);
+        status = control_report_error(
+            r->error, r->where, r->column,
+            "'%.24s' is one value too many; expected %s", r->word, form->usage);
     line->verb = form->verb;
     return status;
 }
@@ -318,8 +322,9 @@ enum glint_status control_parse(const char *text, const char *where,
     enum glint_status status;
 
     if (strlen(text) >= CONTROL_LINE)
-        return control_fail(error, where, CONTROL_LINE,
-                            "a line has at most %d bytes", CONTROL_LINE - 1);
+        return control_report_error(error, where, CONTROL_LINE,
+                                    "a line has at most %d bytes",
+                                    CONTROL_LINE - 1);
     status = read_frame_number(&r, &read);
     if (status == GLINT_OK)
         status = read_command_words(&r, &read);
@@ -555,7 +560,7 @@ static bool read_next_pipe_command(struct controls *in)
         struct glint_error error;
 
         if (parse_control_line(in, text, &in->ahead, &error) != GLINT_OK)
-            controls_refuse(in, &error);
+            controls_reject_line(in, &error);
         else if (in->ahead.verb != CONTROL_NONE)
             return true;
     }
@@ -582,12 +587,13 @@ const struct control_line *controls_next(struct controls *input, int picture)
     return &in->ahead;
 }
 
-const struct control_line *controls_row(const struct controls *input, int i)
+const struct control_line *controls_get_line(const struct controls *input,
+                                             int i)
 {
     return i < input->n ? &input->row[i] : NULL;
 }
 
-void controls_where(const struct controls *input, int i, char *where)
+void controls_format_location(const struct controls *input, int i, char *where)
 {
     const int row = i >= 0 ? i : input->next - 1;
 
@@ -598,7 +604,8 @@ void controls_where(const struct controls *input, int i, char *where)
                          where);
 }
 
-void controls_refuse(struct controls *input, const struct glint_error *error)
+void controls_reject_line(struct controls *input,
+                          const struct glint_error *error)
 {
     input->n_bad++;
     input->bad = *error;

@@ -151,8 +151,9 @@ enum glint_status control_parse(const char *text, const char *where,
 
 /* Sets ERROR to "WHERE:COLUMN: cause", the cause by printf() format. Returns
  * GLINT_E_FORMAT. */
-enum glint_status control_fail(struct glint_error *error, const char *where,
-                               int column, const char *format, ...)
+enum glint_status control_report_error(struct glint_error *error,
+                                       const char *where, int column,
+                                       const char *format, ...)
     GLINT_PRINTF(4, 5);
 
 /* Starts to read keys from terminal FD. Returns GLINT_E_IO if FD is not a
@@ -181,14 +182,16 @@ enum glint_status controls_open(struct controls *input, const char *path,
 const struct control_line *controls_next(struct controls *input, int picture);
 
 /* Returns line I of a file, or NULL if there are fewer. */
-const struct control_line *controls_row(const struct controls *input, int i);
+const struct control_line *controls_get_line(const struct controls *input,
+                                             int i);
 
 /* Writes "FILE:LINE" of line I of a file (I < 0: of the line returned last)
  * to WHERE[CONTROL_WHERE]. */
-void controls_where(const struct controls *input, int i, char *where);
+void controls_format_location(const struct controls *input, int i, char *where);
 
 /* Counts the line returned last as skipped because of ERROR. */
-void controls_refuse(struct controls *input, const struct glint_error *error);
+void controls_reject_line(struct controls *input,
+                          const struct glint_error *error);
 
 void controls_close(struct controls *input);
 

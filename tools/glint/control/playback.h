@@ -29,7 +29,8 @@ struct playback {
 void playback_init(struct playback *playback);
 
 /* Executes LINE if it is a command about time. Returns whether it is. */
-bool playback_take(struct playback *playback, const struct control_line *line);
+bool playback_execute_line(struct playback *playback,
+                           const struct control_line *line);
 
 /* Returns the frame of the next picture, ELAPSED_S after the previous
  * picture. */

@@ -41,8 +41,8 @@ check_environment_command(const struct steer *steer,
     struct suggest suggest;
 
     if (count_environments(steer) == 0)
-        return control_fail(error, where, line->column,
-                            "the scene has no environment");
+        return control_report_error(error, where, line->column,
+                                    "the scene has no environment");
     if (line->verb != CONTROL_MAP ||
         glint_scene_find_environment(&steer->model, line->name[0]) >= 0)
         return GLINT_OK;
@@ -52,9 +52,9 @@ check_environment_command(const struct steer *steer,
 
         suggest_consider(&suggest, name, strlen(name));
     }
-    return control_fail(error, where, line->name_column[0],
-                        "the scene has no environment '%s'%s", line->name[0],
-                        suggest_from_words(&suggest));
+    return control_report_error(error, where, line->name_column[0],
+                                "the scene has no environment '%s'%s",
+                                line->name[0], suggest_from_words(&suggest));
 }
 
 /* Shows the current environment with its rotation and scale. */
@@ -132,9 +132,10 @@ static enum glint_status check_motion_sensor(const struct steer *steer,
     if (m)
         n = (int)((const struct glint_motion_header *)(const void *)(m + 1))
                 ->n_sensors;
-    return line->v[0] > n ? control_fail(error, where, line->column,
-                                         "the scene's motion has %d sensors", n)
-                          : GLINT_OK;
+    return line->v[0] > n
+               ? control_report_error(error, where, line->column,
+                                      "the scene's motion has %d sensors", n)
+               : GLINT_OK;
 }
 
 /* -------------------------------------------------------------------- camera
@@ -404,10 +405,10 @@ static enum glint_status find_name_index(const struct steer *s,
 
         suggest_consider(&suggest, known, strlen(known));
     }
-    return control_fail(error, where, line->name_column[k],
-                        "the scene has no %s '%s'%s",
-                        is_material ? "material" : "object", name,
-                        suggest_from_words(&suggest));
+    return control_report_error(error, where, line->name_column[k],
+                                "the scene has no %s '%s'%s",
+                                is_material ? "material" : "object", name,
+                                suggest_from_words(&suggest));
 }
 
 /* Returns whether the first name of LINE is a material. */
@@ -466,14 +467,14 @@ enum glint_status steer_check(const struct steer *steer,
         return status;
     if (is_set && line->verb != CONTROL_COLOUR &&
         !is_brushed_metal(steer, index[0]))
-        return control_fail(error, where, line->name_column[0],
-                            "'%s' is not brushed metal; use 'colour'",
-                            line->name[0]);
+        return control_report_error(error, where, line->name_column[0],
+                                    "'%s' is not brushed metal; use 'colour'",
+                                    line->name[0]);
     if (line->verb == CONTROL_SIZE &&
         steer->model.object[index[0]].kind != GLINT_OBJECT_SPHERE)
-        return control_fail(error, where, line->name_column[0],
-                            "'%s' is not a sphere, so it has no radius",
-                            line->name[0]);
+        return control_report_error(error, where, line->name_column[0],
+                                    "'%s' is not a sphere, so it has no radius",
+                                    line->name[0]);
     return GLINT_OK;
 }
 
@@ -741,9 +742,11 @@ static enum glint_status execute_control_line(struct steer *s,
     }
 }
 
-enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
-                             const struct control_line *line, const char *where,
-                             struct glint_error *error)
+enum glint_status steer_execute_line(struct steer *steer,
+                                     struct glint_scene *scene,
+                                     const struct control_line *line,
+                                     const char *where,
+                                     struct glint_error *error)
 {
     enum glint_status status = steer_check(steer, line, where, error);
 
@@ -753,7 +756,7 @@ enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
     if (line->is_change)
         return GLINT_OK;
     if (status == GLINT_E_ARGUMENT)
-        status = control_fail(
+        status = control_report_error(
             error, where, line->column,
             is_command_for_material(line)
                 ? "the specular and diffuse colours sum to more than 1"
@@ -761,7 +764,7 @@ enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
     return status;
 }
 
-void steer_apply(const struct steer *steer, struct glint_scene *scene)
+void steer_apply_state(const struct steer *steer, struct glint_scene *scene)
 {
     for (int i = 0; i < count_objects(steer); i++) {
         const struct steer_thing *const t = &steer->thing[i];

@@ -76,12 +76,14 @@ enum glint_status steer_check(const struct steer *steer,
 
 /* Executes LINE, which must not be a command about time. Returns
  * GLINT_E_FORMAT like steer_check(), without any change. */
-enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
-                             const struct control_line *line, const char *where,
-                             struct glint_error *error);
+enum glint_status steer_execute_line(struct steer *steer,
+                                     struct glint_scene *scene,
+                                     const struct control_line *line,
+                                     const char *where,
+                                     struct glint_error *error);
 
 /* Applies all recorded changes to SCENE, which must be in the state of its
  * model. */
-void steer_apply(const struct steer *steer, struct glint_scene *scene);
+void steer_apply_state(const struct steer *steer, struct glint_scene *scene);
 
 #endif

@@ -175,18 +175,18 @@ enum glint_status keys_read(struct keys *keys, const char *path,
     return keys_parse(keys, path, NULL, MAX_BYTES, error);
 }
 
-int keys_column(const char *name)
+int keys_find_column(const char *name)
 {
     return text_find_column(columns, KEYS_COLUMNS, name);
 }
 
-bool keys_has(const struct keys *keys, enum key_column column)
+bool keys_has_column(const struct keys *keys, enum key_column column)
 {
     return keys->n[column] > 0;
 }
 
-double keys_at(const struct keys *keys, enum key_column column, int frame,
-               double other)
+double keys_interpolate_at(const struct keys *keys, enum key_column column,
+                           int frame, double other)
 {
     const struct key_value *const key = keys->key[column];
     const int n = keys->n[column];

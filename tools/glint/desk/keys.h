@@ -60,14 +60,14 @@ enum glint_status keys_parse(struct keys *keys, const char *name,
                              struct glint_error *error);
 
 /* Returns the index of the column NAME, or -1. */
-int keys_column(const char *name);
+int keys_find_column(const char *name);
 
 /* Returns whether COLUMN has keys. */
-bool keys_has(const struct keys *keys, enum key_column column);
+bool keys_has_column(const struct keys *keys, enum key_column column);
 
 /* Returns the value of COLUMN at FRAME, or OTHER if COLUMN has no keys. */
-double keys_at(const struct keys *keys, enum key_column column, int frame,
-               double other);
+double keys_interpolate_at(const struct keys *keys, enum key_column column,
+                           int frame, double other);
 
 void keys_free(struct keys *keys);
 

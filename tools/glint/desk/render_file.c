@@ -45,8 +45,9 @@ int render_file_save(const struct tool *tool, const char *path, bool is_linear,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-void render_file_say(const struct tool *tool, const char *path, int width,
-                     int height, const char *what, double seconds)
+void render_file_print_summary(const struct tool *tool, const char *path,
+                               int width, int height, const char *what,
+                               double seconds)
 {
     if (!tool->quiet && !tool->json)
         fprintf(stderr, "%s: %dx%d, %s; %.0f ms\n", path, width, height, what,

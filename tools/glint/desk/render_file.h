@@ -22,7 +22,8 @@ int render_file_save(const struct tool *tool, const char *path, bool is_linear,
                      const struct glint_float_image *image, double exposure);
 
 /* Prints that WHAT was written to PATH, unless --quiet or --json. */
-void render_file_say(const struct tool *tool, const char *path, int width,
-                     int height, const char *what, double seconds);
+void render_file_print_summary(const struct tool *tool, const char *path,
+                               int width, int height, const char *what,
+                               double seconds);
 
 #endif

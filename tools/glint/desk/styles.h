@@ -20,6 +20,6 @@ struct style {
 extern const struct style styles[];
 
 /* Returns the style NAME, or NULL. */
-const struct style *style_of(const char *name);
+const struct style *find_style_of_lens(const char *name);
 
 #endif

@@ -37,7 +37,7 @@ enum glint_status explained_scene_open(struct explained_scene *scene,
                                        const struct glint_explain *flare)
 {
     *scene = (struct explained_scene){.drawing = drawing, .flare = flare};
-    return scene_account_make(&scene->account, &drawing->files.scene.frame);
+    return scene_account_collect(&scene->account, &drawing->files.scene.frame);
 }
 
 void explained_scene_close(struct explained_scene *scene)

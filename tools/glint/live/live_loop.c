@@ -115,7 +115,7 @@ static int open_live_output(struct live *l, const struct glint_image *image)
 static int apply_quality_step(struct live *l)
 {
     struct drawing *drawing = &l->o->drawing;
-    const enum glint_status status = over_scene_coarsen(
+    const enum glint_status status = over_scene_set_quality(
         &drawing->files.scene, live_adapt_quality(&l->adapt));
 
     if (drawing->run.engine)

@@ -50,7 +50,7 @@ static void draw_food_changes(const struct bar *b, struct glint_motion *motion)
     }
 }
 
-void time_line_draw(const struct glint_image *image,
+void draw_time_line(const struct glint_image *image,
                     struct glint_motion *motion, int frame)
 {
     const int high = image->height < 240 ? 2 : image->height / 100;

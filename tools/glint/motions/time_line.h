@@ -10,7 +10,7 @@
 
 /* Draws along the lower edge of IMAGE the position of FRAME in MOTION, marks
  * at the frames where foods were replaced, and the frame's number. */
-void time_line_draw(const struct glint_image *image,
+void draw_time_line(const struct glint_image *image,
                     struct glint_motion *motion, int frame);
 
 #endif

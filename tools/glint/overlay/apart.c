@@ -5,58 +5,60 @@
 
 #include "posix/output.h"
 
-static void add(struct apart_file *files, int *n, const char *option,
-                const char *path)
+static void add_file_path(struct apart_file *files, int *n, const char *option,
+                          const char *path)
 {
     if (path && *n < APART_FILES)
         files[(*n)++] = (struct apart_file){option, path};
 }
 
-void apart_read(struct apart *files, const char *option, const char *path)
+void apart_add_input(struct apart *files, const char *option, const char *path)
 {
-    add(files->read, &files->n_read, option, path);
+    add_file_path(files->read, &files->n_read, option, path);
 }
 
-void apart_write(struct apart *files, const char *option, const char *path)
+void apart_add_output(struct apart *files, const char *option, const char *path)
 {
-    add(files->written, &files->n_written, option, path);
+    add_file_path(files->written, &files->n_written, option, path);
 }
 
-void apart_line(struct apart *files, const struct drawing_line *line)
+void apart_add_drawing_files(struct apart *files,
+                             const struct drawing_line *line)
 {
     const struct glint_options *const o = &line->settings.options;
 
-    apart_read(files, "--lens", o->lens);
-    apart_read(files, "--lights", o->lights);
-    apart_read(files, "--mask", o->mask);
+    apart_add_input(files, "--lens", o->lens);
+    apart_add_input(files, "--lights", o->lights);
+    apart_add_input(files, "--mask", o->mask);
     if (!line->keys_text)
-        apart_read(files, "--keys", o->keys);
-    apart_read(files, "--scene", o->scene);
-    apart_read(files, "--pose", o->pose);
-    apart_read(files, "--control", o->control);
-    apart_read(files, "--ghosts", o->ghosts);
-    apart_read(files, "--stop-mask", o->stop_mask);
-    apart_write(files, "--save-lights", o->save_lights);
+        apart_add_input(files, "--keys", o->keys);
+    apart_add_input(files, "--scene", o->scene);
+    apart_add_input(files, "--pose", o->pose);
+    apart_add_input(files, "--control", o->control);
+    apart_add_input(files, "--ghosts", o->ghosts);
+    apart_add_input(files, "--stop-mask", o->stop_mask);
+    apart_add_output(files, "--save-lights", o->save_lights);
 }
 
 /* Returns whether writing OUTPUT would overwrite INPUT. Patterns are not files
  * and are compared as text. */
-static bool is_lost(const char *input, const char *output)
+static bool would_overwrite_input(const char *input, const char *output)
 {
     return glint_target_is_input(input, output) ||
            (strchr(input, '%') && glint_target_is_same(input, output));
 }
 
 /* Returns whether A and B are the same output; "-" is standard output. */
-static bool is_shared(const char *a, const char *b)
+static bool is_same_output(const char *a, const char *b)
 {
     if (strcmp(a, "-") == 0)
         return strcmp(b, "-") == 0 || glint_target_is_input(b, a);
     return glint_target_is_input(a, b) || glint_target_is_same(a, b);
 }
 
-static int refuse_lost(const struct tool *tool, const struct apart_file *input,
-                       const struct apart_file *output)
+static int report_overwritten_input(const struct tool *tool,
+                                    const struct apart_file *input,
+                                    const struct apart_file *output)
 {
     const char *const name =
         strcmp(output->path, "-") ? output->path : "standard output";
@@ -78,10 +80,10 @@ int apart_check(const struct tool *tool, const struct apart *files)
         const struct apart_file *const to = &files->written[i];
 
         for (int k = 0; k < files->n_read; k++)
-            if (is_lost(files->read[k].path, to->path))
-                return refuse_lost(tool, &files->read[k], to);
+            if (would_overwrite_input(files->read[k].path, to->path))
+                return report_overwritten_input(tool, &files->read[k], to);
         for (int k = 0; k < i; k++)
-            if (is_shared(files->written[k].path, to->path))
+            if (is_same_output(files->written[k].path, to->path))
                 return tool_usage(
                     tool, "%s and %s both write %s; name two files",
                     files->written[k].option, to->option, to->path);

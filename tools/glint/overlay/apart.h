@@ -27,11 +27,13 @@ struct apart {
 
 /* Add PATH, the value of OPTION (NULL: the input), to the files that are read
  * or written, at most APART_FILES of each. Do nothing if PATH is NULL. */
-void apart_read(struct apart *files, const char *option, const char *path);
-void apart_write(struct apart *files, const char *option, const char *path);
+void apart_add_input(struct apart *files, const char *option, const char *path);
+void apart_add_output(struct apart *files, const char *option,
+                      const char *path);
 
 /* Adds the files that the options of LINE name. */
-void apart_line(struct apart *files, const struct drawing_line *line);
+void apart_add_drawing_files(struct apart *files,
+                             const struct drawing_line *line);
 
 /* Rejects an output that is also an input, which would be overwritten, or also
  * another output. Returns an exit code. */

@@ -16,7 +16,7 @@
 static const double preview_quality = 0.25;
 
 /* Returns the focal length of the lens, mm. */
-static double focal_of(const struct drawing *d)
+static double lens_focal_mm(const struct drawing *d)
 {
     return d->files.lens.setup.optics.focal_mm;
 }
@@ -25,7 +25,7 @@ static double focal_of(const struct drawing *d)
 
 /* Lowers the quality of a preview unless one was chosen; the model stays the
  * same. */
-static void lower_quality(struct settings *s)
+static void lower_preview_quality(struct settings *s)
 {
     struct glint_options *const o = &s->options;
     const double tolerance = s->tolerance;
@@ -40,8 +40,8 @@ static void lower_quality(struct settings *s)
 }
 
 /* Zooms to ZOOM; GLINT_E_ARGUMENT: it stays where it was. */
-static enum glint_status zoom_to(struct drawing *d, double zoom,
-                                 struct glint_error *error)
+static enum glint_status zoom_lens_to(struct drawing *d, double zoom,
+                                      struct glint_error *error)
 {
     struct settings *const s = &d->line.settings;
     const enum glint_status status =
@@ -56,23 +56,24 @@ static enum glint_status zoom_to(struct drawing *d, double zoom,
 }
 
 /* Sets an option by a line of control. */
-static enum glint_status set_option(void *ctx, const char *name, double value,
-                                    struct glint_error *error)
+static enum glint_status set_option_by_control(void *ctx, const char *name,
+                                               double value,
+                                               struct glint_error *error)
 {
     struct drawing *const d = ctx;
     struct settings *const s = &d->line.settings;
-    const int column = keys_column(name);
+    const int column = keys_find_column(name);
     const double before = s->options.f_number;
     struct opened_lens *const lens = &d->files.lens;
     struct glint_error unused;
     enum glint_status status;
 
-    if (column >= 0 && keys_has(&d->files.keys, column)) {
+    if (column >= 0 && keys_has_column(&d->files.keys, column)) {
         snprintf(error->text, sizeof error->text, "key frames set %s", name);
         return GLINT_E_ARGUMENT;
     }
     if (column == KEYS_ZOOM)
-        return zoom_to(d, value, error);
+        return zoom_lens_to(d, value, error);
     if (column != KEYS_F_NUMBER)
         return glint_options_set(&s->options, name, value, error);
     if (s->options.rays == GLINT_RAYS_EXACT) {
@@ -91,7 +92,7 @@ static enum glint_status set_option(void *ctx, const char *name, double value,
 }
 
 /* Returns the most lamps besides those that are found. */
-static int more_lamps(const struct drawing *d)
+static int count_max_given_lamps(const struct drawing *d)
 {
     return d->line.n_hand + d->files.list.n +
            (d->files.scene.is_open ? OVER_SCENE_LAMPS : 0);
@@ -104,14 +105,15 @@ int drawing_open(const struct tool *tool, struct drawing *drawing)
 
     run->white = 1;
     if (drawing->line.settings.options.preview)
-        lower_quality(&drawing->line.settings);
-    drawing->files.scene.set_option = set_option;
+        lower_preview_quality(&drawing->line.settings);
+    drawing->files.scene.set_option = set_option_by_control;
     drawing->files.scene.set_ctx = drawing;
     code = drawing_files_open(tool, &drawing->line, &drawing->files);
     if (code != EXIT_OK || !drawing->files.has_lens)
         return code;
-    run->lamp = malloc((size_t)(more_lamps(drawing) + GLINT_ENGINE_MAX_LAMPS) *
-                       sizeof *run->lamp);
+    run->lamp = malloc(
+        (size_t)(count_max_given_lamps(drawing) + GLINT_ENGINE_MAX_LAMPS) *
+        sizeof *run->lamp);
     return run->lamp ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
 }
 
@@ -122,7 +124,7 @@ int drawing_open_lens(const struct tool *tool, struct drawing *drawing)
                : drawing_open(tool, drawing);
 }
 
-static void unsize(struct drawing_run *run)
+static void destroy_sized_engine(struct drawing_run *run)
 {
     glint_engine_destroy(run->engine);
     run->engine = NULL;
@@ -131,7 +133,7 @@ static void unsize(struct drawing_run *run)
 
 void drawing_close(struct drawing *drawing)
 {
-    unsize(&drawing->run);
+    destroy_sized_engine(&drawing->run);
     drawing_files_close(&drawing->files);
     lamp_list_free(&drawing->line.at);
     free(drawing->run.lamp);
@@ -169,37 +171,37 @@ int drawing_finish(const struct tool *tool, struct drawing *drawing)
 /* Points of a light's disc that shadows are drawn by, where there is time. */
 enum { STILL_POINTS = 16, VIDEO_POINTS = 4 };
 
-static int size_scene(struct drawing *d, int width, int height)
+static int allocate_scene(struct drawing *d, int width, int height)
 {
     const struct glint_options *const o = &d->line.settings.options;
     struct scene_dials dials = d->line.scene_dials;
 
     if (GLINT_OPTION_GIVEN(o, quality) || o->preview)
-        scene_dials_be(&dials, GLINT_OPTION_GIVEN(o, quality)
-                                   ? o->quality
-                                   : preview_quality);
+        scene_dials_set_quality(&dials, GLINT_OPTION_GIVEN(o, quality)
+                                            ? o->quality
+                                            : preview_quality);
     dials.width = width;
     dials.height = height;
     if (d->files.has_lens)
         dials.focal_px =
-            1 / glint_view_pixel_tangent(&d->run.view, focal_of(d));
+            1 / glint_view_pixel_tangent(&d->run.view, lens_focal_mm(d));
     dials.is_bounded = !dials.shadow_points;
     if (!dials.shadow_points)
         dials.shadow_points = d->line.is_still ? STILL_POINTS : VIDEO_POINTS;
     dials.tile_log2 = 3 + o->tile;
     dials.dither = o->dither;
-    return over_scene_size(&d->files.scene, &dials);
+    return over_scene_allocate(&d->files.scene, &dials);
 }
 
 /* Returns whether the flare is drawn by exact rays. */
-static bool is_exact(const struct drawing *d)
+static bool are_rays_exact(const struct drawing *d)
 {
     return d->files.has_lens && !d->files.lens.model.data;
 }
 
 /* Shows progress while rays are exact. */
-static void watch(const struct tool *tool, struct drawing *d,
-                  struct glint_engine_config *cfg)
+static void show_exact_ray_progress(const struct tool *tool, struct drawing *d,
+                                    struct glint_engine_config *cfg)
 {
     if (!tool->quiet && !d->line.is_still &&
         !GLINT_OPTION_GIVEN(&d->line.settings.options, exposure))
@@ -217,9 +219,10 @@ static void watch(const struct tool *tool, struct drawing *d,
 }
 
 /* Prints how much memory a picture takes at least if --memory is too little. */
-static int fail_sizing(const struct tool *tool, const struct drawing *d,
-                       enum glint_status status,
-                       const struct glint_error *error)
+static int report_sizing_failure(const struct tool *tool,
+                                 const struct drawing *d,
+                                 enum glint_status status,
+                                 const struct glint_error *error)
 {
     const size_t mib = (size_t)1 << 20;
     const size_t scene = over_scene_bytes(&d->files.scene);
@@ -235,7 +238,7 @@ static int fail_sizing(const struct tool *tool, const struct drawing *d,
     return tool_fail(tool, status, text);
 }
 
-static int size_engine(const struct tool *tool, struct drawing *d)
+static int allocate_engine(const struct tool *tool, struct drawing *d)
 {
     const struct drawing_line *const line = &d->line;
     const size_t scene = over_scene_bytes(&d->files.scene);
@@ -246,19 +249,19 @@ static int size_engine(const struct tool *tool, struct drawing *d)
 
     opened_lens_engine(tool, &d->files.lens, &line->settings, run->view.width,
                        run->view.height, &cfg);
-    cfg.search.more_lamps = more_lamps(d);
+    cfg.search.more_lamps = count_max_given_lamps(d);
     /* what the scene leaves */
     if (line->reserve_bytes && !d->files.lens.is_unbaked)
         cfg.arena_bytes =
             line->reserve_bytes > scene ? line->reserve_bytes - scene : 1;
     run->cache = response_cache(tool);
     cfg.cache = &run->cache;
-    run->is_progressing = is_exact(d);
+    run->is_progressing = are_rays_exact(d);
     if (run->is_progressing)
-        watch(tool, d, &cfg);
+        show_exact_ray_progress(tool, d, &cfg);
     status = glint_engine_create(&run->engine, &cfg, &error);
     if (status != GLINT_OK)
-        return fail_sizing(tool, d, status, &error);
+        return report_sizing_failure(tool, d, status, &error);
     if (tool->verbose && !tool->quiet && !d->files.is_listed &&
         line->n_hand == 0)
         fprintf(stderr, "%s: lamps from %g stops of white, down to %g\n",
@@ -268,8 +271,9 @@ static int size_engine(const struct tool *tool, struct drawing *d)
 }
 
 /* Warns of lamps of --light-at outside a picture of WIDTH x HEIGHT. */
-static void warn_of_outside(const struct tool *tool, const struct lamp_list *at,
-                            int width, int height)
+static void warn_of_off_screen_lamps(const struct tool *tool,
+                                     const struct lamp_list *at, int width,
+                                     int height)
 {
     for (int i = 0; i < at->n && !tool->quiet; i++) {
         const struct lamp_row *const row = &at->row[i];
@@ -288,18 +292,18 @@ int drawing_size(const struct tool *tool, struct drawing *drawing, int width,
     struct drawing_run *const run = &drawing->run;
     int code;
 
-    unsize(run);
+    destroy_sized_engine(run);
     if (drawing->files.has_lens &&
         (!drawing->files.lens.is_unbaked ||
          drawing->line.settings.unbaked != SETTINGS_SEARCH))
-        warn_of_outside(tool, &drawing->line.at, width, height);
+        warn_of_off_screen_lamps(tool, &drawing->line.at, width, height);
     run->view = drawing->files.has_lens
                     ? opened_lens_view(&drawing->files.lens,
                                        &drawing->line.settings, width, height)
                     : (struct glint_view){width, height, 1, {0, {0}}};
-    code = size_scene(drawing, width, height);
+    code = allocate_scene(drawing, width, height);
     if (code == EXIT_OK && drawing->files.has_lens)
-        code = size_engine(tool, drawing);
+        code = allocate_engine(tool, drawing);
     run->is_sized = code == EXIT_OK;
     return code;
 }
@@ -308,27 +312,29 @@ int drawing_size(const struct tool *tool, struct drawing *drawing, int width,
 
 /* Zooms as the key frames say. Where the lens does not zoom so far it stays
  * where the frame before was, which opening rules out. */
-static void zoom_by_keys(struct drawing *d, int frame)
+static void zoom_lens_by_keys(struct drawing *d, int frame)
 {
     const double before = d->line.settings.zoom.zoom;
-    const double zoom = keys_at(&d->files.keys, KEYS_ZOOM, frame, before);
+    const double zoom =
+        keys_interpolate_at(&d->files.keys, KEYS_ZOOM, frame, before);
     struct glint_error error;
 
-    if (keys_has(&d->files.keys, KEYS_ZOOM) && zoom != before)
-        zoom_to(d, zoom, &error);
+    if (keys_has_column(&d->files.keys, KEYS_ZOOM) && zoom != before)
+        zoom_lens_to(d, zoom, &error);
 }
 
 /* Stops the lens as KEYS say; the exposure stays that of the widest stop. */
-static enum glint_status stop_by_keys(struct drawing *d, int frame)
+static enum glint_status stop_lens_by_keys(struct drawing *d, int frame)
 {
     const struct keys *const keys = &d->files.keys;
     struct settings *const s = &d->line.settings;
     struct glint_engine_camera *const stop = &s->camera;
     const double f_number =
-        keys_at(keys, KEYS_F_NUMBER, frame, s->options.f_number);
+        keys_interpolate_at(keys, KEYS_F_NUMBER, frame, s->options.f_number);
     const double turn =
-        keys_at(keys, KEYS_TURN, frame, stop->blade_rotation_deg);
-    const double round = keys_at(keys, KEYS_ROUND, frame, stop->iris.roundness);
+        keys_interpolate_at(keys, KEYS_TURN, frame, stop->blade_rotation_deg);
+    const double round =
+        keys_interpolate_at(keys, KEYS_ROUND, frame, stop->iris.roundness);
     struct glint_error error;
     enum glint_status status;
 
@@ -345,41 +351,42 @@ static enum glint_status stop_by_keys(struct drawing *d, int frame)
 }
 
 /* Moves the lamp of KEYS, the last of LIST. */
-static void move_by_keys(struct lamp_list *list, const struct keys *keys,
-                         int frame)
+static void move_lamp_by_keys(struct lamp_list *list, const struct keys *keys,
+                              int frame)
 {
     struct lamp_row *row;
 
-    if (!keys_has(keys, KEYS_X) || !keys_has(keys, KEYS_Y))
+    if (!keys_has_column(keys, KEYS_X) || !keys_has_column(keys, KEYS_Y))
         return;
     row = &list->row[list->n - 1];
-    row->x = keys_at(keys, KEYS_X, frame, 0);
-    row->y = keys_at(keys, KEYS_Y, frame, 0);
-    row->power = exp2(keys_at(keys, KEYS_EV, frame, GLINT_LIGHT_AT_EV));
+    row->x = keys_interpolate_at(keys, KEYS_X, frame, 0);
+    row->y = keys_interpolate_at(keys, KEYS_Y, frame, 0);
+    row->power =
+        exp2(keys_interpolate_at(keys, KEYS_EV, frame, GLINT_LIGHT_AT_EV));
 }
 
 /* Sets lens and brightness to those of the next frame: lines of control, then
  * key frames. */
-static enum glint_status steer(struct drawing *d)
+static enum glint_status apply_control_and_keys(struct drawing *d)
 {
     struct glint_options *const o = &d->line.settings.options;
     const struct keys *const keys = &d->files.keys;
     const int frame = d->run.n_frames;
 
     d->files.scene.set_ctx = d;
-    over_scene_obey(&d->files.scene, frame);
+    over_scene_apply_control(&d->files.scene, frame);
     if (!o->keys)
         return GLINT_OK;
-    o->exposure = keys_at(keys, KEYS_EXPOSURE, frame, o->exposure);
-    o->gain = keys_at(keys, KEYS_GAIN, frame, o->gain);
-    o->strength = keys_at(keys, KEYS_STRENGTH, frame, o->strength);
-    if (keys_has(keys, KEYS_STARBURST)) {
+    o->exposure = keys_interpolate_at(keys, KEYS_EXPOSURE, frame, o->exposure);
+    o->gain = keys_interpolate_at(keys, KEYS_GAIN, frame, o->gain);
+    o->strength = keys_interpolate_at(keys, KEYS_STRENGTH, frame, o->strength);
+    if (keys_has_column(keys, KEYS_STARBURST)) {
         GLINT_OPTION_GIVEN(o, starburst) = true;
-        o->starburst = keys_at(keys, KEYS_STARBURST, frame, 1);
+        o->starburst = keys_interpolate_at(keys, KEYS_STARBURST, frame, 1);
     }
-    zoom_by_keys(d, frame);
-    move_by_keys(&d->files.list, keys, frame);
-    return stop_by_keys(d, frame);
+    zoom_lens_by_keys(d, frame);
+    move_lamp_by_keys(&d->files.list, keys, frame);
+    return stop_lens_by_keys(d, frame);
 }
 
 /* -------------------------------------------------------------------- lamps */
@@ -387,9 +394,9 @@ static enum glint_status steer(struct drawing *d)
 /* Returns whether one of the N lamps GIVEN lies in the disc of LAMP, which was
  * found, or within the distance at which the finder merges lamps: a hundredth
  * of the picture's width. */
-static bool is_given(const struct drawing_run *run, double focal_mm,
-                     const struct glint_engine_lamp *lamp,
-                     const struct glint_engine_lamp *given, int n)
+static bool is_lamp_given(const struct drawing_run *run, double focal_mm,
+                          const struct glint_engine_lamp *lamp,
+                          const struct glint_engine_lamp *given, int n)
 {
     const double reach_px =
         sqrt(2) * lamp->track.size_q8 / 256.0 + run->view.width / 100.0;
@@ -407,8 +414,8 @@ static bool is_given(const struct drawing_run *run, double focal_mm,
 
 /* Puts the lamps that are found in IMAGE before the N of RUN, which replace
  * those of the same place. Returns the number of all. */
-static int add_found(struct drawing *d, const struct glint_image *image,
-                     int32_t elapsed_us, int n)
+static int add_found_lamps(struct drawing *d, const struct glint_image *image,
+                           int32_t elapsed_us, int n)
 {
     struct drawing_run *const run = &d->run;
     struct glint_engine_lamp *const lamp = run->lamp;
@@ -420,7 +427,7 @@ static int add_found(struct drawing *d, const struct glint_image *image,
                                 GLINT_ENGINE_MAX_LAMPS);
     run->n_found = 0;
     for (int i = 0; i < n_found; i++)
-        if (!is_given(run, focal_of(d), &lamp[i], given, n))
+        if (!is_lamp_given(run, lens_focal_mm(d), &lamp[i], given, n))
             lamp[run->n_found++] = lamp[i];
     for (int i = 0; i < n; i++) {
         /* numbers of found lamps count from 1 */
@@ -434,8 +441,9 @@ static int add_found(struct drawing *d, const struct glint_image *image,
 
 /* Sets the lamps of IMAGE: given by angle, pixel, key frames or a list, and
  * found unless an option says which ones there are. */
-static void set_lamps(struct drawing *d, const struct glint_image *image,
-                      int32_t elapsed_us)
+static void collect_image_lamps(struct drawing *d,
+                                const struct glint_image *image,
+                                int32_t elapsed_us)
 {
     const struct drawing_line *const line = &d->line;
     const struct lamp_list *const list = &d->files.list;
@@ -449,12 +457,12 @@ static void set_lamps(struct drawing *d, const struct glint_image *image,
         lamp[i] = glint_engine_lamp_of(
             &line->hand[i], (is_listed ? LAMP_ID_TEXT : 1) + (uint32_t)i);
     if (list->n > 0)
-        n += lamp_list_frame(list, run->n_frames, &run->view, focal_of(d),
+        n += lamp_list_frame(list, run->n_frames, &run->view, lens_focal_mm(d),
                              lamp + n, list->n);
     run->is_followed = elapsed_us > 0 && follows;
     run->n_found = 0;
     if (!is_listed && line->n_hand == 0)
-        n = add_found(d, image, follows ? elapsed_us : 0, n);
+        n = add_found_lamps(d, image, follows ? elapsed_us : 0, n);
     glint_engine_elapsed(run->engine, elapsed_us);
     if (!follows || (is_listed && lamp_keys_is_cut(list, run->n_frames)))
         glint_engine_mark_cut(run->engine);
@@ -462,17 +470,17 @@ static void set_lamps(struct drawing *d, const struct glint_image *image,
 }
 
 /* Sets the lamps of IMAGE, with the light that masks and fades leave them. */
-static enum glint_status find_lamps(struct drawing *d,
-                                    const struct glint_image *image,
-                                    int32_t elapsed_us)
+static enum glint_status find_image_lamps(struct drawing *d,
+                                          const struct glint_image *image,
+                                          int32_t elapsed_us)
 {
-    const enum glint_status status = steer(d);
+    const enum glint_status status = apply_control_and_keys(d);
 
     if (status != GLINT_OK)
         return status;
-    set_lamps(d, image, elapsed_us);
+    collect_image_lamps(d, image, elapsed_us);
     occlusion_apply(&d->files.occlusion, d->run.n_frames, &d->run.view,
-                    focal_of(d), d->run.lamp, d->run.n_lamps);
+                    lens_focal_mm(d), d->run.lamp, d->run.n_lamps);
     return GLINT_OK;
 }
 
@@ -482,13 +490,13 @@ void drawing_measure(struct drawing *drawing,
     const struct drawing_run *const run = &drawing->run;
 
     add_lamp_excess(run->lamp, run->n_found, samples, run->white, &run->view,
-                    focal_of(drawing));
+                    lens_focal_mm(drawing));
 }
 
 /* Returns the row that lamp I is saved as: where it was found, or where a list
  * or option puts it. */
-static struct lamp_row row_of(const struct drawing_run *run, double focal_mm,
-                              int i)
+static struct lamp_row make_saved_lamp_row(const struct drawing_run *run,
+                                           double focal_mm, int i)
 {
     const struct glint_engine_lamp *const known = &run->lamp[i];
     const struct glint_lamp *lamp = &known->lamp;
@@ -514,11 +522,11 @@ static struct lamp_row row_of(const struct drawing_run *run, double focal_mm,
     return row;
 }
 
-static void save_lamps(struct lamp_save *save, const struct drawing_run *run,
-                       double focal_mm)
+static void save_frame_lamps(struct lamp_save *save,
+                             const struct drawing_run *run, double focal_mm)
 {
     for (int i = 0; save->is_open && i < run->n_lamps; i++) {
-        const struct lamp_row row = row_of(run, focal_mm, i);
+        const struct lamp_row row = make_saved_lamp_row(run, focal_mm, i);
 
         lamp_save_row(save, &row);
     }
@@ -528,10 +536,12 @@ enum glint_status drawing_find_lamps(struct drawing *drawing,
                                      const struct glint_image *image,
                                      int32_t elapsed_us)
 {
-    const enum glint_status status = find_lamps(drawing, image, elapsed_us);
+    const enum glint_status status =
+        find_image_lamps(drawing, image, elapsed_us);
 
     if (status == GLINT_OK)
-        save_lamps(&drawing->files.save, &drawing->run, focal_of(drawing));
+        save_frame_lamps(&drawing->files.save, &drawing->run,
+                         lens_focal_mm(drawing));
     return status;
 }
 
@@ -550,16 +560,16 @@ static void add_scene_lamps(struct drawing *d)
     run->n_lamps = glint_engine_add_scene(run->engine, scene->frame.scene,
                                           run->lamp, n, &scene->lamps_hidden);
     scene->lights = run->n_lamps - n;
-    run->n_lamps +=
-        over_scene_glints(scene, !d->line.settings.options.no_tracking,
-                          &run->view, focal_of(d), run->lamp + run->n_lamps);
+    run->n_lamps += over_scene_add_highlights(
+        scene, !d->line.settings.options.no_tracking, &run->view,
+        lens_focal_mm(d), run->lamp + run->n_lamps);
     glint_engine_apply_shares(run->lamp, run->n_lamps, d->line.is_still);
 }
 
 /* Draws the scene over IMAGE within the budget, of which the flare has what the
  * scene leaves. */
-static enum glint_status draw_scene(struct drawing *d,
-                                    const struct glint_image *image)
+static enum glint_status draw_scene_on_image(struct drawing *d,
+                                             const struct glint_image *image)
 {
     const double budget_ms = d->line.settings.options.budget;
     struct over_scene *const scene = &d->files.scene;
@@ -567,10 +577,11 @@ static enum glint_status draw_scene(struct drawing *d,
     enum glint_status status;
 
     if (budget_ms > 0)
-        scene->budget_ms = d->files.has_lens
-                               ? scene_budget_limit(budget_ms, run->flare_ms,
-                                                    run->report.quality)
-                               : budget_ms;
+        scene->budget_ms =
+            d->files.has_lens
+                ? scene_budget_limit_flare(budget_ms, run->flare_ms,
+                                           run->report.quality)
+                : budget_ms;
     status = over_scene_draw(scene, image, run->n_frames);
     if (budget_ms > 0 && d->files.has_lens)
         glint_engine_set_budget(
@@ -593,14 +604,15 @@ enum glint_status drawing_find(struct drawing *drawing,
 
     run->n_lamps = run->n_own = 0;
     if (drawing->files.has_lens) {
-        const enum glint_status status = find_lamps(drawing, image, elapsed_us);
+        const enum glint_status status =
+            find_image_lamps(drawing, image, elapsed_us);
 
         if (status != GLINT_OK)
             return status;
     }
     run->find_ms = 1e3 * (tool_clock_s() - start);
     scene->elapsed_us = elapsed_us;
-    return scene->is_open ? draw_scene(drawing, image) : GLINT_OK;
+    return scene->is_open ? draw_scene_on_image(drawing, image) : GLINT_OK;
 }
 
 int drawing_bake_found(const struct tool *tool, struct drawing *d,
@@ -608,7 +620,7 @@ int drawing_bake_found(const struct tool *tool, struct drawing *d,
 {
     struct opened_lens *const lens = &d->files.lens;
     struct settings *const s = &d->line.settings;
-    const enum glint_status status = find_lamps(d, image, 0);
+    const enum glint_status status = find_image_lamps(d, image, 0);
     int code;
 
     if (status != GLINT_OK)
@@ -627,7 +639,7 @@ int drawing_bake_found(const struct tool *tool, struct drawing *d,
 
 /* Prints, before exact rays are traced for a still picture, how many lamps it
  * has. */
-static void say_exact(const struct drawing *d)
+static void print_exact_ray_notice(const struct drawing *d)
 {
     const struct tool *const tool = d->files.scene.tool;
     const int n = d->run.n_lamps;
@@ -647,9 +659,9 @@ enum glint_status drawing_expose(struct drawing *drawing,
     struct glint_engine_config cfg;
     enum glint_status status;
 
-    save_lamps(&drawing->files.save, run, focal_of(drawing));
+    save_frame_lamps(&drawing->files.save, run, lens_focal_mm(drawing));
     if (run->is_progressing)
-        say_exact(drawing);
+        print_exact_ray_notice(drawing);
     glint_engine_configure(&cfg, &drawing->line.settings.options);
     glint_engine_set_light(run->engine, &cfg.light);
     status = glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
@@ -665,7 +677,7 @@ enum glint_status drawing_expose(struct drawing *drawing,
 }
 
 /* Ends the flare of a frame that was begun at START, in seconds. */
-static void end_flare(struct drawing_run *run, double start)
+static void record_flare_time(struct drawing_run *run, double start)
 {
     if (run->is_progressing)
         tool_progress_end(&run->progress);
@@ -682,13 +694,13 @@ enum glint_status drawing_layer(struct drawing_run *run, bool is_deep,
         is_deep ? GLINT_ENGINE_ALL : GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, rgb,
         &run->report);
 
-    end_flare(run, start);
+    record_flare_time(run, start);
     return status;
 }
 
 /* Exposes and draws the flare on IMAGE. */
-static enum glint_status draw_flare(struct drawing *d,
-                                    const struct glint_image *image)
+static enum glint_status draw_exposed_flare(struct drawing *d,
+                                            const struct glint_image *image)
 {
     struct drawing_run *const run = &d->run;
     const double start = tool_clock_s();
@@ -700,7 +712,7 @@ static enum glint_status draw_flare(struct drawing *d,
         paint_black(image);
     status = glint_engine_draw(run->engine, run->lamp, run->n_lamps, image,
                                &run->report);
-    end_flare(run, start);
+    record_flare_time(run, start);
     return status;
 }
 
@@ -711,7 +723,7 @@ enum glint_status drawing_draw(struct drawing *drawing,
     enum glint_status status = drawing_find(drawing, image, elapsed_us);
 
     if (status == GLINT_OK && drawing->files.has_lens)
-        status = draw_flare(drawing, image);
+        status = draw_exposed_flare(drawing, image);
     if (status == GLINT_OK)
         drawing_mark(drawing, image);
     drawing->run.n_frames++;
@@ -721,10 +733,10 @@ enum glint_status drawing_draw(struct drawing *drawing,
 /* -------------------------------------------------------------------- marks */
 
 /* Marks lamp I as it is tracked, or with its place and number. */
-static void mark_lamp(const struct drawing_run *run, double focal_mm, int i,
-                      const struct glint_image *image)
+static void draw_lamp_mark(const struct drawing_run *run, double focal_mm,
+                           int i, const struct glint_image *image)
 {
-    const struct lamp_row row = row_of(run, focal_mm, i);
+    const struct lamp_row row = make_saved_lamp_row(run, focal_mm, i);
     const uint32_t id = row.id < LAMP_ID_TEXT ? row.id : (uint32_t)i + 1;
     struct glint_lamp_track track = {.id = id, .state = GLINT_LAMP_STEADY};
 
@@ -734,7 +746,7 @@ static void mark_lamp(const struct drawing_run *run, double focal_mm, int i,
         track = run->lamp[i].track;
     track.x_q8 = (int32_t)(row.x * 256);
     track.y_q8 = (int32_t)(row.y * 256);
-    show_light_of(image, &track, row.power);
+    show_lamp_mark_of(image, &track, row.power);
 }
 
 void drawing_mark(const struct drawing *drawing,
@@ -747,12 +759,12 @@ void drawing_mark(const struct drawing *drawing,
         preview_number(run->engine, run->lamp, run->n_lamps, drawing_scale(run),
                        image);
     if (line->show_time_line)
-        over_scene_mark(&drawing->files.scene, image);
+        over_scene_draw_time_line(&drawing->files.scene, image);
     if (!line->show_lights || !run->engine)
         return;
     for (int i = 0; i < run->n_lamps; i++)
-        mark_lamp(run, focal_of(drawing), i, image);
-    show_legend(image, run->n_found > 0 && run->is_followed);
+        draw_lamp_mark(run, lens_focal_mm(drawing), i, image);
+    show_mark_legend(image, run->n_found > 0 && run->is_followed);
 }
 
 bool drawing_has_marks(const struct drawing_line *line)

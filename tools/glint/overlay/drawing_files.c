@@ -11,7 +11,8 @@
 
 /* Requests the least f-number of the key frames, if SIGN is 1, which the model
  * has to serve, or the largest, if it is -1. */
-static void request_stop(struct settings *s, struct drawing_files *f, int sign)
+static void request_min_f_number(struct settings *s, struct drawing_files *f,
+                                 int sign)
 {
     const struct key_value *key = f->keys.key[KEYS_F_NUMBER];
 
@@ -25,24 +26,24 @@ static void request_stop(struct settings *s, struct drawing_files *f, int sign)
 }
 
 /* Refuses stops that change where none can. */
-static int open_stop_keys(const struct tool *tool, struct settings *s,
-                          struct drawing_files *f)
+static int check_stop_keys(const struct tool *tool, struct settings *s,
+                           struct drawing_files *f)
 {
-    const bool is_stopped = keys_has(&f->keys, KEYS_F_NUMBER);
-    const bool is_round = keys_has(&f->keys, KEYS_ROUND);
+    const bool is_stopped = keys_has_column(&f->keys, KEYS_F_NUMBER);
+    const bool is_round = keys_has_column(&f->keys, KEYS_ROUND);
 
-    if (!is_stopped && !is_round && !keys_has(&f->keys, KEYS_TURN))
+    if (!is_stopped && !is_round && !keys_has_column(&f->keys, KEYS_TURN))
         return EXIT_OK;
     if (s->options.rays == GLINT_RAYS_EXACT)
         return tool_usage(tool, "--keys: stops that change need a model, not "
                                 "--rays exact");
     if (is_stopped)
-        request_stop(s, f, 1);
+        request_min_f_number(s, f, 1);
     return EXIT_OK;
 }
 
-static int open_keys(const struct tool *tool, struct drawing_line *line,
-                     struct drawing_files *f)
+static int open_key_file(const struct tool *tool, struct drawing_line *line,
+                         struct drawing_files *f)
 {
     struct glint_options *const o = &line->settings.options;
     struct glint_error error = {""};
@@ -55,7 +56,7 @@ static int open_keys(const struct tool *tool, struct drawing_line *line,
                              : keys_read(&f->keys, o->keys, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (keys_has(&f->keys, KEYS_EXPOSURE)) {
+    if (keys_has_column(&f->keys, KEYS_EXPOSURE)) {
         if (line->dial == ENGINE_OPTION_OF(strength))
             return tool_usage(tool,
                               "--strength chooses the exposure; "
@@ -63,21 +64,21 @@ static int open_keys(const struct tool *tool, struct drawing_line *line,
                               o->keys);
         GLINT_OPTION_GIVEN(o, exposure) = true;
     }
-    return open_stop_keys(tool, &line->settings, f);
+    return check_stop_keys(tool, &line->settings, f);
 }
 
 /* Checks that the lens, which is open, stops down as far as the key frames
  * say. */
-static int check_narrowest(const struct tool *tool, struct settings *s,
-                           struct drawing_files *f)
+static int check_narrowest_stop(const struct tool *tool, struct settings *s,
+                                struct drawing_files *f)
 {
     const double widest = s->options.f_number;
     struct glint_error error = {""};
     int code = EXIT_OK;
 
-    if (!keys_has(&f->keys, KEYS_F_NUMBER))
+    if (!keys_has_column(&f->keys, KEYS_F_NUMBER))
         return EXIT_OK;
-    request_stop(s, f, -1);
+    request_min_f_number(s, f, -1);
     if (opened_lens_set_stop(&f->lens, s, &error) != GLINT_OK)
         code = settings_report_bad_stop(tool, s, error.text);
     s->options.f_number = widest;
@@ -90,28 +91,30 @@ static int check_narrowest(const struct tool *tool, struct settings *s,
 /* --------------------------------------------------------------------- zoom */
 
 /* Returns the key column of the option that LINE sets; -1: it sets none. */
-static int column_of(const struct control_line *line)
+static int find_key_column(const struct control_line *line)
 {
-    return line->verb == CONTROL_OPTION ? keys_column(line->name[0]) : -1;
+    return line->verb == CONTROL_OPTION ? keys_find_column(line->name[0]) : -1;
 }
 
 /* Prints what is wrong with line I of control. Returns an exit code. */
-static int refuse_line(const struct tool *tool, const struct over_scene *scene,
-                       int i, const char *cause)
+static int report_bad_control_line(const struct tool *tool,
+                                   const struct over_scene *scene, int i,
+                                   const char *cause)
 {
     struct glint_error shown = {""};
     char where[CONTROL_WHERE];
 
-    controls_where(&scene->control, i, where);
-    control_fail(&shown, where, controls_row(&scene->control, i)->column, "%s",
-                 cause);
+    controls_format_location(&scene->control, i, where);
+    control_report_error(&shown, where,
+                         controls_get_line(&scene->control, i)->column, "%s",
+                         cause);
     return tool_fail(tool, GLINT_E_FORMAT, shown.text);
 }
 
 /* Checks that the lens can do what the lines of control say, and leaves it as
  * it was. */
-static int check_control(const struct tool *tool, struct settings *s,
-                         struct drawing_files *f)
+static int check_control_lines(const struct tool *tool, struct settings *s,
+                               struct drawing_files *f)
 {
     const struct over_scene *const scene = &f->scene;
     const double zoom = s->zoom.zoom, f_number = s->options.f_number;
@@ -120,13 +123,14 @@ static int check_control(const struct tool *tool, struct settings *s,
     int code = EXIT_OK;
 
     for (int i = 0;
-         code == EXIT_OK && (line = controls_row(&scene->control, i)); i++) {
-        const int column = column_of(line);
+         code == EXIT_OK && (line = controls_get_line(&scene->control, i));
+         i++) {
+        const int column = find_key_column(line);
 
         if ((column == KEYS_ZOOM || column == KEYS_F_NUMBER) &&
             scene->set_option(scene->set_ctx, line->name[0], line->v[0],
                               &error) != GLINT_OK)
-            code = refuse_line(tool, scene, i, error.text);
+            code = report_bad_control_line(tool, scene, i, error.text);
     }
     if (f->lens.model.zoom)
         opened_lens_zoom(&f->lens, s, zoom, &error);
@@ -140,18 +144,20 @@ static int check_control(const struct tool *tool, struct settings *s,
 
 /* Before the lens is opened, which may be baked for that: refuses lines of
  * control that zoom a table. */
-static int refuse_zoom_lines(const struct tool *tool, const struct settings *s,
-                             const struct over_scene *scene)
+static int reject_zoom_control_lines(const struct tool *tool,
+                                     const struct settings *s,
+                                     const struct over_scene *scene)
 {
     const struct control_line *line;
 
     if (tool_is_model(s->options.lens))
         return EXIT_OK;
-    for (int i = 0; (line = controls_row(&scene->control, i)); i++)
-        if (column_of(line) == KEYS_ZOOM)
-            return refuse_line(tool, scene, i,
-                               "lines of control zoom a model that 'glint bake "
-                               "LENS --positions N' made, not a table");
+    for (int i = 0; (line = controls_get_line(&scene->control, i)); i++)
+        if (find_key_column(line) == KEYS_ZOOM)
+            return report_bad_control_line(
+                tool, scene, i,
+                "lines of control zoom a model that 'glint bake "
+                "LENS --positions N' made, not a table");
     return EXIT_OK;
 }
 
@@ -178,15 +184,16 @@ static int check_zoom_keys(const struct tool *tool, struct drawing_line *line,
 
 /* Before scene and lens are opened: rejects key frames that zoom a table, which
  * would be baked for one position. */
-static int prepare_zoom(const struct tool *tool, struct drawing_line *line,
-                        struct drawing_files *f)
+static int check_zoom_options(const struct tool *tool,
+                              struct drawing_line *line,
+                              struct drawing_files *f)
 {
     struct settings *const s = &line->settings;
     int code;
 
     if (!f->has_lens)
         f->scene.set_option = NULL;
-    if (!keys_has(&f->keys, KEYS_ZOOM) || !f->has_lens ||
+    if (!keys_has_column(&f->keys, KEYS_ZOOM) || !f->has_lens ||
         tool_is_model(s->options.lens))
         return EXIT_OK;
     code = tool_lens(tool, s->options.lens, &f->lens.table);
@@ -197,9 +204,9 @@ static int prepare_zoom(const struct tool *tool, struct drawing_line *line,
 
 /* Lists the lamps of the file, linked if lamps move between its rows, and the
  * lamps by pixel. */
-static enum glint_status open_list(const struct drawing_line *line,
-                                   struct drawing_files *f,
-                                   struct glint_error *error)
+static enum glint_status open_lamp_list(const struct drawing_line *line,
+                                        struct drawing_files *f,
+                                        struct glint_error *error)
 {
     const struct glint_options *const o = &line->settings.options;
     enum glint_status status = GLINT_OK;
@@ -224,17 +231,18 @@ static enum glint_status add_key_lamp(struct drawing_files *f)
                                  .level = 1,
                                  .next = -1};
 
-    if (!keys_has(&f->keys, KEYS_X) || !keys_has(&f->keys, KEYS_Y))
+    if (!keys_has_column(&f->keys, KEYS_X) ||
+        !keys_has_column(&f->keys, KEYS_Y))
         return GLINT_OK;
     return lamp_list_add(&f->list, &row);
 }
 
-static enum glint_status open_lamps(const struct drawing_line *line,
-                                    struct drawing_files *f,
-                                    struct glint_error *error)
+static enum glint_status open_lamp_inputs(const struct drawing_line *line,
+                                          struct drawing_files *f,
+                                          struct glint_error *error)
 {
     const char *const save = line->settings.options.save_lights;
-    enum glint_status status = open_list(line, f, error);
+    enum glint_status status = open_lamp_list(line, f, error);
 
     if (status == GLINT_OK && save)
         status = lamp_save_open(&f->save, save, error);
@@ -246,8 +254,9 @@ static enum glint_status open_lamps(const struct drawing_line *line,
 /* ---------------------------------------------------------------------- all */
 
 /* Opens the scene; without a lens there has to be one that needs none. */
-static int open_scene(const struct tool *tool, const struct glint_options *o,
-                      struct drawing_files *f)
+static int open_scene_file(const struct tool *tool,
+                           const struct glint_options *o,
+                           struct drawing_files *f)
 {
     const int code = over_scene_open(&f->scene, tool);
 
@@ -268,7 +277,8 @@ static int open_scene(const struct tool *tool, const struct glint_options *o,
 }
 
 /* Sets the names of the files of F. */
-static void name_files(const struct drawing_line *line, struct drawing_files *f)
+static void set_file_names(const struct drawing_line *line,
+                           struct drawing_files *f)
 {
     const struct glint_options *const o = &line->settings.options;
 
@@ -289,25 +299,25 @@ int drawing_files_open(const struct tool *tool, struct drawing_line *line,
     enum glint_status status;
     int code;
 
-    name_files(line, files);
-    code = open_keys(tool, line, files);
+    set_file_names(line, files);
+    code = open_key_file(tool, line, files);
     if (code == EXIT_OK)
-        code = prepare_zoom(tool, line, files);
+        code = check_zoom_options(tool, line, files);
     if (code == EXIT_OK)
-        code = open_scene(tool, &s->options, files);
+        code = open_scene_file(tool, &s->options, files);
     if (code == EXIT_OK && files->has_lens)
-        code = refuse_zoom_lines(tool, s, &files->scene);
+        code = reject_zoom_control_lines(tool, s, &files->scene);
     if (code == EXIT_OK && files->has_lens)
         code = opened_lens_open(tool, &files->lens, s, s->options.lens);
     if (code != EXIT_OK || !files->has_lens)
         return code;
-    status = open_lamps(line, files, &error);
+    status = open_lamp_inputs(line, files, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    code = check_control(tool, s, files);
+    code = check_control_lines(tool, s, files);
     if (code == EXIT_OK)
         code = check_zoom_keys(tool, line, files);
-    return code == EXIT_OK ? check_narrowest(tool, s, files) : code;
+    return code == EXIT_OK ? check_narrowest_stop(tool, s, files) : code;
 }
 
 void drawing_files_close(struct drawing_files *files)

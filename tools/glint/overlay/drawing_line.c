@@ -7,7 +7,7 @@
 
 /* Adds the lamp TEXT, which is valid, of --light. Returns false if it is one
  * too many. */
-static bool add_light(struct drawing_line *line, const char *text)
+static bool add_lamp_by_angle(struct drawing_line *line, const char *text)
 {
     struct glint_lamp *const lamp = &line->hand[line->n_hand];
 
@@ -35,8 +35,8 @@ bool drawing_line_add_light(struct drawing_line *line, double x, double y,
            lamp_list_add(&line->at, &row) == GLINT_OK;
 }
 
-/* Adds the lamp TEXT of --light-at as add_light() does. */
-static bool add_light_at(struct drawing_line *line, const char *text)
+/* Adds the lamp TEXT of --light-at as add_lamp_by_angle() does. */
+static bool add_lamp_by_pixel(struct drawing_line *line, const char *text)
 {
     double v[3];
 
@@ -44,34 +44,34 @@ static bool add_light_at(struct drawing_line *line, const char *text)
     return drawing_line_add_light(line, v[0], v[1], v[2]);
 }
 
-static bool is_text(const char *text, const char *word)
+static bool is_text_option(const char *text, const char *word)
 {
     return text && strcmp(text, word) == 0;
 }
 
 /* Sets the members of LINE that are derived from options. */
-static void resolve(struct drawing_line *line)
+static void resolve_derived_members(struct drawing_line *line)
 {
     struct glint_options *const o = &line->settings.options;
 
-    if (is_text(o->lights, "auto") || is_text(o->lights, "none"))
+    if (is_text_option(o->lights, "auto") || is_text_option(o->lights, "none"))
         o->lights = NULL;
     if (o->memory)
         line->reserve_bytes = (size_t)o->memory << 20;
-    scene_dials_choose(&line->scene_dials, o);
+    scene_dials_set_defaults(&line->scene_dials, o);
 }
 
 void drawing_line_defaults(struct drawing_line *line)
 {
     *line = (struct drawing_line){.n_hand = 0};
     settings_defaults_photo(&line->settings);
-    resolve(line);
+    resolve_derived_members(line);
 }
 
 int drawing_line_style(const struct tool *tool, struct drawing_line *line,
                        const char *name)
 {
-    const struct style *const style = style_of(name);
+    const struct style *const style = find_style_of_lens(name);
     int code = -1;
 
     if (!style)
@@ -98,7 +98,7 @@ int drawing_line_style_of(const struct tool *tool, struct drawing_line *line,
 
 /* Notes OPTION if it is --strength or --exposure. Returns false if the other of
  * the two was given before in the same place. */
-static bool note_brightness(struct drawing_line *line, int option)
+static bool record_brightness_option(struct drawing_line *line, int option)
 {
     if (option != ENGINE_OPTION_OF(strength) &&
         option != ENGINE_OPTION_OF(exposure))
@@ -120,7 +120,7 @@ int drawing_line_option(const struct tool *tool, struct drawing_line *line,
     bool is_room = true;
     int code;
 
-    if (!note_brightness(line, option))
+    if (!record_brightness_option(line, option))
         return tool_usage(tool, "--strength chooses the exposure; "
                                 "give one of it and --exposure");
     if (option == ENGINE_OPTION_OF(style))
@@ -130,16 +130,16 @@ int drawing_line_option(const struct tool *tool, struct drawing_line *line,
     if (code != -1)
         return code;
     if (option == ENGINE_OPTION_OF(lights))
-        line->is_unsearched = is_text(value, "none");
-    resolve(line);
+        line->is_unsearched = is_text_option(value, "none");
+    resolve_derived_members(line);
     if (option == ENGINE_OPTION_OF(show)) {
-        line->show_lights |= is_text(value, "lights");
-        line->show_time_line |= is_text(value, "timeline");
+        line->show_lights |= is_text_option(value, "lights");
+        line->show_time_line |= is_text_option(value, "timeline");
     }
     if (option == ENGINE_OPTION_OF(light))
-        is_room = add_light(line, value);
+        is_room = add_lamp_by_angle(line, value);
     if (option == ENGINE_OPTION_OF(light_at))
-        is_room = add_light_at(line, value);
+        is_room = add_lamp_by_pixel(line, value);
     return is_room
                ? -1
                : tool_usage(tool, "more than %d lights", SETTINGS_MAX_LAMPS);
@@ -163,6 +163,6 @@ int drawing_line_set_number(const struct tool *tool, struct drawing_line *line,
         snprintf(text, sizeof text, "%g", value);
         return tool_refuse(tool, name, text);
     }
-    resolve(line);
+    resolve_derived_members(line);
     return -1;
 }

@@ -9,7 +9,7 @@
 
 #include "posix/error.h"
 
-bool folder_is(const char *path)
+bool folder_is_folder(const char *path)
 {
     const size_t n = strlen(path);
     struct stat file;
@@ -18,25 +18,27 @@ bool folder_is(const char *path)
            (stat(path, &file) == 0 && S_ISDIR(file.st_mode));
 }
 
-static const char *name_of(const char *path)
+static const char *find_file_name(const char *path)
 {
     const char *const slash = strrchr(path, '/');
 
     return slash ? slash + 1 : path;
 }
 
-bool folder_path(char path[FOLDER_PATH], const char *folder, const char *input)
+bool folder_make_output_path(char path[FOLDER_PATH], const char *folder,
+                             const char *input)
 {
     const size_t n = strlen(folder);
-    const int used =
-        snprintf(path, FOLDER_PATH, "%s%s%s", folder,
-                 n > 0 && folder[n - 1] == '/' ? "" : "/", name_of(input));
+    const int used = snprintf(path, FOLDER_PATH, "%s%s%s", folder,
+                              n > 0 && folder[n - 1] == '/' ? "" : "/",
+                              find_file_name(input));
 
     return used > 0 && used < FOLDER_PATH;
 }
 
 /* Rejects options of several inputs that name what is read once. */
-static int check_streams(const struct tool *tool, const struct glint_options *o)
+static int check_stream_options(const struct tool *tool,
+                                const struct glint_options *o)
 {
     const char *const file[] = {o->control, o->lights, o->keys, o->pose};
     static const char *const name[] = {"control", "lights", "keys", "pose"};
@@ -53,7 +55,7 @@ static int check_streams(const struct tool *tool, const struct glint_options *o)
 }
 
 /* Rejects inputs that are not single files. */
-static int check_inputs(const struct tool *tool, char **input, int n)
+static int check_folder_inputs(const struct tool *tool, char **input, int n)
 {
     struct stat file;
 
@@ -68,7 +70,7 @@ static int check_inputs(const struct tool *tool, char **input, int n)
                               "%s is a sequence, which is one input of its own",
                               input[i]);
         for (int k = 0; k < i; k++)
-            if (strcmp(name_of(input[k]), name_of(input[i])) == 0)
+            if (strcmp(find_file_name(input[k]), find_file_name(input[i])) == 0)
                 return tool_usage(tool,
                                   "%s and %s would be written to one file",
                                   input[k], input[i]);
@@ -77,8 +79,8 @@ static int check_inputs(const struct tool *tool, char **input, int n)
 }
 
 /* Rejects an output in FOLDER that is another's input. FILE has room for N. */
-static int check_apart(const struct tool *tool, const char *folder,
-                       char **input, struct stat *file, int n)
+static int check_output_is_no_input(const struct tool *tool, const char *folder,
+                                    char **input, struct stat *file, int n)
 {
     char path[FOLDER_PATH];
     struct stat out;
@@ -87,7 +89,7 @@ static int check_apart(const struct tool *tool, const char *folder,
         if (stat(input[i], &file[i]) != 0)
             file[i].st_ino = 0;
     for (int i = 0; i < n; i++)
-        for (int k = 0; folder_path(path, folder, input[i]) &&
+        for (int k = 0; folder_make_output_path(path, folder, input[i]) &&
                         stat(path, &out) == 0 && k < n;
              k++)
             if (k != i && file[k].st_ino == out.st_ino &&
@@ -106,11 +108,11 @@ int folder_open(const struct tool *tool, const char *folder, char **input,
 
     if (!file)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    code = check_inputs(tool, input, n);
+    code = check_folder_inputs(tool, input, n);
     if (code == EXIT_OK && n > 1)
-        code = check_streams(tool, options);
+        code = check_stream_options(tool, options);
     if (code == EXIT_OK)
-        code = check_apart(tool, folder, input, file, n);
+        code = check_output_is_no_input(tool, folder, input, file, n);
     free(file);
     if (code != EXIT_OK)
         return code;

@@ -11,11 +11,12 @@
 enum { FOLDER_PATH = 4096 };
 
 /* Returns whether PATH is an existing folder or ends in a slash. */
-bool folder_is(const char *path);
+bool folder_is_folder(const char *path);
 
 /* Sets PATH to FOLDER/NAME with the file name of INPUT. Returns false if PATH
  * is too long. */
-bool folder_path(char path[FOLDER_PATH], const char *folder, const char *input);
+bool folder_make_output_path(char path[FOLDER_PATH], const char *folder,
+                             const char *input);
 
 /* Creates FOLDER for INPUT[N], drawn with OPTIONS, unless it exists; *IS_NEW
  * receives whether it was created. Rejects inputs with the same name, inputs

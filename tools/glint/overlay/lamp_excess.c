@@ -10,34 +10,35 @@ struct reach {
     int left, top, right, bottom;
 };
 
-static int within(double v, int most)
+static int clamp_coordinate(double v, int most)
 {
     return (int)fmin(fmax(v, 0), most);
 }
 
-static struct reach reach_of(const struct glint_lamp_track *track, int width,
-                             int height)
+static struct reach find_lamp_reach(const struct glint_lamp_track *track,
+                                    int width, int height)
 {
     struct reach r = {.x = track->x_q8 / 256.0, .y = track->y_q8 / 256.0};
 
     r.radius = 3 * track->size_q8 / 256.0 + 4;
-    r.left = within(floor(r.x - r.radius), width);
-    r.right = within(ceil(r.x + r.radius), width);
-    r.top = within(floor(r.y - r.radius), height);
-    r.bottom = within(ceil(r.y + r.radius), height);
+    r.left = clamp_coordinate(floor(r.x - r.radius), width);
+    r.right = clamp_coordinate(ceil(r.x + r.radius), width);
+    r.top = clamp_coordinate(floor(r.y - r.radius), height);
+    r.bottom = clamp_coordinate(ceil(r.y + r.radius), height);
     return r;
 }
 
-static double distance(const struct reach *r, int x, int y)
+static double distance_to_lamp(const struct reach *r, int x, int y)
 {
     return hypot(x + 0.5 - r->x, y + 0.5 - r->y);
 }
 
 /* Checks whether lamp OWN reaches the pixel, and none of the N lamps that reach
  * it is nearer. */
-static bool is_nearest(const struct reach *all, int n, int own, int x, int y)
+static bool is_lamp_nearest(const struct reach *all, int n, int own, int x,
+                            int y)
 {
-    const double d = distance(&all[own], x, y);
+    const double d = distance_to_lamp(&all[own], x, y);
 
     if (d > all[own].radius)
         return false;
@@ -45,7 +46,8 @@ static bool is_nearest(const struct reach *all, int n, int own, int x, int y)
         const struct reach *r = &all[i];
 
         if (i != own && x >= r->left && x < r->right && y >= r->top &&
-            y < r->bottom && distance(r, x, y) < d + (i < own ? 1e-9 : 0))
+            y < r->bottom &&
+            distance_to_lamp(r, x, y) < d + (i < own ? 1e-9 : 0))
             return false;
     }
     return true;
@@ -55,7 +57,8 @@ struct sum {
     double rgb[3], luminance, x, y;
 };
 
-static void add_light(struct sum *sum, const double rgb[3], double x, double y)
+static void add_pixel_light(struct sum *sum, const double rgb[3], double x,
+                            double y)
 {
     const double l = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 
@@ -67,8 +70,10 @@ static void add_light(struct sum *sum, const double rgb[3], double x, double y)
 }
 
 /* Adds to SUM the light above WHITE of the pixels of lamp OWN. */
-static void add_excess(struct sum *sum, const struct glint_samples *samples,
-                       const struct reach *all, int n, int own, double white)
+static void add_excess_light(struct sum *sum,
+                             const struct glint_samples *samples,
+                             const struct reach *all, int n, int own,
+                             double white)
 {
     const struct reach *r = &all[own];
 
@@ -81,14 +86,15 @@ static void add_excess(struct sum *sum, const struct glint_samples *samples,
             for (int c = 0; c < 3; c++)
                 over[c] = fmax((double)rgb[c] - white, 0);
             if ((over[0] > 0 || over[1] > 0 || over[2] > 0) &&
-                is_nearest(all, n, own, x, y))
-                add_light(sum, over, x + 0.5, y + 0.5);
+                is_lamp_nearest(all, n, own, x, y))
+                add_pixel_light(sum, over, x + 0.5, y + 0.5);
         }
 }
 
 /* Returns the light of TRACK that the finder saw in the proxy, times WHITE, the
  * light of the proxy's white. */
-static struct sum seen_of(const struct glint_lamp_track *track, double white)
+static struct sum
+compute_light_seen_in_proxy(const struct glint_lamp_track *track, double white)
 {
     const double flux = (double)track->flux_q16 / 65536 * white;
     struct sum sum = {.luminance = 0};
@@ -96,12 +102,13 @@ static struct sum seen_of(const struct glint_lamp_track *track, double white)
 
     for (int c = 0; c < 3; c++)
         rgb[c] = flux * track->rgb_q15[c] / 32768;
-    add_light(&sum, rgb, track->x_q8 / 256.0, track->y_q8 / 256.0);
+    add_pixel_light(&sum, rgb, track->x_q8 / 256.0, track->y_q8 / 256.0);
     return sum;
 }
 
-static void set_lamp(struct glint_engine_lamp *lamp, const struct sum *sum,
-                     const struct glint_view *view, double focal_mm)
+static void set_lamp_from_excess(struct glint_engine_lamp *lamp,
+                                 const struct sum *sum,
+                                 const struct glint_view *view, double focal_mm)
 {
     struct glint_lamp_track *const track = &lamp->track;
 
@@ -123,12 +130,12 @@ void add_lamp_excess(struct glint_engine_lamp *lamp, int n,
     struct reach *const all = n > 0 ? malloc((size_t)n * sizeof *all) : NULL;
 
     for (int i = 0; i < n && all; i++)
-        all[i] = reach_of(&lamp[i].track, view->width, view->height);
+        all[i] = find_lamp_reach(&lamp[i].track, view->width, view->height);
     for (int i = 0; i < n && all; i++) {
-        struct sum sum = seen_of(&lamp[i].track, white);
+        struct sum sum = compute_light_seen_in_proxy(&lamp[i].track, white);
 
-        add_excess(&sum, samples, all, n, i, white);
-        set_lamp(&lamp[i], &sum, view, focal_mm);
+        add_excess_light(&sum, samples, all, n, i, white);
+        set_lamp_from_excess(&lamp[i], &sum, view, focal_mm);
     }
     free(all);
 }

@@ -25,8 +25,8 @@ static const char *const names[LAYERS] = {"flare", "ghosts", "starburst",
 
 /* Sets NAME to the file of layer LAYER (NULL: "layer") in frame FRAME. Returns
  * false if it is too long or more than one %s or %d is in the path. */
-static bool name_of(char name[NAME_ROOM], const char *path, const char *layer,
-                    int frame)
+static bool make_layer_file_name(char name[NAME_ROOM], const char *path,
+                                 const char *layer, int frame)
 {
     const char *const at = strstr(path, "%s");
     char whole[NAME_ROOM];
@@ -46,7 +46,7 @@ static bool name_of(char name[NAME_ROOM], const char *path, const char *layer,
 
 /* Returns whether the kind of file NAME takes layers: an .exr as parts of it or
  * one by one, other kinds only one by one if they take floats. */
-static bool takes_layers(const struct layers *layers, const char *name)
+static bool can_file_hold_layers(const struct layers *layers, const char *name)
 {
     static const char *const kinds[] = {".exr", ".pfm", ".hdr", ".tif",
                                         ".tiff"};
@@ -66,16 +66,16 @@ int layers_check(const struct tool *tool, const struct layers *layers,
 
     if (!layers->path)
         return EXIT_OK;
-    if (!name_of(name, layers->path, NULL, 0))
+    if (!make_layer_file_name(name, layers->path, NULL, 0))
         return tool_usage(tool,
                           "--layers: a name has one %%s and one %%d or "
                           "%%04d at most, not '%s'",
                           layers->path);
-    name_of(other, layers->path, NULL, 1);
+    make_layer_file_name(other, layers->path, NULL, 1);
     if (is_video && strcmp(name, other) == 0)
         return tool_usage(tool, "--layers of a video or sequence need a number "
                                 "in their name, such as layers-%%04d.exr");
-    if (!takes_layers(layers, name))
+    if (!can_file_hold_layers(layers, name))
         return tool_usage(tool,
                           "--layers: layers are parts of an .exr, or files "
                           "of their own by a %%s: fl.exr, fl-%%s.exr or "
@@ -96,13 +96,13 @@ int layers_check_apart(const struct tool *tool, const struct layers *layers,
     char name[NAME_ROOM];
     int code;
 
-    apart_write(&all, "--layers", layers->path);
+    apart_add_output(&all, "--layers", layers->path);
     code = apart_check(tool, &all);
     for (int k = 0; k < LAYERS && layers->path && code == EXIT_OK; k++) {
-        if (!name_of(name, layers->path, names[k], 0))
+        if (!make_layer_file_name(name, layers->path, names[k], 0))
             break;
         all = *files;
-        apart_write(&all, "--layers", name);
+        apart_add_output(&all, "--layers", name);
         code = apart_check(tool, &all);
     }
     return code;
@@ -113,8 +113,8 @@ int layers_check_apart(const struct tool *tool, const struct layers *layers,
 
 /* Draws N_LAYERS layers of N samples into RGB: the parts, and their sum as the
  * first. */
-static enum glint_status draw_all(struct drawing *c, int n_layers, size_t n,
-                                  float *rgb)
+static enum glint_status draw_all_layers(struct drawing *c, int n_layers,
+                                         size_t n, float *rgb)
 {
     static const unsigned part[] = {[GHOSTS] = GLINT_ENGINE_GHOSTS,
                                     [STARBURST] = GLINT_ENGINE_STAR,
@@ -139,9 +139,9 @@ static enum glint_status draw_all(struct drawing *c, int n_layers, size_t n,
 /* ------------------------------------------------------------------- writing
  */
 
-static enum glint_status save(const char *name,
-                              const struct glint_oiio_layers *layers,
-                              struct glint_error *error)
+static enum glint_status save_layer_file(const char *name,
+                                         const struct glint_oiio_layers *layers,
+                                         struct glint_error *error)
 {
     const struct glint_float_image floats = {.width = layers->width,
                                              .height = layers->height,
@@ -163,9 +163,9 @@ static enum glint_status save(const char *name,
     return status;
 }
 
-static enum glint_status save_all(const struct layers *layers,
-                                  struct glint_oiio_layers *all, int frame,
-                                  struct glint_error *error)
+static enum glint_status save_all_layers(const struct layers *layers,
+                                         struct glint_oiio_layers *all,
+                                         int frame, struct glint_error *error)
 {
     const struct glint_oiio_layer *const first = all->layer;
     const bool is_apart = strstr(layers->path, "%s");
@@ -176,8 +176,8 @@ static enum glint_status save_all(const struct layers *layers,
     all->n = is_apart ? 1 : all->n;
     for (int k = 0; k < files && status == GLINT_OK; k++) {
         all->layer = first + k;
-        status = name_of(name, layers->path, first[k].name, frame)
-                     ? save(name, all, error)
+        status = make_layer_file_name(name, layers->path, first[k].name, frame)
+                     ? save_layer_file(name, all, error)
                      : glint_error_report(error, GLINT_E_OUTPUT, layers->path,
                                           "is too long a name");
     }
@@ -206,9 +206,10 @@ int layers_write(const struct tool *tool, const struct layers *layers,
     for (int k = 0; k < all.n && rgb; k++)
         layer[k] = (struct glint_oiio_layer){names[k], rgb + (size_t)k * n};
     if (rgb)
-        status = draw_all(drawing, all.n, n, rgb);
+        status = draw_all_layers(drawing, all.n, n, rgb);
     if (status == GLINT_OK)
-        status = save_all(layers, &all, drawing->run.n_frames - 1, &error);
+        status =
+            save_all_layers(layers, &all, drawing->run.n_frames - 1, &error);
     free(rgb);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }

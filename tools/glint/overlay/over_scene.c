@@ -14,24 +14,25 @@
 
 /* Returns whether LINE can be obeyed, but not whether the flare can have the
  * value. */
-static enum glint_status check_line(const struct over_scene *over,
-                                    const struct control_line *line,
-                                    const char *where,
-                                    struct glint_error *error)
+static enum glint_status check_control_line(const struct over_scene *over,
+                                            const struct control_line *line,
+                                            const char *where,
+                                            struct glint_error *error)
 {
     if (line->verb == CONTROL_OPTION)
         return over->set_option
                    ? GLINT_OK
-                   : control_fail(error, where, 1,
-                                  "that changes a flare, and --lens none has "
-                                  "none");
+                   : control_report_error(
+                         error, where, 1,
+                         "that changes a flare, and --lens none has "
+                         "none");
     return over->is_open
                ? steer_check(&over->steer, line, where, error)
-               : control_fail(error, where, 1,
-                              "that steers --scene, and there is none");
+               : control_report_error(error, where, 1,
+                                      "that steers --scene, and there is none");
 }
 
-static int open_control(struct over_scene *over)
+static int open_control_input(struct over_scene *over)
 {
     struct glint_error error = {""};
     enum glint_status status;
@@ -40,11 +41,12 @@ static int open_control(struct over_scene *over)
     status = controls_open(&over->control, over->control_file, over->is_live,
                            &error);
     for (int i = 0;
-         status == GLINT_OK && (line = controls_row(&over->control, i)); i++) {
+         status == GLINT_OK && (line = controls_get_line(&over->control, i));
+         i++) {
         char where[CONTROL_WHERE];
 
-        controls_where(&over->control, i, where);
-        status = check_line(over, line, where, &error);
+        controls_format_location(&over->control, i, where);
+        status = check_control_line(over, line, where, &error);
     }
     if (status != GLINT_OK)
         return tool_fail(over->tool, status, error.text);
@@ -53,33 +55,34 @@ static int open_control(struct over_scene *over)
     return EXIT_OK;
 }
 
-static enum glint_status obey(struct over_scene *over,
-                              const struct control_line *line,
-                              struct glint_error *error)
+static enum glint_status execute_control_line(struct over_scene *over,
+                                              const struct control_line *line,
+                                              struct glint_error *error)
 {
     struct glint_error cause = {""};
     char where[CONTROL_WHERE];
     enum glint_status status;
 
-    controls_where(&over->control, -1, where);
+    controls_format_location(&over->control, -1, where);
     if (line->verb == CONTROL_OPTION && over->set_option) {
         status =
             over->set_option(over->set_ctx, line->name[0], line->v[0], &cause);
-        return status == GLINT_OK ? status
-                                  : control_fail(error, where, line->column,
-                                                 "%.120s", cause.text);
+        return status == GLINT_OK
+                   ? status
+                   : control_report_error(error, where, line->column, "%.120s",
+                                          cause.text);
     }
     if (line->verb == CONTROL_OPTION || !over->is_open)
         return line->is_change ? GLINT_OK
-                               : check_line(over, line, where, error);
-    return playback_take(&over->playback, line)
+                               : check_control_line(over, line, where, error);
+    return playback_execute_line(&over->playback, line)
                ? GLINT_OK
-               : steer_take(&over->steer, over->frame.scene, line, where,
-                            error);
+               : steer_execute_line(&over->steer, over->frame.scene, line,
+                                    where, error);
 }
 
 /* Reports a mistake, at most one per picture; none ends the run. */
-void over_scene_obey(struct over_scene *over, int frame)
+void over_scene_apply_control(struct over_scene *over, int frame)
 {
     const long before = over->control.n_bad;
     const struct control_line *line;
@@ -89,8 +92,8 @@ void over_scene_obey(struct over_scene *over, int frame)
     while ((line = controls_next(&over->control, frame))) {
         struct glint_error error;
 
-        if (obey(over, line, &error) != GLINT_OK)
-            controls_refuse(&over->control, &error);
+        if (execute_control_line(over, line, &error) != GLINT_OK)
+            controls_reject_line(&over->control, &error);
     }
     if (over->control.n_bad > before && !over->tool->quiet)
         fprintf(stderr, "glint %s: %s\n", over->tool->name,
@@ -100,26 +103,28 @@ void over_scene_obey(struct over_scene *over, int frame)
 /* ------------------------------------------------------------------- opening
  */
 
-static int n_objects(const struct over_scene *over)
+static int count_scene_objects(const struct over_scene *over)
 {
     return (int)over->baked.model.header->n_objects;
 }
 
-static int n_lights(const struct over_scene *over)
+static int count_scene_lights(const struct over_scene *over)
 {
     return (int)over->baked.model.header->n_lights;
 }
 
 /* Returns the place of THING in over->poses.moved. */
-static int place_of(const struct over_scene *over, int thing)
+static int find_pose_index(const struct over_scene *over, int thing)
 {
-    return thing == POSES_CAMERA ? n_objects(over) + n_lights(over) : thing;
+    return thing == POSES_CAMERA
+               ? count_scene_objects(over) + count_scene_lights(over)
+               : thing;
 }
 
-static int open_poses(struct over_scene *over)
+static int open_pose_file(struct over_scene *over)
 {
     struct glint_error error = {""};
-    const size_t n = (size_t)place_of(over, POSES_CAMERA) + 1;
+    const size_t n = (size_t)find_pose_index(over, POSES_CAMERA) + 1;
     const enum glint_status status =
         poses_open(&over->poses.file, over->pose_file, over->is_live,
                    &over->baked.model, &error);
@@ -129,7 +134,7 @@ static int open_poses(struct over_scene *over)
     over->poses.moved = calloc(n, sizeof *over->poses.moved);
     if (!over->poses.moved)
         return tool_fail(over->tool, GLINT_E_MEMORY, NULL);
-    for (int i = 0; i < n_objects(over); i++)
+    for (int i = 0; i < count_scene_objects(over); i++)
         memcpy(over->poses.moved[i].turn_q30,
                over->baked.model.object[i].turn_q30,
                sizeof over->poses.moved[i].turn_q30);
@@ -148,7 +153,7 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
         return tool_usage(tool, "--pose moves the things of --scene, of which "
                                 "there is none");
     if (!over->file)
-        return over->control_file ? open_control(over) : EXIT_OK;
+        return over->control_file ? open_control_input(over) : EXIT_OK;
     code = baked_scene_open(tool, over->file, &over->baked);
     if (code != EXIT_OK)
         return code;
@@ -164,8 +169,9 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
     if (steer_open(&over->steer, &over->baked.model) != GLINT_OK)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (over->pose_file)
-        code = open_poses(over);
-    return code == EXIT_OK && over->control_file ? open_control(over) : code;
+        code = open_pose_file(over);
+    return code == EXIT_OK && over->control_file ? open_control_input(over)
+                                                 : code;
 }
 
 bool over_scene_needs_lens(const struct over_scene *over)
@@ -176,7 +182,7 @@ bool over_scene_needs_lens(const struct over_scene *over)
 
 bool over_scene_keeps_lights(const struct over_scene *over)
 {
-    return over->is_open && n_lights(over) > 0 &&
+    return over->is_open && count_scene_lights(over) > 0 &&
            !over->baked.model.header->flare;
 }
 
@@ -201,7 +207,8 @@ void over_scene_close(struct over_scene *over)
  */
 
 /* Sets AXIS to where the camera's own axes go by the unit quaternion Q. */
-static void set_axes(const int32_t q_q30[4], int32_t axis_q30[3][3])
+static void rotate_axes_by_quaternion(const int32_t q_q30[4],
+                                      int32_t axis_q30[3][3])
 {
     double q[4], v[3];
 
@@ -219,15 +226,15 @@ static void set_axes(const int32_t q_q30[4], int32_t axis_q30[3][3])
 }
 
 /* Moves the camera to TO, unless control lines have moved it. */
-static enum glint_status move_camera(struct over_scene *over,
-                                     struct glint_scene *scene,
-                                     const struct scene_moved *to)
+static enum glint_status move_camera_to_pose(struct over_scene *over,
+                                             struct glint_scene *scene,
+                                             const struct scene_moved *to)
 {
     int32_t axis_q30[3][3];
 
     if (to->turn_q30[0] || to->turn_q30[1] || to->turn_q30[2] ||
         to->turn_q30[3])
-        set_axes(to->turn_q30, axis_q30);
+        rotate_axes_by_quaternion(to->turn_q30, axis_q30);
     else
         memcpy(axis_q30, over->baked.model.header->camera.axis_q30,
                sizeof axis_q30);
@@ -237,61 +244,63 @@ static enum glint_status move_camera(struct over_scene *over,
                : GLINT_OK;
 }
 
-static enum glint_status move(struct over_scene *over,
-                              struct glint_scene *scene, int i)
+static enum glint_status apply_pose(struct over_scene *over,
+                                    struct glint_scene *scene, int i)
 {
     const struct scene_moved *const to = &over->poses.moved[i];
 
     if (!to->is_moved)
         return GLINT_OK;
-    if (i < n_objects(over))
+    if (i < count_scene_objects(over))
         return glint_scene_set_pose(scene, i, to->at, to->turn_q30);
-    if (i < n_objects(over) + n_lights(over))
-        return glint_scene_set_light(scene, i - n_objects(over), to->at);
-    return move_camera(over, scene, to);
+    if (i < count_scene_objects(over) + count_scene_lights(over))
+        return glint_scene_set_light(scene, i - count_scene_objects(over),
+                                     to->at);
+    return move_camera_to_pose(over, scene, to);
 }
 
 /* Moves and changes all objects again, of a scene that was just placed. */
-static void move_all(void *ctx, struct glint_scene *scene)
+static void apply_all_poses(void *ctx, struct glint_scene *scene)
 {
     struct over_scene *const over = ctx;
 
     glint_scene_seek(scene, (uint32_t)over->shown);
-    for (int i = 0; over->poses.moved && i <= place_of(over, POSES_CAMERA); i++)
-        move(over, scene, i);
-    steer_apply(&over->steer, scene);
+    for (int i = 0;
+         over->poses.moved && i <= find_pose_index(over, POSES_CAMERA); i++)
+        apply_pose(over, scene, i);
+    steer_apply_state(&over->steer, scene);
 }
 
 /* Resets all objects to their poses before the first line of the pose file. */
-static void move_back(struct over_scene *over)
+static void reset_all_poses(struct over_scene *over)
 {
     const struct glint_scene_model *const m = &over->baked.model;
     struct glint_scene *const scene = over->frame.scene;
 
-    for (int i = 0; i < n_objects(over); i++)
+    for (int i = 0; i < count_scene_objects(over); i++)
         glint_scene_set_pose(scene, i, m->object[i].at, m->object[i].turn_q30);
-    for (int i = 0; i < n_lights(over); i++)
+    for (int i = 0; i < count_scene_lights(over); i++)
         glint_scene_set_light(scene, i,
                               m->light[i].kind == GLINT_LIGHT_SUN
                                   ? m->light[i].toward_q30
                                   : m->light[i].at);
     glint_scene_set_camera(scene, m->header->camera.at,
                            (const int32_t(*)[3])m->header->camera.axis_q30);
-    steer_apply(&over->steer, scene);
-    for (int i = 0; i <= place_of(over, POSES_CAMERA); i++)
+    steer_apply_state(&over->steer, scene);
+    for (int i = 0; i <= find_pose_index(over, POSES_CAMERA); i++)
         over->poses.moved[i].is_moved = false;
 }
 
 /* Applies the poses up to FRAME. */
-static void take_poses(struct over_scene *over, int frame)
+static void apply_poses_up_to_frame(struct over_scene *over, int frame)
 {
     const struct pose *pose;
 
     if (frame < over->poses.frame && poses_rewind(&over->poses.file))
-        move_back(over);
+        reset_all_poses(over);
     over->poses.frame = frame;
     while ((pose = poses_next(&over->poses.file, frame))) {
-        const int i = place_of(over, pose->thing);
+        const int i = find_pose_index(over, pose->thing);
         const struct scene_moved before = over->poses.moved[i];
 
         over->poses.moved[i].is_moved = true;
@@ -299,9 +308,9 @@ static void take_poses(struct over_scene *over, int frame)
         if (pose->has_turn)
             memcpy(over->poses.moved[i].turn_q30, pose->turn_q30,
                    sizeof pose->turn_q30);
-        if (move(over, over->frame.scene, i) != GLINT_OK) {
+        if (apply_pose(over, over->frame.scene, i) != GLINT_OK) {
             over->poses.moved[i] = before;
-            poses_refuse(&over->poses.file, pose);
+            poses_reject_line(&over->poses.file, pose);
         }
     }
     if (over->poses.file.n_bad > 0 && !over->poses.has_warned &&
@@ -314,7 +323,8 @@ static void take_poses(struct over_scene *over, int frame)
 /* ------------------------------------------------------------------- drawing
  */
 
-static int size(struct over_scene *over, const struct scene_dials *dials)
+static int allocate_scene_frame(struct over_scene *over,
+                                const struct scene_dials *dials)
 {
     int code;
 
@@ -323,12 +333,13 @@ static int size(struct over_scene *over, const struct scene_dials *dials)
     code =
         scene_frame_open(&over->frame, over->tool, &over->baked.model, dials);
     over->is_sized = code == EXIT_OK;
-    over->frame.pose = move_all;
+    over->frame.pose = apply_all_poses;
     over->frame.pose_ctx = over;
     return code;
 }
 
-int over_scene_size(struct over_scene *over, const struct scene_dials *dials)
+int over_scene_allocate(struct over_scene *over,
+                        const struct scene_dials *dials)
 {
     if (!over->is_open)
         return EXIT_OK;
@@ -336,25 +347,29 @@ int over_scene_size(struct over_scene *over, const struct scene_dials *dials)
     if (glints_open(&over->glints, dials->width, dials->height) != GLINT_OK)
         return tool_fail(over->tool, GLINT_E_MEMORY, NULL);
     scene_budget_init(&over->budget, dials);
-    return size(over, dials);
+    return allocate_scene_frame(over, dials);
 }
 
 /* Sets the dials to those of LEVEL. */
-static enum glint_status set_quality_level(struct over_scene *over, int level)
+static enum glint_status set_scene_quality_level(struct over_scene *over,
+                                                 int level)
 {
-    const struct scene_dials dials = scene_budget_dials(&over->budget, level);
+    const struct scene_dials dials =
+        scene_budget_set_dials(&over->budget, level);
 
     over->budget.level = level;
-    return size(over, &dials) == EXIT_OK ? GLINT_OK : GLINT_E_MEMORY;
+    return allocate_scene_frame(over, &dials) == EXIT_OK ? GLINT_OK
+                                                         : GLINT_E_MEMORY;
 }
 
-enum glint_status over_scene_coarsen(struct over_scene *over, double quality)
+enum glint_status over_scene_set_quality(struct over_scene *over,
+                                         double quality)
 {
-    const int level = scene_budget_level(quality);
+    const int level = scene_budget_level_of_quality(quality);
 
     return over->is_sized && !(over->budget_ms > 0) &&
                    level != over->budget.level
-               ? set_quality_level(over, level)
+               ? set_scene_quality_level(over, level)
                : GLINT_OK;
 }
 
@@ -364,31 +379,32 @@ enum glint_status over_scene_draw(struct over_scene *over,
     const double start = tool_clock_s();
     enum glint_status status;
 
-    over_scene_obey(over, frame);
+    over_scene_apply_control(over, frame);
     over->shown = over->control_file
                       ? playback_next(&over->playback, 1e-6 * over->elapsed_us)
                       : frame;
     glint_scene_seek(over->frame.scene, (uint32_t)over->shown);
     if (over->poses.moved)
-        take_poses(over, over->shown);
-    status = over->budget_ms > 0 && scene_budget_follow(&over->budget, over->ms,
-                                                        over->budget_ms)
-                 ? set_quality_level(over, over->budget.level)
+        apply_poses_up_to_frame(over, over->shown);
+    status = over->budget_ms > 0 &&
+                     scene_budget_update_level(&over->budget, over->ms,
+                                               over->budget_ms)
+                 ? set_scene_quality_level(over, over->budget.level)
                  : GLINT_OK;
     if (status == GLINT_OK)
-        status = scene_frame_try(&over->frame, image);
+        status = scene_frame_draw_once(&over->frame, image);
     over->ms = 1e3 * (tool_clock_s() - start);
     over->lamps_hidden = over->lights = 0;
     return status;
 }
 
-void over_scene_mark(const struct over_scene *over,
-                     const struct glint_image *image)
+void over_scene_draw_time_line(const struct over_scene *over,
+                               const struct glint_image *image)
 {
     struct glint_motion motion = over->motion;
 
     if (over->is_open && over->baked.model.motion)
-        time_line_draw(image, &motion, over->shown);
+        draw_time_line(image, &motion, over->shown);
 }
 
 /* --------------------------------------------------------------------- layer
@@ -402,8 +418,8 @@ void over_scene_layer_free(struct over_scene_layer *layer)
 }
 
 /* Draws over a picture of LIGHT_Q20, n samples at LINEAR_Q20. */
-static void draw_over(struct over_scene *over, int32_t light, size_t n,
-                      int32_t *linear_q20)
+static void draw_scene_over_light(struct over_scene *over, int32_t light,
+                                  size_t n, int32_t *linear_q20)
 {
     struct glint_image image = {.format = GLINT_LINEAR_Q20,
                                 .width = over->frame.cfg.width,
@@ -417,8 +433,8 @@ static void draw_over(struct over_scene *over, int32_t light, size_t n,
 
 /* What an object hides of white is what it is over black less what it is over
  * white. */
-enum glint_status over_scene_layer(struct over_scene *over,
-                                   struct over_scene_layer *layer)
+enum glint_status over_scene_make_layer(struct over_scene *over,
+                                        struct over_scene_layer *layer)
 {
     const size_t n =
         (size_t)over->frame.cfg.width * (size_t)over->frame.cfg.height;
@@ -431,11 +447,11 @@ enum glint_status over_scene_layer(struct over_scene *over,
         over_scene_layer_free(layer);
         return GLINT_E_MEMORY;
     }
-    draw_over(over, 0, 3 * n, linear_q20);
+    draw_scene_over_light(over, 0, 3 * n, linear_q20);
     for (size_t i = 0; i < n; i++)
         for (size_t c = 3 * i; c < 3 * i + 3; c++)
             layer->rgb[c] = (float)linear_q20[c] * 0x1p-20F;
-    draw_over(over, 1 << 20, 3 * n, linear_q20);
+    draw_scene_over_light(over, 1 << 20, 3 * n, linear_q20);
     for (size_t i = 0; i < n; i++)
         layer->cover_q8[i] =
             (uint16_t)lrintf(256 + 256 * layer->rgb[3 * i] -
@@ -450,17 +466,17 @@ enum glint_status over_scene_layer(struct over_scene *over,
 /* From here on highlights are numbered, beyond hashes of most texts. */
 #define HIGHLIGHT_IDS UINT32_C(0x7ffe0000)
 
-int over_scene_glints(struct over_scene *over, bool follows,
-                      const struct glint_view *view, double focal_mm,
-                      struct glint_engine_lamp *lamps)
+int over_scene_add_highlights(struct over_scene *over, bool follows,
+                              const struct glint_view *view, double focal_mm,
+                              struct glint_engine_lamp *lamps)
 {
     struct glints *const g = &over->glints;
-    const int n =
-        glints_frame(g, over->frame.scene, follows ? over->elapsed_us : 0);
+    const int n = glints_track_frame(g, over->frame.scene,
+                                     follows ? over->elapsed_us : 0);
 
     for (int i = 0; i < n; i++) {
         struct glint_lamp lamp = {.power = 0};
-        const double level = glints_lamp(g, i, view, focal_mm, &lamp);
+        const double level = glints_make_lamp(g, i, view, focal_mm, &lamp);
 
         lamps[i] = glint_engine_lamp_of(&lamp, LAMP_ID_TEXT + HIGHLIGHT_IDS +
                                                    g->track[i].id % 65536);
@@ -478,10 +494,10 @@ size_t over_scene_bytes(const struct over_scene *over)
     return over->is_sized ? over->frame.bytes : 0;
 }
 
-void over_scene_say(const struct over_scene *over, FILE *to)
+void over_scene_print_line(const struct over_scene *over, FILE *to)
 {
     fprintf(to, "scene %s, %d of %d objects", over->baked.model.header->name,
-            over->frame.stats.objects, n_objects(over));
+            over->frame.stats.objects, count_scene_objects(over));
     if (over->lamps_hidden > 0)
         fprintf(to, " hiding %d light%s", over->lamps_hidden,
                 over->lamps_hidden == 1 ? "" : "s");
@@ -490,15 +506,16 @@ void over_scene_say(const struct over_scene *over, FILE *to)
                 over->poses.file.n_bad == 1 ? "" : "s");
 }
 
-void over_scene_json(struct json_writer *json, const struct over_scene *over)
+void over_scene_write_json(struct json_writer *json,
+                           const struct over_scene *over)
 {
     if (!over->is_sized)
         return;
     json_write(json, "scene: {");
-    scene_account_json(json, &over->frame, over->baked.bytes);
+    scene_account_write_json(json, &over->frame, over->baked.bytes);
     json_write(json, "quality: %.3f, lights: %d",
-               scene_budget_quality(&over->budget), over->lights);
-    scene_highlights_json(json, &over->frame);
+               scene_budget_flare_quality(&over->budget), over->lights);
+    scene_write_highlights_json(json, &over->frame);
     json_write(json, "lamps_hidden: %d, poses_bad: %ld, control_bad: %ld}",
                over->lamps_hidden, over->poses.file.n_bad, over->control.n_bad);
 }

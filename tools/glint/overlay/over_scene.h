@@ -86,16 +86,18 @@ bool over_scene_keeps_lights(const struct over_scene *over);
 
 /* Prepares OVER for pictures of the size in DIALS. Does nothing if there is no
  * scene. Returns an exit code. */
-int over_scene_size(struct over_scene *over, const struct scene_dials *dials);
+int over_scene_allocate(struct over_scene *over,
+                        const struct scene_dials *dials);
 
 /* Limits the quality of the following pictures to QUALITY, as of --quality; 1:
  * as requested. A time budget sets it automatically. Returns GLINT_E_MEMORY on
  * failure. */
-enum glint_status over_scene_coarsen(struct over_scene *over, double quality);
+enum glint_status over_scene_set_quality(struct over_scene *over,
+                                         double quality);
 
 /* Applies the control lines up to FRAME. over_scene_draw() does so, too; call
  * this earlier if lines may zoom the lens, before lamps are positioned. */
-void over_scene_obey(struct over_scene *over, int frame);
+void over_scene_apply_control(struct over_scene *over, int frame);
 
 /* Draws the scene of frame FRAME onto IMAGE. */
 enum glint_status over_scene_draw(struct over_scene *over,
@@ -103,8 +105,8 @@ enum glint_status over_scene_draw(struct over_scene *over,
 
 /* Draws the time line of the recorded motion on IMAGE, of 8 bits, if the scene
  * has one. */
-void over_scene_mark(const struct over_scene *over,
-                     const struct glint_image *image);
+void over_scene_draw_time_line(const struct over_scene *over,
+                               const struct glint_image *image);
 
 /* The scene as a separate layer, for pictures that are not a struct
  * glint_image. */
@@ -115,8 +117,8 @@ struct over_scene_layer {
 
 /* Makes LAYER of the scene drawn last; over_scene_layer_free() frees it.
  * Returns GLINT_E_MEMORY on failure. */
-enum glint_status over_scene_layer(struct over_scene *over,
-                                   struct over_scene_layer *layer);
+enum glint_status over_scene_make_layer(struct over_scene *over,
+                                        struct over_scene_layer *layer);
 void over_scene_layer_free(struct over_scene_layer *layer);
 
 /* Max lamps from a scene: lights and highlights. */
@@ -125,18 +127,19 @@ enum { OVER_SCENE_LAMPS = GLINT_SCENE_MAX_LIGHTS + GLINTS_MAX };
 /* Sets LAMPS, [GLINTS_MAX], to the highlights of the scene drawn last, as seen
  * by a lens of FOCAL_MM. If FOLLOWS, they are tracked from picture to picture.
  * Returns their number. */
-int over_scene_glints(struct over_scene *over, bool follows,
-                      const struct glint_view *view, double focal_mm,
-                      struct glint_engine_lamp *lamps);
+int over_scene_add_highlights(struct over_scene *over, bool follows,
+                              const struct glint_view *view, double focal_mm,
+                              struct glint_engine_lamp *lamps);
 
 /* Returns the bytes of memory for drawing. */
 size_t over_scene_bytes(const struct over_scene *over);
 
 /* Writes a short text about the frame drawn last. */
-void over_scene_say(const struct over_scene *over, FILE *to);
+void over_scene_print_line(const struct over_scene *over, FILE *to);
 
 /* Writes the JSON member "scene", about the frame drawn last. */
-void over_scene_json(struct json_writer *json, const struct over_scene *over);
+void over_scene_write_json(struct json_writer *json,
+                           const struct over_scene *over);
 
 void over_scene_close(struct over_scene *over);
 

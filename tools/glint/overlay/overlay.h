@@ -72,17 +72,17 @@ int overlay_draw(struct tool *tool, struct overlay *o,
 
 /* Finds and tracks the lamps and exposure of IMAGE, a frame before the first
  * frame that is drawn. */
-int overlay_look(struct tool *tool, struct overlay *o,
-                 const struct glint_image *image);
+int overlay_find_lamps_only(struct tool *tool, struct overlay *o,
+                            const struct glint_image *image);
 
 /* As overlay_draw(), for frames that are not drawn in place: calls DRAW with
  * CTX to draw them. */
 typedef enum glint_status overlay_draw_fn(void *ctx, struct drawing *drawing,
                                           const struct glint_image *image,
                                           int32_t elapsed_us);
-int overlay_draw_by(struct tool *tool, struct overlay *o,
-                    const struct glint_image *image, overlay_draw_fn *draw,
-                    void *ctx);
+int overlay_draw_with(struct tool *tool, struct overlay *o,
+                      const struct glint_image *image, overlay_draw_fn *draw,
+                      void *ctx);
 
 /* Prints progress: on a terminal it overwrites one line, else it prints a line
  * every few seconds. */

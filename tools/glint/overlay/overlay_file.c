@@ -29,13 +29,14 @@ struct overlay_file {
     float *layer;
 };
 
-static bool is_deep(const struct glint_samples *s)
+static bool has_more_than_8_bits(const struct glint_samples *s)
 {
     return s->colour[0].sample != GLINT_SAMPLE_U8;
 }
 
-static int fail(const struct tool *tool, const struct overlay_file *f,
-                enum glint_status status)
+static int report_file_failure(const struct tool *tool,
+                               const struct overlay_file *f,
+                               enum glint_status status)
 {
     char text[256];
 
@@ -47,7 +48,7 @@ static int fail(const struct tool *tool, const struct overlay_file *f,
 
 /* Makes f->work, a float copy of the input to draw on, for an output with
  * floats and an input without. */
-static enum glint_status deepen(struct overlay_file *f)
+static enum glint_status convert_input_to_float(struct overlay_file *f)
 {
     struct glint_samples *const from = &f->kept.samples;
     struct glint_samples like = *from;
@@ -61,8 +62,8 @@ static enum glint_status deepen(struct overlay_file *f)
     return status;
 }
 
-static enum glint_status choose_way(struct overlay_file *f,
-                                    const struct drawing *drawing)
+static enum glint_status choose_drawing_method(struct overlay_file *f,
+                                               const struct drawing *drawing)
 {
     const bool to_float = glint_picture_is_float(f->to) &&
                           !glint_kept_is_same_type(&f->kept, f->to);
@@ -77,12 +78,12 @@ static enum glint_status choose_way(struct overlay_file *f,
         return GLINT_OK;
     if (to_float &&
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
-        deepen(f) != GLINT_OK)
+        convert_input_to_float(f) != GLINT_OK)
         return GLINT_E_MEMORY;
     return glint_samples_proxy(&f->kept.samples, &f->image, &f->white);
 }
 
-static void close_file(struct overlay_file *file)
+static void close_picture_file(struct overlay_file *file)
 {
     if (!file->is_direct)
         free(file->image.plane[0]);
@@ -96,9 +97,9 @@ static void close_file(struct overlay_file *file)
 
 /* Opens FROM, which is to be written to TO. Both strings must outlive FILE.
  * Returns an exit code. */
-static int open_file(const struct tool *tool, struct overlay_file *file,
-                     const struct drawing *drawing, const char *from,
-                     const char *to)
+static int open_picture_file(const struct tool *tool, struct overlay_file *file,
+                             const struct drawing *drawing, const char *from,
+                             const char *to)
 {
     struct glint_error error = {""};
     enum glint_status status;
@@ -110,11 +111,11 @@ static int open_file(const struct tool *tool, struct overlay_file *file,
     if (*file->kept.note && !tool->quiet)
         fprintf(stderr, "glint %s: %s: %s\n", tool->name, from,
                 file->kept.note);
-    status = choose_way(file, drawing);
+    status = choose_drawing_method(file, drawing);
     if (status == GLINT_OK)
         return EXIT_OK;
-    close_file(file);
-    return fail(tool, file, status);
+    close_picture_file(file);
+    return report_file_failure(tool, file, status);
 }
 
 /* ------------------------------------------------------------------ drawing */
@@ -123,7 +124,7 @@ static int open_file(const struct tool *tool, struct overlay_file *file,
  * of nearly all pixels, and of any. */
 enum { NEARLY_GREY = 2, AT_MOST_GREY = 8 };
 
-static int spread(const uint8_t px[3])
+static int channel_spread(const uint8_t px[3])
 {
     const int low = px[0] < px[1] ? px[0] : px[1];
     const int high = px[0] < px[1] ? px[1] : px[0];
@@ -135,7 +136,7 @@ static int spread(const uint8_t px[3])
  * of 100 nearly exactly, and a tenth of them are neither nearly black nor
  * nearly white. A drawing of white on black is none, so that a flare on it has
  * its colours. */
-static bool is_monochrome(const struct glint_image *image)
+static bool is_image_monochrome(const struct glint_image *image)
 {
     const int64_t all = (int64_t)image->width * image->height;
     int64_t n = 0, n_tinged = 0;
@@ -144,7 +145,7 @@ static bool is_monochrome(const struct glint_image *image)
         const uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
 
         for (int x = 0; x < image->width; x++, px += 3) {
-            const int codes = spread(px);
+            const int codes = channel_spread(px);
 
             if (codes > AT_MOST_GREY)
                 return false;
@@ -156,8 +157,8 @@ static bool is_monochrome(const struct glint_image *image)
 }
 
 /* Copies the green channel of FROM to GREY. */
-static void copy_green(const struct glint_image *grey,
-                       const struct glint_image *from)
+static void copy_green_channel(const struct glint_image *grey,
+                               const struct glint_image *from)
 {
     for (int y = 0; y < from->height; y++) {
         uint8_t *to = grey->plane[0] + y * grey->stride_bytes[0];
@@ -169,8 +170,8 @@ static void copy_green(const struct glint_image *grey,
 }
 
 /* Adds to all channels of IMAGE by how much GREY differs from its green one. */
-static void add_grey(const struct glint_image *image,
-                     const struct glint_image *grey)
+static void add_grey_difference(const struct glint_image *image,
+                                const struct glint_image *grey)
 {
     for (int y = 0; y < image->height; y++) {
         uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
@@ -190,8 +191,9 @@ static void add_grey(const struct glint_image *image,
 
 /* Draws on a picture without colour as on a grey picture, to which the
  * luminance of the flare is added. */
-static enum glint_status draw_grey(struct overlay_file *f,
-                                   struct drawing *drawing, int32_t elapsed_us)
+static enum glint_status draw_on_grey_image(struct overlay_file *f,
+                                            struct drawing *drawing,
+                                            int32_t elapsed_us)
 {
     struct glint_image grey = {.format = GLINT_GREY,
                                .transfer = f->image.transfer,
@@ -205,27 +207,27 @@ static enum glint_status draw_grey(struct overlay_file *f,
         return GLINT_E_MEMORY;
     glint_image_place(&grey, mem);
     grey.range = GLINT_RANGE_FULL;
-    copy_green(&grey, &f->image);
+    copy_green_channel(&grey, &f->image);
     status = drawing_draw(drawing, &grey, elapsed_us);
-    add_grey(&f->image, &grey);
+    add_grey_difference(&f->image, &grey);
     free(mem);
     return status;
 }
 
 /* Replaces the light of the N pixels RGB by its luminance. */
-static void take_colour(float *rgb, size_t n)
+static void remove_colour(float *rgb, size_t n)
 {
     for (; n > 0; n--, rgb += 3)
         rgb[0] = rgb[1] = rgb[2] =
             0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
 }
 
-static struct glint_samples *drawn_on(struct overlay_file *f)
+static struct glint_samples *samples_to_draw_on(struct overlay_file *f)
 {
     return f->is_copied ? &f->work : &f->kept.samples;
 }
 
-static bool adds_nothing(const struct drawing *drawing)
+static bool is_flare_absent(const struct drawing *drawing)
 {
     return !drawing->files.scene.is_open &&
            !glint_engine_has_veil(drawing->run.engine) &&
@@ -234,8 +236,9 @@ static bool adds_nothing(const struct drawing *drawing)
 
 /* Replaces the upright pixels of S at which DRAWN differs from BEFORE, its
  * codes before drawing without padding. They become opaque. */
-static void put_marks(struct glint_samples *s, const struct glint_image *drawn,
-                      const uint8_t *before)
+static void copy_marks_to_samples(struct glint_samples *s,
+                                  const struct glint_image *drawn,
+                                  const uint8_t *before)
 {
     const uint8_t *at = drawn->plane[0];
     struct glint_tone_curve srgb;
@@ -254,7 +257,8 @@ static void put_marks(struct glint_samples *s, const struct glint_image *drawn,
 }
 
 /* Marks the lights on the proxy, and copies the marks to the samples. */
-static enum glint_status mark(struct overlay_file *f, struct drawing *drawing)
+static enum glint_status draw_marks_on_proxy(struct overlay_file *f,
+                                             struct drawing *drawing)
 {
     const size_t bytes =
         glint_image_bytes(GLINT_RGB24, f->image.width, f->image.height);
@@ -264,15 +268,15 @@ static enum glint_status mark(struct overlay_file *f, struct drawing *drawing)
         return GLINT_E_MEMORY;
     memcpy(before, f->image.plane[0], bytes);
     drawing_mark(drawing, &f->image);
-    put_marks(drawn_on(f), &f->image, before);
+    copy_marks_to_samples(samples_to_draw_on(f), &f->image, before);
     free(before);
     return GLINT_OK;
 }
 
 /* Sets the pixel X, Y to what of it the scene does not hide, and RGB over that.
  */
-static void cover_pixel(struct glint_samples *s, int x, int y, double hidden,
-                        const double rgb[3])
+static void composite_scene_pixel(struct glint_samples *s, int x, int y,
+                                  double hidden, const double rgb[3])
 {
     double sum[3];
     float own[3];
@@ -285,19 +289,20 @@ static void cover_pixel(struct glint_samples *s, int x, int y, double hidden,
 
 /* Draws the scene on the samples, as it was drawn on their proxy, of which
  * white is file->white. */
-static enum glint_status draw_scene(struct overlay_file *file,
-                                    struct drawing *drawing, bool is_grey)
+static enum glint_status draw_scene_on_samples(struct overlay_file *file,
+                                               struct drawing *drawing,
+                                               bool is_grey)
 {
     const size_t width = (size_t)file->image.width;
     const size_t n = width * (size_t)file->image.height;
     struct over_scene_layer layer;
     const enum glint_status status =
-        over_scene_layer(&drawing->files.scene, &layer);
+        over_scene_make_layer(&drawing->files.scene, &layer);
 
     if (status != GLINT_OK)
         return status;
     if (is_grey)
-        take_colour(layer.rgb, n);
+        remove_colour(layer.rgb, n);
     for (size_t i = 0; i < n; i++) {
         const float *const from = layer.rgb + 3 * i;
         const double rgb[3] = {file->white * (double)from[0],
@@ -305,8 +310,9 @@ static enum glint_status draw_scene(struct overlay_file *file,
                                file->white * (double)from[2]};
 
         if (layer.cover_q8[i] || from[0] > 0 || from[1] > 0 || from[2] > 0)
-            cover_pixel(drawn_on(file), (int)(i % width), (int)(i / width),
-                        layer.cover_q8[i] / 256.0, rgb);
+            composite_scene_pixel(samples_to_draw_on(file), (int)(i % width),
+                                  (int)(i / width), layer.cover_q8[i] / 256.0,
+                                  rgb);
     }
     over_scene_layer_free(&layer);
     return GLINT_OK;
@@ -314,8 +320,8 @@ static enum glint_status draw_scene(struct overlay_file *file,
 
 /* Warns that the result is grey, as the file has one channel.
  */
-static void say_grey(const struct overlay_file *file,
-                     const struct drawing *drawing)
+static void warn_of_grey_result(const struct overlay_file *file,
+                                const struct drawing *drawing)
 {
     const struct tool *const tool = drawing->files.scene.tool;
 
@@ -330,13 +336,13 @@ static void say_grey(const struct overlay_file *file,
 
 /* Draws the flare in linear light: into the file's layer, and for a composite
  * over the samples, with the marks. */
-static enum glint_status draw_layer(struct overlay_file *file,
-                                    struct drawing *drawing, bool is_grey)
+static enum glint_status draw_flare_layer(struct overlay_file *file,
+                                          struct drawing *drawing, bool is_grey)
 {
     const size_t n = (size_t)file->image.width * (size_t)file->image.height;
     const bool is_composite =
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE;
-    const bool is_lit = !adds_nothing(drawing);
+    const bool is_lit = !is_flare_absent(drawing);
     enum glint_status status = GLINT_OK;
 
     file->layer = calloc(3 * n, sizeof *file->layer);
@@ -344,24 +350,25 @@ static enum glint_status draw_layer(struct overlay_file *file,
         return GLINT_E_MEMORY;
     if (is_lit)
         status = drawing_layer(&drawing->run,
-                               is_deep(drawn_on(file)) || !is_composite,
+                               has_more_than_8_bits(samples_to_draw_on(file)) ||
+                                   !is_composite,
                                file->layer);
     if (status != GLINT_OK)
         return status;
     if (is_grey)
-        take_colour(file->layer, n);
+        remove_colour(file->layer, n);
     if (is_composite && is_lit)
-        glint_samples_add(drawn_on(file), file->layer);
+        glint_samples_add(samples_to_draw_on(file), file->layer);
     return is_composite && drawing_has_marks(&drawing->line)
-               ? mark(file, drawing)
+               ? draw_marks_on_proxy(file, drawing)
                : GLINT_OK;
 }
 
 /* Draws on samples that are not codes of 8 bits: finds lamps on the proxy and
  * measures them, then adds scene and flare. */
-static enum glint_status draw_deep(struct overlay_file *file,
-                                   struct drawing *drawing, bool is_grey,
-                                   int32_t elapsed_us)
+static enum glint_status draw_on_deep_samples(struct overlay_file *file,
+                                              struct drawing *drawing,
+                                              bool is_grey, int32_t elapsed_us)
 {
     enum glint_status status = drawing_find(drawing, &file->image, elapsed_us);
 
@@ -371,34 +378,35 @@ static enum glint_status draw_deep(struct overlay_file *file,
         drawing_measure(drawing, &file->kept.samples);
     if (drawing->files.scene.is_open &&
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE)
-        status = draw_scene(file, drawing, is_grey);
+        status = draw_scene_on_samples(file, drawing, is_grey);
     if (status == GLINT_OK && drawing->files.has_lens) {
         status = drawing_expose(drawing, &file->image);
         if (status == GLINT_OK)
-            status = draw_layer(file, drawing, is_grey);
+            status = draw_flare_layer(file, drawing, is_grey);
     }
     drawing->run.n_frames++;
     return status;
 }
 
 /* Adds the flare to the file CTX, an overlay_draw_fn. */
-static enum glint_status draw_file(void *ctx, struct drawing *drawing,
-                                   const struct glint_image *image,
-                                   int32_t elapsed_us)
+static enum glint_status draw_flare_on_file(void *ctx, struct drawing *drawing,
+                                            const struct glint_image *image,
+                                            int32_t elapsed_us)
 {
     struct overlay_file *const file = ctx;
     /* An object has colours, where the file has room for them. */
     const bool is_grey =
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
-        !(drawing->files.scene.is_open && drawn_on(file)->n_colours == 3) &&
-        is_monochrome(image);
+        !(drawing->files.scene.is_open &&
+          samples_to_draw_on(file)->n_colours == 3) &&
+        is_image_monochrome(image);
 
     drawing->run.is_measured = file->kept.is_float;
     drawing->run.white = file->white;
-    say_grey(file, drawing);
+    warn_of_grey_result(file, drawing);
     if (!file->is_direct)
-        return draw_deep(file, drawing, is_grey, elapsed_us);
-    return is_grey ? draw_grey(file, drawing, elapsed_us)
+        return draw_on_deep_samples(file, drawing, is_grey, elapsed_us);
+    return is_grey ? draw_on_grey_image(file, drawing, elapsed_us)
                    : drawing_draw(drawing, image, elapsed_us);
 }
 
@@ -406,9 +414,9 @@ static enum glint_status draw_file(void *ctx, struct drawing *drawing,
 
 /* Makes ALONE, a picture of the flare by itself, with the input's depth or
  * more. */
-static enum glint_status make_layer(const struct overlay_file *f,
-                                    const struct drawing *drawing,
-                                    struct glint_samples *alone)
+static enum glint_status make_flare_only_picture(const struct overlay_file *f,
+                                                 const struct drawing *drawing,
+                                                 struct glint_samples *alone)
 {
     struct glint_samples like = f->kept.samples;
     const float *rgb = f->layer;
@@ -443,10 +451,11 @@ static enum glint_status make_layer(const struct overlay_file *f,
 }
 
 /* Writes F; sets IS_COPIED if that was a copy of the input. */
-static enum glint_status write(struct overlay_file *f,
-                               const struct drawing *drawing,
-                               struct glint_kept_options *options,
-                               bool *is_copied, struct glint_error *error)
+static enum glint_status write_picture(struct overlay_file *f,
+                                       const struct drawing *drawing,
+                                       struct glint_kept_options *options,
+                                       bool *is_copied,
+                                       struct glint_error *error)
 {
     const bool own_layer =
         drawing->line.settings.options.layer != GLINT_LAYER_COMPOSITE &&
@@ -455,7 +464,7 @@ static enum glint_status write(struct overlay_file *f,
     enum glint_status status;
 
     *is_copied =
-        adds_nothing(drawing) &&
+        is_flare_absent(drawing) &&
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
         !drawing_has_marks(&drawing->line) && !options->quality &&
         glint_kept_is_same_type(&f->kept, f->to);
@@ -464,7 +473,7 @@ static enum glint_status write(struct overlay_file *f,
     if (!own_layer)
         return glint_kept_save(&f->kept, f->to, f->is_copied ? &f->work : NULL,
                                options, error);
-    status = make_layer(f, drawing, &alone);
+    status = make_flare_only_picture(f, drawing, &alone);
     if (status != GLINT_OK)
         return status;
     status = glint_kept_save(&f->kept, f->to, &alone, options, error);
@@ -473,17 +482,17 @@ static enum glint_status write(struct overlay_file *f,
 }
 
 /* Writes the picture to its output. Returns an exit code. */
-static int save_file(const struct tool *tool, struct overlay_file *file,
-                     struct overlay *o)
+static int save_picture(const struct tool *tool, struct overlay_file *file,
+                        struct overlay *o)
 {
     struct glint_kept_options options = {.quality = o->quality};
     struct glint_error error = {""};
     const enum glint_status status =
-        write(file, &o->drawing, &options, &o->is_copied, &error);
+        write_picture(file, &o->drawing, &options, &o->is_copied, &error);
 
     if (status != GLINT_OK)
         return *error.text ? tool_fail(tool, status, error.text)
-                           : fail(tool, file, status);
+                           : report_file_failure(tool, file, status);
     if (*options.said && !tool->quiet)
         fprintf(stderr, "glint %s: %s: %s\n", tool->name, file->to,
                 options.said);
@@ -496,7 +505,7 @@ int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
                     const char *to)
 {
     struct overlay_file file;
-    int code = open_file(tool, &file, &o->drawing, from, to);
+    int code = open_picture_file(tool, &file, &o->drawing, from, to);
 
     if (code != EXIT_OK)
         return code;
@@ -509,9 +518,10 @@ int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
         code = EXIT_INPUT;
     }
     if (code == EXIT_OK)
-        code = overlay_draw_by(tool, o, &file.image, draw_file, &file);
+        code =
+            overlay_draw_with(tool, o, &file.image, draw_flare_on_file, &file);
     if (code == EXIT_OK)
-        code = save_file(tool, &file, o);
-    close_file(&file);
+        code = save_picture(tool, &file, o);
+    close_picture_file(&file);
     return code;
 }

@@ -10,7 +10,7 @@
 #include "overlay/overlay.h"
 #include "overlay/overlay_line.h"
 
-static void say_frame(const struct overlay *o)
+static void print_frame_statistics(const struct overlay *o)
 {
     char lights[64];
 
@@ -20,8 +20,8 @@ static void say_frame(const struct overlay *o)
             o->drawing.run.report.stats.primitives);
 }
 
-static void note_worst(struct glint_engine_report *worst,
-                       const struct glint_engine_report *report)
+static void record_max_dropped(struct glint_engine_report *worst,
+                               const struct glint_engine_report *report)
 {
     const int dropped =
         worst->stats.dropped_bundles > report->stats.dropped_bundles
@@ -58,11 +58,11 @@ static enum glint_status draw_in_place(void *ctx, struct drawing *drawing,
 int overlay_draw(struct tool *tool, struct overlay *o,
                  const struct glint_image *image)
 {
-    return overlay_draw_by(tool, o, image, draw_in_place, NULL);
+    return overlay_draw_with(tool, o, image, draw_in_place, NULL);
 }
 
-int overlay_look(struct tool *tool, struct overlay *o,
-                 const struct glint_image *image)
+int overlay_find_lamps_only(struct tool *tool, struct overlay *o,
+                            const struct glint_image *image)
 {
     struct drawing *const drawing = &o->drawing;
     enum glint_status status = GLINT_OK;
@@ -82,7 +82,7 @@ int overlay_look(struct tool *tool, struct overlay *o,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
-static void span(struct overlay_span *of, double x)
+static void extend_span(struct overlay_span *of, double x)
 {
     of->min = of->n ? fmin(of->min, x) : x;
     of->max = of->n ? fmax(of->max, x) : x;
@@ -90,19 +90,19 @@ static void span(struct overlay_span *of, double x)
 }
 
 /* Notes what sets the brightness of a frame. */
-static void note_brightness(struct overlay_figures *f,
-                            const struct glint_options *o)
+static void record_frame_brightness(struct overlay_figures *f,
+                                    const struct glint_options *o)
 {
     if (GLINT_OPTION_GIVEN(o, exposure))
-        span(&f->exposure, o->exposure);
+        extend_span(&f->exposure, o->exposure);
     else
-        span(&f->strength, o->strength);
-    span(&f->gain, o->gain);
+        extend_span(&f->strength, o->strength);
+    extend_span(&f->gain, o->gain);
 }
 
-int overlay_draw_by(struct tool *tool, struct overlay *o,
-                    const struct glint_image *image, overlay_draw_fn *draw,
-                    void *ctx)
+int overlay_draw_with(struct tool *tool, struct overlay *o,
+                      const struct glint_image *image, overlay_draw_fn *draw,
+                      void *ctx)
 {
     struct drawing *drawing = &o->drawing;
     enum glint_status status;
@@ -122,7 +122,7 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
     code = layers_write(tool, &o->layers, drawing);
     if (code != EXIT_OK)
         return code;
-    note_brightness(&o->figures, &drawing->line.settings.options);
+    record_frame_brightness(&o->figures, &drawing->line.settings.options);
     o->figures.find_ms += drawing->run.find_ms;
     o->figures.flare_ms += drawing->run.flare_ms;
     if (drawing->run.engine) {
@@ -140,9 +140,9 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
         o->figures.peak_bytes)
         o->figures.peak_bytes =
             drawing->run.report.peak_bytes + drawing->run.report.star_bytes;
-    note_worst(&o->figures.worst, &drawing->run.report);
+    record_max_dropped(&o->figures.worst, &drawing->run.report);
     if (tool->verbose && !tool->quiet)
-        say_frame(o);
+        print_frame_statistics(o);
     return EXIT_OK;
 }
 
@@ -170,8 +170,8 @@ int overlay_check_apart(const struct tool *tool, const struct overlay *o,
 {
     struct apart files = {.n_read = 0};
 
-    apart_read(&files, NULL, from);
-    apart_write(&files, "-o", to);
-    apart_line(&files, &o->drawing.line);
+    apart_add_input(&files, NULL, from);
+    apart_add_output(&files, "-o", to);
+    apart_add_drawing_files(&files, &o->drawing.line);
     return layers_check_apart(tool, &o->layers, &files);
 }

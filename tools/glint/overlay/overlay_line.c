@@ -17,7 +17,7 @@ static const double well_seen = 0.25;
 /* --------------------------------------------------------------- the light */
 
 /* Returns whether the starburst or the veil is drawn by itself. */
-static bool is_part(const struct drawing *drawing)
+static bool is_single_component_drawn(const struct drawing *drawing)
 {
     return drawing->line.settings.options.only == GLINT_ONLY_STARBURST ||
            drawing->line.settings.options.only == GLINT_ONLY_VEIL;
@@ -25,8 +25,8 @@ static bool is_part(const struct drawing *drawing)
 
 /* Sets LIGHT to that of the layer that was drawn last; returns false without
  * memory. */
-static bool measure_layer(struct drawing *drawing,
-                          struct glint_response_light *light)
+static bool measure_layer_light(struct drawing *drawing,
+                                struct glint_response_light *light)
 {
     const size_t n =
         (size_t)drawing->run.view.width * (size_t)drawing->run.view.height;
@@ -54,7 +54,7 @@ int overlay_count_frames(const struct overlay *o)
     return n > o->first ? n - o->first : 0;
 }
 
-struct overlay_light overlay_light(struct overlay *o)
+struct overlay_light overlay_measure_light(struct overlay *o)
 {
     struct drawing *drawing = &o->drawing;
     const int n = overlay_count_frames(o);
@@ -62,10 +62,10 @@ struct overlay_light overlay_light(struct overlay *o)
                                   n ? o->figures.mean_sum / n : 0};
     struct glint_response_light drawn;
 
-    if (is_part(drawing) && drawing->run.n_lamps > 0 &&
+    if (is_single_component_drawn(drawing) && drawing->run.n_lamps > 0 &&
         drawing_scale(&drawing->run) > 0) {
         light.is_known =
-            drawing->run.n_frames == 1 && measure_layer(drawing, &drawn);
+            drawing->run.n_frames == 1 && measure_layer_light(drawing, &drawn);
         if (light.is_known) {
             light.peak = glint_largest_channel(drawn.peak);
             light.mean = glint_largest_channel(drawn.mean);
@@ -86,12 +86,12 @@ struct overlay_light overlay_light(struct overlay *o)
 }
 
 /* Returns the power of LAMP in stops over a white pixel. */
-static double stops_of(const struct glint_engine_lamp *lamp)
+static double lamp_power_in_stops(const struct glint_engine_lamp *lamp)
 {
     return log2(fmax(lamp->lamp.power, 1e-30));
 }
 
-static double f_number_of(const struct opened_lens *lens)
+static double lens_f_number(const struct opened_lens *lens)
 {
     return lens->model.data
                ? model_compute_real(lens->model.lens.header->f_number) /
@@ -113,12 +113,12 @@ brightest_of(const struct drawing *drawing)
 }
 
 /* Returns X to print as a whole number, which is never -0. */
-static double whole(double x)
+static double round_without_minus_zero(double x)
 {
     return rint(x) + 0.0;
 }
 
-static void say_lights(const struct drawing *drawing, int most, FILE *to)
+static void print_lights(const struct drawing *drawing, int most, FILE *to)
 {
     const struct glint_engine_lamp *lamp;
     double x, y;
@@ -132,13 +132,13 @@ static void say_lights(const struct drawing *drawing, int most, FILE *to)
                         drawing->files.lens.setup.optics.focal_mm, &lamp->lamp,
                         &x, &y);
     fprintf(to, " (%s%.0f stops over a white pixel, at %.0f,%.0f)",
-            most == 1 ? "" : "the brightest ", stops_of(lamp), whole(x),
-            whole(y));
+            most == 1 ? "" : "the brightest ", lamp_power_in_stops(lamp),
+            round_without_minus_zero(x), round_without_minus_zero(y));
 }
 
 /* Prints NAME and the range of its values, with their signs if HAS_SIGN. */
-static void say_span(const struct overlay_span *of, const char *name,
-                     bool has_sign, FILE *to)
+static void print_value_span(const struct overlay_span *of, const char *name,
+                             bool has_sign, FILE *to)
 {
     fprintf(to, has_sign ? "%s %+g" : "%s %g", name, of->min);
     if (of->max > of->min)
@@ -146,23 +146,25 @@ static void say_span(const struct overlay_span *of, const char *name,
 }
 
 /* Prints what set the brightness of all frames. */
-static void say_brightness(const struct overlay_figures *f, FILE *to)
+static void print_brightness_options(const struct overlay_figures *f, FILE *to)
 {
     if (f->strength.n > 0)
-        say_span(&f->strength, "strength", false, to);
+        print_value_span(&f->strength, "strength", false, to);
     if (f->exposure.n > 0) {
-        say_span(&f->exposure,
-                 f->strength.n > 0 ? ", in other frames exposure" : "exposure",
-                 true, to);
+        print_value_span(&f->exposure,
+                         f->strength.n > 0 ? ", in other frames exposure"
+                                           : "exposure",
+                         true, to);
         fputs(" EV", to);
     }
     if (f->gain.min != 1 || f->gain.max != 1)
-        say_span(&f->gain, ", gain", false, to);
+        print_value_span(&f->gain, ", gain", false, to);
 }
 
 /* Prints which option would show a flare that is as faint as LIGHT. */
-static void say_faint(const struct overlay *o,
-                      const struct overlay_light *light, FILE *to)
+static void print_faint_flare_remedy(const struct overlay *o,
+                                     const struct overlay_light *light,
+                                     FILE *to)
 {
     const struct drawing *drawing = &o->drawing;
     const struct glint_engine_report *const report = &drawing->run.report;
@@ -209,7 +211,7 @@ static void say_faint(const struct overlay *o,
 }
 
 /* Returns what the picture has where no lamp gives light. */
-static const char *rest_of(const struct drawing *drawing)
+static const char *describe_picture_without_lamps(const struct drawing *drawing)
 {
     return drawing->run.engine && glint_engine_has_veil(drawing->run.engine)
                ? "only the veil"
@@ -219,8 +221,8 @@ static const char *rest_of(const struct drawing *drawing)
 
 /* Returns whether lamps were there, but a mask or fade leaves none of their
  * light: of several frames as far as the flare's LIGHT and the last tell. */
-static bool is_hidden(const struct drawing *drawing,
-                      const struct overlay_light *light)
+static bool are_all_lamps_hidden(const struct drawing *drawing,
+                                 const struct overlay_light *light)
 {
     if (!drawing->files.occlusion.file &&
         !(drawing->files.occlusion.fade_px > 0))
@@ -234,7 +236,8 @@ static bool is_hidden(const struct drawing *drawing,
     return true;
 }
 
-static void say_hidden(const struct drawing *drawing, int most, FILE *to)
+static void print_hidden_lamps(const struct drawing *drawing, int most,
+                               FILE *to)
 {
     const struct occlusion *const o = &drawing->files.occlusion;
     const bool both = o->file && o->fade_px > 0;
@@ -246,11 +249,11 @@ static void say_hidden(const struct drawing *drawing, int most, FILE *to)
             : o->file ? "--mask"
                       : "--edge-fade",
             both ? "hide" : "hides", most == 1 ? "it" : "all of them",
-            rest_of(drawing));
+            describe_picture_without_lamps(drawing));
 }
 
 /* Prints the options that make the brightest candidates lamps. */
-static void say_candidates(const struct glint_engine *engine, FILE *to)
+static void print_lamp_candidates(const struct glint_engine *engine, FILE *to)
 {
     struct glint_spot next;
     const bool is_one = !glint_engine_doubtful(engine, 1, &next);
@@ -261,7 +264,8 @@ static void say_candidates(const struct glint_engine *engine, FILE *to)
                 next.y_q8 / 256.0);
 }
 
-void overlay_say_none(const struct drawing *drawing, bool is_copied, FILE *to)
+void overlay_print_no_light(const struct drawing *drawing, bool is_copied,
+                            FILE *to)
 {
     const bool is_found =
         !drawing->files.is_listed && drawing->line.n_hand == 0;
@@ -270,10 +274,11 @@ void overlay_say_none(const struct drawing *drawing, bool is_copied, FILE *to)
                          drawing->run.n_frames <= 1 &&
                          glint_engine_doubtful(drawing->run.engine, 0, &next);
 
-    fprintf(to, "no light was found, so %s was drawn%s; ", rest_of(drawing),
+    fprintf(to, "no light was found, so %s was drawn%s; ",
+            describe_picture_without_lamps(drawing),
             is_copied ? " and the file was copied" : "");
     if (is_next)
-        say_candidates(drawing->run.engine, to);
+        print_lamp_candidates(drawing->run.engine, to);
     else
         fputs("see --threshold, or give one with --light-at X,Y", to);
     if (over_scene_keeps_lights(&drawing->files.scene))
@@ -281,8 +286,8 @@ void overlay_say_none(const struct drawing *drawing, bool is_copied, FILE *to)
     fputc('\n', to);
 }
 
-void overlay_say(const struct overlay *o, const struct overlay_light *light,
-                 FILE *to)
+void overlay_print_summary(const struct overlay *o,
+                           const struct overlay_light *light, FILE *to)
 {
     const struct drawing *drawing = &o->drawing;
     const double seconds = tool_clock_s() - o->figures.started;
@@ -292,7 +297,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
     if (n != 1)
         fprintf(to, "%d frames, %.1f a second, ", n, n / seconds);
     if (drawing->files.scene.is_open)
-        over_scene_say(&drawing->files.scene, to);
+        over_scene_print_line(&drawing->files.scene, to);
     if (!drawing->files.has_lens) {
         fprintf(to, "; %.0f ms\n", 1e3 * seconds);
         return;
@@ -300,11 +305,11 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
     if (drawing->files.scene.is_open)
         fputs(", ", to);
     if (o->figures.most_lights == 0) {
-        overlay_say_none(drawing, o->is_copied, to);
+        overlay_print_no_light(drawing, o->is_copied, to);
         return;
     }
-    if (is_hidden(drawing, light)) {
-        say_hidden(drawing, o->figures.most_lights, to);
+    if (are_all_lamps_hidden(drawing, light)) {
+        print_hidden_lamps(drawing, o->figures.most_lights, to);
         return;
     }
     if (n == 1 && drawing->files.scene.lamps_hidden >= drawing->run.n_lamps) {
@@ -312,11 +317,11 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
                 o->figures.most_lights, o->figures.most_lights == 1 ? "" : "s");
         return;
     }
-    say_lights(drawing, o->figures.most_lights, to);
+    print_lights(drawing, o->figures.most_lights, to);
     fprintf(to, ", %s f/%.3g, %s, ", drawing->files.lens.table.name,
-            f_number_of(&drawing->files.lens),
+            lens_f_number(&drawing->files.lens),
             drawing->files.lens.model.data ? "baked model" : "exact rays");
-    say_brightness(&o->figures, to);
+    print_brightness_options(&o->figures, to);
     if (light->is_known)
         fprintf(to, ": %s at %.*g %% of white, %.2g %% on average",
                 drawing->line.settings.options.only == GLINT_ONLY_STARBURST
@@ -327,18 +332,18 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
                 light->peak < 1 ? 2 : 3, 100 * light->peak, 100 * light->mean);
     fprintf(to, "; %.0f ms\n", 1e3 * seconds);
     if (light->is_known && light->peak < least_seen)
-        say_faint(o, light, to);
+        print_faint_flare_remedy(o, light, to);
 }
 
 /* -------------------------------------------------------------------- JSON */
 
-void overlay_json(struct json_writer *json, const struct overlay *o,
-                  const struct overlay_light *light)
+void overlay_write_json(struct json_writer *json, const struct overlay *o,
+                        const struct overlay_light *light)
 {
     const struct drawing *drawing = &o->drawing;
     const double focal = drawing->files.lens.setup.optics.focal_mm;
 
-    over_scene_json(json, &drawing->files.scene);
+    over_scene_write_json(json, &drawing->files.scene);
     if (!drawing->files.has_lens) {
         json_write(json, "lens: null, found: []");
         return;
@@ -349,7 +354,7 @@ void overlay_json(struct json_writer *json, const struct overlay *o,
         "peak: %.6g, mean: %.6g, found: [",
         drawing->files.lens.table.name,
         drawing->files.lens.model.data ? "model" : "exact",
-        f_number_of(&drawing->files.lens),
+        lens_f_number(&drawing->files.lens),
         GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure)
             ? (double)NAN
             : drawing->line.settings.options.strength,
@@ -362,9 +367,9 @@ void overlay_json(struct json_writer *json, const struct overlay *o,
         double x, y;
 
         glint_view_to_pixel(&drawing->run.view, focal, l, &x, &y);
-        json_write(json,
-                   "{x: %.2f, y: %.2f, stops: %.2f, rgb: [%.4g, %.4g, %.4g]}",
-                   x, y, stops_of(known), l->rgb[0], l->rgb[1], l->rgb[2]);
+        json_write(
+            json, "{x: %.2f, y: %.2f, stops: %.2f, rgb: [%.4g, %.4g, %.4g]}", x,
+            y, lamp_power_in_stops(known), l->rgb[0], l->rgb[1], l->rgb[2]);
     }
     json_write(json, "]");
 }

@@ -22,22 +22,23 @@ struct overlay_light {
 /* Returns the light of the drawn flare. For a single picture it is measured by
  * drawing the ghosts again at small size, unless the exposure did so already;
  * for several frames it is estimated from the lens's response. */
-struct overlay_light overlay_light(struct overlay *o);
+struct overlay_light overlay_measure_light(struct overlay *o);
 
 /* Returns the number of frames in the output, without frames before
  * --frames. */
 int overlay_count_frames(const struct overlay *o);
 
 /* Prints one line, or two if the flare is invisible. */
-void overlay_say(const struct overlay *o, const struct overlay_light *light,
-                 FILE *to);
+void overlay_print_summary(const struct overlay *o,
+                           const struct overlay_light *light, FILE *to);
 
 /* Prints that no lamp was found; if IS_COPIED, that the file was copied; for a
  * single picture also the brightest candidate. */
-void overlay_say_none(const struct drawing *drawing, bool is_copied, FILE *to);
+void overlay_print_no_light(const struct drawing *drawing, bool is_copied,
+                            FILE *to);
 
 /* Writes the result as members of a JSON object. */
-void overlay_json(struct json_writer *json, const struct overlay *o,
-                  const struct overlay_light *light);
+void overlay_write_json(struct json_writer *json, const struct overlay *o,
+                        const struct overlay_light *light);
 
 #endif

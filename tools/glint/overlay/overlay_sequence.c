@@ -24,7 +24,7 @@ struct numbers {
 
 /* ----------------------------------------------------------------- numbers */
 
-static bool add(struct numbers *l, int number)
+static bool add_frame_number(struct numbers *l, int number)
 {
     int *const more = text_grow_array(l->at, l->n, sizeof *more);
 
@@ -37,7 +37,8 @@ static bool add(struct numbers *l, int number)
 
 /* Returns the number for which PATTERN yields the file name FILE, or -1 if
  * there is none. NAME is scratch memory. */
-static int number_of(const char *file, const char *pattern, char *name)
+static int parse_number_of_file(const char *file, const char *pattern,
+                                char *name)
 {
     const char *percent = strchr(pattern, '%');
     const char *slash = strrchr(pattern, '/');
@@ -55,7 +56,7 @@ static int number_of(const char *file, const char *pattern, char *name)
     return strcmp(name + folder, file) == 0 ? (int)number : -1;
 }
 
-static int by_number(const void *a, const void *b)
+static int compare_frame_numbers(const void *a, const void *b)
 {
     const int x = *(const int *)a, y = *(const int *)b;
 
@@ -64,7 +65,7 @@ static int by_number(const void *a, const void *b)
 
 /* Lists in L the numbers, from FIRST on, of the files of PATTERN, rising.
  * Returns false without memory. */
-static bool list_numbers(struct numbers *l, const char *pattern, int first)
+static bool list_file_numbers(struct numbers *l, const char *pattern, int first)
 {
     const char *slash = strrchr(pattern, '/');
     char folder[NAME_BYTES] = ".", name[NAME_BYTES];
@@ -77,21 +78,22 @@ static bool list_numbers(struct numbers *l, const char *pattern, int first)
                  pattern);
     dir = opendir(folder);
     while (ok && dir && (entry = readdir(dir))) {
-        const int number = number_of(entry->d_name, pattern, name);
+        const int number = parse_number_of_file(entry->d_name, pattern, name);
 
         if (number >= 0 && number >= first)
-            ok = add(l, number);
+            ok = add_frame_number(l, number);
     }
     if (dir)
         closedir(dir);
     if (ok && l->n > 0)
-        qsort(l->at, (size_t)l->n, sizeof *l->at, by_number);
+        qsort(l->at, (size_t)l->n, sizeof *l->at, compare_frame_numbers);
     return ok;
 }
 
 /* Lists numbers from FIRST on (-1: 0 or 1) up to the first missing one, for a
  * PATTERN whose folder has the number, too. Returns false without memory. */
-static bool walk(struct numbers *l, const char *pattern, int first)
+static bool list_consecutive_numbers(struct numbers *l, const char *pattern,
+                                     int first)
 {
     char name[NAME_BYTES];
     bool ok = true;
@@ -104,12 +106,13 @@ static bool walk(struct numbers *l, const char *pattern, int first)
     for (; ok && numbered_make_name(name, pattern, number) &&
            access(name, F_OK) == 0;
          number++)
-        ok = add(l, number);
+        ok = add_frame_number(l, number);
     return ok;
 }
 
-static void say_missing(const struct tool *tool, const struct overlay *o,
-                        const struct numbers *l)
+static void print_missing_pictures(const struct tool *tool,
+                                   const struct overlay *o,
+                                   const struct numbers *l)
 {
     int runs = 0;
 
@@ -136,8 +139,8 @@ static void say_missing(const struct tool *tool, const struct overlay *o,
 
 /* Draws picture number l->at[i]; the time since the one before follows from
  * their numbers. Returns an exit code. */
-static int draw_numbered(struct tool *tool, struct overlay *o,
-                         const struct numbers *l, int i)
+static int draw_numbered_picture(struct tool *tool, struct overlay *o,
+                                 const struct numbers *l, int i)
 {
     const int64_t gap = i > 0 ? (int64_t)l->at[i] - l->at[i - 1] : 1;
     char from[NAME_BYTES], to[NAME_BYTES];
@@ -161,7 +164,8 @@ static int draw_numbered(struct tool *tool, struct overlay *o,
     return code;
 }
 
-static int all(struct tool *tool, struct overlay *o, const struct numbers *l)
+static int draw_all_numbered_pictures(struct tool *tool, struct overlay *o,
+                                      const struct numbers *l)
 {
     char pattern[NAME_BYTES];
     int code = EXIT_OK;
@@ -180,9 +184,9 @@ static int all(struct tool *tool, struct overlay *o, const struct numbers *l)
                           o->input, l->n, hashes ? ": -o " : "",
                           hashes ? pattern : "");
     }
-    say_missing(tool, o, l);
+    print_missing_pictures(tool, o, l);
     for (int i = 0; i < l->n && code == EXIT_OK; i++)
-        code = draw_numbered(tool, o, l, i);
+        code = draw_numbered_picture(tool, o, l, i);
     if (code == EXIT_OK)
         o->drawing.run.n_frames = l->n; /* without the missing ones */
     return code;
@@ -207,9 +211,10 @@ int overlay_sequence(struct tool *tool, struct overlay *o)
          !numbered_make_name(name, o->output, INT_MAX)))
         return tool_usage(tool, "names of pictures have at most %d bytes",
                           NAME_BYTES - 1);
-    if (strchr(percent, '/') ? walk(&l, o->input, o->start_number)
-                             : list_numbers(&l, o->input, o->start_number))
-        code = all(tool, o, &l);
+    if (strchr(percent, '/')
+            ? list_consecutive_numbers(&l, o->input, o->start_number)
+            : list_file_numbers(&l, o->input, o->start_number))
+        code = draw_all_numbered_pictures(tool, o, &l);
     else
         code = tool_fail(tool, GLINT_E_MEMORY, NULL);
     free(l.at);

@@ -36,14 +36,14 @@ struct video {
     bool has_ended; /* The input was read to its end, not to --frames' last. */
 };
 
-static bool is_y4m(const char *name)
+static bool is_y4m_name(const char *name)
 {
     return strcmp(name, "-") == 0 || glint_y4m_is_name(name);
 }
 
 bool overlay_is_video(const char *name)
 {
-    return is_y4m(name) || ffmpeg_is_video(name);
+    return is_y4m_name(name) || ffmpeg_is_video(name);
 }
 
 int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video)
@@ -68,12 +68,12 @@ int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video)
 
 /* ----------------------------------------------------------------- opening */
 
-static int fail(struct video *v, enum glint_status status)
+static int report_video_failure(struct video *v, enum glint_status status)
 {
     return tool_fail(v->tool, status, v->error.text);
 }
 
-static ptrdiff_t read_child(void *ctx, void *dst, size_t bytes)
+static ptrdiff_t read_from_child(void *ctx, void *dst, size_t bytes)
 {
     struct child *child = ctx;
     ssize_t n;
@@ -87,7 +87,7 @@ static ptrdiff_t read_child(void *ctx, void *dst, size_t bytes)
 
 /* Returns whether the output can have the sound, tags and times of the whole
  * input. */
-static bool takes_rest(const struct overlay *o)
+static bool can_keep_other_streams(const struct overlay *o)
 {
     return !glint_ends_in(o->output, ".gif") && o->last == INT_MAX;
 }
@@ -95,7 +95,7 @@ static bool takes_rest(const struct overlay *o)
 /* Sets the meaning of the input's codes by its tags, and prints a warning of
  * tags that are not known, or that are missing though the video is of 2020's
  * primaries. */
-static void take_colours(struct video *v)
+static void set_colour_meaning(struct video *v)
 {
     static const char *const matrices[] = {"601", "709", "2020"};
     struct glint_y4m_header *const h = &v->in.header;
@@ -117,39 +117,42 @@ static void take_colours(struct video *v)
 
 /* Opens the input through ffmpeg, which itself prints what it cannot read.
  * Returns an exit code. */
-static int open_coded(struct video *v)
+static int open_coded_input(struct video *v)
 {
     struct glint_input file;
     enum glint_status status =
         glint_input_open_file(&file, v->o->input, &v->error);
 
     if (status != GLINT_OK)
-        return fail(v, status);
+        return report_video_failure(v, status);
     glint_input_close(&file);
     ffmpeg_probe(&v->about, v->o->input);
     v->is_variable = ffmpeg_read_times(&v->times, v->o->input, &v->about);
-    v->keeps_times = v->is_variable && v->writes && takes_rest(v->o) &&
+    v->keeps_times = v->is_variable && v->writes &&
+                     can_keep_other_streams(v->o) &&
                      ffmpeg_keeps_times(v->o->output) &&
                      !(v->o->encode && strstr(v->o->encode, "-vf")) &&
                      !(v->o->encode && strstr(v->o->encode, "-filter"));
     status = ffmpeg_read(&v->reader, v->o->input, &v->about, v->keeps_times,
                          &v->error);
     if (status != GLINT_OK)
-        return fail(v, status);
-    status = glint_y4m_reader_start(&v->in, read_child, &v->reader, v->o->input,
-                                    &v->error);
+        return report_video_failure(v, status);
+    status = glint_y4m_reader_start(&v->in, read_from_child, &v->reader,
+                                    v->o->input, &v->error);
     if (status == GLINT_OK) {
-        take_colours(v);
+        set_colour_meaning(v);
         return EXIT_OK;
     }
     if (child_wait(&v->reader) != 0)
         snprintf(v->error.text, sizeof v->error.text,
                  "%.180s: ffmpeg cannot read it", v->o->input);
-    return fail(v, status == GLINT_E_MEMORY ? status : GLINT_E_FORMAT);
+    return report_video_failure(v, status == GLINT_E_MEMORY ? status
+                                                            : GLINT_E_FORMAT);
 }
 
 /* Returns ffmpeg's name of the samples of LAYOUT. */
-static const char *pixels_of_layout(const struct glint_y4m_layout *layout)
+static const char *
+find_pixel_format_of_layout(const struct glint_y4m_layout *layout)
 {
     const char *const chroma = layout->format == GLINT_GREY   ? "gray"
                                : layout->format == GLINT_I444 ? "444"
@@ -162,7 +165,7 @@ static const char *pixels_of_layout(const struct glint_y4m_layout *layout)
 }
 
 /* Opens frames without headers, 30 a second. */
-static enum glint_status open_raw(struct video *v)
+static enum glint_status open_raw_input(struct video *v)
 {
     static const enum glint_pixel_format formats[] = {GLINT_I420, GLINT_I422,
                                                       GLINT_I444, GLINT_GREY};
@@ -175,23 +178,23 @@ static enum glint_status open_raw(struct video *v)
                                      (size_t)o->raw.stride, &v->error);
 }
 
-static int open_input(struct video *v)
+static int open_video_input(struct video *v)
 {
     struct glint_y4m_header *h = &v->in.header;
     const struct overlay *o = v->o;
     int code = EXIT_OK;
 
     if (v->reads) {
-        code = open_coded(v);
+        code = open_coded_input(v);
     } else {
         const enum glint_status status =
-            o->raw.width ? open_raw(v)
+            o->raw.width ? open_raw_input(v)
                          : glint_y4m_reader_open(&v->in, o->input, &v->error);
 
         if (status != GLINT_OK)
-            code = fail(v, status);
+            code = report_video_failure(v, status);
         snprintf(v->about.pixels, sizeof v->about.pixels, "%s",
-                 pixels_of_layout(&h->layout));
+                 find_pixel_format_of_layout(&h->layout));
     }
     if (code == EXIT_OK && o->range)
         h->range = o->range == 1 ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED;
@@ -207,16 +210,16 @@ static int open_input(struct video *v)
 static enum glint_status open_encoder(struct video *v)
 {
     const struct overlay *o = v->o;
-    struct ffmpeg_target target = {.name = o->output,
-                                   .sound = v->reads && takes_rest(o) ? o->input
-                                                                      : NULL,
-                                   .options = o->encode,
-                                   .width = v->in.header.width,
-                                   .height = v->in.header.height,
-                                   .times = v->keeps_times ? &v->times : NULL,
-                                   .is_444 = v->in.header.format == GLINT_I444,
-                                   .range = v->in.header.range,
-                                   .quiet = v->tool->quiet};
+    struct ffmpeg_target target = {
+        .name = o->output,
+        .sound = v->reads && can_keep_other_streams(o) ? o->input : NULL,
+        .options = o->encode,
+        .width = v->in.header.width,
+        .height = v->in.header.height,
+        .times = v->keeps_times ? &v->times : NULL,
+        .is_444 = v->in.header.format == GLINT_I444,
+        .range = v->in.header.range,
+        .quiet = v->tool->quiet};
     enum glint_status status =
         glint_output_open(&v->file, o->output, GLINT_OUTPUT_BINARY, &v->error);
 
@@ -236,21 +239,22 @@ static enum glint_status open_encoder(struct video *v)
     return status;
 }
 
-static int open_output(struct video *v)
+static int open_video_output(struct video *v)
 {
     const enum glint_status status =
         v->writes ? open_encoder(v)
                   : glint_y4m_writer_open(&v->out, v->o->output, &v->in.header,
                                           &v->error);
 
-    return status == GLINT_OK ? EXIT_OK : fail(v, status);
+    return status == GLINT_OK ? EXIT_OK : report_video_failure(v, status);
 }
 
 /* ------------------------------------------------------------------ frames */
 
 /* Draws IMAGE, the frame that was read last, and writes it. Returns an exit
  * code. */
-static int draw_frame(struct video *v, const struct glint_image *image)
+static int draw_and_write_frame(struct video *v,
+                                const struct glint_image *image)
 {
     enum glint_status status;
     const int code = overlay_y4m_draw(v->tool, v->o, &v->in, image);
@@ -262,10 +266,11 @@ static int draw_frame(struct video *v, const struct glint_image *image)
                                          v->in.frame_tags, &v->error);
     overlay_progress(v->tool, v->o);
     v->is_closed = status == GLINT_E_CLOSED;
-    return status == GLINT_OK || v->is_closed ? EXIT_OK : fail(v, status);
+    return status == GLINT_OK || v->is_closed ? EXIT_OK
+                                              : report_video_failure(v, status);
 }
 
-static int frames(struct video *v)
+static int draw_all_frames(struct video *v)
 {
     const int *const at = &v->o->drawing.run.n_frames;
     const struct glint_image *image;
@@ -280,11 +285,11 @@ static int frames(struct video *v)
         if (v->has_ended)
             break;
         if (status != GLINT_OK)
-            code = fail(v, status);
+            code = report_video_failure(v, status);
         else if (*at < v->o->first)
-            code = overlay_look(v->tool, v->o, image);
+            code = overlay_find_lamps_only(v->tool, v->o, image);
         else
-            code = draw_frame(v, image);
+            code = draw_and_write_frame(v, image);
     }
     if (code == EXIT_OK && *at <= v->o->first && !v->is_closed) {
         fprintf(stderr, "glint overlay: %s: %s frames\n", v->in.name,
@@ -297,7 +302,7 @@ static int frames(struct video *v)
 /* Prints the frames of each shot: from one in which lamps and exposure
  * restart to the next. In frames without lamps they do in each; those are one
  * shot, with what comes after them. */
-static int print_shots(struct video *v)
+static int print_shot_list(struct video *v)
 {
     const int *const at = &v->o->drawing.run.n_frames;
     const struct glint_image *image;
@@ -309,11 +314,11 @@ static int print_shots(struct video *v)
             glint_y4m_reader_next(&v->in, &image, &v->error);
 
         if (status != GLINT_OK)
-            code = fail(v, status);
+            code = report_video_failure(v, status);
         else if (!image)
             break;
         else
-            code = overlay_look(v->tool, v->o, image);
+            code = overlay_find_lamps_only(v->tool, v->o, image);
         if (code == EXIT_OK && v->o->is_cut && !was_cut) {
             printf("%d-%d\n", first, *at - 2);
             first = *at - 1;
@@ -327,7 +332,7 @@ static int print_shots(struct video *v)
 
 /* Returns the us from frame to frame, on average if that varies; at 25 a second
  * if the rate is unknown. */
-static int32_t frame_us(const struct video *v)
+static int32_t mean_frame_interval_us(const struct video *v)
 {
     const struct glint_y4m_header *const header = &v->in.header;
     const struct ffmpeg_times *const t = &v->times;
@@ -343,7 +348,7 @@ static int32_t frame_us(const struct video *v)
 
 /* Waits for the end of the decoder. Returns an exit code: it must have read all
  * of the input. */
-static int end_reader(struct video *v)
+static int wait_for_decoder(struct video *v)
 {
     const int code = child_wait(&v->reader);
 
@@ -360,7 +365,7 @@ static int end_reader(struct video *v)
     return EXIT_INPUT;
 }
 
-static int end_writer(struct video *v)
+static int finish_encoder(struct video *v)
 {
     enum glint_status status = glint_y4m_writer_commit(&v->out, &v->error);
 
@@ -377,12 +382,12 @@ static int end_writer(struct video *v)
         if (status == GLINT_OK)
             status = glint_output_commit(&v->file, &v->error);
     }
-    return status == GLINT_OK ? EXIT_OK : fail(v, status);
+    return status == GLINT_OK ? EXIT_OK : report_video_failure(v, status);
 }
 
 /* Prints a warning if frames of a variable rate were repeated or left out to
  * become even. */
-static void report_rate(const struct video *v)
+static void warn_of_variable_rate(const struct video *v)
 {
     if (v->is_variable && !v->keeps_times && v->has_ended && !v->tool->quiet)
         fprintf(stderr,
@@ -392,29 +397,29 @@ static void report_rate(const struct video *v)
                 v->in.header.fps_num, v->in.header.fps_den);
 }
 
-static int run(struct video *v)
+static int overlay_video_frames(struct video *v)
 {
-    int code = open_input(v);
+    int code = open_video_input(v);
 
-    v->o->elapsed_us = frame_us(v);
+    v->o->elapsed_us = mean_frame_interval_us(v);
     if (code == EXIT_OK && v->o->lists_shots) {
-        code = print_shots(v);
-        return code == EXIT_OK && v->reads ? end_reader(v) : code;
+        code = print_shot_list(v);
+        return code == EXIT_OK && v->reads ? wait_for_decoder(v) : code;
     }
     if (code == EXIT_OK)
-        code = open_output(v);
+        code = open_video_output(v);
     if (code != EXIT_OK)
         return code;
-    code = frames(v);
+    code = draw_all_frames(v);
     if (code == EXIT_OK && v->reads && v->has_ended)
-        code = end_reader(v);
+        code = wait_for_decoder(v);
     if (code == EXIT_OK)
-        report_rate(v);
-    return code == EXIT_OK ? end_writer(v) : code;
+        warn_of_variable_rate(v);
+    return code == EXIT_OK ? finish_encoder(v) : code;
 }
 
 /* Closes all open files and children and removes unfinished files. */
-static void close_all(struct video *v)
+static void close_video_files(struct video *v)
 {
     child_kill(&v->reader);
     child_kill(&v->writer);
@@ -428,7 +433,7 @@ static void close_all(struct video *v)
 
 int overlay_video_check(const struct tool *tool, const struct overlay *o)
 {
-    if (((o->raw.width || is_y4m(o->input)) && is_y4m(o->output)) ||
+    if (((o->raw.width || is_y4m_name(o->input)) && is_y4m_name(o->output)) ||
         child_exists("ffmpeg"))
         return EXIT_OK;
     ffmpeg_print_manual_commands(tool, o->input, o->output);
@@ -439,15 +444,15 @@ int overlay_video(struct tool *tool, struct overlay *o)
 {
     struct video v = {.tool = tool,
                       .o = o,
-                      .reads = !o->raw.width && !is_y4m(o->input),
-                      .writes = !is_y4m(o->output),
+                      .reads = !o->raw.width && !is_y4m_name(o->input),
+                      .writes = !is_y4m_name(o->output),
                       .reader = CHILD_NONE,
                       .writer = CHILD_NONE,
                       .file = {.fd = -1},
                       .in = {.in = {.fd = -1}},
                       .out = {.out = {.fd = -1}}};
-    const int code = run(&v);
+    const int code = overlay_video_frames(&v);
 
-    close_all(&v);
+    close_video_files(&v);
     return code;
 }

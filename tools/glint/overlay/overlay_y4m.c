@@ -27,15 +27,15 @@ void overlay_y4m_close(struct overlay *o)
     o->y4m = NULL;
 }
 
-static enum glint_status draw_scene(struct overlay_y4m *y,
-                                    struct drawing *drawing)
+static enum glint_status draw_scene_on_planes(struct overlay_y4m *y,
+                                              struct drawing *drawing)
 {
     struct over_scene_layer layer;
     enum glint_status status;
 
     if (!drawing->files.scene.is_open)
         return GLINT_OK;
-    status = over_scene_layer(&drawing->files.scene, &layer);
+    status = over_scene_make_layer(&drawing->files.scene, &layer);
     if (status != GLINT_OK)
         return status;
     glint_y4m_light_cover(&y->light, y->planes, layer.rgb, layer.cover_q8);
@@ -43,15 +43,16 @@ static enum glint_status draw_scene(struct overlay_y4m *y,
     return GLINT_OK;
 }
 
-static enum glint_status draw(void *ctx, struct drawing *drawing,
-                              const struct glint_image *image,
-                              int32_t elapsed_us)
+static enum glint_status draw_flare_on_planes(void *ctx,
+                                              struct drawing *drawing,
+                                              const struct glint_image *image,
+                                              int32_t elapsed_us)
 {
     struct overlay_y4m *const y = ctx;
     enum glint_status status = drawing_find(drawing, image, elapsed_us);
 
     if (status == GLINT_OK)
-        status = draw_scene(y, drawing);
+        status = draw_scene_on_planes(y, drawing);
     if (status == GLINT_OK && drawing->files.has_lens)
         status = drawing_expose(drawing, image);
     drawing->run.n_frames++;
@@ -69,7 +70,8 @@ static enum glint_status draw(void *ctx, struct drawing *drawing,
     return status;
 }
 
-static struct overlay_y4m *make(const struct glint_y4m_header *header)
+static struct overlay_y4m *
+make_overlay_y4m(const struct glint_y4m_header *header)
 {
     struct overlay_y4m *const y = calloc(1, sizeof *y);
 
@@ -97,9 +99,9 @@ int overlay_y4m_draw(struct tool *tool, struct overlay *o,
                           *in->header.colour ? in->header.colour : "420jpeg",
                           glint_transfer_words[in->header.transfer]);
     if (!o->y4m)
-        o->y4m = make(&in->header);
+        o->y4m = make_overlay_y4m(&in->header);
     if (!o->y4m)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     o->y4m->planes = in->planes;
-    return overlay_draw_by(tool, o, image, draw, o->y4m);
+    return overlay_draw_with(tool, o, image, draw_flare_on_planes, o->y4m);
 }

@@ -6,7 +6,7 @@
 
 #include "formats/paint.h"
 
-static void set_state(struct paint *p, enum glint_lamp_state state)
+static void set_colour_of_state(struct paint *p, enum glint_lamp_state state)
 {
     switch (state) {
     case GLINT_LAMP_RISING:
@@ -24,7 +24,7 @@ static void set_state(struct paint *p, enum glint_lamp_state state)
     }
 }
 
-static void draw_cross(const struct paint *p, int x, int y)
+static void draw_lamp_cross(const struct paint *p, int x, int y)
 {
     const int d = p->line;
 
@@ -33,7 +33,7 @@ static void draw_cross(const struct paint *p, int x, int y)
 }
 
 /* Returns the thickness of lines at which letters can be read on IMAGE. */
-static int line_of(const struct glint_image *image)
+static int compute_line_width(const struct glint_image *image)
 {
     const int side =
         image->width < image->height ? image->width : image->height;
@@ -43,8 +43,8 @@ static int line_of(const struct glint_image *image)
 
 /* Draws NUMBER, and STOPS below it, at the right of the box, or at its left if
  * the picture ends before. */
-static void draw_words(const struct paint *p, int x, int y, int half,
-                       const char *number, const char *stops)
+static void draw_lamp_number(const struct paint *p, int x, int y, int half,
+                             const char *number, const char *stops)
 {
     const int gap = 3 * p->line, top = y < half ? 0 : y - half;
     const int a = paint_text_width(p, number), b = paint_text_width(p, stops);
@@ -57,45 +57,46 @@ static void draw_words(const struct paint *p, int x, int y, int half,
     paint_text(p, left, top + 7 * p->line, stops);
 }
 
-static void draw_all(const struct paint *p, int x, int y, int half, uint32_t id,
-                     const char *stops)
+static void draw_mark_strokes(const struct paint *p, int x, int y, int half,
+                              uint32_t id, const char *stops)
 {
     char number[16];
 
     snprintf(number, sizeof number, "%lu", (unsigned long)id);
-    draw_cross(p, x, y);
+    draw_lamp_cross(p, x, y);
     paint_box(p, x, y, half);
-    draw_words(p, x, y, half, number, stops);
+    draw_lamp_number(p, x, y, half, number, stops);
 }
 
 /* Draws a mark and before it its shadow, as lamps are as bright as any line. */
-static void draw(const struct glint_image *image,
-                 const struct glint_lamp_track *track, const char *stops)
+static void draw_shadowed_mark(const struct glint_image *image,
+                               const struct glint_lamp_track *track,
+                               const char *stops)
 {
-    struct paint p = {.image = image, .line = line_of(image)};
+    struct paint p = {.image = image, .line = compute_line_width(image)};
     const int x = track->x_q8 >> 8, y = track->y_q8 >> 8;
     const int half = 4 * p.line + (track->size_q8 >> 7);
 
     paint_colour(&p, 0, 0, 0);
-    draw_all(&p, x + p.line, y + p.line, half, track->id, stops);
-    set_state(&p, track->state);
-    draw_all(&p, x, y, half, track->id, stops);
+    draw_mark_strokes(&p, x + p.line, y + p.line, half, track->id, stops);
+    set_colour_of_state(&p, track->state);
+    draw_mark_strokes(&p, x, y, half, track->id, stops);
 }
 
-void show_light(const struct glint_image *image,
-                const struct glint_lamp_track *track)
+void show_lamp_mark(const struct glint_image *image,
+                    const struct glint_lamp_track *track)
 {
-    draw(image, track, "");
+    draw_shadowed_mark(image, track, "");
 }
 
-void show_light_of(const struct glint_image *image,
-                   const struct glint_lamp_track *track, double power)
+void show_lamp_mark_of(const struct glint_image *image,
+                       const struct glint_lamp_track *track, double power)
 {
     char stops[32] = "";
 
     if (power > 0)
         snprintf(stops, sizeof stops, "%+.1f EV", log2(power));
-    draw(image, track, stops);
+    draw_shadowed_mark(image, track, stops);
 }
 
 /* ------------------------------------------------------------------ legend */
@@ -110,9 +111,9 @@ static const struct {
 
 static const char words[] = "NUMBER, EV: STOPS OVER A WHITE PIXEL";
 
-void show_legend(const struct glint_image *image, bool followed)
+void show_mark_legend(const struct glint_image *image, bool followed)
 {
-    struct paint p = {.image = image, .line = line_of(image)};
+    struct paint p = {.image = image, .line = compute_line_width(image)};
     const int margin = 3 * p.line, row = 8 * p.line;
     const int width = paint_text_width(&p, words) + 2 * margin;
     const int height = (followed ? 3 : 1) * row + margin;
@@ -129,7 +130,7 @@ void show_legend(const struct glint_image *image, bool followed)
             x = margin;
             y += row;
         }
-        set_state(&p, states[i].state);
+        set_colour_of_state(&p, states[i].state);
         paint_text(&p, x, y, states[i].word);
         x += paint_text_width(&p, states[i].word) + 2 * margin;
     }

@@ -12,16 +12,16 @@
 
 /* Draws the mark of TRACK on IMAGE, of any 8-bit format: green if steady,
  * yellow if rising, red if fading, blue after it left the picture. */
-void show_light(const struct glint_image *image,
-                const struct glint_lamp_track *track);
+void show_lamp_mark(const struct glint_image *image,
+                    const struct glint_lamp_track *track);
 
-/* Draws the mark of TRACK as show_light() does, and below its number POWER in
- * stops above the power of a white pixel. */
-void show_light_of(const struct glint_image *image,
-                   const struct glint_lamp_track *track, double power);
+/* Draws the mark of TRACK as show_lamp_mark() does, and below its number POWER
+ * in stops above the power of a white pixel. */
+void show_lamp_mark_of(const struct glint_image *image,
+                       const struct glint_lamp_track *track, double power);
 
 /* Writes a legend into the lower left corner: the meaning of numbers and, if
  * lamps are FOLLOWED, of colours. Draws nothing if the picture is too small. */
-void show_legend(const struct glint_image *image, bool followed);
+void show_mark_legend(const struct glint_image *image, bool followed);
 
 #endif

@@ -17,7 +17,7 @@ enum { ROW = 40, MOST_FRAMES = 10000000 };
 
 static const char heading[] = "frame,zoom\n";
 
-bool zoom_clip_take(struct zoom_clip *clip, const char *text)
+bool zoom_clip_parse(struct zoom_clip *clip, const char *text)
 {
     char from[32];
     const size_t n = strcspn(text, "-");
@@ -35,7 +35,7 @@ bool zoom_clip_take(struct zoom_clip *clip, const char *text)
 }
 
 /* Returns the number of frames of the y4m file NAME; 0 if it cannot be read. */
-static long count_y4m(const char *name, struct glint_error *error)
+static long count_y4m_frames(const char *name, struct glint_error *error)
 {
     struct glint_y4m_reader in;
     const struct glint_image *frame;
@@ -50,7 +50,7 @@ static long count_y4m(const char *name, struct glint_error *error)
 }
 
 /* Returns key frames for N frames, malloc'ed. */
-static char *make_keys(const struct zoom_clip *clip, long n)
+static char *make_zoom_keys(const struct zoom_clip *clip, long n)
 {
     const bool is_mm = clip->from > 1;
     const size_t room = sizeof heading + (size_t)n * ROW;
@@ -90,7 +90,7 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
     if (!input || strcmp(input, "-") == 0)
         return tool_usage(tool, "--zoom A-B is over all frames of a video in a "
                                 "file: else give --keys a column zoom");
-    n = glint_y4m_is_name(input) ? count_y4m(input, &error)
+    n = glint_y4m_is_name(input) ? count_y4m_frames(input, &error)
                                  : ffmpeg_count_frames(input);
     if ((n <= 0 || n > MOST_FRAMES) && !error.text[0])
         glint_error_report(&error, GLINT_E_FORMAT, input,
@@ -98,7 +98,7 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
                            "is unknown");
     if (n <= 0 || n > MOST_FRAMES)
         return tool_fail(tool, GLINT_E_FORMAT, error.text);
-    clip->keys = make_keys(clip, n);
+    clip->keys = make_zoom_keys(clip, n);
     if (!clip->keys)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     line->settings.options.keys = clip->label;

@@ -20,7 +20,7 @@ struct zoom_clip {
 };
 
 /* Parses TEXT, "A-B". Returns false if it is malformed. */
-bool zoom_clip_take(struct zoom_clip *clip, const char *text);
+bool zoom_clip_parse(struct zoom_clip *clip, const char *text);
 
 /* If --zoom A-B was given, sets key frames in LINE over all frames of the video
  * INPUT; call it before the line is opened. INPUT is NULL if the input is not a

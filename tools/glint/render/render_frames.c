@@ -41,7 +41,7 @@ struct frames {
 
 /* ------------------------------------------------------------------ opening */
 
-static int check(const struct tool *tool, struct frames *f)
+static int check_output_name(const struct tool *tool, struct frames *f)
 {
     const struct render_scene *r = f->r;
 
@@ -59,7 +59,8 @@ static int check(const struct tool *tool, struct frames *f)
 }
 
 /* Opens the output video and the tables that convert light to its frames. */
-static enum glint_status open_video(struct frames *f, struct glint_error *error)
+static enum glint_status open_output_video(struct frames *f,
+                                           struct glint_error *error)
 {
     const struct render_scene *r = f->r;
     const size_t n = (size_t)r->width * (size_t)r->height;
@@ -89,7 +90,7 @@ static enum glint_status open_video(struct frames *f, struct glint_error *error)
     return glint_y4m_writer_open(&f->writer, r->output, &f->header, error);
 }
 
-static int open_frames(struct frames *f)
+static int open_frame_buffers(struct frames *f)
 {
     const struct render_scene *r = f->r;
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
@@ -107,12 +108,12 @@ static int open_frames(struct frames *f)
     if (!codes || !f->light_q20 || (f->c->files.has_lens && !f->flare))
         return tool_fail(f->tool, GLINT_E_MEMORY, NULL);
     if (f->is_y4m)
-        status = open_video(f, &error);
+        status = open_output_video(f, &error);
     return status == GLINT_OK ? EXIT_OK
                               : tool_fail(f->tool, status, error.text);
 }
 
-static void close_frames(struct frames *f)
+static void close_frame_buffers(struct frames *f)
 {
     if (f->writer.out.fd >= 0)
         glint_y4m_writer_abort(&f->writer);
@@ -128,7 +129,7 @@ static void close_frames(struct frames *f)
 
 /* Adds the flare of the lights, reduced by occlusion in the scene over black,
  * to the picture. */
-static enum glint_status add_flare(struct frames *f)
+static enum glint_status add_flare_of_lights(struct frames *f)
 {
     struct drawing *const c = f->c;
     const size_t n = 3 * (size_t)f->r->width * (size_t)f->r->height;
@@ -146,7 +147,7 @@ static enum glint_status add_flare(struct frames *f)
 }
 
 /* Draws frame c->run.n_frames into r->image. */
-static enum glint_status draw(struct frames *f)
+static enum glint_status draw_scene_frame(struct frames *f)
 {
     struct render_scene *const r = f->r;
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
@@ -168,7 +169,7 @@ static enum glint_status draw(struct frames *f)
     for (size_t i = 0; status == GLINT_OK && i < n; i++)
         r->image.rgb[i] = (float)ldexp(f->light_q20[i], -20);
     if (status == GLINT_OK && f->c->files.has_lens)
-        status = add_flare(f);
+        status = add_flare_of_lights(f);
     for (size_t i = 0; status == GLINT_OK && i < n && r->exposure_ev != 0; i++)
         r->image.rgb[i] *= (float)exp2(r->exposure_ev);
     return status;
@@ -176,7 +177,8 @@ static enum glint_status draw(struct frames *f)
 
 /* ------------------------------------------------------------------ writing */
 
-static enum glint_status put_video(struct frames *f, struct glint_error *error)
+static enum glint_status write_video_frame(struct frames *f,
+                                           struct glint_error *error)
 {
     const size_t n = (size_t)f->r->width * (size_t)f->r->height;
     const struct glint_layer layer = {
@@ -191,14 +193,14 @@ static enum glint_status put_video(struct frames *f, struct glint_error *error)
 }
 
 /* Writes r->image as frame NUMBER. Returns an exit code. */
-static int put(struct frames *f, int number)
+static int write_output_frame(struct frames *f, int number)
 {
     struct glint_error error = {""};
     char name[NUMBERED_BYTES];
     enum glint_status status;
 
     if (f->is_y4m) {
-        status = put_video(f, &error);
+        status = write_video_frame(f, &error);
         return status == GLINT_OK ? EXIT_OK
                                   : tool_fail(f->tool, status, error.text);
     }
@@ -209,7 +211,7 @@ static int put(struct frames *f, int number)
                             f->r->linear, &f->r->image, 1);
 }
 
-static int end_video(struct frames *f)
+static int finish_output_video(struct frames *f)
 {
     struct glint_error error = {""};
     const enum glint_status status =
@@ -222,7 +224,7 @@ static int end_video(struct frames *f)
 
 /* ------------------------------------------------------------------- whole */
 
-static void say(const struct frames *f, double ms)
+static void print_run_summary(const struct frames *f, double ms)
 {
     const struct render_scene *const r = f->r;
     struct json_writer json = {.to = stdout};
@@ -230,12 +232,13 @@ static void say(const struct frames *f, double ms)
 
     snprintf(what, sizeof what, "%d frames, %d to %d", r->last - r->first + 1,
              r->first, r->last);
-    render_file_say(f->tool, r->output, r->width, r->height, what, 1e-3 * ms);
+    render_file_print_summary(f->tool, r->output, r->width, r->height, what,
+                              1e-3 * ms);
     if (!f->tool->json || strcmp(r->output, "-") == 0)
         return;
     json_write(&json, "{engine: %s, frames: %d", "model",
                r->last - r->first + 1);
-    over_scene_json(&json, &f->c->files.scene);
+    over_scene_write_json(&json, &f->c->files.scene);
     json_write(&json, "lens: %s",
                f->c->files.has_lens ? f->c->files.lens.table.name : NULL);
     if (f->c->files.has_lens)
@@ -243,32 +246,33 @@ static void say(const struct frames *f, double ms)
     json_write(&json, "ms: %.3f}\n", ms);
 }
 
-static int run(struct frames *f)
+static int render_all_frames(struct frames *f)
 {
     struct render_scene *const r = f->r;
     const double start = tool_clock_s();
-    int code = open_frames(f);
+    int code = open_frame_buffers(f);
 
     for (int i = r->first; code == EXIT_OK && i <= r->last; i++) {
         enum glint_status status;
 
         f->c->run.n_frames = i;
-        status = draw(f);
-        code =
-            status == GLINT_OK ? put(f, i) : tool_fail(f->tool, status, NULL);
+        status = draw_scene_frame(f);
+        code = status == GLINT_OK ? write_output_frame(f, i)
+                                  : tool_fail(f->tool, status, NULL);
     }
     if (code == EXIT_OK)
-        code = end_video(f);
+        code = finish_output_video(f);
     if (code == EXIT_OK)
         code = drawing_finish(f->tool, f->c);
     if (code == EXIT_OK)
-        say(f, 1e3 * (tool_clock_s() - start));
+        print_run_summary(f, 1e3 * (tool_clock_s() - start));
     return code;
 }
 
 /* Returns an exit code for what of the drawing's options is not for renders.
  */
-static int check_options(const struct tool *tool, const struct drawing *c)
+static int check_drawing_options(const struct tool *tool,
+                                 const struct drawing *c)
 {
     if (c->line.settings.options.scene)
         return tool_usage(tool, "--scene is for overlay, live and explain; "
@@ -286,15 +290,15 @@ int render_frames(struct tool *tool, struct render_scene *r, const char *path)
     struct drawing *const c = &r->drawing;
     struct frames f = {.tool = tool, .r = r, .c = c, .writer.out.fd = -1};
     struct apart files = {.n_read = 0};
-    int code = check(tool, &f);
+    int code = check_output_name(tool, &f);
 
     if (code == EXIT_OK)
-        code = check_options(tool, c);
+        code = check_drawing_options(tool, c);
     if (code != EXIT_OK)
         return code;
     c->line.settings.options.scene = path;
-    apart_line(&files, &c->line);
-    apart_write(&files, "-o", r->output);
+    apart_add_drawing_files(&files, &c->line);
+    apart_add_output(&files, "-o", r->output);
     code = apart_check(tool, &files);
     if (code != EXIT_OK)
         return code;
@@ -307,7 +311,7 @@ int render_frames(struct tool *tool, struct render_scene *r, const char *path)
     if (code == EXIT_OK)
         code = drawing_size(tool, c, r->width, r->height);
     if (code == EXIT_OK)
-        code = run(&f);
-    close_frames(&f);
+        code = render_all_frames(&f);
+    close_frame_buffers(&f);
     return code;
 }

@@ -67,7 +67,7 @@ enum {
 };
 
 /* Parses "A-B", the first and last frame. */
-static bool take_frames(struct render_scene *r, const char *text)
+static bool parse_frame_range(struct render_scene *r, const char *text)
 {
     const char *const dash = strchr(text, '-');
     char first[16];
@@ -81,7 +81,8 @@ static bool take_frames(struct render_scene *r, const char *text)
 }
 
 /* Takes what is of frames that change. Returns -1, or -2 if it is not. */
-static int take_moving(struct tool *tool, struct render_scene *r, int c)
+static int parse_animation_option(struct tool *tool, struct render_scene *r,
+                                  int c)
 {
     switch (c) {
     case OPT_FRAME:
@@ -91,8 +92,9 @@ static int take_moving(struct tool *tool, struct render_scene *r, int c)
         r->last = r->first;
         return -1;
     case OPT_FRAMES:
-        return take_frames(r, optarg) ? -1
-                                      : tool_refuse(tool, "frames", optarg);
+        return parse_frame_range(r, optarg)
+                   ? -1
+                   : tool_refuse(tool, "frames", optarg);
     case OPT_FPS:
         return tool_parse_number(optarg, &r->fps) && r->fps >= 1 &&
                        r->fps <= 1000
@@ -103,7 +105,7 @@ static int take_moving(struct tool *tool, struct render_scene *r, int c)
     }
 }
 
-static int take(struct tool *tool, struct render_scene *r, int c)
+static int parse_scene_option(struct tool *tool, struct render_scene *r, int c)
 {
     switch (c) {
     case 'o':
@@ -130,7 +132,7 @@ static int take(struct tool *tool, struct render_scene *r, int c)
 }
 
 /* Takes option C, of scenes or of the flare. Returns -1 or an exit code. */
-static int take_any(struct tool *tool, struct render_scene *r, int c)
+static int parse_any_option(struct tool *tool, struct render_scene *r, int c)
 {
     int code = drawing_line_option(tool, &r->drawing.line, c, optarg);
 
@@ -148,12 +150,12 @@ static int take_any(struct tool *tool, struct render_scene *r, int c)
                      c != ENGINE_OPTION_OF(quality));
     }
     if (code == -2)
-        code = take_moving(tool, r, c);
-    return code == -2 ? take(tool, r, c) : code;
+        code = parse_animation_option(tool, r, c);
+    return code == -2 ? parse_scene_option(tool, r, c) : code;
 }
 
-static int parse(struct tool *tool, int argc, char **argv,
-                 struct render_scene *r)
+static int parse_command_line(struct tool *tool, int argc, char **argv,
+                              struct render_scene *r)
 {
     static const struct option own[] = {
         {"output", required_argument, NULL, 'o'},
@@ -174,7 +176,7 @@ static int parse(struct tool *tool, int argc, char **argv,
         return code;
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             NULL)) >= 0)
-        if ((code = take_any(tool, r, c)) >= 0)
+        if ((code = parse_any_option(tool, r, c)) >= 0)
             return code;
     code = tool_inputs(tool, argc, argv, 1, "expects one scene");
     if (code >= 0)
@@ -201,7 +203,7 @@ static int parse(struct tool *tool, int argc, char **argv,
 /* ---------------------------------------------------------- the run time */
 
 /* Returns how many of the lights that the scene shows to lenses are hidden. */
-static int hidden_lights(const struct scene_frame *frame)
+static int count_hidden_lights(const struct scene_frame *frame)
 {
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     const int n = glint_scene_lights(frame->scene, lamp);
@@ -212,8 +214,9 @@ static int hidden_lights(const struct scene_frame *frame)
     return hidden;
 }
 
-static void say_frame(const struct tool *tool, const struct scene_frame *frame,
-                      const struct scene_dials *dials, double ms)
+static void print_frame_json(const struct tool *tool,
+                             const struct scene_frame *frame,
+                             const struct scene_dials *dials, double ms)
 {
     struct json_writer json = {.to = stdout};
     struct scene_budget budget;
@@ -222,18 +225,19 @@ static void say_frame(const struct tool *tool, const struct scene_frame *frame,
         return;
     scene_budget_init(&budget, dials);
     json_write(&json, "{engine: %s, scene: {", "model");
-    scene_account_json(&json, frame, frame->model->header->bytes);
+    scene_account_write_json(&json, frame, frame->model->header->bytes);
     json_write(&json, "quality: %.3f, lights: %u",
-               scene_budget_quality(&budget), frame->model->header->n_lights);
-    scene_highlights_json(&json, frame);
-    json_write(&json, "lamps_hidden: %d}, ms: %.3f}\n", hidden_lights(frame),
-               ms);
+               scene_budget_flare_quality(&budget),
+               frame->model->header->n_lights);
+    scene_write_highlights_json(&json, frame);
+    json_write(&json, "lamps_hidden: %d}, ms: %.3f}\n",
+               count_hidden_lights(frame), ms);
 }
 
 /* Prints a note that shadows on catchers are invisible, as the scene is drawn
  * over black. */
-static void say_catchers(const struct tool *tool,
-                         const struct glint_scene_model *model)
+static void print_catcher_note(const struct tool *tool,
+                               const struct glint_scene_model *model)
 {
     const struct glint_scene_object *catcher = NULL;
 
@@ -249,8 +253,8 @@ static void say_catchers(const struct tool *tool,
 }
 
 /* Draws MODEL over black, in linear light. */
-static int draw_model(struct tool *tool, struct render_scene *r,
-                      const struct glint_scene_model *model)
+static int render_model_to_image(struct tool *tool, struct render_scene *r,
+                                 const struct glint_scene_model *model)
 {
     struct scene_dials dials = r->drawing.line.scene_dials;
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
@@ -261,12 +265,13 @@ static int draw_model(struct tool *tool, struct render_scene *r,
 
     if (!light_q20)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    say_catchers(tool, model);
+    print_catcher_note(tool, model);
     dials.width = r->width;
     dials.height = r->height;
     dials.edge_samples = r->samples;
     if (GLINT_OPTION_GIVEN(&r->drawing.line.settings.options, quality))
-        scene_dials_be(&dials, r->drawing.line.settings.options.quality);
+        scene_dials_set_quality(&dials,
+                                r->drawing.line.settings.options.quality);
     code = scene_frame_open(&frame, tool, model, &dials);
     if (code == EXIT_OK) {
         const struct glint_image linear =
@@ -274,7 +279,8 @@ static int draw_model(struct tool *tool, struct render_scene *r,
 
         code = scene_frame_draw(&frame, &linear);
         if (code == EXIT_OK)
-            say_frame(tool, &frame, &dials, 1e3 * (tool_clock_s() - start));
+            print_frame_json(tool, &frame, &dials,
+                             1e3 * (tool_clock_s() - start));
         scene_frame_close(&frame);
     }
     for (size_t i = 0; code == EXIT_OK && i < n; i++)
@@ -284,8 +290,8 @@ static int draw_model(struct tool *tool, struct render_scene *r,
     return code;
 }
 
-static int run_model(struct tool *tool, struct render_scene *r,
-                     const char *path)
+static int render_model_file(struct tool *tool, struct render_scene *r,
+                             const char *path)
 {
     struct baked_scene scene;
     int code = baked_scene_open(tool, path, &scene);
@@ -294,14 +300,15 @@ static int run_model(struct tool *tool, struct render_scene *r,
         return code;
     code = scene.model.header->camera.kind == GLINT_CAMERA_LENS
                ? tool_usage(tool, NEEDS_LENS, path)
-               : draw_model(tool, r, &scene.model);
+               : render_model_to_image(tool, r, &scene.model);
     baked_scene_close(&scene);
     return code;
 }
 
 /* ----------------------------------------------------------- the command */
 
-static int run(struct tool *tool, struct render_scene *r, const char *path)
+static int render_scene_file(struct tool *tool, struct render_scene *r,
+                             const char *path)
 {
     const double start = tool_clock_s();
     int code = r->is_frames && overlay_is_video(r->output)
@@ -319,12 +326,12 @@ static int run(struct tool *tool, struct render_scene *r, const char *path)
     if (r->is_frames)
         code = render_frames(tool, r, path);
     else
-        code = run_model(tool, r, path);
+        code = render_model_file(tool, r, path);
     if (code == EXIT_OK && !r->is_frames)
         code = render_file_save(tool, r->output, r->linear, &r->image, 1);
     if (code == EXIT_OK && !r->is_frames)
-        render_file_say(tool, r->output, r->width, r->height, path,
-                        tool_clock_s() - start);
+        render_file_print_summary(tool, r->output, r->width, r->height, path,
+                                  tool_clock_s() - start);
     free(r->image.rgb);
     return code;
 }
@@ -332,7 +339,7 @@ static int run(struct tool *tool, struct render_scene *r, const char *path)
 bool render_has_scene(int argc, char **argv)
 {
     for (int i = 1; i < argc; i++)
-        if (argv[i][0] != '-' && baked_scene_is(argv[i]))
+        if (argv[i][0] != '-' && baked_scene_is_file(argv[i]))
             return true;
     return false;
 }
@@ -351,11 +358,11 @@ int cmd_render_scene(int argc, char **argv)
     r->fps = 25;
     drawing_line_defaults(&r->drawing.line);
     r->drawing.line.settings.options.lens = "none";
-    code = parse(&tool, argc, argv, r);
+    code = parse_command_line(&tool, argc, argv, r);
     if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = run(&tool, r, argv[optind]);
+            code = render_scene_file(&tool, r, argv[optind]);
         tool_finish(&tool);
     }
     drawing_close(&r->drawing);

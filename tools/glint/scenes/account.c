@@ -11,8 +11,8 @@ const char *const scene_item_name[GLINT_SCENE_ITEMS] = {
     "triangles", "samples", "covering", "shaded",
     "shadows",   "texels",  "lookups",  "bounced"};
 
-enum glint_status scene_account_make(struct scene_account *account,
-                                     const struct scene_frame *frame)
+enum glint_status scene_account_collect(struct scene_account *account,
+                                        const struct scene_frame *frame)
 {
     const size_t n = frame->model->header->n_objects;
     const size_t px = (size_t)frame->cfg.width * (size_t)frame->cfg.height;
@@ -38,7 +38,7 @@ void scene_account_free(struct scene_account *account)
     account->seen = NULL;
 }
 
-int scene_covered_px(const struct scene_frame *frame)
+int scene_count_covered_px(const struct scene_frame *frame)
 {
     const int width = frame->cfg.width, height = frame->cfg.height;
     int64_t sum = 0;
@@ -55,8 +55,8 @@ int scene_covered_px(const struct scene_frame *frame)
     return (int)((sum + 128) / 256);
 }
 
-static void counts_json(struct json_writer *json,
-                        const struct scene_account *account)
+static void write_counts_json(struct json_writer *json,
+                              const struct scene_account *account)
 {
     const int64_t *const n = account->all.count;
 
@@ -72,7 +72,7 @@ static void counts_json(struct json_writer *json,
 }
 
 /* Returns the bytes that the highlight search of FRAME allocates. */
-static size_t highlight_bytes(const struct scene_frame *frame)
+static size_t highlight_search_bytes(const struct scene_frame *frame)
 {
     struct glint_scene_config without = frame->cfg;
 
@@ -81,7 +81,7 @@ static size_t highlight_bytes(const struct scene_frame *frame)
 }
 
 /* Returns the bytes of light maps of translucent media. */
-static size_t map_bytes(const struct scene_frame *frame)
+static size_t light_map_bytes(const struct scene_frame *frame)
 {
     struct glint_scene_header header = *frame->model->header;
     struct glint_scene_model without = *frame->model;
@@ -91,30 +91,30 @@ static size_t map_bytes(const struct scene_frame *frame)
     return frame->bytes - glint_scene_bytes(&frame->cfg, &without);
 }
 
-void scene_account_json(struct json_writer *json,
-                        const struct scene_frame *frame, size_t bytes)
+void scene_account_write_json(struct json_writer *json,
+                              const struct scene_frame *frame, size_t bytes)
 {
     struct scene_account account;
 
     json_write(json, "objects: %u, drawn: %d, triangles: %d",
                frame->model->header->n_objects, frame->stats.objects,
                frame->stats.triangles);
-    if (scene_account_make(&account, frame) == GLINT_OK) {
-        counts_json(json, &account);
+    if (scene_account_collect(&account, frame) == GLINT_OK) {
+        write_counts_json(json, &account);
         scene_account_free(&account);
     }
-    json_write(json, "covered_px: %d", scene_covered_px(frame));
-    baked_scene_bytes(json, frame->model);
+    json_write(json, "covered_px: %d", scene_count_covered_px(frame));
+    baked_scene_count_bytes(json, frame->model);
     json_write(json,
                "scene: %zu, arena: %zu, highlights: %zu, maps: %zu}, "
                "project_ms: %.3f, draw_ms: %.3f, map_ms: %.3f, map_texels: %d",
-               bytes, frame->bytes, highlight_bytes(frame), map_bytes(frame),
-               frame->project_ms, frame->draw_ms, frame->map_ms,
-               frame->map_texels);
+               bytes, frame->bytes, highlight_search_bytes(frame),
+               light_map_bytes(frame), frame->project_ms, frame->draw_ms,
+               frame->map_ms, frame->map_texels);
 }
 
-void scene_highlights_json(struct json_writer *json,
-                           const struct scene_frame *frame)
+void scene_write_highlights_json(struct json_writer *json,
+                                 const struct scene_frame *frame)
 {
     struct glint_scene_highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
     const int n = glint_scene_find_highlights(frame->scene, found);

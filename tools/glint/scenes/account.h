@@ -20,21 +20,21 @@ struct scene_account {
 
 /* Fills ACCOUNT; scene_account_free() frees it. Returns GLINT_E_MEMORY on
  * failure. */
-enum glint_status scene_account_make(struct scene_account *account,
-                                     const struct scene_frame *frame);
+enum glint_status scene_account_collect(struct scene_account *account,
+                                        const struct scene_frame *frame);
 void scene_account_free(struct scene_account *account);
 
 /* Returns the number of pixels that objects cover in the frame drawn last. */
-int scene_covered_px(const struct scene_frame *frame);
+int scene_count_covered_px(const struct scene_frame *frame);
 
 /* Writes members of a JSON object about the frame drawn last, without its
  * lights. BYTES is the size of the baked scene. */
-void scene_account_json(struct json_writer *json,
-                        const struct scene_frame *frame, size_t bytes);
+void scene_account_write_json(struct json_writer *json,
+                              const struct scene_frame *frame, size_t bytes);
 
 /* Writes the JSON member "highlights": a list of the highlights of the frame
  * drawn last. */
-void scene_highlights_json(struct json_writer *json,
-                           const struct scene_frame *frame);
+void scene_write_highlights_json(struct json_writer *json,
+                                 const struct scene_frame *frame);
 
 #endif

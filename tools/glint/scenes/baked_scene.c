@@ -12,7 +12,7 @@
 
 #define MAX_SCENE_BYTES ((size_t)1 << 30)
 
-bool baked_scene_is(const char *argument)
+bool baked_scene_is_file(const char *argument)
 {
     return tool_is_scene(argument) ||
            tool_has_magic(argument, GLINT_SCENE_MAGIC);
@@ -90,7 +90,7 @@ struct scene_counts {
     unsigned vertices, triangles, cells, refs;
 };
 
-static size_t texture_bytes(const struct glint_scene_texture *t)
+static size_t count_texture_bytes(const struct glint_scene_texture *t)
 {
     uint32_t w = t->width_log2, h = t->height_log2;
     size_t texels = 1;
@@ -100,9 +100,9 @@ static size_t texture_bytes(const struct glint_scene_texture *t)
     return (3 * texels + 3) / 4 * 4 + sizeof *t;
 }
 
-static void measure_mesh(const struct glint_scene_model *model,
-                         const struct glint_scene_mesh *m,
-                         struct scene_counts *n)
+static void count_mesh_bytes(const struct glint_scene_model *model,
+                             const struct glint_scene_mesh *m,
+                             struct scene_counts *n)
 {
     size_t *const b = n->bytes;
     const unsigned cells = m->cells[0] * m->cells[1] * m->cells[2];
@@ -123,7 +123,7 @@ static void measure_mesh(const struct glint_scene_model *model,
 
 /* Returns the bytes of translucent media and of the light maps of the
  * objects made of them. */
-static size_t stone_bytes(const struct glint_scene_model *model)
+static size_t count_medium_bytes(const struct glint_scene_model *model)
 {
     const struct glint_scene_header *h = model->header;
     size_t bytes =
@@ -147,7 +147,7 @@ static size_t stone_bytes(const struct glint_scene_model *model)
 }
 
 /* Returns the bytes of all environments. */
-static size_t environment_bytes(const struct glint_scene_model *model)
+static size_t count_environment_bytes(const struct glint_scene_model *model)
 {
     size_t bytes = 0;
 
@@ -156,7 +156,8 @@ static size_t environment_bytes(const struct glint_scene_model *model)
     return bytes;
 }
 
-static struct scene_counts count_contents(const struct glint_scene_model *model)
+static struct scene_counts
+count_scene_contents(const struct glint_scene_model *model)
 {
     const struct glint_scene_header *h = model->header;
     struct scene_counts n = {
@@ -164,14 +165,14 @@ static struct scene_counts count_contents(const struct glint_scene_model *model)
                   [LIGHT] = h->n_lights * sizeof *model->light,
                   [MATERIAL] = h->n_materials * sizeof *model->material +
                                h->n_wards * sizeof *model->ward,
-                  [ENVIRONMENT] = environment_bytes(model),
-                  [STONE] = stone_bytes(model),
+                  [ENVIRONMENT] = count_environment_bytes(model),
+                  [STONE] = count_medium_bytes(model),
                   [OBJECT] = h->n_objects * sizeof *model->object}};
 
     for (uint32_t i = 0; i < h->n_textures; i++)
-        n.bytes[TEXTURE] += texture_bytes(&model->texture[i]);
+        n.bytes[TEXTURE] += count_texture_bytes(&model->texture[i]);
     for (uint32_t i = 0; i < h->n_meshes; i++)
-        measure_mesh(model, &model->mesh[i], &n);
+        count_mesh_bytes(model, &model->mesh[i], &n);
     for (int k = MESH + 1; k < N_PARTS; k++)
         n.bytes[MESH] += n.bytes[k];
     for (uint32_t i = 0; i < h->n_objects; i++) {
@@ -183,18 +184,18 @@ static struct scene_counts count_contents(const struct glint_scene_model *model)
     return n;
 }
 
-void baked_scene_bytes(struct json_writer *json,
-                       const struct glint_scene_model *model)
+void baked_scene_count_bytes(struct json_writer *json,
+                             const struct glint_scene_model *model)
 {
-    const struct scene_counts n = count_contents(model);
+    const struct scene_counts n = count_scene_contents(model);
 
     json_write(json, "bytes: {");
     for (int k = 0; k <= MESH; k++)
         json_write(json, "%s: %zu", part_names[k], n.bytes[k]);
 }
 
-static void print_json(const struct baked_scene *scene,
-                       const struct scene_counts *n)
+static void print_scene_json(const struct baked_scene *scene,
+                             const struct scene_counts *n)
 {
     const struct glint_scene_header *h = scene->model.header;
     struct json_writer json = {.to = stdout};
@@ -211,11 +212,11 @@ static void print_json(const struct baked_scene *scene,
     if (scene->is_text)
         json_write(&json, "reach: %.9g, flat: %d", scene->report.reach,
                    scene->report.flat);
-    baked_scene_bytes(&json, &scene->model);
+    baked_scene_count_bytes(&json, &scene->model);
     json_write(&json, "all: %zu}}}\n", scene->bytes);
 }
 
-static void print_camera(const struct glint_scene_camera *c)
+static void print_scene_camera(const struct glint_scene_camera *c)
 {
     if (c->kind == GLINT_CAMERA_FIELD)
         printf("camera       %.4g degrees across the picture\n",
@@ -226,13 +227,13 @@ static void print_camera(const struct glint_scene_camera *c)
                                         : "16 x 9 at a distance of 10");
 }
 
-static void print_text(const struct baked_scene *scene,
-                       const struct scene_counts *n)
+static void print_scene_text(const struct baked_scene *scene,
+                             const struct scene_counts *n)
 {
     const struct glint_scene_header *h = scene->model.header;
 
     printf("%s, a %sscene\n\n", h->name, scene->is_text ? "" : "baked ");
-    print_camera(&h->camera);
+    print_scene_camera(&h->camera);
     printf("objects      %u: spheres %d, planes %d (catchers %d), meshes %d\n",
            h->n_objects, n->spheres, n->planes, n->catchers, n->meshes);
     printf("lights       %u%s\n", h->n_lights,
@@ -260,7 +261,7 @@ static void print_text(const struct baked_scene *scene,
 
 void baked_scene_print(const struct tool *tool, const struct baked_scene *scene)
 {
-    const struct scene_counts counts = count_contents(&scene->model);
+    const struct scene_counts counts = count_scene_contents(&scene->model);
 
-    (tool->json ? print_json : print_text)(scene, &counts);
+    (tool->json ? print_scene_json : print_scene_text)(scene, &counts);
 }

@@ -18,7 +18,7 @@ struct baked_scene {
 
 /* Returns whether ARGUMENT is a scene: a text, NAME.scene, or a file that
  * begins with the magic number of baked scenes. */
-bool baked_scene_is(const char *argument);
+bool baked_scene_is_file(const char *argument);
 
 /* Opens PATH as SCENE: bakes a text, reads a baked file. Returns an exit
  * code, after printing the reason on failure. */
@@ -34,8 +34,8 @@ void baked_scene_print(const struct tool *tool,
 
 /* Begins the JSON object "bytes", with the bytes of MODEL per section. The
  * caller ends it. */
-void baked_scene_bytes(struct json_writer *json,
-                       const struct glint_scene_model *model);
+void baked_scene_count_bytes(struct json_writer *json,
+                             const struct glint_scene_model *model);
 
 /* The command glint bake for scenes; see options/tool.h. */
 int cmd_bake_scene(struct tool *tool, int argc, char **argv);

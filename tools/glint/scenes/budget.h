@@ -28,28 +28,28 @@ void scene_budget_init(struct scene_budget *budget,
                        const struct scene_dials *asked);
 
 /* Returns the drawing parameters of LEVEL. */
-struct scene_dials scene_budget_dials(const struct scene_budget *budget,
-                                      int level);
+struct scene_dials scene_budget_set_dials(const struct scene_budget *budget,
+                                          int level);
 
 /* Sets budget->level for the next frame, after a frame that took MS with a
  * limit of LIMIT_MS. Returns whether the level changed. */
-bool scene_budget_follow(struct scene_budget *budget, double ms,
-                         double limit_ms);
+bool scene_budget_update_level(struct scene_budget *budget, double ms,
+                               double limit_ms);
 
 /* Returns how much of ALL_MS, the time of a frame, the scene may use, ms.
  * FLARE_MS: time of the flare, at QUALITY of --quality. Both are 0 before
  * the first frame. */
-double scene_budget_limit(double all_ms, double flare_ms, double quality);
+double scene_budget_limit_flare(double all_ms, double flare_ms, double quality);
 
 /* Sets those members of DIALS that are 0 by QUALITY, the --quality. At the
  * default of 0.5 they stay 0. */
-void scene_dials_be(struct scene_dials *dials, double quality);
+void scene_dials_set_quality(struct scene_dials *dials, double quality);
 
 /* Returns the highest --quality whose parameters are nowhere finer than
  * those of budget->level. */
-double scene_budget_quality(const struct scene_budget *budget);
+double scene_budget_flare_quality(const struct scene_budget *budget);
 
 /* Returns the finest level that is not finer than the --quality QUALITY. */
-int scene_budget_level(double quality);
+int scene_budget_level_of_quality(double quality);
 
 #endif

@@ -16,14 +16,14 @@
 
 #define MAX_FILE_BYTES ((size_t)1 << 28)
 
-static bool is_text(const char *name)
+static bool is_environment_text(const char *name)
 {
     return glint_ends_in(name, ".environment");
 }
 
 bool environment_file_is_source(const char *argument)
 {
-    return is_text(argument) || glint_ends_in(argument, ".exr") ||
+    return is_environment_text(argument) || glint_ends_in(argument, ".exr") ||
            glint_ends_in(argument, ".hdr") || glint_ends_in(argument, ".pfm") ||
            glint_ends_in(argument, ".dds");
 }
@@ -33,10 +33,9 @@ bool environment_file_is_baked(const char *argument)
     return tool_has_magic(argument, GLINT_ENVIRONMENT_MAGIC);
 }
 
-static enum glint_status read_text(const char *path,
-                                   struct glint_environment_options *options,
-                                   char source[GLINT_ENVIRONMENT_FILE_BYTES],
-                                   struct glint_error *error)
+static enum glint_status read_environment_text(
+    const char *path, struct glint_environment_options *options,
+    char source[GLINT_ENVIRONMENT_FILE_BYTES], struct glint_error *error)
 {
     uint8_t *text = NULL;
     size_t bytes = 0;
@@ -98,8 +97,8 @@ bake_source(const char *path, const char *written,
     /* padding is part of the hashed key */
     memset(&options, 0, sizeof options);
     glint_environment_defaults(&options);
-    if (is_text(path)) {
-        status = read_text(path, &options, source, error);
+    if (is_environment_text(path)) {
+        status = read_environment_text(path, &options, source, error);
         if (status == GLINT_OK)
             status = tool_find_input(path, source, written, beside, error);
         picture = beside;
@@ -171,7 +170,8 @@ struct counts {
     size_t levels, irradiance, lights, header; /* bytes of each section */
 };
 
-static struct counts count_contents(const struct environment_file *file)
+static struct counts
+count_environment_contents(const struct environment_file *file)
 {
     const struct glint_environment_header *h = file->environment.header;
     const long long first = 1LL << (2 * h->side_log2);
@@ -192,13 +192,13 @@ static struct counts count_contents(const struct environment_file *file)
     return n;
 }
 
-static double to_degrees(int32_t sine_q30)
+static double convert_q30_to_degrees(int32_t sine_q30)
 {
     return 180 / GLINT_PI * asin(ldexp(sine_q30, -30));
 }
 
-static void print_json(const struct environment_file *file,
-                       const struct counts *n)
+static void print_environment_json(const struct environment_file *file,
+                                   const struct counts *n)
 {
     const struct glint_environment_header *h = file->environment.header;
     const struct glint_environment_report *r = &file->report;
@@ -223,7 +223,8 @@ static void print_json(const struct environment_file *file,
                    "{toward: [%.6f, %.6f, %.6f], radius_deg: %.4f, "
                    "rgb: [%.6g, %.6g, %.6g]}",
                    ldexp(l->toward_q30[0], -30), ldexp(l->toward_q30[1], -30),
-                   ldexp(l->toward_q30[2], -30), to_degrees(l->radius_q30),
+                   ldexp(l->toward_q30[2], -30),
+                   convert_q30_to_degrees(l->radius_q30),
                    glint_real_value(l->rgb[0]), glint_real_value(l->rgb[1]),
                    glint_real_value(l->rgb[2]));
     }
@@ -233,7 +234,7 @@ static void print_json(const struct environment_file *file,
                n->header, n->levels, n->irradiance, n->lights, file->bytes);
 }
 
-static void print_baking(const struct glint_environment_report *r)
+static void print_bake_statistics(const struct glint_environment_report *r)
 {
     printf("picture      %dx%d", r->width, r->height);
     if (r->negative || r->not_finite)
@@ -247,14 +248,14 @@ static void print_baking(const struct glint_environment_report *r)
     printf("\n");
 }
 
-static void print_text(const struct environment_file *file,
-                       const struct counts *n)
+static void print_environment_text(const struct environment_file *file,
+                                   const struct counts *n)
 {
     const struct glint_environment_header *h = file->environment.header;
 
     printf("%s, an environment %d wide\n\n", h->name, 1 << h->side_log2);
     if (file->is_baked_now)
-        print_baking(&file->report);
+        print_bake_statistics(&file->report);
     printf("levels       %u:", h->n_levels);
     for (uint32_t k = 0; k < h->n_levels; k++)
         printf(" %d", 1 << file->environment.level[k].side_log2);
@@ -269,7 +270,8 @@ static void print_text(const struct environment_file *file,
                "facing it gets %.4g "
                "%.4g %.4g\n",
                ldexp(l->toward_q30[0], -30), ldexp(l->toward_q30[1], -30),
-               ldexp(l->toward_q30[2], -30), to_degrees(l->radius_q30),
+               ldexp(l->toward_q30[2], -30),
+               convert_q30_to_degrees(l->radius_q30),
                glint_real_value(l->rgb[0]), glint_real_value(l->rgb[1]),
                glint_real_value(l->rgb[2]));
     }
@@ -287,8 +289,8 @@ void environment_file_print(const struct tool *tool,
 
     if (!file->environment.header)
         return;
-    n = count_contents(file);
-    (tool->json ? print_json : print_text)(file, &n);
+    n = count_environment_contents(file);
+    (tool->json ? print_environment_json : print_environment_text)(file, &n);
 }
 
 static const char bake_help[] =
@@ -318,7 +320,8 @@ struct line {
     double turn, scale;
 };
 
-static void override_options(void *ctx, struct glint_environment_options *o)
+static void override_text_options(void *ctx,
+                                  struct glint_environment_options *o)
 {
     const struct line *l = ctx;
 
@@ -332,7 +335,8 @@ static void override_options(void *ctx, struct glint_environment_options *o)
         o->scale = l->scale;
 }
 
-static int take_option(struct tool *tool, void *line, int c, const char *name)
+static int parse_environment_option(struct tool *tool, void *line, int c,
+                                    const char *name)
 {
     static const char *const sizes[] = {"16",  "32",  "64",   "128",
                                         "256", "512", "1024", NULL};
@@ -376,12 +380,13 @@ int cmd_bake_environment(struct tool *tool, int argc, char **argv)
     struct environment_file file;
     int code;
 
-    code = bake_line_parse(tool, bake_help, argc, argv, options, take_option,
-                           &line, "expects one environment");
+    code = bake_line_parse(tool, bake_help, argc, argv, options,
+                           parse_environment_option, &line,
+                           "expects one environment");
     if (code >= 0)
         return code;
-    code = environment_file_open(tool, argv[optind], override_options, &line,
-                                 &file);
+    code = environment_file_open(tool, argv[optind], override_text_options,
+                                 &line, &file);
     if (code != EXIT_OK)
         return code;
     code = tool_save_file(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,

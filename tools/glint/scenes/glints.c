@@ -34,8 +34,8 @@ void glints_close(struct glints *glints)
 }
 
 /* Returns SPOT of an independent picture as a track at full level. */
-static struct glint_lamp_track make_track(const struct glint_spot *spot,
-                                          int number)
+static struct glint_lamp_track
+make_highlight_track(const struct glint_spot *spot, int number)
 {
     return (struct glint_lamp_track){
         .id = (uint32_t)number + 1,
@@ -52,8 +52,8 @@ static struct glint_lamp_track make_track(const struct glint_spot *spot,
         .rgb_q15 = {spot->rgb_q15[0], spot->rgb_q15[1], spot->rgb_q15[2]}};
 }
 
-int glints_frame(struct glints *glints, const struct glint_scene *scene,
-                 int32_t elapsed_us)
+int glints_track_frame(struct glints *glints, const struct glint_scene *scene,
+                       int32_t elapsed_us)
 {
     struct glints *const g = glints;
     struct glint_spot spot[GLINT_SCENE_MAX_HIGHLIGHTS];
@@ -62,7 +62,7 @@ int glints_frame(struct glints *glints, const struct glint_scene *scene,
     g->n = g->n_found;
     for (int i = 0; i < g->n_found; i++) {
         spot[i] = g->found[i].spot;
-        g->track[i] = make_track(&spot[i], i);
+        g->track[i] = make_highlight_track(&spot[i], i);
     }
     if (elapsed_us > 0)
         g->n = glint_lamp_tracker_step(g->tracks, spot, g->n_found, elapsed_us,
@@ -70,9 +70,9 @@ int glints_frame(struct glints *glints, const struct glint_scene *scene,
     return g->n;
 }
 
-double glints_lamp(const struct glints *glints, int i,
-                   const struct glint_view *view, double focal_mm,
-                   struct glint_lamp *lamp)
+double glints_make_lamp(const struct glints *glints, int i,
+                        const struct glint_view *view, double focal_mm,
+                        struct glint_lamp *lamp)
 {
     const struct glint_lamp_track *const t = &glints->track[i];
     const double tangent = glint_view_pixel_tangent(view, focal_mm);

@@ -38,13 +38,13 @@ void glints_close(struct glints *glints);
 
 /* Finds the highlights of the picture of SCENE drawn last, ELAPSED_US after the
  * previous picture; 0: an independent picture. Returns the number of lamps. */
-int glints_frame(struct glints *glints, const struct glint_scene *scene,
-                 int32_t elapsed_us);
+int glints_track_frame(struct glints *glints, const struct glint_scene *scene,
+                       int32_t elapsed_us);
 
 /* Sets LAMP to highlight I as seen by a lens of FOCAL_MM. Returns its level, 0
  * .. 1: the fraction of its power while it fades in or out. */
-double glints_lamp(const struct glints *glints, int i,
-                   const struct glint_view *view, double focal_mm,
-                   struct glint_lamp *lamp);
+double glints_make_lamp(const struct glints *glints, int i,
+                        const struct glint_view *view, double focal_mm,
+                        struct glint_lamp *lamp);
 
 #endif

@@ -26,8 +26,8 @@ static const struct text_column columns[COLUMNS] = {
 /* --------------------------------------------------------------------- line */
 
 /* Returns the index of the object NAME, or -2 with a cause in LINES. */
-static int find_object(const struct glint_scene_model *m, const char *name,
-                       struct text_lines *lines)
+static int find_object_by_name(const struct glint_scene_model *m,
+                               const char *name, struct text_lines *lines)
 {
     const int n = (int)m->header->n_objects;
     struct suggest suggest;
@@ -56,8 +56,8 @@ static int find_object(const struct glint_scene_model *m, const char *name,
 
 /* Sets TO to the unit vector of X[N], Q30. In right-handed scenes negates z,
  * or x and y of a quaternion (N = 4). Returns false if the length is 0. */
-static bool set_unit(const struct glint_scene_model *m, const double *x, int n,
-                     int32_t *to)
+static bool set_unit_vector_q30(const struct glint_scene_model *m,
+                                const double *x, int n, int32_t *to)
 {
     const double hand = m->header->variant == GLINT_HAND_RIGHT ? -1 : 1;
     double square = 0;
@@ -73,8 +73,8 @@ static bool set_unit(const struct glint_scene_model *m, const double *x, int n,
     return true;
 }
 
-static bool set_place(const struct glint_scene_model *m, const double at[3],
-                      int32_t to[3])
+static bool set_pose_position(const struct glint_scene_model *m,
+                              const double at[3], int32_t to[3])
 {
     const double hand = m->header->variant == GLINT_HAND_RIGHT ? -1 : 1;
 
@@ -99,24 +99,24 @@ static const char *make_pose(const struct glint_scene_model *m,
     if (v[FRAME] != floor(v[FRAME]))
         return columns[FRAME].range;
     pose->frame = v[FRAME] < 0 ? 0 : (int)v[FRAME];
-    pose->thing = find_object(m, name, lines);
+    pose->thing = find_object_by_name(m, name, lines);
     if (pose->thing == -2)
         return lines->cause;
     is_sun =
         pose->thing >= n && m->light[pose->thing - n].kind == GLINT_LIGHT_SUN;
-    if (is_sun ? !set_unit(m, v + PLACE, 3, pose->at)
-               : !set_place(m, v + PLACE, pose->at))
+    if (is_sun ? !set_unit_vector_q30(m, v + PLACE, 3, pose->at)
+               : !set_pose_position(m, v + PLACE, pose->at))
         return is_sun ? "the direction to a sun must not be 0 0 0"
                       : "x, y or z is out of the range that the scene was "
                         "baked for";
-    if (pose->has_turn && !set_unit(m, v + TURN, 4, pose->turn_q30))
+    if (pose->has_turn && !set_unit_vector_q30(m, v + TURN, 4, pose->turn_q30))
         return "qw, qx, qy, qz must not be all 0";
     return NULL;
 }
 
 /* Splits LINE into the columns FIELD. */
-static const char *split_line(struct text_lines *lines, char *line,
-                              char *field[COLUMNS])
+static const char *split_line_into_columns(struct text_lines *lines, char *line,
+                                           char *field[COLUMNS])
 {
     const char *cause;
     int n = 0;
@@ -141,13 +141,14 @@ static const char *split_line(struct text_lines *lines, char *line,
                                          : "qw, qx, qy and qz belong together";
 }
 
-static const char *parse_pose(const struct poses *p, struct text_lines *lines,
-                              char *line, struct pose *pose)
+static const char *parse_pose_columns(const struct poses *p,
+                                      struct text_lines *lines, char *line,
+                                      struct pose *pose)
 {
     const bool is_object = *line == '{';
     double v[COLUMNS] = {-1};
     char *field[COLUMNS] = {NULL};
-    const char *const late = split_line(lines, line, field);
+    const char *const late = split_line_into_columns(lines, line, field);
     const char *cause = NULL;
 
     for (int k = 0; k < COLUMNS && !cause; k++)
@@ -166,7 +167,7 @@ static const char *parse_pose(const struct poses *p, struct text_lines *lines,
     return make_pose(&p->model, lines, field[OBJECT], v, pose);
 }
 
-static const char *check_heading(char *line)
+static const char *check_column_heading(char *line)
 {
     char *name[COLUMNS];
     const int n = text_split_fields(line, name, COLUMNS);
@@ -180,7 +181,7 @@ static const char *check_heading(char *line)
                : "the heading must be frame,object,x,y,z[,qw,qx,qy,qz]";
 }
 
-static int compare_frames(const void *a, const void *b)
+static int compare_pose_frames(const void *a, const void *b)
 {
     const struct pose *p = a, *q = b;
 
@@ -214,15 +215,16 @@ static const char *insert_pose(struct poses *p, const struct pose *pose)
     return NULL;
 }
 
-static const char *parse_line(void *ctx, struct text_lines *lines, char *line)
+static const char *parse_pose_line(void *ctx, struct text_lines *lines,
+                                   char *line)
 {
     struct poses *const p = ctx;
     struct pose pose;
     const char *cause;
 
     if (lines->number == 1 && strncmp(line, "frame", 5) == 0)
-        return check_heading(line);
-    cause = parse_pose(p, lines, line, &pose);
+        return check_column_heading(line);
+    cause = parse_pose_columns(p, lines, line, &pose);
     return cause ? cause : insert_pose(p, &pose);
 }
 
@@ -240,9 +242,11 @@ enum glint_status poses_open(struct poses *poses, const char *path,
         return text_lines_open_pipe(&poses->lines, path, error);
     status = text_lines_open(&poses->lines, path, NULL, MAX_BYTES, error);
     if (status == GLINT_OK)
-        status = text_lines_parse_each(&poses->lines, parse_line, poses, error);
+        status =
+            text_lines_parse_each(&poses->lines, parse_pose_line, poses, error);
     if (poses->n > 0)
-        qsort(poses->row, (size_t)poses->n, sizeof *poses->row, compare_frames);
+        qsort(poses->row, (size_t)poses->n, sizeof *poses->row,
+              compare_pose_frames);
     if (status != GLINT_OK)
         poses_close(poses);
     return status;
@@ -258,13 +262,13 @@ void poses_close(struct poses *poses)
 /* --------------------------------------------------------------------- pipe */
 
 /* Records CAUSE for the last line, which is skipped. */
-static void record_error(struct poses *p, const char *cause)
+static void record_line_error(struct poses *p, const char *cause)
 {
     if (p->n_bad++ == 0)
         text_lines_fail(&p->lines, &p->bad, cause);
 }
 
-static void read_pipe(struct poses *p)
+static void read_poses_from_pipe(struct poses *p)
 {
     const char *cause;
     char *line;
@@ -272,9 +276,9 @@ static void read_pipe(struct poses *p)
     text_lines_begin_turn(&p->lines);
     while ((line = text_lines_read_next(&p->lines))) {
         cause = p->lines.is_long ? "the line is longer than 511 bytes"
-                                 : parse_line(p, &p->lines, line);
+                                 : parse_pose_line(p, &p->lines, line);
         if (cause)
-            record_error(p, cause);
+            record_line_error(p, cause);
     }
 }
 
@@ -283,7 +287,7 @@ const struct pose *poses_next(struct poses *poses, int frame)
     struct poses *p = poses;
 
     if (p->lines.is_pipe && p->read_at != frame) {
-        read_pipe(p);
+        read_poses_from_pipe(p);
         p->read_at = frame;
     }
     if (p->next == p->n || p->row[p->next].frame > frame)
@@ -298,7 +302,7 @@ bool poses_rewind(struct poses *poses)
     return !poses->lines.is_pipe;
 }
 
-void poses_refuse(struct poses *poses, const struct pose *pose)
+void poses_reject_line(struct poses *poses, const struct pose *pose)
 {
     if (poses->n_bad++ == 0)
         glint_error_report(

@@ -71,7 +71,7 @@ const struct pose *poses_next(struct poses *poses, int frame);
 bool poses_rewind(struct poses *poses);
 
 /* Counts POSE as skipped, because it would move the scene out of its range. */
-void poses_refuse(struct poses *poses, const struct pose *pose);
+void poses_reject_line(struct poses *poses, const struct pose *pose);
 
 void poses_close(struct poses *poses);
 

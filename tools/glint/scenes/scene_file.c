@@ -34,18 +34,20 @@ struct reading {
 
 /* Sets PATH to the file NAME, relative to the folder of the text. Errors as
  * tool_find_input(). */
-static enum glint_status find_file(const struct reading *reading,
-                                   const char *name, char path[TOOL_PATH_BYTES],
-                                   struct glint_error *error)
+static enum glint_status find_scene_file_path(const struct reading *reading,
+                                              const char *name,
+                                              char path[TOOL_PATH_BYTES],
+                                              struct glint_error *error)
 {
     return tool_find_input(reading->path, name, reading->written, path, error);
 }
 
 /* If STATUS is GLINT_OK, sets *DATA and its size to FROM[N] and adds them to
  * the key. Returns STATUS. */
-static enum glint_status return_data(struct reading *reading,
-                                     enum glint_status status, void *from,
-                                     size_t n, uint8_t **data, size_t *bytes)
+static enum glint_status return_read_data(struct reading *reading,
+                                          enum glint_status status, void *from,
+                                          size_t n, uint8_t **data,
+                                          size_t *bytes)
 {
     if (status != GLINT_OK)
         return status;
@@ -55,22 +57,23 @@ static enum glint_status return_data(struct reading *reading,
     return GLINT_OK;
 }
 
-static bool is_obj(const char *name)
+static bool is_obj_name(const char *name)
 {
     return glint_ends_in(name, ".obj");
 }
 
 /* Reads a mesh as an OBJ text. */
-static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
-                                   size_t *bytes, struct glint_error *error)
+static enum glint_status read_obj_mesh(void *ctx, const char *name,
+                                       uint8_t **data, size_t *bytes,
+                                       struct glint_error *error)
 {
     struct reading *reading = ctx;
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find_file(reading, name, path, error);
+    enum glint_status status = find_scene_file_path(reading, name, path, error);
 
     if (status != GLINT_OK)
         return status;
-    if (is_obj(name))
+    if (is_obj_name(name))
         status = glint_input_slurp(data, bytes, path,
                                    GLINT_DESCRIPTION_MAX_MESH_BYTES, error);
     else
@@ -85,13 +88,13 @@ static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
     return status;
 }
 
-static enum glint_status read_picture(void *ctx, const char *name,
-                                      struct glint_image *image,
-                                      struct glint_error *error)
+static enum glint_status read_texture_picture(void *ctx, const char *name,
+                                              struct glint_image *image,
+                                              struct glint_error *error)
 {
     struct reading *reading = ctx;
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find_file(reading, name, path, error);
+    enum glint_status status = find_scene_file_path(reading, name, path, error);
 
     if (status == GLINT_OK)
         status = glint_picture_load(path, image, error);
@@ -102,49 +105,53 @@ static enum glint_status read_picture(void *ctx, const char *name,
 }
 
 /* Reads or bakes an environment. The caller frees its data. */
-static enum glint_status read_environment(void *ctx, const char *name,
-                                          uint8_t **data, size_t *bytes,
-                                          struct glint_error *error)
+static enum glint_status read_or_bake_environment(void *ctx, const char *name,
+                                                  uint8_t **data, size_t *bytes,
+                                                  struct glint_error *error)
 {
     struct reading *reading = ctx;
     struct environment_file file = {.data = NULL};
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find_file(reading, name, path, error);
+    enum glint_status status = find_scene_file_path(reading, name, path, error);
 
     if (status == GLINT_OK)
         status = environment_file_read(path, reading->written, NULL, NULL,
                                        &reading->left, &file, error);
-    return return_data(reading, status, file.data, file.bytes, data, bytes);
+    return return_read_data(reading, status, file.data, file.bytes, data,
+                            bytes);
 }
 
 /* Reads or bakes a translucent medium. The caller frees its data. */
-static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
-                                    size_t *bytes, struct glint_error *error)
+static enum glint_status read_or_bake_medium(void *ctx, const char *name,
+                                             uint8_t **data, size_t *bytes,
+                                             struct glint_error *error)
 {
     struct reading *reading = ctx;
     struct stone_file file = {.data = NULL};
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find_file(reading, name, path, error);
+    enum glint_status status = find_scene_file_path(reading, name, path, error);
 
     if (status == GLINT_OK)
         status = stone_file_read(reading->tool, path, NULL, NULL, false,
                                  &reading->left, &file, error);
-    return return_data(reading, status, file.data, file.bytes, data, bytes);
+    return return_read_data(reading, status, file.data, file.bytes, data,
+                            bytes);
 }
 
 /* Reads or bakes a motion. The caller frees its data. */
-static enum glint_status read_motion(void *ctx, const char *name,
-                                     uint8_t **data, size_t *bytes,
-                                     struct glint_error *error)
+static enum glint_status read_or_bake_motion(void *ctx, const char *name,
+                                             uint8_t **data, size_t *bytes,
+                                             struct glint_error *error)
 {
     struct reading *reading = ctx;
     struct motion_file file = {.data = NULL};
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find_file(reading, name, path, error);
+    enum glint_status status = find_scene_file_path(reading, name, path, error);
 
     if (status == GLINT_OK)
         status = motion_file_read(path, reading->written, &file, error);
-    return return_data(reading, status, file.data, file.bytes, data, bytes);
+    return return_read_data(reading, status, file.data, file.bytes, data,
+                            bytes);
 }
 
 int tool_scene(const struct tool *tool, const char *path,
@@ -152,9 +159,12 @@ int tool_scene(const struct tool *tool, const char *path,
 {
     struct reading reading = {tool, path, tool->written, TOOL_KEY_BEGIN,
                               tool->is_bake ? INT64_MAX : MOST_WORK};
-    const struct glint_description_files files = {
-        &reading,         read_mesh,   read_picture,
-        read_environment, read_motion, read_stone};
+    const struct glint_description_files files = {&reading,
+                                                  read_obj_mesh,
+                                                  read_texture_picture,
+                                                  read_or_bake_environment,
+                                                  read_or_bake_motion,
+                                                  read_or_bake_medium};
     struct glint_error error = {""};
     uint8_t *text = NULL;
     size_t bytes = 0;

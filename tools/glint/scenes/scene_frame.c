@@ -12,8 +12,8 @@
 /* ------------------------------------------------------------------- dials
  */
 
-void scene_dials_choose(struct scene_dials *dials,
-                        const struct glint_options *o)
+void scene_dials_set_defaults(struct scene_dials *dials,
+                              const struct glint_options *o)
 {
     static const int edges[] = {1, 4, 8, 16}, points[] = {1, 4, 16};
 
@@ -28,8 +28,8 @@ void scene_dials_choose(struct scene_dials *dials,
     dials->highlights = o->highlights;
 }
 
-static void set_config(struct glint_scene_config *cfg,
-                       const struct scene_dials *dials)
+static void set_frame_config(struct glint_scene_config *cfg,
+                             const struct scene_dials *dials)
 {
     if (dials->edge_samples)
         cfg->edge_samples = dials->edge_samples;
@@ -49,7 +49,7 @@ static void set_config(struct glint_scene_config *cfg,
  */
 
 /* Allocates memory for the scene and initialises it there. */
-static enum glint_status place_scene(struct scene_frame *frame)
+static enum glint_status allocate_scene_memory(struct scene_frame *frame)
 {
     const size_t bytes = glint_scene_bytes(&frame->cfg, frame->model);
     void *mem = NULL;
@@ -72,7 +72,8 @@ static enum glint_status place_scene(struct scene_frame *frame)
     return GLINT_OK;
 }
 
-static int report_status(const struct tool *tool, enum glint_status status)
+static int report_scene_status(const struct tool *tool,
+                               enum glint_status status)
 {
     return tool_fail(
         tool, status,
@@ -84,7 +85,7 @@ static int report_status(const struct tool *tool, enum glint_status status)
 
 /* Refuses a scene whose picture takes more than SCENE_TESTS, at the poses of
  * its model. */
-static int bound_tests(struct scene_frame *frame)
+static int check_intersection_tests(struct scene_frame *frame)
 {
     const int64_t px = (int64_t)frame->cfg.width * frame->cfg.height;
     const int64_t most =
@@ -120,16 +121,16 @@ int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
     glint_scene_defaults(&frame->cfg, dials->width, dials->height);
     frame->cfg.workers = tool->workers;
     frame->cfg.sets = tool_enabled_instruction_sets(tool);
-    set_config(&frame->cfg, dials);
+    set_frame_config(&frame->cfg, dials);
     frame->cfg.focal_q16 = llrint(fmin(dials->focal_px, 1e6) * 0x1p16);
     frame->cfg.parts = (struct glint_scene_parts){
         &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
         &glint_scene_wards,  &glint_scene_stones,   &glint_scene_highlights,
         &glint_scene_motions};
-    status = place_scene(frame);
+    status = allocate_scene_memory(frame);
     if (status != GLINT_OK)
-        return report_status(tool, status);
-    return dials->is_bounded ? bound_tests(frame) : EXIT_OK;
+        return report_scene_status(tool, status);
+    return dials->is_bounded ? check_intersection_tests(frame) : EXIT_OK;
 }
 
 void scene_frame_close(struct scene_frame *frame)
@@ -146,8 +147,8 @@ void scene_frame_begin(struct scene_frame *frame)
     glint_scene_begin(frame->scene, &frame->stats);
 }
 
-enum glint_status scene_frame_try(struct scene_frame *frame,
-                                  const struct glint_image *image)
+enum glint_status scene_frame_draw_once(struct scene_frame *frame,
+                                        const struct glint_image *image)
 {
     const double start = tool_clock_s();
     double begun, spread;
@@ -157,7 +158,7 @@ enum glint_status scene_frame_try(struct scene_frame *frame,
         enum glint_status status;
 
         frame->cfg.max_refs = frame->stats.need_refs;
-        status = place_scene(frame);
+        status = allocate_scene_memory(frame);
         if (status != GLINT_OK)
             return status;
         scene_frame_begin(frame);
@@ -175,7 +176,8 @@ enum glint_status scene_frame_try(struct scene_frame *frame,
 
 int scene_frame_draw(struct scene_frame *frame, const struct glint_image *image)
 {
-    const enum glint_status status = scene_frame_try(frame, image);
+    const enum glint_status status = scene_frame_draw_once(frame, image);
 
-    return status == GLINT_OK ? EXIT_OK : report_status(frame->tool, status);
+    return status == GLINT_OK ? EXIT_OK
+                              : report_scene_status(frame->tool, status);
 }

@@ -38,8 +38,8 @@ struct scene_dials {
 #define SCENE_TESTS_PX 1000
 
 /* Sets the members of DIALS that OPTIONS set. */
-void scene_dials_choose(struct scene_dials *dials,
-                        const struct glint_options *options);
+void scene_dials_set_defaults(struct scene_dials *dials,
+                              const struct glint_options *options);
 
 /* Sets the current poses of a scene's objects. */
 typedef void scene_frame_pose_fn(void *ctx, struct glint_scene *scene);
@@ -78,11 +78,11 @@ void scene_frame_begin(struct scene_frame *frame);
 
 /* Draw the scene onto IMAGE, which must have the size of the dials. Allocate
  * more memory if the triangle lists need it. scene_frame_draw() prints the
- * reason of a failure and returns an exit code; scene_frame_try() prints
+ * reason of a failure and returns an exit code; scene_frame_draw_once() prints
  * nothing. */
 int scene_frame_draw(struct scene_frame *frame,
                      const struct glint_image *image);
-enum glint_status scene_frame_try(struct scene_frame *frame,
-                                  const struct glint_image *image);
+enum glint_status scene_frame_draw_once(struct scene_frame *frame,
+                                        const struct glint_image *image);
 
 #endif

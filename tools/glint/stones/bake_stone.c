@@ -30,7 +30,7 @@ struct line {
     int model;
 };
 
-static void override_text(void *ctx, struct glint_stone_text *t)
+static void override_medium_text(void *ctx, struct glint_stone_text *t)
 {
     const struct line *l = ctx;
 
@@ -42,7 +42,8 @@ static void override_text(void *ctx, struct glint_stone_text *t)
     }
 }
 
-static int parse_option(struct tool *tool, void *line, int c, const char *name)
+static int parse_medium_option(struct tool *tool, void *line, int c,
+                               const char *name)
 {
     static const char *const models[] = {"clustered", "factored", "albedo",
                                          NULL};
@@ -72,12 +73,12 @@ int cmd_bake_stone(struct tool *tool, int argc, char **argv)
     enum glint_status status;
     int code;
 
-    code = bake_line_parse(tool, help, argc, argv, options, parse_option, &line,
-                           "expects one translucent medium");
+    code = bake_line_parse(tool, help, argc, argv, options, parse_medium_option,
+                           &line, "expects one translucent medium");
     if (code >= 0)
         return code;
-    status = stone_file_read(tool, argv[optind], override_text, &line, true,
-                             NULL, &file, &error);
+    status = stone_file_read(tool, argv[optind], override_medium_text, &line,
+                             true, NULL, &file, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     code = tool_save_file(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,

@@ -35,7 +35,7 @@ struct source {
     uint64_t key;
 };
 
-static void close_source(struct source *s)
+static void close_medium_source(struct source *s)
 {
     free(s->mask);
     free(s->rows.rgb);
@@ -44,7 +44,8 @@ static void close_source(struct source *s)
 /* ------------------------------------------------------------------ reading */
 
 /* Sets MASK to the mean code of IMAGE over each texel, 1 = white. */
-static void reduce_mask(const struct glint_image *image, int side, double *mask)
+static void reduce_mask_to_texels(const struct glint_image *image, int side,
+                                  double *mask)
 {
     for (int i = 0; i < side * side; i++) {
         const int x0 = i % side * image->width / side;
@@ -66,8 +67,9 @@ static void reduce_mask(const struct glint_image *image, int side, double *mask)
     }
 }
 
-static enum glint_status read_mask(const struct tool *tool, const char *path,
-                                   struct source *s, struct glint_error *error)
+static enum glint_status read_medium_mask(const struct tool *tool,
+                                          const char *path, struct source *s,
+                                          struct glint_error *error)
 {
     const int side = s->text.stone.side;
     const size_t n = (size_t)side * (size_t)side;
@@ -83,7 +85,7 @@ static enum glint_status read_mask(const struct tool *tool, const char *path,
         return status;
     mask = malloc(n * sizeof *mask);
     if (mask) {
-        reduce_mask(&image, side, mask);
+        reduce_mask_to_texels(&image, side, mask);
         tool_hash_into_key(&s->key, mask, n * sizeof *mask);
     }
     free(image.plane[0]);
@@ -91,8 +93,9 @@ static enum glint_status read_mask(const struct tool *tool, const char *path,
     return mask ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-static enum glint_status read_rows(const struct tool *tool, const char *path,
-                                   struct source *s, struct glint_error *error)
+static enum glint_status read_measured_rows(const struct tool *tool,
+                                            const char *path, struct source *s,
+                                            struct glint_error *error)
 {
     char beside[TOOL_PATH_BYTES];
     enum glint_status status =
@@ -130,9 +133,9 @@ read_source(const struct tool *tool, const char *path,
     tool_hash_into_key(&s->key, &recipe, sizeof recipe);
     tool_hash_into_key(&s->key, &s->text, sizeof s->text);
     if (s->text.mask[0])
-        status = read_mask(tool, path, s, error);
+        status = read_medium_mask(tool, path, s, error);
     if (status == GLINT_OK && s->text.rows[0])
-        status = read_rows(tool, path, s, error);
+        status = read_measured_rows(tool, path, s, error);
     return status;
 }
 
@@ -140,9 +143,9 @@ read_source(const struct tool *tool, const char *path,
 
 /* Sets *DB to the PSNR of STONE against ROWS under lamps, shadows and a
  * ramp. Returns GLINT_E_MEMORY if there is no memory. */
-static enum glint_status measure_psnr(const struct glint_scatter_rows *rows,
-                                      const struct glint_translucent *stone,
-                                      double *db)
+static enum glint_status measure_fit_psnr(const struct glint_scatter_rows *rows,
+                                          const struct glint_translucent *stone,
+                                          double *db)
 {
     const size_t n = 3 * (size_t)rows->side * (size_t)rows->side;
     double *light = malloc(3 * n * sizeof *light);
@@ -163,8 +166,8 @@ static enum glint_status measure_psnr(const struct glint_scatter_rows *rows,
     return status;
 }
 
-static enum glint_status open_baked(struct stone_file *file,
-                                    struct glint_error *error)
+static enum glint_status open_baked_medium(struct stone_file *file,
+                                           struct glint_error *error)
 {
     const char *reason = "";
 
@@ -175,11 +178,11 @@ static enum glint_status open_baked(struct stone_file *file,
     return GLINT_E_LENS;
 }
 
-static enum glint_status fit_rows(struct glint_scatter_rows *rows,
-                                  struct source *s, const char *name,
-                                  const struct glint_watch *watch,
-                                  struct stone_file *file,
-                                  struct glint_error *error)
+static enum glint_status fit_scatter_rows(struct glint_scatter_rows *rows,
+                                          struct source *s, const char *name,
+                                          const struct glint_watch *watch,
+                                          struct stone_file *file,
+                                          struct glint_error *error)
 {
     struct glint_scatter_fit fit;
     struct glint_stone_report report;
@@ -195,20 +198,20 @@ static enum glint_status fit_rows(struct glint_scatter_rows *rows,
         file->data = data;
         file->errors.kernel_loss = report.kernel_loss;
         file->errors.tap_bits = report.tap_bits;
-        status = open_baked(file, error);
+        status = open_baked_medium(file, error);
     }
     file->errors.fit_db = fit.error.light_db;
     if (status == GLINT_OK)
-        status = measure_psnr(rows, &file->stone, &file->errors.baked_db);
+        status = measure_fit_psnr(rows, &file->stone, &file->errors.baked_db);
     glint_scatter_fit_close(&fit);
     return status;
 }
 
 /* Simulates the medium that S describes, or uses its measured rows. */
-static enum glint_status make_rows(struct source *s,
-                                   const struct glint_watch *watch,
-                                   struct glint_scatter_rows *rows,
-                                   struct glint_error *error)
+static enum glint_status compute_scatter_rows(struct source *s,
+                                              const struct glint_watch *watch,
+                                              struct glint_scatter_rows *rows,
+                                              struct glint_error *error)
 {
     const struct glint_stone *stone = &s->text.stone;
 
@@ -219,9 +222,10 @@ static enum glint_status make_rows(struct source *s,
                : glint_scatter_compute(stone, watch, rows, error);
 }
 
-static enum glint_status bake_source(const struct tool *tool, struct source *s,
-                                     const char *name, struct stone_file *file,
-                                     struct glint_error *error)
+static enum glint_status bake_medium_source(const struct tool *tool,
+                                            struct source *s, const char *name,
+                                            struct stone_file *file,
+                                            struct glint_error *error)
 {
     struct tool_progress progress;
     const struct glint_watch watch = {.progress = tool_progress_show,
@@ -235,10 +239,10 @@ static enum glint_status bake_source(const struct tool *tool, struct source *s,
 
     tool_progress_start(&progress, tool, name);
     tool_progress_part(&progress, 0, before);
-    status = make_rows(s, &watch, &rows, error);
+    status = compute_scatter_rows(s, &watch, &rows, error);
     if (status == GLINT_OK) {
         tool_progress_part(&progress, before, 1 - before);
-        status = fit_rows(&rows, s, name, &watch, file, error);
+        status = fit_scatter_rows(&rows, s, name, &watch, file, error);
         glint_scatter_close(&rows);
     }
     tool_progress_end(&progress);
@@ -255,14 +259,15 @@ static enum glint_status bake_source(const struct tool *tool, struct source *s,
 /* -------------------------------------------------------------------- cache */
 
 /* Opens the cached translucent medium. Returns false if there is none. */
-static bool load_cached(const char *path, uint64_t key, struct stone_file *file)
+static bool load_cached_medium(const char *path, uint64_t key,
+                               struct stone_file *file)
 {
     struct glint_error error;
 
     file->data = cache_file_read(path, MAX_FILE_BYTES, &file->bytes);
     if (!file->data)
         return false;
-    if (open_baked(file, &error) == GLINT_OK &&
+    if (open_baked_medium(file, &error) == GLINT_OK &&
         (file->stone.header->key[0] | (uint64_t)file->stone.header->key[1]
                                           << 32) == key)
         return true;
@@ -270,8 +275,8 @@ static bool load_cached(const char *path, uint64_t key, struct stone_file *file)
     return false;
 }
 
-static void write_cached(const struct tool *tool, char *path,
-                         const struct stone_file *file)
+static void write_cached_medium(const struct tool *tool, char *path,
+                                const struct stone_file *file)
 {
     struct glint_error error = {""};
 
@@ -282,7 +287,7 @@ static void write_cached(const struct tool *tool, char *path,
 }
 
 /* Returns how many numbers the rows of STONE have in each channel. */
-static int64_t count_numbers(const struct glint_stone *stone)
+static int64_t count_row_numbers(const struct glint_stone *stone)
 {
     const int64_t side = stone->side, kernel = stone->kernel;
 
@@ -305,15 +310,15 @@ read_text(const struct tool *tool, const char *path,
     has_cache = cache_file_folder(kept, sizeof kept) &&
                 cache_file_name(kept, sizeof kept, name, source.key, "stone");
     if (status == GLINT_OK &&
-        (anew || !has_cache || !load_cached(kept, source.key, file))) {
+        (anew || !has_cache || !load_cached_medium(kept, source.key, file))) {
         status = tool_count_bake_work(
-            left, 8 * count_numbers(&source.text.stone), path, error);
+            left, 8 * count_row_numbers(&source.text.stone), path, error);
         if (status == GLINT_OK)
-            status = bake_source(tool, &source, name, file, error);
+            status = bake_medium_source(tool, &source, name, file, error);
         if (status == GLINT_OK && has_cache)
-            write_cached(tool, kept, file);
+            write_cached_medium(tool, kept, file);
     }
-    close_source(&source);
+    close_medium_source(&source);
     return status;
 }
 
@@ -338,7 +343,7 @@ stone_file_read(const struct tool *tool, const char *path,
         if (status == GLINT_OK) {
             struct glint_error cause;
 
-            status = open_baked(file, &cause);
+            status = open_baked_medium(file, &cause);
             if (status != GLINT_OK)
                 snprintf(error->text, sizeof error->text, "%.150s: %.100s",
                          path, cause.text);

@@ -10,7 +10,7 @@ struct counts {
     double each;                       /* bytes per texel, without the taps */
 };
 
-static struct counts count_contents(const struct stone_file *file)
+static struct counts count_medium_contents(const struct stone_file *file)
 {
     const struct glint_translucent_header *h = file->stone.header;
     const size_t texels = (size_t)1 << 2 * h->side_log2;
@@ -27,14 +27,15 @@ static struct counts count_contents(const struct stone_file *file)
     return n;
 }
 
-static const char *model_name(const struct glint_translucent_header *h)
+static const char *scatter_model_name(const struct glint_translucent_header *h)
 {
     static const char *const name[] = {"clustered", "factored", "albedo"};
 
     return name[h->variant];
 }
 
-static void print_json(const struct stone_file *file, const struct counts *n)
+static void print_medium_json(const struct stone_file *file,
+                              const struct counts *n)
 {
     const struct glint_translucent_header *h = file->stone.header;
     struct json_writer json = {.to = stdout};
@@ -42,8 +43,9 @@ static void print_json(const struct stone_file *file, const struct counts *n)
     json_write(&json,
                "{name: %s, stone: {model: %s, size: %d, texel_mm: %g, "
                "kernel: %u, planes: %u, rank: %u, index: %.5g",
-               h->name, model_name(h), 1 << h->side_log2, h->texel_um / 1000.,
-               h->kernel, h->n_planes, h->rank, h->index_q16 / 65536.);
+               h->name, scatter_model_name(h), 1 << h->side_log2,
+               h->texel_um / 1000., h->kernel, h->n_planes, h->rank,
+               h->index_q16 / 65536.);
     if (file->is_baked_now)
         json_write(&json,
                    "fit_db: %.2f, baked_db: %.2f, kernel_loss: %.6f, "
@@ -57,7 +59,8 @@ static void print_json(const struct stone_file *file, const struct counts *n)
                n->each, n->codes, n->clusters, n->taps, n->all);
 }
 
-static void print_text(const struct stone_file *file, const struct counts *n)
+static void print_medium_text(const struct stone_file *file,
+                              const struct counts *n)
 {
     const struct glint_translucent_header *h = file->stone.header;
     const int side = 1 << h->side_log2;
@@ -65,8 +68,8 @@ static void print_text(const struct stone_file *file, const struct counts *n)
     printf("%s, a translucent medium of %dx%d texels of %g mm, index %.4g\n\n",
            h->name, side, side, h->texel_um / 1000., h->index_q16 / 65536.);
     printf("model        %s, %u plane%s of rank %u, kernels of %ux%u\n",
-           model_name(h), h->n_planes, h->n_planes > 1 ? "s" : "", h->rank,
-           h->kernel, h->kernel);
+           scatter_model_name(h), h->n_planes, h->n_planes > 1 ? "s" : "",
+           h->rank, h->kernel, h->kernel);
     if (file->is_baked_now) {
         printf("to the rows  %.1f dB, of the fit %.1f dB\n",
                file->errors.baked_db, file->errors.fit_db);
@@ -83,7 +86,7 @@ static void print_text(const struct stone_file *file, const struct counts *n)
 
 void stone_file_print(const struct tool *tool, const struct stone_file *file)
 {
-    const struct counts n = count_contents(file);
+    const struct counts n = count_medium_contents(file);
 
-    (tool->json ? print_json : print_text)(file, &n);
+    (tool->json ? print_medium_json : print_medium_text)(file, &n);
 }

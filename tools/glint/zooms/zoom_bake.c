@@ -52,8 +52,8 @@ struct run {
 };
 
 /* Sets LENS to the lens of RUN, zoomed to PLACE. */
-static enum glint_status move_to(const struct run *run, int place,
-                                 struct glint_prescription *lens)
+static enum glint_status move_lens_to_place(const struct run *run, int place,
+                                            struct glint_prescription *lens)
 {
     const struct zoom_bake *const b = run->bake;
     enum glint_status status;
@@ -72,8 +72,9 @@ static enum glint_status move_to(const struct run *run, int place,
  * OPTIONS to use it, also for ghosts that will need only coarser steps. Not
  * used without added positions, as even positions are so far apart that
  * ghosts differ too much, nor for lenses without rotational symmetry. */
-static enum glint_status set_beside(struct run *run, int place,
-                                    struct glint_bake_options *options)
+static enum glint_status
+set_neighbour_lenses(struct run *run, int place,
+                     struct glint_bake_options *options)
 {
     enum glint_status status = GLINT_OK;
 
@@ -83,20 +84,22 @@ static enum glint_status set_beside(struct run *run, int place,
          at += 2 * LAST)
         if (run->bake->halfway_db > 0 && at >= 0 && at < run->n_places &&
             glint_prescription_is_round(&run->lens))
-            status = move_to(run, at, &run->beside[options->n_beside++]);
+            status =
+                move_lens_to_place(run, at, &run->beside[options->n_beside++]);
     return status;
 }
 
 /* Bakes the chosen ghosts of PLACE, all ghosts if WHOLE. */
-static enum glint_status bake_place(struct run *run, int place, bool whole)
+static enum glint_status bake_zoom_position(struct run *run, int place,
+                                            bool whole)
 {
     struct place *const p = &run->place[place];
     struct glint_bake_options options = *run->bake->options;
     struct glint_bake_report report;
-    enum glint_status status = move_to(run, place, &run->lens);
+    enum glint_status status = move_lens_to_place(run, place, &run->lens);
 
     if (status == GLINT_OK)
-        status = set_beside(run, place, &options);
+        status = set_neighbour_lenses(run, place, &options);
     options.ghosts = p->model.ghosts = whole ? NULL : p->ghosts;
     options.workers = run->tool->workers;
     options.progress = tool_progress_show;
@@ -115,7 +118,7 @@ static enum glint_status bake_place(struct run *run, int place, bool whole)
 
 /* Combines all baked ghosts into one zoom model, which replaces the previous
  * one. */
-static enum glint_status combine_models(struct run *run)
+static enum glint_status combine_baked_models(struct run *run)
 {
     struct glint_bake_model model[GLINT_MAX_ZOOM_MODELS];
     struct zoom_baked *const baked = run->baked;
@@ -140,7 +143,7 @@ static enum glint_status combine_models(struct run *run)
 }
 
 /* Returns the max mean squared error allowed for all ghosts together. */
-static double max_error(const struct run *run)
+static double max_total_error(const struct run *run)
 {
     return pow(10, -0.1 * (run->bake->halfway_db + MARGIN_DB));
 }
@@ -151,7 +154,7 @@ static double max_error(const struct run *run)
 static int choose_ghosts(struct run *run, struct place *to,
                          struct zoom_error *left)
 {
-    const double most = max_error(run);
+    const double most = max_total_error(run);
     int n = 0;
 
     for (int g = 0; g < run->n_ghosts; g++)
@@ -189,8 +192,8 @@ static double max_angle_error(const struct zoom_error *error)
 }
 
 /* Records the error LEFT at the present position of the zoom. */
-static void record_error(struct run *run, const struct zoom_error *left,
-                         int n_added)
+static void record_position_error(struct run *run,
+                                  const struct zoom_error *left, int n_added)
 {
     struct zoom_baked *const baked = run->baked;
     const double db = fmin(99, -10 * log10(fmax(max_angle_error(left), 1e-10)));
@@ -209,7 +212,7 @@ static void record_error(struct run *run, const struct zoom_error *left,
 /* Marks the errors in the middle of the step from FROM to TO as wanted,
  * except for ghosts with small errors. Returns whether any ghost is baked at
  * both ends. */
-static bool mark_wanted(struct run *run, int from, int to)
+static bool mark_wanted_errors(struct run *run, int from, int to)
 {
     const struct place *const p = &run->place[from];
     bool any = false;
@@ -217,7 +220,7 @@ static bool mark_wanted(struct run *run, int from, int to)
     for (int g = 0; g < run->n_ghosts; g++) {
         const bool has = p->ghosts[g] && run->place[to].ghosts[g];
         const bool small = p->is_half && max_angle_error(&p->before[g]) <
-                                             SMALL * max_error(run);
+                                             SMALL * max_total_error(run);
 
         any |= has;
         for (int a = 0; a < ZOOM_ANGLES; a++)
@@ -228,7 +231,7 @@ static bool mark_wanted(struct run *run, int from, int to)
 
 /* Stores the error of each ghost at MIDDLE, the middle of the step that
  * begins at FROM, for both halves of the step. */
-static void store_errors(struct run *run, int from, int middle)
+static void store_ghost_errors(struct run *run, int from, int middle)
 {
     struct place *const p = &run->place[from], *const m = &run->place[middle];
 
@@ -239,7 +242,7 @@ static void store_errors(struct run *run, int from, int middle)
 
 /* Measures the middle between FROM and the next place of the step, and bakes
  * there the ghosts that need it. */
-static enum glint_status halve_step(struct run *run, int from)
+static enum glint_status halve_zoom_step(struct run *run, int from)
 {
     const int middle = from + run->step / 2, to = from + run->step;
     struct place *const p = &run->place[middle];
@@ -248,11 +251,11 @@ static enum glint_status halve_step(struct run *run, int from)
     int n;
 
     p->left = left;
-    if (!mark_wanted(run, from, to))
+    if (!mark_wanted_errors(run, from, to))
         return GLINT_OK;
     glint_zoom_set(&run->zoom,
                    (int32_t)lrint(middle / (run->n_places - 1.0) * 0x1p30));
-    status = move_to(run, middle, &run->lens);
+    status = move_lens_to_place(run, middle, &run->lens);
     if (status == GLINT_OK)
         status = zoom_error_measure(run->tool, &run->lens, &run->zoom,
                                     run->bake->options->max_deg,
@@ -260,18 +263,18 @@ static enum glint_status halve_step(struct run *run, int from)
                                     run->n_ghosts, run->ghost, run->error);
     if (status != GLINT_OK)
         return status;
-    store_errors(run, from, middle);
+    store_ghost_errors(run, from, middle);
     n = choose_ghosts(run, p, &left);
     p->left = run->place[from].left = left;
-    record_error(run, &left, n);
+    record_position_error(run, &left, n);
     if (n == 0)
         return GLINT_OK;
     tool_progress_start(&run->progress, run->tool, "bake");
-    return bake_place(run, middle, false);
+    return bake_zoom_position(run, middle, false);
 }
 
 /* Bakes the even positions. Their total time is estimated from the first. */
-static enum glint_status bake_even(struct run *run)
+static enum glint_status bake_even_positions(struct run *run)
 {
     struct tool_progress *const p = &run->progress;
     const int positions = run->bake->positions;
@@ -285,7 +288,7 @@ static enum glint_status bake_even(struct run *run)
               "--tolerance";
     for (int k = 0; k < positions && status == GLINT_OK; k++) {
         tool_progress_part(p, (double)k / positions, 1.0 / positions);
-        status = bake_place(run, k * run->step, true);
+        status = bake_zoom_position(run, k * run->step, true);
         if (status == GLINT_OK && !run->tool->quiet)
             fprintf(stderr, "glint bake: position %d of %d, %.0f s\n", k + 1,
                     positions, tool_clock_s() - run->start);
@@ -294,24 +297,24 @@ static enum glint_status bake_even(struct run *run)
 }
 
 /* Bakes the even positions and halves the steps between them. */
-static enum glint_status bake_all(struct run *run)
+static enum glint_status bake_all_positions(struct run *run)
 {
-    enum glint_status status = bake_even(run);
+    enum glint_status status = bake_even_positions(run);
 
     if (status == GLINT_OK)
-        status = combine_models(run);
+        status = combine_baked_models(run);
     for (; run->step >= LAST && run->bake->halfway_db > 0 && status == GLINT_OK;
          run->step /= 2) {
         for (int k = 0; k + 1 < run->n_places && status == GLINT_OK;
              k += run->step)
-            status = halve_step(run, k);
+            status = halve_zoom_step(run, k);
         if (status == GLINT_OK)
-            status = combine_models(run);
+            status = combine_baked_models(run);
     }
     return status;
 }
 
-static bool allocate_run(struct run *run)
+static bool allocate_zoom_run(struct run *run)
 {
     const size_t n = (size_t)run->n_ghosts + 1;
 
@@ -346,10 +349,10 @@ enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
         run->step /= 2;
     run->n_places = n * run->step + 1;
     run->n_ghosts = glint_ghost_list(bake->lens, NULL, 0);
-    if (allocate_run(run))
-        status = move_to(run, 0, &run->lens);
+    if (allocate_zoom_run(run))
+        status = move_lens_to_place(run, 0, &run->lens);
     if (status == GLINT_OK)
-        status = bake_all(run);
+        status = bake_all_positions(run);
     for (int k = 0; k < run->n_places; k++) {
         free(run->place[k].model.data);
         free(run->place[k].ghosts);

@@ -54,7 +54,7 @@ struct measuring {
     enum glint_status status[ZOOM_ANGLES];
 };
 
-static double angle_deg(const struct measuring *m, int angle)
+static double field_angle_deg(const struct measuring *m, int angle)
 {
     return fmin(m->max_deg,
                 m->max_deg * (angle + EACH * m->shift) / ZOOM_ANGLES);
@@ -73,7 +73,7 @@ struct pictures {
 /* Sets ERROR to the mean squared error of the whole image if only this ghost
  * were interpolated and all others exact. Returns the images in which the
  * ghost is visible. */
-static int find_error(const struct pictures *p, double *error)
+static int find_single_ghost_error(const struct pictures *p, double *error)
 {
     const size_t n = (size_t)p->all.width * (size_t)p->all.height;
     double sum = 0;
@@ -99,9 +99,10 @@ static int find_error(const struct pictures *p, double *error)
 }
 
 /* Draws GHOST, or all ghosts if GHOST < 0. */
-static enum glint_status draw_ghosts(struct glint_engine *engine,
-                                     const struct glint_lamp *lamp, int ghost,
-                                     struct glint_float_image *image)
+static enum glint_status draw_ghost_image(struct glint_engine *engine,
+                                          const struct glint_lamp *lamp,
+                                          int ghost,
+                                          struct glint_float_image *image)
 {
     struct glint_engine_report report;
 
@@ -111,31 +112,31 @@ static enum glint_status draw_ghosts(struct glint_engine *engine,
 }
 
 /* Measures the wanted ghosts at ANGLE. */
-static enum glint_status measure_angle(const struct measuring *m,
-                                       struct pictures *p, int angle)
+static enum glint_status measure_ghosts_at_angle(const struct measuring *m,
+                                                 struct pictures *p, int angle)
 {
-    const struct glint_lamp lamp = {.theta_deg = angle_deg(m, angle),
+    const struct glint_lamp lamp = {.theta_deg = field_angle_deg(m, angle),
                                     .phi_deg = AZIMUTH_DEG,
                                     .power = 1,
                                     .rgb = {1, 1, 1}};
-    enum glint_status status = draw_ghosts(p->model, &lamp, -1, &p->all);
+    enum glint_status status = draw_ghost_image(p->model, &lamp, -1, &p->all);
 
     p->exposure = glint_measure_exposure(&p->all);
     for (int g = 0; g < m->n && status == GLINT_OK; g++) {
         if (!(m->known[g][angle] & WANTED))
             continue;
-        status = draw_ghosts(p->model, &lamp, g, &p->mixed);
+        status = draw_ghost_image(p->model, &lamp, g, &p->mixed);
         if (status == GLINT_OK)
-            status = draw_ghosts(p->exact, &lamp, g, &p->traced);
+            status = draw_ghost_image(p->exact, &lamp, g, &p->traced);
         m->known[g][angle] =
             (unsigned char)((m->known[g][angle] & IN_RANGE) | MEASURED |
-                            find_error(p, &m->error[g].of[angle]));
+                            find_single_ghost_error(p, &m->error[g].of[angle]));
     }
     return status;
 }
 
-static bool allocate_image(struct glint_float_image *image,
-                           const struct glint_view *view)
+static bool allocate_error_image(struct glint_float_image *image,
+                                 const struct glint_view *view)
 {
     image->width = view->width;
     image->height = view->height;
@@ -144,8 +145,8 @@ static bool allocate_image(struct glint_float_image *image,
     return image->rgb != NULL;
 }
 
-static enum glint_status open_engines(const struct measuring *m,
-                                      struct pictures *p)
+static enum glint_status open_measuring_engines(const struct measuring *m,
+                                                struct pictures *p)
 {
     struct glint_engine_config cfg;
     struct glint_error error;
@@ -168,7 +169,7 @@ static enum glint_status open_engines(const struct measuring *m,
                               : status;
 }
 
-static void angle_job(void *ctx, int angle, int worker)
+static void measure_angle_job(void *ctx, int angle, int worker)
 {
     struct measuring *const m = ctx;
     struct pictures p = {.exposure = 1};
@@ -179,13 +180,13 @@ static void angle_job(void *ctx, int angle, int worker)
         any |= m->known[g][angle] & WANTED;
     if (!any)
         return;
-    m->status[angle] = allocate_image(&p.all, &m->view) &&
-                               allocate_image(&p.mixed, &m->view) &&
-                               allocate_image(&p.traced, &m->view)
-                           ? open_engines(m, &p)
+    m->status[angle] = allocate_error_image(&p.all, &m->view) &&
+                               allocate_error_image(&p.mixed, &m->view) &&
+                               allocate_error_image(&p.traced, &m->view)
+                           ? open_measuring_engines(m, &p)
                            : GLINT_E_MEMORY;
     if (m->status[angle] == GLINT_OK)
-        m->status[angle] = measure_angle(m, &p, angle);
+        m->status[angle] = measure_ghosts_at_angle(m, &p, angle);
     glint_engine_destroy(p.model);
     glint_engine_destroy(p.exact);
     free(p.all.rgb);
@@ -196,7 +197,7 @@ static void angle_job(void *ctx, int angle, int worker)
 /* ------------------------------------------------------------------- angles */
 
 /* Records the angles at which the model has rays of the requested ghosts. */
-static bool find_ranges(struct measuring *m)
+static bool find_ghost_angle_ranges(struct measuring *m)
 {
     struct glint_transfer *const transfer = malloc(sizeof *transfer);
     const bool has_room = transfer != NULL;
@@ -205,7 +206,7 @@ static bool find_ranges(struct measuring *m)
 
     for (int g = 0; g < m->n && has_room; g++)
         for (int a = 0; a < ZOOM_ANGLES && m->error[g].of[0] < 0; a++) {
-            const double sine = sin(angle_deg(m, a) * GLINT_PI / 180);
+            const double sine = sin(field_angle_deg(m, a) * GLINT_PI / 180);
 
             if (glint_transfer_init(transfer, &m->zoom->lens, g,
                                     (int32_t)(sine * 0x1p30), wave_q24))
@@ -218,8 +219,8 @@ static bool find_ranges(struct measuring *m)
 /* Returns whether a ghost with the states KNOWN must be measured at ANGLE,
  * between two measured angles: it is visible at only one of them, or in only
  * one image, or has rays here but at neither of them. */
-static bool is_wanted(const unsigned char known[ZOOM_ANGLES], int angle,
-                      int step)
+static bool is_measurement_wanted(const unsigned char known[ZOOM_ANGLES],
+                                  int angle, int step)
 {
     const int before = known[angle - step];
     const int after = angle + step < ZOOM_ANGLES ? known[angle + step] : before;
@@ -232,20 +233,20 @@ static bool is_wanted(const unsigned char known[ZOOM_ANGLES], int angle,
 }
 
 /* Marks each STEP-th angle of the requested ghosts as wanted; between
- * measured angles only those of is_wanted(). */
-static void mark_wanted(struct measuring *m, int step)
+ * measured angles only those of is_measurement_wanted(). */
+static void mark_wanted_angles(struct measuring *m, int step)
 {
     for (int g = 0; g < m->n; g++)
         for (int a = 0; a < ZOOM_ANGLES; a += step)
             if (step == EACH ? m->error[g].of[0] < 0
                              : (m->known[g][0] & MEASURED) && a % (2 * step) &&
-                                   is_wanted(m->known[g], a, step))
+                                   is_measurement_wanted(m->known[g], a, step))
                 m->known[g][a] |= WANTED;
 }
 
 /* Interpolates the entries of ERROR that KNOWN does not mark as measured. */
-static void interpolate_errors(const unsigned char known[ZOOM_ANGLES],
-                               struct zoom_error *error)
+static void interpolate_angle_errors(const unsigned char known[ZOOM_ANGLES],
+                                     struct zoom_error *error)
 {
     int before = 0, after = 0;
 
@@ -266,7 +267,8 @@ static void interpolate_errors(const unsigned char known[ZOOM_ANGLES],
 
 /* Returns the max angle of measured lights for LENS, at most MAX_DEG,
  * degrees. */
-static double max_angle(const struct glint_prescription *lens, double max_deg)
+static double max_measured_angle_deg(const struct glint_prescription *lens,
+                                     double max_deg)
 {
     const double corner_mm =
         0.5 * hypot(lens->film_width_mm, lens->film_height_mm);
@@ -278,20 +280,21 @@ static double max_angle(const struct glint_prescription *lens, double max_deg)
 }
 
 /* Measures angles in passes, each with half the spacing of the previous one. */
-static enum glint_status measure_all(struct measuring *m,
-                                     struct glint_workers *workers)
+static enum glint_status measure_all_angles(struct measuring *m,
+                                            struct glint_workers *workers)
 {
-    enum glint_status status = find_ranges(m) ? GLINT_OK : GLINT_E_MEMORY;
+    enum glint_status status =
+        find_ghost_angle_ranges(m) ? GLINT_OK : GLINT_E_MEMORY;
 
     for (int step = EACH; step > 0 && status == GLINT_OK; step /= 2) {
-        mark_wanted(m, step);
-        glint_workers_run(workers, ZOOM_ANGLES, angle_job, m);
+        mark_wanted_angles(m, step);
+        glint_workers_run(workers, ZOOM_ANGLES, measure_angle_job, m);
         for (int k = 0; k < ZOOM_ANGLES && status == GLINT_OK; k++)
             status = m->status[k];
     }
     for (int g = 0; g < m->n && status == GLINT_OK; g++)
         if (m->known[g][0] & MEASURED)
-            interpolate_errors(m->known[g], &m->error[g]);
+            interpolate_angle_errors(m->known[g], &m->error[g]);
     return status;
 }
 
@@ -310,7 +313,7 @@ enum glint_status zoom_error_measure(const struct tool *tool,
         .zoom = zoom,
         .view = glint_view_fit(WIDE, (int)fmin(fmax(high, 8), MOST_HIGH),
                                lens->film_width_mm, lens->film_height_mm),
-        .max_deg = max_angle(lens, max_deg),
+        .max_deg = max_measured_angle_deg(lens, max_deg),
         .shift = shift,
         .n = n,
         .error = error,
@@ -320,7 +323,7 @@ enum glint_status zoom_error_measure(const struct tool *tool,
     if (setup && m.known)
         status = glint_setup_init(setup, lens, 0, 0, wave_nm, 1, message);
     if (status == GLINT_OK)
-        status = measure_all(&m, tool->workers);
+        status = measure_all_angles(&m, tool->workers);
     free(m.known);
     free(setup);
     return status;

@@ -32,7 +32,7 @@ struct filter *filter_create(const char *host, int width, int height)
     return f;
 }
 
-static void close_drawing(struct filter *f)
+static void close_filter_drawing(struct filter *f)
 {
     if (f->is_open)
         drawing_close(&f->drawing);
@@ -44,7 +44,7 @@ void filter_destroy(struct filter *f)
 {
     if (!f)
         return;
-    close_drawing(f);
+    close_filter_drawing(f);
     filter_values_free(&f->values);
     free(f);
 }
@@ -62,8 +62,9 @@ void filter_set_live(struct filter *f, const struct filter_values *values)
 
 void filter_set(struct filter *f, const struct filter_values *values)
 {
-    if (!filter_values_serve(&f->values, values)) {
-        close_drawing(f); /* its options point to texts of the old values */
+    if (!filter_values_same_except_live(&f->values, values)) {
+        close_filter_drawing(
+            f); /* its options point to texts of the old values */
         filter_values_free(&f->values);
         filter_values_copy(&f->values, values);
         f->failed = false;
@@ -76,17 +77,19 @@ bool filter_has_size(const struct filter *f, int width, int height)
     return width == f->width && height == f->height;
 }
 
-bool filter_fits(const struct filter *f, const struct filter_values *values,
-                 int width, int height)
+bool filter_is_reusable(const struct filter *f,
+                        const struct filter_values *values, int width,
+                        int height)
 {
     return filter_has_size(f, width, height) &&
-           filter_values_serve(&f->values, values);
+           filter_values_same_except_live(&f->values, values);
 }
 
 /* ------------------------------------------------------------------ opening */
 
 /* Sets the option of parameter P to value I. Returns -1 or an exit code. */
-static int set_option(struct filter *f, const struct filter_parameter *p, int i)
+static int set_filter_option(struct filter *f, const struct filter_parameter *p,
+                             int i)
 {
     const struct filter_values *const v = &f->values;
 
@@ -103,7 +106,7 @@ static int set_option(struct filter *f, const struct filter_parameter *p, int i)
 
 /* Sets the options that are not live. Returns -1 or an exit code. The style
  * is set first, so that other options override the style's. */
-static int set_options(struct filter *f)
+static int set_filter_options(struct filter *f)
 {
     const struct filter_values *const v = &f->values;
     struct filter_parameter p;
@@ -112,7 +115,7 @@ static int set_options(struct filter *f)
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; filter_parameter(i, &p) && code == -1; i++)
             if ((pass == 0) == (strcmp(p.name, "style") == 0))
-                code = set_option(f, &p, i);
+                code = set_filter_option(f, &p, i);
     if (code == -1 && v->number[FILTER_AUTO] < 0.5)
         code =
             drawing_line_set_text(&f->tool, &f->drawing.line, "lights", "none");
@@ -124,7 +127,7 @@ static int set_options(struct filter *f)
     return code;
 }
 
-static bool open_filter(struct filter *f)
+static bool open_filter_drawing(struct filter *f)
 {
     struct drawing *const c = &f->drawing;
     int code;
@@ -133,7 +136,7 @@ static bool open_filter(struct filter *f)
     memset(c, 0, sizeof *c);
     drawing_line_defaults(&c->line);
     f->is_open = true;
-    code = set_options(f);
+    code = set_filter_options(f);
     if (code == -1)
         code = tool_start(&f->tool);
     if (code == EXIT_OK)
@@ -147,14 +150,14 @@ static bool open_filter(struct filter *f)
 bool filter_open(struct filter *f)
 {
     if (!f->is_open && !f->failed)
-        f->failed = !open_filter(f);
+        f->failed = !open_filter_drawing(f);
     return !f->failed;
 }
 
 /* ------------------------------------------------------------------ drawing */
 
 /* Sets the live options and the position of a manual lamp. */
-static void set_live_options(struct filter *f)
+static void apply_live_options(struct filter *f)
 {
     const struct filter_values *const v = &f->values;
     struct drawing *const c = &f->drawing;
@@ -173,7 +176,7 @@ static void set_live_options(struct filter *f)
     }
 }
 
-const char *filter_cause(const struct filter *f)
+const char *filter_error_text(const struct filter *f)
 {
     return f->cause.text;
 }
@@ -183,7 +186,7 @@ bool filter_draw(struct filter *f, const struct glint_image *image,
 {
     if (!filter_open(f))
         return false;
-    set_live_options(f);
+    apply_live_options(f);
     if (drawing_draw(&f->drawing, image, elapsed_us) != GLINT_OK) {
         f->failed = true;
         tool_error(&f->tool, "no memory; pictures stay as they are");

@@ -66,11 +66,12 @@ void filter_set(struct filter *filter, const struct filter_values *values);
 void filter_set_live(struct filter *filter, const struct filter_values *values);
 
 /* filter_has_size() returns whether FILTER draws pictures of WIDTH x HEIGHT,
- * filter_fits() also whether it can draw with VALUES without opening its
+ * filter_is_reusable() also whether it can draw with VALUES without opening its
  * lens again. */
 bool filter_has_size(const struct filter *filter, int width, int height);
-bool filter_fits(const struct filter *filter,
-                 const struct filter_values *values, int width, int height);
+bool filter_is_reusable(const struct filter *filter,
+                        const struct filter_values *values, int width,
+                        int height);
 
 /* Opens the lens before the first picture. If its model is not cached, bakes
  * it, which takes seconds to hours. Returns false on failure. */
@@ -78,7 +79,7 @@ bool filter_open(struct filter *filter);
 
 /* Returns the cause of the last failure of filter_draw() or filter_open(), or
  * "" if it was only printed to standard error. */
-const char *filter_cause(const struct filter *filter);
+const char *filter_error_text(const struct filter *filter);
 
 /* Draws the flare onto IMAGE, ELAPSED_US microseconds after the previous
  * picture; 0: a still image. On failure prints the cause to standard error,

@@ -33,7 +33,7 @@ static const struct row rows[FILTER_MAX] = {
 
 /* Returns the type in hosts. A number without a default, such as the
  * f-number, is a text: "" means the lens's value. */
-static enum filter_type find_type(const struct glint_option *option)
+static enum filter_type find_parameter_type(const struct glint_option *option)
 {
     if (option->type == GLINT_OPTION_FLAG)
         return FILTER_SWITCH;
@@ -63,7 +63,7 @@ bool filter_parameter(int index, struct filter_parameter *p)
     if (!option)
         return true;
     p->help = option->help;
-    p->type = find_type(option);
+    p->type = find_parameter_type(option);
     p->low = option->low;
     p->high = row->high > 0 ? row->high : option->high;
     p->initial = option->initial;
@@ -107,8 +107,8 @@ static bool is_same_text(const char *a, const char *b)
     return strcmp(a ? a : "", b ? b : "") == 0;
 }
 
-bool filter_values_serve(const struct filter_values *a,
-                         const struct filter_values *b)
+bool filter_values_same_except_live(const struct filter_values *a,
+                                    const struct filter_values *b)
 {
     struct filter_parameter p;
 

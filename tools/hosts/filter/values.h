@@ -18,7 +18,7 @@ void filter_values_copy(struct filter_values *to,
                         const struct filter_values *from);
 
 /* Returns whether all values that are not live are equal in A and B. */
-bool filter_values_serve(const struct filter_values *a,
-                         const struct filter_values *b);
+bool filter_values_same_except_live(const struct filter_values *a,
+                                    const struct filter_values *b);
 
 #endif

@@ -74,7 +74,7 @@ void f0r_get_param_info(struct f0r_param *info, int index)
                                    .explanation = help[index]};
 }
 
-static bool stop_at_first(void *ctx, const char *name)
+static bool stop_at_first_lens(void *ctx, const char *name)
 {
     (void)ctx, (void)name;
     return false;
@@ -82,9 +82,9 @@ static bool stop_at_first(void *ctx, const char *name)
 
 /* Returns whether any lens is installed. Checked here, as later failures
  * cannot be reported to the host: its call for pictures returns nothing. */
-static bool has_lenses(void)
+static bool has_installed_lenses(void)
 {
-    if (lens_files_visit_all(stop_at_first, NULL) > 0)
+    if (lens_files_visit_all(stop_at_first_lens, NULL) > 0)
         return true;
     fprintf(stderr, "glint frei0r: no lenses: neither in GLINT_LENSES nor in "
                     "lenses/ or share/glint/lenses/ above the plug-in; install "
@@ -94,7 +94,8 @@ static bool has_lenses(void)
 
 void *f0r_construct(unsigned width, unsigned height)
 {
-    struct instance *const i = has_lenses() ? calloc(1, sizeof *i) : NULL;
+    struct instance *const i =
+        has_installed_lenses() ? calloc(1, sizeof *i) : NULL;
 
     if (i && width - 1 < GLINT_MAX_SIDE && height - 1 < GLINT_MAX_SIDE)
         i->filter = filter_create("frei0r", (int)width, (int)height);

@@ -67,7 +67,7 @@ static void get_property(GObject *object, guint id, GValue *value,
     GST_OBJECT_UNLOCK(e);
 }
 
-static GParamSpec *make_spec(const struct filter_parameter *p)
+static GParamSpec *make_parameter_spec(const struct filter_parameter *p)
 {
     const GParamFlags flags =
         (GParamFlags)(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
@@ -85,7 +85,8 @@ static GParamSpec *make_spec(const struct filter_parameter *p)
 
 /* ------------------------------------------------------------------- frames */
 
-static gboolean find_format(GstVideoFormat from, enum glint_pixel_format *to)
+static gboolean find_pixel_format(GstVideoFormat from,
+                                  enum glint_pixel_format *to)
 {
     static const struct {
         GstVideoFormat from;
@@ -117,7 +118,7 @@ static gboolean find_format(GstVideoFormat from, enum glint_pixel_format *to)
 
 /* Returns the transfer curve of the frames: that of the caps, else the usual
  * one for RGB or luma. */
-static enum glint_tone find_tone(const GstVideoInfo *info)
+static enum glint_tone find_transfer_curve(const GstVideoInfo *info)
 {
     switch (info->colorimetry.transfer) {
     case GST_VIDEO_TRANSFER_SRGB:
@@ -129,21 +130,22 @@ static enum glint_tone find_tone(const GstVideoInfo *info)
     }
 }
 
-static void drop_filter(GlintFlareElement *e)
+static void close_element_filter(GlintFlareElement *e)
 {
     filter_destroy(e->filter);
     e->filter = NULL;
     e->last = GST_CLOCK_TIME_NONE;
 }
 
-static gboolean set_info(GstVideoFilter *base, GstCaps *in_caps,
-                         GstVideoInfo *in, GstCaps *out_caps, GstVideoInfo *out)
+static gboolean set_caps_info(GstVideoFilter *base, GstCaps *in_caps,
+                              GstVideoInfo *in, GstCaps *out_caps,
+                              GstVideoInfo *out)
 {
     GlintFlareElement *const e = GLINT_FLARE(base);
     const gint fps_n = GST_VIDEO_INFO_FPS_N(in);
 
     (void)in_caps, (void)out_caps, (void)out;
-    drop_filter(e);
+    close_element_filter(e);
     e->image = (struct glint_image){
         .width = GST_VIDEO_INFO_WIDTH(in),
         .height = GST_VIDEO_INFO_HEIGHT(in),
@@ -153,12 +155,12 @@ static gboolean set_info(GstVideoFilter *base, GstCaps *in_caps,
         .matrix = in->colorimetry.matrix == GST_VIDEO_COLOR_MATRIX_BT709
                       ? GLINT_MATRIX_BT709
                       : GLINT_MATRIX_BT601,
-        .transfer = find_tone(in)};
+        .transfer = find_transfer_curve(in)};
     e->frame_us =
         fps_n > 0 ? (gint32)CLAMP(1e6 * GST_VIDEO_INFO_FPS_D(in) / fps_n + 0.5,
                                   1, 1e9)
                   : 0;
-    return find_format(GST_VIDEO_INFO_FORMAT(in), &e->image.format);
+    return find_pixel_format(GST_VIDEO_INFO_FORMAT(in), &e->image.format);
 }
 
 /* Returns the microseconds since the last frame drawn: the nominal duration
@@ -175,7 +177,7 @@ static gint32 elapsed_us(const GlintFlareElement *e, GstClockTime now)
                : (gint32)MIN(us, 1000000000);
 }
 
-static GstFlowReturn transform(GstVideoFilter *base, GstVideoFrame *frame)
+static GstFlowReturn transform_frame(GstVideoFilter *base, GstVideoFrame *frame)
 {
     GlintFlareElement *const e = GLINT_FLARE(base);
     const GstClockTime now = GST_BUFFER_PTS(frame->buffer);
@@ -188,7 +190,7 @@ static GstFlowReturn transform(GstVideoFilter *base, GstVideoFrame *frame)
                                        GST_FORMAT_TIME, now));
     if (GST_BUFFER_IS_DISCONT(frame->buffer) &&
         GST_CLOCK_TIME_IS_VALID(e->last) && now <= e->last)
-        drop_filter(e); /* after a jump back */
+        close_element_filter(e); /* after a jump back */
     if (!e->filter)
         e->filter =
             filter_create("glintflare", e->image.width, e->image.height);
@@ -205,7 +207,8 @@ static GstFlowReturn transform(GstVideoFilter *base, GstVideoFrame *frame)
     }
     if (!filter_draw(e->filter, &e->image, elapsed_us(e, now))) {
         GST_ELEMENT_ERROR(e, LIBRARY, FAILED,
-                          ("No flare: %s", filter_cause(e->filter)), (NULL));
+                          ("No flare: %s", filter_error_text(e->filter)),
+                          (NULL));
         return GST_FLOW_ERROR;
     }
     e->last = now;
@@ -214,17 +217,17 @@ static GstFlowReturn transform(GstVideoFilter *base, GstVideoFrame *frame)
 
 /* ------------------------------------------------------------------ element */
 
-static gboolean stop(GstBaseTransform *base)
+static gboolean stop_element(GstBaseTransform *base)
 {
-    drop_filter(GLINT_FLARE(base));
+    close_element_filter(GLINT_FLARE(base));
     return TRUE;
 }
 
-static void finalize(GObject *object)
+static void finalize_element(GObject *object)
 {
     GlintFlareElement *const e = GLINT_FLARE(object);
 
-    drop_filter(e);
+    close_element_filter(e);
     filter_values_free(&e->values);
     G_OBJECT_CLASS(glint_flare_element_parent_class)->finalize(object);
 }
@@ -237,8 +240,8 @@ static void glint_flare_element_init(GlintFlareElement *e)
     gst_base_transform_set_qos_enabled(GST_BASE_TRANSFORM(e), TRUE);
 }
 
-static void add_pad(GstElementClass *class, const gchar *name,
-                    GstPadDirection direction)
+static void add_element_pad(GstElementClass *class, const gchar *name,
+                            GstPadDirection direction)
 {
     GstCaps *const caps = gst_caps_from_string(GST_VIDEO_CAPS_MAKE(FORMATS));
 
@@ -254,21 +257,22 @@ static void glint_flare_element_class_init(GlintFlareElementClass *class)
 
     object->set_property = set_property;
     object->get_property = get_property;
-    object->finalize = finalize;
+    object->finalize = finalize_element;
     for (int i = 0; filter_parameter(i, &p); i++)
-        g_object_class_install_property(object, (guint)i + 1, make_spec(&p));
+        g_object_class_install_property(object, (guint)i + 1,
+                                        make_parameter_spec(&p));
     gst_element_class_set_static_metadata(
         GST_ELEMENT_CLASS(class), "Lens flare", "Filter/Effect/Video",
         "Draws the ghosts and stars of a real lens on frames, in place",
         "glint");
-    add_pad(GST_ELEMENT_CLASS(class), "sink", GST_PAD_SINK);
-    add_pad(GST_ELEMENT_CLASS(class), "src", GST_PAD_SRC);
-    GST_BASE_TRANSFORM_CLASS(class)->stop = stop;
-    GST_VIDEO_FILTER_CLASS(class)->set_info = set_info;
-    GST_VIDEO_FILTER_CLASS(class)->transform_frame_ip = transform;
+    add_element_pad(GST_ELEMENT_CLASS(class), "sink", GST_PAD_SINK);
+    add_element_pad(GST_ELEMENT_CLASS(class), "src", GST_PAD_SRC);
+    GST_BASE_TRANSFORM_CLASS(class)->stop = stop_element;
+    GST_VIDEO_FILTER_CLASS(class)->set_info = set_caps_info;
+    GST_VIDEO_FILTER_CLASS(class)->transform_frame_ip = transform_frame;
 }
 
-static gboolean plugin_init(GstPlugin *plugin)
+static gboolean register_element(GstPlugin *plugin)
 {
     return gst_element_register(plugin, "glintflare", GST_RANK_NONE,
                                 GLINT_TYPE_FLARE);
@@ -276,5 +280,5 @@ static gboolean plugin_init(GstPlugin *plugin)
 
 #define PACKAGE "glint"
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, glint,
-                  "Lens flare of real lenses", plugin_init, GLINT_VERSION,
+                  "Lens flare of real lenses", register_element, GLINT_VERSION,
                   "MIT/X11", "glint", "glint")

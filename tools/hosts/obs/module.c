@@ -14,7 +14,8 @@
 #include "glint/glint.h"
 #include "model/lens_files.h"
 
-static bool find_format(enum video_format from, enum glint_pixel_format *to)
+static bool find_pixel_format(enum video_format from,
+                              enum glint_pixel_format *to)
 {
     static const struct {
         enum video_format from;
@@ -44,7 +45,7 @@ static bool find_format(enum video_format from, enum glint_pixel_format *to)
 /* Returns the matrix of luma that is nearest to FRAME's matrix from codes to
  * RGB: the factor from Cr to R is 1.40 in BT.601 and 1.57 in BT.709 at full
  * range. A source without a matrix has zeros. */
-static enum glint_matrix find_matrix(const struct obs_source_frame *frame)
+static enum glint_matrix find_luma_matrix(const struct obs_source_frame *frame)
 {
     const float cr = frame->color_matrix[2];
     const float between = frame->full_range ? 1.488F : 1.694F;
@@ -54,8 +55,8 @@ static enum glint_matrix find_matrix(const struct obs_source_frame *frame)
 
 /* Returns the transfer curve: that of the frame, else the usual one for RGB
  * or luma. */
-static enum glint_tone find_tone(const struct obs_source_frame *frame,
-                                 bool is_rgb)
+static enum glint_tone find_transfer_curve(const struct obs_source_frame *frame,
+                                           bool is_rgb)
 {
     return frame->trc == VIDEO_TRC_SRGB ||
                    (frame->trc == VIDEO_TRC_DEFAULT && is_rgb)
@@ -66,13 +67,14 @@ static enum glint_tone find_tone(const struct obs_source_frame *frame,
 /* Sets IMAGE to the pixels of FRAME in place, bottom row first if OBS will
  * flip them. Returns false for frames that glint cannot draw on: more than 8
  * bits, HDR curves, or an unsupported format or size. */
-static bool frame_image(const struct obs_source_frame *frame,
-                        struct glint_image *image)
+static bool set_image_to_frame(const struct obs_source_frame *frame,
+                               struct glint_image *image)
 {
     enum glint_pixel_format format;
 
-    if (!find_format(frame->format, &format) || frame->trc == VIDEO_TRC_PQ ||
-        frame->trc == VIDEO_TRC_HLG || frame->width - 1 >= GLINT_MAX_SIDE ||
+    if (!find_pixel_format(frame->format, &format) ||
+        frame->trc == VIDEO_TRC_PQ || frame->trc == VIDEO_TRC_HLG ||
+        frame->width - 1 >= GLINT_MAX_SIDE ||
         frame->height - 1 >= GLINT_MAX_SIDE)
         return false;
     *image = (struct glint_image){
@@ -80,8 +82,8 @@ static bool frame_image(const struct obs_source_frame *frame,
         .width = (int)frame->width,
         .height = (int)frame->height,
         .range = frame->full_range ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED,
-        .matrix = find_matrix(frame),
-        .transfer = find_tone(frame, glint_image_is_rgb(format))};
+        .matrix = find_luma_matrix(frame),
+        .transfer = find_transfer_curve(frame, glint_image_is_rgb(format))};
     for (int i = 0; i < glint_image_planes(format); i++) {
         const ptrdiff_t stride = (ptrdiff_t)frame->linesize[i];
         const int rows = glint_image_plane_height(format, i, image->height);
@@ -99,14 +101,14 @@ struct opening {
     bool is_done, is_left;
 };
 
-static void free_opening(struct opening *o)
+static void free_filter_opening(struct opening *o)
 {
     filter_destroy(o->filter);
     pthread_mutex_destroy(&o->lock);
     free(o);
 }
 
-static void *open_filter(void *arg)
+static void *open_filter_in_thread(void *arg)
 {
     struct opening *const o = arg;
     bool is_left;
@@ -118,14 +120,14 @@ static void *open_filter(void *arg)
     is_left = o->is_left;
     pthread_mutex_unlock(&o->lock);
     if (is_left)
-        free_opening(o);
+        free_filter_opening(o);
     return NULL;
 }
 
 /* Starts opening a filter with VALUES for frames of WIDTH x HEIGHT in a
  * thread. Returns NULL if there is no memory or thread. */
-static struct opening *begin_opening(const struct filter_values *values,
-                                     int width, int height)
+static struct opening *start_filter_opening(const struct filter_values *values,
+                                            int width, int height)
 {
     struct opening *const o = calloc(1, sizeof *o);
     pthread_t thread;
@@ -136,8 +138,9 @@ static struct opening *begin_opening(const struct filter_values *values,
     o->filter = filter_create("obs", width, height);
     if (o->filter)
         filter_set(o->filter, values);
-    if (!o->filter || pthread_create(&thread, NULL, open_filter, o) != 0) {
-        free_opening(o);
+    if (!o->filter ||
+        pthread_create(&thread, NULL, open_filter_in_thread, o) != 0) {
+        free_filter_opening(o);
         return NULL;
     }
     pthread_detach(thread);
@@ -146,7 +149,7 @@ static struct opening *begin_opening(const struct filter_values *values,
 
 /* Returns whether opening has ended, successfully or not. If so, passes the
  * filter to the caller and frees O. */
-static bool end_opening(struct opening *o, struct filter **filter)
+static bool collect_opened_filter(struct opening *o, struct filter **filter)
 {
     bool is_done;
 
@@ -157,13 +160,13 @@ static bool end_opening(struct opening *o, struct filter **filter)
         return false;
     *filter = o->filter;
     o->filter = NULL;
-    free_opening(o);
+    free_filter_opening(o);
     return true;
 }
 
 /* Abandons an opening (may be NULL): its thread frees everything when it
  * ends. */
-static void leave_opening(struct opening *o)
+static void abandon_opening(struct opening *o)
 {
     bool is_done;
 
@@ -174,7 +177,7 @@ static void leave_opening(struct opening *o)
     o->is_left = true;
     pthread_mutex_unlock(&o->lock);
     if (is_done)
-        free_opening(o);
+        free_filter_opening(o);
 }
 
 /* cppcheck-suppress unknownMacro ; of OBS's headers */
@@ -195,7 +198,7 @@ struct flare {
 
 /* --------------------------------------------------------------- properties */
 
-static void get_defaults(obs_data_t *data)
+static void get_default_settings(obs_data_t *data)
 {
     struct filter_parameter p;
 
@@ -206,7 +209,7 @@ static void get_defaults(obs_data_t *data)
             obs_data_set_default_bool(data, p.name, p.initial > 0);
 }
 
-static void update(void *ctx, obs_data_t *data)
+static void update_settings(void *ctx, obs_data_t *data)
 {
     struct flare *const f = ctx;
     struct filter_parameter p;
@@ -222,15 +225,15 @@ static void update(void *ctx, obs_data_t *data)
     pthread_mutex_unlock(&f->lock);
 }
 
-static bool add_lens(void *list, const char *name)
+static bool add_lens_to_list(void *list, const char *name)
 {
     obs_property_list_add_string(list, name, name);
     return true;
 }
 
 /* Shows the position of a lamp only if lamps are not detected. */
-static bool show_place(obs_properties_t *all, obs_property_t *changed,
-                       obs_data_t *data)
+static bool show_lamp_position(obs_properties_t *all, obs_property_t *changed,
+                               obs_data_t *data)
 {
     const bool is_given = !obs_data_get_bool(data, "auto");
 
@@ -240,8 +243,8 @@ static bool show_place(obs_properties_t *all, obs_property_t *changed,
     return true;
 }
 
-static obs_property_t *add_text(obs_properties_t *all,
-                                const struct filter_parameter *p)
+static obs_property_t *add_parameter_text(obs_properties_t *all,
+                                          const struct filter_parameter *p)
 {
     const bool is_lens = strcmp(p->name, "lens") == 0;
     obs_property_t *list;
@@ -254,7 +257,7 @@ static obs_property_t *add_text(obs_properties_t *all,
                                            : OBS_COMBO_TYPE_LIST,
                                    OBS_COMBO_FORMAT_STRING);
     if (is_lens) {
-        lens_files_visit_all(add_lens, list);
+        lens_files_visit_all(add_lens_to_list, list);
         return list;
     }
     obs_property_list_add_string(list, "none", "");
@@ -272,7 +275,7 @@ static obs_properties_t *get_properties(void *ctx)
     (void)ctx;
     for (int i = 0; filter_parameter(i, &p); i++) {
         if (p.type == FILTER_TEXT)
-            property = add_text(all, &p);
+            property = add_parameter_text(all, &p);
         else if (p.type == FILTER_NUMBER)
             property = obs_properties_add_float_slider(all, p.name, p.label,
                                                        p.low, p.high, 0.01);
@@ -281,13 +284,13 @@ static obs_properties_t *get_properties(void *ctx)
         obs_property_set_long_description(property, p.help);
     }
     obs_property_set_modified_callback(obs_properties_get(all, "auto"),
-                                       show_place);
+                                       show_lamp_position);
     return all;
 }
 
 /* ------------------------------------------------------------------- frames */
 
-static void warn_once(struct flare *f, const char *text)
+static void print_warning_once(struct flare *f, const char *text)
 {
     if (!f->has_warned)
         blog(LOG_WARNING, "glint: %s; frames stay as they are", text);
@@ -296,10 +299,10 @@ static void warn_once(struct flare *f, const char *text)
 
 /* Disables the filter in the source, which its user sees, and closes the
  * failed filter, so that it is opened again when the user enables it. */
-static void disable_filter(struct flare *f)
+static void disable_failed_filter(struct flare *f)
 {
     blog(LOG_ERROR, "glint: the filter is disabled: %s",
-         filter_cause(f->filter));
+         filter_error_text(f->filter));
     filter_destroy(f->filter);
     f->filter = NULL;
     obs_source_set_enabled(f->source, false);
@@ -313,7 +316,7 @@ static bool prepare_filter(struct flare *f, const struct glint_image *image)
     const int w = image->width, h = image->height;
     struct filter *opened;
 
-    if (f->opening && end_opening(f->opening, &opened)) {
+    if (f->opening && collect_opened_filter(f->opening, &opened)) {
         filter_destroy(f->filter);
         f->filter = opened;
         f->opening = NULL;
@@ -321,10 +324,10 @@ static bool prepare_filter(struct flare *f, const struct glint_image *image)
         f->has_warned = false;
     }
     if (!f->opening &&
-        !(f->filter && filter_fits(f->filter, &f->wanted, w, h))) {
-        f->opening = begin_opening(&f->wanted, w, h);
+        !(f->filter && filter_is_reusable(f->filter, &f->wanted, w, h))) {
+        f->opening = start_filter_opening(&f->wanted, w, h);
         if (!f->opening)
-            warn_once(f, "no memory");
+            print_warning_once(f, "no memory");
     }
     if (f->filter)
         filter_set_live(f->filter, &f->wanted);
@@ -343,15 +346,15 @@ static int32_t elapsed_us(const struct flare *f, uint64_t now_ns)
                : FRAME_US;
 }
 
-static struct obs_source_frame *filter_video(void *ctx,
-                                             struct obs_source_frame *frame)
+static struct obs_source_frame *
+filter_video_frame(void *ctx, struct obs_source_frame *frame)
 {
     struct flare *const f = ctx;
     struct glint_image image;
     bool is_ready;
 
-    if (!frame_image(frame, &image)) {
-        warn_once(f, "no flare on frames of this kind");
+    if (!set_image_to_frame(frame, &image)) {
+        print_warning_once(f, "no flare on frames of this kind");
         return frame;
     }
     pthread_mutex_lock(&f->lock);
@@ -362,30 +365,30 @@ static struct obs_source_frame *filter_video(void *ctx,
     if (filter_draw(f->filter, &image, elapsed_us(f, frame->timestamp)))
         f->last_ns = frame->timestamp;
     else
-        disable_filter(f);
+        disable_failed_filter(f);
     return frame;
 }
 
 /* ------------------------------------------------------------------- module */
 
-static const char *get_name(void *type)
+static const char *get_filter_name(void *type)
 {
     (void)type;
     return "Lens flare (glint)";
 }
 
-static void destroy(void *ctx)
+static void destroy_flare(void *ctx)
 {
     struct flare *const f = ctx;
 
-    leave_opening(f->opening);
+    abandon_opening(f->opening);
     filter_destroy(f->filter);
     filter_values_free(&f->wanted);
     pthread_mutex_destroy(&f->lock);
     free(f);
 }
 
-static void *create(obs_data_t *data, obs_source_t *source)
+static void *create_flare(obs_data_t *data, obs_source_t *source)
 {
     struct flare *const f = calloc(1, sizeof *f);
 
@@ -394,7 +397,7 @@ static void *create(obs_data_t *data, obs_source_t *source)
     f->source = source;
     filter_values_init(&f->wanted);
     pthread_mutex_init(&f->lock, NULL);
-    update(f, data);
+    update_settings(f, data);
     return f;
 }
 
@@ -402,13 +405,13 @@ static struct obs_source_info info = {
     .id = "glint_flare",
     .type = OBS_SOURCE_TYPE_FILTER,
     .output_flags = OBS_SOURCE_VIDEO | OBS_SOURCE_ASYNC,
-    .get_name = get_name,
-    .create = create,
-    .destroy = destroy,
-    .get_defaults = get_defaults,
+    .get_name = get_filter_name,
+    .create = create_flare,
+    .destroy = destroy_flare,
+    .get_defaults = get_default_settings,
     .get_properties = get_properties,
-    .update = update,
-    .filter_video = filter_video,
+    .update = update_settings,
+    .filter_video = filter_video_frame,
 };
 
 const char *obs_module_description(void)

@@ -46,16 +46,16 @@ static struct {
 } web;
 
 /* Records the reason of a failure. Returns 0. */
-static int set_error(const char *reason)
+static int record_error(const char *reason)
 {
     snprintf(web.error.text, sizeof web.error.text, "%s", reason);
     return 0;
 }
 
-static int check_status(enum glint_status status)
+static int record_status(enum glint_status status)
 {
     if (status != GLINT_OK && !web.error.text[0])
-        set_error(glint_status_text(status));
+        record_error(glint_status_text(status));
     return status == GLINT_OK;
 }
 
@@ -98,7 +98,7 @@ int web_set(const char *name, const char *text)
     }
     copy = strdup(text);
     if (!copy)
-        return set_error("no memory");
+        return record_error("no memory");
     if (glint_options_set_text(&web.options, name, copy, &why) != GLINT_OK) {
         snprintf(web.error.text, sizeof web.error.text, "%s is %.160s, not %s",
                  name, why.text, text);
@@ -112,7 +112,7 @@ int web_set(const char *name, const char *text)
 
 /* --------------------------------------------------------------------- lens */
 
-static void close_engine(void)
+static void close_web_engine(void)
 {
     glint_engine_destroy(web.engine);
     web.engine = NULL;
@@ -121,9 +121,9 @@ static void close_engine(void)
     web.dirt = NULL;
 }
 
-static void close_lens(void)
+static void close_web_lens(void)
 {
-    close_engine();
+    close_web_engine();
     free(web.data);
     web.data = NULL;
     web.bytes = 0;
@@ -131,7 +131,7 @@ static void close_lens(void)
 }
 
 /* Applies the films of --coating to the table. */
-static int apply_coating(void)
+static int apply_coating_option(void)
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
     const char *const text = web.options.coating;
@@ -140,7 +140,7 @@ static int apply_coating(void)
     if (strcmp(text, "table") == 0)
         return 1;
     if (strcmp(text, "mixed") != 0) {
-        if (!check_status(glint_coatings_parse(coating, &n, text, &web.error)))
+        if (!record_status(glint_coatings_parse(coating, &n, text, &web.error)))
             return 0;
         glint_prescription_coat(&web.table, coating, n);
     } else if (web.table.n_mixed) {
@@ -152,7 +152,7 @@ static int apply_coating(void)
     return 1;
 }
 
-static int move_groups(void)
+static int move_zoom_groups(void)
 {
     const struct glint_options *const o = &web.options;
     enum glint_status status = GLINT_OK;
@@ -165,12 +165,12 @@ static int move_groups(void)
         status = glint_prescription_zoom(&web.table, along, &web.error);
     if (status == GLINT_OK && o->focus > 0)
         status = glint_prescription_focus(&web.table, o->focus, &web.error);
-    return check_status(status);
+    return record_status(status);
 }
 
 /* Returns the bake options of the model, those of glint overlay; for a model
  * that was requested with its own f-number, the defaults of glint bake. */
-static struct glint_bake_options bake_options(void)
+static struct glint_bake_options model_bake_options(void)
 {
     const struct glint_options *const o = &web.options;
     const struct glint_prescription *const l = &web.table;
@@ -202,16 +202,16 @@ const char *web_open(double widest)
     struct glint_bake_options b;
     double f = 0;
 
-    close_lens();
+    close_web_lens();
     web.error.text[0] = '\0';
     while (from->name && strcmp(from->name, o->lens) != 0)
         from++;
     if (!from->name)
-        return set_error("there is no such lens"), NULL;
-    if (!check_status(glint_prescription_parse(&web.table, from->text,
-                                               strlen(from->text), from->name,
-                                               &web.error)) ||
-        !move_groups() || !apply_coating())
+        return record_error("there is no such lens"), NULL;
+    if (!record_status(glint_prescription_parse(&web.table, from->text,
+                                                strlen(from->text), from->name,
+                                                &web.error)) ||
+        !move_zoom_groups() || !apply_coating_option())
         return NULL;
     web.is_model = widest > 0;
     if (web.is_model)
@@ -219,10 +219,10 @@ const char *web_open(double widest)
     else if (o->f_number > 0 &&
              (o->rays == GLINT_RAYS_EXACT || o->f_number < web.table.f_number))
         f = o->f_number;
-    if (f > 0 && !check_status(glint_prescription_set_f_number(&web.table, f,
-                                                               &web.error)))
+    if (f > 0 && !record_status(glint_prescription_set_f_number(&web.table, f,
+                                                                &web.error)))
         return NULL;
-    b = bake_options();
+    b = model_bake_options();
     snprintf(web.name, sizeof web.name, "%s-%016llx.glint", web.table.name,
              (unsigned long long)glint_bake_key(&web.table, &b));
     web.is_open = true;
@@ -233,7 +233,7 @@ int web_model(void *data, size_t bytes)
 {
     const char *reason = "no lens is open";
 
-    close_engine();
+    close_web_engine();
     free(web.data);
     web.data = data;
     web.bytes = bytes;
@@ -243,21 +243,21 @@ int web_model(void *data, size_t bytes)
     free(web.data);
     web.data = NULL;
     web.bytes = 0;
-    return set_error(reason);
+    return record_error(reason);
 }
 
 int web_bake(void)
 {
-    const struct glint_bake_options b = bake_options();
+    const struct glint_bake_options b = model_bake_options();
     struct glint_bake_report report;
     unsigned char *data;
     size_t bytes;
 
     if (!web.is_open)
-        return set_error("no lens is open");
+        return record_error("no lens is open");
     web.error.text[0] = '\0';
-    return check_status(glint_bake(&web.table, &b, &data, &bytes, &report,
-                                   &web.error)) &&
+    return record_status(glint_bake(&web.table, &b, &data, &bytes, &report,
+                                    &web.error)) &&
            web_model(data, bytes);
 }
 
@@ -275,7 +275,7 @@ size_t web_model_bytes(void)
 
 /* Sets CAMERA, with the blades of photographs unless options or table define
  * others, and makes the lens's setup. */
-static int set_up(struct glint_engine_camera *camera, bool exact)
+static int set_up_camera(struct glint_engine_camera *camera, bool exact)
 {
     double nm[GLINT_MAX_WAVELENGTHS];
     int n;
@@ -288,11 +288,12 @@ static int set_up(struct glint_engine_camera *camera, bool exact)
         camera->waves =
             (struct glint_waves){GLINT_WAVES_COUNT, EXACT_WAVES, {0}};
     n = glint_waves_list(&camera->waves, nm);
-    return (!exact || check_status(glint_setup_init(
+    return (!exact || record_status(glint_setup_init(
                           &web.setup, &web.table, camera->n_blades,
                           camera->blade_rotation_deg, nm, n, &web.error))) &&
-           check_status(glint_engine_setup(&web.setup, exact ? NULL : &web.lens,
-                                           camera, &web.dirt, &web.error));
+           record_status(glint_engine_setup(&web.setup,
+                                            exact ? NULL : &web.lens, camera,
+                                            &web.dirt, &web.error));
 }
 
 /* Cache of the responses (brightness of the flare) of recent lenses and
@@ -305,8 +306,8 @@ static struct {
 } kept[KEPT];
 static int next_kept;
 
-static int read_cached(void *ctx, const char *name, uint64_t key, void *data,
-                       size_t bytes)
+static int read_cached_response(void *ctx, const char *name, uint64_t key,
+                                void *data, size_t bytes)
 {
     (void)ctx;
     (void)name;
@@ -318,8 +319,8 @@ static int read_cached(void *ctx, const char *name, uint64_t key, void *data,
     return 0;
 }
 
-static void write_cached(void *ctx, const char *name, uint64_t key,
-                         const void *data, size_t bytes)
+static void write_cached_response(void *ctx, const char *name, uint64_t key,
+                                  const void *data, size_t bytes)
 {
     (void)ctx;
     (void)name;
@@ -335,23 +336,24 @@ int web_size(int width, int height)
 {
     const struct glint_options *const o = &web.options;
     const bool exact = o->rays == GLINT_RAYS_EXACT;
-    const struct glint_engine_cache cache = {read_cached, write_cached, NULL};
+    const struct glint_engine_cache cache = {read_cached_response,
+                                             write_cached_response, NULL};
     struct glint_engine_config cfg;
     double miss_deg;
 
     web.error.text[0] = '\0';
-    close_engine();
+    close_web_engine();
     if (!web.is_open || (!exact && !web.data))
-        return set_error("there is no model of the lens");
+        return record_error("there is no model of the lens");
     web.projection = (struct glint_projection){0, {0}};
     if (o->projection == GLINT_PROJECTION_LENS &&
-        !check_status(glint_projection_of(&web.projection, &web.table,
-                                          &miss_deg, &web.error)))
+        !record_status(glint_projection_of(&web.projection, &web.table,
+                                           &miss_deg, &web.error)))
         return 0;
     glint_engine_defaults(&cfg, width, height);
     cfg.camera.iris.roundness = PHOTO_ROUNDNESS;
     glint_engine_configure(&cfg, o);
-    if (!set_up(&cfg.camera, exact))
+    if (!set_up_camera(&cfg.camera, exact))
         return 0;
     cfg.model = exact ? NULL : &web.lens;
     cfg.search.more_lamps = GLINT_ENGINE_MAX_LAMPS;
@@ -365,10 +367,10 @@ int web_size(int width, int height)
     cfg.cache = &cache;
     web.width = width;
     web.height = height;
-    return check_status(glint_engine_create(&web.engine, &cfg, &web.error));
+    return record_status(glint_engine_create(&web.engine, &cfg, &web.error));
 }
 
-static struct glint_image make_image(uint8_t *pixels)
+static struct glint_image wrap_pixels_as_image(uint8_t *pixels)
 {
     return glint_image_over(pixels, GLINT_XBGR8888, web.width, web.height);
 }
@@ -379,8 +381,8 @@ double *web_lamps(void)
 }
 
 /* Writes the row of LAMP that glint overlay --save-lights would write. */
-static void set_row(double row[WEB_COLUMNS],
-                    const struct glint_engine_lamp *lamp)
+static void write_lamp_row(double row[WEB_COLUMNS],
+                           const struct glint_engine_lamp *lamp)
 {
     const struct glint_view *const view = glint_engine_view(web.engine);
     const double *const axis = lamp->lamp.axis;
@@ -400,8 +402,8 @@ static void set_row(double row[WEB_COLUMNS],
 }
 
 /* Returns the lamp that glint overlay --lights would read from ROW. */
-static struct glint_engine_lamp make_lamp(const double row[WEB_COLUMNS],
-                                          uint32_t id)
+static struct glint_engine_lamp read_lamp_row(const double row[WEB_COLUMNS],
+                                              uint32_t id)
 {
     const struct glint_view *const view = glint_engine_view(web.engine);
     const double focal_mm = web.setup.optics.focal_mm;
@@ -432,11 +434,11 @@ int web_find(uint8_t *pixels)
 
     if (!web.engine)
         return 0;
-    image = make_image(pixels);
+    image = wrap_pixels_as_image(pixels);
     web.n_found = glint_engine_find(web.engine, &image, 0, web.found,
                                     GLINT_ENGINE_MAX_LAMPS);
     for (int i = 0; i < web.n_found; i++)
-        set_row(web.row[i], &web.found[i]);
+        write_lamp_row(web.row[i], &web.found[i]);
     return web.n_found;
 }
 
@@ -452,7 +454,7 @@ int web_doubtful(double xy[2])
 }
 
 /* Returns whether glint overlay --lights would accept ROW. */
-static bool is_row(const double row[WEB_COLUMNS])
+static bool is_lamp_row_valid(const double row[WEB_COLUMNS])
 {
     return fabs(row[WEB_X]) <= 1e6 && fabs(row[WEB_Y]) <= 1e6 &&
            glint_lamp_power_is_valid(row[WEB_POWER], row + WEB_RED) &&
@@ -470,25 +472,25 @@ int web_draw(uint8_t *pixels, int n, int quick)
     struct glint_image image;
 
     if (!web.engine)
-        return set_error("there is no engine");
+        return record_error("there is no engine");
     if (n < WEB_FOUND || n > GLINT_ENGINE_MAX_LAMPS)
-        return set_error("not 0 to 1024 lamps");
+        return record_error("not 0 to 1024 lamps");
     web.error.text[0] = '\0';
-    image = make_image(pixels);
+    image = wrap_pixels_as_image(pixels);
     if (n == WEB_FOUND) {
         n = web.n_found;
         memcpy(web.lamp, web.found, (size_t)n * sizeof *web.lamp);
     } else
         for (int i = 0; i < n; i++) {
-            if (!is_row(web.row[i]))
-                return set_error("a lamp is out of range");
-            web.lamp[i] = make_lamp(web.row[i], (uint32_t)i + 1);
+            if (!is_lamp_row_valid(web.row[i]))
+                return record_error("a lamp is out of range");
+            web.lamp[i] = read_lamp_row(web.row[i], (uint32_t)i + 1);
         }
     glint_engine_configure(&cfg, &web.options);
     glint_engine_set_light(web.engine, &cfg.light);
     glint_engine_elapsed(web.engine, quick ? QUICK_US : 0);
     if (quick)
         glint_engine_mark_cut(web.engine);
-    return check_status(
+    return record_status(
         glint_engine_draw(web.engine, web.lamp, n, &image, &report));
 }

@@ -37,7 +37,7 @@ __attribute__((format(printf, 1, 2))) static void append(const char *format,
 }
 
 /* Appends KEY and TEXT, which must not contain control characters. */
-static void append_text(const char *key, const char *text)
+static void append_json_text(const char *key, const char *text)
 {
     append("\"%s\":\"", key);
     for (; text && *text; text++)
@@ -45,7 +45,7 @@ static void append_text(const char *key, const char *text)
     append("\",");
 }
 
-static void append_number(const char *key, double value)
+static void append_json_number(const char *key, double value)
 {
     if (isfinite(value))
         append("\"%s\":%.17g,", key, value);
@@ -79,16 +79,16 @@ const char *web_options(void)
     begin_json();
     for (int i = 0; (row = glint_option(i)) != NULL; i++) {
         append("{");
-        append_text("name", row->name);
-        append_text("value", row->value);
-        append_text("accepts", row->accepts);
-        append_text("help", row->help);
-        append_text("text", row->text);
-        append_number("low", row->low);
-        append_number("high", row->high);
-        append_number("initial", row->initial);
-        append_text("type", types[row->type]);
-        append_text("group", groups[row->group]);
+        append_json_text("name", row->name);
+        append_json_text("value", row->value);
+        append_json_text("accepts", row->accepts);
+        append_json_text("help", row->help);
+        append_json_text("text", row->text);
+        append_json_number("low", row->low);
+        append_json_number("high", row->high);
+        append_json_number("initial", row->initial);
+        append_json_text("type", types[row->type]);
+        append_json_text("group", groups[row->group]);
         append("\"changes\":\"%s\"},", changes[row->changes]);
     }
     return end_json();
@@ -99,8 +99,8 @@ const char *web_styles(void)
     begin_json();
     for (const struct style *s = styles; s->name; s++) {
         append("{");
-        append_text("name", s->name);
-        append_text("about", s->about);
+        append_json_text("name", s->name);
+        append_json_text("about", s->about);
         append("\"set\":{");
         for (int i = 0; s->set[i].option; i++)
             append("%s\"%s\":\"%s\"", i ? "," : "", s->set[i].option,
@@ -111,7 +111,7 @@ const char *web_styles(void)
 }
 
 /* Appends the surfaces: radius, thickness, semi-diameter, index behind. */
-static void append_surfaces(const struct glint_prescription *lens)
+static void append_lens_surfaces(const struct glint_prescription *lens)
 {
     append("\"surfaces\":[");
     for (int i = 0; i < lens->n_surfaces; i++) {
@@ -136,19 +136,19 @@ const char *web_lenses(void)
             continue;
         glint_optics_of(lens, &optics);
         append("{");
-        append_text("name", l->name);
-        append_text("folder", l->folder);
-        append_text("source", lens->source);
-        append_text("character", lens->character);
-        append_number("f", lens->f_number);
-        append_number("focal", optics.focal_mm);
-        append_number("filmWidth", lens->film_width_mm);
-        append_number("filmHeight", lens->film_height_mm);
-        append_number("positions", lens->zoom.n_positions);
-        append_number("stopAfter", lens->stop_after);
-        append_number("stopThickness", lens->stop_thickness_mm);
-        append_number("stopSemi", optics.stop_radius_mm);
-        append_surfaces(lens);
+        append_json_text("name", l->name);
+        append_json_text("folder", l->folder);
+        append_json_text("source", lens->source);
+        append_json_text("character", lens->character);
+        append_json_number("f", lens->f_number);
+        append_json_number("focal", optics.focal_mm);
+        append_json_number("filmWidth", lens->film_width_mm);
+        append_json_number("filmHeight", lens->film_height_mm);
+        append_json_number("positions", lens->zoom.n_positions);
+        append_json_number("stopAfter", lens->stop_after);
+        append_json_number("stopThickness", lens->stop_thickness_mm);
+        append_json_number("stopSemi", optics.stop_radius_mm);
+        append_lens_surfaces(lens);
     }
     free(lens);
     return end_json();
