@@ -22,10 +22,10 @@ static char *import_copy(struct imported *lens,
     require(copy != NULL);
     memcpy(copy, data, size);
     *bytes = size;
-    imported_begin(lens, "f", strict);
+    imported_init(lens, "f", strict);
     memcpy(lens->name, "fuzz", 5);
     lens->position = (int)(size % 4);
-    text = import_read(lens, format, copy, bytes);
+    text = import_parse_file(lens, format, copy, bytes);
     free(copy);
     return text;
 }
@@ -42,7 +42,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     if (size < 2 || size > 1 << 16)
         return 0;
-    format = import_format_at((data[0] - 'a') / 2);
+    format = import_get_format((data[0] - 'a') / 2);
     strict = (data[0] - 'a') % 2 == 1;
     if (!format)
         return 0;

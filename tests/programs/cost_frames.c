@@ -121,12 +121,12 @@ static void open_stage(struct stage *s, const struct shape *shape)
         canvas_init(&s->canvas, GLINT_RGB24, shape->width, shape->height) !=
             GLINT_OK)
         exit_with_error(shape->lens);
-    canvas_lamps(s->lamp, shape->n_lamps, shape->angle);
+    canvas_set_lamps(s->lamp, shape->n_lamps, shape->angle);
 }
 
 static void close_stage(struct stage *s)
 {
-    canvas_finish(&s->canvas);
+    canvas_free(&s->canvas);
     glint_frame_finish(&s->frame);
     opened_lens_close(&s->opened.lens);
 }
@@ -173,11 +173,11 @@ static void draw_frame(struct stage *s, const struct shape *shape)
     /* The star's fraction compensates the exposure of the lamps. */
     s->frame.star.share *= exp2(shape->star_stops) /
                            (s->exposure * exp2(shape->stops)) * shape->n_lamps;
-    canvas_fresh(&s->canvas);
+    canvas_restore_background(&s->canvas);
     if (glint_frame_draw(&s->frame, s->lamp, shape->n_lamps, 1,
                          &s->canvas.image, &report) != GLINT_OK)
         exit_with_error("no memory");
-    canvas_fresh(&s->canvas);
+    canvas_restore_background(&s->canvas);
     if (cost_frame(&s->frame, s->lamp, shape->n_lamps, &s->canvas.image,
                    &report) != GLINT_OK)
         exit_with_error("no memory");

@@ -141,7 +141,7 @@ static void fit_axes_to_curve(struct plot *plot, const struct curve *v)
     for (int i = 0; i <= 2 * STEPS; i++) {
         const double x = v->lo + (v->hi - v->lo) * i / (2 * STEPS);
 
-        plot_stretch(plot, x, compute_reflectance_percent(v, x));
+        plot_extend_axes(plot, x, compute_reflectance_percent(v, x));
     }
 }
 
@@ -154,8 +154,9 @@ static void draw_reflectance_curve(const struct plot *plot,
         const double x0 = v->lo + (v->hi - v->lo) * i / N;
         const double x1 = v->lo + (v->hi - v->lo) * (i + 1) / N;
 
-        plot_line(plot, x0, compute_reflectance_percent(v, x0), x1,
-                  compute_reflectance_percent(v, x1), colour, v->kind != 2);
+        plot_draw_line(plot, x0, compute_reflectance_percent(v, x0), x1,
+                       compute_reflectance_percent(v, x1), colour,
+                       v->kind != 2);
     }
 }
 
@@ -166,17 +167,17 @@ static void plot_over_wavelength(const struct coat *c, struct plot *plot)
 
     plot->x.words = "nm";
     plot->y.words = "% reflected, unpolarised";
-    plot_stretch(plot, v.lo, 0);
+    plot_extend_axes(plot, v.lo, 0);
     for (int a = 0; a < c->n_angles; a++) {
         v.fixed = c->angle_deg[a];
         fit_axes_to_curve(plot, &v);
     }
-    plot_frame(plot);
+    plot_draw_frame(plot);
     for (int a = 0; a < c->n_angles; a++) {
         v.fixed = c->angle_deg[a];
-        draw_reflectance_curve(plot, &v, plot_colour(a));
+        draw_reflectance_curve(plot, &v, plot_colour_of_series(a));
         snprintf(words, sizeof words, "%g degrees", v.fixed);
-        plot_key(plot, 's', plot_colour(a), words);
+        plot_draw_legend_entry(plot, 's', plot_colour_of_series(a), words);
     }
 }
 
@@ -191,14 +192,14 @@ static void plot_over_angle(const struct coat *c, struct plot *plot)
     for (int k = 0; k < 6; k++)
         fit_axes_to_curve(plot,
                           &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75});
-    plot_frame(plot);
+    plot_draw_frame(plot);
     for (int k = 0; k < 6; k++)
         draw_reflectance_curve(plot,
                                &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75},
                                colour[k / 2]);
     for (int k = 0; k < 3; k++) {
         snprintf(words, sizeof words, "%g nm", nm[k]);
-        plot_key(plot, 's', colour[k], words);
+        plot_draw_legend_entry(plot, 's', colour[k], words);
     }
 }
 

@@ -54,7 +54,7 @@ struct import {
 
 static bool parse_import_format(struct import *o, const char *value)
 {
-    for (int k = 0; (o->format = import_format_at(k)) != NULL; k++)
+    for (int k = 0; (o->format = import_get_format(k)) != NULL; k++)
         if (strcmp(o->format->name, value) == 0)
             return true;
     return false;
@@ -123,7 +123,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     if (!o->output)
         return tool_usage(tool, "needs -o, a .lens");
     if (!o->format)
-        o->format = import_format_of(argv[optind]);
+        o->format = import_find_format(argv[optind]);
     if (!o->format)
         return tool_usage(tool,
                           "%s: the format is ambiguous; choose --format %s",
@@ -243,13 +243,13 @@ static int import_lens_file(struct tool *tool, struct import *o,
         free(data);
         return tool_fail(tool, status, error.text);
     }
-    imported_begin(&o->lens, path, o->strict);
+    imported_init(&o->lens, path, o->strict);
     set_lens_name(o->lens.name, strcmp(o->output, "-") == 0 ? path : o->output);
     memcpy(o->lens.film_mm, o->film_mm, sizeof o->film_mm);
     o->lens.f_number_given = o->f_number;
     o->lens.position = o->position;
     o->lens.key = o->key;
-    text = import_read(&o->lens, o->format, data, &bytes);
+    text = import_parse_file(&o->lens, o->format, data, &bytes);
     free(data);
     imported_sort_notes(&o->lens);
     print_import_notes(tool, &o->lens);

@@ -110,7 +110,7 @@ struct file {
 static const struct file files[] = {{"sweep.csv", sweep_write_csv},
                                     {"front.svg", sweep_write_front_svg},
                                     {"dials.svg", sweep_write_dials_svg},
-                                    {"table.md", sweep_names},
+                                    {"table.md", sweep_write_name_table},
                                     {"index.html", sweep_write_page}};
 
 static int save_sweep_file(const struct sweep *s, const char *folder,
@@ -135,7 +135,7 @@ static int save_all_sweep_files(const struct sweep *s, const char *folder)
     if (code == EXIT_OK && s->tool->json)
         sweep_write_json(s, stdout);
     else if (code == EXIT_OK && !s->tool->quiet)
-        sweep_names(s, stdout);
+        sweep_write_name_table(s, stdout);
     return code;
 }
 
@@ -186,7 +186,7 @@ static int run_sweep(struct sweep *s, const struct asked *a)
     if (code != EXIT_OK)
         return code;
     add_requested_cases(s, a);
-    if (sweep_plan(s) != GLINT_OK)
+    if (sweep_plan_points(s) != GLINT_OK)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     s->counter = glint_instructions_open();
     code = measure_sweep_cases(s);

@@ -287,9 +287,9 @@ static enum glint_status write_item_file(const struct synth_set *set,
 
     make_item_file_path(path, set->folder, file, (int)item->number, set->type);
     if (file->layers)
-        synth_sum(d, file->layers, rgb);
+        synth_sum_layers(d, file->layers, rgb);
     if (file->is_noisy)
-        synth_noise(item, rgb);
+        synth_add_noise(item, rgb);
     if (file->layers) {
         codes = glint_measure_encode(&light, 1);
     } else if ((codes = malloc(n))) {
@@ -618,7 +618,7 @@ static int parse_parameter_range(const struct tool *tool, struct synth *s,
         synth_ranges_print(stdout, &s->ranges);
         return EXIT_OK;
     }
-    return synth_ranges_take(&s->ranges, text, &why)
+    return synth_ranges_parse(&s->ranges, text, &why)
                ? -1
                : tool_usage(tool, "--range: %s", why.text);
 }
@@ -762,8 +762,8 @@ static int draw_item(const struct tool *tool, struct synth *s,
                      const struct synth_item *item)
 {
     struct synth_result result;
-    const int code = synth_draw(tool, &s->lenses, &s->backgrounds, item,
-                                &s->drawing, &result);
+    const int code = synth_draw_item(tool, &s->lenses, &s->backgrounds, item,
+                                     &s->drawing, &result);
 
     return code == EXIT_OK
                ? write_item_files(tool, &s->set, item, &result, &s->drawing)

@@ -22,12 +22,12 @@ static const struct import_format formats[] = {
 
 enum { N_FORMATS = sizeof formats / sizeof *formats };
 
-const struct import_format *import_format_at(int k)
+const struct import_format *import_get_format(int k)
 {
     return k >= 0 && k < N_FORMATS ? &formats[k] : NULL;
 }
 
-const struct import_format *import_format_of(const char *name)
+const struct import_format *import_find_format(const char *name)
 {
     const char *end = strrchr(name, '.');
 
@@ -78,24 +78,25 @@ static void decode_text(uint8_t *data, size_t *bytes)
     convert_line_ends(data, *bytes);
 }
 
-char *import_read(struct imported *lens, const struct import_format *format,
-                  uint8_t *data, size_t *bytes)
+char *import_parse_file(struct imported *lens,
+                        const struct import_format *format, uint8_t *data,
+                        size_t *bytes)
 {
     lens->format = format->name;
     decode_text(data, bytes);
     if (*bytes && memchr(data, 0, *bytes)) {
-        imported_fail(lens, 0, "is not a text file");
+        imported_report_error(lens, 0, "is not a text file");
         return NULL;
     }
     if (!format->read(lens, (const char *)data, *bytes) || lens->error[0])
         return NULL;
     if (lens->key && !lens->keyed) {
-        imported_fail(lens, 0, "has one lens; --lens is not needed");
+        imported_report_error(lens, 0, "has one lens; --lens is not needed");
         return NULL;
     }
     if (lens->position > 1 && !lens->chosen) {
-        imported_fail(lens, 0, "position %d of 1", lens->position);
+        imported_report_error(lens, 0, "position %d of 1", lens->position);
         return NULL;
     }
-    return imported_finish(lens, bytes);
+    return imported_write_table(lens, bytes);
 }

@@ -13,7 +13,7 @@
 #define LINE_D_NM 587.5618
 #define LINE_F_NM 486.1327
 
-void imported_begin(struct imported *lens, const char *file, bool strict)
+void imported_init(struct imported *lens, const char *file, bool strict)
 {
     memset(lens, 0, sizeof *lens);
     lens->file = file;
@@ -22,8 +22,8 @@ void imported_begin(struct imported *lens, const char *file, bool strict)
 }
 
 /* Sets the error, unless there is one already. */
-static void set_error(struct imported *lens, int line, const char *format,
-                      va_list values)
+static void set_first_error(struct imported *lens, int line, const char *format,
+                            va_list values)
 {
     int n;
 
@@ -40,19 +40,20 @@ static void set_error(struct imported *lens, int line, const char *format,
         memcpy(lens->error + sizeof lens->error - 4, "...", 4);
 }
 
-bool imported_fail(struct imported *lens, int line, const char *format, ...)
+bool imported_report_error(struct imported *lens, int line, const char *format,
+                           ...)
 {
     va_list values;
 
     va_start(values, format);
-    set_error(lens, line, format, values);
+    set_first_error(lens, line, format, values);
     va_end(values);
     return false;
 }
 
-bool imported_empty(struct imported *lens)
+bool imported_report_no_surfaces(struct imported *lens)
 {
-    return imported_fail(
+    return imported_report_error(
         lens, 0, "no surfaces were found; the file was read as %s (--format)",
         lens->format);
 }
@@ -71,7 +72,7 @@ static void add_note(struct imported *lens, int line, bool guess,
     }
 }
 
-bool imported_note(struct imported *lens, int line, const char *format, ...)
+bool imported_add_note(struct imported *lens, int line, const char *format, ...)
 {
     va_list values;
 
@@ -92,7 +93,8 @@ static void add_remark(struct imported *lens, int line, const char *format, ...)
     va_end(values);
 }
 
-bool imported_unread(struct imported *lens, int line, const char *word)
+bool imported_note_unread_word(struct imported *lens, int line,
+                               const char *word)
 {
     char text[IMPORT_TEXT];
 
@@ -100,32 +102,33 @@ bool imported_unread(struct imported *lens, int line, const char *word)
     for (int k = 0; k < lens->n_notes && k < IMPORT_NOTES; k++)
         if (strcmp(lens->note[k].text, text) == 0)
             return true;
-    return imported_note(lens, line, "%s", text);
+    return imported_add_note(lens, line, "%s", text);
 }
 
-void imported_object(struct imported *lens, int line, double distance)
+void imported_set_object(struct imported *lens, int line, double distance)
 {
     lens->object_near = fabs(distance) <= 1e8;
     lens->object_line = line;
     lens->object = distance;
 }
 
-bool imported_unit(struct imported *lens, int line, double mm)
+bool imported_set_unit(struct imported *lens, int line, double mm)
 {
     lens->unit_mm = mm;
     lens->unit_said = true;
-    return mm > 0 || imported_fail(lens, line, "unit %g is not a length", mm);
+    return mm > 0 ||
+           imported_report_error(lens, line, "unit %g is not a length", mm);
 }
 
-void imported_image(struct imported *lens, int line, double radius,
-                    double defocus)
+void imported_set_image_surface(struct imported *lens, int line, double radius,
+                                double defocus)
 {
     /* Some programs write planes with a radius that is too large for tables. */
     if (radius != 0 && fabs(radius) * lens->unit_mm < 1e9)
-        imported_note(lens, line,
-                      "the image surface is curved, radius %.6g mm; a flat "
-                      "sensor is assumed",
-                      radius * lens->unit_mm);
+        imported_add_note(lens, line,
+                          "the image surface is curved, radius %.6g mm; a flat "
+                          "sensor is assumed",
+                          radius * lens->unit_mm);
     if (defocus == 0)
         return;
     lens->surface[lens->n - 1].thickness += defocus;
@@ -135,23 +138,23 @@ void imported_image(struct imported *lens, int line, double radius,
                defocus * lens->unit_mm);
 }
 
-bool imported_need_unit(struct imported *lens, const char *word)
+bool imported_note_missing_unit(struct imported *lens, const char *word)
 {
     return lens->unit_said ||
-           imported_note(lens, 0, "no %s line: lengths are assumed to be in mm",
-                         word);
+           imported_add_note(
+               lens, 0, "no %s line: lengths are assumed to be in mm", word);
 }
 
-bool imported_choose(struct imported *lens, int line, int n, int *at)
+bool imported_choose_position(struct imported *lens, int line, int n, int *at)
 {
     lens->chosen = true;
     if (lens->position > n)
-        return imported_fail(lens, line, "position %d of %d", lens->position,
-                             n);
+        return imported_report_error(lens, line, "position %d of %d",
+                                     lens->position, n);
     *at = lens->position > 0 ? lens->position - 1 : 0;
     return lens->position > 0 || n == 1 ||
-           imported_note(lens, line,
-                         "the first of %d positions is used (--position)", n);
+           imported_add_note(
+               lens, line, "the first of %d positions is used (--position)", n);
 }
 
 void imported_sort_notes(struct imported *lens)
@@ -170,12 +173,13 @@ void imported_sort_notes(struct imported *lens)
         }
 }
 
-struct imported_surface *imported_add(struct imported *lens, int line)
+struct imported_surface *imported_add_surface(struct imported *lens, int line)
 {
     struct imported_surface *s = &lens->surface[lens->n];
 
     if (lens->n == IMPORT_SURFACES) {
-        imported_fail(lens, line, "more than %d surfaces", IMPORT_SURFACES);
+        imported_report_error(lens, line, "more than %d surfaces",
+                              IMPORT_SURFACES);
         return NULL;
     }
     *s = (struct imported_surface){.line = line, .nd = 1};
@@ -187,7 +191,8 @@ struct imported_surface *imported_add(struct imported *lens, int line)
 
 /* Sets NAME to the glass of S in capitals. If a maker known to the catalogue
  * follows the last '_', cuts it off and returns it; else returns "". */
-static const char *strip_maker(const struct imported_surface *s, char name[32])
+static const char *strip_glass_maker(const struct imported_surface *s,
+                                     char name[32])
 {
     const struct glint_glass *glass;
     const char *maker = strrchr(s->glass, '_');
@@ -239,7 +244,8 @@ catalogue_glass(const char *name, const char *maker, bool *succeeds)
     return successor;
 }
 
-static double compute_index(const struct glint_glass *glass, double nm)
+static double compute_refractive_index(const struct glint_glass *glass,
+                                       double nm)
 {
     struct glint_surface medium = {.nd = 1};
 
@@ -247,36 +253,38 @@ static double compute_index(const struct glint_glass *glass, double nm)
     return glint_surface_index(&medium, nm);
 }
 
-static double compute_abbe(const struct glint_glass *glass)
+static double compute_abbe_number(const struct glint_glass *glass)
 {
-    return (compute_index(glass, LINE_D_NM) - 1) /
-           (compute_index(glass, LINE_F_NM) - compute_index(glass, LINE_C_NM));
+    return (compute_refractive_index(glass, LINE_D_NM) - 1) /
+           (compute_refractive_index(glass, LINE_F_NM) -
+            compute_refractive_index(glass, LINE_C_NM));
 }
 
 /* Guesses the Abbe number of S from its index: from the glass of the catalogue
  * whose index agrees to the fifth decimal, else from the line of normal
  * glasses. */
-static double guess_abbe(struct imported *lens,
-                         const struct imported_surface *s)
+static double guess_abbe_number(struct imported *lens,
+                                const struct imported_surface *s)
 {
     const struct glint_glass *glass;
     const bool is_fine = fabs(s->nd * 1e4 - round(s->nd * 1e4)) > 0.05;
     double vd;
 
     for (int k = 0; is_fine && (glass = glint_glass_at(k)) != NULL; k++) {
-        if (fabs(compute_index(glass, LINE_D_NM) - s->nd) > 6e-6)
+        if (fabs(compute_refractive_index(glass, LINE_D_NM) - s->nd) > 6e-6)
             continue;
-        vd = compute_abbe(glass);
-        imported_note(lens, s->line,
-                      "no Abbe number for index %.9g: %.1f assumed, that of "
-                      "%s, which has this index",
-                      s->nd, vd, glass->name);
+        vd = compute_abbe_number(glass);
+        imported_add_note(
+            lens, s->line,
+            "no Abbe number for index %.9g: %.1f assumed, that of "
+            "%s, which has this index",
+            s->nd, vd, glass->name);
         return vd;
     }
     /* Schott's line of normal glasses, from K7 to F2. */
     vd = 60.5 - 24.2 * (s->nd - 1.511) / 0.109;
     vd = vd > 70 ? 70 : vd < 22 ? 22 : vd;
-    imported_note(
+    imported_add_note(
         lens, s->line,
         "no Abbe number for index %g: %.1f assumed, that of ordinary glass",
         s->nd, vd);
@@ -290,34 +298,36 @@ static bool set_medium_by_numbers(struct imported *lens,
 
     s->index = s->nd;
     if (!(s->nd >= 1.01 && s->nd <= 4))
-        return imported_fail(lens, s->line, "index %g is not that of a glass",
-                             s->nd);
+        return imported_report_error(lens, s->line,
+                                     "index %g is not that of a glass", s->nd);
     if (!(vd > 0))
-        vd = guess_abbe(lens, s);
+        vd = guess_abbe_number(lens, s);
     else if (!(vd >= 10 && vd <= 150))
-        return imported_fail(lens, s->line,
-                             "Abbe number %g is not that of a glass", vd);
+        return imported_report_error(
+            lens, s->line, "Abbe number %g is not that of a glass", vd);
     snprintf(s->medium, sizeof s->medium, "%.9g %.6g", s->nd, vd);
     return true;
 }
 
 /* Adds a note if index or Abbe number of the file differ from the catalogue's
  * values of GLASS. */
-static void check_numbers(struct imported *lens,
-                          const struct imported_surface *s,
-                          const struct glint_glass *glass)
+static void check_index_and_abbe(struct imported *lens,
+                                 const struct imported_surface *s,
+                                 const struct glint_glass *glass)
 {
-    const double nd = compute_index(glass, LINE_D_NM);
-    const double vd = compute_abbe(glass);
+    const double nd = compute_refractive_index(glass, LINE_D_NM);
+    const double vd = compute_abbe_number(glass);
 
     if (!(fabs(s->nd - nd) < 2e-3 && fabs(s->vd / vd - 1) < 0.02))
-        imported_note(lens, s->line,
-                      "index %g and Abbe number %g contradict glass %s, which "
-                      "has %.5f and %.2f; the values of the glass are used",
-                      s->nd, s->vd, glass->name, nd, vd);
+        imported_add_note(
+            lens, s->line,
+            "index %g and Abbe number %g contradict glass %s, which "
+            "has %.5f and %.2f; the values of the glass are used",
+            s->nd, s->vd, glass->name, nd, vd);
 }
 
-static bool set_medium(struct imported *lens, struct imported_surface *s)
+static bool set_surface_medium(struct imported *lens,
+                               struct imported_surface *s)
 {
     const bool has_numbers = s->nd > 1.01 && s->vd > 0;
     const struct glint_glass *glass;
@@ -329,35 +339,36 @@ static bool set_medium(struct imported *lens, struct imported_surface *s)
     snprintf(s->medium, sizeof s->medium, "air");
     if (!s->glass[0])
         return s->nd == 1 || set_medium_by_numbers(lens, s);
-    maker = strip_maker(s, name);
+    maker = strip_glass_maker(s, name);
     glass = catalogue_glass(name, maker, &succeeds);
     if ((!glass || succeeds) && has_numbers)
         return set_medium_by_numbers(lens, s);
     if (!glass) {
         glass = glint_glass_near(name, strlen(name));
-        return imported_fail(lens, s->line,
-                             "glass '%s' is not in the catalogue, and the file "
-                             "does not state its index%s%s%s",
-                             s->glass, glass ? "; did they mean " : "",
-                             glass ? glass->name : "", glass ? "?" : "");
+        return imported_report_error(
+            lens, s->line,
+            "glass '%s' is not in the catalogue, and the file "
+            "does not state its index%s%s%s",
+            s->glass, glass ? "; did they mean " : "", glass ? glass->name : "",
+            glass ? "?" : "");
     }
     if (succeeds)
-        imported_note(
+        imported_add_note(
             lens, s->line,
             "glass %s is not in the catalogue; its successor %s is used",
             s->glass, glass->name);
     if (has_numbers)
-        check_numbers(lens, s, glass);
-    s->index = compute_index(glass, LINE_D_NM);
+        check_index_and_abbe(lens, s, glass);
+    s->index = compute_refractive_index(glass, LINE_D_NM);
     snprintf(s->medium, sizeof s->medium, "%s", glass->name);
     return true;
 }
 
 /* Sets medium and index behind each surface from glass names and numbers. */
-static bool set_media(struct imported *lens)
+static bool set_all_media(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++)
-        if (!set_medium(lens, &lens->surface[k]))
+        if (!set_surface_medium(lens, &lens->surface[k]))
             return false;
     return true;
 }
@@ -369,7 +380,7 @@ static bool set_media(struct imported *lens)
 
 /* A paraxial ray and its heights. */
 struct thin_ray {
-    /* height and slope before the first surface; after trace_thin_ray(),
+    /* height and slope before the first surface; after trace_paraxial_ray(),
      * behind the last */
     double y, u;
     double height[IMPORT_SURFACES]; /* height at each surface */
@@ -388,7 +399,8 @@ static double paraxial_curvature(const struct imported_surface *s)
 }
 
 /* Traces RAY through all surfaces. */
-static void trace_thin_ray(const struct imported *lens, struct thin_ray *ray)
+static void trace_paraxial_ray(const struct imported *lens,
+                               struct thin_ray *ray)
 {
     double n = 1;
 
@@ -408,7 +420,7 @@ static void trace_thin_ray(const struct imported *lens, struct thin_ray *ray)
 /* --------------------------------------------------------------- dummies */
 
 /* Returns whether the same medium is on both sides of surface K. */
-static bool is_dummy(const struct imported *lens, int k)
+static bool is_dummy_surface(const struct imported *lens, int k)
 {
     const struct imported_surface *s = &lens->surface[k];
 
@@ -416,14 +428,14 @@ static bool is_dummy(const struct imported *lens, int k)
 }
 
 /* Removes surfaces with the same medium on both sides, except the stop. */
-static bool drop_dummies(struct imported *lens)
+static bool remove_dummy_surfaces(struct imported *lens)
 {
     int n = 0, line = 0;
 
     for (int k = 0; k < lens->n;) {
         struct imported_surface *s = &lens->surface[k];
 
-        if (s->stop || !is_dummy(lens, k)) {
+        if (s->stop || !is_dummy_surface(lens, k)) {
             k++;
             continue;
         }
@@ -438,14 +450,15 @@ static bool drop_dummies(struct imported *lens)
                    "the same medium on both sides: left out%s, which "
                    "changes nothing",
                    n > 1 ? ", and others like it" : "");
-    return lens->n > 0 || imported_fail(lens, 0, "there is no glass in it");
+    return lens->n > 0 ||
+           imported_report_error(lens, 0, "there is no glass in it");
 }
 
 /* ------------------------------------------------------------------ stop */
 
 /* Returns the sag of S at height H, in the file's unit. Beyond a sphere's
  * equator returns the sag at the equator. */
-static double compute_sag(const struct imported_surface *s, double h)
+static double compute_surface_sag(const struct imported_surface *s, double h)
 {
     const double c = compute_curvature(s);
     const double root = 1 - (1 + s->shape.conic) * c * c * h * h;
@@ -456,10 +469,11 @@ static double compute_sag(const struct imported_surface *s, double h)
     return c * h * h / (1 + sqrt(root > 0 ? root : 0)) + terms * h * h;
 }
 
-static bool insert_stop(struct imported *lens, int k)
+static bool insert_stop_surface(struct imported *lens, int k)
 {
     if (lens->n == IMPORT_SURFACES)
-        return imported_fail(lens, 0, "more than %d surfaces", IMPORT_SURFACES);
+        return imported_report_error(lens, 0, "more than %d surfaces",
+                                     IMPORT_SURFACES);
     memmove(&lens->surface[k + 1], &lens->surface[k],
             (size_t)(lens->n - k) * sizeof lens->surface[0]);
     lens->n++;
@@ -473,7 +487,7 @@ static bool move_stop_to_air(struct imported *lens, int k)
 {
     struct imported_surface *s = &lens->surface[k], stop = *s;
     const bool behind = strcmp(s->medium, "air") == 0;
-    const double rim = compute_sag(s, s->semi);
+    const double rim = compute_surface_sag(s, s->semi);
     double off = behind ? fmax(0, rim) : fmin(0, rim);
 
     if (behind && off > s->thickness)
@@ -493,19 +507,19 @@ static bool move_stop_to_air(struct imported *lens, int k)
                  k > 0 ? s[-1].medium : "air");
         stop.index = k > 0 ? s[-1].index : 1;
     }
-    if (!insert_stop(lens, behind ? k + 1 : k))
+    if (!insert_stop_surface(lens, behind ? k + 1 : k))
         return false;
     lens->surface[behind ? k + 1 : k] = stop;
     /* A guessed stop has a note already. */
     return lens->stop_guessed ||
-           imported_note(lens, stop.line,
-                         "the stop is a glass surface; it is moved %.3g %s it, "
-                         "to the surface's rim",
-                         fabs(off) * lens->unit_mm,
-                         behind ? "mm behind" : "mm before");
+           imported_add_note(
+               lens, stop.line,
+               "the stop is a glass surface; it is moved %.3g %s it, "
+               "to the surface's rim",
+               fabs(off) * lens->unit_mm, behind ? "mm behind" : "mm before");
 }
 
-static int find_stop(const struct imported *lens)
+static int find_stop_surface(const struct imported *lens)
 {
     int k = 0;
 
@@ -515,17 +529,17 @@ static int find_stop(const struct imported *lens)
 }
 
 /* Moves the stop into the air if it is on a glass surface. */
-static bool separate_stop(struct imported *lens)
+static bool separate_stop_from_glass(struct imported *lens)
 {
-    const int at = find_stop(lens);
+    const int at = find_stop_surface(lens);
 
-    return is_dummy(lens, at) || move_stop_to_air(lens, at);
+    return is_dummy_surface(lens, at) || move_stop_to_air(lens, at);
 }
 
 /* Finds the stop and separates it from a glass surface. If its semi-diameter
  * is not stated, the separation is done later, as it needs the surface's
  * rim. */
-static bool place_stop(struct imported *lens)
+static bool place_stop_surface(struct imported *lens)
 {
     int at = -1;
 
@@ -533,17 +547,19 @@ static bool place_stop(struct imported *lens)
         if (!lens->surface[k].stop)
             continue;
         if (at >= 0)
-            return imported_fail(lens, lens->surface[k].line,
-                                 "a second stop; the first is on line %d",
-                                 lens->surface[at].line);
+            return imported_report_error(
+                lens, lens->surface[k].line,
+                "a second stop; the first is on line %d",
+                lens->surface[at].line);
         at = k;
     }
     if (at < 0) {
-        imported_note(lens, 0, "no stop is stated; it is assumed at the front");
+        imported_add_note(lens, 0,
+                          "no stop is stated; it is assumed at the front");
         lens->surface[0].stop = lens->stop_guessed = true;
         at = 0;
     }
-    return !(lens->surface[at].semi > 0) || separate_stop(lens);
+    return !(lens->surface[at].semi > 0) || separate_stop_from_glass(lens);
 }
 
 /* ------------------------------------------------------------------ film */
@@ -552,13 +568,13 @@ static double compute_focal_length(const struct imported *lens)
 {
     struct thin_ray ray = {.y = 1};
 
-    trace_thin_ray(lens, &ray);
+    trace_paraxial_ray(lens, &ray);
     return ray.u != 0 ? -1 / ray.u : 0;
 }
 
 /* Sets the film to a 3 : 2 rectangle within the lens's image circle, unless the
  * file states it. */
-static void set_film(struct imported *lens, double focal_units)
+static void set_film_size(struct imported *lens, double focal_units)
 {
     double half = lens->height;
 
@@ -570,28 +586,28 @@ static void set_film(struct imported *lens, double focal_units)
     if (!(half > 0.05)) {
         lens->film_mm[0] = 36;
         lens->film_mm[1] = 24;
-        imported_note(lens, 0,
-                      "no field is stated; film 36x24 mm is assumed (--film)");
+        imported_add_note(
+            lens, 0, "no field is stated; film 36x24 mm is assumed (--film)");
         return;
     }
     lens->film_mm[0] = 2 * half * 3 / sqrt(13);
     lens->film_mm[1] = 2 * half * 2 / sqrt(13);
-    imported_note(lens, 0,
-                  "film %.4g x %.4g mm is assumed, 3:2 within the image of "
-                  "%.4g mm (--film)",
-                  lens->film_mm[0], lens->film_mm[1], 2 * half);
+    imported_add_note(lens, 0,
+                      "film %.4g x %.4g mm is assumed, 3:2 within the image of "
+                      "%.4g mm (--film)",
+                      lens->film_mm[0], lens->film_mm[1], 2 * half);
 }
 
 /* ------------------------------------------------------------- openings */
 
 /* Computes the f-number from the pupil diameter or vice versa; both from the
  * stop's semi-diameter if the file states neither. */
-static bool set_pupil(struct imported *lens, double focal_units)
+static bool set_pupil_and_f_number(struct imported *lens, double focal_units)
 {
-    const int stop = find_stop(lens);
+    const int stop = find_stop_surface(lens);
     struct thin_ray ray = {.y = 1};
 
-    trace_thin_ray(lens, &ray);
+    trace_paraxial_ray(lens, &ray);
     if (lens->f_number_given > 0)
         lens->f_number = lens->f_number_given;
     if (lens->f_number > 0)
@@ -605,35 +621,36 @@ static bool set_pupil(struct imported *lens, double focal_units)
          * stop. */
         lens->f_number = ceil(lens->f_number * 1000) / 1000;
         lens->pupil = focal_units / lens->f_number;
-        return imported_note(lens, lens->surface[stop].line,
-                             "f/%g is assumed, the stop's full opening",
-                             lens->f_number);
+        return imported_add_note(lens, lens->surface[stop].line,
+                                 "f/%g is assumed, the stop's full opening",
+                                 lens->f_number);
     } else
-        return imported_fail(lens, 0,
-                             "the file states neither f-number, pupil nor the "
-                             "size of the stop (--f-number)");
+        return imported_report_error(
+            lens, 0,
+            "the file states neither f-number, pupil nor the "
+            "size of the stop (--f-number)");
     return true;
 }
 
 /* Sets missing semi-diameters to the heights of two paraxial rays: from the
  * pupil's rim, and from the edge of the field. */
-static void set_semis(struct imported *lens)
+static void set_missing_semi_diameters(struct imported *lens)
 {
-    const int stop = find_stop(lens);
+    const int stop = find_stop_surface(lens);
     struct thin_ray rim = {.y = lens->pupil / 2}, chief = {.u = 0.01};
     struct thin_ray slant = {.u = 0.01};
     double field, start;
     int n = 0;
 
-    trace_thin_ray(lens, &rim);
-    trace_thin_ray(lens, &slant);
+    trace_paraxial_ray(lens, &rim);
+    trace_paraxial_ray(lens, &slant);
     /* The chief ray is the combination of both rays with height 0 at the
      * stop. */
     start = rim.height[stop] != 0
                 ? -slant.height[stop] / rim.height[stop] * lens->pupil / 2
                 : 0;
     chief.y = start;
-    trace_thin_ray(lens, &chief);
+    trace_paraxial_ray(lens, &chief);
     field = hypot(lens->film_mm[0], lens->film_mm[1]) / 2 / lens->unit_mm /
             fabs(compute_focal_length(lens)) / 0.01;
     for (int k = 0; k < lens->n; k++) {
@@ -646,22 +663,22 @@ static void set_semis(struct imported *lens)
             n++;
         }
         if (s->semi < (1 - 1e-5) * least)
-            imported_note(lens, s->line,
-                          "the stop's semi-diameter is %.6g mm, but f/%.4g "
-                          "needs %.6g, which is used",
-                          s->semi * lens->unit_mm, lens->f_number,
-                          least * lens->unit_mm);
+            imported_add_note(lens, s->line,
+                              "the stop's semi-diameter is %.6g mm, but f/%.4g "
+                              "needs %.6g, which is used",
+                              s->semi * lens->unit_mm, lens->f_number,
+                              least * lens->unit_mm);
         s->semi = fmax(s->semi, least);
     }
     if (n > 0)
-        imported_note(
+        imported_add_note(
             lens, 0,
             "%d surface%s no semi-diameter; those of paraxial rays are used", n,
             n == 1 ? " has" : "s have");
 }
 
 /* Reduces semi-diameters that are larger than the sphere or conic itself. */
-static void cut_semis(struct imported *lens)
+static void limit_semi_diameters(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++) {
         struct imported_surface *s = &lens->surface[k];
@@ -670,83 +687,88 @@ static void cut_semis(struct imported *lens)
                                 : (double)INFINITY;
 
         if (s->radius != 0 && s->semi >= size) {
-            imported_note(lens, s->line,
-                          "semi-diameter %.6g of a surface that ends at %.6g; "
-                          "%.6g is used",
-                          s->semi, size, 0.98 * size);
+            imported_add_note(
+                lens, s->line,
+                "semi-diameter %.6g of a surface that ends at %.6g; "
+                "%.6g is used",
+                s->semi, size, 0.98 * size);
             s->semi = 0.98 * size;
         }
     }
 }
 
-double imported_gap(const struct imported_surface *s, double h)
+double imported_gap_at_height(const struct imported_surface *s, double h)
 {
-    return s->thickness + compute_sag(s + 1, h) - compute_sag(s, h);
+    return s->thickness + compute_surface_sag(s + 1, h) -
+           compute_surface_sag(s, h);
 }
 
 /* Reduces semi-diameters where neighbouring surfaces cross, as those of thin
  * lenses may do with estimated semi-diameters. */
-static bool separate_rims(struct imported *lens)
+static bool separate_surface_rims(struct imported *lens)
 {
     for (int k = 0; k + 1 < lens->n; k++) {
         struct imported_surface *s = &lens->surface[k];
         double low = 0, high = IMPORT_FREE * fmin(s[0].semi, s[1].semi), semi;
 
-        if (imported_gap(s, high) >= 0 || imported_gap(s, 0) < 0 || s[0].stop ||
-            s[1].stop)
+        if (imported_gap_at_height(s, high) >= 0 ||
+            imported_gap_at_height(s, 0) < 0 || s[0].stop || s[1].stop)
             continue;
         for (int i = 0; i < 40; i++) {
             const double middle = 0.5 * (low + high);
 
-            if (imported_gap(s, middle) < 0)
+            if (imported_gap_at_height(s, middle) < 0)
                 high = middle;
             else
                 low = middle;
         }
         semi = low / IMPORT_FREE;
         if (semi * lens->unit_mm < 0.01)
-            return imported_fail(lens, s->line,
-                                 "the next surface, %.6g mm behind this, "
-                                 "crosses it next to the axis",
-                                 s->thickness * lens->unit_mm);
-        imported_note(lens, s->line,
-                      "the next surface crosses this one at its rim; "
-                      "semi-diameters of %.6g mm are used",
-                      semi * lens->unit_mm);
+            return imported_report_error(
+                lens, s->line,
+                "the next surface, %.6g mm behind this, "
+                "crosses it next to the axis",
+                s->thickness * lens->unit_mm);
+        imported_add_note(lens, s->line,
+                          "the next surface crosses this one at its rim; "
+                          "semi-diameters of %.6g mm are used",
+                          semi * lens->unit_mm);
         for (int i = 0; i < 2; i++)
             s[i].semi = fmin(s[i].semi, semi);
     }
     return true;
 }
 
-static bool set_focus(struct imported *lens)
+static bool set_focus_distance(struct imported *lens)
 {
     struct thin_ray ray = {.y = 1};
     struct imported_surface *last = &lens->surface[lens->n - 1];
     double behind;
 
-    trace_thin_ray(lens, &ray);
+    trace_paraxial_ray(lens, &ray);
     behind = ray.u != 0 ? -ray.y / ray.u : 0;
     if (last->thickness > 0)
         return true;
     if (!(behind > 0))
-        return imported_fail(lens, last->line,
-                             "no distance to the sensor, and the paraxial "
-                             "focus lies %.6g mm before the last surface",
-                             -behind * lens->unit_mm);
+        return imported_report_error(
+            lens, last->line,
+            "no distance to the sensor, and the paraxial "
+            "focus lies %.6g mm before the last surface",
+            -behind * lens->unit_mm);
     last->thickness = behind;
-    return imported_note(lens, last->line,
-                         "no distance to the sensor is stated; the paraxial "
-                         "focus is used, %.6g mm",
-                         behind * lens->unit_mm);
+    return imported_add_note(
+        lens, last->line,
+        "no distance to the sensor is stated; the paraxial "
+        "focus is used, %.6g mm",
+        behind * lens->unit_mm);
 }
 
 /* Adds a note that light comes from infinity if the file has a near object,
  * and a note that the sensor is not refocused if the file has a defocus. */
-static void note_object(struct imported *lens)
+static void note_object_and_image(struct imported *lens)
 {
     if (lens->object_near)
-        imported_note(
+        imported_add_note(
             lens, lens->object_line,
             "the object is %g mm away; light from infinity is assumed%s",
             lens->object * lens->unit_mm,
@@ -761,28 +783,29 @@ static bool check_thicknesses(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++)
         if (!(lens->surface[k].thickness >= 0) &&
-            !(k == 0 && lens->surface[0].stop && is_dummy(lens, 0) &&
+            !(k == 0 && lens->surface[0].stop && is_dummy_surface(lens, 0) &&
               isfinite(lens->surface[0].thickness)))
-            return imported_fail(lens, lens->surface[k].line,
-                                 "thickness %g runs backwards",
-                                 lens->surface[k].thickness);
+            return imported_report_error(lens, lens->surface[k].line,
+                                         "thickness %g runs backwards",
+                                         lens->surface[k].thickness);
     return true;
 }
 
-static bool check_end(struct imported *lens)
+static bool check_last_surface(struct imported *lens)
 {
     const struct imported_surface *last = &lens->surface[lens->n - 1];
 
     return strcmp(last->medium, "air") == 0 ||
-           imported_fail(lens, last->line,
-                         "there is glass behind the last surface; a surface is "
-                         "missing, as the sensor is in air");
+           imported_report_error(
+               lens, last->line,
+               "there is glass behind the last surface; a surface is "
+               "missing, as the sensor is in air");
 }
 
 /* Rejects an f-number set by the user whose beam does not fit through the
  * front surface. The file's f-number is not checked, as stops of published
  * lenses are often slightly wider than their fronts. */
-static bool check_front(struct imported *lens, double focal_units)
+static bool check_front_aperture(struct imported *lens, double focal_units)
 {
     const double slack = 1.01; /* semi-diameters are rounded */
     const struct imported_surface *front = lens->surface;
@@ -791,7 +814,7 @@ static bool check_front(struct imported *lens, double focal_units)
         front++;
     if (!(lens->f_number_given > 0) || lens->pupil / 2 <= front->semi * slack)
         return true;
-    return imported_fail(
+    return imported_report_error(
         lens, front->line,
         "f/%.4g needs a front semi-diameter of %.4g mm, but the front has "
         "%.4g; the lens cannot be faster than f/%g",
@@ -805,41 +828,41 @@ static bool complete_lens(struct imported *lens)
 {
     double f;
 
-    if (!set_media(lens) || !drop_dummies(lens) || !check_thicknesses(lens) ||
-        !check_end(lens))
+    if (!set_all_media(lens) || !remove_dummy_surfaces(lens) ||
+        !check_thicknesses(lens) || !check_last_surface(lens))
         return false;
-    note_object(lens);
-    if (!place_stop(lens))
+    note_object_and_image(lens);
+    if (!place_stop_surface(lens))
         return false;
     f = compute_focal_length(lens);
     if (lens->nominal > 0 && fabs(f / lens->nominal - 1) > 0.02)
-        imported_note(lens, 0,
-                      "its focal length is %.6g mm, not the stated %.6g: "
-                      "there may be a misprint (glint lint)",
-                      f * lens->unit_mm, lens->nominal * lens->unit_mm);
+        imported_add_note(lens, 0,
+                          "its focal length is %.6g mm, not the stated %.6g: "
+                          "there may be a misprint (glint lint)",
+                          f * lens->unit_mm, lens->nominal * lens->unit_mm);
     if (f == 0)
-        return imported_fail(
+        return imported_report_error(
             lens, 0,
             "the system is afocal; glint needs a lens that forms an image");
     if (!(f > 0))
-        return imported_fail(
+        return imported_report_error(
             lens, 0,
             "focal length is %.6g mm; glint needs a lens that forms an image",
             f * lens->unit_mm);
-    set_film(lens, f);
-    if (!set_pupil(lens, f))
+    set_film_size(lens, f);
+    if (!set_pupil_and_f_number(lens, f))
         return false;
-    set_semis(lens);
-    cut_semis(lens);
-    if (!separate_stop(lens) || !check_front(lens, f))
+    set_missing_semi_diameters(lens);
+    limit_semi_diameters(lens);
+    if (!separate_stop_from_glass(lens) || !check_front_aperture(lens, f))
         return false;
-    return separate_rims(lens) && set_focus(lens);
+    return separate_surface_rims(lens) && set_focus_distance(lens);
 }
 
 /* Writes conic, aspheric terms and bend of SHAPE, four values per line, as
  * the lines of lens tables are short. */
-static void write_shape(FILE *file, const struct glint_shape *shape,
-                        double unit_mm)
+static void write_surface_shape(FILE *file, const struct glint_shape *shape,
+                                double unit_mm)
 {
     int n = 0;
 
@@ -880,36 +903,36 @@ static void write_surface(FILE *file, const struct imported_surface *s,
         snprintf(radius, sizeof radius, "%.12g", s->radius * unit);
     fprintf(file, "surface %13s %12.9g %10.8g  %s\n", radius,
             s->thickness * unit, s->semi * unit, s->medium);
-    write_shape(file, &s->shape, unit);
+    write_surface_shape(file, &s->shape, unit);
 }
 
 /* Writes at most MOST characters of TEXT as part of a comment, with '?' for
  * characters other than ASCII. */
-static void write_words(FILE *file, const char *text, int most)
+static void write_comment_words(FILE *file, const char *text, int most)
 {
     for (; *text && most > 0; text++, most--)
         fputc(*text < ' ' || *text > '~' ? '?' : *text, file);
 }
 
-static void write_head(const struct imported *lens, FILE *file)
+static void write_table_head(const struct imported *lens, FILE *file)
 {
     const char *stem = strrchr(lens->file, '/');
 
     fputs("# Imported from ", file);
-    write_words(file, stem ? stem + 1 : lens->file, 100);
+    write_comment_words(file, stem ? stem + 1 : lens->file, 100);
     fputs(".\n", file);
     for (int k = 0; k < lens->n_notes && k < IMPORT_NOTES; k++) {
         if (lens->note[k].line > 0)
             fprintf(file, "# Line %d: ", lens->note[k].line);
         else
             fputs("# ", file);
-        write_words(file, lens->note[k].text, 170);
+        write_comment_words(file, lens->note[k].text, 170);
         fputs(".\n", file);
     }
     fprintf(file, "\nname      %s\n", lens->name);
     if (lens->title[0]) {
         fputs("source    ", file);
-        write_words(file, lens->title, 170);
+        write_comment_words(file, lens->title, 170);
         fputc('\n', file);
     }
     fprintf(file, "f-number  %.6g\nfilm      %.6g %.6g\n", lens->f_number,
@@ -917,7 +940,7 @@ static void write_head(const struct imported *lens, FILE *file)
     fputc('\n', file);
 }
 
-char *imported_finish(struct imported *lens, size_t *bytes)
+char *imported_write_table(struct imported *lens, size_t *bytes)
 {
     char *text = NULL;
     FILE *file;
@@ -926,21 +949,22 @@ char *imported_finish(struct imported *lens, size_t *bytes)
         return NULL;
     imported_sort_notes(lens);
     if (lens->strict && lens->n_guesses > 0) {
-        imported_fail(lens, 0, "%d assumption%s, which --strict rejects",
-                      lens->n_guesses, lens->n_guesses == 1 ? "" : "s");
+        imported_report_error(lens, 0,
+                              "%d assumption%s, which --strict rejects",
+                              lens->n_guesses, lens->n_guesses == 1 ? "" : "s");
         return NULL;
     }
     file = glint_memory_file_open(&text, bytes);
     if (!file) {
-        imported_fail(lens, 0, "out of memory");
+        imported_report_error(lens, 0, "out of memory");
         return NULL;
     }
-    write_head(lens, file);
+    write_table_head(lens, file);
     for (int k = 0; k < lens->n; k++)
         write_surface(file, &lens->surface[k], lens->unit_mm);
     if (glint_memory_file_close(file))
         return text;
     free(text);
-    imported_fail(lens, 0, "out of memory");
+    imported_report_error(lens, 0, "out of memory");
     return NULL;
 }

@@ -6,10 +6,10 @@
  *     imported_begin(&lens, "x.zmx", strict);
  *     text = import_read(&lens, import_format_of("x.zmx"), data, &bytes);
  *
- * Readers store the file's values in its own units; imported_finish() completes
- * them and writes a .lens table. Everything guessed or left out is reported by
- * a note with its line number. STRICT rejects a lens with guesses, but only at
- * the end, so that one run reports all of them.
+ * Readers store the file's values in its own units; imported_write_table()
+ * completes them and writes a .lens table. Everything guessed or left out is
+ * reported by a note with its line number. STRICT rejects a lens with guesses,
+ * but only at the end, so that one run reports all of them.
  */
 #ifndef GLINT_TOOLS_IMPORT_IMPORTED_H
 #define GLINT_TOOLS_IMPORT_IMPORTED_H
@@ -89,56 +89,59 @@ struct import_format {
     import_read_fn *read;
 };
 
-void imported_begin(struct imported *lens, const char *file, bool strict);
+void imported_init(struct imported *lens, const char *file, bool strict);
 
 /* Sets the error, unless there is one already, and returns false. LINE 0: the
  * error concerns the whole file. */
-bool imported_fail(struct imported *lens, int line, const char *format, ...);
+bool imported_report_error(struct imported *lens, int line, const char *format,
+                           ...);
 
 /* Rejects a file without surfaces, which may be of another format. */
-bool imported_empty(struct imported *lens);
+bool imported_report_no_surfaces(struct imported *lens);
 
 /* Adds a note about a guess. Always returns true, so that callers can return
  * its result. */
-bool imported_note(struct imported *lens, int line, const char *format, ...);
+bool imported_add_note(struct imported *lens, int line, const char *format,
+                       ...);
 
 /* Adds a note that WORD is not supported, unless there is one for WORD. */
-bool imported_unread(struct imported *lens, int line, const char *word);
+bool imported_note_unread_word(struct imported *lens, int line,
+                               const char *word);
 
 /* Sets the distance of the object. If it is neither infinite nor nearly so,
  * light from infinity counts as a guess. */
-void imported_object(struct imported *lens, int line, double distance);
+void imported_set_object(struct imported *lens, int line, double distance);
 
 /* Sets the unit of lengths to MM millimetres, as LINE states. */
-bool imported_unit(struct imported *lens, int line, double mm);
+bool imported_set_unit(struct imported *lens, int line, double mm);
 
 /* Sets the image plane of line LINE. If RADIUS is not 0, adds a note that
  * the image is curved. If DEFOCUS, in the file's unit, is not 0, moves the
  * sensor by it and adds a note. */
-void imported_image(struct imported *lens, int line, double radius,
-                    double defocus);
+void imported_set_image_surface(struct imported *lens, int line, double radius,
+                                double defocus);
 
 /* Adds a note that lengths are assumed to be in mm, unless WORD in the file
  * has set the unit. */
-bool imported_need_unit(struct imported *lens, const char *word);
+bool imported_note_missing_unit(struct imported *lens, const char *word);
 
 /* Sets AT to the index, from 0, of the requested one of N zoom positions.
  * Returns false, with the error set, if there is none. */
-bool imported_choose(struct imported *lens, int line, int n, int *at);
+bool imported_choose_position(struct imported *lens, int line, int n, int *at);
 
 /* Adds a plane with air behind it. Returns NULL, with the error set, if there
  * are too many surfaces. */
-struct imported_surface *imported_add(struct imported *lens, int line);
+struct imported_surface *imported_add_surface(struct imported *lens, int line);
 
 /* Returns the axial distance from S to the next surface at the height H. */
-double imported_gap(const struct imported_surface *s, double h);
+double imported_gap_at_height(const struct imported_surface *s, double h);
 
 /* Sorts notes by line; notes about the whole file come last. */
 void imported_sort_notes(struct imported *lens);
 
 /* Completes LENS and returns it as a lens table, which the caller frees, or
  * NULL with the error set. */
-char *imported_finish(struct imported *lens, size_t *bytes);
+char *imported_write_table(struct imported *lens, size_t *bytes);
 
 /* ------------------------------------------------------------------ readers */
 
@@ -147,16 +150,17 @@ import_read_fn import_zmx, import_pbrt, import_flaresim, import_seq,
     import_realflare, import_lentil;
 
 /* Returns the Kth format, from 0, or NULL if there are no more. */
-const struct import_format *import_format_at(int k);
+const struct import_format *import_get_format(int k);
 
 /* Returns the format of the file NAME by its extension, or NULL. A .lens
  * file is taken as FlareSim's, a .dat file as pbrt's. */
-const struct import_format *import_format_of(const char *name);
+const struct import_format *import_find_format(const char *name);
 
 /* Reads DATA as FORMAT, decoding it in place, and completes the lens.
  * Returns it as a lens table, which the caller frees, or NULL with the error
  * set. */
-char *import_read(struct imported *lens, const struct import_format *format,
-                  uint8_t *data, size_t *bytes);
+char *import_parse_file(struct imported *lens,
+                        const struct import_format *format, uint8_t *data,
+                        size_t *bytes);
 
 #endif

@@ -27,7 +27,7 @@ struct json_lens {
 
 /* Moves j->text past the next WORD. Returns false if WORD does not occur
  * again. */
-static bool skip_past(struct json_lens *j, const char *word)
+static bool skip_past_word(struct json_lens *j, const char *word)
 {
     const size_t bytes = strlen(word);
 
@@ -43,27 +43,27 @@ static bool skip_past(struct json_lens *j, const char *word)
 
 /* Returns the line of the next element's "radius", found in the text, as
  * jansson does not store line numbers. */
-static int next_line(struct json_lens *j)
+static int find_next_element_line(struct json_lens *j)
 {
-    return skip_past(j, "\"radius\"") ? j->line : 0;
+    return skip_past_word(j, "\"radius\"") ? j->line : 0;
 }
 
-static bool read_number(struct json_lens *j, const json_t *element, int line,
-                        const char *key, double *value)
+static bool read_json_number(struct json_lens *j, const json_t *element,
+                             int line, const char *key, double *value)
 {
     const json_t *found = json_object_get(element, key);
 
     if (!json_is_number(found))
-        return imported_fail(j->lens, line, "\"%s\" is %s", key,
-                             found ? "no number" : "missing");
+        return imported_report_error(j->lens, line, "\"%s\" is %s", key,
+                                     found ? "no number" : "missing");
     *value = json_number_value(found);
     return true;
 }
 
 /* Adds notes for keys of ELEMENT that are not in KNOWN, a list of words with
  * blanks around each. */
-static void note_others(struct json_lens *j, json_t *element, int line,
-                        const char *known)
+static void note_unread_keys(struct json_lens *j, json_t *element, int line,
+                             const char *known)
 {
     const char *key;
     json_t *value;
@@ -74,20 +74,21 @@ static void note_others(struct json_lens *j, json_t *element, int line,
 
         snprintf(word, sizeof word, " %.36s ", key);
         if (!strstr(known, word) && !json_is_null(value))
-            imported_unread(j->lens, line, key);
+            imported_note_unread_word(j->lens, line, key);
     }
 }
 
 /* Parses TEXT as JSON and calls TAKE with the root object, which fills LENS. */
-static bool read_text(struct imported *lens, const char *text, size_t bytes,
-                      bool (*take)(struct json_lens *j, json_t *root))
+static bool read_json_text(struct imported *lens, const char *text,
+                           size_t bytes,
+                           bool (*take)(struct json_lens *j, json_t *root))
 {
     struct json_lens j = {lens, text, text + bytes, 1};
     json_error_t error;
     json_t *root = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &error);
     const bool good =
         root ? take(&j, root)
-             : imported_fail(lens, error.line, "%.150s", error.text);
+             : imported_report_error(lens, error.line, "%.150s", error.text);
 
     json_decref(root);
     return good;
@@ -97,22 +98,22 @@ static bool read_text(struct imported *lens, const char *text, size_t bytes,
 
 static bool parse_element(struct json_lens *j, json_t *element, bool stop)
 {
-    const int line = next_line(j);
-    struct imported_surface *s = imported_add(j->lens, line);
+    const int line = find_next_element_line(j);
+    struct imported_surface *s = imported_add_surface(j->lens, line);
 
     if (!s)
         return false;
     s->stop = stop;
-    if (!read_number(j, element, line, "radius", &s->radius) ||
-        !read_number(j, element, line, "distance", &s->thickness) ||
-        !read_number(j, element, line, "refractive_index", &s->nd) ||
-        !read_number(j, element, line, "abbe_nr", &s->vd) ||
-        !read_number(j, element, line, "height", &s->semi))
+    if (!read_json_number(j, element, line, "radius", &s->radius) ||
+        !read_json_number(j, element, line, "distance", &s->thickness) ||
+        !read_json_number(j, element, line, "refractive_index", &s->nd) ||
+        !read_json_number(j, element, line, "abbe_nr", &s->vd) ||
+        !read_json_number(j, element, line, "height", &s->semi))
         return false;
     if (s->nd == 1)
         s->vd = 0;
-    note_others(j, element, line,
-                " radius distance refractive_index abbe_nr height ");
+    note_unread_keys(j, element, line,
+                     " radius distance refractive_index abbe_nr height ");
     return true;
 }
 
@@ -123,36 +124,37 @@ static bool parse_realflare(struct json_lens *j, json_t *root)
     double stop = -1;
 
     if (!json_is_array(elements) || json_array_size(elements) == 0)
-        return imported_fail(j->lens, 0,
-                             "has no \"lens_elements\" (lentil's lenses: "
-                             "--format lentil)");
+        return imported_report_error(
+            j->lens, 0,
+            "has no \"lens_elements\" (lentil's lenses: "
+            "--format lentil)");
     if (json_is_string(name))
         snprintf(j->lens->title, sizeof j->lens->title, "%.230s",
                  json_string_value(name));
     if (json_object_get(root, "fstop") &&
-        !read_number(j, root, 0, "fstop", &j->lens->f_number))
+        !read_json_number(j, root, 0, "fstop", &j->lens->f_number))
         return false;
     if (json_object_get(root, "focal_length") &&
-        !read_number(j, root, 0, "focal_length", &j->lens->nominal))
+        !read_json_number(j, root, 0, "focal_length", &j->lens->nominal))
         return false;
-    if (!read_number(j, root, 0, "aperture_index", &stop))
+    if (!read_json_number(j, root, 0, "aperture_index", &stop))
         return false;
     if (stop != floor(stop) || stop < 0 ||
         stop >= (double)json_array_size(elements))
-        return imported_fail(j->lens, 0,
-                             "\"aperture_index\" %g is none of the %d "
-                             "\"lens_elements\", from 0",
-                             stop, (int)json_array_size(elements));
+        return imported_report_error(j->lens, 0,
+                                     "\"aperture_index\" %g is none of the %d "
+                                     "\"lens_elements\", from 0",
+                                     stop, (int)json_array_size(elements));
     for (int k = 0; k < (int)json_array_size(elements); k++)
         if (!parse_element(j, json_array_get(elements, (size_t)k),
                            k == (int)stop))
             return false;
-    return imported_note(j->lens, 0, "coatings are ignored");
+    return imported_add_note(j->lens, 0, "coatings are ignored");
 }
 
 bool import_realflare(struct imported *lens, const char *text, size_t bytes)
 {
-    return read_text(lens, text, bytes, parse_realflare);
+    return read_json_text(lens, text, bytes, parse_realflare);
 }
 
 /* ------------------------------------------------------------------- lentil */
@@ -168,10 +170,11 @@ static bool parse_geometry(struct json_lens *j, const json_t *element,
     if (!kind || strcmp(kind, "spherical") == 0)
         return true;
     if (strcmp(kind, "cyl-x") != 0 && strcmp(kind, "cyl-y") != 0)
-        return imported_fail(j->lens, s->line,
-                             "surfaces of geometry '%.40s' are not supported; "
-                             "spherical, cyl-x and cyl-y are",
-                             kind);
+        return imported_report_error(
+            j->lens, s->line,
+            "surfaces of geometry '%.40s' are not supported; "
+            "spherical, cyl-x and cyl-y are",
+            kind);
     s->shape.bend = kind[4] == 'x' ? GLINT_BEND_Y : GLINT_BEND_X;
     return true;
 }
@@ -180,29 +183,30 @@ static bool parse_lentil_element(struct json_lens *j, json_t *element)
 {
     const char *medium =
         json_string_value(json_object_get(element, "material"));
-    const int line = next_line(j);
-    struct imported_surface *s = imported_add(j->lens, line);
+    const int line = find_next_element_line(j);
+    struct imported_surface *s = imported_add_surface(j->lens, line);
 
     if (!s)
         return false;
     if (!medium)
-        return imported_fail(j->lens, line, "\"material\" is missing");
+        return imported_report_error(j->lens, line, "\"material\" is missing");
     if (json_object_get(element, "aspherical-equation") &&
         !json_is_null(json_object_get(element, "aspherical-equation")))
-        return imported_fail(j->lens, line,
-                             "aspheres (\"aspherical-equation\") are not "
-                             "supported; spheres and cylinders are");
-    note_others(j, element, line,
-                " radius thickness housing-radius ior abbe material "
-                "lens-geometry ");
+        return imported_report_error(
+            j->lens, line,
+            "aspheres (\"aspherical-equation\") are not "
+            "supported; spheres and cylinders are");
+    note_unread_keys(j, element, line,
+                     " radius thickness housing-radius ior abbe material "
+                     "lens-geometry ");
     s->stop = strcasecmp(medium, "iris") == 0;
-    if (!read_number(j, element, line, "radius", &s->radius) ||
-        !read_number(j, element, line, "thickness", &s->thickness) ||
-        !read_number(j, element, line, "housing-radius", &s->semi))
+    if (!read_json_number(j, element, line, "radius", &s->radius) ||
+        !read_json_number(j, element, line, "thickness", &s->thickness) ||
+        !read_json_number(j, element, line, "housing-radius", &s->semi))
         return false;
     if (!s->stop && strcasecmp(medium, "air") != 0 &&
-        (!read_number(j, element, line, "ior", &s->nd) ||
-         !read_number(j, element, line, "abbe", &s->vd)))
+        (!read_json_number(j, element, line, "ior", &s->nd) ||
+         !read_json_number(j, element, line, "abbe", &s->vd)))
         return false;
     return parse_geometry(j, element, s);
 }
@@ -221,9 +225,9 @@ static const json_t *find_lens(struct imported *lens, json_t *root)
     if (found)
         return found;
     if (json_object_size(root) == 0)
-        imported_fail(lens, 0, "the file contains no lenses");
+        imported_report_error(lens, 0, "the file contains no lenses");
     else
-        imported_fail(
+        imported_report_error(
             lens, 0, "has %d lenses%s%.40s%s: --lens %.40s or another",
             (int)json_object_size(root),
             lens->key ? ", and none by the key '" : "", key,
@@ -241,7 +245,7 @@ static bool parse_lentil(struct json_lens *j, json_t *root)
         return false;
     elements = json_object_get(found, list);
     if (!json_is_array(elements) || json_array_size(elements) == 0)
-        return imported_fail(j->lens, 0, "has no \"%s\"", list);
+        return imported_report_error(j->lens, 0, "has no \"%s\"", list);
     said = json_object_get(found, "product-name");
     if (json_is_string(said))
         snprintf(j->lens->title, sizeof j->lens->title, "%.230s",
@@ -251,9 +255,9 @@ static bool parse_lentil(struct json_lens *j, json_t *root)
         j->lens->nominal = json_number_value(said);
     if (j->lens->key) {
         snprintf(key, sizeof key, "\"%.60s\"", j->lens->key);
-        skip_past(j, key);
+        skip_past_word(j, key);
     }
-    skip_past(j, list);
+    skip_past_word(j, list);
     for (size_t k = 0; k < json_array_size(elements); k++)
         if (!parse_lentil_element(j, json_array_get(elements, k)))
             return false;
@@ -262,5 +266,5 @@ static bool parse_lentil(struct json_lens *j, json_t *root)
 
 bool import_lentil(struct imported *lens, const char *text, size_t bytes)
 {
-    return read_text(lens, text, bytes, parse_lentil);
+    return read_json_text(lens, text, bytes, parse_lentil);
 }

@@ -7,7 +7,8 @@
 
 static bool reject_json(struct imported *lens)
 {
-    return imported_fail(lens, 0, "glint was built without JSON (jansson)");
+    return imported_report_error(lens, 0,
+                                 "glint was built without JSON (jansson)");
 }
 
 bool import_realflare(struct imported *lens, const char *text, size_t bytes)

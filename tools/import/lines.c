@@ -6,8 +6,8 @@
 
 #include "options/tool.h"
 
-void lines_begin(struct lines *l, struct imported *lens, const char *text,
-                 size_t bytes)
+void lines_init(struct lines *l, struct imported *lens, const char *text,
+                size_t bytes)
 {
     *l = (struct lines){.lens = lens, .at = text, .end = text + bytes};
 }
@@ -107,13 +107,13 @@ static void split_line(struct lines *l)
     }
 }
 
-bool lines_next(struct lines *l, char comment)
+bool lines_read_next(struct lines *l, char comment)
 {
     while (l->at < l->end) {
         if (!copy_line(l, comment))
-            return imported_fail(l->lens, l->number,
-                                 "the line is longer than %d bytes",
-                                 LINE_CHARS - 1);
+            return imported_report_error(l->lens, l->number,
+                                         "the line is longer than %d bytes",
+                                         LINE_CHARS - 1);
         if (l->tabs)
             split_at_tabs(l);
         else
@@ -124,44 +124,46 @@ bool lines_next(struct lines *l, char comment)
     return false;
 }
 
-bool lines_number(const struct lines *l, int k, const char *what, double *value)
+bool lines_parse_number(const struct lines *l, int k, const char *what,
+                        double *value)
 {
     if (k >= l->n)
-        return imported_fail(l->lens, l->number, "%s is missing", what);
+        return imported_report_error(l->lens, l->number, "%s is missing", what);
     if (!tool_parse_number(l->word[k], value))
-        return imported_fail(
+        return imported_report_error(
             l->lens, l->number, "%s '%.40s' is not a number%s", what,
             l->word[k],
             strchr(l->word[k], ',') ? ": decimals follow a point" : "");
     return true;
 }
 
-bool lines_is(const struct lines *l, const char *word)
+bool lines_first_word_is(const struct lines *l, const char *word)
 {
     return strcmp(l->word[0], word) == 0;
 }
 
-bool lines_curvature(const struct lines *l, int k, double *radius)
+bool lines_parse_curvature(const struct lines *l, int k, double *radius)
 {
-    if (!lines_number(l, k, "curvature", radius))
+    if (!lines_parse_number(l, k, "curvature", radius))
         return false;
     *radius = *radius == 0 ? 0 : 1 / *radius;
     return true;
 }
 
-bool lines_fields(const struct lines *l, double *most)
+bool lines_parse_fields(const struct lines *l, double *most)
 {
     double value;
 
     for (int k = 1; k < l->n; k++) {
-        if (!lines_number(l, k, "field", &value))
+        if (!lines_parse_number(l, k, "field", &value))
             return false;
         *most = fmax(*most, fabs(value));
     }
     return true;
 }
 
-bool lines_mirror(const struct lines *l)
+bool lines_reject_mirror(const struct lines *l)
 {
-    return imported_fail(l->lens, l->number, "mirrors are not supported");
+    return imported_report_error(l->lens, l->number,
+                                 "mirrors are not supported");
 }

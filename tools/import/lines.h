@@ -25,32 +25,32 @@ struct lines {
     const char *word[LINE_WORDS];
 };
 
-void lines_begin(struct lines *lines, struct imported *lens, const char *text,
-                 size_t bytes);
+void lines_init(struct lines *lines, struct imported *lens, const char *text,
+                size_t bytes);
 
 /* Reads the next line that is not blank, and splits it at blanks and tabs.
  * Quoted words count as one; a quote must begin a word and be closed on its
  * line, so that apostrophes and inches are not quotes. Text after the
  * character COMMENT is dropped; '\0': no comments. Returns false at the end
  * of the text, or with the error set if the line is too long. */
-bool lines_next(struct lines *lines, char comment);
+bool lines_read_next(struct lines *lines, char comment);
 
 /* Sets VALUE to word K. If there is no such word or it is not a number, sets an
  * error that names WHAT and returns false. */
-bool lines_number(const struct lines *lines, int k, const char *what,
-                  double *value);
+bool lines_parse_number(const struct lines *lines, int k, const char *what,
+                        double *value);
 
 /* Returns whether the first word is WORD. */
-bool lines_is(const struct lines *lines, const char *word);
+bool lines_first_word_is(const struct lines *lines, const char *word);
 
 /* Sets RADIUS to 1 / the curvature in word K, or to 0 for a plane. */
-bool lines_curvature(const struct lines *lines, int k, double *radius);
+bool lines_parse_curvature(const struct lines *lines, int k, double *radius);
 
 /* Sets MOST to the largest of MOST and the absolute values of the numbers after
  * the first word. */
-bool lines_fields(const struct lines *lines, double *most);
+bool lines_parse_fields(const struct lines *lines, double *most);
 
 /* Sets the error that mirrors are not supported; returns false. */
-bool lines_mirror(const struct lines *lines);
+bool lines_reject_mirror(const struct lines *lines);
 
 #endif

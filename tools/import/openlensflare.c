@@ -35,38 +35,38 @@ struct reader {
     bool has[ELEMENT_VALUES], system_has[SYSTEM_VALUES];
 };
 
-static int current_line(const struct reader *r)
+static int current_parser_line(const struct reader *r)
 {
     return (int)XML_GetCurrentLineNumber(r->parser);
 }
 
 /* Stops the parser if GOOD is false. */
-static void stop_on_error(struct reader *r, bool good)
+static void stop_parser_on_error(struct reader *r, bool good)
 {
     if (!good)
         XML_StopParser(r->parser, XML_FALSE);
 }
 
-static void XMLCALL handle_start(void *data, const char *name,
-                                 const char **pairs)
+static void XMLCALL handle_start_tag(void *data, const char *name,
+                                     const char **pairs)
 {
     struct reader *r = data;
 
     (void)pairs;
     r->bytes = 0;
     if (r->depth++ == 0 && strcmp(name, "opticalSystem") != 0)
-        stop_on_error(r,
-                      imported_fail(r->lens, current_line(r),
+        stop_parser_on_error(r, imported_report_error(
+                                    r->lens, current_parser_line(r),
                                     "<%.40s> is not an <opticalSystem>", name));
     if (strcmp(name, "element") == 0) {
         r->in_element = true;
-        r->line = current_line(r);
+        r->line = current_parser_line(r);
         r->kind[0] = '\0';
         memset(r->has, 0, sizeof r->has);
     }
 }
 
-static void XMLCALL handle_text(void *data, const char *text, int n)
+static void XMLCALL handle_element_text(void *data, const char *text, int n)
 {
     struct reader *r = data;
 
@@ -84,31 +84,34 @@ static void XMLCALL reject_doctype(void *data, const char *name,
     (void)system;
     (void)public_id;
     (void)has_internal;
-    stop_on_error(r, imported_fail(r->lens, current_line(r),
-                                   "<!DOCTYPE> is not allowed in lens files"));
+    stop_parser_on_error(
+        r, imported_report_error(r->lens, current_parser_line(r),
+                                 "<!DOCTYPE> is not allowed in lens files"));
 }
 
 /* Stores the <element> that was just closed: a surface, the stop or the
  * sensor. */
-static bool store_element(struct reader *r)
+static bool store_closed_element(struct reader *r)
 {
     const bool stop = strcmp(r->kind, "apertureStop") == 0;
     struct imported_surface *s;
 
     if (r->ended)
-        return imported_fail(r->lens, r->line, "an element behind the sensor");
+        return imported_report_error(r->lens, r->line,
+                                     "an element behind the sensor");
     if (strcmp(r->kind, "sensor") == 0)
         return r->ended = true;
     if (!stop && strcmp(r->kind, "lensSpherical") != 0)
-        return imported_fail(r->lens, r->line,
-                             "elements of type '%s' are not supported; "
-                             "lensSpherical, apertureStop and sensor are",
-                             r->kind);
+        return imported_report_error(
+            r->lens, r->line,
+            "elements of type '%s' are not supported; "
+            "lensSpherical, apertureStop and sensor are",
+            r->kind);
     for (int i = 0; i < ELEMENT_VALUES; i++)
         if (!r->has[i] && !(stop && i == RADIUS))
-            return imported_fail(r->lens, r->line, "<%s> is missing",
-                                 element_words[i]);
-    s = imported_add(r->lens, r->line);
+            return imported_report_error(r->lens, r->line, "<%s> is missing",
+                                         element_words[i]);
+    s = imported_add_surface(r->lens, r->line);
     if (!s)
         return false;
     s->stop = stop;
@@ -122,9 +125,9 @@ static bool store_element(struct reader *r)
 
 /* If NAME is in WORDS[N], stores the number in r->text in the value of the
  * same index. Sets *DONE to whether NAME is in WORDS. */
-static bool parse_value(struct reader *r, const char *name, int n,
-                        const char *const *words, double *values, bool *has,
-                        bool *done)
+static bool parse_element_value(struct reader *r, const char *name, int n,
+                                const char *const *words, double *values,
+                                bool *has, bool *done)
 {
     *done = false;
     for (int i = 0; i < n && !*done; i++) {
@@ -132,13 +135,14 @@ static bool parse_value(struct reader *r, const char *name, int n,
             continue;
         *done = has[i] = true;
         if (!tool_parse_number(r->text, &values[i]))
-            return imported_fail(r->lens, current_line(r),
-                                 "<%s> '%.40s' is not a number", name, r->text);
+            return imported_report_error(r->lens, current_parser_line(r),
+                                         "<%s> '%.40s' is not a number", name,
+                                         r->text);
     }
     return true;
 }
 
-static bool parse_end(struct reader *r, const char *name)
+static bool parse_end_tag(struct reader *r, const char *name)
 {
     static const char *const ignored[] = {"opticalSystem", "elements", "mask",
                                           "maskFT", "fieldOfView"};
@@ -146,12 +150,13 @@ static bool parse_end(struct reader *r, const char *name)
 
     if (strcmp(name, "element") == 0) {
         r->in_element = false;
-        return store_element(r);
+        return store_closed_element(r);
     }
-    if (!(r->in_element ? parse_value(r, name, ELEMENT_VALUES, element_words,
-                                      r->value, r->has, &done)
-                        : parse_value(r, name, SYSTEM_VALUES, system_words,
-                                      r->system, r->system_has, &done)))
+    if (!(r->in_element
+              ? parse_element_value(r, name, ELEMENT_VALUES, element_words,
+                                    r->value, r->has, &done)
+              : parse_element_value(r, name, SYSTEM_VALUES, system_words,
+                                    r->system, r->system_has, &done)))
         return false;
     if (done)
         return true;
@@ -168,10 +173,10 @@ static bool parse_end(struct reader *r, const char *name)
     for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
         if (strcmp(ignored[i], name) == 0)
             return true;
-    return imported_unread(r->lens, current_line(r), name);
+    return imported_note_unread_word(r->lens, current_parser_line(r), name);
 }
 
-static void XMLCALL handle_end(void *data, const char *name)
+static void XMLCALL handle_end_tag(void *data, const char *name)
 {
     struct reader *r = data;
 
@@ -181,7 +186,7 @@ static void XMLCALL handle_end(void *data, const char *name)
     r->text[r->bytes] = '\0';
     memmove(r->text, r->text + strspn(r->text, " \t\r"),
             strlen(r->text + strspn(r->text, " \t\r")) + 1);
-    stop_on_error(r, parse_end(r, name));
+    stop_parser_on_error(r, parse_end_tag(r, name));
     r->bytes = 0;
 }
 
@@ -190,7 +195,7 @@ static bool finish_lens(struct reader *r)
     struct imported *lens = r->lens;
 
     if (lens->n < 2)
-        return imported_empty(lens);
+        return imported_report_no_surfaces(lens);
     if (r->system_has[F_NUMBER])
         lens->f_number = r->system[F_NUMBER];
     if (r->system_has[FOCAL])
@@ -203,7 +208,7 @@ static bool finish_lens(struct reader *r)
     for (int k = 0; k < lens->n && r->system_has[MULTIPLIER]; k++)
         lens->surface[k].semi *=
             lens->surface[k].stop ? 0.5 : r->system[MULTIPLIER];
-    return !r->coated || imported_note(lens, 0, "coatings are ignored");
+    return !r->coated || imported_add_note(lens, 0, "coatings are ignored");
 }
 
 bool import_openlensflare(struct imported *lens, const char *text, size_t bytes)
@@ -215,15 +220,15 @@ bool import_openlensflare(struct imported *lens, const char *text, size_t bytes)
      * other characters become question marks. */
     r.parser = XML_ParserCreate("ISO-8859-1");
     if (!r.parser)
-        return imported_fail(lens, 0, "out of memory");
+        return imported_report_error(lens, 0, "out of memory");
     XML_SetUserData(r.parser, &r);
-    XML_SetElementHandler(r.parser, handle_start, handle_end);
-    XML_SetCharacterDataHandler(r.parser, handle_text);
+    XML_SetElementHandler(r.parser, handle_start_tag, handle_end_tag);
+    XML_SetCharacterDataHandler(r.parser, handle_element_text);
     XML_SetStartDoctypeDeclHandler(r.parser, reject_doctype);
     status = XML_Parse(r.parser, text, (int)bytes, XML_TRUE);
     if (status != XML_STATUS_OK && !lens->error[0])
-        imported_fail(lens, current_line(&r), "%.150s",
-                      XML_ErrorString(XML_GetErrorCode(r.parser)));
+        imported_report_error(lens, current_parser_line(&r), "%.150s",
+                              XML_ErrorString(XML_GetErrorCode(r.parser)));
     XML_ParserFree(r.parser);
     return status == XML_STATUS_OK && !lens->error[0] && finish_lens(&r);
 }

@@ -9,5 +9,6 @@ bool import_openlensflare(struct imported *lens, const char *text, size_t bytes)
 {
     (void)text;
     (void)bytes;
-    return imported_fail(lens, 0, "glint was built without XML (expat)");
+    return imported_report_error(lens, 0,
+                                 "glint was built without XML (expat)");
 }

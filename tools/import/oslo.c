@@ -24,9 +24,10 @@ static bool parse_glass(struct oslo *o)
     const struct lines *l = &o->lines;
 
     if (l->n < 2)
-        return imported_fail(o->lens, l->number, "the glass has no name");
+        return imported_report_error(o->lens, l->number,
+                                     "the glass has no name");
     if (strncmp(l->word[1], "REFL", 4) == 0)
-        return lines_mirror(l);
+        return lines_reject_mirror(l);
     if (strcmp(l->word[1], "AIR") != 0)
         snprintf(o->s->glass, sizeof o->s->glass, "%s", l->word[1]);
     /* A glass that the file defines has three indices after its name. */
@@ -34,7 +35,7 @@ static bool parse_glass(struct oslo *o)
         double n[3];
 
         for (int i = 0; i < 3; i++)
-            if (!lines_number(l, 2 + i, "index", &n[i]))
+            if (!lines_parse_number(l, 2 + i, "index", &n[i]))
                 return false;
         o->s->nd = n[0];
         o->s->vd = n[1] != n[2] ? (n[0] - 1) / (n[1] - n[2]) : 0;
@@ -44,94 +45,95 @@ static bool parse_glass(struct oslo *o)
 
 /* Handles an unsupported keyword: rejects those that change the lens, adds a
  * note about others. */
-static bool handle_unsupported(struct oslo *o)
+static bool reject_or_note_keyword(struct oslo *o)
 {
     static const char *const shaping[] = {"TLA", "TLB", "TLC", "DCX", "DCY",
                                           "DCZ", "CVX", "PK",  "DT",  "ASP",
                                           "PI",  "PIC", "PU",  "PUC"};
     const struct lines *l = &o->lines;
 
-    if (lines_is(l, "RFL") || lines_is(l, "RFH"))
-        return lines_mirror(l);
+    if (lines_first_word_is(l, "RFL") || lines_first_word_is(l, "RFH"))
+        return lines_reject_mirror(l);
     for (size_t i = 0; i < sizeof shaping / sizeof *shaping; i++)
-        if (lines_is(l, shaping[i]))
-            return imported_fail(
+        if (lines_first_word_is(l, shaping[i]))
+            return imported_report_error(
                 o->lens, l->number,
                 "'%s': surfaces that are tilted, decentred, not rotationally "
                 "symmetric, or of other types are not supported",
                 l->word[0]);
-    return imported_unread(o->lens, l->number, l->word[0]);
+    return imported_note_unread_word(o->lens, l->number, l->word[0]);
 }
 
-static bool parse_surface(struct oslo *o)
+static bool parse_surface_keyword(struct oslo *o)
 {
     const struct lines *l = &o->lines;
     struct glint_shape *shape = &o->s->shape;
 
-    if (lines_is(l, "RD"))
-        return lines_number(l, 1, "radius", &o->s->radius);
-    if (lines_is(l, "CV"))
-        return lines_curvature(l, 1, &o->s->radius);
-    if (lines_is(l, "TH"))
-        return lines_number(l, 1, "thickness", &o->s->thickness);
-    if (lines_is(l, "AP"))
-        return lines_number(l, l->n > 2 ? 2 : 1, "semi-diameter", &o->s->semi);
-    if (lines_is(l, "GLA"))
+    if (lines_first_word_is(l, "RD"))
+        return lines_parse_number(l, 1, "radius", &o->s->radius);
+    if (lines_first_word_is(l, "CV"))
+        return lines_parse_curvature(l, 1, &o->s->radius);
+    if (lines_first_word_is(l, "TH"))
+        return lines_parse_number(l, 1, "thickness", &o->s->thickness);
+    if (lines_first_word_is(l, "AP"))
+        return lines_parse_number(l, l->n > 2 ? 2 : 1, "semi-diameter",
+                                  &o->s->semi);
+    if (lines_first_word_is(l, "GLA"))
         return parse_glass(o);
-    if (lines_is(l, "AIR"))
+    if (lines_first_word_is(l, "AIR"))
         return true;
-    if (lines_is(l, "AST"))
+    if (lines_first_word_is(l, "AST"))
         return o->s->stop = true;
-    if (lines_is(l, "CC"))
-        return lines_number(l, 1, "conic", &shape->conic);
+    if (lines_first_word_is(l, "CC"))
+        return lines_parse_number(l, 1, "conic", &shape->conic);
     if (strlen(l->word[0]) == 2 && l->word[0][0] == 'A' &&
         l->word[0][1] >= 'D' && l->word[0][1] <= 'H')
-        return lines_number(l, 1, "aspheric term",
-                            &shape->term[l->word[0][1] - 'D']);
-    return handle_unsupported(o);
+        return lines_parse_number(l, 1, "aspheric term",
+                                  &shape->term[l->word[0][1] - 'D']);
+    return reject_or_note_keyword(o);
 }
 
-static bool parse_head(struct oslo *o)
+static bool parse_head_keyword(struct oslo *o)
 {
     const struct lines *l = &o->lines;
     double value;
 
-    if (lines_is(l, "LEN") && l->n > 2)
+    if (lines_first_word_is(l, "LEN") && l->n > 2)
         snprintf(o->lens->title, sizeof o->lens->title, "%s", l->word[2]);
-    if (lines_is(l, "UNI"))
-        return lines_number(l, 1, "unit", &value) &&
-               imported_unit(o->lens, l->number, value);
-    if (lines_is(l, "EBR")) {
-        if (!lines_number(l, 1, "beam radius", &o->lens->pupil))
+    if (lines_first_word_is(l, "UNI"))
+        return lines_parse_number(l, 1, "unit", &value) &&
+               imported_set_unit(o->lens, l->number, value);
+    if (lines_first_word_is(l, "EBR")) {
+        if (!lines_parse_number(l, 1, "beam radius", &o->lens->pupil))
             return false;
         o->lens->pupil *= 2;
         return true;
     }
-    if (lines_is(l, "ANG"))
-        return lines_number(l, 1, "field", &o->lens->field_deg);
+    if (lines_first_word_is(l, "ANG"))
+        return lines_parse_number(l, 1, "field", &o->lens->field_deg);
     return true;
 }
 
-static bool parse_line(struct oslo *o)
+static bool parse_keyword_line(struct oslo *o)
 {
     const struct lines *l = &o->lines;
 
-    if (lines_is(l, "NXT")) {
-        o->s = imported_add(o->lens, l->number);
+    if (lines_first_word_is(l, "NXT")) {
+        o->s = imported_add_surface(o->lens, l->number);
         return o->s != NULL;
     }
-    if (lines_is(l, "EBR") || lines_is(l, "ANG") || lines_is(l, "UNI") ||
-        lines_is(l, "LEN"))
-        return parse_head(o);
-    if (!o->s && lines_is(l, "TH")) {
+    if (lines_first_word_is(l, "EBR") || lines_first_word_is(l, "ANG") ||
+        lines_first_word_is(l, "UNI") || lines_first_word_is(l, "LEN"))
+        return parse_head_keyword(o);
+    if (!o->s && lines_first_word_is(l, "TH")) {
         double object;
 
-        if (!lines_number(l, 1, "distance of the object", &object))
+        if (!lines_parse_number(l, 1, "distance of the object", &object))
             return false;
-        imported_object(o->lens, l->number, object);
+        imported_set_object(o->lens, l->number, object);
         return true;
     }
-    return !o->s || parse_surface(o);
+    return !o->s || parse_surface_keyword(o);
 }
 
 bool import_oslo(struct imported *lens, const char *text, size_t bytes)
@@ -139,21 +141,23 @@ bool import_oslo(struct imported *lens, const char *text, size_t bytes)
     struct oslo o = {.lens = lens};
     const struct imported_surface *image;
 
-    lines_begin(&o.lines, lens, text, bytes);
-    while (lines_next(&o.lines, '\0')) {
-        if (lines_is(&o.lines, "END") || lines_is(&o.lines, "WV")) {
+    lines_init(&o.lines, lens, text, bytes);
+    while (lines_read_next(&o.lines, '\0')) {
+        if (lines_first_word_is(&o.lines, "END") ||
+            lines_first_word_is(&o.lines, "WV")) {
             o.s = NULL;
             o.ended = true;
         }
-        if (!parse_line(&o))
+        if (!parse_keyword_line(&o))
             return false;
     }
     if (lens->n < 2)
-        return imported_empty(lens);
+        return imported_report_no_surfaces(lens);
     image = &lens->surface[--lens->n];
     if (o.ended)
-        imported_image(lens, image->line, image->radius, image->thickness);
+        imported_set_image_surface(lens, image->line, image->radius,
+                                   image->thickness);
     else
-        imported_note(lens, 0, "no END line: the file may be cut off");
-    return imported_need_unit(lens, "UNI");
+        imported_add_note(lens, 0, "no END line: the file may be cut off");
+    return imported_note_missing_unit(lens, "UNI");
 }

@@ -33,7 +33,7 @@ struct polyflare {
 };
 
 /* Removes the comment and all words in it from L. */
-static void cut_comment(struct lines *l)
+static void remove_comment_words(struct lines *l)
 {
     for (int k = 0; k < l->n; k++) {
         char *comment = strstr(l->text + (l->word[k] - l->text), "//");
@@ -46,36 +46,37 @@ static void cut_comment(struct lines *l)
     }
 }
 
-static bool report_too_many(struct polyflare *p)
+static bool report_too_many_words(struct polyflare *p)
 {
-    return imported_fail(p->lens, p->lines.number,
-                         "more than %d zoom positions are not supported",
-                         POSITIONS);
+    return imported_report_error(
+        p->lens, p->lines.number,
+        "more than %d zoom positions are not supported", POSITIONS);
 }
 
 /* Parses "#EFL" and similar lines; other lines that begin with '#' are
  * comments. */
-static bool parse_head(struct polyflare *p)
+static bool parse_head_line(struct polyflare *p)
 {
     const struct lines *l = &p->lines;
-    const bool focal = lines_is(l, "#EFL");
+    const bool focal = lines_first_word_is(l, "#EFL");
 
-    if (focal || lines_is(l, "#FOV")) {
+    if (focal || lines_first_word_is(l, "#FOV")) {
         if (l->n > 1 + POSITIONS)
-            return report_too_many(p);
+            return report_too_many_words(p);
         for (int k = 1; k < l->n; k++)
-            if (!lines_number(l, k, l->word[0] + 1,
-                              focal ? &p->focal[k - 1] : &p->field[k - 1]))
+            if (!lines_parse_number(l, k, l->word[0] + 1,
+                                    focal ? &p->focal[k - 1]
+                                          : &p->field[k - 1]))
                 return false;
         return true;
     }
-    if (!lines_is(l, "#!scale"))
+    if (!lines_first_word_is(l, "#!scale"))
         return strncmp(l->word[0], "#!", 2) != 0 ||
-               imported_unread(p->lens, l->number, l->word[0]);
-    return lines_number(l, 1, "scale", &p->lens->unit_mm) &&
+               imported_note_unread_word(p->lens, l->number, l->word[0]);
+    return lines_parse_number(l, 1, "scale", &p->lens->unit_mm) &&
            (p->lens->unit_mm > 0 ||
-            imported_fail(p->lens, l->number, "scale %g is not above 0",
-                          p->lens->unit_mm));
+            imported_report_error(p->lens, l->number, "scale %g is not above 0",
+                                  p->lens->unit_mm));
 }
 
 static bool parse_thickness(struct polyflare *p, struct imported_surface *s)
@@ -93,26 +94,26 @@ static bool parse_thickness(struct polyflare *p, struct imported_surface *s)
         const size_t bytes = strcspn(at, "/");
 
         if (n == POSITIONS)
-            return report_too_many(p);
+            return report_too_many_words(p);
         if (bytes >= sizeof word)
-            return imported_fail(p->lens, l->number,
-                                 "thickness '%.40s' is not a number", at);
+            return imported_report_error(
+                p->lens, l->number, "thickness '%.40s' is not a number", at);
         memcpy(word, at, bytes);
         word[bytes] = '\0';
         if (!tool_parse_number(word, &value[n]))
-            return imported_fail(p->lens, l->number,
-                                 "thickness '%.40s' is not a number", word);
+            return imported_report_error(
+                p->lens, l->number, "thickness '%.40s' is not a number", word);
         more = at[bytes] == '/';
         at += bytes + more;
     }
     if (n > 1 && p->positions > 0 && n != p->positions)
-        return imported_fail(p->lens, l->number,
-                             "%d positions, but %d on line %d", n, p->positions,
-                             p->line);
+        return imported_report_error(p->lens, l->number,
+                                     "%d positions, but %d on line %d", n,
+                                     p->positions, p->line);
     if (n > 1 && p->positions == 0) {
         p->positions = n;
         p->line = l->number;
-        if (!imported_choose(p->lens, l->number, n, &p->at))
+        if (!imported_choose_position(p->lens, l->number, n, &p->at))
             return false;
     }
     s->thickness = value[n > 1 ? p->at : 0];
@@ -120,7 +121,8 @@ static bool parse_thickness(struct polyflare *p, struct imported_surface *s)
 }
 
 /* Parses word K, such as "#!aspheric=0,1e-5,0,0,0", into the shape of S. */
-static bool parse_terms(struct polyflare *p, int k, struct imported_surface *s)
+static bool parse_aspheric_terms(struct polyflare *p, int k,
+                                 struct imported_surface *s)
 {
     const char *at = p->lines.word[k] + strlen("#!aspheric=");
     double value[5];
@@ -129,9 +131,9 @@ static bool parse_terms(struct polyflare *p, int k, struct imported_surface *s)
     for (int i = 0; i < 5; i++) {
         value[i] = glint_option_number(at, &end);
         if (end == at || *end != (i < 4 ? ',' : '\0') || !isfinite(value[i]))
-            return imported_fail(p->lens, p->lines.number,
-                                 "'%.60s' is not #!aspheric=K,A4,A6,A8,A10",
-                                 p->lines.word[k]);
+            return imported_report_error(
+                p->lens, p->lines.number,
+                "'%.60s' is not #!aspheric=K,A4,A6,A8,A10", p->lines.word[k]);
         at = end + 1;
     }
     s->shape.conic = value[0];
@@ -148,7 +150,8 @@ static bool parse_medium(struct polyflare *p, struct imported_surface *s)
     int k = 3;
 
     if (!*medium)
-        return imported_fail(p->lens, l->number, "the medium is missing");
+        return imported_report_error(p->lens, l->number,
+                                     "the medium is missing");
     if (strncasecmp(medium, "cx_", 3) == 0) {
         s->shape.bend = GLINT_BEND_X;
         medium += 3;
@@ -160,30 +163,30 @@ static bool parse_medium(struct polyflare *p, struct imported_surface *s)
         s->nd = before->nd;
         s->vd = before->vd;
     } else if (!s->stop && strcasecmp(medium, "air") != 0) {
-        if (!lines_number(l, 3, "index", &s->nd) ||
-            !lines_number(l, 4, "Abbe number", &s->vd))
+        if (!lines_parse_number(l, 3, "index", &s->nd) ||
+            !lines_parse_number(l, 4, "Abbe number", &s->vd))
             return false;
         k = 5;
     }
     if (k < l->n && *l->word[k] != '#' &&
-        !lines_number(l, k++, "semi-diameter", &s->semi))
+        !lines_parse_number(l, k++, "semi-diameter", &s->semi))
         return false;
     for (; k < l->n; k++)
         if (strncmp(l->word[k], "#!aspheric=", 11) == 0)
-            return parse_terms(p, k, s);
+            return parse_aspheric_terms(p, k, s);
     return true;
 }
 
-static bool parse_row(struct polyflare *p)
+static bool parse_surface_row(struct polyflare *p)
 {
-    struct imported_surface *s = imported_add(p->lens, p->lines.number);
+    struct imported_surface *s = imported_add_surface(p->lens, p->lines.number);
 
-    return s && lines_number(&p->lines, 0, "radius", &s->radius) &&
+    return s && lines_parse_number(&p->lines, 0, "radius", &s->radius) &&
            parse_thickness(p, s) && parse_medium(p, s);
 }
 
 /* Uses a plane in the air as the stop if the file has no iris. */
-static bool find_stop(struct imported *lens)
+static bool choose_plane_as_stop(struct imported *lens)
 {
     int at = -1;
 
@@ -198,7 +201,7 @@ static bool find_stop(struct imported *lens)
     if (at < 0)
         return true;
     lens->surface[at].stop = true;
-    return imported_note(
+    return imported_add_note(
         lens, lens->surface[at].line,
         "no iris is stated; the plane in air is used as the stop");
 }
@@ -207,16 +210,16 @@ bool import_polyflare(struct imported *lens, const char *text, size_t bytes)
 {
     struct polyflare p = {.lens = lens};
 
-    lines_begin(&p.lines, lens, text, bytes);
-    while (lines_next(&p.lines, '\0')) {
-        cut_comment(&p.lines);
-        if (p.lines.n > 0 &&
-            !(*p.lines.word[0] == '#' ? parse_head(&p) : parse_row(&p)))
+    lines_init(&p.lines, lens, text, bytes);
+    while (lines_read_next(&p.lines, '\0')) {
+        remove_comment_words(&p.lines);
+        if (p.lines.n > 0 && !(*p.lines.word[0] == '#' ? parse_head_line(&p)
+                                                       : parse_surface_row(&p)))
             return false;
     }
     if (lens->n < 2)
-        return imported_empty(lens);
+        return imported_report_no_surfaces(lens);
     lens->nominal = p.focal[p.at];
     lens->field_deg = p.field[p.at] / 2;
-    return find_stop(lens);
+    return choose_plane_as_stop(lens);
 }

@@ -54,32 +54,34 @@ static bool parse_glass(struct seq *q, const char *word)
     if (strcasecmp(word, "AIR") == 0)
         return true;
     if (strncasecmp(word, "REFL", 4) == 0)
-        return lines_mirror(&q->lines);
+        return lines_reject_mirror(&q->lines);
     if (!parse_glass_code(q->s, word))
         snprintf(q->s->glass, sizeof q->s->glass, "%s", word);
     return true;
 }
 
 /* Sets the surface's radius from word K, which is a curvature if CURVATURE. */
-static bool parse_radius(struct seq *q, int k, bool curvature)
+static bool parse_surface_radius(struct seq *q, int k, bool curvature)
 {
-    return curvature ? lines_curvature(&q->lines, k, &q->s->radius)
-                     : lines_number(&q->lines, k, "radius", &q->s->radius);
+    return curvature
+               ? lines_parse_curvature(&q->lines, k, &q->s->radius)
+               : lines_parse_number(&q->lines, k, "radius", &q->s->radius);
 }
 
 /* Stores the image surface; its thickness is the defocus. */
-static bool parse_image(struct seq *q)
+static bool parse_image_surface(struct seq *q)
 {
     const struct lines *l = &q->lines;
     double bend = 0, defocus = 0;
 
     q->image = true;
     if (q->lens->n == 0 ||
-        (l->n > 1 && !lines_number(l, 1, "curvature", &bend)) ||
-        (l->n > 2 && !lines_number(l, 2, "defocus", &defocus)))
+        (l->n > 1 && !lines_parse_number(l, 1, "curvature", &bend)) ||
+        (l->n > 2 && !lines_parse_number(l, 2, "defocus", &defocus)))
         return q->lens->n == 0;
-    imported_image(q->lens, l->number,
-                   bend == 0 || !q->curvatures ? bend : 1 / bend, defocus);
+    imported_set_image_surface(q->lens, l->number,
+                               bend == 0 || !q->curvatures ? bend : 1 / bend,
+                               defocus);
     return true;
 }
 
@@ -88,24 +90,24 @@ static bool start_surface(struct seq *q)
     const struct lines *l = &q->lines;
     double object = 0;
 
-    if (lines_is(l, "SI") || lines_is(l, "SO")) {
+    if (lines_first_word_is(l, "SI") || lines_first_word_is(l, "SO")) {
         q->s = NULL;
-        if (lines_is(l, "SI"))
-            return parse_image(q);
+        if (lines_first_word_is(l, "SI"))
+            return parse_image_surface(q);
         if (l->n < 3)
             return true;
-        if (!lines_number(l, 2, "distance of the object", &object))
+        if (!lines_parse_number(l, 2, "distance of the object", &object))
             return false;
-        imported_object(q->lens, l->number, object);
+        imported_set_object(q->lens, l->number, object);
         return true;
     }
-    q->s = imported_add(q->lens, l->number);
-    return q->s && parse_radius(q, 1, q->curvatures) &&
-           lines_number(l, 2, "thickness", &q->s->thickness) &&
+    q->s = imported_add_surface(q->lens, l->number);
+    return q->s && parse_surface_radius(q, 1, q->curvatures) &&
+           lines_parse_number(l, 2, "thickness", &q->s->thickness) &&
            (l->n < 4 || parse_glass(q, l->word[3]));
 }
 
-static bool parse_aperture(struct seq *q)
+static bool parse_aperture_command(struct seq *q)
 {
     const struct lines *l = &q->lines;
     const int k = l->n - 1;
@@ -113,13 +115,13 @@ static bool parse_aperture(struct seq *q)
 
     if (l->n > 1 && (strcasecmp(l->word[1], "OBS") == 0 ||
                      strcasecmp(l->word[1], "HOL") == 0))
-        return imported_note(
+        return imported_add_note(
             q->lens, l->number,
             "'%s %s' is not supported; openings must be circles", l->word[0],
             l->word[1]);
     if (l->n > 1 && strcasecmp(l->word[1], "EDG") == 0 && q->s->semi > 0)
         return true;
-    if (!lines_number(l, k, "semi-diameter", &value))
+    if (!lines_parse_number(l, k, "semi-diameter", &value))
         return false;
     q->s->semi = value;
     return true;
@@ -127,7 +129,7 @@ static bool parse_aperture(struct seq *q)
 
 /* Handles a command that sets a single number or the glass of the surface.
  * Sets *DONE to whether the command is known. */
-static bool parse_number(struct seq *q, bool *done)
+static bool parse_number_command(struct seq *q, bool *done)
 {
     static const char terms[] = "ABCDEFGHJ"; /* terms of h^4 to h^20 */
     const struct lines *l = &q->lines;
@@ -135,25 +137,26 @@ static bool parse_number(struct seq *q, bool *done)
 
     *done = true;
     if (strcmp(word, "CUY") == 0 || strcmp(word, "RDY") == 0)
-        return parse_radius(q, 1, *word == 'C');
+        return parse_surface_radius(q, 1, *word == 'C');
     if (strcmp(word, "THI") == 0)
-        return lines_number(l, 1, "thickness", &q->s->thickness);
+        return lines_parse_number(l, 1, "thickness", &q->s->thickness);
     if (strcmp(word, "GLA") == 0)
-        return l->n > 1
-                   ? parse_glass(q, l->word[1])
-                   : imported_fail(q->lens, l->number, "the glass has no name");
+        return l->n > 1 ? parse_glass(q, l->word[1])
+                        : imported_report_error(q->lens, l->number,
+                                                "the glass has no name");
     if (strcmp(word, "K") == 0)
-        return lines_number(l, 1, "conic", &q->s->shape.conic);
+        return lines_parse_number(l, 1, "conic", &q->s->shape.conic);
     if (*word && !word[1] && strchr(terms, *word))
-        return lines_number(l, 1, "aspheric term",
-                            &q->s->shape.term[strchr(terms, *word) - terms]);
+        return lines_parse_number(
+            l, 1, "aspheric term",
+            &q->s->shape.term[strchr(terms, *word) - terms]);
     *done = false;
     return true;
 }
 
 /* Handles a command about the surface, including its shape: "K" for the conic
  * and "A" to "J" for h^4 to h^20. */
-static bool parse_surface(struct seq *q)
+static bool parse_surface_command(struct seq *q)
 {
     static const char *const ignored[] = {
         "CCY", "THC", "GLC", "KC",  "AC",  "BC",  "CC",  "DC",
@@ -164,71 +167,74 @@ static bool parse_surface(struct seq *q)
     const struct lines *l = &q->lines;
     bool done;
 
-    if (!parse_number(q, &done))
+    if (!parse_number_command(q, &done))
         return false;
     if (done)
         return true;
-    if (lines_is(l, "STO"))
+    if (lines_first_word_is(l, "STO"))
         return q->s->stop = true;
-    if (lines_is(l, "CIR"))
-        return parse_aperture(q);
+    if (lines_first_word_is(l, "CIR"))
+        return parse_aperture_command(q);
     for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
-        if (lines_is(l, ignored[i]))
+        if (lines_first_word_is(l, ignored[i]))
             return true;
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
-        if (lines_is(l, refused[i]))
-            return imported_fail(
+        if (lines_first_word_is(l, refused[i]))
+            return imported_report_error(
                 q->lens, l->number,
                 "'%s': tilted, diffractive and other surfaces without "
                 "rotational symmetry are not supported",
                 l->word[0]);
-    return imported_unread(q->lens, l->number, l->word[0]);
+    return imported_note_unread_word(q->lens, l->number, l->word[0]);
 }
 
-static bool parse_dimension(struct seq *q)
+static bool parse_dimension_command(struct seq *q)
 {
     const char *word = q->lines.n > 1 ? q->lines.word[1] : "";
     const char unit = (char)(*word & ~0x20); /* in upper case */
 
     if (unit != 'I' && unit != 'C' && unit != 'M')
-        return imported_fail(q->lens, q->lines.number,
-                             "unit '%s' is unknown; expected M, C or I", word);
-    return imported_unit(q->lens, q->lines.number,
-                         unit == 'I'   ? 25.4
-                         : unit == 'C' ? 10
-                                       : 1);
+        return imported_report_error(q->lens, q->lines.number,
+                                     "unit '%s' is unknown; expected M, C or I",
+                                     word);
+    return imported_set_unit(q->lens, q->lines.number,
+                             unit == 'I'   ? 25.4
+                             : unit == 'C' ? 10
+                                           : 1);
 }
 
-static bool parse_head(struct seq *q)
+static bool parse_head_command(struct seq *q)
 {
     const struct lines *l = &q->lines;
 
-    if (lines_is(l, "RDM")) {
+    if (lines_first_word_is(l, "RDM")) {
         q->curvatures = l->n > 1 && *l->word[1] == 'N';
         return true;
     }
-    if (lines_is(l, "TITLE") || lines_is(l, "TIT")) {
+    if (lines_first_word_is(l, "TITLE") || lines_first_word_is(l, "TIT")) {
         snprintf(q->lens->title, sizeof q->lens->title, "%s",
                  l->n > 1 ? l->word[1] : "");
         return true;
     }
-    if (lines_is(l, "DIM"))
-        return parse_dimension(q);
-    if (lines_is(l, "EPD"))
-        return lines_number(l, 1, "entrance pupil", &q->lens->pupil);
-    if (lines_is(l, "FNO"))
-        return lines_number(l, 1, "f-number", &q->lens->f_number);
-    if (lines_is(l, "YAN") || lines_is(l, "XAN"))
-        return lines_fields(l, &q->lens->field_deg);
-    if (lines_is(l, "YIM") || lines_is(l, "YRI") || lines_is(l, "XIM"))
-        return lines_fields(l, &q->lens->height);
-    if (lines_is(l, "PRV"))
-        return imported_note(q->lens, l->number,
-                             "private glasses (PRV) are ignored; those of the "
-                             "catalogue are used");
-    return !lines_is(l, "ZOO") ||
-           imported_note(q->lens, l->number,
-                         "only the first zoom position is read");
+    if (lines_first_word_is(l, "DIM"))
+        return parse_dimension_command(q);
+    if (lines_first_word_is(l, "EPD"))
+        return lines_parse_number(l, 1, "entrance pupil", &q->lens->pupil);
+    if (lines_first_word_is(l, "FNO"))
+        return lines_parse_number(l, 1, "f-number", &q->lens->f_number);
+    if (lines_first_word_is(l, "YAN") || lines_first_word_is(l, "XAN"))
+        return lines_parse_fields(l, &q->lens->field_deg);
+    if (lines_first_word_is(l, "YIM") || lines_first_word_is(l, "YRI") ||
+        lines_first_word_is(l, "XIM"))
+        return lines_parse_fields(l, &q->lens->height);
+    if (lines_first_word_is(l, "PRV"))
+        return imported_add_note(
+            q->lens, l->number,
+            "private glasses (PRV) are ignored; those of the "
+            "catalogue are used");
+    return !lines_first_word_is(l, "ZOO") ||
+           imported_add_note(q->lens, l->number,
+                             "only the first zoom position is read");
 }
 
 /* Converts the first word to upper case. */
@@ -254,8 +260,8 @@ static bool select_surface(struct seq *q)
     if (*end)
         return true;
     if (k < 1 || k > q->lens->n)
-        return imported_fail(q->lens, l->number, "there is no surface '%s'",
-                             word);
+        return imported_report_error(q->lens, l->number,
+                                     "there is no surface '%s'", word);
     q->s = &q->lens->surface[k - 1];
     l->n--;
     for (int i = 1; i < l->n; i++)
@@ -270,11 +276,13 @@ static bool parse_command(struct seq *q)
     bool good;
 
     capitalise_command(&q->lines);
-    if (lines_is(l, "S") || lines_is(l, "SO") || lines_is(l, "SI"))
+    if (lines_first_word_is(l, "S") || lines_first_word_is(l, "SO") ||
+        lines_first_word_is(l, "SI"))
         return start_surface(q);
     if (!select_surface(q))
         return false;
-    good = q->s && !lines_is(l, "DIM") ? parse_surface(q) : parse_head(q);
+    good = q->s && !lines_first_word_is(l, "DIM") ? parse_surface_command(q)
+                                                  : parse_head_command(q);
     q->s = current;
     return good;
 }
@@ -283,15 +291,15 @@ bool import_seq(struct imported *lens, const char *text, size_t bytes)
 {
     struct seq q = {.lens = lens, .curvatures = true};
 
-    lines_begin(&q.lines, lens, text, bytes);
+    lines_init(&q.lines, lens, text, bytes);
     q.lines.divider = ';';
-    while (lines_next(&q.lines, '!'))
+    while (lines_read_next(&q.lines, '!'))
         if (!parse_command(&q))
             return false;
     if (lens->n == 0)
-        return imported_empty(lens);
+        return imported_report_no_surfaces(lens);
     if (!q.image)
-        imported_note(
+        imported_add_note(
             lens, 0, "the SI line (image) is missing; the file may be cut off");
-    return imported_need_unit(lens, "DIM");
+    return imported_note_missing_unit(lens, "DIM");
 }

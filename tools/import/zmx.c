@@ -24,16 +24,17 @@ struct zmx {
     int object_line; /* 0: object not read yet */
 };
 
-static bool parse_type(struct zmx *z)
+static bool parse_surface_type(struct zmx *z)
 {
     const char *type = z->lines.n > 1 ? z->lines.word[1] : "";
 
     z->even = strcmp(type, "EVENASPH") == 0;
     return z->even || strcmp(type, "STANDARD") == 0 ||
-           imported_fail(z->lens, z->lines.number,
-                         "surfaces of type '%s' are not supported; STANDARD "
-                         "and EVENASPH are",
-                         type);
+           imported_report_error(
+               z->lens, z->lines.number,
+               "surfaces of type '%s' are not supported; STANDARD "
+               "and EVENASPH are",
+               type);
 }
 
 static bool parse_glass(struct zmx *z)
@@ -42,11 +43,12 @@ static bool parse_glass(struct zmx *z)
     double nd = 0, vd = 0;
 
     if (l->n < 2)
-        return imported_fail(z->lens, l->number, "the glass has no name");
+        return imported_report_error(z->lens, l->number,
+                                     "the glass has no name");
     if (strcmp(l->word[1], "MIRROR") == 0)
-        return lines_mirror(l);
-    if (l->n > 5 && (!lines_number(l, 4, "index", &nd) ||
-                     !lines_number(l, 5, "Abbe number", &vd)))
+        return lines_reject_mirror(l);
+    if (l->n > 5 && (!lines_parse_number(l, 4, "index", &nd) ||
+                     !lines_parse_number(l, 5, "Abbe number", &vd)))
         return false;
     if (strncmp(l->word[1], "___", 3) != 0) {
         snprintf(z->s->glass, sizeof z->s->glass, "%s", l->word[1]);
@@ -59,60 +61,60 @@ static bool parse_glass(struct zmx *z)
     return true;
 }
 
-static bool parse_parameter(struct zmx *z)
+static bool parse_surface_parameter(struct zmx *z)
 {
     double k, value;
 
     if (!z->even)
         return true;
-    if (!lines_number(&z->lines, 1, "number of the term", &k) ||
-        !lines_number(&z->lines, 2, "aspheric term", &value))
+    if (!lines_parse_number(&z->lines, 1, "number of the term", &k) ||
+        !lines_parse_number(&z->lines, 2, "aspheric term", &value))
         return false;
     if (value == 0)
         return true;
     if (k < 2 || k > 8 || k != floor(k))
-        return imported_fail(z->lens, z->lines.number,
-                             "a term of h^%g: only h^4 to h^16 are supported",
-                             2 * k);
+        return imported_report_error(
+            z->lens, z->lines.number,
+            "a term of h^%g: only h^4 to h^16 are supported", 2 * k);
     z->s->shape.term[(int)k - 2] = value;
     return true;
 }
 
-static bool parse_surface(struct zmx *z)
+static bool parse_surface_keyword(struct zmx *z)
 {
     /* data for drawing, manufacturing and optimisation */
     static const char *const ignored[] = {"HIDE", "MIRR", "SLAB", "POPS",
                                           "FIMP", "MEMA", "FLAP", "COMM"};
     const struct lines *l = &z->lines;
 
-    if (lines_is(l, "TYPE"))
-        return parse_type(z);
-    if (lines_is(l, "STOP"))
+    if (lines_first_word_is(l, "TYPE"))
+        return parse_surface_type(z);
+    if (lines_first_word_is(l, "STOP"))
         return z->s->stop = true;
-    if (lines_is(l, "CURV"))
-        return lines_curvature(l, 1, &z->s->radius);
-    if (lines_is(l, "DISZ")) {
+    if (lines_first_word_is(l, "CURV"))
+        return lines_parse_curvature(l, 1, &z->s->radius);
+    if (lines_first_word_is(l, "DISZ")) {
         if (l->n > 1 && strcmp(l->word[1], "INFINITY") == 0) {
             z->s->thickness = (double)INFINITY;
             return true;
         }
-        return lines_number(l, 1, "thickness", &z->s->thickness);
+        return lines_parse_number(l, 1, "thickness", &z->s->thickness);
     }
-    if (lines_is(l, "GLAS"))
+    if (lines_first_word_is(l, "GLAS"))
         return parse_glass(z);
-    if (lines_is(l, "DIAM"))
-        return lines_number(l, 1, "semi-diameter", &z->s->semi);
-    if (lines_is(l, "CONI"))
-        return lines_number(l, 1, "conic", &z->s->shape.conic);
-    if (lines_is(l, "PARM"))
-        return parse_parameter(z);
+    if (lines_first_word_is(l, "DIAM"))
+        return lines_parse_number(l, 1, "semi-diameter", &z->s->semi);
+    if (lines_first_word_is(l, "CONI"))
+        return lines_parse_number(l, 1, "conic", &z->s->shape.conic);
+    if (lines_first_word_is(l, "PARM"))
+        return parse_surface_parameter(z);
     for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
-        if (lines_is(l, ignored[i]))
+        if (lines_first_word_is(l, ignored[i]))
             return true;
-    return imported_unread(z->lens, l->number, l->word[0]);
+    return imported_note_unread_word(z->lens, l->number, l->word[0]);
 }
 
-static bool parse_unit(struct zmx *z)
+static bool parse_unit_keyword(struct zmx *z)
 {
     static const struct {
         const char *word;
@@ -123,39 +125,41 @@ static bool parse_unit(struct zmx *z)
 
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
         if (strcmp(units[i].word, word) == 0)
-            return imported_unit(z->lens, z->lines.number, units[i].mm);
-    return imported_fail(z->lens, z->lines.number,
-                         "unit '%s' is unknown; expected MM, CM, IN or METER",
-                         word);
+            return imported_set_unit(z->lens, z->lines.number, units[i].mm);
+    return imported_report_error(
+        z->lens, z->lines.number,
+        "unit '%s' is unknown; expected MM, CM, IN or METER", word);
 }
 
-static bool parse_head(struct zmx *z)
+static bool parse_head_keyword(struct zmx *z)
 {
     const struct lines *l = &z->lines;
     double value;
 
-    if (lines_is(l, "MODE") && l->n > 1 && strcmp(l->word[1], "SEQ") != 0)
-        return imported_fail(
+    if (lines_first_word_is(l, "MODE") && l->n > 1 &&
+        strcmp(l->word[1], "SEQ") != 0)
+        return imported_report_error(
             z->lens, l->number,
             "mode '%s' is not supported; only SEQ (sequential) is", l->word[1]);
-    if (lines_is(l, "NAME")) {
+    if (lines_first_word_is(l, "NAME")) {
         snprintf(z->lens->title, sizeof z->lens->title, "%.230s", l->rest);
         return true;
     }
-    if (lines_is(l, "UNIT"))
-        return parse_unit(z);
-    if (lines_is(l, "ENPD"))
-        return lines_number(l, 1, "entrance pupil", &z->lens->pupil);
-    if (lines_is(l, "FNUM"))
-        return lines_number(l, 1, "f-number", &z->lens->f_number);
-    if (lines_is(l, "FTYP")) {
-        if (!lines_number(l, 1, "type of field", &value))
+    if (lines_first_word_is(l, "UNIT"))
+        return parse_unit_keyword(z);
+    if (lines_first_word_is(l, "ENPD"))
+        return lines_parse_number(l, 1, "entrance pupil", &z->lens->pupil);
+    if (lines_first_word_is(l, "FNUM"))
+        return lines_parse_number(l, 1, "f-number", &z->lens->f_number);
+    if (lines_first_word_is(l, "FTYP")) {
+        if (!lines_parse_number(l, 1, "type of field", &value))
             return false;
         z->field_type = value >= 0 && value < 10 ? (int)value : 9;
         return true;
     }
-    return !(lines_is(l, "XFLN") || lines_is(l, "YFLN")) ||
-           lines_fields(l, &z->field);
+    return !(lines_first_word_is(l, "XFLN") ||
+             lines_first_word_is(l, "YFLN")) ||
+           lines_parse_fields(l, &z->field);
 }
 
 /* Begins a surface; the first, the object, is not added to the lens. Rejects
@@ -165,13 +169,14 @@ static bool start_surface(struct zmx *z)
 {
     double number;
 
-    if (!lines_number(&z->lines, 1, "number of the surface", &number))
+    if (!lines_parse_number(&z->lines, 1, "number of the surface", &number))
         return false;
     if (!(number >= 0) || number > 1e6 || number != floor(number) ||
         (z->s && number != z->number + 1))
-        return imported_fail(z->lens, z->lines.number,
-                             "surface %.15g: surfaces count up from 0%s",
-                             number, z->s ? ", one by one" : "");
+        return imported_report_error(
+            z->lens, z->lines.number,
+            "surface %.15g: surfaces count up from 0%s", number,
+            z->s ? ", one by one" : "");
     z->number = number;
     z->even = false;
     if (z->s && z->object_line == 0) {
@@ -179,7 +184,7 @@ static bool start_surface(struct zmx *z)
         z->object_line = z->s->line;
         z->lens->n = 0;
     }
-    z->s = imported_add(z->lens, z->lines.number);
+    z->s = imported_add_surface(z->lens, z->lines.number);
     if (z->s)
         z->s->thickness = (double)NAN; /* not stated yet */
     return z->s != NULL;
@@ -187,36 +192,38 @@ static bool start_surface(struct zmx *z)
 
 /* Removes the last surface, the image. Rejects an image with glass behind
  * it, as the file is then truncated. */
-static bool remove_image(struct imported *lens)
+static bool remove_image_surface(struct imported *lens)
 {
     const struct imported_surface *image = &lens->surface[--lens->n];
 
     if (image->glass[0] || image->nd != 1)
-        return imported_fail(lens, image->line,
-                             "the last surface, which is the image, has glass "
-                             "behind it: the file is cut off");
+        return imported_report_error(
+            lens, image->line,
+            "the last surface, which is the image, has glass "
+            "behind it: the file is cut off");
     if (image->thickness == 0)
-        imported_image(lens, image->line, image->radius, 0);
+        imported_set_image_surface(lens, image->line, image->radius, 0);
     else
-        imported_note(lens, image->line,
-                      "the last surface, which is the image, has no DISZ of 0: "
-                      "the file may be cut off");
+        imported_add_note(
+            lens, image->line,
+            "the last surface, which is the image, has no DISZ of 0: "
+            "the file may be cut off");
     return true;
 }
 
-static bool check_distances(struct imported *lens)
+static bool check_surface_distances(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++) {
         struct imported_surface *s = &lens->surface[k];
 
         if (isnan(s->thickness)) {
-            imported_note(lens, s->line,
-                          "no DISZ is stated; a thickness of 0 is assumed");
+            imported_add_note(lens, s->line,
+                              "no DISZ is stated; a thickness of 0 is assumed");
             s->thickness = 0;
         }
         if (!isfinite(s->thickness))
-            return imported_fail(lens, s->line,
-                                 "an infinite thickness inside the lens");
+            return imported_report_error(
+                lens, s->line, "an infinite thickness inside the lens");
     }
     return true;
 }
@@ -227,8 +234,8 @@ static bool finish_lens(struct zmx *z)
     const struct imported_surface *image;
 
     if (lens->n < 2)
-        return imported_empty(lens);
-    if (!remove_image(lens))
+        return imported_report_no_surfaces(lens);
+    if (!remove_image_surface(lens))
         return false;
     image = &lens->surface[lens->n];
     if (z->field_type == 0)
@@ -239,10 +246,10 @@ static bool finish_lens(struct zmx *z)
         lens->height = image->semi;
     if (z->field_type == 0 && !(z->field > 0))
         lens->height = image->semi;
-    if (!check_distances(lens))
+    if (!check_surface_distances(lens))
         return false;
-    imported_object(lens, z->object_line, z->object);
-    return imported_need_unit(lens, "UNIT");
+    imported_set_object(lens, z->object_line, z->object);
+    return imported_note_missing_unit(lens, "UNIT");
 }
 
 bool import_zmx(struct imported *lens, const char *text, size_t bytes)
@@ -250,29 +257,30 @@ bool import_zmx(struct imported *lens, const char *text, size_t bytes)
     struct zmx z = {.lens = lens};
     bool more = true, tail = false;
 
-    lines_begin(&z.lines, lens, text, bytes);
-    while (more && lines_next(&z.lines, '\0')) {
+    lines_init(&z.lines, lens, text, bytes);
+    while (more && lines_read_next(&z.lines, '\0')) {
         const struct lines *l = &z.lines;
 
-        if (lines_is(l, "SURF"))
+        if (lines_first_word_is(l, "SURF"))
             more = start_surface(&z);
         /* Configurations, merit functions and tolerances follow the last
          * surface. */
-        else if (lines_is(l, "MNUM")) {
+        else if (lines_first_word_is(l, "MNUM")) {
             tail = true;
             more = l->n < 2 || strcmp(l->word[1], "1") == 0 ||
-                   imported_note(lens, l->number,
-                                 "only the first configuration is read");
-        } else if (lines_is(l, "TOL") || lines_is(l, "DMFS"))
+                   imported_add_note(lens, l->number,
+                                     "only the first configuration is read");
+        } else if (lines_first_word_is(l, "TOL") ||
+                   lines_first_word_is(l, "DMFS"))
             tail = true;
         else if (!z.s)
-            more = parse_head(&z);
+            more = parse_head_keyword(&z);
         else if (!tail) {
             const bool indented = l->word[0] > l->text;
 
             tail = z.indented && !indented;
             z.indented |= indented;
-            more = tail || parse_surface(&z);
+            more = tail || parse_surface_keyword(&z);
         }
     }
     return more && finish_lens(&z);

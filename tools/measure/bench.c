@@ -15,7 +15,8 @@ static const enum glint_pixel_format formats[] = {GLINT_YUYV,     GLINT_I420,
 
 /* ------------------------------------------------------------------- cases */
 
-static struct canvas *find_canvas(struct bench *b, int width, int height)
+static struct canvas *find_canvas_for_case(struct bench *b, int width,
+                                           int height)
 {
     struct canvas *c = &b->canvas[b->n_canvases];
 
@@ -33,7 +34,7 @@ static struct canvas *find_canvas(struct bench *b, int width, int height)
 struct bench_case *bench_add(struct bench *b, const char *name,
                              const struct bench_variation *v)
 {
-    struct canvas *const canvas = find_canvas(
+    struct canvas *const canvas = find_canvas_for_case(
         b, v->width ? v->width : b->width, v->height ? v->height : b->height);
     struct bench_case *c;
 
@@ -58,7 +59,7 @@ bool bench_is_possible(const struct bench_variation *v)
     return (v->sets & ~glint_system_sets()) == 0;
 }
 
-static int run_rounds(struct bench *b)
+static int run_timed_rounds(struct bench *b)
 {
     const int warm = b->moving ? b->rounds : 1;
     struct tool_progress progress;
@@ -71,9 +72,9 @@ static int run_rounds(struct bench *b)
         const int at = round < 0 ? round + warm : round;
 
         for (int i = 0; i < b->n_canvases; i++)
-            canvas_time_floor(&b->canvas[i], at);
+            canvas_time_memory_floor(&b->canvas[i], at);
         for (int i = 0; i < b->n_cases && status == GLINT_OK; i++) {
-            canvas_fresh(b->cases[i]->canvas);
+            canvas_restore_background(b->cases[i]->canvas);
             status = b->subject->draw(b, b->cases[i], at);
         }
         tool_progress_show(&progress,
@@ -85,26 +86,27 @@ static int run_rounds(struct bench *b)
 
 /* ------------------------------------------------------------------ output */
 
-double bench_ms(const struct bench *b, const struct bench_case *c, int stage)
+double bench_median_ms(const struct bench *b, const struct bench_case *c,
+                       int stage)
 {
-    return canvas_median(c->ms[stage], b->rounds);
+    return canvas_find_median(c->ms[stage], b->rounds);
 }
 
 /* Returns the median time of the memory floor, ms. */
 static double median_floor_ms(const struct bench *b, const struct bench_case *c)
 {
-    return canvas_median(c->canvas->floor_ms, b->rounds);
+    return canvas_find_median(c->canvas->floor_ms, b->rounds);
 }
 
 /* Returns the width of STAGE's column, characters. */
-static int column_width(const char *stage)
+static int stage_column_width(const char *stage)
 {
     const int n = (int)strlen(stage);
 
     return n > 7 ? n : 7;
 }
 
-static void print_table(const struct bench *b)
+static void print_bench_table(const struct bench *b)
 {
     const struct bench_subject *const s = b->subject;
     const int whole = s->n_stages - 1;
@@ -114,45 +116,45 @@ static void print_table(const struct bench *b)
            b->cases[0]->canvas->image.height, bench_format[b->word], b->rounds);
     printf("%s %8s %7s ", s->heads, "ms", "ratio");
     for (int k = 0; k < whole; k++)
-        printf(" %*s", column_width(s->stage[k]), s->stage[k]);
+        printf(" %*s", stage_column_width(s->stage[k]), s->stage[k]);
     printf("  %s\n", s->tail);
     for (int i = 0; i < b->n_cases; i++) {
         const struct bench_case *const c = b->cases[i];
         const double floor_ms = median_floor_ms(b, c);
 
         s->print_case(b, c);
-        printf(" %8.3f %7.1f ", bench_ms(b, c, whole),
-               bench_ms(b, c, whole) / floor_ms);
+        printf(" %8.3f %7.1f ", bench_median_ms(b, c, whole),
+               bench_median_ms(b, c, whole) / floor_ms);
         for (int k = 0; k < whole; k++)
-            printf(" %*.2f", column_width(s->stage[k]),
-                   bench_ms(b, c, k) / floor_ms);
+            printf(" %*.2f", stage_column_width(s->stage[k]),
+                   bench_median_ms(b, c, k) / floor_ms);
         printf("  ");
         s->print_result(b, c);
         printf("\n");
     }
 }
 
-void bench_json_format(struct json_writer *json, const struct bench *b,
-                       const struct bench_case *c)
+void bench_write_json_format(struct json_writer *json, const struct bench *b,
+                             const struct bench_case *c)
 {
     json_write(json, "width: %d, height: %d, format: %s",
                c->canvas->image.width, c->canvas->image.height,
                bench_format[b->word]);
 }
 
-void bench_json_times(struct json_writer *json, const struct bench *b,
-                      const struct bench_case *c)
+void bench_write_json_times(struct json_writer *json, const struct bench *b,
+                            const struct bench_case *c)
 {
     const struct bench_subject *const s = b->subject;
     const int whole = s->n_stages - 1;
-    const double ms = bench_ms(b, c, whole);
+    const double ms = bench_median_ms(b, c, whole);
 
     json_write(json, "ms: %.4f, ratio: %.3f", ms, ms / median_floor_ms(b, c));
     for (int k = 0; k < whole; k++)
-        json_write(json, "%s_ms: %.4f", s->stage[k], bench_ms(b, c, k));
+        json_write(json, "%s_ms: %.4f", s->stage[k], bench_median_ms(b, c, k));
 }
 
-static void print_json(const struct bench *b)
+static void print_bench_json(const struct bench *b)
 {
     struct json_writer json = {.to = stdout};
 
@@ -160,7 +162,7 @@ static void print_json(const struct bench *b)
                "{floor_ms: %.5f, rounds: %d, version: %s, machine: %s, "
                "cases: [",
                median_floor_ms(b, b->cases[0]), b->rounds, GLINT_VERSION,
-               canvas_machine());
+               canvas_describe_machine());
     for (int i = 0; i < b->n_cases; i++) {
         json_write(&json, "\n{%s: %s", b->subject->word, b->cases[i]->name);
         b->subject->json(&json, b, b->cases[i]);
@@ -179,9 +181,9 @@ int bench_run_all(struct bench *b, int n_names, const char *const *names)
         return tool_fail(b->tool, GLINT_E_MEMORY, "no threads to be had");
     code = b->subject->open(b, n_names, names);
     if (code == EXIT_OK)
-        code = run_rounds(b);
+        code = run_timed_rounds(b);
     if (code == EXIT_OK)
-        (b->tool->json ? print_json : print_table)(b);
+        (b->tool->json ? print_bench_json : print_bench_table)(b);
     return code;
 }
 
@@ -192,7 +194,7 @@ void bench_close(struct bench *b)
         free(b->cases[i]);
     }
     for (int i = 0; i < b->n_canvases; i++)
-        canvas_finish(&b->canvas[i]);
+        canvas_free(&b->canvas[i]);
     b->subject->close(b);
     glint_pool_destroy(b->two);
     free(b);

@@ -72,7 +72,7 @@ struct bench_subject {
     void (*print_case)(const struct bench *bench, const struct bench_case *c);
     void (*print_result)(const struct bench *bench, const struct bench_case *c);
     /* Writes all members of C's JSON object but the name, with
-     * bench_json_format() and bench_json_times(). */
+     * bench_write_json_format() and bench_write_json_times(). */
     void (*json)(struct json_writer *json, const struct bench *bench,
                  const struct bench_case *c);
     void (*close_case)(struct bench_case *c);
@@ -114,14 +114,15 @@ struct bench_case *bench_add(struct bench *bench, const char *name,
 /* Returns whether this CPU has the instruction sets that V needs. */
 bool bench_is_possible(const struct bench_variation *v);
 
-void bench_json_format(struct json_writer *json, const struct bench *bench,
-                       const struct bench_case *c);
-void bench_json_times(struct json_writer *json, const struct bench *bench,
-                      const struct bench_case *c);
+void bench_write_json_format(struct json_writer *json,
+                             const struct bench *bench,
+                             const struct bench_case *c);
+void bench_write_json_times(struct json_writer *json, const struct bench *bench,
+                            const struct bench_case *c);
 
 /* Returns the median time, ms, of STAGE of C. */
-double bench_ms(const struct bench *bench, const struct bench_case *c,
-                int stage);
+double bench_median_ms(const struct bench *bench, const struct bench_case *c,
+                       int stage);
 
 /* Options that both subjects have. */
 enum { BENCH_OWN = 'A' }; /* subjects number their own options from here on */

@@ -91,11 +91,12 @@ static enum glint_status set_exposure(struct flare_case *t,
 {
     enum glint_status status = GLINT_OK;
 
-    canvas_lamps(t->lamp, t->n_lamps, 12);
+    canvas_set_lamps(t->lamp, t->n_lamps, 12);
     if (!t->is_star)
-        status = canvas_exposure(t->engine, t->lamp, t->n_lamps, &t->scale);
+        status =
+            canvas_compute_exposure(t->engine, t->lamp, t->n_lamps, &t->scale);
     if (v->angle > 0)
-        canvas_lamps(t->lamp, t->n_lamps, v->angle);
+        canvas_set_lamps(t->lamp, t->n_lamps, v->angle);
     if (v->star_stops > 0) {
         for (int i = 0; i < t->n_lamps; i++)
             t->lamp[i].power = exp2(v->star_stops);
@@ -105,8 +106,8 @@ static enum glint_status set_exposure(struct flare_case *t,
 }
 
 /* Adds the case of LENS with variation V. Returns an exit code. */
-static int add_case(struct bench *b, const struct opened_lens *lens,
-                    const struct bench_variation *v)
+static int add_bench_case(struct bench *b, const struct opened_lens *lens,
+                          const struct bench_variation *v)
 {
     struct flare_case *const t =
         (struct flare_case *)bench_add(b, lens->table.name, v);
@@ -117,8 +118,8 @@ static int add_case(struct bench *b, const struct opened_lens *lens,
     if (!t || !(t->lamp = calloc((size_t)v->lights + 1, sizeof *t->lamp)))
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     t->n_lamps = v->lights;
-    canvas_engine(b->tool, lens, &b->base, t->base.canvas->image.width,
-                  t->base.canvas->image.height, &cfg);
+    canvas_open_engine(b->tool, lens, &b->base, t->base.canvas->image.width,
+                       t->base.canvas->image.height, &cfg);
     cfg.workers = t->base.workers;
     if (v->kernels)
         cfg.sets &= v->sets;
@@ -135,14 +136,15 @@ static int add_case(struct bench *b, const struct opened_lens *lens,
 }
 
 /* Adds the variations of V[N] that this CPU supports. */
-static int add_supported(struct bench *b, const struct opened_lens *lens,
-                         const struct bench_variation *v, size_t n)
+static int add_supported_variations(struct bench *b,
+                                    const struct opened_lens *lens,
+                                    const struct bench_variation *v, size_t n)
 {
     int code = EXIT_OK;
 
     for (size_t i = 0; i < n && code == EXIT_OK; i++)
         if (bench_is_possible(&v[i]))
-            code = add_case(b, lens, &v[i]);
+            code = add_bench_case(b, lens, &v[i]);
     return code;
 }
 
@@ -172,13 +174,15 @@ static enum glint_status bench_run(struct bench *b, struct bench_case *c,
 
 /* ----------------------------------------------------------------- opening */
 
-static int add_cases(struct bench *b, const struct opened_lens *lens)
+static int add_bench_cases(struct bench *b, const struct opened_lens *lens)
 {
-    return b->all ? add_supported(b, lens, all, sizeof all / sizeof *all)
-                  : add_case(b, lens, &plain);
+    return b->all ? add_supported_variations(b, lens, all,
+                                             sizeof all / sizeof *all)
+                  : add_bench_case(b, lens, &plain);
 }
 
-static int open_lens(struct bench *b, struct lenses *lenses, const char *name)
+static int open_bench_lens(struct bench *b, struct lenses *lenses,
+                           const char *name)
 {
     if (lenses->n == BENCH_LENSES)
         return tool_usage(b->tool, "accepts at most %d lenses", BENCH_LENSES);
@@ -186,7 +190,7 @@ static int open_lens(struct bench *b, struct lenses *lenses, const char *name)
                             name);
 }
 
-static int open_flares(struct bench *b, int n, const char *const *name)
+static int open_bench_lenses(struct bench *b, int n, const char *const *name)
 {
     struct lenses *const lenses = b->opened = calloc(1, sizeof *lenses);
     int code = EXIT_OK;
@@ -201,13 +205,13 @@ static int open_flares(struct bench *b, int n, const char *const *name)
         n = sizeof default_lenses / sizeof *default_lenses;
     }
     for (int i = 0; i < n && code == EXIT_OK; i++)
-        code = open_lens(b, lenses, name[i]);
+        code = open_bench_lens(b, lenses, name[i]);
     for (int i = 0; i < n && code == EXIT_OK; i++)
-        code = add_cases(b, &lenses->lens[i]);
+        code = add_bench_cases(b, &lenses->lens[i]);
     return code;
 }
 
-static void close_case(struct bench_case *c)
+static void close_bench_case(struct bench_case *c)
 {
     struct flare_case *const t = (struct flare_case *)c;
 
@@ -215,7 +219,7 @@ static void close_case(struct bench_case *c)
     free(t->lamp);
 }
 
-static void close_flares(struct bench *b)
+static void close_bench_lenses(struct bench *b)
 {
     struct lenses *const lenses = b->opened;
 
@@ -226,22 +230,23 @@ static void close_flares(struct bench *b)
 
 /* ------------------------------------------------------------------ output */
 
-static const char *raster_name(const struct flare_case *t)
+static const char *rasteriser_name(const struct flare_case *t)
 {
     return t->is_star ? "star" : "edges";
 }
 
-static void print_case(const struct bench *b, const struct bench_case *c)
+static void print_bench_case(const struct bench *b, const struct bench_case *c)
 {
     const struct flare_case *const t = (const struct flare_case *)c;
 
     (void)b;
     printf("%-22s %4dx%-4d %5d %2d %-5s %-5s", c->name, c->canvas->image.width,
-           c->canvas->image.height, t->n_lamps, c->threads, raster_name(t),
+           c->canvas->image.height, t->n_lamps, c->threads, rasteriser_name(t),
            c->kernels);
 }
 
-static void print_result(const struct bench *b, const struct bench_case *c)
+static void print_bench_result(const struct bench *b,
+                               const struct bench_case *c)
 {
     const struct flare_case *const t = (const struct flare_case *)c;
     const struct glint_engine_report *const r = &t->report;
@@ -251,19 +256,19 @@ static void print_result(const struct bench *b, const struct bench_case *c)
            (double)(r->peak_bytes + r->star_bytes) / (1 << 20));
 }
 
-static void write_json(struct json_writer *to, const struct bench *b,
-                       const struct bench_case *c)
+static void write_bench_json(struct json_writer *to, const struct bench *b,
+                             const struct bench_case *c)
 {
     const struct flare_case *const t = (const struct flare_case *)c;
     const struct glint_engine_report *const r = &t->report;
 
-    bench_json_format(to, b, c);
+    bench_write_json_format(to, b, c);
     json_write(to,
                "lights: %d, threads: %d, raster: %s, kernels: %s, "
                "quality: %.3f",
-               t->n_lamps, c->threads, raster_name(t), c->kernels,
+               t->n_lamps, c->threads, rasteriser_name(t), c->kernels,
                r->quality >= 0 ? r->quality : b->base.options.quality);
-    bench_json_times(to, b, c);
+    bench_write_json_times(to, b, c);
     json_write(to,
                "drawn_lights: %d, ghosts: %d, bundles: %d, primitives: %d, "
                "tiles: %d, arena_bytes: %zu, star_bytes: %zu",
@@ -278,7 +283,7 @@ enum { OPT_MOVING = BENCH_OWN };
 static const struct option own[] = {{"moving", no_argument, NULL, OPT_MOVING},
                                     BENCH_OPTIONS};
 
-static int parse_option(struct bench *b, int c, const char *value)
+static int parse_bench_option(struct bench *b, int c, const char *value)
 {
     (void)value;
     if (c != OPT_MOVING)
@@ -297,11 +302,11 @@ const struct bench_subject bench_flare = {
     .heads = "lens                        size light th by    sets ",
     .tail = "  prims    MiB",
     .case_bytes = sizeof(struct flare_case),
-    .take = parse_option,
-    .open = open_flares,
+    .take = parse_bench_option,
+    .open = open_bench_lenses,
     .draw = bench_run,
-    .print_case = print_case,
-    .print_result = print_result,
-    .json = write_json,
-    .close_case = close_case,
-    .close = close_flares};
+    .print_case = print_bench_case,
+    .print_result = print_bench_result,
+    .json = write_bench_json,
+    .close_case = close_bench_case,
+    .close = close_bench_lenses};

@@ -84,23 +84,24 @@ static void invalidate_shadows(void *ctx, struct glint_scene *scene)
 }
 
 /* Opens FRAME of MODEL and draws it once, so that all memory is allocated. */
-static int open_frame(struct scene_case *t, struct scene_frame *frame,
-                      const struct glint_scene_model *model,
-                      const struct scene_dials *dials)
+static int open_bench_frame(struct scene_case *t, struct scene_frame *frame,
+                            const struct glint_scene_model *model,
+                            const struct scene_dials *dials)
 {
     int code = scene_frame_open(frame, &t->tool, model, dials);
 
     frame->pose = invalidate_shadows;
     frame->pose_ctx = frame;
-    canvas_fresh(t->base.canvas);
+    canvas_restore_background(t->base.canvas);
     return code == EXIT_OK ? scene_frame_draw(frame, &t->base.canvas->image)
                            : code;
 }
 
 /* Sets DIALS to the quality parameters of the command line plus the option of
  * V. Returns false if V changes nothing. */
-static bool set_dials(const struct bench *b, const struct bench_variation *v,
-                      struct scene_dials *dials)
+static bool set_quality_parameters(const struct bench *b,
+                                   const struct bench_variation *v,
+                                   struct scene_dials *dials)
 {
     struct glint_options options = b->base.options;
     struct scene_dials plain = {.width = b->width,
@@ -130,14 +131,14 @@ static bool set_dials(const struct bench *b, const struct bench_variation *v,
            dials->width != plain.width || dials->height != plain.height;
 }
 
-static int add_case(struct bench *b, const struct bench_variation *v)
+static int add_bench_case(struct bench *b, const struct bench_variation *v)
 {
     struct opened *const o = b->opened;
     struct scene_dials dials;
     struct scene_case *t;
     int code;
 
-    if (!set_dials(b, v, &dials) || !bench_is_possible(v))
+    if (!set_quality_parameters(b, v, &dials) || !bench_is_possible(v))
         return EXIT_OK;
     t = (struct scene_case *)bench_add(b, o->scene.model.header->name, v);
     if (!t)
@@ -147,22 +148,22 @@ static int add_case(struct bench *b, const struct bench_variation *v)
     t->tool.n_threads = t->base.threads;
     t->tool.sets_off |= v->kernels ? ~v->sets : 0;
     t->instructions = (double)NAN;
-    code = open_frame(t, &t->frame, &o->scene.model, &dials);
+    code = open_bench_frame(t, &t->frame, &o->scene.model, &dials);
     if (code == EXIT_OK && o->bare.data)
-        code = open_frame(t, &t->bare, &o->bare.model, &dials);
+        code = open_bench_frame(t, &t->bare, &o->bare.model, &dials);
     if (code == EXIT_OK)
         t->covered_px = scene_count_covered_px(&t->frame);
     return code;
 }
 
-static int add_cases(struct bench *b)
+static int add_bench_cases(struct bench *b)
 {
     static const struct bench_variation plain = {0};
-    int code = add_case(b, &plain);
+    int code = add_bench_case(b, &plain);
 
     for (size_t i = 0;
          i < sizeof all / sizeof *all && b->all && code == EXIT_OK; i++)
-        code = add_case(b, &all[i]);
+        code = add_bench_case(b, &all[i]);
     return code;
 }
 
@@ -170,8 +171,8 @@ static int add_cases(struct bench *b)
 
 /* Draws a frame. Sets AT_S to the times at which stages begin and the last
  * ends. */
-static void time_stages(struct scene_frame *frame,
-                        const struct glint_image *image, double at_s[5])
+static void time_frame_stages(struct scene_frame *frame,
+                              const struct glint_image *image, double at_s[5])
 {
     struct glint_scene_lamp lamps[GLINT_SCENE_MAX_LIGHTS];
 
@@ -186,8 +187,8 @@ static void time_stages(struct scene_frame *frame,
     at_s[4] = tool_clock_s();
 }
 
-static enum glint_status draw_frame(struct bench *b, struct bench_case *c,
-                                    int round)
+static enum glint_status draw_bench_frame(struct bench *b, struct bench_case *c,
+                                          int round)
 {
     static const int span[][3] = {{PREPARE, 0, 1},
                                   {AROUND, 1, 2},
@@ -201,7 +202,7 @@ static enum glint_status draw_frame(struct bench *b, struct bench_case *c,
 
     if (o->counter >= 0)
         before = glint_instructions_read(o->counter);
-    time_stages(&t->frame, &c->canvas->image, at_s);
+    time_frame_stages(&t->frame, &c->canvas->image, at_s);
     if (o->counter >= 0)
         t->instructions =
             (double)(glint_instructions_read(o->counter) - before);
@@ -209,8 +210,8 @@ static enum glint_status draw_frame(struct bench *b, struct bench_case *c,
         c->ms[span[i][0]][round] = 1e3 * (at_s[span[i][2]] - at_s[span[i][1]]);
     c->ms[SHADOWS][round] = 0;
     if (t->bare.scene) {
-        canvas_fresh(c->canvas);
-        time_stages(&t->bare, &c->canvas->image, at_s);
+        canvas_restore_background(c->canvas);
+        time_frame_stages(&t->bare, &c->canvas->image, at_s);
         c->ms[SHADOWS][round] = c->ms[DRAW][round] - 1e3 * (at_s[3] - at_s[2]);
     }
     return GLINT_OK;
@@ -219,7 +220,7 @@ static enum glint_status draw_frame(struct bench *b, struct bench_case *c,
 /* ----------------------------------------------------------------- opening */
 
 /* Sets o->bare to the scene without shadows. Returns an exit code. */
-static int open_bare(struct bench *b, struct opened *o)
+static int open_scene_without_shadows(struct bench *b, struct opened *o)
 {
     const int code = baked_scene_open(b->tool, o->file, &o->bare);
 
@@ -230,7 +231,7 @@ static int open_bare(struct bench *b, struct opened *o)
     return code;
 }
 
-static int open_scene(struct bench *b, int n, const char *const *name)
+static int open_bench_scene(struct bench *b, int n, const char *const *name)
 {
     struct opened *const o = b->opened;
     int code;
@@ -246,14 +247,14 @@ static int open_scene(struct bench *b, int n, const char *const *name)
                           "use 'camera fov'",
                           o->file);
     if (o->scene.model.header->shadow)
-        code = open_bare(b, o);
+        code = open_scene_without_shadows(b, o);
     if (code != EXIT_OK)
         return code;
     o->counter = glint_instructions_open();
-    return add_cases(b);
+    return add_bench_cases(b);
 }
 
-static void close_case(struct bench_case *c)
+static void close_bench_case(struct bench_case *c)
 {
     struct scene_case *const t = (struct scene_case *)c;
 
@@ -261,7 +262,7 @@ static void close_case(struct bench_case *c)
     scene_frame_close(&t->bare);
 }
 
-static void close_scene(struct bench *b)
+static void close_bench_scene(struct bench *b)
 {
     struct opened *const o = b->opened;
 
@@ -275,23 +276,24 @@ static void close_scene(struct bench *b)
 
 /* ------------------------------------------------------------------ output */
 
-static const char *shading_name(const struct scene_case *t)
+static const char *shading_method_name(const struct scene_case *t)
 {
     return t->frame.cfg.half_shading ? "half" : "full";
 }
 
-static void print_case(const struct bench *b, const struct bench_case *c)
+static void print_bench_case(const struct bench *b, const struct bench_case *c)
 {
     const struct scene_case *const t = (const struct scene_case *)c;
     const struct glint_scene_config *const cfg = &t->frame.cfg;
 
     (void)b;
     printf("%-16.16s %4dx%-4d %5d %6d %-7s %2d %-5s", c->name, cfg->width,
-           cfg->height, cfg->edge_samples, cfg->shadow_points, shading_name(t),
-           c->threads, c->kernels);
+           cfg->height, cfg->edge_samples, cfg->shadow_points,
+           shading_method_name(t), c->threads, c->kernels);
 }
 
-static void print_result(const struct bench *b, const struct bench_case *c)
+static void print_bench_result(const struct bench *b,
+                               const struct bench_case *c)
 {
     const struct scene_case *const t = (const struct scene_case *)c;
     const struct opened *const o = b->opened;
@@ -300,24 +302,24 @@ static void print_result(const struct bench *b, const struct bench_case *c)
            (double)(t->frame.bytes + o->scene.bytes) / (1 << 20));
 }
 
-static void write_json(struct json_writer *to, const struct bench *b,
-                       const struct bench_case *c)
+static void write_bench_json(struct json_writer *to, const struct bench *b,
+                             const struct bench_case *c)
 {
     const struct scene_case *const t = (const struct scene_case *)c;
     const struct glint_scene_config *const cfg = &t->frame.cfg;
     const struct opened *const o = b->opened;
 
-    bench_json_format(to, b, c);
+    bench_write_json_format(to, b, c);
     json_write(to,
                "edge_samples: %d, shadow_points: %d, shading: %s, threads: %d, "
                "kernels: %s",
-               cfg->edge_samples, cfg->shadow_points, shading_name(t),
+               cfg->edge_samples, cfg->shadow_points, shading_method_name(t),
                c->threads, c->kernels);
-    bench_json_times(to, b, c);
+    bench_write_json_times(to, b, c);
     json_write(to,
                "whole_ms: %.4f, instructions: %.0f, covered_px: %d, "
                "triangles: %d, arena_bytes: %zu, model_bytes: %zu",
-               bench_ms(b, c, WHOLE), t->instructions, t->covered_px,
+               bench_median_ms(b, c, WHOLE), t->instructions, t->covered_px,
                t->frame.stats.triangles, t->frame.bytes, o->scene.bytes);
 }
 
@@ -326,7 +328,7 @@ static void write_json(struct json_writer *to, const struct bench *b,
 static const struct option own[] = {
     {"scene", required_argument, NULL, BENCH_OWN}, BENCH_OPTIONS};
 
-static int parse_option(struct bench *b, int c, const char *value)
+static int parse_bench_option(struct bench *b, int c, const char *value)
 {
     struct opened *o = b->opened;
 
@@ -353,11 +355,11 @@ const struct bench_subject bench_scene = {
     .heads = "scene                 size edges points shading th sets ",
     .tail = " covers     MiB",
     .case_bytes = sizeof(struct scene_case),
-    .take = parse_option,
-    .open = open_scene,
-    .draw = draw_frame,
-    .print_case = print_case,
-    .print_result = print_result,
-    .json = write_json,
-    .close_case = close_case,
-    .close = close_scene};
+    .take = parse_bench_option,
+    .open = open_bench_scene,
+    .draw = draw_bench_frame,
+    .print_case = print_bench_case,
+    .print_result = print_bench_result,
+    .json = write_bench_json,
+    .close_case = close_bench_case,
+    .close = close_bench_scene};

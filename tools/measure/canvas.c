@@ -32,21 +32,21 @@ enum glint_status canvas_init(struct canvas *c, enum glint_pixel_format format,
     c->fresh = malloc(c->bytes);
     c->mem = malloc(c->bytes);
     if (!c->fresh || !c->mem) {
-        canvas_finish(c);
+        canvas_free(c);
         return GLINT_E_MEMORY;
     }
     glint_image_place(&c->image, c->mem);
     fill_background(c);
-    canvas_fresh(c);
+    canvas_restore_background(c);
     return GLINT_OK;
 }
 
-void canvas_fresh(struct canvas *c)
+void canvas_restore_background(struct canvas *c)
 {
     memcpy(c->mem, c->fresh, c->bytes);
 }
 
-void canvas_finish(struct canvas *c)
+void canvas_free(struct canvas *c)
 {
     free(c->fresh);
     free(c->mem);
@@ -55,8 +55,8 @@ void canvas_finish(struct canvas *c)
 
 /* Adds LAYER[256] with saturation to each 256 bytes of PX. The layer stays
  * in the CPU cache, and compilers vectorise the loop. */
-static void add_layer(uint8_t *restrict px, const uint8_t *restrict layer,
-                      size_t bytes)
+static void add_layer_to_pixels(uint8_t *restrict px,
+                                const uint8_t *restrict layer, size_t bytes)
 {
     for (size_t i = 0; i + 256 <= bytes; i += 256)
         for (size_t k = 0; k < 256; k++) {
@@ -66,15 +66,15 @@ static void add_layer(uint8_t *restrict px, const uint8_t *restrict layer,
         }
 }
 
-void canvas_time_floor(struct canvas *c, int round)
+void canvas_time_memory_floor(struct canvas *c, int round)
 {
     static uint8_t layer[256];
     double t0;
 
     layer[1]++;
-    canvas_fresh(c);
+    canvas_restore_background(c);
     t0 = tool_clock_s();
-    add_layer(c->mem, layer, c->bytes);
+    add_layer_to_pixels(c->mem, layer, c->bytes);
     c->floor_ms[round] = 1e3 * (tool_clock_s() - t0);
 }
 
@@ -85,7 +85,7 @@ static double lamp_power(int i, int n)
     return 1.0 / (n > 64 ? 1 + i : n);
 }
 
-void canvas_lamps(struct glint_lamp *lamp, int n, double angle)
+void canvas_set_lamps(struct glint_lamp *lamp, int n, double angle)
 {
     for (int i = 0; i < n; i++)
         lamp[i] = (struct glint_lamp){i ? fmod(angle + 2.39 * i, 24) : angle,
@@ -98,9 +98,9 @@ void canvas_lamps(struct glint_lamp *lamp, int n, double angle)
 
 /* ---------------------------------------------------------------- pictures */
 
-void canvas_engine(const struct tool *tool, const struct opened_lens *lens,
-                   const struct settings *asked, int width, int height,
-                   struct glint_engine_config *cfg)
+void canvas_open_engine(const struct tool *tool, const struct opened_lens *lens,
+                        const struct settings *asked, int width, int height,
+                        struct glint_engine_config *cfg)
 {
     opened_lens_engine(tool, lens, asked, width, height, cfg);
     cfg->light.by_hand = 1;
@@ -108,9 +108,9 @@ void canvas_engine(const struct tool *tool, const struct opened_lens *lens,
     cfg->drawing.is_fresh = 1;
 }
 
-enum glint_status canvas_exposure(struct glint_engine *engine,
-                                  const struct glint_lamp *lamp, int n_lamps,
-                                  double *exposure)
+enum glint_status canvas_compute_exposure(struct glint_engine *engine,
+                                          const struct glint_lamp *lamp,
+                                          int n_lamps, double *exposure)
 {
     const struct glint_view *const view = glint_engine_view(engine);
     const size_t n = 3 * (size_t)view->width * (size_t)view->height;
@@ -128,11 +128,10 @@ enum glint_status canvas_exposure(struct glint_engine *engine,
     return status;
 }
 
-static enum glint_status draw_exact(const struct tool *tool,
-                                    const struct opened_lens *lens,
-                                    const struct settings *s,
-                                    const struct glint_lamp *lamp, int n_lamps,
-                                    int grid, struct glint_float_image *to)
+static enum glint_status
+draw_exact_image(const struct tool *tool, const struct opened_lens *lens,
+                 const struct settings *s, const struct glint_lamp *lamp,
+                 int n_lamps, int grid, struct glint_float_image *to)
 {
     const size_t n = 3 * (size_t)to->width * (size_t)to->height;
     struct glint_setup *setup = malloc(sizeof *setup);
@@ -183,10 +182,10 @@ static uint64_t hash_bytes(uint64_t hash, const void *data, size_t bytes)
 
 /* Returns a hash of everything that determines the exact image, except the
  * ray tracer's code. */
-static uint64_t compute_key(const struct opened_lens *lens,
-                            const struct settings *s,
-                            const struct glint_lamp *lamp, int n_lamps,
-                            int grid, const struct glint_float_image *to)
+static uint64_t compute_cache_key(const struct opened_lens *lens,
+                                  const struct settings *s,
+                                  const struct glint_lamp *lamp, int n_lamps,
+                                  int grid, const struct glint_float_image *to)
 {
     const int only_ghost = settings_only_ghost(s);
     const struct glint_view view =
@@ -222,7 +221,7 @@ static uint64_t compute_key(const struct opened_lens *lens,
     return hash_bytes(hash, lamp, (size_t)n_lamps * sizeof *lamp);
 }
 
-static bool load_cached(const char *path, struct glint_float_image *to)
+static bool load_cached_image(const char *path, struct glint_float_image *to)
 {
     struct glint_float_image kept = {0, 0, NULL};
     struct glint_error error = {""};
@@ -239,13 +238,14 @@ static bool load_cached(const char *path, struct glint_float_image *to)
     return same;
 }
 
-enum glint_status canvas_exact(const struct tool *tool,
-                               const struct opened_lens *lens,
-                               const struct settings *settings,
-                               const struct glint_lamp *lamp, int n_lamps,
-                               int grid, struct glint_float_image *to)
+enum glint_status canvas_draw_exact(const struct tool *tool,
+                                    const struct opened_lens *lens,
+                                    const struct settings *settings,
+                                    const struct glint_lamp *lamp, int n_lamps,
+                                    int grid, struct glint_float_image *to)
 {
-    const uint64_t key = compute_key(lens, settings, lamp, n_lamps, grid, to);
+    const uint64_t key =
+        compute_cache_key(lens, settings, lamp, n_lamps, grid, to);
     struct glint_error error = {""};
     char file[64], path[1024];
     enum glint_status status;
@@ -254,9 +254,9 @@ enum glint_status canvas_exact(const struct tool *tool,
     snprintf(file, sizeof file, "exact-%08lx%08lx.pfm",
              (unsigned long)(key >> 32), (unsigned long)(key & 0xffffffff));
     kept = model_cache_path(path, sizeof path, file);
-    if (kept && load_cached(path, to))
+    if (kept && load_cached_image(path, to))
         return GLINT_OK;
-    status = draw_exact(tool, lens, settings, lamp, n_lamps, grid, to);
+    status = draw_exact_image(tool, lens, settings, lamp, n_lamps, grid, to);
     if (status == GLINT_OK && kept &&
         glint_picture_save_float(path, to, &error) != GLINT_OK && !tool->quiet)
         fprintf(stderr, "glint %s: the exact picture was not cached: %s\n",
@@ -264,10 +264,11 @@ enum glint_status canvas_exact(const struct tool *tool,
     return status;
 }
 
-enum glint_status canvas_codes(struct glint_engine *engine,
-                               const struct glint_lamp *lamp, int n_lamps,
-                               double exposure, uint8_t *codes,
-                               struct glint_engine_report *report)
+enum glint_status canvas_convert_to_codes(struct glint_engine *engine,
+                                          const struct glint_lamp *lamp,
+                                          int n_lamps, double exposure,
+                                          uint8_t *codes,
+                                          struct glint_engine_report *report)
 {
     const struct glint_view *const view = glint_engine_view(engine);
     struct glint_image layer = {
@@ -279,7 +280,7 @@ enum glint_status canvas_codes(struct glint_engine *engine,
                                 report);
 }
 
-const char *canvas_machine(void)
+const char *canvas_describe_machine(void)
 {
     static char line[128];
     FILE *const file = fopen("/proc/cpuinfo", "r");
@@ -302,7 +303,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-double canvas_median(const double *values, int n)
+double canvas_find_median(const double *values, int n)
 {
     double sorted[CANVAS_MAX];
 

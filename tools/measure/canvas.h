@@ -18,7 +18,7 @@ struct canvas {
     uint8_t *fresh, *mem;
     size_t bytes;
     /* memory floor of each round, ms: the time to touch the pixels; set by
-     * canvas_time_floor() */
+     * canvas_time_memory_floor() */
     double floor_ms[CANVAS_MAX];
 };
 
@@ -27,56 +27,58 @@ struct canvas {
 enum glint_status canvas_init(struct canvas *canvas,
                               enum glint_pixel_format format, int width,
                               int height);
-void canvas_fresh(struct canvas *canvas); /* restores the background */
-void canvas_finish(struct canvas *canvas);
+void canvas_restore_background(
+    struct canvas *canvas); /* restores the background */
+void canvas_free(struct canvas *canvas);
 
 /* Measures the memory floor of ROUND: the time of adding a small constant
  * layer, with saturation, to a restored canvas. */
-void canvas_time_floor(struct canvas *canvas, int round);
+void canvas_time_memory_floor(struct canvas *canvas, int round);
 
 /* Sets LAMP to N lamps: the first ANGLE degrees off the axis, the others on
  * a spiral around the axis. Up to 64 lamps have power 1 / N each; of more
  * lamps the kth, counted from 1, has 1 / k. */
-void canvas_lamps(struct glint_lamp *lamp, int n, double angle);
+void canvas_set_lamps(struct glint_lamp *lamp, int n, double angle);
 
 /* Sets CFG to an engine for WIDTH x HEIGHT with the settings ASKED that
  * draws given lamps (glint_engine_draw_at()) and does not search for lamps.
  * LENS must outlive the engine. */
-void canvas_engine(const struct tool *tool, const struct opened_lens *lens,
-                   const struct settings *asked, int width, int height,
-                   struct glint_engine_config *cfg);
+void canvas_open_engine(const struct tool *tool, const struct opened_lens *lens,
+                        const struct settings *asked, int width, int height,
+                        struct glint_engine_config *cfg);
 
 /* Sets EXPOSURE so that the 99.9th percentile of the flare's luminance is
  * white. Returns GLINT_E_MEMORY on failure. */
-enum glint_status canvas_exposure(struct glint_engine *engine,
-                                  const struct glint_lamp *lamp, int n_lamps,
-                                  double *exposure);
+enum glint_status canvas_compute_exposure(struct glint_engine *engine,
+                                          const struct glint_lamp *lamp,
+                                          int n_lamps, double *exposure);
 
 /* Draws the flare of LAMP by exact ray tracing in double precision to TO,
  * whose pixels the caller allocates. GRID: cells per side of the grid of
  * rays. Lens, stop and wavelengths are those of SETTINGS; LENS must be
  * opened from a table. Uses the cached image if there is one. Returns
  * GLINT_E_MEMORY on failure. */
-enum glint_status canvas_exact(const struct tool *tool,
-                               const struct opened_lens *lens,
-                               const struct settings *settings,
-                               const struct glint_lamp *lamp, int n_lamps,
-                               int grid, struct glint_float_image *to);
+enum glint_status canvas_draw_exact(const struct tool *tool,
+                                    const struct opened_lens *lens,
+                                    const struct settings *settings,
+                                    const struct glint_lamp *lamp, int n_lamps,
+                                    int grid, struct glint_float_image *to);
 
 /* Draws only the flare, times EXPOSURE, on black to sRGB codes
  * CODES[height][width][3], by the plan for codes, which is cheaper than the
  * plan for linear light. */
-enum glint_status canvas_codes(struct glint_engine *engine,
-                               const struct glint_lamp *lamp, int n_lamps,
-                               double exposure, uint8_t *codes,
-                               struct glint_engine_report *report);
+enum glint_status canvas_convert_to_codes(struct glint_engine *engine,
+                                          const struct glint_lamp *lamp,
+                                          int n_lamps, double exposure,
+                                          uint8_t *codes,
+                                          struct glint_engine_report *report);
 
 /* Returns the processor's name, without commas, for tables; "unknown" if the
  * system does not report it. */
-const char *canvas_machine(void);
+const char *canvas_describe_machine(void);
 
 /* Returns the median of VALUES[N], N from 1 to CANVAS_MAX; does not reorder
  * them. */
-double canvas_median(const double *values, int n);
+double canvas_find_median(const double *values, int n);
 
 #endif

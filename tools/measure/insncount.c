@@ -61,7 +61,7 @@ static const char *idle = "";
 static int stage = ASLEEP, n_frames, n_skipped;
 static uint64_t spent[MAX_MARKS];
 
-static int find_stage(const char *function)
+static int find_stage_of_function(const char *function)
 {
     if (strcmp(function, idle) == 0)
         return ASLEEP;
@@ -71,7 +71,7 @@ static int find_stage(const char *function)
     return INHERIT;
 }
 
-static void run_block(unsigned cpu, void *ctx)
+static void count_block_instructions(unsigned cpu, void *ctx)
 {
     const struct block *b = ctx;
 
@@ -89,7 +89,7 @@ static void run_block(unsigned cpu, void *ctx)
 
 /* Prints the mean instructions of each stage. Several functions may have the
  * same stage name. */
-static void print_stages(uint64_t id, void *ctx)
+static void print_stage_instructions(uint64_t id, void *ctx)
 {
     const int n = n_frames > n_skipped ? n_frames - n_skipped : 1;
     char line[256];
@@ -115,7 +115,7 @@ static void print_stages(uint64_t id, void *ctx)
     qemu_plugin_outs(line);
 }
 
-static void parse_mark(char *text)
+static void parse_stage_mark(char *text)
 {
     char *colon = strchr(text, ':');
 
@@ -126,7 +126,7 @@ static void parse_mark(char *text)
     mark[n_marks++].name = colon + 1;
 }
 
-static void translate_block(uint64_t id, struct qemu_plugin_tb *tb)
+static void instrument_block(uint64_t id, struct qemu_plugin_tb *tb)
 {
     const char *name = qemu_plugin_insn_symbol(qemu_plugin_tb_get_insn(tb, 0));
     struct block *b = malloc(sizeof *b); /* never freed, as QEMU may run the
@@ -136,8 +136,8 @@ static void translate_block(uint64_t id, struct qemu_plugin_tb *tb)
     if (!b)
         abort();
     b->n = (int)qemu_plugin_tb_n_insns(tb);
-    b->stage = find_stage(name ? name : "?");
-    qemu_plugin_register_vcpu_tb_exec_cb(tb, run_block, 0, b);
+    b->stage = find_stage_of_function(name ? name : "?");
+    qemu_plugin_register_vcpu_tb_exec_cb(tb, count_block_instructions, 0, b);
 }
 
 EXPORTED int qemu_plugin_install(uint64_t id, const struct qemu_info *info,
@@ -159,11 +159,11 @@ EXPORTED int qemu_plugin_install(uint64_t id, const struct qemu_info *info,
         else if (strcmp(text, "skip") == 0)
             n_skipped = atoi(value);
         else if (strcmp(text, "at") == 0)
-            parse_mark(value);
+            parse_stage_mark(value);
         else
             return -1;
     }
-    qemu_plugin_register_vcpu_tb_trans_cb(id, translate_block);
-    qemu_plugin_register_atexit_cb(id, print_stages, NULL);
+    qemu_plugin_register_vcpu_tb_trans_cb(id, instrument_block);
+    qemu_plugin_register_atexit_cb(id, print_stage_instructions, NULL);
     return 0;
 }

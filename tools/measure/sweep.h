@@ -106,11 +106,11 @@ struct sweep {
 
 /* Applies SET to SETTINGS; if OPENING, only parameters that are needed to open
  * the lens. */
-void sweep_set(struct settings *settings, const struct sweep_setting *set,
-               bool opening);
+void sweep_apply_setting(struct settings *settings,
+                         const struct sweep_setting *set, bool opening);
 
 /* Makes the points of all cases. Returns GLINT_E_MEMORY on failure. */
-enum glint_status sweep_plan(struct sweep *s);
+enum glint_status sweep_plan_points(struct sweep *s);
 
 /* Measures all points of case C. Returns an exit code. */
 int sweep_measure(struct sweep *s, int c, struct tool_progress *progress);
@@ -122,7 +122,8 @@ void sweep_mark_fronts(struct sweep *s);
 
 /* Sets FRONT[N] to the indices of the points on the Pareto front, by rising
  * cost, and returns their number. Points with NAN are ignored. */
-int sweep_front(const double *cost, const double *quality, int n, int *front);
+int sweep_find_front(const double *cost, const double *quality, int n,
+                     int *front);
 
 /* Means of a setting over all cases with combined parameters: geometric mean of
  * its cost divided by the default setting's cost in the same case; mean and min
@@ -136,26 +137,27 @@ struct sweep_mean {
 /* Returns the means of all settings, by rising cost, or NULL if there is no
  * memory; the caller frees them. Sets *N to their number. Marks the Pareto
  * front among settings whose flux error is at most MAX_FLUX_ERROR. */
-struct sweep_mean *sweep_means(const struct sweep *s, int *n);
+struct sweep_mean *sweep_compute_means(const struct sweep *s, int *n);
 
 /* Sorts MEAN[N] by rising cost. */
-void sweep_sort(struct sweep_mean *mean, int n);
+void sweep_sort_means(struct sweep_mean *mean, int n);
 
 /* Returns by how many dB MEAN[I] lies above the best PSNR that --quality
  * reaches at up to 1.02 times its cost (2 % is measurement noise). MEAN[N]
  * must be sorted by cost. PSNR is interpolated between neighbouring settings
  * of --quality that draw the same number of pixels. */
-double sweep_above(const struct sweep_mean *mean, int n, int i);
+double sweep_compute_gain_above_front(const struct sweep_mean *mean, int n,
+                                      int i);
 
 /* ------------------------------------------------------------------- output */
 
 /* Writes SET as text: --quality and the parameters that differ from the
  * default, such as "grid 32, quantum 2", or "default". */
-void sweep_words(const struct sweep_setting *set, char text[160]);
+void sweep_describe_setting(const struct sweep_setting *set, char text[160]);
 
 /* Returns the index of the named quality of P, or -1 if its quality has no
  * name. */
-int sweep_named(const struct sweep_point *p);
+int sweep_quality_name_index(const struct sweep_point *p);
 
 void sweep_write_csv(const struct sweep *s, FILE *file);
 void sweep_write_json(const struct sweep *s, FILE *file);
@@ -165,6 +167,6 @@ void sweep_write_page(const struct sweep *s, FILE *file);
 
 /* Prints a Markdown table of named qualities, and the settings of a single
  * parameter that lie above --quality. */
-void sweep_names(const struct sweep *s, FILE *file);
+void sweep_write_name_table(const struct sweep *s, FILE *file);
 
 #endif

@@ -17,7 +17,7 @@ static const char *const metrics[SWEEP_METRICS] = {
     "ghosts",      "bundles",  "edges", "tiles"};
 
 /* Prints a comma, followed by X if X is finite. */
-static void print_number(FILE *file, double x)
+static void print_csv_number(FILE *file, double x)
 {
     fputc(',', file);
     if (isfinite(x))
@@ -40,13 +40,13 @@ void sweep_write_csv(const struct sweep *s, FILE *file)
         fprintf(file, "%s,%d,%d,%d,%g,%s,%s", s->lens[c->lens], c->width,
                 c->height, c->n_lamps, c->angle, kinds[set->kind],
                 set->alone >= 0 ? sweep_parameter[set->alone].name : "");
-        print_number(file, set->quality >= 0 ? set->quality : (double)NAN);
+        print_csv_number(file, set->quality >= 0 ? set->quality : (double)NAN);
         for (int d = 0; d < n_sweep_parameters; d++)
-            print_number(file, set->value[d]);
+            print_csv_number(file, set->value[d]);
         for (int k = 0; k < SWEEP_METRICS; k++)
-            print_number(file, p->metric[k]);
+            print_csv_number(file, p->metric[k]);
         fprintf(file, ",%d,%d,%s,%s\n", p->front, s->rounds, GLINT_VERSION,
-                canvas_machine());
+                canvas_describe_machine());
     }
 }
 
@@ -55,7 +55,7 @@ void sweep_write_json(const struct sweep *s, FILE *file)
     struct json_writer json = {.to = file};
 
     json_write(&json, "{rounds: %d, version: %s, machine: %s, points: [",
-               s->rounds, GLINT_VERSION, canvas_machine());
+               s->rounds, GLINT_VERSION, canvas_describe_machine());
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *const p = &s->point[i];
         const struct sweep_case *const c = &s->scase[p->of];
@@ -78,13 +78,13 @@ void sweep_write_json(const struct sweep *s, FILE *file)
 
 /* Prints the settings of a single parameter that lie at least 0.1 dB above
  * --quality. */
-static void print_above(const struct sweep *s, FILE *file)
+static void print_settings_above_front(const struct sweep *s, FILE *file)
 {
     int n, n_alone = 0, n_above = 0;
-    struct sweep_mean *const mean = sweep_means(s, &n);
+    struct sweep_mean *const mean = sweep_compute_means(s, &n);
 
     for (int i = 0; i < n; i++) {
-        const double above = sweep_above(mean, n, i);
+        const double above = sweep_compute_gain_above_front(mean, n, i);
         char words[160];
 
         if (mean[i].set->kind != SWEEP_ALONE ||
@@ -93,7 +93,7 @@ static void print_above(const struct sweep *s, FILE *file)
         n_alone++;
         if (above < 0.1)
             continue;
-        sweep_words(mean[i].set, words);
+        sweep_describe_setting(mean[i].set, words);
         fprintf(file, "%s%s by %.1f dB",
                 n_above++ ? ", " : "\nAbove --quality: ", words, above);
     }
@@ -103,7 +103,7 @@ static void print_above(const struct sweep *s, FILE *file)
     free(mean);
 }
 
-void sweep_names(const struct sweep *s, FILE *file)
+void sweep_write_name_table(const struct sweep *s, FILE *file)
 {
     fputs("Times memory floor; PSNR, dB; KiB of arena + model\n\n"
           "| lens, size, lights |",
@@ -119,7 +119,7 @@ void sweep_names(const struct sweep *s, FILE *file)
         for (int i = k->first; i < k->first + k->n; i++) {
             const struct sweep_point *const p = &s->point[i];
 
-            if (sweep_named(p) >= 0)
+            if (sweep_quality_name_index(p) >= 0)
                 fprintf(file, " %.1f; %.1f; %.0f + %.0f |",
                         p->metric[SWEEP_RATIO], p->metric[SWEEP_PSNR_DB],
                         floor(p->metric[SWEEP_ARENA_BYTES] / 1024),
@@ -127,5 +127,5 @@ void sweep_names(const struct sweep *s, FILE *file)
         }
         fputc('\n', file);
     }
-    print_above(s, file);
+    print_settings_above_front(s, file);
 }

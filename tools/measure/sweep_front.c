@@ -7,7 +7,7 @@
 
 /* ------------------------------------------------------------------- front */
 
-static bool is_flux_true(double flux_error)
+static bool is_flux_error_small(double flux_error)
 {
     return fabs(flux_error) <= MAX_FLUX_ERROR;
 }
@@ -18,7 +18,7 @@ struct entry {
 };
 
 /* Orders entries by rising cost, at equal cost by falling quality. */
-static int compare_cost(const void *a, const void *b)
+static int compare_entry_cost(const void *a, const void *b)
 {
     const struct entry *x = a, *y = b;
 
@@ -29,7 +29,8 @@ static int compare_cost(const void *a, const void *b)
     return (x->number > y->number) - (x->number < y->number);
 }
 
-int sweep_front(const double *cost, const double *quality, int n, int *front)
+int sweep_find_front(const double *cost, const double *quality, int n,
+                     int *front)
 {
     struct entry *all = malloc((size_t)(n + 1) * sizeof *all);
     int n_all = 0, n_front = 0;
@@ -39,7 +40,7 @@ int sweep_front(const double *cost, const double *quality, int n, int *front)
     for (int i = 0; i < n; i++)
         if (isfinite(cost[i]) && isfinite(quality[i]))
             all[n_all++] = (struct entry){cost[i], quality[i], i};
-    qsort(all, (size_t)n_all, sizeof *all, compare_cost);
+    qsort(all, (size_t)n_all, sizeof *all, compare_entry_cost);
     for (int i = 0; i < n_all; i++)
         if (n_front == 0 || all[i].quality > quality[front[n_front - 1]])
             front[n_front++] = all[i].number;
@@ -57,13 +58,13 @@ void sweep_mark_fronts(struct sweep *s)
         int *const front = malloc((size_t)k->n * sizeof *front), n = 0;
 
         for (int i = 0; i < k->n && cost && quality; i++) {
-            cost[i] = is_flux_true(point[i].metric[SWEEP_FLUX_ERROR])
+            cost[i] = is_flux_error_small(point[i].metric[SWEEP_FLUX_ERROR])
                           ? point[i].metric[SWEEP_RATIO]
                           : (double)NAN;
             quality[i] = point[i].metric[SWEEP_PSNR_DB];
         }
         if (cost && quality && front)
-            n = sweep_front(cost, quality, k->n, front);
+            n = sweep_find_front(cost, quality, k->n, front);
         for (int i = 0; i < n; i++)
             point[front[i]].front = true;
         free(cost);
@@ -77,7 +78,8 @@ void sweep_mark_fronts(struct sweep *s)
 /* Sets M to the means of setting I over all cases with combined parameters,
  * which all have the same settings. Returns false if a case has not measured
  * it. */
-static bool compute_mean(const struct sweep *s, int i, struct sweep_mean *m)
+static bool compute_setting_mean(const struct sweep *s, int i,
+                                 struct sweep_mean *m)
 {
     int n = 0;
 
@@ -115,26 +117,26 @@ static int compare_mean_cost(const void *a, const void *b)
     return (x->psnr_db < y->psnr_db) - (x->psnr_db > y->psnr_db);
 }
 
-void sweep_sort(struct sweep_mean *mean, int n)
+void sweep_sort_means(struct sweep_mean *mean, int n)
 {
     if (n > 0)
         qsort(mean, (size_t)n, sizeof *mean, compare_mean_cost);
 }
 
 /* Marks the Pareto front of MEAN[N], which must be sorted by cost. */
-static void mark_means(struct sweep_mean *mean, int n)
+static void mark_front_of_means(struct sweep_mean *mean, int n)
 {
     double best = -HUGE_VAL;
 
     for (int i = 0; i < n; i++) {
         mean[i].front =
-            is_flux_true(mean[i].flux_error) && mean[i].psnr_db > best;
+            is_flux_error_small(mean[i].flux_error) && mean[i].psnr_db > best;
         if (mean[i].front)
             best = mean[i].psnr_db;
     }
 }
 
-struct sweep_mean *sweep_means(const struct sweep *s, int *n)
+struct sweep_mean *sweep_compute_means(const struct sweep *s, int *n)
 {
     struct sweep_mean *mean = malloc(((size_t)s->n_points + 1) * sizeof *mean);
     int first = 0;
@@ -143,16 +145,16 @@ struct sweep_mean *sweep_means(const struct sweep *s, int *n)
     while (first < s->n_cases && !s->scase[first].together)
         first++;
     for (int i = 0; mean && first < s->n_cases && i < s->scase[first].n; i++)
-        *n += compute_mean(s, i, &mean[*n]);
-    sweep_sort(mean, *n);
-    mark_means(mean, *n);
+        *n += compute_setting_mean(s, i, &mean[*n]);
+    sweep_sort_means(mean, *n);
+    mark_front_of_means(mean, *n);
     return mean;
 }
 
 /* ----------------------------------------------------------------- quality */
 
-static bool has_same_pixels(const struct sweep_mean *a,
-                            const struct sweep_mean *b)
+static bool have_cases_same_pixels(const struct sweep_mean *a,
+                                   const struct sweep_mean *b)
 {
     for (int d = 0; d < n_sweep_parameters; d++)
         if (strcmp(sweep_parameter[d].name, "half") == 0)
@@ -169,7 +171,8 @@ static double interpolate_psnr(const struct sweep_mean *a,
                             log(b->cost / a->cost);
 }
 
-double sweep_above(const struct sweep_mean *mean, int n, int i)
+double sweep_compute_gain_above_front(const struct sweep_mean *mean, int n,
+                                      int i)
 {
     const double cost = 1.02 * mean[i].cost;
     const struct sweep_mean *last = NULL;
@@ -182,7 +185,7 @@ double sweep_above(const struct sweep_mean *mean, int n, int i)
             continue;
         if (m->cost <= cost)
             best = fmax(best, m->psnr_db);
-        else if (last && last->cost <= cost && has_same_pixels(last, m))
+        else if (last && last->cost <= cost && have_cases_same_pixels(last, m))
             best = fmax(best, interpolate_psnr(last, m, cost));
         last = m;
     }

@@ -45,7 +45,8 @@ struct bay {
 
 /* ------------------------------------------------------------------ making */
 
-static bool is_same(const struct settings *a, const struct settings *b)
+static bool has_same_exact_image(const struct settings *a,
+                                 const struct settings *b)
 {
     return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
 }
@@ -59,9 +60,9 @@ find_lens(struct bay *b, const struct sweep_setting *set, int *code)
     struct settings asked = b->s->base;
     struct sweep_lens *open;
 
-    sweep_set(&asked, set, true);
+    sweep_apply_setting(&asked, set, true);
     for (int i = 0; i < b->n_open; i++)
-        if (is_same(&b->open[i].settings, &asked))
+        if (has_same_exact_image(&b->open[i].settings, &asked))
             return &b->open[i];
     if (b->n_open == MAX_OPEN) {
         *code = tool_usage(b->s->tool, "more than %d scenes", MAX_OPEN);
@@ -74,7 +75,7 @@ find_lens(struct bay *b, const struct sweep_setting *set, int *code)
     return *code == EXIT_OK ? open : NULL;
 }
 
-static int make_run(struct bay *b, struct run *r)
+static int open_measurement_run(struct bay *b, struct run *r)
 {
     struct glint_engine_config cfg;
     struct glint_error error = {""};
@@ -86,9 +87,9 @@ static int make_run(struct bay *b, struct run *r)
     if (!r->open)
         return code;
     asked = r->open->settings;
-    sweep_set(&asked, &r->point->set, false);
-    canvas_engine(b->s->tool, &r->open->lens, &asked, b->c->width, b->c->height,
-                  &cfg);
+    sweep_apply_setting(&asked, &r->point->set, false);
+    canvas_open_engine(b->s->tool, &r->open->lens, &asked, b->c->width,
+                       b->c->height, &cfg);
     cfg.workers = b->s->tool->n_threads ? b->s->tool->workers : NULL;
     status = glint_engine_create(&r->engine, &cfg, &error);
     r->point->metric[SWEEP_MODEL_BYTES] = (double)r->open->lens.model.bytes;
@@ -96,7 +97,7 @@ static int make_run(struct bay *b, struct run *r)
                               : tool_fail(b->s->tool, status, error.text);
 }
 
-static int make_bay(struct bay *b)
+static int open_measurement_bay(struct bay *b)
 {
     const struct sweep_case *c = b->c;
     int code = EXIT_OK;
@@ -107,25 +108,25 @@ static int make_bay(struct bay *b)
     if (!b->run || !b->lamp ||
         canvas_init(&b->canvas, GLINT_YUYV, c->width, c->height) != GLINT_OK)
         return tool_fail(b->s->tool, GLINT_E_MEMORY, NULL);
-    canvas_lamps(b->lamp, c->n_lamps, c->angle);
+    canvas_set_lamps(b->lamp, c->n_lamps, c->angle);
     for (int i = 0; i < c->n && code == EXIT_OK; i++) {
         b->run[i].point = &b->s->point[c->first + i];
-        code = make_run(b, &b->run[i]);
+        code = open_measurement_run(b, &b->run[i]);
     }
     if (code == EXIT_OK &&
-        canvas_exposure(b->run[0].engine, b->lamp, c->n_lamps, &b->exposure) !=
-            GLINT_OK)
+        canvas_compute_exposure(b->run[0].engine, b->lamp, c->n_lamps,
+                                &b->exposure) != GLINT_OK)
         code = tool_fail(b->s->tool, GLINT_E_MEMORY, NULL);
     return code;
 }
 
-static void free_bay(struct bay *b)
+static void close_measurement_bay(struct bay *b)
 {
     for (int i = 0; b->run && i < b->c->n; i++)
         glint_engine_destroy(b->run[i].engine);
     for (int i = 0; i < b->n_open; i++)
         opened_lens_close(&b->open[i].lens);
-    canvas_finish(&b->canvas);
+    canvas_free(&b->canvas);
     free(b->run);
     free(b->lamp);
     free(b->exact.rgb);
@@ -135,14 +136,15 @@ static void free_bay(struct bay *b)
 
 /* Draws R's frame and records its time and instructions. ROUND -1 warms up
  * and records nothing. */
-static enum glint_status draw_run(struct bay *b, struct run *r, int round)
+static enum glint_status draw_and_time_run(struct bay *b, struct run *r,
+                                           int round)
 {
     const int counter = b->s->counter;
     enum glint_status status;
     uint64_t n0;
     double t0;
 
-    canvas_fresh(&b->canvas);
+    canvas_restore_background(&b->canvas);
     n0 = counter >= 0 ? glint_instructions_read(counter) : 0;
     t0 = tool_clock_s();
     status = glint_engine_draw_at(r->engine, b->lamp, b->c->n_lamps,
@@ -159,18 +161,18 @@ static enum glint_status draw_run(struct bay *b, struct run *r, int round)
 
 /* Times all points and the memory floor in turns. Progress rises from FROM to
  * TO. */
-static enum glint_status time_points(struct bay *b,
-                                     struct tool_progress *progress,
-                                     double from, double to)
+static enum glint_status time_all_points(struct bay *b,
+                                         struct tool_progress *progress,
+                                         double from, double to)
 {
     const int n = b->s->rounds;
     enum glint_status status = GLINT_OK;
 
     for (int round = -1; round < n && status == GLINT_OK; round++) {
-        canvas_time_floor(&b->canvas, round < 0 ? 0 : round);
+        canvas_time_memory_floor(&b->canvas, round < 0 ? 0 : round);
         for (int i = 0; i < b->c->n && status == GLINT_OK; i++)
             if (round < 1 || b->run[i].spent_ms < MAX_POINT_MS)
-                status = draw_run(b, &b->run[i], round);
+                status = draw_and_time_run(b, &b->run[i], round);
         tool_progress_show(progress,
                            from + (to - from) * (round + 2) / (n + 1));
     }
@@ -178,8 +180,8 @@ static enum glint_status time_points(struct bay *b,
         const struct run *const r = &b->run[i];
         double *const m = b->s->point[b->c->first + i].metric;
 
-        m[SWEEP_MS] = canvas_median(r->ms, r->n);
-        m[SWEEP_FLOOR_MS] = canvas_median(b->canvas.floor_ms, n);
+        m[SWEEP_MS] = canvas_find_median(r->ms, r->n);
+        m[SWEEP_FLOOR_MS] = canvas_find_median(b->canvas.floor_ms, n);
         m[SWEEP_RATIO] = m[SWEEP_MS] / m[SWEEP_FLOOR_MS];
         m[SWEEP_ARENA_BYTES] = (double)r->report.peak_bytes;
         m[SWEEP_GHOSTS] = r->report.ghosts;
@@ -192,7 +194,7 @@ static enum glint_status time_points(struct bay *b,
 
 /* ---------------------------------------------------------------- pictures */
 
-static double sum_pixels(const struct glint_float_image *image)
+static double sum_pixel_light(const struct glint_float_image *image)
 {
     double sum = 0;
 
@@ -204,7 +206,7 @@ static double sum_pixels(const struct glint_float_image *image)
 
 /* Sets flux_error of R: total light of its flare / light of the exact image
  * - 1. The flare is planned as for codes but drawn in linear light. */
-static enum glint_status measure_flux(struct bay *b, struct run *r)
+static enum glint_status measure_flux_error(struct bay *b, struct run *r)
 {
     const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
     struct glint_float_image layer = {b->c->width, b->c->height,
@@ -218,7 +220,9 @@ static enum glint_status measure_flux(struct bay *b, struct run *r)
             GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, layer.rgb, &report);
     if (status == GLINT_OK)
         r->point->metric[SWEEP_FLUX_ERROR] =
-            sum_pixels(&layer) / (b->exposure * sum_pixels(&b->exact)) - 1;
+            sum_pixel_light(&layer) /
+                (b->exposure * sum_pixel_light(&b->exact)) -
+            1;
     free(layer.rgb);
     return status;
 }
@@ -241,7 +245,8 @@ static void reduce_image(const uint8_t *codes, int stride, int by, uint8_t *to,
 
 /* Stores a reduced copy of CODES, the picture of POINT (-1: the exact picture),
  * for the page. Returns false if there is no memory. */
-static bool keep_picture(struct bay *b, int point, const uint8_t *codes)
+static bool store_reduced_picture(struct bay *b, int point,
+                                  const uint8_t *codes)
 {
     struct sweep *const s = b->s;
     const int by =
@@ -267,13 +272,13 @@ static bool keep_picture(struct bay *b, int point, const uint8_t *codes)
 }
 
 /* Measures R against EXACT_CODES. CODES is work memory for R's codes. */
-static enum glint_status measure_point(struct bay *b, struct run *r,
-                                       const uint8_t *exact_codes,
-                                       double exposure, uint8_t *codes)
+static enum glint_status measure_run_error(struct bay *b, struct run *r,
+                                           const uint8_t *exact_codes,
+                                           double exposure, uint8_t *codes)
 {
     struct glint_engine_report report;
     struct glint_measure m;
-    const enum glint_status status = canvas_codes(
+    const enum glint_status status = canvas_convert_to_codes(
         r->engine, b->lamp, b->c->n_lamps, exposure, codes, &report);
 
     if (status != GLINT_OK)
@@ -282,15 +287,15 @@ static enum glint_status measure_point(struct bay *b, struct run *r,
     r->point->metric[SWEEP_PSNR_DB] = m.psnr_db;
     r->point->metric[SWEEP_SSIM] = m.ssim;
     r->point->metric[SWEEP_P99] = m.p99;
-    if (sweep_named(r->point) >= 0 &&
-        !keep_picture(b, (int)(r->point - b->s->point), codes))
+    if (sweep_quality_name_index(r->point) >= 0 &&
+        !store_reduced_picture(b, (int)(r->point - b->s->point), codes))
         return GLINT_E_MEMORY;
-    return measure_flux(b, r);
+    return measure_flux_error(b, r);
 }
 
-static enum glint_status measure_all(struct bay *b,
-                                     struct tool_progress *progress,
-                                     double from, double to)
+static enum glint_status measure_all_points(struct bay *b,
+                                            struct tool_progress *progress,
+                                            double from, double to)
 {
     const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
     enum glint_status status = GLINT_E_MEMORY;
@@ -298,17 +303,18 @@ static enum glint_status measure_all(struct bay *b,
 
     b->exact.rgb = malloc(n * sizeof(float));
     if (b->exact.rgb && codes)
-        status =
-            canvas_exact(b->s->tool, &b->open[0].lens, &b->open[0].settings,
-                         b->lamp, b->c->n_lamps, b->s->grid, &b->exact);
+        status = canvas_draw_exact(b->s->tool, &b->open[0].lens,
+                                   &b->open[0].settings, b->lamp, b->c->n_lamps,
+                                   b->s->grid, &b->exact);
     if (status == GLINT_OK) {
         const double exposure = glint_measure_exposure(&b->exact);
 
         exact_codes = glint_measure_encode(&b->exact, exposure);
-        if (!exact_codes || !keep_picture(b, -1, exact_codes))
+        if (!exact_codes || !store_reduced_picture(b, -1, exact_codes))
             status = GLINT_E_MEMORY;
         for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
-            status = measure_point(b, &b->run[i], exact_codes, exposure, codes);
+            status =
+                measure_run_error(b, &b->run[i], exact_codes, exposure, codes);
             tool_progress_show(progress,
                                from + (to - from) * (i + 1) / b->c->n);
         }
@@ -330,14 +336,14 @@ int sweep_measure(struct sweep *s, int c, struct tool_progress *progress)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     b->s = s;
     b->c = &s->scase[c];
-    code = make_bay(b);
+    code = open_measurement_bay(b);
     if (code == EXIT_OK)
-        status = time_points(b, progress, from, (from + to) / 2);
+        status = time_all_points(b, progress, from, (from + to) / 2);
     if (code == EXIT_OK && status == GLINT_OK)
-        status = measure_all(b, progress, (from + to) / 2, to);
+        status = measure_all_points(b, progress, (from + to) / 2, to);
     if (code == EXIT_OK && status != GLINT_OK)
         code = tool_fail(s->tool, status, NULL);
-    free_bay(b);
+    close_measurement_bay(b);
     free(b);
     return code;
 }

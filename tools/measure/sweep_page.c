@@ -21,28 +21,29 @@ static const char head[] =
 
 /* ------------------------------------------------------------------- table */
 
-static void write_names_table(const struct sweep *s, FILE *file)
+static void write_quality_names_table(const struct sweep *s, FILE *file)
 {
     fputs("<h2>Named qualities</h2>\n<table>", file);
-    html_row(file, "th",
-             "lens|size|quality|times floor|PSNR dB|SSIM|p99 codes|flux %%|"
-             "arena KiB|model KiB");
+    html_write_table_row(
+        file, "th",
+        "lens|size|quality|times floor|PSNR dB|SSIM|p99 codes|flux %%|"
+        "arena KiB|model KiB");
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *p = &s->point[i];
         const struct sweep_case *c = &s->scase[p->of];
         const double *m = p->metric;
-        const int name = sweep_named(p);
+        const int name = sweep_quality_name_index(p);
 
         if (name >= 0)
-            html_row(file, "td",
-                     "%s|%dx%d, %d|%s|%.1f|%.1f|%.4f|%g|%s%+.2f|%.0f|%.0f",
-                     s->lens[c->lens], c->width, c->height, c->n_lamps,
-                     glint_quality_name[name], p->metric[SWEEP_RATIO],
-                     m[SWEEP_PSNR_DB], m[SWEEP_SSIM], m[SWEEP_P99],
-                     fabs(m[SWEEP_FLUX_ERROR]) > MAX_FLUX_ERROR ? "!" : "",
-                     100 * m[SWEEP_FLUX_ERROR],
-                     floor(m[SWEEP_ARENA_BYTES] / 1024),
-                     floor(m[SWEEP_MODEL_BYTES] / 1024));
+            html_write_table_row(
+                file, "td",
+                "%s|%dx%d, %d|%s|%.1f|%.1f|%.4f|%g|%s%+.2f|%.0f|%.0f",
+                s->lens[c->lens], c->width, c->height, c->n_lamps,
+                glint_quality_name[name], p->metric[SWEEP_RATIO],
+                m[SWEEP_PSNR_DB], m[SWEEP_SSIM], m[SWEEP_P99],
+                fabs(m[SWEEP_FLUX_ERROR]) > MAX_FLUX_ERROR ? "!" : "",
+                100 * m[SWEEP_FLUX_ERROR], floor(m[SWEEP_ARENA_BYTES] / 1024),
+                floor(m[SWEEP_MODEL_BYTES] / 1024));
     }
     fputs("</table>\n", file);
 }
@@ -51,19 +52,21 @@ static void write_names_table(const struct sweep *s, FILE *file)
 static void write_front_table(const struct sweep *s, FILE *file)
 {
     int n;
-    struct sweep_mean *const mean = sweep_means(s, &n);
+    struct sweep_mean *const mean = sweep_compute_means(s, &n);
 
     fputs("<h2>The front of all lenses together</h2>\n<table>", file);
-    html_row(file, "th",
-             "setting|cost over default|PSNR dB, mean|least|flux %%, worst");
+    html_write_table_row(
+        file, "th",
+        "setting|cost over default|PSNR dB, mean|least|flux %%, worst");
     for (int i = 0; i < n; i++) {
         char words[160];
 
         if (!mean[i].front)
             continue;
-        sweep_words(mean[i].set, words);
-        html_row(file, "td", "%s|%.3f|%.1f|%.1f|%.2f", words, mean[i].cost,
-                 mean[i].psnr_db, mean[i].least_db, 100 * mean[i].flux_error);
+        sweep_describe_setting(mean[i].set, words);
+        html_write_table_row(file, "td", "%s|%.3f|%.1f|%.1f|%.2f", words,
+                             mean[i].cost, mean[i].psnr_db, mean[i].least_db,
+                             100 * mean[i].flux_error);
     }
     fputs("</table>\n", file);
     free(mean);
@@ -71,17 +74,17 @@ static void write_front_table(const struct sweep *s, FILE *file)
 
 /* ---------------------------------------------------------------- pictures */
 
-static void write_figure(const struct sweep *s, FILE *file,
-                         const struct sweep_picture *q, const uint8_t *rgb,
-                         const char *what)
+static void write_svg_figure(const struct sweep *s, FILE *file,
+                             const struct sweep_picture *q, const uint8_t *rgb,
+                             const char *what)
 {
     const struct sweep_point *p = q->point >= 0 ? &s->point[q->point] : NULL;
     char words[160] = "exact";
 
     if (p)
-        sweep_words(&p->set, words);
+        sweep_describe_setting(&p->set, words);
     fputs("<figure><img alt=\"\" src=\"", file);
-    html_png(file, rgb, q->width, q->height);
+    html_write_png(file, rgb, q->width, q->height);
     fprintf(file, "\"><figcaption>%s%s", words, what);
     if (p)
         fprintf(file, "<br>%.3g, %.1f dB, flux %+.2f %%",
@@ -91,9 +94,9 @@ static void write_figure(const struct sweep *s, FILE *file,
 }
 
 /* Writes a picture of grey plus 16 times the difference of Q and EXACT. */
-static void write_difference(const struct sweep *s, FILE *file,
-                             const struct sweep_picture *q,
-                             const struct sweep_picture *exact)
+static void write_difference_picture(const struct sweep *s, FILE *file,
+                                     const struct sweep_picture *q,
+                                     const struct sweep_picture *exact)
 {
     const size_t n = 3 * (size_t)q->width * (size_t)q->height;
     uint8_t *const far = malloc(n);
@@ -104,11 +107,11 @@ static void write_difference(const struct sweep *s, FILE *file,
         far[i] = (uint8_t)(d < 0 ? 0 : d > 255 ? 255 : d);
     }
     if (far)
-        write_figure(s, file, q, far, ", difference");
+        write_svg_figure(s, file, q, far, ", difference");
     free(far);
 }
 
-static void write_strips(const struct sweep *s, FILE *file)
+static void write_picture_strips(const struct sweep *s, FILE *file)
 {
     const struct sweep_picture *exact = NULL;
 
@@ -127,24 +130,24 @@ static void write_strips(const struct sweep *s, FILE *file)
                     c->n_lamps > 1 ? "s" : "", c->angle);
         }
         fputs("<div>", file); /* two pictures side by side */
-        write_figure(s, file, q, q->rgb, "");
+        write_svg_figure(s, file, q, q->rgb, "");
         if (q != exact)
-            write_difference(s, file, q, exact);
+            write_difference_picture(s, file, q, exact);
         fputs("</div>\n", file);
     }
 }
 
 void sweep_write_page(const struct sweep *s, FILE *file)
 {
-    html_begin(file, "What accuracy costs",
-               "figcaption{max-width:320px}img{width:320px}");
+    html_write_head(file, "What accuracy costs",
+                    "figcaption{max-width:320px}img{width:320px}");
     fputs(head, file);
-    write_names_table(s, file);
+    write_quality_names_table(s, file);
     fputs("<h2>Error against time</h2>\n", file);
     sweep_write_front_svg(s, file);
     write_front_table(s, file);
     fputs("<h2>Each dial by itself</h2>\n", file);
     sweep_write_dials_svg(s, file);
-    write_strips(s, file);
-    html_end(file);
+    write_picture_strips(s, file);
+    html_write_end(file);
 }

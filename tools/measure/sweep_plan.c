@@ -50,8 +50,8 @@ typedef char parameters_fit[sizeof sweep_parameter / sizeof *sweep_parameter <=
                                 ? 1
                                 : -1];
 
-static void set_parameter(struct settings *s, const struct sweep_parameter *p,
-                          double value)
+static void set_parameter_value(struct settings *s,
+                                const struct sweep_parameter *p, double value)
 {
     if (!p->words[0])
         settings_set_number(s, p->option, value);
@@ -60,8 +60,8 @@ static void set_parameter(struct settings *s, const struct sweep_parameter *p,
             settings_set(s, p->option, p->words[i]);
 }
 
-void sweep_set(struct settings *s, const struct sweep_setting *set,
-               bool opening)
+void sweep_apply_setting(struct settings *s, const struct sweep_setting *set,
+                         bool opening)
 {
     /* A limit of work would make grids coarser. */
     settings_set_number(s, "work", 0);
@@ -72,14 +72,14 @@ void sweep_set(struct settings *s, const struct sweep_setting *set,
 
         if (p->option && (set->quality < 0 || p->opens) &&
             (p->opens || !opening) && set->value[d] != p->standard)
-            set_parameter(s, p, set->value[d]);
+            set_parameter_value(s, p, set->value[d]);
     }
     s->tolerance = set->value[TOLERANCE];
 }
 
 /* Sets those parameters in VALUE that --quality determines to their values
  * in S. */
-static void read_quality(const struct settings *s, double *value)
+static void read_quality_parameters(const struct settings *s, double *value)
 {
     value[GRID] = s->dials.fineness;
     value[QUANTUM] = s->quantum;
@@ -92,7 +92,7 @@ static void read_quality(const struct settings *s, double *value)
 
 /* ------------------------------------------------------------------- points */
 
-static struct sweep_setting make_standard(enum sweep_kind kind)
+static struct sweep_setting make_standard_setting(enum sweep_kind kind)
 {
     struct sweep_setting set = {.kind = kind, .alone = -1, .quality = -1};
 
@@ -101,8 +101,8 @@ static struct sweep_setting make_standard(enum sweep_kind kind)
     return set;
 }
 
-static enum glint_status add_point(struct sweep *s, int c,
-                                   const struct sweep_setting *set)
+static enum glint_status add_sweep_point(struct sweep *s, int c,
+                                         const struct sweep_setting *set)
 {
     struct sweep_point *const point =
         text_grow_array(s->point, s->n_points, sizeof *point);
@@ -120,7 +120,7 @@ static enum glint_status add_point(struct sweep *s, int c,
 
 /* Adds points with a single parameter set. A small sweep skips parameters that
  * need a bake, and all values but the first and last. */
-static enum glint_status add_alone(struct sweep *s, int c)
+static enum glint_status add_single_parameter_points(struct sweep *s, int c)
 {
     enum glint_status status = GLINT_OK;
 
@@ -131,13 +131,13 @@ static enum glint_status add_alone(struct sweep *s, int c)
             (s->small && p->opens))
             continue;
         for (int i = 0; i < p->n_values && status == GLINT_OK; i++) {
-            struct sweep_setting set = make_standard(SWEEP_ALONE);
+            struct sweep_setting set = make_standard_setting(SWEEP_ALONE);
 
             set.alone = d;
             set.value[d] = p->value[i];
             if (p->value[i] != p->standard &&
                 (!s->small || i == 0 || i + 1 == p->n_values))
-                status = add_point(s, c, &set);
+                status = add_sweep_point(s, c, &set);
         }
     }
     return status;
@@ -145,13 +145,13 @@ static enum glint_status add_alone(struct sweep *s, int c)
 
 /* Adds every combination of values in which at least two parameters differ from
  * the default. */
-static enum glint_status add_together(struct sweep *s, int c)
+static enum glint_status add_combined_parameter_points(struct sweep *s, int c)
 {
     enum glint_status status = GLINT_OK;
     int at[MAX_PARAMETERS] = {0}, d = 0;
 
     while (d < n_sweep_parameters && status == GLINT_OK) {
-        struct sweep_setting set = make_standard(SWEEP_TOGETHER);
+        struct sweep_setting set = make_standard_setting(SWEEP_TOGETHER);
         int n_differ = 0;
 
         for (d = 0; d < n_sweep_parameters; d++)
@@ -160,7 +160,7 @@ static enum glint_status add_together(struct sweep *s, int c)
                 n_differ += set.value[d] != sweep_parameter[d].standard;
             }
         if (n_differ > 1)
-            status = add_point(s, c, &set);
+            status = add_sweep_point(s, c, &set);
         for (d = 0; d < n_sweep_parameters; d++) {
             if (++at[d] <
                 (s->small && d > 1 ? 1 : sweep_parameter[d].n_together))
@@ -171,47 +171,48 @@ static enum glint_status add_together(struct sweep *s, int c)
     return status;
 }
 
-static enum glint_status add_quality(struct sweep *s, int c, double quality)
+static enum glint_status add_quality_points(struct sweep *s, int c,
+                                            double quality)
 {
-    struct sweep_setting set = make_standard(SWEEP_QUALITY);
+    struct sweep_setting set = make_standard_setting(SWEEP_QUALITY);
     struct settings settings = s->base;
 
     set.quality = quality;
     settings_set_quality(&settings, quality);
-    read_quality(&settings, set.value);
+    read_quality_parameters(&settings, set.value);
     if (s->small)
         set.value[TOLERANCE] = sweep_parameter[TOLERANCE].standard;
-    return add_point(s, c, &set);
+    return add_sweep_point(s, c, &set);
 }
 
-static enum glint_status plan_case(struct sweep *s, int c)
+static enum glint_status plan_case_points(struct sweep *s, int c)
 {
-    const struct sweep_setting plain = make_standard(SWEEP_STANDARD);
-    enum glint_status status = add_point(s, c, &plain);
+    const struct sweep_setting plain = make_standard_setting(SWEEP_STANDARD);
+    enum glint_status status = add_sweep_point(s, c, &plain);
 
     if (status == GLINT_OK)
-        status = add_alone(s, c);
+        status = add_single_parameter_points(s, c);
     if (status == GLINT_OK && s->scase[c].together)
-        status = add_together(s, c);
+        status = add_combined_parameter_points(s, c);
     for (int i = 0; i <= QUALITY_STEPS && status == GLINT_OK; i++)
-        status = add_quality(s, c, (double)i / QUALITY_STEPS);
+        status = add_quality_points(s, c, (double)i / QUALITY_STEPS);
     for (int i = 0; i < 2 && !s->small && status == GLINT_OK; i++)
-        status = add_quality(s, c, between_steps[i]);
+        status = add_quality_points(s, c, between_steps[i]);
     return status;
 }
 
-enum glint_status sweep_plan(struct sweep *s)
+enum glint_status sweep_plan_points(struct sweep *s)
 {
     enum glint_status status = GLINT_OK;
 
     for (int c = 0; c < s->n_cases && status == GLINT_OK; c++) {
         s->scase[c].first = s->n_points;
-        status = plan_case(s, c);
+        status = plan_case_points(s, c);
     }
     return status;
 }
 
-void sweep_words(const struct sweep_setting *set, char text[160])
+void sweep_describe_setting(const struct sweep_setting *set, char text[160])
 {
     size_t used = 0;
 
@@ -227,7 +228,7 @@ void sweep_words(const struct sweep_setting *set, char text[160])
         snprintf(text, 160, "default");
 }
 
-int sweep_named(const struct sweep_point *p)
+int sweep_quality_name_index(const struct sweep_point *p)
 {
     const double at = p->set.quality * (GLINT_QUALITY_NAMES - 1);
 

@@ -10,8 +10,8 @@
 #define FRONT "#222"
 #define COST  "times memory floor"
 
-static struct plot begin_panel(FILE *file, int number, const char *title,
-                               const char *words)
+static struct plot begin_plot_panel(FILE *file, int number, const char *title,
+                                    const char *words)
 {
     struct plot p;
 
@@ -26,7 +26,8 @@ static struct plot begin_panel(FILE *file, int number, const char *title,
 
 /* Draws the marks of DOT[N], combinations first, so that other marks lie on top
  * of them. */
-static void draw_dots(const struct plot *p, const struct sweep_mean *dot, int n)
+static void draw_setting_dots(const struct plot *p,
+                              const struct sweep_mean *dot, int n)
 {
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < n; i++) {
@@ -36,44 +37,46 @@ static void draw_dots(const struct plot *p, const struct sweep_mean *dot, int n)
 
             if ((set->kind == SWEEP_TOGETHER) != (pass == 0))
                 continue;
-            sweep_words(set, words);
+            sweep_describe_setting(set, words);
             snprintf(tip, sizeof tip, "%s: %.3g, %.1f dB", words, dot[i].cost,
                      dot[i].psnr_db);
-            plot_mark(p, dot[i].cost, dot[i].psnr_db, mark[set->kind],
-                      pass == 0         ? GREY
-                      : set->alone >= 0 ? plot_colour(set->alone)
-                                        : FRONT,
-                      tip);
+            plot_draw_mark(p, dot[i].cost, dot[i].psnr_db, mark[set->kind],
+                           pass == 0         ? GREY
+                           : set->alone >= 0 ? plot_colour_of_series(set->alone)
+                                             : FRONT,
+                           tip);
         }
 }
 
 /* Plots DOT[N], sorted by cost, without settings with a large flux error, and a
  * line along their Pareto front. */
-static void draw_panel(struct plot *p, const struct sweep_mean *dot, int n)
+static void draw_front_panel(struct plot *p, const struct sweep_mean *dot,
+                             int n)
 {
     const struct sweep_mean *last = NULL;
     bool seen[MAX_PARAMETERS] = {false};
 
     for (int i = 0; i < n; i++)
-        plot_stretch(p, dot[i].cost, dot[i].psnr_db);
-    plot_frame(p);
-    plot_key(p, 'D', FRONT, "--quality");
-    plot_key(p, '.', GREY, "together");
+        plot_extend_axes(p, dot[i].cost, dot[i].psnr_db);
+    plot_draw_frame(p);
+    plot_draw_legend_entry(p, 'D', FRONT, "--quality");
+    plot_draw_legend_entry(p, '.', GREY, "together");
     for (int i = 0; i < n; i++) {
         const int d = dot[i].set->alone;
 
         if (d >= 0 && !seen[d]) {
             seen[d] = true;
-            plot_key(p, 'o', plot_colour(d), sweep_parameter[d].name);
+            plot_draw_legend_entry(p, 'o', plot_colour_of_series(d),
+                                   sweep_parameter[d].name);
         }
         if (dot[i].front) {
             if (last)
-                plot_line(p, last->cost, last->psnr_db, dot[i].cost,
-                          dot[i].psnr_db, FRONT, true);
+                plot_draw_line(p, last->cost, last->psnr_db, dot[i].cost,
+                               dot[i].psnr_db, FRONT, true);
             last = &dot[i];
         }
     }
-    draw_dots(p, dot, n);
+    draw_setting_dots(p, dot, n);
 }
 
 /* Plots the means over all cases with combined parameters, and each of these
@@ -81,7 +84,7 @@ static void draw_panel(struct plot *p, const struct sweep_mean *dot, int n)
 void sweep_write_front_svg(const struct sweep *s, FILE *file)
 {
     int n_panels = 1, n, n_dots = 0;
-    struct sweep_mean *const dot = sweep_means(s, &n);
+    struct sweep_mean *const dot = sweep_compute_means(s, &n);
     struct plot p;
     char title[160];
 
@@ -91,9 +94,9 @@ void sweep_write_front_svg(const struct sweep *s, FILE *file)
     for (int i = 0; i < n; i++)
         if (dot[i].flux_error < MAX_FLUX_ERROR)
             dot[n_dots++] = dot[i];
-    p = begin_panel(file, 0, "All lenses: mean error and relative cost",
-                    "times the default's");
-    draw_panel(&p, dot, n_dots);
+    p = begin_plot_panel(file, 0, "All lenses: mean error and relative cost",
+                         "times the default's");
+    draw_front_panel(&p, dot, n_dots);
     n_panels = 1;
     for (int c = 0; c < s->n_cases && dot; c++) {
         const struct sweep_case *k = &s->scase[c];
@@ -111,11 +114,11 @@ void sweep_write_front_svg(const struct sweep *s, FILE *file)
                                         .psnr_db = q->metric[SWEEP_PSNR_DB],
                                         .front = q->front};
         }
-        sweep_sort(dot, n_dots);
+        sweep_sort_means(dot, n_dots);
         snprintf(title, sizeof title, "%s, %dx%d", s->lens[k->lens], k->width,
                  k->height);
-        p = begin_panel(file, n_panels++, title, COST);
-        draw_panel(&p, dot, n_dots);
+        p = begin_plot_panel(file, n_panels++, title, COST);
+        draw_front_panel(&p, dot, n_dots);
     }
     plot_close(file);
     free(dot);
@@ -123,14 +126,14 @@ void sweep_write_front_svg(const struct sweep *s, FILE *file)
 
 /* ------------------------------------------------------------------- alone */
 
-static bool is_of(const struct sweep_point *p, int d)
+static bool is_point_of_parameter(const struct sweep_point *p, int d)
 {
     return p->set.kind == SWEEP_STANDARD || p->set.alone == d;
 }
 
 /* Draws parameter D in case K as a curve, in the order of its values. */
-static void draw_curve(const struct sweep *s, const struct plot *p,
-                       const struct sweep_case *k, int d)
+static void draw_parameter_curve(const struct sweep *s, const struct plot *p,
+                                 const struct sweep_case *k, int d)
 {
     const struct sweep_parameter *const parameter = &sweep_parameter[d];
     double x = (double)NAN, y = (double)NAN;
@@ -142,35 +145,40 @@ static void draw_curve(const struct sweep *s, const struct plot *p,
                          db = q->metric[SWEEP_PSNR_DB];
             char words[32];
 
-            if (!is_of(q, d) || q->set.value[d] != parameter->value[v])
+            if (!is_point_of_parameter(q, d) ||
+                q->set.value[d] != parameter->value[v])
                 continue;
-            plot_line(p, x, y, cost, db, plot_colour(k->lens), false);
+            plot_draw_line(p, x, y, cost, db, plot_colour_of_series(k->lens),
+                           false);
             snprintf(words, sizeof words, "%g", parameter->value[v]);
-            plot_mark(p, cost, db, q->set.kind == SWEEP_STANDARD ? 's' : 'o',
-                      plot_colour(k->lens), words);
-            plot_words(p, cost, db, words);
+            plot_draw_mark(p, cost, db,
+                           q->set.kind == SWEEP_STANDARD ? 's' : 'o',
+                           plot_colour_of_series(k->lens), words);
+            plot_draw_label(p, cost, db, words);
             x = cost;
             y = db;
         }
 }
 
-static void draw_parameter(const struct sweep *s, FILE *file, int number, int d)
+static void draw_parameter_panel(const struct sweep *s, FILE *file, int number,
+                                 int d)
 {
-    struct plot p = begin_panel(file, number, sweep_parameter[d].name, COST);
+    struct plot p =
+        begin_plot_panel(file, number, sweep_parameter[d].name, COST);
 
     for (int i = 0; i < s->n_points; i++)
-        if (is_of(&s->point[i], d))
-            plot_stretch(&p, s->point[i].metric[SWEEP_RATIO],
-                         s->point[i].metric[SWEEP_PSNR_DB]);
-    plot_frame(&p);
+        if (is_point_of_parameter(&s->point[i], d))
+            plot_extend_axes(&p, s->point[i].metric[SWEEP_RATIO],
+                             s->point[i].metric[SWEEP_PSNR_DB]);
+    plot_draw_frame(&p);
     for (int c = 0; c < s->n_cases; c++)
         if (s->scase[c].together || sweep_parameter[d].many_lights)
-            draw_curve(s, &p, &s->scase[c], d);
+            draw_parameter_curve(s, &p, &s->scase[c], d);
     for (int i = 0; i < s->n_lenses; i++) {
         char name[16];
 
         snprintf(name, sizeof name, "%s", s->lens[i]);
-        plot_key(&p, 'o', plot_colour(i), name);
+        plot_draw_legend_entry(&p, 'o', plot_colour_of_series(i), name);
     }
 }
 
@@ -188,6 +196,6 @@ void sweep_write_dials_svg(const struct sweep *s, FILE *file)
     n_panels = 0;
     for (int d = 0; d < n_sweep_parameters; d++)
         if (swept[d])
-            draw_parameter(s, file, n_panels++, d);
+            draw_parameter_panel(s, file, n_panels++, d);
     plot_close(file);
 }

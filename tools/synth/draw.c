@@ -25,7 +25,7 @@ const char *synth_background_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-static bool is_picture(const char *name)
+static bool is_picture_name(const char *name)
 {
     static const char *const ending[] = {
         ".ppm", ".pgm",  ".pnm",  ".pfm", ".png", ".jpg", ".jpeg", ".tif",
@@ -38,8 +38,8 @@ static bool is_picture(const char *name)
     return false;
 }
 
-static bool add_path(struct synth_backgrounds *list, const char *folder,
-                     const char *name)
+static bool add_background_path(struct synth_backgrounds *list,
+                                const char *folder, const char *name)
 {
     const size_t bytes = strlen(folder) + strlen(name) + 2;
     char **const more =
@@ -57,8 +57,9 @@ static bool add_path(struct synth_backgrounds *list, const char *folder,
     return true;
 }
 
-static int add_folder(const struct tool *tool, struct synth_backgrounds *list,
-                      const char *folder)
+static int add_background_folder(const struct tool *tool,
+                                 struct synth_backgrounds *list,
+                                 const char *folder)
 {
     const int before = list->n;
     DIR *const dir = opendir(folder);
@@ -72,8 +73,8 @@ static int add_folder(const struct tool *tool, struct synth_backgrounds *list,
             glint_error_report(&error, GLINT_E_IO, folder, "cannot be read"),
             error.text);
     while (is_room && (entry = readdir(dir)))
-        if (is_picture(entry->d_name))
-            is_room = add_path(list, folder, entry->d_name);
+        if (is_picture_name(entry->d_name))
+            is_room = add_background_path(list, folder, entry->d_name);
     closedir(dir);
     if (!is_room)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
@@ -86,7 +87,7 @@ static int add_folder(const struct tool *tool, struct synth_backgrounds *list,
     return EXIT_OK;
 }
 
-static int compare_names(const void *a, const void *b)
+static int compare_background_names(const void *a, const void *b)
 {
     return strcmp(synth_background_name(*(char *const *)a),
                   synth_background_name(*(char *const *)b));
@@ -107,16 +108,18 @@ int synth_backgrounds_open(const struct tool *tool,
                                                 "%s", strerror(errno)),
                              error.text);
         else if (S_ISDIR(st.st_mode))
-            code = add_folder(tool, list, words[i]);
-        else if (!add_path(list, "", words[i]))
+            code = add_background_folder(tool, list, words[i]);
+        else if (!add_background_path(list, "", words[i]))
             code = tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (code != EXIT_OK)
         return code;
-    qsort(list->path, (size_t)list->n, sizeof *list->path, compare_names);
+    qsort(list->path, (size_t)list->n, sizeof *list->path,
+          compare_background_names);
     for (int i = 0; i < list->n; i++) {
         if (strlen(synth_background_name(list->path[i])) >= SYNTH_NAME_BYTES)
             return tool_usage(tool, "%s: its name is too long", list->path[i]);
-        if (i > 0 && compare_names(&list->path[i - 1], &list->path[i]) == 0)
+        if (i > 0 &&
+            compare_background_names(&list->path[i - 1], &list->path[i]) == 0)
             return tool_usage(tool,
                               "%s and %s have the same name, so that the "
                               "manifest could not distinguish them",
@@ -224,8 +227,8 @@ static double scale_to_level(float *rgb, size_t n, double level)
 }
 
 /* Returns the path of ITEM's background, or NULL. */
-static const char *find_background(const struct synth_backgrounds *list,
-                                   const struct synth_item *item)
+static const char *find_background_path(const struct synth_backgrounds *list,
+                                        const struct synth_item *item)
 {
     for (int i = 0; i < list->n; i++)
         if (strcmp(synth_background_name(list->path[i]), item->background) == 0)
@@ -243,7 +246,7 @@ static enum glint_status load_background(const struct synth_backgrounds *list,
                                          float *rgb, double *ev,
                                          struct glint_error *error)
 {
-    const char *const path = find_background(list, item);
+    const char *const path = find_background_path(list, item);
     struct glint_float_image image = {.rgb = NULL};
     char key[20] = "";
     enum glint_status status;
@@ -286,16 +289,16 @@ void synth_drawing_finish(struct synth_drawing *d)
     free(d->layer[0]);
 }
 
-static struct glint_float_image make_image(const struct synth_drawing *d,
-                                           float *rgb)
+static struct glint_float_image
+wrap_pixels_as_image(const struct synth_drawing *d, float *rgb)
 {
     return (struct glint_float_image){d->width, d->height, rgb};
 }
 
 /* ------------------------------------------------------------------- lenses */
 
-static int open_lens(const struct tool *tool, struct synth_lens *lens,
-                     const struct synth_item *item)
+static int open_lens_by_name(const struct tool *tool, struct synth_lens *lens,
+                             const struct synth_item *item)
 {
     struct settings *const s = &lens->settings;
     const struct glint_optics *const optics = &lens->opened.setup.optics;
@@ -336,7 +339,7 @@ int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     /* added even if opening fails, so that it is closed later */
     lenses->lens[lenses->n++] = *lens;
-    return open_lens(tool, *lens, item);
+    return open_lens_by_name(tool, *lens, item);
 }
 
 void synth_lenses_close(struct synth_lenses *lenses)
@@ -348,8 +351,10 @@ void synth_lenses_close(struct synth_lenses *lenses)
 }
 
 /* Sets the stop of LENS and the dirt on its front element by ITEM. */
-static int set_lens(const struct tool *tool, struct synth_lens *lens,
-                    const struct synth_item *item, struct synth_result *result)
+static int set_lens_stop_and_dirt(const struct tool *tool,
+                                  struct synth_lens *lens,
+                                  const struct synth_item *item,
+                                  struct synth_result *result)
 {
     struct settings *const s = &lens->settings;
     struct glint_engine_camera *const camera = &s->camera;
@@ -402,9 +407,10 @@ static void set_black_body(double kelvin, double rgb[3])
 }
 
 /* Sets LAMP to the lights of ITEM, with their relative powers. */
-static void set_lamps(const struct synth_item *item,
-                      const struct synth_lens *lens, struct glint_lamp *lamp,
-                      struct synth_result *result)
+static void set_lamps_of_item(const struct synth_item *item,
+                              const struct synth_lens *lens,
+                              struct glint_lamp *lamp,
+                              struct synth_result *result)
 {
     const struct glint_view view = opened_lens_view(
         &lens->opened, &lens->settings, (int)item->width, (int)item->height);
@@ -430,9 +436,10 @@ static void set_lamps(const struct synth_item *item,
 
 /* Draws the discs of the lights of ITEM into the source layer and the
  * coverage. */
-static void draw_sources(const struct synth_item *item,
-                         const struct glint_lamp *lamp, struct synth_drawing *d,
-                         struct synth_result *result)
+static void draw_light_discs(const struct synth_item *item,
+                             const struct glint_lamp *lamp,
+                             struct synth_drawing *d,
+                             struct synth_result *result)
 {
     float *const source = d->layer[SYNTH_SOURCE];
 
@@ -469,9 +476,11 @@ static void draw_sources(const struct synth_item *item,
 /* ------------------------------------------------------------------- flares */
 
 /* Draws one part of the flare (enum glint_engine_part) to RGB. */
-static int draw_part(const struct tool *tool, const struct synth_lens *lens,
-                     const struct synth_item *item,
-                     const struct glint_lamp *lamp, unsigned part, float *rgb)
+static int draw_flare_part(const struct tool *tool,
+                           const struct synth_lens *lens,
+                           const struct synth_item *item,
+                           const struct glint_lamp *lamp, unsigned part,
+                           float *rgb)
 {
     struct glint_engine_report report;
     struct glint_engine_config cfg;
@@ -499,7 +508,8 @@ static int draw_part(const struct tool *tool, const struct synth_lens *lens,
  * brightest 0.1 % of the pixels get the light LEVEL, but the mean is at most
  * SYNTH_MOST_MEAN times LEVEL, as wide ghosts that fill the image would hide
  * everything else. */
-static double find_power(const struct glint_float_image *image, double level)
+static double find_light_power(const struct glint_float_image *image,
+                               double level)
 {
     const size_t n = 3 * (size_t)image->width * (size_t)image->height;
     const double by_peak = level * glint_measure_exposure(image);
@@ -526,16 +536,16 @@ static int draw_flare(const struct tool *tool, const struct synth_lens *lens,
     float *const glare = d->layer[SYNTH_GLARE];
     /* unused until the sources are drawn, last */
     float *const spare = d->layer[SYNTH_SOURCE];
-    struct glint_float_image image = make_image(d, ghosts);
+    struct glint_float_image image = wrap_pixels_as_image(d, ghosts);
     struct glint_lamp lamp[SYNTH_MAX_LIGHTS] = {{.power = 0}};
     double power;
     int code;
 
-    set_lamps(item, lens, lamp, result);
-    code = draw_part(tool, lens, item, lamp, GLINT_ENGINE_GHOSTS, ghosts);
+    set_lamps_of_item(item, lens, lamp, result);
+    code = draw_flare_part(tool, lens, item, lamp, GLINT_ENGINE_GHOSTS, ghosts);
     if (code != EXIT_OK)
         return code;
-    power = find_power(&image, item->ghost_level);
+    power = find_light_power(&image, item->ghost_level);
     scale_pixels(ghosts, n, power);
     /* Haze is quantised to 1e-6 of white, so lamps must have their final
      * power. */
@@ -543,22 +553,24 @@ static int draw_flare(const struct tool *tool, const struct synth_lens *lens,
         lamp[i].power *= power;
     memset(glare, 0, n * sizeof *glare);
     if (item->star > 0)
-        code = draw_part(tool, lens, item, lamp, GLINT_ENGINE_STAR, glare);
+        code =
+            draw_flare_part(tool, lens, item, lamp, GLINT_ENGINE_STAR, glare);
     scale_pixels(glare, n, item->star);
     if (code == EXIT_OK && (item->haze > 0 || item->front_dust > 0)) {
-        code = draw_part(tool, lens, item, lamp, GLINT_ENGINE_VEIL, spare);
+        code =
+            draw_flare_part(tool, lens, item, lamp, GLINT_ENGINE_VEIL, spare);
         for (size_t i = 0; i < n && code == EXIT_OK; i++)
             glare[i] += spare[i];
     }
     if (code == EXIT_OK)
-        draw_sources(item, lamp, d, result);
+        draw_light_discs(item, lamp, d, result);
     return code;
 }
 
-int synth_draw(const struct tool *tool, struct synth_lenses *lenses,
-               const struct synth_backgrounds *backgrounds,
-               const struct synth_item *item, struct synth_drawing *d,
-               struct synth_result *result)
+int synth_draw_item(const struct tool *tool, struct synth_lenses *lenses,
+                    const struct synth_backgrounds *backgrounds,
+                    const struct synth_item *item, struct synth_drawing *d,
+                    struct synth_result *result)
 {
     struct glint_error error = {""};
     struct synth_lens *lens = NULL;
@@ -569,7 +581,7 @@ int synth_draw(const struct tool *tool, struct synth_lenses *lenses,
     code = synth_lens_open(tool, lenses, item, &lens);
     if (code != EXIT_OK || !lens)
         return code;
-    code = set_lens(tool, lens, item, result);
+    code = set_lens_stop_and_dirt(tool, lens, item, result);
     if (code == EXIT_OK)
         code = draw_flare(tool, lens, item, d, result);
     if (code != EXIT_OK)
@@ -581,7 +593,8 @@ int synth_draw(const struct tool *tool, struct synth_lenses *lenses,
 
 /* ------------------------------------------------------------------ sensors */
 
-void synth_sum(const struct synth_drawing *d, unsigned layers, float *rgb)
+void synth_sum_layers(const struct synth_drawing *d, unsigned layers,
+                      float *rgb)
 {
     const size_t n = 3 * (size_t)d->width * (size_t)d->height;
 
@@ -598,7 +611,7 @@ static double random_normal(uint64_t *state)
     int64_t sum = 0;
 
     for (int i = 0; i < 3; i++) {
-        const uint64_t bits = synth_bits(state);
+        const uint64_t bits = synth_random_bits(state);
 
         for (int k = 0; k < 64; k += 16)
             sum += (int64_t)(bits >> k & 0xffff);
@@ -606,10 +619,10 @@ static double random_normal(uint64_t *state)
     return ((double)sum - 12 * 32767.5) * 0x1p-16;
 }
 
-void synth_noise(const struct synth_item *item, float *rgb)
+void synth_add_noise(const struct synth_item *item, float *rgb)
 {
     const size_t n = 3 * (size_t)item->width * (size_t)item->height;
-    uint64_t state = synth_item_stream(item, "noise");
+    uint64_t state = synth_item_random_state(item, "noise");
 
     for (size_t i = 0; i < n; i++) {
         const double light = rgb[i];

@@ -81,15 +81,16 @@ void synth_lenses_close(struct synth_lenses *lenses);
 
 /* Draws the layers of ITEM into D, which must have ITEM's size, and sets
  * RESULT. Returns an exit code. */
-int synth_draw(const struct tool *tool, struct synth_lenses *lenses,
-               const struct synth_backgrounds *backgrounds,
-               const struct synth_item *item, struct synth_drawing *d,
-               struct synth_result *result);
+int synth_draw_item(const struct tool *tool, struct synth_lenses *lenses,
+                    const struct synth_backgrounds *backgrounds,
+                    const struct synth_item *item, struct synth_drawing *d,
+                    struct synth_result *result);
 
 /* Sets RGB to the sum of the layers of D whose bits are set in LAYERS. */
-void synth_sum(const struct synth_drawing *d, unsigned layers, float *rgb);
+void synth_sum_layers(const struct synth_drawing *d, unsigned layers,
+                      float *rgb);
 
 /* Adds photon noise and read noise of ITEM's sensor to RGB. */
-void synth_noise(const struct synth_item *item, float *rgb);
+void synth_add_noise(const struct synth_item *item, float *rgb);
 
 #endif

@@ -68,7 +68,7 @@ const struct synth_field synth_light_field[SYNTH_LIGHT_FIELDS] = {
 
 /* ------------------------------------------------------------------- ranges */
 
-static const struct synth_field *field_at(int k)
+static const struct synth_field *get_field(int k)
 {
     return k < SYNTH_FIELDS ? &synth_field[k]
                             : &synth_light_field[k - SYNTH_FIELDS];
@@ -77,23 +77,23 @@ static const struct synth_field *field_at(int k)
 void synth_ranges_defaults(struct synth_ranges *ranges)
 {
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++) {
-        ranges->low[k] = field_at(k)->low;
-        ranges->high[k] = field_at(k)->high;
+        ranges->low[k] = get_field(k)->low;
+        ranges->high[k] = get_field(k)->high;
     }
 }
 
 static int find_field(const char *name, size_t n)
 {
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
-        if (field_at(k)->law > SYNTH_COUNTED &&
-            strlen(field_at(k)->name) == n &&
-            strncmp(field_at(k)->name, name, n) == 0)
+        if (get_field(k)->law > SYNTH_COUNTED &&
+            strlen(get_field(k)->name) == n &&
+            strncmp(get_field(k)->name, name, n) == 0)
             return k;
     return -1;
 }
 
-bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
-                       struct glint_error *why)
+bool synth_ranges_parse(struct synth_ranges *ranges, const char *text,
+                        struct glint_error *why)
 {
     const size_t n = strcspn(text, "=");
     const int k = find_field(text, n);
@@ -107,7 +107,7 @@ bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
                  (int)(n < 60 ? n : 60), text);
         return false;
     }
-    f = field_at(k);
+    f = get_field(k);
     count = text[n] ? tool_parse_numbers(text + n + 1, v, 2) : 0;
     if (count == 1)
         v[1] = v[0];
@@ -139,23 +139,23 @@ void synth_ranges_print(FILE *file, const struct synth_ranges *ranges)
                                       "whole numbers"};
 
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
-        if (field_at(k)->law > SYNTH_COUNTED)
-            fprintf(file, "%s=%.7g,%.7g  %s\n", field_at(k)->name,
-                    ranges->low[k], ranges->high[k], law[field_at(k)->law]);
+        if (get_field(k)->law > SYNTH_COUNTED)
+            fprintf(file, "%s=%.7g,%.7g  %s\n", get_field(k)->name,
+                    ranges->low[k], ranges->high[k], law[get_field(k)->law]);
 }
 
 void synth_ranges_json(struct json_writer *json,
                        const struct synth_ranges *ranges)
 {
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
-        if (field_at(k)->law > SYNTH_COUNTED)
-            json_write(json, "%s: [%.9g, %.9g]", field_at(k)->name,
+        if (get_field(k)->law > SYNTH_COUNTED)
+            json_write(json, "%s: [%.9g, %.9g]", get_field(k)->name,
                        ranges->low[k], ranges->high[k]);
 }
 
 /* ------------------------------------------------------------------ drawing */
 
-uint64_t synth_bits(uint64_t *state)
+uint64_t synth_random_bits(uint64_t *state)
 {
     uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
 
@@ -164,38 +164,41 @@ uint64_t synth_bits(uint64_t *state)
     return z ^ z >> 31;
 }
 
-uint64_t synth_item_stream(const struct synth_item *item, const char *what)
+uint64_t synth_item_random_state(const struct synth_item *item,
+                                 const char *what)
 {
     uint64_t state =
         (uint64_t)item->seed << 32 ^ (uint64_t)(uint32_t)item->number;
 
-    for (state = synth_bits(&state); *what; what++) {
+    for (state = synth_random_bits(&state); *what; what++) {
         state ^= (unsigned char)*what;
-        state = synth_bits(&state);
+        state = synth_random_bits(&state);
     }
     return state;
 }
 
 /* Returns a random number in [0, 1) that depends on ITEM's seed and number
  * and on WHAT. */
-static double random_unit(const struct synth_item *item, const char *what)
+static double compute_random_unit(const struct synth_item *item,
+                                  const char *what)
 {
-    uint64_t state = synth_item_stream(item, what);
+    uint64_t state = synth_item_random_state(item, what);
 
-    return (double)(synth_bits(&state) >> 11) * 0x1p-53;
+    return (double)(synth_random_bits(&state) >> 11) * 0x1p-53;
 }
 
 int synth_item_choose(const struct synth_item *item, const char *what, int n)
 {
-    return (int)(random_unit(item, what) * n);
+    return (int)(compute_random_unit(item, what) * n);
 }
 
 /* Returns a random value of the member NAME, distributed by LAW between LOW
  * and HIGH, rounded to 1e-6. */
-static double random_value(const struct synth_item *item, const char *name,
-                           enum synth_law law, double low, double high)
+static double compute_random_value(const struct synth_item *item,
+                                   const char *name, enum synth_law law,
+                                   double low, double high)
 {
-    double x = random_unit(item, name), value;
+    double x = compute_random_unit(item, name), value;
 
     if (law == SYNTH_WHOLE)
         return floor(low + x * (high - low + 1));
@@ -211,7 +214,8 @@ static double random_value(const struct synth_item *item, const char *name,
 }
 
 /* Returns the address of the number FIELD in the struct FROM. */
-static double *number_at(void *from, const struct synth_field *field)
+static double *find_number_in_struct(void *from,
+                                     const struct synth_field *field)
 {
     return (double *)(void *)((char *)from + field->at);
 }
@@ -225,15 +229,17 @@ void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
     item->number = number;
     for (int k = 0; k < SYNTH_FIELDS; k++)
         if (synth_field[k].law > SYNTH_COUNTED)
-            *number_at(item, &synth_field[k]) =
-                random_value(item, synth_field[k].name, synth_field[k].law,
-                             ranges->low[k], ranges->high[k]);
+            *find_number_in_struct(item, &synth_field[k]) =
+                compute_random_value(item, synth_field[k].name,
+                                     synth_field[k].law, ranges->low[k],
+                                     ranges->high[k]);
     for (int i = 0; i < SYNTH_MAX_LIGHTS; i++)
         for (int k = 0; k < SYNTH_LIGHT_FIELDS; k++) {
             snprintf(name, sizeof name, "%s %d", synth_light_field[k].name, i);
-            *number_at(&item->light[i], &synth_light_field[k]) = random_value(
-                item, name, synth_light_field[k].law,
-                ranges->low[SYNTH_FIELDS + k], ranges->high[SYNTH_FIELDS + k]);
+            *find_number_in_struct(&item->light[i], &synth_light_field[k]) =
+                compute_random_value(item, name, synth_light_field[k].law,
+                                     ranges->low[SYNTH_FIELDS + k],
+                                     ranges->high[SYNTH_FIELDS + k]);
         }
     item->light[0].power = 1;
 }
@@ -241,7 +247,8 @@ void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
 /* ----------------------------------------------------------------- printing */
 
 /* Writes X, a multiple of 1e-6, without trailing zeros. */
-static void write_exact(struct json_writer *json, const char *name, double x)
+static void write_exact_decimal(struct json_writer *json, const char *name,
+                                double x)
 {
     char text[40], format[16];
     int n = snprintf(text, sizeof text, "%.6f", x), digits = 6;
@@ -252,9 +259,9 @@ static void write_exact(struct json_writer *json, const char *name, double x)
     json_write(json, format, name, x);
 }
 
-static void write_fields(struct json_writer *json,
-                         const struct synth_field *field, int n,
-                         const void *from)
+static void write_json_fields(struct json_writer *json,
+                              const struct synth_field *field, int n,
+                              const void *from)
 {
     for (int k = 0; k < n; k++) {
         const char *const at = (const char *)from + field[k].at;
@@ -262,13 +269,14 @@ static void write_fields(struct json_writer *json,
         if (field[k].text_bytes)
             json_write(json, "%s: %s", field[k].name, at);
         else
-            write_exact(json, field[k].name, *(const double *)(const void *)at);
+            write_exact_decimal(json, field[k].name,
+                                *(const double *)(const void *)at);
     }
 }
 
-static void write_result(struct json_writer *json,
-                         const struct synth_item *item,
-                         const struct synth_result *r)
+static void write_item_result(struct json_writer *json,
+                              const struct synth_item *item,
+                              const struct synth_result *r)
 {
     json_write(json,
                "drawn: {background_ev: %.6g, f_number: %.6g, focal_mm: %.6g, "
@@ -293,16 +301,16 @@ char *synth_item_print(const struct synth_item *item,
     if (!json.to)
         return NULL;
     json_write(&json, "{");
-    write_fields(&json, synth_field, SYNTH_FIELDS, item);
+    write_json_fields(&json, synth_field, SYNTH_FIELDS, item);
     json_write(&json, "lights: [");
     for (int i = 0; i < (int)item->n_lights; i++) {
         json_write(&json, "{");
-        write_fields(&json, synth_light_field, SYNTH_LIGHT_FIELDS,
-                     &item->light[i]);
+        write_json_fields(&json, synth_light_field, SYNTH_LIGHT_FIELDS,
+                          &item->light[i]);
         json_write(&json, "}");
     }
     json_write(&json, "]");
-    write_result(&json, item, result);
+    write_item_result(&json, item, result);
     json_write(&json, "}\n");
     if (glint_memory_file_close(json.to))
         return text;

@@ -87,8 +87,8 @@ void synth_ranges_defaults(struct synth_ranges *ranges);
 
 /* Parses TEXT, "NAME=LOW,HIGH" or "NAME=VALUE", into RANGES. Returns false,
  * with the cause in WHY, if the name is unknown or a number is out of range. */
-bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
-                       struct glint_error *why);
+bool synth_ranges_parse(struct synth_ranges *ranges, const char *text,
+                        struct glint_error *why);
 
 /* Prints each name with its range and law, one per line. */
 void synth_ranges_print(FILE *file, const struct synth_ranges *ranges);
@@ -106,10 +106,11 @@ void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
  * and on WHAT. */
 int synth_item_choose(const struct synth_item *item, const char *what, int n);
 
-/* synth_item_stream() returns the initial state of a random generator for
- * WHAT of ITEM; synth_bits() returns its next 64 bits [Steele14]. */
-uint64_t synth_item_stream(const struct synth_item *item, const char *what);
-uint64_t synth_bits(uint64_t *state);
+/* synth_item_random_state() returns the initial state of a random generator for
+ * WHAT of ITEM; synth_random_bits() returns its next 64 bits [Steele14]. */
+uint64_t synth_item_random_state(const struct synth_item *item,
+                                 const char *what);
+uint64_t synth_random_bits(uint64_t *state);
 
 /* Returns ITEM and RESULT as a line of JSON, which the caller frees, or NULL
  * if there is no memory. */

@@ -10,17 +10,17 @@
 #include "posix/error.h"
 #include "synth/item.h"
 
-static enum glint_status fail_member(struct glint_error *error,
-                                     const char *name, const char *cause)
+static enum glint_status report_bad_member(struct glint_error *error,
+                                           const char *name, const char *cause)
 {
     return glint_error_report(error, GLINT_E_FORMAT, "item", "'%s' %s", name,
                               cause);
 }
 
 /* Stores VALUE, a text or number, in member FIELD of the struct TO. */
-static enum glint_status store_member(const struct synth_field *field,
-                                      const json_t *value, void *to,
-                                      struct glint_error *error)
+static enum glint_status store_json_member(const struct synth_field *field,
+                                           const json_t *value, void *to,
+                                           struct glint_error *error)
 {
     char cause[80];
     char *const at = (char *)to + field->at;
@@ -29,12 +29,12 @@ static enum glint_status store_member(const struct synth_field *field,
     double x = 0;
 
     if (!value)
-        return fail_member(error, field->name, "is not there");
+        return report_bad_member(error, field->name, "is not there");
     if (field->text_bytes) {
         text = json_string_value(value);
         if (!text || strlen(text) >= field->text_bytes)
-            return fail_member(error, field->name,
-                               "is not a text, or is too long");
+            return report_bad_member(error, field->name,
+                                     "is not a text, or is too long");
         memcpy(at, text, strlen(text) + 1);
         return GLINT_OK;
     }
@@ -45,38 +45,39 @@ static enum glint_status store_member(const struct synth_field *field,
         snprintf(cause, sizeof cause, "must be %s, %.10g to %.10g",
                  is_whole ? "a whole number" : "a number", field->least,
                  field->most);
-        return fail_member(error, field->name, cause);
+        return report_bad_member(error, field->name, cause);
     }
     *(double *)(void *)at = x;
     return GLINT_OK;
 }
 
-static enum glint_status store_members(const struct synth_field *field, int n,
-                                       const json_t *object, void *to,
-                                       struct glint_error *error)
+static enum glint_status store_json_members(const struct synth_field *field,
+                                            int n, const json_t *object,
+                                            void *to, struct glint_error *error)
 {
     enum glint_status status = GLINT_OK;
 
     for (int k = 0; k < n && status == GLINT_OK; k++)
-        status = store_member(&field[k], json_object_get(object, field[k].name),
-                              to, error);
+        status = store_json_member(
+            &field[k], json_object_get(object, field[k].name), to, error);
     return status;
 }
 
-static enum glint_status read_item(struct synth_item *item, const json_t *line,
-                                   struct glint_error *error)
+static enum glint_status read_json_item(struct synth_item *item,
+                                        const json_t *line,
+                                        struct glint_error *error)
 {
     const json_t *const lights = json_object_get(line, "lights");
     enum glint_status status =
-        store_members(synth_field, SYNTH_FIELDS, line, item, error);
+        store_json_members(synth_field, SYNTH_FIELDS, line, item, error);
 
     if (status == GLINT_OK && json_array_size(lights) != (size_t)item->n_lights)
-        return fail_member(error, "lights",
-                           "the number of lights differs from 'n_lights'");
+        return report_bad_member(
+            error, "lights", "the number of lights differs from 'n_lights'");
     for (int i = 0; i < (int)item->n_lights && status == GLINT_OK; i++)
-        status = store_members(synth_light_field, SYNTH_LIGHT_FIELDS,
-                               json_array_get(lights, (size_t)i),
-                               &item->light[i], error);
+        status = store_json_members(synth_light_field, SYNTH_LIGHT_FIELDS,
+                                    json_array_get(lights, (size_t)i),
+                                    &item->light[i], error);
     return status;
 }
 
@@ -91,7 +92,7 @@ enum glint_status synth_item_read(struct synth_item *item, const char *line,
     if (!read)
         return glint_error_report(error, GLINT_E_FORMAT, "item",
                                   "column %d: %s", why.column, why.text);
-    status = read_item(item, read, error);
+    status = read_json_item(item, read, error);
     json_decref(read);
     return status;
 }

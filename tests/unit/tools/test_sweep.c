@@ -29,12 +29,12 @@ TEST(front_by_hand)
     static const double quality[] = {50, 20, 40, 10, 40, 30, (double)NAN, 35};
     int front[8];
 
-    assert_int_equal(sweep_front(cost, quality, 8, front), 4);
+    assert_int_equal(sweep_find_front(cost, quality, 8, front), 4);
     assert_int_equal(front[0], 1);
     assert_int_equal(front[1], 7);
     assert_int_equal(front[2], 2);
     assert_int_equal(front[3], 0);
-    assert_int_equal(sweep_front(cost, quality, 0, front), 0);
+    assert_int_equal(sweep_find_front(cost, quality, 0, front), 0);
 }
 
 /* Checks the height in dB above the line through the quality levels: of a
@@ -56,14 +56,14 @@ TEST(above_the_ladder)
 
     for (int d = 0; d < n_sweep_parameters; d++)
         halves.value[d] = strcmp(sweep_parameter[d].name, "half") == 0;
-    assert_true(isinf(sweep_above(mean, n, 0)));
-    assert_true(fabs(sweep_above(mean, n, 2) - 2) < 1e-9);
-    assert_true(fabs(sweep_above(mean, n, 4) -
+    assert_true(isinf(sweep_compute_gain_above_front(mean, n, 0)));
+    assert_true(fabs(sweep_compute_gain_above_front(mean, n, 2) - 2) < 1e-9);
+    assert_true(fabs(sweep_compute_gain_above_front(mean, n, 4) -
                      (5 - 10 * log(1.02 * 1.9) / log(4))) < 1e-9);
-    assert_true(fabs(sweep_above(mean, n, 5) -
+    assert_true(fabs(sweep_compute_gain_above_front(mean, n, 5) -
                      (6.5 - 10 * log(1.02 * 2) / log(4))) < 1e-9);
-    assert_true(fabs(sweep_above(mean, n, 7) - 0.2) < 1e-9);
-    assert_true(fabs(sweep_above(mean, n, 8) + 2) < 1e-9);
+    assert_true(fabs(sweep_compute_gain_above_front(mean, n, 7) - 0.2) < 1e-9);
+    assert_true(fabs(sweep_compute_gain_above_front(mean, n, 8) + 2) < 1e-9);
 }
 
 /* Checks that no setting dominates one on the front, and that each setting
@@ -84,7 +84,7 @@ TEST(front_of_many)
             cost[i] = seed >> 24 & 31;
             quality[i] = seed >> 16 & 31;
         }
-        n = sweep_front(cost, quality, N, front);
+        n = sweep_find_front(cost, quality, N, front);
         for (int i = 0; i < n; i++)
             on[front[i]] = 1;
         for (int i = 0; i < N; i++) {
@@ -113,7 +113,7 @@ TEST(png)
     FILE *file = open_memstream(&text, &bytes);
 
     assert_non_null(file);
-    html_png(file, red, 1, 1);
+    html_write_png(file, red, 1, 1);
     fclose(file);
     assert_string_equal(text, want);
     free(text);
@@ -152,7 +152,7 @@ TEST(parameters)
     for (int d = 0; d < n_sweep_parameters; d++)
         standard.value[d] = sweep_parameter[d].standard;
     settings_defaults(&plain);
-    sweep_set(&plain, &standard, false);
+    sweep_apply_setting(&plain, &standard, false);
     for (int d = 0; d < n_sweep_parameters; d++) {
         const struct sweep_parameter *const p = &sweep_parameter[d];
         int has_standard = 0;
@@ -163,7 +163,7 @@ TEST(parameters)
 
             settings_defaults(&other);
             set.value[d] = p->value[i];
-            sweep_set(&other, &set, false);
+            sweep_apply_setting(&other, &set, false);
             has_standard |= p->value[i] == p->standard;
             assert_true(settings_without(&other, p->name) ==
                         settings_without(&plain, p->name));

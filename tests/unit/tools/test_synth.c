@@ -105,7 +105,7 @@ TEST(numbers_stand_alone)
     synth_item_draw(&a, &ranges, 3, 14);
     /* Numbers whose names have the same length are independent as well. */
     assert_true(a.crop_x != a.crop_y);
-    assert_true(synth_ranges_take(&ranges, "level=0.5", &why));
+    assert_true(synth_ranges_parse(&ranges, "level=0.5", &why));
     synth_item_draw(&b, &ranges, 3, 14);
     assert_true(b.level == 0.5);
     b.level = a.level;
@@ -114,11 +114,11 @@ TEST(numbers_stand_alone)
     assert_true(a.crop_x != b.crop_x);
     synth_item_draw(&b, &ranges, 4, 14);
     assert_true(a.crop_x != b.crop_x);
-    assert_false(synth_ranges_take(&ranges, "level=1,-1", &why));
-    assert_false(synth_ranges_take(&ranges, "levels=1", &why));
-    assert_false(synth_ranges_take(&ranges, "width=64", &why));
-    assert_false(synth_ranges_take(&ranges, "star=0,1", &why));
-    assert_true(synth_ranges_take(&ranges, "star=0", &why));
+    assert_false(synth_ranges_parse(&ranges, "level=1,-1", &why));
+    assert_false(synth_ranges_parse(&ranges, "levels=1", &why));
+    assert_false(synth_ranges_parse(&ranges, "width=64", &why));
+    assert_false(synth_ranges_parse(&ranges, "star=0,1", &why));
+    assert_true(synth_ranges_parse(&ranges, "star=0", &why));
 }
 
 /* Checks that sensor noise has the variance of photon noise plus read noise. */
@@ -136,7 +136,7 @@ TEST(noise_is_of_photons)
 
         for (int i = 0; i < N; i++)
             rgb[i] = (float)light[k];
-        synth_noise(&item, rgb);
+        synth_add_noise(&item, rgb);
         for (int i = 0; i < N; i++) {
             const double off = (double)rgb[i] - light[k];
 

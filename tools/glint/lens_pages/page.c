@@ -126,7 +126,7 @@ static enum glint_status draw_thumbnail_flare(struct glint_engine *engine,
             "<img alt=\"lamp at %.1f degrees\" title=\"lamp at %.1f degrees\" "
             "src=\"",
             theta_deg, theta_deg);
-    html_png(file, codes, image->width, image->height);
+    html_write_png(file, codes, image->width, image->height);
     fputs("\">", file);
     free(codes);
     return GLINT_OK;
@@ -230,7 +230,7 @@ static const char script[] =
 
 void page_begin(FILE *file)
 {
-    html_begin(file, "Lenses", style);
+    html_write_head(file, "Lenses", style);
     fputs(head, file);
 }
 
@@ -261,11 +261,11 @@ void page_card_begin(FILE *file, const struct page_card *card)
             "data-f=\"%g\" data-ghosts=\"%d\"><h2>%s</h2>\n<p>",
             card->name, card->focal_mm, card->corner_deg, card->lens->f_number,
             card->n_ghosts, card->name);
-    html_text(file, card->lens->source);
+    html_write_text(file, card->lens->source);
     fputs("</p>\n", file);
     if (*card->lens->character) {
         fputs("<p>", file);
-        html_text(file, card->lens->character);
+        html_write_text(file, card->lens->character);
         fputs("</p>\n", file);
     }
     print_lens_numbers(file, card);
@@ -283,5 +283,5 @@ void page_card_end(FILE *file)
 void page_end(FILE *file)
 {
     fprintf(file, "</main>\n%s", script);
-    html_end(file);
+    html_write_end(file);
 }

@@ -59,8 +59,9 @@ static int measure_row(int n, char **assignments)
 /* Runs a row in a child process, under callgrind if COUNTED. Sets TEXT to the
  * row's JSON, or to callgrind's count. Returns an exit code, or -1 if the row
  * reached its limit of CPU seconds. */
-static int run_row(const struct recipe *r, const struct recipe_row *row,
-                   const char *self, bool counted, char text[TEXT])
+static int run_row_in_child(const struct recipe *r,
+                            const struct recipe_row *row, const char *self,
+                            bool counted, char text[TEXT])
 {
     char line[TEXT], limit[32] = "";
     size_t used, bytes;
@@ -91,7 +92,8 @@ static int run_row(const struct recipe *r, const struct recipe_row *row,
 }
 
 /* Returns the metric NAME of JSON, or NAN if it is missing. */
-static double find_metric(const char *json, const char *name, size_t length)
+static double find_json_metric(const char *json, const char *name,
+                               size_t length)
 {
     for (const char *at = strchr(json, '"'); at; at = strchr(at + 1, '"'))
         if (strncmp(at + 1, name, length) == 0 &&
@@ -103,7 +105,7 @@ static double find_metric(const char *json, const char *name, size_t length)
 
 /* Appends the instructions of a frame to JSON, as an object on a line of its
  * own. Returns false if there is no memory. */
-static bool append_count(char json[TEXT], double instructions)
+static bool append_instruction_count(char json[TEXT], double instructions)
 {
     const size_t used = strlen(json);
     struct json_writer more = {.to = fmemopen(json + used, TEXT - used, "w")};
@@ -115,26 +117,28 @@ static bool append_count(char json[TEXT], double instructions)
 }
 
 /* Measures ROW to JSON; counts instructions if they are a metric. */
-static int measure_one(const struct recipe *r, const struct recipe_row *row,
-                       const char *self, char json[TEXT])
+static int measure_row_to_json(const struct recipe *r,
+                               const struct recipe_row *row, const char *self,
+                               char json[TEXT])
 {
     static char counted[TEXT];
-    int code = run_row(r, row, self, false, json);
+    int code = run_row_in_child(r, row, self, false, json);
     const char *count;
 
     if (code != EXIT_OK || !strstr(r->metrics, "minsn"))
         return code;
-    code = run_row(r, row, self, true, counted);
+    code = run_row_in_child(r, row, self, true, counted);
     count = strstr(counted, "Collected : ");
     if (code != EXIT_OK)
         return code;
-    return count && append_count(json, strtod(count + 12, NULL)) ? EXIT_OK
-                                                                 : EXIT_RUNTIME;
+    return count && append_instruction_count(json, strtod(count + 12, NULL))
+               ? EXIT_OK
+               : EXIT_RUNTIME;
 }
 
 /* --------------------------------------------------------------------- csv */
 
-static void read_first_line(const char *command, char text[128])
+static void read_first_line_of_file(const char *command, char text[128])
 {
     FILE *const pipe = popen(command, "r"); /* NOLINT: our own command */
 
@@ -146,8 +150,8 @@ static void read_first_line(const char *command, char text[128])
 }
 
 /* Appends the metrics of ROW to build/measure.csv. */
-static void append_csv(const struct recipe *r, const struct recipe_row *row,
-                       const char *json)
+static void append_csv_line(const struct recipe *r,
+                            const struct recipe_row *row, const char *json)
 {
     static char conditions[2][128];
     const bool is_new = access(CSV, F_OK) != 0;
@@ -156,9 +160,9 @@ static void append_csv(const struct recipe *r, const struct recipe_row *row,
     if (!file)
         return;
     if (!conditions[0][0])
-        read_first_line("git describe --always --dirty --abbrev=8",
-                        conditions[0]);
-    read_first_line("cut -d ' ' -f 1 /proc/loadavg", conditions[1]);
+        read_first_line_of_file("git describe --always --dirty --abbrev=8",
+                                conditions[0]);
+    read_first_line_of_file("cut -d ' ' -f 1 /proc/loadavg", conditions[1]);
     if (is_new)
         fputs("figure,parameters,metric,value,revision,machine,load\n", file);
     for (const char *at = r->metrics; at; at = strchr(at, ',')) {
@@ -171,8 +175,8 @@ static void append_csv(const struct recipe *r, const struct recipe_row *row,
                 fputc(*c == ',' ? ' ' : *c, file);
         }
         fprintf(file, ",%.*s,%.9g,%s,%s,%s\n", (int)length, at,
-                find_metric(json, at, length), conditions[0], canvas_machine(),
-                conditions[1]);
+                find_json_metric(json, at, length), conditions[0],
+                canvas_describe_machine(), conditions[1]);
     }
     fclose(file);
 }
@@ -181,8 +185,8 @@ static void append_csv(const struct recipe *r, const struct recipe_row *row,
 
 /* Writes the metric that the placeholder {NAME%FORMAT~TOLERANCE} at AT names
  * to TO. Returns false if the row has no such metric. */
-static bool write_value(const char *at, const struct recipe_row *row,
-                        const char *json, char *to, size_t bytes)
+static bool write_metric_value(const char *at, const struct recipe_row *row,
+                               const char *json, char *to, size_t bytes)
 {
     const size_t length = strcspn(at, "%}");
     const char *value;
@@ -192,7 +196,7 @@ static bool write_value(const char *at, const struct recipe_row *row,
 
     snprintf(name, sizeof name, "%.*s", (int)length, at);
     if (at[length] != '%') {
-        value = recipe_value(row, name);
+        value = recipe_find_value(row, name);
         if (value && strcmp(name, "lens") == 0) {
             const char *const slash = strrchr(value, '/');
 
@@ -205,7 +209,7 @@ static bool write_value(const char *at, const struct recipe_row *row,
     }
     snprintf(format, sizeof format, "%.*s", (int)strcspn(at + length, "~}"),
              at + length);
-    x = find_metric(json, name, length);
+    x = find_json_metric(json, name, length);
     if (!isfinite(x))
         return false;
     if (format[1] == '.')
@@ -222,9 +226,9 @@ static bool write_value(const char *at, const struct recipe_row *row,
 
 /* Writes the text of COLUMN's cell to TO, or an empty text if a metric is
  * missing. */
-static void write_cell(const struct recipe_column *column,
-                       const struct recipe_row *row, const char *json, char *to,
-                       size_t bytes)
+static void write_table_cell(const struct recipe_column *column,
+                             const struct recipe_row *row, const char *json,
+                             char *to, size_t bytes)
 {
     const char *at = column->cell;
     size_t used = 0;
@@ -236,7 +240,7 @@ static void write_cell(const struct recipe_column *column,
             to[used] = '\0';
             continue;
         }
-        if (!write_value(at + 1, row, json, to + used, bytes - used)) {
+        if (!write_metric_value(at + 1, row, json, to + used, bytes - used)) {
             *to = '\0';
             return;
         }
@@ -248,8 +252,9 @@ static void write_cell(const struct recipe_column *column,
 /* Returns ROW as a table line, which the caller frees, or NULL if it has no
  * metric, such as the projection of an anamorphic lens. OVER: the row
  * reached its CPU limit. */
-static char *make_line(const struct recipe *r, const struct recipe_row *row,
-                       const char *json, bool over)
+static char *make_table_line(const struct recipe *r,
+                             const struct recipe_row *row, const char *json,
+                             bool over)
 {
     static char line[TEXT];
     size_t used = 1;
@@ -259,7 +264,7 @@ static char *make_line(const struct recipe *r, const struct recipe_row *row,
     for (int i = 0; i < r->n_columns; i++) {
         char cell[256];
 
-        write_cell(&r->column[i], row, json, cell, sizeof cell);
+        write_table_cell(&r->column[i], row, json, cell, sizeof cell);
         if (over && strncmp(r->column[i].cell, "{bake_s", 7) == 0)
             snprintf(cell, sizeof cell, "over %d", r->limit_s);
         is_empty = is_empty && (r->column[i].is_key || !*cell);
@@ -270,7 +275,7 @@ static char *make_line(const struct recipe *r, const struct recipe_row *row,
 }
 
 /* Copies cell NUMBER of LINE to CELL. */
-static void copy_cell(const char *line, int number, char cell[256])
+static void copy_table_cell(const char *line, int number, char cell[256])
 {
     size_t length;
 
@@ -284,13 +289,14 @@ static void copy_cell(const char *line, int number, char cell[256])
     snprintf(cell, 256, "%.*s", (int)length, line);
 }
 
-static bool has_same_keys(const struct recipe *r, const char *a, const char *b)
+static bool have_lines_same_keys(const struct recipe *r, const char *a,
+                                 const char *b)
 {
     char cell[2][256];
 
     for (int i = 0; i < r->n_columns; i++) {
-        copy_cell(a, i, cell[0]);
-        copy_cell(b, i, cell[1]);
+        copy_table_cell(a, i, cell[0]);
+        copy_table_cell(b, i, cell[1]);
         if (r->column[i].is_key && strcmp(cell[0], cell[1]) != 0)
             return false;
     }
@@ -298,7 +304,7 @@ static bool has_same_keys(const struct recipe *r, const char *a, const char *b)
 }
 
 /* Reads the rows of the figure's file. */
-static void read_table(const struct recipe *r, struct table *t)
+static void read_figure_table(const struct recipe *r, struct table *t)
 {
     static char line[TEXT];
     char path[256];
@@ -320,7 +326,7 @@ static void read_table(const struct recipe *r, struct table *t)
         fclose(file);
 }
 
-static void print_table(const struct recipe *r, const struct table *t)
+static void print_figure_table(const struct recipe *r, const struct table *t)
 {
     for (int i = 0; i < r->n_columns; i++)
         printf("%s %s |", i ? "" : "|", r->column[i].title);
@@ -334,10 +340,11 @@ static void print_table(const struct recipe *r, const struct table *t)
 
 /* Replaces the table's row that has LINE's keys by LINE, or appends LINE; does
  * nothing if LINE is NULL. */
-static void put_line(const struct recipe *r, struct table *t, char *line)
+static void replace_or_append_line(const struct recipe *r, struct table *t,
+                                   char *line)
 {
     for (int i = 0; i < t->n && line; i++)
-        if (has_same_keys(r, t->line[i], line)) {
+        if (have_lines_same_keys(r, t->line[i], line)) {
             t->line[i] = line;
             return;
         }
@@ -349,9 +356,9 @@ static void put_line(const struct recipe *r, struct table *t, char *line)
 
 /* Compares the numbers of CELL with the row's metrics that have a tolerance.
  * Returns whether all are within it. */
-static bool compare_cell(const struct recipe *r,
-                         const struct recipe_column *column, const char *cell,
-                         const char *json)
+static bool compare_cell_numbers(const struct recipe *r,
+                                 const struct recipe_column *column,
+                                 const char *cell, const char *json)
 {
     bool fine = true;
 
@@ -359,7 +366,7 @@ static bool compare_cell(const struct recipe *r,
          at = strchr(at + 1, '{')) {
         const size_t length = strcspn(at + 1, "%}");
         const char *const tilde = at + strcspn(at, "~}");
-        const double x = find_metric(json, at + 1, length);
+        const double x = find_json_metric(json, at + 1, length);
         char *end;
         double was;
 
@@ -380,19 +387,20 @@ static bool compare_cell(const struct recipe *r,
 
 /* Compares the metrics JSON with the row of the table that has the same
  * keys. Returns whether all are within tolerance. */
-static bool compare_row(const struct recipe *r, const struct recipe_row *row,
-                        const struct table *t, const char *json)
+static bool compare_row_with_table(const struct recipe *r,
+                                   const struct recipe_row *row,
+                                   const struct table *t, const char *json)
 {
-    char *const line = make_line(r, row, json, false);
+    char *const line = make_table_line(r, row, json, false);
     char cell[256];
     bool fine = true;
 
     for (int i = 0; i < t->n; i++) {
-        if (!line || !has_same_keys(r, t->line[i], line))
+        if (!line || !have_lines_same_keys(r, t->line[i], line))
             continue;
         for (int k = 0; k < r->n_columns; k++) {
-            copy_cell(t->line[i], k, cell);
-            fine = compare_cell(r, &r->column[k], cell, json) && fine;
+            copy_table_cell(t->line[i], k, cell);
+            fine = compare_cell_numbers(r, &r->column[k], cell, json) && fine;
         }
         printf("%s %s: %s\n", fine ? "ok" : "FAIL", r->name, line);
         free(line);
@@ -403,10 +411,11 @@ static bool compare_row(const struct recipe *r, const struct recipe_row *row,
     return false;
 }
 
-static bool is_quick(const struct recipe *r, const struct recipe_row *row)
+static bool is_row_in_quick_run(const struct recipe *r,
+                                const struct recipe_row *row)
 {
     for (int i = 0; i < r->n_quick; i++)
-        if (recipe_row_has(row, r->quick[i]))
+        if (recipe_row_has_parameter(row, r->quick[i]))
             return true;
     return false;
 }
@@ -415,17 +424,17 @@ static bool is_quick(const struct recipe *r, const struct recipe_row *row)
 
 /* If some rows have ASSIGNMENT, removes the other rows; else sets it in all
  * rows. */
-static void select_rows(struct recipe *r, const char *assignment)
+static void select_rows_by_assignment(struct recipe *r, const char *assignment)
 {
     int n = 0;
 
     for (int i = 0; i < r->n_rows; i++)
-        n += recipe_row_has(&r->row[i], assignment);
+        n += recipe_row_has_parameter(&r->row[i], assignment);
     for (int i = 0; i < r->n_rows && n == 0; i++)
         if (r->row[i].n < ROW_PARAMETERS)
             r->row[i].set[r->row[i].n++] = assignment;
     for (int i = 0, kept = 0; i < r->n_rows && n > 0; i++)
-        if (recipe_row_has(&r->row[i], assignment))
+        if (recipe_row_has_parameter(&r->row[i], assignment))
             r->row[kept++] = r->row[i];
     r->n_rows = n > 0 ? n : r->n_rows;
 }
@@ -438,22 +447,23 @@ static int measure_recipe(struct recipe *r, const char *self, bool quick)
     struct table t = {.n = 0};
     int code = EXIT_OK, bad = 0;
 
-    read_table(r, &t);
+    read_figure_table(r, &t);
     for (int i = 0; i < r->n_rows && code == EXIT_OK; i++) {
-        if (quick && !is_quick(r, &r->row[i]))
+        if (quick && !is_row_in_quick_run(r, &r->row[i]))
             continue;
-        code = measure_one(r, &r->row[i], self, json);
+        code = measure_row_to_json(r, &r->row[i], self, json);
         if (code > EXIT_OK)
             break;
-        append_csv(r, &r->row[i], json);
+        append_csv_line(r, &r->row[i], json);
         if (quick)
-            bad += !compare_row(r, &r->row[i], &t, json);
+            bad += !compare_row_with_table(r, &r->row[i], &t, json);
         else
-            put_line(r, &t, make_line(r, &r->row[i], json, code == -1));
+            replace_or_append_line(
+                r, &t, make_table_line(r, &r->row[i], json, code == -1));
         code = EXIT_OK;
     }
     if (code == EXIT_OK && !quick)
-        print_table(r, &t);
+        print_figure_table(r, &t);
     for (int i = 0; i < t.n; i++)
         free(t.line[i]);
     return code == EXIT_OK && bad ? EXIT_RUNTIME : code;
@@ -498,6 +508,6 @@ int main(int argc, char **argv)
         return EXIT_USAGE;
     }
     for (int i = 2; i < argc; i++)
-        select_rows(&r, argv[i]);
+        select_rows_by_assignment(&r, argv[i]);
     return measure_recipe(&r, argv[0], false);
 }

@@ -30,9 +30,9 @@ struct ghost {
 
 /* Traces GHOST for a light at THETA_DEG and returns its position; light is 0
  * if no ray passes. */
-static struct ghost find_ghost(const struct figure_row *row,
-                               const struct places *r, int ghost,
-                               double theta_deg)
+static struct ghost find_ghost_position(const struct figure_row *row,
+                                        const struct places *r, int ghost,
+                                        double theta_deg)
 {
     const double stop = r->setup.optics.stop_radius_mm;
     const double theta = theta_deg * GLINT_PI / 180;
@@ -66,8 +66,8 @@ static struct ghost find_ghost(const struct figure_row *row,
 }
 
 /* Writes the metrics WHERE_... for a light whose image is MM from the axis. */
-static void write_place(struct figure_row *row, const struct places *r,
-                        const char *where, double mm)
+static void write_ghost_place(struct figure_row *row, const struct places *r,
+                              const char *where, double mm)
 {
     const double focal = fabs(r->setup.optics.focal_mm);
     const double px = 1920 / row->table.film_width_mm;
@@ -79,8 +79,8 @@ static void write_place(struct figure_row *row, const struct places *r,
     if (by_lens > TRACED_DEG)
         return;
     for (int k = 0; k < r->setup.n_ghosts; k++) {
-        const struct ghost a = find_ghost(row, r, k, by_tan);
-        const struct ghost b = find_ghost(row, r, k, by_lens);
+        const struct ghost a = find_ghost_position(row, r, k, by_tan);
+        const struct ghost b = find_ghost_position(row, r, k, by_lens);
         const double by = fabs(b.x_mm - a.x_mm) * px;
 
         if (!(a.light > 0 && b.light > 0))
@@ -96,7 +96,7 @@ static void write_place(struct figure_row *row, const struct places *r,
                    moved / light, where, most);
 }
 
-int row_places(struct figure_row *row)
+int row_measure_places(struct figure_row *row)
 {
     static const double nm[] = {588};
     struct places *const r = calloc(1, sizeof *r);
@@ -123,8 +123,8 @@ int row_places(struct figure_row *row)
                    r->setup.optics.focal_mm,
                    glint_projection_deg(&r->projection, r->projection.reach),
                    r->miss_deg);
-        write_place(row, r, "half", 0.5 * corner);
-        write_place(row, r, "corner", corner);
+        write_ghost_place(row, r, "half", 0.5 * corner);
+        write_ghost_place(row, r, "corner", corner);
     }
     free(r);
     return status == GLINT_OK ? EXIT_OK

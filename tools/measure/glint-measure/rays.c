@@ -53,20 +53,20 @@ struct task {
 
 /* ------------------------------------------------------------------ tallies */
 
-static int find_bin(double error)
+static int find_error_bin(double error)
 {
     const int bin = (int)(BINS_A_DECADE * log10(fmax(error, 1e-5) / 1e-5));
 
     return bin < BINS ? bin : BINS - 1;
 }
 
-static void add_ray(struct tally *t, const double error[], double light)
+static void add_ray_error(struct tally *t, const double error[], double light)
 {
     t->rays++;
     t->light += light;
-    t->sensor[find_bin(
+    t->sensor[find_error_bin(
         hypot(error[GLINT_OUT_SENSOR_X], error[GLINT_OUT_SENSOR_Y]))]++;
-    t->energy[find_bin(fabs(error[GLINT_OUT_ENERGY]))]++;
+    t->energy[find_error_bin(fabs(error[GLINT_OUT_ENERGY]))]++;
     for (int kind = 0; kind <= GLINT_OUT_ENERGY; kind++)
         t->sum2[kind] +=
             error[kind] * error[kind] * (kind == GLINT_OUT_ENERGY ? light : 1);
@@ -78,8 +78,8 @@ static void add_uncovered_ray(struct tally *t, double light)
     t->lost++;
     t->light += light;
     t->light_lost += light;
-    t->sensor[find_bin(FAR)]++;
-    t->energy[find_bin(1)]++;
+    t->sensor[find_error_bin(FAR)]++;
+    t->energy[find_error_bin(1)]++;
 }
 
 /* Adds WEIGHT times FROM to T. */
@@ -110,7 +110,7 @@ static double compute_p99(const double bin[BINS], double n)
     return n > 0 ? 1e-5 * pow(10, (double)k / BINS_A_DECADE) : 0;
 }
 
-static double sensor_p99(const struct tally *t)
+static double compute_sensor_p99_px(const struct tally *t)
 {
     return compute_p99(t->sensor, t->rays);
 }
@@ -123,15 +123,16 @@ static double compute_rms(const struct tally *t, int kind)
     return n > 0 ? sqrt(t->sum2[kind] / n) : 0;
 }
 
-static double stop_rms(const struct tally *t)
+static double compute_stop_rms(const struct tally *t)
 {
     return hypot(compute_rms(t, GLINT_OUT_STOP_X),
                  compute_rms(t, GLINT_OUT_STOP_Y));
 }
 
-static bool misses_target(const struct tally *t)
+static bool does_tally_miss_target(const struct tally *t)
 {
-    return sensor_p99(t) > SENSOR_PX || stop_rms(t) > STOP_RMS;
+    return compute_sensor_p99_px(t) > SENSOR_PX ||
+           compute_stop_rms(t) > STOP_RMS;
 }
 
 /* --------------------------------------------------------------------- rays */
@@ -143,8 +144,8 @@ struct parts {
     struct glint_transfer part[MOST_PARTS];
 };
 
-static void find_parts(const struct task *t, int ghost, double angle_deg,
-                       double nm, struct parts *parts)
+static void find_ghost_parts(const struct task *t, int ghost, double angle_deg,
+                             double nm, struct parts *parts)
 {
     const int32_t sine_q30 =
         (int32_t)lrint(ldexp(sin(angle_deg * GLINT_PI / 180), 30));
@@ -162,8 +163,8 @@ static void find_parts(const struct task *t, int ghost, double angle_deg,
 
 /* Sets AT to the outputs of the model for the ray from (X, Y). Returns false if
  * no polynomial covers (X, Y). */
-static bool evaluate_model(const struct parts *parts, double x_mm, double y_mm,
-                           double at[GLINT_OUT_KINDS])
+static bool evaluate_model_ray(const struct parts *parts, double x_mm,
+                               double y_mm, double at[GLINT_OUT_KINDS])
 {
     for (int k = 0; k < parts->n; k++) {
         const struct glint_transfer *p = &parts->part[k];
@@ -183,22 +184,23 @@ static bool evaluate_model(const struct parts *parts, double x_mm, double y_mm,
     return false;
 }
 
-static bool is_seen(const struct task *t, const struct glint_ray *ray)
+static bool is_ray_visible(const struct task *t, const struct glint_ray *ray)
 {
     return ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <= t->optics.stop_radius_mm &&
            hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= t->picture_mm;
 }
 
-static void compare_ray(const struct task *t, const struct parts *parts,
-                        double x_mm, double y_mm, const struct glint_ray *ray,
-                        double light, struct tally *tally)
+static void compare_ray_with_model(const struct task *t,
+                                   const struct parts *parts, double x_mm,
+                                   double y_mm, const struct glint_ray *ray,
+                                   double light, struct tally *tally)
 {
     const double px = 1920 / t->row->table.film_width_mm;
     const double stop = t->optics.stop_radius_mm;
     double at[GLINT_OUT_KINDS] = {0};
 
-    if (!evaluate_model(parts, x_mm, y_mm, at)) {
+    if (!evaluate_model_ray(parts, x_mm, y_mm, at)) {
         add_uncovered_ray(tally, light);
         return;
     }
@@ -207,11 +209,11 @@ static void compare_ray(const struct task *t, const struct parts *parts,
     at[GLINT_OUT_STOP_X] -= ray->stop_x_mm / stop;
     at[GLINT_OUT_STOP_Y] -= ray->stop_y_mm / stop;
     at[GLINT_OUT_ENERGY] = at[GLINT_OUT_ENERGY] / ray->energy - 1;
-    add_ray(tally, at, light);
+    add_ray_error(tally, at, light);
 }
 
-static void compare_bundle(const struct task *t, int ghost, double angle_deg,
-                           double nm, struct tally *tally)
+static void compare_ray_bundle(const struct task *t, int ghost,
+                               double angle_deg, double nm, struct tally *tally)
 {
     static struct parts parts;
     const double angle = angle_deg * GLINT_PI / 180;
@@ -230,7 +232,7 @@ static void compare_bundle(const struct task *t, int ghost, double angle_deg,
                                  model_compute_real(t->header->field_mm), NULL))
         return;
     path.places_only = false;
-    find_parts(t, ghost, angle_deg, nm, &parts);
+    find_ghost_parts(t, ghost, angle_deg, nm, &parts);
     row.x0_mm = box.x0_mm;
     row.step_mm = (box.x1_mm - box.x0_mm) / ACROSS;
     cell = row.step_mm * box.y1_mm / DOWN;
@@ -238,9 +240,10 @@ static void compare_bundle(const struct task *t, int ghost, double angle_deg,
         row.y_mm = box.y1_mm * j / DOWN;
         glint_trace_row(&path, &row, ray, status, NULL);
         for (int i = 0; i <= ACROSS; i++)
-            if (status[i] == GLINT_RAY_OK && is_seen(t, &ray[i]))
-                compare_ray(t, &parts, row.x0_mm + i * row.step_mm, row.y_mm,
-                            &ray[i], cell * ray[i].energy, tally);
+            if (status[i] == GLINT_RAY_OK && is_ray_visible(t, &ray[i]))
+                compare_ray_with_model(t, &parts, row.x0_mm + i * row.step_mm,
+                                       row.y_mm, &ray[i], cell * ray[i].energy,
+                                       tally);
     }
 }
 
@@ -255,23 +258,24 @@ struct light {
 /* Compares all rays of GHOST. Adds their errors to SUM and their light to
  * LIGHT. Adds to ANGLES the number of angles at which the ghost is visible,
  * and the number at which it misses the target. */
-static void compare_ghost(const struct task *t, int ghost, struct tally *sum,
-                          int angles[2], struct light *light)
+static void compare_ghost_rays(const struct task *t, int ghost,
+                               struct tally *sum, int angles[2],
+                               struct light *light)
 {
     for (int k = 0; k < t->n_angles; k++) {
         struct tally here = {0};
 
         for (int w = 0; w < t->row->n_nm; w++)
-            compare_bundle(t, ghost, t->angle[k], t->row->nm[w], &here);
+            compare_ray_bundle(t, ghost, t->angle[k], t->row->nm[w], &here);
         merge_tally(sum, &here, 1);
         angles[0] += here.rays > 0;
-        angles[1] += misses_target(&here);
+        angles[1] += does_tally_miss_target(&here);
         light[k].all += here.light;
         light[k].lost += here.light_lost;
     }
 }
 
-static void write_rms(struct figure_row *row, const struct tally *t)
+static void write_rms_metric(struct figure_row *row, const struct tally *t)
 {
     json_write(
         &row->json,
@@ -282,7 +286,7 @@ static void write_rms(struct figure_row *row, const struct tally *t)
         compute_rms(t, GLINT_OUT_ENERGY));
 }
 
-static void compare_all(struct figure_row *row, const struct task *t)
+static void compare_all_ghosts(struct figure_row *row, const struct task *t)
 {
     static struct tally all, equally;
     static struct light light[MOST_ANGLES];
@@ -292,11 +296,11 @@ static void compare_all(struct figure_row *row, const struct task *t)
     for (int g = 0; g < t->n_ghosts; g++) {
         struct tally sum = {0};
 
-        compare_ghost(t, g, &sum, angles, light);
+        compare_ghost_rays(t, g, &sum, angles, light);
         if (sum.rays == 0)
             continue;
         ghosts++;
-        missing += misses_target(&sum);
+        missing += does_tally_miss_target(&sum);
         merge_tally(&all, &sum, 1);
         merge_tally(&equally, &sum, 1 / sum.rays);
     }
@@ -308,17 +312,18 @@ static void compare_all(struct figure_row *row, const struct task *t)
                "energy_p99_ghosts: %.6g, lost: %.6g, lost_light: %.6g, "
                "ghosts_seen: %d, ghosts_miss: %d, angles_seen: %d, "
                "angles_miss: %d",
-               all.rays, sensor_p99(&all), sensor_p99(&equally), stop_rms(&all),
-               stop_rms(&equally), compute_p99(all.energy, all.rays),
+               all.rays, compute_sensor_p99_px(&all),
+               compute_sensor_p99_px(&equally), compute_stop_rms(&all),
+               compute_stop_rms(&equally), compute_p99(all.energy, all.rays),
                compute_p99(equally.energy, equally.rays),
                all.lost / fmax(1, all.rays), lost, ghosts, missing, angles[0],
                angles[1]);
-    write_rms(row, &all);
+    write_rms_metric(row, &all);
 }
 
 /* ------------------------------------------------------------------- angles */
 
-static void add_angle(struct task *t, double angle_deg)
+static void add_field_angle(struct task *t, double angle_deg)
 {
     const double most =
         asin(fmin(1, ldexp(t->header->sine_hi_q30, -30))) * (180 / GLINT_PI);
@@ -334,18 +339,18 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void set_angles(struct task *t, double step_deg)
+static void set_field_angles(struct task *t, double step_deg)
 {
     static const double listed[] = {0, 2.5, 5.3, 7.6, 10, 13.7, 17.3, 20};
 
     for (int k = 0; k < 8; k++)
-        add_angle(t, listed[k]);
+        add_field_angle(t, listed[k]);
     for (int k = 1; k < MOST_ANGLES && k * step_deg < 90; k++)
-        add_angle(t, k * step_deg);
+        add_field_angle(t, k * step_deg);
     qsort(t->angle, (size_t)t->n_angles, sizeof *t->angle, compare_doubles);
 }
 
-int row_rays(struct figure_row *row)
+int row_measure_rays(struct figure_row *row)
 {
     struct task *const t = calloc(1, sizeof *t);
     const struct glint_model_header *h;
@@ -366,8 +371,8 @@ int row_rays(struct figure_row *row)
         fmin(model_compute_real(h->field_mm),
              0.5 * hypot(row->table.film_width_mm, row->table.film_height_mm));
     glint_optics_of(&row->table, &t->optics);
-    set_angles(t, row->step_deg);
-    compare_all(row, t);
+    set_field_angles(t, row->step_deg);
+    compare_all_ghosts(row, t);
     free(t);
     return EXIT_OK;
 }

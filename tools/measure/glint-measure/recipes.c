@@ -33,7 +33,7 @@ static char *copy_to_pool(const char *prefix, const char *text, size_t length)
 }
 
 /* Adds the words of TEXT to ROW. */
-static void add_words(struct recipe_row *row, const char *text)
+static void add_words_to_row(struct recipe_row *row, const char *text)
 {
     char *word, *rest = copy_to_pool("", text, strlen(text));
 
@@ -42,7 +42,8 @@ static void add_words(struct recipe_row *row, const char *text)
             row->set[row->n++] = word;
 }
 
-const char *recipe_value(const struct recipe_row *row, const char *parameter)
+const char *recipe_find_value(const struct recipe_row *row,
+                              const char *parameter)
 {
     const size_t length = strlen(parameter);
 
@@ -53,11 +54,11 @@ const char *recipe_value(const struct recipe_row *row, const char *parameter)
     return NULL;
 }
 
-bool recipe_row_has(const struct recipe_row *row, const char *words)
+bool recipe_row_has_parameter(const struct recipe_row *row, const char *words)
 {
     struct recipe_row wanted = {.n = 0};
 
-    add_words(&wanted, words);
+    add_words_to_row(&wanted, words);
     for (int i = 0; i < wanted.n; i++) {
         const size_t length = strcspn(wanted.set[i], "=");
         char name[64];
@@ -67,7 +68,7 @@ bool recipe_row_has(const struct recipe_row *row, const char *words)
             return false;
         memcpy(name, wanted.set[i], length);
         name[length] = '\0';
-        value = recipe_value(row, name);
+        value = recipe_find_value(row, name);
         if (!value || strcmp(value, wanted.set[i] + length + 1) != 0)
             return false;
     }
@@ -78,7 +79,7 @@ bool recipe_row_has(const struct recipe_row *row, const char *words)
 
 /* Replaces each of the N rows from FIRST on by one row per value of VARY, "NAME
  * VALUE VALUE...". */
-static void multiply_rows(struct recipe *r, const char *vary)
+static void multiply_rows_by_values(struct recipe *r, const char *vary)
 {
     const int n = r->n_rows;
     const size_t length = strcspn(vary, " ");
@@ -102,7 +103,8 @@ static void multiply_rows(struct recipe *r, const char *vary)
 }
 
 /* Replaces each row by one row per label, "LABEL: NAME=VALUE ...". */
-static void label_rows(struct recipe *r, const struct recipe_lines *l)
+static void multiply_rows_by_labels(struct recipe *r,
+                                    const struct recipe_lines *l)
 {
     const int n = r->n_rows;
 
@@ -115,7 +117,7 @@ static void label_rows(struct recipe *r, const struct recipe_lines *l)
                 continue;
             row.set[row.n++] = copy_to_pool("label=", l->label[k],
                                             (size_t)(colon - l->label[k]));
-            add_words(&row, colon + 1);
+            add_words_to_row(&row, colon + 1);
             r->row[r->n_rows++] = row;
         }
     if (l->n_labels) {
@@ -126,8 +128,8 @@ static void label_rows(struct recipe *r, const struct recipe_lines *l)
 
 /* Adds a row per file that PATTERN, a name or a glob pattern, matches, with the
  * values for all rows and the values of LINE. */
-static void add_files(struct recipe *r, const struct recipe_lines *l,
-                      const char *pattern, const char *line)
+static void add_rows_of_files(struct recipe *r, const struct recipe_lines *l,
+                              const char *pattern, const char *line)
 {
     char text[512];
     glob_t files;
@@ -139,16 +141,16 @@ static void add_files(struct recipe *r, const struct recipe_lines *l,
 
         row->n = 0;
         for (int k = 0; k < l->n_set; k++)
-            add_words(row, l->set[k]);
+            add_words_to_row(row, l->set[k]);
         snprintf(text, sizeof text, "lens=%s %s", files.gl_pathv[i], line);
-        add_words(row, text);
+        add_words_to_row(row, text);
     }
     globfree(&files);
 }
 
 /* Adds the rows of LINE: lenses, then PARAMETER=VALUE for them. */
-static void add_lenses(struct recipe *r, const struct recipe_lines *l,
-                       const char *line)
+static void add_rows_of_lenses(struct recipe *r, const struct recipe_lines *l,
+                               const char *line)
 {
     char *rest = copy_to_pool("", line, strlen(line)), *word;
     const char *set = line;
@@ -157,22 +159,22 @@ static void add_lenses(struct recipe *r, const struct recipe_lines *l,
          set += strspn(set, " "))
         set += strcspn(set, " ");
     while ((word = strtok_r(rest, " ", &rest)) && !strchr(word, '='))
-        add_files(r, l, word, set);
+        add_rows_of_files(r, l, word, set);
 }
 
-static void make_rows(struct recipe *r, const struct recipe_lines *l)
+static void make_recipe_rows(struct recipe *r, const struct recipe_lines *l)
 {
     for (int i = 0; i < l->n_lenses; i++)
-        add_lenses(r, l, l->lens[i]);
+        add_rows_of_lenses(r, l, l->lens[i]);
     for (int i = 0; i < l->n_vary; i++)
-        multiply_rows(r, l->vary[i]);
-    label_rows(r, l);
+        multiply_rows_by_values(r, l->vary[i]);
+    multiply_rows_by_labels(r, l);
 }
 
 /* ------------------------------------------------------------------ reading */
 
 /* Collects the metrics of column C; a column without metrics becomes a key. */
-static void collect_metrics(struct recipe *r, struct recipe_column *c)
+static void collect_column_metrics(struct recipe *r, struct recipe_column *c)
 {
     c->is_key = true;
     for (const char *at = strchr(c->cell, '{'); at; at = strchr(at + 1, '{')) {
@@ -188,7 +190,7 @@ static void collect_metrics(struct recipe *r, struct recipe_column *c)
 }
 
 /* Parses "TITLE = CELL | TITLE = CELL ...". */
-static void parse_columns(struct recipe *r, char *text)
+static void parse_table_columns(struct recipe *r, char *text)
 {
     for (char *next; text && r->n_columns < RECIPE_LINES; text = next) {
         char *const equals = strstr(text, " = ");
@@ -202,11 +204,12 @@ static void parse_columns(struct recipe *r, char *text)
             return;
         *equals = '\0';
         r->column[r->n_columns] = (struct recipe_column){text, equals + 3, 0};
-        collect_metrics(r, &r->column[r->n_columns++]);
+        collect_column_metrics(r, &r->column[r->n_columns++]);
     }
 }
 
-static void parse_line(struct recipe *r, struct recipe_lines *l, char *line)
+static void parse_recipe_line(struct recipe *r, struct recipe_lines *l,
+                              char *line)
 {
     static const char *const words[] = {"lens",   "vary",  "case", "set",
                                         "column", "quick", "limit"};
@@ -226,7 +229,7 @@ static void parse_line(struct recipe *r, struct recipe_lines *l, char *line)
     else if (word == 3 && l->n_set < ROW_PARAMETERS)
         l->set[l->n_set++] = rest;
     else if (word == 4)
-        parse_columns(r, rest);
+        parse_table_columns(r, rest);
     else if (word == 5 && r->n_quick < RECIPE_LINES)
         r->quick[r->n_quick++] = rest;
     else if (word == 6)
@@ -256,12 +259,12 @@ char *recipe_read(struct recipe *r, char *text, const char *name)
             is_it = !name || strcmp(line, name) == 0;
             r->name = line;
         } else if (is_it) {
-            parse_line(r, &l, line + strspn(line, " "));
+            parse_recipe_line(r, &l, line + strspn(line, " "));
         }
         next = rest;
     }
     if (!is_it || !l.n_lenses)
         return NULL;
-    make_rows(r, &l);
+    make_recipe_rows(r, &l);
     return next;
 }

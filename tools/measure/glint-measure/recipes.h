@@ -45,9 +45,10 @@ char *recipe_read(struct recipe *recipe, char *text, const char *name);
 
 /* Returns the value of PARAMETER in ROW, for a lens its name, or NULL if it is
  * not set. */
-const char *recipe_value(const struct recipe_row *row, const char *parameter);
+const char *recipe_find_value(const struct recipe_row *row,
+                              const char *parameter);
 
 /* Returns whether ROW has all of WORDS. */
-bool recipe_row_has(const struct recipe_row *row, const char *words);
+bool recipe_row_has_parameter(const struct recipe_row *row, const char *words);
 
 #endif

@@ -37,7 +37,8 @@ enum glint_status measured_frame(struct glint_engine *engine,
     return glint_engine_draw_at(engine, lamps, n, scale, image, report);
 }
 
-static bool has_word(const char *words, const char *word, size_t length)
+static bool list_contains_word(const char *words, const char *word,
+                               size_t length)
 {
     for (const char *at = words; at; at = strchr(at, ',')) {
         at += *at == ',';
@@ -49,17 +50,18 @@ static bool has_word(const char *words, const char *word, size_t length)
 }
 
 /* Returns whether one of NAMES, separated by commas, is among the metrics. */
-static bool has_metric(const struct figure_row *row, const char *names)
+static bool is_any_metric_requested(const struct figure_row *row,
+                                    const char *names)
 {
     for (const char *at = names; at; at = strchr(at, ',')) {
         at += *at == ',';
-        if (has_word(row->metrics, at, strcspn(at, ",")))
+        if (list_contains_word(row->metrics, at, strcspn(at, ",")))
             return true;
     }
     return false;
 }
 
-static double cpu_seconds(void)
+static double process_cpu_s(void)
 {
     struct timespec t;
 
@@ -69,7 +71,8 @@ static double cpu_seconds(void)
 
 /* --------------------------------------------------------------- parameters */
 
-static bool parse_own(struct figure_row *r, const char *name, const char *value)
+static bool parse_row_parameter(struct figure_row *r, const char *name,
+                                const char *value)
 {
     const struct {
         const char *name;
@@ -125,7 +128,7 @@ static int parse_assignment(struct figure_row *row, const char *assignment)
         return tool_usage(row->tool, "'%s' is not PARAMETER=VALUE", assignment);
     memcpy(name, assignment, length);
     name[length] = '\0';
-    return parse_own(row, name, assignment + length + 1)
+    return parse_row_parameter(row, name, assignment + length + 1)
                ? EXIT_OK
                : tool_usage(row->tool, "no parameter, or not a value of it: %s",
                             assignment);
@@ -166,7 +169,7 @@ int row_open(struct figure_row *row, struct tool *tool, int n,
 
 /* Bakes the table as 'glint bake' does and opens the model; writes the CPU
  * seconds. */
-static int bake_table(struct figure_row *r)
+static int bake_row_table(struct figure_row *r)
 {
     struct glint_bake_options options;
     struct glint_bake_report report;
@@ -174,7 +177,7 @@ static int bake_table(struct figure_row *r)
     unsigned char *model = NULL;
     size_t bytes = 0;
     enum glint_status status = GLINT_OK;
-    const double from = cpu_seconds();
+    const double from = process_cpu_s();
     char path[1024];
     FILE *file;
 
@@ -188,7 +191,7 @@ static int bake_table(struct figure_row *r)
             glint_bake(&r->table, &options, &model, &bytes, &report, &error);
     if (status != GLINT_OK)
         return tool_fail(r->tool, status, error.text);
-    json_write(&r->json, "bake_s: %.3f", cpu_seconds() - from);
+    json_write(&r->json, "bake_s: %.3f", process_cpu_s() - from);
     if (!model_cache_path(path, sizeof path, "measured.glint") ||
         !(file = fopen(path, "wb"))) {
         free(model);
@@ -201,7 +204,7 @@ static int bake_table(struct figure_row *r)
     return opened_lens_open(r->tool, &r->opened, &r->settings, path);
 }
 
-static int open_lens(struct figure_row *r)
+static int open_row_lens(struct figure_row *r)
 {
     int code = EXIT_OK;
 
@@ -211,13 +214,14 @@ static int open_lens(struct figure_row *r)
         return code;
     r->settings.max_deg = fmax(r->settings.max_deg, r->theta);
     if (r->bake_stop >= 0 && r->table.n_surfaces)
-        return bake_table(r);
-    if (!has_metric(r, ROW_BAKE "," ROW_PICTURE "," ROW_FRAME "," ROW_RAYS))
+        return bake_row_table(r);
+    if (!is_any_metric_requested(r, ROW_BAKE "," ROW_PICTURE "," ROW_FRAME
+                                             "," ROW_RAYS))
         return EXIT_OK;
     return opened_lens_open(r->tool, &r->opened, &r->settings, r->lens);
 }
 
-static void write_model(struct figure_row *r)
+static void write_model_metrics(struct figure_row *r)
 {
     const struct model_file *const model = &r->opened.model;
     struct model_summary sum;
@@ -249,48 +253,50 @@ struct frame {
     struct glint_measure measure;
 };
 
-static bool is_linear(const struct figure_row *r)
+static bool is_image_linear(const struct figure_row *r)
 {
     return strcmp(r->picture, "linear") == 0;
 }
 
-static bool is_on_canvas(const struct figure_row *r)
+static bool is_drawn_on_canvas(const struct figure_row *r)
 {
     return strcmp(r->picture, "frame") == 0;
 }
 
-static enum glint_status make_engine(struct figure_row *r, struct frame *f,
-                                     struct glint_error *error)
+static enum glint_status create_row_engine(struct figure_row *r,
+                                           struct frame *f,
+                                           struct glint_error *error)
 {
     struct glint_engine_config cfg;
 
-    canvas_engine(r->tool, &r->opened, &r->settings, r->width, r->height, &cfg);
+    canvas_open_engine(r->tool, &r->opened, &r->settings, r->width, r->height,
+                       &cfg);
     cfg.workers = NULL; /* one thread */
     if (r->settings.options.starburst > 0)
         cfg.drawing.parts |= GLINT_ENGINE_CORES;
     if (r->dust_log2)
         cfg.drawing.dials.dust_log2 = r->dust_log2;
-    if (is_linear(r)) {
+    if (is_image_linear(r)) {
         cfg.search.more_lamps = r->n_lights;
         cfg.search.max_drawn = cfg.drawing.dials.max_lights;
     }
     return glint_engine_create(&f->engine, &cfg, error);
 }
 
-static enum glint_status draw_frame(struct figure_row *r, struct frame *f,
-                                    bool is_last)
+static enum glint_status draw_row_frame(struct figure_row *r, struct frame *f,
+                                        bool is_last)
 {
     struct glint_image layer = {
         .format = GLINT_RGB24, .width = r->width, .height = r->height};
     const struct glint_image *to = &layer;
 
-    if (is_linear(r))
+    if (is_image_linear(r))
         return glint_engine_render(f->engine, f->lamp, r->n_lights,
                                    settings_brightness_scale(&r->settings),
                                    GLINT_ENGINE_ALL | GLINT_ENGINE_CORES,
                                    f->got.rgb, &f->report);
-    if (is_on_canvas(r)) {
-        canvas_fresh(&f->canvas);
+    if (is_drawn_on_canvas(r)) {
+        canvas_restore_background(&f->canvas);
         to = &f->canvas.image;
     } else {
         memset(f->codes, 0, 3 * (size_t)r->width * (size_t)r->height);
@@ -301,7 +307,7 @@ static enum glint_status draw_frame(struct figure_row *r, struct frame *f,
 }
 
 /* Draws all rounds, after a warm-up frame if there are several. */
-static enum glint_status draw_rounds(struct figure_row *r, struct frame *f)
+static enum glint_status draw_all_rounds(struct figure_row *r, struct frame *f)
 {
     enum glint_status status = GLINT_OK;
 
@@ -309,12 +315,12 @@ static enum glint_status draw_rounds(struct figure_row *r, struct frame *f)
     f->least.bin_ms = f->least.draw_ms = f->least.plan_ms = HUGE_VAL;
     for (int i = r->rounds > 1 ? -1 : 0; i < r->rounds && status == GLINT_OK;
          i++) {
-        const double from = cpu_seconds();
+        const double from = process_cpu_s();
 
-        status = draw_frame(r, f, i + 1 == r->rounds);
+        status = draw_row_frame(r, f, i + 1 == r->rounds);
         if (i < 0)
             continue;
-        f->cpu_ms = fmin(f->cpu_ms, 1e3 * (cpu_seconds() - from));
+        f->cpu_ms = fmin(f->cpu_ms, 1e3 * (process_cpu_s() - from));
         f->least.plan_ms = fmin(f->least.plan_ms, f->report.plan_ms);
         f->least.bin_ms = fmin(f->least.bin_ms, f->report.bin_ms);
         f->least.draw_ms = fmin(f->least.draw_ms, f->report.draw_ms);
@@ -322,7 +328,8 @@ static enum glint_status draw_rounds(struct figure_row *r, struct frame *f)
     return status;
 }
 
-static enum glint_status make_frame(struct figure_row *r, struct frame *f)
+static enum glint_status allocate_row_frame(struct figure_row *r,
+                                            struct frame *f)
 {
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
 
@@ -333,17 +340,17 @@ static enum glint_status make_frame(struct figure_row *r, struct frame *f)
     f->codes = malloc(n);
     if (!f->lamp || !f->exact.rgb || !f->got.rgb || !f->codes)
         return GLINT_E_MEMORY;
-    canvas_lamps(f->lamp, r->n_lights, r->theta);
+    canvas_set_lamps(f->lamp, r->n_lights, r->theta);
     f->lamp[0].phi_deg = r->phi;
     for (int i = 0; i < r->n_lights && !isnan(r->stops); i++)
         f->lamp[i].power = exp2(r->stops);
     return canvas_init(&f->canvas, GLINT_YUYV, r->width, r->height);
 }
 
-static void free_frame(struct frame *f)
+static void free_row_frame(struct frame *f)
 {
     glint_engine_destroy(f->engine);
-    canvas_finish(&f->canvas);
+    canvas_free(&f->canvas);
     free(f->lamp);
     free(f->exact.rgb);
     free(f->got.rgb);
@@ -352,7 +359,8 @@ static void free_frame(struct frame *f)
 }
 
 /* Draws the reference: the same row with the parameters of r->reference. */
-static enum glint_status draw_reference(struct figure_row *r, struct frame *f)
+static enum glint_status draw_reference_image(struct figure_row *r,
+                                              struct frame *f)
 {
     struct figure_row *const other = malloc(sizeof *other);
     struct frame g = {.exposure = f->exposure};
@@ -367,18 +375,18 @@ static enum glint_status draw_reference(struct figure_row *r, struct frame *f)
     while (code == EXIT_OK && (word = strtok_r(rest, ";", &rest)))
         code = parse_assignment(other, word);
     if (code == EXIT_OK)
-        code = open_lens(other);
+        code = open_row_lens(other);
     if (code == EXIT_OK)
-        status = make_frame(other, &g);
+        status = allocate_row_frame(other, &g);
     if (code == EXIT_OK && status == GLINT_OK)
-        status = make_engine(other, &g, &error);
+        status = create_row_engine(other, &g, &error);
     if (code == EXIT_OK && status == GLINT_OK)
-        status = draw_frame(other, &g, false);
+        status = draw_row_frame(other, &g, false);
     if (code == EXIT_OK && status == GLINT_OK) {
         f->exact_codes = g.codes;
         g.codes = NULL;
     }
-    free_frame(&g);
+    free_row_frame(&g);
     if (other)
         opened_lens_close(&other->opened);
     free(other);
@@ -392,17 +400,19 @@ static enum glint_status set_exposure(struct figure_row *r, struct frame *f)
 {
     enum glint_status status = GLINT_OK;
 
-    if (!isnan(r->stops) || (is_linear(r) && !has_metric(r, ROW_PICTURE)))
+    if (!isnan(r->stops) ||
+        (is_image_linear(r) && !is_any_metric_requested(r, ROW_PICTURE)))
         f->exposure = 1;
-    else if (!has_metric(r, ROW_PICTURE) || r->reference)
-        status = canvas_exposure(f->engine, f->lamp, r->n_lights, &f->exposure);
-    if (status != GLINT_OK || !has_metric(r, ROW_PICTURE))
+    else if (!is_any_metric_requested(r, ROW_PICTURE) || r->reference)
+        status = canvas_compute_exposure(f->engine, f->lamp, r->n_lights,
+                                         &f->exposure);
+    if (status != GLINT_OK || !is_any_metric_requested(r, ROW_PICTURE))
         return status;
     if (r->reference)
-        return draw_reference(r, f);
-    status = canvas_exact(r->tool, &r->opened, &r->settings, f->lamp,
-                          r->n_lights, r->grid, &f->exact);
-    if (status != GLINT_OK || is_linear(r))
+        return draw_reference_image(r, f);
+    status = canvas_draw_exact(r->tool, &r->opened, &r->settings, f->lamp,
+                               r->n_lights, r->grid, &f->exact);
+    if (status != GLINT_OK || is_image_linear(r))
         return status;
     f->exposure = glint_measure_exposure(&f->exact);
     f->exact_codes = glint_measure_encode(&f->exact, f->exposure);
@@ -411,9 +421,9 @@ static enum glint_status set_exposure(struct figure_row *r, struct frame *f)
 
 static enum glint_status compare_frames(struct figure_row *r, struct frame *f)
 {
-    if (!has_metric(r, ROW_PICTURE))
+    if (!is_any_metric_requested(r, ROW_PICTURE))
         return GLINT_OK;
-    if (is_linear(r))
+    if (is_image_linear(r))
         return glint_measure_compare(&f->exact, &f->got, false, &f->measure)
                    ? GLINT_OK
                    : GLINT_E_MEMORY;
@@ -422,11 +432,11 @@ static enum glint_status compare_frames(struct figure_row *r, struct frame *f)
     return GLINT_OK;
 }
 
-static void write_frame(struct figure_row *r, const struct frame *f)
+static void write_frame_metrics(struct figure_row *r, const struct frame *f)
 {
     const struct glint_engine_report *const p = &f->report;
 
-    if (has_metric(r, ROW_PICTURE))
+    if (is_any_metric_requested(r, ROW_PICTURE))
         json_write(&r->json, "psnr_db: %.4f, ssim: %.6f, flux: %.6f",
                    f->measure.psnr_db, f->measure.ssim, f->measure.flux);
     json_write(&r->json,
@@ -442,19 +452,19 @@ static int measure_frame(struct figure_row *r)
 {
     struct frame f = {.exposure = 1};
     struct glint_error error = {""};
-    enum glint_status status = make_frame(r, &f);
+    enum glint_status status = allocate_row_frame(r, &f);
 
     if (status == GLINT_OK)
-        status = make_engine(r, &f, &error);
+        status = create_row_engine(r, &f, &error);
     if (status == GLINT_OK)
         status = set_exposure(r, &f);
     if (status == GLINT_OK)
-        status = draw_rounds(r, &f);
+        status = draw_all_rounds(r, &f);
     if (status == GLINT_OK)
         status = compare_frames(r, &f);
     if (status == GLINT_OK)
-        write_frame(r, &f);
-    free_frame(&f);
+        write_frame_metrics(r, &f);
+    free_row_frame(&f);
     return status == GLINT_OK ? EXIT_OK
                               : tool_fail(r->tool, status, error.text);
 }
@@ -464,15 +474,16 @@ int row_measure(struct figure_row *row)
     int code;
 
     json_write(&row->json, "{");
-    code = open_lens(row);
-    if (code == EXIT_OK && has_metric(row, ROW_BAKE))
-        write_model(row);
-    if (code == EXIT_OK && has_metric(row, ROW_PICTURE "," ROW_FRAME))
+    code = open_row_lens(row);
+    if (code == EXIT_OK && is_any_metric_requested(row, ROW_BAKE))
+        write_model_metrics(row);
+    if (code == EXIT_OK &&
+        is_any_metric_requested(row, ROW_PICTURE "," ROW_FRAME))
         code = measure_frame(row);
-    if (code == EXIT_OK && has_metric(row, ROW_RAYS))
-        code = row_rays(row);
-    if (code == EXIT_OK && has_metric(row, ROW_PLACES))
-        code = row_places(row);
+    if (code == EXIT_OK && is_any_metric_requested(row, ROW_RAYS))
+        code = row_measure_rays(row);
+    if (code == EXIT_OK && is_any_metric_requested(row, ROW_PLACES))
+        code = row_measure_places(row);
     json_write(&row->json, "}\n");
     return code;
 }

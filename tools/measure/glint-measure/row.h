@@ -60,7 +60,7 @@ int row_measure(struct figure_row *row);
 #define ROW_PLACES                                                             \
     "traced_deg,miss_deg,half_tan,half_lens,half_light,half_ghosts,half_most," \
     "corner_tan,corner_lens,corner_light,corner_ghosts,corner_most"
-int row_rays(struct figure_row *row);
-int row_places(struct figure_row *row);
+int row_measure_rays(struct figure_row *row);
+int row_measure_places(struct figure_row *row);
 
 #endif

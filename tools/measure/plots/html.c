@@ -12,19 +12,19 @@ static const char shared[] =
     "margin:0 8px 14px 0;vertical-align:top;font-size:12px}"
     "img{display:block}svg{max-width:100%;height:auto}.worse{color:#b01e1e}";
 
-void html_begin(FILE *file, const char *title, const char *style)
+void html_write_head(FILE *file, const char *title, const char *style)
 {
     fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width\">\n<title>",
           file);
-    html_text(file, title);
+    html_write_text(file, title);
     fprintf(file, "</title>\n<style>%s%s</style></head><body>\n<h1>", shared,
             style);
-    html_text(file, title);
+    html_write_text(file, title);
     fputs("</h1>\n", file);
 }
 
-void html_text(FILE *file, const char *text)
+void html_write_text(FILE *file, const char *text)
 {
     for (; *text; text++)
         if (strchr("&<>\"", *text))
@@ -33,7 +33,7 @@ void html_text(FILE *file, const char *text)
             fputc(*text, file);
 }
 
-void html_row(FILE *file, const char *tag, const char *format, ...)
+void html_write_table_row(FILE *file, const char *tag, const char *format, ...)
 {
     char text[1024], *cell = text, *end;
     va_list values;
@@ -47,14 +47,14 @@ void html_row(FILE *file, const char *tag, const char *format, ...)
         if (end)
             *end = '\0';
         fprintf(file, "<%s%s>", tag, *cell == '!' ? " class=\"worse\"" : "");
-        html_text(file, cell + (*cell == '!'));
+        html_write_text(file, cell + (*cell == '!'));
         fprintf(file, "</%s>", tag);
         cell = end + 1;
     } while (end);
     fputs("</tr>\n", file);
 }
 
-void html_end(FILE *file)
+void html_write_end(FILE *file)
 {
     fputs("</body></html>\n", file);
 }

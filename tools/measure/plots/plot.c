@@ -40,7 +40,7 @@ static bool is_on_axis(const struct plot_axis *a, double v)
     return isfinite(v) && (!a->is_log || v > 0);
 }
 
-static void extend_axis(struct plot_axis *a, double v)
+static void extend_axis_to_value(struct plot_axis *a, double v)
 {
     if (a->lo > a->hi)
         a->lo = a->hi = v;
@@ -48,11 +48,11 @@ static void extend_axis(struct plot_axis *a, double v)
     a->hi = fmax(a->hi, v);
 }
 
-void plot_stretch(struct plot *p, double x, double y)
+void plot_extend_axes(struct plot *p, double x, double y)
 {
     if (is_on_axis(&p->x, x) && is_on_axis(&p->y, y)) {
-        extend_axis(&p->x, x);
-        extend_axis(&p->y, y);
+        extend_axis_to_value(&p->x, x);
+        extend_axis_to_value(&p->y, y);
     }
 }
 
@@ -63,28 +63,30 @@ static double axis_fraction(const struct plot_axis *a, double v)
                      : (v - a->lo) / (a->hi - a->lo);
 }
 
-static double x_px(const struct plot *p, double x)
+static double data_x_to_px(const struct plot *p, double x)
 {
     return p->left + LEFT +
            axis_fraction(&p->x, x) * (PLOT_WIDTH - LEFT - RIGHT);
 }
 
-static double y_px(const struct plot *p, double y)
+static double data_y_to_px(const struct plot *p, double y)
 {
     return p->top + PLOT_HEIGHT - BOTTOM -
            axis_fraction(&p->y, y) * (PLOT_HEIGHT - TOP - BOTTOM);
 }
 
-static void draw_text(const struct plot *p, double x, double y,
-                      const char *anchor, const char *more, const char *words)
+static void draw_svg_text(const struct plot *p, double x, double y,
+                          const char *anchor, const char *more,
+                          const char *words)
 {
     fprintf(p->file,
             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>%s</text>\n", x,
             y, anchor, more, words);
 }
 
-static void draw_stroke(const struct plot *p, double x0, double y0, double x1,
-                        double y1, const char *colour, double width)
+static void draw_svg_stroke(const struct plot *p, double x0, double y0,
+                            double x1, double y1, const char *colour,
+                            double width)
 {
     fprintf(p->file,
             "<path d=\"M%.1f %.1fL%.1f %.1f\" fill=\"none\" stroke=\"%s\" "
@@ -93,7 +95,7 @@ static void draw_stroke(const struct plot *p, double x0, double y0, double x1,
 }
 
 /* Widens the axis a little beyond its outermost points. */
-static void widen_axis(struct plot_axis *a)
+static void widen_axis_range(struct plot_axis *a)
 {
     if (a->lo > a->hi)
         a->lo = a->is_log ? 1 : 0, a->hi = 1;
@@ -111,7 +113,7 @@ static void widen_axis(struct plot_axis *a)
     }
 }
 
-static void draw_tick(const struct plot *p, bool is_x, double v)
+static void draw_axis_tick(const struct plot *p, bool is_x, double v)
 {
     const double bottom = p->top + PLOT_HEIGHT - BOTTOM;
     const double left = p->left + LEFT;
@@ -119,12 +121,14 @@ static void draw_tick(const struct plot *p, bool is_x, double v)
 
     snprintf(words, sizeof words, "%.6g", v);
     if (is_x) {
-        draw_stroke(p, x_px(p, v), p->top + TOP, x_px(p, v), bottom, "#ddd", 1);
-        draw_text(p, x_px(p, v), bottom + 14, "middle", "", words);
+        draw_svg_stroke(p, data_x_to_px(p, v), p->top + TOP, data_x_to_px(p, v),
+                        bottom, "#ddd", 1);
+        draw_svg_text(p, data_x_to_px(p, v), bottom + 14, "middle", "", words);
     } else {
-        draw_stroke(p, left, y_px(p, v), p->left + PLOT_WIDTH - RIGHT,
-                    y_px(p, v), "#ddd", 1);
-        draw_text(p, left - 5, y_px(p, v) + 4, "end", "", words);
+        draw_svg_stroke(p, left, data_y_to_px(p, v),
+                        p->left + PLOT_WIDTH - RIGHT, data_y_to_px(p, v),
+                        "#ddd", 1);
+        draw_svg_text(p, left - 5, data_y_to_px(p, v) + 4, "end", "", words);
     }
 }
 
@@ -132,8 +136,8 @@ static void draw_tick(const struct plot *p, bool is_x, double v)
  * Logarithmic: at 1, 2 and 5 times powers of ten, at more if the axis spans
  * less than a factor of 12, only at some powers if it spans four decades or
  * more. */
-static void draw_ticks(const struct plot *p, const struct plot_axis *a,
-                       bool is_x)
+static void draw_axis_ticks(const struct plot *p, const struct plot_axis *a,
+                            bool is_x)
 {
     static const double mantissa[] = {1, 2, 5, 0.7, 1.5, 3};
     const int every = a->is_log ? 1 + (int)log10(a->hi / a->lo) / 8 : 1;
@@ -146,7 +150,7 @@ static void draw_ticks(const struct plot *p, const struct plot_axis *a,
                 const double v = mantissa[k] * pow(10, e);
 
                 if (v >= a->lo && v <= a->hi)
-                    draw_tick(p, is_x, v);
+                    draw_axis_tick(p, is_x, v);
             }
         return;
     }
@@ -154,29 +158,29 @@ static void draw_ticks(const struct plot *p, const struct plot_axis *a,
             : (a->hi - a->lo) / step > 7 ? 2
                                          : 1;
     for (int k = (int)ceil(a->lo / step); k * step <= a->hi; k++)
-        draw_tick(p, is_x, k * step);
+        draw_axis_tick(p, is_x, k * step);
 }
 
-void plot_frame(struct plot *p)
+void plot_draw_frame(struct plot *p)
 {
     const double middle = p->top + (TOP + PLOT_HEIGHT - BOTTOM) / 2.0;
     char turn[64];
 
-    widen_axis(&p->x);
-    widen_axis(&p->y);
-    draw_ticks(p, &p->x, true);
-    draw_ticks(p, &p->y, false);
-    draw_text(p, p->left + LEFT, p->top + 15, "start", " font-weight=\"bold\"",
-              p->title);
-    draw_text(p, p->left + (LEFT + PLOT_WIDTH - RIGHT) / 2.0,
-              p->top + PLOT_HEIGHT - 8, "middle", "", p->x.words);
+    widen_axis_range(&p->x);
+    widen_axis_range(&p->y);
+    draw_axis_ticks(p, &p->x, true);
+    draw_axis_ticks(p, &p->y, false);
+    draw_svg_text(p, p->left + LEFT, p->top + 15, "start",
+                  " font-weight=\"bold\"", p->title);
+    draw_svg_text(p, p->left + (LEFT + PLOT_WIDTH - RIGHT) / 2.0,
+                  p->top + PLOT_HEIGHT - 8, "middle", "", p->x.words);
     snprintf(turn, sizeof turn, " transform=\"rotate(-90 %d %.1f)\"",
              p->left + 13, middle);
-    draw_text(p, p->left + 13, middle, "middle", turn, p->y.words);
+    draw_svg_text(p, p->left + 13, middle, "middle", turn, p->y.words);
 }
 
-static void draw_mark(const struct plot *p, double x, double y, char kind,
-                      const char *colour, const char *tip)
+static void draw_data_mark(const struct plot *p, double x, double y, char kind,
+                           const char *colour, const char *tip)
 {
     const bool hollow = isupper((unsigned char)kind);
     const double r = kind == '.' ? 1.6 : 3.3;
@@ -204,42 +208,46 @@ static void draw_mark(const struct plot *p, double x, double y, char kind,
           p->file);
 }
 
-void plot_mark(const struct plot *p, double x, double y, char kind,
-               const char *colour, const char *tip)
+void plot_draw_mark(const struct plot *p, double x, double y, char kind,
+                    const char *colour, const char *tip)
 {
     if (is_on_axis(&p->x, x) && is_on_axis(&p->y, y))
-        draw_mark(p, x_px(p, x), y_px(p, y), kind, colour, tip);
+        draw_data_mark(p, data_x_to_px(p, x), data_y_to_px(p, y), kind, colour,
+                       tip);
 }
 
-void plot_line(const struct plot *p, double x0, double y0, double x1, double y1,
-               const char *colour, bool thick)
+void plot_draw_line(const struct plot *p, double x0, double y0, double x1,
+                    double y1, const char *colour, bool thick)
 {
     if (is_on_axis(&p->x, x0) && is_on_axis(&p->x, x1) &&
         is_on_axis(&p->y, y0) && is_on_axis(&p->y, y1))
-        draw_stroke(p, x_px(p, x0), y_px(p, y0), x_px(p, x1), y_px(p, y1),
-                    colour, thick ? 2 : 1);
+        draw_svg_stroke(p, data_x_to_px(p, x0), data_y_to_px(p, y0),
+                        data_x_to_px(p, x1), data_y_to_px(p, y1), colour,
+                        thick ? 2 : 1);
 }
 
-void plot_words(const struct plot *p, double x, double y, const char *words)
+void plot_draw_label(const struct plot *p, double x, double y,
+                     const char *words)
 {
     if (is_on_axis(&p->x, x) && is_on_axis(&p->y, y))
-        draw_text(p, x_px(p, x) + 5, y_px(p, y) + 11, "start",
-                  " font-size=\"9\" fill=\"#555\"", words);
+        draw_svg_text(p, data_x_to_px(p, x) + 5, data_y_to_px(p, y) + 11,
+                      "start", " font-size=\"9\" fill=\"#555\"", words);
 }
 
-void plot_key(struct plot *p, char kind, const char *colour, const char *words)
+void plot_draw_legend_entry(struct plot *p, char kind, const char *colour,
+                            const char *words)
 {
     const int column = p->n_keys % KEYS, row = p->n_keys / KEYS;
     const double x =
         p->left + LEFT + 6 + column * (PLOT_WIDTH - LEFT) / (double)KEYS;
     const double y = p->top + 29 + 14 * row;
 
-    draw_mark(p, x, y, kind, colour, NULL);
-    draw_text(p, x + 8, y + 4, "start", "", words);
+    draw_data_mark(p, x, y, kind, colour, NULL);
+    draw_svg_text(p, x + 8, y + 4, "start", "", words);
     p->n_keys++;
 }
 
-const char *plot_colour(int i)
+const char *plot_colour_of_series(int i)
 {
     static const char *const colours[] = {
         "#1f6fb2", "#c2571a", "#3a8f3a", "#7a4fa3", "#b01e5a",

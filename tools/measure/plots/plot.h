@@ -38,44 +38,45 @@ void plot_init(struct plot *plot, FILE *file, int number, const char *title);
 
 /* Extends the axes to (X, Y), unless a value is not finite, or not above 0 on a
  * logarithmic axis. */
-void plot_stretch(struct plot *plot, double x, double y);
+void plot_extend_axes(struct plot *plot, double x, double y);
 
 /* Draws title, axes and grid, after stretching and before marks. */
-void plot_frame(struct plot *plot);
+void plot_draw_frame(struct plot *plot);
 
 /* Draws a mark at (X, Y). KIND: 'o' circle, '.' small circle, 's' square,
  * 'd' diamond; hollow if it is a capital letter. TIP is the tooltip, or
  * NULL. */
-void plot_mark(const struct plot *plot, double x, double y, char kind,
-               const char *colour, const char *tip);
-void plot_line(const struct plot *plot, double x0, double y0, double x1,
-               double y1, const char *colour, bool thick);
-void plot_words(const struct plot *plot, double x, double y, const char *words);
+void plot_draw_mark(const struct plot *plot, double x, double y, char kind,
+                    const char *colour, const char *tip);
+void plot_draw_line(const struct plot *plot, double x0, double y0, double x1,
+                    double y1, const char *colour, bool thick);
+void plot_draw_label(const struct plot *plot, double x, double y,
+                     const char *words);
 
 /* Adds an entry to the legend below the title. */
-void plot_key(struct plot *plot, char kind, const char *colour,
-              const char *words);
+void plot_draw_legend_entry(struct plot *plot, char kind, const char *colour,
+                            const char *words);
 
-const char *plot_colour(int i);
+const char *plot_colour_of_series(int i);
 
 /* ------------------------------------------------------------------- pages */
 
 /* Begins an HTML page with the heading TITLE. The CSS rules STYLE extend or
  * replace the rules of all pages. */
-void html_begin(FILE *file, const char *title, const char *style);
+void html_write_head(FILE *file, const char *title, const char *style);
 
 /* Writes TEXT with < > & and " escaped. */
-void html_text(FILE *file, const char *text);
+void html_write_text(FILE *file, const char *text);
 
 /* Writes a table row with cells <TAG> (th or td): the printf text of FORMAT,
  * up to 1023 bytes, split at each |. A cell that begins with ! gets the CSS
  * class "worse". */
-void html_row(FILE *file, const char *tag, const char *format, ...)
+void html_write_table_row(FILE *file, const char *tag, const char *format, ...)
     GLINT_PRINTF(3, 4);
 
 /* Writes RGB[HEIGHT][WIDTH][3] as a data: URI of a PNG (png.c). */
-void html_png(FILE *file, const uint8_t *rgb, int width, int height);
+void html_write_png(FILE *file, const uint8_t *rgb, int width, int height);
 
-void html_end(FILE *file);
+void html_write_end(FILE *file);
 
 #endif

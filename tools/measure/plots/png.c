@@ -43,8 +43,8 @@ static uint32_t compute_crc(const uint8_t *data, size_t n)
 }
 
 /* Begins a chunk and returns its offset; append the content, then call
- * end_chunk(). */
-static size_t begin_chunk(struct bytes *b, const char *type)
+ * end_png_chunk(). */
+static size_t begin_png_chunk(struct bytes *b, const char *type)
 {
     const size_t start = b->n;
 
@@ -53,7 +53,7 @@ static size_t begin_chunk(struct bytes *b, const char *type)
     return start;
 }
 
-static void end_chunk(struct bytes *b, size_t start)
+static void end_png_chunk(struct bytes *b, size_t start)
 {
     const size_t length = b->n - start - 8, end = b->n;
 
@@ -65,7 +65,7 @@ static void end_chunk(struct bytes *b, size_t start)
 
 /* Appends ROWS[N], rows that begin with the filter byte 0, as uncompressed zlib
  * data. */
-static void append_pixels(struct bytes *b, const uint8_t *rows, size_t n)
+static void append_pixel_rows(struct bytes *b, const uint8_t *rows, size_t n)
 {
     uint32_t a = 1, c = 0;
 
@@ -105,7 +105,8 @@ static void write_base64(FILE *file, const uint8_t *data, size_t n)
 
 /* Returns an uncompressed PNG file, which the caller frees; its member at is
  * NULL if there is no memory. */
-static struct bytes make_png(const uint8_t *rgb, int width, int height)
+static struct bytes make_uncompressed_png(const uint8_t *rgb, int width,
+                                          int height)
 {
     const size_t row = 3 * (size_t)width, n = (row + 1) * (size_t)height;
     uint8_t *rows = malloc(n);
@@ -122,16 +123,16 @@ static struct bytes make_png(const uint8_t *rgb, int width, int height)
         memcpy(rows + (size_t)y * (row + 1) + 1, rgb + (size_t)y * row, row);
     }
     append_bytes(&b, "\x89PNG\r\n\x1a\n", 8);
-    start = begin_chunk(&b, "IHDR");
+    start = begin_png_chunk(&b, "IHDR");
     append_be32(&b, (uint32_t)width);
     append_be32(&b, (uint32_t)height);
     append_bytes(&b, "\x08\x02\0\0", 5); /* 8 bits, RGB, no filter and
                                    interlace; the last 0 is the string's */
-    end_chunk(&b, start);
-    start = begin_chunk(&b, "IDAT");
-    append_pixels(&b, rows, n);
-    end_chunk(&b, start);
-    end_chunk(&b, begin_chunk(&b, "IEND"));
+    end_png_chunk(&b, start);
+    start = begin_png_chunk(&b, "IDAT");
+    append_pixel_rows(&b, rows, n);
+    end_png_chunk(&b, start);
+    end_png_chunk(&b, begin_png_chunk(&b, "IEND"));
     free(rows);
     return b;
 }
@@ -161,9 +162,9 @@ static struct bytes make_compressed_png(const uint8_t *rgb, int width,
     return (struct bytes){data, bytes};
 }
 
-void html_png(FILE *file, const uint8_t *rgb, int width, int height)
+void html_write_png(FILE *file, const uint8_t *rgb, int width, int height)
 {
-    const struct bytes stored = make_png(rgb, width, height);
+    const struct bytes stored = make_uncompressed_png(rgb, width, height);
     const struct bytes small = make_compressed_png(rgb, width, height);
     const bool is_small = small.at && (!stored.at || small.n < stored.n);
     const struct bytes b = is_small ? small : stored;
