@@ -229,8 +229,9 @@ static enum glint_status load_opened(struct loaded *loaded,
         return glint_pfm_read(&loaded->floats, *data, bytes, in->name, error);
     glint_input_close(in);
     if (!strcmp(in->name, "standard input"))
-        return glint_error_report(error, GLINT_E_UNSUPPORTED, in->name,
-                                  "only PPM, PGM and PFM come through a pipe");
+        return glint_error_report(
+            error, GLINT_E_UNSUPPORTED, in->name,
+            "only PPM, PGM and PFM can be read from a pipe");
     return load_by_plugin(loaded, in->name, type_name(*data, bytes), error);
 }
 
@@ -704,7 +705,7 @@ static void set_colours(struct glint_kept *k,
         glint_colours_primaries(c, (const double(*)[2])facts->primaries);
     if (known)
         return;
-    snprintf(text, sizeof text, "%.24s is not known here; taken as %s",
+    snprintf(text, sizeof text, "%.24s is unknown; treated as %s",
              facts->cicp[1] ? "the transfer of its cICP"
              : facts->icc   ? "what its profile says"
                             : facts->colour_space,
@@ -860,15 +861,14 @@ static void say_losses(struct glint_kept_options *options,
 {
 
     if (from->has_alpha && !to->has_alpha)
-        add_note(options->said,
-                 "the file type has no alpha: what is seen over black is "
-                 "written");
+        add_note(
+            options->said,
+            "the file type has no alpha: the picture is composited over black");
     if (is_above_white(from) && !is_above_white(to))
         add_note(options->said,
                  to->colour[0].sample == GLINT_SAMPLE_U8
-                     ? "light above white is clipped, and 8 bits are left"
-                     : "light above white is clipped, and 16 bits are "
-                       "left");
+                     ? "light above white is clipped, and 8 bits remain"
+                     : "light above white is clipped, and 16 bits remain");
     else if (glint_sample_bytes(from->colour[0].sample) > 1 &&
              to->colour[0].sample == GLINT_SAMPLE_U8)
         add_note(options->said, "8 bits are left");
@@ -1008,7 +1008,7 @@ static enum glint_status save_converted(struct glint_kept *k,
 
     if (!type)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, out->name,
-                                  "is of no type that is written");
+                                  "is of a type that glint cannot write");
     status = convert(k, &to, from, type, &keeps_colours);
     if (status)
         return report_memory(error, out->name, to.width, to.height);

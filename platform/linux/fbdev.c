@@ -240,8 +240,8 @@ static enum glint_status adopt_layout(struct glint_fbdev *fb,
     if (fb->stride_bytes < (size_t)fb->width * (size_t)fb->layout.bytes ||
         fb->mem_bytes / fb->stride_bytes < v->yres)
         return glint_error_report(error, GLINT_E_DEVICE, fb->name,
-                                  "%u bytes in rows of %u are too few for %u "
-                                  "x %u pixels of %u bits",
+                                  "memory of %u bytes in rows of %u is too "
+                                  "small for %u x %u pixels of %u bits",
                                   fix->smem_len, fix->line_length, v->xres,
                                   v->yres, v->bits_per_pixel);
     memcpy(fb->id, fix->id, 16);
@@ -409,7 +409,7 @@ static enum glint_status draw_visible(struct glint_fbdev *fb,
         left + (size_t)fb->width * (size_t)fb->layout.bytes > fb->stride_bytes)
         return glint_error_report(
             error, GLINT_E_DEVICE, fb->name,
-            "does not show the pixels of its memory, at %u, %u",
+            "the driver reports a picture outside its memory, at %u, %u",
             fb->var.xoffset, first);
     if (fb->has_vsync && glint_ioctl(fb->fd, FBIO_WAITFORVSYNC, &screen) < 0)
         fb->has_vsync = false;

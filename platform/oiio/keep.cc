@@ -152,7 +152,7 @@ bytes webp_encode(const unsigned char *pixels, int width, int height,
     if (!WebPConfigPreset(&config, WEBP_PRESET_PHOTO,
                           static_cast<float>(quality ? quality : 100)) ||
         !WebPPictureInit(&picture))
-        throw failure{GLINT_E_OUTPUT, "libwebp is of another version"};
+        throw failure{GLINT_E_OUTPUT, "the installed libwebp has an incompatible version"};
     if (width > WEBP_MAX_DIMENSION || height > WEBP_MAX_DIMENSION)
         throw failure{GLINT_E_OUTPUT, "WebP has at most 16383 pixels a side"};
     if (!quality)

@@ -141,8 +141,7 @@ std::vector<unsigned char> encode_parts(const char *path,
         throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
     if (layers->n > 1 && !out->supports("multiimage"))
         throw failure{GLINT_E_UNSUPPORTED,
-                      "this type has no parts; name an .exr, or a %s for the "
-                      "name of each layer"};
+                      "this type cannot hold layers; name an .exr, or put %s into the name for a file per layer"};
     for (int k = 0; k < layers->n; k++)
         specs.push_back(layer_spec(layers, k));
     if (!(layers->n > 1 ? out->open(file.name(), layers->n, specs.data())

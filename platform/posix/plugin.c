@@ -74,9 +74,7 @@ static const void *load_file(const struct glint_plugin *plugin,
         return face;
     dlclose(handle);
     glint_error_report(error, GLINT_E_UNSUPPORTED, path,
-                       "is not %s of this "
-                       "glint",
-                       plugin->noun);
+                       "is not %s of this version of glint", plugin->noun);
     return NULL;
 }
 

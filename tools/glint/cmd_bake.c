@@ -218,15 +218,15 @@ static void print_zoom_report(const struct tool *tool, const struct bake *b,
     }
     if (tool->quiet)
         return;
-    printf("%d positions, and single ghosts at %d places between them, %zu "
-           "bytes, %.0f s\n",
+    printf("%d zoom positions and single ghosts at %d positions between them, "
+           "%zu bytes, %.0f s\n",
            b->positions, baked->n_models - b->positions, baked->bytes, seconds);
     if (baked->least_db > 0)
-        printf("halfway between positions the worst PSNR against exact "
-               "pictures is %.1f dB, at %.2f mm\n",
+        printf("min PSNR halfway between positions, against exact pictures: "
+               "%.1f dB, at %.2f mm\n",
                baked->least_db, baked->least_mm);
     if (baked->least_db > 0 && baked->least_db < b->halfway_db)
-        printf("that is less than %g dB: bake more --positions\n",
+        printf("this is below --halfway %g: increase --positions\n",
                b->halfway_db);
 }
 

@@ -117,23 +117,23 @@ static int check_options(struct tool *tool, const struct explain_command *c)
     const struct settings *s = &c->drawing.line.settings;
 
     if (c->input && c->width)
-        return tool_usage(tool, "needs one picture, or --size");
+        return tool_usage(tool, "needs one input picture, or --size WxH");
     if (c->input && c->picture == LINEAR)
         return tool_usage(tool, "--picture linear needs --size");
     if (c->drawing.line.settings.options.scene && c->picture == LINEAR)
         return tool_usage(tool, "--picture linear excludes --scene");
     if (!c->drawing.line.settings.options.scene &&
         strcmp(c->drawing.line.settings.options.lens, "none") == 0)
-        return tool_usage(
-            tool,
-            "--lens none needs --scene: there is nothing else to explain");
+        return tool_usage(tool, "--lens none without --scene leaves nothing to "
+                                "explain; add --scene FILE");
     if (!c->input && !c->drawing.line.settings.options.scene &&
         c->drawing.line.n_hand == 0 && c->drawing.line.at.n == 0 &&
         !c->drawing.line.settings.options.lights)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
     if (s->options.rays != GLINT_RAYS_MODEL)
         return tool_usage(
-            tool, "needs pictures drawn from a model, without --rays exact");
+            tool,
+            "explains flares drawn from a model only; leave out --rays exact");
     return -1;
 }
 
@@ -160,10 +160,10 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         if (code >= 0)
             return code;
     }
-    code =
-        c->width && optind == argc
-            ? -1
-            : tool_inputs(tool, argc, argv, 1, "needs one picture, or --size");
+    code = c->width && optind == argc
+               ? -1
+               : tool_inputs(tool, argc, argv, 1,
+                             "needs one input picture, or --size WxH");
     if (code >= 0)
         return code;
     c->input = argv[optind]; /* NULL if there is no argument */

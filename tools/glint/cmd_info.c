@@ -95,8 +95,9 @@ static void print_zoom_and_focus(const struct glint_prescription *l,
     const struct glint_zoom *const z = &l->zoom;
 
     if (z->n_positions) {
-        printf("zoom                %10.4f of its way; columns of the table at",
-               l->zoom_along);
+        printf(
+            "zoom                %10.4f of its range; columns of the table at",
+            l->zoom_along);
         for (int k = 0; k < z->n_positions; k++)
             printf("%s %.3f", k ? "," : "", z->focal_mm[k]);
         printf(" mm\n");
@@ -366,9 +367,8 @@ int cmd_info(int argc, char **argv)
         return EXIT_USAGE;
     if (tool_is_model(argv[optind]))
         return asked.f_number != 0
-                   ? tool_usage(
-                         &tool,
-                         "the f-number of a model is set when it is baked")
+                   ? tool_usage(&tool, "the f-number of a model is fixed by "
+                                       "its bake (glint bake --f-number)")
                    : print_model_info(&tool, argv[optind], &asked.zoom);
     info = calloc(1, sizeof *info);
     if (!info)

@@ -395,7 +395,7 @@ static void print_lint_text(const char *file, const char *wrong,
     }
     puts(wrong);
     if (n == 0)
-        puts("no single corrected misprint mends the table");
+        puts("no correction of a single number makes the table consistent");
     for (int k = 0; k < n && k < MENDS; k++)
         printf("%s:%d:%d: %s for %s? (%s; then f = %.3f mm, back focus %.3f "
                "mm)\n",

@@ -175,7 +175,7 @@ static int check_raw_options(const struct tool *tool, const struct overlay *o)
         return tool_usage(tool, "frames without headers need --format F and "
                                 "--size WxH");
     if (o->raw.stride && o->raw.stride < o->raw.width)
-        return tool_usage(tool, "--stride %d is less than the width",
+        return tool_usage(tool, "--stride %d is less than the width in --size",
                           o->raw.stride);
     return EXIT_OK;
 }
@@ -205,28 +205,28 @@ static int check_input_options(const struct tool *tool, int argc, char **argv,
     int code;
 
     if (optind + 1 != argc)
-        return tool_usage(tool,
-                          o->output || access(argv[argc - 1], F_OK) == 0
-                              ? "takes one input for one output, not '%s' too; "
-                                "several go into a folder, -o FOLDER/"
-                              : "takes one input; where that goes follows -o: "
-                                "-o '%s'",
-                          argv[argc - 1]);
+        return tool_usage(
+            tool,
+            o->output || access(argv[argc - 1], F_OK) == 0
+                ? "accepts one input per output file, so '%s' is too many; for "
+                  "several inputs use -o FOLDER/"
+                : "accepts one input; name the output by -o: -o '%s'",
+            argv[argc - 1]);
     if (!o->output && !o->lists_shots)
         return tool_usage(tool, "needs -o OUT");
     if (o->lists_shots && (o->output || o->last < INT_MAX))
-        return tool_usage(tool, "--list-shots is of a whole video, and writes "
-                                "none: leave out -o and --frames");
+        return tool_usage(tool, "--list-shots analyses the whole video and "
+                                "writes no file: leave out -o and --frames");
     if (o->lists_shots)
         o->output = "-";
     if ((code = check_raw_options(tool, o)) != EXIT_OK)
         return code;
     if (o->has_layers_type && !o->layers.path)
-        return tool_usage(tool, "--layers-type is for --layers OUT");
+        return tool_usage(tool, "--layers-type needs --layers OUT");
     if (o->layers.path &&
         strcmp(o->drawing.line.settings.options.lens, "none") == 0)
-        return tool_usage(tool, "--layers are those of the flare of a lens, "
-                                "not of --lens none");
+        return tool_usage(
+            tool, "--layers needs the flare of a lens; --lens none has none");
     o->input = argv[optind];
     if (o->drawing.line.reserve_bytes &&
         o->drawing.line.settings.options.rays == GLINT_RAYS_EXACT)
@@ -271,7 +271,7 @@ static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
     }
     if (optind == argc)
         return tool_inputs(tool, argc, argv, 1,
-                           "needs a picture, a sequence or a video");
+                           "needs an input: a picture, a sequence or a video");
     if (!output && o->output && folder_is_folder(o->output)) {
         *folder = o->output;
         code = check_folder_options(tool, o, argc - optind);
@@ -354,9 +354,9 @@ static int check_input_file(struct tool *tool, struct overlay *o)
     if (strcmp(o->input, "-") == 0 || overlay_is_sequence(o))
         return EXIT_OK;
     if (access(o->input, F_OK) != 0 && numbered_from_hashes(pattern, o->input))
-        status =
-            glint_error_report(&error, GLINT_E_IO, o->input,
-                               "is not there; a sequence is named %s", pattern);
+        status = glint_error_report(
+            &error, GLINT_E_IO, o->input,
+            "does not exist; a sequence has a name like %s", pattern);
     else if (stat(o->input, &file) != 0 ||
              (S_ISREG(file.st_mode) && access(o->input, R_OK) != 0))
         status = glint_error_report(&error, GLINT_E_IO, o->input, "%s",
@@ -382,23 +382,23 @@ static int check_output_file(struct tool *tool, struct overlay *o)
         return code;
     if (!frames && !o->lists_shots &&
         o->is_video != overlay_is_video(o->output))
-        return tool_usage(tool, "a video becomes a video (.y4m, - or one of "
-                                "ffmpeg's), a picture a picture");
+        return tool_usage(tool,
+                          "the output of a video must be a video (.y4m, - or a "
+                          "type of ffmpeg), that of a picture a picture");
     if (!o->is_video && (o->last < INT_MAX || o->lists_shots))
-        return tool_usage(tool, "--%s is for videos, and %s is not one",
+        return tool_usage(tool,
+                          "--%s applies to videos only; %s is not a video",
                           o->lists_shots ? "list-shots" : "frames", o->input);
     if (o->lists_shots)
         return EXIT_OK;
     if (o->is_video &&
         o->drawing.line.settings.options.layer == GLINT_LAYER_FLARE_ALPHA)
-        return tool_usage(tool, "--layer flare-alpha is for pictures; of a "
-                                "video, --layers NAME.%%04d.exr writes the "
-                                "flare by itself");
+        return tool_usage(tool, "--layer flare-alpha applies to pictures only; "
+                                "for a video use --layers NAME.%%04d.exr");
     if (o->last < INT_MAX && (o->drawing.line.settings.options.budget > 0 ||
                               o->drawing.line.settings.dials.still_px > 0))
-        return tool_usage(tool, "--frames does not go with --budget and "
-                                "--still, by which frames depend on those "
-                                "drawn before");
+        return tool_usage(tool, "--frames excludes --budget and --still, with "
+                                "which a frame depends on those drawn before");
     if (tool_check_output(tool, o->output) != EXIT_OK)
         return EXIT_OUTPUT;
     if (o->is_video || glint_kept_check(o->output, &error) == GLINT_OK)

@@ -18,17 +18,16 @@
 static const char help[] =
     "glint styles [IN] [-o OUT] [options]\n"
     "\n"
-    "Lists the styles that --style of overlay, live and explain takes. With "
-    "-o\n"
-    "draws IN, or a photograph that comes with glint, in each of them, as a\n"
-    "contact sheet.\n"
+    "Lists the values of --style of overlay, live and explain. With -o draws "
+    "a\n"
+    "contact sheet: IN, or a photograph that comes with glint, in each style.\n"
     "\n"
     "  -o, --output OUT    the sheet, a picture of 8 bits\n"
-    "  --width N           of each picture on it, 64 to 2048 (default 640)\n"
-    "Other options are those of overlay and go for all styles: --light-at,\n"
-    "--gain, --quality ... A lens, stop or strength that is given replaces "
-    "that\n"
-    "of every style.\n";
+    "  --width N           width of each picture on it, 64 to 2048 (default "
+    "640)\n"
+    "Options of overlay apply to all styles: --light-at, --gain, --quality "
+    "...\n"
+    "--lens, --stop or --strength replace the value of every style.\n";
 
 enum { OPT_WIDTH = ENGINE_OPTIONS_END, PATH_BYTES = 4096, CAPTION_BYTES = 160 };
 
@@ -87,7 +86,7 @@ static enum glint_status load_sample_photograph(struct glint_image *image,
     char folder[PATH_BYTES - 40], path[PATH_BYTES];
     enum glint_status status = glint_error_report(
         error, GLINT_E_ARGUMENT, "bridge.ppm",
-        "is installed with glint, but was not found; name a picture");
+        "the sample photograph of glint is not installed; name a picture");
 
     for (int k = 0; k < 4; k++)
         for (int i = 0; lens_folder(i, "lenses", folder, sizeof folder); i++) {

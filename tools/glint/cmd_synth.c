@@ -682,7 +682,7 @@ static int set_layout_file_type(const struct tool *tool, struct synth *s)
         glint_picture_check(name, GLINT_PICTURE_8BIT, &error) == GLINT_OK)
         return EXIT_OK;
     if (!is_asked)
-        return tool_usage(tool, "--layout %s: %s; or take --type ppm",
+        return tool_usage(tool, "--layout %s: %s; or use --type ppm",
                           s->set.layout->name, error.text);
     return tool_usage(tool, "--type %s: %s", s->set.type,
                       *error.text ? error.text : "not a picture type");
@@ -791,8 +791,8 @@ static int draw_described_item(const struct tool *tool, struct synth *s)
     if (code == EXIT_OK && strcmp(item.glint, GLINT_VERSION) != 0 &&
         !tool->quiet)
         fprintf(stderr,
-                "glint synth: the item is glint %s's; this is %s, which may "
-                "draw it slightly differently\n",
+                "glint synth: the item was drawn by glint %s; this is glint "
+                "%s, which may draw it slightly differently\n",
                 item.glint, GLINT_VERSION);
     if (code == EXIT_OK)
         code = check_item_outside_set(tool, &s->set);
@@ -866,7 +866,9 @@ static int draw_item_set(const struct tool *tool, struct synth *s)
         code = write_shard_manifest(tool, &s->set, &is_whole);
     if (code == EXIT_OK && !tool->quiet && s->set.count > 0)
         fprintf(stderr, "glint synth: %s: %s %d items\n", s->set.folder,
-                is_whole ? "all" : "this shard, not yet all, of", s->set.count);
+                is_whole ? "all"
+                         : "all items of this shard, not yet all of the",
+                s->set.count);
     return code;
 }
 

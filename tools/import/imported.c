@@ -447,11 +447,11 @@ static bool remove_dummy_surfaces(struct imported *lens)
     }
     if (n > 0)
         add_remark(lens, line,
-                   "the same medium on both sides: left out%s, which "
-                   "changes nothing",
+                   "a surface between equal media is left out%s, which changes "
+                   "nothing",
                    n > 1 ? ", and others like it" : "");
     return lens->n > 0 ||
-           imported_report_error(lens, 0, "there is no glass in it");
+           imported_report_error(lens, 0, "the file contains no glass");
 }
 
 /* ------------------------------------------------------------------ stop */
@@ -687,11 +687,10 @@ static void limit_semi_diameters(struct imported *lens)
                                 : (double)INFINITY;
 
         if (s->radius != 0 && s->semi >= size) {
-            imported_add_note(
-                lens, s->line,
-                "semi-diameter %.6g of a surface that ends at %.6g; "
-                "%.6g is used",
-                s->semi, size, 0.98 * size);
+            imported_add_note(lens, s->line,
+                              "semi-diameter %.6g exceeds the surface, which "
+                              "ends at %.6g; %.6g is used",
+                              s->semi, size, 0.98 * size);
             s->semi = 0.98 * size;
         }
     }
@@ -724,11 +723,10 @@ static bool separate_surface_rims(struct imported *lens)
         }
         semi = low / IMPORT_FREE;
         if (semi * lens->unit_mm < 0.01)
-            return imported_report_error(
-                lens, s->line,
-                "the next surface, %.6g mm behind this, "
-                "crosses it next to the axis",
-                s->thickness * lens->unit_mm);
+            return imported_report_error(lens, s->line,
+                                         "the next surface, %.6g mm behind "
+                                         "this, crosses it near the axis",
+                                         s->thickness * lens->unit_mm);
         imported_add_note(lens, s->line,
                           "the next surface crosses this one at its rim; "
                           "semi-diameters of %.6g mm are used",
@@ -773,7 +771,7 @@ static void note_object_and_image(struct imported *lens)
             "the object is %g mm away; light from infinity is assumed%s",
             lens->object * lens->unit_mm,
             lens->surface[lens->n - 1].thickness > 0
-                ? ", the sensor where the file has it"
+                ? ", with the sensor at the distance in the file"
                 : "");
 }
 

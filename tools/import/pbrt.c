@@ -17,11 +17,10 @@ static bool parse_element_line(struct imported *lens, const struct lines *l)
     if (!s)
         return false;
     if (l->n > 4)
-        return imported_report_error(
-            lens, l->number,
-            "'%.40s' is more than radius, distance, index and "
-            "diameter",
-            l->word[4]);
+        return imported_report_error(lens, l->number,
+                                     "'%.40s' is too many: a line has radius, "
+                                     "distance, index and diameter",
+                                     l->word[4]);
     if (!lines_parse_number(l, 0, "radius", &s->radius) ||
         !lines_parse_number(l, 1, "distance", &s->thickness) ||
         !lines_parse_number(l, 2, "index", &index) ||

@@ -178,7 +178,8 @@ int bench_run_all(struct bench *b, int n_names, const char *const *names)
     int code;
 
     if (glint_pool_create(&b->two, 2) != GLINT_OK || b->two->n != 2)
-        return tool_fail(b->tool, GLINT_E_MEMORY, "no threads to be had");
+        return tool_fail(b->tool, GLINT_E_MEMORY,
+                         "the threads could not be started");
     code = b->subject->open(b, n_names, names);
     if (code == EXIT_OK)
         code = run_timed_rounds(b);

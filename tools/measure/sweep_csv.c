@@ -98,8 +98,10 @@ static void print_settings_above_front(const struct sweep *s, FILE *file)
                 n_above++ ? ", " : "\nAbove --quality: ", words, above);
     }
     if (n_alone > 0)
-        fprintf(file, "%s%d of %d settings of one dial lie above --quality.\n",
-                n_above ? "; " : "\n", n_above, n_alone);
+        fprintf(
+            file,
+            "%s%d of %d settings of one parameter are better than --quality.\n",
+            n_above ? "; " : "\n", n_above, n_alone);
     free(mean);
 }
 

@@ -462,13 +462,13 @@ TEST(refuses)
     expect_refused("not packed true colour");
     reset_one_page();
     fake_fb->fix.line_length = 31;
-    expect_refused("too few for 8 x 6");
+    expect_refused("too small for 8 x 6");
     reset_one_page();
     fake_fb->fix.line_length = 0;
-    expect_refused("too few for 8 x 6");
+    expect_refused("too small for 8 x 6");
     reset_one_page();
     fake_fb->fix.smem_len = 6 * 40 - 1;
-    expect_refused("too few for 8 x 6");
+    expect_refused("too small for 8 x 6");
     reset_one_page();
     fake_fb->var.yres = 0;
     expect_refused("is 8 x 0 pixels large");

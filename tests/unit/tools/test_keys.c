@@ -80,13 +80,13 @@ TEST(refused)
         {"", "k.csv: has no key frames"},
         {"frame,gain\n\n1\n", "k.csv:3: expected as many"},
         {"frame,gain\n1,2,3\n", "k.csv:2: expected as many"},
-        {"frame,gain\n1,a\n", "k.csv:2: expected a number"},
+        {"frame,gain\n1,a\n", "k.csv:2: each column must be a number"},
         {"frame,gain\n1,-1\n", "k.csv:2: gain must be"},
         {"frame,gain\n1,nan\n", "k.csv:2: "},
         {"frame,gain\n1.5,1\n", "k.csv:2: frame must be"},
         {"frame,gain\n,1\n", "k.csv:2: frame must be"},
         {"frame,gain\n-1,1\n", "k.csv:2: frame must be"},
-        {"frame,gain\n2,1\n2,1\n", "k.csv:3: frames must rise"},
+        {"frame,gain\n2,1\n2,1\n", "k.csv:3: frame numbers must increase"},
         {"frame,f-number\n2,0\n", "k.csv:2: f-number must be"},
     };
 

@@ -283,10 +283,10 @@ static enum glint_status read_command_words(struct reader *r,
     enum glint_status status;
 
     if (!read_next_word(r))
-        return line->frame < 0
-                   ? GLINT_OK
-                   : control_report_error(r->error, r->where, r->column,
-                                          "a command must follow the frame");
+        return line->frame < 0 ? GLINT_OK
+                               : control_report_error(
+                                     r->error, r->where, r->column,
+                                     "a command must follow the frame number");
     option = glint_option_named(r->word);
     if (option && can_control_change_option(option)) {
         snprintf(usage, sizeof usage, "%s %s", option->name, option->value);

@@ -50,8 +50,8 @@ static const char *parse_key_value(struct reading *r, int c, const char *field,
         column = (struct text_column){option->name, option->low, option->high,
                                       r->range};
     }
-    return text_parse_value(
-        &column, field, "expected a number, or nothing, in each column", value);
+    return text_parse_value(&column, field,
+                            "each column must be a number or empty", value);
 }
 
 static const char *add_key_frame(struct keys *keys, int column,
@@ -132,7 +132,7 @@ static const char *parse_key_row(struct reading *r, struct text_lines *lines,
         return columns[KEYS_FRAME].range;
     if (keys->n[KEYS_FRAME] > 0 &&
         key.frame <= keys->key[KEYS_FRAME][keys->n[KEYS_FRAME] - 1].frame)
-        return "frames must rise from line to line";
+        return "frame numbers must increase from line to line";
     for (int c = 0; c < KEYS_COLUMNS && !cause; c++) {
         key.value = value[c];
         cause = given[c] ? add_key_frame(keys, c, key) : NULL;

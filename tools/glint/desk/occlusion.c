@@ -124,7 +124,8 @@ static void load_frame_mask(struct occlusion *o, int frame)
         status = load_numbered_mask(o, frame, &error);
     if (status == GLINT_OK)
         return;
-    fprintf(stderr, "glint: %s; the mask stays as it is\n", error.text);
+    fprintf(stderr, "glint: %s; the mask of the previous frame is used\n",
+            error.text);
     o->is_over = true;
 }
 

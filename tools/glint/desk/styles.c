@@ -8,9 +8,9 @@
  * brightness: at one --strength the automatic exposure makes all lenses and
  * coatings equally bright. */
 const struct style styles[] = {
-    {"natural", "a zoom of today, as overlay draws it", {{NULL, NULL}}},
+    {"natural", "a current zoom lens, the default of overlay", {{NULL, NULL}}},
     {"clean",
-     "the same, of the best make: half a flare",
+     "the same with nine blades and a weak flare",
      {{"stop", "polygon:9,round:0.5"},
       {"strength", "0.25"},
       {"starburst", "0.5"}}},

@@ -21,13 +21,15 @@ static const struct {
     [GLINT_OUTCOME_BEYOND] = {"beyond",
                               "light outside the angles of the model"},
     [GLINT_OUTCOME_CLOSED] = {"closed", "no light gets through at this angle"},
-    [GLINT_OUTCOME_BLOCKED] = {"blocked", "stop and barrels block all of it"},
-    [GLINT_OUTCOME_DARK] = {"dark", "the light has no such colour"},
+    [GLINT_OUTCOME_BLOCKED] = {"blocked",
+                               "stop and barrels block all its rays"},
+    [GLINT_OUTCOME_DARK] = {"dark", "the light has none of this wavelength"},
     [GLINT_OUTCOME_OUTSIDE] = {"outside", "outside the picture"},
-    [GLINT_OUTCOME_FAINT] = {"faint", "too faint for any code"},
+    [GLINT_OUTCOME_FAINT] = {"faint", "too faint to change a pixel code"},
     [GLINT_OUTCOME_NO_ROOM] = {"no_room", "the arena is full"},
     [GLINT_OUTCOME_OTHER_SET] = {"other_set", "another set of wavelengths"},
-    [GLINT_OUTCOME_SHARED] = {"shared", "dim, drawn with a brighter light's"},
+    [GLINT_OUTCOME_SHARED] = {"shared",
+                              "dim: shares the rays of a brighter light"},
 };
 
 const char *explain_reason(enum glint_outcome outcome)
@@ -92,8 +94,8 @@ static void print_merged_dim_bundles(const struct glint_explain *e)
     const double dim = e->dim_codes;
 
     if (dim > 0)
-        printf("dim: ghosts below %.3g codes share rays, %d bundles with those "
-               "of a brighter light\n",
+        printf("dim: ghosts below %.3g codes; %d bundles share the rays of a "
+               "brighter light\n",
                dim, e->all.of[GLINT_OUTCOME_SHARED]);
 }
 
@@ -116,9 +118,11 @@ static void print_table_title(const struct glint_explain *e,
     for (int k = 0, some = 0; k < GLINT_EXPLAIN_BARRELS; k++)
         if (e->barrels[k])
             printf("%s %d by %d", some++ ? "," : "", e->barrels[k], k);
-    printf("\npolynomial terms of a ray: %.1f on average\n",
+    printf("\n"
+           "polynomial terms per ray: %.1f on average\n",
            all->vertices ? (double)all->all_terms / (double)all->vertices : 0);
-    printf("work: about %.1f million instructions, in percent\n     ",
+    printf("cost: about %.1f million instructions, in percent\n"
+           "     ",
            1e-6 * all->work);
     for (int i = 0; i < GLINT_COST_KINDS && all->work > 0; i++)
         if (i < GLINT_COST_PARTS || i == GLINT_COST_LIT || i == GLINT_COST_STAR)
@@ -264,10 +268,10 @@ static const char *const doubts[] = {
     [GLINT_DOUBT_SHAPE] = "it is not round",
     [GLINT_DOUBT_SIZE] = "it is small",
     [GLINT_DOUBT_GREY] = "it is darker than white",
-    [GLINT_DOUBT_CROWD] = "many regions are as bright",
+    [GLINT_DOUBT_CROWD] = "many other regions are as bright",
     [GLINT_DOUBT_DAY] = "the picture is bright or dull",
     [GLINT_DOUBT_LOW] = "it lies low in the picture",
-    [GLINT_DOUBT_DRAWN] = "it fills a box, as windows and bars do"};
+    [GLINT_DOUBT_DRAWN] = "it fills its bounding box, as windows and bars do"};
 
 static void print_rejected_lamps(const struct explain_title *t)
 {

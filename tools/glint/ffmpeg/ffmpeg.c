@@ -729,7 +729,7 @@ static enum glint_status end_arguments(struct words *w,
 {
     if (w->n > MAX_WORDS)
         return glint_error_report(error, GLINT_E_ARGUMENT, "ffmpeg",
-                                  "more than %d words of options", MAX_WORDS);
+                                  "--encode has more than %d words", MAX_WORDS);
     w->word[w->n] = NULL;
     return GLINT_OK;
 }
@@ -1005,8 +1005,8 @@ static void add_other_streams(struct words *w, const struct ffmpeg_target *t,
         add_two_arguments(w, "-c:a", "copy");
     else if (*v->sound && !t->quiet)
         fprintf(stderr,
-                "glint overlay: %s: sound is encoded again, as .%s does not "
-                "take %s\n",
+                "glint overlay: %s: the sound is re-encoded, as .%s cannot "
+                "hold %s\n",
                 t->name, ext, v->sound);
 }
 
@@ -1066,9 +1066,10 @@ static void add_h264_options(struct words *w, const struct ffmpeg_target *t,
             w, "-pix_fmt",
             find_pixel_format("420", pixel_format_bits(v->pixels)));
     if (find_padding_filter(t, v) && !t->quiet)
-        fprintf(stderr,
-                "glint overlay: %s: %dx%d, as H.264 has even sides only\n",
-                t->name, t->width + t->width % 2, t->height + t->height % 2);
+        fprintf(
+            stderr,
+            "glint overlay: %s: padded to %dx%d, as H.264 needs even sides\n",
+            t->name, t->width + t->width % 2, t->height + t->height % 2);
 }
 
 /* An encoder of a family of codecs. */
@@ -1314,8 +1315,8 @@ void ffmpeg_print_manual_commands(const struct tool *tool, const char *in,
     const bool coded = ffmpeg_is_video(in);
 
     fprintf(stderr,
-            "glint %s: ffmpeg is not installed, which reads and writes videos "
-            "other than .y4m (apt-get install ffmpeg). By hand, where it is:\n"
+            "glint %s: videos other than .y4m need ffmpeg, which is not "
+            "installed (apt-get install ffmpeg). On a machine with ffmpeg:\n"
             "  ",
             tool->name);
     if (coded)
@@ -1516,9 +1517,9 @@ void ffmpeg_report_losses(const char *file, const char *name,
         return;
     note_pixel_losses(&r, made.pixels, v->pixels);
     if (is_transfer_hdr(v) && strcmp(v->transfer, made.transfer) != 0)
-        note(&r, ", no tag of its transfer %s", v->transfer);
+        note(&r, ", no tag for its transfer %s", v->transfer);
     if (is_video_interlaced(v) && !is_video_interlaced(&made))
-        note(&r, ", no flags of its fields (%s)", v->fields);
+        note(&r, ", no interlacing flags (%s)", v->fields);
     if (*v->timecode && !*made.timecode)
         note(&r, ", no time code");
     if (*v->mastering && !*made.mastering)
@@ -1536,7 +1537,7 @@ void ffmpeg_report_losses(const char *file, const char *name,
     note_lost_tags(&r, v->tags, made.tags);
     if (*r.text)
         fprintf(stderr,
-                "glint overlay: %s: has %s; see --encode for encoders that "
-                "keep more\n",
+                "glint overlay: %s: the output has %s; see --encode for "
+                "encoders that preserve more\n",
                 name, r.text + 2);
 }

@@ -717,7 +717,8 @@ static void draw_figure_title(const struct figure *f,
         snprintf(across, sizeof across, " up and down, %.2f across",
                  o->focal_mm / o->squeeze);
     if (f->drawing->focus_m > 0)
-        snprintf(focus, sizeof focus, ", focused at %.4g m, light from afar",
+        snprintf(focus, sizeof focus,
+                 ", focused at %.4g m, light from infinity",
                  f->drawing->focus_m);
     fprintf(f->file,
             "<text x=\"%.0f\" y=\"22\" font-size=\"15\" "

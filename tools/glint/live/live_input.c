@@ -453,11 +453,11 @@ int live_input_fail(const struct live_log *log, const char *device,
     char text[sizeof error->text + 120];
 
     if (status == GLINT_E_DEVICE && has_file_extension(device)) {
-        snprintf(text, sizeof text,
-                 "%.160s: no camera; videos and pictures are for glint "
-                 "overlay, or 'ffmpeg -i FILE -f yuv4mpegpipe - | glint live "
-                 "-d -'",
-                 device);
+        snprintf(
+            text, sizeof text,
+            "%.160s: not a camera; use glint overlay for videos and pictures, "
+            "or 'ffmpeg -i FILE -f yuv4mpegpipe - | glint live -d -'",
+            device);
         return tool_fail(log->tool, status, text);
     }
     return live_log_print_error(

@@ -333,12 +333,13 @@ void live_log_print_summary(struct live_log *log, bool is_well, int n_shown,
     print_statistics(log, true);
     if (log->report != LIVE_REPORT_LINE || !is_well || n_shown == 0)
         return;
-    snprintf(text, sizeof text,
-             "%d frames, %ld of them not taken by the output; %llu dropped, "
-             "%llu late, %llu corrupt; latency %.1f ms, 1 in 100 above %.1f",
-             n_shown, n_refused, (unsigned long long)t->drops,
-             (unsigned long long)t->late, (unsigned long long)t->corrupt,
-             live_stats_latency_ms(t, 50), live_stats_latency_ms(t, 99));
+    snprintf(
+        text, sizeof text,
+        "%d frames, %ld of them refused by the output; %llu dropped, %llu "
+        "late, %llu corrupt; latency: median %.1f ms, 99th percentile %.1f ms",
+        n_shown, n_refused, (unsigned long long)t->drops,
+        (unsigned long long)t->late, (unsigned long long)t->corrupt,
+        live_stats_latency_ms(t, 50), live_stats_latency_ms(t, 99));
     live_log_print(log, text);
     if (log->n_short) {
         snprintf(text, sizeof text,

@@ -196,9 +196,10 @@ static void adapt_quality(struct live *l, int64_t busy_us, int n_missed)
         return;
     apply_quality_step(l);
     snprintf(text, sizeof text, "quality %s: step %d of %d%s",
-             l->adapt.step > before ? "lowered to hold the rate" : "raised",
+             l->adapt.step > before ? "lowered to keep the frame rate"
+                                    : "raised",
              l->adapt.step, LIVE_MAX_STEP,
-             l->adapt.step == LIVE_MAX_STEP ? ", which is the last" : "");
+             l->adapt.step == LIVE_MAX_STEP ? ", the lowest" : "");
     live_log_print(&l->log, text);
 }
 
@@ -408,7 +409,7 @@ static bool check_config_names_lens(const struct live *l,
     if (GLINT_OPTION_GIVEN(&fresh->drawing.line.settings.options, lens) ||
         !GLINT_OPTION_GIVEN(&l->o->drawing.line.settings.options, lens))
         return true;
-    tool_error(l->tool, "the configuration does not name a lens any more: it "
+    tool_error(l->tool, "the configuration names no lens any more; the file "
                         "may be empty or incomplete");
     return false;
 }

@@ -15,11 +15,11 @@ int coating_parse_option(const struct tool *tool, struct coating *c,
     if (word >= 0 || glint_coatings_parse(c->coating, &c->n_coatings, text,
                                           &error) == GLINT_OK)
         return -1;
-    return tool_usage(tool,
-                      "--coating takes table, mixed, none or coatings "
-                      "NAME[/NM] or NM[/INDEX[:QUARTERS]]...[,...], not '%s': "
-                      "%s",
-                      text, error.text);
+    return tool_usage(
+        tool,
+        "--coating must be table, mixed, none or coatings NAME[/NM] or "
+        "NM[/INDEX[:QUARTERS]]...[,...], not '%s': %s",
+        text, error.text);
 }
 
 /* Returns the name of COATING, or NULL if it has none. */

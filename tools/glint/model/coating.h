@@ -17,21 +17,21 @@ struct coating {
     struct glint_coating coating[GLINT_MAX_COATINGS];
 };
 
-#define COATING_HELP                                                          \
-    "  --coating C         what is on surfaces between air and glass: table " \
-    "(default,\n"                                                             \
-    "                      but of overlay, live and explain), as the table "  \
-    "has\n"                                                                   \
-    "                      it; mixed (default of these), films that differ "  \
-    "from\n"                                                                  \
-    "                      surface to surface; none; or, dealt out from "     \
-    "the\n"                                                                   \
-    "                      front again and again, v-coat[/NM], "              \
-    "broadband-3[/NM],\n"                                                     \
-    "                      broadband-4[/NM], NM[/INDEX[:QUARTERS]]...[,...]," \
-    "\n"                                                                      \
-    "                      100 to 5000 nm, index 1.01 to 4 (1.38), films\n"   \
-    "                      from the air on (glint coat plots them)\n"
+#define COATING_HELP                                                           \
+    "  --coating C         coatings of surfaces between air and glass: "       \
+    "table, those\n"                                                           \
+    "                      of the table (default; not of overlay, live, "      \
+    "explain);\n"                                                              \
+    "                      mixed, films that differ from surface to surface\n" \
+    "                      (default of these three); none; or a list, "        \
+    "repeated\n"                                                               \
+    "                      from the front on: v-coat[/NM], "                   \
+    "broadband-3[/NM],\n"                                                      \
+    "                      broadband-4[/NM], NM[/INDEX[:QUARTERS]]...[,...] "  \
+    "with\n"                                                                   \
+    "                      100 to 5000 nm, index 1.01 to 4 (1.38), films "     \
+    "from\n"                                                                   \
+    "                      the air on (glint coat plots them)\n"
 
 /* Parses TEXT, the value of --coating, into COATING. Returns -1, or an exit
  * code after printing the error. */

@@ -144,8 +144,8 @@ static int report_too_much_work(const struct tool *tool, const char *file)
 {
     tool_error(tool,
                "%.200s: baking takes more than about 30 s of processor time; "
-               "--rays exact draws without, and glint bake has no limit: give "
-               "its model as the lens",
+               "use --rays exact, or bake with glint bake, which has no limit, "
+               "and name its model as the lens",
                file);
     return EXIT_LENS;
 }

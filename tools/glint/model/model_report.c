@@ -181,9 +181,9 @@ static void print_model_header(const struct model_file *model)
         model_summarise(&model->lens, model_full_span(&model->lens));
 
     static const char *const lights[] = {
-        "all", "a half, x of 0 or more: others are mirrored",
-        "a half, y of 0 or more: others are mirrored",
-        "a quarter, x and y of 0 or more: others are mirrored"};
+        "all", "those with x >= 0; the others are mirrored",
+        "those with y >= 0; the others are mirrored",
+        "those with x and y >= 0; the others are mirrored"};
 
     printf("%s\nbaked model, %zu bytes, %s basis, key %08lx%08lx\n\n", h->name,
            model->bytes, model_basis_name(&model->lens),
@@ -203,7 +203,7 @@ static void print_model_header(const struct model_file *model)
     printf("film                %6gx%g mm\n",
            model_compute_real(h->film_width_mm),
            model_compute_real(h->film_height_mm));
-    printf("field               %10.3f mm from the middle\n",
+    printf("field               %10.3f mm from the centre of the sensor\n",
            model_compute_real(h->field_mm));
     printf("band                %6.0f to %.0f nm\n",
            model_wavelength_nm(h->wave_hi_q24),
@@ -217,11 +217,10 @@ static void print_model_header(const struct model_file *model)
            (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
            model_compute_mean_terms(&sum));
     if (model->zoom)
-        printf(
-            "positions           %6d along the zoom, %d more of some ghosts; "
-            "lengths and ghosts are of the first\n",
-            model_file_positions(model->zoom),
-            model->zoom->n_models - model_file_positions(model->zoom));
+        printf("positions           %6d of the zoom range, %d more of single "
+               "ghosts; all other values are those of the first\n",
+               model_file_positions(model->zoom),
+               model->zoom->n_models - model_file_positions(model->zoom));
 }
 
 static void print_model_errors(const struct model_summary *sum)
@@ -396,8 +395,8 @@ static void print_bake_statistics(const struct tool *tool,
            (unsigned long)model_count_ghosts(lens), (unsigned long)h->n_ghosts,
            (unsigned long)h->n_systems, model_compute_mean_terms(&sum),
            seconds);
-    printf("%u of %lu ghosts miss the target somewhere; %d of %d rays pass "
-           "where they are cut; the tolerance was too tight for %d zones\n",
+    printf("%u of %lu ghosts miss the error target in some zone; %d of %d rays "
+           "pass that should be cut; %d zones exceed the tolerance\n",
            model_count_missed_ghosts(lens),
            (unsigned long)model_count_ghosts(lens), report->intruders,
            report->rays, report->unmet);

@@ -57,7 +57,7 @@ enum glint_status opened_lens_zoom(struct opened_lens *lens,
         return glint_error_report(
             error, GLINT_E_ARGUMENT, lens->table.name,
             settings->options.rays == GLINT_RAYS_EXACT
-                ? "exact rays do not zoom from frame to frame"
+                ? "exact rays cannot zoom between frames; use a model"
             : lens->table.zoom.n_positions
                 ? "a lens table is baked for one zoom position; zooming needs "
                   "a model of 'glint bake LENS --positions N'"

@@ -105,8 +105,8 @@ static int check_path_count(const struct tool *tool,
         return EXIT_OK;
     tool_error(tool,
                "%.200s: exact rays of a lens of %d ghosts take more than about "
-               "30 s of processor time; --rays exact draws them however long "
-               "that takes, and models of glint bake are faster",
+               "30 s of processor time; --rays exact lifts this limit, and a "
+               "model of glint bake is faster",
                name, ghosts);
     return EXIT_LENS;
 }

@@ -57,8 +57,8 @@ struct settings {
     "  -j, --threads N     default: all processors; never changes a result\n" \
     "  --kernels K         c | sse41 | avx2 | neon | auto: never changes a "  \
     "result\n"                                                                \
-    "  --seed N            of live -d test and synth; nothing else is "       \
-    "random\n"                                                                \
+    "  --seed N            seed of live -d test and synth; all else is "      \
+    "deterministic\n"                                                         \
     "  --json   -q   -v   --help   --help-all   --version\n"
 
 /* settings_defaults() sets the defaults of a plain image of a lens: no

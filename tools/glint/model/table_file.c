@@ -61,8 +61,8 @@ static void print_lens_not_found(const struct tool *tool, const char *name)
 
     if (access(name, F_OK) == 0) {
         tool_error(tool,
-                   "%s: no lens that comes with glint has this name; "
-                   "the file is ./%s",
+                   "%s: no lens that comes with glint has this name; for the "
+                   "file write ./%s",
                    name, name);
         return;
     }

@@ -23,12 +23,12 @@ struct zoom_option {
         "focus", required_argument, NULL, (focus_code) \
     }
 
-#define ZOOM_HELP                                                            \
-    "  --zoom Z            of a zoom lens: its focal length in mm, or how "  \
-    "far\n"                                                                  \
-    "                      along it is, 0 to 1 (default 0, its table's "     \
-    "first)\n"                                                               \
-    "  --focus M           metres from the sensor to what is sharp, or inf " \
+#define ZOOM_HELP                                                              \
+    "  --zoom Z            position of a zoom lens: focal length in mm, or 0 " \
+    "to 1 of\n"                                                                \
+    "                      the zoom range (default 0, the table's first "      \
+    "column)\n"                                                                \
+    "  --focus M           focus distance from the sensor in m, or inf "       \
     "(default)\n"
 
 /* Parse TEXT as the value of --zoom or --focus. Return false if it is

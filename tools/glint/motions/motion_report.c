@@ -91,8 +91,8 @@ static void print_motion_text(const struct motion_file *file,
     if (file->is_baked_now)
         printf("path         %.6g long\n", r->path);
     if (file->is_baked_now && r->has_senses)
-        printf("rv and tv    sum up to a place %.4g away in the end, %.4g at "
-               "most\n",
+        printf("rv and tv    integrate to a position %.4g off at the end, %.4g "
+               "at most\n",
                r->senses_off, r->senses_most);
     printf("bytes        %zu\n  header       %8zu\n  sensors      %8zu\n"
            "  events       %8zu\n  index        %8zu\n  poses        %8zu\n",

@@ -79,10 +79,11 @@ enum glint_status tool_count_bake_work(int64_t *left, int64_t work,
             *left -= work;
         return GLINT_OK;
     }
-    snprintf(error->text, sizeof error->text,
-             "%.100s: baking takes more than about 30 s of processor time; "
-             "glint bake has no limit: name the file that it writes",
-             file);
+    snprintf(
+        error->text, sizeof error->text,
+        "%.100s: baking takes more than about 30 s of processor time; bake it "
+        "by glint bake, which has no limit, and name its output here",
+        file);
     return GLINT_E_LENS;
 }
 

@@ -77,8 +77,9 @@ static enum glint_status set_option_by_control(void *ctx, const char *name,
     if (column != KEYS_F_NUMBER)
         return glint_options_set(&s->options, name, value, error);
     if (s->options.rays == GLINT_RAYS_EXACT) {
-        snprintf(error->text, sizeof error->text,
-                 "a stop that changes needs a model, not --rays exact");
+        snprintf(
+            error->text, sizeof error->text,
+            "changing the stop between frames needs a model, not --rays exact");
         return GLINT_E_ARGUMENT;
     }
     s->options.f_number = value;
@@ -120,7 +121,8 @@ int drawing_open(const struct tool *tool, struct drawing *drawing)
 int drawing_open_lens(const struct tool *tool, struct drawing *drawing)
 {
     return strcmp(drawing->line.settings.options.lens, "none") == 0
-               ? tool_usage(tool, "--lens none is for overlay and live")
+               ? tool_usage(tool,
+                            "--lens none applies to overlay and live only")
                : drawing_open(tool, drawing);
 }
 
@@ -206,8 +208,8 @@ static void show_exact_ray_progress(const struct tool *tool, struct drawing *d,
     if (!tool->quiet && !d->line.is_still &&
         !GLINT_OPTION_GIVEN(&d->line.settings.options, exposure))
         fprintf(stderr,
-                "glint %s: exact rays: first measures how bright flares of %s "
-                "are, longer for a zoom, then draws each frame\n",
+                "glint %s: exact rays: measures the brightness of flares of %s "
+                "first (slower for a zoom), then draws each frame\n",
                 tool->name, d->files.lens.table.name);
     tool_progress_start(&d->run.progress, tool, "exact rays");
     /* Measuring how bright flares are begins at 0 several times: an estimate
@@ -264,7 +266,9 @@ static int allocate_engine(const struct tool *tool, struct drawing *d)
         return report_sizing_failure(tool, d, status, &error);
     if (tool->verbose && !tool->quiet && !d->files.is_listed &&
         line->n_hand == 0)
-        fprintf(stderr, "%s: lamps from %g stops of white, down to %g\n",
+        fprintf(stderr,
+                "%s: a lamp appears at %g stops relative to white and vanishes "
+                "below %g\n",
                 tool->name, cfg.search.threshold_ev[0],
                 cfg.search.threshold_ev[1]);
     return EXIT_OK;

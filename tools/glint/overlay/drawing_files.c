@@ -35,8 +35,8 @@ static int check_stop_keys(const struct tool *tool, struct settings *s,
     if (!is_stopped && !is_round && !keys_has_column(&f->keys, KEYS_TURN))
         return EXIT_OK;
     if (s->options.rays == GLINT_RAYS_EXACT)
-        return tool_usage(tool, "--keys: stops that change need a model, not "
-                                "--rays exact");
+        return tool_usage(tool, "--keys: changing the stop between frames "
+                                "needs a model, not --rays exact");
     if (is_stopped)
         request_min_f_number(s, f, 1);
     return EXIT_OK;
@@ -59,8 +59,8 @@ static int open_key_file(const struct tool *tool, struct drawing_line *line,
     if (keys_has_column(&f->keys, KEYS_EXPOSURE)) {
         if (line->dial == ENGINE_OPTION_OF(strength))
             return tool_usage(tool,
-                              "--strength chooses the exposure; "
-                              "--keys %s has one",
+                              "--strength sets the exposure; the column "
+                              "exposure of --keys %s does, too",
                               o->keys);
         GLINT_OPTION_GIVEN(o, exposure) = true;
     }
@@ -156,8 +156,8 @@ static int reject_zoom_control_lines(const struct tool *tool,
         if (find_key_column(line) == KEYS_ZOOM)
             return report_bad_control_line(
                 tool, scene, i,
-                "lines of control zoom a model that 'glint bake "
-                "LENS --positions N' made, not a table");
+                "control lines can zoom a model of 'glint bake LENS "
+                "--positions N', not a table");
     return EXIT_OK;
 }
 
@@ -263,16 +263,17 @@ static int open_scene_file(const struct tool *tool,
     if (code != EXIT_OK || f->has_lens)
         return code;
     if (!f->scene.is_open)
-        return tool_usage(tool, "--lens none draws no flare, and there is no "
-                                "--scene to draw");
+        return tool_usage(tool, "--lens none draws no flare; without --scene "
+                                "there is nothing to draw");
     if (over_scene_needs_lens(&f->scene))
         return tool_usage(tool,
-                          "%s: 'camera lens' has the field of a lens, and "
-                          "--lens none is none; take 'camera fov'",
+                          "%s: 'camera lens' uses the field of the lens, but "
+                          "--lens is none; use 'camera fov'",
                           f->scene.file);
     return o->layer != GLINT_LAYER_COMPOSITE
-               ? tool_usage(tool, "--layer shows the flare of a lens, not of "
-                                  "--lens none")
+               ? tool_usage(
+                     tool,
+                     "--layer needs the flare of a lens; --lens none has none")
                : EXIT_OK;
 }
 

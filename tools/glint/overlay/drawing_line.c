@@ -121,8 +121,8 @@ int drawing_line_option(const struct tool *tool, struct drawing_line *line,
     int code;
 
     if (!record_brightness_option(line, option))
-        return tool_usage(tool, "--strength chooses the exposure; "
-                                "give one of it and --exposure");
+        return tool_usage(
+            tool, "--strength sets the exposure, so it excludes --exposure");
     if (option == ENGINE_OPTION_OF(style))
         /* The command line's style was set before its other options. */
         return tool->where ? drawing_line_style(tool, line, value) : -1;

@@ -47,10 +47,10 @@ static int check_stream_options(const struct tool *tool,
     for (int i = 0; i < 4; i++)
         if (file[i] && (strcmp(file[i], "-") == 0 ||
                         (stat(file[i], &is) == 0 && !S_ISREG(is.st_mode))))
-            return tool_usage(tool,
-                              "--%s %s is a stream, of which the first input "
-                              "would leave nothing to the others",
-                              name[i], file[i]);
+            return tool_usage(
+                tool,
+                "--%s %s is a stream, which only the first input could read",
+                name[i], file[i]);
     return EXIT_OK;
 }
 
@@ -61,13 +61,14 @@ static int check_folder_inputs(const struct tool *tool, char **input, int n)
 
     for (int i = 0; i < n; i++) {
         if (strcmp(input[i], "-") == 0)
-            return tool_usage(tool, "standard input has no name in a folder");
+            return tool_usage(tool, "standard input has no file name for the "
+                                    "output folder; name a file by -o");
         if (stat(input[i], &file) == 0 && S_ISDIR(file.st_mode))
             return tool_usage(tool, "%s is a folder; name the files in it",
                               input[i]);
         if (n > 1 && strchr(input[i], '%') && access(input[i], F_OK) != 0)
             return tool_usage(tool,
-                              "%s is a sequence, which is one input of its own",
+                              "%s is a sequence, which must be the only input",
                               input[i]);
         for (int k = 0; k < i; k++)
             if (strcmp(find_file_name(input[k]), find_file_name(input[i])) == 0)

@@ -67,20 +67,20 @@ int layers_check(const struct tool *tool, const struct layers *layers,
     if (!layers->path)
         return EXIT_OK;
     if (!make_layer_file_name(name, layers->path, NULL, 0))
-        return tool_usage(tool,
-                          "--layers: a name has one %%s and one %%d or "
-                          "%%04d at most, not '%s'",
-                          layers->path);
+        return tool_usage(
+            tool,
+            "--layers: a name may have one %%s and one %%d or %%04d, not '%s'",
+            layers->path);
     make_layer_file_name(other, layers->path, NULL, 1);
     if (is_video && strcmp(name, other) == 0)
-        return tool_usage(tool, "--layers of a video or sequence need a number "
-                                "in their name, such as layers-%%04d.exr");
+        return tool_usage(tool, "--layers of a video or sequence needs a frame "
+                                "number in its name, such as layers-%%04d.exr");
     if (!can_file_hold_layers(layers, name))
-        return tool_usage(tool,
-                          "--layers: layers are parts of an .exr, or files "
-                          "of their own by a %%s: fl.exr, fl-%%s.exr or "
-                          "fl-%%s.pfm, not '%s'",
-                          layers->path);
+        return tool_usage(
+            tool,
+            "--layers: name an .exr for all layers, or one file per layer by "
+            "%%s: fl.exr, fl-%%s.exr or fl-%%s.pfm, not '%s'",
+            layers->path);
     if (tool_check_output(tool, name) != EXIT_OK)
         return EXIT_OUTPUT;
     if (glint_picture_check(name, GLINT_PICTURE_FLOAT, &error) == GLINT_OK)

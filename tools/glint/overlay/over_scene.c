@@ -22,14 +22,12 @@ static enum glint_status check_control_line(const struct over_scene *over,
     if (line->verb == CONTROL_OPTION)
         return over->set_option
                    ? GLINT_OK
-                   : control_report_error(
-                         error, where, 1,
-                         "that changes a flare, and --lens none has "
-                         "none");
-    return over->is_open
-               ? steer_check(&over->steer, line, where, error)
-               : control_report_error(error, where, 1,
-                                      "that steers --scene, and there is none");
+                   : control_report_error(error, where, 1,
+                                          "this command changes the flare, but "
+                                          "--lens none has none");
+    return over->is_open ? steer_check(&over->steer, line, where, error)
+                         : control_report_error(error, where, 1,
+                                                "this command needs --scene");
 }
 
 static int open_control_input(struct over_scene *over)
@@ -147,11 +145,11 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
 
     over->tool = tool;
     if (!over->file && over->control_file && !over->set_option)
-        return tool_usage(tool, "--control changes a flare or steers --scene, "
-                                "and there is neither");
+        return tool_usage(tool,
+                          "--control needs the flare of a lens or a --scene");
     if (!over->file && over->pose_file)
-        return tool_usage(tool, "--pose moves the things of --scene, of which "
-                                "there is none");
+        return tool_usage(tool,
+                          "--pose moves objects of a scene; add --scene FILE");
     if (!over->file)
         return over->control_file ? open_control_input(over) : EXIT_OK;
     code = baked_scene_open(tool, over->file, &over->baked);

@@ -329,8 +329,8 @@ static void warn_of_grey_result(const struct overlay_file *file,
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
         !tool->quiet)
         fprintf(stderr,
-                "glint %s: %s has one channel, so that objects and flare are "
-                "grey; with three they have colours\n",
+                "glint %s: %s has one channel, so objects and flare become "
+                "grey; with three channels they have colours\n",
                 tool->name, file->from);
 }
 
@@ -512,7 +512,9 @@ int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
     if (o->drawing.run.is_sized &&
         (file.image.width != o->drawing.run.view.width ||
          file.image.height != o->drawing.run.view.height)) {
-        fprintf(stderr, "glint overlay: %s: is %dx%d, those before it %dx%d\n",
+        fprintf(stderr,
+                "glint overlay: %s: is %dx%d, but the pictures before it are "
+                "%dx%d\n",
                 from, file.image.width, file.image.height,
                 o->drawing.run.view.width, o->drawing.run.view.height);
         code = EXIT_INPUT;

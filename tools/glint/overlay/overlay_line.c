@@ -174,37 +174,37 @@ static void print_faint_flare_remedy(const struct overlay *o,
          drawing->line.settings.options.strength <= 0);
 
     if (is_held)
-        fprintf(to, "%s: %s draws nothing, as it says\n", o->output,
+        fprintf(to, "%s: no flare was drawn because of %s\n", o->output,
                 drawing->line.settings.options.gain <= 0 ? "--gain 0"
                                                          : "--strength 0");
     else if (light->peak <= 0 && report->beyond_lights > 0 &&
              report->beyond_lights == report->lights)
-        fprintf(
-            to,
-            "%s: no flare was drawn: the lamp lies beyond the angles of the "
-            "model; move it nearer, or bake with a larger --max-angle\n",
-            o->output);
+        fprintf(to,
+                "%s: no flare was drawn: the lamp lies outside the angles of "
+                "the model; move it towards the centre, or bake with a larger "
+                "--max-angle\n",
+                o->output);
     else if (light->peak <= 0 && drawing->line.settings.options.stop_mask)
         fprintf(to,
-                "%s: no light gets through this lens and its --stop-mask into "
-                "the picture; white in a mask lets light through\n",
+                "%s: no light reaches the picture through this lens and its "
+                "--stop-mask; white pixels of a mask transmit light\n",
                 o->output);
     else if (light->peak <= 0)
         fprintf(to,
-                "%s: no light gets through this lens into the picture; "
-                "another one (--lens) may show a flare\n",
+                "%s: no light reaches the picture through this lens; another "
+                "one (--lens) may show a flare\n",
                 o->output);
     else if (GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure))
         fprintf(to,
-                "%s: that is %.1f stops below what can be seen; --strength "
-                "instead of --exposure, or --exposure %+.0f, shows it\n",
+                "%s: the flare is %.1f stops too faint to be seen; use "
+                "--strength instead of --exposure, or --exposure %+.0f\n",
                 o->output, log2(least_seen / light->peak),
                 drawing->line.settings.options.exposure +
                     ceil(log2(well_seen / light->peak)));
     else
         fprintf(to,
-                "%s: that is %.1f stops below what can be seen; --strength "
-                "%.2g shows it\n",
+                "%s: the flare is %.1f stops too faint to be seen; use "
+                "--strength %.2g\n",
                 o->output, log2(least_seen / light->peak),
                 drawing->line.settings.options.strength *
                     sqrt(well_seen / light->peak));
@@ -280,9 +280,11 @@ void overlay_print_no_light(const struct drawing *drawing, bool is_copied,
     if (is_next)
         print_lamp_candidates(drawing->run.engine, to);
     else
-        fputs("see --threshold, or give one with --light-at X,Y", to);
+        fputs("lower --threshold, or place a lamp by --light-at X,Y", to);
     if (over_scene_keeps_lights(&drawing->files.scene))
-        fputs("; 'flare lights' in the scene shows its own to the lens", to);
+        fputs("; 'flare lights' in the scene file makes its lights visible to "
+              "the lens",
+              to);
     fputc('\n', to);
 }
 
@@ -313,7 +315,8 @@ void overlay_print_summary(const struct overlay *o,
         return;
     }
     if (n == 1 && drawing->files.scene.lamps_hidden >= drawing->run.n_lamps) {
-        fprintf(to, "%d light%s, hidden all, so no flare was drawn\n",
+        fprintf(to,
+                "%d light%s, all hidden by objects, so no flare was drawn\n",
                 o->figures.most_lights, o->figures.most_lights == 1 ? "" : "s");
         return;
     }
@@ -323,7 +326,7 @@ void overlay_print_summary(const struct overlay *o,
             drawing->files.lens.model.data ? "baked model" : "exact rays");
     print_brightness_options(&o->figures, to);
     if (light->is_known)
-        fprintf(to, ": %s at %.*g %% of white, %.2g %% on average",
+        fprintf(to, ": %s at %.*g %% of white, mean %.2g %%",
                 drawing->line.settings.options.only == GLINT_ONLY_STARBURST
                     ? "the starburst peaks"
                 : drawing->line.settings.options.only == GLINT_ONLY_VEIL

@@ -171,18 +171,17 @@ static int draw_all_numbered_pictures(struct tool *tool, struct overlay *o,
     int code = EXIT_OK;
 
     if (l->n == 0) {
-        fprintf(stderr, "glint overlay: %s: there are no such pictures\n",
+        fprintf(stderr, "glint overlay: %s: no picture has such a name\n",
                 o->input);
         return EXIT_INPUT;
     }
     if (l->n > 1 && !numbered_is_pattern(o->output)) {
         const bool hashes = numbered_from_hashes(pattern, o->output);
 
-        return tool_usage(tool,
-                          "%s: %d pictures need a %%04d in the output, "
-                          "too%s%s",
-                          o->input, l->n, hashes ? ": -o " : "",
-                          hashes ? pattern : "");
+        return tool_usage(
+            tool,
+            "%s: %d pictures need a %%04d in the name of the output, too%s%s",
+            o->input, l->n, hashes ? ": -o " : "", hashes ? pattern : "");
     }
     print_missing_pictures(tool, o, l);
     for (int i = 0; i < l->n && code == EXIT_OK; i++)

@@ -60,8 +60,8 @@ int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video)
                           o->input);
     else if (n > 1 && !moves && !tool->quiet)
         fprintf(stderr,
-                "glint overlay: %s has %d frames, of which the first is taken; "
-                "-o NAME.gif or NAME.mp4 takes all\n",
+                "glint overlay: %s has %d frames; only the first is drawn. -o "
+                "NAME.gif or NAME.mp4 draws all\n",
                 o->input, n);
     return EXIT_OK;
 }
@@ -226,8 +226,9 @@ static enum glint_status open_encoder(struct video *v)
     if (status != GLINT_OK)
         return status;
     if (!v->file.tmp)
-        return glint_error_report(&v->error, GLINT_E_OUTPUT, o->output,
-                                  "is not a file, and a pipe takes .y4m only");
+        return glint_error_report(
+            &v->error, GLINT_E_OUTPUT, o->output,
+            "is not a file; only .y4m can be written to a pipe");
     target.file = v->file.tmp;
     status = ffmpeg_write(&v->writer, &target, &v->about, &v->error);
     if (status != GLINT_OK)
@@ -359,8 +360,8 @@ static int wait_for_decoder(struct video *v)
                 v->o->input);
     else
         fprintf(stderr,
-                "glint overlay: %s is cut off after frame %d; 'ffmpeg -i IN "
-                "-c copy OUT' makes a whole video of what is there\n",
+                "glint overlay: %s is cut off after frame %d; 'ffmpeg -i IN -c "
+                "copy OUT' makes a valid video of the existing frames\n",
                 v->o->input, v->o->drawing.run.n_frames - 1);
     return EXIT_INPUT;
 }
@@ -370,7 +371,7 @@ static int finish_encoder(struct video *v)
     enum glint_status status = glint_y4m_writer_commit(&v->out, &v->error);
 
     if (v->writes && child_wait(&v->writer) != 0) {
-        fprintf(stderr, "glint overlay: %s: ffmpeg could not write it\n",
+        fprintf(stderr, "glint overlay: %s: ffmpeg could not write this file\n",
                 v->o->output);
         return EXIT_OUTPUT;
     }
@@ -392,7 +393,8 @@ static void warn_of_variable_rate(const struct video *v)
     if (v->is_variable && !v->keeps_times && v->has_ended && !v->tool->quiet)
         fprintf(stderr,
                 "glint overlay: %s: %d frames of a variable rate become %d of "
-                "%d/%d a second; .mp4 .mov .mkv .webm keep each frame's time\n",
+                "%d/%d a second; .mp4 .mov .mkv .webm preserve the time of "
+                "each frame\n",
                 v->o->output, v->times.n, v->o->drawing.run.n_frames,
                 v->in.header.fps_num, v->in.header.fps_den);
 }

@@ -94,8 +94,8 @@ int overlay_y4m_draw(struct tool *tool, struct overlay *o,
         return overlay_draw(tool, o, image);
     if (drawing_has_marks(&o->drawing.line))
         return tool_usage(tool,
-                          "--show lights marks frames of 8 bits in BT.709, "
-                          "and these are C%s, transfer %s",
+                          "--show lights needs frames of 8 bits in BT.709, not "
+                          "C%s with transfer %s",
                           *in->header.colour ? in->header.colour : "420jpeg",
                           glint_transfer_words[in->header.transfer]);
     if (!o->y4m)

@@ -81,21 +81,22 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
         return EXIT_OK;
     if ((clip->from > 1) != (clip->to > 1))
         return tool_usage(tool,
-                          "--zoom %g-%g: both are mm, or both 0 to 1 along the "
-                          "way",
+                          "--zoom %g-%g: both values must be mm, or both 0 to "
+                          "1 of the zoom range",
                           clip->from, clip->to);
     if (line->settings.options.keys)
-        return tool_usage(tool, "--zoom A-B does not go with --keys: give the "
-                                "key frames a column zoom");
+        return tool_usage(
+            tool,
+            "--zoom A-B excludes --keys; add a column zoom to the key frames");
     if (!input || strcmp(input, "-") == 0)
-        return tool_usage(tool, "--zoom A-B is over all frames of a video in a "
-                                "file: else give --keys a column zoom");
+        return tool_usage(tool, "--zoom A-B needs a video in a file; otherwise "
+                                "use --keys with a column zoom");
     n = glint_y4m_is_name(input) ? count_y4m_frames(input, &error)
                                  : ffmpeg_count_frames(input);
     if ((n <= 0 || n > MOST_FRAMES) && !error.text[0])
-        glint_error_report(&error, GLINT_E_FORMAT, input,
-                           "how many frames it has, which --zoom A-B needs, "
-                           "is unknown");
+        glint_error_report(
+            &error, GLINT_E_FORMAT, input,
+            "the number of frames, which --zoom A-B needs, is unknown");
     if (n <= 0 || n > MOST_FRAMES)
         return tool_fail(tool, GLINT_E_FORMAT, error.text);
     clip->keys = make_zoom_keys(clip, n);

@@ -49,12 +49,12 @@ static int check_output_name(const struct tool *tool, struct frames *f)
     f->is_numbered = numbered_is_pattern(r->output);
     if (ffmpeg_is_video(r->output))
         return tool_usage(tool,
-                          "frames become a .y4m or numbered pictures, of "
-                          "which ffmpeg -i OUT.y4m makes %s",
+                          "--frames writes a .y4m or numbered pictures; ffmpeg "
+                          "-i OUT.y4m converts them to %s",
                           r->output);
     if (r->is_video && !f->is_y4m && !f->is_numbered)
         return tool_usage(tool, "--frames needs -o OUT.y4m, or %%04d in OUT "
-                                "for a picture of each");
+                                "for one picture per frame");
     return EXIT_OK;
 }
 
@@ -275,13 +275,13 @@ static int check_drawing_options(const struct tool *tool,
                                  const struct drawing *c)
 {
     if (c->line.settings.options.scene)
-        return tool_usage(tool, "--scene is for overlay, live and explain; "
-                                "here the scene is the input");
+        return tool_usage(tool, "--scene applies to overlay, live and explain "
+                                "only; render takes the scene as its input");
     if (c->line.settings.options.layer != GLINT_LAYER_COMPOSITE)
-        return tool_usage(tool, "--layer is for overlay and live");
+        return tool_usage(tool, "--layer applies to overlay and live only");
     return drawing_has_marks(&c->line)
-               ? tool_usage(tool, "--show lights and --preview are for "
-                                  "overlay and live")
+               ? tool_usage(tool, "--show lights and --preview apply to "
+                                  "overlay and live only")
                : EXIT_OK;
 }
 

@@ -196,7 +196,7 @@ static int parse_command_line(struct tool *tool, int argc, char **argv,
     if (strcmp(r->drawing.line.settings.options.lens, "none") != 0)
         r->is_frames = true;
     else if (r->is_lit)
-        return tool_usage(tool, "options of a flare need --lens LENS");
+        return tool_usage(tool, "flare options need --lens LENS");
     return -1;
 }
 

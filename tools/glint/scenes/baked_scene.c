@@ -250,8 +250,9 @@ static void print_scene_text(const struct baked_scene *scene,
            "half a step off\n",
            ldexp(1, -h->unit_log2));
     if (scene->is_text)
-        printf("reach        %.4g units from the origin; poses, to %.4g\n",
-               scene->report.reach, ldexp(1, 28 - h->unit_log2));
+        printf(
+            "extent       %.4g units from the origin; poses may reach %.4g\n",
+            scene->report.reach, ldexp(1, 28 - h->unit_log2));
     printf("bytes        %zu\n", scene->bytes);
     for (int k = 0; k < N_PARTS; k++)
         if (n->bytes[k])

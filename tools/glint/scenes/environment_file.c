@@ -259,7 +259,8 @@ static void print_environment_text(const struct environment_file *file,
     printf("levels       %u:", h->n_levels);
     for (uint32_t k = 0; k < h->n_levels; k++)
         printf(" %d", 1 << file->environment.level[k].side_log2);
-    printf("\ntexels       %lld; of mips %lld, of levels all as fine as the "
+    printf("\n"
+           "texels       %lld; with mips %lld, with all levels as fine as the "
            "first %lld\n",
            n->texels, n->mips, n->full);
     printf("lights       %u\n", h->n_lights);

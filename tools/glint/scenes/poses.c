@@ -200,7 +200,7 @@ static const char *insert_pose(struct poses *p, const struct pose *pose)
     if (p->lines.is_pipe && p->next == p->n)
         i = p->next = p->n = 0;
     if (p->lines.is_pipe && p->n == POSES_AHEAD)
-        return "too many poses wait for their frames";
+        return "too many poses of later frames are queued";
     more = text_grow_array(p->row, p->n, sizeof *more);
     if (!more)
         return text_no_memory;

@@ -100,13 +100,11 @@ static int check_intersection_tests(struct scene_frame *frame)
         tests += glint_scene_count_tests(frame->scene, most - tests);
     if (tests <= most)
         return EXIT_OK;
-    tool_error(
-        frame->tool,
-        "a picture of this scene takes more than %g tests of objects and "
-        "triangles, about %lld s of processor time; take out objects or "
-        "lights, or give --shadow-points 1, 4 or 16, with which there "
-        "is no limit",
-        (double)most, (long long)(most / (SCENE_TESTS / 30)));
+    tool_error(frame->tool,
+               "a picture of this scene needs more than %g intersection tests, "
+               "about %lld s of processor time; remove objects or lights, or "
+               "set --shadow-points 1, 4 or 16, which lifts the limit",
+               (double)most, (long long)(most / (SCENE_TESTS / 30)));
     scene_frame_close(frame);
     return EXIT_LENS;
 }

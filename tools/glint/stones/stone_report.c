@@ -71,9 +71,11 @@ static void print_medium_text(const struct stone_file *file,
            scatter_model_name(h), h->n_planes, h->n_planes > 1 ? "s" : "",
            h->rank, h->kernel, h->kernel);
     if (file->is_baked_now) {
-        printf("to the rows  %.1f dB, of the fit %.1f dB\n",
-               file->errors.baked_db, file->errors.fit_db);
-        printf("ranks lose   %.3g %% of kernels; columns have %d bits\n",
+        printf(
+            "PSNR         %.1f dB to the full table, before rounding %.1f dB\n",
+            file->errors.baked_db, file->errors.fit_db);
+        printf("rank loss    %.3g %% of the kernels' energy; columns have %d "
+               "bits\n",
                100 * file->errors.kernel_loss, file->errors.tap_bits);
         printf("took         %.1f s of processor time\n", file->errors.seconds);
     }

@@ -204,7 +204,7 @@ static void record_position_error(struct run *run,
     }
     if (!run->tool->quiet)
         fprintf(stderr,
-                "glint bake: at %.2f mm %d ghost%s more to bake, %.0f s\n",
+                "glint bake: at %.2f mm bakes %d more ghost%s, %.0f s\n",
                 glint_real_value(run->zoom.header.focal_mm), n_added,
                 n_added == 1 ? "" : "s", tool_clock_s() - run->start);
 }
@@ -282,7 +282,7 @@ static enum glint_status bake_even_positions(struct run *run)
 
     tool_progress_start(p, run->tool, "bake");
     p->besides = run->bake->halfway_db > 0
-                     ? " for all positions, and more half-way"
+                     ? " for all positions, and more for those halfway"
                      : " for all positions";
     p->less = "fewer --positions, a smaller --max-angle or a larger "
               "--tolerance";

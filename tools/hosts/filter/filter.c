@@ -189,7 +189,7 @@ bool filter_draw(struct filter *f, const struct glint_image *image,
     apply_live_options(f);
     if (drawing_draw(&f->drawing, image, elapsed_us) != GLINT_OK) {
         f->failed = true;
-        tool_error(&f->tool, "no memory; pictures stay as they are");
+        tool_error(&f->tool, "out of memory; frames are passed unchanged");
     }
     return !f->failed;
 }

@@ -19,14 +19,14 @@ struct row {
 /* In the order in which ffmpeg passes parameters to frei0r, so new rows must
  * be appended. Only the name is required. */
 static const struct row rows[FILTER_MAX] = {
-    {"lens", 0, "Lens, or a file of one"},
+    {"lens", 0, "Lens: name or file"},
     {"strength", 1, "Strength"},
     {"gain", 2, "Gain"},
     {"starburst", 2, "Starburst"},
     {"quality", 1, "Quality"},
-    [FILTER_AUTO] = {"auto", 1, "Find lamps; else there is one, at x, y"},
-    [FILTER_X] = {"x", 1, "Lamp without auto, from left to right"},
-    [FILTER_Y] = {"y", 1, "Lamp without auto, from top to bottom"},
+    [FILTER_AUTO] = {"auto", 1, "Find lamps; off: one lamp at x, y"},
+    [FILTER_X] = {"x", 1, "Lamp x if auto is off: 0 left, 1 right"},
+    [FILTER_Y] = {"y", 1, "Lamp y if auto is off: 0 top, 1 bottom"},
     {"f-number", 0, "F-number, as 5.6"},
     {"style", 0, "Style"},
 };

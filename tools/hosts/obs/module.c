@@ -293,7 +293,7 @@ static obs_properties_t *get_properties(void *ctx)
 static void print_warning_once(struct flare *f, const char *text)
 {
     if (!f->has_warned)
-        blog(LOG_WARNING, "glint: %s; frames stay as they are", text);
+        blog(LOG_WARNING, "glint: %s; frames are passed unchanged", text);
     f->has_warned = true;
 }
 
@@ -354,7 +354,7 @@ filter_video_frame(void *ctx, struct obs_source_frame *frame)
     bool is_ready;
 
     if (!set_image_to_frame(frame, &image)) {
-        print_warning_once(f, "no flare on frames of this kind");
+        print_warning_once(f, "frames of this format are not supported");
         return frame;
     }
     pthread_mutex_lock(&f->lock);

@@ -207,7 +207,7 @@ const char *web_open(double widest)
     while (from->name && strcmp(from->name, o->lens) != 0)
         from++;
     if (!from->name)
-        return record_error("there is no such lens"), NULL;
+        return record_error("no lens has this name"), NULL;
     if (!record_status(glint_prescription_parse(&web.table, from->text,
                                                 strlen(from->text), from->name,
                                                 &web.error)) ||

@@ -235,7 +235,7 @@ static void parse_recipe_line(struct recipe *r, struct recipe_lines *l,
     else if (word == 6)
         r->limit_s = (int)strtol(rest, NULL, 10);
     else
-        fprintf(stderr, "glint-measure: %s: no such line: %s\n", r->name, line);
+        fprintf(stderr, "glint-measure: %s: unknown line: %s\n", r->name, line);
 }
 
 char *recipe_read(struct recipe *r, char *text, const char *name)

@@ -130,7 +130,8 @@ static int parse_assignment(struct figure_row *row, const char *assignment)
     name[length] = '\0';
     return parse_row_parameter(row, name, assignment + length + 1)
                ? EXIT_OK
-               : tool_usage(row->tool, "no parameter, or not a value of it: %s",
+               : tool_usage(row->tool,
+                            "unknown parameter, or invalid value: %s",
                             assignment);
 }
 
