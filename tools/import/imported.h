@@ -3,8 +3,8 @@
  * imported.h - a lens read from another program's file, before it is written as
  * a lens table.
  *
- *     imported_begin(&lens, "x.zmx", strict);
- *     text = import_read(&lens, import_format_of("x.zmx"), data, &bytes);
+ *     imported_init(&lens, "x.zmx", strict);
+ *     text = import_parse_file(&lens, import_find_format("x.zmx"), data, &bytes);
  *
  * Readers store the file's values in its own units; imported_write_table()
  * completes them and writes a .lens table. Everything guessed or left out is

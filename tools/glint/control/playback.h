@@ -4,7 +4,7 @@
  * picture shows.
  *
  *     playback_init(&playback);
- *     playback_take(&playback, &line);              step, jump, play ...
+ *     playback_execute_line(&playback, &line);              step, jump, play ...
  *     frame = playback_next(&playback, elapsed_s);  each picture
  *
  * If a rate is set, playback follows time, not the number of pictures: frame k

@@ -3,8 +3,8 @@
  * steer.h - applies control lines to a scene and records the changes.
  *
  *     steer_open(&steer, &model);
- *     steer_take(&steer, scene, &line, where, &error);    each line
- *     steer_apply(&steer, scene);               a scene that was placed again
+ *     steer_execute_line(&steer, scene, &line, where, &error);    each line
+ *     steer_apply_state(&steer, scene);               a scene that was placed again
  *     steer_close(&steer);
  *
  * No change requires a bake: the next picture shows it.

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What an encoder has written: whether it decodes, and which properties of the
- * input it lacks.
+ * Runs ffmpeg and ffprobe as child processes: reads properties and frames of
+ * videos, chooses encoder options, and checks that a written file decodes and
+ * which properties of the input it has lost.
  */
 #define _GNU_SOURCE /* pipe2, memfd_create, fallocate */
 #include "ffmpeg/ffmpeg.h"
@@ -33,7 +34,7 @@ static bool contains_one_of(const char *text, const char *const *words)
     return false;
 }
 
-/* Returns the bits of a sample of PIXELS: 8, 10, 12 or 16. */
+/* Returns the bits per sample of pixel format PIXELS: 8, 10, 12 or 16. */
 static int pixel_format_bits(const char *pixels)
 {
     static const char *const of_8[] = {"nv12", "nv16", "yuv410p", NULL};
@@ -64,8 +65,8 @@ static bool has_pixel_format_alpha(const char *pixels)
     return contains_one_of(pixels, alpha);
 }
 
-/* Returns the chroma of PIXELS: "444" also of RGB, "422", "440", "420", "411",
- * "410", or "gray" for none. */
+/* Returns the chroma subsampling of pixel format PIXELS: "444" (also for RGB),
+ * "422", "440", "420", "411", "410", or "gray" without chroma. */
 static const char *pixel_format_chroma(const char *pixels)
 {
     static const char *const of_444[] = {"444",  "nv24", "nv42", "p410", "p416",
@@ -102,8 +103,8 @@ const char *find_pixel_format(const char *chroma, int bits)
     return table[i][column];
 }
 
-/* Returns the y4m format that keeps all samples of PIXELS but alpha, of chroma
- * that has no such format the nearest. */
+/* Returns the y4m pixel format that preserves all samples of PIXELS except
+ * alpha, or the nearest one if y4m lacks its chroma subsampling. */
 static const char *choose_y4m_pixel_format(const char *pixels)
 {
     const char *const chroma = pixel_format_chroma(pixels);
@@ -117,7 +118,7 @@ static const char *choose_y4m_pixel_format(const char *pixels)
 
 enum { MAX_CHILDREN = 4, NOT_FOUND = 127 };
 
-/* processes to kill at death; atomic, 0: free */
+/* children to kill when glint ends; atomic; 0: free entry */
 static pid_t running[MAX_CHILDREN];
 
 static void kill_all_children(void)
@@ -163,8 +164,8 @@ bool child_exists(const char *name)
 
 /* ----------------------------------------------------------------- starting */
 
-/* Runs ARGV in the child, with IN, OUT and SAID, unless that is -1, as its
- * streams. If it cannot be run, sends errno through FAILED. Makes system calls
+/* Executes ARGV in the forked child with the standard streams IN, OUT and SAID
+ * (-1: inherited). If this fails, writes errno to FAILED. Makes system calls
  * only. */
 static void exec_child_program(const char *const *argv, int in, int out,
                                int said, int failed)
@@ -186,7 +187,8 @@ static void exec_child_program(const char *const *argv, int in, int out,
     _exit(NOT_FOUND);
 }
 
-/* Returns the errno that kept the child from running, or 0. */
+/* Returns the errno with which the child failed to execute its program, or
+ * 0. */
 static int read_child_exec_errno(int fd)
 {
     int number = 0;
@@ -258,9 +260,10 @@ static enum glint_status start_program(struct child *child,
     return report_start_failure(argv[0], number, error);
 }
 
-/* Starts ARGV[0] of $PATH with ARGV, which ends with NULL. GLINT_E_UNSUPPORTED:
- * it is not there. GLINT_E_MEMORY: the system gives no process or descriptor.
- * GLINT_E_IO: it cannot be run. */
+/* Starts the program ARGV[0], found in $PATH, with the arguments ARGV, which
+ * end with NULL. Errors: GLINT_E_UNSUPPORTED if it is not installed,
+ * GLINT_E_MEMORY if the system has no free process or descriptor, GLINT_E_IO if
+ * it cannot be executed. */
 static enum glint_status start_ffmpeg_child(struct child *child,
                                             const char *const *argv,
                                             enum child_pipe kind,
@@ -270,9 +273,9 @@ static enum glint_status start_ffmpeg_child(struct child *child,
     return start_program(child, argv, kind, error);
 }
 
-/* As start_ffmpeg_child(), but the child's messages go to a file.
+/* Same as start_ffmpeg_child(), but the child's messages go to a file.
  * child_forward_messages() copies them to standard error and searches them for
- * WORDS, which end with NULL. */
+ * WORDS, a list that ends with NULL. */
 static enum glint_status
 start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
             const char *const *words, struct glint_error *error)
@@ -281,7 +284,7 @@ start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
 
     *child = CHILD_NONE;
     child->listening = words;
-    /* A file, not a pipe: nobody has to read it for the child to continue. */
+    /* A file instead of a pipe, as a full pipe would block the child. */
     child->said = memfd_create("said", MFD_CLOEXEC);
     if (child->said >= 0)
         fcntl(child->said, F_SETFL, O_APPEND);
@@ -293,8 +296,8 @@ start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
 
 /* ------------------------------------------------------------------ hearing */
 
-/* Copies the child's messages to standard error: whole lines, or, if ALL,
- * everything left. */
+/* Copies new messages of the child to standard error: whole lines, or
+ * everything if ALL. */
 static void forward_child_messages(struct child *child, bool all)
 {
     char text[4096];
@@ -313,8 +316,8 @@ static void forward_child_messages(struct child *child, bool all)
             child->heard |= strstr(text, child->listening[i]) != NULL;
         fwrite(text, 1, (size_t)n, stderr);
         child->told += n;
-        /* Frees the memory of the copied text; a failure only keeps that
-         * memory. */
+        /* Frees the memory of the copied text; if this fails, the memory stays
+         * in use. */
         (void)fallocate(child->said, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
                         0, child->told);
     }
@@ -335,8 +338,8 @@ static void close_child_messages(struct child *child)
 
 /* ------------------------------------------------------------------- ending */
 
-/* Closes the filter of a child that has ended: a running one may not have
- * opened it yet. */
+/* Closes the filter file of a child that has ended. A running child may not
+ * have opened it yet. */
 static void close_filter_script(struct child *child)
 {
     if (child->script >= 0)
@@ -402,16 +405,15 @@ bool ffmpeg_is_video(const char *name)
     return is_word_in_list(find_file_extension(name), extensions);
 }
 
-/* Sets URL to "file:NAME", which ffmpeg opens as a file whatever NAME looks
- * like. Returns false if it is too long. */
+/* Sets URL to "file:NAME", so that ffmpeg interprets NAME as a file in any
+ * case. Returns false if NAME is too long. */
 static bool set_file_url(char url[FFMPEG_URL], const char *name)
 {
     return (size_t)snprintf(url, FFMPEG_URL, "file:%s", name) < FFMPEG_URL;
 }
 
-/* The containers that an input may have, whatever its name. They refer to no
- * other file, unlike playlists (HLS, concat, DASH), and nothing but files is
- * opened for them. */
+/* Container formats that ffmpeg may read. They cannot refer to other files,
+ * unlike playlists (HLS, concat, DASH). The only protocol allowed is a file. */
 static const char containers[] =
     "mov,matroska,avi,mpeg,mpegvideo,mpegts,m4v,h264,hevc,asf,flv,"
     "ogg,mxf,mxf_opatom,gif";
@@ -420,8 +422,8 @@ static const char *const input_limits[] = {"-format_whitelist", containers,
 
 /* -------------------------------------------------------------------- probe */
 
-/* Sets WORD by LINE, "NAME=value", unless WORD is set already or the value is
- * unknown. */
+/* If LINE is "NAME=value", sets WORD to the value, unless WORD is already set
+ * or the value is "unknown". */
 static void parse_word_line(const char *line, const char *name, char *word)
 {
     const size_t n = strlen(name);
@@ -443,7 +445,7 @@ static void parse_number_line(const char *line, const char *name, int *number)
         tool_parse_integer(word, 1, GLINT_MAX_SIDE, number);
 }
 
-/* Takes LINE of the first stream of pictures. */
+/* Parses LINE, a property of the first video stream. */
 static void parse_stream_line(struct ffmpeg_video *v, const char *line)
 {
     parse_word_line(line, "codec_name", v->codec);
@@ -460,8 +462,8 @@ static void parse_stream_line(struct ffmpeg_video *v, const char *line)
     parse_number_line(line, "height", &v->height);
 }
 
-/* Returns the numerator of the ratio NAME of TEXT, lines of ffprobe's, in units
- * of 1 / UNITS; -1 if it is not there. */
+/* Returns the ratio NAME in TEXT, lines of ffprobe, as a numerator for the
+ * denominator UNITS; -1 if it is missing. */
 static long parse_ratio_numerator(const char *text, const char *name,
                                   long units)
 {
@@ -477,8 +479,8 @@ static long parse_ratio_numerator(const char *text, const char *name,
     return d > 0 ? (n * units + d / 2) / d : -1;
 }
 
-/* Takes the mastering display, the light levels and Dolby Vision from TEXT,
- * lines on the side data of a frame or a stream. */
+/* Parses mastering display, light levels and Dolby Vision from TEXT, the side
+ * data of a frame or stream. */
 static void parse_side_data(struct ffmpeg_video *v, const char *text)
 {
     static const char *const names[] = {
@@ -504,7 +506,7 @@ static void parse_side_data(struct ffmpeg_video *v, const char *text)
         v->has_dolby || strstr(text, "DOVI") || strstr(text, "Dolby Vision");
 }
 
-/* Counts a stream of CODEC and of the KIND that ffprobe names. */
+/* Counts a stream with CODEC and the type KIND, a word of ffprobe. */
 static void count_stream_of_type(struct ffmpeg_video *v, const char *codec,
                                  const char *kind)
 {
@@ -526,8 +528,8 @@ static void count_stream_of_type(struct ffmpeg_video *v, const char *codec,
     }
 }
 
-/* Takes a line on all streams, chapters and tags; CODEC is that of the stream
- * it is of. A track of time code is counted by its tag alone. */
+/* Parses LINE about any stream, a chapter or tags. CODEC is that of the current
+ * stream. A time code track is counted by its tag only. */
 static void parse_other_stream_line(struct ffmpeg_video *v, char *line,
                                     char codec[FFMPEG_WORD])
 {
@@ -555,7 +557,7 @@ static void parse_other_stream_line(struct ffmpeg_video *v, char *line,
         snprintf(v->tags + n, sizeof v->tags - n, " %s", line + 4);
 }
 
-/* Reads the output of CHILD into TEXT as a string, up to PROBE_BYTES. */
+/* Reads the output of CHILD into TEXT as a string, at most PROBE_BYTES. */
 static void read_child_output(struct child *child, char text[PROBE_BYTES])
 {
     size_t used = 0;
@@ -568,9 +570,9 @@ static void read_child_output(struct child *child, char text[PROBE_BYTES])
     text[used] = '\0';
 }
 
-/* Sets TEXT to the lines that ffprobe prints about ENTRIES of URL. OPTIONS are
- * up to five words, ended by NULL. Returns false if ffprobe fails; TEXT is ""
- * if it cannot be run. */
+/* Sets TEXT to the output of ffprobe about ENTRIES of URL. OPTIONS: up to five
+ * arguments, ending with NULL. Returns false if ffprobe fails; TEXT is "" if it
+ * cannot be started. */
 static bool run_ffprobe(const char *url, const char *const *options,
                         const char *entries, char text[PROBE_BYTES])
 {
@@ -647,7 +649,8 @@ long ffmpeg_count_frames(const char *name)
     return strtol(n, NULL, 10);
 }
 
-/* Adds KIND and TAG to REPORT, ", KIND TAG", if they are unknown. */
+/* Appends ", KIND TAG" to REPORT if VALUE is unknown. Returns VALUE, or the
+ * default for an unknown one. */
 static int add_unknown_tag(int value, const char *kind, const char *tag,
                            char report[FFMPEG_REPORT])
 {
@@ -686,7 +689,7 @@ void ffmpeg_colours(const struct ffmpeg_video *video,
 
 /* ------------------------------------------------------------------- words */
 
-/* A command line as it grows. N also counts words that do not fit. */
+/* Command line under construction. N also counts arguments that did not fit. */
 struct words {
     const char *word[MAX_WORDS + 1];
     int n;
@@ -705,7 +708,7 @@ static void add_two_arguments(struct words *w, const char *a, const char *b)
     add_argument(w, b);
 }
 
-/* Adds the input URL. */
+/* Adds "-i URL" with the limits for inputs. */
 static void add_input_url(struct words *w, const char *url)
 {
     for (int i = 0; input_limits[i]; i++)
@@ -723,7 +726,7 @@ static void begin_ffmpeg_arguments(struct words *w)
         add_argument(w, first[i]);
 }
 
-/* Ends the words with NULL, or reports that there are too many. */
+/* Terminates the arguments by NULL. Returns an error if there were too many. */
 static enum glint_status end_arguments(struct words *w,
                                        struct glint_error *error)
 {
@@ -734,8 +737,8 @@ static enum glint_status end_arguments(struct words *w,
     return GLINT_OK;
 }
 
-/* Messages of ffmpeg 5 on files that are cut off, at which it exits with 0;
- * ends with NULL. */
+/* Messages of ffmpeg 5 about truncated files, for which it exits with 0; ends
+ * with NULL */
 static const char *const ffmpeg_cut_words[] = {
     "File ended prematurely" /* .mkv, .webm */, "partial file" /* .mp4, .mov */,
     NULL};
@@ -749,7 +752,7 @@ static enum glint_status report_long_name(const char *name,
 
 /* ------------------------------------------------------------------- times */
 
-/* Returns the ratio TEXT, "N/D", or 0. */
+/* Returns the value of TEXT, "N/D", or 0 if it is malformed. */
 static double parse_ratio(const char *text)
 {
     const char *end;
@@ -774,8 +777,8 @@ static int compare_times(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Reads from FROM lines "seconds,flags" of packets; those with the flag D are
- * not shown. */
+/* Reads packet times from FROM, lines "seconds,flags". Skips packets with the
+ * flag D, which are not displayed. */
 static void read_packet_times(FILE *from, struct ffmpeg_times *times)
 {
     double *more;
@@ -801,8 +804,9 @@ static void read_packet_times(FILE *from, struct ffmpeg_times *times)
         qsort(times->at, (size_t)times->n, sizeof *times->at, compare_times);
 }
 
-/* Returns whether TIMES deviate from RATE frames per second: one step by more
- * than a quarter and 2 ms, or all steps together by half a step. */
+/* Returns whether TIMES deviate from a constant RATE, frames per second: a
+ * single interval by more than a quarter and 2 ms, or the total by half an
+ * interval. */
 static bool is_frame_rate_variable(const struct ffmpeg_times *times,
                                    double rate)
 {
@@ -857,8 +861,8 @@ bool ffmpeg_read_times(struct ffmpeg_times *times, const char *name,
     return true;
 }
 
-/* Writes an expression of the frame's number N that is TIMES[N] in units of
- * 1 / 90000 s for N from FIRST to END - 1: a tree of comparisons. */
+/* Writes an ffmpeg expression that maps the frame number N, FIRST .. END - 1,
+ * to TIMES[N] in units of 1 / 90000 s: a tree of comparisons. */
 static void write_time_expression(FILE *to, const double *times, int first,
                                   int end)
 {
@@ -875,9 +879,9 @@ static void write_time_expression(FILE *to, const double *times, int first,
     fputc(')', to);
 }
 
-/* Writes to a file in memory the filter that gives frames their TIMES, after
- * FILTER unless that is NULL. NAME becomes its name. Returns its descriptor, or
- * -1 if there is none to be had. */
+/* Writes a filter script that sets the TIMES of frames, after FILTER (may be
+ * NULL), to a memory file. Sets NAME to its name. Returns its descriptor, or -1
+ * on failure. */
 static int write_filter_script(const struct ffmpeg_times *times,
                                const char *filter, char name[FFMPEG_WORD + 16])
 {
@@ -929,8 +933,8 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
 
 /* ---------------------------------------------------------------- encoding */
 
-/* Returns whether files with extension EXT can hold sound of CODEC without
- * encoding it again. */
+/* Returns whether files with extension EXT can contain sound of CODEC without
+ * re-encoding. */
 static bool can_hold_sound_codec(const char *ext, const char *codec)
 {
     static const char *const webm[] = {"opus", "vorbis", NULL};
@@ -953,14 +957,14 @@ static bool can_hold_sound_codec(const char *ext, const char *codec)
     for (size_t i = 0; i < sizeof table / sizeof *table; i++)
         if (strcasecmp(ext, table[i].ext) == 0)
             return is_word_in_list(codec, table[i].codecs);
-    return true; /* .mkv and .ts take nearly all */
+    return true; /* .mkv and .ts accept nearly all codecs */
 }
 
 static const char *const of_mov[] = {"mov", "mp4", "m4v", "3gp", NULL};
 static const char *const of_mkv[] = {"mkv", "mka", NULL};
 
-/* Adds the subtitles of the second input where a file of type EXT takes them:
- * Matroska any, others text alone, in a codec of their own. */
+/* Adds arguments for the subtitles of the second input: Matroska accepts all,
+ * other types of EXT only text, in their own codec. */
 static void add_subtitle_arguments(struct words *w, const char *ext,
                                    const struct ffmpeg_video *v)
 {
@@ -983,8 +987,8 @@ static void add_subtitle_arguments(struct words *w, const char *ext,
     }
 }
 
-/* Adds sound, subtitles, chapters and tags of the second input; TIMECODE has
- * room for a word. */
+/* Adds arguments that copy sound, subtitles, chapters and tags of the second
+ * input. TIMECODE is memory for one argument. */
 static void add_other_streams(struct words *w, const struct ffmpeg_target *t,
                               const struct ffmpeg_video *v,
                               char timecode[FFMPEG_REPORT])
@@ -998,7 +1002,7 @@ static void add_other_streams(struct words *w, const struct ffmpeg_target *t,
     snprintf(timecode, FFMPEG_REPORT, "timecode=%s", v->timecode);
     if (*v->timecode)
         add_two_arguments(w, "-metadata:s:v:0", timecode);
-    /* Without this the tags of phones, as the place, are left out. */
+    /* Without this flag, tags of phones such as the location are dropped. */
     if (is_word_in_list(ext, of_mov) && strstr(v->tags, " com."))
         add_two_arguments(w, "-movflags", "use_metadata_tags");
     if (can_hold_sound_codec(ext, v->sound))
@@ -1010,9 +1014,8 @@ static void add_other_streams(struct words *w, const struct ffmpeg_target *t,
                 t->name, ext, v->sound);
 }
 
-/* Adds the meaning of V's codes: range, matrix, transfer and primaries. It is
- * stated of the input and again of the output, so that ffmpeg converts
- * nothing. */
+/* Adds range, matrix, transfer and primaries of V for both input and output, so
+ * that ffmpeg does not convert colours. */
 static void add_colour_tags(struct words *w, const struct ffmpeg_target *t,
                             const struct ffmpeg_video *v)
 {
@@ -1027,8 +1030,8 @@ static void add_colour_tags(struct words *w, const struct ffmpeg_target *t,
         add_two_arguments(w, "-color_primaries", v->primaries);
 }
 
-/* Returns the filter that pads odd sides to even sides if chroma is subsampled,
- * or NULL. */
+/* Returns the filter that pads an odd width or height by one pixel if chroma is
+ * subsampled, or NULL. */
 static const char *find_padding_filter(const struct ffmpeg_target *t,
                                        const struct ffmpeg_video *v)
 {
@@ -1041,13 +1044,14 @@ static const char *find_padding_filter(const struct ffmpeg_target *t,
                   : "pad=iw:ih+1,fillborders=bottom=1:mode=smear";
 }
 
-/* Adds the options of files whose pictures are H.264. Odd sides grow by one
- * where pixels share their chroma.
+/* Adds the encoder options of H.264 files. Odd sizes are padded by one pixel if
+ * chroma is subsampled.
  *
- * ffmpeg's .mov writer labels H.264 of 10 bits in the sizes of AVC-Intra (4:2:2
- * of 1280x720 and 1920x1080, 4:2:0 of 960x720 and 1440x1080) as AVC-Intra,
- * which leaves the decoder's parameters out of the file: nothing decodes it.
- * The label avc1 has them, but is taken in these sizes with -strict -1 only. */
+ * ffmpeg's .mov writer labels 10-bit H.264 in the sizes of AVC-Intra (4:2:2 of
+ * 1280x720 and 1920x1080, 4:2:0 of 960x720 and 1440x1080) as AVC-Intra and
+ * omits the decoder parameters, so that no program can decode the file. The
+ * label avc1 includes them, but in these sizes ffmpeg accepts it only with
+ * -strict -1. */
 static void add_h264_options(struct words *w, const struct ffmpeg_target *t,
                              const struct ffmpeg_video *v)
 {
@@ -1072,14 +1076,14 @@ static void add_h264_options(struct words *w, const struct ffmpeg_target *t,
             t->name, t->width + t->width % 2, t->height + t->height % 2);
 }
 
-/* An encoder of a family of codecs. */
+/* An encoder, and the codecs and file types for which it is used */
 struct family {
-    const char *codec; /* of the input */
+    const char *codec; /* codec of the input */
     const char
-        *types; /* extensions of files that take it, each after a blank */
+        *types; /* extensions of supported output files, each after a blank */
     const char *encoder;
-    const char *options; /* words with blanks */
-    const char *alpha;   /* format with alpha, or NULL */
+    const char *options; /* ffmpeg arguments, separated by blanks */
+    const char *alpha;   /* pixel format with alpha, or NULL */
 };
 
 static const struct family families[] = {
@@ -1117,8 +1121,8 @@ static bool is_encoder_installed(const char *encoder)
     return strstr(text, word) != NULL;
 }
 
-/* Returns the encoder of V's codec for T's type, or else of HEVC for HDR, as
- * players expect it; NULL: that of the type. */
+/* Returns the encoder for V's codec if the type of T supports it; else HEVC for
+ * HDR, which players expect; NULL: the default encoder of the type. */
 static const struct family *choose_encoder_family(const struct ffmpeg_target *t,
                                                   const struct ffmpeg_video *v)
 {
@@ -1138,7 +1142,7 @@ static const struct family *choose_encoder_family(const struct ffmpeg_target *t,
     return found && is_encoder_installed(found->encoder) ? found : NULL;
 }
 
-/* Returns prores_ks's word for V's profile. */
+/* Returns the name of V's profile for the encoder prores_ks. */
 static const char *find_prores_profile(const struct ffmpeg_video *v)
 {
     static const char *const names[][2] = {
@@ -1165,7 +1169,7 @@ static void add_interlace_flags(struct words *w, const struct ffmpeg_video *v)
         add_two_arguments(w, "-flags", "+ildct+ilme");
 }
 
-/* Adds the words of OPTIONS, and replaces the blanks between them by zeros. */
+/* Splits OPTIONS at blanks, in place, and adds each word as an argument. */
 static void add_option_words(struct words *w, char *options)
 {
     char *word, *rest = options;
@@ -1174,7 +1178,7 @@ static void add_option_words(struct words *w, char *options)
         add_argument(w, word);
 }
 
-/* Adds the options of encoder F, kept in TEXT. */
+/* Adds the options of encoder F; TEXT is memory for their words. */
 static void add_encoder_family(struct words *w, const struct ffmpeg_target *t,
                                const struct ffmpeg_video *v,
                                const struct family *f, char text[FFMPEG_REPORT])
@@ -1223,7 +1227,7 @@ static void add_picture_options(struct words *w, const struct ffmpeg_target *t,
         *pad = find_padding_filter(t, v);
         add_interlace_flags(w, v);
     } else {
-        /* MPEG-1 has no fields; .ogv and .wmv neither. */
+        /* MPEG-1 does not support interlacing, nor do .ogv and .wmv. */
         if (is_video_interlaced(v) && strncasecmp(ext, "mp", 2) == 0)
             add_two_arguments(w, "-c:v", "mpeg2video");
         add_two_arguments(w, "-q:v", "2");
@@ -1232,8 +1236,8 @@ static void add_picture_options(struct words *w, const struct ffmpeg_target *t,
     }
 }
 
-/* Adds a filter that gives the pictures the alpha of the second input, in
- * FORMAT; TEXT has room for it. */
+/* Adds a filter that copies the alpha of the second input to the pictures, in
+ * pixel format FORMAT. TEXT is memory for the filter. */
 static void add_alpha_filter(struct words *w, const char *format,
                              char text[FFMPEG_REPORT])
 {
@@ -1332,12 +1336,11 @@ void ffmpeg_print_manual_commands(const struct tool *tool, const char *in,
 
 enum { LINE = 512, CAUSE = 48 };
 
-/* The frames to decode: the first one, those from a second before the end on,
- * or all. */
+/* Frames to decode: the first one, those of the last second, or all */
 enum piece { FIRST, LAST, ALL };
 
-/* Sets CAUSE to LINE, a message of ffmpeg, without the context before it:
- * "[h264 @ 0x55d0] " or URL and ": ". */
+/* Sets CAUSE to LINE, a message of ffmpeg, without its prefix such as "[h264 @
+ * 0x55d0] " or "URL: ". */
 static void set_ffmpeg_cause(char cause[CAUSE], const char *line,
                              const char *url)
 {
@@ -1351,9 +1354,9 @@ static void set_ffmpeg_cause(char cause[CAUSE], const char *line,
     snprintf(cause, CAUSE, "%.*s", (int)strcspn(line, "\r\n"), line);
 }
 
-/* Reads from FROM what ffmpeg prints: a line that begins with a digit for each
+/* Reads the output of ffmpeg from FROM: one line that begins with a digit per
  * frame, lines with '#', and messages, the first of which becomes CAUSE.
- * Returns the number of frames, or 0 if the file is cut off. */
+ * Returns the number of frames, or 0 if the file is truncated. */
 static long count_printed_frames(FILE *from, const char *url, char cause[CAUSE])
 {
     char line[LINE];
@@ -1370,13 +1373,13 @@ static long count_printed_frames(FILE *from, const char *url, char cause[CAUSE])
     return is_cut ? 0 : n;
 }
 
-/* Decodes PIECE of URL. Returns false if that fails or yields no frame, with
- * the reason in CAUSE. */
+/* Decodes PIECE of URL. Returns false with the reason in CAUSE if decoding
+ * fails or yields no frame. */
 static bool decode_video_piece(const char *url, enum piece piece,
                                char cause[CAUSE])
 {
-    /* Packets from the key frame before the place on give frames only with the
-     * time stamps that they have in the file. */
+    /* Frames decoded from the preceding key frame on appear in the output only
+     * if they keep the time stamps of the file. */
     static const char *const from_end[] = {"-copyts", "-noaccurate_seek",
                                            "-sseof", "-1", NULL};
     const char *argv[24] = {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel",
@@ -1423,7 +1426,7 @@ enum glint_status ffmpeg_check(const char *file, const char *name,
         return glint_error_report(error, GLINT_E_OUTPUT, name,
                                   "the name is too long");
     has_first = decode_video_piece(url, FIRST, cause);
-    /* Files without an index, as .ts, are not found a way into from their end;
+    /* ffmpeg cannot seek from the end of files without an index, such as .ts;
      * all of their frames are decoded. */
     if (has_first && (decode_video_piece(url, LAST, cause) ||
                       decode_video_piece(url, ALL, cause)))
@@ -1435,7 +1438,7 @@ enum glint_status ffmpeg_check(const char *file, const char *name,
         has_first ? "last" : "first", cause);
 }
 
-/* The words of a report, ", no alpha, ...". */
+/* Text of a report of losses, ", no alpha, ..." */
 struct report {
     char text[FFMPEG_TAGS];
     size_t n;
@@ -1455,7 +1458,7 @@ __attribute__((format(printf, 2, 3))) static void note(struct report *report,
         report->n += (size_t)n;
 }
 
-/* Adds to the report that only MADE of FROM streams of KIND are left. */
+/* Reports that only MADE of FROM streams of type KIND remain. */
 static void note_lost_streams(struct report *r, const char *kind, int from,
                               int made)
 {
@@ -1463,8 +1466,8 @@ static void note_lost_streams(struct report *r, const char *kind, int from,
         note(r, ", %d of %d %s", made, from, kind);
 }
 
-/* Adds to the report the tags of FROM that are not in MADE, ignoring case,
- * except tags that belong to the file type. */
+/* Reports the tags of FROM that are missing in MADE, ignoring case, except tags
+ * that belong to the file type. */
 static void note_lost_tags(struct report *r, const char *from, const char *made)
 {
     static const char *const own[] = {"major_brand",

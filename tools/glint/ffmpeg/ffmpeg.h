@@ -43,11 +43,11 @@ struct child {
     int fd;     /* glint's end of the pipe; -1: closed */
     int said;   /* file that receives its standard error; -1: it writes to
                    glint's standard error */
-    off_t told; /* bytes of SAID that were copied to glint's standard error */
+    off_t told; /* bytes of SAID already copied to glint's standard error */
     const char *const *listening; /* texts to find in its messages; ends with
                                      NULL, not owned */
     bool heard;                   /* one of the texts was found */
-    int script; /* file from which it reads its filter; -1: none */
+    int script; /* file from which the child reads its filter; -1: none */
 };
 
 /* Initial value: no process. */
@@ -62,25 +62,27 @@ enum {
 
 enum ffmpeg_subtitles { SUBTITLES_NONE, SUBTITLES_TEXT, SUBTITLES_IMAGES };
 
-/* Properties of a video in ffmpeg's words; "" if unknown. */
+/* Properties of a video as words of ffmpeg; "" if unknown */
 struct ffmpeg_video {
     char codec[FFMPEG_WORD], profile[FFMPEG_WORD]; /* hevc, Main 10 ... */
     char pixels[FFMPEG_WORD];                      /* yuv420p ... */
     char fields[FFMPEG_WORD]; /* progressive, tt, bb, tb, bt */
     char rate[FFMPEG_WORD], mean_rate[FFMPEG_WORD]; /* frames per second, N/D */
-    char timecode[FFMPEG_WORD];                     /* of the first frame */
+    char timecode[FFMPEG_WORD]; /* time code of the first frame */
     char range[FFMPEG_WORD], space[FFMPEG_WORD], transfer[FFMPEG_WORD],
         primaries[FFMPEG_WORD];
     char sound[FFMPEG_WORD]; /* codec of the first audio stream; "": no audio */
     int width, height;       /* 0: unknown */
-    /* number of streams of pictures, sound, subtitles, data and attached files;
-     * number of chapters */
+    /* number of video, audio, subtitle, data and attachment streams, and of
+     * chapters */
     int n_pictures, n_sounds, n_subtitles, n_data, n_files, n_chapters;
     enum ffmpeg_subtitles subtitles;
-    char subtitle[FFMPEG_WORD]; /* codec of the first subtitles */
-    char mastering[160]; /* in x265's format: G(x,y)B(x,y)R(x,y)WP(x,y)L(a,b) */
-    char light[FFMPEG_WORD]; /* max-cll: "1000,400" */
-    bool has_dolby;          /* Dolby Vision */
+    char subtitle[FFMPEG_WORD]; /* codec of the first subtitle stream */
+    char mastering[160];        /* mastering display in the format of x265:
+                                   G(x,y)B(x,y)R(x,y)WP(x,y)L(a,b) */
+    char light[FFMPEG_WORD]; /* max and mean content light level in the format
+                                of x265's max-cll: "1000,400", cd/m2 */
+    bool has_dolby;          /* the video has Dolby Vision metadata */
     char tags[FFMPEG_TAGS];  /* names of the file's tags, a blank before each */
 };
 
@@ -112,11 +114,11 @@ const char *find_pixel_format(const char *chroma, int bits);
 /* Returns whether NAME is a program in $PATH. */
 bool child_exists(const char *name);
 
-/* Copies lines that CHILD has written since the last call to standard error. */
+/* Copies new lines of CHILD's messages to standard error. */
 void child_forward_messages(struct child *child);
 
 /* Closes the pipe and waits until the child has ended. Returns its exit status,
- * or 128 plus the signal that killed it, or 0 if there is no child. */
+ * or 128 plus the signal that killed it; 0 if there is no child. */
 int child_wait(struct child *child);
 
 /* Kills the child, if there is one, and waits for its exit status. */

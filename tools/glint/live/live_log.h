@@ -7,7 +7,7 @@
  *     live_stats_add(&stats, &times);                       each frame
  *     if (live_stats_due(&stats, now)) {
  *         fputs(live_stats_line(&stats, now, true, text), stderr);
- *         live_stats_next(&stats, now);
+ *         live_stats_begin_second(&stats, now);
  *     }
  *     puts(live_stats_json(&stats, now, true, text));       at the end
  *

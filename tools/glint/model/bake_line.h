@@ -3,11 +3,11 @@
  * The command lines "glint bake INPUT -o OUT" for scenes, environments, motions
  * and translucent media: their options and their output file.
  *
- *     code = bake_line_begin(&tool, argc, argv, options, take, &line, "one");
+ *     code = bake_line_parse(&tool, argc, argv, options, take, &line, "one");
  *     if (code >= 0 || !tool.written)
  *         return code;
  *     ... bakes argv[optind] ...
- *     code = tool_save(&tool, tool.written, GLINT_OUTPUT_BINARY, data, bytes);
+ *     code = tool_save_file(&tool, tool.written, GLINT_OUTPUT_BINARY, data, bytes);
  */
 #ifndef GLINT_TOOLS_MODEL_BAKE_LINE_H
 #define GLINT_TOOLS_MODEL_BAKE_LINE_H

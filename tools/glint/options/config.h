@@ -3,7 +3,7 @@
  * config.h - reads options of a command from a file, before its command line.
  *
  *     struct config config = {tool, options, take, &live, NULL};
- *     path = tool_value_of(argc, argv, "o:", options, OPT_CONFIG);
+ *     path = tool_find_option_value(argc, argv, "o:", options, OPT_CONFIG);
  *     if (path && (code = config_read(&config, path)) != EXIT_OK)
  *         return code;
  *     ... getopt_long() as usual: the command line overrides the file

@@ -4,9 +4,9 @@
  *
  *     struct suggest s;
  *     suggest_begin(&s, "ovrelay");
- *     suggest_try(&s, "overlay", 7);                    each known word
- *     if (suggest_best(&s))
- *         printf("did you mean %s?", suggest_best(&s));
+ *     suggest_consider(&s, "overlay", 7);                    each known word
+ *     if (suggest_find_best(&s))
+ *         printf("did you mean %s?", suggest_find_best(&s));
  */
 #ifndef GLINT_TOOLS_OPTIONS_SUGGEST_H
 #define GLINT_TOOLS_OPTIONS_SUGGEST_H

@@ -4,13 +4,13 @@
  * line: key frames, lists of lamps, poses and control lines.
  *
  *     text_lines_open(&lines, path, NULL, max_bytes, &error);
- *     status = text_lines_each(&lines, take, ctx, &error);
+ *     status = text_lines_parse_each(&lines, take, ctx, &error);
  *
  * or from a pipe, without waiting for data:
  *
- *     text_lines_pipe(&lines, path, &error);
- *     text_lines_turn(&lines);                             each picture
- *     while ((line = text_lines_next(&lines)))
+ *     text_lines_open_pipe(&lines, path, &error);
+ *     text_lines_begin_turn(&lines);                             each picture
+ *     while ((line = text_lines_read_next(&lines)))
  *         ...
  *     text_lines_close(&lines);
  */

@@ -40,8 +40,8 @@ void apart_add_drawing_files(struct apart *files,
     apart_add_output(files, "--save-lights", o->save_lights);
 }
 
-/* Returns whether writing OUTPUT would overwrite INPUT. Patterns are not files
- * and are compared as text. */
+/* Returns whether writing OUTPUT would overwrite INPUT. Numbered patterns are
+ * not existing files, so they are compared as text. */
 static bool would_overwrite_input(const char *input, const char *output)
 {
     return glint_target_is_input(input, output) ||

@@ -4,9 +4,9 @@
  * another output.
  *
  *     struct apart files = {.n_read = 0};
- *     apart_line(&files, &drawing.line);      what its options name
- *     apart_read(&files, NULL, "in.png");         the input
- *     apart_write(&files, "-o", "out.png");
+ *     apart_add_drawing_files(&files, &drawing.line);      what its options
+ * name apart_add_input(&files, NULL, "in.png");         the input
+ *     apart_add_output(&files, "-o", "out.png");
  *     code = apart_check(&tool, &files);
  *
  * Patterns of numbered files are compared as text. */
@@ -31,7 +31,7 @@ void apart_add_input(struct apart *files, const char *option, const char *path);
 void apart_add_output(struct apart *files, const char *option,
                       const char *path);
 
-/* Adds the files that the options of LINE name. */
+/* Adds all input and output files named by the options of LINE. */
 void apart_add_drawing_files(struct apart *files,
                              const struct drawing_line *line);
 

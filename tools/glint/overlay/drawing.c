@@ -12,10 +12,9 @@
 #include "overlay/lamp_excess.h"
 #include "overlay/show_lights.h"
 
-/* Quality of a preview, as of draft. */
+/* --quality of a preview: that of the name draft */
 static const double preview_quality = 0.25;
 
-/* Returns the focal length of the lens, mm. */
 static double lens_focal_mm(const struct drawing *d)
 {
     return d->files.lens.setup.optics.focal_mm;
@@ -23,8 +22,8 @@ static double lens_focal_mm(const struct drawing *d)
 
 /* ------------------------------------------------------------------ opening */
 
-/* Lowers the quality of a preview unless one was chosen; the model stays the
- * same. */
+/* Lowers --quality for a preview unless the user set it. The baked model stays
+ * the same. */
 static void lower_preview_quality(struct settings *s)
 {
     struct glint_options *const o = &s->options;
@@ -39,7 +38,8 @@ static void lower_preview_quality(struct settings *s)
         o->area_samples = 1;
 }
 
-/* Zooms to ZOOM; GLINT_E_ARGUMENT: it stays where it was. */
+/* Zooms the lens to ZOOM, mm or 0 .. 1. On GLINT_E_ARGUMENT the zoom does not
+ * change. */
 static enum glint_status zoom_lens_to(struct drawing *d, double zoom,
                                       struct glint_error *error)
 {
@@ -55,7 +55,8 @@ static enum glint_status zoom_lens_to(struct drawing *d, double zoom,
     return GLINT_OK;
 }
 
-/* Sets an option by a line of control. */
+/* Sets option NAME to VALUE; called for each control line that sets an
+ * option. */
 static enum glint_status set_option_by_control(void *ctx, const char *name,
                                                double value,
                                                struct glint_error *error)
@@ -92,7 +93,8 @@ static enum glint_status set_option_by_control(void *ctx, const char *name,
     return status;
 }
 
-/* Returns the most lamps besides those that are found. */
+/* Returns the max number of lamps from options, lists and the scene, without
+ * those detected in the picture. */
 static int count_max_given_lamps(const struct drawing *d)
 {
     return d->line.n_hand + d->files.list.n +
@@ -147,7 +149,8 @@ void drawing_replace(struct drawing *drawing, const struct drawing *fresh)
     const struct lamp_save save = drawing->files.save;
     const int n_frames = drawing->run.n_frames;
 
-    /* drawing_close() leaves the file of saved lamps open, which SAVE has */
+    /* drawing_close() must not close the file of saved lamps, which SAVE now
+     * owns */
     drawing->files.save.is_open = false;
     drawing_close(drawing);
     *drawing = *fresh;
@@ -170,7 +173,8 @@ int drawing_finish(const struct tool *tool, struct drawing *drawing)
 
 /* ------------------------------------------------------------------- sizing */
 
-/* Points of a light's disc that shadows are drawn by, where there is time. */
+/* Shadow rays per light: points on the light's disc, for static pictures and
+ * for video */
 enum { STILL_POINTS = 16, VIDEO_POINTS = 4 };
 
 static int allocate_scene(struct drawing *d, int width, int height)
@@ -195,13 +199,12 @@ static int allocate_scene(struct drawing *d, int width, int height)
     return over_scene_allocate(&d->files.scene, &dials);
 }
 
-/* Returns whether the flare is drawn by exact rays. */
 static bool are_rays_exact(const struct drawing *d)
 {
     return d->files.has_lens && !d->files.lens.model.data;
 }
 
-/* Shows progress while rays are exact. */
+/* Shows the progress of exact rays, which take seconds per frame. */
 static void show_exact_ray_progress(const struct tool *tool, struct drawing *d,
                                     struct glint_engine_config *cfg)
 {
@@ -212,15 +215,17 @@ static void show_exact_ray_progress(const struct tool *tool, struct drawing *d,
                 "first (slower for a zoom), then draws each frame\n",
                 tool->name, d->files.lens.table.name);
     tool_progress_start(&d->run.progress, tool, "exact rays");
-    /* Measuring how bright flares are begins at 0 several times: an estimate
-     * would be wrong, so only a terminal's bar moves. */
+    /* The brightness measurement restarts the progress at 0 several times,
+     * which makes a time estimate wrong. So only the progress bar of a terminal
+     * is shown. */
     d->run.progress.shown &= d->run.progress.is_terminal;
     d->run.progress.told = true;
     cfg->drawing.progress = tool_progress_show;
     cfg->drawing.progress_ctx = &d->run.progress;
 }
 
-/* Prints how much memory a picture takes at least if --memory is too little. */
+/* Prints the min --memory of a picture if the given one is too small. Returns
+ * an exit code. */
 static int report_sizing_failure(const struct tool *tool,
                                  const struct drawing *d,
                                  enum glint_status status,
@@ -252,7 +257,7 @@ static int allocate_engine(const struct tool *tool, struct drawing *d)
     opened_lens_engine(tool, &d->files.lens, &line->settings, run->view.width,
                        run->view.height, &cfg);
     cfg.search.more_lamps = count_max_given_lamps(d);
-    /* what the scene leaves */
+    /* the memory that the scene does not use */
     if (line->reserve_bytes && !d->files.lens.is_unbaked)
         cfg.arena_bytes =
             line->reserve_bytes > scene ? line->reserve_bytes - scene : 1;
@@ -274,7 +279,8 @@ static int allocate_engine(const struct tool *tool, struct drawing *d)
     return EXIT_OK;
 }
 
-/* Warns of lamps of --light-at outside a picture of WIDTH x HEIGHT. */
+/* Prints a warning for each lamp of --light-at outside the picture, WIDTH x
+ * HEIGHT. */
 static void warn_of_off_screen_lamps(const struct tool *tool,
                                      const struct lamp_list *at, int width,
                                      int height)
@@ -314,8 +320,9 @@ int drawing_size(const struct tool *tool, struct drawing *drawing, int width,
 
 /* --------------------------------------------------------------- key frames */
 
-/* Zooms as the key frames say. Where the lens does not zoom so far it stays
- * where the frame before was, which opening rules out. */
+/* Zooms the lens to the value of the key frames at FRAME. If the lens cannot
+ * zoom so far, the zoom of the previous frame remains; opening the files has
+ * ruled this out. */
 static void zoom_lens_by_keys(struct drawing *d, int frame)
 {
     const double before = d->line.settings.zoom.zoom;
@@ -327,7 +334,8 @@ static void zoom_lens_by_keys(struct drawing *d, int frame)
         zoom_lens_to(d, zoom, &error);
 }
 
-/* Stops the lens as KEYS say; the exposure stays that of the widest stop. */
+/* Sets the f-number of the lens by the key frames at FRAME. The exposure stays
+ * that of the widest stop. */
 static enum glint_status stop_lens_by_keys(struct drawing *d, int frame)
 {
     const struct keys *const keys = &d->files.keys;
@@ -354,7 +362,7 @@ static enum glint_status stop_lens_by_keys(struct drawing *d, int frame)
     return status;
 }
 
-/* Moves the lamp of KEYS, the last of LIST. */
+/* Moves the lamp of the key frames, which is the last lamp of LIST. */
 static void move_lamp_by_keys(struct lamp_list *list, const struct keys *keys,
                               int frame)
 {
@@ -369,8 +377,8 @@ static void move_lamp_by_keys(struct lamp_list *list, const struct keys *keys,
         exp2(keys_interpolate_at(keys, KEYS_EV, frame, GLINT_LIGHT_AT_EV));
 }
 
-/* Sets lens and brightness to those of the next frame: lines of control, then
- * key frames. */
+/* Sets zoom, f-number and brightness of the next frame: first by control lines,
+ * then by key frames. */
 static enum glint_status apply_control_and_keys(struct drawing *d)
 {
     struct glint_options *const o = &d->line.settings.options;
@@ -395,9 +403,9 @@ static enum glint_status apply_control_and_keys(struct drawing *d)
 
 /* -------------------------------------------------------------------- lamps */
 
-/* Returns whether one of the N lamps GIVEN lies in the disc of LAMP, which was
- * found, or within the distance at which the finder merges lamps: a hundredth
- * of the picture's width. */
+/* Returns whether one of the N user-defined lamps GIVEN lies in the disc of
+ * LAMP, a detected lamp, or within a hundredth of the picture's width: the
+ * distance at which the detector merges lamps. */
 static bool is_lamp_given(const struct drawing_run *run, double focal_mm,
                           const struct glint_engine_lamp *lamp,
                           const struct glint_engine_lamp *given, int n)
@@ -416,8 +424,9 @@ static bool is_lamp_given(const struct drawing_run *run, double focal_mm,
     return false;
 }
 
-/* Puts the lamps that are found in IMAGE before the N of RUN, which replace
- * those of the same place. Returns the number of all. */
+/* Inserts the lamps detected in IMAGE before the N user-defined lamps of RUN. A
+ * user-defined lamp replaces a detected one at the same position. Returns the
+ * total number. */
 static int add_found_lamps(struct drawing *d, const struct glint_image *image,
                            int32_t elapsed_us, int n)
 {
@@ -434,7 +443,8 @@ static int add_found_lamps(struct drawing *d, const struct glint_image *image,
         if (!is_lamp_given(run, lens_focal_mm(d), &lamp[i], given, n))
             lamp[run->n_found++] = lamp[i];
     for (int i = 0; i < n; i++) {
-        /* numbers of found lamps count from 1 */
+        /* ids of detected lamps start at 1; those of user-defined lamps at
+         * LAMP_ID_TEXT */
         given[i].id = LAMP_ID_TEXT + (uint32_t)i;
         lamp[run->n_found + i] = given[i];
     }
@@ -443,8 +453,8 @@ static int add_found_lamps(struct drawing *d, const struct glint_image *image,
     return run->n_found + n;
 }
 
-/* Sets the lamps of IMAGE: given by angle, pixel, key frames or a list, and
- * found unless an option says which ones there are. */
+/* Collects the lamps of IMAGE: user-defined by angle, pixel, key frames or
+ * list, and detected ones unless an option disables detection. */
 static void collect_image_lamps(struct drawing *d,
                                 const struct glint_image *image,
                                 int32_t elapsed_us)
@@ -473,7 +483,8 @@ static void collect_image_lamps(struct drawing *d,
     run->n_lamps = run->n_own = n;
 }
 
-/* Sets the lamps of IMAGE, with the light that masks and fades leave them. */
+/* Collects the lamps of IMAGE and reduces their power by masks and the edge
+ * fade. */
 static enum glint_status find_image_lamps(struct drawing *d,
                                           const struct glint_image *image,
                                           int32_t elapsed_us)
@@ -497,8 +508,8 @@ void drawing_measure(struct drawing *drawing,
                     lens_focal_mm(drawing));
 }
 
-/* Returns the row that lamp I is saved as: where it was found, or where a list
- * or option puts it. */
+/* Returns the row of --save-lights for lamp I: its detected position, or the
+ * position given by a list or option. */
 static struct lamp_row make_saved_lamp_row(const struct drawing_run *run,
                                            double focal_mm, int i)
 {
@@ -551,10 +562,11 @@ enum glint_status drawing_find_lamps(struct drawing *drawing,
 
 /* -------------------------------------------------------------------- scene */
 
-/* Fraction of a budget that the flare has at least. */
+/* Min fraction of the time budget that is reserved for the flare */
 #define LEAST_SHARE 0.1
 
-/* Adds the lamps that the scene shows to those of RUN, less what it hides. */
+/* Adds the lights and highlights of the scene to the lamps of RUN, and removes
+ * the light of lamps that objects occlude. */
 static void add_scene_lamps(struct drawing *d)
 {
     struct over_scene *const scene = &d->files.scene;
@@ -570,8 +582,8 @@ static void add_scene_lamps(struct drawing *d)
     glint_engine_apply_shares(run->lamp, run->n_lamps, d->line.is_still);
 }
 
-/* Draws the scene over IMAGE within the budget, of which the flare has what the
- * scene leaves. */
+/* Draws the scene over IMAGE. The flare then gets the rest of the time
+ * budget. */
 static enum glint_status draw_scene_on_image(struct drawing *d,
                                              const struct glint_image *image)
 {
@@ -641,8 +653,8 @@ int drawing_bake_found(const struct tool *tool, struct drawing *d,
                            : code;
 }
 
-/* Prints, before exact rays are traced for a still picture, how many lamps it
- * has. */
+/* Prints the number of lamps of a static picture before exact rays are
+ * traced. */
 static void print_exact_ray_notice(const struct drawing *d)
 {
     const struct tool *const tool = d->files.scene.tool;
@@ -670,7 +682,7 @@ enum glint_status drawing_expose(struct drawing *drawing,
     glint_engine_set_light(run->engine, &cfg.light);
     status = glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
                                  run->white);
-    /* What follows is drawn once: its clock starts here. */
+    /* The following work is done once, so the progress clock starts here. */
     if (run->is_progressing) {
         tool_progress_start(&run->progress, drawing->files.scene.tool,
                             "exact rays");
@@ -680,7 +692,7 @@ enum glint_status drawing_expose(struct drawing *drawing,
     return status;
 }
 
-/* Ends the flare of a frame that was begun at START, in seconds. */
+/* Records the time of a flare whose drawing began at START, seconds. */
 static void record_flare_time(struct drawing_run *run, double start)
 {
     if (run->is_progressing)
@@ -702,7 +714,7 @@ enum glint_status drawing_layer(struct drawing_run *run, bool is_deep,
     return status;
 }
 
-/* Exposes and draws the flare on IMAGE. */
+/* Sets the exposure, then adds the flare to IMAGE. */
 static enum glint_status draw_exposed_flare(struct drawing *d,
                                             const struct glint_image *image)
 {
@@ -736,7 +748,8 @@ enum glint_status drawing_draw(struct drawing *drawing,
 
 /* -------------------------------------------------------------------- marks */
 
-/* Marks lamp I as it is tracked, or with its place and number. */
+/* Draws the mark of lamp I: a detected lamp with its track, another lamp with
+ * its position and number. */
 static void draw_lamp_mark(const struct drawing_run *run, double focal_mm,
                            int i, const struct glint_image *image)
 {
@@ -759,7 +772,7 @@ void drawing_mark(const struct drawing *drawing,
     const struct drawing_line *const line = &drawing->line;
     const struct drawing_run *const run = &drawing->run;
     if (run->engine && line->settings.options.preview)
-        /* without memory there are no numbers */
+        /* numbers are omitted if memory is short */
         preview_number(run->engine, run->lamp, run->n_lamps, drawing_scale(run),
                        image);
     if (line->show_time_line)

@@ -9,8 +9,8 @@
 
 /* --------------------------------------------------------------- key frames */
 
-/* Requests the least f-number of the key frames, if SIGN is 1, which the model
- * has to serve, or the largest, if it is -1. */
+/* Requests a model for the smallest f-number of the key frames (SIGN 1), or for
+ * the largest (SIGN -1). */
 static void request_min_f_number(struct settings *s, struct drawing_files *f,
                                  int sign)
 {
@@ -25,7 +25,7 @@ static void request_min_f_number(struct settings *s, struct drawing_files *f,
     s->options.f_number = key->value;
 }
 
-/* Refuses stops that change where none can. */
+/* Rejects key frames that change the f-number of a lens drawn by exact rays. */
 static int check_stop_keys(const struct tool *tool, struct settings *s,
                            struct drawing_files *f)
 {
@@ -67,8 +67,8 @@ static int open_key_file(const struct tool *tool, struct drawing_line *line,
     return check_stop_keys(tool, &line->settings, f);
 }
 
-/* Checks that the lens, which is open, stops down as far as the key frames
- * say. */
+/* Checks that the open lens can stop down to the largest f-number of the key
+ * frames. Returns an exit code. */
 static int check_narrowest_stop(const struct tool *tool, struct settings *s,
                                 struct drawing_files *f)
 {
@@ -90,13 +90,14 @@ static int check_narrowest_stop(const struct tool *tool, struct settings *s,
 
 /* --------------------------------------------------------------------- zoom */
 
-/* Returns the key column of the option that LINE sets; -1: it sets none. */
+/* Returns the column of key frames for the option that LINE sets, or -1 if LINE
+ * sets no option. */
 static int find_key_column(const struct control_line *line)
 {
     return line->verb == CONTROL_OPTION ? keys_find_column(line->name[0]) : -1;
 }
 
-/* Prints what is wrong with line I of control. Returns an exit code. */
+/* Prints the error of control line I. Returns an exit code. */
 static int report_bad_control_line(const struct tool *tool,
                                    const struct over_scene *scene, int i,
                                    const char *cause)
@@ -111,8 +112,8 @@ static int report_bad_control_line(const struct tool *tool,
     return tool_fail(tool, GLINT_E_FORMAT, shown.text);
 }
 
-/* Checks that the lens can do what the lines of control say, and leaves it as
- * it was. */
+/* Checks that the lens supports all values of the control lines, and restores
+ * its zoom and f-number. Returns an exit code. */
 static int check_control_lines(const struct tool *tool, struct settings *s,
                                struct drawing_files *f)
 {
@@ -142,8 +143,8 @@ static int check_control_lines(const struct tool *tool, struct settings *s,
     return code;
 }
 
-/* Before the lens is opened, which may be baked for that: refuses lines of
- * control that zoom a table. */
+/* Rejects control lines that zoom a lens table. Called before the lens is
+ * opened, which may bake it. */
 static int reject_zoom_control_lines(const struct tool *tool,
                                      const struct settings *s,
                                      const struct over_scene *scene)
@@ -161,8 +162,9 @@ static int reject_zoom_control_lines(const struct tool *tool,
     return EXIT_OK;
 }
 
-/* Checks that the lens zooms as far as the key frames say, and leaves it at the
- * first of them. A text that glint wrote has no line to name. */
+/* Checks that the lens supports all zoom values of the key frames, and sets it
+ * to the first. Errors have no line number if glint wrote the key frames
+ * itself, for --zoom A-B. */
 static int check_zoom_keys(const struct tool *tool, struct drawing_line *line,
                            struct drawing_files *f)
 {
@@ -182,8 +184,8 @@ static int check_zoom_keys(const struct tool *tool, struct drawing_line *line,
     return EXIT_OK;
 }
 
-/* Before scene and lens are opened: rejects key frames that zoom a table, which
- * would be baked for one position. */
+/* Rejects key frames that zoom a lens table, whose model would have a single
+ * zoom position. Called before scene and lens are opened. */
 static int check_zoom_options(const struct tool *tool,
                               struct drawing_line *line,
                               struct drawing_files *f)
@@ -202,8 +204,8 @@ static int check_zoom_options(const struct tool *tool,
 
 /* -------------------------------------------------------------------- lamps */
 
-/* Lists the lamps of the file, linked if lamps move between its rows, and the
- * lamps by pixel. */
+/* Reads the list of lamps, links rows of one lamp if lamps move between rows,
+ * and appends the lamps of --light-at. */
 static enum glint_status open_lamp_list(const struct drawing_line *line,
                                         struct drawing_files *f,
                                         struct glint_error *error)
@@ -221,7 +223,7 @@ static enum glint_status open_lamp_list(const struct drawing_line *line,
     return status;
 }
 
-/* Lists the lamp of the key frames. */
+/* Appends the lamp of the key frames to the list. */
 static enum glint_status add_key_lamp(struct drawing_files *f)
 {
     const struct lamp_row row = {.frame = -1,
@@ -253,7 +255,8 @@ static enum glint_status open_lamp_inputs(const struct drawing_line *line,
 
 /* ---------------------------------------------------------------------- all */
 
-/* Opens the scene; without a lens there has to be one that needs none. */
+/* Opens the scene. Without a lens there must be a scene whose camera does not
+ * need one. Returns an exit code. */
 static int open_scene_file(const struct tool *tool,
                            const struct glint_options *o,
                            struct drawing_files *f)
@@ -277,7 +280,7 @@ static int open_scene_file(const struct tool *tool,
                : EXIT_OK;
 }
 
-/* Sets the names of the files of F. */
+/* Copies the file names from the options to the members of F. */
 static void set_file_names(const struct drawing_line *line,
                            struct drawing_files *f)
 {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The files of a drawing_line, opened: lens, scene, key frames, list of lamps,
- * mask that hides lamps, and the output file of lamps. */
+ * The open files that the options of a drawing_line name: lens, scene, key
+ * frames, list of lamps, mask that hides lamps, and the output file of lamps.
+ */
 #ifndef GLINT_TOOLS_OVERLAY_DRAWING_FILES_H
 #define GLINT_TOOLS_OVERLAY_DRAWING_FILES_H
 
@@ -14,21 +15,21 @@
 #include "overlay/over_scene.h"
 
 struct drawing_files {
-    bool has_lens; /* false: --lens none, only a scene is drawn */
+    bool has_lens; /* false with --lens none, which draws the scene only */
     struct opened_lens lens;
-    bool is_listed;        /* lamps are not searched for, because of --lights */
+    bool is_listed;        /* --lights disables the detection of lamps */
     struct lamp_list list; /* lamps of --lights, --light-at and key frames */
     struct keys keys;
-    char keys_line[224];        /* "FILE:LINE" of the key that sets the
-                                   f-number */
+    char keys_line[224]; /* "FILE:LINE" of the key frame that sets the f-number
+                          */
     struct occlusion occlusion; /* mask that hides lamps */
     struct over_scene scene;    /* objects over the picture */
     struct lamp_save save;
 };
 
-/* Opens the files of LINE, and bakes the lens if needed. FILES must be zeros
- * except scene.set_option and its context, which control lines call. Returns an
- * exit code. */
+/* Opens the files that LINE names, and bakes the lens if needed. FILES must be
+ * zeros except scene.set_option and scene.set_ctx, which control lines use.
+ * Returns an exit code. */
 int drawing_files_open(const struct tool *tool, struct drawing_line *line,
                        struct drawing_files *files);
 

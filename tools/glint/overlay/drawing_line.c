@@ -5,8 +5,8 @@
 #include "desk/styles.h"
 #include "overlay/drawing_line.h"
 
-/* Adds the lamp TEXT, which is valid, of --light. Returns false if it is one
- * too many. */
+/* Adds the lamp TEXT of --light, whose syntax was checked. Returns false if
+ * there are too many lamps. */
 static bool add_lamp_by_angle(struct drawing_line *line, const char *text)
 {
     struct glint_lamp *const lamp = &line->hand[line->n_hand];
@@ -35,7 +35,8 @@ bool drawing_line_add_light(struct drawing_line *line, double x, double y,
            lamp_list_add(&line->at, &row) == GLINT_OK;
 }
 
-/* Adds the lamp TEXT of --light-at as add_lamp_by_angle() does. */
+/* Adds the lamp TEXT of --light-at, whose syntax was checked. Returns false if
+ * there are too many lamps. */
 static bool add_lamp_by_pixel(struct drawing_line *line, const char *text)
 {
     double v[3];
@@ -49,7 +50,7 @@ static bool is_text_option(const char *text, const char *word)
     return text && strcmp(text, word) == 0;
 }
 
-/* Sets the members of LINE that are derived from options. */
+/* Computes the members of LINE that depend on several options. */
 static void resolve_derived_members(struct drawing_line *line)
 {
     struct glint_options *const o = &line->settings.options;
@@ -80,7 +81,8 @@ int drawing_line_style(const struct tool *tool, struct drawing_line *line,
         code = drawing_line_set_text(tool, line, style->set[i].option,
                                      style->set[i].value);
     drawing_line_end(line);
-    /* A model has its own, and is no mistake with a style. */
+    /* A baked model has fixed coatings; combining it with a style is not an
+     * error. */
     line->settings.coating.given = false;
     line->style = style->name;
     return code;
@@ -96,8 +98,8 @@ int drawing_line_style_of(const struct tool *tool, struct drawing_line *line,
     return name ? drawing_line_style(tool, line, name) : -1;
 }
 
-/* Notes OPTION if it is --strength or --exposure. Returns false if the other of
- * the two was given before in the same place. */
+/* Records OPTION if it is --strength or --exposure. Returns false if the
+ * command line, or the file, already set the other one. */
 static bool record_brightness_option(struct drawing_line *line, int option)
 {
     if (option != ENGINE_OPTION_OF(strength) &&
@@ -124,7 +126,7 @@ int drawing_line_option(const struct tool *tool, struct drawing_line *line,
         return tool_usage(
             tool, "--strength sets the exposure, so it excludes --exposure");
     if (option == ENGINE_OPTION_OF(style))
-        /* The command line's style was set before its other options. */
+        /* The style of a command line was applied before its other options. */
         return tool->where ? drawing_line_style(tool, line, value) : -1;
     code = settings_option(tool, &line->settings, option, value);
     if (code != -1)

@@ -18,23 +18,24 @@
 struct drawing_line {
     struct settings settings;
     const char *style; /* name of the chosen style, or NULL */
-    /* Text of key frames to use instead of a file, or NULL. Messages then name
-     * it by the value of --keys. */
+    /* Text of key frames that replaces the file of --keys, or NULL. Error
+     * messages then use the value of --keys as its name. */
     const char *keys_text;
-    struct scene_dials scene_dials; /* set by options, except size and camera */
-    struct lamp_list at;            /* lamps given by pixel position */
-    int n_hand;                     /* lamps given by angle */
+    struct scene_dials scene_dials; /* quality parameters of the scene, set by
+                                       options; size and camera are set later */
+    struct lamp_list at;            /* lamps of --light-at */
+    int n_hand;                     /* number of lamps of --light */
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
-    /* max bytes of memory for frames, allocated at the start; 0: allocated as
-     * needed */
+    /* bytes allocated for frames at the start; 0: allocated when needed */
     size_t reserve_bytes;
     bool show_lights, show_time_line;
-    bool is_unsearched; /* --lights none: lamps are not searched for */
-    bool is_still; /* pictures are independent, and quality matters more than
+    bool is_unsearched; /* --lights none disables the detection of lamps */
+    bool is_still; /* frames are independent pictures; quality has priority over
                       time */
-    bool is_live;  /* does not wait for a FIFO of poses or control */
-    int dial;      /* code of the option that set the brightness, --strength or
-                      --exposure; 0: neither */
+    bool is_live;  /* reads poses and control from a FIFO without waiting for
+                      data */
+    int dial; /* getopt code of the option that set the brightness, --strength
+                 or --exposure; 0: neither */
 };
 
 void drawing_line_defaults(struct drawing_line *line);
@@ -59,7 +60,7 @@ int drawing_line_set_number(const struct tool *tool, struct drawing_line *line,
 bool drawing_line_add_light(struct drawing_line *line, double x, double y,
                             double ev);
 
-/* Sets the options of the style NAME. Returns -1 or an exit code. */
+/* Sets all options of the style NAME. Returns -1 or an exit code. */
 int drawing_line_style(const struct tool *tool, struct drawing_line *line,
                        const char *name);
 
@@ -70,8 +71,8 @@ int drawing_line_style_of(const struct tool *tool, struct drawing_line *line,
                           int argc, char **argv, const char *shorts,
                           const struct option *options);
 
-/* Ends the options of a file: the command line may again set either --strength
- * or --exposure. */
+/* Ends the options of a configuration file, so that the command line may again
+ * set --strength or --exposure. */
 void drawing_line_end(struct drawing_line *line);
 
 #endif

@@ -36,7 +36,8 @@ bool folder_make_output_path(char path[FOLDER_PATH], const char *folder,
     return used > 0 && used < FOLDER_PATH;
 }
 
-/* Rejects options of several inputs that name what is read once. */
+/* Rejects options that name a stream, which can be read only once, if there are
+ * several inputs. */
 static int check_stream_options(const struct tool *tool,
                                 const struct glint_options *o)
 {
@@ -54,7 +55,7 @@ static int check_stream_options(const struct tool *tool,
     return EXIT_OK;
 }
 
-/* Rejects inputs that are not single files. */
+/* Rejects inputs that are not single picture or video files. */
 static int check_folder_inputs(const struct tool *tool, char **input, int n)
 {
     struct stat file;
@@ -79,7 +80,8 @@ static int check_folder_inputs(const struct tool *tool, char **input, int n)
     return EXIT_OK;
 }
 
-/* Rejects an output in FOLDER that is another's input. FILE has room for N. */
+/* Rejects an output in FOLDER that would overwrite another input. FILE is
+ * scratch memory for N files. */
 static int check_output_is_no_input(const struct tool *tool, const char *folder,
                                     char **input, struct stat *file, int n)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * An output folder for several inputs: each is drawn to a file of its own
- * name. */
+ * The output folder of several inputs: each input is drawn to a file of the
+ * same name in this folder. */
 #ifndef GLINT_TOOLS_OVERLAY_FOLDER_H
 #define GLINT_TOOLS_OVERLAY_FOLDER_H
 
@@ -18,10 +18,10 @@ bool folder_is_folder(const char *path);
 bool folder_make_output_path(char path[FOLDER_PATH], const char *folder,
                              const char *input);
 
-/* Creates FOLDER for INPUT[N], drawn with OPTIONS, unless it exists; *IS_NEW
- * receives whether it was created. Rejects inputs with the same name, inputs
- * that the output of another would replace, and streams that the first input
- * would consume. Returns an exit code. */
+/* Creates FOLDER unless it exists; *IS_NEW is set to whether it was created.
+ * INPUT[N] are drawn with OPTIONS. Rejects inputs with the same name, outputs
+ * that would overwrite an input, and streams that the first input would
+ * consume. Returns an exit code. */
 int folder_open(const struct tool *tool, const char *folder, char **input,
                 int n, const struct glint_options *options, bool *is_new);
 

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The pixels around a lamp whose light above white is counted as its own. */
+/* Rectangle of pixels around a lamp whose light above white is attributed to
+ * this lamp */
 struct reach {
     double x, y, radius;
     int left, top, right, bottom;
@@ -33,8 +34,8 @@ static double distance_to_lamp(const struct reach *r, int x, int y)
     return hypot(x + 0.5 - r->x, y + 0.5 - r->y);
 }
 
-/* Checks whether lamp OWN reaches the pixel, and none of the N lamps that reach
- * it is nearer. */
+/* Returns whether lamp OWN is the nearest of all N lamps whose reach includes
+ * the pixel. */
 static bool is_lamp_nearest(const struct reach *all, int n, int own, int x,
                             int y)
 {
@@ -69,7 +70,7 @@ static void add_pixel_light(struct sum *sum, const double rgb[3], double x,
     sum->y += l * y;
 }
 
-/* Adds to SUM the light above WHITE of the pixels of lamp OWN. */
+/* Adds to SUM the light above WHITE of all pixels that belong to lamp OWN. */
 static void add_excess_light(struct sum *sum,
                              const struct glint_samples *samples,
                              const struct reach *all, int n, int own,
@@ -91,8 +92,8 @@ static void add_excess_light(struct sum *sum,
         }
 }
 
-/* Returns the light of TRACK that the finder saw in the proxy, times WHITE, the
- * light of the proxy's white. */
+/* Returns the light of TRACK as detected in the proxy, scaled by WHITE, the
+ * linear light of the proxy's white. */
 static struct sum
 compute_light_seen_in_proxy(const struct glint_lamp_track *track, double white)
 {

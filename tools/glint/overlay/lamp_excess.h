@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Measures the light of lamps that an 8-bit proxy of a deeper picture clips. */
+ * Measures the light of lamps that is clipped in the 8-bit proxy of a picture
+ * with more bits. */
 #ifndef GLINT_TOOLS_OVERLAY_LAMP_EXCESS_H
 #define GLINT_TOOLS_OVERLAY_LAMP_EXCESS_H
 
@@ -8,9 +9,10 @@
 #include "glint/engine.h"
 #include "lamp_files/lamp_list.h"
 
-/* Corrects power, position and colour of N lamps that were found in an 8-bit
- * proxy of SAMPLES, for a lens of FOCAL_MM, by the light above WHITE, the light
- * of the proxy's code 255. If there is no memory, the lamps are unchanged. */
+/* Corrects power, position and colour of N lamps that were detected in an 8-bit
+ * proxy of SAMPLES, by the light above WHITE, the linear light of the proxy's
+ * code 255. FOCAL_MM: focal length of the lens. Without memory the lamps do not
+ * change. */
 void add_lamp_excess(struct glint_engine_lamp *lamp, int n,
                      const struct glint_samples *samples, double white,
                      const struct glint_view *view, double focal_mm);

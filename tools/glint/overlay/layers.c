@@ -23,8 +23,8 @@ enum {
 static const char *const names[LAYERS] = {"flare", "ghosts", "starburst",
                                           "veil"};
 
-/* Sets NAME to the file of layer LAYER (NULL: "layer") in frame FRAME. Returns
- * false if it is too long or more than one %s or %d is in the path. */
+/* Sets NAME to the file name of LAYER (NULL: "layer") in frame FRAME. Returns
+ * false if the name is too long or the pattern has more than one %s or %d. */
 static bool make_layer_file_name(char name[NAME_ROOM], const char *path,
                                  const char *layer, int frame)
 {
@@ -44,8 +44,8 @@ static bool make_layer_file_name(char name[NAME_ROOM], const char *path,
     return numbered_is_pattern(whole) && numbered_make_name(name, whole, frame);
 }
 
-/* Returns whether the kind of file NAME takes layers: an .exr as parts of it or
- * one by one, other kinds only one by one if they take floats. */
+/* Returns whether the file type of NAME supports layers: .exr as parts of one
+ * file or as single files; other float formats as single files only. */
 static bool can_file_hold_layers(const struct layers *layers, const char *name)
 {
     static const char *const kinds[] = {".exr", ".pfm", ".hdr", ".tif",
@@ -111,8 +111,8 @@ int layers_check_apart(const struct tool *tool, const struct layers *layers,
 /* ------------------------------------------------------------------- drawing
  */
 
-/* Draws N_LAYERS layers of N samples into RGB: the parts, and their sum as the
- * first. */
+/* Draws N_LAYERS layers of N samples each into RGB: first the sum, then the
+ * components. */
 static enum glint_status draw_all_layers(struct drawing *c, int n_layers,
                                          size_t n, float *rgb)
 {
@@ -124,7 +124,8 @@ static enum glint_status draw_all_layers(struct drawing *c, int n_layers,
     struct glint_engine_report report;
 
     memset(rgb, 0, (size_t)n_layers * n * sizeof *rgb);
-    /* the veil first, as drawing the others forgets what it is of */
+    /* the veil is drawn first because drawing the other components discards the
+     * flare that it is computed from */
     for (int k = n_layers - 1; k >= GHOSTS && status == GLINT_OK; k--)
         if (is_lit || k == VEIL)
             status = glint_engine_draw_layer(c->run.engine, c->run.lamp,

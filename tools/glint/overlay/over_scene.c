@@ -12,8 +12,8 @@
 /* ------------------------------------------------------- lines of control
  */
 
-/* Returns whether LINE can be obeyed, but not whether the flare can have the
- * value. */
+/* Checks whether the command LINE can be executed. The value of a flare option
+ * is not checked. */
 static enum glint_status check_control_line(const struct over_scene *over,
                                             const struct control_line *line,
                                             const char *where,
@@ -79,7 +79,8 @@ static enum glint_status execute_control_line(struct over_scene *over,
                                     where, error);
 }
 
-/* Reports a mistake, at most one per picture; none ends the run. */
+/* Prints an error of a command, at most one per picture. No error ends the
+ * run. */
 void over_scene_apply_control(struct over_scene *over, int frame)
 {
     const long before = over->control.n_bad;
@@ -111,7 +112,8 @@ static int count_scene_lights(const struct over_scene *over)
     return (int)over->baked.model.header->n_lights;
 }
 
-/* Returns the place of THING in over->poses.moved. */
+/* Returns the index of THING, an object, a light or the camera, in
+ * over->poses.moved. */
 static int find_pose_index(const struct over_scene *over, int thing)
 {
     return thing == POSES_CAMERA
@@ -157,7 +159,8 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
         return code;
     over->is_open = true;
     playback_init(&over->playback);
-    if (over->baked.model.motion) { /* which was checked with the scene */
+    if (over->baked.model
+            .motion) { /* whose data was validated with the scene */
         const char *reason;
 
         glint_motion_open(&over->motion, over->baked.model.motion + 1,
@@ -204,7 +207,7 @@ void over_scene_close(struct over_scene *over)
 /* --------------------------------------------------------------------- poses
  */
 
-/* Sets AXIS to where the camera's own axes go by the unit quaternion Q. */
+/* Sets AXIS to the camera's own axes rotated by the unit quaternion Q, Q30. */
 static void rotate_axes_by_quaternion(const int32_t q_q30[4],
                                       int32_t axis_q30[3][3])
 {
@@ -223,7 +226,7 @@ static void rotate_axes_by_quaternion(const int32_t q_q30[4],
     }
 }
 
-/* Moves the camera to TO, unless control lines have moved it. */
+/* Moves the camera to pose TO, unless control lines have moved the camera. */
 static enum glint_status move_camera_to_pose(struct over_scene *over,
                                              struct glint_scene *scene,
                                              const struct scene_moved *to)
@@ -257,7 +260,8 @@ static enum glint_status apply_pose(struct over_scene *over,
     return move_camera_to_pose(over, scene, to);
 }
 
-/* Moves and changes all objects again, of a scene that was just placed. */
+/* Applies all poses and changes again to SCENE, whose memory was just
+ * initialised. */
 static void apply_all_poses(void *ctx, struct glint_scene *scene)
 {
     struct over_scene *const over = ctx;
@@ -269,7 +273,8 @@ static void apply_all_poses(void *ctx, struct glint_scene *scene)
     steer_apply_state(&over->steer, scene);
 }
 
-/* Resets all objects to their poses before the first line of the pose file. */
+/* Resets all objects to their poses in the scene file, as before the first line
+ * of the pose file. */
 static void reset_all_poses(struct over_scene *over)
 {
     const struct glint_scene_model *const m = &over->baked.model;
@@ -289,7 +294,7 @@ static void reset_all_poses(struct over_scene *over)
         over->poses.moved[i].is_moved = false;
 }
 
-/* Applies the poses up to FRAME. */
+/* Reads and applies all poses of frames up to FRAME. */
 static void apply_poses_up_to_frame(struct over_scene *over, int frame)
 {
     const struct pose *pose;
@@ -348,7 +353,7 @@ int over_scene_allocate(struct over_scene *over,
     return allocate_scene_frame(over, dials);
 }
 
-/* Sets the dials to those of LEVEL. */
+/* Sets the scene's quality parameters to those of LEVEL. */
 static enum glint_status set_scene_quality_level(struct over_scene *over,
                                                  int level)
 {
@@ -415,7 +420,7 @@ void over_scene_layer_free(struct over_scene_layer *layer)
     *layer = (struct over_scene_layer){NULL, NULL};
 }
 
-/* Draws over a picture of LIGHT_Q20, n samples at LINEAR_Q20. */
+/* Draws the scene over a uniform picture of LIGHT, Q20, into LINEAR_Q20[n]. */
 static void draw_scene_over_light(struct over_scene *over, int32_t light,
                                   size_t n, int32_t *linear_q20)
 {
@@ -429,8 +434,7 @@ static void draw_scene_over_light(struct over_scene *over, int32_t light,
     glint_scene_draw(over->frame.scene, &image);
 }
 
-/* What an object hides of white is what it is over black less what it is over
- * white. */
+/* Coverage of an object = scene over black - (scene over white - white). */
 enum glint_status over_scene_make_layer(struct over_scene *over,
                                         struct over_scene_layer *layer)
 {
@@ -461,7 +465,7 @@ enum glint_status over_scene_make_layer(struct over_scene *over,
 /* --------------------------------------------------------------------- lamps
  */
 
-/* From here on highlights are numbered, beyond hashes of most texts. */
+/* First id of highlights, above the hashes of most lamp names */
 #define HIGHLIGHT_IDS UINT32_C(0x7ffe0000)
 
 int over_scene_add_highlights(struct over_scene *over, bool follows,

@@ -4,7 +4,7 @@
  * lamps, its lights and highlights add lamps to the flare.
  *
  *     over_scene_open(&over, tool);                   scene and poses
- *     over_scene_size(&over, &dials);                 when the size changes
+ *     over_scene_allocate(&over, &dials);                 when the size changes
  *     over_scene_draw(&over, &image, frame);          each picture
  *     over_scene_close(&over);
  *
@@ -23,36 +23,38 @@
 #include "scenes/scene_frame.h"
 #include "control/steer.h"
 
-/* The pose that an object was moved to. */
+/* Present pose of an object */
 struct scene_moved {
     bool is_moved;
     int32_t at[3], turn_q30[4];
 };
 
-/* The poses of a file, and the poses that objects have by them. */
+/* A pose file, and the present pose of each object */
 struct scene_poses {
     struct poses file;
-    struct scene_moved *moved; /* [objects, then lights, then the camera] */
-    int frame;                 /* frame whose poses are shown */
-    bool has_warned;           /* a warning on skipped lines was printed */
+    struct scene_moved
+        *moved; /* present poses: [objects, then lights, then the camera] */
+    int frame;  /* number of the frame whose poses are applied */
+    bool has_warned; /* whether a warning about skipped lines was printed */
 };
 
 struct over_scene {
     /* Options. */
-    const char *file;         /* NULL: there is no scene */
+    const char *file;         /* scene file; NULL: no scene */
     const char *pose_file;    /* or NULL */
     const char *control_file; /* or NULL; "-": standard input */
-    bool is_live;             /* never wait for a FIFO of poses or control */
-    /* Sets the option NAME of the flare for control lines. Returns
-     * GLINT_E_ARGUMENT, with the reason in ERROR, if it cannot. NULL if there
-     * is no flare. */
+    bool is_live; /* reads poses and control from a FIFO without waiting for
+                     data */
+    /* Sets the flare option NAME to VALUE for control lines. Returns
+     * GLINT_E_ARGUMENT with the reason in ERROR if the value is invalid. NULL:
+     * no flare. */
     enum glint_status (*set_option)(void *ctx, const char *name, double value,
                                     struct glint_error *error);
     void *set_ctx;
 
     double budget_ms;   /* time budget of a frame; 0: none */
-    int32_t elapsed_us; /* from the last picture to the next; 0: pictures are
-                           independent */
+    int32_t elapsed_us; /* microseconds since the previous picture; 0:
+                           independent pictures */
 
     /* Private. */
     const struct tool *tool;
@@ -60,43 +62,48 @@ struct over_scene {
     struct baked_scene baked;
     struct scene_poses poses;
     struct controls control;
-    struct playback playback;   /* current frame of poses and recorded motion */
-    int shown;                  /* the frame of playback that is drawn */
-    struct glint_motion motion; /* of the scene, if it has one */
+    struct playback
+        playback; /* playback position of poses and recorded motion */
+    int shown;    /* number of the playback frame that was drawn last */
+    struct glint_motion
+        motion; /* recorded motion of the scene, if it has one */
     struct steer steer;
     struct glints glints;
     struct scene_frame frame;
     bool is_open, is_sized;
 
-    /* Of the last frame. */
+    /* Statistics of the last frame */
     double ms;
-    int lights;       /* lights of the scene that flare in the lens */
-    int lamps_hidden; /* lamps and lights that are completely hidden */
+    int lights;       /* number of scene lights that cause a flare */
+    int lamps_hidden; /* number of lamps and scene lights that are fully
+                         occluded */
 };
 
-/* Opens scene, poses and lines of control, if there are any. Returns an exit
- * code, after printing the reason on failure. */
+/* Opens the scene, pose and control files that the options name. Prints the
+ * reason of a failure and returns an exit code. */
 int over_scene_open(struct over_scene *over, const struct tool *tool);
 
 /* Returns whether the scene's camera has the field of view of the lens. */
 bool over_scene_needs_lens(const struct over_scene *over);
 
-/* Returns whether the scene has lights, but they do not flare in lenses. */
+/* Returns whether the scene has lights that cause no flare, as 'flare lights'
+ * is missing. */
 bool over_scene_keeps_lights(const struct over_scene *over);
 
-/* Prepares OVER for pictures of the size in DIALS. Does nothing if there is no
- * scene. Returns an exit code. */
+/* Allocates the scene for pictures of the size in DIALS. No-op without a scene.
+ * Returns an exit code. */
 int over_scene_allocate(struct over_scene *over,
                         const struct scene_dials *dials);
 
-/* Limits the quality of the following pictures to QUALITY, as of --quality; 1:
- * as requested. A time budget sets it automatically. Returns GLINT_E_MEMORY on
- * failure. */
+/* Limits the quality of the next pictures to QUALITY, 0 .. 1 like --quality; 1:
+ * as requested. No-op with a time budget, which controls the quality. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status over_scene_set_quality(struct over_scene *over,
                                          double quality);
 
-/* Applies the control lines up to FRAME. over_scene_draw() does so, too; call
- * this earlier if lines may zoom the lens, before lamps are positioned. */
+/* Executes the control lines up to FRAME. over_scene_draw() does so, too; call
+ * this function earlier if control lines may zoom the lens, before lamps are
+ * positioned. */
 void over_scene_apply_control(struct over_scene *over, int frame);
 
 /* Draws the scene of frame FRAME onto IMAGE. */
@@ -108,14 +115,14 @@ enum glint_status over_scene_draw(struct over_scene *over,
 void over_scene_draw_time_line(const struct over_scene *over,
                                const struct glint_image *image);
 
-/* The scene as a separate layer, for pictures that are not a struct
- * glint_image. */
+/* The scene as a separate layer, for picture types other than struct
+ * glint_image */
 struct over_scene_layer {
     float *rgb;         /* [height][width][3], linear light, 1 = white */
     uint16_t *cover_q8; /* [height][width], coverage, 0 .. 256 */
 };
 
-/* Makes LAYER of the scene drawn last; over_scene_layer_free() frees it.
+/* Sets LAYER to the scene drawn last; free it by over_scene_layer_free().
  * Returns GLINT_E_MEMORY on failure. */
 enum glint_status over_scene_make_layer(struct over_scene *over,
                                         struct over_scene_layer *layer);
@@ -124,9 +131,9 @@ void over_scene_layer_free(struct over_scene_layer *layer);
 /* Max lamps from a scene: lights and highlights. */
 enum { OVER_SCENE_LAMPS = GLINT_SCENE_MAX_LIGHTS + GLINTS_MAX };
 
-/* Sets LAMPS, [GLINTS_MAX], to the highlights of the scene drawn last, as seen
- * by a lens of FOCAL_MM. If FOLLOWS, they are tracked from picture to picture.
- * Returns their number. */
+/* Sets LAMPS[GLINTS_MAX] to the highlights of the scene drawn last, for a lens
+ * of FOCAL_MM. FOLLOWS: highlights are tracked from picture to picture. Returns
+ * the number of highlights. */
 int over_scene_add_highlights(struct over_scene *over, bool follows,
                               const struct glint_view *view, double focal_mm,
                               struct glint_engine_lamp *lamps);
@@ -134,10 +141,10 @@ int over_scene_add_highlights(struct over_scene *over, bool follows,
 /* Returns the bytes of memory for drawing. */
 size_t over_scene_bytes(const struct over_scene *over);
 
-/* Writes a short text about the frame drawn last. */
+/* Prints one line of statistics of the frame drawn last. */
 void over_scene_print_line(const struct over_scene *over, FILE *to);
 
-/* Writes the JSON member "scene", about the frame drawn last. */
+/* Writes the JSON member "scene" with statistics of the frame drawn last. */
 void over_scene_write_json(struct json_writer *json,
                            const struct over_scene *over);
 

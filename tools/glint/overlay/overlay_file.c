@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * A picture file on its way through overlay: opened, lit, and written.
+ * Draws on a picture file: opens it, adds scene and flare, and writes it.
  *
- * Opaque sRGB of 8 bits is drawn on as it is, in integers. Of all other
- * pictures the finder sees a proxy of 8 bits, the light of lamps is measured in
- * floats where the file has them, and the flare is added in linear light to the
- * samples that it reaches. A file on which nothing is drawn is copied if the
- * output has the same type.
+ * Opaque 8-bit sRGB is drawn on in place, in integers. For all other pictures
+ * lamps are detected in an 8-bit proxy; their light is measured in floats if
+ * the file has floats, and the flare is added in linear light to the samples
+ * that it reaches. A file on which nothing is drawn is copied if the output has
+ * the same type.
  */
 #include "overlay/overlay.h"
 
@@ -16,16 +16,17 @@
 #include "overlay/drawing.h"
 
 struct overlay_file {
-    /* The picture in which lamps are found. */
+    /* The 8-bit picture or proxy in which lamps are detected */
     struct glint_image image;
 
     const char *from, *to;
     struct glint_kept kept;
-    struct glint_samples work; /* a deeper copy of the input, for floats out */
-    /* is_direct: IMAGE is the file's own samples and is drawn on; is_copied:
-     * light is added to WORK, not to the file's samples */
+    struct glint_samples
+        work; /* float copy of the input, if the output has floats */
+    /* is_direct: IMAGE is the file's own samples and is drawn on in place.
+     * is_copied: the flare is added to WORK, not to the file's samples. */
     bool is_direct, is_copied;
-    double white; /* light of the proxy's white */
+    double white; /* linear light of the proxy's code 255 */
     float *layer;
 };
 
@@ -46,8 +47,8 @@ static int report_file_failure(const struct tool *tool,
 
 /* ------------------------------------------------------------------ opening */
 
-/* Makes f->work, a float copy of the input to draw on, for an output with
- * floats and an input without. */
+/* Sets f->work to a float copy of the input, for an output with floats and an
+ * input without. */
 static enum glint_status convert_input_to_float(struct overlay_file *f)
 {
     struct glint_samples *const from = &f->kept.samples;
@@ -95,8 +96,8 @@ static void close_picture_file(struct overlay_file *file)
     glint_kept_close(&file->kept);
 }
 
-/* Opens FROM, which is to be written to TO. Both strings must outlive FILE.
- * Returns an exit code. */
+/* Opens FROM, to be written to TO after drawing. Both strings must outlive
+ * FILE. Returns an exit code. */
 static int open_picture_file(const struct tool *tool, struct overlay_file *file,
                              const struct drawing *drawing, const char *from,
                              const char *to)
@@ -120,8 +121,8 @@ static int open_picture_file(const struct tool *tool, struct overlay_file *file,
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Codes that channels of a grey pixel differ by after a JPEG file or a profile:
- * of nearly all pixels, and of any. */
+/* Max difference between the channels of a grey pixel after a JPEG file or a
+ * colour profile, 8-bit codes: for 99 % of the pixels, and for every pixel */
 enum { NEARLY_GREY = 2, AT_MOST_GREY = 8 };
 
 static int channel_spread(const uint8_t px[3])
@@ -132,10 +133,10 @@ static int channel_spread(const uint8_t px[3])
     return (px[2] > high ? px[2] : high) - (px[2] < low ? px[2] : low);
 }
 
-/* Returns whether IMAGE is a photograph without colour: every pixel is grey, 99
- * of 100 nearly exactly, and a tenth of them are neither nearly black nor
- * nearly white. A drawing of white on black is none, so that a flare on it has
- * its colours. */
+/* Returns whether IMAGE is a monochrome photograph: all pixels are grey within
+ * AT_MOST_GREY, 99 % within NEARLY_GREY, and at least a tenth of them are
+ * neither nearly black nor nearly white. A white-on-black drawing is not a
+ * photograph, so its flare has colours. */
 static bool is_image_monochrome(const struct glint_image *image)
 {
     const int64_t all = (int64_t)image->width * image->height;
@@ -156,7 +157,6 @@ static bool is_image_monochrome(const struct glint_image *image)
     return 10 * n >= all && 100 * n_tinged <= all;
 }
 
-/* Copies the green channel of FROM to GREY. */
 static void copy_green_channel(const struct glint_image *grey,
                                const struct glint_image *from)
 {
@@ -169,7 +169,8 @@ static void copy_green_channel(const struct glint_image *grey,
     }
 }
 
-/* Adds to all channels of IMAGE by how much GREY differs from its green one. */
+/* Adds to all channels of IMAGE the difference of GREY from the green
+ * channel. */
 static void add_grey_difference(const struct glint_image *image,
                                 const struct glint_image *grey)
 {
@@ -189,8 +190,7 @@ static void add_grey_difference(const struct glint_image *image,
     }
 }
 
-/* Draws on a picture without colour as on a grey picture, to which the
- * luminance of the flare is added. */
+/* Draws on a monochrome picture: adds the luminance of the flare. */
 static enum glint_status draw_on_grey_image(struct overlay_file *f,
                                             struct drawing *drawing,
                                             int32_t elapsed_us)
@@ -214,7 +214,7 @@ static enum glint_status draw_on_grey_image(struct overlay_file *f,
     return status;
 }
 
-/* Replaces the light of the N pixels RGB by its luminance. */
+/* Replaces N pixels RGB, linear light, by their luminance. */
 static void remove_colour(float *rgb, size_t n)
 {
     for (; n > 0; n--, rgb += 3)
@@ -234,8 +234,8 @@ static bool is_flare_absent(const struct drawing *drawing)
            (drawing->run.n_lamps == 0 || !(drawing_scale(&drawing->run) > 0));
 }
 
-/* Replaces the upright pixels of S at which DRAWN differs from BEFORE, its
- * codes before drawing without padding. They become opaque. */
+/* Copies the pixels of DRAWN that differ from BEFORE, the codes before drawing
+ * without row padding, to the upright pixels of S, which become opaque. */
 static void copy_marks_to_samples(struct glint_samples *s,
                                   const struct glint_image *drawn,
                                   const uint8_t *before)
@@ -256,7 +256,7 @@ static void copy_marks_to_samples(struct glint_samples *s,
         }
 }
 
-/* Marks the lights on the proxy, and copies the marks to the samples. */
+/* Draws the marks of lamps on the proxy, and copies them to the samples. */
 static enum glint_status draw_marks_on_proxy(struct overlay_file *f,
                                              struct drawing *drawing)
 {
@@ -273,8 +273,7 @@ static enum glint_status draw_marks_on_proxy(struct overlay_file *f,
     return GLINT_OK;
 }
 
-/* Sets the pixel X, Y to what of it the scene does not hide, and RGB over that.
- */
+/* Composites the scene over pixel (X, Y): pixel * (1 - coverage) + RGB. */
 static void composite_scene_pixel(struct glint_samples *s, int x, int y,
                                   double hidden, const double rgb[3])
 {
@@ -287,8 +286,8 @@ static void composite_scene_pixel(struct glint_samples *s, int x, int y,
     glint_samples_set(s, x, y, sum, hidden);
 }
 
-/* Draws the scene on the samples, as it was drawn on their proxy, of which
- * white is file->white. */
+/* Composites the scene, which was drawn on the proxy, over the samples.
+ * file->white is the linear light of the proxy's white. */
 static enum glint_status draw_scene_on_samples(struct overlay_file *file,
                                                struct drawing *drawing,
                                                bool is_grey)
@@ -318,8 +317,8 @@ static enum glint_status draw_scene_on_samples(struct overlay_file *file,
     return GLINT_OK;
 }
 
-/* Warns that the result is grey, as the file has one channel.
- */
+/* Prints a warning that objects and flare become grey in a file of one
+ * channel. */
 static void warn_of_grey_result(const struct overlay_file *file,
                                 const struct drawing *drawing)
 {
@@ -334,8 +333,8 @@ static void warn_of_grey_result(const struct overlay_file *file,
                 tool->name, file->from);
 }
 
-/* Draws the flare in linear light: into the file's layer, and for a composite
- * over the samples, with the marks. */
+/* Draws the flare in linear light into the file's layer; for a composite adds
+ * the layer and the marks to the samples. */
 static enum glint_status draw_flare_layer(struct overlay_file *file,
                                           struct drawing *drawing, bool is_grey)
 {
@@ -364,8 +363,8 @@ static enum glint_status draw_flare_layer(struct overlay_file *file,
                : GLINT_OK;
 }
 
-/* Draws on samples that are not codes of 8 bits: finds lamps on the proxy and
- * measures them, then adds scene and flare. */
+/* Draws on samples other than 8-bit codes: detects lamps in the proxy, measures
+ * them in the samples, then adds scene and flare. */
 static enum glint_status draw_on_deep_samples(struct overlay_file *file,
                                               struct drawing *drawing,
                                               bool is_grey, int32_t elapsed_us)
@@ -388,13 +387,13 @@ static enum glint_status draw_on_deep_samples(struct overlay_file *file,
     return status;
 }
 
-/* Adds the flare to the file CTX, an overlay_draw_fn. */
+/* Adds the flare to the file CTX; an overlay_draw_fn. */
 static enum glint_status draw_flare_on_file(void *ctx, struct drawing *drawing,
                                             const struct glint_image *image,
                                             int32_t elapsed_us)
 {
     struct overlay_file *const file = ctx;
-    /* An object has colours, where the file has room for them. */
+    /* Objects keep their colours if the file has three channels. */
     const bool is_grey =
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
         !(drawing->files.scene.is_open &&
@@ -412,8 +411,8 @@ static enum glint_status draw_flare_on_file(void *ctx, struct drawing *drawing,
 
 /* ------------------------------------------------------------------- saving */
 
-/* Makes ALONE, a picture of the flare by itself, with the input's depth or
- * more. */
+/* Sets ALONE to a picture of the flare only, with at least the bit depth of the
+ * input. */
 static enum glint_status make_flare_only_picture(const struct overlay_file *f,
                                                  const struct drawing *drawing,
                                                  struct glint_samples *alone)
@@ -450,7 +449,8 @@ static enum glint_status make_flare_only_picture(const struct overlay_file *f,
     return GLINT_OK;
 }
 
-/* Writes F; sets IS_COPIED if that was a copy of the input. */
+/* Writes the output of F. Sets IS_COPIED to whether the input file was
+ * copied. */
 static enum glint_status write_picture(struct overlay_file *f,
                                        const struct drawing *drawing,
                                        struct glint_kept_options *options,
@@ -481,7 +481,8 @@ static enum glint_status write_picture(struct overlay_file *f,
     return status;
 }
 
-/* Writes the picture to its output. Returns an exit code. */
+/* Writes the picture to its output file and reports losses. Returns an exit
+ * code. */
 static int save_picture(const struct tool *tool, struct overlay_file *file,
                         struct overlay *o)
 {

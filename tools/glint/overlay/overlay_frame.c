@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * One picture or frame of overlay: drawn, or only searched for lamps; and the
- * report on all. */
+ * Draws one picture or frame of glint overlay, or only detects its lamps, and
+ * collects the statistics of all frames. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -89,7 +89,7 @@ static void extend_span(struct overlay_span *of, double x)
     of->n++;
 }
 
-/* Notes what sets the brightness of a frame. */
+/* Extends the ranges of strength, exposure and gain by those of a frame. */
 static void record_frame_brightness(struct overlay_figures *f,
                                     const struct glint_options *o)
 {

@@ -16,15 +16,15 @@ static const double well_seen = 0.25;
 
 /* --------------------------------------------------------------- the light */
 
-/* Returns whether the starburst or the veil is drawn by itself. */
+/* Returns whether --only selects the starburst or the veil. */
 static bool is_single_component_drawn(const struct drawing *drawing)
 {
     return drawing->line.settings.options.only == GLINT_ONLY_STARBURST ||
            drawing->line.settings.options.only == GLINT_ONLY_VEIL;
 }
 
-/* Sets LIGHT to that of the layer that was drawn last; returns false without
- * memory. */
+/* Sets LIGHT to the peak and mean of the layer drawn last. Returns false
+ * without memory. */
 static bool measure_layer_light(struct drawing *drawing,
                                 struct glint_response_light *light)
 {
@@ -112,7 +112,7 @@ brightest_of(const struct drawing *drawing)
     return best;
 }
 
-/* Returns X to print as a whole number, which is never -0. */
+/* Returns X rounded to an integer, without a sign for 0. */
 static double round_without_minus_zero(double x)
 {
     return rint(x) + 0.0;
@@ -136,7 +136,7 @@ static void print_lights(const struct drawing *drawing, int most, FILE *to)
             round_without_minus_zero(x), round_without_minus_zero(y));
 }
 
-/* Prints NAME and the range of its values, with their signs if HAS_SIGN. */
+/* Prints NAME and the range of its values; HAS_SIGN: with + or -. */
 static void print_value_span(const struct overlay_span *of, const char *name,
                              bool has_sign, FILE *to)
 {
@@ -145,7 +145,7 @@ static void print_value_span(const struct overlay_span *of, const char *name,
         fprintf(to, has_sign ? " to %+g" : " to %g", of->max);
 }
 
-/* Prints what set the brightness of all frames. */
+/* Prints the ranges of strength, exposure and gain over all frames. */
 static void print_brightness_options(const struct overlay_figures *f, FILE *to)
 {
     if (f->strength.n > 0)
@@ -161,7 +161,8 @@ static void print_brightness_options(const struct overlay_figures *f, FILE *to)
         print_value_span(&f->gain, ", gain", false, to);
 }
 
-/* Prints which option would show a flare that is as faint as LIGHT. */
+/* Prints why the flare of LIGHT is invisible, and an option that makes it
+ * visible. */
 static void print_faint_flare_remedy(const struct overlay *o,
                                      const struct overlay_light *light,
                                      FILE *to)
@@ -210,7 +211,7 @@ static void print_faint_flare_remedy(const struct overlay *o,
                     sqrt(well_seen / light->peak));
 }
 
-/* Returns what the picture has where no lamp gives light. */
+/* Returns a description of what was drawn without lamps. */
 static const char *describe_picture_without_lamps(const struct drawing *drawing)
 {
     return drawing->run.engine && glint_engine_has_veil(drawing->run.engine)
@@ -219,8 +220,8 @@ static const char *describe_picture_without_lamps(const struct drawing *drawing)
                                           : "nothing";
 }
 
-/* Returns whether lamps were there, but a mask or fade leaves none of their
- * light: of several frames as far as the flare's LIGHT and the last tell. */
+/* Returns whether a mask or the edge fade removed the light of all lamps. For
+ * several frames this is derived from the flare's LIGHT and the last frame. */
 static bool are_all_lamps_hidden(const struct drawing *drawing,
                                  const struct overlay_light *light)
 {
@@ -252,7 +253,8 @@ static void print_hidden_lamps(const struct drawing *drawing, int most,
             describe_picture_without_lamps(drawing));
 }
 
-/* Prints the options that make the brightest candidates lamps. */
+/* Prints the --light-at options that turn the brightest candidates into
+ * lamps. */
 static void print_lamp_candidates(const struct glint_engine *engine, FILE *to)
 {
     struct glint_spot next;

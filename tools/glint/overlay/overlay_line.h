@@ -10,12 +10,12 @@
 /* The light of the ghosts alone, or of the starburst or veil with --only; 1 =
  * white, largest channel. */
 struct overlay_light {
-    bool is_known; /* false for the starburst or veil of several frames */
-    /* Single picture: the light that 1/10000 of the pixels reach or exceed.
-     * Several frames: mean of the brightest 1/1000 pixels of the brightest
-     * frame. */
+    bool is_known; /* false for the starburst or veil over several frames */
+    /* Linear light, 1 = white. Single picture: exceeded by 1/10000 of the
+     * pixels. Several frames: mean of the brightest 1/1000 pixels of the
+     * brightest frame. */
     double peak;
-    /* Mean over all pixels of all frames. */
+    /* Mean linear light over all pixels of all frames */
     double mean;
 };
 
@@ -24,11 +24,10 @@ struct overlay_light {
  * for several frames it is estimated from the lens's response. */
 struct overlay_light overlay_measure_light(struct overlay *o);
 
-/* Returns the number of frames in the output, without frames before
- * --frames. */
+/* Returns the number of frames that were drawn. */
 int overlay_count_frames(const struct overlay *o);
 
-/* Prints one line, or two if the flare is invisible. */
+/* Prints the result line, and a second one if the flare is invisible. */
 void overlay_print_summary(const struct overlay *o,
                            const struct overlay_light *light, FILE *to);
 

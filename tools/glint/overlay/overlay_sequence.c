@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Numbered pictures as frames of a video. Missing numbers are reported, and
- * time passes for them.
+ * Draws numbered pictures as the frames of a video. Missing numbers are
+ * reported; their frame times elapse.
  */
 #include "options/numbered.h"
 #include "options/timed_text.h"
@@ -16,7 +16,7 @@
 
 enum { NAME_BYTES = NUMBERED_BYTES, FRAME_US = 1000000 / 25, RUNS_SAID = 8 };
 
-/* the numbers of all pictures, rising */
+/* numbers of all pictures, ascending */
 struct numbers {
     int *at;
     int n;
@@ -35,7 +35,7 @@ static bool add_frame_number(struct numbers *l, int number)
     return true;
 }
 
-/* Returns the number for which PATTERN yields the file name FILE, or -1 if
+/* Returns the number with which PATTERN gives the file name FILE, or -1 if
  * there is none. NAME is scratch memory. */
 static int parse_number_of_file(const char *file, const char *pattern,
                                 char *name)
@@ -63,7 +63,7 @@ static int compare_frame_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Lists in L the numbers, from FIRST on, of the files of PATTERN, rising.
+/* Lists in L the numbers >= FIRST of all existing files of PATTERN, ascending.
  * Returns false without memory. */
 static bool list_file_numbers(struct numbers *l, const char *pattern, int first)
 {
@@ -90,8 +90,9 @@ static bool list_file_numbers(struct numbers *l, const char *pattern, int first)
     return ok;
 }
 
-/* Lists numbers from FIRST on (-1: 0 or 1) up to the first missing one, for a
- * PATTERN whose folder has the number, too. Returns false without memory. */
+/* Lists the numbers from FIRST (-1: 0 or 1) up to the first missing file, for a
+ * PATTERN whose folder name contains the number, too. Returns false without
+ * memory. */
 static bool list_consecutive_numbers(struct numbers *l, const char *pattern,
                                      int first)
 {
@@ -137,8 +138,8 @@ static void print_missing_pictures(const struct tool *tool,
 
 /* ------------------------------------------------------------------ frames */
 
-/* Draws picture number l->at[i]; the time since the one before follows from
- * their numbers. Returns an exit code. */
+/* Draws picture number l->at[i]. The elapsed time follows from the difference
+ * to the previous number. Returns an exit code. */
 static int draw_numbered_picture(struct tool *tool, struct overlay *o,
                                  const struct numbers *l, int i)
 {
@@ -155,7 +156,8 @@ static int draw_numbered_picture(struct tool *tool, struct overlay *o,
                     : gap > 1000000000 / FRAME_US ? 1000000000
                                                   : (int32_t)(gap * FRAME_US);
     o->drawing.run.n_frames +=
-        (int)(gap - 1); /* lists of lamps count all numbers */
+        (int)(gap -
+              1); /* frame numbers of lamp lists include missing pictures */
     code = overlay_check_apart(tool, o, from, to);
     if (code == EXIT_OK)
         code = overlay_picture(tool, o, from, to);
@@ -187,7 +189,8 @@ static int draw_all_numbered_pictures(struct tool *tool, struct overlay *o,
     for (int i = 0; i < l->n && code == EXIT_OK; i++)
         code = draw_numbered_picture(tool, o, l, i);
     if (code == EXIT_OK)
-        o->drawing.run.n_frames = l->n; /* without the missing ones */
+        o->drawing.run.n_frames =
+            l->n; /* number of drawn pictures, without missing ones */
     return code;
 }
 

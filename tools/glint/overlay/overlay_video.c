@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The frames of a video, one after the other: glint itself reads and writes y4m
- * files and pipes, ffmpeg all others (ffmpeg.h).
+ * Draws all frames of a video. glint reads and writes y4m files and pipes
+ * itself; other videos are read and written by ffmpeg (ffmpeg.h).
  */
 #include "overlay/overlay.h"
 #include "overlay/overlay_y4m.h"
@@ -23,17 +23,20 @@ struct video {
     struct tool *tool;
     struct overlay *o;
     struct glint_error error;
-    bool reads, writes; /* The input, the output go through ffmpeg. */
+    bool reads, writes; /* whether the input is read and the output is written
+                           by ffmpeg */
     struct ffmpeg_video about;
     struct child reader, writer;
-    struct glint_output file; /* file that ffmpeg writes, until it is whole */
-    char pipe[32];            /* name of the pipe, for OUT */
+    struct glint_output file; /* temporary file that ffmpeg writes */
+    char pipe[32];            /* name of the pipe to ffmpeg, for OUT */
     struct glint_y4m_reader in;
     struct glint_y4m_writer out;
     struct ffmpeg_times times;
-    bool is_variable, keeps_times; /* TIMES are not even, and stay. */
-    bool is_closed;                /* The reader of a pipe went away. */
-    bool has_ended; /* The input was read to its end, not to --frames' last. */
+    bool is_variable, keeps_times; /* frame intervals vary; the output preserves
+                                      the frame times */
+    bool is_closed; /* the reader of the output pipe has closed it */
+    bool has_ended; /* the input was read to its end, not only to the last frame
+                       of --frames */
 };
 
 static bool is_y4m_name(const char *name)
@@ -85,16 +88,15 @@ static ptrdiff_t read_from_child(void *ctx, void *dst, size_t bytes)
     return n;
 }
 
-/* Returns whether the output can have the sound, tags and times of the whole
- * input. */
+/* Returns whether the output can have the sound, tags and frame times of the
+ * input: not for a GIF, nor if --frames cuts the end off. */
 static bool can_keep_other_streams(const struct overlay *o)
 {
     return !glint_ends_in(o->output, ".gif") && o->last == INT_MAX;
 }
 
-/* Sets the meaning of the input's codes by its tags, and prints a warning of
- * tags that are not known, or that are missing though the video is of 2020's
- * primaries. */
+/* Sets range, matrix and transfer of the input by its tags. Prints a warning
+ * for unknown tags, and for missing tags of a video with BT.2020 primaries. */
 static void set_colour_meaning(struct video *v)
 {
     static const char *const matrices[] = {"601", "709", "2020"};
@@ -115,8 +117,8 @@ static void set_colour_meaning(struct video *v)
                                                          : (int)h->transfer]);
 }
 
-/* Opens the input through ffmpeg, which itself prints what it cannot read.
- * Returns an exit code. */
+/* Opens the input through ffmpeg, which prints its own errors. Returns an exit
+ * code. */
 static int open_coded_input(struct video *v)
 {
     struct glint_input file;
@@ -150,7 +152,7 @@ static int open_coded_input(struct video *v)
                                                             : GLINT_E_FORMAT);
 }
 
-/* Returns ffmpeg's name of the samples of LAYOUT. */
+/* Returns ffmpeg's name of the pixel format LAYOUT. */
 static const char *
 find_pixel_format_of_layout(const struct glint_y4m_layout *layout)
 {
@@ -164,7 +166,7 @@ find_pixel_format_of_layout(const struct glint_y4m_layout *layout)
                              : find_pixel_format(chroma, layout->bits);
 }
 
-/* Opens frames without headers, 30 a second. */
+/* Opens raw frames without headers, at 30 frames per second. */
 static enum glint_status open_raw_input(struct video *v)
 {
     static const enum glint_pixel_format formats[] = {GLINT_I420, GLINT_I422,
@@ -205,8 +207,8 @@ static int open_video_input(struct video *v)
     return code;
 }
 
-/* Opens a y4m stream into the pipe of ffmpeg, which writes a file beside the
- * target. */
+/* Starts ffmpeg, which reads y4m from a pipe and writes a temporary file next
+ * to the output. */
 static enum glint_status open_encoder(struct video *v)
 {
     const struct overlay *o = v->o;
@@ -235,7 +237,7 @@ static enum glint_status open_encoder(struct video *v)
         return status;
     snprintf(v->pipe, sizeof v->pipe, "/proc/self/fd/%d", v->writer.fd);
     status = glint_y4m_writer_open(&v->out, v->pipe, &v->in.header, &v->error);
-    close(v->writer.fd); /* the stream has opened the pipe itself */
+    close(v->writer.fd); /* the y4m writer has opened the pipe by name */
     v->writer.fd = -1;
     return status;
 }
@@ -252,8 +254,7 @@ static int open_video_output(struct video *v)
 
 /* ------------------------------------------------------------------ frames */
 
-/* Draws IMAGE, the frame that was read last, and writes it. Returns an exit
- * code. */
+/* Draws on IMAGE, the frame read last, and writes it. Returns an exit code. */
 static int draw_and_write_frame(struct video *v,
                                 const struct glint_image *image)
 {
@@ -300,9 +301,9 @@ static int draw_all_frames(struct video *v)
     return code;
 }
 
-/* Prints the frames of each shot: from one in which lamps and exposure
- * restart to the next. In frames without lamps they do in each; those are one
- * shot, with what comes after them. */
+/* Prints the first and last frame of each shot. A shot begins where lamps and
+ * exposure restart. They restart in each frame without lamps; such frames form
+ * one shot with the frames that follow. */
 static int print_shot_list(struct video *v)
 {
     const int *const at = &v->o->drawing.run.n_frames;
@@ -331,8 +332,8 @@ static int print_shot_list(struct video *v)
     return code;
 }
 
-/* Returns the us from frame to frame, on average if that varies; at 25 a second
- * if the rate is unknown. */
+/* Returns the mean interval between frames, microseconds; 40000 (25 frames per
+ * second) if the rate is unknown. */
 static int32_t mean_frame_interval_us(const struct video *v)
 {
     const struct glint_y4m_header *const header = &v->in.header;
@@ -347,8 +348,8 @@ static int32_t mean_frame_interval_us(const struct video *v)
 
 /* ------------------------------------------------------------------ ending */
 
-/* Waits for the end of the decoder. Returns an exit code: it must have read all
- * of the input. */
+/* Waits until the decoder ends. Returns an exit code: an error if it did not
+ * read the whole input. */
 static int wait_for_decoder(struct video *v)
 {
     const int code = child_wait(&v->reader);
@@ -375,7 +376,8 @@ static int finish_encoder(struct video *v)
                 v->o->output);
         return EXIT_OUTPUT;
     }
-    /* An encoder that stops early, as with -frames:v, has made a file. */
+    /* An encoder that stops early, for example by -frames:v, has written a
+     * valid file. */
     if (v->writes && (status == GLINT_OK || status == GLINT_E_CLOSED)) {
         status = ffmpeg_check(v->file.tmp, v->o->output, &v->error);
         if (status == GLINT_OK && !v->o->encode && !v->tool->quiet)
@@ -386,8 +388,8 @@ static int finish_encoder(struct video *v)
     return status == GLINT_OK ? EXIT_OK : report_video_failure(v, status);
 }
 
-/* Prints a warning if frames of a variable rate were repeated or left out to
- * become even. */
+/* Prints a warning if ffmpeg repeated or dropped frames of a variable rate to
+ * make it constant. */
 static void warn_of_variable_rate(const struct video *v)
 {
     if (v->is_variable && !v->keeps_times && v->has_ended && !v->tool->quiet)

@@ -6,10 +6,10 @@
 
 #include "overlay/drawing.h"
 
-/* Memory that all frames of a stream share. */
+/* Buffers that all frames of a stream use */
 struct overlay_y4m {
     struct glint_y4m_light light;
-    uint8_t *planes; /* planes of the frame */
+    uint8_t *planes; /* sample planes of the frame */
     float *layer;
 };
 

@@ -11,13 +11,13 @@
 /* Returns the bytes of a frame of IN, all planes together. */
 size_t overlay_y4m_bytes(const struct glint_y4m_reader *in);
 
-/* Draws the flare on the frame that IN has just read, of which IMAGE is the
- * view. Returns an exit code. */
+/* Draws the flare on the frame that IN read last; IMAGE is its 8-bit view.
+ * Returns an exit code. */
 int overlay_y4m_draw(struct tool *tool, struct overlay *o,
                      struct glint_y4m_reader *in,
                      const struct glint_image *image);
 
-/* Frees the memory that overlay_y4m_draw() allocated in O. */
+/* Frees the buffers that overlay_y4m_draw() stored in O. */
 void overlay_y4m_close(struct overlay *o);
 
 #endif

@@ -32,7 +32,7 @@ static void draw_lamp_cross(const struct paint *p, int x, int y)
     paint_fill(p, x, y - 2 * d, x + d, y + 3 * d);
 }
 
-/* Returns the thickness of lines at which letters can be read on IMAGE. */
+/* Returns the line width, pixels, at which text on IMAGE is readable. */
 static int compute_line_width(const struct glint_image *image)
 {
     const int side =
@@ -41,8 +41,8 @@ static int compute_line_width(const struct glint_image *image)
     return 1 + side / 540;
 }
 
-/* Draws NUMBER, and STOPS below it, at the right of the box, or at its left if
- * the picture ends before. */
+/* Draws NUMBER, and STOPS below it, right of the box, or left of it near the
+ * picture's right edge. */
 static void draw_lamp_number(const struct paint *p, int x, int y, int half,
                              const char *number, const char *stops)
 {
@@ -68,7 +68,7 @@ static void draw_mark_strokes(const struct paint *p, int x, int y, int half,
     draw_lamp_number(p, x, y, half, number, stops);
 }
 
-/* Draws a mark and before it its shadow, as lamps are as bright as any line. */
+/* Draws a mark with a black shadow, which keeps it visible on bright lamps. */
 static void draw_shadowed_mark(const struct glint_image *image,
                                const struct glint_lamp_track *track,
                                const char *stops)

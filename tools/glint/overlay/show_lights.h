@@ -10,18 +10,19 @@
 #include "glint/image.h"
 #include "glint/lamp_tracker.h"
 
-/* Draws the mark of TRACK on IMAGE, of any 8-bit format: green if steady,
- * yellow if rising, red if fading, blue after it left the picture. */
+/* Draws the mark of TRACK on IMAGE, of any 8-bit format. Colours: green steady,
+ * yellow rising, red fading, blue after the lamp left the picture. */
 void show_lamp_mark(const struct glint_image *image,
                     const struct glint_lamp_track *track);
 
-/* Draws the mark of TRACK as show_lamp_mark() does, and below its number POWER
- * in stops above the power of a white pixel. */
+/* Draws the mark of TRACK like show_lamp_mark(), with POWER below its number,
+ * in stops above a white pixel. */
 void show_lamp_mark_of(const struct glint_image *image,
                        const struct glint_lamp_track *track, double power);
 
-/* Writes a legend into the lower left corner: the meaning of numbers and, if
- * lamps are FOLLOWED, of colours. Draws nothing if the picture is too small. */
+/* Draws a legend in the lower left corner: the meaning of numbers and, if
+ * FOLLOWED (lamps are tracked), of colours. Draws nothing if the picture is too
+ * small. */
 void show_mark_legend(const struct glint_image *image, bool followed);
 
 #endif

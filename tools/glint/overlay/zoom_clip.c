@@ -49,7 +49,7 @@ static long count_y4m_frames(const char *name, struct glint_error *error)
     return n;
 }
 
-/* Returns key frames for N frames, malloc'ed. */
+/* Returns the text of key frames for N frames, allocated by malloc(). */
 static char *make_zoom_keys(const struct zoom_clip *clip, long n)
 {
     const bool is_mm = clip->from > 1;

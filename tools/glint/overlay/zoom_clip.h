@@ -2,7 +2,7 @@
  *
  * zoom_clip.h - "--zoom A-B": a smooth zoom over a whole video.
  *
- *     zoom_clip_take(&clip, "60-140")               an option
+ *     zoom_clip_parse(&clip, "60-140")               an option
  *     zoom_clip_open(tool, &clip, input, &line);
  *
  * If A and B are focal lengths, their ratio from frame to frame is constant, as
@@ -14,8 +14,9 @@
 
 struct zoom_clip {
     bool is_asked;
-    double from, to; /* both in mm, or both 0 to 1, as --zoom */
-    char label[80];  /* "--zoom A-B", for errors */
+    double from, to; /* zoom at first and last frame, both mm or both 0 .. 1, as
+                        --zoom */
+    char label[80];  /* "--zoom A-B", used in error messages */
     char *keys;      /* text of the key frames */
 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Frames of a scene that moves, in linear light, and the flare that a lens
- * makes of its lights. */
+ * Renders the frames of an animated scene in linear light, with the flare that
+ * a lens adds for the scene's lights. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,18 +25,20 @@ struct frames {
     struct render_scene *r;
     struct drawing *c;
     bool is_y4m, is_numbered;
-    int32_t elapsed_us;      /* between frames; 0: there is one */
-    struct glint_image seen; /* the scene in codes, for exposure and veil */
-    int32_t *light_q20;      /* the scene, [height][width][3] */
-    float *flare;            /* of the lens, likewise; NULL: there is none */
+    int32_t elapsed_us; /* microseconds between frames; 0: a single frame */
+    struct glint_image
+        seen;           /* 8-bit picture of the scene, for exposure and veil */
+    int32_t *light_q20; /* linear light of the scene, [height][width][3] */
+    float *flare; /* linear light of the flare, [height][width][3]; NULL: no
+                     lens */
 
-    /* y4m */
+    /* output video; y4m only */
     struct glint_y4m_header header;
     struct glint_y4m_writer writer;
     struct glint_image frame;
     struct glint_composite *composite;
     void *tables;
-    uint16_t *rgb_q16; /* three planes */
+    uint16_t *rgb_q16; /* three planes of RGB, Q16 */
 };
 
 /* ------------------------------------------------------------------ opening */
@@ -58,7 +60,8 @@ static int check_output_name(const struct tool *tool, struct frames *f)
     return EXIT_OK;
 }
 
-/* Opens the output video and the tables that convert light to its frames. */
+/* Opens the output video and initialises the conversion of linear light to its
+ * codes. */
 static enum glint_status open_output_video(struct frames *f,
                                            struct glint_error *error)
 {
@@ -127,8 +130,8 @@ static void close_frame_buffers(struct frames *f)
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Adds the flare of the lights, reduced by occlusion in the scene over black,
- * to the picture. */
+/* Adds the flare to the picture. Occlusion by objects reduces the light of
+ * lamps. */
 static enum glint_status add_flare_of_lights(struct frames *f)
 {
     struct drawing *const c = f->c;
@@ -146,7 +149,7 @@ static enum glint_status add_flare_of_lights(struct frames *f)
     return status;
 }
 
-/* Draws frame c->run.n_frames into r->image. */
+/* Draws frame number c->run.n_frames into r->image. */
 static enum glint_status draw_scene_frame(struct frames *f)
 {
     struct render_scene *const r = f->r;
@@ -269,8 +272,8 @@ static int render_all_frames(struct frames *f)
     return code;
 }
 
-/* Returns an exit code for what of the drawing's options is not for renders.
- */
+/* Rejects drawing options that render does not support. Returns an exit
+ * code. */
 static int check_drawing_options(const struct tool *tool,
                                  const struct drawing *c)
 {
@@ -307,7 +310,8 @@ int render_frames(struct tool *tool, struct render_scene *r, const char *path)
     if (r->is_video)
         f.elapsed_us = (int32_t)lrint(1e6 / r->fps);
     code = drawing_open(tool, c);
-    c->files.is_listed = true; /* there is no picture to find lamps in */
+    c->files.is_listed =
+        true; /* no detection: there is no photograph with lamps */
     if (code == EXIT_OK)
         code = drawing_size(tool, c, r->width, r->height);
     if (code == EXIT_OK)

@@ -80,7 +80,8 @@ static bool parse_frame_range(struct render_scene *r, const char *text)
            tool_parse_integer(dash + 1, r->first, MOST_FRAME, &r->last);
 }
 
-/* Takes what is of frames that change. Returns -1, or -2 if it is not. */
+/* Parses option C if it concerns animation. Returns -1, or -2 if it is another
+ * option. */
 static int parse_animation_option(struct tool *tool, struct render_scene *r,
                                   int c)
 {
@@ -131,7 +132,8 @@ static int parse_scene_option(struct tool *tool, struct render_scene *r, int c)
     }
 }
 
-/* Takes option C, of scenes or of the flare. Returns -1 or an exit code. */
+/* Parses option C, an option of scenes or of the flare. Returns -1 or an exit
+ * code. */
 static int parse_any_option(struct tool *tool, struct render_scene *r, int c)
 {
     int code = drawing_line_option(tool, &r->drawing.line, c, optarg);
@@ -202,7 +204,7 @@ static int parse_command_line(struct tool *tool, int argc, char **argv,
 
 /* ---------------------------------------------------------- the run time */
 
-/* Returns how many of the lights that the scene shows to lenses are hidden. */
+/* Returns the number of flare lights of the scene that are occluded. */
 static int count_hidden_lights(const struct scene_frame *frame)
 {
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
@@ -252,7 +254,7 @@ static void print_catcher_note(const struct tool *tool,
                 catcher->name);
 }
 
-/* Draws MODEL over black, in linear light. */
+/* Renders MODEL over black into r->image, linear light. */
 static int render_model_to_image(struct tool *tool, struct render_scene *r,
                                  const struct glint_scene_model *model)
 {

@@ -12,14 +12,14 @@
 struct render_scene {
     const char *output;
     int width, height;
-    int samples; /* 0: the default */
+    int samples; /* samples per pixel at outlines; 0: the default */
     double exposure_ev;
-    bool linear;     /* the format of OUTPUT has floats */
-    bool is_frames;  /* poses, frames or a lens are given: render_frames()
-                        draws */
-    bool is_lit;     /* an option of the flare was given */
+    bool linear;     /* OUTPUT has floats, so linear light is written */
+    bool is_frames;  /* options --pose, --frame(s) or --lens were given:
+                        render_frames() draws */
+    bool is_lit;     /* a flare option was given */
     bool is_video;   /* --frames FIRST-LAST */
-    int first, last; /* frames */
+    int first, last; /* first and last frame number */
     double fps;
     struct drawing drawing;
     struct glint_float_image image;
@@ -28,7 +28,7 @@ struct render_scene {
 /* Returns whether a scene, text or baked, is among the arguments. */
 bool render_has_scene(int argc, char **argv);
 
-/* As the commands of options/tool.h. */
+/* Runs the command; see options/tool.h for the arguments and the result. */
 int cmd_render_scene(int argc, char **argv);
 
 /* Draws frames r->first to r->last of the scene PATH to r->output, with the
