@@ -61,8 +61,9 @@ struct bake {
     struct coating coating;
     struct zoom_option zoom;
     double f_number;
-    int positions; /* positions of a zoom lens; 0: a single model */
-    /* max error half-way between positions, dB; below 0: not requested */
+    int positions; /* --positions: number of baked zoom positions; 0: a single
+                      model */
+    /* --halfway: min PSNR halfway between positions, dB; below 0: not given */
     double halfway_db;
     struct glint_bake_options options;
     struct tool_progress progress;
@@ -164,7 +165,8 @@ static int print_bake_report(const struct tool *tool, const void *model,
     return EXIT_OK;
 }
 
-/* Bakes LENS into OUT, and commits or aborts OUT. Returns an exit code. */
+/* Bakes LENS, writes the model to OUT, and commits or aborts OUT. Returns an
+ * exit code. */
 static int bake_lens_to_output(struct glint_output *out, struct tool *tool,
                                struct bake *b,
                                const struct glint_prescription *lens)
@@ -197,8 +199,8 @@ static int bake_lens_to_output(struct glint_output *out, struct tool *tool,
     return code;
 }
 
-/* Prints a summary of the bake, unless the model was written to standard
- * output. */
+/* Prints a summary of a zoom bake, unless standard output receives the
+ * model. */
 static void print_zoom_report(const struct tool *tool, const struct bake *b,
                               const struct zoom_baked *baked, double seconds)
 {
@@ -230,7 +232,8 @@ static void print_zoom_report(const struct tool *tool, const struct bake *b,
                b->halfway_db);
 }
 
-/* Bakes LENS, as it was read, at all positions into OUT. */
+/* Bakes LENS at all zoom positions into OUT. LENS must be as read, at its
+ * default position. Returns an exit code. */
 static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
                                struct bake *b,
                                const struct glint_prescription *lens)
@@ -257,8 +260,8 @@ static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
     return EXIT_OK;
 }
 
-/* Bakes the lens NAME. The output is opened first, as baking can take
- * minutes. */
+/* Bakes the lens NAME. Opens the output before the bake, which can take
+ * minutes, so that an error shows at once. Returns an exit code. */
 static int bake_lens_by_name(struct tool *tool, struct bake *b,
                              const char *name)
 {
@@ -338,8 +341,8 @@ int cmd_bake(int argc, char **argv)
 
     if (code != EXIT_OK && tool.json &&
         !(tool.written && strcmp(tool.written, "-") == 0))
-        /* The options that follow the error have not been read, so --json is
-         * searched for here. */
+        /* Options after an invalid one were not parsed, so --json is searched
+         * for here. */
         json_write(&(struct json_writer){.to = stdout},
                    "{error: %s, file: %s, exit: %d}\n", cause.text,
                    optind < argc && *argv[optind] != '-' ? argv[optind] : NULL,

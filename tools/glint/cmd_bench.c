@@ -53,8 +53,8 @@ static int parse_options(struct bench *b, int argc, char **argv)
     return -1;
 }
 
-/* Returns whether the command line has --scene, which selects the bench of
- * scenes with other options. */
+/* Returns whether the command line has --scene, which selects the scene
+ * benchmark and its options. */
 static bool has_scene_option(int argc, char **argv)
 {
     for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)

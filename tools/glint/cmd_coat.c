@@ -44,14 +44,14 @@ enum { MAX_ANGLES = 8, STEPS = 40, MAX_TEXT = 160 };
 
 struct coat {
     const char *output;
-    int surface; /* -1: a coating alone, without a lens */
+    int surface; /* surface of the lens, from 0; -1: a coating without a lens */
     struct coating on_lens;
-    double glass[2]; /* index nd and Abbe number Vd */
+    double glass[2]; /* nd and Vd of the glass below the coating */
     int n_angles;
     double angle_deg[MAX_ANGLES];
     double band_nm[2];
     struct glint_coating coating;
-    char name[MAX_TEXT]; /* name in titles */
+    char name[MAX_TEXT]; /* coating or lens, for titles */
 };
 
 /* Reflectances, 0 .. 1, of s and p polarised light, and their mean. */
@@ -72,7 +72,7 @@ static struct reflected compute_reflectance(const struct coat *c, double nm,
     return r;
 }
 
-/* Returns wavelength K of the table, K = 0 .. STEPS, nm. */
+/* Returns wavelength number K of the printed table, nm; K = 0 .. STEPS. */
 static double table_wavelength_nm(const struct coat *c, int k)
 {
     return c->band_nm[0] + (c->band_nm[1] - c->band_nm[0]) * k / STEPS;
@@ -123,7 +123,7 @@ static void print_reflectance_json(const struct coat *c)
 /* A curve in a panel: reflectance in percent as a function of X. */
 struct curve {
     const struct coat *c;
-    double fixed; /* the angle (degrees) or wavelength (nm) that is constant */
+    double fixed; /* constant of the curve: angle, degrees, or wavelength, nm */
     int kind;     /* 0: mean by wavelength; 1: s, 2: p polarisation by angle */
     double lo, hi;
 };
@@ -310,7 +310,8 @@ static int find_lens_coating(const struct tool *tool, const char *name,
         c->coating = s->coating;
         snprintf(c->name, sizeof c->name, "%.60s, surface %d", lens->name,
                  c->surface);
-        /* the glass is on the other side of the surface */
+        /* light from the air meets the glass before surface K if the glass lies
+         * in front of it */
         if (s->vd <= 0 && c->surface > 0)
             s--;
         else if (c->surface > 0 && s[-1].vd > 0)

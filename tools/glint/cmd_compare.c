@@ -40,8 +40,8 @@ static const char help_end[] = COMMON_HELP;
 struct asked {
     const char *name[2];
     bool fit;
-    /* --exposure: stops, or "auto". If neither is set, the image types
-     * decide. */
+    /* has_ev: --exposure is a number of stops; is_auto: it is "auto". If both
+     * are false, the image types decide. */
     bool has_ev, is_auto;
     double ev;
 };
@@ -82,8 +82,8 @@ static void print_comparison_text(const struct glint_measure *m, bool identical)
 
 /* ---------------------------------------------------------------- comparing */
 
-/* Returns whether the image NAME may contain floats: by its extension, or
- * because it is a pipe ("-"), which has none. */
+/* Returns whether image NAME may contain floats: by its extension, or because a
+ * pipe ("-") has no extension. */
 static bool may_contain_floats(const char *name)
 {
     return glint_picture_is_float(name) || strcmp(name, "-") == 0;

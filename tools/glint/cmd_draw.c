@@ -43,7 +43,7 @@ struct draw {
     struct lens_drawing drawing;
     const char *output;
     struct zoom_option zoom;
-    double f_number; /* 0: f-number of the table */
+    double f_number; /* --f-number; 0: the f-number of the table */
 };
 
 static int parse_option(struct tool *tool, void *ctx, int c, const char *value)

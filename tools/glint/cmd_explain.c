@@ -72,9 +72,10 @@ enum { AUTO, CODES, LINEAR };
 struct explain_command {
     struct drawing drawing;
     const char *input, *output, *ghosts, *sheet;
-    int width, height; /* 0: size of the input */
+    int width, height; /* --size, pixels; 0: size of the input */
     int picture, top;
-    struct glint_image image; /* the input, on which the flare is drawn */
+    struct glint_image
+        image; /* 8-bit copy of the input on which the flare is drawn */
 };
 
 static const struct option own[] = {
@@ -192,8 +193,8 @@ static int load_input_image(struct tool *tool, struct explain_command *c)
     return EXIT_OK;
 }
 
-/* Draws the flare as glint render does, and converts c->image to the 8-bit
- * image that glint render would save. */
+/* Draws the flare in linear light like glint render, and converts c->image to
+ * the 8-bit image that glint render would save. */
 static enum glint_status draw_linear_flare(struct explain_command *c)
 {
     struct drawing *drawing = &c->drawing;
@@ -234,7 +235,8 @@ static enum glint_status draw_linear_flare(struct explain_command *c)
 
 /* ------------------------------------------------------------------ result */
 
-/* Saves the image of SCENE, or that of the flare if SCENE is NULL. */
+/* Saves the marked image: of SCENE, or of the flare if SCENE is NULL. Returns
+ * an exit code. */
 static int save_picture(struct tool *tool, const struct explain_command *c,
                         struct glint_explain *e,
                         const struct explain_title *title,
@@ -252,7 +254,7 @@ static int save_picture(struct tool *tool, const struct explain_command *c,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Writes the requested files with images of single ghosts. */
+/* Writes the files of --save-ghosts and --ghost-sheet if they are requested. */
 static int save_ghost_images(struct tool *tool, const struct explain_command *c,
                              struct glint_explain *e)
 {
@@ -332,7 +334,8 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
     if (code == EXIT_OK && tool->json && drawing->files.scene.is_open)
         printf("}\n");
     if (status == GLINT_OK && drawing->run.n_lamps == 0 && !tool->quiet) {
-        fflush(stdout); /* standard error follows the report */
+        fflush(
+            stdout); /* writes the report before messages on standard error */
         overlay_print_no_light(drawing, false, stderr);
     }
     if (code == EXIT_OK && c->output && !drawing->files.scene.is_open)
@@ -343,7 +346,7 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
     return code;
 }
 
-/* Rejects an image that cannot be written before the work begins. */
+/* Rejects an image name that cannot be written, before the work begins. */
 static int check_picture_name(const struct tool *tool, const char *path)
 {
     struct glint_error error = {""};

@@ -164,8 +164,8 @@ static void set_lens_name(char name[GLINT_NAME_BYTES], const char *path)
     name[n] = '\0';
 }
 
-/* Prints all notes of the import; if --strict rejects the lens, only those
- * about guessed values. */
+/* Prints all notes of the import. If --strict rejects the lens, prints only
+ * notes about guessed values. */
 static void print_import_notes(const struct tool *tool,
                                const struct imported *lens)
 {

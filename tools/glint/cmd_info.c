@@ -225,12 +225,11 @@ static int print_motion_info(const struct tool *tool, const char *path,
     return code;
 }
 
-/* Options of the command line. */
 struct asked {
     double f_number; /* 0: f-number of the table */
     struct coating coating;
     struct zoom_option zoom;
-    const char *poses; /* file of poses to print; NULL: none */
+    const char *poses; /* --poses: file for the poses of a motion; NULL: none */
 };
 
 static int parse_options(struct tool *tool, int argc, char **argv,
@@ -286,9 +285,9 @@ static int print_medium_info(const struct tool *tool, const char *path)
     return EXIT_OK;
 }
 
-/* Prints the file PATH if it is not a lens. STOP: the command line has
- * options for a lens, which are then errors. Returns an exit code, or -1 if
- * PATH is a lens. */
+/* Prints PATH if it is a model, scene, environment, medium or motion. STOP:
+ * lens options were given, which is an error for such files. Returns an exit
+ * code, or -1 if PATH is a lens. */
 static int print_file_that_is_not_lens(const struct tool *tool,
                                        const char *path, bool stop,
                                        const char *poses)

@@ -63,20 +63,22 @@ struct lenses {
     const char *folder; /* folder to write models to; NULL: none */
     const char *only[MAX_ONLY];
     int n_only, n, code;
-    bool names; /* prints only names */
-    bool exact; /* traces the flares of lenses that have no model */
+    bool names; /* --names: print names only */
+    bool exact; /* --rays exact: draw flares of lenses without a model by exact
+                   rays */
     char **words;
     int n_words;
     const char *html; /* HTML page to write, or NULL */
     FILE *page;
-    struct tool_progress progress; /* while a page is written */
-    /* number of lens files, and number of those processed */
+    struct tool_progress progress; /* progress of writing the HTML page */
+    /* number of lens files, and of lens files already processed */
     int n_files, n_looked;
 };
 
 struct entry {
     struct glint_prescription table;
-    struct settings settings; /* settings of a command without options */
+    struct settings
+        settings; /* default settings of a command without options */
     struct glint_optics optics;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
     int n_ghosts;
@@ -113,10 +115,10 @@ static int load_lens_entry(const struct tool *tool, const char *name,
 
 /* ------------------------------------------------------------------ tables */
 
-/* Half the field of view above which the pinhole angle is replaced by the
- * lens's own projection, for which 85 chief rays are traced, degrees. */
+/* Half field of view, degrees, above which the corner angle is computed by the
+ * lens's projection (85 chief rays) instead of a pinhole */
 #define WIDE_DEG 40.0
-/* max angle of a light in an image, degrees */
+/* max angle of a light that can be drawn, degrees */
 #define WIDEST_DEG 89.9
 
 static double corner_field_angle_deg(const struct entry *e)
@@ -172,8 +174,8 @@ static void print_entry_text(struct lenses *l, const char *name,
 
 /* ------------------------------------------------------------------ a page */
 
-/* Sets SETTINGS for drawing thumbnails of E: three wavelengths and coarse
- * grids suffice for images of that size. */
+/* Sets SETTINGS for thumbnails of E: three wavelengths and coarse grids, which
+ * suffice for their size. */
 static void set_thumbnail_settings(struct settings *settings,
                                    const struct entry *e)
 {
@@ -261,8 +263,8 @@ static int save_model_to_folder(const struct tool *tool, const char *path,
                           model->bytes);
 }
 
-/* Copies the model of E from the cache to the folder, or bakes it, unless
- * the folder has it already. */
+/* Copies the cached model of E to the folder, or bakes it, unless the folder
+ * already has it. Returns an exit code. */
 static int copy_or_bake_model(const struct lenses *l, const struct entry *e)
 {
     const uint64_t key = glint_bake_key(&e->table, &e->options);
@@ -302,8 +304,9 @@ static bool print_lens_name(struct lenses *l, const char *name)
     return true;
 }
 
-/* Lists the lens NAME, or writes its model to the folder. Returns whether to
- * continue: an error in a table is reported and does not end the list. */
+/* Lists lens NAME, or writes its model to the folder. Returns whether to
+ * continue with the next lens; an error in a table is printed and does not end
+ * the list. */
 static bool list_lens(void *ctx, const char *name)
 {
     struct lenses *l = ctx;
@@ -353,7 +356,7 @@ static bool stop_at_first_lens(void *ctx, const char *name)
     return false;
 }
 
-/* Prints that no lens matches the words. Returns an exit code. */
+/* Prints which search words no lens contains. Returns an exit code. */
 static int report_no_matching_lens(const struct lenses *l)
 {
     if (l->n_words)

@@ -18,8 +18,10 @@ struct mend {
     int line, column; /* position of the number in the file */
     enum slip slip;
     char from[24], to[24];
-    double focal_mm, back_mm; /* with the changed number */
-    /* the glass is in the catalogue or is used by another surface */
+    double focal_mm,
+        back_mm; /* focal length and back focus with the corrected number */
+    /* whether the corrected glass is in the catalogue or used by another
+     * surface */
     bool listed;
     /* relative difference of focal length and back focus from the stated
      * values */
@@ -28,10 +30,10 @@ struct mend {
 
 enum { MENDS = 8, LENS_TEXT = 1 << 16 };
 
-/* Limits of the glass map: min and max Vd at an index nd. From fluorite and
- * fluor crowns over lanthanum crowns to the densest glasses, and down the
- * flints, with lead and without; widened by twice a label's width on the
- * makers' maps. */
+/* Limits of the map of glasses: min and max Vd for an index nd. They follow
+ * fluorite, fluor crowns, lanthanum crowns and the densest glasses, and the
+ * flints with and without lead, widened by twice a label's width on the makers'
+ * maps. */
 static const struct {
     double nd, least, most;
 } ends[] = {{1.42, 60.0, 97.5}, {1.45, 56.0, 96.0}, {1.50, 48.0, 84.0},
@@ -54,8 +56,8 @@ static bool is_plastic(double nd, double vd)
            vd <= fmax(least + 6.5, 35);
 }
 
-/* Returns whether a glass with nd and Vd exists or existed: between fluoride
- * crowns and flints; if MOULDED, also a plastic. */
+/* Returns whether a glass with nd and Vd can exist, between fluoride crowns and
+ * flints. MOULDED: plastics are allowed, too. */
 static bool is_plausible_glass(double nd, double vd, bool moulded)
 {
     int k = 0;
@@ -97,15 +99,15 @@ static bool is_glass_in_catalogue(const struct glint_prescription *lens, int k)
     return false;
 }
 
-/* Returns whether the element behind surface S, which is not the last, has
- * an aspheric side, as moulded elements do. */
+/* Returns whether the element behind surface S, which must not be the last one,
+ * has an aspheric side and so is moulded. */
 static bool is_element_moulded(const struct glint_surface *s)
 {
     return glint_surface_is_shaped(&s[0]) || glint_surface_is_shaped(&s[1]);
 }
 
-/* Returns whether ND has more than three decimals. Indices with fewer are
- * shared by different glasses, as 1.755 by a lanthanum crown and a flint. */
+/* Returns whether ND has more than three decimals. Fewer decimals do not
+ * identify a glass: 1.755 is a lanthanum crown and a flint. */
 static bool is_index_precise(double nd)
 {
     return fabs(1e3 * nd - nearbyint(1e3 * nd)) > 1e-6;
@@ -139,14 +141,15 @@ static int find_suspect_glass(const struct glint_prescription *lens, char *text,
     return -1;
 }
 
-/* A number of the table, and the corrections tried for it. */
+/* A number in the table, and the corrections found for it */
 struct search {
     const char *text;
     size_t bytes;
-    size_t at, length; /* range of the number in TEXT */
+    size_t at, length; /* offset and length of the number in TEXT, bytes */
     int line, column;
-    int surface; /* surface of the line; -1: the stop */
-    /* surface whose glass is the only error; -1: there are others */
+    int surface; /* index of the surface defined by the line; -1: the stop */
+    /* index of the surface whose glass is the only error; -1: there are other
+     * errors */
     int glass;
     struct mend *mend;
     int n;
@@ -176,9 +179,9 @@ static double relative_deviation(double got, double stated)
     return stated > 0 ? fabs(got / stated - 1) : 0;
 }
 
-/* Returns whether A is more likely than B: an existing glass first, then a
- * sign or swapped digits before a wrong digit, then the smaller difference
- * from the stated values. */
+/* Returns whether correction A is likelier than B. Criteria in this order: an
+ * existing glass; a sign or swapped digits before a wrong digit; the smaller
+ * difference from the stated values. */
 static bool is_correction_likelier(const struct mend *a, const struct mend *b)
 {
     const bool first = a->slip <= SLIP_SWAP, second = b->slip <= SLIP_SWAP;
@@ -200,7 +203,8 @@ static void insert_correction(struct search *s, const struct mend *found)
         s->mend[k] = *found;
 }
 
-/* Tests the table with NUMBER in place of the current number. */
+/* Replaces the current number by NUMBER and records the correction if the table
+ * becomes consistent. */
 static void try_replacement_number(struct search *s, const char *number,
                                    enum slip slip)
 {
@@ -355,7 +359,7 @@ static int find_corrections(const char *text, size_t bytes,
         }
         at = end + 1;
     }
-    s.mend = NULL; /* it points to the caller's array */
+    s.mend = NULL; /* belongs to the caller */
     return s.n;
 }
 

@@ -105,7 +105,7 @@ static const struct option own[] = {
     {"config", required_argument, NULL, OPT_CONFIG},
     {NULL, 0, NULL, 0}};
 
-/* options of glint live, and those of the engine */
+/* getopt_long() table of glint live and engine options */
 static const struct option *options;
 
 /* The command line, which is parsed again when the configuration is
@@ -114,7 +114,7 @@ struct line {
     struct tool *tool;
     int argc;
     char **argv;
-    struct config config, again; /* configuration files read at the start and by
+    struct config config, again; /* configuration read at the start, and that of
                                     the last reload */
     struct live_options *into;
 };
@@ -149,7 +149,7 @@ static bool parse_frame_rate(const char *text, int *num, int *den)
            (!slash || tool_parse_integer(slash + 1, 1, 1000000, den));
 }
 
-/* Returns whether TEXT has exactly one conversion, and it is for an int. */
+/* Returns whether TEXT has exactly one printf conversion, of an int. */
 static bool is_numbered_pattern(const char *text)
 {
     const char *at = strchr(text, '%');
@@ -158,8 +158,8 @@ static bool is_numbered_pattern(const char *text)
     return at && digits < 3 && at[1 + digits] == 'd' && !strchr(at + 1, '%');
 }
 
-/* Applies an option of the camera. Returns -1, -2 if OPTION is not of the
- * camera, or -3 if VALUE is invalid. */
+/* Applies OPTION if it concerns the camera. Returns -1 on success, -2 for
+ * another option, -3 if VALUE is invalid. */
 static int parse_camera_option(struct live_wish *wish, int option,
                                const char *value)
 {
@@ -206,7 +206,7 @@ static int parse_camera_option(struct live_wish *wish, int option,
     return good && word >= 0 ? -1 : -3;
 }
 
-/* Applies an option that only glint live has. Returns the same values as
+/* Applies OPTION if only glint live has it. Returns the same values as
  * parse_camera_option(). */
 static int parse_live_option(struct live_options *o, int option,
                              const char *value)
@@ -300,9 +300,8 @@ static int parse_command_line(struct line *line)
                             line->argv[optind]);
 }
 
-/* Rejects options O with which an output would overwrite an input, the file
- * CONFIG (may be NULL) or another output. Returns -1 if there is no
- * conflict, else an exit code. */
+/* Rejects options O if an output would overwrite an input, the configuration
+ * file CONFIG (may be NULL) or another output. Returns -1 or an exit code. */
 static int check_outputs_differ_from_inputs(const struct tool *tool,
                                             const struct live_options *o,
                                             const char *config)
@@ -354,7 +353,7 @@ static int reread_options(void *ctx, struct tool *tool,
     struct line *line = ctx;
 
     (void)tool;
-    /* Open drawings have no pointers to the strings of AGAIN. */
+    /* No open drawing refers to strings of AGAIN. */
     config_free(&line->again);
     return parse_options(line, &line->again, into);
 }

@@ -180,8 +180,8 @@ static int check_raw_options(const struct tool *tool, const struct overlay *o)
     return EXIT_OK;
 }
 
-/* Rejects options for N inputs that write a single file, and raw files,
- * whose names do not state the output format. */
+/* For N inputs: rejects options that write a single file, and raw input, whose
+ * name does not determine an output format. */
 static int check_folder_options(const struct tool *tool,
                                 const struct overlay *o, int n)
 {
@@ -198,7 +198,7 @@ static int check_folder_options(const struct tool *tool,
     return EXIT_OK;
 }
 
-/* Checks the options of one input. Returns -1 or an exit code. */
+/* Checks that the options fit a single input. Returns -1 or an exit code. */
 static int check_input_options(const struct tool *tool, int argc, char **argv,
                                struct overlay *o)
 {
@@ -235,9 +235,9 @@ static int check_input_options(const struct tool *tool, int argc, char **argv,
     return -1;
 }
 
-/* Parses the command line and moves its inputs to ARGV[optind] on. OUTPUT:
- * the output file; NULL: as given by -o; if that is a folder, it is stored
- * in *FOLDER. */
+/* Parses the command line and moves the inputs to ARGV[optind] on. OUTPUT
+ * replaces the value of -o unless it is NULL. If -o is a folder, stores it in
+ * *FOLDER. */
 static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
                                     struct overlay *o, const char *output,
                                     const char **folder)
@@ -407,8 +407,8 @@ static int check_output_file(struct tool *tool, struct overlay *o)
     return EXIT_OUTPUT;
 }
 
-/* Sets S so that no model is baked and no brightness is measured if nothing
- * is drawn, unless key frames, control lines or a zoom may need them later. */
+/* Disables the bake and the brightness measurement in S if the strength is 0,
+ * unless key frames, control lines or a zoom may need them later. */
 static void disable_bake_and_metering(struct settings *s, bool is_zoomed)
 {
     struct glint_options *const o = &s->options;
@@ -421,9 +421,9 @@ static void disable_bake_and_metering(struct settings *s, bool is_zoomed)
     GLINT_OPTION_GIVEN(o, exposure) = true;
 }
 
-/* Returns what to do if the lens has no model: one picture is drawn by exact
- * rays; for several pictures, or if an option needs the model, it is baked as
- * soon as a lamp is found. */
+/* Returns how to draw with a lens that has no model: a single picture by exact
+ * rays; several pictures, or options that need a model, by a model that is
+ * baked when a lamp is detected. */
 static enum settings_unbaked choose_unbaked_rendering(const struct overlay *o)
 {
     const struct settings *const s = &o->drawing.line.settings;
@@ -477,14 +477,15 @@ static int overlay_single_input(struct tool *tool, struct overlay *o)
 
 /* ------------------------------------------------------------------ folders */
 
-/* Adds a flare to the input of a command line, for overlay_inputs_to_folder()
- * to one of N inputs. OUTPUT: see parse(). */
+/* Parses a command line and adds the flare to its input.
+ * overlay_inputs_to_folder() calls it for each of N inputs. OUTPUT: see
+ * parse_options_and_inputs(). */
 static int overlay_command_line(int argc, char **argv, const char *output,
                                 int n);
 
-/* Adds flares to the N inputs ARGV[FIRST] on; each is written to FOLDER
- * under its own name. An input that fails does not stop the others, unless
- * the command line or the lens is wrong. Returns the largest exit code. */
+/* Adds flares to the N inputs ARGV[FIRST] on and writes each to FOLDER under
+ * its own name. A failed input does not stop the others, unless the command
+ * line or the lens is wrong. Returns the largest exit code. */
 static int overlay_inputs_to_folder(const struct tool *tool, char **argv,
                                     int first, int n, const char *folder,
                                     const struct glint_options *options)

@@ -56,8 +56,8 @@ struct render {
     bool exact;
     const char *lights_file;
     int n_lamps;
-    /* lamps of the command line, at most SETTINGS_MAX_LAMPS, followed by
-     * those of the file */
+    /* lamps of --light, at most SETTINGS_MAX_LAMPS, then those of the --lights
+     * file */
     struct glint_lamp *lamp;
     struct glint_float_image image;
     double ms;
@@ -143,9 +143,9 @@ static int parse_options(struct tool *tool, int argc, char **argv,
 
 /* ------------------------------------------------------------------ engines */
 
-/* Returns the point lights that the lamps are drawn as, several for a lamp
- * of visible extent; the caller frees them. Sets *N to their number. Returns
- * NULL if there is no memory. */
+/* Returns the point lights that represent the lamps, several for a lamp of
+ * visible extent. The caller frees them. Sets *N to their number. Returns NULL
+ * without memory. */
 static struct glint_lamp *split_lamps_into_points(const struct render *r,
                                                   int *n)
 {
@@ -232,7 +232,7 @@ static void print_light_statistics(const struct tool *tool,
             report->arena_bytes + report->star_bytes);
 }
 
-/* Returns MODEL or EXACT, by what is drawn. */
+/* Returns the name of the chosen ray method for JSON: "model" or "exact". */
 static const char *chosen_ray_method(const struct render *r, const char *model,
                                      const char *exact)
 {
@@ -280,7 +280,7 @@ static int render_model_flare(struct tool *tool, struct render *r)
     return EXIT_OK;
 }
 
-/* Appends the lamps of frame 0 of the file to those of the command line. */
+/* Appends the lamps of frame 0 of the --lights file to those of --light. */
 static int append_lamp_file(struct tool *tool, struct render *r)
 {
     const struct glint_view view =
@@ -312,7 +312,7 @@ static int append_lamp_file(struct tool *tool, struct render *r)
     return code;
 }
 
-/* Rejects an output that would overwrite LENS or an option's file. */
+/* Rejects an output that would overwrite LENS or an input file of an option. */
 static int check_output_differs_from_inputs(const struct tool *tool,
                                             const struct render *r,
                                             const char *lens)

@@ -43,11 +43,12 @@ struct styles_command {
     char **argv;
     const char *input, *output;
     int width;
-    struct glint_image image; /* the input, and a copy to draw on */
+    struct glint_image image; /* input image, and a copy to draw on */
     struct glint_image drawn;
 };
 
-/* Parses the command line into C; options of glint overlay go to DRAWING. */
+/* Parses the command line into C and the options of glint overlay into
+ * DRAWING. */
 static int parse_options(struct tool *tool, struct styles_command *c,
                          struct drawing *drawing)
 {
@@ -75,8 +76,9 @@ static int parse_options(struct tool *tool, struct styles_command *c,
     return optind + 1 < c->argc ? tool_usage(tool, "takes one picture") : -1;
 }
 
-/* Loads the photograph that comes with glint; the small one if the large one
- * needs a missing plug-in. Returns GLINT_E_ARGUMENT if neither is installed. */
+/* Loads the sample photograph installed with glint: the large one, or the small
+ * one if the image plug-in is missing. Returns GLINT_E_ARGUMENT if neither is
+ * installed. */
 static enum glint_status load_sample_photograph(struct glint_image *image,
                                                 struct glint_error *error)
 {
@@ -184,7 +186,7 @@ static int draw_style_image(struct tool *tool, struct styles_command *c,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
-/* Opens the lens of a style, without a bake. Returns an exit code. */
+/* Opens the lens of a style without baking it. Returns an exit code. */
 static int open_style_lens(const struct tool *tool, struct drawing *drawing)
 {
     drawing->line.is_still = true;
@@ -249,7 +251,7 @@ static void list_styles(void)
     }
 }
 
-/* Returns -1 if OUT may be written, else an exit code. */
+/* Returns -1 if the file OUT can be written, else an exit code. */
 static int check_sheet_output(const struct tool *tool,
                               const struct styles_command *c)
 {

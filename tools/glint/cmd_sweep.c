@@ -56,7 +56,8 @@ struct asked {
     int n_lights, lights[MAX_LIST];
     int n_angles;
     double angle[MAX_LIST];
-    bool plain; /* no --size, --lights, --angle or --small */
+    bool plain; /* whether --size, --lights, --angle and --small are all missing
+                 */
 };
 
 /* ------------------------------------------------------------------- cases */
@@ -67,9 +68,9 @@ static void add_sweep_case(struct sweep *s, struct sweep_case c)
         s->scase[s->n_cases++] = c;
 }
 
-/* Adds, for the first lens, a smaller image with one light and one with 16
- * lights that can merge. It is smaller because the time of exact images is
- * proportional to the number of lights. */
+/* For the first lens adds cases with a smaller image: one light, and 16 lights
+ * that can merge. The image is smaller because the time of exact images grows
+ * with the number of lights. */
 static void add_smaller_cases(struct sweep *s)
 {
     const struct sweep_case c = {

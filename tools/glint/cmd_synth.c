@@ -27,19 +27,19 @@
 
 enum { SYNTH_MAX_FILES = 6, SYNTH_PATH_BYTES = 4096 };
 
-/* One file of each item. */
+/* A file that every item has */
 struct synth_file {
     const char *folder,
-        /* "in/put/" and the beginning of the file name before the number */
+        /* folder and beginning of the file name, before the item number */
         *prefix;
-    /* layers that are summed, one bit per enum synth_layer; 0: the image
-     * shows the fraction of each pixel that lights cover */
+    /* layers to sum, one bit per enum synth_layer; 0: coverage of each pixel by
+     * lights */
     unsigned layers;
-    bool is_noisy; /* with sensor noise */
+    bool is_noisy; /* whether sensor noise is added */
 };
 
 struct synth_layout {
-    const char *name, *type; /* type: file type unless another is requested */
+    const char *name, *type; /* name of the layout, and its default file type */
     /* ends with an entry whose folder is NULL */
     struct synth_file file[SYNTH_MAX_FILES];
 };
@@ -47,7 +47,8 @@ struct synth_layout {
 struct synth_set {
     const char *folder, *type;
     const struct synth_layout *layout;
-    /* this process draws items shard, shard + shards, ... below count */
+    /* this process draws the items shard, shard + shards, ... up to count -
+     * 1 */
     int count, shard, shards;
 };
 
@@ -63,8 +64,8 @@ static const struct synth_layout layouts[] = {
       {"gt/", "", BASE | SOURCE, false},
       {"flare/", "", GLARE | GHOSTS, false},
       {"mask/", "", 0, false}}},
-    /* Flares on black, which the data loader of [Dai22] adds to its own
-     * images, and pairs for testing. */
+    /* Layout of [Dai22]: flares on black, which its data loader adds to its own
+     * images, and pairs for testing */
     {"flare7k",
      "png",
      {{"Flare7K/Scattering_Flare/Compound_Flare/", "", SOURCE | GLARE, false},
@@ -74,14 +75,15 @@ static const struct synth_layout layouts[] = {
        true},
       {"test_data/synthetic/gt/", "gt_", BASE | SOURCE, false},
       {"test_data/synthetic/mask/", "mask_", 0, false}}},
-    /* The test set of [Dai23]: the images differ by ghosts alone. */
+    /* Layout of the test set of [Dai23]: pairs that differ in ghosts only */
     {"bracketflare",
      "png",
      {{"test/lq/", "", BASE | SOURCE | GHOSTS, true},
       {"test/gt/", "", BASE | SOURCE, false},
       {"test/flare/", "", GHOSTS, false},
       {"test/mask/", "", 0, false}}},
-    /* Flares on black and scenes, which the programs of [Wu21] add. */
+    /* Layout of [Wu21]: flares on black, and scenes to which its programs add
+     * them */
     {"wu2021",
      "png",
      {{"lens-flare/simulated/", "", SOURCE | GLARE | GHOSTS, false},
@@ -141,7 +143,6 @@ static int create_folder(const struct tool *tool, char *path)
     return EXIT_OK;
 }
 
-/* Creates the folders of SET. */
 static int create_set_folders(const struct tool *tool,
                               const struct synth_set *set)
 {
@@ -163,8 +164,8 @@ static int create_set_folders(const struct tool *tool,
                : report_long_folder_name(tool, set);
 }
 
-/* Rejects a folder that contains a set: the item of --item would overwrite
- * one of the set's items. */
+/* Rejects --item into a folder with a set, where it would overwrite an item of
+ * the set. */
 static int check_item_outside_set(const struct tool *tool,
                                   const struct synth_set *set)
 {
@@ -207,9 +208,9 @@ static int check_item_count(const struct tool *tool,
                       set->folder, last, set->count, last + 1);
 }
 
-/* Creates the folders of SET. SETTINGS is a line of JSON with what all items
- * have in common. Returns an exit code: EXIT_USAGE if the folder was begun
- * with other settings or has items beyond SET's count. */
+/* Creates the folders of SET. SETTINGS: JSON line with the settings of all
+ * items. Returns an exit code: EXIT_USAGE if the folder has other settings or
+ * items beyond SET's count. */
 static int open_item_set(const struct tool *tool, const struct synth_set *set,
                          const char *settings)
 {
@@ -293,7 +294,8 @@ static enum glint_status write_item_file(const struct synth_set *set,
     if (file->layers) {
         codes = glint_measure_encode(&light, 1);
     } else if ((codes = malloc(n))) {
-        /* a fraction, not light: stored without the sRGB curve */
+        /* a coverage fraction is not light, so it is stored without the sRGB
+         * curve */
         for (size_t i = 0; i < n; i++)
             codes[i] = (uint8_t)(d->cover[i] * 255 + 0.5F);
     }
@@ -342,7 +344,8 @@ static enum glint_status append_file_to_stream(struct glint_output *out,
                                                const char *path,
                                                struct glint_error *error)
 {
-    uint8_t part[4096]; /* a description of three lights has 1.5 KiB */
+    uint8_t part[4096]; /* size of a read; a description with three lights
+                           has 1.5 KiB */
     struct glint_input in;
     enum glint_status status = glint_input_open_file(&in, path, error);
     ptrdiff_t n = 0;
@@ -357,8 +360,8 @@ static enum glint_status append_file_to_stream(struct glint_output *out,
     return status;
 }
 
-/* Writes the descriptions of items FIRST, FIRST + STEP, ... to the file
- * NAME. If one is missing, writes nothing and sets *IS_WHOLE to false. */
+/* Writes the descriptions of items FIRST, FIRST + STEP, ... to the file NAME.
+ * If an item is missing, writes nothing and sets *IS_WHOLE to false. */
 static int write_item_descriptions(const struct tool *tool,
                                    const struct synth_set *set,
                                    const char *name, int first, int step,
@@ -400,15 +403,15 @@ static void remove_shard_manifests(const struct synth_set *set)
         closedir(dir);
 }
 
-/* Writes the manifest of a shard if all of its items exist. If all items of
- * the set exist, writes the set's manifest and removes those of the shards.
- * Sets *IS_WHOLE to whether all exist. Returns an exit code. */
+/* Writes the shard's manifest if all its items exist. If all items of the set
+ * exist, writes the set's manifest and removes those of the shards, and sets
+ * *IS_WHOLE to true. Returns an exit code. */
 static int write_shard_manifest(const struct tool *tool,
                                 const struct synth_set *set, bool *is_whole)
 {
     char name[64];
     bool is_done = true;
-    /* another process may have drawn more items */
+    /* check again, as another process may have drawn more items */
     int code = check_item_count(tool, set);
 
     *is_whole = false;
@@ -513,12 +516,12 @@ struct synth {
     struct synth_set set;
     struct synth_ranges ranges;
     struct synth_backgrounds backgrounds;
-    /* [backgrounds.n], hashes of the backgrounds; empty: not read yet */
+    /* hashes of the backgrounds, [backgrounds.n]; empty: not computed yet */
     char (*keys)[20];
     struct synth_lenses lenses;
     int n_lenses;
     char lens[SYNTH_MAX_LENSES][64];
-    struct synth_item all; /* values common to all items */
+    struct synth_item all; /* values that all items share */
     struct synth_drawing drawing;
     const char *line;
 };
@@ -707,8 +710,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
 
 /* -------------------------------------------------------------------- items */
 
-/* Returns the settings of all items as a line of JSON, which the caller
- * frees, or NULL if there is no memory. */
+/* Returns the settings shared by all items as a JSON line, which the caller
+ * frees; NULL without memory. */
 static char *format_set_settings(const struct synth *s, int seed)
 {
     char *text = NULL;
@@ -736,7 +739,7 @@ static char *format_set_settings(const struct synth *s, int seed)
     return NULL;
 }
 
-/* Sets ITEM to the random choices of item NUMBER. */
+/* Sets ITEM to the random parameters of item NUMBER. */
 static int choose_item_parameters(const struct tool *tool, struct synth *s,
                                   int number, struct synth_item *item)
 {
@@ -803,8 +806,8 @@ static int draw_described_item(const struct tool *tool, struct synth *s)
     return code == EXIT_OK ? draw_item(tool, s, &item) : code;
 }
 
-/* Opens every lens, so that all are baked before the first item is drawn,
- * and wrong names are reported. */
+/* Opens every lens before the first item is drawn, so that models are baked and
+ * wrong names are reported early. */
 static int open_all_lenses(const struct tool *tool, struct synth *s)
 {
     int code = EXIT_OK;
@@ -819,7 +822,7 @@ static int open_all_lenses(const struct tool *tool, struct synth *s)
     return code;
 }
 
-/* Draws the missing items of the shard. */
+/* Draws all items of the shard that do not exist yet. */
 static int draw_missing_items(const struct tool *tool, struct synth *s)
 {
     const struct synth_set *const set = &s->set;

@@ -113,9 +113,10 @@ struct tracer {
     enum glint_ray_status (*trace)(const struct tracer *t, double px_mm,
                                    double py_mm, struct glint_ray *ray);
     double angle_deg;
-    struct glint_path path; /* surfaces that the exact ray passes, in order */
-    /* The parts of the ghost's pupil for which the model has polynomials at
-     * this angle; owned. */
+    struct glint_path
+        path; /* surfaces along the path of exact rays, in order */
+    /* Parts of the ghost's pupil for which the model has polynomials at this
+     * angle, allocated */
     struct glint_transfer *part;
     int n_parts;
     double stop_radius_mm;
@@ -152,8 +153,8 @@ static double relative_stop_radius(const struct glint_transfer *t,
     return most;
 }
 
-/* Sets (U, V) to the normalised coordinates of a ray in the bounding box of
- * part T. Returns whether the ray belongs to that part. */
+/* Sets (U, V) to the coordinates of a ray in the bounding box of pupil part T,
+ * -1 .. 1. Returns whether the ray lies in that part. */
 static bool is_ray_in_pupil_box(const struct glint_transfer *t, double px_mm,
                                 double py_mm, double *u, double *v)
 {
@@ -165,9 +166,9 @@ static bool is_ray_in_pupil_box(const struct glint_transfer *t, double px_mm,
            fabs(*v) >= ldexp(glint_transfer_v(t, 0, 1), -30);
 }
 
-/* Sets SIDE to the signs of x and y in which part T stores the ray: models
- * of round lenses store only angles and y >= 0; those of other lenses only
- * lights on one side of a symmetry plane. */
+/* Sets SIDE to the signs of x and y by which the ray is mirrored into pupil
+ * part T: models of round lenses store angles and y >= 0 only, models of other
+ * lenses only lights on one side of a symmetry plane. */
 static void find_pupil_signs(const struct glint_transfer *t, double angle_deg,
                              double py_mm, double side[2])
 {
@@ -222,8 +223,8 @@ static bool is_entry_of_ghost(const struct glint_lens *model, uint32_t entry,
            model->ghost[entry].j == model->ghost[ghost].j;
 }
 
-/* Sets tracer->part to the parts of GHOST that the model has at this angle
- * and wavelength. Returns GLINT_E_MEMORY if there is no memory. */
+/* Sets tracer->part to those pupil parts of GHOST that the model has at this
+ * angle and wavelength. Returns GLINT_E_MEMORY without memory. */
 static enum glint_status find_ghost_parts(const struct glint_lens *model,
                                           uint32_t ghost, int32_t sine_q30,
                                           int32_t wave_q24,
@@ -281,8 +282,8 @@ static int prepare_model_tracer(const struct tool *tool,
 
 /* --------------------------------------------------------------------- both */
 
-/* Sets AREA to the rectangle on the front element's vertex plane that the
- * grid spans. Returns an exit code. */
+/* Sets AREA to the rectangle of ray origins on the front element's vertex
+ * plane, mm. Returns an exit code. */
 static int find_grid_area(const struct tool *tool, const struct options *o,
                           const struct glint_prescription *lens,
                           const struct tracer *tracer, struct glint_pupil *area)

@@ -66,8 +66,8 @@ static int run_timed_rounds(struct bench *b)
     enum glint_status status = GLINT_OK;
 
     tool_progress_start(&progress, b->tool, "bench");
-    /* The first rounds only warm up: one, or one per position of a moving
-     * light. */
+    /* Rounds below 0 warm up the caches and are not recorded: one, or one per
+     * position of a moving light. */
     for (int round = -warm; round < b->rounds && status == GLINT_OK; round++) {
         const int at = round < 0 ? round + warm : round;
 
@@ -92,13 +92,11 @@ double bench_median_ms(const struct bench *b, const struct bench_case *c,
     return canvas_find_median(c->ms[stage], b->rounds);
 }
 
-/* Returns the median time of the memory floor, ms. */
 static double median_floor_ms(const struct bench *b, const struct bench_case *c)
 {
     return canvas_find_median(c->canvas->floor_ms, b->rounds);
 }
 
-/* Returns the width of STAGE's column, characters. */
 static int stage_column_width(const char *stage)
 {
     const int n = (int)strlen(stage);

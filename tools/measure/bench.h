@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bench: draws several cases in turns and times the stages of each frame.
- * A case draws flares (bench_flare.c) or a scene (bench_scene.c).
+ * glint bench: draws several cases in turns and measures the time of the stages
+ * of each frame. A case draws flares (bench_flare.c) or a scene
+ * (bench_scene.c).
  */
 #ifndef GLINT_TOOLS_LAB_BENCH_H
 #define GLINT_TOOLS_LAB_BENCH_H
@@ -9,16 +10,16 @@
 #include "measure/canvas.h"
 
 enum {
-    BENCH_CASES = 256, /* more than the cases of 16 lenses with --all */
+    BENCH_CASES = 256, /* exceeds the number of cases of 16 lenses with --all */
     BENCH_ROUNDS = CANVAS_MAX,
     BENCH_STAGES = 7,
     BENCH_CANVASES = 8,
     BENCH_LENSES = 16
 };
 
-/* A case that is timed. The first member of each subject's own struct. */
+/* A timed case; the first member of struct flare_case and struct scene_case */
 struct bench_case {
-    const char *name; /* of the lens or scene */
+    const char *name; /* name of the lens or scene */
     struct canvas *canvas;
     struct glint_workers *workers;
     int threads;
@@ -26,14 +27,14 @@ struct bench_case {
     double ms[BENCH_STAGES][BENCH_ROUNDS];
 };
 
-/* How a case differs from the plain case; members that are 0 or NULL do not
- * differ. */
+/* Difference of a case from the plain case; members that are 0 or NULL do not
+ * differ */
 struct bench_variation {
     int width, height;
     bool two_threads;
     const char *kernels;
     unsigned sets;      /* instruction sets that kernels may use */
-    const char *option; /* option of the engine, and its value */
+    const char *option; /* engine option to set, and its value */
     double value;
     int lights;
     /* angle between the light and the optical axis, degrees; 0: default of
@@ -47,21 +48,23 @@ struct bench;
 struct json_writer;
 
 struct bench_subject {
-    const char *word; /* name of the subject in JSON */
+    const char *word; /* name of the subject (flare or scene) in JSON */
     const char *help;
     const struct option *own;
-    /* GLINT_OPTIONS groups that the subject supports, one bit each */
+    /* option groups that the subject supports, one bit per GLINT_OPTIONS
+     * group */
     unsigned groups;
     int max_rounds;
     /* Names of the stages; the last stage is the whole frame. */
     int n_stages;
     const char *stage[BENCH_STAGES];
-    const char *heads; /* headings of the columns before and after the times */
+    const char *heads; /* headings of the columns before and after the times, in
+                          print_case()'s order */
     const char *tail;
     size_t case_bytes;
 
-    /* Parses an option of the subject. Returns 1 if VALUE is valid, 0 if it is
-     * not, -2 if C is not an option of the subject. */
+    /* Parses option C of the subject. Returns 1 if VALUE is valid, 0 if
+     * invalid, -2 if C is not an option of the subject. */
     int (*take)(struct bench *bench, int c, const char *value);
     /* Opens the lenses or scenes NAME[N] and adds all cases. Returns an exit
      * code. */
@@ -71,7 +74,7 @@ struct bench_subject {
     /* Print the columns of C before and after the times. */
     void (*print_case)(const struct bench *bench, const struct bench_case *c);
     void (*print_result)(const struct bench *bench, const struct bench_case *c);
-    /* Writes all members of C's JSON object but the name, with
+    /* Writes all members of C's JSON object except the name, using
      * bench_write_json_format() and bench_write_json_times(). */
     void (*json)(struct json_writer *json, const struct bench *bench,
                  const struct bench_case *c);
@@ -83,17 +86,17 @@ extern const struct bench_subject bench_flare, bench_scene;
 struct bench {
     const struct bench_subject *subject;
     struct tool *tool;
-    struct settings base; /* settings of the command line */
+    struct settings base; /* settings from the command line */
     /* word: index in bench_format, the pixel format */
     int width, height, rounds, word;
     bool all;
     bool moving;               /* The first light moves from round to round. */
-    struct glint_workers *two; /* two threads */
+    struct glint_workers *two; /* pool of two threads */
     struct canvas canvas[BENCH_CANVASES];
     int n_canvases;
     struct bench_case *cases[BENCH_CASES];
     int n_cases;
-    void *opened; /* private to the subject */
+    void *opened; /* opened lenses or scenes of the subject */
 };
 
 extern const char *const bench_format[]; /* option values of the pixel formats,
@@ -120,12 +123,12 @@ void bench_write_json_format(struct json_writer *json,
 void bench_write_json_times(struct json_writer *json, const struct bench *bench,
                             const struct bench_case *c);
 
-/* Returns the median time, ms, of STAGE of C. */
+/* Returns the median time of STAGE of case C, ms. */
 double bench_median_ms(const struct bench *bench, const struct bench_case *c,
                        int stage);
 
-/* Options that both subjects have. */
-enum { BENCH_OWN = 'A' }; /* subjects number their own options from here on */
+/* Code of the first option that only one subject has */
+enum { BENCH_OWN = 'A' };
 #define BENCH_OPTIONS                                                        \
     {"all", no_argument, NULL, 'a'}, {"size", required_argument, NULL, 's'}, \
         {"repeat", required_argument, NULL, 'r'},                            \

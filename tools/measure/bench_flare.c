@@ -56,7 +56,7 @@ struct flare_case {
     struct glint_engine *engine;
     struct glint_lamp *lamp;
     int n_lamps;
-    bool is_star; /* draws only starbursts */
+    bool is_star; /* whether only starbursts are drawn */
     double scale;
     struct glint_engine_report report;
 };
@@ -81,11 +81,11 @@ static const struct bench_variation all[] = {
     {.lights = 0},
     {.lights = 1, .star_stops = 12},
     {.lights = 10, .star_stops = 2},
-    {.lights = 1, .angle = 75}, /* outside the field of baked models */
+    {.lights = 1, .angle = 75}, /* beyond the max angle of baked models */
 };
 
-/* Sets the exposure of T from the flare of lights 12 degrees off the axis,
- * even if the lights of the case are elsewhere, such as far off-screen. */
+/* Sets the exposure of T by the flare of lights 12 degrees off the axis, even
+ * if the lights of the case are elsewhere, for example far off-screen. */
 static enum glint_status set_exposure(struct flare_case *t,
                                       const struct bench_variation *v)
 {
@@ -135,7 +135,7 @@ static int add_bench_case(struct bench *b, const struct opened_lens *lens,
                               : tool_fail(b->tool, status, error.text);
 }
 
-/* Adds the variations of V[N] that this CPU supports. */
+/* Adds a case for each of V[N] whose instruction sets this CPU has. */
 static int add_supported_variations(struct bench *b,
                                     const struct opened_lens *lens,
                                     const struct bench_variation *v, size_t n)

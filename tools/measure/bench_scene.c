@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bench --scene: times drawing a scene onto frames, by stage.
+ * glint bench --scene: measures the time of drawing a scene onto frames, per
+ * stage.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -33,22 +34,21 @@ static const char help[] =
     "  --format F          yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 |\n"
     "                      rgb565\n";
 
-/* SHADOWS, the additional time of a scene with shadows, is included in DRAW.
- * WHOLE is the sum of all stages. */
+/* DRAW includes SHADOWS, the additional time of shadows. WHOLE is the sum of
+ * all stages. */
 enum { PREPARE, AROUND, DRAW, SHADOWS, LIGHTS, WHOLE };
 
 struct opened {
     const char *file;
     struct baked_scene scene, bare; /* bare: the scene without shadows, if it
                                        has shadows */
-    int counter;                    /* descriptor that counts instructions, or
-                                       -1 */
+    int counter; /* descriptor of the instruction counter; -1: not available */
 };
 
 struct scene_case {
     struct bench_case base;
-    struct tool tool; /* copy of the command's tool, with other threads and
-                         sets */
+    struct tool tool; /* copy of the command's tool with the threads and
+                         instruction sets of the case */
     struct scene_frame frame, bare;
     double instructions; /* instructions of the last frame; NAN: not counted */
     int covered_px;
@@ -83,7 +83,7 @@ static void invalidate_shadows(void *ctx, struct glint_scene *scene)
                              model->object[0].turn_q30);
 }
 
-/* Opens FRAME of MODEL and draws it once, so that all memory is allocated. */
+/* Opens FRAME of MODEL and draws it once, which allocates all memory. */
 static int open_bench_frame(struct scene_case *t, struct scene_frame *frame,
                             const struct glint_scene_model *model,
                             const struct scene_dials *dials)
@@ -169,8 +169,8 @@ static int add_bench_cases(struct bench *b)
 
 /* ------------------------------------------------------------------ rounds */
 
-/* Draws a frame. Sets AT_S to the times at which stages begin and the last
- * ends. */
+/* Draws a frame. Sets AT_S to the start times of all stages, s, followed by the
+ * end time of the last. */
 static void time_frame_stages(struct scene_frame *frame,
                               const struct glint_image *image, double at_s[5])
 {
@@ -219,7 +219,7 @@ static enum glint_status draw_bench_frame(struct bench *b, struct bench_case *c,
 
 /* ----------------------------------------------------------------- opening */
 
-/* Sets o->bare to the scene without shadows. Returns an exit code. */
+/* Sets o->bare to a copy of the scene without shadows. Returns an exit code. */
 static int open_scene_without_shadows(struct bench *b, struct opened *o)
 {
     const int code = baked_scene_open(b->tool, o->file, &o->bare);

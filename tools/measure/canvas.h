@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Support for bench and sweep: an image to draw on, the time to touch its
- * memory, test lamps, and the reference image by exact rays.
+ * Support for glint bench and sweep: an image to draw on, the time to access
+ * its memory, test lamps, and the reference image by exact rays.
  */
 #ifndef GLINT_TOOLS_LAB_CANVAS_H
 #define GLINT_TOOLS_LAB_CANVAS_H
@@ -11,10 +11,10 @@
 
 enum { CANVAS_MAX = 1000 }; /* max rounds, and max values of a median */
 
-/* An image to draw on: mem holds its pixels, fresh the background to restore
- * them from. */
+/* Image to draw on; mem: its pixels; fresh: copy of the background, to restore
+ * them */
 struct canvas {
-    struct glint_image image; /* its planes point into mem */
+    struct glint_image image; /* the image; its planes point into mem */
     uint8_t *fresh, *mem;
     size_t bytes;
     /* memory floor of each round, ms: the time to touch the pixels; set by
@@ -28,21 +28,21 @@ enum glint_status canvas_init(struct canvas *canvas,
                               enum glint_pixel_format format, int width,
                               int height);
 void canvas_restore_background(
-    struct canvas *canvas); /* restores the background */
+    struct canvas *canvas); /* restores the pixels to the background */
 void canvas_free(struct canvas *canvas);
 
 /* Measures the memory floor of ROUND: the time of adding a small constant
  * layer, with saturation, to a restored canvas. */
 void canvas_time_memory_floor(struct canvas *canvas, int round);
 
-/* Sets LAMP to N lamps: the first ANGLE degrees off the axis, the others on
- * a spiral around the axis. Up to 64 lamps have power 1 / N each; of more
- * lamps the kth, counted from 1, has 1 / k. */
+/* Sets LAMP[N]: the first lamp at ANGLE degrees off the axis, the others on a
+ * spiral around the axis. Up to 64 lamps have power 1 / N each; of more lamps,
+ * lamp k = 1 .. N has power 1 / k. */
 void canvas_set_lamps(struct glint_lamp *lamp, int n, double angle);
 
-/* Sets CFG to an engine for WIDTH x HEIGHT with the settings ASKED that
- * draws given lamps (glint_engine_draw_at()) and does not search for lamps.
- * LENS must outlive the engine. */
+/* Sets CFG to the configuration of an engine for WIDTH x HEIGHT pixels with the
+ * settings ASKED that draws given lamps (glint_engine_draw_at()) without
+ * detection. LENS must outlive the engine. */
 void canvas_open_engine(const struct tool *tool, const struct opened_lens *lens,
                         const struct settings *asked, int width, int height,
                         struct glint_engine_config *cfg);
@@ -53,20 +53,19 @@ enum glint_status canvas_compute_exposure(struct glint_engine *engine,
                                           const struct glint_lamp *lamp,
                                           int n_lamps, double *exposure);
 
-/* Draws the flare of LAMP by exact ray tracing in double precision to TO,
- * whose pixels the caller allocates. GRID: cells per side of the grid of
- * rays. Lens, stop and wavelengths are those of SETTINGS; LENS must be
- * opened from a table. Uses the cached image if there is one. Returns
- * GLINT_E_MEMORY on failure. */
+/* Draws the flare of LAMP by exact rays in double precision to TO, whose pixels
+ * the caller allocates. GRID: cells per side of the grid of rays. Lens, stop
+ * and wavelengths are those of SETTINGS; LENS must be a table. Uses a cached
+ * image if present. Returns GLINT_E_MEMORY on failure. */
 enum glint_status canvas_draw_exact(const struct tool *tool,
                                     const struct opened_lens *lens,
                                     const struct settings *settings,
                                     const struct glint_lamp *lamp, int n_lamps,
                                     int grid, struct glint_float_image *to);
 
-/* Draws only the flare, times EXPOSURE, on black to sRGB codes
- * CODES[height][width][3], by the plan for codes, which is cheaper than the
- * plan for linear light. */
+/* Draws only the flare, scaled by EXPOSURE, on black to sRGB codes
+ * CODES[height][width][3], with the plan for 8-bit codes, which is cheaper than
+ * that for linear light. */
 enum glint_status canvas_convert_to_codes(struct glint_engine *engine,
                                           const struct glint_lamp *lamp,
                                           int n_lamps, double exposure,
@@ -77,8 +76,8 @@ enum glint_status canvas_convert_to_codes(struct glint_engine *engine,
  * system does not report it. */
 const char *canvas_describe_machine(void);
 
-/* Returns the median of VALUES[N], N from 1 to CANVAS_MAX; does not reorder
- * them. */
+/* Returns the median of VALUES[N], N = 1 .. CANVAS_MAX. VALUES are not
+ * reordered. */
 double canvas_find_median(const double *values, int n);
 
 #endif

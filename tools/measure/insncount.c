@@ -49,8 +49,8 @@ EXPORTED int qemu_plugin_version = 1;
 enum { MAX_MARKS = 32, ASLEEP = -2, IDLE = -1, REST = 0, INHERIT = -3 };
 
 struct block {
-    int n, stage; /* n: instructions; stage: ASLEEP in the idle function,
-                     INHERIT for the caller's stage, else a stage */
+    int n, stage; /* number of instructions; stage: ASLEEP in the idle function,
+                     INHERIT for that of the caller, else a stage index */
 };
 
 static struct {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint sweep: measures frames with each quality parameter set alone, with
- * several set together, and along --quality. A case is a lens, a size and some
- * lights.
+ * glint sweep: measures frames with each quality parameter changed alone, with
+ * several changed together, and along --quality. A case is a lens, an image
+ * size and some lights.
  */
 #ifndef GLINT_TOOLS_LAB_SWEEP_H
 #define GLINT_TOOLS_LAB_SWEEP_H
@@ -12,22 +12,22 @@
 enum { SWEEP_LENSES = 16, SWEEP_CASES = 128, SWEEP_ROUNDS = 100 };
 enum { MAX_PARAMETERS = 12, MAX_VALUES = 10, MAX_TOGETHER = 5 };
 
-/* max flux error of settings on a Pareto front: brightness must not depend on
- * parameters */
+/* Max flux error of settings on a Pareto front, as a fraction: brightness must
+ * not depend on parameters */
 #define MAX_FLUX_ERROR 0.02
 
 /* A parameter that trades accuracy for time. */
 struct sweep_parameter {
     const char *name;   /* name in tables and plots */
-    const char *option; /* option of the engine; NULL: the tolerance of a
-                           bake */
+    const char *option; /* engine option; NULL: the tolerance of a bake */
     double standard;    /* default value */
-    bool opens;         /* a change needs the lens to be opened again */
-    bool many_lights;   /* has no effect on a single light */
+    bool opens;         /* whether a change requires opening the lens again */
+    bool
+        many_lights; /* whether the parameter has no effect on a single light */
     int n_values, n_together;
-    double value[MAX_VALUES]; /* values, the finest first */
+    double value[MAX_VALUES]; /* values to measure, the finest first */
     double together[MAX_TOGETHER];
-    const char *words[MAX_VALUES]; /* values as texts; NULL: they are numbers */
+    const char *words[MAX_VALUES]; /* option values as texts; NULL: numbers */
 };
 extern const struct sweep_parameter sweep_parameter[];
 extern const int n_sweep_parameters;
@@ -65,21 +65,22 @@ enum sweep_metric {
 /* A setting measured in a case. */
 struct sweep_point {
     struct sweep_setting set;
-    int of;                       /* index of the case */
-    double metric[SWEEP_METRICS]; /* NAN: not measured */
-    bool front; /* on the Pareto front of its case: no other point is both
-                   cheaper and better */
+    int of;                       /* index of the point's case */
+    double metric[SWEEP_METRICS]; /* measured values; NAN: not measured */
+    bool front; /* whether no other point of its case is both cheaper and better
+                   (Pareto front) */
 };
 
 struct sweep_case {
     int lens; /* index of the lens */
     int width, height, n_lamps;
     double angle;
-    bool together; /* combinations of parameters are measured in this case */
+    bool together; /* whether combinations of parameters are measured in this
+                      case */
     int first, n;  /* the case's points are first .. first + n - 1 */
 };
 
-/* A picture for the page: small, sRGB codes, [height][width][3]. */
+/* Reduced picture for the HTML page, sRGB codes, [height][width][3] */
 struct sweep_picture {
     int of, point; /* indices of case and point; point -1: the exact picture */
     int width, height;
@@ -97,15 +98,15 @@ struct sweep {
     int n_points;
     struct sweep_picture *picture;
     int n_pictures;
-    /* rounds of timing, 1 .. SWEEP_ROUNDS; cells per side of the exact
-     * picture's grid of rays, 4 .. 1024, even */
+    /* number of timing rounds, 1 .. SWEEP_ROUNDS, and cells per side of the
+     * exact picture's ray grid, 4 .. 1024, even */
     int rounds, grid;
     bool small;
-    int counter; /* descriptor that counts instructions, or -1 */
+    int counter; /* descriptor of the instruction counter; -1: not available */
 };
 
-/* Applies SET to SETTINGS; if OPENING, only parameters that are needed to open
- * the lens. */
+/* Applies SET to SETTINGS. OPENING: only parameters that affect opening the
+ * lens. */
 void sweep_apply_setting(struct settings *settings,
                          const struct sweep_setting *set, bool opening);
 
@@ -125,9 +126,9 @@ void sweep_mark_fronts(struct sweep *s);
 int sweep_find_front(const double *cost, const double *quality, int n,
                      int *front);
 
-/* Means of a setting over all cases with combined parameters: geometric mean of
- * its cost divided by the default setting's cost in the same case; mean and min
- * PSNR, dB; max absolute flux error. */
+/* Means of a setting over all cases with combined parameters: cost divided by
+ * the default setting's cost in the same case, geometric mean; PSNR, dB, mean
+ * and min; max absolute flux error */
 struct sweep_mean {
     const struct sweep_setting *set;
     double cost, psnr_db, least_db, flux_error;
@@ -142,10 +143,10 @@ struct sweep_mean *sweep_compute_means(const struct sweep *s, int *n);
 /* Sorts MEAN[N] by rising cost. */
 void sweep_sort_means(struct sweep_mean *mean, int n);
 
-/* Returns by how many dB MEAN[I] lies above the best PSNR that --quality
- * reaches at up to 1.02 times its cost (2 % is measurement noise). MEAN[N]
- * must be sorted by cost. PSNR is interpolated between neighbouring settings
- * of --quality that draw the same number of pixels. */
+/* Returns how far, dB, MEAN[I] lies above the best PSNR that --quality reaches
+ * at up to 1.02 times its cost (2 % is measurement noise). MEAN[N] must be
+ * sorted by cost. PSNR is interpolated between neighbouring settings of
+ * --quality that draw the same number of pixels. */
 double sweep_compute_gain_above_front(const struct sweep_mean *mean, int n,
                                       int i);
 

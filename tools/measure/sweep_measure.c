@@ -8,12 +8,12 @@
 #include "measure/sweep.h"
 #include "options/timed_text.h"
 
-/* time limit, ms, after which a point gets no further rounds */
+/* Time, ms, after which a point gets no further rounds */
 #define MAX_POINT_MS 4000.0
 
 enum { MAX_OPEN = 12, PICTURE_WIDTH = 320 };
 
-/* A lens opened for settings. */
+/* A lens opened with certain settings */
 struct sweep_lens {
     struct settings settings;
     struct opened_lens lens;
@@ -40,7 +40,8 @@ struct bay {
     struct canvas canvas;
     struct glint_lamp *lamp;
     double exposure;
-    struct glint_float_image exact; /* rgb is NULL until it is drawn */
+    struct glint_float_image
+        exact; /* exact image; rgb is NULL until it is drawn */
 };
 
 /* ------------------------------------------------------------------ making */
@@ -51,9 +52,9 @@ static bool has_same_exact_image(const struct settings *a,
     return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
 }
 
-/* Returns the lens opened for SET; settings that open it with the same
- * options share one. On failure reports the error, sets *CODE to the exit
- * code and returns NULL. */
+/* Returns the lens opened with the options of SET, shared by all settings with
+ * the same ones. On failure prints the error, sets *CODE to the exit code and
+ * returns NULL. */
 static const struct sweep_lens *
 find_lens(struct bay *b, const struct sweep_setting *set, int *code)
 {
@@ -134,8 +135,8 @@ static void close_measurement_bay(struct bay *b)
 
 /* ------------------------------------------------------------------ timing */
 
-/* Draws R's frame and records its time and instructions. ROUND -1 warms up
- * and records nothing. */
+/* Draws R's frame and records its time and instructions. Round -1 warms up the
+ * caches and records nothing. */
 static enum glint_status draw_and_time_run(struct bay *b, struct run *r,
                                            int round)
 {
@@ -159,8 +160,8 @@ static enum glint_status draw_and_time_run(struct bay *b, struct run *r,
     return status;
 }
 
-/* Times all points and the memory floor in turns. Progress rises from FROM to
- * TO. */
+/* Measures the times of all points and of the memory floor in turns. The
+ * progress rises from FROM to TO, 0 .. 1. */
 static enum glint_status time_all_points(struct bay *b,
                                          struct tool_progress *progress,
                                          double from, double to)
@@ -204,8 +205,8 @@ static double sum_pixel_light(const struct glint_float_image *image)
     return sum;
 }
 
-/* Sets flux_error of R: total light of its flare / light of the exact image
- * - 1. The flare is planned as for codes but drawn in linear light. */
+/* Sets flux_error of R to (total light of its flare / light of the exact image)
+ * - 1. The flare is planned for 8-bit codes but drawn in linear light. */
 static enum glint_status measure_flux_error(struct bay *b, struct run *r)
 {
     const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
@@ -227,8 +228,8 @@ static enum glint_status measure_flux_error(struct bay *b, struct run *r)
     return status;
 }
 
-/* Reduces CODES, whose rows are STRIDE bytes apart, to TO, WIDTH x HEIGHT
- * pixels: each is the mean of BY x BY pixels. */
+/* Reduces CODES, with rows of STRIDE bytes, to TO, WIDTH x HEIGHT pixels, each
+ * the mean of BY x BY pixels. */
 static void reduce_image(const uint8_t *codes, int stride, int by, uint8_t *to,
                          int width, int height)
 {
@@ -271,7 +272,8 @@ static bool store_reduced_picture(struct bay *b, int point,
     return true;
 }
 
-/* Measures R against EXACT_CODES. CODES is work memory for R's codes. */
+/* Measures the error of R's frame against EXACT_CODES. CODES is scratch memory
+ * for R's codes. */
 static enum glint_status measure_run_error(struct bay *b, struct run *r,
                                            const uint8_t *exact_codes,
                                            double exposure, uint8_t *codes)

@@ -129,7 +129,7 @@ static void write_picture_strips(const struct sweep *s, FILE *file)
                     s->lens[c->lens], c->width, c->height, c->n_lamps,
                     c->n_lamps > 1 ? "s" : "", c->angle);
         }
-        fputs("<div>", file); /* two pictures side by side */
+        fputs("<div>", file); /* container of two pictures side by side */
         write_svg_figure(s, file, q, q->rgb, "");
         if (q != exact)
             write_difference_picture(s, file, q, exact);

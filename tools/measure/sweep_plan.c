@@ -13,11 +13,11 @@ static const double between_steps[] = {0.0625, 0.505};
 
 enum { GRID, QUANTUM, CULL, DIM, WHOLE, HALF, TOLERANCE };
 
-/* The last list of each parameter has the values that are combined with
- * other parameters. Not combined are: apart and max_lights, which lose more
- * than they save; wavelengths, which loses colour; the tolerance, as each
- * value costs a bake; and tile, which does not change the image. A single
- * wavelength is the middle one, drawn in grey. */
+/* The last list of each parameter has the values for combinations. Not combined
+ * are apart and max_lights, which lose more than they save; wavelengths, which
+ * lose colour; the tolerance, as each value needs a bake; and tile, which does
+ * not change the image. A single wavelength is the middle one, drawn in
+ * grey. */
 /* clang-format off */
 const struct sweep_parameter sweep_parameter[] = {
     [GRID] = {"grid", "grid", 64, false, false, 9, 5,
@@ -63,7 +63,7 @@ static void set_parameter_value(struct settings *s,
 void sweep_apply_setting(struct settings *s, const struct sweep_setting *set,
                          bool opening)
 {
-    /* A limit of work would make grids coarser. */
+    /* A limit of work would coarsen the grids. */
     settings_set_number(s, "work", 0);
     if (!opening && set->quality >= 0)
         settings_set_quality(s, set->quality);
@@ -77,8 +77,8 @@ void sweep_apply_setting(struct settings *s, const struct sweep_setting *set,
     s->tolerance = set->value[TOLERANCE];
 }
 
-/* Sets those parameters in VALUE that --quality determines to their values
- * in S. */
+/* Sets the parameters in VALUE that --quality determines to their values in
+ * S. */
 static void read_quality_parameters(const struct settings *s, double *value)
 {
     value[GRID] = s->dials.fineness;

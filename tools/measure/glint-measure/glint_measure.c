@@ -79,8 +79,8 @@ static int run_row_in_child(const struct recipe *r,
                                      row->set[i]);
     if (counted && used < sizeof line)
         snprintf(line + used, sizeof line - used, " 2>&1");
-    pipe = popen(line, "r"); /* NOLINT: the command comes from our own
-                                recipes */
+    pipe = popen(line,
+                 "r"); /* NOLINT: the command is built from our own recipes */
     if (!pipe)
         return EXIT_RUNTIME;
     bytes = fread(text, 1, TEXT - 1, pipe);
@@ -103,8 +103,8 @@ static double find_json_metric(const char *json, const char *name,
     return (double)NAN;
 }
 
-/* Appends the instructions of a frame to JSON, as an object on a line of its
- * own. Returns false if there is no memory. */
+/* Appends the instructions per frame to JSON, as an object on its own line.
+ * Returns false without memory. */
 static bool append_instruction_count(char json[TEXT], double instructions)
 {
     const size_t used = strlen(json);
@@ -116,7 +116,8 @@ static bool append_instruction_count(char json[TEXT], double instructions)
     return fclose(more.to) == 0;
 }
 
-/* Measures ROW to JSON; counts instructions if they are a metric. */
+/* Measures ROW and writes the metrics to JSON. Counts instructions if they are
+ * a metric. */
 static int measure_row_to_json(const struct recipe *r,
                                const struct recipe_row *row, const char *self,
                                char json[TEXT])
@@ -183,8 +184,8 @@ static void append_csv_line(const struct recipe *r,
 
 /* ------------------------------------------------------------------- table */
 
-/* Writes the metric that the placeholder {NAME%FORMAT~TOLERANCE} at AT names
- * to TO. Returns false if the row has no such metric. */
+/* Writes to TO the metric of the placeholder {NAME%FORMAT~TOLERANCE} at AT.
+ * Returns false if the row does not have the metric. */
 static bool write_metric_value(const char *at, const struct recipe_row *row,
                                const char *json, char *to, size_t bytes)
 {
@@ -224,8 +225,7 @@ static bool write_metric_value(const char *at, const struct recipe_row *row,
     }
 }
 
-/* Writes the text of COLUMN's cell to TO, or an empty text if a metric is
- * missing. */
+/* Writes the cell of COLUMN to TO, or an empty text if a metric is missing. */
 static void write_table_cell(const struct recipe_column *column,
                              const struct recipe_row *row, const char *json,
                              char *to, size_t bytes)
@@ -249,9 +249,9 @@ static void write_table_cell(const struct recipe_column *column,
     }
 }
 
-/* Returns ROW as a table line, which the caller frees, or NULL if it has no
- * metric, such as the projection of an anamorphic lens. OVER: the row
- * reached its CPU limit. */
+/* Returns ROW as a line of the table, which the caller frees; NULL if it has no
+ * metric, such as the projection of an anamorphic lens. OVER: the row exceeded
+ * its CPU limit. */
 static char *make_table_line(const struct recipe *r,
                              const struct recipe_row *row, const char *json,
                              bool over)
@@ -274,7 +274,6 @@ static char *make_table_line(const struct recipe *r,
     return is_empty ? NULL : strdup(line);
 }
 
-/* Copies cell NUMBER of LINE to CELL. */
 static void copy_table_cell(const char *line, int number, char cell[256])
 {
     size_t length;
@@ -303,7 +302,7 @@ static bool have_lines_same_keys(const struct recipe *r, const char *a,
     return true;
 }
 
-/* Reads the rows of the figure's file. */
+/* Reads the table in the figure's file. */
 static void read_figure_table(const struct recipe *r, struct table *t)
 {
     static char line[TEXT];
@@ -338,8 +337,8 @@ static void print_figure_table(const struct recipe *r, const struct table *t)
         puts(t->line[i]);
 }
 
-/* Replaces the table's row that has LINE's keys by LINE, or appends LINE; does
- * nothing if LINE is NULL. */
+/* Replaces the table row with the same keys as LINE by LINE, or appends LINE.
+ * No-op if LINE is NULL. */
 static void replace_or_append_line(const struct recipe *r, struct table *t,
                                    char *line)
 {
@@ -354,8 +353,8 @@ static void replace_or_append_line(const struct recipe *r, struct table *t,
 
 /* ------------------------------------------------------------------- quick */
 
-/* Compares the numbers of CELL with the row's metrics that have a tolerance.
- * Returns whether all are within it. */
+/* Compares the numbers in CELL with the row's metrics that have a tolerance.
+ * Returns whether all differences are within it. */
 static bool compare_cell_numbers(const struct recipe *r,
                                  const struct recipe_column *column,
                                  const char *cell, const char *json)
@@ -422,7 +421,7 @@ static bool is_row_in_quick_run(const struct recipe *r,
 
 /* ----------------------------------------------------------------- running */
 
-/* If some rows have ASSIGNMENT, removes the other rows; else sets it in all
+/* If some rows have ASSIGNMENT, removes all other rows; else applies it to all
  * rows. */
 static void select_rows_by_assignment(struct recipe *r, const char *assignment)
 {
@@ -439,8 +438,8 @@ static void select_rows_by_assignment(struct recipe *r, const char *assignment)
     r->n_rows = n > 0 ? n : r->n_rows;
 }
 
-/* Measures the rows of R, if QUICK only those listed for --quick. Returns an
- * exit code. */
+/* Measures the rows of R; QUICK: only those listed for --quick. Returns an exit
+ * code. */
 static int measure_recipe(struct recipe *r, const char *self, bool quick)
 {
     static char json[TEXT];

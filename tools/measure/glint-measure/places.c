@@ -11,7 +11,7 @@
 #include "measure/glint-measure/row.h"
 
 enum {
-    RAYS = 24, /* rays of a ghost in x and in y */
+    RAYS = 24, /* number of rays of a ghost in x and in y */
     TRACED_DEG = 85
 };
 
@@ -28,8 +28,8 @@ struct ghost {
     double x_mm, light;
 };
 
-/* Traces GHOST for a light at THETA_DEG and returns its position; light is 0
- * if no ray passes. */
+/* Traces GHOST for a light at THETA_DEG and returns its mean position; the
+ * member light is 0 if no ray passes. */
 static struct ghost find_ghost_position(const struct figure_row *row,
                                         const struct places *r, int ghost,
                                         double theta_deg)
@@ -65,7 +65,8 @@ static struct ghost find_ghost_position(const struct figure_row *row,
     return sum;
 }
 
-/* Writes the metrics WHERE_... for a light whose image is MM from the axis. */
+/* Writes the metrics with the prefix WHERE for a light whose image is MM from
+ * the axis. */
 static void write_ghost_place(struct figure_row *row, const struct places *r,
                               const char *where, double mm)
 {

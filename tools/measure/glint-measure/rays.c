@@ -19,7 +19,8 @@
 
 enum {
     ACROSS = 40,
-    /* steps in y over the half y >= 0; the other half is its mirror image */
+    /* number of grid steps in y over the half y >= 0; the other half is
+     * symmetric */
     DOWN = 20,
     BINS = 400,
     BINS_A_DECADE = 50,
@@ -27,10 +28,11 @@ enum {
     MOST_PARTS = 64
 };
 
-/* Histogram of errors: bin K begins at 1e-5 times 10^(K / BINS_A_DECADE). */
+/* Histogram of errors; bin K begins at 1e-5 * 10^(K / BINS_A_DECADE) */
 struct tally {
     double rays, lost;
-    double light, light_lost; /* energy times mm^2 of pupil */
+    double light, light_lost; /* light of all rays and of rays outside the
+                                 model: energy * mm^2 of pupil */
     double sensor[BINS], energy[BINS];
     /* sum of squared errors of each output; errors of energy are weighted by
      * the ray's light */
@@ -82,7 +84,7 @@ static void add_uncovered_ray(struct tally *t, double light)
     t->energy[find_error_bin(1)]++;
 }
 
-/* Adds WEIGHT times FROM to T. */
+/* Adds the tally FROM, scaled by WEIGHT, to T. */
 static void merge_tally(struct tally *t, const struct tally *from,
                         double weight)
 {
@@ -249,15 +251,15 @@ static void compare_ray_bundle(const struct task *t, int ghost,
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* light of all ghosts at one angle: total, and part of rays outside the model
- */
+/* light of all ghosts at one angle: total, and light of rays that the model
+ * does not cover */
 struct light {
     double all, lost;
 };
 
-/* Compares all rays of GHOST. Adds their errors to SUM and their light to
- * LIGHT. Adds to ANGLES the number of angles at which the ghost is visible,
- * and the number at which it misses the target. */
+/* Compares all rays of GHOST with the model. Adds their errors to SUM and their
+ * light to LIGHT. Adds to ANGLES the number of angles at which the ghost is
+ * visible, and at which it misses the target. */
 static void compare_ghost_rays(const struct task *t, int ghost,
                                struct tally *sum, int angles[2],
                                struct light *light)
@@ -290,7 +292,8 @@ static void compare_all_ghosts(struct figure_row *row, const struct task *t)
 {
     static struct tally all, equally;
     static struct light light[MOST_ANGLES];
-    double lost = 0; /* fraction of light lost at the worst angle, 0 .. 1 */
+    double lost = 0; /* fraction of light that the model does not cover at the
+                        worst angle, 0 .. 1 */
     int ghosts = 0, missing = 0, angles[2] = {0, 0};
 
     for (int g = 0; g < t->n_ghosts; g++) {

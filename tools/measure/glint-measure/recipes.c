@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The lines of a recipe, from which its rows are made. */
+/* Lines of a recipe that define its rows */
 struct recipe_lines {
     const char *lens[RECIPE_LINES], *vary[RECIPE_LINES], *label[RECIPE_LINES];
     int n_lenses, n_vary, n_labels;
@@ -14,7 +14,7 @@ struct recipe_lines {
     int n_set;
 };
 
-/* texts of the latest recipe read */
+/* memory for the texts of the recipe read last */
 static char pool[1 << 18];
 static size_t pooled;
 
@@ -77,7 +77,7 @@ bool recipe_row_has_parameter(const struct recipe_row *row, const char *words)
 
 /* -------------------------------------------------------------------- rows */
 
-/* Replaces each of the N rows from FIRST on by one row per value of VARY, "NAME
+/* Replaces each of the N rows from FIRST on by one row per value in VARY, "NAME
  * VALUE VALUE...". */
 static void multiply_rows_by_values(struct recipe *r, const char *vary)
 {
@@ -102,7 +102,7 @@ static void multiply_rows_by_values(struct recipe *r, const char *vary)
     r->n_rows -= n;
 }
 
-/* Replaces each row by one row per label, "LABEL: NAME=VALUE ...". */
+/* Replaces each row by one row per label of a line "LABEL: NAME=VALUE ...". */
 static void multiply_rows_by_labels(struct recipe *r,
                                     const struct recipe_lines *l)
 {
@@ -126,8 +126,8 @@ static void multiply_rows_by_labels(struct recipe *r,
     }
 }
 
-/* Adds a row per file that PATTERN, a name or a glob pattern, matches, with the
- * values for all rows and the values of LINE. */
+/* Adds a row for each file that matches PATTERN, a name or glob pattern, with
+ * the values for all rows and those of LINE. */
 static void add_rows_of_files(struct recipe *r, const struct recipe_lines *l,
                               const char *pattern, const char *line)
 {
@@ -148,7 +148,8 @@ static void add_rows_of_files(struct recipe *r, const struct recipe_lines *l,
     globfree(&files);
 }
 
-/* Adds the rows of LINE: lenses, then PARAMETER=VALUE for them. */
+/* Adds a row for each lens in LINE, followed by PARAMETER=VALUE words for these
+ * rows. */
 static void add_rows_of_lenses(struct recipe *r, const struct recipe_lines *l,
                                const char *line)
 {
@@ -173,7 +174,8 @@ static void make_recipe_rows(struct recipe *r, const struct recipe_lines *l)
 
 /* ------------------------------------------------------------------ reading */
 
-/* Collects the metrics of column C; a column without metrics becomes a key. */
+/* Adds the metrics of column C to the recipe; marks a column without metrics as
+ * a key. */
 static void collect_column_metrics(struct recipe *r, struct recipe_column *c)
 {
     c->is_key = true;
@@ -251,8 +253,8 @@ char *recipe_read(struct recipe *r, char *text, const char *name)
             continue;
         if (*line != ' ') {
             if (is_it && (l.n_lenses || name)) {
-                line[strlen(line)] = '\n'; /* restores the text, as it is read
-                                              again */
+                line[strlen(line)] = '\n'; /* restores the line end, as the text
+                                              is parsed again */
                 break;
             }
             line[strcspn(line, " ")] = '\0';

@@ -11,8 +11,7 @@
 
 enum { RECIPE_LINES = 128, RECIPE_ROWS = 512, ROW_PARAMETERS = 32 };
 
-/* A row: PARAMETER=VALUE texts; a later text overrides an earlier one of the
- * same name. */
+/* A row: PARAMETER=VALUE texts; the last text of a parameter applies */
 struct recipe_row {
     const char *set[ROW_PARAMETERS];
     int n;
@@ -22,7 +21,8 @@ struct recipe_row {
  * {METRIC%FORMAT} or {METRIC%FORMAT~TOLERANCE}. */
 struct recipe_column {
     const char *title, *cell;
-    bool is_key; /* without a metric: the column identifies the row */
+    bool
+        is_key; /* whether the column has no metric and so identifies the row */
 };
 
 struct recipe {
@@ -38,9 +38,9 @@ struct recipe {
     char metrics[1024];
 };
 
-/* Sets RECIPE to the recipe NAME in TEXT, or to the first with rows if NAME is
- * NULL. Changes TEXT, which must outlive RECIPE. Returns the text after the
- * recipe, or NULL if there is no such recipe. */
+/* Sets RECIPE to the recipe NAME in TEXT, or to the first one with rows if NAME
+ * is NULL. Modifies TEXT, which must outlive RECIPE. Returns the text after the
+ * recipe, or NULL if NAME does not exist. */
 char *recipe_read(struct recipe *recipe, char *text, const char *name);
 
 /* Returns the value of PARAMETER in ROW, for a lens its name, or NULL if it is

@@ -49,7 +49,7 @@ static bool list_contains_word(const char *words, const char *word,
     return false;
 }
 
-/* Returns whether one of NAMES, separated by commas, is among the metrics. */
+/* Returns whether any of NAMES, separated by commas, is a requested metric. */
 static bool is_any_metric_requested(const struct figure_row *row,
                                     const char *names)
 {
@@ -168,8 +168,8 @@ int row_open(struct figure_row *row, struct tool *tool, int n,
 
 /* ------------------------------------------------------------------- lenses */
 
-/* Bakes the table as 'glint bake' does and opens the model; writes the CPU
- * seconds. */
+/* Bakes the table like 'glint bake', opens the model, and writes the CPU time
+ * of the bake, s. */
 static int bake_row_table(struct figure_row *r)
 {
     struct glint_bake_options options;
@@ -272,7 +272,7 @@ static enum glint_status create_row_engine(struct figure_row *r,
 
     canvas_open_engine(r->tool, &r->opened, &r->settings, r->width, r->height,
                        &cfg);
-    cfg.workers = NULL; /* one thread */
+    cfg.workers = NULL; /* no thread pool: one thread */
     if (r->settings.options.starburst > 0)
         cfg.drawing.parts |= GLINT_ENGINE_CORES;
     if (r->dust_log2)
@@ -359,7 +359,8 @@ static void free_row_frame(struct frame *f)
     free(f->codes);
 }
 
-/* Draws the reference: the same row with the parameters of r->reference. */
+/* Draws the reference image: the same row with the parameters of
+ * r->reference. */
 static enum glint_status draw_reference_image(struct figure_row *r,
                                               struct frame *f)
 {
@@ -395,7 +396,7 @@ static enum glint_status draw_reference_image(struct figure_row *r,
     return status;
 }
 
-/* Sets the exposure and draws the image to compare with: the reference row,
+/* Sets the exposure and draws the reference image: that of the reference row,
  * or exact rays. */
 static enum glint_status set_exposure(struct figure_row *r, struct frame *f)
 {

@@ -18,16 +18,17 @@ struct figure_row {
     const char *lens;    /* path of a lens table or model */
     struct settings settings;
     struct opened_lens opened;
-    struct glint_prescription table; /* the lens; if it is a model, only its
-                                        name is set */
+    struct glint_prescription
+        table; /* the lens table; for a model only its name is set */
     int width, height, n_lights;
     double theta, phi; /* direction of the first light, degrees */
-    /* power of all lights, stops above white at an exposure of 1; NAN: the
-     * exposure is computed from the flare's brightness */
+    /* power of all lights, stops above white at exposure 1; NAN: the exposure
+     * is computed by the brightness of the flare */
     double stops;
-    int dust_log2; /* cells per side of tables of dust; 0: by quality */
+    int dust_log2; /* log2 of the cells per side of dust tables; 0: set by the
+                      quality */
     int grid;      /* cells per side of the exact picture's rays */
-    int rounds;    /* frames drawn; times are their minimum */
+    int rounds;    /* number of frames drawn; times are the minimum over them */
     /* linear: the flare in linear light; codes: in sRGB codes on black; frame:
      * drawn in place onto a dim YUYV frame, as glint bench does. */
     const char *picture;

@@ -94,7 +94,7 @@ static void draw_svg_stroke(const struct plot *p, double x0, double y0,
             x0, y0, x1, y1, colour, width);
 }
 
-/* Widens the axis a little beyond its outermost points. */
+/* Widens the range of an axis slightly beyond its outermost points. */
 static void widen_axis_range(struct plot_axis *a)
 {
     if (a->lo > a->hi)

@@ -17,7 +17,8 @@ enum { PLOT_WIDTH = 380, PLOT_HEIGHT = 320 }; /* size of a panel, px */
 struct plot_axis {
     const char *words;
     bool is_log;
-    double lo, hi;     /* lo > hi: no points yet (plot_stretch) */
+    double lo,
+        hi; /* range of the axis; lo > hi: no points yet (plot_extend_axes()) */
     double least_span; /* min of hi - lo; ignored by a logarithmic axis */
 };
 
@@ -36,11 +37,12 @@ void plot_close(FILE *file);
 /* Prepares PLOT as panel NUMBER, counted from 0, with linear axes. */
 void plot_init(struct plot *plot, FILE *file, int number, const char *title);
 
-/* Extends the axes to (X, Y), unless a value is not finite, or not above 0 on a
- * logarithmic axis. */
+/* Extends the axes to include (X, Y), unless a value is not finite or, on a
+ * logarithmic axis, not above 0. */
 void plot_extend_axes(struct plot *plot, double x, double y);
 
-/* Draws title, axes and grid, after stretching and before marks. */
+/* Draws title, axes and grid. Call it after plot_extend_axes() for all points
+ * and before marks are drawn. */
 void plot_draw_frame(struct plot *plot);
 
 /* Draws a mark at (X, Y). KIND: 'o' circle, '.' small circle, 's' square,
@@ -65,7 +67,7 @@ const char *plot_colour_of_series(int i);
  * replace the rules of all pages. */
 void html_write_head(FILE *file, const char *title, const char *style);
 
-/* Writes TEXT with < > & and " escaped. */
+/* Writes TEXT with < > & and " escaped as HTML entities. */
 void html_write_text(FILE *file, const char *text);
 
 /* Writes a table row with cells <TAG> (th or td): the printf text of FORMAT,
