@@ -310,8 +310,7 @@ static int find_lens_coating(const struct tool *tool, const char *name,
         c->coating = s->coating;
         snprintf(c->name, sizeof c->name, "%.60s, surface %d", lens->name,
                  c->surface);
-        /* light from the air meets the glass before surface K if the glass lies
-         * in front of it */
+        /* with air behind surface K, the coated glass lies in front of it */
         if (s->vd <= 0 && c->surface > 0)
             s--;
         else if (c->surface > 0 && s[-1].vd > 0)

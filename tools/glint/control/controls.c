@@ -78,12 +78,13 @@ static bool can_control_change_option(const struct glint_option *option)
 
 static const char blanks[] = " \t\r\n";
 
-/* State of reading a line word by word. */
+/* Parser state of one line */
 struct reader {
-    const char *text, *at; /* at: after the last word */
+    const char *text,
+        *at; /* the line, and the position after the last word read */
     const char *where;
     char word[CONTROL_LINE];
-    int column; /* column of the word, or of the end of the line */
+    int column; /* column of the word read last, or of the end of the line */
     struct glint_error *error;
 };
 
@@ -101,7 +102,7 @@ enum glint_status control_report_error(struct glint_error *error,
     return glint_error_report(error, GLINT_E_FORMAT, place, "%s", cause);
 }
 
-/* Reads the next word; returns whether there is one. */
+/* Reads the next word of the line. Returns false at its end. */
 static bool read_next_word(struct reader *r)
 {
     const char *const from = r->at + strspn(r->at, blanks);
@@ -114,7 +115,7 @@ static bool read_next_word(struct reader *r)
     return n > 0;
 }
 
-/* Returns a copy of R advanced by one word; R does not change. */
+/* Returns a copy of R that has read one more word; R does not change. */
 static struct reader peek_word(const struct reader *r)
 {
     struct reader ahead = *r;
@@ -125,7 +126,7 @@ static struct reader peek_word(const struct reader *r)
 
 /* ---------------------------------------------------------------- the form */
 
-/* Reports that the word is unknown, and which words are valid. */
+/* Reports an unknown word and lists the valid words. */
 static enum glint_status report_unknown_word(const struct reader *r,
                                              const char *before)
 {
@@ -177,8 +178,8 @@ static enum glint_status read_form_names(struct reader *r,
     return GLINT_OK;
 }
 
-/* Reads the clause, if the word has forms with one, and sets FORM to the
- * form of that clause. */
+/* Reads the clause if the command word has forms with one, and sets FORM to the
+ * form with that clause. */
 static enum glint_status read_optional_clause(struct reader *r,
                                               const struct control_form **form)
 {
@@ -228,7 +229,7 @@ static enum glint_status read_form_numbers(struct reader *r,
 
 /* -------------------------------------------------------------------- line */
 
-/* Reads the frame number, if the line begins with one. */
+/* Reads the frame number at the beginning of the line, if there is one. */
 static enum glint_status read_frame_number(struct reader *r,
                                            struct control_line *line)
 {
@@ -333,7 +334,7 @@ enum glint_status control_parse(const char *text, const char *where,
     return status;
 }
 
-/* Changes per key: degrees, and factors of distances and slopes. */
+/* Change per key press: degrees, and factors of distances and slopes */
 #define STEP_DEG 3
 #define NEARER   0.95
 #define SMOOTHER 0.87
@@ -372,7 +373,7 @@ static const struct {
 
 enum { N_KEYS = (int)(sizeof keys / sizeof *keys) };
 
-/* terminal settings to restore at the end */
+/* terminal settings to restore when the process ends */
 static struct termios before;
 static volatile sig_atomic_t terminal = -1;
 
@@ -396,7 +397,7 @@ enum glint_status keyboard_open(struct keyboard *k, int fd)
     raw.c_lflag &= ~(tcflag_t)(ICANON | ECHO);
     raw.c_cc[VMIN] = 0;
     raw.c_cc[VTIME] = 0;
-    /* Called from the background, tcsetattr() would stop the process. */
+    /* In a background process tcsetattr() would stop the process. */
     if (tcgetpgrp(fd) == getpgrp())
         tcsetattr(fd, TCSANOW, &raw);
     return GLINT_OK;
@@ -490,7 +491,6 @@ static enum glint_status parse_control_line(const struct controls *in,
     return status;
 }
 
-/* Parses all lines of the file. */
 static enum glint_status parse_all_lines(struct controls *in,
                                          struct glint_error *error)
 {

@@ -41,17 +41,19 @@ enum {
 };
 
 enum control_verb {
-    CONTROL_NONE, /* an empty line */
+    CONTROL_NONE, /* empty line, no command */
     /* Camera: */
-    /* orbits the point ahead: yaw to the right, pitch up, degrees */
+    /* orbits the camera about the point ahead: yaw to the right, pitch up,
+     * degrees */
     CONTROL_ORBIT,
     /* sets the distance from the centre of the orbit, units */
     CONTROL_DISTANCE,
-    /* moves to the position of a motion's sensor, numbered from 1 */
+    /* moves the camera to a sensor of the motion, numbered from 1 */
     CONTROL_SENSOR,
-    CONTROL_SCENE, /* returns to the position in the scene file */
-    CONTROL_WALK,  /* moves by units to the right, up and ahead */
-    /* rotates: yaw to the right, pitch up, roll clockwise, degrees */
+    CONTROL_SCENE, /* returns the camera to its pose in the scene file */
+    CONTROL_WALK,  /* moves the camera by units to the right, up and ahead */
+    /* rotates the camera: yaw to the right, pitch up, roll clockwise,
+     * degrees */
     CONTROL_LOOK,
     /* Materials, by name: */
     CONTROL_ALPHA, /* alpha of brushed metal; a single value sets both axes */
@@ -65,33 +67,36 @@ enum control_verb {
     CONTROL_HIDE,
     CONTROL_SIZE, /* radius of a ball, units */
     /* Environment light: */
-    CONTROL_TURN,     /* rotation to the right, degrees */
-    CONTROL_SCALE,    /* factor for all of its light */
+    CONTROL_TURN,     /* rotation of the environment to the right, degrees */
+    CONTROL_SCALE,    /* factor on all light of the environment */
     CONTROL_MAP,      /* selects an environment of the scene by name */
     CONTROL_NEXT_MAP, /* selects the next environment */
     /* Time of poses and recorded motions: */
-    CONTROL_STEP, /* moves by a number of frames, default 1; may be negative */
+    CONTROL_STEP, /* moves by a number of frames, default 1, negative: backwards
+                   */
     CONTROL_JUMP, /* moves to a frame */
-    /* sets the frames per second; without a number one frame per picture */
+    /* sets the playback rate, frames per second; without a number one frame per
+     * picture */
     CONTROL_PLAY,
     CONTROL_PAUSE,
-    CONTROL_STOP, /* pauses at frame 0 */
+    CONTROL_STOP, /* jumps to frame 0 and pauses */
     /* The flare: name[0] is an engine option that takes effect with the next
      * frame, v[0] its new value. */
     CONTROL_OPTION,
     CONTROL_VERBS
 };
 
-/* Arguments of a command. */
+/* Syntax of a command */
 struct control_form {
     enum control_verb verb;
     const char *word;   /* first word of the line */
     const char *clause; /* keyword after the names, or NULL */
-    int names;          /* 0 .. 2 names, the same for all forms of a word */
-    int behind;      /* number of names after the clause instead of before it */
+    int names; /* number of names, 0 .. 2, equal for all forms of a command word
+                */
+    int behind;      /* number of these names that follow the clause */
     int least, most; /* min and max count of numbers */
     double lowest, highest;
-    bool is_whole; /* numbers must be integers */
+    bool is_whole; /* whether numbers must be integers */
     const char *usage;
 };
 
@@ -101,13 +106,13 @@ extern const int control_n_forms;
 
 struct control_line {
     int number; /* line number in the file, from 1 */
-    int frame;  /* -1: no frame given */
+    int frame;  /* frame number; -1: not given */
     enum control_verb verb;
-    /* from a key: angles (degrees) are added to the current value, other
-     * values multiply it */
+    /* whether the command comes from a key: then angles (degrees) are added to
+     * the current value, and other values multiply it */
     bool is_change;
     char name[2][CONTROL_NAME];
-    /* byte positions in the line, from 1: of the names, and of the first
+    /* byte positions in the line, from 1, of the names and of the first
      * value */
     int name_column[2], column;
     int n; /* number of values */
@@ -122,7 +127,7 @@ struct keyboard {
     int at, n;
 };
 
-/* Help text: the keys and what they do. */
+/* Help text of the keys and their commands */
 extern const char keyboard_help[];
 
 enum {
@@ -131,14 +136,14 @@ enum {
 
 struct controls {
     long n_bad;             /* number of lines that were skipped */
-    struct glint_error bad; /* error of the last skipped line */
+    struct glint_error bad; /* error message of the line skipped last */
 
     /* Private. */
     bool is_open, is_keys, has_ahead;
-    struct text_lines lines;  /* closed after a file was read */
+    struct text_lines lines;  /* input lines; closed after a file was read */
     struct control_line *row; /* lines of a file */
     int n, next;
-    int read_at; /* picture at which the pipe was last read */
+    int read_at; /* number of the picture for which the pipe was read last */
     struct control_line ahead;
     struct keyboard keys;
 };
@@ -156,7 +161,7 @@ enum glint_status control_report_error(struct glint_error *error,
                                        const char *format, ...)
     GLINT_PRINTF(4, 5);
 
-/* Starts to read keys from terminal FD. Returns GLINT_E_IO if FD is not a
+/* Starts reading keys from the terminal FD. Returns GLINT_E_IO if FD is not a
  * terminal. */
 enum glint_status keyboard_open(struct keyboard *k, int fd);
 

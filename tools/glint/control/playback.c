@@ -8,7 +8,8 @@ void playback_init(struct playback *playback)
     *playback = (struct playback){.fps = -1, .last = CONTROL_MOST_FRAME};
 }
 
-/* Jumps to frame AT, clamped to the valid frames; the next picture shows it. */
+/* Moves the playback position to frame AT, clamped to the valid frames. The
+ * next picture shows it. */
 static void jump_to_frame(struct playback *p, double at)
 {
     p->at = fmax(0, fmin(at, p->last));
@@ -32,7 +33,7 @@ bool playback_execute_line(struct playback *playback,
         playback->fps = line->n ? line->v[0] : -1;
         return true;
     case CONTROL_PAUSE:
-        /* pressing the key again continues */
+        /* the same key pauses and continues */
         playback->is_paused = !line->is_change || !playback->is_paused;
         return true;
     case CONTROL_STOP:

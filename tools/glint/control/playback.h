@@ -4,8 +4,8 @@
  * picture shows.
  *
  *     playback_init(&playback);
- *     playback_execute_line(&playback, &line);              step, jump, play ...
- *     frame = playback_next(&playback, elapsed_s);  each picture
+ *     playback_execute_line(&playback, &line);              step, jump, play
+ * ... frame = playback_next(&playback, elapsed_s);  each picture
  *
  * If a rate is set, playback follows time, not the number of pictures: frame k
  * does not depend on what was shown before.
@@ -17,18 +17,20 @@
 
 struct playback {
     bool is_paused;
-    double fps; /* frames per second; below 0: one per picture */
-    int last;   /* last frame */
+    double fps; /* playback rate, frames per second; below 0: one frame per
+                   picture */
+    int last;   /* number of the last frame */
 
     /* Private. */
-    double at;      /* position in frames, with fraction */
-    bool has_shown; /* a picture was shown since the last jump */
+    double at;      /* playback position, fractional frame number */
+    bool has_shown; /* whether a picture was shown since the last jump */
 };
 
 /* Sets PLAYBACK to play from frame 0, one frame per picture. */
 void playback_init(struct playback *playback);
 
-/* Executes LINE if it is a command about time. Returns whether it is. */
+/* Executes LINE if it is one of the commands CONTROL_STEP to CONTROL_STOP.
+ * Returns whether it is. */
 bool playback_execute_line(struct playback *playback,
                            const struct control_line *line);
 

@@ -10,8 +10,8 @@
 
 #define RADIAN 0.017453292519943295
 
-/* Min and max factor on the environment's light by keys; scene texts have
- * the same limits. */
+/* Min and max factor that keys can set on the environment's light; scene texts
+ * have the same limits */
 #define LEAST_SCALE 1e-6
 #define MOST_SCALE  1e6
 
@@ -32,7 +32,7 @@ static void open_environments(struct steer *steer)
     }
 }
 
-/* Checks LINE, a command about environments. */
+/* Checks that LINE, a command about environments, names an existing one. */
 static enum glint_status
 check_environment_command(const struct steer *steer,
                           const struct control_line *line, const char *where,
@@ -182,7 +182,7 @@ static enum glint_status orbit_camera(const struct steer *steer,
     double from[3];
 
     set_orbit_from_position(&s->orbit, from);
-    /* up is ahead x right, as z points away from the viewer */
+    /* the up axis is ahead x right, as z points away from the viewer */
     const double axis[3][3] = {
         {x, 0, z},
         {-from[1] * z, from[0] * z - from[2] * x, from[1] * x},
@@ -226,8 +226,9 @@ static enum glint_status move_camera(struct steer *s, struct glint_scene *scene,
     }
     if (line->verb == CONTROL_LOOK) {
         rotate_camera_axes(axis, 2, 0,
-                           line->v[0]); /* rotates ahead to the right */
-        rotate_camera_axes(axis, 2, 1, line->v[1]); /* rotates ahead upwards */
+                           line->v[0]); /* rotates the view to the right */
+        rotate_camera_axes(axis, 2, 1,
+                           line->v[1]); /* rotates the view upwards */
         rotate_camera_axes(axis, 1, 0, line->v[2]); /* rolls up to the right */
     }
     for (int k = 0; k < 3; k++)
@@ -304,10 +305,11 @@ static void apply_object_type_changes(const struct steer *steer,
         set_scene_camera(steer, scene);
 }
 
-/* degrees; a camera directly above would have no right axis */
+/* max pitch, degrees; directly above its target a camera has no defined right
+ * axis */
 #define MOST_PITCH 89.0
 
-/* Min and max alpha of brushed metal by keys. */
+/* Min and max alpha (slope) of brushed metal that keys can set */
 #define LEAST_ALPHA 0.001
 #define MOST_ALPHA  1.0
 
@@ -411,7 +413,7 @@ static enum glint_status find_name_index(const struct steer *s,
                                 suggest_from_words(&suggest));
 }
 
-/* Returns whether the first name of LINE is a material. */
+/* Returns whether the first name of LINE must be a material. */
 static bool is_command_for_material(const struct control_line *line)
 {
     return line->verb == CONTROL_ALPHA || line->verb == CONTROL_COLOUR ||
@@ -493,9 +495,9 @@ static enum glint_status apply_orbit_to_camera(const struct steer *s,
                : status;
 }
 
-/* Starts an orbit about a point ahead of the camera at the depth of the
- * objects' mean position (without planes and hidden objects), or one unit
- * ahead if that lies behind the camera. */
+/* Starts an orbit about the point ahead of the camera at the depth of the mean
+ * position of all visible objects except planes, or one unit ahead if that is
+ * behind the camera. */
 static void begin_camera_orbit(struct steer *s)
 {
     const struct glint_scene_camera *const c = &s->camera;
@@ -572,7 +574,7 @@ static enum glint_status execute_camera_command(struct steer *s,
 /* --------------------------------------------------------------------- looks
  */
 
-/* Changes LOOK, the appearance of material I, by LINE. */
+/* Sets LOOK to the appearance of material I changed by LINE. */
 static void change_material_appearance(const struct steer *s,
                                        const struct control_line *line, int i,
                                        struct glint_scene_look *look)
@@ -608,8 +610,8 @@ static bool is_appearance_darker(const struct steer *s, int i,
     return is;
 }
 
-/* Changes the appearance of material INDEX, or of all metals. Changes
- * nothing if any of them cannot be set as LINE requests. */
+/* Changes the appearance of material INDEX, or of all metals. If LINE is
+ * invalid for one of them, changes none. */
 static enum glint_status
 change_appearance_of_materials(struct steer *s, struct glint_scene *scene,
                                const struct control_line *line, int index)

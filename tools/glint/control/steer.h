@@ -4,8 +4,8 @@
  *
  *     steer_open(&steer, &model);
  *     steer_execute_line(&steer, scene, &line, where, &error);    each line
- *     steer_apply_state(&steer, scene);               a scene that was placed again
- *     steer_close(&steer);
+ *     steer_apply_state(&steer, scene);               a scene that was placed
+ * again steer_close(&steer);
  *
  * No change requires a bake: the next picture shows it.
  */
@@ -15,25 +15,25 @@
 #include "control/controls.h"
 #include "glint/scene/scene.h"
 
-/* Current state of an object. */
+/* Present state of an object */
 struct steer_thing {
     bool is_shown;
     int material;
-    int32_t radius; /* of a ball, scene steps */
+    int32_t radius; /* radius of a ball, scene steps */
 };
 
-/* Current state of an environment. */
+/* Present state of an environment */
 struct steer_map {
     double turn_deg, scale;
 };
 
-/* Current state of one type of objects of a motion. */
+/* Present state of one type of objects in a motion */
 struct steer_kind {
     bool is_hidden;
     int32_t steps; /* radius or width, scene steps; 0: as in the scene */
 };
 
-/* A camera that orbits a point. */
+/* State of a camera that orbits a point */
 struct steer_orbit {
     bool is_there;
     double middle[3], distance; /* centre and distance, scene steps */
@@ -43,12 +43,13 @@ struct steer_orbit {
 struct steer {
     /* Private. */
     struct glint_scene_model model;
-    struct steer_thing *thing;     /* [n_objects] */
-    struct glint_scene_look *look; /* [n_materials] */
+    struct steer_thing *thing; /* state of each object, [n_objects] */
+    struct glint_scene_look
+        *look; /* appearance of each material, [n_materials] */
     struct steer_orbit orbit;
-    /* The camera before it began to orbit. */
+    /* Camera before the orbit began */
     struct glint_scene_camera camera;
-    /* the camera was moved by control lines, so that poses no longer move it */
+    /* whether control lines moved the camera, so that poses no longer do */
     bool is_free;
     struct steer_map environment[GLINT_SCENE_MAX_ENVIRONMENTS];
     int shown; /* index of the visible environment */
@@ -74,8 +75,8 @@ enum glint_status steer_check(const struct steer *steer,
                               const struct control_line *line,
                               const char *where, struct glint_error *error);
 
-/* Executes LINE, which must not be a command about time. Returns
- * GLINT_E_FORMAT like steer_check(), without any change. */
+/* Executes LINE, any command except those of playback.h. Returns GLINT_E_FORMAT
+ * like steer_check(), without a change. */
 enum glint_status steer_execute_line(struct steer *steer,
                                      struct glint_scene *scene,
                                      const struct control_line *line,

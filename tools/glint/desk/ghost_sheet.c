@@ -14,8 +14,8 @@
 
 enum { WIDE = 288, DIMMED = 5 };
 
-/* light to which the brightest 1 % of a ghost's pixels on a sheet are
- * exposed, 1 = white */
+/* linear light, 1 = white, to which the brightest 1 % of a ghost's pixels are
+ * exposed on a sheet */
 static const double shown = 0.7;
 
 static bool is_ghost_muted(const struct ghost_list *l, int ghost)
@@ -69,8 +69,8 @@ enum glint_status ghost_list_write(const struct ghost_list *l, const char *path,
 /* --------------------------------------------------------------------- sheet
  */
 
-/* Reduces the ghost drawn last to LIGHT[height][width][3] of a thumbnail, by
- * means of pixels. */
+/* Reduces the image of the ghost drawn last to LIGHT[height][width][3] of a
+ * thumbnail, by averaging pixels. */
 static void reduce_ghost_image(const struct glint_explain *e, int width,
                                int height, float *light)
 {
@@ -116,7 +116,8 @@ static double find_display_exposure(const float *light, size_t n, float *room)
     return shown / (double)room[lit - 1 - lit / 100];
 }
 
-/* Draws LIGHT times SCALE over the dimmed image SMALL into TO. */
+/* Draws the thumbnail LIGHT, scaled by SCALE, over the dimmed image SMALL into
+ * TO. */
 static void draw_ghost_thumbnail(const struct glint_image *to,
                                  const struct glint_image *small,
                                  const float *light, double scale)

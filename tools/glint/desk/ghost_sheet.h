@@ -13,8 +13,9 @@
 struct ghost_list {
     struct glint_explain *explain;
     const char *lens;
-    const int *ghosts; /* [explain->n_ghosts] */
-    int top;           /* max ghosts on a sheet */
+    const int
+        *ghosts; /* indices of the ghosts in list order, [explain->n_ghosts] */
+    int top;     /* max ghosts on a sheet */
     const struct glint_image *picture;
 };
 

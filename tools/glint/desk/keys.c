@@ -9,8 +9,8 @@
 
 enum { MAX_BYTES = 1 << 26 };
 
-/* Columns without limits are engine options of the same name and have their
- * limits. */
+/* Columns of a key file. Those without limits are engine options of the same
+ * name, with the option's limits. */
 static const struct text_column columns[KEYS_COLUMNS] = {
     [KEYS_FRAME] = {"frame", 0, TEXT_MAX_FRAME,
                     "frame must be a whole number from 0"},
@@ -27,15 +27,16 @@ static const struct text_column columns[KEYS_COLUMNS] = {
     [KEYS_ZOOM] = {.name = "zoom"},
 };
 
-/* State of reading a file. */
+/* Parser state of a key file */
 struct reading {
     struct keys *keys;
-    /* columns of the fields of a row; 0: no heading read yet */
+    /* column index of each field in a row; n_columns 0: no heading read yet */
     int column[KEYS_COLUMNS], n_columns;
     char range[160]; /* error message for an option's value out of range */
 };
 
-/* Parses FIELD of column C. Returns NULL or an error message. */
+/* Parses the text FIELD as a value of column C. Returns NULL or an error
+ * message. */
 static const char *parse_key_value(struct reading *r, int c, const char *field,
                                    double *value)
 {

@@ -34,12 +34,12 @@ enum key_column {
     KEYS_X,
     KEYS_Y,
     KEYS_EV,
-    KEYS_ZOOM, /* value as in model_file_zoom() */
+    KEYS_ZOOM, /* zoom, mm or 0 .. 1, as in model_file_zoom() */
     KEYS_COLUMNS
 };
 
 struct key_value {
-    int frame, line; /* line: in the file, counted from 1 */
+    int frame, line; /* frame number, and line number in the file, from 1 */
     double value;
 };
 

@@ -13,8 +13,8 @@
 
 enum { POINTS = 61, LEAST_PX = 2 };
 
-/* fraction of its level that a hidden lamp keeps, as lists of lamps do not
- * accept 0 */
+/* min fraction of the level of a hidden lamp, as lists of lamps do not accept
+ * 0 */
 static const double least_level = 1e-6;
 
 /* ------------------------------------------------------------------- reading
@@ -51,7 +51,7 @@ static enum glint_status load_numbered_mask(struct occlusion *o, int frame,
     return GLINT_OK;
 }
 
-/* Reads frames of the video up to FRAME. */
+/* Reads frames of the mask video up to FRAME. */
 static enum glint_status read_mask_video_up_to(struct occlusion *o, long frame,
                                                struct glint_error *error)
 {
@@ -109,8 +109,8 @@ void occlusion_close(struct occlusion *o)
     o->is_video = false;
 }
 
-/* Loads the mask of FRAME. On a read error prints a warning and uses the
- * last mask from then on. */
+/* Loads the mask of FRAME. After a read error prints a warning and uses the
+ * previous mask for all later frames. */
 static void load_frame_mask(struct occlusion *o, int frame)
 {
     struct glint_error error = {""};
@@ -175,7 +175,8 @@ static double mean_mask_over_lamp(const struct occlusion *o,
                                   const struct glint_lamp *lamp)
 {
     const double pixel = glint_view_pixel_tangent(view, focal_mm);
-    /* At this pixel size any lamp is large and gets all POINTS. */
+    /* With such a large pixel size every lamp counts as large and gets POINTS
+     * sample points. */
     const struct glint_area_rule rule = {1e6 / pixel, POINTS, 1, 1};
     struct glint_lamp disc = *lamp;
     struct glint_area area;

@@ -21,7 +21,7 @@
 #include "video/y4m.h"
 
 struct occlusion {
-    const char *file; /* file of the mask, or NULL */
+    const char *file; /* --mask: name of the mask file, or NULL */
     /* distance from the image at which a lamp has faded out, pixels; 0: no
      * fading */
     double fade_px;
@@ -29,10 +29,10 @@ struct occlusion {
     /* Private. */
     /* mask of the current frame; planes are NULL if there is no mask */
     struct glint_image image;
-    double black, white; /* codes for no light and all light */
+    double black, white; /* mask codes that transmit no light and all light */
     bool is_video, is_numbered, is_over;
     struct glint_y4m_reader video;
-    long frame; /* frame of IMAGE, or -1 */
+    long frame; /* frame number of IMAGE, or -1 */
 };
 
 /* Opens the mask of O, whose file and fade_px must be set. Errors are as of

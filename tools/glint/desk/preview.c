@@ -45,7 +45,7 @@ static bool is_label_space_free(const struct labels *l, const int box[4])
     return true;
 }
 
-/* Writes NUMBER at (X, Y), or at the first free position below. */
+/* Draws NUMBER at pixel (X, Y), or at the first free position below. */
 static void draw_number_label(struct labels *l, int number, int x, int y)
 {
     struct paint *const p = &l->paint;

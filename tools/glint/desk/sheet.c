@@ -24,7 +24,8 @@ static int compute_caption_stroke_width(int width)
 static size_t caption_row_length(int width, const char *text)
 {
     const int line = compute_caption_stroke_width(width);
-    /* letters with their gap are 4 strokes wide, margins 2 */
+    /* number of letters in a row: a letter with its gap is 4 strokes wide, the
+     * margins 2 */
     const int fit = (width - 3 * line) / (4 * line);
     const size_t room = fit > 1 ? (size_t)fit : 1;
     size_t n = strlen(text);
@@ -83,7 +84,8 @@ enum glint_status sheet_open(struct sheet *s, int n, int width, int height,
     size_t bytes;
 
     *s = (struct sheet){.width = width, .height = height, .rows = rows};
-    /* about square, but rows at most 2400 pixels wide */
+    /* number of columns for an approximately square sheet of at most 2400
+     * pixels width */
     s->columns = (int)ceil(sqrt(n * (double)(height + 20) / width));
     while (s->columns > 1 && s->columns * (width + GAP) > 2400)
         s->columns--;

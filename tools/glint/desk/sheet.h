@@ -17,8 +17,9 @@
 struct sheet {
     struct glint_image image; /* GLINT_RGB24, dark grey between pictures */
     int width, height;        /* size of each image, pixels */
-    int columns, line;        /* line: stroke width of letters, pixels */
-    int rows;                 /* lines of text per caption */
+    int columns,
+        line; /* number of columns; line: stroke width of letters, pixels */
+    int rows; /* number of text lines per caption */
 };
 
 /* Returns the number of lines that TEXT needs below an image of WIDTH

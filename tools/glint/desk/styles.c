@@ -4,8 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Styles differ by shapes, colours and positions of ghosts, not by
- * brightness: at one --strength the automatic exposure makes all lenses and
+/* Styles differ in the shapes, colours and positions of ghosts, not in
+ * brightness: at a given --strength the automatic exposure makes all lenses and
  * coatings equally bright. */
 const struct style styles[] = {
     {"natural", "a current zoom lens, the default of overlay", {{NULL, NULL}}},

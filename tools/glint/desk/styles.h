@@ -7,14 +7,15 @@
 
 enum { STYLE_SETTINGS = 8 };
 
-/* A long option and its value. */
+/* A long option and the value that the style gives it */
 struct style_setting {
     const char *option, *value;
 };
 
 struct style {
-    const char *name, *about; /* NULL ends the table of styles */
-    struct style_setting set[STYLE_SETTINGS]; /* ends with an option of NULL */
+    const char *name, *about; /* name and description; NULL: end of the table */
+    struct style_setting set[STYLE_SETTINGS]; /* options of the style; the last
+                                                 has the option NULL */
 };
 
 extern const struct style styles[];

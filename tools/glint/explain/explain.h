@@ -9,7 +9,7 @@
 /* Returns OUTCOME as a phrase for tables. */
 const char *explain_reason(enum glint_outcome outcome);
 
-/* The inputs of the frame: lens, lights as given, and kind of picture. */
+/* Inputs of the frame: lens, given lights, and type of picture */
 struct explain_title {
     const char *lens;
     const struct glint_engine_lamp *lamp;

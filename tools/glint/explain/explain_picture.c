@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A frame explained by a picture: the frame dimmed, touched tiles shaded,
- * ghosts outlined and numbered, a legend below.
+ * Draws the picture of glint explain: the dimmed frame with shaded tiles,
+ * outlined and numbered ghosts, and a legend below.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +27,7 @@ struct marking {
     const struct glint_image *image; /* the picture being marked */
     /* Size of the frame in pixels; the legend lies below it. */
     int width, height;
-    int scale; /* thickness of strokes of labels and legend, pixels */
+    int scale; /* stroke width of labels and legend, pixels */
     int n_labels;
     struct label label[MOST_LABELS];
 };
@@ -41,8 +41,8 @@ static void set_ghost_palette(struct paint *p, int k)
 
 /* ------------------------------------------------------------------- tiles */
 
-/* Checks whether any pixel of the tile at (X0, Y0), SIDE pixels wide, has
- * light. */
+/* Returns whether any pixel of the tile at (X0, Y0), SIDE pixels wide, has
+ * light of the flare. */
 static bool is_tile_lit(const struct marking *m, int x0, int y0, int side)
 {
     for (int y = y0; y < y0 + side && y < m->height; y++)
@@ -56,8 +56,8 @@ static bool is_tile_lit(const struct marking *m, int x0, int y0, int side)
     return false;
 }
 
-/* Shades a tile: bluish, with a brighter line at its left and top, if TOUCHED,
- * else darker. */
+/* Shades a tile: TOUCHED tiles bluish with brighter left and top lines, other
+ * tiles darker. */
 static void shade_tile(const struct marking *m, int x0, int y0, int side,
                        bool touched)
 {
@@ -97,7 +97,8 @@ static bool is_pixel_lit(const struct marking *m, int x, int y)
     const int32_t *px;
 
     if (x < 0 || y < 0 || x >= m->width || y >= m->height)
-        return true; /* The picture's sides are not outline. */
+        return true; /* Pixels outside the picture count as lit, so that its
+                        border is not outlined. */
     px =
         m->explain->linear_q20 + 3 * ((size_t)y * (size_t)m->width + (size_t)x);
     return (px[0] | px[1] | px[2]) != 0;
@@ -121,9 +122,9 @@ static bool is_label_space_free(const struct marking *m, const struct label *l)
     return true;
 }
 
-/* Finds a place L for a label of W x H at the ghost's rim, else in its light:
- * the first free one from row START down, then from the top. Returns false if
- * there is none. */
+/* Sets L to the position of a label of W x H pixels on the ghost's rim, else
+ * inside the ghost: the first free one from row START downwards, then from the
+ * top. Returns false if there is none. */
 static bool find_label_position(const struct marking *m, int start, int w,
                                 int h, struct label *l)
 {
@@ -145,7 +146,8 @@ static bool find_label_position(const struct marking *m, int start, int w,
 static void draw_ghost_label(struct marking *m, int k, int number)
 {
     struct paint p = {.image = m->image, .line = m->scale};
-    const int start = k * 5 % 16 * m->height / 16; /* spread over the picture */
+    const int start = k * 5 % 16 * m->height /
+                      16; /* first row; labels are spread over the picture */
     struct label l;
     char text[16];
 
@@ -217,8 +219,8 @@ static void draw_legend_title(const struct marking *m,
     paint_text(&p, 12 * p.line, y, text);
 }
 
-/* Draws entry K of the legend: the number of GHOST, its fractions of light and
- * work. */
+/* Draws entry K of the legend: the number of GHOST, and its fractions of the
+ * light and of the cost. */
 static void draw_legend_entry(const struct marking *m, int k, int ghost)
 {
     struct paint p = {.image = m->image, .line = m->scale};

@@ -47,17 +47,17 @@ void explained_scene_close(struct explained_scene *scene)
 
 /* ------------------------------------------------------------------- lights */
 
-/* The outcome of a light of the scene. */
+/* State of a scene light in the picture */
 struct light {
     const char *word;  /* drawn, hidden, behind, outside ... */
-    const char *extra; /* what hides it, or NULL */
-    double x, y;       /* pixels; of what is not behind */
-    double share;      /* visible fraction of the light */
+    const char *extra; /* name of the object that hides the light, or NULL */
+    double x, y;  /* position, pixels; undefined for lights behind the camera */
+    double share; /* visible fraction of the light */
     bool is_ahead;
 };
 
-/* Returns the light of the flare that stands for LAMP, or -1: one within its
- * extent and a pixel. */
+/* Returns the index of the flare's light that includes LAMP, within its extent
+ * plus a pixel, or -1. */
 static int find_flare_light_of_lamp(const struct explained_scene *s,
                                     const struct glint_lamp *lamp)
 {
@@ -83,7 +83,8 @@ static int find_flare_light_of_lamp(const struct explained_scene *s,
     return found;
 }
 
-/* Returns in a word what the lens makes of LAMP. */
+/* Returns a word for the result of LAMP in the flare: drawn, merged, too faint
+ * ... */
 static const char *describe_lamp_outcome(const struct explained_scene *s,
                                          const struct glint_lamp *lamp)
 {
@@ -110,8 +111,9 @@ static const char *describe_lamp_outcome(const struct explained_scene *s,
                : explain_reason((enum glint_outcome)most);
 }
 
-/* Sets LIGHT to the outcome of light I; SEEN[N] are those ahead of the camera.
- * LAMPS of the scene are those that have any light, in this order. */
+/* Returns the state of light I. SEEN[N]: lights ahead of the camera. Lamps of
+ * the drawing correspond to the lights in SEEN that have any light, in this
+ * order. */
 static struct light find_light_outcome(const struct explained_scene *s, int i,
                                        const struct glint_scene_lamp *seen,
                                        int n)
@@ -167,7 +169,7 @@ static int list_scene_lights(const struct explained_scene *s,
     int all = (int)h->n_lights;
 
     while (all > own && !has_light_power(&get_model(s)->light[all - 1]))
-        all--; /* kept for another environment */
+        all--; /* reserved for another environment */
     for (int i = 0; i < all; i++)
         light[i] = find_light_outcome(s, i, seen, n);
     return all;
@@ -188,11 +190,12 @@ static const char *write_light_name(const struct explained_scene *s, int i,
 
 /* --------------------------------------------------------------- highlights */
 
-/* The outcome of a highlight. */
+/* State of a highlight in the flare */
 struct highlight {
     const char *word; /* drawn, merged, too faint ... */
     double x, y, power;
-    int object, bundles; /* of ghosts, that it makes */
+    int object, bundles; /* object with the highlight, and number of ghost
+                            bundles that it causes */
 };
 
 /* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS] to the highlights, which are the last
@@ -283,7 +286,7 @@ static void print_scene_highlights(const struct explained_scene *s)
                found[i].power, found[i].bundles, found[i].word);
 }
 
-/* What is laid over the objects of a recorded motion. */
+/* Layers drawn over the objects of a recorded motion */
 static const struct {
     enum glint_scene_kind kind;
     const char *word;
@@ -307,7 +310,7 @@ static void print_scene_layers(const struct explained_scene *s)
     }
 }
 
-/* Light below the surface of translucent media. */
+/* Prints the number of light-map texels of translucent media. */
 static void print_light_maps(const struct explained_scene *s)
 {
     if (get_model(s)->header->n_skins > 0)

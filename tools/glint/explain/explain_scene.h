@@ -10,8 +10,9 @@
 #include "scenes/account.h"
 
 struct explained_scene {
-    const struct drawing *drawing;     /* has drawn the frame */
-    const struct glint_explain *flare; /* NULL without a lens */
+    const struct drawing *drawing; /* drawing of the explained frame */
+    const struct glint_explain
+        *flare; /* explanation of the flare; NULL without a lens */
     struct scene_account account;
 };
 

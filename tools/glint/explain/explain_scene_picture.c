@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A scene explained by a picture: objects outlined and numbered, in colours by
- * the steps of a pixel of each, a legend below. */
+ * Draws the scene picture of glint explain: objects outlined, numbered and
+ * coloured by their cost per pixel, and a legend below. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,8 +38,8 @@ static double compute_heat_steps(const struct heat *h, int object)
                : 0;
 }
 
-/* Sets RGB to the colour of OBJECT: blue, red, yellow by the root of its steps.
- */
+/* Sets RGB to the heat colour of OBJECT, from blue over red to yellow by the
+ * square root of its steps. */
 static void compute_heat_colour(const struct heat *h, int object,
                                 uint8_t rgb[3])
 {
@@ -57,8 +57,8 @@ static int find_object_at_pixel(const struct heat *h, int x, int y)
                           : h->scene->account.seen[(ptrdiff_t)y * h->width + x];
 }
 
-/* Returns whether OBJECT, or -1, only receives shadows, so that the picture
- * stays visible through it. */
+/* Returns whether OBJECT (-1: none) only receives shadows, so that the picture
+ * behind it stays visible. */
 static bool is_shadow_catcher(const struct heat *h, int object)
 {
     return object >= 0 &&
@@ -108,7 +108,8 @@ static void find_nearest_object_pixel(const struct heat *h, int object,
         }
 }
 
-/* Writes the number of each object at the middle of the pixels that show it. */
+/* Draws the number of each object at the mean position of its visible
+ * pixels. */
 static void draw_object_numbers(const struct heat *h)
 {
     struct paint p = {.image = h->image, .line = h->scale};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A frame explained by tables of at most 100 columns, and by JSON.
+ * Prints the explanation of a frame as tables of at most 100 columns, and as
+ * JSON.
  */
 #include <math.h>
 #include <stdio.h>
@@ -42,7 +43,7 @@ static double direction_angle_deg(double y, double x)
     return atan2(y, x) * 180 / GLINT_PI;
 }
 
-/* Returns the number of ghosts that are drawn at least in part. */
+/* Returns the number of ghosts of which at least one bundle is drawn. */
 static int count_drawn_ghosts(const struct glint_explain *e)
 {
     int n = 0;
@@ -62,7 +63,7 @@ static void print_percent(double x)
         printf("%8.1f", 100 * x);
 }
 
-/* Prints the columns that all tables end with. */
+/* Prints the cost columns at the end of each table row. */
 static void print_cost_columns(const struct glint_explain_part *p)
 {
     printf(" %9lld %8lld %9lld %8d %5d", p->vertices, p->edges, p->rows, p->lit,
@@ -79,7 +80,7 @@ static void print_table_head(const char *what)
            "edges", "rows", "lit px", "tiles", "light%", "brightest", "work%");
 }
 
-/* Prints a kind of cost that few frames have. */
+/* Prints a cost that is zero in most frames, unless it is zero. */
 static void print_rare_cost(const struct glint_explain *e,
                             enum glint_cost_kind kind)
 {
@@ -88,7 +89,7 @@ static void print_rare_cost(const struct glint_explain *e,
                100 * e->stage[kind] / e->all.work, 1e-6 * e->stage[kind]);
 }
 
-/* Prints how many bundles are not drawn separately because they are dim. */
+/* Prints the number of dim bundles that share the rays of a brighter light. */
 static void print_merged_dim_bundles(const struct glint_explain *e)
 {
     const double dim = e->dim_codes;
@@ -106,7 +107,7 @@ static void print_table_title(const struct glint_explain *e,
 
     printf("%s, %dx%d, in %s\n", t->lens, e->view->width, e->view->height,
            t->linear ? "linear light" : "8-bit codes");
-    /* A lamp of visible extent is drawn as several points. */
+    /* Lamps of visible extent are drawn as several points. */
     printf(e->n_lights > t->n_lamps ? "%d points of %d light%s drawn"
                                     : "%d of %d light%s drawn",
            e->n_lights, t->n_lamps, t->n_lamps == 1 ? "" : "s");
@@ -189,8 +190,8 @@ static void print_ghost_rows(const struct glint_explain *e,
         printf("      and %d more (--top)\n", n - t->top);
 }
 
-/* Prints the numbers of the ghosts that have OUTCOME, as many as fit ROOM
- * characters, and ends the line. */
+/* Prints the numbers of the ghosts with OUTCOME, as many as fit into ROOM
+ * characters, and a line feed. */
 static void print_ghost_numbers(const struct glint_explain *e,
                                 enum glint_outcome outcome, int room)
 {

@@ -9,7 +9,7 @@ enum { NAME_CHARS = 48, ABOUT = 22 /* column of the description */ };
 /* Most common options, printed for commands whose help is longer than a
  * screen. */
 static const struct {
-    /* names, each with a blank before and after */
+    /* option names, each with a blank before and after */
     const char *command, *options;
 } usual[] = {
     {"overlay", " output lens light-at strength layer style scene f-number "
@@ -38,8 +38,8 @@ static size_t help_line_length(const char *line)
     return line[n] ? n + 1 : n;
 }
 
-/* Sets NAME to the long option with which LINE of a help text begins, as "
- * --name" or "  -x, --name". Returns false if there is none. */
+/* Sets NAME to the long option at the beginning of LINE, " --name" or "  -x,
+ * --name". Returns false if the line has none. */
 static bool parse_option_name(const char *line, char name[NAME_CHARS])
 {
     size_t n;
@@ -81,8 +81,8 @@ static bool contains_option_name(const char *options, const char *name)
     return strstr(options, word) != NULL;
 }
 
-/* Prints those lines of TEXT that describe OPTIONS; if INTRO also the lines
- * above the first option. */
+/* Prints the lines of TEXT that describe OPTIONS; INTRO: also the lines above
+ * the first option. */
 static void print_common_options(const char *text, const char *options,
                                  bool intro)
 {

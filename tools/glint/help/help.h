@@ -9,7 +9,7 @@
 #include <stdbool.h>
 
 enum {
-    HELP_SCREEN = 42, /* a help text with more lines is shortened */
+    HELP_SCREEN = 42, /* max lines of a help text; a longer one is shortened */
     HELP_PARTS = 3
 };
 

@@ -8,7 +8,8 @@
 #include "glint/options.h"
 
 static const struct {
-    const char *command; /* NULL: any command */
+    const char
+        *command; /* command to which the row applies; NULL: all commands */
     const char *option, *takes;
 } table[] = {
     /* A row for one command must precede the row of the same option for any
@@ -123,7 +124,7 @@ static const char *find_item_end(const char *text)
     return text;
 }
 
-/* Returns whether the item at TEXT is a range of numbers. */
+/* Returns whether the list item at TEXT is a range of numbers. */
 static bool is_number_range(const char *text)
 {
     const char *const to = strstr(text, " to ");
@@ -133,8 +134,8 @@ static bool is_number_range(const char *text)
            strncmp(text, "above ", 6) == 0 || strncmp(text, "from ", 5) == 0;
 }
 
-/* Returns whether the item TEXT[LENGTH] is a literal word: not a range, a
- * placeholder, or a unit (which a range follows). */
+/* Returns whether the list item TEXT[LENGTH] is a literal word, and not a
+ * range, a placeholder, or a unit followed by a range. */
 static bool is_literal_word(const char *text, size_t length)
 {
     const char *const end = text + length;

@@ -52,10 +52,10 @@ static const struct text_column columns[COLUMNS] = {
 
 static const char plain[] = "expected 4, 7 or 8 numbers separated by commas";
 
-/* State of reading a list. */
+/* Parser state of a lamp list */
 struct reading {
     struct lamp_list *list;
-    /* columns of a row; n is 0 for a plain list, whose heading has no id */
+    /* column index of each field; n 0: a plain list, whose heading has no id */
     int n, column[COLUMNS];
 };
 
@@ -75,8 +75,8 @@ static struct lamp_row make_lamp_row(const double *v)
                              .next = -1};
 }
 
-/* Parses the fields that are not NULL into V, which contains the defaults.
- * Returns OTHER if one is not a number. */
+/* Parses the fields that are not NULL into V, which holds the defaults. Returns
+ * OTHER if a field is not a number. */
 static const char *parse_row_fields(char *const field[COLUMNS], bool is_object,
                                     const char *other, double *v)
 {
@@ -105,7 +105,7 @@ static const char *parse_row_fields(char *const field[COLUMNS], bool is_object,
     return glint_lamp_power_is_valid(v[POWER], v + RED) ? NULL : POWERS;
 }
 
-/* Parses LINE: "frame,x,y,power[,r,g,b[,size]]", or by the columns of the
+/* Parses LINE, "frame,x,y,power[,r,g,b[,size]]" or the columns named by the
  * heading. */
 static const char *parse_lamp_row(const struct reading *r, char *line,
                                   double *v)

@@ -13,7 +13,7 @@ enum { LAMP_LIST_MAX_ROWS = 1 << 20 };
 /* One line of a list. X and Y are pixels from the top left corner; they may
  * be off-screen. */
 struct lamp_row {
-    int frame; /* -1: every frame */
+    int frame; /* frame number; -1: every frame */
     double x, y, power, rgb[3];
     double size;  /* RMS radius, pixels; 0: a point */
     double shape; /* minor axis / major axis, 0 .. 1 */
@@ -23,7 +23,7 @@ struct lamp_row {
     /* RMS radius of lamp and glare in an image that clips the lamp, pixels;
      * 0: not clipped */
     double seen;
-    uint32_t id; /* 0: no id */
+    uint32_t id; /* id of the lamp; 0: none */
     int next;    /* index of the lamp's next row, set by lamp_keys_link(), or
                     -1 */
 };

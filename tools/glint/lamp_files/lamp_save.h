@@ -18,7 +18,7 @@
 struct lamp_save {
     bool is_open;
     struct glint_output out;
-    enum glint_status status; /* first write error, or GLINT_OK */
+    enum glint_status status; /* first write error so far, or GLINT_OK */
     struct glint_error error;
 };
 

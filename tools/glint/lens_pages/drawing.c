@@ -9,7 +9,7 @@
 
 #include "glint/glint.h"
 
-/* A path through the lens for light at one angle, and its pupil. */
+/* Rays of light at one angle through the lens, and the pupil of their path */
 struct fan {
     struct glint_path path;
     struct glint_pupil pupil;
@@ -27,11 +27,12 @@ enum {
 
 struct spots {
     int n;
-    double at[SPOT_COLOURS * SPOT_RAYS][2]; /* mm */
+    double at[SPOT_COLOURS * SPOT_RAYS]
+             [2]; /* ray positions on the sensor, mm */
     int colour[SPOT_COLOURS * SPOT_RAYS];
-    double middle[2]; /* centroid, mm */
-    double rms_mm;    /* RMS distance from the centroid */
-    double radius_mm; /* max distance from the centroid */
+    double middle[2]; /* centroid of the rays, mm */
+    double rms_mm;    /* RMS distance of the rays from the centroid, mm */
+    double radius_mm; /* max distance of a ray from the centroid, mm */
 };
 
 enum { DRAWING_FIELDS = 3 };
@@ -46,16 +47,16 @@ struct figure {
     double z0, z1, x1;   /* extent of the section: z0 .. z1, -x1 .. x1, mm */
     double scale;        /* pixels per millimetre */
     double left, middle; /* position of z = 0 and of x = 0, pixels */
-    double height_px;    /* height of the section */
+    double height_px;    /* height of the section, pixels */
     double vertex[GLINT_MAX_SURFACES], stop_z, sensor_z;
-    /* half the image's size in the section's plane, as displayed */
+    /* half the image size in the section's plane, as displayed, mm */
     double film_mm;
     double widen; /* displayed width / width on the sensor */
     int shown;
 };
 
-/* Prepares FAN for light at THETA_DEG in the plane at azimuth PHI_DEG, which
- * is the x-z plane of its rays. GHOST is NULL for the direct path. Returns
+/* Initialises FAN for light at THETA_DEG in the plane at azimuth PHI_DEG, which
+ * becomes the x-z plane of its rays. GHOST: NULL for the direct path. Returns
  * false if no light passes. */
 static bool init_ray_fan(struct fan *fan, const struct glint_prescription *lens,
                          const struct glint_ghost *ghost, double nm,
@@ -75,7 +76,7 @@ static bool init_ray_fan(struct fan *fan, const struct glint_prescription *lens,
                             optics.stop_radius_mm, NULL);
 }
 
-/* Returns the x at which the ray (U, 0) starts. */
+/* Returns the x at which ray (U, 0) starts, mm. */
 static double ray_start_mm(const struct fan *fan, double u)
 {
     const struct glint_pupil *p = &fan->pupil;
@@ -128,8 +129,8 @@ static bool find_fan_edges(const struct fan *fan, double u[2])
 
 static const double spot_nm[SPOT_COLOURS] = {450, 546, 650};
 
-/* Adds those rays of one ring that pass. The pupil's box is the square -1 ..
- * 1; its corners lie on the outermost ring. */
+/* Traces the rays of one ring and adds those that pass. The pupil's box is the
+ * square -1 .. 1, whose corners lie on the outermost ring. */
 static void gather_ring_rays(struct spots *s, const struct fan *fan, int colour,
                              int ring)
 {
@@ -170,8 +171,8 @@ static void measure_spot_extent(struct spots *s)
     s->rms_mm = s->n ? sqrt(square / s->n) : 0;
 }
 
-/* Fills S with the rays that light at THETA_DEG, in the plane at PHI_DEG,
- * sends through LENS, evenly distributed over its pupil. */
+/* Fills S with rays through LENS, evenly distributed over its pupil, for light
+ * at THETA_DEG in the plane at azimuth PHI_DEG. */
 static void gather_field_spots(struct spots *s,
                                const struct glint_prescription *lens,
                                double phi_deg, double theta_deg)
@@ -186,8 +187,8 @@ static void gather_field_spots(struct spots *s,
     measure_spot_extent(s);
 }
 
-/* position of the outermost field, as a fraction of the film's half size:
- * rays end inside it */
+/* position of the outermost field angle as a fraction of the film's half size;
+ * rays stay inside the film */
 #define FIELD_ENDS 0.995
 
 static const char *const field_colour[DRAWING_FIELDS] = {"#1f5fa8", "#2f8a3c",
@@ -227,9 +228,9 @@ static double image_height_mm(const struct figure *f, double theta_deg)
     return fabs(ray.sensor_x_mm);
 }
 
-/* Returns the angle of the light that the lens images at HEIGHT_MM from the
- * centre, degrees, by rays through the centre of the pupil. If no light
- * reaches that height, returns the widest angle that passes. */
+/* Returns the angle, degrees, of light that the lens images HEIGHT_MM from the
+ * centre, by rays through the centre of the pupil. If no light reaches that
+ * height, returns the widest angle that passes. */
 static double find_angle_of_image_height(const struct figure *f,
                                          double height_mm)
 {
@@ -334,7 +335,7 @@ static void set_section_image_extent(struct figure *f)
             : 0.5 * (along_x ? lens->film_width_mm : lens->film_height_mm);
 }
 
-/* Sets positions and scale of F, whose drawing and file are set. */
+/* Sets position and scale of F, whose drawing and file are already set. */
 static void begin_lens_figure(struct figure *f)
 {
     const struct glint_prescription *lens = f->drawing->lens;
@@ -356,7 +357,7 @@ static void begin_lens_figure(struct figure *f)
     f->z0 = least - 0.16 * length;
     f->z1 = f->sensor_z + 0.02 * length;
     f->scale = fmin(width / (f->z1 - f->z0), HEIGHT_PX / (2 * f->x1));
-    /* the remaining width shows more of the space in front of the lens */
+    /* use the remaining width for the space in front of the lens */
     f->z0 = fmax(f->z1 - width / f->scale, least - 0.6 * length);
     f->height_px = 2 * f->x1 * f->scale;
     f->left = 0.5 * (f->drawing->width_px - f->scale * (f->z1 - f->z0)) -
@@ -367,7 +368,7 @@ static void begin_lens_figure(struct figure *f)
 
 /* ---------------------------------------------------------------- the lens */
 
-/* Writes the points of surface K from its lower to its upper rim; in the
+/* Writes the points of surface K from its lower to its upper rim, in the
  * opposite order if SENSE is -1. */
 static void write_surface_profile(const struct figure *f, int k, int sense)
 {
@@ -381,8 +382,8 @@ static void write_surface_profile(const struct figure *f, int k, int sense)
     }
 }
 
-/* Writes the edge of the glass between surfaces K and K + 1 on one SIDE: out
- * to the wider of both rims, then parallel to the axis. */
+/* Writes the edge of the glass between surfaces K and K + 1 on one SIDE:
+ * outwards to the wider of both rims, then parallel to the axis. */
 static void write_glass_edge(const struct figure *f, int k, int side)
 {
     const struct glint_surface *s = &f->drawing->lens->surface[k];
@@ -505,7 +506,7 @@ static void draw_axis_and_sensor(const struct figure *f)
 
 enum { SPOT_PX = 170 };
 #define BELOW_PX  40.0 /* distance from the section to the spot diagrams */
-#define LEGEND_PX 48.0 /* space below them */
+#define LEGEND_PX 48.0 /* space below the spot diagrams */
 
 static const char *const spot_colour[SPOT_COLOURS] = {"#2a52d0", "#2f9a3c",
                                                       "#d0342a"};

@@ -81,13 +81,13 @@ enum { ANGLES = 3, WIDE = 168, MOST_HIGH = 168 };
 
 static const double share[ANGLES] = {0.25, 0.5, 0.8};
 
-/* Max exposure of ghosts relative to that of the starburst. Ghosts are
- * exposed like images of ghosts alone; with faint ghosts the starburst would
- * otherwise fill the image. */
+/* Max ratio of the exposures of ghosts and starburst. Ghosts are exposed as in
+ * images of ghosts alone; with faint ghosts the starburst would otherwise fill
+ * the image. */
 #define BRIGHTER 40.0
 
-/* Returns the angle at the fraction AT of the half diagonal by the pinhole
- * projection (f tan), which positions lamps in images. */
+/* Returns the angle, degrees, at the fraction AT of the half diagonal by the
+ * pinhole projection (f tan), which positions lamps in images. */
 static double field_angle_deg(const struct opened_lens *lens, double at)
 {
     const double half =
@@ -182,7 +182,7 @@ int thumbnails_write(const struct tool *tool, const struct settings *settings,
     return code;
 }
 
-/* width of a section in its own units; the page scales it to a card */
+/* width of the drawn section, SVG units; the page scales it to the card */
 #define SECTION_PX 560
 
 static const char style[] =
@@ -211,7 +211,8 @@ static const char head[] =
     "<option value=\"ghosts\">by ghosts</select> <output id=\"n\"></output>"
     "</p></header>\n<main>\n";
 
-/* The search matches the text of a card, but not glass names in its section. */
+/* Script of the page. The search matches the text of a card except the glass
+ * names in its section. */
 static const char script[] =
     "<script>\n"
     "const at=id=>document.getElementById(id),main=document.querySelector("
@@ -234,7 +235,7 @@ void page_begin(FILE *file)
     fputs(head, file);
 }
 
-/* Writes the data that matter to a photographer who chooses a lens. */
+/* Writes the lens data that photographers use to choose a lens. */
 static void print_lens_numbers(FILE *file, const struct page_card *card)
 {
     const struct glint_prescription *lens = card->lens;

@@ -8,8 +8,7 @@
 
 #include "model/settings.h"
 
-/* cells of a lens's row in figures.md, which is in the folder of the lens
- * tables */
+/* Row of a lens in figures.md, a file in the folder of lens tables */
 struct measured {
     char f_number[24]; /* f-number of the bake */
     char seconds[24];  /* processor time of the bake; "over N" if it was
@@ -42,8 +41,8 @@ int thumbnails_write(const struct tool *tool, const struct settings *settings,
 
 void page_begin(FILE *file);
 
-/* Writes the upper part of the card. Paragraphs that the caller writes to FILE
- * next appear below the section. */
+/* Writes the upper part of a card. Text that the caller then writes to FILE
+ * appears below the section. */
 void page_card_begin(FILE *file, const struct page_card *card);
 
 void page_card_end(FILE *file);

@@ -38,21 +38,21 @@ bool lens_has_words(const char *name, const struct glint_prescription *lens,
     return true;
 }
 
-/* Searched fields by priority: of two equally similar words one from a name
- * is preferred to one from a sentence. */
+/* Searched fields by priority: of two equally similar words, one in a name is
+ * preferred to one in a sentence. */
 enum { OF_NAME, OF_SOURCE, OF_CHARACTER, N_PLACES };
 
 struct search {
     const struct tool *tool;
     struct glint_prescription *lens; /* buffer for a table */
     const char *word;
-    char small[SUGGEST_CHARS]; /* the word in small letters */
+    char small[SUGGEST_CHARS]; /* the word in lower case */
     struct suggest near[N_PLACES];
-    bool found; /* some lens has the word */
+    bool found; /* whether any lens contains the word */
 };
 
-/* Offers each word of TEXT with at least four letters or digits, and the
- * whole TEXT. */
+/* Adds each word of TEXT with at least four letters or digits, and TEXT itself,
+ * as candidates for suggestions. */
 static void suggest_words_of_text(struct suggest *suggest, const char *text)
 {
     char small[SUGGEST_CHARS];

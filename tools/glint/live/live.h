@@ -36,10 +36,10 @@ enum live_output_kind {
 
 struct live_output {
     enum live_output_kind kind;
-    const char *path; /* NULL: the default path */
+    const char *path; /* device or file; NULL: the default */
     enum glint_panel_fit fit;
     bool dither;             /* dither on panels with 16 bits per pixel */
-    struct glint_sink *sink; /* NULL if closed */
+    struct glint_sink *sink; /* open sink; NULL if closed */
     union {
         struct glint_sink sink; /* first member of every variant */
         struct glint_fbdev fb;
@@ -83,7 +83,7 @@ enum glint_status live_output_close(struct live_output *output,
 enum { LIVE_NAME_BYTES = 1024 }; /* max bytes of the name of a snapshot */
 
 enum live_adaptive {
-    /* Adapts only for a camera without --budget, as its frames do not wait.
+    /* Adaptive for a camera without --budget only, as its frames do not wait.
      * Results for a file must not depend on the clock. */
     LIVE_ADAPTIVE_CAMERA,
     LIVE_ADAPTIVE,
@@ -91,7 +91,7 @@ enum live_adaptive {
 };
 
 struct live_options {
-    /* only its command line is set before live_run() */
+    /* drawing; only its member line is set before live_run() */
     struct drawing drawing;
     struct live_wish input;
     const char *output, *snapshot;
@@ -104,8 +104,8 @@ struct live_options {
     enum live_report report;
 };
 
-/* Reads the options again into OPTIONS, on SIGHUP. Returns -1, or an exit
- * code after printing the error. */
+/* Parses configuration and command line again into OPTIONS, on SIGHUP. Returns
+ * -1, or an exit code after printing the error. */
 typedef int live_reread_fn(void *ctx, struct tool *tool,
                            struct live_options *options);
 

@@ -5,17 +5,20 @@
 
 #include "glint/quality.h"
 
-#define TIGHT 0.9 /* busy fraction of a period above which quality drops */
-/* busy fraction below which quality may rise, after a while */
+#define TIGHT                                                                \
+    0.9 /* busy fraction of a frame period above which the quality decreases \
+         */
+/* busy fraction of a frame period below which the quality may increase after
+ * some time */
 #define SPARE      0.55
-#define SETTLE_S   0.3 /* min seconds from a step to the next step down */
+#define SETTLE_S   0.3 /* min seconds between two steps down */
 #define HOLD_S     2.0
 #define MAX_HOLD_S 60.0
 #define SMOOTHING  0.2
 
-/* Quality and number of lights of each step. Steps go down the table of
- * qualities from its middle, and never above the requested quality; after
- * its end they reduce the number of lights. */
+/* Quality and max number of lights of each step. Steps descend in the table of
+ * qualities from its middle, never above the requested quality; after its end
+ * they reduce the number of lights. */
 static const struct {
     double quality;
     int max_lights;
@@ -40,7 +43,7 @@ static bool change_quality_step(struct live_adapt *a, int by)
      * so the next step up waits longer. */
     if (by > 0 && a->rose && a->since_s < 2 * HOLD_S)
         a->hold_s = fmin(MAX_HOLD_S, 2 * a->hold_s);
-    /* The last step up lasted, so the wait is short again. */
+    /* The last step up was not too early, so the wait becomes short again. */
     if (by < 0 && a->rose)
         a->hold_s = HOLD_S;
     a->rose = by < 0;

@@ -18,14 +18,15 @@
 #define LIVE_MAX_STEP 7
 
 struct live_adapt {
-    int step; /* 0 .. LIVE_MAX_STEP; 0: as requested */
-    /* smoothed time of a frame, ms; -1: no frame since the last step */
+    int step; /* present step, 0 .. LIVE_MAX_STEP; 0: the requested quality */
+    /* smoothed processing time of a frame, ms; -1: no frame since the last
+     * step */
     double busy_ms;
     /* below_s: seconds with spare time so far; hold_s: seconds with spare
      * time that a step up requires */
     double below_s, hold_s;
     double since_s; /* seconds since the last step */
-    /* the last change was a step up, to better quality (STEP decreased) */
+    /* whether the last change was a step up, to better quality */
     bool rose;
 };
 

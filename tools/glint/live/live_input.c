@@ -30,7 +30,7 @@ static enum glint_status start_frame_timer(struct glint_source *source,
     struct live_timed *timed = (struct live_timed *)source;
     const struct glint_source_format *f = &timed->format;
     const int64_t stated = 1000000000LL * f->fps_den / f->fps_num;
-    /* 0 would stop the timer */
+    /* an interval of 0 would stop the timer */
     const int64_t ns = stated > 1000 ? stated : 1000;
     const struct timespec period = {(time_t)(ns / 1000000000),
                                     (long)(ns % 1000000000)};
@@ -92,8 +92,8 @@ static uint64_t count_due_frames(struct live_timed *timed)
     return read(timed->timer, &n, sizeof n) == (ssize_t)sizeof n ? n : 0;
 }
 
-/* Begins FRAME. Returns the number of frames due since the last call, of
- * which the last is shown; 0 if none is due. */
+/* Begins FRAME. Returns the number of frames due since the last call, 0 if
+ * none. Only the last one is shown. */
 static uint64_t begin_timed_frame(struct live_timed *timed,
                                   struct glint_source_frame *frame)
 {
@@ -127,7 +127,7 @@ static void stop_frame_timer(struct live_timed *timed)
 
 enum { HOUSES = 14, DARKEST = 22, BRIGHTEST = 235 };
 
-/* Returns a hash of X. */
+/* Returns a 32-bit hash of X. */
 static uint32_t hash_bits(uint32_t x)
 {
     x = (x ^ x >> 16) * 0x7feb352du;
@@ -212,7 +212,7 @@ static void add_lamp(struct live_timed *s, double cx, double cy, double radius)
         }
 }
 
-/* Draws frame N. */
+/* Draws frame N of the test image: street, noise and the circling lamp. */
 static void draw_test_frame(struct live_timed *s, int64_t n)
 {
     const struct glint_image *i = &s->image;
@@ -225,7 +225,7 @@ static void draw_test_frame(struct live_timed *s, int64_t n)
         return;
     }
     draw_frame_background(s, n);
-    for (int p = 1; p < 3; p++) /* chroma of a bluish night */
+    for (int p = 1; p < 3; p++) /* chroma planes, bluish as at night */
         for (int y = 0; y < glint_image_plane_height(i->format, p, i->height);
              y++)
             memset(i->plane[p] + y * i->stride_bytes[p], p == 1 ? 134 : 125,
@@ -321,8 +321,8 @@ static enum glint_status open_test_image(struct live_timed *test,
     return GLINT_OK;
 }
 
-/* Shows the last frame due, or the last frame of the video if it ends
- * before. Skipped frames count as late. */
+/* Reads the last frame due, or the last frame of the video if it ends earlier.
+ * Skipped frames count as late. */
 static enum glint_status next_video_frame(struct glint_source *source,
                                           struct glint_source_frame *frame,
                                           struct glint_error *error)
@@ -439,7 +439,8 @@ void live_input_close(struct live_input *input)
     input->source = NULL;
 }
 
-/* Returns whether NAME has a file extension, unlike devices. */
+/* Returns whether NAME has a file extension, which names of devices do not
+ * have. */
 static bool has_file_extension(const char *name)
 {
     const char *const slash = strrchr(name, '/');

@@ -27,7 +27,7 @@ struct live_timed {
                          arrives */
     int64_t n;        /* number of the next frame */
 
-    struct glint_y4m_reader reader; /* of a video file */
+    struct glint_y4m_reader reader; /* reader of a video file */
     /* members of the test image: */
     struct glint_image image; /* the last frame, I420, limited range */
     uint32_t seed;
@@ -39,8 +39,8 @@ struct live_timed {
 struct live_wish {
     /* device, size and rate; used for any source */
     struct glint_v4l2_config camera;
-    enum glint_v4l2_io io; /* I/O method of a camera */
-    int n_buffers;         /* buffers of a camera */
+    enum glint_v4l2_io io; /* I/O method of a camera; other sources ignore it */
+    int n_buffers;         /* number of buffers of a camera */
 };
 
 struct live_input {
@@ -64,7 +64,7 @@ enum glint_status live_input_open(struct live_input *input,
 enum glint_status live_input_start(struct live_input *input,
                                    struct glint_error *error);
 
-/* Reports why DEVICE cannot be opened or started. Returns an exit code. */
+/* Prints why DEVICE cannot be opened or started. Returns an exit code. */
 int live_input_fail(const struct live_log *log, const char *device,
                     enum glint_status status, const struct glint_error *error);
 

@@ -140,8 +140,8 @@ append(struct writer *w, const char *format, ...)
     w->used = w->used < w->room ? w->used : w->room - 1;
 }
 
-/* Writes SUM / number of frames, with DIGITS after the point, or null if there
- * are no frames. */
+/* Appends SUM / number of frames, with DIGITS decimals, or null if there are no
+ * frames. */
 static void append_mean_ms(struct writer *w, const struct live_sums *s,
                            double sum, int digits)
 {
@@ -160,7 +160,8 @@ static void append_latency_ms(struct writer *w, const struct live_sums *s,
         append(w, "null");
 }
 
-/* Returns whether STAGE is reported: LIVE_SCENE only in a run with a scene. */
+/* Returns whether the time of STAGE is reported; LIVE_SCENE is reported only
+ * with a scene. */
 static bool is_stage_reported(const struct live_stats *stats, int stage)
 {
     return stage != LIVE_SCENE || stats->total.stage_us[LIVE_SCENE] > 0;
@@ -238,7 +239,8 @@ char *live_stats_line(const struct live_stats *stats, int64_t now_us,
         return text;
     }
     append(&w, "\r");
-    w.room = 1 + COLUMNS + 1; /* a wrapped line could not be overwritten */
+    w.room = 1 + COLUMNS +
+             1; /* max columns: a line that wraps could not be overwritten */
     append_summary_text(&w, stats, now_us);
     w.room = LIVE_STATS_TEXT;
     append(&w, "\033[K");

@@ -34,8 +34,8 @@ enum live_stage {
 };
 
 enum {
-    LIVE_BINS = 10000,    /* bins of latency */
-    LIVE_BIN_US = 100,    /* width of a bin */
+    LIVE_BINS = 10000,    /* number of latency bins */
+    LIVE_BIN_US = 100,    /* width of a bin, microseconds */
     LIVE_STATS_TEXT = 672 /* max bytes of any line */
 };
 
@@ -47,8 +47,8 @@ struct live_frame_times {
     int64_t stage_us[LIVE_N_STAGES];
     int lights, ghosts;
     size_t bytes;   /* bytes of the arena in use */
-    double quality; /* 0 .. 1 */
-    bool reused;    /* drawn with the edges of the previous frame */
+    double quality; /* --quality of the frame, 0 .. 1 */
+    bool reused;    /* whether the edges of the previous frame were reused */
 };
 
 /* Sums over one second, or over the run. */
@@ -56,10 +56,10 @@ struct live_sums {
     int64_t began_us;
     uint64_t frames, drops, late, corrupt;
     uint64_t stage_us[LIVE_N_STAGES];
-    int64_t longest_us; /* longest latency */
+    int64_t longest_us; /* longest latency, microseconds */
     int most_lights, most_ghosts;
     size_t most_bytes;
-    double quality; /* sum over the frames */
+    double quality; /* sum of the quality over all frames */
     uint64_t reused;
     /* histogram of latencies; last bin: one second or more */
     uint32_t bin[LIVE_BINS + 1];
@@ -79,9 +79,9 @@ enum live_report {
 struct live_log {
     const struct tool *tool;
     enum live_report report; /* not LIVE_REPORT_AUTO */
-    bool is_piped;           /* frames go to standard output */
+    bool is_piped;           /* whether frames are written to standard output */
     struct live_stats stats;
-    int n_short; /* frames whose flare did not fit into memory completely */
+    int n_short; /* number of frames whose flare did not fit into memory */
 };
 
 void live_stats_start(struct live_stats *stats, int64_t now_us);
@@ -120,7 +120,7 @@ char *live_stats_json(const struct live_stats *stats, int64_t now_us,
 void live_log_init(struct live_log *log, const struct tool *tool,
                    enum live_report asked, bool is_piped);
 
-/* Prints ERROR, and, if a device is missing, the advice INSTEAD, unless NULL.
+/* Prints ERROR and, if a device is missing, the advice INSTEAD (may be NULL).
  * Returns an exit code. */
 int live_log_print_error(const struct live_log *log, enum glint_status status,
                          const struct glint_error *error, const char *instead);
@@ -133,8 +133,8 @@ void live_log_print(const struct live_log *log, const char *text);
 void live_log_warn_memory(struct live_log *log,
                           const struct glint_flare_stats *of);
 
-/* If the second is over or IS_ASKED, prints its statistics and begins the next
- * second. */
+/* Prints the statistics of the last second if it has ended or IS_ASKED, and
+ * begins the next second. */
 void live_log_print_second(struct live_log *log, bool is_asked);
 
 /* Prints the statistics of the run, and how many of N_SHOWN frames were

@@ -12,7 +12,9 @@
 #include "posix/clock.h"
 
 #define RETRY_MS 500
-#define WAIT_MS  250 /* max wait, ms, after which a silent input is checked */
+#define WAIT_MS                                                            \
+    250 /* max wait for a frame, ms, after which the state of the input is \
+           checked */
 
 struct live {
     struct tool *tool;
@@ -21,12 +23,13 @@ struct live {
     void *ctx;
 
     struct live_input in;
-    /* Format of the input when it was opened or restarted. */
+    /* Format of the input since it was opened or restarted */
     struct glint_source_format format;
-    /* restarts of the input up to the last reading of FORMAT */
+    /* number of restarts of the input when FORMAT was read */
     int n_restarts;
     struct live_output output;
-    struct live_copy copy; /* copy of frames whose memory is slow */
+    struct live_copy
+        copy; /* buffer for copies of frames whose own memory is slow to read */
 
     struct live_adapt adapt;
     /* requested quality parameters, before adaptation */
@@ -35,7 +38,7 @@ struct live {
     int n_shown, n_snapshots;
     /* error of the last attempt to open the camera */
     struct glint_error why;
-    int64_t time_us;  /* time of the last frame */
+    int64_t time_us;  /* time of the last frame, microseconds */
     int64_t retry_us; /* earliest time to reopen the output; 0: none so far */
     bool had_signal;
 };
@@ -124,7 +127,7 @@ static int apply_quality_step(struct live *l)
     return status == GLINT_OK ? EXIT_OK : tool_fail(l->tool, status, NULL);
 }
 
-/* Prepares the drawing for images of IMAGE's size. Returns an exit code. */
+/* Allocates the drawing for images of IMAGE's size. Returns an exit code. */
 static int prepare_drawing(struct live *l, const struct glint_image *image)
 {
     struct drawing *drawing = &l->o->drawing;
@@ -141,7 +144,7 @@ static int prepare_drawing(struct live *l, const struct glint_image *image)
     return apply_quality_step(l);
 }
 
-/* Sets up for the input's format: drawing and output. Returns an exit
+/* Sets up the drawing and the output for the input's format. Returns an exit
  * code. */
 static int set_up_drawing_and_output(struct live *l)
 {
@@ -243,8 +246,9 @@ static void record_frame_statistics(struct live *l,
 
 /* ------------------------------------------------------------- what is lost */
 
-/* Reports the loss of a device. With --reconnect the run waits for it, while
- * the panel shows the last image. Returns -1 to continue, or an exit code. */
+/* Prints that device WHAT was lost. With --reconnect the run waits for the
+ * device, and the panel shows the last image. Returns -1 to continue, or an
+ * exit code. */
 static int handle_device_loss(struct live *l, const char *what,
                               enum glint_status status, const char *why)
 {
@@ -319,7 +323,7 @@ static int draw_and_show(struct live *l, const struct glint_source_frame *frame,
     int64_t at_us[4];
     int code;
 
-    at_us[0] = taken_us; /* includes the decoding of a JPEG */
+    at_us[0] = taken_us; /* the drawing time includes the decoding of a JPEG */
     if (!frame->is_drawable)
         image = live_copy_image(&l->copy, image);
     code = image ? prepare_drawing(l, image)
@@ -361,8 +365,8 @@ static void report_stop_signal(struct live *l)
     l->had_signal = has;
 }
 
-/* Prepares for the format that the input has negotiated again, and starts
- * it. Returns -1 to continue, or an exit code. */
+/* Adapts drawing and output to the format that the input has negotiated again,
+ * and starts the input. Returns -1 to continue, or an exit code. */
 static int restart_input(struct live *l)
 {
     struct glint_error error = {""};
@@ -375,8 +379,8 @@ static int restart_input(struct live *l)
     return status == GLINT_OK ? -1 : handle_camera_loss(l, status, error.text);
 }
 
-/* Gets a frame from the input and shows it, if there is one. Returns -1 to
- * continue, or an exit code. */
+/* Reads a frame from the input, if one is available, draws and shows it.
+ * Returns -1 to continue, or an exit code. */
 static int process_next_frame(struct live *l)
 {
     struct glint_source *const source = l->in.source;
@@ -401,8 +405,8 @@ static int process_next_frame(struct live *l)
     return code;
 }
 
-/* Returns false if FRESH has no lens option but the present options do: the
- * file may be only partly written. */
+/* Checks that FRESH has a lens option if the present options have one: a
+ * configuration file may be partly written. */
 static bool check_config_names_lens(const struct live *l,
                                     const struct live_options *fresh)
 {
@@ -414,8 +418,8 @@ static bool check_config_names_lens(const struct live *l,
     return false;
 }
 
-/* Reads configuration and lens again. Devices stay open, and nothing is
- * baked. On any error the present configuration is kept. */
+/* Reads configuration and lens again. Devices stay open and nothing is baked.
+ * On an error the present configuration stays in use. */
 static void reload_config_and_lens(struct live *l)
 {
     struct live_options *fresh = calloc(1, sizeof *fresh);
@@ -477,7 +481,7 @@ static int start_live_run(struct live *l)
     code = drawing_open(l->tool, &l->o->drawing);
     if (code != EXIT_OK)
         return code;
-    live_signals_install(); /* until here a signal ends the run at once */
+    live_signals_install(); /* before this call a signal ends the run at once */
     code = set_up_drawing_and_output(l);
     if (code != EXIT_OK)
         return code;

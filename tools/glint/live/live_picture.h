@@ -10,7 +10,7 @@
 
 struct live_copy {
     struct glint_image image;
-    void *mem; /* NULL: not allocated yet */
+    void *mem; /* buffer of the copy; NULL: not allocated yet */
     size_t bytes;
 };
 

@@ -48,7 +48,8 @@ bool live_signals_is_raised(enum live_signal which)
 {
     const bool was = asked[which];
 
-    /* only if it was set: else clearing could lose a new signal */
+    /* clear it only if it was set, so that a signal that arrives now is not
+     * lost */
     if (was && which != LIVE_STOP)
         asked[which] = 0;
     return was;

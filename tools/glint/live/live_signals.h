@@ -11,9 +11,9 @@
 
 enum live_signal {
     LIVE_STOP,       /* SIGINT, SIGTERM; the second signal kills the process */
-    LIVE_RELOAD,     /* SIGHUP */
-    LIVE_REPORT_NOW, /* SIGUSR1 */
-    LIVE_SNAPSHOT,   /* SIGUSR2 */
+    LIVE_RELOAD,     /* SIGHUP: reads configuration and lens again */
+    LIVE_REPORT_NOW, /* SIGUSR1: prints the statistics now */
+    LIVE_SNAPSHOT,   /* SIGUSR2: saves a snapshot */
     LIVE_N_SIGNALS
 };
 

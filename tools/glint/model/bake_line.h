@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * The command lines "glint bake INPUT -o OUT" for scenes, environments, motions
- * and translucent media: their options and their output file.
+ * Parses the command lines "glint bake INPUT -o OUT" of scenes, environments,
+ * motions and translucent media: their options and their output file.
  *
- *     code = bake_line_parse(&tool, argc, argv, options, take, &line, "one");
+ *     code = bake_line_parse(&tool, help, argc, argv, options, take, &line,
+ *                            "one input");
  *     if (code >= 0 || !tool.written)
  *         return code;
- *     ... bakes argv[optind] ...
- *     code = tool_save_file(&tool, tool.written, GLINT_OUTPUT_BINARY, data, bytes);
+ *     ... bake argv[optind] ...
+ *     code = tool_save_file(&tool, tool.written, GLINT_OUTPUT_BINARY, data,
+ *                           bytes);
  */
 #ifndef GLINT_TOOLS_MODEL_BAKE_LINE_H
 #define GLINT_TOOLS_MODEL_BAKE_LINE_H
@@ -17,7 +19,7 @@
 #include "model/settings.h"
 #include "options/command_line.h"
 
-/* the options that all these commands accept, the first in their OPTIONS */
+/* Options of all these commands, to begin their OPTIONS with */
 #define BAKE_LINE_OPTIONS                      \
     {                                          \
         "output", required_argument, NULL, 'o' \

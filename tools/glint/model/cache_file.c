@@ -55,16 +55,16 @@ void cache_file_make_folders(char *path)
         }
 }
 
-/* Checks whether nobody but this user, its group and root could have written
- * the file or folder of ST. */
+/* Returns whether only this user, its group and root could have written the
+ * file or folder with the status ST. */
 static bool is_file_trusted(const struct stat *st)
 {
     return (st->st_uid == geteuid() || st->st_uid == 0) &&
            !(st->st_mode & S_IWOTH);
 }
 
-/* Checks whether only this user, its group and root may write to the folder
- * of PATH: others could put older models there under other names. */
+/* Returns whether only this user, its group and root may write to the folder of
+ * PATH. Other users could store outdated models there under a valid name. */
 static bool is_folder_trusted(const char *path)
 {
     char folder[CACHE_PATH_BYTES];
@@ -101,9 +101,8 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
     return data;
 }
 
-/* Refuses to write through a link or into a file that is not regular.
- * Removes a file that other users own or may write to, so that the new file
- * gets fresh permissions. */
+/* Rejects links and files that are not regular. Removes a file that other users
+ * own or may write to, so that its replacement gets new permissions. */
 static enum glint_status remove_untrusted_file(const char *path,
                                                struct glint_error *error)
 {
@@ -114,7 +113,7 @@ static enum glint_status remove_untrusted_file(const char *path,
     if (!S_ISREG(st.st_mode))
         return glint_error_report(error, GLINT_E_OUTPUT, path,
                                   "is not a regular file; remove it");
-    /* Not reported: replacing the file fails later as well. */
+    /* No error is reported: replacing the file fails later as well. */
     if (!is_file_trusted(&st))
         unlink(path);
     return GLINT_OK;
@@ -168,9 +167,9 @@ int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx)
     return -1;
 }
 
-/* Removes the lock's name before releasing it: a process that opens the name
- * later creates its own file, and one that waits for this lock finds the
- * model in the cache. */
+/* Removes the lock's name before it releases the lock: a process that opens the
+ * name later creates a new file, and a process that waits for the lock finds
+ * the model in the cache. */
 void cache_file_unlock(const char *path, int lock)
 {
     char name[CACHE_PATH_BYTES + 8];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Files of the cache, $XDG_CACHE_HOME/glint or ~/.cache/glint.
+ * Reads and writes files of the cache, $XDG_CACHE_HOME/glint or ~/.cache/glint.
  *
- * Reads only regular files that nobody but this user and root could have
+ * Reads only regular files that only this user, its group and root could have
  * written. Never writes through links or into FIFOs. */
 #ifndef GLINT_TOOLS_MODEL_CACHE_FILE_H
 #define GLINT_TOOLS_MODEL_CACHE_FILE_H

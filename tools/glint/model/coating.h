@@ -10,8 +10,9 @@
 enum coating_kind { COATING_TABLE, COATING_MIXED, COATING_DEALT };
 
 struct coating {
-    enum coating_kind kind; /* by default the table's own coatings */
-    /* --coating is on the command line, even if with the default value */
+    enum coating_kind
+        kind; /* source of the films; default: the table's own coatings */
+    /* whether --coating is on the command line, even with the default value */
     bool given;
     int n_coatings;
     struct glint_coating coating[GLINT_MAX_COATINGS];

@@ -13,11 +13,11 @@
 
 enum { MOST_BYTES = 1 << 20 };
 
-/* State of reading a file. */
+/* Parser state of a ghost file */
 struct reading {
     const struct glint_setup *setup;
     const char *lens;
-    int n; /* number of ghosts; parts of pupils are not counted */
+    int n; /* number of ghosts, without parts of pupils */
     struct glint_tint *tint;
     bool *solo, *mute;
 };
@@ -83,7 +83,7 @@ static const char *parse_ghost_tint(struct glint_tint *tint, const char *text)
     return NULL;
 }
 
-/* Parses the words after a ghost. Returns NULL, or the error as text. */
+/* Parses the words after a ghost's name. Returns NULL or an error message. */
 static const char *parse_ghost_words(struct reading *r, int ghost, char *rest)
 {
     static const char *const words[] = {"mute", "solo", "gain", "tint", NULL};

@@ -66,8 +66,7 @@ bool lens_folder(int i, const char *kind, char *path, size_t bytes)
     return true;
 }
 
-/* Subfolders of a folder of lenses that are searched; "" is the folder
- * itself. */
+/* Subfolders of a lens folder that are searched; "" is the folder itself */
 static const char *const rooms[] = {"",      "/anamorphic", "/normal", "/phone",
                                     "/tele", "/vision",     "/wide",   "/zoom"};
 
@@ -143,8 +142,8 @@ static int compare_lens_names(const void *a, const void *b)
     return strcmp(a, b);
 }
 
-/* Prints a warning if the folder $GLINT_LENSES cannot be read; else its
- * lenses would be missing without a message. */
+/* Prints a warning if the folder $GLINT_LENSES cannot be read; otherwise its
+ * lenses would be missing silently. */
 static void check_user_folder(void)
 {
     const char *own = glint_process_setting("GLINT_LENSES");

@@ -131,15 +131,15 @@ bool model_is_lens_from_file(const struct glint_prescription *lens,
             stat(file, &b) < 0 || a.st_ino != b.st_ino || a.st_dev != b.st_dev);
 }
 
-/* Counts WORK, by several threads at once. Returns false if the sum is above
- * MODEL_CACHE_WORK. */
+/* Adds WORK to the bake work done, from several threads. Returns false if the
+ * sum exceeds MODEL_CACHE_WORK. */
 static bool count_bake_work(void *ctx, int work)
 {
     return __atomic_add_fetch((int *)ctx, work, __ATOMIC_RELAXED) <=
            MODEL_CACHE_WORK;
 }
 
-/* Reports that baking FILE is more than MODEL_CACHE_WORK. */
+/* Prints that baking FILE exceeds MODEL_CACHE_WORK. Returns an exit code. */
 static int report_too_much_work(const struct tool *tool, const char *file)
 {
     tool_error(tool,

@@ -12,21 +12,22 @@
 
 #include "model/model_file.h"
 
-/* Opens the model of LENS baked with OPTIONS as MODEL: the installed model,
- * the cached model, or a new model, which is baked and cached. FILE: name of
- * the lens as the command line gives it. A lens file that is not in a folder of
- * glint's lenses is not baked if that is more than MODEL_CACHE_WORK; the
- * command bake is for that. Overwrites workers, progress and allow of OPTIONS.
- * Returns an exit code, after printing the reason on failure. */
+/* Opens as MODEL the model of LENS baked with OPTIONS: the installed model, the
+ * cached one, or a new one, which is baked and cached. FILE: the lens as named
+ * on the command line. A lens file outside glint's lens folders is rejected if
+ * its bake exceeds MODEL_CACHE_WORK; glint bake has no such limit. Overwrites
+ * workers, progress and allow of OPTIONS. Returns an exit code, after printing
+ * the reason on failure. */
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
                  const char *file, struct glint_bake_options options,
                  struct model_file *model);
 
-/* Work of struct glint_bake_options, allow; about 30 s of processor time. */
+/* Max bake work, in units of allow() of struct glint_bake_options; about 30 s
+ * of processor time */
 enum { MODEL_CACHE_WORK = 750 };
 
-/* Returns whether FILE, the name of LENS as the command line gives it, is a
- * lens file that is not in a folder of glint's lenses. */
+/* Returns whether FILE, the lens as named on the command line, is a lens file
+ * outside glint's lens folders. */
 bool model_is_lens_from_file(const struct glint_prescription *lens,
                              const char *file);
 

@@ -76,7 +76,7 @@ int tool_model(const struct tool *tool, const char *path,
     *model = (struct model_file){.data = NULL};
     status =
         glint_input_slurp(&data, &model->bytes, path, MAX_MODEL_BYTES, &error);
-    model->data = data; /* malloc() aligns it */
+    model->data = data; /* malloc() aligns the data */
     if (status == GLINT_OK) {
         status = open_model_data(model, &reason);
         if (status == GLINT_OK)

@@ -18,7 +18,7 @@ struct model_file {
     struct glint_lens lens; /* points into data */
     void *data;
     size_t bytes;
-    /* the zoom lens of which LENS is one position; NULL if the lens does not
+    /* zoom lens whose present position is LENS; NULL if the lens does not
      * zoom */
     struct glint_zoom_lens *zoom;
 };
@@ -49,7 +49,7 @@ int model_file_positions(const struct glint_zoom_lens *zoom);
 /* Closes MODEL; does nothing if it is closed. */
 void model_file_close(struct model_file *model);
 
-/* Returns X as a double. */
+/* Returns the value of X. */
 double model_compute_real(struct glint_real x);
 
 #endif

@@ -406,7 +406,7 @@ void model_report_info(const struct tool *tool, const struct model_file *model)
 {
     struct model_file shown = *model;
 
-    /* Between its positions a zoom lens has no polynomial systems to report. */
+    /* A zoom lens between its positions has no polynomial systems to report. */
     if (shown.zoom)
         shown.lens = shown.zoom->model[0];
     (tool->json ? write_info_json : print_model_info)(tool, &shown);

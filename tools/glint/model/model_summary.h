@@ -45,9 +45,10 @@ void model_span_angles(const struct glint_lens *lens, struct model_span span,
 /* Errors of one output, over the systems of a span that have this output. */
 struct model_errors {
     uint32_t n;
-    double terms, mean2, p50;         /* means */
-    double p99, max, bound, rounding; /* max over the systems; all in the
-                                         output's unit */
+    double terms, mean2, p50; /* means over the systems: polynomial terms,
+                                 squared error, 50th percentile */
+    double p99, max, bound,
+        rounding; /* maxima over the systems, in the output's unit */
 };
 
 struct model_summary {
@@ -56,10 +57,10 @@ struct model_summary {
 
 struct model_summary model_summarise(const struct glint_lens *lens,
                                      struct model_span span);
-/* polynomial terms, summed over all outputs */
+/* number of polynomial terms, summed over all outputs */
 double model_count_terms(const struct model_summary *sum);
 double
-/* polynomial terms per output, mean */
+/* mean number of polynomial terms per output */
 model_compute_mean_terms(const struct model_summary *sum);
 
 /* Returns whether any output misses its target. */

@@ -89,8 +89,8 @@ static int check_wavelength_band(const struct tool *tool,
     return EXIT_OK;
 }
 
-/* Prints a warning if the image is larger than the field that the model was
- * baked for. */
+/* Prints a warning if the image is larger than the field for which the model
+ * was baked. */
 static void warn_of_small_field(const struct tool *tool,
                                 const struct opened_lens *lens,
                                 const struct glint_engine_camera *camera)
@@ -141,7 +141,7 @@ static int open_model_file(const struct tool *tool, struct opened_lens *lens,
     snprintf(lens->table.name, sizeof lens->table.name, "%s", h->name);
     lens->table.film_width_mm = model_compute_real(h->film_width_mm);
     lens->table.film_height_mm = model_compute_real(h->film_height_mm);
-    lens->table.stop_is_circle = false; /* not stored in models */
+    lens->table.stop_is_circle = false; /* models do not store it */
     warn_of_small_field(tool, lens, &settings->camera);
     return EXIT_OK;
 }

@@ -17,17 +17,18 @@
 /* An opened lens. All zero bytes: closed. SETUP points to TABLE: see
  * opened_lens_follow_move(). */
 struct opened_lens {
-    /* for a model only name and film are set */
+    /* lens table; for a model only its name and film are set */
     struct glint_prescription table;
-    struct model_file model; /* closed if rays are exact */
-    bool is_unbaked; /* the table has no model, and SETTINGS do not bake it */
+    struct model_file model; /* baked model; closed if rays are exact */
+    bool is_unbaked; /* whether the table has no model and SETTINGS prevent a
+                        bake */
     struct glint_setup setup;
-    /* of --projection lens; else all zero */
+    /* projection for --projection lens; else all zero */
     struct glint_projection projection;
-    struct glint_tint *tints;       /* of --ghosts */
-    struct stop_mask mask;          /* of --stop-mask */
+    struct glint_tint *tints;       /* tint factors of --ghosts */
+    struct stop_mask mask;          /* mask of --stop-mask */
     struct glint_dirt *dirt;        /* dirt on the stop; SETUP uses it */
-    struct glint_front_dirt *front; /* on the front element; NULL: none */
+    struct glint_front_dirt *front; /* dirt on the front element; NULL: none */
 };
 
 /* Reads the table or model NAME and prepares LENS, which must be closed,
@@ -39,8 +40,8 @@ int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
 
 void opened_lens_close(struct opened_lens *lens);
 
-/* Points the setup of LENS to its own table again, after LENS was copied to
- * a new address. */
+/* Updates the pointer from the setup of LENS to its table, after LENS was
+ * copied to a new address. */
 void opened_lens_follow_move(struct opened_lens *lens);
 
 /* Sets up LENS with the stop of SETTINGS. Returns GLINT_E_ARGUMENT if the
@@ -49,14 +50,14 @@ enum glint_status opened_lens_set_stop(struct opened_lens *lens,
                                        const struct settings *settings,
                                        struct glint_error *error);
 
-/* Moves the zoom lens LENS to ZOOM, as model_file_zoom(). Returns
- * GLINT_E_ARGUMENT if that is impossible; ERROR states why. */
+/* Moves the zoom lens LENS to ZOOM, as model_file_zoom() does. Returns
+ * GLINT_E_ARGUMENT with the reason in ERROR if that is impossible. */
 enum glint_status opened_lens_zoom(struct opened_lens *lens,
                                    const struct settings *settings, double zoom,
                                    struct glint_error *error);
 
-/* Puts the dirt of CAMERA and the mask in the image FILE (NULL: none) on the
- * front element of LENS. Returns an exit code. */
+/* Sets the dirt on the front element of LENS: that of CAMERA and the mask in
+ * the image FILE (NULL: none). Returns an exit code. */
 int opened_lens_set_front_dirt(const struct tool *tool,
                                struct opened_lens *lens,
                                const struct glint_engine_camera *camera,
@@ -71,7 +72,8 @@ struct glint_view opened_lens_view(const struct opened_lens *lens,
                                    const struct settings *settings, int width,
                                    int height);
 
-/* Sets CFG to an engine for images of WIDTH x HEIGHT through LENS. */
+/* Sets CFG to the configuration of an engine for images of WIDTH x HEIGHT
+ * through LENS. */
 void opened_lens_engine(const struct tool *tool, const struct opened_lens *lens,
                         const struct settings *settings, int width, int height,
                         struct glint_engine_config *cfg);

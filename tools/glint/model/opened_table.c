@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens a lens from its table; its model is read from the cache, or baked.
+ * Opens a lens by its table; the model is read from the cache or baked.
  */
 #include <math.h>
 
@@ -85,13 +85,14 @@ static int set_table_f_number(const struct tool *tool, struct opened_lens *lens,
     return settings_report_bad_stop(tool, settings, error.text);
 }
 
-/* Max ghosts times surfaces of a lens file from elsewhere that exact rays draw
- * unasked, and the surfaces for which one counts that is not a sphere: two
- * lamps take about 30 s of processor time then. */
+/* Max number of ghosts * surfaces of a lens file outside glint's folders that
+ * exact rays draw without --rays exact, and the number of surfaces for which a
+ * non-spherical one counts. At this limit two lamps take about 30 s of
+ * processor time. */
 #define MOST_PATHS 50000
 enum { SHAPED = 7 };
 
-/* Refuses LENS, given as NAME, if it has more than MOST_PATHS. */
+/* Rejects LENS, named NAME, if it exceeds MOST_PATHS. */
 static int check_path_count(const struct tool *tool,
                             const struct glint_prescription *lens,
                             const char *name)
@@ -153,7 +154,7 @@ int opened_table(const struct tool *tool, struct opened_lens *lens,
     if (code != EXIT_OK)
         return code;
     coating_apply(&settings->coating, &lens->table);
-    /* A model serves all stops that are narrower than its own. */
+    /* A model supports all stops narrower than its own. */
     if (o->rays == GLINT_RAYS_EXACT || o->f_number < lens->table.f_number)
         code = set_table_f_number(tool, lens, settings);
     if (code != EXIT_OK)

@@ -10,7 +10,7 @@
 #include "glint/engine.h"
 #include "options/tool.h"
 
-/* Returns the cache. TOOL must outlive it. If TOOL is verbose, the cache
+/* Returns the callbacks of the cache. TOOL must outlive them. With -v the cache
  * prints for each response whether it was read or measured. */
 struct glint_engine_cache response_cache(const struct tool *tool);
 

@@ -5,8 +5,7 @@
 
 /* ------------------------------------------------------------------ options */
 
-/* Computes the members of S that are derived from its options, which must be
- * valid. */
+/* Computes the members of S that depend on its options, which must be valid. */
 static void compute_derived_settings(struct settings *s)
 {
     const struct glint_options *const o = &s->options;

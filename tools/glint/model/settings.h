@@ -13,11 +13,11 @@
 #include "options/json_writer.h"
 #include "options/tool.h"
 
-/* max lamps on the command line; files may have more */
+/* Max number of lamps on the command line; files may have more */
 enum { SETTINGS_MAX_LAMPS = 1024 };
 
-/* BAKE: bakes the model; TRACE: leaves the model out, so that rays are exact;
- * SEARCH: leaves it out until a lamp is found. */
+/* How to open a table without a model. BAKE: bake it; TRACE: use exact rays;
+ * SEARCH: bake it when a lamp is detected. */
 enum settings_unbaked { SETTINGS_BAKE, SETTINGS_TRACE, SETTINGS_SEARCH };
 
 struct settings {
@@ -26,12 +26,12 @@ struct settings {
     /* roundness of the aperture blades, 0 .. 1, unless --stop sets a shape */
     double roundness;
 
-    /* The members from here to TOLERANCE are computed from OPTIONS, and
-     * overwritten whenever an option is set. */
+    /* The members down to TOLERANCE are computed from OPTIONS whenever an
+     * option is set. */
     struct coating coating;
     struct zoom_option zoom;
-    struct glint_engine_camera camera; /* without masks */
-    bool has_stop; /* the command line sets the stop's shape */
+    struct glint_engine_camera camera; /* camera of the engine, without masks */
+    bool has_stop; /* whether the command line sets the stop's shape */
     /* wavelengths of the camera, nm */
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
     int n_wavelengths;
@@ -46,7 +46,7 @@ struct settings {
     /* The input image, which is validated before a lens is baked. NULL: not
      * known yet. */
     const char *picture;
-    /* What opening a table that has no model does, an enum settings_unbaked */
+    /* How to open a table without a model, an enum settings_unbaked */
     int unbaked;
     const char *f_number_from; /* "FILE:LINE" that sets the f-number; NULL: the
                                   command line */
@@ -100,11 +100,11 @@ int settings_only_ghost(const struct settings *settings);
 /* Returns whether a veil, light spread over the whole image, is drawn. */
 bool settings_has_veil(const struct settings *settings);
 
-/* Returns what a command that draws one picture does with a table that has no
- * model: it traces exact rays, unless an option requests or needs a model. */
+/* Returns how a command that draws a single picture opens a table without a
+ * model: with exact rays, unless an option requests or needs a model. */
 enum settings_unbaked settings_choose_unbaked(const struct settings *settings);
 
-/* Returns the factor for all light, gain * 2^EV. */
+/* Returns the factor on the flare's light, gain * 2^EV. */
 double settings_brightness_scale(const struct settings *settings);
 
 /* Writes the report of a frame as members of a JSON object. */

@@ -11,7 +11,7 @@
 
 /* A mask in memory. luma is NULL if there is no mask. */
 struct stop_mask {
-    uint8_t *luma; /* [height][width] */
+    uint8_t *luma; /* luma codes, [height][width] */
     int width, height;
 };
 

@@ -19,12 +19,12 @@ static bool suggest_lens_name(void *suggest, const char *name)
     return true;
 }
 
-/* Lenses whose names contain a word. */
+/* Lenses with similar names, collected for a message */
 struct lens_matches {
     const char *word;
     int n;
     char text[400]; /* ", NAME, NAME or NAME" */
-    size_t last;    /* offset of its last comma */
+    size_t last;    /* offset of the last comma in TEXT */
 };
 
 static bool print_matching_lens(void *matches, const char *name)
@@ -79,8 +79,7 @@ static void print_lens_not_found(const struct tool *tool, const char *name)
                suggest_find_best(&s) ? s.best : "");
 }
 
-/* Returns whether NAME is an existing file of a format that glint import
- * reads. */
+/* Returns whether NAME is an existing lens file in a format of glint import. */
 static bool is_importable_file(const char *name)
 {
     static const char *const endings[] = {".zmx", ".seq", ".len", ".fx",

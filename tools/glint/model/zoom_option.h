@@ -11,10 +11,10 @@ struct zoom_option {
     /* focal length in mm, or 0 .. 1 from the table's first position to its
      * last */
     double zoom;
-    double focus_m; /* 0: infinity */
-    /* --zoom was given; else the table's first position is used */
+    double focus_m; /* focus distance from the sensor, m; 0: infinity */
+    /* whether --zoom was given; otherwise the table's first position is used */
     bool is_zoomed;
-    bool is_focused; /* --focus was given */
+    bool is_focused; /* whether --focus was given */
 };
 
 #define ZOOM_OPTIONS(zoom_code, focus_code)            \
