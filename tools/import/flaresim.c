@@ -57,8 +57,8 @@ static bool is_semi_diameter_too_large(const struct imported *lens, int k)
                0;
 }
 
-/* Halves all semi-diameters if they are apparently diameters: the surfaces
- * fit only then. Some files were made from tables of diameters. */
+/* Halves all semi-diameters if the surfaces fit only then: some files were made
+ * from tables of diameters. */
 static bool halve_diameters(struct imported *lens)
 {
     int at = -1, whole = 0, halved = 0;

@@ -21,7 +21,7 @@ void imported_init(struct imported *lens, const char *file, bool strict)
     lens->unit_mm = 1;
 }
 
-/* Sets the error, unless there is one already. */
+/* Sets the error message, unless there is one already. */
 static void set_first_error(struct imported *lens, int line, const char *format,
                             va_list values)
 {
@@ -82,8 +82,8 @@ bool imported_add_note(struct imported *lens, int line, const char *format, ...)
     return true;
 }
 
-/* Adds a note about something without effect on the lens, which STRICT
- * accepts. */
+/* Adds a note about an input that does not affect the lens, so that STRICT
+ * accepts it. */
 static void add_remark(struct imported *lens, int line, const char *format, ...)
 {
     va_list values;
@@ -378,12 +378,13 @@ static bool set_all_media(struct imported *lens)
  * Adds the values that a lens table needs and files of other programs omit: one
  * stop in the air, semi-diameters, a film, an f-number, a focus. */
 
-/* A paraxial ray and its heights. */
+/* A paraxial ray and its height at each surface */
 struct thin_ray {
     /* height and slope before the first surface; after trace_paraxial_ray(),
      * behind the last */
     double y, u;
-    double height[IMPORT_SURFACES]; /* height at each surface */
+    double height[IMPORT_SURFACES]; /* height at each surface, in the file's
+                                       unit */
 };
 
 static double compute_curvature(const struct imported_surface *s)
@@ -510,7 +511,7 @@ static bool move_stop_to_air(struct imported *lens, int k)
     if (!insert_stop_surface(lens, behind ? k + 1 : k))
         return false;
     lens->surface[behind ? k + 1 : k] = stop;
-    /* A guessed stop has a note already. */
+    /* a note about a guessed stop was added already */
     return lens->stop_guessed ||
            imported_add_note(
                lens, stop.line,
@@ -528,7 +529,7 @@ static int find_stop_surface(const struct imported *lens)
     return k;
 }
 
-/* Moves the stop into the air if it is on a glass surface. */
+/* Moves the stop to the air if it is on a glass surface. */
 static bool separate_stop_from_glass(struct imported *lens)
 {
     const int at = find_stop_surface(lens);
@@ -600,7 +601,7 @@ static void set_film_size(struct imported *lens, double focal_units)
 
 /* ------------------------------------------------------------- openings */
 
-/* Computes the f-number from the pupil diameter or vice versa; both from the
+/* Computes the f-number from the pupil diameter or vice versa, or both from the
  * stop's semi-diameter if the file states neither. */
 static bool set_pupil_and_f_number(struct imported *lens, double focal_units)
 {
@@ -805,7 +806,7 @@ static bool check_last_surface(struct imported *lens)
  * lenses are often slightly wider than their fronts. */
 static bool check_front_aperture(struct imported *lens, double focal_units)
 {
-    const double slack = 1.01; /* semi-diameters are rounded */
+    const double slack = 1.01; /* tolerance, as semi-diameters are rounded */
     const struct imported_surface *front = lens->surface;
 
     if (front->stop && lens->n > 1)
@@ -821,7 +822,7 @@ static bool check_front_aperture(struct imported *lens, double focal_units)
         ceil(500 * focal_units / front->semi) / 1000);
 }
 
-/* Checks LENS and computes all values that the table needs. */
+/* Checks LENS and computes all missing values that the table needs. */
 static bool complete_lens(struct imported *lens)
 {
     double f;

@@ -4,7 +4,8 @@
  * a lens table.
  *
  *     imported_init(&lens, "x.zmx", strict);
- *     text = import_parse_file(&lens, import_find_format("x.zmx"), data, &bytes);
+ *     text = import_parse_file(&lens, import_find_format("x.zmx"), data,
+ * &bytes);
  *
  * Readers store the file's values in its own units; imported_write_table()
  * completes them and writes a .lens table. Everything guessed or left out is
@@ -21,13 +22,14 @@
 enum { IMPORT_SURFACES = 128, IMPORT_NOTES = 256, IMPORT_TEXT = 240 };
 
 struct imported_surface {
-    int line;         /* line number in the file */
+    int line;         /* number of the surface's line in the file */
     double radius;    /* in the file's unit; 0: plane */
-    double thickness; /* distance to the next surface */
+    double thickness; /* distance to the next surface, in the file's unit */
     double semi;      /* semi-diameter; 0: not stated */
     /* name of the glass behind the surface; "": nd and vd define it */
     char glass[32];
-    double nd, vd; /* nd 1: air; vd 0: not stated */
+    double nd,
+        vd; /* refractive index (1: air) and Abbe number (0: not stated) */
     bool stop;
     struct glint_shape shape; /* group is not used */
     /* medium behind the surface in the syntax of lens tables; set when the
@@ -38,7 +40,8 @@ struct imported_surface {
 
 struct imported_note {
     int line;   /* 0: the note concerns the whole file */
-    bool guess; /* STRICT rejects the lens for it */
+    bool guess; /* whether the note is about a guess, for which STRICT rejects
+                   the lens */
     char text[IMPORT_TEXT];
 };
 
@@ -47,29 +50,33 @@ struct imported {
     bool strict;
     char name[GLINT_NAME_BYTES], title[IMPORT_TEXT];
     double unit_mm;    /* unit of lengths, mm */
-    bool unit_said;    /* the file states the unit */
-    bool stop_guessed; /* the file has no stop */
+    bool unit_said;    /* whether the file states the unit */
+    bool stop_guessed; /* whether the file has no stop */
     /* the object is not at infinity; glint assumes infinity */
     bool object_near;
     int object_line;
     double object;          /* distance of the object, in the file's unit */
-    double f_number_given;  /* set by the user, overrides the file; or 0 */
-    double f_number, pupil; /* diameter of the entrance pupil; 0: not stated */
+    double f_number_given;  /* f-number set by the user, which overrides the
+                               file's; 0: not set */
+    double f_number, pupil; /* f-number; diameter of the entrance pupil, in the
+                               file's unit; 0: not stated */
     /* half field angle, degrees; half image height, in the file's unit; 0:
      * not stated */
     double field_deg, height;
-    double film_mm[2]; /* width, height; 0: not stated */
-    double nominal;    /* focal length in the product's name, mm, or 0 */
+    double film_mm[2]; /* film width and height, mm; 0: not stated */
+    double nominal;    /* nominal focal length, as in the product's name, mm; 0:
+                          none */
     int position;      /* zoom position, from 1, set by the user; 0: not set */
-    bool chosen;       /* the file has zoom positions */
+    bool chosen;       /* whether the file has zoom positions */
     /* key of the lens that the user selects in a file of many lenses, or
      * NULL */
     const char *key;
-    bool keyed; /* the file has keys */
+    bool keyed; /* whether the file has keys */
     int n;
     struct imported_surface surface[IMPORT_SURFACES];
     char error[IMPORT_TEXT + 64]; /* "FILE:LINE: cause" */
-    int n_notes, n_guesses;       /* including notes that did not fit */
+    int n_notes, n_guesses; /* number of notes and of guesses, including those
+                               that did not fit */
     struct imported_note note[IMPORT_NOTES];
 };
 
@@ -125,8 +132,8 @@ void imported_set_image_surface(struct imported *lens, int line, double radius,
  * has set the unit. */
 bool imported_note_missing_unit(struct imported *lens, const char *word);
 
-/* Sets AT to the index, from 0, of the requested one of N zoom positions.
- * Returns false, with the error set, if there is none. */
+/* Sets AT to the index, from 0, of the zoom position to read, of N. Returns
+ * false with the error set if the requested one does not exist. */
 bool imported_choose_position(struct imported *lens, int line, int n, int *at);
 
 /* Adds a plane with air behind it. Returns NULL, with the error set, if there

@@ -22,7 +22,7 @@ struct json_lens {
     struct imported *lens;
     /* the file's text from the last element found to its end */
     const char *text, *end;
-    int line; /* line number of text */
+    int line; /* number of the line at which text begins */
 };
 
 /* Moves j->text past the next WORD. Returns false if WORD does not occur

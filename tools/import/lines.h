@@ -12,12 +12,13 @@
 enum { LINE_CHARS = 2048, LINE_WORDS = LINE_CHARS / 2 };
 
 struct lines {
-    struct imported *lens; /* receives errors */
+    struct imported *lens; /* lens that receives errors */
     const char *at, *end;
     int number;   /* line number, from 1 */
-    bool tabs;    /* words are separated by tabs only */
+    bool tabs;    /* whether only tabs separate words */
     char divider; /* character that also ends a line, or '\0' */
-    /* the divider ended the last line, so the line number does not advance */
+    /* whether the divider ended the last line, so that the line number does not
+     * advance */
     bool within;
     char text[LINE_CHARS]; /* the line, split into its words */
     char rest[LINE_CHARS]; /* the line without its first word */
@@ -46,8 +47,8 @@ bool lines_first_word_is(const struct lines *lines, const char *word);
 /* Sets RADIUS to 1 / the curvature in word K, or to 0 for a plane. */
 bool lines_parse_curvature(const struct lines *lines, int k, double *radius);
 
-/* Sets MOST to the largest of MOST and the absolute values of the numbers after
- * the first word. */
+/* Sets MOST to the max of MOST and the absolute values of all numbers after the
+ * first word. */
 bool lines_parse_fields(const struct lines *lines, double *most);
 
 /* Sets the error that mirrors are not supported; returns false. */

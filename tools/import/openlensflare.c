@@ -25,12 +25,13 @@ static const char *const system_words[SYSTEM_VALUES] = {
 struct reader {
     struct imported *lens;
     XML_Parser parser;
-    int depth;          /* number of open XML elements */
-    bool in_element;    /* inside <element> */
-    bool coated, ended; /* a coating, or the sensor, has been read */
-    int line;           /* line number of <element> */
+    int depth;       /* number of open XML elements */
+    bool in_element; /* whether the parser is inside <element> */
+    bool coated,
+        ended; /* whether a coating, and whether the sensor, has been read */
+    int line;  /* line number of <element> */
     char kind[24], text[IMPORT_TEXT];
-    size_t bytes; /* bytes in text */
+    size_t bytes; /* number of bytes in text */
     double value[ELEMENT_VALUES], system[SYSTEM_VALUES];
     bool has[ELEMENT_VALUES], system_has[SYSTEM_VALUES];
 };

@@ -32,7 +32,7 @@ struct optical_bench {
     struct imported *lens;
     struct lines lines;
     enum section section;
-    int at; /* selected zoom position; -1: not known yet */
+    int at; /* index of the selected zoom position; -1: not known yet */
     int n_variables;
     struct variable variable[VARIABLES];
     char id[IMPORT_SURFACES][ID_BYTES];

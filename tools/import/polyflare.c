@@ -26,7 +26,7 @@ enum { POSITIONS = 8 };
 struct polyflare {
     struct imported *lens;
     struct lines lines;
-    int at;        /* selected zoom position */
+    int at;        /* index of the selected zoom position */
     int positions; /* max number of values of a thickness; 0: none read yet */
     int line;      /* line of the first thickness with several values */
     double focal[POSITIONS], field[POSITIONS];
@@ -87,7 +87,7 @@ static bool parse_thickness(struct polyflare *p, struct imported_surface *s)
     const char *at = l->n > 1 ? l->word[1] : "";
     int n = 0;
 
-    /* back focal distance, which is computed as if it were missing */
+    /* the back focal distance is ignored and computed */
     if (strcmp(at, "BFL") == 0)
         return true;
     for (bool more = true; more; n++) {

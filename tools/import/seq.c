@@ -22,7 +22,7 @@ struct seq {
     struct lines lines;
     struct imported_surface *s;
     bool curvatures;
-    bool image; /* the image has been read */
+    bool image; /* whether the image surface has been read */
 };
 
 /* Sets nd and Vd of S if WORD is a glass code, such as "517642", "517.642" or
@@ -191,7 +191,7 @@ static bool parse_surface_command(struct seq *q)
 static bool parse_dimension_command(struct seq *q)
 {
     const char *word = q->lines.n > 1 ? q->lines.word[1] : "";
-    const char unit = (char)(*word & ~0x20); /* in upper case */
+    const char unit = (char)(*word & ~0x20); /* upper-case letter of the unit */
 
     if (unit != 'I' && unit != 'C' && unit != 'M')
         return imported_report_error(q->lens, q->lines.number,

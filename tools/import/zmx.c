@@ -16,12 +16,12 @@ struct zmx {
     struct imported *lens;
     struct lines lines;
     struct imported_surface *s; /* current surface; NULL: before the first */
-    bool even;                  /* PARM lines of s are aspheric terms */
-    bool indented;              /* lines that describe a surface are indented */
+    bool even;                  /* whether PARM lines of s are aspheric terms */
+    bool indented; /* whether lines that describe a surface are indented */
     int field_type;
     double field, object;
     double number;   /* number of surface s in the file */
-    int object_line; /* 0: object not read yet */
+    int object_line; /* line of the object surface; 0: not read yet */
 };
 
 static bool parse_surface_type(struct zmx *z)
@@ -52,7 +52,7 @@ static bool parse_glass(struct zmx *z)
         return false;
     if (strncmp(l->word[1], "___", 3) != 0) {
         snprintf(z->s->glass, sizeof z->s->glass, "%s", l->word[1]);
-        /* Older versions write these values for any glass. */
+        /* Older versions of Zemax write these values for any glass. */
         if (nd == 1.5 && vd == 40)
             nd = vd = 0;
     }
@@ -82,7 +82,7 @@ static bool parse_surface_parameter(struct zmx *z)
 
 static bool parse_surface_keyword(struct zmx *z)
 {
-    /* data for drawing, manufacturing and optimisation */
+    /* keywords about drawing, manufacturing and optimisation */
     static const char *const ignored[] = {"HIDE", "MIRR", "SLAB", "POPS",
                                           "FIMP", "MEMA", "FLAP", "COMM"};
     const struct lines *l = &z->lines;
@@ -186,7 +186,7 @@ static bool start_surface(struct zmx *z)
     }
     z->s = imported_add_surface(z->lens, z->lines.number);
     if (z->s)
-        z->s->thickness = (double)NAN; /* not stated yet */
+        z->s->thickness = (double)NAN; /* NAN: not stated yet */
     return z->s != NULL;
 }
 

@@ -211,8 +211,8 @@ static void resample_crop(const struct glint_float_image *from,
         }
 }
 
-/* Scales RGB by SYNTH_LEAST_EV to SYNTH_MOST_EV stops so that its mean light
- * is LEVEL. Returns the stops. */
+/* Scales RGB so that its mean light is LEVEL, by SYNTH_LEAST_EV to
+ * SYNTH_MOST_EV stops. Returns the stops. */
 static double scale_to_level(float *rgb, size_t n, double level)
 {
     double sum = 0, ev;
@@ -337,7 +337,7 @@ int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
     *lens = calloc(1, sizeof **lens);
     if (!*lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    /* added even if opening fails, so that it is closed later */
+    /* added even if opening fails, so that the lens is closed later */
     lenses->lens[lenses->n++] = *lens;
     return open_lens_by_name(tool, *lens, item);
 }
@@ -434,8 +434,7 @@ static void set_lamps_of_item(const struct synth_item *item,
     }
 }
 
-/* Draws the discs of the lights of ITEM into the source layer and the
- * coverage. */
+/* Draws the discs of ITEM's lights into the source layer and the coverage. */
 static void draw_light_discs(const struct synth_item *item,
                              const struct glint_lamp *lamp,
                              struct synth_drawing *d,
@@ -534,7 +533,7 @@ static int draw_flare(const struct tool *tool, const struct synth_lens *lens,
     const size_t n = 3 * (size_t)d->width * (size_t)d->height;
     float *const ghosts = d->layer[SYNTH_GHOSTS];
     float *const glare = d->layer[SYNTH_GLARE];
-    /* unused until the sources are drawn, last */
+    /* scratch memory, as the sources are drawn last */
     float *const spare = d->layer[SYNTH_SOURCE];
     struct glint_float_image image = wrap_pixels_as_image(d, ghosts);
     struct glint_lamp lamp[SYNTH_MAX_LIGHTS] = {{.power = 0}};

@@ -15,12 +15,13 @@
 
 struct synth_backgrounds {
     int n;
-    char **path; /* [n], sorted by file name without folder */
+    char **path; /* paths of the pictures, [n], sorted by file name without
+                    folder */
 };
 
 enum synth_layer {
     SYNTH_BASE,   /* the background */
-    SYNTH_SOURCE, /* the lights themselves */
+    SYNTH_SOURCE, /* the discs of the lights */
     SYNTH_GLARE,  /* starburst and haze of the lights */
     SYNTH_GHOSTS,
     SYNTH_LAYERS
@@ -28,12 +29,13 @@ enum synth_layer {
 
 struct synth_drawing {
     int width, height;
-    float *layer[SYNTH_LAYERS]; /* [height][width][3] linear light */
+    float *layer[SYNTH_LAYERS]; /* linear light of each layer,
+                                   [height][width][3] */
     /* [height][width][3], fraction of the pixel covered by lights, 0 .. 1 */
     float *cover;
 };
 
-/* max mean light of ghosts at a ghost_level of 1 */
+/* Max mean light of ghosts at a ghost_level of 1, 1 = white */
 #define SYNTH_MOST_MEAN 0.2
 
 enum { SYNTH_MAX_LENSES = 64 };
@@ -43,7 +45,7 @@ struct synth_lens {
     struct opened_lens opened;
     char name[64], coating[64];
     double quality;
-    double widest; /* widest f-number that the model was baked for */
+    double widest; /* smallest f-number that the model was baked for */
 };
 
 /* Opened lenses; each lens is opened only once. */

@@ -26,16 +26,17 @@ enum { SYNTH_MAX_LIGHTS = 4, SYNTH_NAME_BYTES = 256 };
 struct synth_light {
     double x,
         y; /* position from the top left, fractions of the picture's sides */
-    double radius; /* fraction of the picture's height */
-    double power;  /* relative to the first light, before ghost_level */
+    double radius; /* radius of the disc, fraction of the picture's height */
+    double power;  /* power relative to the first light, before ghost_level */
     double kelvin; /* colour temperature of a black body */
 };
 
 struct synth_item {
     double number, seed, width, height;
-    char glint[16];                    /* version of glint that drew it */
-    char background[SYNTH_NAME_BYTES]; /* file name without its folder */
-    char background_key[20];           /* hash of that file's bytes */
+    char glint[16];                    /* version of glint that drew the item */
+    char background[SYNTH_NAME_BYTES]; /* file name of the background without
+                                          its folder */
+    char background_key[20];           /* hash of the background file's bytes */
     char lens[64], coating[64];
     double quality;
 
@@ -56,7 +57,8 @@ struct synth_item {
      * these lights. */
     double ghost_level, star;
 
-    double read_noise, full_well; /* fraction of white; electrons at white */
+    double read_noise, full_well; /* read noise, fraction of white; full well,
+                                     electrons at white */
 
     double n_lights;
     struct synth_light light[SYNTH_MAX_LIGHTS];
@@ -123,7 +125,7 @@ char *synth_item_print(const struct synth_item *item,
 enum glint_status synth_item_read(struct synth_item *item, const char *line,
                                   struct glint_error *error);
 
-/* distribution of a member's random value */
+/* Distribution of a member's random value */
 enum synth_law {
     SYNTH_GIVEN,   /* not random */
     SYNTH_COUNTED, /* not random, an integer */
@@ -134,10 +136,10 @@ enum synth_law {
 };
 struct synth_field {
     const char *name;
-    size_t at; /* offset in the struct of the double or the text */
+    size_t at; /* offset of the double or text in the struct */
     enum synth_law law;
     double low, high;   /* default range of random values */
-    double least, most; /* allowed range */
+    double least, most; /* range of allowed values */
     size_t text_bytes;  /* size of the text; 0: the member is a number */
 };
 extern const struct synth_field synth_field[SYNTH_FIELDS];

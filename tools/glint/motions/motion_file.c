@@ -23,7 +23,7 @@ bool motion_file_is_baked(const char *argument)
     return tool_has_magic(argument, GLINT_MOTION_MAGIC);
 }
 
-/* State of reading a recording, and the hash of its contents. */
+/* Reader state of a recording, and a hash of its contents */
 struct reading {
     struct glint_input in;
     uint64_t key;
@@ -88,7 +88,7 @@ enum glint_status motion_file_read(const char *path, const char *written,
     } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
-        file->data = data; /* malloc() aligns it */
+        file->data = data; /* malloc() aligns the data */
     }
     if (status != GLINT_OK ||
         glint_motion_open(&file->motion, file->data, file->bytes, &reason) ==
@@ -131,7 +131,7 @@ void motion_file_close(struct motion_file *file)
 
 /* -------------------------------------------------------------------- poses */
 
-/* Writes line K to TEXT[BYTES]. Returns its length. */
+/* Writes the pose of frame K as a line to TEXT[BYTES]. Returns its length. */
 static int print_pose_line(struct motion_file *file, uint32_t k, char *text,
                            size_t bytes)
 {
@@ -139,7 +139,7 @@ static int print_pose_line(struct motion_file *file, uint32_t k, char *text,
     struct glint_motion_frame f;
 
     if (glint_motion_frame(&file->motion, k, &f) != GLINT_OK)
-        return 0; /* not possible: a file in memory has all poses */
+        return 0; /* cannot happen: a file in memory has all poses */
     return snprintf(
         text, bytes, "%u,%.9g,%.9g,%.9g,%.6f,%.6f,%.6f,%.6f\n", k,
         step * f.pose.at[0], step * f.pose.at[1], step * f.pose.at[2],

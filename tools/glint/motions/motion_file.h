@@ -8,10 +8,10 @@
 #include "options/tool.h"
 
 struct motion_file {
-    void *data; /* owned; MOTION points into it */
+    void *data; /* contents of the baked motion, owned; MOTION points into it */
     size_t bytes;
     struct glint_motion motion;
-    struct glint_motion_report report; /* of the bake, if is_baked_now */
+    struct glint_motion_report report; /* report of the bake, if is_baked_now */
     bool is_baked_now;
 };
 
@@ -33,7 +33,7 @@ void motion_file_close(struct motion_file *file);
 /* Prints the contents of FILE; with --json, as one object. */
 void motion_file_print(const struct tool *tool, struct motion_file *file);
 
-/* Writes the pose of each frame, in the units of the recording:
+/* Writes the pose of each frame, in the units of the recording, to a CSV file:
  * frame,x,y,z,qw,qx,qy,qz. Returns an exit code. */
 int motion_file_poses(const struct tool *tool, struct motion_file *file,
                       const char *to);

@@ -9,7 +9,7 @@
 #include "options/json_writer.h"
 
 struct counts {
-    /* bytes of each section */
+    /* size of each section, bytes */
     size_t header, sensors, events, index, poses, intensities;
     double step; /* resolution of positions, units */
 };

@@ -5,14 +5,14 @@
 
 #include "formats/paint.h"
 
-/* max number of events that are drawn singly; of more, blocks of the index
- * are drawn */
+/* Max number of events drawn individually; if there are more, blocks of the
+ * index are drawn */
 enum { MOST_EVENTS = 4096 };
 
 struct bar {
     struct paint paint;
     int x0, x1, y0, y1;
-    uint32_t last; /* last frame, at least 1 */
+    uint32_t last; /* number of the last frame, at least 1 */
 };
 
 static int frame_position_px(const struct bar *b, uint32_t frame)

@@ -8,8 +8,8 @@
 #include "glint/image.h"
 #include "glint/scene/motion.h"
 
-/* Draws along the lower edge of IMAGE the position of FRAME in MOTION, marks
- * at the frames where foods were replaced, and the frame's number. */
+/* Draws a bar along the lower edge of IMAGE: the position of FRAME in MOTION,
+ * marks at frames where foods were replaced, and the frame number. */
 void draw_time_line(const struct glint_image *image,
                     struct glint_motion *motion, int frame);
 

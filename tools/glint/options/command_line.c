@@ -12,8 +12,8 @@
 #include "options/json_writer.h"
 #include "options/suggest.h"
 
-/* Sets the instruction sets that VALUE, a word of --kernels, allows. Returns
- * false if the word is unknown or this CPU lacks the set. */
+/* Enables the instruction sets of VALUE, a word of --kernels. Returns false if
+ * the word is unknown or this CPU lacks the set. */
 static bool parse_instruction_sets(struct tool *tool, const char *value)
 {
     static const char *const words[] = {"c",    "sse41", "avx2",
@@ -31,7 +31,8 @@ static bool parse_instruction_sets(struct tool *tool, const char *value)
 }
 
 static char **line;
-static const struct option *taken; /* options of the command */
+static const struct option
+    *taken; /* option table of the command, for --options */
 
 void tool_set_command_line(char **argv)
 {
@@ -188,7 +189,7 @@ int tool_option(struct tool *tool, int option, const char *value)
             return -1;
         return tool_usage(tool, "--seed must be a whole number, not '%s'",
                           value);
-    default: /* getopt_long has printed the error */
+    default: /* getopt_long() has printed the error */
         if (tool->cause)
             snprintf(tool->cause->text, sizeof tool->cause->text,
                      "%s: unknown, ambiguous or without its value",

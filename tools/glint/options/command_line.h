@@ -31,16 +31,16 @@ enum { TOOL_HELP_ALL = 900, TOOL_OPTIONS };
  * options. */
 void tool_set_command_line(char **argv);
 
-/* Sets the GROUPS of engine options that TOOL has, and copies their DEFAULTS.
- * Returns one array, valid until the next call, of OWN, which a row without a
- * name must end, the options of GROUPS and the common options. If a name is in
- * OWN and in GROUPS, OWN is used. */
+/* Sets the GROUPS of engine options that TOOL accepts, and copies their
+ * DEFAULTS. Returns an option array, valid until the next call: OWN, which must
+ * end with a row without a name, the options of GROUPS, and the common options.
+ * A name in both OWN and GROUPS is that of OWN. */
 const struct option *engine_getopt(struct tool *tool, unsigned groups,
                                    const struct glint_options *defaults,
                                    const struct option *own);
 
-/* Calls getopt_long(), and stores OPTIONS for --options, which shells use for
- * completion. */
+/* Calls getopt_long(). Stores OPTIONS for --options, which shell completion
+ * uses. */
 int tool_getopt(int argc, char *const *argv, const char *shorts,
                 const struct option *options, int *index);
 
@@ -49,15 +49,14 @@ int tool_getopt(int argc, char *const *argv, const char *shorts,
  * error. */
 int tool_option(struct tool *tool, int option, const char *value);
 
-/* Returns the value of the last option in ARGV that getopt_long() would return
- * as OPTION, or NULL. Applies no option, and resets getopt_long() to the first
- * argument. */
+/* Returns the value of the last occurrence of OPTION in ARGV, or NULL. Applies
+ * no option, and resets getopt_long() to the first argument. */
 const char *tool_find_option_value(int argc, char **argv, const char *shorts,
                                    const struct option *options, int option);
 
-/* Checks that N arguments of ARGV are left after the options. Returns -1, or
- * the code of tool_usage() after printing TEXT; if arguments are missing, the
- * message also states which word the last option consumed as its value. */
+/* Checks that N arguments remain in ARGV after the options. Returns -1, or the
+ * code of tool_usage() after printing TEXT; if arguments are missing, the
+ * message also names the word that the last option consumed as its value. */
 int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
                 const char *text);
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Splits the text into lines and passes them to inih one at a time. Otherwise
- * inih would break long lines in two and treat an indented line as a
- * continuation of the previous value.
+ * Reads a configuration file: splits the text into lines and passes them to
+ * inih one at a time. Otherwise inih would break long lines in two and treat an
+ * indented line as a continuation of the previous value.
  */
 #include "options/config.h"
 
@@ -15,7 +15,7 @@
 #include "posix/input.h"
 #include "options/command_line.h"
 
-#define MAX_BYTES   (1 << 20) /* max size of a file */
+#define MAX_BYTES   (1 << 20) /* max size of a file, bytes */
 #define MAX_OPTIONS 256       /* max number of options of a command */
 #define NAME_CHARS  100       /* max bytes of a file name in errors */
 
@@ -25,13 +25,13 @@ struct pass {
     struct config *config;
     bool taking;
     const char *name;
-    const char *at, *end; /* rest of the text */
+    const char *at, *end; /* unread part of the text */
     int line, section_line;
     char section[64];            /* section of the previous entry */
     char where[NAME_CHARS + 32]; /* "FILE:LINE" */
-    char *value;                 /* memory for the following values */
+    char *value;                 /* free memory for values */
     bool stated[MAX_OPTIONS];
-    int code; /* EXIT_OK: no error so far */
+    int code; /* exit code; EXIT_OK: no error so far */
     struct glint_error *error;
 };
 
@@ -44,8 +44,8 @@ static void set_error_location(struct pass *p, int line)
              p->name + (len > NAME_CHARS ? len - NAME_CHARS : 0), line);
 }
 
-/* Sets the error to FORMAT, which has one %s for ABOUT, and ends the pass.
- * Returns 0, which is inih's failure. */
+/* Sets the error message to FORMAT, with ABOUT in place of its %s, and ends the
+ * pass. Returns 0, which means failure to inih. */
 static int report_pass_error(struct pass *p, const char *format,
                              const char *about)
 {
@@ -89,7 +89,7 @@ static size_t read_next_line(struct pass *p, const char **line)
     return (size_t)(last - first);
 }
 
-/* Reads a line for inih, instead of fgets(); comments are read as empty
+/* Reads a line for inih, in place of fgets(). Comments are returned as empty
  * lines. */
 static char *read_line_for_inih(char *dst, int size, void *stream)
 {
@@ -134,7 +134,7 @@ static void record_section(struct pass *p, const char *section)
 }
 
 /* Returns the option NAME, or NULL if files must not contain it: help and
- * version are for the command line only, and files cannot be nested. */
+ * version are command line options, and files cannot be nested. */
 static const struct option *find_option(const struct config *config,
                                         const char *name)
 {
@@ -183,7 +183,8 @@ static int apply_config_entry(struct pass *p, const struct option *option,
     code = p->config->take(p->config->ctx, option, plain ? NULL : p->value);
     tool->where = NULL;
     p->value += bytes;
-    if (code == EXIT_OK) /* an option such as --list-devices */
+    if (code ==
+        EXIT_OK) /* an option that ends the command, such as --list-devices */
         return report_pass_error(p, "%s is an option of the command line only",
                                  option->name);
     if (code > 0)

@@ -44,7 +44,7 @@ struct config {
                      config_read() */
 };
 
-/* Reads PATH and applies its options. Their values stay valid until
+/* Reads the file PATH and applies its options. Option values stay valid until
  * config_free(). Returns an exit code, EXIT_INPUT for a bad file; on failure
  * prints the reason and frees CONFIG. */
 int config_read(struct config *config, const char *path);

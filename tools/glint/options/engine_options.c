@@ -31,7 +31,7 @@ int engine_option(const struct tool *tool, struct glint_options *values,
 
 enum { ABOUT_COLUMN = 22, LINE = 79 };
 
-/* A text buffer that is written line by line. */
+/* Buffer of a help text that is written line by line */
 struct page {
     char *at, *end;
     int column;
@@ -93,8 +93,8 @@ static void find_option_default(const struct glint_options *defaults, int i,
         *value = NAN;
 }
 
-/* Returns the text with which a range from LOW begins; START is the buffer
- * for it. */
+/* Returns the beginning of a range text for the lower limit LOW; START is its
+ * buffer. */
 static const char *format_range_start(double low, char start[32])
 {
     if (low > 0 && low < 1e-5)

@@ -13,15 +13,15 @@
 #include "glint/options.h"
 #include "options/tool.h"
 
-/* Codes of getopt_long() for the engine's options. A command numbers its own
- * from ENGINE_OPTIONS_END on. */
+/* getopt_long() codes of the engine's options. Commands number their own
+ * options from ENGINE_OPTIONS_END on. */
 enum {
     ENGINE_OPTION = 1000,
     ENGINE_OPTIONS_END = ENGINE_OPTION + GLINT_N_OPTIONS
 };
 #define ENGINE_OPTION_OF(member) (ENGINE_OPTION + GLINT_OPTION_OF_##member)
 
-/* Bits of tool.groups. */
+/* Bit of an option group in tool.groups */
 #define ENGINE_GROUP(group) (1U << GLINT_OPTIONS_##group)
 #define ENGINE_DRAWING \
     (ENGINE_GROUP(LENS) | ENGINE_GROUP(BRIGHTNESS) | ENGINE_GROUP(SPEED))
@@ -33,7 +33,7 @@ enum {
 int engine_option(const struct tool *tool, struct glint_options *values,
                   int code, const char *value);
 
-/* Writes the help of the groups of TOOL to TEXT, with the defaults of TOOL. */
+/* Writes the help of TOOL's option groups to TEXT, with TOOL's defaults. */
 enum { ENGINE_HELP_BYTES = 24576 };
 void engine_help(const struct tool *tool, char text[ENGINE_HELP_BYTES]);
 

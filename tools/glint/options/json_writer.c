@@ -43,7 +43,7 @@ static void write_json_integer(FILE *file, const char *form, va_list *values)
         fprintf(file, form, va_arg(*values, int));
 }
 
-/* Writes the next of VALUES by the conversion FORMAT[N]. */
+/* Writes the next of VALUES by the conversion at FORMAT[N]. */
 static void write_json_value(FILE *file, const char *format, size_t n,
                              va_list *values)
 {
@@ -76,7 +76,8 @@ static void write_json_comma(struct json_writer *json, const char *comma)
     json->is_due = false;
 }
 
-/* Writes the key, conversion or word at AT. Returns the text after it. */
+/* Writes the key, conversion or literal word at AT. Returns the format text
+ * after it. */
 static const char *write_json_word(struct json_writer *json, const char *at,
                                    va_list *values)
 {
@@ -116,7 +117,7 @@ void json_write(struct json_writer *json, const char *format, ...)
             json->is_due = true;
         } else if (*format == '\n') {
             n += strspn(format + 1, " ");
-            /* no comma before these and at the end of FORMAT */
+            /* a closing bracket or the end of FORMAT needs no comma */
             if (!strchr("]}", format[n]))
                 write_json_comma(json, ",");
             fwrite(format, 1, n, json->to);

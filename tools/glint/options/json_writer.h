@@ -18,7 +18,8 @@
 
 struct json_writer {
     FILE *to;
-    bool is_due; /* private: a comma must precede the next member or element */
+    bool is_due; /* private: whether a comma must precede the next member or
+                    element */
 };
 
 /* Writes FORMAT, which consists of

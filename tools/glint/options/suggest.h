@@ -16,16 +16,16 @@
 enum { SUGGEST_CHARS = 48 };
 
 struct suggest {
-    const char *word; /* not owned */
+    const char *word; /* the mistyped word, not owned */
     char best[SUGGEST_CHARS];
-    int distance; /* distance of the best word */
+    int distance; /* edit distance of the best candidate */
     char words[SUGGEST_CHARS + 20];
 };
 
 void suggest_begin(struct suggest *suggest, const char *word);
 
-/* Compares CANDIDATE[N] with the word. A candidate that contains the word, if
- * that has 3 letters or more, is at distance 1 at most. */
+/* Compares CANDIDATE[N] with the mistyped word. A candidate that contains the
+ * word has at most distance 1 if the word has 3 letters or more. */
 void suggest_consider(struct suggest *suggest, const char *candidate, size_t n);
 
 /* Returns the nearest candidate if its distance is at most a third of its

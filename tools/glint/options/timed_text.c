@@ -15,7 +15,7 @@
 #include "options/tool.h"
 #include "posix/input.h"
 
-enum { READINGS = 16 }; /* max calls of read() from a pipe per turn */
+enum { READINGS = 16 }; /* max number of read() calls on a pipe per turn */
 
 const char text_no_memory[] = "no memory";
 
@@ -87,7 +87,7 @@ void text_lines_close(struct text_lines *lines)
 
 /* ------------------------------------------------------------------- lines */
 
-/* Reads more from a pipe. Returns false if no data was available. */
+/* Reads new data from the pipe. Returns false if none is available. */
 static bool read_from_pipe(struct text_lines *l)
 {
     struct pollfd there = {.fd = l->fd, .events = POLLIN};
@@ -258,7 +258,7 @@ const char *text_parse_json_object(struct text_lines *lines, char *line,
                                    const struct text_column *column, int n,
                                    char **field)
 {
-    /* at: first the opening brace, then each separator */
+    /* at: position of the opening brace, later of each separator */
     char *at = line, mark = ',';
 
     while (mark == ',') {

@@ -32,16 +32,17 @@ struct text_lines {
     const char *name; /* name of the file, for errors */
     int number;       /* number of the last line, counted from 1 */
     bool is_pipe;
-    bool is_long;    /* the last line of the pipe was too long and was cut */
-    char cause[200]; /* message of text_lines_cause() */
+    bool is_long; /* whether the last line of the pipe was too long and was cut
+                   */
+    char cause[200]; /* text of text_lines_cause() */
 
     /* Private. */
     char *mem, *rest; /* contents of a file, and the part not yet read */
-    int fd;           /* members from here on are for pipes */
+    int fd; /* descriptor of the pipe; members from here on are for pipes */
     char text[TEXT_PIPE_BYTES], bytes[4096];
     size_t n_text, at, n_bytes;
     bool is_cut, has_ended;
-    int left; /* calls of read() left in this turn */
+    int left; /* remaining number of read() calls in this turn */
 };
 
 /* ------------------------------------------------------------------- lines */
@@ -106,7 +107,7 @@ struct text_column {
  * which is above MAX if there are more. */
 int text_split_fields(char *line, char **field, int max);
 
-/* Returns the index of the column NAME in COLUMN[N], or -1. */
+/* Returns the index in COLUMN[N] of the column NAME, or -1. */
 int text_find_column(const struct text_column *column, int n, const char *name);
 
 /* Sets FIELD[N] to the values of LINE, a flat JSON object whose keys are names

@@ -19,7 +19,7 @@
 #include "posix/ending.h"
 #include "posix/error.h"
 
-/* Copies the message to the tool's cause, if it has one, and prints it. */
+/* Prints an error message and copies it to the tool's cause, if it has one. */
 static void print_tool_error(const struct tool *tool, const char *format,
                              va_list args)
 {
@@ -101,7 +101,7 @@ int tool_fail(const struct tool *tool, enum glint_status status,
                                [GLINT_E_CLOSED] = EXIT_OK,
                                [GLINT_E_DEVICE] = EXIT_DEVICE};
 
-    /* the reader closed the pipe early, which is not an error */
+    /* a reader that closed the pipe early is not an error */
     if (status == GLINT_E_CLOSED)
         return EXIT_OK;
     tool_error(tool, "%s", text && *text ? text : glint_status_text(status));
@@ -139,7 +139,7 @@ void tool_watch_closed_pipe(void)
 {
     struct sigaction note = {.sa_handler = record_closed_pipe};
 
-    /* writing then fails with an error as well */
+    /* writing to the closed pipe also fails with an error, which is handled */
     sigaction(SIGPIPE, &note, NULL);
 }
 
@@ -239,7 +239,7 @@ int tool_check_output(const struct tool *tool, const char *path)
     struct glint_error error = {""};
     const char *const slash = strrchr(path, '/'), *pattern = strchr(path, '%');
 
-    /* the number is in a folder's name */
+    /* the number is in the name of a folder */
     if (slash && pattern && pattern < slash)
         return EXIT_OK;
     if (glint_output_check(path, &error) == GLINT_OK)
@@ -282,14 +282,16 @@ void tool_progress_part(struct tool_progress *p, double from, double share)
     p->share = share;
 }
 
-/* Returns the time left, s, at the rate since the start of the clock. */
+/* Returns the estimated time left, s, at the rate since the start of the
+ * clock. */
 static double estimate_time_left_s(const struct tool_progress *p, double spent,
                                    double done)
 {
     return done > p->before ? spent * (1 - done) / (done - p->before) : 0;
 }
 
-/* Prints a line every ten seconds, if standard error is not a terminal. */
+/* Prints a progress line every ten seconds if standard error is not a
+ * terminal. */
 static void print_progress_line(struct tool_progress *p, double now,
                                 double done)
 {
@@ -302,9 +304,9 @@ static void print_progress_line(struct tool_progress *p, double now,
             100 * p->most, spent, estimate_time_left_s(p, spent, done));
 }
 
-/* Prints an estimate of the time once, if it is p->least_s or more. It waits
- * for a quarter of that: the first ghosts of a bake say little about the
- * others. */
+/* Prints a time estimate once, if the time is at least p->least_s. It waits for
+ * a quarter of that time, as the first ghosts of a bake are not
+ * representative. */
 static void print_time_estimate(struct tool_progress *p, double spent,
                                 double done)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Functions that all commands share: common options, exit codes, errors,
- * progress, and parsing of numbers. */
+ * Functions that all commands share: common options, exit codes, error
+ * messages, progress, and parsing of numbers. */
 #ifndef GLINT_TOOLS_OPTIONS_TOOL_H
 #define GLINT_TOOLS_OPTIONS_TOOL_H
 
@@ -32,14 +32,16 @@ struct tool {
     bool json, quiet;
     /* rejects a lens whose model is not cached, as a reload must not bake */
     bool no_bake;
-    /* the command bake, of which what a scene names may take any time */
+    /* whether the command is bake: files named by its input may take any time
+     * to bake */
     bool is_bake;
     int verbose;
     int n_threads;
     int seed; /* random seed for synth, and for the noise of live -d test */
-    unsigned sets_off;             /* instruction sets not to use */
+    unsigned
+        sets_off; /* instruction sets that kernels must not use, one bit each */
     const char *kernels;           /* argument of --kernels, or NULL */
-    struct glint_workers *workers; /* made by tool_start() */
+    struct glint_workers *workers; /* thread pool, created by tool_start() */
     const char *written;           /* output file, which no scene may read, or
                                       NULL */
     struct glint_error *cause;     /* receives messages of tool_error(); may be
@@ -52,14 +54,14 @@ struct tool {
 int tool_start(struct tool *tool);
 void tool_finish(struct tool *tool);
 
-/* Detect failures of standard output. Call tool_watch_closed_pipe() at the
- * start of a program and tool_close_stdout() at its end. tool_close_stdout()
- * returns CODE, or EXIT_OUTPUT if writing failed; a reader that closed its pipe
- * is no failure. */
+/* Detect failed writes to standard output. Call tool_watch_closed_pipe() at the
+ * start of a program and tool_close_stdout() at its end, which returns CODE, or
+ * EXIT_OUTPUT if a write failed. A reader that closed its pipe is not a
+ * failure. */
 void tool_watch_closed_pipe(void);
 int tool_close_stdout(int code);
 
-/* Returns the instruction sets that kernels may use, a bit each. */
+/* Returns the instruction sets that kernels may use, one bit each. */
 unsigned tool_enabled_instruction_sets(const struct tool *tool);
 
 /* Prints "glint COMMAND: ..." and copies the message to the tool's cause. */
@@ -73,9 +75,10 @@ int tool_usage(const struct tool *tool, const char *format, ...);
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text);
 
-/* Takes WORK of *LEFT, unless LEFT is NULL. Returns GLINT_E_LENS, with the
- * reason in ERROR, if that is not left: the bake of FILE, which a command other
- * than bake needs, takes more than about 30 s of processor time. */
+/* Subtracts WORK from *LEFT, the remaining bake work. LEFT NULL: unlimited. If
+ * not enough is left, returns GLINT_E_LENS with the reason in ERROR: the bake
+ * of FILE would take more than about 30 s of processor time, and only the
+ * command bake may take longer. */
 enum glint_status tool_count_bake_work(int64_t *left, int64_t work,
                                        const char *file,
                                        struct glint_error *error);
@@ -107,10 +110,9 @@ double tool_clock_s(void);
 
 /* ------------------------------------------------------------------- output */
 
-/* Checks, before a lens is baked, whether a file can be created at PATH.
- * Returns EXIT_OK, or EXIT_OUTPUT after printing the reason. PATH may be a
- * pattern of numbered files; it is not checked if the number is in the name of
- * a folder. */
+/* Checks whether a file can be created at PATH, before a lens is baked. Returns
+ * EXIT_OK, or EXIT_OUTPUT after printing the reason. PATH may be a pattern of
+ * numbered files; it is not checked if the number is in a folder's name. */
 int tool_check_output(const struct tool *tool, const char *path);
 
 /* Checks that PATH has the extension ENDING for a file of type WHAT, or no
@@ -139,11 +141,12 @@ struct tool_progress {
     const char *besides; /* work that the estimate does not include, printed
                             with it, or NULL */
     double from, share;  /* see tool_progress_part() */
-    double least_s;      /* shortest work with an estimate, s; default: 20 */
-    bool waits;          /* its clock starts with the first report */
-    double before;       /* work done at the start of the clock, of 1 */
+    double least_s; /* min estimated time for which an estimate is printed, s;
+                       default: 20 */
+    bool waits;     /* whether the clock starts with the first report */
+    double before;  /* fraction of the work done when the clock started */
     bool shown, is_terminal;
-    bool told;             /* the estimate was printed, or is below LEAST_S */
+    bool told; /* whether the estimate was printed, or is below LEAST_S */
     double (*clock)(void); /* seconds; tool_clock_s() except in unit tests */
     double started, last;
     double most; /* max progress so far: the bar never moves back */
@@ -157,7 +160,7 @@ void tool_progress_part(struct tool_progress *p, double from, double share);
 void tool_progress_show(void *progress, double done);
 void tool_progress_end(struct tool_progress *p);
 
-/* The commands. ARGV[0] is the name of the command. They return exit codes. */
+/* Run a command. ARGV[0] is the name of the command. Return exit codes. */
 int cmd_info(int argc, char **argv);
 int cmd_trace(int argc, char **argv);
 int cmd_render(int argc, char **argv);

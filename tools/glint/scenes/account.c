@@ -71,7 +71,6 @@ static void write_counts_json(struct json_writer *json,
         account->layer[GLINT_KIND_BOX].n);
 }
 
-/* Returns the bytes that the highlight search of FRAME allocates. */
 static size_t highlight_search_bytes(const struct scene_frame *frame)
 {
     struct glint_scene_config without = frame->cfg;
@@ -80,7 +79,6 @@ static size_t highlight_search_bytes(const struct scene_frame *frame)
     return frame->bytes - glint_scene_bytes(&without, frame->model);
 }
 
-/* Returns the bytes of light maps of translucent media. */
 static size_t light_map_bytes(const struct scene_frame *frame)
 {
     struct glint_scene_header header = *frame->model->header;

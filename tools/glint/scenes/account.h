@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * Statistics of a scene's frame: cost per object, coverage, highlights. */
+ * Collects statistics of a scene's frame: cost per object, coverage,
+ * highlights. */
 #ifndef GLINT_TOOLS_SCENES_ACCOUNT_H
 #define GLINT_TOOLS_SCENES_ACCOUNT_H
 
 #include "options/json_writer.h"
 #include "scenes/scene_frame.h"
 
-/* names of the counted types of work */
+/* Names of the counted types of work */
 extern const char *const scene_item_name[GLINT_SCENE_ITEMS];
 
 /* Statistics of the frame drawn last. */
 struct scene_account {
-    struct glint_scene_part *objects; /* [n_objects], owned */
+    struct glint_scene_part
+        *objects; /* cost of each object, [n_objects], owned */
     struct glint_scene_part all;
     int16_t *seen; /* [height][width]: index of the visible object, or -1 */
     struct glint_scene_layered layer[GLINT_KINDS];

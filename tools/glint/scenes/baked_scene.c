@@ -42,7 +42,7 @@ int baked_scene_open(const struct tool *tool, const char *path,
             return code;
         status = glint_input_slurp(&data, &scene->bytes, path, MAX_SCENE_BYTES,
                                    &error);
-        scene->data = data; /* malloc() aligns it */
+        scene->data = data; /* malloc() aligns the data */
     }
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);

@@ -8,10 +8,10 @@
 #include "scenes/scene_file.h"
 
 struct baked_scene {
-    void *data; /* owned; MODEL points into it */
+    void *data; /* contents of the baked scene, owned; MODEL points into it */
     size_t bytes;
     struct glint_scene_model model;
-    /* all zero if the scene was read from a baked file */
+    /* report of the bake; all zero if the scene was read from a baked file */
     struct glint_scene_bake_report report;
     bool is_text;
 };

@@ -3,23 +3,23 @@
 
 #include <math.h>
 
-/* Frames to draw with a level before a finer one is tried. Each failed trial
- * doubles the number. */
+/* Number of frames drawn with a level before a finer one is tried; doubled by
+ * each failed trial */
 #define HOLD     8
 #define MAX_HOLD 512
-/* Fraction of the limit below which a finer level is tried; a level takes at
- * least 1.3 times as long as the next coarser one. */
+/* Fraction of the time limit below which a finer level is tried; a level takes
+ * at least 1.3 times as long as the next coarser one */
 #define SPARE 0.75
-/* Fraction of a frame's time for the scene if the flare needs the rest, and
- * its min fraction. */
+/* Fraction of the frame time for the scene if the flare needs the rest, and its
+ * min fraction */
 #define FRACTION     0.6
 #define MIN_FRACTION 0.1
 
-/* Shadow points and metal lookups are reduced first, as penumbrae cover
- * little of an image and 4 lookups lose less than 2 dB; then the number of
- * shaded points, last the edge samples. QUALITY: min --quality at which the
- * level is used. PSNR falls from 48 dB to 36 dB (mean of three scenes at
- * revision e8a4a84c). */
+/* Quality levels. First shadow points and metal lookups are reduced, as
+ * penumbrae cover little of an image and 4 lookups lose less than 2 dB; then
+ * the number of shaded points, last the edge samples. QUALITY: min --quality at
+ * which the level is used. PSNR falls from 48 dB to 36 dB (mean of three scenes
+ * at revision e8a4a84c). */
 static const struct {
     int points, edge, samples;
     bool half;
@@ -101,7 +101,8 @@ static int find_next_level(const struct scene_budget *budget, int by)
 bool scene_budget_update_level(struct scene_budget *budget, double ms,
                                double limit_ms)
 {
-    /* A single slow frame is ignored, as another program may have caused it. */
+    /* The smaller of two frame times, as a single slow frame may be caused by
+     * another program */
     const double low_ms = fmin(ms, budget->last_ms);
     const int before = budget->level;
 
@@ -127,8 +128,8 @@ bool scene_budget_update_level(struct scene_budget *budget, double ms,
     return true;
 }
 
-/* The flare's planner uses all the time that the scene leaves. Its time
- * therefore does not show whether it needs more; its quality does. */
+/* The flare uses all the time that the scene leaves, so its time does not show
+ * whether it needs more; its quality does. */
 double scene_budget_limit_flare(double all_ms, double flare_ms, double quality)
 {
     const double rest_ms = all_ms - flare_ms, part_ms = FRACTION * all_ms;

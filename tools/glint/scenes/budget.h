@@ -9,7 +9,8 @@
 
 #include "scenes/scene_frame.h"
 
-/* Levels from the finest, as requested, to the coarsest. */
+/* Number of levels, from the finest, which has the requested quality, to the
+ * coarsest */
 enum { SCENE_BUDGET_LEVELS = 5 };
 
 struct scene_budget {
@@ -17,11 +18,11 @@ struct scene_budget {
     int level;
 
     /* Private. */
-    int n_frames;   /* frames drawn with LEVEL */
-    double last_ms; /* time of the last frame */
-    int hold;       /* frames to draw with a level before a finer level is
-                       tried */
-    bool is_try;    /* LEVEL is a finer level on trial */
+    int n_frames;   /* number of frames drawn with LEVEL */
+    double last_ms; /* time of the last frame, ms */
+    int hold;    /* number of frames to draw with a level before a finer one is
+                    tried */
+    bool is_try; /* whether LEVEL is a finer level on trial */
 };
 
 void scene_budget_init(struct scene_budget *budget,
@@ -36,20 +37,20 @@ struct scene_dials scene_budget_set_dials(const struct scene_budget *budget,
 bool scene_budget_update_level(struct scene_budget *budget, double ms,
                                double limit_ms);
 
-/* Returns how much of ALL_MS, the time of a frame, the scene may use, ms.
- * FLARE_MS: time of the flare, at QUALITY of --quality. Both are 0 before
- * the first frame. */
+/* Returns the time, ms, that the scene may use of ALL_MS, the time limit of a
+ * frame. FLARE_MS: time of the flare, drawn at QUALITY of --quality. Both are 0
+ * before the first frame. */
 double scene_budget_limit_flare(double all_ms, double flare_ms, double quality);
 
-/* Sets those members of DIALS that are 0 by QUALITY, the --quality. At the
- * default of 0.5 they stay 0. */
+/* Sets the members of DIALS that are 0 to the values for QUALITY, a --quality.
+ * At the default of 0.5 they stay 0. */
 void scene_dials_set_quality(struct scene_dials *dials, double quality);
 
-/* Returns the highest --quality whose parameters are nowhere finer than
- * those of budget->level. */
+/* Returns the highest --quality none of whose parameters is finer than that of
+ * budget->level. */
 double scene_budget_flare_quality(const struct scene_budget *budget);
 
-/* Returns the finest level that is not finer than the --quality QUALITY. */
+/* Returns the finest level that is not finer than --quality QUALITY. */
 int scene_budget_level_of_quality(double quality);
 
 #endif

@@ -49,7 +49,7 @@ static enum glint_status read_environment_text(
     return status;
 }
 
-/* Bakes the picture FROM under the name of the file NAMED. */
+/* Bakes the picture FROM; the result has the name of the file NAMED. */
 static enum glint_status
 bake_picture(const char *named, const char *from,
              const struct glint_environment_options *options,
@@ -94,7 +94,7 @@ bake_source(const char *path, const char *written,
     const char *picture = path;
     enum glint_status status = GLINT_OK;
 
-    /* padding is part of the hashed key */
+    /* clear the padding, which is part of the hashed key */
     memset(&options, 0, sizeof options);
     glint_environment_defaults(&options);
     if (is_environment_text(path)) {
@@ -130,7 +130,7 @@ enum glint_status environment_file_read(
     } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
-        file->data = data; /* malloc() aligns it */
+        file->data = data; /* malloc() aligns the data */
     }
     if (status != GLINT_OK ||
         glint_environment_open(&file->environment, file->data, file->bytes,
@@ -164,8 +164,8 @@ void environment_file_close(struct environment_file *file)
 }
 
 struct counts {
-    /* texels: in all levels; mips: if they were a mipmap; full: if all
-     * levels had the size of the first */
+    /* number of texels: in all levels; as a mipmap; if all levels had the size
+     * of the first */
     long long texels, mips, full;
     size_t levels, irradiance, lights, header; /* bytes of each section */
 };
@@ -314,7 +314,7 @@ static const char bake_help[] =
     "  --turn DEG          rotate about the vertical, to the right\n"
     "  --scale X           multiply all light by X\n";
 
-/* Values of the command line; -1, or has_ false: not given. */
+/* Values of the command line; -1, or has_... false: not given */
 struct line {
     int side_log2, lights;
     bool has_turn, has_scale;

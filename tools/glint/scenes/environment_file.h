@@ -8,10 +8,12 @@
 #include "options/tool.h"
 
 struct environment_file {
-    void *data; /* owned; ENVIRONMENT points into it */
+    void *data; /* contents of the baked environment, owned; ENVIRONMENT points
+                   into it */
     size_t bytes;
     struct glint_environment environment;
-    struct glint_environment_report report; /* of the bake, if is_baked_now */
+    struct glint_environment_report
+        report; /* report of the bake, if is_baked_now */
     bool is_baked_now;
 };
 

@@ -33,7 +33,8 @@ void glints_close(struct glints *glints)
     *glints = (struct glints){.n = 0};
 }
 
-/* Returns SPOT of an independent picture as a track at full level. */
+/* Returns SPOT, a highlight of an independent picture, as a track at full
+ * level. */
 static struct glint_lamp_track
 make_highlight_track(const struct glint_spot *spot, int number)
 {

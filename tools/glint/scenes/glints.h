@@ -4,8 +4,8 @@
  * lamps of the flare.
  *
  *     glints_open(&glints, width, height);
- *     n = glints_track_frame(&glints, scene, elapsed_us);            each picture
- *     glints_make_lamp(&glints, i, &view, focal_mm, &lamp, &level);
+ *     n = glints_track_frame(&glints, scene, elapsed_us);            each
+ * picture glints_make_lamp(&glints, i, &view, focal_mm, &lamp, &level);
  *     glints_close(&glints);
  *
  * Highlights are tracked like lamps in a picture: they fade in and out and do
@@ -19,7 +19,8 @@
 #include "glint/setup.h"
 #include "glint/view.h"
 
-/* twice the number that can be found, as others may be fading out */
+/* Max number of tracks: twice the max number of highlights, as others may be
+ * fading out */
 enum { GLINTS_MAX = 2 * GLINT_SCENE_MAX_HIGHLIGHTS };
 
 struct glints {
@@ -32,7 +33,8 @@ struct glints {
     void *mem;
 };
 
-/* Returns GLINT_E_MEMORY on failure. */
+/* Initialises GLINTS for pictures of WIDTH x HEIGHT. Returns GLINT_E_MEMORY on
+ * failure. */
 enum glint_status glints_open(struct glints *glints, int width, int height);
 void glints_close(struct glints *glints);
 

@@ -54,7 +54,7 @@ static int find_object_by_name(const struct glint_scene_model *m,
     return -2;
 }
 
-/* Sets TO to the unit vector of X[N], Q30. In right-handed scenes negates z,
+/* Sets TO to the unit vector of X[N], Q30. For right-handed scenes negates z,
  * or x and y of a quaternion (N = 4). Returns false if the length is 0. */
 static bool set_unit_vector_q30(const struct glint_scene_model *m,
                                 const double *x, int n, int32_t *to)
@@ -88,7 +88,7 @@ static bool set_pose_position(const struct glint_scene_model *m,
     return true;
 }
 
-/* Sets POSE to the values V of the object NAME. */
+/* Sets POSE to the values V for the object NAME. */
 static const char *make_pose(const struct glint_scene_model *m,
                              struct text_lines *lines, const char *name,
                              const double v[COLUMNS], struct pose *pose)
@@ -190,8 +190,8 @@ static int compare_pose_frames(const void *a, const void *b)
     return p->order < q->order ? -1 : p->order > q->order;
 }
 
-/* Inserts POSE: at the end for a file, for a pipe after the poses of its
- * frame. */
+/* Inserts POSE: for a file at the end, for a pipe after the last pose of the
+ * same frame. */
 static const char *insert_pose(struct poses *p, const struct pose *pose)
 {
     struct pose *more;
@@ -261,7 +261,7 @@ void poses_close(struct poses *poses)
 
 /* --------------------------------------------------------------------- pipe */
 
-/* Records CAUSE for the last line, which is skipped. */
+/* Records CAUSE as the error of the last line, which is skipped. */
 static void record_line_error(struct poses *p, const char *cause)
 {
     if (p->n_bad++ == 0)

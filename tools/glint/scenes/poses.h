@@ -26,12 +26,12 @@
 
 enum {
     POSES_CAMERA = -1,
-    /* max number of poses from a pipe that wait for their frames */
+    /* max number of queued poses from a pipe */
     POSES_AHEAD = 1 << 16
 };
 
 struct pose {
-    int frame, order; /* order: index of the line, for sorting */
+    int frame, order; /* frame number; order: index of the line, for sorting */
     int thing;        /* index of an object, n_objects + index of a light, or
                          POSES_CAMERA */
     bool has_turn;
@@ -47,8 +47,9 @@ struct poses {
     /* Private. */
     bool is_open;
     struct glint_scene_model model;
-    struct text_lines lines; /* closed after a file was read */
-    struct pose *row;        /* sorted by frame */
+    struct text_lines
+        lines;        /* lines of the file; closed after a file was read */
+    struct pose *row; /* poses sorted by frame */
     int n, next;
     int read_at; /* frame at which the pipe was last read */
 };
@@ -70,7 +71,8 @@ const struct pose *poses_next(struct poses *poses, int frame);
  * restart. */
 bool poses_rewind(struct poses *poses);
 
-/* Counts POSE as skipped, because it would move the scene out of its range. */
+/* Counts POSE as skipped because it would move an object out of the scene's
+ * range. */
 void poses_reject_line(struct poses *poses, const struct pose *pose);
 
 void poses_close(struct poses *poses);

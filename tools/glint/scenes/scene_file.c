@@ -14,8 +14,8 @@
 
 enum { TEXT_BYTES = 1 << 20 };
 
-/* Max work (tool_count_bake_work()) of baking what a scene names: about 30 s of
- * processor time. */
+/* Max work, in units of tool_count_bake_work(), of baking the files that a
+ * scene names: about 30 s of processor time */
 #define MOST_WORK (INT64_C(1) << 28)
 
 bool tool_is_scene(const char *argument)
@@ -23,13 +23,13 @@ bool tool_is_scene(const char *argument)
     return glint_ends_in(argument, ".scene");
 }
 
-/* State of reading a text. */
+/* Reader state of a scene text */
 struct reading {
     const struct tool *tool;
     const char *path;
     const char *written; /* output file, which must not be read, or NULL */
     uint64_t key;
-    int64_t left; /* work that bakes may still take */
+    int64_t left; /* remaining bake work, in units of tool_count_bake_work() */
 };
 
 /* Sets PATH to the file NAME, relative to the folder of the text. Errors as
@@ -80,7 +80,7 @@ static enum glint_status read_obj_mesh(void *ctx, const char *name,
         status = glint_assimp_read(data, bytes, path,
                                    GLINT_DESCRIPTION_MAX_MESH_BYTES,
                                    GLINT_DESCRIPTION_MAX_TRIANGLES, error);
-    /* same code as for an error in an OBJ file */
+    /* returns the same status as for an error in an OBJ file */
     if (status == GLINT_E_FORMAT)
         status = GLINT_E_LENS;
     if (status == GLINT_OK)

@@ -48,7 +48,7 @@ static void set_frame_config(struct glint_scene_config *cfg,
 /* ------------------------------------------------------------------ memory
  */
 
-/* Allocates memory for the scene and initialises it there. */
+/* Allocates memory for the scene and initialises the scene there. */
 static enum glint_status allocate_scene_memory(struct scene_frame *frame)
 {
     const size_t bytes = glint_scene_bytes(&frame->cfg, frame->model);
@@ -83,8 +83,8 @@ static int report_scene_status(const struct tool *tool,
             : NULL);
 }
 
-/* Refuses a scene whose picture takes more than SCENE_TESTS, at the poses of
- * its model. */
+/* Rejects a scene whose picture needs more than SCENE_TESTS intersection tests
+ * at the poses of its model. */
 static int check_intersection_tests(struct scene_frame *frame)
 {
     const int64_t px = (int64_t)frame->cfg.width * frame->cfg.height;

@@ -13,8 +13,9 @@
 
 /* Drawing parameters; 0: the default of the run time. */
 struct scene_dials {
-    int width, height; /* pixels */
-    /* focal length of a pinhole camera with the lens's field of view, pixels */
+    int width, height; /* size of pictures, pixels */
+    /* focal length, pixels, of a pinhole camera with the lens's field of
+     * view */
     double focal_px;
     int edge_samples;  /* samples per pixel at edges: 1, 4, 8 or 16 */
     int shadow_points; /* points per light for soft shadows: 1, 4 or 16 */
@@ -22,33 +23,35 @@ struct scene_dials {
     bool half_shading;
     int ward_samples; /* 1 .. 32 lookups per point of brushed metal */
     bool has_highlights;
-    int highlights; /* with has_highlights: 0 .. 8, overrides the scene */
+    int highlights; /* if has_highlights: max number of highlights, 0 .. 8, in
+                       place of the scene's */
     int tile_log2;
     bool dither;
-    /* Refuses a scene whose first picture takes more tests of rays than
-     * SCENE_TESTS. Set where shadow_points is not the user's. */
+    /* whether to reject a scene whose first picture needs more than SCENE_TESTS
+     * intersection tests; set if the user did not choose shadow_points */
     bool is_bounded;
 };
 
-/* Max tests of rays (glint_scene_count_tests()), and pixels of the tiles that
- * each triangle touches, of a picture of a scene, unless an option allows more:
- * about 30 s of processor time. Large pictures may take SCENE_TESTS_PX a pixel,
- * ten times as many as the scenes that come with glint. */
+/* Max number of ray tests (glint_scene_count_tests()) plus pixels of the tiles
+ * that each triangle touches, for a picture of a scene unless an option lifts
+ * the limit: about 30 s of processor time. Large pictures may use
+ * SCENE_TESTS_PX per pixel, ten times the need of the scenes that come with
+ * glint. */
 #define SCENE_TESTS    INT64_C(1500000000)
 #define SCENE_TESTS_PX 1000
 
-/* Sets the members of DIALS that OPTIONS set. */
+/* Sets the members of DIALS from OPTIONS. */
 void scene_dials_set_defaults(struct scene_dials *dials,
                               const struct glint_options *options);
 
-/* Sets the current poses of a scene's objects. */
+/* Sets the present poses of a scene's objects. */
 typedef void scene_frame_pose_fn(void *ctx, struct glint_scene *scene);
 
 struct scene_frame {
     const struct tool *tool;
     const struct glint_scene_model *model; /* not owned */
     struct glint_scene_config cfg;
-    struct glint_scene *scene; /* points into MEM */
+    struct glint_scene *scene; /* the initialised scene, in MEM */
     void *mem;
     size_t bytes;
     /* Unless NULL, called with POSE_CTX before the first picture after the
@@ -56,7 +59,8 @@ struct scene_frame {
      * those of the model. */
     scene_frame_pose_fn *pose;
     void *pose_ctx;
-    bool is_fresh; /* the scene was initialised and POSE not called yet */
+    bool is_fresh; /* whether the scene was initialised and POSE has not been
+                      called yet */
 
     /* Statistics of the picture drawn last: */
     struct glint_scene_stats stats;

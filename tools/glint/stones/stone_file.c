@@ -12,8 +12,7 @@
 #include "model/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 26)
-/* version of the bake: to be increased if the same text bakes to another
- * result */
+/* version of the bake; increase it if the same text bakes to another result */
 #define RECIPE UINT64_C(2)
 
 bool stone_file_is_text(const char *argument)
@@ -26,11 +25,11 @@ bool stone_file_is_baked(const char *argument)
     return tool_has_magic(argument, GLINT_TRANSLUCENT_MAGIC);
 }
 
-/* State of reading a text and the files that it names. */
+/* Reader state of a text and the files that it names */
 struct source {
     struct glint_stone_text text;
-    double *mask;                  /* owned */
-    struct glint_float_image rows; /* owned pixels */
+    double *mask; /* coverage mask, one value per texel, owned */
+    struct glint_float_image rows; /* picture of measured rows; owned pixels */
     long long held; /* count of values in the rows that were clamped to 0 */
     uint64_t key;
 };
@@ -207,7 +206,8 @@ static enum glint_status fit_scatter_rows(struct glint_scatter_rows *rows,
     return status;
 }
 
-/* Simulates the medium that S describes, or uses its measured rows. */
+/* Computes the scatter rows of the medium in S by simulation, or takes them
+ * from its measured rows. */
 static enum glint_status compute_scatter_rows(struct source *s,
                                               const struct glint_watch *watch,
                                               struct glint_scatter_rows *rows,
@@ -232,7 +232,7 @@ static enum glint_status bake_medium_source(const struct tool *tool,
                                       .ctx = &progress};
     struct glint_scatter_rows rows = {.side = 0};
     const clock_t began = clock();
-    /* fraction of the time spent before the fit, as measured; pictures of
+    /* measured fraction of the time that is spent before the fit; pictures of
      * rows are only read */
     const double before = s->rows.rgb ? .05 : .8;
     enum glint_status status;
@@ -286,7 +286,7 @@ static void write_cached_medium(const struct tool *tool, char *path,
                 tool->name, error.text);
 }
 
-/* Returns how many numbers the rows of STONE have in each channel. */
+/* Returns the number of values per channel in the rows of STONE. */
 static int64_t count_row_numbers(const struct glint_stone *stone)
 {
     const int64_t side = stone->side, kernel = stone->kernel;
@@ -339,7 +339,7 @@ stone_file_read(const struct tool *tool, const char *path,
     } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
-        file->data = data; /* malloc() aligns it */
+        file->data = data; /* malloc() aligns the data */
         if (status == GLINT_OK) {
             struct glint_error cause;
 

@@ -9,22 +9,22 @@
 #include "glint/scene/stone_bake.h"
 #include "options/tool.h"
 
-/* PSNR of a translucent medium against all of its rows (measured or
- * simulated), under lamps, shadows and a ramp: of the fit, and of the baked
- * integers. */
+/* PSNR, dB, of a translucent medium against all of its measured or simulated
+ * rows, under lamps, shadows and a ramp: of the fit, and of the baked
+ * integers */
 struct stone_errors {
     double fit_db, baked_db;
     double kernel_loss;
     int tap_bits;
-    double seconds; /* CPU time of the bake */
+    double seconds; /* processor time of the bake, s */
 };
 
 struct stone_file {
-    void *data; /* owned; STONE points into it */
+    void *data; /* contents of the baked medium, owned; STONE points into it */
     size_t bytes;
     struct glint_translucent stone;
     bool is_baked_now;
-    struct stone_errors errors; /* of the bake, if is_baked_now */
+    struct stone_errors errors; /* errors of the bake, if is_baked_now */
 };
 
 /* Return whether ARGUMENT is the text of a translucent medium, or a file

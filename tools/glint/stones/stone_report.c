@@ -6,7 +6,7 @@
 #include "stones/stone_file.h"
 
 struct counts {
-    size_t codes, clusters, taps, all; /* bytes of each section */
+    size_t codes, clusters, taps, all; /* size of each section, bytes */
     double each;                       /* bytes per texel, without the taps */
 };
 

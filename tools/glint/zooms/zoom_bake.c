@@ -8,31 +8,34 @@
 #include "zooms/zoom_error.h"
 
 enum {
-    DEPTH = 4, /* max number of times that a step is halved */
-    LAST = 2,  /* step at which the middle is only measured, not baked */
-    /* number of places: positions, and the middles of the finest steps */
+    DEPTH = 4, /* max number of times that a step between positions is halved */
+    LAST =
+        2, /* smallest step, in places; its middle is measured but not baked */
+    /* number of places: baked positions, and the middles of the smallest
+     * steps */
     PLACES = 2 * GLINT_MAX_ZOOM_MODELS - 1
 };
 
-/* The error at the measured angles is reduced to this many dB below the
- * requested error, as other angles may have more. */
+/* Margin, dB, by which the error at the measured angles must be below the
+ * requested error, as other angles may have larger errors */
 #define MARGIN_DB 2
-/* Fraction of the requested error: a ghost whose max error is smaller is not
- * measured again in the halves of its step. */
+/* Fraction of the requested error; a ghost whose max error is smaller is not
+ * measured again in the halves of its step */
 #define SMALL 1e-3
-/* Each place measures different angles: multiples of this number, modulo 1,
- * fill 0 to 1 evenly. */
+/* Offset of the measured angles from place to place: its multiples, modulo 1,
+ * fill 0 to 1 evenly */
 #define GOLDEN 0.6180339887
 
 struct place {
-    struct glint_bake_model model; /* no data: no ghost is baked there */
-    bool *ghosts;                  /* ghosts baked there, [n_ghosts] */
-    /* total error, in the step that begins here, of the ghosts that need no
-     * bake */
+    struct glint_bake_model
+        model;    /* model of the place; no data: no ghost is baked there */
+    bool *ghosts; /* whether each ghost is baked at this place, [n_ghosts] */
+    /* total error of the ghosts that are not baked, in the step that begins
+     * here */
     struct zoom_error left;
-    /* error of each ghost in the middle of the step of twice the length */
+    /* error of each ghost in the middle of the step of twice this length */
     struct zoom_error *before;
-    bool is_half; /* such a step was measured */
+    bool is_half; /* whether that step was measured */
 };
 
 struct run {
@@ -40,18 +43,19 @@ struct run {
     const struct zoom_bake *bake;
     struct zoom_baked *baked;
     struct glint_error *error;
-    struct tool_progress progress;  /* of all positions, or of one middle */
-    struct glint_prescription lens; /* the lens at the current place */
-    /* the lens one finest step before and after */
+    struct tool_progress
+        progress; /* progress of all positions, or of one middle */
+    struct glint_prescription lens; /* lens at the present place */
+    /* lens one smallest step before and after the present place */
     struct glint_prescription beside[2];
     int n_ghosts, n_places, step;
     double start;
     struct place place[PLACES];
-    struct zoom_error *ghost; /* [n_ghosts] */
+    struct zoom_error *ghost; /* error of each ghost, [n_ghosts] */
     struct glint_zoom_lens zoom;
 };
 
-/* Sets LENS to the lens of RUN, zoomed to PLACE. */
+/* Sets LENS to the zoom lens of RUN at PLACE. */
 static enum glint_status move_lens_to_place(const struct run *run, int place,
                                             struct glint_prescription *lens)
 {
@@ -68,10 +72,10 @@ static enum glint_status move_lens_to_place(const struct run *run, int place,
     return status;
 }
 
-/* Sets run->beside to the lens one finest step before and after PLACE, and
- * OPTIONS to use it, also for ghosts that will need only coarser steps. Not
- * used without added positions, as even positions are so far apart that
- * ghosts differ too much, nor for lenses without rotational symmetry. */
+/* Sets run->beside to the lens one smallest step before and after PLACE, and
+ * OPTIONS to use both, also for ghosts that need only coarser steps. Not used
+ * without added positions, as ghosts at even positions differ too much, nor for
+ * lenses without rotational symmetry. */
 static enum glint_status
 set_neighbour_lenses(struct run *run, int place,
                      struct glint_bake_options *options)
@@ -89,7 +93,7 @@ set_neighbour_lenses(struct run *run, int place,
     return status;
 }
 
-/* Bakes the chosen ghosts of PLACE, all ghosts if WHOLE. */
+/* Bakes the chosen ghosts at PLACE; WHOLE: all ghosts. */
 static enum glint_status bake_zoom_position(struct run *run, int place,
                                             bool whole)
 {
@@ -142,15 +146,15 @@ static enum glint_status combine_baked_models(struct run *run)
                                     "%s", reason);
 }
 
-/* Returns the max mean squared error allowed for all ghosts together. */
+/* Returns the max allowed mean squared error of all ghosts together. */
 static double max_total_error(const struct run *run)
 {
     return pow(10, -0.1 * (run->bake->halfway_db + MARGIN_DB));
 }
 
-/* Chooses ghosts to bake at TO until the error of all others is small
- * enough; none in the finest step. Sets LEFT to the total error of the
- * others. Returns the number chosen. */
+/* Chooses the ghosts to bake at TO so that the error of all others is small
+ * enough; chooses none in the smallest step. Sets LEFT to the total error of
+ * the others. Returns the number of chosen ghosts. */
 static int choose_ghosts(struct run *run, struct place *to,
                          struct zoom_error *left)
 {
@@ -191,7 +195,7 @@ static double max_angle_error(const struct zoom_error *error)
     return worst;
 }
 
-/* Records the error LEFT at the present position of the zoom. */
+/* Records the error LEFT at the present zoom position. */
 static void record_position_error(struct run *run,
                                   const struct zoom_error *left, int n_added)
 {
@@ -209,9 +213,9 @@ static void record_position_error(struct run *run,
                 n_added == 1 ? "" : "s", tool_clock_s() - run->start);
 }
 
-/* Marks the errors in the middle of the step from FROM to TO as wanted,
- * except for ghosts with small errors. Returns whether any ghost is baked at
- * both ends. */
+/* Marks the errors to be measured in the middle of the step from FROM to TO,
+ * except those of ghosts with small errors. Returns whether any ghost is baked
+ * at both ends. */
 static bool mark_wanted_errors(struct run *run, int from, int to)
 {
     const struct place *const p = &run->place[from];
@@ -229,8 +233,8 @@ static bool mark_wanted_errors(struct run *run, int from, int to)
     return any;
 }
 
-/* Stores the error of each ghost at MIDDLE, the middle of the step that
- * begins at FROM, for both halves of the step. */
+/* Stores the errors of all ghosts at MIDDLE, the middle of the step from FROM
+ * on, for both halves of the step. */
 static void store_ghost_errors(struct run *run, int from, int middle)
 {
     struct place *const p = &run->place[from], *const m = &run->place[middle];
@@ -240,8 +244,8 @@ static void store_ghost_errors(struct run *run, int from, int middle)
     p->is_half = m->is_half = true;
 }
 
-/* Measures the middle between FROM and the next place of the step, and bakes
- * there the ghosts that need it. */
+/* Measures the middle of the step that begins at FROM, and bakes there the
+ * ghosts that need it. */
 static enum glint_status halve_zoom_step(struct run *run, int from)
 {
     const int middle = from + run->step / 2, to = from + run->step;
@@ -273,7 +277,8 @@ static enum glint_status halve_zoom_step(struct run *run, int from)
     return bake_zoom_position(run, middle, false);
 }
 
-/* Bakes the even positions. Their total time is estimated from the first. */
+/* Bakes the evenly spaced positions. The total time is estimated from the
+ * first. */
 static enum glint_status bake_even_positions(struct run *run)
 {
     struct tool_progress *const p = &run->progress;
@@ -296,7 +301,7 @@ static enum glint_status bake_even_positions(struct run *run)
     return status;
 }
 
-/* Bakes the even positions and halves the steps between them. */
+/* Bakes the evenly spaced positions, then halves the steps between them. */
 static enum glint_status bake_all_positions(struct run *run)
 {
     enum glint_status status = bake_even_positions(run);

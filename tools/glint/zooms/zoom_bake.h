@@ -13,15 +13,18 @@
 #include "glint/bake.h"
 #include "options/tool.h"
 
-/* Default min PSNR of images half-way between positions against exact rays,
- * dB. */
+/* Default min PSNR of images halfway between positions against exact rays,
+ * dB */
 #define ZOOM_BAKE_DB 45
 
 struct zoom_bake {
-    const struct glint_prescription *lens;    /* as read from its table */
-    const struct glint_bake_options *options; /* without ghosts */
-    double focus_m, f_number;                 /* 0: that of the table */
-    int positions; /* number of even positions, at least 2 */
+    const struct glint_prescription
+        *lens; /* zoom lens, as read from its table */
+    const struct glint_bake_options
+        *options; /* bake options; ghosts are chosen here */
+    double focus_m,
+        f_number;  /* focus distance, m, and f-number; 0: those of the table */
+    int positions; /* number of evenly spaced positions, at least 2 */
     /* min PSNR half-way between positions, dB; 0: adds no positions */
     double halfway_db;
 };
@@ -30,7 +33,7 @@ struct zoom_bake {
 struct zoom_baked {
     unsigned char *data;
     size_t bytes;
-    int n_models; /* number of positions that have any ghost */
+    int n_models; /* number of positions at which any ghost is baked */
     int n_bakes;  /* number of ghosts baked, summed over positions */
     /* min PSNR of images half-way between positions, dB, and the focal
      * length at which it occurs, mm; 0: not measured */

@@ -10,15 +10,14 @@
 #include "glint/glint.h"
 #include "glint/transfer.h"
 
-/* Size of images, pixels: a quarter of 1080p's width. Offsets of outlines,
- * as fractions of the image, are the same. */
+/* Size of the compared images, pixels: a quarter of the width of 1080p. Offsets
+ * of outlines, as fractions of the image, are the same. */
 enum { WIDE = 480, MOST_HIGH = 480 };
 
-/* Max angle of lights: that of this factor times the half diagonal of the
- * field. */
+/* Max angle of lights: that of BEYOND * half diagonal of the field */
 #define BEYOND 1.5
 
-/* azimuth of lights, degrees: on no symmetry axis of the film */
+/* Azimuth of lights, degrees, not on a symmetry axis of the film */
 #define AZIMUTH_DEG 33
 
 /* Wavelength of all images, nm; three wavelengths would take twice as long.
@@ -26,23 +25,23 @@ enum { WIDE = 480, MOST_HIGH = 480 };
  * measure. */
 #define WAVE_NM 450
 
-/* min light of a visible ghost, 1 = white: a third of the first code */
+/* Min linear light of a visible ghost, 1 = white: a third of the first code */
 #define FAINT 1e-4
 
-enum { EACH = 4 }; /* one in EACH angles is measured in the first pass */
+enum { EACH = 4 }; /* in the first pass one of EACH angles is measured */
 
 /* State of a ghost at an angle, as bits. */
 enum {
     MEASURED = 1,
     IN_MODEL = 2, /* visible in the image by the model */
     IN_EXACT = 4, /* visible in the image by exact rays */
-    IN_RANGE = 8, /* the model has rays of it, visible or not */
-    WANTED = 16   /* to be measured in the present pass */
+    IN_RANGE = 8, /* the model has rays of the ghost, visible or not */
+    WANTED = 16   /* the angle must be measured in the present pass */
 };
 enum { SEEN = IN_MODEL | IN_EXACT };
 
-/* Data shared by all angles. Each angle is one job, as its frames are too
- * small to be split. */
+/* Data shared by all jobs; each angle is one job, as its frames are too small
+ * to be split */
 struct measuring {
     const struct glint_setup *setup;
     const struct glint_zoom_lens *zoom;
@@ -50,7 +49,8 @@ struct measuring {
     double max_deg, shift;
     int n;
     struct zoom_error *error;
-    unsigned char (*known)[ZOOM_ANGLES]; /* [n] */
+    unsigned char (*known)[ZOOM_ANGLES]; /* states of each ghost at each angle,
+                                            [n][ZOOM_ANGLES] */
     enum glint_status status[ZOOM_ANGLES];
 };
 
@@ -111,7 +111,7 @@ static enum glint_status draw_ghost_image(struct glint_engine *engine,
                                image->rgb, &report);
 }
 
-/* Measures the wanted ghosts at ANGLE. */
+/* Measures the ghosts that are marked as WANTED at ANGLE. */
 static enum glint_status measure_ghosts_at_angle(const struct measuring *m,
                                                  struct pictures *p, int angle)
 {
@@ -156,7 +156,7 @@ static enum glint_status open_measuring_engines(const struct measuring *m,
     cfg.sets = 0;
     cfg.camera.setup = m->setup;
     cfg.camera.sensor_width_mm = m->view.sensor_width_mm;
-    cfg.camera.sensor_height_mm = /* larger than needed for that width */
+    cfg.camera.sensor_height_mm = /* larger than this width needs */
         2 * m->view.sensor_width_mm * m->view.height / m->view.width;
     cfg.light.by_hand = 1;
     cfg.search.max_found = 0;
@@ -217,8 +217,8 @@ static bool find_ghost_angle_ranges(struct measuring *m)
 }
 
 /* Returns whether a ghost with the states KNOWN must be measured at ANGLE,
- * between two measured angles: it is visible at only one of them, or in only
- * one image, or has rays here but at neither of them. */
+ * which lies between two measured angles: it is visible at only one of them or
+ * in only one image, or has rays at ANGLE but at neither of them. */
 static bool is_measurement_wanted(const unsigned char known[ZOOM_ANGLES],
                                   int angle, int step)
 {
@@ -265,7 +265,7 @@ static void interpolate_angle_errors(const unsigned char known[ZOOM_ANGLES],
     }
 }
 
-/* Returns the max angle of measured lights for LENS, at most MAX_DEG,
+/* Returns the max angle of lights to measure with LENS, at most MAX_DEG,
  * degrees. */
 static double max_measured_angle_deg(const struct glint_prescription *lens,
                                      double max_deg)

@@ -10,11 +10,12 @@
 
 struct filter {
     struct tool tool;
-    struct glint_error cause; /* cause of a failure, for display by hosts */
+    struct glint_error
+        cause; /* cause of the last failure, for display by hosts */
     struct drawing drawing;
     int width, height;
     struct filter_values values;
-    struct glint_options opened; /* options that the lens was opened with */
+    struct glint_options opened; /* options with which the lens was opened */
     bool is_open, failed;
 };
 
@@ -63,8 +64,8 @@ void filter_set_live(struct filter *f, const struct filter_values *values)
 void filter_set(struct filter *f, const struct filter_values *values)
 {
     if (!filter_values_same_except_live(&f->values, values)) {
-        close_filter_drawing(
-            f); /* its options point to texts of the old values */
+        close_filter_drawing(f); /* close the drawing first: its options point
+                                    to texts of the old values */
         filter_values_free(&f->values);
         filter_values_copy(&f->values, values);
         f->failed = false;
@@ -87,7 +88,8 @@ bool filter_is_reusable(const struct filter *f,
 
 /* ------------------------------------------------------------------ opening */
 
-/* Sets the option of parameter P to value I. Returns -1 or an exit code. */
+/* Sets the option of parameter P to value number I. Returns -1 or an exit
+ * code. */
 static int set_filter_option(struct filter *f, const struct filter_parameter *p,
                              int i)
 {
@@ -104,8 +106,8 @@ static int set_filter_option(struct filter *f, const struct filter_parameter *p,
                                          v->number[i]);
 }
 
-/* Sets the options that are not live. Returns -1 or an exit code. The style
- * is set first, so that other options override the style's. */
+/* Sets all options that are not live. The style is set first, so that other
+ * options override it. Returns -1 or an exit code. */
 static int set_filter_options(struct filter *f)
 {
     const struct filter_values *const v = &f->values;
@@ -156,7 +158,7 @@ bool filter_open(struct filter *f)
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Sets the live options and the position of a manual lamp. */
+/* Sets all live options and the position of a manual lamp. */
 static void apply_live_options(struct filter *f)
 {
     const struct filter_values *const v = &f->values;

@@ -17,7 +17,7 @@
 
 #include "glint/image.h"
 
-enum { FILTER_MAX = 16 }; /* max parameters */
+enum { FILTER_MAX = 16 }; /* max number of parameters */
 
 enum filter_type { FILTER_NUMBER, FILTER_SWITCH, FILTER_TEXT };
 
@@ -35,7 +35,7 @@ struct filter_parameter {
  * no such parameter. */
 bool filter_parameter(int index, struct filter_parameter *parameter);
 
-/* The value of each parameter. */
+/* Values of all parameters */
 struct filter_values {
     double number[FILTER_MAX]; /* a number's value; 0 or 1 for a switch */
     char *text[FILTER_MAX];    /* owned, or NULL for "" */

@@ -34,7 +34,7 @@ struct f0r_plugin {
 
 struct f0r_param {
     const char *name;
-    int type; /* an f0r_type */
+    int type; /* type of the parameter, F0R_BOOL ... */
     const char *explanation;
 };
 

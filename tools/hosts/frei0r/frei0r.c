@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The frei0r plug-in, for ffmpeg, MLT, Kdenlive, Shotcut and GStreamer.
+ * The frei0r plug-in: adds a flare to pictures in ffmpeg, MLT, Kdenlive,
+ * Shotcut and GStreamer.
  */
 #include "frei0r/abi.h"
 
@@ -25,7 +26,7 @@ struct instance {
     double seconds; /* time of the last picture; NAN: none yet */
 };
 
-/* numeric parameters of frei0r are 0 .. 1 */
+/* Numeric parameters of frei0r are 0 .. 1. */
 int f0r_init(void)
 {
     struct filter_parameter p;
@@ -80,8 +81,8 @@ static bool stop_at_first_lens(void *ctx, const char *name)
     return false;
 }
 
-/* Returns whether any lens is installed. Checked here, as later failures
- * cannot be reported to the host: its call for pictures returns nothing. */
+/* Returns whether any lens is installed. It is checked when an instance is
+ * created, as frei0r cannot report later failures. */
 static bool has_installed_lenses(void)
 {
     if (lens_files_visit_all(stop_at_first_lens, NULL) > 0)

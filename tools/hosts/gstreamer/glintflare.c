@@ -34,7 +34,7 @@ G_DEFINE_TYPE(GlintFlareElement, glint_flare_element, GST_TYPE_VIDEO_FILTER)
 
 /* --------------------------------------------------------------- properties */
 
-/* Property ID is parameter ID - 1 of the filter. */
+/* Property number ID is parameter ID - 1 of the filter. */
 static void set_property(GObject *object, guint id, const GValue *value,
                          GParamSpec *spec)
 {
@@ -116,8 +116,8 @@ static gboolean find_pixel_format(GstVideoFormat from,
     return FALSE;
 }
 
-/* Returns the transfer curve of the frames: that of the caps, else the usual
- * one for RGB or luma. */
+/* Returns the transfer curve of the frames: that of the caps, or the usual one
+ * for RGB or luma. */
 static enum glint_tone find_transfer_curve(const GstVideoInfo *info)
 {
     switch (info->colorimetry.transfer) {
@@ -190,7 +190,7 @@ static GstFlowReturn transform_frame(GstVideoFilter *base, GstVideoFrame *frame)
                                        GST_FORMAT_TIME, now));
     if (GST_BUFFER_IS_DISCONT(frame->buffer) &&
         GST_CLOCK_TIME_IS_VALID(e->last) && now <= e->last)
-        close_element_filter(e); /* after a jump back */
+        close_element_filter(e); /* open the lens again after a jump back */
     if (!e->filter)
         e->filter =
             filter_create("glintflare", e->image.width, e->image.height);

@@ -53,8 +53,8 @@ static enum glint_matrix find_luma_matrix(const struct obs_source_frame *frame)
     return cr > between ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
 }
 
-/* Returns the transfer curve: that of the frame, else the usual one for RGB
- * or luma. */
+/* Returns the transfer curve: that of the frame, or the usual one for RGB or
+ * luma. */
 static enum glint_tone find_transfer_curve(const struct obs_source_frame *frame,
                                            bool is_rgb)
 {
@@ -113,7 +113,7 @@ static void *open_filter_in_thread(void *arg)
     struct opening *const o = arg;
     bool is_left;
 
-    /* after a failure drawing fails as well and reports it */
+    /* if this fails, drawing fails as well and prints the cause */
     filter_open(o->filter);
     pthread_mutex_lock(&o->lock);
     o->is_done = true;
@@ -147,8 +147,8 @@ static struct opening *start_filter_opening(const struct filter_values *values,
     return o;
 }
 
-/* Returns whether opening has ended, successfully or not. If so, passes the
- * filter to the caller and frees O. */
+/* Returns whether opening has ended, successfully or not. If so, returns the
+ * filter in *FILTER and frees O. */
 static bool collect_opened_filter(struct opening *o, struct filter **filter)
 {
     bool is_done;
@@ -180,7 +180,7 @@ static void abandon_opening(struct opening *o)
         free_filter_opening(o);
 }
 
-/* cppcheck-suppress unknownMacro ; of OBS's headers */
+/* cppcheck-suppress unknownMacro ; a macro of OBS */
 OBS_DECLARE_MODULE()
 
 enum { FRAME_US = 40000, LONGEST_US = 10000000 };

@@ -45,7 +45,7 @@ static struct {
     double row[GLINT_ENGINE_MAX_LAMPS][WEB_COLUMNS];
 } web;
 
-/* Records the reason of a failure. Returns 0. */
+/* Records REASON for web_error(). Returns 0. */
 static int record_error(const char *reason)
 {
     snprintf(web.error.text, sizeof web.error.text, "%s", reason);
@@ -273,8 +273,8 @@ size_t web_model_bytes(void)
 
 /* ------------------------------------------------------------------- engine */
 
-/* Sets CAMERA, with the blades of photographs unless options or table define
- * others, and makes the lens's setup. */
+/* Sets CAMERA by the options, with the aperture blades of photographs unless
+ * options or table define others, and computes the lens's setup. */
 static int set_up_camera(struct glint_engine_camera *camera, bool exact)
 {
     double nm[GLINT_MAX_WAVELENGTHS];
@@ -301,7 +301,7 @@ static int set_up_camera(struct glint_engine_camera *camera, bool exact)
 enum { KEPT = 16, KEPT_BYTES = 4096 };
 static struct {
     uint64_t key;
-    size_t bytes; /* 0: unused */
+    size_t bytes; /* bytes of the cached response; 0: unused entry */
     unsigned char data[KEPT_BYTES];
 } kept[KEPT];
 static int next_kept;

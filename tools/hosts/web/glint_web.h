@@ -23,11 +23,11 @@
 
 enum { WEB_FOUND = -1 };
 
-/* A lens table that is part of the module. */
+/* A lens table built into the module */
 struct web_lens {
     const char *name, *folder, *text;
 };
-/* ends with a row whose name is NULL */
+/* Lens tables of the module; ends with a row whose name is NULL */
 extern const struct web_lens web_lens[];
 
 /* Columns of the rows of lamps, doubles in the units of glint overlay

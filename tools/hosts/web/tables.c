@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Writes the library's tables as JSON.
+ * Writes tables as JSON for the page: options, styles and lenses.
  */
 #include <math.h>
 #include <stdarg.h>
@@ -13,7 +13,7 @@
 #include "glint/prescription.h"
 #include "web/glint_web.h"
 
-static char *json; /* the text to return, [room] */
+static char *json; /* JSON text to return, [room] */
 static size_t used, room;
 
 /* Appends a formatted text. If there is no memory, the rest is dropped, and
