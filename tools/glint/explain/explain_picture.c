@@ -146,8 +146,7 @@ static bool find_label_position(const struct marking *m, int start, int w,
 static void draw_ghost_label(struct marking *m, int k, int number)
 {
     struct paint p = {.image = m->image, .line = m->scale};
-    const int start = k * 5 % 16 * m->height /
-                      16; /* first row; labels are spread over the picture */
+    const int start = k * 5 % 16 * m->height / 16; /* first row; varied */
     struct label l;
     char text[16];
 

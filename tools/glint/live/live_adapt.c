@@ -5,9 +5,7 @@
 
 #include "glint/quality.h"
 
-#define TIGHT                                                                \
-    0.9 /* busy fraction of a frame period above which the quality decreases \
-         */
+#define TIGHT 0.9 /* fraction of a period; above it quality drops */
 /* busy fraction of a frame period below which the quality may increase after
  * some time */
 #define SPARE      0.55

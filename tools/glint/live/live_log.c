@@ -239,8 +239,7 @@ char *live_stats_line(const struct live_stats *stats, int64_t now_us,
         return text;
     }
     append(&w, "\r");
-    w.room = 1 + COLUMNS +
-             1; /* max columns: a line that wraps could not be overwritten */
+    w.room = 1 + COLUMNS + 1; /* a wrapped line could not be overwritten */
     append_summary_text(&w, stats, now_us);
     w.room = LIVE_STATS_TEXT;
     append(&w, "\033[K");

@@ -12,9 +12,7 @@
 #include "posix/clock.h"
 
 #define RETRY_MS 500
-#define WAIT_MS                                                            \
-    250 /* max wait for a frame, ms, after which the state of the input is \
-           checked */
+#define WAIT_MS  250 /* max wait, ms, before a silent input is checked */
 
 struct live {
     struct tool *tool;

@@ -156,8 +156,7 @@ static int draw_numbered_picture(struct tool *tool, struct overlay *o,
                     : gap > 1000000000 / FRAME_US ? 1000000000
                                                   : (int32_t)(gap * FRAME_US);
     o->drawing.run.n_frames +=
-        (int)(gap -
-              1); /* frame numbers of lamp lists include missing pictures */
+        (int)(gap - 1); /* lamp lists count missing pictures, too */
     code = overlay_check_apart(tool, o, from, to);
     if (code == EXIT_OK)
         code = overlay_picture(tool, o, from, to);
@@ -189,8 +188,7 @@ static int draw_all_numbered_pictures(struct tool *tool, struct overlay *o,
     for (int i = 0; i < l->n && code == EXIT_OK; i++)
         code = draw_numbered_picture(tool, o, l, i);
     if (code == EXIT_OK)
-        o->drawing.run.n_frames =
-            l->n; /* number of drawn pictures, without missing ones */
+        o->drawing.run.n_frames = l->n; /* without the missing ones */
     return code;
 }
 

@@ -310,8 +310,7 @@ int render_frames(struct tool *tool, struct render_scene *r, const char *path)
     if (r->is_video)
         f.elapsed_us = (int32_t)lrint(1e6 / r->fps);
     code = drawing_open(tool, c);
-    c->files.is_listed =
-        true; /* no detection: there is no photograph with lamps */
+    c->files.is_listed = true; /* no photograph to search for lamps */
     if (code == EXIT_OK)
         code = drawing_size(tool, c, r->width, r->height);
     if (code == EXIT_OK)

@@ -9,8 +9,7 @@
 
 enum {
     DEPTH = 4, /* max number of times that a step between positions is halved */
-    LAST =
-        2, /* smallest step, in places; its middle is measured but not baked */
+    LAST = 2,  /* smallest step; its middle is not baked */
     /* number of places: baked positions, and the middles of the smallest
      * steps */
     PLACES = 2 * GLINT_MAX_ZOOM_MODELS - 1
