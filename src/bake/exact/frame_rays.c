@@ -247,29 +247,43 @@ static void set_at(const struct traced *t, struct point *p, double phi_deg)
         t->cfg.round ? 0 : sine * glint_sin_deg(p->lamp.phi_deg - phi_deg);
 }
 
+/* Widens LOW .. HIGH to the coordinates of P and of what it stands for. */
+static void include_point(const struct point *p, double low[2], double high[2])
+{
+    for (int k = 0; k < 2; k++) {
+        low[k] = fmin(low[k], p->at[k] - p->reach);
+        high[k] = fmax(high[k], p->at[k] + p->reach);
+    }
+}
+
+/* Returns the patch from LOW to HIGH in the frame of azimuth PHI_DEG. */
+static struct ray_patch make_patch(const struct traced *t, double phi_deg,
+                                   const double low[2], const double high[2])
+{
+    struct ray_patch p = {.phi_deg = phi_deg};
+
+    for (int k = 0; k < (t->cfg.round ? 1 : 2); k++) {
+        p.middle[k] = 0.5 * (low[k] + high[k]);
+        p.half[k] = 0.5 * (high[k] - low[k]);
+    }
+    /* Both components or none, so that cross terms are known. */
+    if (!t->cfg.round && (p.half[0] > 0 || p.half[1] > 0))
+        for (int k = 0; k < 2; k++)
+            p.half[k] = fmax(p.half[k], 1e-4);
+    return p;
+}
+
 /* Adds to PATCH, which has N, one that holds the points FIRST .. LAST - 1. */
 static void add_patch(const struct traced *t, struct point *point, int first,
                       int last, double phi_deg, struct ray_patch *patch, int n)
 {
-    struct ray_patch *p = &patch[n];
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
 
-    *p = (struct ray_patch){.phi_deg = phi_deg};
-    for (int k = 0; k < (t->cfg.round ? 1 : 2); k++) {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-
-        for (int i = first; i < last; i++) {
-            low = fmin(low, point[i].at[k] - point[i].reach);
-            high = fmax(high, point[i].at[k] + point[i].reach);
-        }
-        p->middle[k] = 0.5 * (low + high);
-        p->half[k] = 0.5 * (high - low);
-    }
-    /* Both components or none, so that cross terms are known. */
-    if (!t->cfg.round && (p->half[0] > 0 || p->half[1] > 0))
-        for (int k = 0; k < 2; k++)
-            p->half[k] = fmax(p->half[k], 1e-4);
-    for (int i = first; i < last; i++)
+    for (int i = first; i < last; i++) {
+        include_point(&point[i], low, high);
         point[i].patch = n;
+    }
+    patch[n] = make_patch(t, phi_deg, low, high);
 }
 
 /* Sorts N points of a round lens by their angle, and adds their patches to
@@ -787,6 +801,28 @@ static enum glint_status skip_faint(struct glint_frame *f, double scale,
     return GLINT_OK;
 }
 
+/* Returns whether field I is drawn from point P. */
+static bool is_drawn_from(const struct traced *t, int i, int p)
+{
+    return &t->patch[t->point[p].patch] == t->field[i].patch &&
+           t->point[p].first <= t->level[i] && t->point[p].last >= t->level[i];
+}
+
+/* Chooses the samples of field I for the points and wavelengths that it is
+ * drawn from: fewer than for its whole patch. */
+static void choose_samples(struct traced *t, int i)
+{
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    const struct wave_set *const set = &t->set[t->set_of[i]];
+    struct ray_patch range;
+
+    for (int p = 0; p < t->n_points; p++)
+        if (is_drawn_from(t, i, p))
+            include_point(&t->point[p], low, high);
+    range = make_patch(t, t->field[i].patch->phi_deg, low, high);
+    glint_ray_field_choose(&t->field[i], &range, set->nm, set->n);
+}
+
 /* Lists the bundles that reach the picture: of each field by wavelength. */
 static enum glint_status list_bundles(struct glint_frame *f)
 {
@@ -799,9 +835,7 @@ static enum glint_status list_bundles(struct glint_frame *f)
             for (int w = 0; t->set_of[i] >= 0 && w < t->set[t->set_of[i]].n;
                  w++)
                 for (int p = 0; p < t->n_points; p++) {
-                    if (&t->patch[t->point[p].patch] != t->field[i].patch ||
-                        t->point[p].first > t->level[i] ||
-                        t->point[p].last < t->level[i] ||
+                    if (!is_drawn_from(t, i, p) ||
                         !in_view(f, &t->field[i], turn_of(t, &t->point[p])))
                         continue;
                     if (pass)
@@ -957,10 +991,9 @@ static enum glint_status plan(struct glint_frame *f,
         light = scale * r->flux / pixels_of(f, r);
         sum_light(f, i, 0, &all, &most);
         t->set_of[i] = choose_set(f, r, light * most, step);
-        glint_ray_field_choose(r, t->set[t->set_of[i]].nm,
-                               t->set[t->set_of[i]].n);
         if (t->in_codes)
             coarsen(f, i, light, step);
+        choose_samples(t, i);
     }
     status = list_bundles(f);
     return status == GLINT_OK ? hold_fields(f) : status;

@@ -458,15 +458,16 @@ static void add_sample(struct ray_field *f, double nm, double x, double y)
 {
     f->sample[f->n_samples++] =
         (struct ray_sample){nm,
-                            {f->patch->middle[0] + x * f->patch->half[0],
-                             f->patch->middle[1] + y * f->patch->half[1]}};
+                            {f->range.middle[0] + x * f->range.half[0],
+                             f->range.middle[1] + y * f->range.half[1]}};
 }
 
-void glint_ray_field_choose(struct ray_field *f, const double *nm, int n)
+void glint_ray_field_choose(struct ray_field *f, const struct ray_patch *range,
+                            const double *nm, int n)
 {
-    const struct ray_patch *p = f->patch;
-    const int wide = (p->half[0] > 0) + 2 * (p->half[1] > 0);
+    const int wide = (range->half[0] > 0) + 2 * (range->half[1] > 0);
 
+    f->range = *range;
     f->n_nodes = n < RAY_FIELD_NODES ? n : RAY_FIELD_NODES;
     f->n_samples = 0;
     for (int i = 0; i < f->n_nodes; i++) {
@@ -664,9 +665,9 @@ void glint_ray_place_set(struct ray_place *p, const struct ray_field *f,
                          const void *mem, const double at[2], double nm,
                          double phi_deg)
 {
-    const struct ray_patch *patch = f->patch;
+    const struct ray_patch *range = &f->range;
     const int mid = f->n_nodes / 2, n = f->n_nodes;
-    const bool both = patch->half[1] > 0;
+    const bool both = range->half[1] > 0;
     double t[2] = {0, 0}, sum = 0;
 
     *p = (struct ray_place){.field = f,
@@ -674,8 +675,8 @@ void glint_ray_place_set(struct ray_place *p, const struct ray_field *f,
                             .cosine = glint_cos_deg(phi_deg),
                             .sine = glint_sin_deg(phi_deg)};
     for (int k = 0; k < 2; k++)
-        if (patch->half[k] > 0)
-            t[k] = (at[k] - patch->middle[k]) / patch->half[k];
+        if (range->half[k] > 0)
+            t[k] = (at[k] - range->middle[k]) / range->half[k];
     add_waves(p, nm, 1);
     if (f->n_samples == n)
         return;

@@ -68,6 +68,9 @@ struct ray_sight {
 struct ray_field {
     int ghost;
     const struct ray_patch *patch;
+    /* Directions between which rays are interpolated, all within PATCH: set by
+     * glint_ray_field_choose(). */
+    struct ray_patch range;
     /* Set by glint_ray_field_look(): */
     bool is_looked, is_open; /* is_open: light of the ghost gets through */
     struct ray_sight sight;
@@ -108,8 +111,11 @@ void glint_ray_field_fit(const struct ray_field_config *cfg,
 void glint_ray_field_coarsen(const struct ray_field_config *cfg,
                              struct ray_field *field, double by);
 
-/* Chooses the samples for the wavelengths NM[N], which rise. */
-void glint_ray_field_choose(struct ray_field *field, const double *nm, int n);
+/* Chooses the samples for the directions RANGE, which lie within the patch of
+ * FIELD, and for the wavelengths NM[N], which rise. */
+void glint_ray_field_choose(struct ray_field *field,
+                            const struct ray_patch *range, const double *nm,
+                            int n);
 
 /* Returns the bytes that glint_ray_field_trace() fills. */
 size_t glint_ray_field_bytes(const struct ray_field_config *cfg,
