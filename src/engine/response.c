@@ -343,6 +343,16 @@ static void set_peak(const struct proxy *p, struct glint_response_light *light)
     }
 }
 
+/* Reports progress of FRAME while its small picture finds the ghosts of both.
+ */
+static void report_finding(void *frame, double done)
+{
+    const struct glint_frame *const f = frame;
+
+    if (done <= GLINT_FRAME_FOUND)
+        f->progress(f->progress_ctx, done);
+}
+
 enum glint_status
 glint_response_draw(struct glint_frame *frame, const struct glint_lamp *lamps,
                     int n, int pixels, const struct glint_ground *ground,
@@ -365,6 +375,8 @@ glint_response_draw(struct glint_frame *frame, const struct glint_lamp *lamps,
             small[i].power *= by;
         if (frame->trace)
             frame->trace->adopt(&p.frame, frame);
+        p.frame.progress = frame->progress ? report_finding : NULL;
+        p.frame.progress_ctx = frame;
         if (status == GLINT_OK)
             status = draw_in_range(&p, small, n, &peak_log2, light);
         if (status == GLINT_OK)

@@ -42,9 +42,9 @@ enum { PARTS = 100, LEAST_PART = 4 };
  * for at once. */
 #define EDGES 128.0
 
-/* Shares of looking and of tracing in the work of a frame, about. */
-#define LOOK_SHARE  0.4
-#define TRACE_SHARE 0.7
+/* Progress of a frame whose rays are traced, 0 to 1. Finding its ghosts, if no
+ * other frame has found them, ends at GLINT_FRAME_FOUND. */
+#define TRACED 0.85
 
 /* A lamp, in the patch that holds its direction, or several near each other
  * that stand for one: those of a level are about half as many as those of the
@@ -519,6 +519,23 @@ static bool is_wanted(const struct glint_frame *f, int ghost)
            (!f->tints || f->tints[ghost].gain.mantissa > 0);
 }
 
+/* Returns whether FIELD is to be drawn and no frame has looked at it. */
+static bool is_unknown(const struct glint_frame *f,
+                       const struct ray_field *field)
+{
+    return !field->is_looked && is_wanted(f, field->ghost);
+}
+
+static int count_unknown(const struct glint_frame *f)
+{
+    const struct traced *const t = state_of(f);
+    int n = 0;
+
+    for (int i = 0; i < t->n_patches * f->setup->n_ghosts; i++)
+        n += is_unknown(f, &t->looked[i]);
+    return n;
+}
+
 static void look_job(void *ctx, int job, int worker)
 {
     const struct job *j = ctx;
@@ -526,7 +543,7 @@ static void look_job(void *ctx, int job, int worker)
     struct ray_field *const field = &t->looked[j->first + job];
 
     (void)worker;
-    if (!field->is_looked && is_wanted(j->frame, field->ghost))
+    if (is_unknown(j->frame, field))
         glint_ray_field_look(&t->cfg, field);
 }
 
@@ -738,7 +755,8 @@ static enum glint_status look_at(struct glint_frame *f,
         status = set_fields(t, had, n_ghosts);
     if (status != GLINT_OK)
         return status;
-    run(f, t->n_patches * n_ghosts, look_job, 0, LOOK_SHARE);
+    if (count_unknown(f) > 0)
+        run(f, t->n_patches * n_ghosts, look_job, 0, GLINT_FRAME_FOUND);
     list_fields(f);
     return GLINT_OK;
 }
@@ -1209,8 +1227,7 @@ static enum glint_status draw_rows(struct glint_frame *f, double scale,
         add_stats(stats, &s);
         y0 += n;
         if (f->progress)
-            f->progress(f->progress_ctx,
-                        TRACE_SHARE + (1 - TRACE_SHARE) * y0 / height);
+            f->progress(f->progress_ctx, TRACED + (1 - TRACED) * y0 / height);
     }
     return status;
 }
@@ -1232,7 +1249,7 @@ static enum glint_status draw(struct glint_frame *frame,
     if (status != GLINT_OK)
         return status;
     times[1] = now(frame);
-    run(frame, t->n_fields, trace_job, LOOK_SHARE, TRACE_SHARE);
+    run(frame, t->n_fields, trace_job, GLINT_FRAME_FOUND, TRACED);
     times[2] = times[3] = now(frame);
     expected.need_primitives = (int)fmin(EDGES * t->n_bundles, INT_MAX);
     expected.need_refs = expected.need_primitives;

@@ -148,6 +148,9 @@ struct glint_frame_memory {
     size_t bytes;      /* bytes of the block */
 };
 
+/* Progress at which the ghosts of a picture by exact rays are found, 0 to 1. */
+#define GLINT_FRAME_FOUND 0.5
+
 struct glint_frame {
     const struct glint_setup *setup;
     /* Model of the lens; NULL: rays come from TRACE. */

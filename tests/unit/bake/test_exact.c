@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "engine/frame/frame.h"
+#include "engine/response.h"
 #include "glint/measure.h"
 #include "glint/pool.h"
 #include "formats/pnm.h"
@@ -493,4 +494,50 @@ TEST(decentred_at_the_diagonal)
     load_shaped("", "", "");
     render_exact(other, view, &at[0], 1, 64);
     assert_true(compute_psnr(rgb, other, view) < 40);
+}
+
+/* Progress reports of a picture and of the small one that exposes it. */
+struct reports {
+    int n, n_exposing;
+    double last, exposed;
+    bool rises;
+};
+
+static void record_report(void *ctx, double done)
+{
+    struct reports *const r = ctx;
+
+    r->rises = r->rises && done > r->last;
+    r->last = done;
+    r->n++;
+}
+
+/* Checks that progress rises while a picture is exposed, which finds its
+ * ghosts, and from there to the end while it is drawn. */
+TEST(progress_rises_from_exposure_to_picture)
+{
+    const struct glint_view view = {
+        .width = 240, .height = 135, .sensor_width_mm = 36};
+    const struct glint_lamp lamp = make_lamp(7.58, 33.2);
+    static float linear[3 * 240 * 135];
+    struct reports reports = {.rises = true};
+    struct glint_response_light light;
+    struct glint_engine_report report;
+    struct glint_frame frame;
+
+    load_shaped("", "", "");
+    glint_frame_init(&frame, &setup, view, NULL);
+    frame.trace = &glint_frame_traces;
+    frame.progress = record_report;
+    frame.progress_ctx = &reports;
+    assert_ok(glint_response_draw(&frame, &lamp, 1, 5000, NULL, &light, NULL));
+    reports.n_exposing = reports.n;
+    reports.exposed = reports.last;
+    assert_ok(glint_frame_draw_alone(&frame, &lamp, 1, 1, linear, &report));
+    glint_frame_finish(&frame);
+    assert_true(reports.n_exposing > 1);
+    assert_true(reports.exposed == GLINT_FRAME_FOUND);
+    assert_true(reports.n > reports.n_exposing);
+    assert_true(reports.last == 1);
+    assert_true(reports.rises);
 }

@@ -673,23 +673,21 @@ enum glint_status drawing_expose(struct drawing *drawing,
 {
     struct drawing_run *const run = &drawing->run;
     struct glint_engine_config cfg;
-    enum glint_status status;
 
     save_frame_lamps(&drawing->files.save, run, lens_focal_mm(drawing));
-    if (run->is_progressing)
-        print_exact_ray_notice(drawing);
     glint_engine_configure(&cfg, &drawing->line.settings.options);
     glint_engine_set_light(run->engine, &cfg.light);
-    status = glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
-                                 run->white);
-    /* The following work is done once, so the progress clock starts here. */
+    /* Brightness was measured, if at all, when the engine was made: what
+     * follows is drawn once. */
     if (run->is_progressing) {
+        print_exact_ray_notice(drawing);
         tool_progress_start(&run->progress, drawing->files.scene.tool,
                             "exact rays");
         run->progress.least_s = 3;
         run->progress.waits = true;
     }
-    return status;
+    return glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
+                               run->white);
 }
 
 /* Records the time of a flare whose drawing began at START, seconds. */
