@@ -13,6 +13,7 @@
 #include "zooms/zoom_bake.h"
 #include "model/zoom_option.h"
 #include "model/model_report.h"
+#include "model/picture_check.h"
 #include "model/table_file.h"
 #include "posix/output.h"
 #include "scenes/baked_scene.h"
@@ -51,6 +52,12 @@ static const char help[] =
     "  --field MM        radius on the sensor within which light counts\n"
     "                    (default: 1.1 times that of the film's corners)\n"
     "  --tolerance T     scale of the tolerances (default 1)\n"
+    "  --strict          write nothing and exit with 5 if a picture of the "
+    "model "
+    "has\n"
+    "                    less than 50 dB against exact rays (--halfway DB "
+    "between\n"
+    "                    positions)\n"
     "  -j, --threads N   default: all processors; never changes the model\n"
     "  --json   -q   -v   --help   --help-all   --version\n";
 
@@ -65,6 +72,7 @@ struct bake {
                       model */
     /* --halfway: min PSNR halfway between positions, dB; below 0: not given */
     double halfway_db;
+    bool is_strict;
     struct glint_bake_options options;
     struct tool_progress progress;
 };
@@ -107,6 +115,9 @@ static int parse_option(struct tool *tool, struct bake *b, int c,
     case 'm':
         ok = tool_parse_number(optarg, &o->field_mm) && o->field_mm > 0;
         break;
+    case 's':
+        b->is_strict = true;
+        break;
     case 't':
         ok = tool_parse_number(optarg, &o->tolerance);
         break;
@@ -130,6 +141,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         {"max-angle", required_argument, NULL, 'a'},
         {"field", required_argument, NULL, 'm'},
         {"tolerance", required_argument, NULL, 't'},
+        {"strict", no_argument, NULL, 's'},
         TOOL_COMMON_OPTIONS};
     int c, code, index = 0;
 
@@ -152,16 +164,84 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     return -1;
 }
 
-static int print_bake_report(const struct tool *tool, const void *model,
-                             size_t bytes, double seconds,
-                             const struct glint_bake_report *r)
+/* Returns an exit code for a file that --strict does not write, as its pictures
+ * have only PSNR_DB, less than LEAST_DB, at WHERE. */
+static int refuse_inaccurate(const struct tool *tool, double psnr_db,
+                             double least_db, const char *where,
+                             const char *remedy)
 {
-    const char *reason;
-    struct glint_lens lens;
+    char text[200];
 
-    if (glint_lens_open(&lens, model, bytes, &reason) != GLINT_OK)
-        return tool_fail(tool, GLINT_E_LENS, reason);
-    model_report_bake(tool, &lens, seconds, r);
+    snprintf(text, sizeof text,
+             "--strict: not written: %.1f dB against exact rays %s, less than "
+             "%g; %s",
+             psnr_db, where, least_db, remedy);
+    return tool_fail(tool, GLINT_E_LENS, text);
+}
+
+/* Returns whether pictures of the model are reported or decide whether it is
+ * written. */
+static bool needs_pictures(const struct tool *tool, const struct bake *b)
+{
+    return b->is_strict ||
+           (strcmp(b->output, "-") != 0 && (tool->json || !tool->quiet));
+}
+
+/* Compares pictures of MODEL with exact rays if they are needed. Returns an
+ * exit code. */
+static int check_pictures(const struct tool *tool, const struct bake *b,
+                          const struct glint_prescription *lens,
+                          const struct glint_lens *model,
+                          struct picture_check *check)
+{
+    struct glint_error error = {""};
+    enum glint_status status;
+    char where[64];
+
+    *check = (struct picture_check){.n = 0};
+    if (!needs_pictures(tool, b))
+        return EXIT_OK;
+    status =
+        picture_check_run(tool, lens, model, b->options.max_deg, check, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (!b->is_strict || check->psnr_db >= PICTURE_CHECK_DB)
+        return EXIT_OK;
+    snprintf(where, sizeof where, "with the light %.1f degrees off the axis",
+             check->angle_deg);
+    return refuse_inaccurate(tool, check->psnr_db, PICTURE_CHECK_DB, where,
+                             "try a smaller --tolerance");
+}
+
+/* Checks MODEL[BYTES] and writes it to OUT, which it commits or aborts, and
+ * reports. Returns an exit code. */
+static int write_model(struct glint_output *out, const struct tool *tool,
+                       const struct bake *b,
+                       const struct glint_prescription *lens,
+                       const unsigned char *model, size_t bytes, double start,
+                       const struct glint_bake_report *report)
+{
+    struct glint_error error = {""};
+    struct picture_check check;
+    enum glint_status status;
+    struct glint_lens opened;
+    const char *reason;
+    int code = EXIT_OK;
+
+    if (glint_lens_open(&opened, model, bytes, &reason) != GLINT_OK)
+        code = tool_fail(tool, GLINT_E_LENS, reason);
+    else
+        code = check_pictures(tool, b, lens, &opened, &check);
+    if (code != EXIT_OK) {
+        glint_output_abort(out);
+        return code;
+    }
+    status = glint_output_finish(out, model, bytes, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (strcmp(b->output, "-") != 0)
+        model_report_bake(tool, &opened, tool_clock_s() - start, report,
+                          &check);
     return EXIT_OK;
 }
 
@@ -177,7 +257,7 @@ static int bake_lens_to_output(struct glint_output *out, struct tool *tool,
     const double start = tool_clock_s();
     size_t bytes = 0;
     enum glint_status status;
-    int code = EXIT_OK;
+    int code;
 
     b->options.workers = tool->workers;
     b->options.progress = tool_progress_show;
@@ -186,15 +266,12 @@ static int bake_lens_to_output(struct glint_output *out, struct tool *tool,
     b->progress.less = "a smaller --max-angle or a larger --tolerance";
     status = glint_bake(lens, &b->options, &model, &bytes, &r, &error);
     tool_progress_end(&b->progress);
-    if (status == GLINT_OK)
-        status = glint_output_finish(out, model, bytes, &error);
-    else
+    if (status == GLINT_OK) {
+        code = write_model(out, tool, b, lens, model, bytes, start, &r);
+    } else {
         glint_output_abort(out);
-    if (status != GLINT_OK)
         code = tool_fail(tool, status, error.text[0] ? error.text : NULL);
-    else if (strcmp(b->output, "-") != 0)
-        code =
-            print_bake_report(tool, model, bytes, tool_clock_s() - start, &r);
+    }
     free(model);
     return code;
 }
@@ -248,7 +325,17 @@ static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
     struct glint_error error = {""};
     struct zoom_baked baked;
     enum glint_status status = zoom_bake_run(tool, &zoom, &baked, &error);
+    char where[64];
 
+    if (status == GLINT_OK && b->is_strict && baked.least_db > 0 &&
+        baked.least_db < b->halfway_db) {
+        glint_output_abort(out);
+        free(baked.data);
+        snprintf(where, sizeof where, "at %.2f mm, between positions",
+                 baked.least_mm);
+        return refuse_inaccurate(tool, baked.least_db, b->halfway_db, where,
+                                 "try more --positions");
+    }
     if (status == GLINT_OK)
         status = glint_output_finish(out, baked.data, baked.bytes, &error);
     else

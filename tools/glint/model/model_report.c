@@ -153,7 +153,8 @@ static void write_ghost_json(struct json_writer *json,
 }
 
 static void write_bake_json(const struct glint_lens *lens, double seconds,
-                            const struct glint_bake_report *report)
+                            const struct glint_bake_report *report,
+                            const struct picture_check *check)
 {
     const struct glint_model_header *h = lens->header;
     const struct model_summary sum =
@@ -166,6 +167,8 @@ static void write_bake_json(const struct glint_lens *lens, double seconds,
                seconds, h->bytes, model_count_ghosts(lens), h->n_ghosts,
                h->n_systems, model_compute_mean_terms(&sum), report->unmet,
                report->rays, report->intruders);
+    json_write(&json, "pictures: %d, worst_db: %.2f, worst_deg: %.4f", check->n,
+               check->psnr_db, check->angle_deg);
     write_errors_json(&json, &sum);
     write_misses_json(&json, lens);
     json_write(&json, "by_ghost: [");
@@ -402,6 +405,18 @@ static void print_bake_statistics(const struct tool *tool,
            report->rays, report->unmet);
 }
 
+/* Prints the worst picture, and what to do if it is not accurate. */
+static void print_picture_check(const struct picture_check *check)
+{
+    printf("%d pictures of the model against exact rays: worst PSNR %.1f dB, "
+           "with the light %.1f degrees off the axis\n",
+           check->n, check->psnr_db, check->angle_deg);
+    if (check->psnr_db < PICTURE_CHECK_DB)
+        printf("less than %g dB: bake with a smaller --tolerance, or draw "
+               "stills with --rays exact\n",
+               PICTURE_CHECK_DB);
+}
+
 void model_report_info(const struct tool *tool, const struct model_file *model)
 {
     struct model_file shown = *model;
@@ -413,10 +428,13 @@ void model_report_info(const struct tool *tool, const struct model_file *model)
 }
 
 void model_report_bake(const struct tool *tool, const struct glint_lens *lens,
-                       double seconds, const struct glint_bake_report *report)
+                       double seconds, const struct glint_bake_report *report,
+                       const struct picture_check *check)
 {
     if (tool->json)
-        write_bake_json(lens, seconds, report);
-    else if (!tool->quiet)
+        write_bake_json(lens, seconds, report, check);
+    else if (!tool->quiet) {
         print_bake_statistics(tool, lens, seconds, report);
+        print_picture_check(check);
+    }
 }

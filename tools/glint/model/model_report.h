@@ -6,6 +6,7 @@
 #define GLINT_TOOLS_MODEL_MODEL_REPORT_H
 
 #include "model/model_file.h"
+#include "model/picture_check.h"
 #include "options/tool.h"
 
 /* Prints a summary of the model; with -v also each polynomial system. */
@@ -15,6 +16,7 @@ void model_report_info(const struct tool *tool, const struct model_file *model);
  * miss an error target (with -v all ghosts), and totals. With -q it prints
  * no text, only JSON. */
 void model_report_bake(const struct tool *tool, const struct glint_lens *lens,
-                       double seconds, const struct glint_bake_report *report);
+                       double seconds, const struct glint_bake_report *report,
+                       const struct picture_check *check);
 
 #endif

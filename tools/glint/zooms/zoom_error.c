@@ -5,10 +5,10 @@
 #include <stdlib.h>
 
 #include "glint/engine.h"
-#include "glint/exact.h"
 #include "glint/measure.h"
 #include "glint/glint.h"
 #include "glint/transfer.h"
+#include "model/picture_check.h"
 
 /* Size of the compared images, pixels: a quarter of the width of 1080p. Offsets
  * of outlines, as fractions of the image, are the same. */
@@ -65,7 +65,7 @@ static double field_angle_deg(const struct measuring *m, int angle)
 /* Images of one light: all ghosts by the zoom model, and one ghost by the
  * model and by exact rays; grey, as there is one wavelength. */
 struct pictures {
-    struct glint_engine *model, *exact;
+    struct picture_pair by;
     struct glint_float_image all, mixed, traced;
     double exposure;
 };
@@ -119,15 +119,16 @@ static enum glint_status measure_ghosts_at_angle(const struct measuring *m,
                                     .phi_deg = AZIMUTH_DEG,
                                     .power = 1,
                                     .rgb = {1, 1, 1}};
-    enum glint_status status = draw_ghost_image(p->model, &lamp, -1, &p->all);
+    enum glint_status status =
+        draw_ghost_image(p->by.model, &lamp, -1, &p->all);
 
     p->exposure = glint_measure_exposure(&p->all);
     for (int g = 0; g < m->n && status == GLINT_OK; g++) {
         if (!(m->known[g][angle] & WANTED))
             continue;
-        status = draw_ghost_image(p->model, &lamp, g, &p->mixed);
+        status = draw_ghost_image(p->by.model, &lamp, g, &p->mixed);
         if (status == GLINT_OK)
-            status = draw_ghost_image(p->exact, &lamp, g, &p->traced);
+            status = draw_ghost_image(p->by.exact, &lamp, g, &p->traced);
         m->known[g][angle] =
             (unsigned char)((m->known[g][angle] & IN_RANGE) | MEASURED |
                             find_single_ghost_error(p, &m->error[g].of[angle]));
@@ -145,34 +146,11 @@ static bool allocate_error_image(struct glint_float_image *image,
     return image->rgb != NULL;
 }
 
-static enum glint_status open_measuring_engines(const struct measuring *m,
-                                                struct pictures *p)
-{
-    struct glint_engine_config cfg;
-    struct glint_error error;
-    enum glint_status status;
-
-    glint_engine_defaults(&cfg, m->view.width, m->view.height);
-    cfg.sets = 0;
-    cfg.camera.setup = m->setup;
-    cfg.camera.sensor_width_mm = m->view.sensor_width_mm;
-    cfg.camera.sensor_height_mm = /* larger than this width needs */
-        2 * m->view.sensor_width_mm * m->view.height / m->view.width;
-    cfg.light.by_hand = 1;
-    cfg.search.max_found = 0;
-    cfg.drawing.is_fresh = 1;
-    cfg.model = &m->zoom->lens;
-    status = glint_engine_create(&p->model, &cfg, &error);
-    cfg.model = NULL;
-    cfg.camera.rays = &glint_frame_traces;
-    return status == GLINT_OK ? glint_engine_create(&p->exact, &cfg, &error)
-                              : status;
-}
-
 static void measure_angle_job(void *ctx, int angle, int worker)
 {
     struct measuring *const m = ctx;
     struct pictures p = {.exposure = 1};
+    struct glint_error error;
     bool any = false;
 
     (void)worker;
@@ -183,12 +161,12 @@ static void measure_angle_job(void *ctx, int angle, int worker)
     m->status[angle] = allocate_error_image(&p.all, &m->view) &&
                                allocate_error_image(&p.mixed, &m->view) &&
                                allocate_error_image(&p.traced, &m->view)
-                           ? open_measuring_engines(m, &p)
+                           ? picture_pair_open(&p.by, m->setup, &m->zoom->lens,
+                                               &m->view, &error)
                            : GLINT_E_MEMORY;
     if (m->status[angle] == GLINT_OK)
         m->status[angle] = measure_ghosts_at_angle(m, &p, angle);
-    glint_engine_destroy(p.model);
-    glint_engine_destroy(p.exact);
+    picture_pair_close(&p.by);
     free(p.all.rgb);
     free(p.mixed.rgb);
     free(p.traced.rgb);

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: MIT */
+#include "model/picture_check.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "glint/exact.h"
+#include "glint/measure.h"
+
+/* Size of the pictures, pixels: a quarter of 1080p's width. */
+enum { WIDE = 480, MOST_HIGH = 480 };
+
+/* azimuth of lights, degrees: on no symmetry axis of the film */
+#define AZIMUTH_DEG 33
+
+/* Angles near the axis, degrees, where ghosts fold; further lights are at even
+ * steps up to the corner. */
+static const double near_deg[] = {0, 0.3, 2, 5};
+enum { NEAR = sizeof near_deg / sizeof *near_deg, STEPS = 6 };
+
+enum glint_status picture_pair_open(struct picture_pair *pair,
+                                    const struct glint_setup *setup,
+                                    const struct glint_lens *model,
+                                    const struct glint_view *view,
+                                    struct glint_error *error)
+{
+    struct glint_engine_config cfg;
+    enum glint_status status;
+
+    *pair = (struct picture_pair){NULL, NULL};
+    glint_engine_defaults(&cfg, view->width, view->height);
+    cfg.sets = 0;
+    cfg.camera.setup = setup;
+    cfg.camera.sensor_width_mm = view->sensor_width_mm;
+    cfg.camera.sensor_height_mm = /* larger than needed for that width */
+        2 * view->sensor_width_mm * view->height / view->width;
+    cfg.light.by_hand = 1;
+    cfg.search.max_found = 0;
+    cfg.drawing.is_fresh = 1;
+    cfg.model = model;
+    status = glint_engine_create(&pair->model, &cfg, error);
+    cfg.model = NULL;
+    cfg.camera.rays = &glint_frame_traces;
+    return status == GLINT_OK ? glint_engine_create(&pair->exact, &cfg, error)
+                              : status;
+}
+
+void picture_pair_close(struct picture_pair *pair)
+{
+    glint_engine_destroy(pair->model);
+    glint_engine_destroy(pair->exact);
+}
+
+/* A light and its comparison. */
+struct light {
+    double angle_deg;
+    struct glint_measure measure;
+    struct glint_error error;
+    enum glint_status status;
+};
+
+struct job {
+    const struct glint_setup *setup;
+    const struct glint_lens *model;
+    struct glint_view view;
+    struct light light[NEAR + STEPS];
+    int n;
+};
+
+static enum glint_status render_both(const struct picture_pair *pair,
+                                     double angle_deg,
+                                     struct glint_float_image image[2])
+{
+    const struct glint_lamp lamp = {.theta_deg = angle_deg,
+                                    .phi_deg = AZIMUTH_DEG,
+                                    .power = 1,
+                                    .rgb = {1, 1, 1}};
+    struct glint_engine_report report;
+    enum glint_status status = GLINT_OK;
+
+    for (int k = 0; k < 2 && status == GLINT_OK; k++)
+        status =
+            glint_engine_render(k ? pair->model : pair->exact, &lamp, 1, 1,
+                                GLINT_ENGINE_GHOSTS, image[k].rgb, &report);
+    return status;
+}
+
+/* Compares the pictures of light I. */
+static void compare_light(void *ctx, int i, int worker)
+{
+    struct job *const job = ctx;
+    struct light *const light = &job->light[i];
+    const int width = job->view.width, height = job->view.height;
+    const size_t samples = 3 * (size_t)width * (size_t)height;
+    struct glint_float_image image[2] = {{width, height, NULL},
+                                         {width, height, NULL}};
+    struct picture_pair pair = {NULL, NULL};
+
+    (void)worker;
+    for (int k = 0; k < 2; k++)
+        image[k].rgb = calloc(samples, sizeof(float));
+    light->status = GLINT_E_MEMORY;
+    if (image[0].rgb && image[1].rgb)
+        light->status = picture_pair_open(&pair, job->setup, job->model,
+                                          &job->view, &light->error);
+    if (light->status == GLINT_OK)
+        light->status = render_both(&pair, light->angle_deg, image);
+    if (light->status == GLINT_OK &&
+        !glint_measure_compare(&image[0], &image[1], false, &light->measure))
+        light->status = GLINT_E_MEMORY;
+    picture_pair_close(&pair);
+    free(image[0].rgb);
+    free(image[1].rgb);
+}
+
+/* Lists the lights up to MOST degrees off the axis. */
+static void list_lights(struct job *job, double most)
+{
+    for (int i = 0; i < NEAR; i++)
+        if (near_deg[i] <= most)
+            job->light[job->n++].angle_deg = near_deg[i];
+    for (int i = 1; i <= STEPS; i++)
+        job->light[job->n++].angle_deg = most * i / STEPS;
+}
+
+/* Sets CHECK to the worst light of JOB. */
+static enum glint_status choose_worst(const struct job *job,
+                                      struct picture_check *check,
+                                      struct glint_error *error)
+{
+    *check = (struct picture_check){.psnr_db = HUGE_VAL};
+    for (int i = 0; i < job->n; i++) {
+        const struct light *const light = &job->light[i];
+
+        if (light->status != GLINT_OK) {
+            *error = light->error;
+            return light->status;
+        }
+        check->n++;
+        if (light->measure.psnr_db < check->psnr_db) {
+            check->psnr_db = light->measure.psnr_db;
+            check->angle_deg = light->angle_deg;
+        }
+    }
+    return GLINT_OK;
+}
+
+enum glint_status picture_check_run(const struct tool *tool,
+                                    const struct glint_prescription *lens,
+                                    const struct glint_lens *model,
+                                    double max_deg, struct picture_check *check,
+                                    struct glint_error *error)
+{
+    static const double wave_nm[] = {620, 540, 460};
+    const double high = ceil(WIDE * lens->film_height_mm / lens->film_width_mm);
+    const double corner_mm =
+        0.5 * hypot(lens->film_width_mm, lens->film_height_mm);
+    struct glint_setup *const setup = malloc(sizeof *setup);
+    struct job job = {
+        .setup = setup,
+        .model = model,
+        .view = glint_view_fit(WIDE, (int)fmin(fmax(high, 8), MOST_HIGH),
+                               lens->film_width_mm, lens->film_height_mm)};
+    enum glint_status status = GLINT_E_MEMORY;
+    struct glint_optics optics;
+
+    glint_optics_of(lens, &optics);
+    list_lights(&job, fmin(max_deg,
+                           180 / GLINT_PI * atan(corner_mm / optics.focal_mm)));
+    if (setup)
+        status = glint_setup_init(setup, lens, 0, 0, wave_nm,
+                                  sizeof wave_nm / sizeof *wave_nm, error);
+    if (status == GLINT_OK) {
+        glint_workers_run(tool->workers, job.n, compare_light, &job);
+        status = choose_worst(&job, check, error);
+    }
+    free(setup);
+    return status;
+}
