@@ -18,7 +18,8 @@
 
 #define KINDS_HASH_START UINT64_C(14695981039346656037)
 
-static inline uint64_t kinds_hash(uint64_t h, const void *data, size_t bytes)
+static inline uint64_t kinds_hash_bytes(uint64_t h, const void *data,
+                                        size_t bytes)
 {
     const uint8_t *p = data;
 
@@ -32,15 +33,15 @@ static inline uint64_t kinds_hash_number(uint64_t h, int64_t x)
     for (int i = 0; i < 8; i++) {
         const uint8_t byte = (uint8_t)((uint64_t)x >> 8 * i);
 
-        h = kinds_hash(h, &byte, 1);
+        h = kinds_hash_bytes(h, &byte, 1);
     }
     return h;
 }
 
 /* Sets IMAGE to MEM[BYTES], with a random range, matrix and transfer curve,
  * and fills it with a fixed pattern. */
-static inline void kinds_fill(struct glint_image *image, uint8_t *mem,
-                              size_t bytes, uint32_t *seed)
+static inline void kinds_fill_image(struct glint_image *image, uint8_t *mem,
+                                    size_t bytes, uint32_t *seed)
 {
     image->range = (enum glint_range)(rng_xorshift(seed) % 2);
     image->matrix = (enum glint_matrix)(rng_xorshift(seed) % 2);
@@ -54,7 +55,7 @@ static inline void kinds_fill(struct glint_image *image, uint8_t *mem,
 
 /* Returns the instruction sets of WORD: c, sse41, avx2, neon or best. Ends
  * PROGRAM if this CPU lacks them. */
-static inline unsigned kinds_sets(const char *program, const char *word)
+static inline unsigned kinds_parse_sets(const char *program, const char *word)
 {
     static const struct {
         const char *word;

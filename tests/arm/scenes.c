@@ -47,9 +47,9 @@ static int random_number(int below)
 
 /* ----------------------------------------------------------------- a scene */
 
-/* Sets *SINE and *COSINE, Q30, to those of twice the angle whose tangent is
- * T / 2^15. */
-static void set_circle(int32_t t, int32_t *sine, int32_t *cosine)
+/* Sets *SINE and *COSINE, Q30, to sine and cosine of the angle 2 atan(T /
+ * 2^15), by integers only. */
+static void set_sine_and_cosine(int32_t t, int32_t *sine, int32_t *cosine)
 {
     const int64_t one = INT64_C(1) << 30, t2 = (int64_t)t * t;
 
@@ -57,15 +57,15 @@ static void set_circle(int32_t t, int32_t *sine, int32_t *cosine)
     *cosine = (int32_t)(((one - t2) << 30) / (one + t2));
 }
 
-static void make_beam(struct glint_light *b)
+static void make_random_beam(struct glint_light *b)
 {
     int32_t sine, cosine;
     int exponent;
 
     b->apart_q30 = 0; /* a single light */
-    set_circle(random_number(7000), &b->sine_q30,
-               &b->cosine_q30); /* up to 24 degrees */
-    set_circle(random_number(1 << 15), &sine, &cosine);
+    set_sine_and_cosine(random_number(7000), &b->sine_q30,
+                        &b->cosine_q30); /* 24 degrees or less off the axis */
+    set_sine_and_cosine(random_number(1 << 15), &sine, &cosine);
     b->sin_q30 = random_number(2) ? sine : -sine;
     b->cos_q30 = random_number(2) ? cosine : -cosine;
     exponent = random_number(14) - 20;
@@ -74,7 +74,7 @@ static void make_beam(struct glint_light *b)
         b->rgb_q14[c] = 4096 + random_number(12289);
 }
 
-static void make_waves(struct glint_wave wave[3])
+static void make_random_wavelengths(struct glint_wave wave[3])
 {
     static const struct glint_wave plain[3] = {
         {39709472, {16384, 1200, 0}, {0, 0}},  /* 650 nm */
@@ -88,7 +88,7 @@ static void make_waves(struct glint_wave wave[3])
     }
 }
 
-static struct glint_flare_config make_config(struct shuffle *shuffle)
+static struct glint_flare_config make_random_config(struct shuffle *shuffle)
 {
     static const int32_t side[4][2] = {
         {1 << 30, 0}, {0, 1 << 30}, {-(1 << 30), 0}, {0, -(1 << 30)}};
@@ -101,7 +101,7 @@ static struct glint_flare_config make_config(struct shuffle *shuffle)
     c.width = 1 + random_number(400);
     c.height = 1 + random_number(300);
     c.tile_log2 = 3 + random_number(4);
-    shuffle_init(shuffle, 1 + (int)(seed % 4), seed);
+    init_shuffled_workers(shuffle, 1 + (int)(seed % 4), seed);
     c.irradiance_steps = random_number(3) * 30;
     c.dither = random_number(2);
     if (random_number(2)) {
@@ -112,7 +112,7 @@ static struct glint_flare_config make_config(struct shuffle *shuffle)
     return c;
 }
 
-static uint64_t hash_lights(uint64_t h, const struct glint_image *image)
+static uint64_t hash_light_image(uint64_t h, const struct glint_image *image)
 {
     struct glint_lamp_finder_config c;
     struct glint_lamp_finder *finder;
@@ -141,10 +141,11 @@ static uint64_t hash_lights(uint64_t h, const struct glint_image *image)
     return kinds_hash_number(h, n);
 }
 
-/* Draws FLARE, which is binned, and stars of up to MAX_LIGHTS lamps. */
-static void draw_stars(const struct glint_flare_config *c,
-                       struct glint_flare *flare,
-                       const struct glint_image *image)
+/* Draws the binned ghosts of FLARE and the starbursts of up to MAX_LIGHTS
+ * lamps. */
+static void draw_starbursts(const struct glint_flare_config *c,
+                            struct glint_flare *flare,
+                            const struct glint_image *image)
 {
     static struct star_any any;
     const struct glint_star_config star_config = {c->workers->n, c->width,
@@ -160,15 +161,15 @@ static void draw_stars(const struct glint_flare_config *c,
         fputs("scenes: the star's memory is too small\n", stderr);
         exit(1);
     }
-    star_any(&any, &seed);
+    star_make_random(&any, &seed);
     for (int i = 0; i < n; i++)
-        light[i] = star_any_light(c->width, c->height, &seed);
+        light[i] = star_make_random_light(c->width, c->height, &seed);
     glint_star_set(star, &any.tables, light, n, faintest);
     glint_star_draw(star, flare, image);
 }
 
-static void draw_flare(const struct glint_flare_config *c,
-                       const struct glint_image *image)
+static void draw_random_flare(const struct glint_flare_config *c,
+                              const struct glint_image *image)
 {
     struct glint_light light[MAX_LIGHTS];
     struct glint_wave wave[3];
@@ -190,26 +191,26 @@ static void draw_flare(const struct glint_flare_config *c,
     rays.n_waves = 1 + random_number(3);
     rays.fineness = 8 << random_number(4);
     rays.half = random_number(3) == 0 ? &glint_half : NULL;
-    make_waves(wave);
+    make_random_wavelengths(wave);
     for (int i = 0; i < n_given; i++)
-        make_beam(&light[i]);
+        make_random_beam(&light[i]);
     if (image->format != GLINT_LINEAR_Q20)
         rays.faintest = real_of(1, -13);
     n = glint_lights_merge(light, n_given, near_q30, most, &n_apart);
     glint_flare_plan(flare, &rays, light, n);
     glint_flare_bin(flare, &stats);
     if (random_number(2))
-        draw_stars(c, flare, image);
+        draw_starbursts(c, flare, image);
     else
         glint_flare_draw(flare, image);
 }
 
-/* Draws a random frame and adds its image to *H. Returns whether light was
- * added. */
-static int draw_scene(uint64_t *h)
+/* Draws a random frame and adds its image to the hash *H. Returns whether the
+ * frame contains light. */
+static int hash_random_frame(uint64_t *h)
 {
     struct shuffle shuffle;
-    const struct glint_flare_config c = make_config(&shuffle);
+    const struct glint_flare_config c = make_random_config(&shuffle);
     struct glint_image image = {
         .format = (enum glint_pixel_format)random_number(GLINT_RGB565 + 1),
         .width = c.width,
@@ -220,11 +221,11 @@ static int draw_scene(uint64_t *h)
 
     if (!mem)
         exit(1);
-    kinds_fill(&image, mem, bytes, &seed);
-    before = kinds_hash(KINDS_HASH_START, mem, bytes);
-    draw_flare(&c, &image);
-    after = kinds_hash(KINDS_HASH_START, mem, bytes);
-    *h = hash_lights(kinds_hash_number(*h, (int64_t)(after >> 1)), &image);
+    kinds_fill_image(&image, mem, bytes, &seed);
+    before = kinds_hash_bytes(KINDS_HASH_START, mem, bytes);
+    draw_random_flare(&c, &image);
+    after = kinds_hash_bytes(KINDS_HASH_START, mem, bytes);
+    *h = hash_light_image(kinds_hash_number(*h, (int64_t)(after >> 1)), &image);
     free(mem);
     return before != after;
 }
@@ -256,7 +257,7 @@ int main(int argc, char **argv)
         fputs("scenes SET N MODEL...\n", stderr);
         return 2;
     }
-    sets = kinds_sets("scenes", argv[1]);
+    sets = kinds_parse_sets("scenes", argv[1]);
     for (int i = 3; i < argc; i++)
         open_model(argv[i]);
     if (posix_memalign(&arena, 64, ARENA_BYTES) != 0 ||
@@ -264,7 +265,7 @@ int main(int argc, char **argv)
         posix_memalign(&star_memory, 64, STAR_BYTES) != 0)
         return 1;
     for (int i = 0; i < n; i++) {
-        lit += draw_scene(&h);
+        lit += hash_random_frame(&h);
         /* the first line that differs identifies the frame */
         if (getenv("GLINT_EACH"))
             printf("%d %08lx\n", i, (unsigned long)(h >> 32));

@@ -35,14 +35,14 @@ static int random_number(int below)
     return (int)(rng_xorshift(&seed) % (uint32_t)below);
 }
 
-static struct glint_scene_config make_config(struct shuffle *shuffle)
+static struct glint_scene_config make_random_config(struct shuffle *shuffle)
 {
     static const int points[3] = {1, 4, 16}, samples[4] = {1, 4, 8, 16};
     struct glint_scene_config c;
     const int width = 1 + random_number(200), height = 1 + random_number(150);
 
     glint_scene_defaults(&c, width, height);
-    shuffle_init(shuffle, 1 + (int)(seed % 4), seed);
+    init_shuffled_workers(shuffle, 1 + (int)(seed % 4), seed);
     c.workers = &shuffle->workers;
     c.sets = sets;
     c.tile_log2 = 3 + random_number(4);
@@ -92,7 +92,8 @@ static void move_objects(struct glint_scene *scene,
         glint_scene_show(scene, which, 0);
 }
 
-static uint64_t hash_lights(uint64_t h, struct glint_scene *scene, int width)
+static uint64_t hash_scene_lights(uint64_t h, struct glint_scene *scene,
+                                  int width)
 {
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     const int n = glint_scene_lights(scene, lamp);
@@ -109,11 +110,12 @@ static uint64_t hash_lights(uint64_t h, struct glint_scene *scene, int width)
         h, glint_scene_cover(scene, width << 7, width << 6, width << 5));
 }
 
-/* Draws an image and adds it to *H. Returns whether objects changed it. */
-static int draw_picture(uint64_t *h)
+/* Draws a random image and adds it to the hash *H. Returns whether objects
+ * changed the image. */
+static int draw_and_hash_image(uint64_t *h)
 {
     struct shuffle shuffle;
-    const struct glint_scene_config c = make_config(&shuffle);
+    const struct glint_scene_config c = make_random_config(&shuffle);
     const struct glint_scene_model *const m = &model[random_number(n_models)];
     struct glint_image image = {
         .format = (enum glint_pixel_format)random_number(GLINT_RGB565 + 1),
@@ -135,14 +137,14 @@ static int draw_picture(uint64_t *h)
     if (!pixels || posix_memalign(&mem, 64, room) != 0 ||
         glint_scene_init(&scene, &c, m, mem, room) != GLINT_OK)
         exit(1);
-    kinds_fill(&image, pixels, bytes, &seed);
-    before = kinds_hash(KINDS_HASH_START, pixels, bytes);
+    kinds_fill_image(&image, pixels, bytes, &seed);
+    before = kinds_hash_bytes(KINDS_HASH_START, pixels, bytes);
     move_objects(scene, m);
     glint_scene_begin(scene, &stats);
     glint_scene_draw(scene, &image);
-    after = kinds_hash(KINDS_HASH_START, pixels, bytes);
-    *h = hash_lights(kinds_hash_number(*h, (int64_t)(after >> 1)), scene,
-                     c.width);
+    after = kinds_hash_bytes(KINDS_HASH_START, pixels, bytes);
+    *h = hash_scene_lights(kinds_hash_number(*h, (int64_t)(after >> 1)), scene,
+                           c.width);
     *h = kinds_hash_number(*h, stats.need_refs);
     free(mem);
     free(pixels);
@@ -174,11 +176,11 @@ int main(int argc, char **argv)
         fputs("things SET N SCENE...\n", stderr);
         return 2;
     }
-    sets = kinds_sets("things", argv[1]);
+    sets = kinds_parse_sets("things", argv[1]);
     for (int i = 3; i < argc; i++)
         open_scene(argv[i]);
     for (int i = 0; i < n; i++) {
-        changed += draw_picture(&h);
+        changed += draw_and_hash_image(&h);
         /* the first line that differs identifies the image */
         if (getenv("GLINT_EACH"))
             printf("%d %08lx\n", i, (unsigned long)(h >> 32));

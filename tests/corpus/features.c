@@ -8,8 +8,9 @@
 #include "lamps/lamp_finder.h"
 #include "ppm.h"
 
-static void print_candidate(const char *name, const struct glint_lamp_finder *f,
-                            const struct glint_candidate *c)
+static void print_lamp_candidate(const char *name,
+                                 const struct glint_lamp_finder *f,
+                                 const struct glint_candidate *c)
 {
     const struct glint_region *sum = &c->sum;
     int32_t x_q8, y_q8;
@@ -24,7 +25,7 @@ static void print_candidate(const char *name, const struct glint_lamp_finder *f,
     printf(",%d\n", (int)c->score_q8);
 }
 
-static void score_candidates(struct glint_lamp_finder *f)
+static void score_lamp_candidates(struct glint_lamp_finder *f)
 {
     const struct glint_score all = {
         &f->bright, f->white, f->cfg.width, f->cfg.height, f->level, 0, 0};
@@ -32,7 +33,8 @@ static void score_candidates(struct glint_lamp_finder *f)
     glint_score_all(&all, f->candidate, f->order, f->n);
 }
 
-static int list_candidates(const char *name, const struct glint_image *image)
+static int print_lamp_candidates(const char *name,
+                                 const struct glint_image *image)
 {
     struct glint_lamp_finder_config cfg;
     struct glint_lamp_finder *f;
@@ -48,9 +50,9 @@ static int list_candidates(const char *name, const struct glint_image *image)
         return 1;
     }
     glint_lamps_collect(f, image);
-    score_candidates(f);
+    score_lamp_candidates(f);
     for (int i = 0; i < f->n; i++)
-        print_candidate(name, f, &f->candidate[f->order[i]]);
+        print_lamp_candidate(name, f, &f->candidate[f->order[i]]);
     free(mem);
     return 0;
 }
@@ -67,7 +69,7 @@ int main(int argc, char **argv)
     for (int i = 1; i < argc && code == 0; i++) {
         code = ppm_read(argv[i], &image);
         if (code == 0) {
-            code = list_candidates(argv[i], &image);
+            code = print_lamp_candidates(argv[i], &image);
             free(image.plane[0]);
         }
     }

@@ -2,7 +2,7 @@
  *
  * found PICTURE.ppm... - prints, as CSV, the lamps that the finder finds with
  * its defaults: the picture, then x, y, RMS radius, pixels and light of each
- * lamp. Lamps beyond the 128th join lamps near them.
+ * lamp. Lamps after the 128th are merged with lamps near them.
  */
 #include "glint/lamps.h"
 #include "ppm.h"

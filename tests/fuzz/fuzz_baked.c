@@ -35,8 +35,8 @@ static void draw_scene(struct glint_scene *scene,
 
 /* Draws the scene unchanged, or with the camera at the first object, or with
  * that object rotated or hidden. */
-static void draw_variant(struct glint_scene *scene,
-                         const struct glint_scene_model *model, int which)
+static void draw_scene_variant(struct glint_scene *scene,
+                               const struct glint_scene_model *model, int which)
 {
     static const int32_t axis_q30[3][3] = {
         {0, 0, -ONE_Q30}, {0, ONE_Q30, 0}, {ONE_Q30, 0, 0}};
@@ -57,7 +57,7 @@ static void draw_variant(struct glint_scene *scene,
     draw_scene(scene, format[which]);
 }
 
-static void draw_model(const struct glint_scene_model *model, int which)
+static void draw_scene_model(const struct glint_scene_model *model, int which)
 {
     static uint8_t mem[ROOM] __attribute__((aligned(64)));
     struct glint_scene_config cfg;
@@ -81,7 +81,7 @@ static void draw_model(const struct glint_scene_model *model, int which)
     if (model->header->n_environments)
         require(glint_scene_set_environment(
                     scene, (int)model->header->n_environments - 1) == GLINT_OK);
-    draw_variant(scene, model, which);
+    draw_scene_variant(scene, model, which);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -94,7 +94,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (glint_scene_open(&model, copy, size, &reason) != GLINT_OK)
         require(reason && *reason);
     else if (model.header->n_objects <= 16)
-        draw_model(&model, (int)(glint_blob_crc32(copy, size) & 3));
+        draw_scene_model(&model, (int)(glint_blob_crc32(copy, size) & 3));
     free(copy);
     return 0;
 }

@@ -19,12 +19,12 @@ static const struct option options[] = {{"lens", required_argument, NULL, 'L'},
 struct taken {
     int n;
     size_t bytes;
-    /* last value, which must remain valid until config_free() */
+    /* last value that the callback received; valid until config_free() */
     const char *last;
 };
 
-static int check_option(void *ctx, const struct option *option,
-                        const char *value)
+static int check_config_option(void *ctx, const struct option *option,
+                               const char *value)
 {
     struct taken *const t = ctx;
 
@@ -45,7 +45,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct tool tool = {.name = "fuzz", .quiet = true};
     struct taken first = {0}, second = {0};
-    struct config config = {&tool, options, check_option, &first, NULL};
+    struct config config = {&tool, options, check_config_option, &first, NULL};
     struct glint_error error;
     const int code =
         config_parse(&config, "f", (const char *)data, size, &error);

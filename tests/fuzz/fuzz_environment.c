@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Opens random bytes as a baked environment, with valid magic, version, size
- * and checksum, and parses them as the text of an environment. An accepted file
- * must agree with its header.
+ * and checksum, and parses them as the text of an environment. All tables of an
+ * accepted file must have the sizes of its header.
  *
  *     make fuzz FUZZ=environment SECONDS=60
  */
@@ -11,7 +11,8 @@
 #include "fuzz/fuzz.h"
 #include "glint/scene/environment_bake.h"
 
-/* Reads all bytes that a lookup may read. */
+/* Reads every byte that a lookup may read, so that sanitizers detect
+ * overreads. */
 static void read_all_texels(const struct glint_environment *e)
 {
     const unsigned char *byte;
@@ -31,7 +32,7 @@ static void read_all_texels(const struct glint_environment *e)
                 e->light[i].rgb[2].mantissa >= 0);
 }
 
-static void open_blob(const uint8_t *data, size_t size)
+static void open_environment_blob(const uint8_t *data, size_t size)
 {
     unsigned char *copy = fuzz_blob(data, size, GLINT_ENVIRONMENT_MAGIC,
                                     GLINT_ENVIRONMENT_VERSION);
@@ -45,7 +46,7 @@ static void open_blob(const uint8_t *data, size_t size)
     free(copy);
 }
 
-static void check_text(const uint8_t *data, size_t size)
+static void parse_environment_text(const uint8_t *data, size_t size)
 {
     struct glint_environment_options o;
     char source[GLINT_ENVIRONMENT_FILE_BYTES];
@@ -61,7 +62,7 @@ static void check_text(const uint8_t *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    open_blob(data, size);
-    check_text(data, size);
+    open_environment_blob(data, size);
+    parse_environment_text(data, size);
     return 0;
 }

@@ -11,10 +11,10 @@
 #include "fuzz/fuzz.h"
 #include "import/imported.h"
 
-static char *import_copy(struct imported *lens,
-                         const struct import_format *format,
-                         const uint8_t *data, size_t size, bool strict,
-                         size_t *bytes)
+static char *import_lens_from_copy(struct imported *lens,
+                                   const struct import_format *format,
+                                   const uint8_t *data, size_t size,
+                                   bool strict, size_t *bytes)
 {
     uint8_t *copy = malloc(size + 1);
     char *text;
@@ -46,13 +46,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     strict = (data[0] - 'a') % 2 == 1;
     if (!format)
         return 0;
-    text = import_copy(&lens, format, data + 1, size - 1, strict, &bytes);
+    text = import_lens_from_copy(&lens, format, data + 1, size - 1, strict,
+                                 &bytes);
     if (!text) {
         require(strncmp(lens.error, "f:", 2) == 0 && lens.error[3]);
         return 0;
     }
     require(!strict || lens.n_guesses == 0);
-    second = import_copy(&lens, format, data + 1, size - 1, strict, &again);
+    second = import_lens_from_copy(&lens, format, data + 1, size - 1, strict,
+                                   &again);
     require(second && again == bytes && memcmp(text, second, bytes) == 0);
     if (glint_prescription_parse(&table, text, bytes, "t", &error) != GLINT_OK)
         require(strncmp(error.text, "t:", 2) == 0);

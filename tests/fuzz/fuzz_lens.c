@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses random bytes as a lens table. An accepted lens must have a list of
- * ghosts within its limit, finite optics, and rays without NaN, the same bits
- * one by one and in batches: the rays of the image, and of the ghost that the
- * text's length selects.
+ * Parses random bytes as a lens table. An accepted lens must have at most
+ * GLINT_MAX_GHOSTS ghosts, finite optics, and rays without NaN. Rays of the
+ * direct image, and of a ghost selected by the text's length, must be
+ * bit-identical whether traced singly or in batches.
  *
  *     make fuzz FUZZ=lens SECONDS=60
  */
@@ -12,7 +12,7 @@
 #include "fuzz/fuzz.h"
 #include "glint/bake.h"
 
-static void check_ray(const struct glint_ray *ray)
+static void check_ray_is_valid(const struct glint_ray *ray)
 {
     require(isfinite(ray->stop_x_mm) && isfinite(ray->stop_y_mm));
     require(isfinite(ray->sensor_x_mm) && isfinite(ray->sensor_y_mm));
@@ -20,9 +20,10 @@ static void check_ray(const struct glint_ray *ray)
     require(ray->rel_radius >= 0.0 && isfinite(ray->rel_radius));
 }
 
-/* Traces nine rays over the front element at angles up to 83 degrees. */
-static void trace_some(const struct glint_prescription *lens,
-                       const struct glint_ghost *ghost)
+/* Traces nine rays, spread over the front element, at angles up to 83
+ * degrees. */
+static void trace_rays_over_front(const struct glint_prescription *lens,
+                                  const struct glint_ghost *ghost)
 {
     enum { RAYS = 9 };
     static struct glint_path path;
@@ -49,12 +50,12 @@ static void trace_some(const struct glint_prescription *lens,
                             i % 2 ? hits : NULL) == status[i]);
         if (status[i] != GLINT_RAY_OK)
             continue;
-        check_ray(&ray);
+        check_ray_is_valid(&ray);
         require(memcmp(&ray, &many[i], sizeof ray) == 0);
     }
 }
 
-static void trace_lens(const struct glint_prescription *lens, size_t pick)
+static void trace_all_ghosts(const struct glint_prescription *lens, size_t pick)
 {
     static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
     const int n = glint_ghost_list(lens, ghosts, GLINT_MAX_GHOSTS);
@@ -69,9 +70,9 @@ static void trace_lens(const struct glint_prescription *lens, size_t pick)
     require(isfinite(optics.entrance_z_mm) && isfinite(optics.length_mm));
     require(optics.stop_radius_mm > 0.0);
     require(n <= GLINT_MAX_GHOSTS);
-    trace_some(lens, NULL);
+    trace_rays_over_front(lens, NULL);
     if (n > 0)
-        trace_some(lens, &ghosts[pick % (size_t)n]);
+        trace_rays_over_front(lens, &ghosts[pick % (size_t)n]);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -85,7 +86,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                                       "fuzz.lens", &error);
     require(status == GLINT_OK || status == GLINT_E_LENS);
     if (status == GLINT_OK)
-        trace_lens(&lens, size);
+        trace_all_ghosts(&lens, size);
     else
         require(memchr(error.text, 0, sizeof(error.text)) != NULL &&
                 strncmp(error.text, "fuzz.lens:", 10) == 0);

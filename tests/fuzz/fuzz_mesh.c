@@ -10,8 +10,8 @@
 #include "bake/scene/mesh.h"
 #include "fuzz/fuzz.h"
 
-static void check_triangle(const struct glint_described_triangle *t,
-                           int n_names)
+static void check_triangle_indices(const struct glint_described_triangle *t,
+                                   int n_names)
 {
     require(t->material >= -1 && t->material < n_names);
     for (int k = 0; k < 3; k++)
@@ -34,7 +34,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     require(mesh.n_triangles > 0);
     for (int i = 0; i < mesh.n_triangles; i++)
-        check_triangle(&mesh.triangle[i], mesh.n_names);
+        check_triangle_indices(&mesh.triangle[i], mesh.n_names);
     free(mesh.triangle);
     return 0;
 }

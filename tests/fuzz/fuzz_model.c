@@ -16,10 +16,11 @@
 
 enum {
     ONE = 1 << 30,
-    SLACK = 64 /* max deviation between two knots, units of 2^-30 */
+    /* max overshoot of a piecewise polynomial between two knots, 2^-30 */
+    SLACK = 64
 };
 
-static void check_rays(struct glint_transfer *t)
+static void check_traced_rays(struct glint_transfer *t)
 {
     static const int32_t at_q30[] = {-ONE, -ONE / 3, 0, 1, ONE};
 
@@ -33,7 +34,7 @@ static void check_rays(struct glint_transfer *t)
     }
 }
 
-static void check_vertex(const struct glint_vertex *v)
+static void check_vertex_range(const struct glint_vertex *v)
 {
     if (v->energy_q16 < 0)
         return;
@@ -45,7 +46,7 @@ static void check_vertex(const struct glint_vertex *v)
         require(v->barrel_q16[k] >= 0 && v->barrel_q16[k] <= ONE);
 }
 
-static void check_grids(struct glint_transfer *t)
+static void check_ray_grids(struct glint_transfer *t)
 {
     static const int32_t exponent[] = {-200, -25, 0, 200};
     static const int32_t turn_q30[][2] = {
@@ -65,12 +66,12 @@ static void check_grids(struct glint_transfer *t)
         memset(v, 0, sizeof v);
         glint_transfer_grid(t, &place, n_cells, v);
         for (int m = 0; m < (n_cells + 1) * (n_cells + 1); m++)
-            check_vertex(&v[m]);
+            check_vertex_range(&v[m]);
     }
 }
 
 /* Checks that the window of an opening is inside the ghost's box. */
-static void check_window(struct glint_transfer *t, int32_t opening_q30)
+static void check_window_in_box(struct glint_transfer *t, int32_t opening_q30)
 {
     static struct glint_window_nodes nodes;
     const struct glint_box_window *w = &t->window;
@@ -86,9 +87,10 @@ static void check_window(struct glint_transfer *t, int32_t opening_q30)
     require(!t->annulus || !t->whole);
 }
 
-static void check_azimuth(const struct glint_lens *lens, int ghost,
-                          int32_t sine_q30, struct glint_azimuth azimuth,
-                          int32_t wave_q24)
+static void check_ghost_at_azimuth(const struct glint_lens *lens, int ghost,
+                                   int32_t sine_q30,
+                                   struct glint_azimuth azimuth,
+                                   int32_t wave_q24)
 {
     static struct glint_transfer t;
 
@@ -98,16 +100,17 @@ static void check_azimuth(const struct glint_lens *lens, int ghost,
     if (!glint_transfer_init_at(&t, lens, ghost, sine_q30, azimuth, wave_q24))
         return;
     require(t.outputs >> GLINT_OUT_KINDS == 0 && (t.outputs & 31) == 31);
-    check_rays(&t);
-    check_grids(&t);
-    check_window(&t, 1 << 29);
-    check_window(&t, 1 << 20);
-    check_grids(&t);
+    check_traced_rays(&t);
+    check_ray_grids(&t);
+    check_window_in_box(&t, 1 << 29);
+    check_window_in_box(&t, 1 << 20);
+    check_ray_grids(&t);
 }
 
-/* Uses a single azimuth for models whose ghosts do not depend on it. */
-static void check_bundle(const struct glint_lens *lens, int ghost,
-                         int32_t sine_q30, int32_t wave_q24)
+/* Checks GHOST at ten azimuths of the light, or at one if the ghosts of the
+ * model do not depend on the azimuth. */
+static void check_ghost_bundle(const struct glint_lens *lens, int ghost,
+                               int32_t sine_q30, int32_t wave_q24)
 {
     static const struct glint_azimuth at[] = {
         {ONE, 0},     {0, ONE},          {-ONE, 0},       {0, -ONE},
@@ -118,34 +121,35 @@ static void check_bundle(const struct glint_lens *lens, int ghost,
                       : 1;
 
     for (int k = 0; k < n; k++)
-        check_azimuth(lens, ghost, sine_q30, at[k], wave_q24);
+        check_ghost_at_azimuth(lens, ghost, sine_q30, at[k], wave_q24);
 }
 
-/* Checks GHOST with the system that PICK selects. */
+/* Checks GHOST at the angles and wavelengths of the polynomial system that PICK
+ * selects. */
 static void check_ghost(const struct glint_lens *lens, int ghost, uint32_t pick)
 {
     const struct glint_model_ghost *g = &lens->ghost[ghost];
     const int32_t lo = lens->header->wave_lo_q24;
     const int32_t hi = lens->header->wave_hi_q24;
 
-    check_bundle(lens, ghost, 0, lo);
-    check_bundle(lens, ghost, ONE, hi);
+    check_ghost_bundle(lens, ghost, 0, lo);
+    check_ghost_bundle(lens, ghost, ONE, hi);
     if (g->n_systems > 0) {
         const struct glint_model_system *s =
             &lens->system[g->first_system + pick % g->n_systems];
         const int32_t a = s->sine_lo_q30, b = s->sine_hi_q30;
 
-        check_bundle(lens, ghost, a - 1, lo);
-        check_bundle(lens, ghost, a, s->wave_lo_q24);
-        check_bundle(lens, ghost, a + (b - a) / 3, lo + (hi - lo) / 3);
-        check_bundle(lens, ghost, b, s->wave_hi_q24);
-        check_bundle(lens, ghost, b + 1, INT32_MIN);
-        check_bundle(lens, ghost, b, INT32_MAX);
+        check_ghost_bundle(lens, ghost, a - 1, lo);
+        check_ghost_bundle(lens, ghost, a, s->wave_lo_q24);
+        check_ghost_bundle(lens, ghost, a + (b - a) / 3, lo + (hi - lo) / 3);
+        check_ghost_bundle(lens, ghost, b, s->wave_hi_q24);
+        check_ghost_bundle(lens, ghost, b + 1, INT32_MIN);
+        check_ghost_bundle(lens, ghost, b, INT32_MAX);
     }
 }
 
 /* Plans, bins and draws a frame of the model; sanitizers detect errors. */
-static void check_frame(const struct glint_lens *lens, int32_t opening_q30)
+static void draw_model_frame(const struct glint_lens *lens, int32_t opening_q30)
 {
     enum { SIDE = 48, ROOM = 1 << 22 };
     static uint8_t mem[ROOM] __attribute__((aligned(64)));
@@ -191,8 +195,8 @@ static void check_frame(const struct glint_lens *lens, int32_t opening_q30)
 }
 
 /* Sets magic, version, size and checksum in the header to valid values. */
-static void seal_blob(uint32_t *word, size_t size, uint32_t magic,
-                      uint32_t version)
+static void seal_blob_header(uint32_t *word, size_t size, uint32_t magic,
+                             uint32_t version)
 {
     if (size < 16)
         return;
@@ -205,8 +209,9 @@ static void seal_blob(uint32_t *word, size_t size, uint32_t magic,
 /* ---------------------------------------------------------------------- zoom
  */
 
-/* Seals the zoom in WORD[SIZE] and those of its models that lie inside it. */
-static void seal_zoom(uint32_t *word, size_t size)
+/* Makes the headers valid of the zoom in WORD[SIZE] and of its models that lie
+ * inside the file. */
+static void seal_zoom_models(uint32_t *word, size_t size)
 {
     const struct glint_zoom_header *const h = (const void *)word;
     const struct glint_zoom_model *m;
@@ -219,36 +224,37 @@ static void seal_zoom(uint32_t *word, size_t size)
             if (m[k].at >= h->model_at + h->n_models * sizeof *m &&
                 m[k].at % 4 == 0 && m[k].bytes < size &&
                 m[k].at < size - m[k].bytes)
-                seal_blob(word + m[k].at / 4, m[k].bytes, GLINT_MODEL_MAGIC,
-                          GLINT_MODEL_VERSION);
+                seal_blob_header(word + m[k].at / 4, m[k].bytes,
+                                 GLINT_MODEL_MAGIC, GLINT_MODEL_VERSION);
     }
-    seal_blob(word, size, GLINT_ZOOM_MAGIC, GLINT_ZOOM_VERSION);
+    seal_blob_header(word, size, GLINT_ZOOM_MAGIC, GLINT_ZOOM_VERSION);
 }
 
 /* Checks GHOST of the zoom at angles of the model at the next lower
  * position. */
-static void check_zoomed(const struct glint_zoom_lens *zoom, int ghost,
-                         uint32_t pick)
+static void check_ghost_of_zoom(const struct glint_zoom_lens *zoom, int ghost,
+                                uint32_t pick)
 {
     const struct glint_lens *const below = &zoom->model[zoom->below];
     const struct glint_model_ghost *const g = &below->ghost[zoom->whole[ghost]];
     const int32_t lo = zoom->header.wave_lo_q24;
     const int32_t hi = zoom->header.wave_hi_q24;
 
-    check_bundle(&zoom->lens, ghost, 0, lo);
-    check_bundle(&zoom->lens, ghost, ONE, hi);
+    check_ghost_bundle(&zoom->lens, ghost, 0, lo);
+    check_ghost_bundle(&zoom->lens, ghost, ONE, hi);
     if (g->n_systems > 0) {
         const struct glint_model_system *const s =
             &below->system[g->first_system + pick % g->n_systems];
         const int32_t a = s->sine_lo_q30, b = s->sine_hi_q30;
 
-        check_bundle(&zoom->lens, ghost, a, lo);
-        check_bundle(&zoom->lens, ghost, a + (b - a) / 3, lo + (hi - lo) / 3);
-        check_bundle(&zoom->lens, ghost, b, hi);
+        check_ghost_bundle(&zoom->lens, ghost, a, lo);
+        check_ghost_bundle(&zoom->lens, ghost, a + (b - a) / 3,
+                           lo + (hi - lo) / 3);
+        check_ghost_bundle(&zoom->lens, ghost, b, hi);
     }
 }
 
-static void check_zoom(void *data, size_t size)
+static void check_zoom_model(void *data, size_t size)
 {
     static const int32_t along_q30[] = {-1,      0,       1,  ONE / 7,
                                         ONE / 2, ONE - 1, ONE};
@@ -257,7 +263,7 @@ static void check_zoom(void *data, size_t size)
     uint32_t pick;
 
     memset(&zoom, 0xa5, sizeof zoom);
-    seal_zoom(data, size);
+    seal_zoom_models(data, size);
     if (glint_zoom_open(&zoom, data, size, &reason) != GLINT_OK) {
         require(reason && *reason);
         return;
@@ -270,10 +276,10 @@ static void check_zoom(void *data, size_t size)
         glint_zoom_set(&zoom, along_q30[k]);
         require(zoom.below >= 0 && zoom.below + 1 < zoom.n_models);
         for (uint32_t g = 0; g < n && g < 2; g++)
-            check_zoomed(&zoom, (int)((pick + g) % n), pick >> 8);
+            check_ghost_of_zoom(&zoom, (int)((pick + g) % n), pick >> 8);
     }
     glint_zoom_set(&zoom, (int32_t)(pick >> 2));
-    check_frame(&zoom.lens, pick & 128 ? 0 : 1 << 27);
+    draw_model_frame(&zoom.lens, pick & 128 ? 0 : 1 << 27);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -283,11 +289,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const char *reason = NULL;
 
     if (size >= 4 && *copy == GLINT_ZOOM_MAGIC) {
-        check_zoom(copy, size);
+        check_zoom_model(copy, size);
         free(copy);
         return 0;
     }
-    seal_blob(copy, size, GLINT_MODEL_MAGIC, GLINT_MODEL_VERSION);
+    seal_blob_header(copy, size, GLINT_MODEL_MAGIC, GLINT_MODEL_VERSION);
     if (glint_lens_open(&lens, copy, size, &reason) == GLINT_OK) {
         const uint32_t pick = copy[3];
         const uint32_t n = lens.header->n_ghosts;
@@ -295,7 +301,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         require(n <= INT32_MAX);
         for (uint32_t k = 0; k < n && k < 2; k++)
             check_ghost(&lens, (int)((pick + k) % n), pick >> 8);
-        check_frame(&lens, pick & 128 ? 0 : 1 << 27);
+        draw_model_frame(&lens, pick & 128 ? 0 : 1 << 27);
     } else {
         require(reason && *reason);
     }

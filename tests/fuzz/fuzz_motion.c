@@ -2,8 +2,8 @@
  *
  * Opens random bytes as a baked motion, with valid magic, version, size and
  * checksum, in memory and by blocks. If it is accepted in memory, all frames
- * must be readable; by blocks each is read or rejected, and frames read both
- * ways must be the same.
+ * must be readable; by blocks each is read or rejected, and frames read by
+ * blocks must equal those in memory.
  *
  *     make fuzz FUZZ=motion SECONDS=60
  */
@@ -15,8 +15,8 @@ struct file {
     uint32_t n_blocks;
 };
 
-/* Returns a block with valid number and checksum. */
-static int read_block(void *ctx, uint32_t block, uint8_t *to)
+/* Copies block BLOCK of the file to TO, with a valid number and checksum. */
+static int read_motion_block(void *ctx, uint32_t block, uint8_t *to)
 {
     const struct file *file = ctx;
     uint32_t *const end = (void *)(to + GLINT_MOTION_ROOM);
@@ -29,12 +29,12 @@ static int read_block(void *ctx, uint32_t block, uint8_t *to)
     return 1;
 }
 
-static void check_by_blocks(const uint8_t *data, size_t size,
-                            struct glint_motion *whole)
+static void check_motion_by_blocks(const uint8_t *data, size_t size,
+                                   struct glint_motion *whole)
 {
     static uint32_t buffer[GLINT_MOTION_BLOCK / 4];
     struct file file = {data, (uint32_t)(size / GLINT_MOTION_BLOCK)};
-    const struct glint_motion_blocks blocks = {&file, read_block,
+    const struct glint_motion_blocks blocks = {&file, read_motion_block,
                                                file.n_blocks};
     struct glint_motion motion;
     const char *reason = NULL;
@@ -73,7 +73,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     is_whole = glint_motion_open(&motion, copy, size, &reason) == GLINT_OK;
     require(is_whole || (reason && *reason));
-    check_by_blocks(copy, size, is_whole ? &motion : NULL);
+    check_motion_by_blocks(copy, size, is_whole ? &motion : NULL);
     free(copy);
     return 0;
 }

@@ -11,14 +11,14 @@
 
 unsigned glint_fuzz_sink; /* prevents reads from being optimised away */
 
-static void open_null(struct glint_output *out)
+static void open_null_output(struct glint_output *out)
 {
     struct glint_error error;
 
     require(!glint_output_open(out, "/dev/null", GLINT_OUTPUT_BINARY, &error));
 }
 
-static void check_pnm(const uint8_t *data, size_t size)
+static void parse_pnm_input(const uint8_t *data, size_t size)
 {
     struct glint_image image;
     struct glint_error error;
@@ -34,14 +34,14 @@ static void check_pnm(const uint8_t *data, size_t size)
     for (size_t i = 0; i < n; i++)
         glint_fuzz_sink += image.plane[0][i];
     if (image.format == GLINT_RGB24) {
-        open_null(&out);
+        open_null_output(&out);
         require(!glint_pnm_write(&out, &image, &error));
         require(!glint_output_commit(&out, &error));
     }
     free(image.plane[0]);
 }
 
-static void check_pfm(const uint8_t *data, size_t size)
+static void parse_pfm_input(const uint8_t *data, size_t size)
 {
     struct glint_float_image floats;
     struct glint_error error;
@@ -54,7 +54,7 @@ static void check_pfm(const uint8_t *data, size_t size)
     require(floats.width >= 1 && floats.width <= GLINT_MAX_SIDE);
     require(floats.height >= 1 && floats.height <= GLINT_MAX_SIDE);
     require(4 * (size_t)floats.width * (size_t)floats.height < size);
-    open_null(&out);
+    open_null_output(&out);
     require(!glint_pfm_write(&out, &floats, &error));
     require(!glint_output_commit(&out, &error));
     free(floats.rgb);
@@ -62,7 +62,7 @@ static void check_pfm(const uint8_t *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    check_pnm(data, size);
-    check_pfm(data, size);
+    parse_pnm_input(data, size);
+    parse_pfm_input(data, size);
     return 0;
 }

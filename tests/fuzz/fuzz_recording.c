@@ -15,7 +15,7 @@ struct text {
     size_t left, piece;
 };
 
-static long read_text(void *ctx, char *to, size_t n)
+static long read_recording_text(void *ctx, char *to, size_t n)
 {
     struct text *t = ctx;
 
@@ -28,8 +28,8 @@ static long read_text(void *ctx, char *to, size_t n)
     return (long)n;
 }
 
-static void check_motion(const unsigned char *data, size_t bytes,
-                         const struct glint_motion_report *report)
+static void check_baked_motion(const unsigned char *data, size_t bytes,
+                               const struct glint_motion_report *report)
 {
     struct glint_motion motion;
     struct glint_motion_frame frame;
@@ -57,12 +57,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         return 0;
     baker = glint_motion_baker_open();
     require(baker != NULL);
-    status = glint_recording_read(baker, "x", read_text, &text, &error);
+    status =
+        glint_recording_read(baker, "x", read_recording_text, &text, &error);
     if (status == GLINT_OK)
         status = glint_motion_baker_finish(baker, "x", 1, &baked, &bytes,
                                            &report, &error);
     if (status == GLINT_OK)
-        check_motion(baked, bytes, &report);
+        check_baked_motion(baked, bytes, &report);
     else
         require(status == GLINT_E_LENS && error.text[0]);
     free(baked);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Opens random bytes as a baked translucent medium, with valid magic, version,
- * size and checksum, and spreads light by it; parses them as the text of a
- * medium. No sum may leave its range.
+ * size and checksum, and scatters light in it; then parses the bytes as the
+ * text of a medium. No sum may leave its range.
  *
  *     make fuzz FUZZ=stone SECONDS=60
  */
@@ -11,9 +11,9 @@
 #include "fuzz/fuzz.h"
 #include "glint/scene/stone_bake.h"
 
-/* Spreads uniform light and a chequered pattern over a small translucent
- * medium. */
-static void spread_light(const struct glint_translucent *t)
+/* Scatters uniform light, then a chequered pattern, in a small map of the
+ * translucent medium. */
+static void scatter_test_light(const struct glint_translucent *t)
 {
     const size_t side = (size_t)1 << t->header->side_log2;
     const size_t n = 3 * side * side;
@@ -28,7 +28,7 @@ static void spread_light(const struct glint_translucent *t)
     free(light);
 }
 
-static void open_blob(const uint8_t *data, size_t size)
+static void open_translucent_blob(const uint8_t *data, size_t size)
 {
     unsigned char *copy = fuzz_blob(data, size, GLINT_TRANSLUCENT_MAGIC,
                                     GLINT_TRANSLUCENT_VERSION);
@@ -38,11 +38,11 @@ static void open_blob(const uint8_t *data, size_t size)
     if (glint_translucent_open(&stone, copy, size, &reason) != GLINT_OK)
         require(reason && *reason);
     else if (stone.header->side_log2 == GLINT_TRANSLUCENT_LEAST_LOG2)
-        spread_light(&stone);
+        scatter_test_light(&stone);
     free(copy);
 }
 
-static void check_text(const uint8_t *data, size_t size)
+static void parse_medium_text(const uint8_t *data, size_t size)
 {
     struct glint_stone_text t;
     struct glint_error error = {""};
@@ -58,7 +58,7 @@ static void check_text(const uint8_t *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    open_blob(data, size);
-    check_text(data, size);
+    open_translucent_blob(data, size);
+    parse_medium_text(data, size);
     return 0;
 }

@@ -17,7 +17,7 @@ struct memory {
     size_t bytes, chunk;
 };
 
-static ptrdiff_t read_memory(void *ctx, void *dst, size_t bytes)
+static ptrdiff_t read_from_memory(void *ctx, void *dst, size_t bytes)
 {
     struct memory *const m = ctx;
     size_t n = m->bytes < m->chunk ? m->bytes : m->chunk;
@@ -29,7 +29,7 @@ static ptrdiff_t read_memory(void *ctx, void *dst, size_t bytes)
     return (ptrdiff_t)n;
 }
 
-static void check_printed(const struct glint_y4m_header *header)
+static void check_printed_header(const struct glint_y4m_header *header)
 {
     struct glint_y4m_header again;
     struct glint_error error;
@@ -39,7 +39,8 @@ static void check_printed(const struct glint_y4m_header *header)
     require(header->width >= 1 && header->width <= GLINT_MAX_SIDE);
     require(header->height >= 1 && header->height <= GLINT_MAX_SIDE);
     require(len == strlen(line) && len < sizeof line && line[len - 1] == '\n');
-    if (len > GLINT_Y4M_LINE) /* added tags can make it too long */
+    /* tags that printing adds can make the line too long */
+    if (len > GLINT_Y4M_LINE)
         return;
     line[len - 1] = 0;
     require(!glint_y4m_header_parse(&again, line, "again", &error));
@@ -49,17 +50,19 @@ static void check_printed(const struct glint_y4m_header *header)
     require(again.format == header->format && again.range == header->range);
 }
 
-/* Checks the header as read, and as printed from its fields only. */
-static void check_header(const struct glint_y4m_header *header)
+/* Prints the header as it was read, then from its fields alone, and checks that
+ * both texts parse to the same header. */
+static void check_header_round_trip(const struct glint_y4m_header *header)
 {
     struct glint_y4m_header own = *header;
 
-    check_printed(header);
+    check_printed_header(header);
     own.line[0] = '\0';
-    check_printed(&own);
+    check_printed_header(&own);
 }
 
-/* Returns the sum of all samples, so that a memory checker checks each. */
+/* Returns the sum of all samples; reading them reveals uninitialised ones to
+ * memory checkers. */
 static unsigned sum_samples(const struct glint_image *frame)
 {
     unsigned sum = 0;
@@ -77,13 +80,13 @@ static unsigned sum_samples(const struct glint_image *frame)
     return sum;
 }
 
-static void read_frames(struct glint_y4m_reader *reader)
+static void read_all_frames(struct glint_y4m_reader *reader)
 {
     const struct glint_image *frame;
     struct glint_y4m_writer writer;
     struct glint_error error;
 
-    check_header(&reader->header);
+    check_header_round_trip(&reader->header);
     require(
         !glint_y4m_writer_open(&writer, "/dev/null", &reader->header, &error));
     while (!glint_y4m_reader_next(reader, &frame, &error) && frame) {
@@ -104,8 +107,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (size < 1)
         return 0;
     memory = (struct memory){data + 1, size - 1, 1 + data[0] % 200U};
-    if (!glint_y4m_reader_start(&reader, read_memory, &memory, "fuzz", &error))
-        read_frames(&reader);
+    if (!glint_y4m_reader_start(&reader, read_from_memory, &memory, "fuzz",
+                                &error))
+        read_all_frames(&reader);
     glint_y4m_reader_close(&reader);
     return 0;
 }

@@ -11,8 +11,9 @@
 
 #include "support/models/hostile.h"
 
-/* Reads the model PATH, which stays in memory; NULL: not readable. */
-static const struct glint_lens *read_model(const char *path)
+/* Opens the model file PATH, whose memory is never freed. Returns NULL if it
+ * cannot be read. */
+static const struct glint_lens *read_model_file(const char *path)
 {
     static uint32_t data[1 << 18];
     static struct glint_lens lens;
@@ -28,8 +29,8 @@ static const struct glint_lens *read_model(const char *path)
     return NULL;
 }
 
-static bool write_model(const struct model_image *m, const char *folder,
-                        int family, int number)
+static bool write_model_file(const struct model_image *m, const char *folder,
+                             int family, int number)
 {
     char path[4096];
     FILE *file;
@@ -50,7 +51,7 @@ static bool write_model(const struct model_image *m, const char *folder,
 int main(int argc, char **argv)
 {
     const struct glint_lens *const baked =
-        argc == 3 ? read_model(argv[1]) : NULL;
+        argc == 3 ? read_model_file(argv[1]) : NULL;
 
     if (!baked) {
         fprintf(stderr, "usage: %s MODEL FOLDER\n", argv[0]);
@@ -61,8 +62,8 @@ int main(int argc, char **argv)
         struct hostile_scene scene;
         bool written;
 
-        hostile_make(&scene, (enum hostile_family)family, number, baked);
-        written = write_model(&scene.model, argv[2], family, number);
+        hostile_make_scene(&scene, (enum hostile_family)family, number, baked);
+        written = write_model_file(&scene.model, argv[2], family, number);
         free(scene.model.data);
         if (!written)
             return 1;

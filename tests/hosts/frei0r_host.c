@@ -31,7 +31,8 @@ static size_t frame_bytes, n_frames;
 static unsigned char *input;
 static struct f0r_plugin plugin;
 
-/* Entries of the plug-in. Their addresses come as those of objects. */
+/* Functions of the plug-in. dlsym() returns their addresses as object pointers,
+ * which memcpy() converts. */
 static void *(*construct)(unsigned, unsigned);
 static void (*destruct)(void *);
 static void (*plugin_info)(struct f0r_plugin *);
@@ -46,7 +47,7 @@ static int exit_with_error(const char *text, const char *what)
     exit(1);
 }
 
-static void find_symbol(void *library, const char *name, void *to)
+static void find_plugin_symbol(void *library, const char *name, void *to)
 {
     void *const at = dlsym(library, name);
 
@@ -55,8 +56,8 @@ static void find_symbol(void *library, const char *name, void *to)
     memcpy(to, &at, sizeof at);
 }
 
-/* Sets and reads back a parameter. */
-static void set_parameter(void *instance, const struct setting *s)
+/* Sets a parameter of the plug-in and checks that it can be read back. */
+static void set_and_verify_parameter(void *instance, const struct setting *s)
 {
     struct f0r_param info;
     double number = strtod(s->value, NULL), got = -1;
@@ -81,7 +82,7 @@ static void set_parameter(void *instance, const struct setting *s)
         exit_with_error("is not what was set:", s->name);
 }
 
-static void *draw_frames(void *out)
+static void *filter_frames(void *out)
 {
     void *const instance = construct(width, height);
 
@@ -90,7 +91,7 @@ static void *draw_frames(void *out)
     for (size_t i = 0; i < n_frames; i++) {
         for (int k = 0; k < n_settings; k++)
             if (setting[k].frame == (int)i)
-                set_parameter(instance, &setting[k]);
+                set_and_verify_parameter(instance, &setting[k]);
         update(instance, (double)i / 25,
                (const uint32_t *)(const void *)(input + i * frame_bytes),
                (uint32_t *)(void *)((unsigned char *)out + i * frame_bytes));
@@ -99,7 +100,7 @@ static void *draw_frames(void *out)
     return NULL;
 }
 
-static void take_setting(const char *text)
+static void parse_setting_argument(const char *text)
 {
     struct setting *const s = &setting[n_settings++];
     const char *const value = strchr(text, '=');
@@ -117,14 +118,14 @@ static void load_plugin(const char *path)
 
     if (!library)
         exit_with_error("cannot load", dlerror());
-    find_symbol(library, "f0r_init", &init);
-    find_symbol(library, "f0r_construct", &construct);
-    find_symbol(library, "f0r_destruct", &destruct);
-    find_symbol(library, "f0r_get_plugin_info", &plugin_info);
-    find_symbol(library, "f0r_get_param_info", &param_info);
-    find_symbol(library, "f0r_set_param_value", &set_value);
-    find_symbol(library, "f0r_get_param_value", &get_value);
-    find_symbol(library, "f0r_update", &update);
+    find_plugin_symbol(library, "f0r_init", &init);
+    find_plugin_symbol(library, "f0r_construct", &construct);
+    find_plugin_symbol(library, "f0r_destruct", &destruct);
+    find_plugin_symbol(library, "f0r_get_plugin_info", &plugin_info);
+    find_plugin_symbol(library, "f0r_get_param_info", &param_info);
+    find_plugin_symbol(library, "f0r_set_param_value", &set_value);
+    find_plugin_symbol(library, "f0r_get_param_value", &get_value);
+    find_plugin_symbol(library, "f0r_update", &update);
     if (init() != 1)
         exit_with_error("init fails:", path);
     plugin_info(&plugin);
@@ -145,13 +146,14 @@ int main(int argc, char **argv)
         exit_with_error("no memory", NULL);
     n_frames = fread(input, 1, (size_t)256 << 20, stdin) / frame_bytes;
     for (int i = 4; i < argc; i++)
-        take_setting(argv[i]);
-    setlocale(LC_ALL, ""); /* as hosts with windows do */
+        parse_setting_argument(argv[i]);
+    /* Hosts with a user interface set the user's locale. */
+    setlocale(LC_ALL, "");
     load_plugin(argv[1]);
     bytes = n_frames * frame_bytes;
     for (int i = 0; i < n; i++)
         if (!(out[i] = malloc(bytes)) ||
-            pthread_create(&thread[i], NULL, draw_frames, out[i]) != 0)
+            pthread_create(&thread[i], NULL, filter_frames, out[i]) != 0)
             exit_with_error("no memory, or no thread", NULL);
     for (int i = 0; i < n; i++) {
         pthread_join(thread[i], NULL);

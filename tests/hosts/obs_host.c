@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * obs_host MODULE FORMAT WxH [KEY=VALUE[@FRAME]]... - frames of standard input
- * through libobs: its own core and graphics thread, a source of frames in
- * memory, the filter of MODULE over it, and behind that one of the host's that
- * writes frames to standard output. Values are bool:, number: or word:. The
- * first frame is given until the filter has opened its lens, or at most WAIT_S
- * long.
+ * obs_host MODULE FORMAT WxH [KEY=VALUE[@FRAME]]... - filters raw frames from
+ * standard input by the OBS filter of MODULE and writes them to standard
+ * output. The program starts the core of libobs with its graphics thread, a
+ * source that outputs the frames, the filter of MODULE, and a second filter
+ * that captures its output. Values begin with bool:, number: or word:. The
+ * first frame is repeated until the filter has opened its lens, for at most
+ * WAIT_S seconds.
  */
 #include <inttypes.h>
 #include <pthread.h>
@@ -20,7 +21,8 @@ enum { WAIT_S = 3600, FRAME_MS = 40, POLL_US = 2000, SLOW_POLLS = 100000 };
 
 /* ------------------------------------------------------------------- frames */
 
-/* Rows and bytes of each plane, for WIDTH x HEIGHT. */
+/* Sets the number of rows, and of bytes per row, of each plane of a WIDTH x
+ * HEIGHT frame. Returns the number of planes. */
 static int find_plane_sizes(enum video_format format, uint32_t width,
                             uint32_t height, uint32_t bytes[3],
                             uint32_t rows[3])
@@ -44,13 +46,13 @@ static int find_plane_sizes(enum video_format format, uint32_t width,
         return 1;
     case VIDEO_FORMAT_Y800:
         return 1;
-    default: /* those of four bytes */
+    default: /* formats of four bytes per pixel */
         bytes[0] = 4 * width;
         return 1;
     }
 }
 
-static enum video_format format_named(const char *name)
+static enum video_format find_format_by_name(const char *name)
 {
     for (int f = VIDEO_FORMAT_I420; f <= VIDEO_FORMAT_AYUV; f++)
         if (strcmp(get_video_format_name((enum video_format)f), name) == 0)
@@ -61,7 +63,7 @@ static enum video_format format_named(const char *name)
 
 /* -------------------------------------------------------------------- probe */
 
-/* The last frame that came out of the filter, packed. */
+/* The last frame that the filter output, its rows without padding. */
 static struct {
     pthread_mutex_t lock;
     uint64_t timestamp;
@@ -74,13 +76,14 @@ static const char *get_source_name(void *type)
     return "of the host";
 }
 
-static void *no_data(obs_data_t *settings, obs_source_t *source)
+static void *create_source_without_data(obs_data_t *settings,
+                                        obs_source_t *source)
 {
     (void)settings;
     return source;
 }
 
-static void nothing(void *data)
+static void ignore_source_call(void *data)
 {
     (void)data;
 }
@@ -109,14 +112,14 @@ static struct obs_source_info feed = {.id = "host_feed",
                                       .type = OBS_SOURCE_TYPE_INPUT,
                                       .output_flags = OBS_SOURCE_ASYNC_VIDEO,
                                       .get_name = get_source_name,
-                                      .create = no_data,
-                                      .destroy = nothing};
+                                      .create = create_source_without_data,
+                                      .destroy = ignore_source_call};
 static struct obs_source_info probe = {.id = "host_probe",
                                        .type = OBS_SOURCE_TYPE_FILTER,
                                        .output_flags = OBS_SOURCE_ASYNC_VIDEO,
                                        .get_name = get_source_name,
-                                       .create = no_data,
-                                       .destroy = nothing,
+                                       .create = create_source_without_data,
+                                       .destroy = ignore_source_call,
                                        .filter_video = record_output_frame};
 
 /* ---------------------------------------------------------------------- run */
@@ -135,9 +138,10 @@ static void exit_with_error(const char *what)
     exit(1);
 }
 
-/* Of what OBS says, warnings go to standard error, as standard output is for
- * frames. */
-static void log_line(int level, const char *format, va_list args, void *ctx)
+/* Prints warnings and errors of OBS to standard error, as standard output
+ * contains the frames. */
+static void log_obs_message(int level, const char *format, va_list args,
+                            void *ctx)
 {
     (void)ctx;
     if (level > LOG_WARNING)
@@ -161,7 +165,7 @@ static void start_obs(const char *path)
                                    .range = VIDEO_RANGE_PARTIAL};
     obs_module_t *module;
 
-    base_set_log_handler(log_line, NULL);
+    base_set_log_handler(log_obs_message, NULL);
     if (!obs_startup("en-US", NULL, NULL))
         exit_with_error("libobs does not start");
     if (obs_reset_video(&video) != OBS_VIDEO_SUCCESS)
@@ -175,8 +179,9 @@ static void start_obs(const char *path)
     obs_register_source(&probe);
 }
 
-/* Sets what SETTINGS say for FRAME. */
-static void apply_setting(struct run *r, char **settings, int n, long frame)
+/* Applies those of the N SETTINGS to the filter whose frame number is FRAME. */
+static void apply_frame_settings(struct run *r, char **settings, int n,
+                                 long frame)
 {
     obs_data_t *const data = obs_source_get_settings(r->filter);
 
@@ -199,8 +204,10 @@ static void apply_setting(struct run *r, char **settings, int n, long frame)
     obs_data_release(data);
 }
 
-/* Gives the frame of BYTES at MS, and waits until it came out. */
-static void pass_frame(struct run *r, unsigned char *bytes, uint64_t ms)
+/* Passes the frame BYTES, with a time stamp of MS milliseconds, to the source,
+ * and waits until the filter has output it. */
+static void filter_and_write_frame(struct run *r, unsigned char *bytes,
+                                   uint64_t ms)
 {
     struct obs_source_frame frame = {.width = r->width,
                                      .height = r->height,
@@ -230,7 +237,7 @@ static void pass_frame(struct run *r, unsigned char *bytes, uint64_t ms)
         exit_with_error("a frame did not come out");
 }
 
-static void run_filter(struct run *r, char **settings, int n_settings)
+static void filter_all_frames(struct run *r, char **settings, int n_settings)
 {
     unsigned char *const frame = malloc(r->size);
     uint64_t ms = 1000;
@@ -241,9 +248,9 @@ static void run_filter(struct run *r, char **settings, int n_settings)
     for (long i = 0; fread(frame, r->size, 1, stdin) == 1; i++) {
         const uint64_t end = ms + (uint64_t)WAIT_S * 1000;
 
-        apply_setting(r, settings, n_settings, i);
+        apply_frame_settings(r, settings, n_settings, i);
         do {
-            pass_frame(r, frame, ms);
+            filter_and_write_frame(r, frame, ms);
             ms += FRAME_MS;
         } while (i == 0 && memcmp(seen.bytes, frame, r->size) == 0 &&
                  obs_source_enabled(r->filter) && ms < end);
@@ -266,7 +273,7 @@ int main(int argc, char **argv)
         return 2;
     }
     start_obs(argv[1]);
-    r.format = format_named(argv[2]);
+    r.format = find_format_by_name(argv[2]);
     r.n_planes = find_plane_sizes(r.format, r.width, r.height, r.bytes, r.rows);
     for (int p = 0; p < r.n_planes; p++)
         r.size += (size_t)r.bytes[p] * r.rows[p];
@@ -279,7 +286,7 @@ int main(int argc, char **argv)
     obs_source_filter_add(r.source, r.filter);
     obs_source_filter_add(r.source, watch);
     obs_set_output_source(0, r.source);
-    run_filter(&r, argv + 4, argc - 4);
+    filter_all_frames(&r, argv + 4, argc - 4);
     obs_set_output_source(0, NULL);
     obs_source_release(watch);
     obs_source_release(r.filter);

@@ -51,7 +51,7 @@ static double random_between(uint32_t *seed, double low, double high)
 
 /* Returns the parameters of frame I. Dust and soft edges, which have many
  * edges, are drawn in small images. */
-static struct shape make_shape(int i)
+static struct shape make_frame_parameters(int i)
 {
     static const int width[] = {320, 480, 640};
     static const int lamps[] = {1, 1, 2, 4};
@@ -60,32 +60,33 @@ static struct shape make_shape(int i)
     bool dirty;
 
     for (int k = 0; k < 8; k++)
-        rng_bits(&seed);
-    s.lens =
-        s.held ? held_lens[rng_below(&seed, 2)] : fit_lens[rng_below(&seed, 3)];
-    dirty = rng_below(&seed, 4) == 0;
-    s.width = width[rng_below(&seed, dirty ? 1 : 3)];
+        rng_bits32(&seed);
+    s.lens = s.held ? held_lens[rng_int_below(&seed, 2)]
+                    : fit_lens[rng_int_below(&seed, 3)];
+    dirty = rng_int_below(&seed, 4) == 0;
+    s.width = width[rng_int_below(&seed, dirty ? 1 : 3)];
     s.height = s.width * 9 / 16;
-    s.n_lamps = lamps[rng_below(&seed, dirty ? 2 : 4)];
+    s.n_lamps = lamps[rng_int_below(&seed, dirty ? 2 : 4)];
     s.angle = random_between(&seed, 1, 25);
     s.stops = random_between(&seed, -5, 1);
     s.quality = random_between(&seed, 0, dirty ? 0.5 : 0.75);
-    s.dim = rng_below(&seed, 3) ? 0 : exp2(random_between(&seed, -2, 2));
-    s.dispersion = rng_below(&seed, 4) ? 0 : 1;
-    s.starburst = rng_below(&seed, 3) ? 0 : 1;
+    s.dim = rng_int_below(&seed, 3) ? 0 : exp2(random_between(&seed, -2, 2));
+    s.dispersion = rng_int_below(&seed, 4) ? 0 : 1;
+    s.starburst = rng_int_below(&seed, 3) ? 0 : 1;
     s.star_stops = random_between(&seed, 3, 14);
-    s.veil = rng_below(&seed, 4) ? 0 : 0.02;
-    s.haze = rng_below(&seed, 5) ? 0 : 0.02;
-    s.dust =
-        dirty && rng_below(&seed, 3) ? exp2(random_between(&seed, -9, -5)) : 0;
-    s.soft = dirty && rng_below(&seed, 3) == 0
+    s.veil = rng_int_below(&seed, 4) ? 0 : 0.02;
+    s.haze = rng_int_below(&seed, 5) ? 0 : 0.02;
+    s.dust = dirty && rng_int_below(&seed, 3)
+                 ? exp2(random_between(&seed, -9, -5))
+                 : 0;
+    s.soft = dirty && rng_int_below(&seed, 3) == 0
                  ? random_between(&seed, 0.01, 0.1)
                  : 0;
-    s.round = rng_below(&seed, 4) ? 0 : random_between(&seed, 0.1, 0.9);
+    s.round = rng_int_below(&seed, 4) ? 0 : random_between(&seed, 0.1, 0.9);
     return s;
 }
 
-static void set_settings(struct settings *to, const struct shape *s)
+static void set_frame_settings(struct settings *to, const struct shape *s)
 {
     settings_defaults(to);
     settings_set_quality(to, s->quality);
@@ -113,11 +114,11 @@ static void exit_with_error(const char *what)
 
 static void open_stage(struct stage *s, const struct shape *shape)
 {
-    set_settings(&s->opened.settings, shape);
+    set_frame_settings(&s->opened.settings, shape);
     if (opened_lens_open(&s->tool, &s->opened.lens, &s->opened.settings,
                          shape->lens) != EXIT_OK ||
-        settings_frame(&s->tool, &s->opened, shape->width, shape->height,
-                       &s->frame) != EXIT_OK ||
+        make_frame_from_settings(&s->tool, &s->opened, shape->width,
+                                 shape->height, &s->frame) != EXIT_OK ||
         canvas_init(&s->canvas, GLINT_RGB24, shape->width, shape->height) !=
             GLINT_OK)
         exit_with_error(shape->lens);
@@ -145,9 +146,9 @@ enum glint_status cost_frame(struct glint_frame *frame,
     return glint_frame_draw(frame, lamp, n, 1, image, report);
 }
 
-static enum glint_status find_exposure(struct glint_frame *frame,
-                                       const struct glint_lamp *lamp,
-                                       double *exposure)
+static enum glint_status find_frame_exposure(struct glint_frame *frame,
+                                             const struct glint_lamp *lamp,
+                                             double *exposure)
 {
     const int width = frame->view.width, height = frame->view.height;
     const size_t n = 3 * (size_t)width * (size_t)height;
@@ -164,7 +165,7 @@ static enum glint_status find_exposure(struct glint_frame *frame,
 }
 
 /* Draws the frame twice, so that the second allocates no memory. */
-static void draw_frame(struct stage *s, const struct shape *shape)
+static void draw_frame_twice(struct stage *s, const struct shape *shape)
 {
     struct glint_engine_report report;
 
@@ -183,7 +184,7 @@ static void draw_frame(struct stage *s, const struct shape *shape)
         exit_with_error("no memory");
 }
 
-static void count_lit(const struct stage *s, double *counted)
+static void count_lit_in_row(const struct stage *s, double *counted)
 {
     struct glint_planned b;
 
@@ -223,7 +224,8 @@ static double count_lit_pixels(const struct stage *s)
     return lit;
 }
 
-static void print_line(struct stage *s, const struct shape *shape, FILE *file)
+static void print_frame_costs(struct stage *s, const struct shape *shape,
+                              FILE *file)
 {
     const struct glint_cost_plan plan = glint_frame_plan(&s->frame);
     const struct glint_cost planned = glint_cost_of(&plan, &plan.dials);
@@ -237,7 +239,7 @@ static void print_line(struct stage *s, const struct shape *shape, FILE *file)
     for (int k = 0; k < GLINT_COST_KINDS; k++)
         fprintf(file, " %g", planned.count[k]);
     fprintf(file, " |");
-    count_lit(s, counted);
+    count_lit_in_row(s, counted);
     counted[GLINT_COST_LIT] = count_lit_pixels(s);
     for (int k = GLINT_COST_LIT + 1; k < GLINT_COST_KINDS; k++)
         counted[k] = planned.count[k];
@@ -260,7 +262,7 @@ int main(int argc, char **argv)
     s->tool.name = "cost_frames";
     s->tool.quiet = true;
     for (int i = 0; i < FIT + HELD; i++) {
-        const struct shape shape = make_shape(i);
+        const struct shape shape = make_frame_parameters(i);
         double exposure = 1;
 
         s->tool.name = "cost_frames";
@@ -271,11 +273,11 @@ int main(int argc, char **argv)
         open_stage(s, &shape);
         s->exposure = exposure;
         if (!from &&
-            find_exposure(&s->frame, s->lamp, &s->exposure) != GLINT_OK)
+            find_frame_exposure(&s->frame, s->lamp, &s->exposure) != GLINT_OK)
             exit_with_error("no memory");
-        draw_frame(s, &shape);
+        draw_frame_twice(s, &shape);
         if (to) {
-            print_line(s, &shape, to);
+            print_frame_costs(s, &shape, to);
             fflush(to);
         }
         close_stage(s);

@@ -43,7 +43,8 @@ struct sweep {
     struct sample bound;
     struct stage test, finest;
     float linear[SAMPLES];
-    float error[2][2][SAMPLES]; /* [frame & 1][0: dithered, 1: as drawn] */
+    /* errors of two frames: [frame & 1][0: dithered, 1: not dithered] */
+    float error[2][2][SAMPLES];
     uint8_t codes[SAMPLES];
     double power;
     double sum; /* sum of the reference's last frame, codes */
@@ -54,13 +55,13 @@ struct sweep {
 
 /* Sets ERROR to the codes of the image, dithered if DITHER, minus those of
  * the reference in s->linear. */
-static bool add_error(struct sweep *s, const struct glint_lamp *lamp,
-                      int dither, float *error)
+static bool measure_code_errors(struct sweep *s, const struct glint_lamp *lamp,
+                                int dither, float *error)
 {
     s->test.frame.cfg.dither = dither;
     glint_frame_retune(&s->test.frame);
     memset(s->codes, 0, sizeof s->codes);
-    if (!stage_codes(&s->test, lamp, 1, s->codes))
+    if (!stage_draw_codes(&s->test, lamp, 1, s->codes))
         return false;
     s->sum = 0;
     for (int i = 0; i < SAMPLES; i++) {
@@ -75,15 +76,16 @@ static bool add_error(struct sweep *s, const struct glint_lamp *lamp,
 static bool measure_frame(struct sweep *s, double theta,
                           float error[2][SAMPLES])
 {
-    const struct glint_lamp lamp = stage_lamp(theta, AZIMUTH, s->power);
+    const struct glint_lamp lamp = stage_make_lamp(theta, AZIMUTH, s->power);
 
-    return stage_linear(&s->finest, &lamp, 1, s->linear) &&
-           add_error(s, &lamp, 1, error[0]) && add_error(s, &lamp, 0, error[1]);
+    return stage_draw_linear(&s->finest, &lamp, 1, s->linear) &&
+           measure_code_errors(s, &lamp, 1, error[0]) &&
+           measure_code_errors(s, &lamp, 0, error[1]);
 }
 
 /* ---------------------------------------------------------------- measures */
 
-static double max_block_change(const float *a, const float *b)
+static double max_block_mean_change(const float *a, const float *b)
 {
     double worst = 0;
 
@@ -112,7 +114,7 @@ static double relative_flux_change(const struct sweep *s, const float *a,
     return s->sum > 0 ? fabs(sum) / s->sum : 0;
 }
 
-static double edge_crawl(const float *a, const float *b)
+static double measure_edge_crawl(const float *a, const float *b)
 {
     enum { BINS = 4096 };
     static int count[BINS];
@@ -129,7 +131,7 @@ static double edge_crawl(const float *a, const float *b)
     return at / 16.0;
 }
 
-static bool run_sweep(struct sweep *s)
+static bool sweep_light(struct sweep *s)
 {
     const int steps = (int)lrint((s->to - s->from) / STEP_DEG);
     FILE *const csv = s->csv ? fopen(s->csv, "w") : NULL;
@@ -146,9 +148,9 @@ static bool run_sweep(struct sweep *s)
         ok = measure_frame(s, theta, here);
         if (k == 0 || !ok)
             continue;
-        now = (struct sample){max_block_change(here[0], before[0]),
+        now = (struct sample){max_block_mean_change(here[0], before[0]),
                               relative_flux_change(s, here[0], before[0]),
-                              edge_crawl(here[1], before[1])};
+                              measure_edge_crawl(here[1], before[1])};
         s->worst.jump = fmax(s->worst.jump, now.jump);
         s->worst.flux = fmax(s->worst.flux, now.flux);
         s->worst.crawl = fmax(s->worst.crawl, now.crawl);
@@ -166,28 +168,28 @@ static bool run_sweep(struct sweep *s)
 
 /* ----------------------------------------------------------------- the run */
 
-static bool open_sweep(struct sweep *s)
+static bool open_light_sweep(struct sweep *s)
 {
     const struct glint_lamp middle =
-        stage_lamp((s->from + s->to) / 2, AZIMUTH, 1);
+        stage_make_lamp((s->from + s->to) / 2, AZIMUTH, 1);
 
-    if (!stage_open(&s->test, s->lens, WIDTH, HEIGHT) ||
-        !stage_open(&s->finest, s->lens, WIDTH, HEIGHT))
+    if (!stage_open_lens(&s->test, s->lens, WIDTH, HEIGHT) ||
+        !stage_open_lens(&s->finest, s->lens, WIDTH, HEIGHT))
         return false;
     s->finest.frame.dials.fineness = 256;
     s->finest.frame.dials.irradiance_steps = 0;
-    s->power = stage_power(&s->test, &middle);
+    s->power = stage_find_exposed_power(&s->test, &middle);
     return true;
 }
 
-static bool check_limit(const struct sweep *s, const char *what, double worst,
-                        double bound, const char *unit)
+static bool check_error_limit(const struct sweep *s, const char *what,
+                              double worst, double bound, const char *unit)
 {
     char name[200];
 
     snprintf(name, sizeof name, "motion: %s, %s, %g deg a frame (finest)",
              s->lens, what, STEP_DEG);
-    return extreme_at_most(name, worst, bound, unit);
+    return extreme_check_at_most(name, worst, bound, unit);
 }
 
 static bool parse_options(struct sweep *s, int argc, char **argv)
@@ -222,10 +224,12 @@ int main(int argc, char **argv)
                         "[--jump CODES] [--flux SHARE] [--crawl CODES]\n");
         return 2;
     }
-    if (!open_sweep(&s) || !run_sweep(&s))
+    if (!open_light_sweep(&s) || !sweep_light(&s))
         return 1;
-    ok = check_limit(&s, "block mean", s.worst.jump, s.bound.jump, "codes");
-    ok &= check_limit(&s, "sum of codes", s.worst.flux, s.bound.flux, "");
-    return !(check_limit(&s, "crawl", s.worst.crawl, s.bound.crawl, "codes") &&
-             ok);
+    ok = check_error_limit(&s, "block mean", s.worst.jump, s.bound.jump,
+                           "codes");
+    ok &= check_error_limit(&s, "sum of codes", s.worst.flux, s.bound.flux, "");
+    return !(
+        check_error_limit(&s, "crawl", s.worst.crawl, s.bound.crawl, "codes") &&
+        ok);
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * motion_table FRAMES - prints the errors of localisation (a body's pose from
- * observed foods), by method and motion.
+ * the observed positions of foods, its landmarks), by method and motion.
  *
- * Methods take turns at blocks of frames, so that their times are comparable.
+ * The methods run alternately on blocks of frames, so that their times are
+ * comparable.
  */
 #include <math.h>
 #include <stdio.h>
@@ -16,8 +17,8 @@
 
 enum { CHUNK = 1000, BINS = 100, MOST_METHODS = 6, SEED = 163635 };
 
-/* A method of localisation. ALL: uses all foods as glint bake does, with or
- * without averaging; else uses four foods. */
+/* A method of localisation: from all foods, like glint bake, with or without
+ * averaging; or from four foods. */
 struct method {
     const char *name;
     bool all, average;
@@ -59,8 +60,9 @@ static const char *const motions[TRACK_MOTIONS] = {
 
 static struct track_frame chunk[CHUNK];
 
-static void add_error(struct result *r, const struct glint_located *located,
-                      const struct track_frame *f, int bin, bool is_last)
+static void add_pose_error(struct result *r,
+                           const struct glint_located *located,
+                           const struct track_frame *f, int bin, bool is_last)
 {
     double square = 0, x, y = f->food_distance;
 
@@ -87,24 +89,27 @@ static const char *localise_track(const struct method *method, struct result *r,
 {
     const double(*const seen)[3] = (const double(*)[3])f->seen;
 
-    return method->all ? glint_localise(&r->all, n, seen, f->is_new, located)
-                       : four_localise(&r->four, n, seen, f->is_new, located);
+    return method->all
+               ? glint_localise(&r->all, n, seen, f->is_new, located)
+               : four_localise_body(&r->four, n, seen, f->is_new, located);
 }
 
-static void run_track(const struct track_options *options,
-                      const struct method *method, int n, struct result *result)
+static void localise_all_tracks(const struct track_options *options,
+                                const struct method *method, int n,
+                                struct result *result)
 {
     struct track track;
 
-    track_begin(&track, options);
+    track_begin_motion(&track, options);
     for (int i = 0; i < n; i++) {
         memset(&result[i], 0, sizeof *result);
         glint_localiser_init(&result[i].all, method[i].average);
-        four_init(&result[i].four, method[i].fit, method[i].arithmetic);
+        four_init_localiser(&result[i].four, method[i].fit,
+                            method[i].arithmetic);
     }
     for (int first = 0; first < options->n_frames; first += CHUNK) {
         for (int k = 0; k < CHUNK; k++)
-            track_next(&track, &chunk[k]);
+            track_next_frame(&track, &chunk[k]);
         for (int i = 0; i < n; i++) {
             static struct glint_located located[CHUNK];
             struct result *r = &result[i];
@@ -117,9 +122,10 @@ static void run_track(const struct track_options *options,
             for (int k = 0; k < CHUNK && !r->wrong; k++) {
                 const int frame = first + k;
 
-                add_error(r, &located[k], &chunk[k],
-                          (int)((long long)frame * BINS / options->n_frames),
-                          frame >= options->n_frames / 10 * 9);
+                add_pose_error(
+                    r, &located[k], &chunk[k],
+                    (int)((long long)frame * BINS / options->n_frames),
+                    frame >= options->n_frames / 10 * 9);
             }
         }
     }
@@ -146,8 +152,8 @@ static double compute_correlation(const struct result *r, int n)
     return (s[4] - s[0] * s[1] / n) / sqrt(x * y);
 }
 
-static void print_row(const struct method *method, int n, int n_frames,
-                      const struct result *result)
+static void print_method_row(const struct method *method, int n, int n_frames,
+                             const struct result *result)
 {
     for (int i = 0; i < n; i++) {
         const struct result *r = &result[i];
@@ -164,8 +170,8 @@ static void print_row(const struct method *method, int n, int n_frames,
 
 /* ------------------------------------------------------------------ tables */
 
-static void compare_methods(int reset_every, int digits,
-                            const struct method *method, int n, int n_frames)
+static void compare_localisers(int reset_every, int digits,
+                               const struct method *method, int n, int n_frames)
 {
     static struct result result[MOST_METHODS];
 
@@ -175,13 +181,13 @@ static void compare_methods(int reset_every, int digits,
         const struct track_options options = {
             m, n_frames, 5, reset_every, digits, (uint32_t)(SEED + m)};
 
-        run_track(&options, method, n, result);
+        localise_all_tracks(&options, method, n, result);
         printf("| %s | | | | | |\n", motions[m]);
-        print_row(method, n, n_frames, result);
+        print_method_row(method, n, n_frames, result);
     }
 }
 
-static void time_methods(void)
+static void time_localisers(void)
 {
     static const int lengths[3] = {10000, 100000, 200000};
     static struct result result[MOST_METHODS];
@@ -194,7 +200,7 @@ static void time_methods(void)
                                          rounded_input[3], rounded_input[4]};
         const struct track_options options = {0, lengths[i], 5, 0, 0, SEED};
 
-        run_track(&options, method, 4, result);
+        localise_all_tracks(&options, method, 4, result);
         first = i ? first : result[0].seconds;
         printf("| %d |", lengths[i]);
         for (int k = 0; k < 4; k++)
@@ -212,12 +218,12 @@ int main(int argc, char **argv)
         return 2;
     }
     printf("### Foods that stay, all digits, %d frames\n\n", n);
-    compare_methods(0, 0, exact_input, 6, n);
+    compare_localisers(0, 0, exact_input, 6, n);
     printf("\n### A food ends every 200 frames, %d times; text of six "
            "digits\n\n",
            (n - 1) / 200);
-    compare_methods(200, 6, rounded_input, 5, n);
+    compare_localisers(200, 6, rounded_input, 5, n);
     printf("\n### Times, in those of first4 for 10000 frames\n\n");
-    time_methods();
+    time_localisers();
     return 0;
 }

@@ -31,7 +31,8 @@ enum {
 
 struct scene {
     const char *name;
-    double radius, pole, speed; /* pixels, pixels, pixels per frame */
+    /* lamp radius, px; width of the pole, px; its speed, px per frame */
+    double radius, pole, speed;
 };
 
 /* Visible fraction and measured power in the frames of one scene. */
@@ -50,7 +51,7 @@ static double compute_glare(double r)
     return 0.14 * exp(-r * r / 2) + 0.02 / pow(1 + r, 3);
 }
 
-static uint8_t to_code(double x)
+static uint8_t encode_pixel(double x)
 {
     x = x > 1 ? 1 : x;
     x = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
@@ -59,7 +60,7 @@ static uint8_t to_code(double x)
 
 /* Draws the disc behind a pole between columns X0 and X1. Returns the
  * visible fraction of the disc. */
-static double draw_lamp(const struct scene *s, double x0, double x1)
+static double draw_occluded_lamp(const struct scene *s, double x0, double x1)
 {
     const double cx = WIDTH / 2.0 + 0.3, cy = HEIGHT / 2.0 - 0.2;
     const double each = 64 * 3.14159265 * s->radius * s->radius / POINTS;
@@ -69,7 +70,8 @@ static double draw_lamp(const struct scene *s, double x0, double x1)
     for (int i = 0; i < 4 * SQUARES && table[0] == 0; i++)
         table[4 * SQUARES - 1 - i] =
             compute_glare(sqrt((4 * SQUARES - 0.5 - i) / 4));
-    for (int i = 0; i < POINTS; i++) { /* points in a sunflower spiral */
+    /* sample points of the disc, in a sunflower spiral */
+    for (int i = 0; i < POINTS; i++) {
         const double r = s->radius * sqrt((i + 0.5) / POINTS);
         const double x = cx + r * cos(2.399963 * i);
 
@@ -91,13 +93,13 @@ static double draw_lamp(const struct scene *s, double x0, double x1)
 
                 light += each * table[(int)(4 * (dx * dx + dy * dy))];
             }
-            memset(rgb + 3 * (y * WIDTH + x), to_code(light), 3);
+            memset(rgb + 3 * (y * WIDTH + x), encode_pixel(light), 3);
         }
     return (double)n / POINTS;
 }
 
 /* Returns the total power of N lamps. */
-static double total_power(const struct glint_lamp *lamp, int n)
+static double sum_lamp_powers(const struct glint_lamp *lamp, int n)
 {
     double sum = 0;
 
@@ -106,7 +108,7 @@ static double total_power(const struct glint_lamp *lamp, int n)
     return sum;
 }
 
-static bool run_scene(const struct scene *s, struct passing *p)
+static bool track_occluded_lamp(const struct scene *s, struct passing *p)
 {
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
     const struct glint_view view = glint_view_fit(WIDTH, HEIGHT, 36, 24);
@@ -123,10 +125,10 @@ static bool run_scene(const struct scene *s, struct passing *p)
         const double x =
             WIDTH / 2.0 - s->radius - s->pole - 4 + s->speed * (i - 30);
 
-        p->share[i] = draw_lamp(s, x, x + s->pole);
+        p->share[i] = draw_occluded_lamp(s, x, x + s->pole);
         p->lamps[i] = glint_lamp_detector_frame(&detector, &image, FRAME_US,
                                                 &view, 50, lamp);
-        p->power[i] = total_power(lamp, p->lamps[i]);
+        p->power[i] = sum_lamp_powers(lamp, p->lamps[i]);
     }
     glint_lamp_detector_close(&detector);
     return true;
@@ -143,8 +145,8 @@ static double rms_difference(const struct passing *p, double full, int lag)
     return sqrt(sum / (FRAMES - 30));
 }
 
-static void print_scene(const struct scene *s, const struct passing *p,
-                        bool log)
+static void print_scene_errors(const struct scene *s, const struct passing *p,
+                               bool log)
 {
     double full = 0, least_share = 1, least = 1e30, step = 0, share_step = 0;
     int lag = 0;
@@ -187,9 +189,9 @@ int main(int argc, char **argv)
                "| RMS | lag: RMS | largest step of the share | of power |\n"
                "|---|---|---|---|---|---|---|---|");
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
-        if (!run_scene(&scenes[i], &p))
+        if (!track_occluded_lamp(&scenes[i], &p))
             return 1;
-        print_scene(&scenes[i], &p, log);
+        print_scene_errors(&scenes[i], &p, log);
     }
     return 0;
 }

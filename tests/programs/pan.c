@@ -18,8 +18,8 @@
 /* Returns noise of -6 .. 6 codes, the sum of three uniform numbers. */
 static int random_noise(uint32_t *state)
 {
-    return (int)((rng_bits(state) >> 16) % 5 + (rng_bits(state) >> 16) % 5 +
-                 (rng_bits(state) >> 16) % 5) -
+    return (int)((rng_bits32(state) >> 16) % 5 + (rng_bits32(state) >> 16) % 5 +
+                 (rng_bits32(state) >> 16) % 5) -
            6;
 }
 
@@ -30,8 +30,9 @@ static uint8_t clamp_code(double x)
 
 /* Converts the window of FROM at (X0, Y0) to TO, BT.601 limited range, with
  * noise on luma. */
-static void convert_window(const struct glint_image *from, int x0, int y0,
-                           const struct glint_image *to, uint32_t *state)
+static void convert_window_to_ycc(const struct glint_image *from, int x0,
+                                  int y0, const struct glint_image *to,
+                                  uint32_t *state)
 {
     for (int y = 0; y < to->height; y++)
         for (int x = 0; x < to->width; x++) {
@@ -51,8 +52,8 @@ static void convert_window(const struct glint_image *from, int x0, int y0,
         }
 }
 
-static int write_video(const struct glint_image *photo, int n, int width,
-                       int height)
+static int write_pan_video(const struct glint_image *photo, int n, int width,
+                           int height)
 {
     struct glint_error error = {""};
     struct glint_image frame = {
@@ -73,7 +74,7 @@ static int write_video(const struct glint_image *photo, int n, int width,
         const int x = (photo->width - width) * i / n;
         const int y = (int)(0.5 * room * (1 + 0.5 * sin(i / 12.0)));
 
-        convert_window(photo, x, y, &frame, &state);
+        convert_window_to_ycc(photo, x, y, &frame, &state);
         status = glint_y4m_writer_put(&out, &frame, "", &error);
     }
     if (status == GLINT_OK)
@@ -103,7 +104,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "pan: %s is smaller than the window\n", argv[1]);
         return 2;
     }
-    code = write_video(&photo, n, width, height);
+    code = write_pan_video(&photo, n, width, height);
     glint_picture_free(&photo);
     return code;
 }

@@ -31,7 +31,7 @@ enum {
 /* ------------------------------------------------------------------ measure */
 
 struct camera {
-    /* image as RGB24; coarse: the same as RGB565 */
+    /* the photographed image as RGB24; coarse: the same image as RGB565 */
     struct glint_image image, coarse;
     /* the one of the two that the finder receives */
     const struct glint_image *seen;
@@ -76,7 +76,7 @@ static void close_camera(struct camera *c)
     free(c->stack);
 }
 
-static int is_bright(const struct camera *c, int i)
+static int is_bright_pixel(const struct camera *c, int i)
 {
     const uint8_t *px = c->image.plane[0] + 3 * i;
 
@@ -86,9 +86,10 @@ static int is_bright(const struct camera *c, int i)
 /* Returns the sum of the luminance of SCENE times GAIN over the bright
  * pixels connected to (CX, CY). Sets SPOT to the result of an ideal finder
  * for them. */
-static double measure_region(struct camera *c,
-                             const struct power_picture *scene, double gain,
-                             int cx, int cy, struct glint_spot *spot)
+static double measure_bright_region(struct camera *c,
+                                    const struct power_picture *scene,
+                                    double gain, int cx, int cy,
+                                    struct glint_spot *spot)
 {
     static const double weight[3] = {0.2126, 0.7152, 0.0722};
     const int width = c->image.width, height = c->image.height;
@@ -101,7 +102,7 @@ static double measure_region(struct camera *c,
             const int x = cx + dx, y = cy + dy;
 
             if (x >= 0 && y >= 0 && x < width && y < height &&
-                is_bright(c, y * width + x)) {
+                is_bright_pixel(c, y * width + x)) {
                 c->mask[y * width + x] = 1;
                 c->stack[n++] = y * width + x;
             }
@@ -120,7 +121,7 @@ static double measure_region(struct camera *c,
             const int x = i % width + k % 3 - 1, y = i / width + k / 3 - 1;
 
             if (x < 0 || y < 0 || x >= width || y >= height ||
-                c->mask[y * width + x] || !is_bright(c, y * width + x))
+                c->mask[y * width + x] || !is_bright_pixel(c, y * width + x))
                 continue;
             c->mask[y * width + x] = 1;
             c->stack[n++] = y * width + x;
@@ -139,8 +140,8 @@ static double measure_region(struct camera *c,
     return area ? light : 0;
 }
 
-/* Returns the rank of SPOT, counted from the left. */
-static int find_rank(const struct camera *c, const struct glint_spot *spot)
+/* Returns the rank of SPOT among all spots, counted from the left. */
+static int find_spot_rank(const struct camera *c, const struct glint_spot *spot)
 {
     int i = 0;
 
@@ -149,15 +150,15 @@ static int find_rank(const struct camera *c, const struct glint_spot *spot)
     return i;
 }
 
-static void print_features(struct camera *c, int id, double power,
-                           const struct glint_spot *spot)
+static void print_spot_features(struct camera *c, int id, double power,
+                                const struct glint_spot *spot)
 {
     struct glint_profile_sums sums;
     int32_t feature_q16[GLINT_UNCLIP_FEATURES];
     int64_t seen_q16, core_q16;
 
     glint_rings_sum(&sums, &c->profile->rings, c->spot, c->n,
-                    find_rank(c, spot));
+                    find_spot_rank(c, spot));
     glint_unclip_light(&seen_q16, &core_q16, spot, &sums);
     glint_unclip_features(feature_q16, spot, &sums);
     printf("%d %.6g %.6g %.6g", id, power, (double)seen_q16 / 65536,
@@ -169,12 +170,12 @@ static void print_features(struct camera *c, int id, double power,
 
 /* Takes an image of SCENE times GAIN with noise of SIGMA codes. Every fourth
  * image, by its number K, is RGB565. */
-static void take_picture(struct camera *c, const struct power_picture *scene,
+static void expose_scene(struct camera *c, const struct power_picture *scene,
                          double gain, double sigma, int k, uint32_t *seed)
 {
     uint8_t *px = c->image.plane[0], *to = c->coarse.plane[0];
 
-    power_expose(px, scene, gain, sigma, seed);
+    power_expose_codes(px, scene, gain, sigma, seed);
     c->seen = &c->image;
     if (k % 4 != 3)
         return;
@@ -234,7 +235,7 @@ static int is_validation_sample(int i)
     return (i / 4 + i) & 1;
 }
 
-static void print_rendered(int i)
+static void print_rendered_lamps(int i)
 {
     enum { W = 288, H = 224 };
     struct power_picture scene = {W, H, malloc(sizeof(double) * 3 * W * H)};
@@ -252,7 +253,7 @@ static void print_rendered(int i)
                        : 0.001 * pow(50, rng_unit(&seed));
     slope = random_between(0, 0.6, &seed);
     noise = random_between(0, 3, &seed);
-    power_draw(light, W, H, &lamp);
+    power_draw_lamp(light, W, H, &lamp);
     open_camera(&c, W, H);
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = exp2(-k - rng_unit(&seed));
@@ -264,13 +265,13 @@ static void print_rendered(int i)
                 scene.rgb[3 * p + j] =
                     ((double)light[p] * power * lamp.rgb[j] * gain +
                      black * (1 + slope * (p % W - W / 2) / W));
-        take_picture(&c, &scene, 1, noise, k, &seed);
-        if (measure_region(&c, &scene, 1, (int)lamp.x, (int)lamp.y, c.spot) >
-                0 &&
+        expose_scene(&c, &scene, 1, noise, k, &seed);
+        if (measure_bright_region(&c, &scene, 1, (int)lamp.x, (int)lamp.y,
+                                  c.spot) > 0 &&
             c.spot->area >= 2 && c.spot->area < W * H / 5) {
             c.n = 1;
             glint_profile_measure(c.profile, c.seen, c.spot, c.n);
-            print_features(&c, i, power * gain, c.spot);
+            print_spot_features(&c, i, power * gain, c.spot);
         }
     }
     close_camera(&c);
@@ -280,8 +281,9 @@ static void print_rendered(int i)
 
 /* ---------------------------------------------------------------- panoramas */
 
-static void cut_view(struct power_picture *s, const struct glint_float_image *p,
-                     double yaw, double pitch)
+static void cut_panorama_view(struct power_picture *s,
+                              const struct glint_float_image *p, double yaw,
+                              double pitch)
 {
     const double half = tan(30 * 3.14159265 / 180), pi = 3.14159265358979;
 
@@ -322,7 +324,8 @@ static double compute_mean(const struct power_picture *s)
 
 /* Applies a random lens to the image, with the glare of all pixels above
  * OVER. */
-static void apply_lens(struct power_picture *s, double over, uint32_t *seed)
+static void apply_random_lens(struct power_picture *s, double over,
+                              uint32_t *seed)
 {
     const int n = s->width * s->height;
     double *light = malloc(sizeof *light * (size_t)n);
@@ -331,7 +334,7 @@ static void apply_lens(struct power_picture *s, double over, uint32_t *seed)
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < n; i++)
             light[i] = s->rgb[3 * i + c];
-        power_see(light, s->width, s->height, &lens, over);
+        power_apply_lens(light, s->width, s->height, &lens, over);
         for (int i = 0; i < n; i++)
             s->rgb[3 * i + c] = light[i];
     }
@@ -340,8 +343,8 @@ static void apply_lens(struct power_picture *s, double over, uint32_t *seed)
 
 /* Takes one view of panorama P at all exposures and prints the lamps found.
  * TRUTH is the light that enters the lens, without its glare. */
-static void print_view(const struct glint_float_image *p, int id, double yaw,
-                       double pitch)
+static void print_view_lamps(const struct glint_float_image *p, int id,
+                             double yaw, double pitch)
 {
     const int width = p->width * 2 / 9, height = width * 9 / 16;
     const size_t bytes = sizeof(double) * 3 * (size_t)(width * height);
@@ -351,25 +354,25 @@ static void print_view(const struct glint_float_image *p, int id, double yaw,
     struct camera c;
     double base;
 
-    cut_view(&scene, p, yaw, pitch);
+    cut_panorama_view(&scene, p, yaw, pitch);
     memcpy(truth.rgb, scene.rgb, bytes);
     base = 0.7 / fmax(compute_mean(&scene), 1e-4);
-    apply_lens(&scene, 8 / base, &seed);
+    apply_random_lens(&scene, 8 / base, &seed);
     open_camera(&c, width, height);
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = base * exp2(-k);
 
-        take_picture(&c, &scene, gain, random_between(0, 3, &seed), k, &seed);
+        expose_scene(&c, &scene, gain, random_between(0, 3, &seed), k, &seed);
         c.n = glint_lamp_finder_find(c.finder, c.seen, c.spot, MAX_SPOTS);
         glint_profile_measure(c.profile, c.seen, c.spot, c.n);
         for (int i = 0; i < c.n; i++) {
             struct glint_spot ideal;
             const double power =
-                measure_region(&c, &truth, gain, c.spot[i].x_q8 >> 8,
-                               c.spot[i].y_q8 >> 8, &ideal);
+                measure_bright_region(&c, &truth, gain, c.spot[i].x_q8 >> 8,
+                                      c.spot[i].y_q8 >> 8, &ideal);
 
             if (power > 0 && !c.spot[i].faint)
-                print_features(&c, PANORAMA + id / 100, power, &c.spot[i]);
+                print_spot_features(&c, PANORAMA + id / 100, power, &c.spot[i]);
         }
     }
     close_camera(&c);
@@ -377,7 +380,7 @@ static void print_view(const struct glint_float_image *p, int id, double yaw,
     free(truth.rgb);
 }
 
-static void print_panorama(const char *path, int id)
+static void print_panorama_lamps(const char *path, int id)
 {
     struct glint_float_image p = {0};
     struct glint_error error = {""};
@@ -390,8 +393,9 @@ static void print_panorama(const char *path, int id)
         if (!(p.rgb[i] > 0))
             p.rgb[i] = 0;
     for (int k = 0; k < VIEWS; k++)
-        print_view(&p, 100 * id + k, (k % 8 + k / 16 / 3.0) * 3.14159265 / 4,
-                   (k / 8 % 2 - 0.3) * 0.6);
+        print_view_lamps(&p, 100 * id + k,
+                         (k % 8 + k / 16 / 3.0) * 3.14159265 / 4,
+                         (k / 8 % 2 - 0.3) * 0.6);
     free(p.rgb);
 }
 
@@ -399,8 +403,8 @@ int main(int argc, char **argv)
 {
     for (int i = 0; i < LAMPS; i++)
         if (!is_validation_sample(i))
-            print_rendered(i);
+            print_rendered_lamps(i);
     for (int i = 2; i < argc; i += 2)
-        print_panorama(argv[i], i);
+        print_panorama_lamps(argv[i], i);
     return 0;
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * random_lenses SEED NUMBER [--table] - bakes a random but valid lens
- * (support/random_lens.h) as a draft and compares an image of its model, in
- * linear light and in codes, with the exact image.
+ * (support/random_lens.h) as a draft and compares an image of its model,
+ * in linear light and in codes, with the exact image.
  *
  * Prints a line: number; drawn, dark both ways, or refused by the bake; number
  * of rejected tables; surfaces, ghosts, focal length in mm, f-number, degrees
@@ -28,15 +28,15 @@ static struct glint_lamp random_lamp(const struct stage *s, uint64_t seed,
         0.5 * hypot(s->lens.film_width_mm, s->lens.film_height_mm);
     const double corner =
         atan(half / s->setup.optics.focal_mm) * 57.29577951308232;
-    const double theta = fmin(60, corner * stage_uniform(&r, 0, 1.2));
+    const double theta = fmin(60, corner * stage_random_uniform(&r, 0, 1.2));
 
-    return stage_lamp(theta, stage_uniform(&r, -180, 180), 1);
+    return stage_make_lamp(theta, stage_random_uniform(&r, -180, 180), 1);
 }
 
 /* Prints the line of lens NUMBER of S with the result WHAT. */
-static int print_line(const struct stage *s, int number, const char *what,
-                      int tries, double theta_deg,
-                      const struct glint_measure *m, int grid)
+static int print_lens_result(const struct stage *s, int number,
+                             const char *what, int tries, double theta_deg,
+                             const struct glint_measure *m, int grid)
 {
     printf("%d %s %d %d %d %.4g %.3g %.3g %.1f %.4f %.0f %d\n", number, what,
            tries, s->lens.n_surfaces, glint_ghost_list(&s->lens, NULL, 0),
@@ -45,42 +45,44 @@ static int print_line(const struct stage *s, int number, const char *what,
     return 0;
 }
 
-static int run_lens(uint64_t seed, int number)
+static int compare_lens_with_exact(uint64_t seed, int number)
 {
     static struct stage s;
     static char text[RANDOM_LENS_TEXT];
     static float model[3 * WIDTH * HEIGHT], exact[3 * WIDTH * HEIGHT];
     static uint8_t codes[3 * WIDTH * HEIGHT];
-    const int tries = random_lens(&s.lens, seed, number, text);
+    const int tries = make_random_lens(&s.lens, seed, number, text);
     struct glint_measure m = {0};
     struct glint_lamp lamp, bright;
     uint64_t r = seed + (uint64_t)number;
     const int blades =
-        stage_random(&r) % 4 ? 3 + (int)(stage_random(&r) % 62) : 0;
+        stage_random_bits(&r) % 4 ? 3 + (int)(stage_random_bits(&r) % 62) : 0;
     int grid;
 
-    if (tries < 0 || !stage_prepare(&s, blades))
-        return print_line(&s, number, "refused", tries, 0, &m, 0);
+    if (tries < 0 || !stage_set_up_lens(&s, blades))
+        return print_lens_result(&s, number, "refused", tries, 0, &m, 0);
     lamp = bright = random_lamp(&s, seed, number);
-    if (!stage_bake(&s, 4, fmin(89, lamp.theta_deg + 0.5)))
-        return print_line(&s, number, "refused", tries, lamp.theta_deg, &m, 0);
-    stage_view(&s, WIDTH, HEIGHT, 0);
-    bright.power = 1e9; /* codes saturate; nothing must trap */
+    if (!stage_bake_model(&s, 4, fmin(89, lamp.theta_deg + 0.5)))
+        return print_lens_result(&s, number, "refused", tries, lamp.theta_deg,
+                                 &m, 0);
+    stage_set_view(&s, WIDTH, HEIGHT, 0);
+    bright.power = 1e9; /* saturates the codes; range checks must not trap */
     grid = glint_ghost_list(&s.lens, NULL, 0) > MANY_GHOSTS ? 64 : 128;
-    if (!stage_linear(&s, &lamp, 1, model) ||
-        !stage_codes(&s, &bright, 1, codes) ||
-        !stage_exact(&s, &lamp, 1, grid, exact))
+    if (!stage_draw_linear(&s, &lamp, 1, model) ||
+        !stage_draw_codes(&s, &bright, 1, codes) ||
+        !stage_draw_exact(&s, &lamp, 1, grid, exact))
         return 1;
-    m = stage_compare(&s, exact, model);
-    if (m.psnr_db < 45 && stage_exact(&s, &lamp, 1, 2 * grid, exact)) {
+    m = stage_compare_images(&s, exact, model);
+    if (m.psnr_db < 45 && stage_draw_exact(&s, &lamp, 1, 2 * grid, exact)) {
         grid *= 2; /* shows whether the exact image caused the difference */
-        m = stage_compare(&s, exact, model);
+        m = stage_compare_images(&s, exact, model);
     }
-    return print_line(&s, number,
-                      stage_flux(&s, exact) <= 0 && stage_flux(&s, model) <= 0
-                          ? "dark"
-                          : "drawn",
-                      tries, lamp.theta_deg, &m, grid);
+    return print_lens_result(&s, number,
+                             stage_sum_image(&s, exact) <= 0 &&
+                                     stage_sum_image(&s, model) <= 0
+                                 ? "dark"
+                                 : "drawn",
+                             tries, lamp.theta_deg, &m, grid);
 }
 
 int main(int argc, char **argv)
@@ -94,8 +96,8 @@ int main(int argc, char **argv)
         return 2;
     }
     if (argc == 3)
-        return run_lens(seed, atoi(argv[2]));
-    random_lens(&lens, seed, atoi(argv[2]), text);
+        return compare_lens_with_exact(seed, atoi(argv[2]));
+    make_random_lens(&lens, seed, atoi(argv[2]), text);
     printf("# seed %s, lens %s\n%s", argv[1], argv[2], text);
     return 0;
 }

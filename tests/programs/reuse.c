@@ -5,9 +5,9 @@
  * street, at the default quality with three wavelengths.
  *
  * With SCALE, a factor on their powers, draws several times, by the function
- * draw_timed(), onto a frame that was drawn before: without reuse; with the
- * same lights; with lights that moved by up to half a pixel and whose powers
- * changed by up to a fifth.
+ * draw_and_time_frame(), onto a frame that was drawn before: without reuse;
+ * with the same lights; with lights that moved by up to half a pixel and whose
+ * powers changed by up to a fifth.
  *
  * Without SCALE, prints the scale at which all but 1e-4 of the samples are at
  * most a quarter of white; the bytes of a frame without and with memory for
@@ -29,8 +29,8 @@ static struct glint_frame plain, reusing;
 static struct glint_lamp lamps[MOST];
 static uint8_t want[BYTES], got[BYTES];
 
-static void draw_timed(struct glint_frame *f, int n, double scale,
-                       uint8_t *codes)
+static void draw_and_time_frame(struct glint_frame *f, int n, double scale,
+                                uint8_t *codes)
 {
     struct glint_image image = {.format = GLINT_RGB24,
                                 .width = W,
@@ -45,10 +45,10 @@ static void draw_timed(struct glint_frame *f, int n, double scale,
 /* A volatile pointer prevents inlining, so that the function keeps its name
  * in profiles. */
 static void (*volatile frame)(struct glint_frame *, int, double,
-                              uint8_t *) = draw_timed;
+                              uint8_t *) = draw_and_time_frame;
 
 /* Draws on black. PX: tolerance of reuse, pixels; below 0: no reuse. */
-static void draw_frame(int n, double scale, double px, uint8_t *codes)
+static void draw_with_reuse(int n, double scale, double px, uint8_t *codes)
 {
     struct glint_frame *f = px < 0 ? &plain : &reusing;
 
@@ -64,18 +64,18 @@ static void move_lamps(int n, double px, uint64_t *noise)
 
     street_lamps(&stage, lamps, n);
     for (int i = 0; i < n; i++) {
-        const double r = px * sqrt(stage_uniform(noise, 0, 1));
-        const double turn = stage_uniform(noise, 0, 2 * GLINT_PI);
+        const double r = px * sqrt(stage_random_uniform(noise, 0, 1));
+        const double turn = stage_random_uniform(noise, 0, 2 * GLINT_PI);
         double x, y;
 
         glint_view_to_pixel(&stage.view, focal, &lamps[i], &x, &y);
         glint_view_to_angles(&stage.view, focal, x + r * cos(turn),
                              y + r * sin(turn), &lamps[i]);
-        lamps[i].power *= stage_uniform(noise, 0.8, 1.2);
+        lamps[i].power *= stage_random_uniform(noise, 0.8, 1.2);
     }
 }
 
-static double find_scale(int n)
+static double find_exposure_scale(int n)
 {
     const int quarter = 137, most = BYTES / 10000;
     double low = -30, high = 30;
@@ -84,7 +84,7 @@ static double find_scale(int n)
         const double middle = (low + high) / 2;
         int above = 0;
 
-        draw_frame(n, exp2(middle), -1, got);
+        draw_with_reuse(n, exp2(middle), -1, got);
         for (int k = 0; k < BYTES; k++)
             above += got[k] > quarter;
         if (above > most)
@@ -104,47 +104,47 @@ static double min_psnr(int n, double scale, double px)
 
     for (int i = 0; i < 3; i++) {
         street_lamps(&stage, lamps, n);
-        draw_frame(n, scale, px * 1.1, got);
+        draw_with_reuse(n, scale, px * 1.1, got);
         move_lamps(n, px, &noise);
-        draw_frame(n, scale, px * 1.1, got);
+        draw_with_reuse(n, scale, px * 1.1, got);
         if (!stage.drawn.stats.reused)
             exit(1);
-        draw_frame(n, scale, -1, want);
+        draw_with_reuse(n, scale, -1, want);
         glint_measure_codes(want, got, W, H, &m);
         least = fmin(least, m.psnr_db);
     }
     return least;
 }
 
-static void print_figures(int n)
+static void print_reuse_figures(int n)
 {
-    const double scale = find_scale(n);
+    const double scale = find_exposure_scale(n);
     size_t bytes;
 
-    draw_frame(n, scale, -1, got);
+    draw_with_reuse(n, scale, -1, got);
     bytes = stage.drawn.need_bytes;
-    draw_frame(n, scale, 0.5, got);
+    draw_with_reuse(n, scale, 0.5, got);
     printf("%.17g %zu %zu", scale, bytes, stage.drawn.need_bytes);
     for (double px = 0.25; px <= 1; px *= 2)
         printf(" %.1f", min_psnr(n, scale, px));
     puts("");
 }
 
-static void draw_case(int n, double scale)
+static void measure_case(int n, double scale)
 {
     uint64_t noise = 1;
 
     for (int i = 0; i < 2; i++)
-        draw_frame(n, scale, -1, got);
+        draw_with_reuse(n, scale, -1, got);
     for (int i = 0; i < 3; i++)
-        draw_frame(n, scale, 0.5, got);
+        draw_with_reuse(n, scale, 0.5, got);
     move_lamps(n, 0.4, &noise);
-    draw_frame(n, scale, 0.5, got);
+    draw_with_reuse(n, scale, 0.5, got);
 }
 
 static bool open_model(const char *path)
 {
-    if (!stage_read(&stage, path, W, H))
+    if (!stage_open_model_file(&stage, path, W, H))
         return false;
     stage.frame.dials = glint_dials_at(1 << 14);
     stage.frame.dials.dispersion_q8 = 0;
@@ -163,11 +163,11 @@ int main(int argc, char **argv)
         return 2;
     street_lamps(&stage, lamps, n);
     if (argc == 4)
-        draw_case(n, atof(argv[3]));
+        measure_case(n, atof(argv[3]));
     else
-        print_figures(n);
+        print_reuse_figures(n);
     glint_frame_finish(&plain);
     glint_frame_finish(&reusing);
-    stage_close(&stage);
+    stage_free(&stage);
     return 0;
 }

@@ -79,8 +79,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     return tool_inputs(tool, argc, argv, 1, "expects one scene");
 }
 
-static void print_json(const struct glint_description *scene,
-                       const struct twin_pixel *pixels, size_t n)
+static void print_lights_as_json(const struct glint_description *scene,
+                                 const struct twin_pixel *pixels, size_t n)
 {
     size_t covered = 0;
 
@@ -91,8 +91,9 @@ static void print_json(const struct glint_description *scene,
            scene->n_objects, scene->n_triangles, scene->n_lights, covered);
 }
 
-static int draw_scene(const struct tool *tool, const struct exact *e,
-                      const struct glint_description *scene)
+static int render_reference_scene(const struct tool *tool,
+                                  const struct exact *e,
+                                  const struct glint_description *scene)
 {
     const struct twin_view view = {e->width, e->height, 0, e->samples};
     const size_t n = (size_t)e->width * (size_t)e->height;
@@ -104,18 +105,18 @@ static int draw_scene(const struct tool *tool, const struct exact *e,
     int code = render_file_check(tool, e->output, &is_linear);
 
     if (code == EXIT_OK &&
-        (!pixels || !image.rgb || twin_open(&twin, scene) != GLINT_OK))
+        (!pixels || !image.rgb || reference_open(&twin, scene) != GLINT_OK))
         code = tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (code == EXIT_OK) {
         twin.shadow_points = e->shadow_points;
         if (e->ward_samples)
             twin.ward_samples = e->ward_samples;
-        twin_render(&twin, &view, tool->workers, pixels);
-        twin_close(&twin);
+        reference_render_image(&twin, &view, tool->workers, pixels);
+        reference_close(&twin);
         for (size_t i = 0; i < 3 * n; i++)
             image.rgb[i] = pixels[i / 3].rgb[i % 3];
         if (tool->json)
-            print_json(scene, pixels, n);
+            print_lights_as_json(scene, pixels, n);
         code = render_file_save(tool, e->output, is_linear, &image, 1);
     }
     free(pixels);
@@ -137,7 +138,7 @@ int main(int argc, char **argv)
     if (code == EXIT_OK && tool.workers && scene) {
         code = tool_scene(&tool, argv[optind], scene, NULL);
         if (code == EXIT_OK) {
-            code = draw_scene(&tool, &e, scene);
+            code = render_reference_scene(&tool, &e, scene);
             glint_description_free(scene);
         }
     }

@@ -43,7 +43,7 @@ struct steady {
 
 /* ------------------------------------------------------------------- steps */
 
-static double total_light(struct steady *s)
+static double sum_flare_light(struct steady *s)
 {
     const struct drawing *const c = &s->drawing;
     struct glint_response_light light;
@@ -59,7 +59,7 @@ static double total_light(struct steady *s)
 
 /* Returns by how much STEP exceeds the interval between 0 and OWN; all are
  * logarithms of ratios. */
-static double excess_step(double step, double own)
+static double compute_excess_step(double step, double own)
 {
     const double low = fmin(own, 0), high = fmax(own, 0);
 
@@ -68,7 +68,7 @@ static double excess_step(double step, double own)
 
 /* Returns the logarithm of max / min true light within the last WINDOW
  * frames. */
-static double true_span(const struct steady *s)
+static double compute_true_light_span(const struct steady *s)
 {
     double low = s->truth[0], high = s->truth[0];
 
@@ -79,7 +79,7 @@ static double true_span(const struct steady *s)
     return low > 0 ? log(high / low) : HUGE_VAL;
 }
 
-static void record_step(struct steady *s, double total, double own)
+static void record_light_step(struct steady *s, double total, double own)
 {
     const bool is_cut = drawing_is_new(&s->drawing);
     /* a fainter flare is invisible, so its appearance is not a step */
@@ -88,9 +88,11 @@ static void record_step(struct steady *s, double total, double own)
     s->cuts += is_cut && s->frames > 0;
     if (!is_cut && s->total > least && total > least) {
         const double step = log(total / s->total);
-        const double ours = exp(excess_step(step, log(own / s->own))) - 1;
+        const double ours =
+            exp(compute_excess_step(step, log(own / s->own))) - 1;
 
-        const double alone = exp(fmax(fabs(step) - true_span(s), 0)) - 1;
+        const double alone =
+            exp(fmax(fabs(step) - compute_true_light_span(s), 0)) - 1;
 
         s->largest = fmax(s->largest, exp(fabs(step)) - 1);
         if (alone > s->unmade) {
@@ -106,28 +108,29 @@ static void record_step(struct steady *s, double total, double own)
     s->own = own;
 }
 
-static void draw_frame(struct steady *s, const struct glint_image *image,
-                       int32_t elapsed_us)
+static void draw_and_record_frame(struct steady *s,
+                                  const struct glint_image *image,
+                                  int32_t elapsed_us)
 {
     struct drawing *drawing = &s->drawing;
     double own, drawn, power = 0, held = 0;
 
     drawing_find(drawing, image, elapsed_us);
-    own = drawn = total_light(s);
+    own = drawn = sum_flare_light(s);
     for (int i = 0; i < drawing->run.n_lamps; i++)
         power += drawing->run.lamp[i].lamp.power;
     drawing_expose(drawing, image);
     for (int i = 0; i < drawing->run.n_lamps; i++)
         held += drawing->run.lamp[i].lamp.power;
-    if (held < power) /* limits lamps that are too bright */
-        drawn = total_light(s);
-    record_step(s, drawn * drawing_scale(&drawing->run), own);
+    if (held < power) /* the exposure limited lamps that are too bright */
+        drawn = sum_flare_light(s);
+    record_light_step(s, drawn * drawing_scale(&drawing->run), own);
     if (drawing->run.n_lamps > s->most_lights)
         s->most_lights = drawing->run.n_lamps;
     s->frames++;
 }
 
-static void begin_video(struct steady *s, int width, int height)
+static void begin_video_statistics(struct steady *s, int width, int height)
 {
     s->total = s->own = s->worst = s->largest = 0;
     s->unmade = s->unmade_frame = 0;
@@ -136,7 +139,7 @@ static void begin_video(struct steady *s, int width, int height)
         exit(EXIT_RUNTIME);
 }
 
-static bool print_result(const struct steady *s, const char *name)
+static bool print_step_statistics(const struct steady *s, const char *name)
 {
     printf("| %s | %d | %d | %d | %.1f | %.1f | %d |", name, s->frames,
            s->most_lights, s->cuts, 100 * s->largest, 100 * s->worst,
@@ -156,7 +159,7 @@ typedef int lamps_fn(struct night *night, int i, struct night_lamp *lamp);
 
 /* Sets LAMP to the five lamps of a street, all visible. Returns their
  * number. */
-static int set_street(struct night_lamp *lamp)
+static int set_street_lamps(struct night_lamp *lamp)
 {
     for (int i = 0; i < 5; i++)
         lamp[i] =
@@ -168,10 +171,10 @@ static int set_noise_scene(struct night *night, int i, struct night_lamp *lamp)
 {
     (void)i;
     night->sigma = 4;
-    return set_street(lamp);
+    return set_street_lamps(lamp);
 }
 
-static int set_sun_alone(struct night *night, int i, struct night_lamp *lamp)
+static int set_single_sun(struct night *night, int i, struct night_lamp *lamp)
 {
     (void)night;
     lamp[0] = (struct night_lamp){-30 + 3 * i, 90 + 0.5 * i, 14, 2000};
@@ -180,7 +183,7 @@ static int set_sun_alone(struct night *night, int i, struct night_lamp *lamp)
 
 static int set_sun_entering(struct night *night, int i, struct night_lamp *lamp)
 {
-    const int n = set_street(lamp);
+    const int n = set_street_lamps(lamp);
 
     (void)night;
     lamp[n] = (struct night_lamp){-30 + 3 * i, 250 - 0.5 * i, 14, 2000};
@@ -192,7 +195,8 @@ static int set_sun_leaving(struct night *night, int i, struct night_lamp *lamp)
     return set_sun_entering(night, FRAMES - i, lamp);
 }
 
-static int set_poles(struct night *night, int i, struct night_lamp *lamp)
+static int set_lamps_behind_poles(struct night *night, int i,
+                                  struct night_lamp *lamp)
 {
     const double at = (4 * i) % 200;
 
@@ -203,16 +207,18 @@ static int set_poles(struct night *night, int i, struct night_lamp *lamp)
     return 3;
 }
 
-static int set_pole(struct night *night, int i, struct night_lamp *lamp)
+static int set_lamp_behind_pole(struct night *night, int i,
+                                struct night_lamp *lamp)
 {
-    set_poles(night, i, lamp);
+    set_lamps_behind_poles(night, i, lamp);
     lamp[0].x = 210;
     return 1;
 }
 
-static int set_train(struct night *night, int i, struct night_lamp *lamp)
+static int set_view_from_train(struct night *night, int i,
+                               struct night_lamp *lamp)
 {
-    const int n = set_street(lamp);
+    const int n = set_street_lamps(lamp);
 
     (void)night;
     for (int k = 0; k < n; k++)
@@ -220,10 +226,10 @@ static int set_train(struct night *night, int i, struct night_lamp *lamp)
     return n;
 }
 
-static int set_cuts(struct night *night, int i, struct night_lamp *lamp)
+static int set_scene_cuts(struct night *night, int i, struct night_lamp *lamp)
 {
     if (i / 40 % 2 == 0)
-        return set_street(lamp);
+        return set_street_lamps(lamp);
     (void)night;
     lamp[0] = (struct night_lamp){400, 90, 20, 3000};
     lamp[1] = (struct night_lamp){100, 300, 3, 8};
@@ -235,19 +241,19 @@ static const struct {
     lamps_fn *lamps;
 } scenes[] = {
     {"noise", set_noise_scene},
-    {"a sun enters", set_sun_alone},
+    {"a sun enters", set_single_sun},
     {"a sun enters among lamps", set_sun_entering},
     {"a sun leaves lamps", set_sun_leaving},
-    {"lamps behind poles", set_poles},
-    {"a lamp alone behind poles", set_pole},
-    {"lamps from a train", set_train},
-    {"hard cuts", set_cuts},
+    {"lamps behind poles", set_lamps_behind_poles},
+    {"a lamp alone behind poles", set_lamp_behind_pole},
+    {"lamps from a train", set_view_from_train},
+    {"hard cuts", set_scene_cuts},
 };
 
 /* Returns the light of LAMP's visible pixels, white x pixels. Sets AT to
  * their centroid, pixels. */
-static double visible_light(const struct night *night,
-                            const struct night_lamp *lamp, double at[2])
+static double measure_visible_light(const struct night *night,
+                                    const struct night_lamp *lamp, double at[2])
 {
     const int reach = (int)lamp->radius + 14;
     double sum = 0, sums[2] = {0, 0};
@@ -272,8 +278,8 @@ static double visible_light(const struct night *night,
 }
 
 /* Adds the flare's light of the true lamps to s->truth. */
-static void record_truth(struct steady *s, const struct night *night,
-                         const struct night_lamp *lamp, int n)
+static void add_true_lamp_light(struct steady *s, const struct night *night,
+                                const struct night_lamp *lamp, int n)
 {
     const struct drawing *c = &s->drawing;
     struct glint_engine_lamp all[16];
@@ -285,7 +291,7 @@ static void record_truth(struct steady *s, const struct night *night,
         double at[2];
         struct glint_lamp one = {.rgb = {1, 1, 1}};
 
-        one.power = visible_light(night, &lamp[i], at);
+        one.power = measure_visible_light(night, &lamp[i], at);
         glint_view_to_angles(&c->run.view, c->files.lens.setup.optics.focal_mm,
                              at[0], at[1], &one);
         all[i] = glint_engine_lamp_of(&one, 1);
@@ -295,26 +301,26 @@ static void record_truth(struct steady *s, const struct night *night,
     s->truth[0] = glint_largest_channel(light.mean);
 }
 
-static bool run_scene(struct steady *s, int k)
+static bool measure_generated_scene(struct steady *s, int k)
 {
     struct night night;
     struct night_lamp lamp[16];
 
-    night_init(&night, WIDTH, HEIGHT);
+    night_init_parameters(&night, WIDTH, HEIGHT);
     night.sigma = 1;
-    begin_video(s, WIDTH, HEIGHT);
+    begin_video_statistics(s, WIDTH, HEIGHT);
     for (int i = 0; i < FRAMES; i++) {
         const int n = scenes[k].lamps(&night, i, lamp);
 
-        night_draw(&night, lamp, n);
-        record_truth(s, &night, lamp, n);
-        draw_frame(s, &night.image, FRAME_US);
+        night_draw_lamps(&night, lamp, n);
+        add_true_lamp_light(s, &night, lamp, n);
+        draw_and_record_frame(s, &night.image, FRAME_US);
     }
-    night_close(&night);
-    return print_result(s, scenes[k].name);
+    night_close_tracker(&night);
+    return print_step_statistics(s, scenes[k].name);
 }
 
-static bool run_video(struct steady *s, const char *path)
+static bool measure_video_file(struct steady *s, const char *path)
 {
     struct glint_error error = {""};
     struct glint_y4m_reader in;
@@ -324,12 +330,12 @@ static bool run_video(struct steady *s, const char *path)
         fprintf(stderr, "steady: %s\n", error.text);
         exit(EXIT_INPUT);
     }
-    begin_video(s, in.header.width, in.header.height);
+    begin_video_statistics(s, in.header.width, in.header.height);
     s->truth[0] = -1;
     while (glint_y4m_reader_next(&in, &image, &error) == GLINT_OK && image)
-        draw_frame(s, image, FRAME_US);
+        draw_and_record_frame(s, image, FRAME_US);
     glint_y4m_reader_close(&in);
-    return print_result(s, path);
+    return print_step_statistics(s, path);
 }
 
 int main(int argc, char **argv)
@@ -353,9 +359,9 @@ int main(int argc, char **argv)
          "lamps' own, % | at frame | that no lamp made, % | at frame |\n"
          "|---|---|---|---|---|---|---|---|---|");
     for (int k = 0; k < (int)(sizeof scenes / sizeof *scenes); k++)
-        good = run_scene(&s, k) && good;
+        good = measure_generated_scene(&s, k) && good;
     for (int i = optind; i < argc; i++)
-        good = run_video(&s, argv[i]) && good;
+        good = measure_video_file(&s, argv[i]) && good;
     drawing_close(&s.drawing);
     tool_finish(&s.tool);
     return good ? 0 : 1;

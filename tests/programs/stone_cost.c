@@ -4,7 +4,7 @@
  * translucent medium: spreads light over the whole map, three channels, one
  * thread. tools/measure/scenes/stone-table counts its instructions. Prints for
  * each set of kernels (c, sse41, avx2, neon), or for SET only, the median CPU
- * time of FRAMES maps, ms, and a hash of the map; sets take turns.
+ * time of FRAMES maps, ms, and a hash of the map; sets run alternately.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,7 +46,7 @@ void stone_cost_idle(const struct glint_spread *spread)
 
 /* Sets the light to a ramp with a shadow across, and every tenth texel
  * bright. */
-static void set_light(const struct glint_spread *s)
+static void set_incident_light(const struct glint_spread *s)
 {
     for (int c = 0; c < CHANNELS; c++)
         for (int y = 0; y < s->height; y++)
@@ -57,7 +57,7 @@ static void set_light(const struct glint_spread *s)
                                                     : 32767 - 500 * c);
 }
 
-static uint64_t hash_map(const struct glint_spread *s)
+static uint64_t hash_light_map(const struct glint_spread *s)
 {
     uint64_t hash = UINT64_C(14695981039346656037);
 
@@ -79,17 +79,18 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static int is_selected(int set, const char *only)
+static int is_set_selected(int set, const char *only)
 {
     return only ? !strcmp(set_of[set].name, only)
                 : (set_of[set].bits & ~glint_sets_here()) == 0;
 }
 
-static void run_map(struct glint_spread *s,
-                    struct glint_spread_scratch *scratch, int frames,
-                    const char *only)
+static void time_light_map(struct glint_spread *s,
+                           struct glint_spread_scratch *scratch, int frames,
+                           const char *only)
 {
-    /* not inlined, as counters search for these names */
+    /* Volatile pointers prevent inlining, as instruction counters search for
+     * these names. */
     void (*volatile idle)(const struct glint_spread *) = stone_cost_idle;
     void (*volatile frame)(const struct glint_spread *,
                            struct glint_spread_scratch *) = stone_cost_frame;
@@ -100,26 +101,26 @@ static void run_map(struct glint_spread *s,
         for (int k = 0; k < SETS; k++) {
             double start;
 
-            if (!is_selected(k, only))
+            if (!is_set_selected(k, only))
                 continue;
             s->convolve = glint_convolve_of(set_of[k].bits);
             idle(s);
             start = cpu_seconds();
             frame(s, scratch);
             took[k][i] = cpu_seconds() - start;
-            hash[k] = hash_map(s);
+            hash[k] = hash_light_map(s);
         }
     idle(s);
     for (int k = 0; k < SETS; k++)
-        if (is_selected(k, only)) {
+        if (is_set_selected(k, only)) {
             qsort(took[k], (size_t)frames, sizeof **took, compare_doubles);
             printf("%s %.3f %016llx\n", set_of[k].name,
                    1000 * took[k][frames / 2], (unsigned long long)hash[k]);
         }
 }
 
-static int measure_sets(const struct glint_translucent *stone, int frames,
-                        const char *only)
+static int measure_instruction_sets(const struct glint_translucent *stone,
+                                    int frames, const char *only)
 {
     const int side = 1 << stone->header->side_log2;
     const size_t n = (size_t)side * (size_t)side;
@@ -137,8 +138,8 @@ static int measure_sets(const struct glint_translucent *stone, int frames,
             s.light[c] = maps + 2 * c * n;
             s.map[c] = s.light[c] + n;
         }
-        set_light(&s);
-        run_map(&s, &scratch, frames, only);
+        set_incident_light(&s);
+        time_light_map(&s, &scratch, frames, only);
     }
     free(maps);
     free(mem);
@@ -157,7 +158,8 @@ int main(int argc, char **argv)
     if (file && data && frames > 0 && frames <= MOST &&
         glint_translucent_open(&stone, data, fread(data, 1, LIMIT, file),
                                &reason) == GLINT_OK)
-        code = measure_sets(&stone, frames, argc > 3 ? argv[3] : NULL);
+        code =
+            measure_instruction_sets(&stone, frames, argc > 3 ? argv[3] : NULL);
     else
         fprintf(stderr, "stone_cost: %s\n", reason);
     if (file)

@@ -42,8 +42,8 @@ static void exit_with_error(const char *what)
     exit(1);
 }
 
-static void write_stone(const char *dir, const char *name, const void *data,
-                        size_t bytes)
+static void write_medium_model(const char *dir, const char *name,
+                               const void *data, size_t bytes)
 {
     char path[1024];
     FILE *file;
@@ -56,9 +56,9 @@ static void write_stone(const char *dir, const char *name, const void *data,
 
 /* LIGHT: three arrays of [3][n]: incident light, the result by all rows, and
  * scratch. */
-static void bake_fit(const struct glint_scatter_fit *fit,
-                     const double *const light, double *room, const char *dir,
-                     const char *name, double *db)
+static void bake_and_measure_fit(const struct glint_scatter_fit *fit,
+                                 const double *const light, double *room,
+                                 const char *dir, const char *name, double *db)
 {
     const size_t n = 3 * (size_t)(fit->side * fit->side);
     struct glint_stone_report report;
@@ -80,7 +80,7 @@ static void bake_fit(const struct glint_scatter_fit *fit,
         exit_with_error("out of memory");
     *db = peak_psnr(room, light + n, n);
     if (dir)
-        write_stone(dir, name, data, bytes);
+        write_medium_model(dir, name, data, bytes);
     free(data);
 }
 
@@ -95,9 +95,10 @@ static void fit_and_bake(struct glint_scatter_rows *rows, int stone, int model,
 
     if (glint_scatter_fit(rows, &o, NULL, &fit) != GLINT_OK)
         exit_with_error("no fit");
-    /* Clusters and albedo have a rank only in the bake. */
+    /* Fits by clusters and by albedo get their rank only in the bake. */
     fit.rank = o.rank;
-    bake_fit(&fit, light, room, stone ? NULL : dir, model_of[model].name, &db);
+    bake_and_measure_fit(&fit, light, room, stone ? NULL : dir,
+                         model_of[model].name, &db);
     printf("%s %s %.2f %.2f %.1f\n", stone_name[stone], model_of[model].name,
            fit.error.light_db, db, (double)(clock() - start) / CLOCKS_PER_SEC);
     fflush(stdout);

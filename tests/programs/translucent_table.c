@@ -93,7 +93,7 @@ judge_candidate(struct glint_scatter_rows *rows,
     return kept;
 }
 
-static struct glint_scatter_candidate make_candidate(enum run run)
+static struct glint_scatter_candidate make_fit_candidate(enum run run)
 {
     struct glint_scatter_candidate o;
 
@@ -103,7 +103,7 @@ static struct glint_scatter_candidate make_candidate(enum run run)
     return o;
 }
 
-static void open_stone(struct table *t, int i)
+static void open_medium_rows(struct table *t, int i)
 {
     struct glint_stone stone;
     struct glint_error error;
@@ -122,7 +122,8 @@ static void open_stone(struct table *t, int i)
         exit_with_error(error.text);
     t->seconds[i] = cpu_seconds() - start;
     for (int run = 0; run < RUNS; run++) {
-        const struct glint_scatter_candidate o = make_candidate((enum run)run);
+        const struct glint_scatter_candidate o =
+            make_fit_candidate((enum run)run);
 
         t->j[i][run] = judge_candidate(&t->rows[i], &o);
         fprintf(stderr, "%s, %s: %.0f s\n", stone_name[i], run_of[run].name,
@@ -130,7 +131,8 @@ static void open_stone(struct table *t, int i)
     }
 }
 
-static void print_heads(const char *first, const char *const *column, int n)
+static void print_table_heads(const char *first, const char *const *column,
+                              int n)
 {
     printf("\n| %s |", first);
     for (int i = 0; i < n; i++)
@@ -141,7 +143,7 @@ static void print_heads(const char *first, const char *const *column, int n)
     printf("\n");
 }
 
-static void print_all_models(const struct table *t)
+static void print_model_errors(const struct table *t)
 {
     static const char *const columns[] = {
         "RMSE", "kB",  "smaller by", "entries, dB", "light, dB", "p50",
@@ -157,7 +159,7 @@ static void print_all_models(const struct table *t)
         printf(", %d x %d texels, kernels of %d: rows in %.1f processor "
                "seconds\n",
                t->side, t->side, t->kernel, t->seconds[i]);
-        print_heads("model", columns, 12);
+        print_table_heads("model", columns, 12);
         for (int run = 0; run < RUNS; run++) {
             const struct glint_scatter_judgement *j = &t->j[i][run];
 
@@ -171,11 +173,12 @@ static void print_all_models(const struct table *t)
 }
 
 /* Prints the RMSE of RUNS by medium, and the published values. */
-static void print_comparison(const struct table *t, const char *title,
-                             const enum run *runs, int n, const char *theirs)
+static void print_published_comparison(const struct table *t, const char *title,
+                                       const enum run *runs, int n,
+                                       const char *theirs)
 {
     printf("\n### %s\n", title);
-    print_heads("model", stone_name, STONES);
+    print_table_heads("model", stone_name, STONES);
     for (int k = 0; k < n; k++) {
         printf("| %s |", run_of[runs[k]].name);
         for (int i = 0; i < STONES; i++)
@@ -194,24 +197,25 @@ static void print_source_tables(const struct table *t)
     static const enum run in_76[] = {SVD20,   PEERS20, SVD10,
                                      PEERS10, SVD5,    PEERS5};
 
-    print_comparison(
+    print_published_comparison(
         t, "Tucker and Peers (table 7.2; C9, C10)", in_72, 4,
         "Tucker .0102 .0242 .0072 .0152, 24.1 10.2 4.19 11.0 MiB; Peers at "
         "equal size .0134 beside .007, .0384 beside .0212.");
-    print_comparison(
+    print_published_comparison(
         t, "Logarithms (table 7.4; C6, C9)", in_74, 2,
         "S = 5 .0340 .0312 .0398 .0225 .0228 .0422 .0268 .0574, 1.48 2.48 "
         "7.88 1.56 8.96 5.82 2.05 5.32 MiB.");
-    print_comparison(t, "Profiles (table 7.5; C9)", in_75, 3,
-                     "S = 10 .017 .028 .016 .013; SubEdit .05 .049 .029 .158.");
-    print_comparison(t, "SVD and Peers at equal terms (table 7.6; C10)", in_76,
-                     6,
-                     "S = 20 and 10: .0066 beside .0138, .0197 beside .0492.");
+    print_published_comparison(
+        t, "Profiles (table 7.5; C9)", in_75, 3,
+        "S = 10 .017 .028 .016 .013; SubEdit .05 .049 .029 .158.");
+    print_published_comparison(
+        t, "SVD and Peers at equal terms (table 7.6; C10)", in_76, 6,
+        "S = 20 and 10: .0066 beside .0138, .0197 beside .0492.");
 }
 
 /* Sets OFF to ROWS with 30 % of them shifted by a texel. */
-static void shift_rows(const struct glint_scatter_rows *rows,
-                       struct glint_scatter_rows *off)
+static void shift_some_rows(const struct glint_scatter_rows *rows,
+                            struct glint_scatter_rows *off)
 {
     const size_t texels = (size_t)rows->side * (size_t)rows->side;
     const size_t k2 = (size_t)rows->kernel * (size_t)rows->kernel;
@@ -232,21 +236,21 @@ static void shift_rows(const struct glint_scatter_rows *rows,
 }
 
 /* Table C3. */
-static void print_shifted_rows(struct table *t)
+static void print_shifted_row_errors(struct table *t)
 {
     static const int terms[] = {1, 2, 5, 15};
     static const char *const columns[] = {"T = 1", "T = 2", "T = 5", "T = 15"};
     struct glint_scatter_rows off;
 
-    shift_rows(&t->rows[0], &off);
+    shift_some_rows(&t->rows[0], &off);
     printf("\n### Turned rows (C3): RMSE, P = 4, chess 4 x 4\n");
-    print_heads("rows", columns, 4);
+    print_table_heads("rows", columns, 4);
     for (int way = 0; way < 4; way++) {
         printf("| %s, %s |",
                way & 2 ? "30 % of them a texel off" : "as they are",
                way & 1 ? "turned" : "plain");
         for (int k = 0; k < 4; k++) {
-            struct glint_scatter_candidate o = make_candidate(TUCKER5);
+            struct glint_scatter_candidate o = make_fit_candidate(TUCKER5);
 
             o.terms = terms[k];
             o.turned = way & 1;
@@ -260,7 +264,7 @@ static void print_shifted_rows(struct table *t)
 }
 
 /* Table C5. */
-static void print_polynomials(struct table *t)
+static void print_polynomial_errors(struct table *t)
 {
     static const int terms[GRID_TERMS] = {1, 2, 5, 10, 15};
     static const char *const columns[] = {"P = 1", "P = 2", "P = 3", "P = 4",
@@ -268,11 +272,11 @@ static void print_polynomials(struct table *t)
 
     printf("\n### Terms and degrees (C5, figure 4.6): RMSE, and how much "
            "smaller than 8-byte rows, veins\n");
-    print_heads("Tucker", columns, GRID_DEGREES);
+    print_table_heads("Tucker", columns, GRID_DEGREES);
     for (int k = 0; k < GRID_TERMS; k++) {
         printf("| T = %d |", terms[k]);
         for (int p = 1; p <= GRID_DEGREES; p++) {
-            struct glint_scatter_candidate o = make_candidate(TUCKER5);
+            struct glint_scatter_candidate o = make_fit_candidate(TUCKER5);
             struct glint_scatter_judgement j;
 
             o.terms = terms[k];
@@ -285,7 +289,7 @@ static void print_polynomials(struct table *t)
 }
 
 /* Table C6. */
-static void print_logarithms(struct table *t)
+static void print_logarithm_errors(struct table *t)
 {
     static const double as[] = {0.01, 0.1, 1, 10, 100, 1000};
     static const char *const columns[] = {
@@ -295,13 +299,13 @@ static void print_logarithms(struct table *t)
     printf("\n### ln(R' / a + b), b = 1, S = 5 (C6): RMSE, share of entries "
            "below 0 (%d entries a row)\n",
            n);
-    print_heads("stone", columns, 7);
+    print_table_heads("stone", columns, 7);
     for (int i = 0; i < STONES; i++) {
         const struct glint_scatter_judgement *found = &t->j[i][LOG5];
 
         printf("| %s |", stone_name[i]);
         for (int k = 0; k < 6; k++) {
-            struct glint_scatter_candidate o = make_candidate(LOG5);
+            struct glint_scatter_candidate o = make_fit_candidate(LOG5);
             struct glint_scatter_judgement j;
 
             o.a = as[k];
@@ -316,11 +320,11 @@ static void print_logarithms(struct table *t)
 
 /* Table C11: CPU seconds for summing all rows of a fit of five terms, entry
  * by entry and by running sums. */
-static void print_sums(struct table *t)
+static void print_row_sum_times(struct table *t)
 {
     const struct glint_scatter_options options = {GLINT_SCATTER_FACTORED, 5, 3};
     const int texels = t->side * t->side, k2 = t->kernel * t->kernel;
-    const struct glint_scatter_candidate svd = make_candidate(SVD5);
+    const struct glint_scatter_candidate svd = make_fit_candidate(SVD5);
     volatile double plain = 0, kept = 0;
     struct glint_scatter_fit fit;
     double start, first, second;
@@ -363,8 +367,8 @@ static void print_sums(struct table *t)
 }
 
 /* Returns the CPU seconds of an image by FIT, entry by entry. */
-static double light_by_entries(const struct glint_scatter_fit *fit,
-                               const double *light, double *out)
+static double time_light_by_entries(const struct glint_scatter_fit *fit,
+                                    const double *light, double *out)
 {
     const int n = fit->side * fit->side, k2 = fit->kernel * fit->kernel;
     const double start = cpu_seconds();
@@ -384,8 +388,8 @@ static double light_by_entries(const struct glint_scatter_fit *fit,
 
 /* Returns the CPU seconds of an image by the integers that ROWS are baked
  * to. */
-static double light_by_integers(struct glint_scatter_rows *rows,
-                                const double *light, double *out)
+static double time_light_by_integers(struct glint_scatter_rows *rows,
+                                     const double *light, double *out)
 {
     struct glint_scatter_fit fit;
     struct glint_stone_report report;
@@ -413,7 +417,7 @@ static double light_by_integers(struct glint_scatter_rows *rows,
 }
 
 /* Table C12: CPU seconds of an image of 64 x 64 texels. */
-static void print_images(void)
+static void print_image_times(void)
 {
     enum { SIDE = 64, N = 3 * SIDE * SIDE };
     static double light[N], out[N];
@@ -435,8 +439,8 @@ static void print_images(void)
     for (int i = 0; i < 5; i++)
         glint_scatter_light_rows(&rows, light, out);
     by_rows_s = (cpu_seconds() - start) / 5;
-    by_terms_s = light_by_entries(&fit, light, out);
-    by_integers_s = light_by_integers(&rows, light, out);
+    by_terms_s = time_light_by_entries(&fit, light, out);
+    by_integers_s = time_light_by_integers(&rows, light, out);
     printf("\n### One picture (C12)\n\n64 x 64 texels, RGB, kernels of 21, "
            "one thread: %.1f ms by all rows, %.1f ms by five terms entry by "
            "entry, %.2f ms by the integers of four kernels of rank 3, in plain "
@@ -452,14 +456,14 @@ int main(void)
     static struct table t = {.side = 48, .kernel = 21};
 
     for (int i = 0; i < STONES; i++)
-        open_stone(&t, i);
+        open_medium_rows(&t, i);
     print_source_tables(&t);
-    print_shifted_rows(&t);
-    print_polynomials(&t);
-    print_logarithms(&t);
-    print_sums(&t);
-    print_images();
-    print_all_models(&t);
+    print_shifted_row_errors(&t);
+    print_polynomial_errors(&t);
+    print_logarithm_errors(&t);
+    print_row_sum_times(&t);
+    print_image_times();
+    print_model_errors(&t);
     for (int i = 0; i < STONES; i++)
         glint_scatter_close(&t.rows[i]);
     return 0;

@@ -28,8 +28,8 @@ struct map {
     struct glint_sphere sphere;
 };
 
-static void add_lights(const struct glint_environment *e, const double alpha[2],
-                       ward_picture to)
+static void add_environment_lights(const struct glint_environment *e,
+                                   const double alpha[2], ward_picture to)
 {
     for (uint32_t k = 0; k < e->header->n_lights; k++) {
         const struct glint_environment_light *l = &e->light[k];
@@ -41,14 +41,15 @@ static void add_lights(const struct glint_environment *e, const double alpha[2],
         for (int j = 0; j < 3; j++)
             toward[j] = ldexp(l->toward_q30[j], -30);
         for (int i = 0; i < WARD_PIXELS; i++)
-            for (int c = 0; c < 3 && ward_frame(i, frame); c++)
-                to[i][c] += ward_lobe((const double(*)[3])frame, view, wide,
-                                      GLINT_WARD_BOUNDED, toward) *
-                            GLINT_PI * glint_real_value(l->rgb[c]);
+            for (int c = 0; c < 3 && ward_build_frame(i, frame); c++)
+                to[i][c] +=
+                    ward_evaluate_lobe((const double(*)[3])frame, view, wide,
+                                       GLINT_WARD_BOUNDED, toward) *
+                    GLINT_PI * glint_real_value(l->rgb[c]);
     }
 }
 
-static int open_map(struct map *m, const char *path)
+static int open_environment_map(struct map *m, const char *path)
 {
     struct glint_float_image image = {0};
     struct glint_environment_options o;
@@ -80,14 +81,15 @@ static int open_map(struct map *m, const char *path)
 
 static void compute_psnr(ward_picture want, ward_picture got, double db[WAYS])
 {
-    db[0] = ward_psnr_codes(want, got);
-    db[1] = ward_psnr(want, got);
+    db[0] = ward_compute_psnr_of_codes(want, got);
+    db[1] = ward_compute_psnr(want, got);
 }
 
 /* Sets DB to the PSNR of the published rule at the bias with the best PSNR. */
-static void find_best_bias(const struct glint_environment *e,
-                           const struct glint_ward_material *material,
-                           ward_picture want, ward_picture got, double db[WAYS])
+static void find_best_mipmap_bias(const struct glint_environment *e,
+                                  const struct glint_ward_material *material,
+                                  ward_picture want, ward_picture got,
+                                  double db[WAYS])
 {
     struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0};
 
@@ -95,14 +97,15 @@ static void find_best_bias(const struct glint_environment *e,
     for (o.bias_q8 = -512; o.bias_q8 <= 256; o.bias_q8 += 128) {
         double here[WAYS];
 
-        ward_look(e, material, &o, got);
+        ward_lookup_picture(e, material, &o, got);
         compute_psnr(want, got, here);
         for (int w = 0; w < WAYS; w++)
             db[w] = fmax(db[w], here[w]);
     }
 }
 
-static void measure_map(struct map *m, int a, double db[COLUMNS][WAYS])
+static void measure_environment_map(struct map *m, int a,
+                                    double db[COLUMNS][WAYS])
 {
     static const int samples[5] = {1, 4, 8, 16, 32};
     static ward_picture want, got;
@@ -111,25 +114,25 @@ static void measure_map(struct map *m, int a, double db[COLUMNS][WAYS])
 
     for (int k = 0; k < 2; k++)
         material.alpha_q24[k] = (int32_t)lrint(0x1p24 * alphas[a][k]);
-    ward_sum(&m->sphere, alphas[a], want);
-    ward_look(&m->environment[1][0], &material, &o, got);
+    ward_sum_texels(&m->sphere, alphas[a], want);
+    ward_lookup_picture(&m->environment[1][0], &material, &o, got);
     compute_psnr(want, got, db[0]);
-    find_best_bias(&m->environment[1][0], &material, want, got, db[1]);
-    find_best_bias(&m->environment[0][0], &material, want, got, db[2]);
+    find_best_mipmap_bias(&m->environment[1][0], &material, want, got, db[1]);
+    find_best_mipmap_bias(&m->environment[0][0], &material, want, got, db[2]);
     o.rule = GLINT_WARD_CONSTANT;
-    ward_look(&m->environment[1][0], &material, &o, got);
+    ward_lookup_picture(&m->environment[1][0], &material, &o, got);
     compute_psnr(want, got, db[3]);
-    ward_look(&m->environment[0][0], &material, &o, got);
+    ward_lookup_picture(&m->environment[0][0], &material, &o, got);
     compute_psnr(want, got, db[4]);
     for (int k = 0; k < 5; k++) {
         o.samples = samples[k];
-        ward_look(&m->environment[0][1], &material, &o, got);
-        add_lights(&m->environment[0][1], alphas[a], got);
+        ward_lookup_picture(&m->environment[0][1], &material, &o, got);
+        add_environment_lights(&m->environment[0][1], alphas[a], got);
         compute_psnr(want, got, db[5 + k]);
     }
 }
 
-static void print_table(double sum[ALPHAS][COLUMNS][WAYS], int way, int n)
+static void print_psnr_table(double sum[ALPHAS][COLUMNS][WAYS], int way, int n)
 {
     printf("\n%s\n\n", way ? "Linear light:" : "Codes of sRGB:");
     printf("| alpha | published: mip, N 8 | mip, Gauss at its best bias | "
@@ -151,14 +154,14 @@ int main(int argc, char **argv)
     for (int i = 1; i < argc; i++) {
         struct map m;
 
-        if (!open_map(&m, argv[i])) {
+        if (!open_environment_map(&m, argv[i])) {
             fprintf(stderr, "ward_table: %s cannot be baked\n", argv[i]);
             return 1;
         }
         for (int a = 0; a < ALPHAS; a++) {
             double db[COLUMNS][WAYS];
 
-            measure_map(&m, a, db);
+            measure_environment_map(&m, a, db);
             for (int c = 0; c < COLUMNS; c++)
                 for (int w = 0; w < WAYS; w++)
                     sum[a][c][w] += db[c][w];
@@ -168,6 +171,6 @@ int main(int argc, char **argv)
         glint_sphere_close(&m.sphere);
     }
     for (int way = 0; way < WAYS; way++)
-        print_table(sum, way, argc - 1);
+        print_psnr_table(sum, way, argc - 1);
     return 0;
 }

@@ -10,8 +10,8 @@ const enum glint_pixel_format canvas_format[CANVAS_FORMATS] = {
     GLINT_I444,  GLINT_NV12,  GLINT_NV21,     GLINT_YUYV,
     GLINT_UYVY,  GLINT_BGR24, GLINT_XRGB8888, GLINT_RGB565};
 
-struct glint_image canvas_new(enum glint_pixel_format format, int width,
-                              int height)
+struct glint_image canvas_allocate_image(enum glint_pixel_format format,
+                                         int width, int height)
 {
     void *mem = calloc(1, glint_image_bytes(format, width, height));
 
@@ -22,8 +22,8 @@ struct glint_image canvas_new(enum glint_pixel_format format, int width,
     return glint_image_over(mem, format, width, height);
 }
 
-void canvas_set_rgb(const struct glint_image *image, int x, int y, int r, int g,
-                    int b)
+void canvas_set_rgb_pixel(const struct glint_image *image, int x, int y, int r,
+                          int g, int b)
 {
     uint8_t *px = image->plane[0] + y * image->stride_bytes[0] + 3 * x;
 
@@ -32,37 +32,38 @@ void canvas_set_rgb(const struct glint_image *image, int x, int y, int r, int g,
     px[2] = (uint8_t)b;
 }
 
-void canvas_set_grey(const struct glint_image *image, int x, int y, int code)
+void canvas_set_grey_pixel(const struct glint_image *image, int x, int y,
+                           int code)
 {
     image->plane[0][y * image->stride_bytes[0] + x] = (uint8_t)code;
 }
 
-int canvas_get_grey(const struct glint_image *image, int x, int y)
+int canvas_read_grey_pixel(const struct glint_image *image, int x, int y)
 {
     return image->plane[0][y * image->stride_bytes[0] + x];
 }
 
-void canvas_fill_grey(const struct glint_image *image, int x0, int y0, int x1,
-                      int y1, int code)
+void canvas_fill_grey_box(const struct glint_image *image, int x0, int y0,
+                          int x1, int y1, int code)
 {
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x++)
-            canvas_set_grey(image, x, y, code);
+            canvas_set_grey_pixel(image, x, y, code);
 }
 
-double canvas_light(double v, enum glint_tone tone)
+double canvas_decode_value(double v, enum glint_tone tone)
 {
     if (v < 0)
-        return -canvas_light(-v, tone);
+        return -canvas_decode_value(-v, tone);
     if (tone == GLINT_TONE_SRGB)
         return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
     return v < 0.081 ? v / 4.5 : pow((v + 0.099) / 1.099, 1 / 0.45);
 }
 
-double canvas_code(double light, enum glint_tone tone)
+double canvas_encode_light(double light, enum glint_tone tone)
 {
     if (light < 0)
-        return -canvas_code(-light, tone);
+        return -canvas_encode_light(-light, tone);
     if (light > 1)
         return 1;
     if (tone == GLINT_TONE_SRGB)
@@ -71,17 +72,17 @@ double canvas_code(double light, enum glint_tone tone)
     return light < 0.018 ? 4.5 * light : 1.099 * pow(light, 0.45) - 0.099;
 }
 
-int canvas_srgb_code(double light)
+int canvas_encode_srgb(double light)
 {
-    return (int)(255 * canvas_code(light, GLINT_TONE_SRGB) + 0.5);
+    return (int)(255 * canvas_encode_light(light, GLINT_TONE_SRGB) + 0.5);
 }
 
-double canvas_linear(int code)
+double canvas_decode_srgb(int code)
 {
-    return canvas_light(code / 255.0, GLINT_TONE_SRGB);
+    return canvas_decode_value(code / 255.0, GLINT_TONE_SRGB);
 }
 
-double canvas_disc_cover(int x, int y, double cx, double cy, double radius)
+double canvas_disc_coverage(int x, int y, double cx, double cy, double radius)
 {
     int inside = 0;
 
@@ -91,14 +92,15 @@ double canvas_disc_cover(int x, int y, double cx, double cy, double radius)
     return inside / 256.0;
 }
 
-void canvas_disc(const struct glint_image *image, double cx, double cy,
-                 double radius, double light)
+void canvas_draw_disc(const struct glint_image *image, double cx, double cy,
+                      double radius, double light)
 {
     for (int y = (int)(cy - radius - 1); y <= cy + radius + 1; y++)
         for (int x = (int)(cx - radius - 1); x <= cx + radius + 1; x++) {
-            const double cover = canvas_disc_cover(x, y, cx, cy, radius);
+            const double cover = canvas_disc_coverage(x, y, cx, cy, radius);
 
             if (cover > 0)
-                canvas_set_grey(image, x, y, canvas_srgb_code(cover * light));
+                canvas_set_grey_pixel(image, x, y,
+                                      canvas_encode_srgb(cover * light));
         }
 }

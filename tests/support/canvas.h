@@ -13,35 +13,38 @@ extern const enum glint_pixel_format canvas_format[CANVAS_FORMATS];
 
 /* Returns a black image of FORMAT. The caller frees its memory, which starts
  * at plane[0]. */
-struct glint_image canvas_new(enum glint_pixel_format format, int width,
-                              int height);
+struct glint_image canvas_allocate_image(enum glint_pixel_format format,
+                                         int width, int height);
 
-void canvas_set_rgb(const struct glint_image *image, int x, int y, int r, int g,
-                    int b);
+void canvas_set_rgb_pixel(const struct glint_image *image, int x, int y, int r,
+                          int g, int b);
 
-void canvas_set_grey(const struct glint_image *image, int x, int y, int code);
+void canvas_set_grey_pixel(const struct glint_image *image, int x, int y,
+                           int code);
 
-int canvas_get_grey(const struct glint_image *image, int x, int y);
+int canvas_read_grey_pixel(const struct glint_image *image, int x, int y);
 
-void canvas_fill_grey(const struct glint_image *image, int x0, int y0, int x1,
-                      int y1, int code);
+void canvas_fill_grey_box(const struct glint_image *image, int x0, int y0,
+                          int x1, int y1, int code);
 
-/* canvas_light() returns the linear light of V, a code divided by 255;
- * canvas_code() is its inverse. White is 1; the curve is odd: f(-x) = -f(x). */
-double canvas_light(double v, enum glint_tone tone);
-double canvas_code(double light, enum glint_tone tone); /* clamped to 1 */
+/* canvas_decode_value() returns the linear light of V, a code divided by 255;
+ * canvas_encode_light() is its inverse. White is 1; the curve is odd: f(-x) =
+ * -f(x). */
+double canvas_decode_value(double v, enum glint_tone tone);
+double canvas_encode_light(double light,
+                           enum glint_tone tone); /* clamped to 1 */
 
 /* sRGB code 0 .. 255 of linear light 0 .. 1 */
-int canvas_srgb_code(double light);
+int canvas_encode_srgb(double light);
 
-double canvas_linear(int code);
+double canvas_decode_srgb(int code);
 
 /* Returns the fraction of pixel (X, Y), 0 .. 1, that the disc covers, by 16
  * x 16 samples. */
-double canvas_disc_cover(int x, int y, double cx, double cy, double radius);
+double canvas_disc_coverage(int x, int y, double cx, double cy, double radius);
 
 /* Draws an antialiased disc of LIGHT (1 = white) onto a grey image. */
-void canvas_disc(const struct glint_image *image, double cx, double cy,
-                 double radius, double light);
+void canvas_draw_disc(const struct glint_image *image, double cx, double cy,
+                      double radius, double light);
 
 #endif

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 /* Returns whether long tests are requested: GLINT_LONG is set and not 0. */
-static inline bool extreme_long(void)
+static inline bool extreme_is_long_run(void)
 {
     const char *text = getenv("GLINT_LONG");
 
@@ -21,8 +21,8 @@ static inline bool extreme_long(void)
 
 /* Prints the worst value WORST of case NAME. Returns whether it is at most
  * BOUND. */
-static inline bool extreme_at_most(const char *name, double worst, double bound,
-                                   const char *unit)
+static inline bool extreme_check_at_most(const char *name, double worst,
+                                         double bound, const char *unit)
 {
     printf("extreme|%s|%.4g|at most %.4g|%s\n", name, worst, bound, unit);
     fflush(stdout);
@@ -31,15 +31,15 @@ static inline bool extreme_at_most(const char *name, double worst, double bound,
 
 /* Prints the worst value WORST of case NAME. Returns whether it is at least
  * BOUND. */
-static inline bool extreme_at_least(const char *name, double worst,
-                                    double bound, const char *unit)
+static inline bool extreme_check_at_least(const char *name, double worst,
+                                          double bound, const char *unit)
 {
     printf("extreme|%s|%.4g|at least %.4g|%s\n", name, worst, bound, unit);
     fflush(stdout);
     return worst >= bound;
 }
 
-#define assert_at_most(...)  assert_true(extreme_at_most(__VA_ARGS__))
-#define assert_at_least(...) assert_true(extreme_at_least(__VA_ARGS__))
+#define assert_at_most(...)  assert_true(extreme_check_at_most(__VA_ARGS__))
+#define assert_at_least(...) assert_true(extreme_check_at_least(__VA_ARGS__))
 
 #endif

@@ -12,8 +12,9 @@
 struct glint_spot finder_spot[FINDER_SPOTS];
 uint32_t finder_seed = 1;
 
-int finder_find_at_most(const struct glint_lamp_finder_config *cfg,
-                        const struct glint_image *image, int max, int *dropped)
+int finder_find_lamps_up_to(const struct glint_lamp_finder_config *cfg,
+                            const struct glint_image *image, int max,
+                            int *dropped)
 {
     const size_t bytes = glint_lamp_finder_bytes(cfg);
     struct glint_lamp_finder *finder;
@@ -22,7 +23,7 @@ int finder_find_at_most(const struct glint_lamp_finder_config *cfg,
 
     assert_true(bytes > 0);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    memset(mem, rng_below(&finder_seed, 256), bytes);
+    memset(mem, rng_int_below(&finder_seed, 256), bytes);
     assert_ok(glint_lamp_finder_init(&finder, cfg, mem, bytes));
     n = glint_lamp_finder_find(finder, image, finder_spot, max);
     if (dropped)
@@ -33,32 +34,36 @@ int finder_find_at_most(const struct glint_lamp_finder_config *cfg,
     return n;
 }
 
-int finder_find(const struct glint_lamp_finder_config *cfg,
-                const struct glint_image *image)
+int finder_find_lamps(const struct glint_lamp_finder_config *cfg,
+                      const struct glint_image *image)
 {
-    return finder_find_at_most(cfg, image, FINDER_SPOTS, NULL);
+    return finder_find_lamps_up_to(cfg, image, FINDER_SPOTS, NULL);
 }
 
-int32_t finder_stops_q8(int code)
+int32_t finder_threshold_stops_q8(int code)
 {
     return (int32_t)floor(
-        256 * log2((canvas_linear(code - 1) + canvas_linear(code)) / 2) + 0.5);
+        256 * log2((canvas_decode_srgb(code - 1) + canvas_decode_srgb(code)) /
+                   2) +
+        0.5);
 }
 
-struct glint_lamp_finder_config finder_plain(const struct glint_image *image,
-                                             int low, int high)
+struct glint_lamp_finder_config
+finder_config_without_filters(const struct glint_image *image, int low,
+                              int high)
 {
     return (struct glint_lamp_finder_config){
         .width = image->width,
         .height = image->height,
-        .threshold_low_q8 = finder_stops_q8(low),
-        .threshold_high_q8 = finder_stops_q8(high),
+        .threshold_low_q8 = finder_threshold_stops_q8(low),
+        .threshold_high_q8 = finder_threshold_stops_q8(high),
         .white_code = 255,
         .min_area = 1,
         .max_share_q15 = 1 << 15};
 }
 
-struct glint_lamp_finder_config finder_defaults(const struct glint_image *image)
+struct glint_lamp_finder_config
+finder_default_config(const struct glint_image *image)
 {
     struct glint_lamp_finder_config cfg;
 
@@ -66,12 +71,12 @@ struct glint_lamp_finder_config finder_defaults(const struct glint_image *image)
     return cfg;
 }
 
-double finder_x(int i)
+double finder_spot_x(int i)
 {
     return finder_spot[i].x_q8 / 256.0;
 }
 
-double finder_y(int i)
+double finder_spot_y(int i)
 {
     return finder_spot[i].y_q8 / 256.0;
 }

@@ -15,31 +15,33 @@ extern struct glint_spot finder_spot[FINDER_SPOTS];
 /* seed of the random byte that fills the memory of each new finder */
 extern uint32_t finder_seed;
 
-/* finder_find_at_most() finds at most MAX lamps of IMAGE, stores them in
+/* finder_find_lamps_up_to() finds at most MAX lamps of IMAGE, stores them in
  * finder_spot and returns their number. The finder gets exactly the memory
  * that it requests, filled with a random byte. Sets *DROPPED to
  * glint_lamp_finder_dropped(); if DROPPED is NULL, that must be 0. */
-int finder_find_at_most(const struct glint_lamp_finder_config *cfg,
-                        const struct glint_image *image, int max, int *dropped);
+int finder_find_lamps_up_to(const struct glint_lamp_finder_config *cfg,
+                            const struct glint_image *image, int max,
+                            int *dropped);
 
-int finder_find(const struct glint_lamp_finder_config *cfg,
-                const struct glint_image *image);
+int finder_find_lamps(const struct glint_lamp_finder_config *cfg,
+                      const struct glint_image *image);
 
 /* Returns the light half-way between the sRGB codes CODE - 1 and CODE, stops
  * above white, Q8. */
-int32_t finder_stops_q8(int code);
+int32_t finder_threshold_stops_q8(int code);
 
 /* Returns a configuration without filters: every region counts, whatever its
  * size, and none are merged. LOW and HIGH are the threshold codes, HIGH at
  * most 250. */
-struct glint_lamp_finder_config finder_plain(const struct glint_image *image,
-                                             int low, int high);
+struct glint_lamp_finder_config
+finder_config_without_filters(const struct glint_image *image, int low,
+                              int high);
 
 struct glint_lamp_finder_config
-finder_defaults(const struct glint_image *image);
+finder_default_config(const struct glint_image *image);
 
-double finder_x(int i);
+double finder_spot_x(int i);
 
-double finder_y(int i);
+double finder_spot_y(int i);
 
 #endif

@@ -14,7 +14,7 @@ static const int32_t octagon[8][2] = {
     {-992008094, 410903207}, {-992008094, -410903207}, {-410903207, -992008094},
     {410903207, -992008094}, {992008094, -410903207}};
 
-struct glint_flare_config base_config(void)
+struct glint_flare_config octagonal_stop_config(void)
 {
     struct glint_flare_config c = {.width = WIDTH,
                                    .height = HEIGHT,
@@ -30,7 +30,7 @@ struct glint_flare_config base_config(void)
     return c;
 }
 
-struct glint_vertex ghost_vertex(const struct ghost *g, int i, int j)
+struct glint_vertex compute_ghost_vertex(const struct ghost *g, int i, int j)
 {
     /* sx and sy are -1.25 .. 1.25 stop radii, Q16, computed in integers
      * only. */
@@ -50,7 +50,7 @@ struct glint_vertex ghost_vertex(const struct ghost *g, int i, int j)
     return v;
 }
 
-void add_ghost(struct glint_flare *f, const struct ghost *g)
+void add_ghost_to_flare(struct glint_flare *f, const struct ghost *g)
 {
     struct glint_bundle b = {.n_cells = g->n,
                              .flux_q31 = 1500000000,
@@ -63,7 +63,7 @@ void add_ghost(struct glint_flare *f, const struct ghost *g)
         return;
     for (int j = 0; j <= g->n; j++)
         for (int i = 0; i <= g->n; i++)
-            *v++ = ghost_vertex(g, i, j);
+            *v++ = compute_ghost_vertex(g, i, j);
 }
 
 const struct ghost ghosts[N_GHOSTS] = {
@@ -75,7 +75,7 @@ const struct ghost ghosts[N_GHOSTS] = {
     {16, -40, 160, 90, 0, -1, 0, 1, {3000, 16384, 200}}, /* partly outside */
 };
 
-struct glint_flare *open_flare(struct glint_flare_config *c, void **mem)
+struct glint_flare *allocate_flare(struct glint_flare_config *c, void **mem)
 {
     const size_t bytes = glint_flare_bytes(c);
     struct glint_flare *f;
@@ -88,7 +88,7 @@ struct glint_flare *open_flare(struct glint_flare_config *c, void **mem)
     return f;
 }
 
-struct glint_image linear_image(int32_t *px)
+struct glint_image make_linear_image(int32_t *px)
 {
     struct glint_image image =
         glint_image_over(px, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
@@ -97,17 +97,17 @@ struct glint_image linear_image(int32_t *px)
     return image;
 }
 
-struct glint_flare_stats draw_list(struct glint_flare_config c,
-                                   const struct ghost *list, int n,
-                                   int32_t *out)
+struct glint_flare_stats draw_ghost_list(struct glint_flare_config c,
+                                         const struct ghost *list, int n,
+                                         int32_t *out)
 {
-    const struct glint_image image = linear_image(out);
+    const struct glint_image image = make_linear_image(out);
     struct glint_flare_stats stats;
     void *mem;
-    struct glint_flare *f = open_flare(&c, &mem);
+    struct glint_flare *f = allocate_flare(&c, &mem);
 
     for (int i = 0; i < n; i++)
-        add_ghost(f, &list[i]);
+        add_ghost_to_flare(f, &list[i]);
     glint_flare_bin(f, &stats);
     glint_flare_draw(f, &image);
     free(mem);
@@ -116,18 +116,18 @@ struct glint_flare_stats draw_list(struct glint_flare_config c,
 
 struct glint_flare_stats draw_scene(struct glint_flare_config c, int32_t *out)
 {
-    return draw_list(c, ghosts, N_GHOSTS, out);
+    return draw_ghost_list(c, ghosts, N_GHOSTS, out);
 }
 
 int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 
-void same_as_want(struct glint_flare_config c)
+void assert_pixels_equal_want(struct glint_flare_config c)
 {
     draw_scene(c, pixels);
     assert_memory_equal(pixels, want, sizeof pixels);
 }
 
-double total(const int32_t *p, int channel)
+double sum_channel_light(const int32_t *p, int channel)
 {
     double sum = 0;
 
@@ -136,25 +136,25 @@ double total(const int32_t *p, int channel)
     return sum;
 }
 
-int draw_number(int n)
+int draw_random_number(int n)
 {
     static uint32_t seed = 7;
 
-    return rng_below(&seed, n);
+    return rng_int_below(&seed, n);
 }
 
-struct ghost random_ghost(void)
+struct ghost make_random_ghost(void)
 {
-    const int size = 3 + draw_number(40);
+    const int size = 3 + draw_random_number(40);
 
     return (struct ghost){
-        4 + draw_number(29),
-        draw_number(WIDTH - 60) - 20,
-        draw_number(HEIGHT),
+        4 + draw_random_number(29),
+        draw_random_number(WIDTH - 60) - 20,
+        draw_random_number(HEIGHT),
         size,
-        draw_number(1500) - 750, /* above +-320 the ghost is folded */
-        draw_number(2) ? 1 : -1,
-        draw_number(2000) - 1000,
-        draw_number(4),
-        {16384 - draw_number(20000), draw_number(16384), 16384}};
+        draw_random_number(1500) - 750, /* above +-320 the ghost is folded */
+        draw_random_number(2) ? 1 : -1,
+        draw_random_number(2000) - 1000,
+        draw_random_number(4),
+        {16384 - draw_random_number(20000), draw_random_number(16384), 16384}};
 }

@@ -17,7 +17,8 @@ struct ghost {
     int size;   /* pixels per stop radius */
     int bend;   /* quadratic term, 1/1000 of size */
     int mirror; /* -1: mirrored */
-    /* offset of the barrel from the stop, 1/1000 of the radius */
+    /* offset of the barrel's centre from the stop's, 1/1000 of the stop
+     * radius */
     int barrel_shift;
     int32_t flux_exponent;
     int32_t rgb_q14[3];
@@ -26,38 +27,38 @@ struct ghost {
 extern const struct ghost ghosts[N_GHOSTS];
 
 /* Returns a configuration with an octagonal stop and memory for all ghosts. */
-struct glint_flare_config base_config(void);
+struct glint_flare_config octagonal_stop_config(void);
 
 /* Returns a flare with configuration C. Sets *MEM to its memory, which the
  * caller frees. */
-struct glint_flare *open_flare(struct glint_flare_config *c, void **mem);
+struct glint_flare *allocate_flare(struct glint_flare_config *c, void **mem);
 
 /* Returns the vertex in column I and row J of G's grid. */
-struct glint_vertex ghost_vertex(const struct ghost *g, int i, int j);
+struct glint_vertex compute_ghost_vertex(const struct ghost *g, int i, int j);
 
-void add_ghost(struct glint_flare *f, const struct ghost *g);
+void add_ghost_to_flare(struct glint_flare *f, const struct ghost *g);
 
 /* Clears PX[HEIGHT][WIDTH][3] and returns a linear image over it. */
-struct glint_image linear_image(int32_t *px);
+struct glint_image make_linear_image(int32_t *px);
 
-/* draw_list() draws the N ghosts of LIST into OUT[HEIGHT][WIDTH][3], linear
- * light Q20; draw_scene() draws the list `ghosts`. */
-struct glint_flare_stats draw_list(struct glint_flare_config c,
-                                   const struct ghost *list, int n,
-                                   int32_t *out);
+/* draw_ghost_list() draws the N ghosts of LIST into OUT[HEIGHT][WIDTH][3],
+ * linear light Q20; draw_scene() draws the list `ghosts`. */
+struct glint_flare_stats draw_ghost_list(struct glint_flare_config c,
+                                         const struct ghost *list, int n,
+                                         int32_t *out);
 struct glint_flare_stats draw_scene(struct glint_flare_config c, int32_t *out);
 
 /* Draws all ghosts into PIXELS and checks that they equal WANT. */
 extern int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
-void same_as_want(struct glint_flare_config c);
+void assert_pixels_equal_want(struct glint_flare_config c);
 
 /* Returns the sum of CHANNEL over all pixels, 1 = white. */
-double total(const int32_t *p, int channel);
+double sum_channel_light(const int32_t *p, int channel);
 
 /* Returns the next random number, 0 .. N - 1. */
-int draw_number(int n);
+int draw_random_number(int n);
 
 /* Returns a random ghost in or near the image, folded or not. */
-struct ghost random_ghost(void);
+struct ghost make_random_ghost(void);
 
 #endif

@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-uint32_t model_put(struct model_image *m, const void *items, size_t bytes)
+uint32_t model_append_items(struct model_image *m, const void *items,
+                            size_t bytes)
 {
     const uint32_t at = m->bytes;
 
@@ -17,20 +18,20 @@ uint32_t model_put(struct model_image *m, const void *items, size_t bytes)
     return at;
 }
 
-struct glint_model_header *model_header(const struct model_image *m)
+struct glint_model_header *model_header_of(const struct model_image *m)
 {
     return (struct glint_model_header *)(void *)m->data;
 }
 
-void model_seal(struct model_image *m)
+void model_seal_checksum(struct model_image *m)
 {
-    struct glint_model_header *h = model_header(m);
+    struct glint_model_header *h = model_header_of(m);
 
     h->bytes = m->bytes;
     h->crc32 = glint_model_crc32(m->data + 16, m->bytes - 16);
 }
 
-struct glint_real model_real(double x)
+struct glint_real model_real_from_double(double x)
 {
     struct glint_real real = {0, 0};
     int exponent;
@@ -43,8 +44,8 @@ struct glint_real model_real(double x)
     return real;
 }
 
-void model_begin(struct model_image *m, enum glint_basis basis,
-                 const char *name)
+void model_begin_header(struct model_image *m, enum glint_basis basis,
+                        const char *name)
 {
     struct glint_model_header h = {.magic = GLINT_MODEL_MAGIC,
                                    .version = GLINT_MODEL_VERSION,
@@ -52,30 +53,31 @@ void model_begin(struct model_image *m, enum glint_basis basis,
 
     h.key[0] = 7;
     strcpy(h.name, name);
-    h.focal_mm = model_real(50);
-    h.back_focal_mm = model_real(37.5);
-    h.entrance_radius_mm = model_real(12.5);
-    h.stop_radius_mm = model_real(8);
-    h.f_number = model_real(2);
-    h.film_width_mm = model_real(36);
-    h.film_height_mm = model_real(24);
-    h.field_mm = model_real(30);
-    h.front_mm = model_real(15);
+    h.focal_mm = model_real_from_double(50);
+    h.back_focal_mm = model_real_from_double(37.5);
+    h.entrance_radius_mm = model_real_from_double(12.5);
+    h.stop_radius_mm = model_real_from_double(8);
+    h.f_number = model_real_from_double(2);
+    h.film_width_mm = model_real_from_double(36);
+    h.film_height_mm = model_real_from_double(24);
+    h.field_mm = model_real_from_double(30);
+    h.front_mm = model_real_from_double(15);
     h.wave_lo_q24 = MODEL_WAVE_LO_Q24;
     h.wave_hi_q24 = MODEL_WAVE_HI_Q24;
     h.sine_hi_q30 = MODEL_ONE_Q30 / 2;
-    h.direct_flux[0] = model_real(400);
-    h.direct_flux[1] = model_real(-3);
+    h.direct_flux[0] = model_real_from_double(400);
+    h.direct_flux[1] = model_real_from_double(-3);
     h.n_surfaces = 4;
     m->data = calloc(1, MODEL_ROOM);
     m->bytes = 0;
     if (!m->data)
         abort();
-    model_put(m, &h, sizeof h);
+    model_append_items(m, &h, sizeof h);
 }
 
-void model_outputs(struct model_image *m, struct glint_model_system *s,
-                   const struct model_polynomial *p, uint32_t n, int halved)
+void model_write_outputs(struct model_image *m, struct glint_model_system *s,
+                         const struct model_polynomial *p, uint32_t n,
+                         int halved)
 {
     struct glint_model_output o[GLINT_OUT_KINDS] = {{0}};
 
@@ -87,8 +89,8 @@ void model_outputs(struct model_image *m, struct glint_model_system *s,
         o[k].kind = p[k].kind;
         o[k].n_terms = p[k].n_terms;
         o[k].exponent = p[k].exponent;
-        o[k].term_at = model_put(m, p[k].power, 2 * p[k].n_terms);
-        o[k].coef_at = model_put(m, coef, 4 * (size_t)p[k].n_terms);
+        o[k].term_at = model_append_items(m, p[k].power, 2 * p[k].n_terms);
+        o[k].coef_at = model_append_items(m, coef, 4 * (size_t)p[k].n_terms);
         o[k].bound = 1 << 29;
         o[k].rounding_q8 = 384;
         o[k].rms = MODEL_ERROR(1536, 9 - halved); /* 0.75; with HALVED 0.375 */
@@ -97,14 +99,13 @@ void model_outputs(struct model_image *m, struct glint_model_system *s,
         o[k].max = MODEL_ERROR(1024, 11 + halved);
     }
     s->n_outputs = (uint8_t)n;
-    s->output_at = model_put(m, o, n * sizeof *o);
+    s->output_at = model_append_items(m, o, n * sizeof *o);
 }
 
-struct glint_model_system model_auto_system(struct model_image *m,
-                                            int32_t sine_lo_q30,
-                                            int32_t sine_hi_q30,
-                                            int32_t wave_lo_q24,
-                                            int32_t wave_hi_q24, int halved)
+struct glint_model_system
+model_make_auto_system(struct model_image *m, int32_t sine_lo_q30,
+                       int32_t sine_hi_q30, int32_t wave_lo_q24,
+                       int32_t wave_hi_q24, int halved)
 {
     static const struct model_polynomial outputs[] = {
         /* sensor x = 0.25 + 0.5 u - 0.125 v^2 s, mm */
@@ -150,28 +151,32 @@ struct glint_model_system model_auto_system(struct model_image *m,
                                    .box_exponent = -20,
                                    .box_terms = MODEL_BOX_TERMS};
 
-    s.box_at = model_put(m, box, sizeof box);
-    model_outputs(m, &s, outputs, sizeof outputs / sizeof *outputs, halved);
+    s.box_at = model_append_items(m, box, sizeof box);
+    model_write_outputs(m, &s, outputs, sizeof outputs / sizeof *outputs,
+                        halved);
     return s;
 }
 
-void model_end(struct model_image *m, const struct glint_model_ghost *ghosts,
-               uint32_t n_ghosts, const struct glint_model_system *systems,
-               uint32_t n_systems)
+void model_append_ghosts(struct model_image *m,
+                         const struct glint_model_ghost *ghosts,
+                         uint32_t n_ghosts,
+                         const struct glint_model_system *systems,
+                         uint32_t n_systems)
 {
-    const uint32_t ghost_at = model_put(m, ghosts, n_ghosts * sizeof *ghosts);
+    const uint32_t ghost_at =
+        model_append_items(m, ghosts, n_ghosts * sizeof *ghosts);
     const uint32_t system_at =
-        model_put(m, systems, n_systems * sizeof *systems);
-    struct glint_model_header *h = model_header(m);
+        model_append_items(m, systems, n_systems * sizeof *systems);
+    struct glint_model_header *h = model_header_of(m);
 
     h->n_ghosts = n_ghosts;
     h->ghost_at = ghost_at;
     h->n_systems = n_systems;
     h->system_at = system_at;
-    model_seal(m);
+    model_seal_checksum(m);
 }
 
-struct model_image model_auto(void)
+struct model_image model_make_auto(void)
 {
     static const struct glint_model_ghost ghosts[] = {
         {0, 1, 0, 2}, {0, 2, 0, 0}, {1, 3, 2, 2}};
@@ -180,16 +185,16 @@ struct model_image model_auto(void)
     struct glint_model_system s[4];
     struct model_image m;
 
-    model_begin(&m, GLINT_BASIS_AUTO, "auto");
-    s[0] = model_auto_system(&m, 0, one / 4, lo, hi, 0);
-    s[1] = model_auto_system(&m, one / 4, one / 2, lo, hi, 1);
-    s[2] = model_auto_system(&m, one / 8, one / 2, lo, middle, 0);
-    s[3] = model_auto_system(&m, one / 8, one / 2, middle, hi, 1);
-    model_end(&m, ghosts, 3, s, 4);
+    model_begin_header(&m, GLINT_BASIS_AUTO, "auto");
+    s[0] = model_make_auto_system(&m, 0, one / 4, lo, hi, 0);
+    s[1] = model_make_auto_system(&m, one / 4, one / 2, lo, hi, 1);
+    s[2] = model_make_auto_system(&m, one / 8, one / 2, lo, middle, 0);
+    s[3] = model_make_auto_system(&m, one / 8, one / 2, middle, hi, 1);
+    model_append_ghosts(&m, ghosts, 3, s, 4);
     return m;
 }
 
-struct glint_lens model_open(const struct model_image *m)
+struct glint_lens model_open_image(const struct model_image *m)
 {
     struct glint_lens lens;
     const char *reason = "";

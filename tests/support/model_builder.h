@@ -2,12 +2,12 @@
  *
  * Builds small models in memory, whose polynomials can be evaluated by hand.
  *
- *     struct model_image m = model_auto();
+ *     struct model_image m = model_make_auto();
  *     glint_lens_open(&lens, m.data, m.bytes, &reason);
  *     free(m.data);
  *
  * Tables are written one after the other, and none is shared. After a change,
- * model_seal() updates size and checksum.
+ * model_seal_checksum() updates size and checksum.
  */
 #ifndef GLINT_TESTS_MODEL_BUILDER_H
 #define GLINT_TESTS_MODEL_BUILDER_H
@@ -39,17 +39,18 @@ struct model_polynomial {
 };
 
 /* Appends ITEMS[BYTES], padded to 32-bit words. Returns their offset. */
-uint32_t model_put(struct model_image *m, const void *items, size_t bytes);
+uint32_t model_append_items(struct model_image *m, const void *items,
+                            size_t bytes);
 
-struct glint_model_header *model_header(const struct model_image *m);
+struct glint_model_header *model_header_of(const struct model_image *m);
 
-void model_seal(struct model_image *m);
+void model_seal_checksum(struct model_image *m);
 
 /* Opens the model in M and returns it; it points into m->data. Aborts if the
  * model is invalid. */
-struct glint_lens model_open(const struct model_image *m);
+struct glint_lens model_open_image(const struct model_image *m);
 
-struct glint_real model_real(double x);
+struct glint_real model_real_from_double(double x);
 
 /* Wavelengths of 800 and 400 nm as 1 / wavelength^2, um^-2, Q24; 1 in Q30. */
 enum {
@@ -58,29 +59,31 @@ enum {
     MODEL_ONE_Q30 = 1 << 30
 };
 
-void model_begin(struct model_image *m, enum glint_basis basis,
-                 const char *name);
+void model_begin_header(struct model_image *m, enum glint_basis basis,
+                        const char *name);
 
 /* Writes the tables of the N polynomials P into M and S; coefficients are
  * divided by 2^HALVED. */
-void model_outputs(struct model_image *m, struct glint_model_system *s,
-                   const struct model_polynomial *p, uint32_t n, int halved);
+void model_write_outputs(struct model_image *m, struct glint_model_system *s,
+                         const struct model_polynomial *p, uint32_t n,
+                         int halved);
 
 /* Returns a polynomial system of the auto basis. Its box is centred at 1 + s
  * / 2 mm; its half sides are 4 - s and 3 mm. */
-struct glint_model_system model_auto_system(struct model_image *m,
-                                            int32_t sine_lo_q30,
-                                            int32_t sine_hi_q30,
-                                            int32_t wave_lo_q24,
-                                            int32_t wave_hi_q24, int halved);
+struct glint_model_system
+model_make_auto_system(struct model_image *m, int32_t sine_lo_q30,
+                       int32_t sine_hi_q30, int32_t wave_lo_q24,
+                       int32_t wave_hi_q24, int halved);
 
-void model_end(struct model_image *m, const struct glint_model_ghost *ghosts,
-               uint32_t n_ghosts, const struct glint_model_system *systems,
-               uint32_t n_systems);
+void model_append_ghosts(struct model_image *m,
+                         const struct glint_model_ghost *ghosts,
+                         uint32_t n_ghosts,
+                         const struct glint_model_system *systems,
+                         uint32_t n_systems);
 
 /* Returns a model of three ghosts: ghost 0 has two ranges of angles, sines 0
  * .. 1/4 .. 1/2, the second with halved coefficients; ghost 1 is never
  * visible; ghost 2 has two bands of wavelengths. */
-struct model_image model_auto(void);
+struct model_image model_make_auto(void);
 
 #endif

@@ -8,7 +8,7 @@
 #include "support/canvas.h"
 #include "support/rng.h"
 
-void night_init(struct night *night, int width, int height)
+void night_init_parameters(struct night *night, int width, int height)
 {
     memset(night, 0, sizeof *night);
     night->seed = 1;
@@ -19,7 +19,7 @@ void night_init(struct night *night, int width, int height)
         double sum = -6;
 
         for (int k = 0; k < 12; k++)
-            sum += rng_below(&night->seed, 1 << 20) * 0x1p-20;
+            sum += rng_int_below(&night->seed, 1 << 20) * 0x1p-20;
         night->noise[i] = (int8_t)fmax(-127, fmin(127, floor(16 * sum + 0.5)));
     }
     glint_lamp_finder_defaults(&night->lights, width, height);
@@ -28,7 +28,7 @@ void night_init(struct night *night, int width, int height)
     glint_lamp_tracker_defaults(&night->cfg, width, height);
 }
 
-int night_open(struct night *n)
+int night_open_tracker(struct night *n)
 {
     const size_t bytes[2] = {glint_lamp_finder_bytes(&n->lights),
                              glint_lamp_tracker_bytes(&n->cfg)};
@@ -44,7 +44,7 @@ int night_open(struct night *n)
                GLINT_OK;
 }
 
-void night_close(struct night *night)
+void night_close_tracker(struct night *night)
 {
     free(night->image.plane[0]);
     free(night->mem[0]);
@@ -52,8 +52,9 @@ void night_close(struct night *night)
     free(night->mem[2]);
 }
 
-static double compute_light(const struct night *night,
-                            const struct night_lamp *lamp, int n, int x, int y)
+static double compute_lamp_light(const struct night *night,
+                                 const struct night_lamp *lamp, int n, int x,
+                                 int y)
 {
     double light = 0.01;
 
@@ -68,10 +69,10 @@ static double compute_light(const struct night *night,
     return light;
 }
 
-static void put_pixel(struct night *night, int x, int y, double light)
+static void write_noisy_pixel(struct night *night, int x, int y, double light)
 {
     const double code =
-        canvas_srgb_code(light) +
+        canvas_encode_srgb(light) +
         night->sigma * night->noise[(night->row_noise[y] + x) % NIGHT_NOISE] /
             16.0;
 
@@ -79,7 +80,7 @@ static void put_pixel(struct night *night, int x, int y, double light)
         (uint8_t)fmax(0, fmin(255, floor(code + 0.5)));
 }
 
-void night_draw(struct night *night, const struct night_lamp *lamp, int n)
+void night_draw_lamps(struct night *night, const struct night_lamp *lamp, int n)
 {
     const struct glint_image *image = &night->image;
 
@@ -87,7 +88,7 @@ void night_draw(struct night *night, const struct night_lamp *lamp, int n)
         uint8_t *row = image->plane[0] + y * image->width;
 
         night->row_noise[y] =
-            rng_below(&night->seed, NIGHT_NOISE - image->width);
+            rng_int_below(&night->seed, NIGHT_NOISE - image->width);
         for (int x = 0; x < image->width; x++)
             row[x] =
                 (uint8_t)(25 + (night->noise[night->row_noise[y] + x] >> 4));
@@ -100,11 +101,12 @@ void night_draw(struct night *night, const struct night_lamp *lamp, int n)
              y < image->height && y <= cy + reach; y++)
             for (int x = cx - reach < 0 ? 0 : cx - reach;
                  x < image->width && x <= cx + reach; x++)
-                put_pixel(night, x, y, compute_light(night, lamp, n, x, y));
+                write_noisy_pixel(night, x, y,
+                                  compute_lamp_light(night, lamp, n, x, y));
     }
 }
 
-void night_track(struct night *n, int32_t elapsed_us)
+void night_track_lamps(struct night *n, int32_t elapsed_us)
 {
     glint_lamp_finder_keep_white(
         n->finder, glint_lamp_tracker_white_q15(n->tracks, elapsed_us));
@@ -115,24 +117,24 @@ void night_track(struct night *n, int32_t elapsed_us)
                                           elapsed_us, n->track, NIGHT_MAX);
 }
 
-void night_step(struct night *n, const struct night_lamp *lamp, int n_lamps,
-                int32_t elapsed_us)
+void night_draw_and_track(struct night *n, const struct night_lamp *lamp,
+                          int n_lamps, int32_t elapsed_us)
 {
-    night_draw(n, lamp, n_lamps);
-    night_track(n, elapsed_us);
+    night_draw_lamps(n, lamp, n_lamps);
+    night_track_lamps(n, elapsed_us);
 }
 
-double night_power(const struct glint_lamp_track *t)
+double night_track_power(const struct glint_lamp_track *t)
 {
     return t->level_q15 / 32768.0 * (double)t->power_q16 / 65536;
 }
 
-double night_energy(const struct night *n)
+double night_sum_track_energies(const struct night *n)
 {
     double sum = 0;
 
     for (int i = 0; i < n->n_tracks; i++)
-        sum += night_power(&n->track[i]);
+        sum += night_track_power(&n->track[i]);
     return sum;
 }
 
@@ -141,7 +143,7 @@ double night_spot_power(const struct glint_spot *s)
     return (double)s->power_q16 / 65536;
 }
 
-int night_track_at(const struct night *n, double x, double y)
+int night_find_track(const struct night *n, double x, double y)
 {
     double best = HUGE_VAL;
     int at = -1;
@@ -158,7 +160,7 @@ int night_track_at(const struct night *n, double x, double y)
     return at;
 }
 
-int night_spot_at(const struct night *n, double x, double y)
+int night_find_spot(const struct night *n, double x, double y)
 {
     double best = HUGE_VAL;
     int at = -1;

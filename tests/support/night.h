@@ -16,7 +16,8 @@ enum { NIGHT_MAX = 1024, NIGHT_NOISE = 1 << 16 };
 
 struct night_lamp {
     double x, y, radius;
-    /* 1 = white; outside the radius falls by a factor e per 1.5 pixels */
+    /* light of the disc, 1 = white; outside it falls by a factor e per 1.5
+     * pixels */
     double light;
 };
 
@@ -41,35 +42,36 @@ struct night {
 
 /* Sets NIGHT to a size, default parameters and a table of noise: sums of
  * twelve uniform numbers, nearly Gaussian. */
-void night_init(struct night *night, int width, int height);
+void night_init_parameters(struct night *night, int width, int height);
 
-/* Opens finder, profile and tracker after they were configured. Returns
+/* Opens finder, profile and tracker with the configurations in N. Returns
  * whether this succeeded. */
-int night_open(struct night *n);
+int night_open_tracker(struct night *n);
 
-void night_close(struct night *night);
+void night_close_tracker(struct night *night);
 
 /* Draws the N lamps of LAMP with noise of sigma around them, on a dark
  * background with noise of one code. */
-void night_draw(struct night *night, const struct night_lamp *lamp, int n);
+void night_draw_lamps(struct night *night, const struct night_lamp *lamp,
+                      int n);
 
 /* Finds and tracks the lamps of the image, ELAPSED_US microseconds after the
  * previous one. */
-void night_track(struct night *n, int32_t elapsed_us);
+void night_track_lamps(struct night *n, int32_t elapsed_us);
 
-void night_step(struct night *n, const struct night_lamp *lamp, int n_lamps,
-                int32_t elapsed_us);
+void night_draw_and_track(struct night *n, const struct night_lamp *lamp,
+                          int n_lamps, int32_t elapsed_us);
 
-double night_power(const struct glint_lamp_track *t);
+double night_track_power(const struct glint_lamp_track *t);
 
-double night_energy(const struct night *n);
+double night_sum_track_energies(const struct night *n);
 
 double night_spot_power(const struct glint_spot *s);
 
 /* Return the index of the track or spot nearest to (X, Y); -1 if there is
  * none. */
-int night_track_at(const struct night *n, double x, double y);
+int night_find_track(const struct night *n, double x, double y);
 
-int night_spot_at(const struct night *n, double x, double y);
+int night_find_spot(const struct night *n, double x, double y);
 
 #endif

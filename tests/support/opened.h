@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The Heliar lens, opened with default settings as a command does, with its
- * model. Run from the root of the tree.
+ * Opens the Heliar lens and its model with default settings, as commands do.
+ * Run from the root of the tree.
  *
- *     TEST_GROUP(opened_heliar, opened_close);
+ *     TEST_GROUP(open_heliar_lens, close_opened_lens);
  */
 #ifndef GLINT_TESTS_OPENED_H
 #define GLINT_TESTS_OPENED_H
@@ -15,7 +15,7 @@
 static struct opened opened;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
-static inline void opened_heliar(void)
+static inline void open_heliar_lens(void)
 {
     settings_defaults(&opened.settings);
     assert_ok(tool_start(&tool));
@@ -23,7 +23,7 @@ static inline void opened_heliar(void)
                                "lenses/heliar-tronnier.lens"));
 }
 
-static inline void opened_close(void)
+static inline void close_opened_lens(void)
 {
     opened_lens_close(&opened.lens);
     tool_finish(&tool);

@@ -17,7 +17,7 @@ static double gaussian_noise(uint32_t *seed)
     return sum;
 }
 
-static int is_in_shape(const struct power_lamp *l, double x, double y)
+static int is_point_in_shape(const struct power_lamp *l, double x, double y)
 {
     const double c = cos(l->angle), s = sin(l->angle);
     const double u = fabs(c * (x - l->x) + s * (y - l->y));
@@ -50,8 +50,8 @@ static void draw_shape(double *light, int width, int height,
             if (x < 0 || y < 0 || x >= width || y >= height)
                 continue;
             for (int i = 0; i < fine * fine; i++)
-                n += is_in_shape(l, x + (i % fine + 0.5) / fine,
-                                 y + (i / fine + 0.5) / fine);
+                n += is_point_in_shape(l, x + (i % fine + 0.5) / fine,
+                                       y + (i / fine + 0.5) / fine);
             light[y * width + x] = (double)n / (fine * fine);
             sum += light[y * width + x];
         }
@@ -94,8 +94,8 @@ static void blur_image(double *light, int width, int height, double sigma)
     free(tmp);
 }
 
-/* Adds to LIGHT the glare of the lit pixels of SHAPE. Of more than SOURCES
- * pixels every k-th represents the others. */
+/* Adds to LIGHT the glare of the lit pixels of SHAPE. If more than SOURCES
+ * pixels are lit, every k-th pixel represents k of them. */
 static void add_glare(double *light, const double *shape, int width, int height,
                       const struct power_lamp *l)
 {
@@ -135,8 +135,8 @@ static void add_glare(double *light, const double *shape, int width, int height,
     }
 }
 
-void power_see(double *light, int width, int height,
-               const struct power_lamp *lens, double over)
+void power_apply_lens(double *light, int width, int height,
+                      const struct power_lamp *lens, double over)
 {
     const int n = width * height;
     double *shape = malloc(sizeof *shape * (size_t)n);
@@ -148,8 +148,8 @@ void power_see(double *light, int width, int height,
     free(shape);
 }
 
-void power_draw(double *light, int width, int height,
-                const struct power_lamp *lamp)
+void power_draw_lamp(double *light, int width, int height,
+                     const struct power_lamp *lamp)
 {
     const size_t bytes = sizeof *light * (size_t)(width * height);
     double *shape = malloc(bytes);
@@ -168,7 +168,7 @@ enum { CODES = 1 << 16, NOISE = 1 << 16 };
 
 static double code[CODES + 1], noise[NOISE];
 
-static void make_tables(void)
+static void make_srgb_tables(void)
 {
     uint32_t seed = 1;
 
@@ -183,16 +183,16 @@ static void make_tables(void)
         noise[i] = gaussian_noise(&seed);
 }
 
-void power_expose(uint8_t *rgb, const struct power_picture *scene, double gain,
-                  double sigma, uint32_t *seed)
+void power_expose_codes(uint8_t *rgb, const struct power_picture *scene,
+                        double gain, double sigma, uint32_t *seed)
 {
     if (code[CODES] < 1)
-        make_tables();
+        make_srgb_tables();
     for (int i = 0; i < 3 * scene->width * scene->height; i++) {
         const double light = gain * scene->rgb[i];
         const double v = code[light < 1 ? (int)(light * CODES) : CODES];
 
-        rng_bits(seed);
+        rng_bits32(seed);
         rgb[i] = (uint8_t)fmax(
             0, fmin(255, floor(v + sigma * noise[*seed >> 16] + 0.5)));
     }

@@ -33,17 +33,17 @@ struct power_picture {
 };
 
 /* Sets LIGHT, one value per pixel, to the image of LAMP with power 1. */
-void power_draw(double *light, int width, int height,
-                const struct power_lamp *lamp);
+void power_draw_lamp(double *light, int width, int height,
+                     const struct power_lamp *lamp);
 
 /* Applies LENS to LIGHT: blurs it and adds the glare of all pixels above
  * OVER. */
-void power_see(double *light, int width, int height,
-               const struct power_lamp *lens, double over);
+void power_apply_lens(double *light, int width, int height,
+                      const struct power_lamp *lens, double over);
 
 /* Sets RGB to the 8-bit sRGB codes of GAIN times the light SCENE, plus noise
  * of SIGMA codes. */
-void power_expose(uint8_t *rgb, const struct power_picture *scene, double gain,
-                  double sigma, uint32_t *seed);
+void power_expose_codes(uint8_t *rgb, const struct power_picture *scene,
+                        double gain, double sigma, uint32_t *seed);
 
 #endif

@@ -24,30 +24,30 @@ static const struct glass catalogue[] = {
 
 enum { N_CATALOGUE = sizeof catalogue / sizeof *catalogue };
 
-static double log_uniform(uint64_t *r, double low, double high)
+static double random_log_uniform(uint64_t *r, double low, double high)
 {
-    return exp(stage_uniform(r, log(low), log(high)));
+    return exp(stage_random_uniform(r, log(low), log(high)));
 }
 
-static bool random_chance(uint64_t *r, double p)
+static bool happens_with_probability(uint64_t *r, double p)
 {
-    return stage_uniform(r, 0, 1) < p;
+    return stage_random_uniform(r, 0, 1) < p;
 }
 
 static int random_below(uint64_t *r, int n)
 {
-    return (int)(stage_random(r) % (uint64_t)n);
+    return (int)(stage_random_bits(r) % (uint64_t)n);
 }
 
-static void set_glass(uint64_t *r, struct glint_surface *s)
+static void choose_glass(uint64_t *r, struct glint_surface *s)
 {
     const struct glass *g = &catalogue[random_below(r, N_CATALOGUE)];
 
     s->nd = g->nd;
     s->vd = g->vd;
-    if (random_chance(r, 0.5)) {
-        s->nd = stage_uniform(r, 1.4, 2.1);
-        s->vd = stage_uniform(r, 18, 95);
+    if (happens_with_probability(r, 0.5)) {
+        s->nd = stage_random_uniform(r, 1.4, 2.1);
+        s->vd = stage_random_uniform(r, 18, 95);
     }
 }
 
@@ -61,10 +61,10 @@ static double compute_sag(double radius, double height)
 
 /* Chooses glasses, semi-diameters from 0.1 .. 0.5 on, and radii that grow
  * with the number of surfaces. */
-static void set_shapes(uint64_t *r, struct glint_prescription *l)
+static void choose_surface_shapes(uint64_t *r, struct glint_prescription *l)
 {
     const double weak = sqrt(l->n_surfaces / 4.0);
-    double semi = stage_uniform(r, 0.1, 0.5);
+    double semi = stage_random_uniform(r, 0.1, 0.5);
     int left = 0; /* remaining surfaces of this cemented group */
 
     for (int k = 0; k < l->n_surfaces; k++) {
@@ -76,24 +76,25 @@ static void set_shapes(uint64_t *r, struct glint_prescription *l)
             left = rest <= 3 ? rest : rest == 4 ? 2 : 2 + random_below(r, 3);
         left--;
         if (left > 0)
-            set_glass(r, s);
-        semi *= stage_uniform(r, 0.9, 1.1);
+            choose_glass(r, s);
+        semi *= stage_random_uniform(r, 0.9, 1.1);
         s->semi_mm = semi;
-        if (!random_chance(r, 0.12))
-            s->radius_mm = (random_chance(r, 0.5) ? 1 : -1) *
-                           fmax(1.05 * semi, weak * log_uniform(r, 0.4, 8));
+        if (!happens_with_probability(r, 0.12))
+            s->radius_mm =
+                (happens_with_probability(r, 0.5) ? 1 : -1) *
+                fmax(1.05 * semi, weak * random_log_uniform(r, 0.4, 8));
     }
 }
 
 /* Chooses thicknesses slightly larger than needed to keep rims from
  * crossing. The stop is a separate plane before, between or after the
  * surfaces. */
-static void set_places(uint64_t *r, struct glint_prescription *l)
+static void choose_thicknesses(uint64_t *r, struct glint_prescription *l)
 {
     l->stop_after = random_below(r, l->n_surfaces + 1);
     l->stop_semi_mm =
         l->surface[l->stop_after == 0 ? 0 : l->stop_after - 1].semi_mm *
-        stage_uniform(r, 0.5, 1);
+        stage_random_uniform(r, 0.5, 1);
     for (int k = 0; k < l->n_surfaces; k++) {
         struct glint_surface *s = &l->surface[k];
         const bool last = k == l->n_surfaces - 1;
@@ -102,7 +103,7 @@ static void set_places(uint64_t *r, struct glint_prescription *l)
             last ? s->semi_mm : fmin(s->semi_mm, s[1].semi_mm);
         const double out = compute_sag(s->radius_mm, fmin(height, s->semi_mm));
         const double in = last ? 0 : compute_sag(s[1].radius_mm, height);
-        const double more = log_uniform(r, 0.003, 0.15);
+        const double more = random_log_uniform(r, 0.003, 0.15);
 
         if (to_stop) {
             s->thickness_mm = fmax(0, out) + more;
@@ -113,22 +114,24 @@ static void set_places(uint64_t *r, struct glint_prescription *l)
     if (l->stop_after == 0)
         l->stop_thickness_mm = fmax(0, -compute_sag(l->surface[0].radius_mm,
                                                     l->surface[0].semi_mm)) +
-                               log_uniform(r, 0.003, 0.15);
+                               random_log_uniform(r, 0.003, 0.15);
 }
 
-static void set_coatings(uint64_t *r, struct glint_prescription *l)
+static void choose_coatings(uint64_t *r, struct glint_prescription *l)
 {
-    const double coated = stage_uniform(r, -0.3, 1.3);
+    const double coated = stage_random_uniform(r, -0.3, 1.3);
     double before = 0; /* vd of the medium in front of the surface; air: 0 */
 
     for (int k = 0; k < l->n_surfaces; k++) {
         struct glint_surface *s = &l->surface[k];
 
-        if ((before > 0) != (s->vd > 0) && random_chance(r, coated)) {
-            s->coating.nm = stage_uniform(r, 350, 800);
+        if ((before > 0) != (s->vd > 0) &&
+            happens_with_probability(r, coated)) {
+            s->coating.nm = stage_random_uniform(r, 350, 800);
             s->coating.n_films = 1;
-            s->coating.film[0].index =
-                random_chance(r, 0.5) ? 1.38 : stage_uniform(r, 1.2, 2.3);
+            s->coating.film[0].index = happens_with_probability(r, 0.5)
+                                           ? 1.38
+                                           : stage_random_uniform(r, 1.2, 2.3);
             s->coating.film[0].quarters = 1;
         }
         before = s->vd;
@@ -147,7 +150,7 @@ static void scale_lens(struct glint_prescription *l, double factor)
     l->stop_semi_mm *= factor;
 }
 
-static double *find_last_gap(struct glint_prescription *l)
+static double *find_gap_before_sensor(struct glint_prescription *l)
 {
     return l->stop_after == l->n_surfaces
                ? &l->stop_thickness_mm
@@ -156,7 +159,7 @@ static double *find_last_gap(struct glint_prescription *l)
 
 /* Sets f-number, film and its distance. Returns false if the lens forms no
  * image, or an image inside itself. */
-static bool set_focus(uint64_t *r, struct glint_prescription *l)
+static bool set_focus_and_film(uint64_t *r, struct glint_prescription *l)
 {
     struct glint_optics o;
     double behind;
@@ -165,100 +168,103 @@ static bool set_focus(uint64_t *r, struct glint_prescription *l)
     glint_optics_of(l, &o);
     if (!(o.focal_mm > 1e-3 && o.focal_mm < 1e3 && o.stop_radius_mm > 1e-6))
         return false;
-    scale_lens(l, log_uniform(r, 1, 1e4) / o.focal_mm);
+    scale_lens(l, random_log_uniform(r, 1, 1e4) / o.focal_mm);
     glint_optics_of(l, &o);
     behind = o.back_focal_mm;
     if (l->stop_after == l->n_surfaces)
         behind -= l->surface[l->n_surfaces - 1].thickness_mm;
-    *find_last_gap(l) = behind * stage_uniform(r, 0.98, 1.02);
+    *find_gap_before_sensor(l) = behind * stage_random_uniform(r, 0.98, 1.02);
     l->f_number = fmin(1000, fmax(0.5, o.stop_radius_mm / l->stop_semi_mm *
-                                           log_uniform(r, 1.001, 30)));
+                                           random_log_uniform(r, 1.001, 30)));
     l->film_width_mm =
-        fmin(100, fmax(1, o.focal_mm * log_uniform(r, 0.05, 1.5)));
-    l->film_height_mm = l->film_width_mm / stage_uniform(r, 1, 2.4);
+        fmin(100, fmax(1, o.focal_mm * random_log_uniform(r, 0.05, 1.5)));
+    l->film_height_mm = l->film_width_mm / stage_random_uniform(r, 1, 2.4);
     return behind > 0;
 }
 
-static int append_text(char *text, int at, const char *format, double a,
-                       double b, double c)
+static int append_formatted_text(char *text, int at, const char *format,
+                                 double a, double b, double c)
 {
     return at + snprintf(text + at, (size_t)(RANDOM_LENS_TEXT - at), format, a,
                          b, c);
 }
 
-static int append_stop(const struct glint_prescription *l, char *text, int at)
+static int append_stop_line(const struct glint_prescription *l, char *text,
+                            int at)
 {
-    return append_text(text, at, "stop %.9g %.9g\n", l->stop_thickness_mm,
-                       l->stop_semi_mm, 0);
+    return append_formatted_text(text, at, "stop %.9g %.9g\n",
+                                 l->stop_thickness_mm, l->stop_semi_mm, 0);
 }
 
-static int append_surface(const struct glint_surface *s, bool cemented,
-                          char *text, int at)
+static int append_surface_lines(const struct glint_surface *s, bool cemented,
+                                char *text, int at)
 {
     if (s->radius_mm == 0)
-        at = append_text(text, at, "surface flat %.9g %.9g ", s->thickness_mm,
-                         s->semi_mm, 0);
+        at = append_formatted_text(text, at, "surface flat %.9g %.9g ",
+                                   s->thickness_mm, s->semi_mm, 0);
     else
-        at = append_text(text, at, "surface %.9g %.9g %.9g ", s->radius_mm,
-                         s->thickness_mm, s->semi_mm);
-    at = s->vd > 0 ? append_text(text, at, "%.6g %.6g", s->nd, s->vd, 0)
-                   : append_text(text, at, "air", 0, 0, 0);
+        at = append_formatted_text(text, at, "surface %.9g %.9g %.9g ",
+                                   s->radius_mm, s->thickness_mm, s->semi_mm);
+    at = s->vd > 0
+             ? append_formatted_text(text, at, "%.6g %.6g", s->nd, s->vd, 0)
+             : append_formatted_text(text, at, "air", 0, 0, 0);
     if (cemented)
-        return append_text(text, at, "\n", 0, 0, 0);
+        return append_formatted_text(text, at, "\n", 0, 0, 0);
     return s->coating.n_films
-               ? append_text(text, at, " coating %.6g %.6g\n", s->coating.nm,
-                             s->coating.film[0].index, 0)
-               : append_text(text, at, " coating none\n", 0, 0, 0);
+               ? append_formatted_text(text, at, " coating %.6g %.6g\n",
+                                       s->coating.nm, s->coating.film[0].index,
+                                       0)
+               : append_formatted_text(text, at, " coating none\n", 0, 0, 0);
 }
 
-static void write_table(const struct glint_prescription *l, int number,
-                        char *text)
+static void write_lens_table(const struct glint_prescription *l, int number,
+                             char *text)
 {
-    int at = append_text(text, 0, "name random-%.0f\nf-number %.9g\n", number,
-                         l->f_number, 0);
+    int at = append_formatted_text(text, 0, "name random-%.0f\nf-number %.9g\n",
+                                   number, l->f_number, 0);
 
-    at = append_text(text, at, "film %.9g %.9g\n", l->film_width_mm,
-                     l->film_height_mm, 0);
+    at = append_formatted_text(text, at, "film %.9g %.9g\n", l->film_width_mm,
+                               l->film_height_mm, 0);
     for (int k = 0; k < l->n_surfaces; k++) {
         if (l->stop_after == k)
-            at = append_stop(l, text, at);
-        at = append_surface(&l->surface[k],
-                            k > 0 && l->surface[k].vd > 0 &&
-                                l->surface[k - 1].vd > 0,
-                            text, at);
+            at = append_stop_line(l, text, at);
+        at = append_surface_lines(&l->surface[k],
+                                  k > 0 && l->surface[k].vd > 0 &&
+                                      l->surface[k - 1].vd > 0,
+                                  text, at);
     }
     if (l->stop_after == l->n_surfaces)
-        append_stop(l, text, at);
+        append_stop_line(l, text, at);
 }
 
-static bool make_lens(uint64_t *r, struct glint_prescription *l, int number,
-                      char *text)
+static bool make_lens_candidate(uint64_t *r, struct glint_prescription *l,
+                                int number, char *text)
 {
     struct glint_error error;
     /* Most lenses get few surfaces, as the number of ghosts grows with its
      * square. */
-    const double u = stage_uniform(r, 0, 1);
+    const double u = stage_random_uniform(r, 0, 1);
     const int n = (int)floor(2 * pow(32.5, u * u));
 
     memset(l, 0, sizeof *l);
     l->n_surfaces = n < 64 ? n : 64;
-    set_shapes(r, l);
-    set_places(r, l);
-    set_coatings(r, l);
-    if (!set_focus(r, l))
+    choose_surface_shapes(r, l);
+    choose_thicknesses(r, l);
+    choose_coatings(r, l);
+    if (!set_focus_and_film(r, l))
         return false;
-    write_table(l, number, text);
+    write_lens_table(l, number, text);
     return glint_prescription_parse(l, text, strlen(text), "random", &error) ==
            GLINT_OK;
 }
 
-int random_lens(struct glint_prescription *lens, uint64_t seed, int number,
-                char text[RANDOM_LENS_TEXT])
+int make_random_lens(struct glint_prescription *lens, uint64_t seed, int number,
+                     char text[RANDOM_LENS_TEXT])
 {
     uint64_t r = seed * UINT64_C(0x9e3779b97f4a7c15) + (uint64_t)number;
 
     for (int tries = 0; tries < MOST_TRIES; tries++)
-        if (make_lens(&r, lens, number, text))
+        if (make_lens_candidate(&r, lens, number, text))
             return tries;
     return -1;
 }

@@ -4,7 +4,7 @@
  * congruential generator, whose high bits are the best.
  *
  *     uint32_t seed = 1;
- *     x = rng_below(&seed, 256);
+ *     x = rng_int_below(&seed, 256);
  */
 #ifndef GLINT_TESTS_RNG_H
 #define GLINT_TESTS_RNG_H
@@ -12,21 +12,21 @@
 #include <stdint.h>
 
 /* Returns 32 bits; bit k repeats after 2^(k + 1) numbers. */
-static inline uint32_t rng_bits(uint32_t *seed)
+static inline uint32_t rng_bits32(uint32_t *seed)
 {
     return *seed = *seed * UINT32_C(1664525) + UINT32_C(1013904223);
 }
 
 /* Returns an integer of 0 .. N - 1; N is 1 .. 2^24. */
-static inline int rng_below(uint32_t *seed, int n)
+static inline int rng_int_below(uint32_t *seed, int n)
 {
-    return (int)((uint64_t)(rng_bits(seed) >> 8) * (uint32_t)n >> 24);
+    return (int)((uint64_t)(rng_bits32(seed) >> 8) * (uint32_t)n >> 24);
 }
 
 /* Returns a number in [0, 1). */
 static inline double rng_unit(uint32_t *seed)
 {
-    return (rng_bits(seed) >> 8) * 0x1p-24;
+    return (rng_bits32(seed) >> 8) * 0x1p-24;
 }
 
 /* Returns 32 bits of xorshift [Marsaglia03]; *SEED must not be 0. */

@@ -13,7 +13,7 @@
 char scratch_file[] = "/tmp/glint-test-file-XXXXXX";
 char scratch_dir[] = "/tmp/glint-test-dir-XXXXXX";
 
-void scratch_open_file(void)
+void scratch_create_file(void)
 {
     const int fd = mkstemp(scratch_file);
 
@@ -21,22 +21,22 @@ void scratch_open_file(void)
     close(fd);
 }
 
-void scratch_close_file(void)
+void scratch_remove_file(void)
 {
     unlink(scratch_file); /* does nothing if a test has removed it */
 }
 
-void scratch_open_dir(void)
+void scratch_create_dir(void)
 {
     assert_non_null(mkdtemp(scratch_dir));
 }
 
-void scratch_close_dir(void)
+void scratch_remove_dir(void)
 {
     assert_int_equal(rmdir(scratch_dir), 0);
 }
 
-const char *scratch_path(const char *name)
+const char *scratch_path_of(const char *name)
 {
     static char path[2][80];
     static int turn;
@@ -46,16 +46,16 @@ const char *scratch_path(const char *name)
     return path[turn];
 }
 
-void scratch_put(const char *name, const char *data, size_t bytes)
+void scratch_write_file(const char *name, const char *data, size_t bytes)
 {
-    FILE *const f = fopen(scratch_path(name), "wb");
+    FILE *const f = fopen(scratch_path_of(name), "wb");
 
     assert_non_null(f);
     assert_int_equal(fwrite(data, 1, bytes, f), bytes);
     assert_int_equal(fclose(f), 0);
 }
 
-int scratch_count(const char *dir)
+int scratch_count_entries(const char *dir)
 {
     DIR *const d = opendir(dir);
     int n = 0;

@@ -3,9 +3,9 @@
  * Temporary files for a test, below /tmp: either one file, or a folder for any
  * number of files.
  *
- *     TEST_GROUP(scratch_open_dir, scratch_close_dir);
- *     scratch_put("a.ppm", BYTES("P6 1 1 255 abc"));
- *     unlink(scratch_path("a.ppm"));
+ *     TEST_GROUP(scratch_create_dir, scratch_remove_dir);
+ *     scratch_write_file("a.ppm", BYTES("P6 1 1 255 abc"));
+ *     unlink(scratch_path_of("a.ppm"));
  */
 #ifndef GLINT_TESTS_SCRATCH_H
 #define GLINT_TESTS_SCRATCH_H
@@ -17,22 +17,22 @@
 
 /* path of the single file, which exists and is empty before the first test */
 extern char scratch_file[];
-void scratch_open_file(void);
-void scratch_close_file(void);
+void scratch_create_file(void);
+void scratch_remove_file(void);
 
 /* path of the folder; closing it fails if a test has left a file in it */
 extern char scratch_dir[];
-void scratch_open_dir(void);
-void scratch_close_dir(void);
+void scratch_create_dir(void);
+void scratch_remove_dir(void);
 
 /* Returns the path of NAME in the folder, valid until the call after the
  * next. */
-const char *scratch_path(const char *name);
+const char *scratch_path_of(const char *name);
 
 /* Writes DATA to the file NAME in the folder; fails the test on an error. */
-void scratch_put(const char *name, const char *data, size_t bytes);
+void scratch_write_file(const char *name, const char *data, size_t bytes);
 
 /* Returns the number of entries of the folder DIR, including hidden ones. */
-int scratch_count(const char *dir);
+int scratch_count_entries(const char *dir);
 
 #endif

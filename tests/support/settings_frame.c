@@ -3,7 +3,7 @@
 
 #include "model/opened_table.h"
 
-static double settings_starburst(const struct settings *settings)
+static double make_starburst_from_settings(const struct settings *settings)
 {
     const struct glint_options *const o = &settings->options;
 
@@ -16,8 +16,9 @@ static double settings_starburst(const struct settings *settings)
     return GLINT_OPTION_GIVEN(o, ghost) ? 0 : o->starburst;
 }
 
-int settings_frame(const struct tool *tool, const struct opened *opened,
-                   int width, int height, struct glint_frame *frame)
+int make_frame_from_settings(const struct tool *tool,
+                             const struct opened *opened, int width, int height,
+                             struct glint_frame *frame)
 {
     const struct settings *const settings = &opened->settings;
     const struct opened_lens *const lens = &opened->lens;
@@ -52,7 +53,7 @@ int settings_frame(const struct tool *tool, const struct opened *opened,
         if (glint_frame_calibrate(frame) != GLINT_OK)
             return tool_fail(tool, GLINT_E_MEMORY, NULL);
     }
-    frame->star.share = settings_starburst(settings);
+    frame->star.share = make_starburst_from_settings(settings);
     frame->star.is_alone =
         o->only == GLINT_ONLY_STARBURST || o->only == GLINT_ONLY_VEIL;
     if (o->only == GLINT_ONLY_VEIL || o->only == GLINT_ONLY_ALL) {

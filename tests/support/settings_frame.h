@@ -17,7 +17,8 @@ struct opened {
 
 /* Makes FRAME of WIDTH x HEIGHT with the options of OPENED. Returns an exit
  * code. */
-int settings_frame(const struct tool *tool, const struct opened *opened,
-                   int width, int height, struct glint_frame *frame);
+int make_frame_from_settings(const struct tool *tool,
+                             const struct opened *opened, int width, int height,
+                             struct glint_frame *frame);
 
 #endif

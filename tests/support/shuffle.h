@@ -17,8 +17,8 @@ struct shuffle {
     uint32_t state;
 };
 
-static inline void shuffle_run(struct glint_workers *workers, int n_jobs,
-                               glint_job_fn *fn, void *ctx)
+static inline void run_jobs_shuffled(struct glint_workers *workers, int n_jobs,
+                                     glint_job_fn *fn, void *ctx)
 {
     struct shuffle *s = (struct shuffle *)workers;
     int *order = malloc((size_t)(n_jobs + 1) * sizeof *order);
@@ -38,10 +38,11 @@ static inline void shuffle_run(struct glint_workers *workers, int n_jobs,
     free(order);
 }
 
-static inline void shuffle_init(struct shuffle *s, int n, uint32_t seed)
+static inline void init_shuffled_workers(struct shuffle *s, int n,
+                                         uint32_t seed)
 {
     s->workers.n = n;
-    s->workers.run = shuffle_run;
+    s->workers.run = run_jobs_shuffled;
     s->state = seed ? seed : 1;
 }
 

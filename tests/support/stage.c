@@ -10,13 +10,13 @@
 #include "model/model_cache.h"
 #include "options/tool.h"
 
-static bool fail_with(const char *why)
+static bool print_error_and_fail(const char *why)
 {
     fprintf(stderr, "stage: %s\n", why);
     return false;
 }
 
-bool stage_load(struct stage *stage, const char *name)
+bool stage_load_lens(struct stage *stage, const char *name)
 {
     char path[300], text[65537];
     FILE *file;
@@ -25,36 +25,36 @@ bool stage_load(struct stage *stage, const char *name)
     snprintf(path, sizeof path, "lenses/%s.lens", name);
     file = fopen(path, "rb");
     if (!file)
-        return fail_with(path);
+        return print_error_and_fail(path);
     bytes = fread(text, 1, sizeof text - 1, file);
     fclose(file);
     text[bytes] = 0;
-    return stage_parse(stage, text);
+    return stage_parse_lens(stage, text);
 }
 
-bool stage_parse(struct stage *stage, const char *text)
+bool stage_parse_lens(struct stage *stage, const char *text)
 {
     struct glint_error error;
 
     return glint_prescription_parse(&stage->lens, text, strlen(text), "stage",
                                     &error) == GLINT_OK ||
-           fail_with(error.text);
+           print_error_and_fail(error.text);
 }
 
 /* Wavelengths of red, green and blue. */
 static const double nm[3] = {650, 532, 450};
 
-bool stage_prepare(struct stage *stage, int n_blades)
+bool stage_set_up_lens(struct stage *stage, int n_blades)
 {
     struct glint_error error = {"no setup"};
 
     return glint_setup_init(&stage->setup, &stage->lens, n_blades, 0, nm, 3,
                             &error) == GLINT_OK ||
-           fail_with(error.text);
+           print_error_and_fail(error.text);
 }
 
 /* Sets of_model, the lens data that frames are drawn with, from the model. */
-static bool set_of_model(struct stage *stage)
+static bool set_lens_of_model(struct stage *stage)
 {
     const struct glint_setup *s = &stage->setup;
     struct glint_error error;
@@ -63,11 +63,11 @@ static bool set_of_model(struct stage *stage)
                                   s->n_blades, s->blade_rotation_deg,
                                   s->wavelength_nm, s->n_wavelengths,
                                   &error) == GLINT_OK ||
-           fail_with(error.text);
+           print_error_and_fail(error.text);
 }
 
-static struct glint_bake_options make_options(struct stage *stage,
-                                              double tolerance, double max_deg)
+static struct glint_bake_options
+make_bake_options(struct stage *stage, double tolerance, double max_deg)
 {
     struct glint_bake_options options;
 
@@ -79,25 +79,26 @@ static struct glint_bake_options make_options(struct stage *stage,
     return options;
 }
 
-bool stage_bake(struct stage *stage, double tolerance, double max_deg)
+bool stage_bake_model(struct stage *stage, double tolerance, double max_deg)
 {
     const struct glint_bake_options options =
-        make_options(stage, tolerance, max_deg);
+        make_bake_options(stage, tolerance, max_deg);
     struct glint_error error = {"no memory"};
     const char *reason = "";
     unsigned char *data;
 
     if (glint_bake(&stage->lens, &options, &data, &stage->file.bytes,
                    &stage->report, &error) != GLINT_OK)
-        return fail_with(error.text);
+        return print_error_and_fail(error.text);
     stage->file.data = data;
     if (glint_lens_open(&stage->file.lens, data, stage->file.bytes, &reason) !=
         GLINT_OK)
-        return fail_with(reason);
-    return set_of_model(stage);
+        return print_error_and_fail(reason);
+    return set_lens_of_model(stage);
 }
 
-bool stage_model(struct stage *stage, double tolerance, double max_deg)
+bool stage_bake_or_load_model(struct stage *stage, double tolerance,
+                              double max_deg)
 {
     const struct tool tool = {.name = "stage",
                               .quiet = true,
@@ -105,12 +106,13 @@ bool stage_model(struct stage *stage, double tolerance, double max_deg)
                               .workers = stage->workers};
 
     return model_cached(&tool, &stage->lens, stage->lens.name,
-                        make_options(stage, tolerance, max_deg),
+                        make_bake_options(stage, tolerance, max_deg),
                         &stage->file) == EXIT_OK &&
-           set_of_model(stage);
+           set_lens_of_model(stage);
 }
 
-void stage_view(struct stage *stage, int width, int height, double sensor_mm)
+void stage_set_view(struct stage *stage, int width, int height,
+                    double sensor_mm)
 {
     if (stage->framed)
         glint_frame_finish(&stage->frame);
@@ -130,31 +132,34 @@ void stage_view(struct stage *stage, int width, int height, double sensor_mm)
     stage->framed = true;
 }
 
-bool stage_stop(struct stage *stage, double f_number)
+bool stage_stop_down(struct stage *stage, double f_number)
 {
     const struct glint_view view = stage->view;
     struct glint_error error = {"no view"};
 
     if (glint_prescription_set_f_number(&stage->lens, f_number, &error) !=
             GLINT_OK ||
-        !stage_prepare(stage, stage->setup.n_blades) || !set_of_model(stage) ||
+        !stage_set_up_lens(stage, stage->setup.n_blades) ||
+        !set_lens_of_model(stage) ||
         glint_setup_stop_down(&stage->of_model, &stage->file.lens, f_number,
                               &error) != GLINT_OK)
-        return fail_with(error.text);
-    stage_view(stage, view.width, view.height, view.sensor_width_mm);
+        return print_error_and_fail(error.text);
+    stage_set_view(stage, view.width, view.height, view.sensor_width_mm);
     return true;
 }
 
-bool stage_open(struct stage *stage, const char *name, int width, int height)
+bool stage_open_lens(struct stage *stage, const char *name, int width,
+                     int height)
 {
-    if (!stage_load(stage, name) || !stage_prepare(stage, 8) ||
-        !stage_model(stage, 1, 60))
+    if (!stage_load_lens(stage, name) || !stage_set_up_lens(stage, 8) ||
+        !stage_bake_or_load_model(stage, 1, 60))
         return false;
-    stage_view(stage, width, height, 0);
+    stage_set_view(stage, width, height, 0);
     return true;
 }
 
-bool stage_read(struct stage *stage, const char *path, int width, int height)
+bool stage_open_model_file(struct stage *stage, const char *path, int width,
+                           int height)
 {
     static const struct tool tool = {.name = "tests", .n_threads = 1};
     const struct glint_model_header *header;
@@ -165,23 +170,23 @@ bool stage_read(struct stage *stage, const char *path, int width, int height)
     header = stage->file.lens.header;
     if (glint_setup_from_model(&stage->of_model, &stage->file.lens, 8, 0, nm, 3,
                                &error) != GLINT_OK)
-        return fail_with(error.text);
+        return print_error_and_fail(error.text);
     stage->lens.film_width_mm = glint_real_value(header->film_width_mm);
     stage->lens.film_height_mm = glint_real_value(header->film_height_mm);
-    stage_view(stage, width, height, 0);
+    stage_set_view(stage, width, height, 0);
     return true;
 }
 
-bool stage_linear(struct stage *stage, const struct glint_lamp *lamps, int n,
-                  float *rgb)
+bool stage_draw_linear(struct stage *stage, const struct glint_lamp *lamps,
+                       int n, float *rgb)
 {
     return glint_frame_draw_alone(&stage->frame, lamps, n, 1, rgb,
                                   &stage->drawn) == GLINT_OK ||
-           fail_with("no picture in linear light");
+           print_error_and_fail("no picture in linear light");
 }
 
-bool stage_exact(struct stage *stage, const struct glint_lamp *lamps, int n,
-                 int grid, float *rgb)
+bool stage_draw_exact(struct stage *stage, const struct glint_lamp *lamps,
+                      int n, int grid, float *rgb)
 {
     const size_t count =
         3 * (size_t)stage->view.width * (size_t)stage->view.height;
@@ -199,22 +204,23 @@ bool stage_exact(struct stage *stage, const struct glint_lamp *lamps, int n,
     for (size_t i = 0; ok && i < count; i++)
         rgb[i] = (float)exact[i];
     free(exact);
-    return ok || fail_with("no exact picture");
+    return ok || print_error_and_fail("no exact picture");
 }
 
-bool stage_codes(struct stage *stage, const struct glint_lamp *lamps, int n,
-                 uint8_t *codes)
+bool stage_draw_codes(struct stage *stage, const struct glint_lamp *lamps,
+                      int n, uint8_t *codes)
 {
     struct glint_image image = glint_image_over(
         codes, GLINT_RGB24, stage->view.width, stage->view.height);
 
     return glint_frame_draw(&stage->frame, lamps, n, 1, &image,
                             &stage->drawn) == GLINT_OK ||
-           fail_with("no picture in codes");
+           print_error_and_fail("no picture in codes");
 }
 
-struct glint_measure stage_compare(const struct stage *stage,
-                                   const float *reference, const float *test)
+struct glint_measure stage_compare_images(const struct stage *stage,
+                                          const float *reference,
+                                          const float *test)
 {
     const int w = stage->view.width, h = stage->view.height;
     struct glint_measure m = {0};
@@ -228,12 +234,13 @@ struct glint_measure stage_compare(const struct stage *stage,
     if (!glint_measure_compare(&(struct glint_float_image){w, h, copies},
                                &(struct glint_float_image){w, h, copies + n},
                                false, &m))
-        fail_with("no memory to compare");
+        print_error_and_fail("no memory to compare");
     free(copies);
     return m;
 }
 
-double stage_power(struct stage *stage, const struct glint_lamp *lamp)
+double stage_find_exposed_power(struct stage *stage,
+                                const struct glint_lamp *lamp)
 {
     const int w = stage->view.width, h = stage->view.height;
     struct glint_lamp one = *lamp;
@@ -242,14 +249,14 @@ double stage_power(struct stage *stage, const struct glint_lamp *lamp)
     double power = 1;
 
     one.power = 1;
-    if (image.rgb && stage_linear(stage, &one, 1, image.rgb))
+    if (image.rgb && stage_draw_linear(stage, &one, 1, image.rgb))
         power = glint_measure_exposure(&image);
     free(image.rgb);
     return power;
 }
 
-double stage_block_jump(const struct stage *stage, const uint8_t *a,
-                        const uint8_t *b)
+double stage_max_block_difference(const struct stage *stage, const uint8_t *a,
+                                  const uint8_t *b)
 {
     const int w = stage->view.width, h = stage->view.height;
     double worst = 0;
@@ -269,7 +276,7 @@ double stage_block_jump(const struct stage *stage, const uint8_t *a,
     return worst;
 }
 
-double stage_flux(const struct stage *stage, const float *rgb)
+double stage_sum_image(const struct stage *stage, const float *rgb)
 {
     double sum = 0;
 
@@ -278,7 +285,7 @@ double stage_flux(const struct stage *stage, const float *rgb)
     return sum;
 }
 
-void stage_close(struct stage *stage)
+void stage_free(struct stage *stage)
 {
     if (stage->framed)
         glint_frame_finish(&stage->frame);
@@ -286,12 +293,13 @@ void stage_close(struct stage *stage)
     *stage = (struct stage){.framed = false};
 }
 
-struct glint_lamp stage_lamp(double theta_deg, double phi_deg, double power)
+struct glint_lamp stage_make_lamp(double theta_deg, double phi_deg,
+                                  double power)
 {
     return (struct glint_lamp){theta_deg, phi_deg, power, {1, 1, 1}, {0, 0}, 0};
 }
 
-uint64_t stage_random(uint64_t *state)
+uint64_t stage_random_bits(uint64_t *state)
 {
     uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
 
@@ -300,7 +308,8 @@ uint64_t stage_random(uint64_t *state)
     return z ^ (z >> 31);
 }
 
-double stage_uniform(uint64_t *state, double low, double high)
+double stage_random_uniform(uint64_t *state, double low, double high)
 {
-    return low + (high - low) * (double)(stage_random(state) >> 11) * 0x1p-53;
+    return low +
+           (high - low) * (double)(stage_random_bits(state) >> 11) * 0x1p-53;
 }

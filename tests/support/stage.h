@@ -2,13 +2,12 @@
  *
  * A lens for tests: its table, its model, and images by both.
  *
- *     stage_load(&s, "heliar-tronnier");          or stage_parse, or s.lens
- *     stage_prepare(&s, 8);                       stop and colours
- *     stage_model(&s, 1, 60);                     or none: rays are exact
- *     stage_view(&s, 240, 160, 0);
- *     stage_linear(&s, &lamp, 1, linear);         run time, floats
- *     stage_exact(&s, &lamp, 1, 192, exact);      the reference
- *     stage_close(&s);
+ *     stage_load_lens(&s, "heliar-tronnier");          or stage_parse_lens, or
+ * s.lens stage_set_up_lens(&s, 8);                       stop and colours
+ *     stage_bake_or_load_model(&s, 1, 60);                     or none: rays
+ * are exact stage_set_view(&s, 240, 160, 0); stage_draw_linear(&s, &lamp, 1,
+ * linear);         run time, floats stage_draw_exact(&s, &lamp, 1, 192, exact);
+ * the reference stage_free(&s);
  *
  * On failure functions print the reason to stderr and return false.
  */
@@ -26,7 +25,7 @@ struct stage {
     struct glint_setup setup, of_model;
     struct glint_workers *workers;   /* NULL: serial */
     struct model_file file;          /* model; closed: rays are exact */
-    struct glint_bake_report report; /* filled by stage_bake() */
+    struct glint_bake_report report; /* filled by stage_bake_model() */
     struct glint_view view;
     struct glint_frame frame;
     bool framed;
@@ -34,70 +33,78 @@ struct stage {
 };
 
 /* Reads lenses/NAME.lens. The program must run in the root of the tree. */
-bool stage_load(struct stage *stage, const char *name);
-bool stage_parse(struct stage *stage, const char *text);
+bool stage_load_lens(struct stage *stage, const char *name);
+bool stage_parse_lens(struct stage *stage, const char *text);
 
 /* Sets the lens up with a stop of N_BLADES (0: a circle) and wavelengths of
  * 650, 532 and 450 nm. The stage must not be moved in memory afterwards. */
-bool stage_prepare(struct stage *stage, int n_blades);
+bool stage_set_up_lens(struct stage *stage, int n_blades);
 
-/* Make the model for lights up to MAX_DEG degrees. stage_bake() always
- * bakes; stage_model() uses the cache (tools/glint/model/model_cache.h). */
-bool stage_bake(struct stage *stage, double tolerance, double max_deg);
-bool stage_model(struct stage *stage, double tolerance, double max_deg);
+/* Make the model for lights up to MAX_DEG degrees. stage_bake_model() always
+ * bakes; stage_bake_or_load_model() uses the cache
+ * (tools/glint/model/model_cache.h). */
+bool stage_bake_model(struct stage *stage, double tolerance, double max_deg);
+bool stage_bake_or_load_model(struct stage *stage, double tolerance,
+                              double max_deg);
 
 /* Stops the lens down to F_NUMBER; the model, baked for a wider stop, and
  * the view do not change. */
-bool stage_stop(struct stage *stage, double f_number);
+bool stage_stop_down(struct stage *stage, double f_number);
 
 /* Sets the image size, WIDTH x HEIGHT, its width on the sensor, SENSOR_MM
  * (0: the film's), and the default quality parameters: irradiance in steps
  * of 1 %, fineness 64, all instruction sets. May be called again. */
-void stage_view(struct stage *stage, int width, int height, double sensor_mm);
+void stage_set_view(struct stage *stage, int width, int height,
+                    double sensor_mm);
 
 /* Loads the lens NAME and sets up everything: a stop of eight blades, its
  * model for lights up to 60 degrees, and images of WIDTH x HEIGHT of its
  * film. */
-bool stage_open(struct stage *stage, const char *name, int width, int height);
+bool stage_open_lens(struct stage *stage, const char *name, int width,
+                     int height);
 
 /* Opens the model file PATH and sets up everything: a stop of eight blades
  * and images of WIDTH x HEIGHT of its film. */
-bool stage_read(struct stage *stage, const char *path, int width, int height);
+bool stage_open_model_file(struct stage *stage, const char *path, int width,
+                           int height);
 
 /* Draw the flare of N lamps into RGB[height][width][3], linear light:
- * stage_linear() by the run time, stage_exact() by exact rays. */
-bool stage_linear(struct stage *stage, const struct glint_lamp *lamps, int n,
-                  float *rgb);
-bool stage_exact(struct stage *stage, const struct glint_lamp *lamps, int n,
-                 int grid, float *rgb);
+ * stage_draw_linear() by the run time, stage_draw_exact() by exact rays. */
+bool stage_draw_linear(struct stage *stage, const struct glint_lamp *lamps,
+                       int n, float *rgb);
+bool stage_draw_exact(struct stage *stage, const struct glint_lamp *lamps,
+                      int n, int grid, float *rgb);
 
 /* Adds the flare of N lamps to CODES, RGB24 without padding. */
-bool stage_codes(struct stage *stage, const struct glint_lamp *lamps, int n,
-                 uint8_t *codes);
+bool stage_draw_codes(struct stage *stage, const struct glint_lamp *lamps,
+                      int n, uint8_t *codes);
 
 /* Compares TEST with REFERENCE by glint_measure (measure.h). */
-struct glint_measure stage_compare(const struct stage *stage,
-                                   const float *reference, const float *test);
+struct glint_measure stage_compare_images(const struct stage *stage,
+                                          const float *reference,
+                                          const float *test);
 
 /* Returns the power of LAMP at which the brightest part of its flare is
  * white (glint_measure_exposure(), measure.h). */
-double stage_power(struct stage *stage, const struct glint_lamp *lamp);
+double stage_find_exposed_power(struct stage *stage,
+                                const struct glint_lamp *lamp);
 
 /* Returns the largest difference between the means of 8 x 8 blocks of A and
- * B, codes; A and B are images by stage_codes(). */
-double stage_block_jump(const struct stage *stage, const uint8_t *a,
-                        const uint8_t *b);
+ * B, codes; A and B are images by stage_draw_codes(). */
+double stage_max_block_difference(const struct stage *stage, const uint8_t *a,
+                                  const uint8_t *b);
 
 /* Returns the sum of all values of RGB. */
-double stage_flux(const struct stage *stage, const float *rgb);
+double stage_sum_image(const struct stage *stage, const float *rgb);
 
-void stage_close(struct stage *stage);
+void stage_free(struct stage *stage);
 
 /* Returns a white point lamp. */
-struct glint_lamp stage_lamp(double theta_deg, double phi_deg, double power);
+struct glint_lamp stage_make_lamp(double theta_deg, double phi_deg,
+                                  double power);
 
 /* Returns 64 bits of splitmix64, the same sequence on every machine. */
-uint64_t stage_random(uint64_t *state);
-double stage_uniform(uint64_t *state, double low, double high);
+uint64_t stage_random_bits(uint64_t *state);
+double stage_random_uniform(uint64_t *state, double low, double high);
 
 #endif

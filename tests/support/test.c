@@ -8,14 +8,14 @@ static size_t n_tests;
 void (*test_opens)(void), (*test_closes)(void);
 void (*test_before)(void), (*test_after)(void);
 
-void test_add(const char *name, CMUnitTestFunction run)
+void test_register(const char *name, CMUnitTestFunction run)
 {
     if (n_tests < sizeof tests / sizeof *tests)
         tests[n_tests] = (struct CMUnitTest){name, run, NULL, NULL, NULL};
     n_tests++;
 }
 
-void test_run(void (*test)(void))
+void test_run_with_fixtures(void (*test)(void))
 {
     if (test_before)
         test_before();
@@ -24,7 +24,7 @@ void test_run(void (*test)(void))
         test_after();
 }
 
-static int open_group(void **state)
+static int set_up_test_group(void **state)
 {
     (void)state;
     if (test_opens)
@@ -32,7 +32,7 @@ static int open_group(void **state)
     return 0;
 }
 
-static int close_group(void **state)
+static int tear_down_test_group(void **state)
 {
     (void)state;
     if (test_closes)
@@ -47,5 +47,5 @@ int main(int argc, char **argv)
     if (n_tests > sizeof tests / sizeof *tests)
         return 99; /* more tests than the table can hold */
     return _cmocka_run_group_tests(name ? name + 1 : "tests", tests, n_tests,
-                                   open_group, close_group);
+                                   set_up_test_group, tear_down_test_group);
 }

@@ -24,11 +24,11 @@
     static void run_##name(void **state)                      \
     {                                                         \
         (void)state;                                          \
-        test_run(test_##name);                                \
+        test_run_with_fixtures(test_##name);                  \
     }                                                         \
     __attribute__((constructor)) static void add_##name(void) \
     {                                                         \
-        test_add("test_" #name, run_##name);                  \
+        test_register("test_" #name, run_##name);             \
     }                                                         \
     static void test_##name(void)
 
@@ -59,8 +59,8 @@
 /* Checks for GLINT_OK or EXIT_OK. */
 #define assert_ok(status) assert_int_equal(status, 0)
 
-void test_add(const char *name, CMUnitTestFunction run);
-void test_run(void (*test)(void));
+void test_register(const char *name, CMUnitTestFunction run);
+void test_run_with_fixtures(void (*test)(void));
 extern void (*test_opens)(void), (*test_closes)(void);
 extern void (*test_before)(void), (*test_after)(void);
 

@@ -6,21 +6,22 @@
 
 enum { MOST = GLINT_MOTION_MAX_FOODS };
 
-double four_rounded(enum four_arithmetic arithmetic, double x)
+double four_round_value(enum four_arithmetic arithmetic, double x)
 {
     return arithmetic == FOUR_FLOAT32 ? (double)(float)x : x;
 }
 
-void four_init(struct four *four, enum four_fit fit,
-               enum four_arithmetic arithmetic)
+void four_init_localiser(struct four *four, enum four_fit fit,
+                         enum four_arithmetic arithmetic)
 {
     *four = (struct four){.fit = fit, .arithmetic = arithmetic};
     for (int k = 0; k < 3; k++)
         four->chain[k][k] = 1;
 }
 
-/* A point has weights with respect to four points that are not in a plane.
- * The weights sum to 1 and do not change when all points move. */
+/* Computes barycentric weights of a point with respect to four points that are
+ * not coplanar. The weights sum to 1 and are invariant under rigid motion of
+ * all points. */
 struct base {
     enum four_arithmetic arithmetic;
     /* normal[i]: cross product of the other two edges */
@@ -29,7 +30,7 @@ struct base {
 
 static double round_value(const struct base *b, double x)
 {
-    return four_rounded(b->arithmetic, x);
+    return four_round_value(b->arithmetic, x);
 }
 
 static double compute_dot(const struct base *b, const double x[3],
@@ -40,7 +41,7 @@ static double compute_dot(const struct base *b, const double x[3],
                               round_value(b, x[2] * y[2]));
 }
 
-static void set_base(struct base *b, const double (*const from[4])[3])
+static void set_base_matrix(struct base *b, const double (*const from[4])[3])
 {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
@@ -60,9 +61,10 @@ static void set_base(struct base *b, const double (*const from[4])[3])
 
 /* Sets PLACE to the image of POINT under the motion from the points FROM to
  * the points TO. */
-static void map_point(const struct base *b, const double (*const from[4])[3],
-                      const double (*const to[4])[3], const double point[3],
-                      double place[3])
+static void move_point_by_bases(const struct base *b,
+                                const double (*const from[4])[3],
+                                const double (*const to[4])[3],
+                                const double point[3], double place[3])
 {
     double off[3], weight[4], sum = 0;
 
@@ -81,14 +83,14 @@ static void map_point(const struct base *b, const double (*const from[4])[3],
     }
 }
 
-/* Returns the volume that the four points FROM span, relative to its upper
+/* Returns the volume of the tetrahedron of the four points FROM / its upper
  * bound: 0 .. 1, in double precision. */
-static double four_spans(const double (*const from[4])[3])
+static double four_span_volume(const double (*const from[4])[3])
 {
     struct base b = {.arithmetic = FOUR_DOUBLE};
     double bound = 1;
 
-    set_base(&b, from);
+    set_base_matrix(&b, from);
     for (int i = 0; i < 3; i++)
         bound *= sqrt(compute_dot(&b, b.edge[i], b.edge[i]));
     return bound > 0 ? fabs(b.det) / bound : 0;
@@ -96,22 +98,23 @@ static double four_spans(const double (*const from[4])[3])
 
 /* Sets MAP to the affine map that moves FROM[4] to TO[4], a 3 x 4 matrix by
  * columns: images of the axes, then of the origin. Returns false if
- * four_spans() is below 2^-20. */
-static bool four_map(enum four_arithmetic arithmetic,
-                     const double (*const from[4])[3],
-                     const double (*const to[4])[3], double map[4][3])
+ * four_span_volume() is below 2^-20. */
+static bool four_solve_affine_map(enum four_arithmetic arithmetic,
+                                  const double (*const from[4])[3],
+                                  const double (*const to[4])[3],
+                                  double map[4][3])
 {
     static const double point[4][3] = {
         {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
     struct base b = {.arithmetic = arithmetic};
 
-    if (!(four_spans(from) >= GLINT_RIGID_LEAST))
+    if (!(four_span_volume(from) >= GLINT_RIGID_LEAST))
         return false;
-    set_base(&b, from);
+    set_base_matrix(&b, from);
     if (b.det == 0)
         return false;
     for (int i = 0; i < 4; i++)
-        map_point(&b, from, to, point[i], map[i]);
+        move_point_by_bases(&b, from, to, point[i], map[i]);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
             map[i][k] = round_value(&b, map[i][k] - map[3][k]);
@@ -120,8 +123,9 @@ static bool four_map(enum four_arithmetic arithmetic,
 
 /* Sets FOUR to the indices of the known foods that FIT uses. Returns false
  * if there are fewer than four. */
-static bool choose_foods(const struct four *l, int n, const double (*seen)[3],
-                         const bool *is_new, int four[4])
+static bool choose_four_foods(const struct four *l, int n,
+                              const double (*seen)[3], const bool *is_new,
+                              int four[4])
 {
     int known[MOST], m = 0;
     double best = -1;
@@ -142,7 +146,7 @@ static bool choose_foods(const struct four *l, int n, const double (*seen)[3],
                     const double(*const from[4])[3] = {
                         &seen[pick[0]], &seen[pick[1]], &seen[pick[2]],
                         &seen[pick[3]]};
-                    const double spans = four_spans(from);
+                    const double spans = four_span_volume(from);
 
                     if (spans > best) {
                         best = spans;
@@ -154,7 +158,7 @@ static bool choose_foods(const struct four *l, int n, const double (*seen)[3],
 
 /* Multiplies the chain of motions by MAP, from this frame to the previous
  * one. */
-static void extend_chain(struct four *l, double map[4][3])
+static void extend_motion_chain(struct four *l, double map[4][3])
 {
     double next[4][3];
 
@@ -163,19 +167,21 @@ static void extend_chain(struct four *l, double map[4][3])
             double sum = i == 3 ? l->chain[3][k] : 0;
 
             for (int j = 0; j < 3; j++)
-                sum = four_rounded(
+                sum = four_round_value(
                     l->arithmetic,
-                    sum + four_rounded(l->arithmetic,
-                                       l->chain[j][k] * map[i][j]));
+                    sum + four_round_value(l->arithmetic,
+                                           l->chain[j][k] * map[i][j]));
             next[i][k] = sum;
         }
     memcpy(l->chain, next, sizeof next);
     memcpy(map, next, sizeof next);
 }
 
-/* Sets MAP to the motion of the body. Returns NULL or an error text. */
-static const char *map_four(struct four *l, int n, const double (*seen)[3],
-                            const bool *is_new, double map[4][3])
+/* Sets MAP to the affine motion of the body since the reference frame, from
+ * four of its N foods. Returns NULL or an error text. */
+static const char *solve_body_motion(struct four *l, int n,
+                                     const double (*seen)[3],
+                                     const bool *is_new, double map[4][3])
 {
     const double(*const places)[3] = l->fit == FOUR_CHAIN
                                          ? (const double(*)[3])l->last
@@ -183,29 +189,29 @@ static const char *map_four(struct four *l, int n, const double (*seen)[3],
     const double(*from[4])[3], (*to[4])[3];
     int four[4];
 
-    if (!choose_foods(l, n, seen, is_new, four))
+    if (!choose_four_foods(l, n, seen, is_new, four))
         return "fewer than four foods are known, which this fit takes";
     for (int i = 0; i < 4; i++) {
         from[i] = &seen[four[i]];
         to[i] = &places[four[i]];
     }
-    if (!four_map(l->arithmetic, from, to, map))
+    if (!four_solve_affine_map(l->arithmetic, from, to, map))
         return "the four foods lie in a plane, or out of range";
     if (l->fit == FOUR_CHAIN)
-        extend_chain(l, map);
+        extend_motion_chain(l, map);
     return NULL;
 }
 
 /* Sets TO to the image of POINT under MAP. */
-static void apply_map(const struct four *l, double map[4][3],
-                      const double point[3], double to[3])
+static void apply_affine_map(const struct four *l, double map[4][3],
+                             const double point[3], double to[3])
 {
     for (int k = 0; k < 3; k++) {
         to[k] = map[3][k];
         for (int i = 0; i < 3; i++)
-            to[k] = four_rounded(
+            to[k] = four_round_value(
                 l->arithmetic,
-                to[k] + four_rounded(l->arithmetic, map[i][k] * point[i]));
+                to[k] + four_round_value(l->arithmetic, map[i][k] * point[i]));
     }
 }
 
@@ -218,12 +224,13 @@ static void begin_localiser(struct four *l, int n, const double (*seen)[3],
     l->has_begun = true;
 }
 
-static const char *locate_body(struct four *l, int n, const double (*seen)[3],
-                               const bool *is_new,
-                               struct glint_located *located)
+static const char *compute_body_pose(struct four *l, int n,
+                                     const double (*seen)[3],
+                                     const bool *is_new,
+                                     struct glint_located *located)
 {
     double map[4][3], row[3][3];
-    const char *const wrong = map_four(l, n, seen, is_new, map);
+    const char *const wrong = solve_body_motion(l, n, seen, is_new, map);
 
     if (wrong)
         return wrong;
@@ -234,22 +241,23 @@ static const char *locate_body(struct four *l, int n, const double (*seen)[3],
     memcpy(located->pose.at, map[3], sizeof located->pose.at);
     for (int i = 0; i < n; i++)
         if (is_new[i])
-            apply_map(l, map, seen[i], l->place[i]);
+            apply_affine_map(l, map, seen[i], l->place[i]);
     return NULL;
 }
 
-const char *four_localise(struct four *four, int n, const double (*seen)[3],
-                          const bool *is_new, struct glint_located *located)
+const char *four_localise_body(struct four *four, int n,
+                               const double (*seen)[3], const bool *is_new,
+                               struct glint_located *located)
 {
     double rounded[MOST][3] = {{0}};
     const char *wrong = NULL;
 
     for (int i = 0; i < n; i++)
         for (int k = 0; k < 3; k++)
-            rounded[i][k] = four_rounded(four->arithmetic, seen[i][k]);
+            rounded[i][k] = four_round_value(four->arithmetic, seen[i][k]);
     if (four->has_begun)
-        wrong =
-            locate_body(four, n, (const double(*)[3])rounded, is_new, located);
+        wrong = compute_body_pose(four, n, (const double(*)[3])rounded, is_new,
+                                  located);
     else
         begin_localiser(four, n, (const double(*)[3])rounded, located);
     memcpy(four->last, rounded, sizeof four->last);

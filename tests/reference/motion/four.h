@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Localises a body by four foods, as published [Bodonyi26]: a point has weights
- * with respect to the positions of four foods, which do not change when these
- * move. The interface is that of glint_localiser (bake/motion/localise.h).
+ * Localises a body by four foods (landmarks), as published [Bodonyi26]: the
+ * barycentric weights of a point with respect to four foods do not change when
+ * the body moves. The interface is that of glint_localiser
+ * (bake/motion/localise.h).
  */
 #ifndef REFERENCE_MOTION_FOUR_H
 #define REFERENCE_MOTION_FOUR_H
@@ -10,8 +11,8 @@
 #include "bake/motion/localise.h"
 
 enum four_fit {
-    FOUR_BEST,  /* weights with respect to the four foods that span the largest
-                   volume */
+    /* weights with respect to the four foods that span the largest volume */
+    FOUR_BEST,
     FOUR_FIRST, /* weights with respect to the first four foods */
     FOUR_CHAIN  /* product of the motions from frame to frame */
 };
@@ -25,20 +26,21 @@ struct four {
     enum four_arithmetic arithmetic;
     bool has_begun;
     double place[GLINT_MOTION_MAX_FOODS][3];
-    /* positions seen in the previous frame */
+    /* food positions observed in the previous frame */
     double last[GLINT_MOTION_MAX_FOODS][3];
-    double chain[4][3]; /* product of the motions of all frames so far, by
-                           columns */
+    /* product of the motions of all frames so far, by columns */
+    double chain[4][3];
 };
 
 /* Returns X rounded to ARITHMETIC. */
-double four_rounded(enum four_arithmetic arithmetic, double x);
+double four_round_value(enum four_arithmetic arithmetic, double x);
 
-void four_init(struct four *four, enum four_fit fit,
-               enum four_arithmetic arithmetic);
+void four_init_localiser(struct four *four, enum four_fit fit,
+                         enum four_arithmetic arithmetic);
 
 /* Like glint_localise(), but sets only the pose of LOCATED. */
-const char *four_localise(struct four *four, int n, const double (*seen)[3],
-                          const bool *is_new, struct glint_located *located);
+const char *four_localise_body(struct four *four, int n,
+                               const double (*seen)[3], const bool *is_new,
+                               struct glint_located *located);
 
 #endif

@@ -27,7 +27,7 @@ void glint_scatter_candidate_defaults(struct glint_scatter_candidate *candidate,
     };
 }
 
-static bool in_range(const struct glint_scatter_candidate *o)
+static bool is_in_range(const struct glint_scatter_candidate *o)
 {
     return o->kind >= 0 && o->kind < GLINT_CANDIDATES && o->terms >= 1 &&
            o->terms <= GLINT_SCATTER_MAX_TERMS && o->rank >= 1 &&
@@ -43,7 +43,7 @@ glint_scatter_candidate_bytes(const struct glint_scatter_candidate *candidate,
     const double line = sqrt(entries);
 
     switch (candidate->kind) {
-    case GLINT_CANDIDATE_CLUSTERED: /* plus one byte per texel */
+    case GLINT_CANDIDATE_CLUSTERED: /* the cluster costs one byte per texel */
         return 8 * 3 * (2 * texels + candidate->terms * entries) + texels;
     case GLINT_CANDIDATE_FACTORED:
         return 8 * 3 * candidate->terms * (texels + 2 * candidate->rank * line);
@@ -84,7 +84,7 @@ glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
         return kept ? 3 * (texels + entries) : 3 * texels * entries;
     case GLINT_CANDIDATE_CLUSTERED:
         return 3 * texels * entries;
-    case GLINT_CANDIDATE_PEERS: /* sums of G h_j, for each cluster */
+    case GLINT_CANDIDATE_PEERS: /* stored sums of G h_j, for each cluster */
         return kept ? terms * (texels + candidate->clusters * entries)
                     : (terms + 3) * texels * entries;
     case GLINT_CANDIDATE_TUCKER:
@@ -119,8 +119,9 @@ void glint_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x, int c,
                     : (float)row[d];
 }
 
-/* Rebuilds ROWS by one of the fits that the run time can draw. */
-static enum glint_status rebuild_drawable(
+/* Sets REBUILT to ROWS rebuilt from one of the fits that the run time can
+ * draw. */
+static enum glint_status rebuild_rows_by_runtime_fit(
     struct glint_scatter_rows *rows, const struct glint_scatter_candidate *o,
     const struct glint_watch *watch, struct glint_scatter_rows *rebuilt)
 {
@@ -158,8 +159,9 @@ static enum glint_status rebuild_rows(struct glint_scatter_rows *rows,
         [GLINT_CANDIDATE_SUBEDIT] = glint_rebuild_subedit,
     };
 
-    return published[o->kind] ? published[o->kind](rows, o, watch, rebuilt)
-                              : rebuild_drawable(rows, o, watch, rebuilt);
+    return published[o->kind]
+               ? published[o->kind](rows, o, watch, rebuilt)
+               : rebuild_rows_by_runtime_fit(rows, o, watch, rebuilt);
 }
 
 static int compare_doubles(const void *a, const void *b)
@@ -171,9 +173,10 @@ static int compare_doubles(const void *a, const void *b)
 
 /* Returns the squared error of the row of texel X. Adds its negative
  * entries, its asymmetry and its sum to J and ONE_WAY. */
-static double measure_row(const struct glint_scatter_rows *rows,
-                          const struct glint_scatter_rows *rebuilt, int x,
-                          struct glint_scatter_judgement *j, double *one_way)
+static double measure_row_errors(const struct glint_scatter_rows *rows,
+                                 const struct glint_scatter_rows *rebuilt,
+                                 int x, struct glint_scatter_judgement *j,
+                                 double *one_way)
 {
     const int k2 = glint_scatter_kernel2(rows->kernel);
     double square = 0;
@@ -201,7 +204,7 @@ static double measure_row(const struct glint_scatter_rows *rows,
 }
 
 /* Returns the number of entries of all rows that lie inside the square. */
-static double count_inside(const struct glint_scatter_rows *rows)
+static double count_entries_in_square(const struct glint_scatter_rows *rows)
 {
     double n = 0;
 
@@ -220,18 +223,21 @@ static double compute_psnr_db(double square, double peak)
                                   : NO_ERROR_DB;
 }
 
-/* Measures the errors of entries. SORTED[texels] is scratch. */
-static void measure_entries(const struct glint_scatter_rows *rows,
-                            const struct glint_scatter_rows *rebuilt,
-                            double *sorted, struct glint_scatter_judgement *j)
+/* Sets the fields of J that measure errors of row entries. SORTED[texels] is
+ * scratch memory. */
+static void measure_entry_errors(const struct glint_scatter_rows *rows,
+                                 const struct glint_scatter_rows *rebuilt,
+                                 double *sorted,
+                                 struct glint_scatter_judgement *j)
 {
     const int texels = rows->side * rows->side;
-    const double peak = glint_scatter_peak(rows), all = count_inside(rows);
+    const double peak = glint_scatter_peak(rows),
+                 all = count_entries_in_square(rows);
     const double unit = peak > 0 ? peak : 1;
     double square = 0, one_way = 0;
 
     for (int x = 0; x < texels; x++) {
-        const double row = measure_row(rows, rebuilt, x, j, &one_way);
+        const double row = measure_row_errors(rows, rebuilt, x, j, &one_way);
 
         square += row;
         j->error[x] = sqrt(row / (all / texels)) / unit;
@@ -264,7 +270,7 @@ measure_errors(const struct glint_scatter_rows *rows,
     }
     want = light + 3 * texels;
     sorted = want + 3 * texels;
-    measure_entries(rows, rebuilt, sorted, j);
+    measure_entry_errors(rows, rebuilt, sorted, j);
     glint_scatter_test_light(rows->side, light);
     glint_scatter_light_rows(rows, light, want);
     glint_scatter_light_rows(rebuilt, light, j->light);
@@ -290,7 +296,7 @@ glint_scatter_judge(struct glint_scatter_rows *rows,
     enum glint_status status;
 
     *judgement = (struct glint_scatter_judgement){.candidate = *candidate};
-    if (!in_range(candidate))
+    if (!is_in_range(candidate))
         return GLINT_E_ARGUMENT;
     if (!glint_scatter_open(&rebuilt, rows->side, rows->kernel, false))
         return GLINT_E_MEMORY;

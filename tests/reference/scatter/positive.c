@@ -15,8 +15,8 @@ enum {
     CLUSTER_ROUNDS = 20 /* rounds of k-means */
 };
 
-/* Sets ROW to the sum of the terms for row X. */
-static void model_row(const struct glint_positive *p, int x, double *row)
+/* Sets ROW to row X of the factorisation: the sum of its terms. */
+static void sum_row_terms(const struct glint_positive *p, int x, double *row)
 {
     memset(row, 0, (size_t)p->m * sizeof *row);
     for (int j = 0; j < p->terms; j++) {
@@ -36,10 +36,10 @@ struct sums {
 
 /* Fits the factors of row X by least squares, one after the other, clamped
  * to 0. */
-static void fit_factors(const struct glint_positive *p, int x,
-                        const struct sums *s)
+static void fit_row_factors(const struct glint_positive *p, int x,
+                            const struct sums *s)
 {
-    model_row(p, x, s->left);
+    sum_row_terms(p, x, s->left);
     for (int d = 0; d < p->m; d++)
         s->left[d] = s->value[d] - s->left[d];
     for (int j = 0; j < p->terms * SWEEPS; j++) {
@@ -59,7 +59,8 @@ static void fit_factors(const struct glint_positive *p, int x,
     }
 }
 
-static void add_row(const struct glint_positive *p, int x, const struct sums *s)
+static void add_row_to_sums(const struct glint_positive *p, int x,
+                            const struct sums *s)
 {
     const size_t m = (size_t)p->m, n = (size_t)p->n;
 
@@ -78,8 +79,9 @@ static void add_row(const struct glint_positive *p, int x, const struct sums *s)
     }
 }
 
-/* Fits h by least squares, one term after the other, clamped to 0. */
-static void fit_h(const struct glint_positive *p, const struct sums *s)
+/* Fits the kernels h by least squares, one term after the other, clamped to
+ * 0. */
+static void fit_kernels_h(const struct glint_positive *p, const struct sums *s)
 {
     const size_t m = (size_t)p->m, terms = (size_t)p->terms;
 
@@ -125,10 +127,10 @@ enum glint_status glint_positive_fit(const struct glint_positive *p, int rounds,
         memset(memory, 0, all * sizeof *memory);
         for (int x = 0; x < p->n; x++) {
             p->row(p->ctx, x, s.value, s.weight);
-            fit_factors(p, x, &s);
-            add_row(p, x, &s);
+            fit_row_factors(p, x, &s);
+            add_row_to_sums(p, x, &s);
         }
-        fit_h(p, &s);
+        fit_kernels_h(p, &s);
         if (glint_watch_ends(watch, (double)i / rounds))
             status = GLINT_E_CLOSED;
     }
@@ -162,7 +164,7 @@ static void read_relative_row(const void *ctx, int x, double *value,
     }
 }
 
-static double compute_distance(const struct over *p, int x, const double *g)
+static double compute_row_distance(const struct over *p, int x, const double *g)
 {
     const float *row = glint_scatter_row(p->rows, x, p->c);
     double sum = 0;
@@ -172,7 +174,7 @@ static double compute_distance(const struct over *p, int x, const double *g)
     return sum;
 }
 
-static void set_means(struct over *p)
+static void set_cluster_means(struct over *p)
 {
     const size_t k2 = (size_t)glint_scatter_kernel2(p->rows->kernel);
     int n[GLINT_SCATTER_MAX_TERMS] = {0};
@@ -192,7 +194,7 @@ static void set_means(struct over *p)
 
 /* Clusters the rows by k-means. Initial clusters are consecutive ranges of
  * texels. */
-static void set_clusters(struct over *p)
+static void cluster_rows(struct over *p)
 {
     const int texels = p->rows->side * p->rows->side;
     const int k2 = glint_scatter_kernel2(p->rows->kernel);
@@ -202,14 +204,14 @@ static void set_clusters(struct over *p)
     for (int round = 0; round < CLUSTER_ROUNDS; round++) {
         bool moved = false;
 
-        set_means(p);
+        set_cluster_means(p);
         for (int x = 0; x < texels && p->clusters > 1; x++) {
-            double best = compute_distance(
+            double best = compute_row_distance(
                 p, x, p->mean + (size_t)p->cluster[x] * (size_t)k2);
 
             for (int i = 0; i < p->clusters; i++) {
-                const double far =
-                    compute_distance(p, x, p->mean + (size_t)i * (size_t)k2);
+                const double far = compute_row_distance(
+                    p, x, p->mean + (size_t)i * (size_t)k2);
 
                 if (far < best) {
                     best = far;
@@ -231,12 +233,12 @@ static enum glint_status rebuild_channel(struct over *p,
     enum glint_status status;
 
     if (!p->plain)
-        set_clusters(p);
+        cluster_rows(p);
     status = glint_positive_fit(q, ROUNDS, watch);
     for (int x = 0; x < q->n && status == GLINT_OK; x++) {
         const double *g = p->mean + (size_t)p->cluster[x] * (size_t)q->m;
 
-        model_row(q, x, row);
+        sum_row_terms(q, x, row);
         for (int d = 0; d < q->m && !p->plain; d++)
             row[d] *= g[d];
         glint_rebuilt_row(rebuilt, x, p->c, row);

@@ -35,7 +35,7 @@ static double interpolate_profile(const double *profile, double radius)
 }
 
 /* Sets the radius of each entry: 0 at the centre, VALUES - 1 in the corners. */
-static void set_radii(const struct subedit *p)
+static void set_entry_radii(const struct subedit *p)
 {
     const int n = p->rows->kernel, half = n / 2;
     const double most = half > 0 ? sqrt(2) * half : 1;
@@ -49,7 +49,7 @@ static void set_radii(const struct subedit *p)
 
 /* Sets the next profile of X to the mean, per radius, of the values that its
  * row and the other profiles require. ALONE: ignores the other profiles. */
-static void solve_profile(const struct subedit *p, int x, bool alone)
+static void solve_radial_profile(const struct subedit *p, int x, bool alone)
 {
     const float *row = glint_scatter_row(p->rows, x, p->c);
     double sum[VALUES] = {0}, weight[VALUES] = {0};
@@ -107,7 +107,7 @@ static enum glint_status rebuild_channels(struct subedit *p, double *row,
 {
     const int texels = p->rows->side * p->rows->side;
 
-    set_radii(p);
+    set_entry_radii(p);
     for (p->c = 0; p->c < 3; p->c++) {
         for (int i = 0; i < ROUNDS; i++) {
             double *other;
@@ -115,7 +115,7 @@ static enum glint_status rebuild_channels(struct subedit *p, double *row,
             if (glint_watch_ends(watch, (p->c + (double)i / ROUNDS) / 3))
                 return GLINT_E_CLOSED;
             for (int x = 0; x < texels; x++)
-                solve_profile(p, x, i == 0);
+                solve_radial_profile(p, x, i == 0);
             other = p->profile;
             p->profile = p->next;
             p->next = other;

@@ -10,11 +10,11 @@
 
 #include "bake/translucent/linear.h"
 
-enum { SEARCHED = 256 /* number of rows by which a and b are chosen */ };
+enum { SEARCHED = 256 /* number of sample rows for the search for a and b */ };
 
 struct channel {
     const struct glint_scatter_rows *rows;
-    int c, step; /* only every STEPth row is used */
+    int c, step; /* stride between the rows that are used */
     bool logs;   /* true: decomposes ln(R' / a + b) */
     double a, b;
 };
@@ -28,13 +28,13 @@ static void read_row(const void *ctx, int i, double *to)
         to[d] = p->logs ? log((double)row[d] / p->a + p->b) : (double)row[d];
 }
 
-static double invert_logarithm(const struct channel *p, double value)
+static double invert_log_encoding(const struct channel *p, double value)
 {
     return p->logs ? p->a * (exp(value) - p->b) : value;
 }
 
-static void term_row(const struct glint_terms *t, int rows, int k2, int x,
-                     double *row)
+static void set_row_from_terms(const struct glint_terms *t, int rows, int k2,
+                               int x, double *row)
 {
     for (int d = 0; d < k2; d++)
         row[d] = 0;
@@ -48,7 +48,7 @@ static void term_row(const struct glint_terms *t, int rows, int k2, int x,
     }
 }
 
-static struct glint_tall make_matrix(const struct channel *p)
+static struct glint_tall make_row_matrix(const struct channel *p)
 {
     const int texels = p->rows->side * p->rows->side;
 
@@ -60,7 +60,7 @@ static struct glint_tall make_matrix(const struct channel *p)
 static enum glint_status rebuild_channel(const struct channel *p, int n,
                                          struct glint_scatter_rows *rebuilt)
 {
-    const struct glint_tall m = make_matrix(p);
+    const struct glint_tall m = make_row_matrix(p);
     double *row = malloc((size_t)m.columns * sizeof *row);
     struct glint_terms terms;
 
@@ -69,9 +69,9 @@ static enum glint_status rebuild_channel(const struct channel *p, int n,
         return GLINT_E_MEMORY;
     }
     for (int x = 0; x < m.rows; x++) {
-        term_row(&terms, m.rows, m.columns, x, row);
+        set_row_from_terms(&terms, m.rows, m.columns, x, row);
         for (int d = 0; d < m.columns; d++)
-            row[d] = invert_logarithm(p, row[d]);
+            row[d] = invert_log_encoding(p, row[d]);
         glint_rebuilt_row(rebuilt, x, p->c, row);
     }
     free(row);
@@ -104,9 +104,10 @@ enum glint_status glint_rebuild_svd(const struct glint_scatter_rows *rows,
 }
 
 /* Sets SQUARE to the squared error of the sampled rows of the green channel. */
-static bool measure_logarithms(const struct channel *p, int n, double *square)
+static bool measure_log_fit_error(const struct channel *p, int n,
+                                  double *square)
 {
-    const struct glint_tall m = make_matrix(p);
+    const struct glint_tall m = make_row_matrix(p);
     double *row = malloc((size_t)m.columns * sizeof *row);
     struct glint_terms terms;
 
@@ -118,9 +119,9 @@ static bool measure_logarithms(const struct channel *p, int n, double *square)
     for (int x = 0; x < m.rows; x++) {
         const float *data = glint_scatter_row(p->rows, x * p->step, p->c);
 
-        term_row(&terms, m.rows, m.columns, x, row);
+        set_row_from_terms(&terms, m.rows, m.columns, x, row);
         for (int d = 0; d < m.columns; d++)
-            *square += pow(invert_logarithm(p, row[d]) - (double)data[d], 2);
+            *square += pow(invert_log_encoding(p, row[d]) - (double)data[d], 2);
     }
     free(row);
     glint_terms_close(&terms);
@@ -150,7 +151,7 @@ search_parameters(const struct glint_scatter_rows *rows,
         p.b = bs[i / 8];
         if (glint_watch_ends(watch, i / 24.0))
             return GLINT_E_CLOSED;
-        if (!measure_logarithms(&p, o->terms, &square))
+        if (!measure_log_fit_error(&p, o->terms, &square))
             return GLINT_E_MEMORY;
         if (square < best) {
             best = square;

@@ -15,7 +15,7 @@
 
 enum { SIDE = 24, KERNEL = 11, K2 = KERNEL * KERNEL, TEXELS = SIDE * SIDE };
 
-/* Rows of the media that all tests read. */
+/* Scattering rows of two media, used by all tests. */
 static struct glint_scatter_rows stone[2]; /* checkerboard, veins */
 
 TEST_OPEN
@@ -64,16 +64,17 @@ judge_rows(struct glint_scatter_rows *rows,
     return kept;
 }
 
-static double compute_rmse(struct glint_scatter_rows *rows,
-                           enum glint_scatter_candidate_kind kind, int terms)
+static double compute_row_rmse(struct glint_scatter_rows *rows,
+                               enum glint_scatter_candidate_kind kind,
+                               int terms)
 {
     const struct glint_scatter_candidate o = make_candidate(kind, terms);
 
     return judge_rows(rows, &o).rmse;
 }
 
-/* C1: violations of physics. Non-negative models have no negative entries;
- * only profiles are reciprocal; no model creates energy. */
+/* C1: violations of physics. Checks that non-negative models have no negative
+ * entries; only profiles are reciprocal; no model creates energy. */
 TEST(c1_physics)
 {
     for (int i = 0; i < 2; i++)
@@ -95,9 +96,10 @@ TEST(c1_physics)
         }
 }
 
-/* C3: one term cannot fit rows of which 30 % are shifted by a texel, unless
- * rows are rotated to begin with their maximum. Rotation hardly changes the
- * error of clean rows. A second term fits shifted rows without rotation. */
+/* C3: checks that one term cannot fit rows of which 30 % are shifted by a
+ * texel, unless rows are rotated to begin with their maximum. Rotation hardly
+ * changes the error of clean rows. A second term fits shifted rows without
+ * rotation. */
 TEST(c3_turned)
 {
     struct glint_scatter_rows off;
@@ -144,8 +146,8 @@ static void read_green_row(const void *ctx, int i, double *to)
         to[d] = (double)glint_scatter_row(g->rows, i, 1)[d];
 }
 
-/* C4: rank-1 fits of the running error equal the truncated singular value
- * decomposition to five digits. */
+/* C4: checks that rank-1 fits of the running error equal the truncated singular
+ * value decomposition to five digits. */
 TEST(c4_tucker)
 {
     const struct greens g = {&stone[1]};
@@ -166,8 +168,8 @@ TEST(c4_tucker)
     glint_terms_close(&terms);
 }
 
-/* C5: the error decreases with the degree, and with the number of terms. The
- * size is T + 3 (P + 1) numbers per texel, plus T rows. */
+/* C5: checks that the error decreases with the degree, and with the number of
+ * terms. The size is T + 3 (P + 1) numbers per texel, plus T rows. */
 TEST(c5_polynomials)
 {
     double by_degree[5];
@@ -184,17 +186,17 @@ TEST(c5_polynomials)
             assert_true(by_degree[degree - 1] <= by_degree[degree - 2]);
     }
     assert_true(by_degree[3] < 0.7 * by_degree[0]);
-    assert_true(compute_rmse(&stone[0], GLINT_CANDIDATE_TUCKER, 16) <
-                0.6 * compute_rmse(&stone[0], GLINT_CANDIDATE_TUCKER, 1));
+    assert_true(compute_row_rmse(&stone[0], GLINT_CANDIDATE_TUCKER, 16) <
+                0.6 * compute_row_rmse(&stone[0], GLINT_CANDIDATE_TUCKER, 1));
 }
 
-/* C6: with large a the logarithm is linear and its fit equals the linear
- * one, which is the optimum. With small a and b = 1 negative entries occur,
- * so the claim "never negative" is wrong. The search is at least as good as
- * both. */
+/* C6: checks that with large a the logarithm is linear and its fit equals the
+ * linear one, which is the optimum. With small a and b = 1 negative entries
+ * occur, so the claim "never negative" is wrong. The search is at least as good
+ * as both. */
 TEST(c6_logarithms)
 {
-    const double linear = compute_rmse(&stone[0], GLINT_CANDIDATE_SVD, 3);
+    const double linear = compute_row_rmse(&stone[0], GLINT_CANDIDATE_SVD, 3);
     struct glint_scatter_candidate o =
         make_candidate(GLINT_CANDIDATE_LOG_SVD, 3);
     struct glint_scatter_judgement found, j;
@@ -210,27 +212,27 @@ TEST(c6_logarithms)
     assert_true(found.rmse < 1.05 * linear && found.rmse < j.rmse);
 }
 
-/* C7: models that are clamped to 0 or use logarithms have at least the error
- * of the linear model, except for the small error that it spends on entries
- * outside the square. */
+/* C7: checks that models that are clamped to 0 or use logarithms have at least
+ * the error of the linear model, except for the small error that it spends on
+ * entries outside the square. */
 TEST(c7_held)
 {
     for (int i = 0; i < 2; i++)
         for (int terms = 2; terms <= 8; terms *= 2) {
             const double linear =
-                compute_rmse(&stone[i], GLINT_CANDIDATE_SVD, terms);
+                compute_row_rmse(&stone[i], GLINT_CANDIDATE_SVD, terms);
             struct glint_scatter_candidate o =
                 make_candidate(GLINT_CANDIDATE_LOG_SVD, terms);
 
             o.a = 0.1;
-            assert_true(compute_rmse(&stone[i], GLINT_CANDIDATE_ALS, terms) >
-                        0.98 * linear);
+            assert_true(compute_row_rmse(&stone[i], GLINT_CANDIDATE_ALS,
+                                         terms) > 0.98 * linear);
             assert_true(judge_rows(&stone[i], &o).rmse > linear);
         }
 }
 
-/* C8: sizes equal those that the source prints, in MiB; squares of 110 and
- * 260 texels match two printed sizes each. 3.60 MiB corresponds to 39
+/* C8: checks that sizes equal those that the source prints, in MiB; squares of
+ * 110 and 260 texels match two printed sizes each. 3.60 MiB corresponds to 39
  * numbers per texel. */
 TEST(c8_sizes)
 {
@@ -258,17 +260,17 @@ TEST(c8_sizes)
     assert_string_equal(text, "3.60");
 }
 
-/* C9: with ten terms the decomposition has a smaller error than profiles,
- * with less memory. */
+/* C9: checks that with ten terms the decomposition has a smaller error than
+ * profiles, with less memory. */
 TEST(c9_profiles)
 {
     for (int i = 0; i < 2; i++)
-        assert_true(compute_rmse(&stone[i], GLINT_CANDIDATE_SVD, 10) <
-                    compute_rmse(&stone[i], GLINT_CANDIDATE_SUBEDIT, 0));
+        assert_true(compute_row_rmse(&stone[i], GLINT_CANDIDATE_SVD, 10) <
+                    compute_row_rmse(&stone[i], GLINT_CANDIDATE_SUBEDIT, 0));
 }
 
-/* C10: at equal size, ten or more terms have a smaller error than clusters
- * with as many non-negative terms. */
+/* C10: checks that at equal size, ten or more terms have a smaller error than
+ * clusters with as many non-negative terms. */
 TEST(c10_clusters)
 {
     for (int i = 0; i < 2; i++) {
@@ -286,8 +288,8 @@ TEST(c10_clusters)
     }
 }
 
-/* C11: row sums computed from stored sums of h equal the sums of all
- * entries, with 800 times fewer multiplications. */
+/* C11: checks that row sums computed from stored sums of h equal the sums of
+ * all entries, with 800 times fewer multiplications. */
 TEST(c11_albedo)
 {
     const struct glint_scatter_candidate o =
@@ -317,8 +319,8 @@ TEST(c11_albedo)
     glint_terms_close(&terms);
 }
 
-/* C13: the error map sums to the total error, and the percentiles are those
- * of the map. */
+/* C13: checks that the error map sums to the total error, and the percentiles
+ * are those of the map. */
 TEST(c13_spread)
 {
     struct glint_scatter_candidate o = make_candidate(GLINT_CANDIDATE_SVD, 3);
@@ -339,8 +341,8 @@ TEST(c13_spread)
     glint_scatter_judgement_close(&j);
 }
 
-/* All models give finite results for a black medium and for a medium of one
- * texel. Parameters out of range are rejected. */
+/* Checks that all models give finite results for a black medium and for a
+ * medium of one texel. Parameters out of range are rejected. */
 TEST(extremes)
 {
     struct glint_scatter_rows black, one;
@@ -368,7 +370,7 @@ TEST(extremes)
     glint_scatter_close(&one);
 }
 
-static bool stop_second(void *ctx)
+static bool cancel_at_second_call(void *ctx)
 {
     return ++*(int *)ctx > 1;
 }
@@ -379,7 +381,7 @@ TEST(stops_when_requested)
         const struct glint_scatter_candidate o =
             make_candidate((enum glint_scatter_candidate_kind)kind, 0);
         int asked = 0;
-        const struct glint_watch watch = {NULL, stop_second, &asked};
+        const struct glint_watch watch = {NULL, cancel_at_second_call, &asked};
         struct glint_scatter_judgement j;
 
         assert_int_equal(glint_scatter_judge(&stone[0], &o, &watch, &j),

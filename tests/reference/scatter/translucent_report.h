@@ -18,33 +18,37 @@ extern "C" {
 #endif
 
 enum glint_scatter_candidate_kind {
-    GLINT_CANDIDATE_CLUSTERED, /* these three: models of glint_scatter_fit() */
+    /* CLUSTERED, FACTORED and ALBEDO: models of glint_scatter_fit() */
+    GLINT_CANDIDATE_CLUSTERED,
     GLINT_CANDIDATE_FACTORED,
     GLINT_CANDIDATE_ALBEDO,
     GLINT_CANDIDATE_SVD,     /* R' = sum of f_j h_j, per channel */
     GLINT_CANDIDATE_LOG_SVD, /* ln(R' / a + b) = sum of f_j h_j [Kurt14] */
-    GLINT_CANDIDATE_TUCKER,  /* mean of R, G, B by successive rank-1 fits of the
-                                residual, and a polynomial of it per row and
-                                channel [Kurt14] */
-    GLINT_CANDIDATE_ALS,     /* like SVD, with f and h non-negative */
-    GLINT_CANDIDATE_PEERS,   /* R' = G sum of f_j h_j, with G the mean row of a
-                                cluster, f and h non-negative, weighted by G^2
-                                [Peers06] */
-    GLINT_CANDIDATE_SUBEDIT, /* R' = sqrt(P_i(r) P_o(r)), with a profile P of 12
-                                values per texel and channel [Song09] */
+    /* mean of R, G, B by successive rank-1 fits of the residual, and a
+     * polynomial of it per row and channel [Kurt14] */
+    GLINT_CANDIDATE_TUCKER,
+    GLINT_CANDIDATE_ALS, /* like SVD, with f and h non-negative */
+    /* R' = G sum of f_j h_j, with G the mean row of a cluster, f and h
+     * non-negative, weighted by G^2 [Peers06] */
+    GLINT_CANDIDATE_PEERS,
+    /* R' = sqrt(P_i(r) P_o(r)), with a profile P of 12 values per texel and
+     * channel [Song09] */
+    GLINT_CANDIDATE_SUBEDIT,
     GLINT_CANDIDATES
 };
 
 struct glint_scatter_candidate {
     enum glint_scatter_candidate_kind kind;
-    int terms;    /* terms or kernels, 1 .. GLINT_SCATTER_MAX_TERMS */
-    int rank;     /* rank of FACTORED, 1 .. GLINT_SCATTER_MAX_RANK */
-    int degree;   /* degree P of TUCKER's polynomial, 0 .. 5 */
-    bool turned;  /* TUCKER: rows are rotated to begin with their maximum, and
-                     divided by it */
+    int terms;  /* terms or kernels, 1 .. GLINT_SCATTER_MAX_TERMS */
+    int rank;   /* rank of FACTORED, 1 .. GLINT_SCATTER_MAX_RANK */
+    int degree; /* degree P of TUCKER's polynomial, 0 .. 5 */
+    /* TUCKER: rows are rotated to begin with their maximum, and divided by
+     * it */
+    bool turned;
     int clusters; /* PEERS: clusters, 1 .. GLINT_SCATTER_MAX_TERMS */
-    double a, b;  /* parameters of LOG_SVD, both > 0; a is relative to the
-                     largest entry. a = 0: both are searched for and set */
+    /* parameters of LOG_SVD, both > 0; a is relative to the largest entry. a =
+     * 0: both are searched for and set */
+    double a, b;
 };
 
 /* Sets CANDIDATE to KIND with 5 terms, rank 3, degree 4, one cluster. */
@@ -66,19 +70,19 @@ glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
 /* Errors of a model. Owns ERROR and LIGHT. Fractions refer to all entries
  * inside the square; the largest entry of the data is 1. */
 struct glint_scatter_judgement {
-    /* including parameters that were searched for */
+    /* the candidate, with the parameters that were searched for */
     struct glint_scatter_candidate candidate;
-    double bytes, compression; /* size in bytes; size of the rows (8 bytes per
-                                  number) / BYTES */
-    double seconds;            /* processor time of the fit */
+    /* size in bytes; size of the rows (8 bytes per number) / BYTES */
+    double bytes, compression;
+    double seconds; /* processor time of the fit */
     double rmse, entry_db, light_db;
     double p50, p95, largest; /* percentiles and max of ERROR */
     double negative;          /* fraction of entries below 0 */
     double one_way;           /* RMS of R'(x, y) - R'(y, x) */
     double energy;            /* largest sum of a row */
     double *error;            /* [side * side]: RMS error of each row */
-    double *light;            /* [side * side][3] radiosity under
-                                 glint_scatter_test_light() */
+    /* [side * side][3] radiosity under glint_scatter_test_light() */
+    double *light;
 };
 
 /* Rebuilds ROWS by CANDIDATE and measures the errors. Needs as much memory

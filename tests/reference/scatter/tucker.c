@@ -31,18 +31,19 @@ struct tucker {
     double *most;  /* [n]: max entry of each row; 1 if rows are not rotated */
 };
 
-static float *get_row(const struct tucker *p, float *all, int x)
+static float *residual_row(const struct tucker *p, float *all, int x)
 {
     return all + (size_t)x * (size_t)p->k2;
 }
 
 /* Sets the residual to the mean of R, G, B. TURNED: each row is rotated to
  * begin with its max entry and divided by it. */
-static void set_residual(const struct tucker *p, bool turned)
+static void compute_residual_rows(const struct tucker *p, bool turned)
 {
     for (int x = 0; x < p->n; x++) {
         const float *rgb = glint_scatter_row(p->rows, x, 0);
-        float *to = get_row(p, p->left, x), *scratch = get_row(p, p->model, x);
+        float *to = residual_row(p, p->left, x),
+              *scratch = residual_row(p, p->model, x);
         int first = 0;
 
         for (int d = 0; d < p->k2; d++) {
@@ -59,7 +60,8 @@ static void set_residual(const struct tucker *p, bool turned)
 }
 
 /* Sets F to left H / |H|^2. */
-static void fit_f(const float *left, int n, int k2, double *f, const double *h)
+static void fit_weights_f(const float *left, int n, int k2, double *f,
+                          const double *h)
 {
     double square = 0;
 
@@ -76,8 +78,8 @@ static void fit_f(const float *left, int n, int k2, double *f, const double *h)
 }
 
 /* Sets H to left' F / |F|^2. Returns the square of the term. */
-static double fit_h(const float *left, int n, int k2, const double *f,
-                    double *h)
+static double fit_kernel_h(const float *left, int n, int k2, const double *f,
+                           double *h)
 {
     double square = 0, length = 0;
 
@@ -103,8 +105,8 @@ double glint_tucker_term(float *left, int n, int k2, double *f, double *h)
     for (int d = 0; d < k2; d++)
         h[d] = 1 + (double)(d * 7919 % 101) / 101;
     for (int i = 0; i < ROUNDS; i++) {
-        fit_f(left, n, k2, f, h);
-        square = fit_h(left, n, k2, f, h);
+        fit_weights_f(left, n, k2, f, h);
+        square = fit_kernel_h(left, n, k2, f, h);
         if (fabs(square - before) <= STILL * square)
             break;
         before = square;
@@ -116,11 +118,11 @@ double glint_tucker_term(float *left, int n, int k2, double *f, double *h)
 }
 
 /* Fits one term of the residual and subtracts it. */
-static void fit_term(const struct tucker *p)
+static void fit_and_subtract_term(const struct tucker *p)
 {
     glint_tucker_term(p->left, p->n, p->k2, p->f, p->h);
     for (int x = 0; x < p->n; x++) {
-        float *model = get_row(p, p->model, x);
+        float *model = residual_row(p, p->model, x);
 
         for (int d = 0; d < p->k2; d++)
             model[d] += (float)(p->f[x] * p->h[d]);
@@ -129,8 +131,8 @@ static void fit_term(const struct tucker *p)
 
 /* Sets COEF to the polynomial in MEAN that fits the row of channel C best,
  * over entries inside the square. */
-static void fit_polynomial(const struct tucker *p, int x, int c, int degree,
-                           const double *mean, double *coef)
+static void fit_row_polynomial(const struct tucker *p, int x, int c, int degree,
+                               const double *mean, double *coef)
 {
     double gram[COEFFICIENTS * COEFFICIENTS] = {0};
     const float *row = glint_scatter_row(p->rows, x, c);
@@ -154,9 +156,9 @@ static void fit_polynomial(const struct tucker *p, int x, int c, int degree,
 }
 
 /* Sets MEAN[k2] to the sum of the terms for row X, rotated back. */
-static void mean_row(const struct tucker *p, int x, double *mean)
+static void set_mean_row(const struct tucker *p, int x, double *mean)
 {
-    const float *model = get_row(p, p->model, x);
+    const float *model = residual_row(p, p->model, x);
 
     for (int d = 0; d < p->k2; d++)
         mean[(d + p->first[x]) % p->k2] = (double)model[d];
@@ -167,7 +169,7 @@ static void rebuild_row(const struct tucker *p, int x, int degree, double *mean,
 {
     double most = 0;
 
-    mean_row(p, x, mean);
+    set_mean_row(p, x, mean);
     for (int d = 0; d < p->k2; d++)
         most = fmax(most, fabs(mean[d]));
     for (int d = 0; d < p->k2 && most > 0; d++)
@@ -175,7 +177,7 @@ static void rebuild_row(const struct tucker *p, int x, int degree, double *mean,
     for (int c = 0; c < 3; c++) {
         double coef[COEFFICIENTS];
 
-        fit_polynomial(p, x, c, degree, mean, coef);
+        fit_row_polynomial(p, x, c, degree, mean, coef);
         for (int d = 0; d < p->k2; d++) {
             row[d] = coef[degree];
             for (int i = degree - 1; i >= 0; i--)
@@ -190,11 +192,11 @@ static enum glint_status rebuild_rows(const struct tucker *p,
                                       const struct glint_watch *watch,
                                       struct glint_scatter_rows *rebuilt)
 {
-    set_residual(p, o->turned);
+    compute_residual_rows(p, o->turned);
     for (int t = 0; t < o->terms; t++) {
         if (glint_watch_ends(watch, (double)t / (o->terms + 1)))
             return GLINT_E_CLOSED;
-        fit_term(p);
+        fit_and_subtract_term(p);
     }
     for (int x = 0; x < p->n; x++)
         rebuild_row(p, x, o->degree, p->h, p->f, rebuilt);

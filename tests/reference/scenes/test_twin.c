@@ -20,9 +20,9 @@ struct stage {
 };
 
 /* Returns a picture of two texels: black on the left, white on the right. */
-static enum glint_status make_picture(void *ctx, const char *name,
-                                      struct glint_image *image,
-                                      struct glint_error *error)
+static enum glint_status make_two_texel_picture(void *ctx, const char *name,
+                                                struct glint_image *image,
+                                                struct glint_error *error)
 {
     uint8_t *mem = calloc(1, 6);
 
@@ -36,10 +36,10 @@ static enum glint_status make_picture(void *ctx, const char *name,
 }
 
 /* Parses TEXT and opens the reference renderer for its scene. */
-static struct stage *open_text(const char *text)
+static struct stage *open_reference_for_text(const char *text)
 {
-    const struct glint_description_files files = {NULL, NULL, make_picture,
-                                                  NULL, NULL, NULL};
+    const struct glint_description_files files = {
+        NULL, NULL, make_two_texel_picture, NULL, NULL, NULL};
     struct stage *stage = malloc(sizeof *stage);
     struct glint_error error = {""};
 
@@ -47,13 +47,13 @@ static struct stage *open_text(const char *text)
     if (glint_description_parse(&stage->scene, text, strlen(text), "t.scene",
                                 &files, &error) != GLINT_OK)
         fail_msg("%s", error.text);
-    assert_ok(twin_open(&stage->twin, &stage->scene));
+    assert_ok(reference_open(&stage->twin, &stage->scene));
     return stage;
 }
 
-static void close_stage(struct stage *stage)
+static void close_reference(struct stage *stage)
 {
-    twin_close(&stage->twin);
+    reference_close(&stage->twin);
     glint_description_free(&stage->scene);
     free(stage);
 }
@@ -64,7 +64,7 @@ static struct twin_ray make_ray(double x, double y, double z, double dx,
     struct twin_ray ray = {
         {x, y, z}, {dx, dy, dz}, .skip_object = -1, .skip_triangle = -1};
 
-    vec_unit(ray.toward);
+    vec_normalise(ray.toward);
     return ray;
 }
 
@@ -86,28 +86,28 @@ TEST(a1_length)
 {
     double a[3] = {0, 6, 8};
 
-    assert_true(vec_unit(a) == 10);
+    assert_true(vec_normalise(a) == 10);
     assert_vec_near(a, 0, .6, .8, 1e-15);
 }
 
 /* A2, A3: normal of the tutorial's triangle, and where a ray hits it. */
 TEST(a2_a3_triangle)
 {
-    struct stage *s = open_text(
+    struct stage *s = open_reference_for_text(
         TUTORIAL "triangle t 0 40 120 30 -40 60 -30 -40 60 material m\n");
     const struct twin_ray ray = make_ray(0, 0, 0, 0, 0, 1);
     struct twin_hit hit;
 
-    assert_true(twin_meet(&s->twin, &ray, 1e9, &hit));
+    assert_true(reference_intersect_scene(&s->twin, &ray, 1e9, &hit));
     assert_vec_near(hit.normal, 0, .6, -.8, 1e-15);
     assert_true(fabs(hit.t - 90) < 1e-12);
     assert_vec_near(hit.place, 0, 0, 90, 1e-12);
-    close_stage(s);
+    close_reference(s);
 }
 
-/* A4: a ray through a point in the plane of the tutorial's triangle hits it
- * if and only if the point is inside, however small the triangle is. A test
- * by comparing areas fails for most small triangles (baseline in
+/* A4: checks that a ray through a point in the plane of the tutorial's triangle
+ * hits it if and only if the point is inside, however small the triangle is. A
+ * test by comparing areas fails for most small triangles (baseline in
  * test_scene_rays). */
 TEST(a4_inside)
 {
@@ -116,7 +116,7 @@ TEST(a4_inside)
     uint32_t seed = 1;
 
     for (double size = 1; size > 1e-4; size /= 10) {
-        struct stage *s = open_text(
+        struct stage *s = open_reference_for_text(
             TUTORIAL "triangle t 0 40 120 30 -40 60 -30 -40 60 material m\n");
         int met = 0;
 
@@ -136,22 +136,25 @@ TEST(a4_inside)
             ray = make_ray(0, 0, 0, p[0], p[1], p[2]);
             if (fabs(u) < 1e-9 || fabs(w) < 1e-9 || fabs(u + w - 1) < 1e-9)
                 continue;
-            assert_int_equal(twin_meet_object(&s->twin, 0, &ray, 1e9, &hit),
-                             is_in);
+            assert_int_equal(
+                reference_intersect_object(&s->twin, 0, &ray, 1e9, &hit),
+                is_in);
             if (is_in)
                 assert_vec_near(hit.place, size * p[0], size * p[1],
                                 size * p[2], 1e-12 * size * 150);
             met += is_in;
         }
-        assert_in_range(met, 2000, 3000); /* an eighth of the points */
-        close_stage(s);
+        /* an eighth of the 20 000 points is inside */
+        assert_in_range(met, 2000, 3000);
+        close_reference(s);
     }
 }
 
-/* A5: of three triangles behind each other the nearest is visible. */
+/* A5: checks that of three triangles behind each other the nearest is
+ * visible. */
 TEST(a5_nearest)
 {
-    struct stage *s = open_text(
+    struct stage *s = open_reference_for_text(
         TUTORIAL "triangle u 0 30 40 40 -30 120 -40 -30 120 material u\n"
                  "triangle y -50 30 124 50 30 124 0 -30 44 material y\n"
                  "triangle z -30 0 37 30 40 117 30 -40 117 material z\n");
@@ -161,46 +164,47 @@ TEST(a5_nearest)
     struct twin_hit hit;
 
     for (int i = 0; i < 3; i++) {
-        assert_true(twin_meet_object(&s->twin, i, &ray, 1e9, &hit));
+        assert_true(reference_intersect_object(&s->twin, i, &ray, 1e9, &hit));
         assert_true(fabs(hit.t - t[i]) < 1e-12);
     }
-    pixel = twin_see(&s->twin, &ray);
+    pixel = reference_trace_ray(&s->twin, &ray);
     assert_true(pixel.rgb[0] == 0 && pixel.rgb[1] == 0 && pixel.rgb[2] == 1);
-    close_stage(s);
+    close_reference(s);
 }
 
-/* A6: rays of corner pixels have the directions (-8, 4.5, 10) and (8, -4.5,
- * 10). */
+/* A6: checks that rays of corner pixels have the directions (-8, 4.5, 10) and
+ * (8, -4.5, 10). */
 TEST(a6_corners)
 {
     const struct twin_view view = {160, 90, 0, 1};
-    struct stage *s =
-        open_text(TUTORIAL "sphere t at 0 0 9 radius 1 material m\n");
+    struct stage *s = open_reference_for_text(
+        TUTORIAL "sphere t at 0 0 9 radius 1 material m\n");
     struct twin_ray ray;
 
-    twin_camera_ray(&s->twin, &view, 0, 0, &ray);
-    vec_add(ray.from, 10 / ray.toward[2], ray.toward, ray.toward);
+    reference_make_camera_ray(&s->twin, &view, 0, 0, &ray);
+    vec_add_scaled(ray.from, 10 / ray.toward[2], ray.toward, ray.toward);
     assert_vec_near(ray.toward, -8, 4.5, 10, 1e-12);
-    twin_camera_ray(&s->twin, &view, 159, 89, &ray);
-    vec_add(ray.from, 10 / ray.toward[2], ray.toward, ray.toward);
+    reference_make_camera_ray(&s->twin, &view, 159, 89, &ray);
+    vec_add_scaled(ray.from, 10 / ray.toward[2], ray.toward, ray.toward);
     assert_vec_near(ray.toward, 8, -4.5, 10, 1e-12);
-    close_stage(s);
+    close_reference(s);
 }
 
 /* Returns the pixel that a ray from (X, Y, Z) along (DX, DY, DZ) sees in the
  * scene of TEXT. */
-static struct twin_pixel see_text(const char *text, double x, double y,
-                                  double z, double dx, double dy, double dz)
+static struct twin_pixel trace_ray_in_text(const char *text, double x, double y,
+                                           double z, double dx, double dy,
+                                           double dz)
 {
-    struct stage *s = open_text(text);
+    struct stage *s = open_reference_for_text(text);
     const struct twin_ray ray = make_ray(x, y, z, dx, dy, dz);
-    const struct twin_pixel pixel = twin_see(&s->twin, &ray);
+    const struct twin_pixel pixel = reference_trace_ray(&s->twin, &ray);
 
-    close_stage(s);
+    close_reference(s);
     return pixel;
 }
 
-static void assert_light(struct twin_pixel p, double r, double g, double b)
+static void assert_rgb_light(struct twin_pixel p, double r, double g, double b)
 {
     const double rgb[3] = {(double)p.rgb[0], (double)p.rgb[1],
                            (double)p.rgb[2]};
@@ -213,12 +217,12 @@ static void assert_light(struct twin_pixel p, double r, double g, double b)
 TEST(a7_diffuse)
 {
     const struct twin_pixel p =
-        see_text("hand left\nmaterial m phong 0 1 0 colour 1 0 0\n"
-                 "light lamp at 0 40 0 colour 2500 2500 2500\n"
-                 "plane floor at 0 0 0 normal 0 1 0 material m\n",
-                 0, 30, 0, 0, -1, 1);
+        trace_ray_in_text("hand left\nmaterial m phong 0 1 0 colour 1 0 0\n"
+                          "light lamp at 0 40 0 colour 2500 2500 2500\n"
+                          "plane floor at 0 0 0 normal 0 1 0 material m\n",
+                          0, 30, 0, 0, -1, 1);
 
-    assert_light(p, .8, 0, 0);
+    assert_rgb_light(p, .8, 0, 0);
     assert_int_equal((int)(255 * (double)p.rgb[0] + .5), 204);
 }
 
@@ -235,17 +239,17 @@ TEST(a8_phong)
                                                                 colour x .25 */
         "plane floor at 0 0 0 normal 0 1 0 material m\n";
 
-    assert_light(see_text(text, 0, 1, 0, 0, -1, 0), .1 + .15 + .075,
-                 .05 + .075 + .075, .15);
+    assert_rgb_light(trace_ray_in_text(text, 0, 1, 0, 0, -1, 0),
+                     .1 + .15 + .075, .05 + .075 + .075, .15);
     /* at 45 degrees (R.V)^2 is 1/2 */
-    assert_light(see_text(text, 0, 1, 0, 0, -1, 1), .1 + .15 + .0375,
-                 .05 + .075 + .0375, .075);
+    assert_rgb_light(trace_ray_in_text(text, 0, 1, 0, 0, -1, 1),
+                     .1 + .15 + .0375, .05 + .075 + .0375, .075);
     /* from below only ambient light is visible */
-    assert_light(see_text(text, 0, -1, 0, 0, 1, 0), .1, .05, 0);
+    assert_rgb_light(trace_ray_in_text(text, 0, -1, 0, 0, 1, 0), .1, .05, 0);
 }
 
-/* A9: mirroring twice is the identity; a mirror shows objects in the
- * mirrored direction. */
+/* A9: checks that mirroring twice is the identity, and that a mirror shows
+ * objects in the mirrored direction. */
 TEST(a9_mirror)
 {
     static const char text[] = "hand left\nmaterial m phong 0 0 0 reflect .5\n"
@@ -253,16 +257,16 @@ TEST(a9_mirror)
                                "plane floor at 0 0 0 normal 0 1 0 material m\n"
                                "sphere ball at 0 8 9 radius .01 material w\n";
 
-    assert_light(see_text(text, 0, 1, 0, 0, -1, 1), .1, .2, .4);
+    assert_rgb_light(trace_ray_in_text(text, 0, 1, 0, 0, -1, 1), .1, .2, .4);
     /* the mirrored direction has no object, and mirrors do not show the
      * picture behind */
-    assert_true(see_text(text, 0, 1, 0, 0, -1, -1).cover == 1);
-    assert_light(see_text(text, 0, 1, 0, 0, -1, -1), 0, 0, 0);
+    assert_true(trace_ray_in_text(text, 0, 1, 0, 0, -1, -1).cover == 1);
+    assert_rgb_light(trace_ray_in_text(text, 0, 1, 0, 0, -1, -1), 0, 0, 0);
 }
 
-/* A10: a point is shadowed by a ball between it and a lamp at height 5, but
- * not by a ball below the point or beyond the lamp; includes balls that
- * nearly reach the lamp. */
+/* A10: checks that a point is shadowed by a ball between it and a lamp at
+ * height 5, but not by a ball below the point or beyond the lamp; includes
+ * balls that nearly reach the lamp. */
 TEST(a10_shadow)
 {
     static const struct {
@@ -270,7 +274,7 @@ TEST(a10_shadow)
         bool dark;
     } row[] = {{"at 0 3 0 radius .5", true},   {"at 0 -2 0 radius .5", false},
                {"at 0 4.4 0 radius .5", true}, {"at 0 5.6 0 radius .5", false},
-               {"at 0 5.4 0 radius .5", true}, /* the lamp is inside the ball */
+               {"at 0 5.4 0 radius .5", true}, /* the ball contains the lamp */
                {"at 3 3 0 radius .5", false}};
 
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
@@ -283,19 +287,19 @@ TEST(a10_shadow)
                  "plane floor at 0 0 0 normal 0 1 0 material m\n"
                  "sphere b %s material m\nshadow on\n",
                  row[i].ball);
-        p = see_text(text, 1, 1, 0, -1, -1, 0);
-        assert_light(p, !row[i].dark, !row[i].dark, !row[i].dark);
+        p = trace_ray_in_text(text, 1, 1, 0, -1, -1, 0);
+        assert_rgb_light(p, !row[i].dark, !row[i].dark, !row[i].dark);
     }
 }
 
-/* A10: no shadow acne. A ball lit from the camera's position has no dark
- * pixel. */
+/* A10: no shadow acne. Checks that a ball lit from the camera's position has no
+ * dark pixel. */
 TEST(a10_acne)
 {
-    struct stage *s =
-        open_text("hand left\ncamera fov 40 at 0 0 -4 toward 0 0 0\n"
-                  "material m phong 0 1 0\nlight lamp at 0 0 -4 colour 9 9 9\n"
-                  "sphere b at 0 0 0 radius 1 material m\nshadow on\n");
+    struct stage *s = open_reference_for_text(
+        "hand left\ncamera fov 40 at 0 0 -4 toward 0 0 0\n"
+        "material m phong 0 1 0\nlight lamp at 0 0 -4 colour 9 9 9\n"
+        "sphere b at 0 0 0 radius 1 material m\nshadow on\n");
     uint32_t seed = 1;
 
     for (int i = 0; i < 20000; i++) {
@@ -303,11 +307,11 @@ TEST(a10_acne)
         const struct twin_ray ray = make_ray(0, 0, -4, a, b, 1);
         struct twin_hit hit;
 
-        if (twin_meet(&s->twin, &ray, 1e9, &hit) &&
+        if (reference_intersect_scene(&s->twin, &ray, 1e9, &hit) &&
             vec_dot(hit.normal, ray.toward) < -.01)
-            assert_true(twin_see(&s->twin, &ray).rgb[0] > 0);
+            assert_true(reference_trace_ray(&s->twin, &ray).rgb[0] > 0);
     }
-    close_stage(s);
+    close_reference(s);
 }
 
 #define GLASS(refract)                                        \
@@ -315,9 +319,9 @@ TEST(a10_acne)
     "material w phong 1 0 0 colour .2 .4 .8\n"                \
     "sphere b at 0 0 0 radius 1 material g\n"
 
-/* A11: an object behind a transparent ball of index 1 is visible straight
- * through it, scaled by the transmitted fraction, bit-identical with and
- * without "refract 1". Elsewhere the picture is visible. */
+/* A11: checks that an object behind a transparent ball of index 1 is visible
+ * straight through it, scaled by the transmitted fraction, bit-identical with
+ * and without "refract 1". Elsewhere the picture is visible. */
 TEST(a11_pass)
 {
     static const char plain[] = GLASS("") "sphere w at 1 0 6 radius .5 "
@@ -327,14 +331,16 @@ TEST(a11_pass)
     int seen = 0;
 
     for (int k = 0; k < 40; k++) {
-        const struct twin_pixel a = see_text(plain, 0, 0, -5, k * .005, 0, 1);
-        const struct twin_pixel b = see_text(one, 0, 0, -5, k * .005, 0, 1);
+        const struct twin_pixel a =
+            trace_ray_in_text(plain, 0, 0, -5, k * .005, 0, 1);
+        const struct twin_pixel b =
+            trace_ray_in_text(one, 0, 0, -5, k * .005, 0, 1);
         /* the ray hits the ball behind if it passes (1, 6) within .5 */
         const double off = fabs(11 * (k * .005) - 1) / hypot(k * .005, 1);
 
         assert_memory_equal(&a, &b, sizeof a);
-        assert_light(a, off < .5 ? .1 : 0, off < .5 ? .2 : 0,
-                     off < .5 ? .4 : 0);
+        assert_rgb_light(a, off < .5 ? .1 : 0, off < .5 ? .2 : 0,
+                         off < .5 ? .4 : 0);
         assert_true(a.cover == (off < .5 ? 1 : .5F));
         seen += off < .5;
     }
@@ -346,7 +352,7 @@ TEST(a11_pass)
  * by twice the difference and crosses the axis .8949 behind the ball. */
 TEST(a12_refract)
 {
-    struct stage *s = open_text(
+    struct stage *s = open_reference_for_text(
         GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material w\n");
     const struct twin_ray ray = make_ray(.5, 0, -5, 0, 0, 1);
     const double a = asin(.5), b = asin(.5 / 1.5);
@@ -361,25 +367,27 @@ TEST(a12_refract)
     w->radius = 1e-6;
     w->at[0] = 0;
     w->at[2] = cross;
-    assert_light(twin_see(&s->twin, &ray), .1, .2, .4);
+    assert_rgb_light(reference_trace_ray(&s->twin, &ray), .1, .2, .4);
     w->at[0] = 2e-6;
-    assert_light(twin_see(&s->twin, &ray), 0, 0, 0);
-    close_stage(s);
+    assert_rgb_light(reference_trace_ray(&s->twin, &ray), 0, 0, 0);
+    close_reference(s);
     /* Inside, beyond the critical angle of 41.8 degrees, no light leaves. */
-    assert_light(
-        see_text(GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
-                                      "w\n",
-                 .9, 0, 0, 0, 0, 1),
+    assert_rgb_light(
+        trace_ray_in_text(
+            GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
+                                 "w\n",
+            .9, 0, 0, 0, 0, 1),
         0, 0, 0);
-    assert_light(
-        see_text(GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
-                                      "w\n",
-                 .5, 0, 0, 0, 0, 1),
+    assert_rgb_light(
+        trace_ray_in_text(
+            GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
+                                 "w\n",
+            .5, 0, 0, 0, 0, 1),
         .1, .2, .4);
 }
 
-/* A12: a ball of lower index reflects all light beyond an incidence of 14.48
- * degrees. */
+/* A12: checks that a ball of lower index reflects all light beyond an incidence
+ * of 14.48 degrees. */
 TEST(a12_outside)
 {
     static const char text[] =
@@ -395,35 +403,37 @@ TEST(a12_outside)
         const double a[3] = {4 - x, 0, -5 - z};
         const double along = a[0] * d[0] + a[2] * d[2];
         const double off = fabs(a[0] * d[2] - a[2] * d[0]);
-        const struct twin_pixel p = see_text(text, x, 0, -9, 0, 0, 1);
+        const struct twin_pixel p = trace_ray_in_text(text, x, 0, -9, 0, 0, 1);
 
         const double share = off < .5 && along > 0 ? .5 : 0;
 
         if (fabs(off - .5) > .01)
-            assert_light(p, .2 * share, .4 * share, .8 * share);
+            assert_rgb_light(p, .2 * share, .4 * share, .8 * share);
         seen += share > 0;
     }
     assert_in_range(seen, 20, 180);
 }
 
-/* A13: the corners of a triangle show their texels. Between texel centres
- * light is interpolated linearly; outside the picture the texture repeats. */
+/* A13: checks that the corners of a triangle show their texels. Between texel
+ * centres light is interpolated linearly; outside the picture the texture
+ * repeats. */
 TEST(a13_texture)
 {
     static const char text[] =
         "hand left\ntexture t x\nmaterial w phong 1 0 0 texture t\n"
         "triangle w 0 0 4 1 0 4 0 1 4 uv 0 0 2 0 0 1 material w\n";
 
-    assert_light(see_text(text, .125, .5, 0, 0, 0, 1), 0, 0, 0);
-    assert_light(see_text(text, .375, .5, 0, 0, 0, 1), 1, 1, 1);
-    assert_light(see_text(text, .25, .5, 0, 0, 0, 1), .5, .5, .5);
-    assert_light(see_text(text, .3125, .5, 0, 0, 0, 1), .75, .75, .75);
-    assert_light(see_text(text, .75, .1, 0, 0, 0, 1), .5, .5, .5);
-    assert_light(see_text(text, 0, 0, 0, 0, 0, 1), .5, .5, .5);
+    assert_rgb_light(trace_ray_in_text(text, .125, .5, 0, 0, 0, 1), 0, 0, 0);
+    assert_rgb_light(trace_ray_in_text(text, .375, .5, 0, 0, 0, 1), 1, 1, 1);
+    assert_rgb_light(trace_ray_in_text(text, .25, .5, 0, 0, 0, 1), .5, .5, .5);
+    assert_rgb_light(trace_ray_in_text(text, .3125, .5, 0, 0, 0, 1), .75, .75,
+                     .75);
+    assert_rgb_light(trace_ray_in_text(text, .75, .1, 0, 0, 0, 1), .5, .5, .5);
+    assert_rgb_light(trace_ray_in_text(text, 0, 0, 0, 0, 0, 1), .5, .5, .5);
 }
 
-/* A14: a ray misses a triangle without area, and an object in whose plane it
- * lies. */
+/* A14: checks that a ray misses a triangle without area, and an object in whose
+ * plane it lies. */
 TEST(a14_misses)
 {
     static const struct {
@@ -446,38 +456,40 @@ TEST(a14_misses)
 
         snprintf(text, sizeof text, "hand left\nmaterial m phong 1 0 0\n%s",
                  row[i].text);
-        p = see_text(text, 0, 0, 0, row[i].toward[0], row[i].toward[1],
-                     row[i].toward[2]);
+        p = trace_ray_in_text(text, 0, 0, 0, row[i].toward[0], row[i].toward[1],
+                              row[i].toward[2]);
         if (p.cover != 0)
             fail_msg("%s", row[i].text);
     }
 }
 
-/* A15: a ray finds both intersections with a ball, from outside and from
- * inside; a grazing ray. */
+/* A15: checks that a ray finds both intersections with a ball, from outside and
+ * from inside; a grazing ray. */
 TEST(a15_sphere)
 {
-    struct stage *s = open_text("hand left\nmaterial m phong 1 0 0\n"
+    struct stage *s =
+        open_reference_for_text("hand left\nmaterial m phong 1 0 0\n"
                                 "sphere s at 0 0 5 radius 3 material m\n");
     struct twin_ray ray = make_ray(0, 0, 0, 0, 0, 1);
     struct twin_hit hit;
 
-    assert_true(twin_meet(&s->twin, &ray, 1e9, &hit));
+    assert_true(reference_intersect_scene(&s->twin, &ray, 1e9, &hit));
     assert_true(hit.t == 2 && !hit.inside);
     assert_vec_near(hit.normal, 0, 0, -1, 0);
     ray.from[2] = 4;
-    assert_true(twin_meet(&s->twin, &ray, 1e9, &hit));
+    assert_true(reference_intersect_scene(&s->twin, &ray, 1e9, &hit));
     assert_true(hit.t == 4 && hit.inside);
     assert_vec_near(hit.normal, 0, 0, -1, 0);
     ray = make_ray(3, 0, 0, 0, 0, 1);
-    assert_true(twin_meet(&s->twin, &ray, 1e9, &hit) && hit.t == 5);
+    assert_true(reference_intersect_scene(&s->twin, &ray, 1e9, &hit) &&
+                hit.t == 5);
     ray.from[0] = 3.0000001;
-    assert_false(twin_meet(&s->twin, &ray, 1e9, &hit));
-    close_stage(s);
+    assert_false(reference_intersect_scene(&s->twin, &ray, 1e9, &hit));
+    close_reference(s);
 }
 
-/* A shadow catcher darkens the picture by .6 of the light that does not
- * reach it, and leaves it unchanged where all light arrives. */
+/* Checks that a shadow catcher of strength .6 darkens the picture by .6 of the
+ * light that is occluded, and leaves it unchanged where no light is. */
 TEST(catcher)
 {
     static const char text[] =
@@ -486,13 +498,13 @@ TEST(catcher)
         "plane floor at 0 0 0 normal 0 1 0 catcher .6\n"
         "sphere b at 0 3 0 radius .5 material m\nshadow on\n";
 
-    assert_true(fabs((double)see_text(text, 1, 1, 0, -1, -1, 0).cover - .6) <
-                1e-6);
-    assert_true(see_text(text, 3, 1, 0, 0, -1, 0).cover == 0);
+    assert_true(fabs((double)trace_ray_in_text(text, 1, 1, 0, -1, -1, 0).cover -
+                     .6) < 1e-6);
+    assert_true(trace_ray_in_text(text, 3, 1, 0, 0, -1, 0).cover == 0);
 }
 
-/* Rays through the tree of a closed mesh, whose triangles share edges and
- * corners, hit it like rays that are tested against all triangles. */
+/* Checks that rays intersect a closed mesh by its tree like rays that are
+ * tested against all triangles. Triangles share edges and corners. */
 TEST(tree_matches_brute_force)
 {
     char text[16000] = "hand left\nmaterial m phong 1 0 0\n";
@@ -508,13 +520,13 @@ TEST(tree_matches_brute_force)
                  i, x, y, 4 + rng_signed(&seed), x + 1, y, x,
                  y + rng_signed(&seed));
     }
-    s = open_text(text);
+    s = open_reference_for_text(text);
     /* merge all triangles into one mesh object */
     s->scene.n_objects = 1;
     s->scene.object[0].kind = GLINT_DESCRIBED_MESH;
     s->scene.object[0].n_triangles = 100;
-    twin_close(&s->twin);
-    assert_ok(twin_open(&s->twin, &s->scene));
+    reference_close(&s->twin);
+    assert_ok(reference_open(&s->twin, &s->scene));
     for (int i = 0; i < 2000; i++) {
         const struct twin_ray ray = make_ray(0, 0, 0, .5 * rng_signed(&seed),
                                              .5 * rng_signed(&seed), 1);
@@ -526,23 +538,23 @@ TEST(tree_matches_brute_force)
             const struct glint_described_triangle *tri = &s->scene.triangle[k];
             bool in = true;
 
-            vec_add(tri->place[1], -1, tri->place[0], a);
-            vec_add(tri->place[2], -1, tri->place[0], b);
+            vec_add_scaled(tri->place[1], -1, tri->place[0], a);
+            vec_add_scaled(tri->place[2], -1, tri->place[0], b);
             vec_cross(a, b, n);
             t = vec_dot(tri->place[0], n) / vec_dot(ray.toward, n);
-            vec_add(ray.from, t, ray.toward, at);
+            vec_add_scaled(ray.from, t, ray.toward, at);
             for (int c = 0; c < 3; c++) {
-                vec_add(tri->place[(c + 1) % 3], -1, tri->place[c], a);
-                vec_add(at, -1, tri->place[c], b);
+                vec_add_scaled(tri->place[(c + 1) % 3], -1, tri->place[c], a);
+                vec_add_scaled(at, -1, tri->place[c], b);
                 vec_cross(a, b, away);
                 in = in && vec_dot(away, n) >= 0;
             }
             if (in && t > 0 && t < nearest)
                 nearest = t;
         }
-        if (!twin_meet(&s->twin, &ray, 1e9, &hit))
+        if (!reference_intersect_scene(&s->twin, &ray, 1e9, &hit))
             hit.t = 1e9;
         assert_true(fabs(hit.t - nearest) < 1e-9);
     }
-    close_stage(s);
+    close_reference(s);
 }

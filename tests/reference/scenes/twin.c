@@ -17,8 +17,8 @@ static float decode_srgb(uint8_t code)
     return (float)(x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4));
 }
 
-static enum glint_status open_texels(struct twin_texels *texels,
-                                     const struct glint_image *image)
+static enum glint_status decode_picture_texels(struct twin_texels *texels,
+                                               const struct glint_image *image)
 {
     const size_t n = 3 * (size_t)image->width * (size_t)image->height;
 
@@ -32,8 +32,8 @@ static enum glint_status open_texels(struct twin_texels *texels,
     return GLINT_OK;
 }
 
-enum glint_status twin_open(struct twin *twin,
-                            const struct glint_description *scene)
+enum glint_status reference_open(struct twin *twin,
+                                 const struct glint_description *scene)
 {
     const struct glint_described_environment *from = scene->environment;
     enum glint_status status = GLINT_OK;
@@ -44,21 +44,22 @@ enum glint_status twin_open(struct twin *twin,
         status = glint_environment_open(&twin->around, from->data, from->bytes,
                                         &(const char *){NULL});
     for (int i = 0; status == GLINT_OK && i < scene->n_textures; i++)
-        status = open_texels(&twin->texels[i], &scene->texture[i].image);
+        status =
+            decode_picture_texels(&twin->texels[i], &scene->texture[i].image);
     if (status == GLINT_OK)
-        status = twin_grow(twin);
+        status = reference_build_tree(twin);
     if (status == GLINT_OK)
-        status = twin_open_stones(twin);
+        status = reference_allocate_media_maps(twin);
     if (status != GLINT_OK)
-        twin_close(twin);
+        reference_close(twin);
     return status;
 }
 
-void twin_close(struct twin *twin)
+void reference_close(struct twin *twin)
 {
     for (int i = 0; i < GLINT_DESCRIPTION_MAX_TEXTURES; i++)
         free(twin->texels[i].rgb);
-    twin_close_stones(twin);
+    reference_free_media_maps(twin);
     free(twin->node);
     free(twin->order);
     free(twin->root);
@@ -69,20 +70,20 @@ void twin_close(struct twin *twin)
 
 /* Sets TOWARD to the direction from PLACE to LIGHT, and RGB to the light
  * that a white surface facing it reflects. Returns the distance. */
-static double compute_light(const struct glint_described_light *light,
-                            const double place[3], double toward[3],
-                            double rgb[3])
+static double compute_light_at_place(const struct glint_described_light *light,
+                                     const double place[3], double toward[3],
+                                     double rgb[3])
 {
     double distance = HUGE_VAL, scale;
 
     if (light->kind == GLINT_DESCRIBED_SUN) {
         const double sine = sin(light->radius_deg * GLINT_PI / 180);
 
-        vec_add(light->at, 0, light->at, toward);
+        vec_add_scaled(light->at, 0, light->at, toward);
         scale = sine * sine;
     } else {
-        vec_add(light->at, -1, place, toward);
-        distance = vec_unit(toward);
+        vec_add_scaled(light->at, -1, place, toward);
+        distance = vec_normalise(toward);
         scale = distance > 0 ? 1 / (distance * distance) : 0;
     }
     for (int i = 0; i < 3; i++)
@@ -91,15 +92,16 @@ static double compute_light(const struct glint_described_light *light,
 }
 
 /* Returns the sine of the angular radius of LIGHT seen from PLACE. */
-static double compute_radius(const struct glint_described_light *light,
-                             const double place[3])
+static double
+compute_light_sine_radius(const struct glint_described_light *light,
+                          const double place[3])
 {
     double off[3];
 
-    vec_add(light->at, -1, place, off);
+    vec_add_scaled(light->at, -1, place, off);
     return light->kind == GLINT_DESCRIBED_SUN
                ? sin(light->radius_deg * GLINT_PI / 180)
-               : fmin(light->radius / vec_unit(off), .5);
+               : fmin(light->radius / vec_normalise(off), .5);
 }
 
 /* Points on the disc of a light to which shadow rays are traced; the same as
@@ -117,9 +119,9 @@ static const double sixteen[16][2] = {
 /* Changes TOWARD, the direction to the centre of a light at DISTANCE, to
  * point I of N of its disc. The axes of the disc are those of the run time,
  * whose z points into the picture. */
-static void aim_at_disc(const struct glint_description *scene,
-                        const struct glint_described_light *light,
-                        double toward[3], double distance, int i, int n)
+static void aim_at_light_disc(const struct glint_description *scene,
+                              const struct glint_described_light *light,
+                              double toward[3], double distance, int i, int n)
 {
     const double *at = n == 4 ? four[i] : sixteen[i];
     const bool is_sun = light->kind == GLINT_DESCRIBED_SUN;
@@ -133,21 +135,21 @@ static void aim_at_disc(const struct glint_description *scene,
         return;
     axis[fabs(d[0]) > .5] = 1;
     vec_cross(d, axis, u);
-    vec_unit(u);
+    vec_normalise(u);
     vec_cross(d, u, v);
-    vec_unit(v);
+    vec_normalise(v);
     for (int k = 0; k < 3; k++)
         toward[k] =
             (d[k] + size * (u[k] * at[0] + v[k] * at[1])) * (k == 2 ? hand : 1);
-    vec_unit(toward);
+    vec_normalise(toward);
 }
 
 /* Returns the fraction of the light at DISTANCE that reaches HIT. Objects
  * beyond the light do not occlude it (A10). */
-static double compute_visibility(const struct twin *twin,
-                                 const struct twin_hit *hit,
-                                 const struct glint_described_light *light,
-                                 const double toward[3], double distance)
+static double
+compute_light_visibility(const struct twin *twin, const struct twin_hit *hit,
+                         const struct glint_described_light *light,
+                         const double toward[3], double distance)
 {
     const bool has_extent =
         light->kind == GLINT_DESCRIBED_SUN || light->radius > 0;
@@ -162,22 +164,25 @@ static double compute_visibility(const struct twin *twin,
 
         memcpy(ray.from, hit->place, sizeof ray.from);
         memcpy(ray.toward, toward, sizeof ray.toward);
-        aim_at_disc(twin->scene, light, ray.toward, distance, i, n);
+        aim_at_light_disc(twin->scene, light, ray.toward, distance, i, n);
         reached += vec_dot(hit->normal, ray.toward) > 0 &&
-                   !twin_is_hidden(twin, &ray, distance);
+                   !reference_is_occluded(twin, &ray, distance);
     }
     return (double)reached / n;
 }
 
-double twin_light(const struct twin *twin, const struct twin_hit *hit,
-                  const struct glint_described_light *light, double toward[3],
-                  double rgb[3], double *share)
+double reference_light_at_hit(const struct twin *twin,
+                              const struct twin_hit *hit,
+                              const struct glint_described_light *light,
+                              double toward[3], double rgb[3], double *share)
 {
-    const double distance = compute_light(light, hit->place, toward, rgb);
+    const double distance =
+        compute_light_at_place(light, hit->place, toward, rgb);
     const double facing = vec_dot(hit->shading, toward);
 
-    *share =
-        facing > 0 ? compute_visibility(twin, hit, light, toward, distance) : 0;
+    *share = facing > 0
+                 ? compute_light_visibility(twin, hit, light, toward, distance)
+                 : 0;
     return facing;
 }
 
@@ -194,7 +199,7 @@ static void interpolate_texels(const struct twin_texels *t, const double uv[2],
     for (int k = 0; k < 4; k++) {
         const double share =
             (k & 1 ? x - left : 1 - x + left) * (k & 2 ? y - top : 1 - y + top);
-        /* sides are powers of two; outside, the texture repeats */
+        /* sides are powers of two; the texture repeats outside 0 .. 1 */
         const int i = (int)fmod(left + (k & 1), t->width);
         const int j = (int)fmod(top + (k >> 1), t->height);
         const float *texel =
@@ -207,8 +212,9 @@ static void interpolate_texels(const struct twin_texels *t, const double uv[2],
 }
 
 /* Sets RGB to Phong's terms at HIT, seen along TOWARD (A7, A8). */
-static void compute_phong(const struct twin *twin, const struct twin_hit *hit,
-                          const double toward[3], double rgb[3])
+static void compute_phong_terms(const struct twin *twin,
+                                const struct twin_hit *hit,
+                                const double toward[3], double rgb[3])
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_material *m = &s->material[hit->material];
@@ -220,34 +226,35 @@ static void compute_phong(const struct twin *twin, const struct twin_hit *hit,
         colour[c] *= m->colour[c];
         rgb[c] = m->ambient * colour[c];
     }
-    twin_add_around(twin, hit, toward, colour, rgb);
+    reference_add_environment(twin, hit, toward, colour, rgb);
     for (int i = 0; i < s->n_lights; i++) {
         double l[3], light[3], glint, share, shine = 0;
         const double facing =
-            twin_light(twin, hit, &s->light[i], l, light, &share);
+            reference_light_at_hit(twin, hit, &s->light[i], l, light, &share);
 
         if (facing <= 0)
             continue;
-        /* R.V, where R = 2 (N.L) N - L, and V is opposite to the ray */
+        /* R.V, where R = 2 (N.L) N - L, and V points back along the ray */
         glint = vec_dot(l, toward) - 2 * facing * vec_dot(hit->shading, toward);
         glint = glint > 0 ? pow(glint, m->power) : 0;
         if (m->is_metal)
-            shine = twin_shine(twin, hit, toward, l,
-                               compute_radius(&s->light[i], hit->place));
+            shine = reference_metal_reflection(
+                twin, hit, toward, l,
+                compute_light_sine_radius(&s->light[i], hit->place));
         for (int c = 0; c < 3; c++)
             rgb[c] += share * light[c] *
                       (m->diffuse * facing * colour[c] + m->specular * glint +
                        m->metal[c] * shine);
     }
     if (m->is_stone)
-        twin_add_stone(twin, hit, toward, rgb);
+        reference_add_medium_light(twin, hit, toward, rgb);
 }
 
-/* ------------------------------------------------------------ rays sent on */
+/* -------------------------------------------- transmitted and mirrored rays */
 
-/* Refracts D at a surface by Snell's law (A12). The normal N points back;
- * ETA is the index before / the index behind. Returns false at total
- * reflection. */
+/* Refracts D at a surface by Snell's law (A12). The normal N points to the
+ * ray's origin; ETA is the index before / the index behind. Returns false at
+ * total reflection. */
 static bool refract_direction(const double d[3], const double n[3], double eta,
                               double to[3])
 {
@@ -258,7 +265,7 @@ static bool refract_direction(const double d[3], const double n[3], double eta,
         return false;
     for (int i = 0; i < 3; i++)
         to[i] = eta * d[i] + (eta * cosine - sqrt(rest)) * n[i];
-    vec_unit(to);
+    vec_normalise(to);
     return true;
 }
 
@@ -266,13 +273,13 @@ static bool refract_direction(const double d[3], const double n[3], double eta,
 static void reflect_direction(const double d[3], const double n[3],
                               double to[3])
 {
-    vec_add(d, -2 * vec_dot(d, n), n, to);
+    vec_add_scaled(d, -2 * vec_dot(d, n), n, to);
 }
 
 /* A ray that passes through transparent objects. */
 struct passing {
     struct twin_ray ray;
-    double weight; /* factor on the light of the next object */
+    double weight; /* weight of the light of the next object */
     bool is_bent;  /* true: refraction has changed the ray's direction */
 };
 
@@ -291,24 +298,26 @@ static bool refract_or_reflect(struct twin_ray *ray, const double normal[3],
 
 /* Moves P, which enters a ball at HIT, to the point where it leaves the
  * ball. */
-static void leave_ball(const struct twin *twin, const struct twin_hit *hit,
-                       double index, struct passing *p)
+static void move_to_ball_exit(const struct twin *twin,
+                              const struct twin_hit *hit, double index,
+                              struct passing *p)
 {
     const struct glint_described_object *o = &twin->scene->object[hit->object];
     const double inward = -vec_dot(p->ray.toward, hit->normal);
     double back[3];
 
-    vec_add(hit->place, 2 * inward * o->radius, p->ray.toward, p->ray.from);
-    vec_add(o->at, -1, p->ray.from, back);
-    vec_unit(back);
+    vec_add_scaled(hit->place, 2 * inward * o->radius, p->ray.toward,
+                   p->ray.from);
+    vec_add_scaled(o->at, -1, p->ray.from, back);
+    vec_normalise(back);
     if (index != 1)
         refract_or_reflect(&p->ray, back, index);
 }
 
-/* Moves P through the surface at HIT. In a ball, P continues to the point
- * where it leaves (A11); for other objects each surface counts separately. */
-static void pass_surface(const struct twin *twin, const struct twin_hit *hit,
-                         struct passing *p)
+/* Moves P through the surface at HIT. In a ball, P continues to its exit point
+ * (A11); in other objects each surface is passed separately. */
+static void pass_through_surface(const struct twin *twin,
+                                 const struct twin_hit *hit, struct passing *p)
 {
     const struct glint_described_material *m =
         &twin->scene->material[hit->material];
@@ -324,15 +333,15 @@ static void pass_surface(const struct twin *twin, const struct twin_hit *hit,
     p->ray.skip_triangle = hit->triangle;
     if (twin->scene->object[hit->object].kind != GLINT_DESCRIBED_SPHERE)
         return;
-    if (is_mirrored && hit->inside) /* light that is totally reflected inside a
-                                       ball never leaves it */
+    /* light that is totally reflected inside a ball never leaves the ball */
+    if (is_mirrored && hit->inside)
         p->weight = 0;
     else if (!is_mirrored && !hit->inside)
-        leave_ball(twin, hit, m->index, p);
+        move_to_ball_exit(twin, hit, m->index, p);
 }
 
-static void add_light(struct twin_pixel *pixel, double share,
-                      const double rgb[3])
+static void add_light_source(struct twin_pixel *pixel, double share,
+                             const double rgb[3])
 {
     for (int c = 0; c < 3; c++)
         pixel->rgb[c] += (float)(share * rgb[c]);
@@ -340,8 +349,10 @@ static void add_light(struct twin_pixel *pixel, double share,
 
 /* Adds the mirrored light at HIT. Mirrors do not show the picture behind the
  * scene, as it does not contain the mirrored direction. */
-static void add_mirrored(const struct twin *twin, const struct twin_ray *ray,
-                         const struct twin_hit *hit, struct twin_pixel *pixel)
+static void add_mirrored_light(const struct twin *twin,
+                               const struct twin_ray *ray,
+                               const struct twin_hit *hit,
+                               struct twin_pixel *pixel)
 {
     struct twin_ray next = {.skip_object = hit->object,
                             .skip_triangle = hit->triangle};
@@ -350,20 +361,23 @@ static void add_mirrored(const struct twin *twin, const struct twin_ray *ray,
 
     memcpy(next.from, hit->place, sizeof next.from);
     reflect_direction(ray->toward, hit->shading, next.toward);
-    if (twin_meet(twin, &next, HUGE_VAL, &met))
-        compute_phong(twin, &met, next.toward, rgb);
+    if (reference_intersect_scene(twin, &next, HUGE_VAL, &met))
+        compute_phong_terms(twin, &met, next.toward, rgb);
     else
-        twin_behind(twin, next.toward,
-                    twin->pixel_tan * twin->pixel_tan / 4 +
-                        2 * twin_spread(twin, hit, ray->toward),
-                    rgb);
-    add_light(pixel, twin->scene->material[hit->material].reflect, rgb);
+        reference_background_light(
+            twin, next.toward,
+            twin->pixel_tan * twin->pixel_tan / 4 +
+                2 * reference_widening_of_alpha(twin, hit, ray->toward),
+            rgb);
+    add_light_source(pixel, twin->scene->material[hit->material].reflect, rgb);
 }
 
-/* Adds light that is visible through HIT: at most eight surfaces behind each
- * other. */
-static void add_behind(const struct twin *twin, const struct twin_ray *ray,
-                       const struct twin_hit *hit, struct twin_pixel *pixel)
+/* Adds the light that the transparent surface at HIT transmits, through at most
+ * eight surfaces. */
+static void add_transmitted_light(const struct twin *twin,
+                                  const struct twin_ray *ray,
+                                  const struct twin_hit *hit,
+                                  struct twin_pixel *pixel)
 {
     const struct glint_description *s = twin->scene;
     struct passing p = {*ray, 1, false};
@@ -372,17 +386,17 @@ static void add_behind(const struct twin *twin, const struct twin_ray *ray,
     for (int i = 0; i < 8 && s->material[at.material].pass > 0; i++) {
         double rgb[3];
 
-        pass_surface(twin, &at, &p);
-        if (!twin_meet(twin, &p.ray, HUGE_VAL, &at)) {
+        pass_through_surface(twin, &at, &p);
+        if (!reference_intersect_scene(twin, &p.ray, HUGE_VAL, &at)) {
             if (s->background == GLINT_BEHIND_CAMERA && !p.is_bent)
                 pixel->cover -= (float)p.weight;
-            twin_behind(twin, p.ray.toward,
-                        twin->pixel_tan * twin->pixel_tan / 4, rgb);
-            add_light(pixel, p.weight, rgb);
+            reference_background_light(
+                twin, p.ray.toward, twin->pixel_tan * twin->pixel_tan / 4, rgb);
+            add_light_source(pixel, p.weight, rgb);
             return;
         }
-        compute_phong(twin, &at, p.ray.toward, rgb);
-        add_light(pixel, p.weight, rgb);
+        compute_phong_terms(twin, &at, p.ray.toward, rgb);
+        add_light_source(pixel, p.weight, rgb);
     }
 }
 
@@ -390,67 +404,70 @@ static void add_behind(const struct twin *twin, const struct twin_ray *ray,
 
 /* Returns the fraction of the light that objects occlude at HIT, on a shadow
  * catcher. */
-static double compute_shadow(const struct twin *twin,
-                             const struct twin_hit *hit)
+static double compute_catcher_shadow(const struct twin *twin,
+                                     const struct twin_hit *hit)
 {
     const struct glint_description *s = twin->scene;
     double all = 0, hidden = 0;
 
     for (int i = 0; i < s->n_lights; i++) {
         double l[3], rgb[3], light;
-        const double distance = compute_light(&s->light[i], hit->place, l, rgb);
+        const double distance =
+            compute_light_at_place(&s->light[i], hit->place, l, rgb);
 
         light =
             fmax(0, vec_dot(hit->normal, l)) * (rgb[0] + 2 * rgb[1] + rgb[2]);
         all += light;
         if (light > 0)
-            hidden += light * (1 - compute_visibility(twin, hit, &s->light[i],
-                                                      l, distance));
+            hidden += light * (1 - compute_light_visibility(
+                                       twin, hit, &s->light[i], l, distance));
     }
     return all > 0 ? hidden / all : 0;
 }
 
 /* Finds the first object that RAY hits, including shadow catchers. */
-static bool find_first(const struct twin *twin, const struct twin_ray *ray,
-                       struct twin_hit *hit)
+static bool find_first_object(const struct twin *twin,
+                              const struct twin_ray *ray, struct twin_hit *hit)
 {
-    bool is_met = twin_meet(twin, ray, HUGE_VAL, hit);
+    bool is_met = reference_intersect_scene(twin, ray, HUGE_VAL, hit);
     struct twin_hit on;
 
     for (int i = 0; i < twin->scene->n_objects; i++)
         if (twin->scene->object[i].catcher > 0 &&
-            twin_meet_object(twin, i, ray, is_met ? hit->t : HUGE_VAL, &on)) {
+            reference_intersect_object(twin, i, ray, is_met ? hit->t : HUGE_VAL,
+                                       &on)) {
             *hit = on;
             is_met = true;
         }
     return is_met;
 }
 
-struct twin_pixel twin_see(const struct twin *twin, const struct twin_ray *ray)
+struct twin_pixel reference_trace_ray(const struct twin *twin,
+                                      const struct twin_ray *ray)
 {
     const struct glint_description *s = twin->scene;
     struct twin_pixel pixel = {{0, 0, 0}, 1};
     struct twin_hit hit;
     double rgb[3];
 
-    if (!find_first(twin, ray, &hit)) {
+    if (!find_first_object(twin, ray, &hit)) {
         pixel.cover = s->background != GLINT_BEHIND_CAMERA;
-        twin_behind(twin, ray->toward, twin->pixel_tan * twin->pixel_tan / 4,
-                    rgb);
-        add_light(&pixel, 1, rgb);
+        reference_background_light(twin, ray->toward,
+                                   twin->pixel_tan * twin->pixel_tan / 4, rgb);
+        add_light_source(&pixel, 1, rgb);
         return pixel;
     }
     if (s->object[hit.object].catcher > 0) {
-        pixel.cover =
-            (float)(s->object[hit.object].catcher * compute_shadow(twin, &hit));
+        pixel.cover = (float)(s->object[hit.object].catcher *
+                              compute_catcher_shadow(twin, &hit));
         return pixel;
     }
-    compute_phong(twin, &hit, ray->toward, rgb);
-    add_light(&pixel, 1, rgb);
+    compute_phong_terms(twin, &hit, ray->toward, rgb);
+    add_light_source(&pixel, 1, rgb);
     if (s->material[hit.material].reflect > 0)
-        add_mirrored(twin, ray, &hit, &pixel);
+        add_mirrored_light(twin, ray, &hit, &pixel);
     if (s->material[hit.material].pass > 0)
-        add_behind(twin, ray, &hit, &pixel);
+        add_transmitted_light(twin, ray, &hit, &pixel);
     return pixel;
 }
 
@@ -462,11 +479,11 @@ struct drawing {
     struct twin_pixel *pixels;
 };
 
-static void draw_row(void *ctx, int y, int worker)
+static void render_row(void *ctx, int y, int worker)
 {
     const struct drawing *d = ctx;
     const int n = d->view->samples;
-    /* with GLINT_DESCRIBED_CORNERS rays pass through the corners of pixels */
+    /* for GLINT_DESCRIBED_CORNERS, rays pass through pixel corners */
     const double first =
         d->twin->scene->camera.field == GLINT_DESCRIBED_CORNERS ? -0.5 : 0;
 
@@ -479,9 +496,10 @@ static void draw_row(void *ctx, int y, int worker)
             struct twin_ray ray;
             const int row = k / n;
 
-            twin_camera_ray(d->twin, d->view, x + first + (k % n + 0.5) / n,
-                            y + first + (row + 0.5) / n, &ray);
-            one = twin_see(d->twin, &ray);
+            reference_make_camera_ray(d->twin, d->view,
+                                      x + first + (k % n + 0.5) / n,
+                                      y + first + (row + 0.5) / n, &ray);
+            one = reference_trace_ray(d->twin, &ray);
             for (int c = 0; c < 3; c++)
                 sum.rgb[c] += one.rgb[c] / (float)(n * n);
             sum.cover += one.cover / (float)(n * n);
@@ -490,25 +508,28 @@ static void draw_row(void *ctx, int y, int worker)
     }
 }
 
-void twin_aim(struct twin *twin, const struct twin_view *view)
+void reference_aim_camera(struct twin *twin, const struct twin_view *view)
 {
     struct twin_ray middle, beside;
     double off[3];
 
-    twin_camera_ray(twin, view, view->width / 2., view->height / 2., &middle);
-    twin_camera_ray(twin, view, view->width / 2. + 1, view->height / 2.,
-                    &beside);
-    vec_add(beside.toward, -1, middle.toward, off);
-    twin->pixel_tan = vec_unit(off);
-    twin_fill_maps(twin);
+    reference_make_camera_ray(twin, view, view->width / 2., view->height / 2.,
+                              &middle);
+    reference_make_camera_ray(twin, view, view->width / 2. + 1,
+                              view->height / 2., &beside);
+    vec_add_scaled(beside.toward, -1, middle.toward, off);
+    twin->pixel_tan = vec_normalise(off);
+    reference_compute_media_maps(twin);
 }
 
-void twin_render(const struct twin *twin, const struct twin_view *view,
-                 struct glint_workers *workers, struct twin_pixel *pixels)
+void reference_render_image(const struct twin *twin,
+                            const struct twin_view *view,
+                            struct glint_workers *workers,
+                            struct twin_pixel *pixels)
 {
     struct twin seen = *twin;
     struct drawing drawing = {&seen, view, pixels};
 
-    twin_aim(&seen, view);
-    glint_workers_run(workers, view->height, draw_row, &drawing);
+    reference_aim_camera(&seen, view);
+    glint_workers_run(workers, view->height, render_row, &drawing);
 }

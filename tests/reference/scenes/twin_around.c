@@ -20,8 +20,8 @@
 
 /* ------------------------------------------------------------------ lookups */
 
-static double decode_9e5(const struct glint_environment *e, uint32_t word,
-                         int c)
+static double decode_rgb9e5(const struct glint_environment *e, uint32_t word,
+                            int c)
 {
     return ldexp(word >> (9 * c) & 511,
                  (int)(word >> 27) - 12 + e->header->unit_log2);
@@ -30,12 +30,12 @@ static double decode_9e5(const struct glint_environment *e, uint32_t word,
 static double decode_texel(const struct glint_environment *e, int level, int i,
                            int c)
 {
-    return decode_9e5(e, ((const uint32_t *)e->texel[level])[i], c);
+    return decode_rgb9e5(e, ((const uint32_t *)e->texel[level])[i], c);
 }
 
 /* Sets PLACE to the position of TOWARD in the octahedron map, each
  * coordinate 0 .. 1. */
-static void compute_place(const double toward[3], double place[2])
+static void compute_octahedron_position(const double toward[3], double place[2])
 {
     const double sum = fabs(toward[0]) + fabs(toward[1]) + fabs(toward[2]);
     double p = fabs(toward[0]) / sum, q = fabs(toward[2]) / sum;
@@ -52,7 +52,7 @@ static void compute_place(const double toward[3], double place[2])
 
 /* Returns the index of texel (X, Y) of a square of SIDE texels. Texels
  * outside the square are replaced by their neighbours on the octahedron. */
-static int wrap_index(int x, int y, int side)
+static int wrap_texel_index(int x, int y, int side)
 {
     if (x < 0 || x >= side) {
         x = x < 0 ? 0 : side - 1;
@@ -74,18 +74,19 @@ static void interpolate_level(const struct glint_environment *e, int level,
                                      : (int)e->level[level].side_log2);
     double place[2], x, y;
 
-    compute_place(toward, place);
+    compute_octahedron_position(toward, place);
     x = place[0] * side - .5;
     y = place[1] * side - .5;
     rgb[0] = rgb[1] = rgb[2] = 0;
     for (int k = 0; k < 4; k++) {
         const int i = (int)floor(x) + (k & 1), j = (int)floor(y) + (k >> 1);
         const double share = (1 - fabs(x - i)) * (1 - fabs(y - j));
-        const int at = wrap_index(i, j, side);
+        const int at = wrap_texel_index(i, j, side);
 
         for (int c = 0; c < 3; c++)
-            rgb[c] += share * (level < 0 ? decode_9e5(e, e->irradiance[at], c)
-                                         : decode_texel(e, level, at, c));
+            rgb[c] +=
+                share * (level < 0 ? decode_rgb9e5(e, e->irradiance[at], c)
+                                   : decode_texel(e, level, at, c));
     }
 }
 
@@ -126,8 +127,8 @@ static void rotate_to_environment(const struct twin *twin, const double v[3],
 
 /* Returns the curvature of the normals at HIT, radians per unit of the
  * scene. */
-static double compute_curvature(const struct twin *twin,
-                                const struct twin_hit *hit)
+static double compute_normal_curvature(const struct twin *twin,
+                                       const struct twin_hit *hit)
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_object *o = &s->object[hit->object];
@@ -142,26 +143,27 @@ static double compute_curvature(const struct twin *twin,
     for (int k = 0; t->has_normals && k < 3; k++) {
         double way[3], bend[3];
 
-        vec_add(t->place[k], -1, t->place[(k + 1) % 3], way);
-        vec_add(t->normal[k], -1, t->normal[(k + 1) % 3], bend);
-        most = fmax(most, vec_unit(bend) / vec_unit(way));
+        vec_add_scaled(t->place[k], -1, t->place[(k + 1) % 3], way);
+        vec_add_scaled(t->normal[k], -1, t->normal[(k + 1) % 3], bend);
+        most = fmax(most, vec_normalise(bend) / vec_normalise(way));
     }
     return most;
 }
 
-double twin_spread(const struct twin *twin, const struct twin_hit *hit,
-                   const double toward[3])
+double reference_widening_of_alpha(const struct twin *twin,
+                                   const struct twin_hit *hit,
+                                   const double toward[3])
 {
     const double no = fmax(-vec_dot(hit->shading, toward), LEAST_COSINE);
     const double bend =
-        fmin(compute_curvature(twin, hit) * hit->t * twin->pixel_tan, 1);
+        fmin(compute_normal_curvature(twin, hit) * hit->t * twin->pixel_tan, 1);
     const double turns = fmin(bend / no + twin->pixel_tan, 1);
 
     return turns * turns / 2;
 }
 
-void twin_lie(const struct twin *twin, const struct twin_hit *hit,
-              double frame[3][3])
+void reference_metal_frame(const struct twin *twin, const struct twin_hit *hit,
+                           double frame[3][3])
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_object *o = &s->object[hit->object];
@@ -176,9 +178,9 @@ void twin_lie(const struct twin *twin, const struct twin_hit *hit,
             double upright[4];
 
             glint_described_upright(o->normal, upright);
-            vec_turn(upright, 1, axis[k], own);
+            vec_rotate(upright, 1, axis[k], own);
         }
-        vec_turn(o->turn, 1, own, axis[k]);
+        vec_rotate(o->turn, 1, own, axis[k]);
         axis[k][2] *= hand;
     }
     memcpy(frame[2], hit->shading, sizeof frame[2]);
@@ -188,14 +190,14 @@ void twin_lie(const struct twin *twin, const struct twin_hit *hit,
         vec_cross(frame[2], axis[0], frame[1]);
         vec_cross(frame[1], frame[2], frame[0]);
     }
-    vec_unit(frame[0]);
+    vec_normalise(frame[0]);
     vec_cross(frame[2], frame[0], frame[1]);
 }
 
-/* Returns the weight of a direction by the material's norm, before division
- * by the density of the lobe. */
-static double compute_weight(const struct glint_described_material *m,
-                             double ho, double hn, double ni, double no)
+/* Returns the factor of a direction that the norm of the material's lobe gives,
+ * before division by the sampling density. */
+static double compute_lobe_weight(const struct glint_described_material *m,
+                                  double ho, double hn, double ni, double no)
 {
     const double weight = m->norm == GLINT_DESCRIBED_1992
                               ? ho * hn * hn * hn * sqrt(ni / no)
@@ -204,21 +206,23 @@ static double compute_weight(const struct glint_described_material *m,
     return fmin(weight, MOST_WEIGHT);
 }
 
-double twin_shine(const struct twin *twin, const struct twin_hit *hit,
-                  const double toward[3], const double to_light[3],
-                  double radius)
+double reference_metal_reflection(const struct twin *twin,
+                                  const struct twin_hit *hit,
+                                  const double toward[3],
+                                  const double to_light[3], double radius)
 {
     const struct glint_described_material *m =
         &twin->scene->material[hit->material];
-    const double wider = radius * radius / 8 + twin_spread(twin, hit, toward);
+    const double wider =
+        radius * radius / 8 + reference_widening_of_alpha(twin, hit, toward);
     const double hand = twin->scene->left_handed ? 1 : -1;
     const double i[3] = {to_light[0], to_light[1], hand * to_light[2]};
     const double o[3] = {-toward[0], -toward[1], -hand * toward[2]};
     double frame[3][3], h[3], hn, ni, no, slope = 0, area = 4;
 
-    twin_lie(twin, hit, frame);
-    vec_add(i, 1, o, h);
-    vec_unit(h);
+    reference_metal_frame(twin, hit, frame);
+    vec_add_scaled(i, 1, o, h);
+    vec_normalise(h);
     hn = vec_dot(h, frame[2]);
     ni = vec_dot(i, frame[2]);
     no = vec_dot(o, frame[2]);
@@ -233,12 +237,13 @@ double twin_shine(const struct twin *twin, const struct twin_hit *hit,
     }
     if (slope > MOST_SLOPE)
         return 0;
-    return exp(-slope) * compute_weight(m, vec_dot(h, o), hn, ni, no) /
+    return exp(-slope) * compute_lobe_weight(m, vec_dot(h, o), hn, ni, no) /
            (area * vec_dot(h, o) * hn * hn * hn);
 }
 
-/* Returns the footprint factor of N samples, as in scene/ward/ward_lobe.c. */
-static double compute_footprint(int n)
+/* Returns the footprint factor of N samples, as in
+ * scene/ward/ward_lobe.c. */
+static double compute_footprint_factor(int n)
 {
     static const int at[5] = {1, 4, 8, 16, 32};
     static const double kappa[5] = {1, 1.4, 2, 2, 3};
@@ -264,8 +269,8 @@ static double radical_inverse(unsigned i, int n)
 
 /* Draws N slopes for alpha 1 whose mean squares along both axes are SPREAD /
  * 2. */
-static void draw_slopes(int n, const double spread[2],
-                        double slope[GLINT_WARD_SAMPLES][2])
+static void draw_lobe_slopes(int n, const double spread[2],
+                             double slope[GLINT_WARD_SAMPLES][2])
 {
     for (int k = 0; k < n; k++) {
         const double v = radical_inverse((unsigned)k, 5);
@@ -288,25 +293,25 @@ static void draw_slopes(int n, const double spread[2],
     }
 }
 
-/* Adds the light of one of N samples, with slope SLOPE, from LEVEL corrected
- * by the angle to the eye. */
-static void add_sample(const struct twin *twin, const double slope[2],
-                       const struct glint_described_material *m,
-                       const double frame[3][3], const double out[3],
-                       double level, double rgb[3])
+/* Adds the light of one of N lobe samples, with half-vector slope SLOPE, from
+ * mipmap LEVEL, corrected by the angle between half vector and view. */
+static void add_lobe_sample(const struct twin *twin, const double slope[2],
+                            const struct glint_described_material *m,
+                            const double frame[3][3], const double out[3],
+                            double level, double rgb[3])
 {
     double h[3] = {m->alpha[0] * slope[0], m->alpha[1] * slope[1], 1};
     double in[3], toward[3] = {0, 0, 0}, light[3], ho, weight;
 
-    vec_unit(h);
+    vec_normalise(h);
     ho = vec_dot(h, out);
     for (int k = 0; k < 3; k++)
         in[k] = 2 * ho * h[k] - out[k];
     if (ho <= 0 || in[2] <= 0)
         return;
-    weight = compute_weight(m, ho, h[2], fmin(in[2], 1), out[2]);
+    weight = compute_lobe_weight(m, ho, h[2], fmin(in[2], 1), out[2]);
     for (int k = 0; k < 3; k++)
-        vec_add(toward, in[k], frame[k], toward);
+        vec_add_scaled(toward, in[k], frame[k], toward);
     interpolate_levels(&twin->around, toward, level + .5 * log2(ho), light);
     for (int c = 0; c < 3; c++)
         rgb[c] += weight * light[c];
@@ -314,10 +319,10 @@ static void add_sample(const struct twin *twin, const double slope[2],
 
 /* Adds N samples of the whole lobe from the finest level. The direction
  * TOWARD shifts the samples, so that rays of one pixel use different ones. */
-static void add_lobe(const struct twin *twin, const double toward[3],
-                     const struct glint_described_material *m,
-                     const double frame[3][3], const double out[3],
-                     double rgb[3])
+static void add_lobe_by_samples(const struct twin *twin, const double toward[3],
+                                const struct glint_described_material *m,
+                                const double frame[3][3], const double out[3],
+                                double rgb[3])
 {
     const int n = twin->ward_samples;
     const double off[2] = {fmod(fabs(toward[0]) * 7919.17, 1),
@@ -330,12 +335,13 @@ static void add_lobe(const struct twin *twin, const double toward[3],
         const double slope[2] = {r * cos(2 * GLINT_PI * v),
                                  r * sin(2 * GLINT_PI * v)};
 
-        add_sample(twin, slope, m, frame, out, 0, rgb);
+        add_lobe_sample(twin, slope, m, frame, out, 0, rgb);
     }
 }
 
-static void add_metal(const struct twin *twin, const struct twin_hit *hit,
-                      const double toward[3], double rgb[3])
+static void add_metal_reflection(const struct twin *twin,
+                                 const struct twin_hit *hit,
+                                 const double toward[3], double rgb[3])
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_material *m = &s->material[hit->material];
@@ -346,35 +352,37 @@ static void add_metal(const struct twin *twin, const struct twin_hit *hit,
     double frame[3][3] = {{0}}, out[3] = {0};
     double sum[3] = {0, 0, 0};
     const bool is_whole = n > GLINT_WARD_SAMPLES;
-    const double f = compute_footprint(is_whole ? GLINT_WARD_SAMPLES : n);
+    const double f =
+        compute_footprint_factor(is_whole ? GLINT_WARD_SAMPLES : n);
     const double blur = fmin(f * a * b, .75 * fmin(a * a, b * b));
     const double spread[2] = {(1 - f + fmax(1 - blur / (a * a), 0)) / 2,
                               (1 - f + fmax(1 - blur / (b * b), 0)) / 2};
     const double back[3] = {-toward[0], -toward[1], -hand * toward[2]};
 
     if (!is_whole)
-        draw_slopes(n, spread, slope);
+        draw_lobe_slopes(n, spread, slope);
     level = log2(2 * sqrt(2 * blur) / sqrt(4 * GLINT_PI) *
                  (1 << twin->around.header->side_log2));
-    twin_lie(twin, hit, frame);
+    reference_metal_frame(twin, hit, frame);
     for (int k = 0; k < 3; k++) {
         out[k] = vec_dot(frame[k], back);
-        frame[k][2] *= hand; /* in the axes of the text */
+        frame[k][2] *= hand; /* to the axes of the scene text */
         rotate_to_environment(twin, frame[k], frame[k]);
     }
     if (is_whole && out[2] > 0)
-        add_lobe(twin, toward, m, (const double(*)[3])frame, out, sum);
+        add_lobe_by_samples(twin, toward, m, (const double(*)[3])frame, out,
+                            sum);
     for (int k = 0; !is_whole && k < n && out[2] > 0; k++)
-        add_sample(twin, slope[k], m, (const double(*)[3])frame, out, level,
-                   sum);
+        add_lobe_sample(twin, slope[k], m, (const double(*)[3])frame, out,
+                        level, sum);
     for (int c = 0; c < 3; c++)
         rgb[c] += s->environment[0].scale * m->metal[c] * sum[c] / n;
 }
 
 /* -------------------------------------------------------------------- whole */
 
-void twin_irradiance(const struct twin *twin, const double shading[3],
-                     double rgb[3])
+void reference_irradiance(const struct twin *twin, const double shading[3],
+                          double rgb[3])
 {
     const struct glint_description *s = twin->scene;
     double normal[3], light[3];
@@ -387,9 +395,10 @@ void twin_irradiance(const struct twin *twin, const double shading[3],
         rgb[c] += s->environment[0].scale * light[c];
 }
 
-void twin_add_around(const struct twin *twin, const struct twin_hit *hit,
-                     const double toward[3], const double colour[3],
-                     double rgb[3])
+void reference_add_environment(const struct twin *twin,
+                               const struct twin_hit *hit,
+                               const double toward[3], const double colour[3],
+                               double rgb[3])
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_material *m = &s->material[hit->material];
@@ -397,15 +406,15 @@ void twin_add_around(const struct twin *twin, const struct twin_hit *hit,
 
     if (!s->n_environments)
         return;
-    twin_irradiance(twin, hit->shading, light);
+    reference_irradiance(twin, hit->shading, light);
     for (int c = 0; c < 3; c++)
         rgb[c] += m->diffuse * colour[c] * light[c];
     if (m->is_metal)
-        add_metal(twin, hit, toward, rgb);
+        add_metal_reflection(twin, hit, toward, rgb);
 }
 
-void twin_behind(const struct twin *twin, const double toward[3], double spread,
-                 double rgb[3])
+void reference_background_light(const struct twin *twin, const double toward[3],
+                                double spread, double rgb[3])
 {
     const struct glint_description *s = twin->scene;
     const struct glint_environment *e = &twin->around;
@@ -427,7 +436,7 @@ void twin_behind(const struct twin *twin, const double toward[3], double spread,
 
         for (int k = 0; k < 3; k++)
             off[k] = to[k] - e->light[i].toward_q30[k] * 0x1p-30;
-        share = fmin(fmax((r - vec_unit(off)) / width + .5, 0), 1);
+        share = fmin(fmax((r - vec_normalise(off)) / width + .5, 0), 1);
         for (int c = 0; c < 3; c++)
             rgb[c] += share * glint_real_value(e->light[i].rgb[c]) / (r * r);
     }

@@ -10,35 +10,38 @@
 
 /* Adds the irradiance of a white surface with normal SHADING under the
  * environment to RGB. */
-void twin_irradiance(const struct twin *twin, const double shading[3],
-                     double rgb[3]);
+void reference_irradiance(const struct twin *twin, const double shading[3],
+                          double rgb[3]);
 
 /* Adds the environment's light that HIT, of diffuse COLOUR, reflects towards
  * the origin of a ray along TOWARD. */
-void twin_add_around(const struct twin *twin, const struct twin_hit *hit,
-                     const double toward[3], const double colour[3],
-                     double rgb[3]);
+void reference_add_environment(const struct twin *twin,
+                               const struct twin_hit *hit,
+                               const double toward[3], const double colour[3],
+                               double rgb[3]);
 
 /* Returns the light that metal at HIT reflects, before multiplication by its
  * colour, from a light in direction TO_LIGHT whose angular radius has the
  * sine RADIUS, and that a white surface would reflect with 1. */
-double twin_shine(const struct twin *twin, const struct twin_hit *hit,
-                  const double toward[3], const double to_light[3],
-                  double radius);
+double reference_metal_reflection(const struct twin *twin,
+                                  const struct twin_hit *hit,
+                                  const double toward[3],
+                                  const double to_light[3], double radius);
 
-/* Returns the increase of squared alphas that represents the change of the
- * normal within a pixel. */
-double twin_spread(const struct twin *twin, const struct twin_hit *hit,
-                   const double toward[3]);
+/* Returns the amount added to the squared alphas of the lobe to represent the
+ * change of the normal within a pixel. */
+double reference_widening_of_alpha(const struct twin *twin,
+                                   const struct twin_hit *hit,
+                                   const double toward[3]);
 
 /* Sets FRAME to tangent, bitangent and normal of metal at HIT, in the axes
  * of baked scenes. */
-void twin_lie(const struct twin *twin, const struct twin_hit *hit,
-              double frame[3][3]);
+void reference_metal_frame(const struct twin *twin, const struct twin_hit *hit,
+                           double frame[3][3]);
 
 /* Sets RGB to the mean light of the background in direction TOWARD over a
  * spot with the angular variance SPREAD. */
-void twin_behind(const struct twin *twin, const double toward[3], double spread,
-                 double rgb[3]);
+void reference_background_light(const struct twin *twin, const double toward[3],
+                                double spread, double rgb[3]);
 
 #endif

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #define SIDE 8
-#define NEAR 12 /* pixels: highlights nearer than this are merged */
+#define NEAR 12 /* merge distance of highlights, pixels */
 
 /* Sums over a square of pixels, or over a highlight: light, light times
  * position, light times squared position. */
@@ -25,7 +25,7 @@ struct squares {
     struct square *of; /* [down][across] */
 };
 
-static void add_sums(struct sums *to, const struct sums *from)
+static void add_highlight_sums(struct sums *to, const struct sums *from)
 {
     to->flux += from->flux;
     to->square += from->square;
@@ -36,19 +36,19 @@ static void add_sums(struct sums *to, const struct sums *from)
         to->rgb[c] += from->rgb[c];
 }
 
-/* Adds the light of objects that RAY sees. RAY counts with weight SHARE of
- * pixel (X, Y). */
-static void add_ray(const struct twin *twin, const struct twin_ray *ray, int x,
-                    int y, double share, struct sums *to)
+/* Adds the light of the object that RAY hits, with weight SHARE, to pixel (X,
+ * Y). */
+static void add_ray_light(const struct twin *twin, const struct twin_ray *ray,
+                          int x, int y, double share, struct sums *to)
 {
     const double at[2] = {x + .5, y + .5};
     struct twin_pixel seen;
     struct twin_hit hit;
     double light, weight;
 
-    if (!twin_meet(twin, ray, HUGE_VAL, &hit))
+    if (!reference_intersect_scene(twin, ray, HUGE_VAL, &hit))
         return;
-    seen = twin_see(twin, ray);
+    seen = reference_trace_ray(twin, ray);
     light = .2126 * (double)seen.rgb[0] + .7152 * (double)seen.rgb[1] +
             .0722 * (double)seen.rgb[2];
     weight = share * fmax(0, fmin(light - 1, 1));
@@ -61,8 +61,9 @@ static void add_ray(const struct twin *twin, const struct twin_ray *ray, int x,
         to->rgb[c] += weight * (double)seen.rgb[c];
 }
 
-static void sum_squares(const struct twin *twin, const struct twin_view *view,
-                        struct squares *q)
+static void sum_light_of_squares(const struct twin *twin,
+                                 const struct twin_view *view,
+                                 struct squares *q)
 {
     const int n = view->samples;
 
@@ -74,14 +75,15 @@ static void sum_squares(const struct twin *twin, const struct twin_view *view,
                 const double v = y + (down + .5) / n;
                 struct twin_ray ray;
 
-                twin_camera_ray(twin, view, u, v, &ray);
-                add_ray(twin, &ray, x, y, 1. / n / n,
-                        &q->of[y / SIDE * q->across + x / SIDE].sums);
+                reference_make_camera_ray(twin, view, u, v, &ray);
+                add_ray_light(twin, &ray, x, y, 1. / n / n,
+                              &q->of[y / SIDE * q->across + x / SIDE].sums);
             }
 }
 
-/* Adds square (X, Y), and all squares connected to it, to TO. */
-static void flood_fill(struct squares *q, int x, int y, struct sums *to)
+/* Adds the sums of square (X, Y), and of all bright squares connected to it, to
+ * TO. */
+static void flood_fill_squares(struct squares *q, int x, int y, struct sums *to)
 {
     struct square *s;
 
@@ -91,18 +93,18 @@ static void flood_fill(struct squares *q, int x, int y, struct sums *to)
     if (s->is_taken || !(s->sums.flux > 0))
         return;
     s->is_taken = true;
-    add_sums(to, &s->sums);
+    add_highlight_sums(to, &s->sums);
     for (int k = 0; k < 9; k++)
-        flood_fill(q, x + k % 3 - 1, y + k / 3 - 1, to);
+        flood_fill_squares(q, x + k % 3 - 1, y + k / 3 - 1, to);
 }
 
-static bool is_near(const struct sums *a, const struct sums *b)
+static bool are_highlights_near(const struct sums *a, const struct sums *b)
 {
     return hypot(a->at[0] / a->flux - b->at[0] / b->flux,
                  a->at[1] / a->flux - b->at[1] / b->flux) < NEAR;
 }
 
-static int compare_flux(const void *a, const void *b)
+static int compare_highlight_flux(const void *a, const void *b)
 {
     const double p = ((const struct sums *)a)->flux;
     const double q = ((const struct sums *)b)->flux;
@@ -110,22 +112,22 @@ static int compare_flux(const void *a, const void *b)
     return p < q ? 1 : p > q ? -1 : 0;
 }
 
-/* Merges those of S[N] that are near each other into the brighter one. S is
- * sorted by descending brightness. Returns the new number. */
-static int merge_near(struct sums *s, int n)
+/* Merges highlights of S[N] that are nearer than NEAR into the brighter one. S
+ * is sorted by descending brightness. Returns the new number. */
+static int merge_near_highlights(struct sums *s, int n)
 {
     for (int i = 0; i < n; i++)
         for (int k = i + 1; k < n; k++)
-            if (is_near(&s[i], &s[k])) {
-                add_sums(&s[i], &s[k]);
+            if (are_highlights_near(&s[i], &s[k])) {
+                add_highlight_sums(&s[i], &s[k]);
                 s[k] = s[n - 1];
-                qsort(s, (size_t)(n - 1), sizeof *s, compare_flux);
-                return merge_near(s, n - 1);
+                qsort(s, (size_t)(n - 1), sizeof *s, compare_highlight_flux);
+                return merge_near_highlights(s, n - 1);
             }
     return n;
 }
 
-static struct twin_highlight make_highlight(const struct sums *s)
+static struct twin_highlight make_highlight_from_sums(const struct sums *s)
 {
     struct twin_highlight h = {
         s->at[0] / s->flux, s->at[1] / s->flux, s->flux, {0}, 0, s->n};
@@ -145,21 +147,22 @@ static int find_highlights(struct squares *q, struct twin_highlight *found)
         for (int x = 0; x < q->across; x++) {
             struct sums next = {0};
 
-            flood_fill(q, x, y, &next);
+            flood_fill_squares(q, x, y, &next);
             if (!(next.flux > 0))
                 continue;
             s[n++] = next;
-            qsort(s, (size_t)n, sizeof *s, compare_flux);
+            qsort(s, (size_t)n, sizeof *s, compare_highlight_flux);
             n = n > TWIN_HIGHLIGHTS ? TWIN_HIGHLIGHTS : n;
         }
-    n = merge_near(s, n);
+    n = merge_near_highlights(s, n);
     for (int i = 0; i < n; i++)
-        found[i] = make_highlight(&s[i]);
+        found[i] = make_highlight_from_sums(&s[i]);
     return n;
 }
 
-int twin_highlights(const struct twin *twin, const struct twin_view *view,
-                    struct twin_highlight *found)
+int reference_find_highlights(const struct twin *twin,
+                              const struct twin_view *view,
+                              struct twin_highlight *found)
 {
     struct squares q = {(view->width + SIDE - 1) / SIDE,
                         (view->height + SIDE - 1) / SIDE, NULL};
@@ -169,8 +172,8 @@ int twin_highlights(const struct twin *twin, const struct twin_view *view,
     q.of = calloc((size_t)q.across * (size_t)q.down, sizeof *q.of);
     if (!q.of)
         return -1;
-    twin_aim(&seen, view);
-    sum_squares(&seen, view, &q);
+    reference_aim_camera(&seen, view);
+    sum_light_of_squares(&seen, view, &q);
     n = find_highlights(&q, found);
     free(q.of);
     return n;

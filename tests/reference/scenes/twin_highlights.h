@@ -20,7 +20,8 @@ struct twin_highlight {
 
 /* Sets FOUND[TWIN_HIGHLIGHTS] to the highlights in VIEW, sorted by
  * descending brightness. Returns their number; -1 if there is no memory. */
-int twin_highlights(const struct twin *twin, const struct twin_view *view,
-                    struct twin_highlight *found);
+int reference_find_highlights(const struct twin *twin,
+                              const struct twin_view *view,
+                              struct twin_highlight *found);
 
 #endif

@@ -16,15 +16,15 @@
 
 /* A15: L is the vector from the ray's origin to the centre, s = L.d; the ray
  * hits if |L - s d|^2 <= r^2. */
-static bool meet_sphere(const struct glint_described_object *o,
-                        const struct twin_ray *ray, double most,
-                        struct twin_hit *hit)
+static bool intersect_sphere(const struct glint_described_object *o,
+                             const struct twin_ray *ray, double most,
+                             struct twin_hit *hit)
 {
     double l[3], q[3], s, half;
 
-    vec_add(o->at, -1, ray->from, l);
+    vec_add_scaled(o->at, -1, ray->from, l);
     s = vec_dot(l, ray->toward);
-    vec_add(l, -s, ray->toward, q);
+    vec_add_scaled(l, -s, ray->toward, q);
     half = o->radius * o->radius - vec_dot(q, q);
     if (half < 0)
         return false;
@@ -33,9 +33,9 @@ static bool meet_sphere(const struct glint_described_object *o,
     hit->t = hit->inside ? s + half : s - half;
     if (hit->t <= 0 || hit->t >= most)
         return false;
-    vec_add(ray->from, hit->t, ray->toward, hit->place);
-    vec_add(hit->place, -1, o->at, hit->normal);
-    vec_unit(hit->normal);
+    vec_add_scaled(ray->from, hit->t, ray->toward, hit->place);
+    vec_add_scaled(hit->place, -1, o->at, hit->normal);
+    vec_normalise(hit->normal);
     return true;
 }
 
@@ -48,7 +48,7 @@ static void set_ball_uv(const struct glint_description *scene,
 {
     double n[3];
 
-    vec_turn(o->turn, -1, hit->normal, n);
+    vec_rotate(o->turn, -1, hit->normal, n);
     hit->uv[0] =
         .5 + atan2(n[0], scene->left_handed ? -n[2] : n[2]) / (2 * GLINT_PI);
     hit->uv[1] = 1 - acos(fmax(-1, fmin(1, n[1]))) / GLINT_PI;
@@ -63,37 +63,37 @@ static void set_plane_uv(const struct glint_description *scene,
     double upright[4], away[3], flat[3];
 
     glint_described_upright(o->normal, upright);
-    vec_add(hit->place, -1, o->at, away);
-    vec_turn(o->turn, -1, away, flat);
-    vec_turn(upright, -1, flat, away);
+    vec_add_scaled(hit->place, -1, o->at, away);
+    vec_rotate(o->turn, -1, away, flat);
+    vec_rotate(upright, -1, flat, away);
     hit->uv[0] = away[0];
     hit->uv[1] = scene->left_handed ? away[2] : -away[2];
 }
 
-static bool meet_plane(const struct glint_described_object *o,
-                       const struct twin_ray *ray, double most,
-                       struct twin_hit *hit)
+static bool intersect_plane(const struct glint_described_object *o,
+                            const struct twin_ray *ray, double most,
+                            struct twin_hit *hit)
 {
     double away[3], slope;
 
-    vec_turn(o->turn, 1, o->normal, hit->normal);
+    vec_rotate(o->turn, 1, o->normal, hit->normal);
     slope = vec_dot(hit->normal, ray->toward);
-    vec_add(o->at, -1, ray->from, away);
+    vec_add_scaled(o->at, -1, ray->from, away);
     if (slope == 0)
         return false;
     hit->t = vec_dot(hit->normal, away) / slope;
     if (!(hit->t > 0) || hit->t >= most)
         return false;
-    vec_add(ray->from, hit->t, ray->toward, hit->place);
+    vec_add_scaled(ray->from, hit->t, ray->toward, hit->place);
     hit->inside = slope > 0;
     return true;
 }
 
 /* ------------------------------------------------------------------ meshes */
 
-void twin_finish_triangle(const struct twin *twin,
-                          const struct glint_described_object *o,
-                          struct twin_hit *hit)
+void reference_finish_triangle_hit(const struct twin *twin,
+                                   const struct glint_described_object *o,
+                                   struct twin_hit *hit)
 {
     const struct glint_described_triangle *t =
         &twin->scene->triangle[hit->triangle];
@@ -101,57 +101,57 @@ void twin_finish_triangle(const struct twin *twin,
                              hit->uv[1]};
     double a[3], b[3], n[3], smooth[3] = {0, 0, 0};
 
-    vec_add(t->place[1], -1, t->place[0], a);
-    vec_add(t->place[2], -1, t->place[0], b);
+    vec_add_scaled(t->place[1], -1, t->place[0], a);
+    vec_add_scaled(t->place[2], -1, t->place[0], b);
     vec_cross(a, b, n);
-    vec_unit(n);
+    vec_normalise(n);
     hit->uv[0] = hit->uv[1] = 0;
     for (int k = 0; k < 3; k++) {
         if (t->has_normals)
-            vec_add(smooth, share[k], t->normal[k], smooth);
+            vec_add_scaled(smooth, share[k], t->normal[k], smooth);
         for (int i = 0; t->has_uv && i < 2; i++)
             hit->uv[i] += share[k] * t->uv[k][i];
     }
     /* the normals in the file, not the order of corners, determine the
      * outside */
-    if (!t->has_normals || !(vec_unit(smooth) > 0))
+    if (!t->has_normals || !(vec_normalise(smooth) > 0))
         for (int i = 0; i < 3; i++)
             smooth[i] = n[i];
-    vec_turn(o->turn, 1, n, hit->normal);
-    vec_turn(o->turn, 1, smooth, hit->shading);
+    vec_rotate(o->turn, 1, n, hit->normal);
+    vec_rotate(o->turn, 1, smooth, hit->shading);
     hit->material = t->material;
 }
 
-static bool meet_mesh(const struct twin *twin, int object,
-                      const struct twin_ray *ray, double most,
-                      struct twin_hit *hit)
+static bool intersect_mesh_object(const struct twin *twin, int object,
+                                  const struct twin_ray *ray, double most,
+                                  struct twin_hit *hit)
 {
     const struct glint_described_object *o = &twin->scene->object[object];
     struct twin_ray local = *ray;
     double away[3];
 
-    vec_add(ray->from, -1, o->at, away);
-    vec_turn(o->turn, -1, away, local.from);
-    vec_turn(o->turn, -1, ray->toward, local.toward);
+    vec_add_scaled(ray->from, -1, o->at, away);
+    vec_rotate(o->turn, -1, away, local.from);
+    vec_rotate(o->turn, -1, ray->toward, local.toward);
     if (ray->skip_object == object) {
         const double step = ACNE * (1 + sqrt(vec_dot(away, away)));
 
-        vec_add(local.from, step, local.toward, local.from);
+        vec_add_scaled(local.from, step, local.toward, local.from);
     } else {
         local.skip_triangle = -1;
     }
-    if (!twin_meet_mesh(twin, object, &local, most, hit))
+    if (!reference_intersect_mesh(twin, object, &local, most, hit))
         return false;
-    vec_add(ray->from, hit->t, ray->toward, hit->place);
-    twin_finish_triangle(twin, o, hit);
+    vec_add_scaled(ray->from, hit->t, ray->toward, hit->place);
+    reference_finish_triangle_hit(twin, o, hit);
     return true;
 }
 
 /* --------------------------------------------------------------------- all */
 
-bool twin_meet_object(const struct twin *twin, int object,
-                      const struct twin_ray *ray, double most,
-                      struct twin_hit *hit)
+bool reference_intersect_object(const struct twin *twin, int object,
+                                const struct twin_ray *ray, double most,
+                                struct twin_hit *hit)
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_object *o = &s->object[object];
@@ -160,14 +160,14 @@ bool twin_meet_object(const struct twin *twin, int object,
     *hit = (struct twin_hit){
         .object = object, .triangle = -1, .material = o->material};
     if (is_mesh) {
-        if (!meet_mesh(twin, object, ray, most, hit))
+        if (!intersect_mesh_object(twin, object, ray, most, hit))
             return false;
     } else {
         const bool is_ball = o->kind == GLINT_DESCRIBED_SPHERE;
 
         if (ray->skip_object == object ||
-            !(is_ball ? meet_sphere(o, ray, most, hit)
-                      : meet_plane(o, ray, most, hit)))
+            !(is_ball ? intersect_sphere(o, ray, most, hit)
+                      : intersect_plane(o, ray, most, hit)))
             return false;
         if (o->material >= 0 && (s->material[o->material].texture >= 0 ||
                                  s->material[o->material].is_stone))
@@ -186,8 +186,9 @@ bool twin_meet_object(const struct twin *twin, int object,
     return true;
 }
 
-bool twin_meet(const struct twin *twin, const struct twin_ray *ray, double most,
-               struct twin_hit *hit)
+bool reference_intersect_scene(const struct twin *twin,
+                               const struct twin_ray *ray, double most,
+                               struct twin_hit *hit)
 {
     bool found = false;
 
@@ -195,7 +196,8 @@ bool twin_meet(const struct twin *twin, const struct twin_ray *ray, double most,
         struct twin_hit next;
 
         if (twin->scene->object[i].catcher > 0 ||
-            !twin_meet_object(twin, i, ray, found ? hit->t : most, &next))
+            !reference_intersect_object(twin, i, ray, found ? hit->t : most,
+                                        &next))
             continue;
         *hit = next;
         found = true;
@@ -203,20 +205,21 @@ bool twin_meet(const struct twin *twin, const struct twin_ray *ray, double most,
     return found;
 }
 
-bool twin_is_hidden(const struct twin *twin, const struct twin_ray *ray,
-                    double most)
+bool reference_is_occluded(const struct twin *twin, const struct twin_ray *ray,
+                           double most)
 {
     struct twin_hit hit;
 
     for (int i = 0; i < twin->scene->n_objects; i++)
         if (!(twin->scene->object[i].catcher > 0) &&
-            twin_meet_object(twin, i, ray, most, &hit))
+            reference_intersect_object(twin, i, ray, most, &hit))
             return true;
     return false;
 }
 
-void twin_camera_ray(const struct twin *twin, const struct twin_view *view,
-                     double x, double y, struct twin_ray *ray)
+void reference_make_camera_ray(const struct twin *twin,
+                               const struct twin_view *view, double x, double y,
+                               struct twin_ray *ray)
 {
     const struct glint_described_camera *c = &twin->scene->camera;
     const double w = view->width, h = view->height;
@@ -238,5 +241,5 @@ void twin_camera_ray(const struct twin *twin, const struct twin_view *view,
         ray->from[i] = c->at[i];
         ray->toward[i] = c->forward[i] + right * c->right[i] + up * c->up[i];
     }
-    vec_unit(ray->toward);
+    vec_normalise(ray->toward);
 }

@@ -11,23 +11,23 @@
 enum { CHANNELS = 3 };
 
 struct twin_map {
-    int material; /* index of the translucent material; -1: the object is not
-                     translucent */
-    int of;       /* index of the translucent medium */
+    /* index of the translucent material; -1: the object is not translucent */
+    int material;
+    int of; /* index of the translucent medium in the scene */
     bool is_ball;
     int width, height;
     struct glint_translucent stone;
-    int *triangle; /* meshes: [height][width] indices of triangles of the scene,
-                      or -1 */
-    double *light; /* [height][width][3]: light that enters, then light that
-                      leaves */
-    double *work;  /* [3][height][width]: scratch */
+    /* meshes: [height][width] indices of triangles of the scene, or -1 */
+    int *triangle;
+    /* [height][width][3]: light that enters, then light that leaves */
+    double *light;
+    double *work; /* [3][height][width]: scratch */
 };
 
 /* ------------------------------------------------------------------ opening */
 
-static int find_material(const struct glint_description *s,
-                         const struct glint_described_object *o)
+static int find_medium_material(const struct glint_description *s,
+                                const struct glint_described_object *o)
 {
     if (o->n_triangles == 0)
         return o->material >= 0 && s->material[o->material].is_stone
@@ -39,10 +39,10 @@ static int find_material(const struct glint_description *s,
     return -1;
 }
 
-/* Returns twice the signed area of the triangle of corners I and J of T and
- * (U, V). */
-static double compute_edge(const struct glint_described_triangle *t, int i,
-                           int j, double u, double v)
+/* Returns twice the signed area of the texture-space triangle of (U, V) and the
+ * corners I and J of T. */
+static double compute_edge_area(const struct glint_described_triangle *t, int i,
+                                int j, double u, double v)
 {
     return (t->uv[i][0] - u) * (t->uv[j][1] - v) -
            (t->uv[i][1] - v) * (t->uv[j][0] - u);
@@ -59,7 +59,7 @@ static bool compute_barycentric(const struct twin_map *m,
     double sum = 0;
 
     for (int k = 0; k < 3; k++) {
-        share[k] = compute_edge(t, (k + 1) % 3, (k + 2) % 3, u, v);
+        share[k] = compute_edge_area(t, (k + 1) % 3, (k + 2) % 3, u, v);
         sum += share[k];
     }
     for (int k = 0; k < 3; k++) {
@@ -73,11 +73,11 @@ static bool compute_barycentric(const struct twin_map *m,
     return inside;
 }
 
-/* Assigns each texel its triangle, and texels around charts the triangle of
- * a neighbour. */
-static void assign_triangles(const struct glint_description *s,
-                             const struct glint_described_object *o,
-                             struct twin_map *m)
+/* Assigns each texel the triangle that covers it; texels just outside a chart
+ * get the triangle of a neighbour. */
+static void assign_triangles_to_texels(const struct glint_description *s,
+                                       const struct glint_described_object *o,
+                                       struct twin_map *m)
 {
     const int n = m->width * m->height,
               rings = (int)m->stone.header->kernel / 2 + 2;
@@ -107,8 +107,9 @@ static void assign_triangles(const struct glint_description *s,
     free(before);
 }
 
-static bool open_map(const struct glint_description *s,
-                     const struct glint_described_object *o, struct twin_map *m)
+static bool allocate_medium_map(const struct glint_description *s,
+                                const struct glint_described_object *o,
+                                struct twin_map *m)
 {
     const struct glint_described_stone *stone =
         &s->stone[s->material[m->material].stone];
@@ -129,11 +130,11 @@ static bool open_map(const struct glint_description *s,
     if (!m->light || !m->work || !m->triangle)
         return false;
     if (!m->is_ball)
-        assign_triangles(s, o, m);
+        assign_triangles_to_texels(s, o, m);
     return true;
 }
 
-enum glint_status twin_open_stones(struct twin *twin)
+enum glint_status reference_allocate_media_maps(struct twin *twin)
 {
     const struct glint_description *s = twin->scene;
 
@@ -143,15 +144,15 @@ enum glint_status twin_open_stones(struct twin *twin)
     if (!twin->map)
         return GLINT_E_MEMORY;
     for (int i = 0; i < s->n_objects; i++) {
-        twin->map[i].material = find_material(s, &s->object[i]);
+        twin->map[i].material = find_medium_material(s, &s->object[i]);
         if (twin->map[i].material >= 0 &&
-            !open_map(s, &s->object[i], &twin->map[i]))
+            !allocate_medium_map(s, &s->object[i], &twin->map[i]))
             return GLINT_E_MEMORY;
     }
     return GLINT_OK;
 }
 
-void twin_close_stones(struct twin *twin)
+void reference_free_media_maps(struct twin *twin)
 {
     for (int i = 0; twin->map && i < twin->scene->n_objects; i++) {
         free(twin->map[i].light);
@@ -166,8 +167,9 @@ void twin_close_stones(struct twin *twin)
 
 /* Returns the fraction of light that the surface transmits at COSINE
  * (Fresnel); 1 if the material has no Fresnel reflection. */
-static double compute_transmittance(const struct glint_described_material *m,
-                                    const struct twin_map *map, double cosine)
+static double
+compute_surface_transmittance(const struct glint_described_material *m,
+                              const struct twin_map *map, double cosine)
 {
     const double n = map->stone.header->index_q16 / 65536.;
     const double g = sqrt(n * n - 1 + cosine * cosine);
@@ -181,8 +183,8 @@ static double compute_transmittance(const struct glint_described_material *m,
 
 /* Sets HIT to the surface point of texel (X, Y). Returns false if the texel
  * is outside the object. */
-static bool texel_hit(const struct twin *twin, int object, int x, int y,
-                      struct twin_hit *hit)
+static bool compute_texel_hit(const struct twin *twin, int object, int x, int y,
+                              struct twin_hit *hit)
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_object *o = &s->object[object];
@@ -197,9 +199,9 @@ static bool texel_hit(const struct twin *twin, int object, int x, int y,
                              (s->left_handed ? -1 : 1) * cos(round) *
                                  sin(down)};
 
-        vec_turn(o->turn, 1, n, hit->normal);
+        vec_rotate(o->turn, 1, n, hit->normal);
         memcpy(hit->shading, hit->normal, sizeof hit->normal);
-        vec_add(o->at, o->radius, hit->normal, hit->place);
+        vec_add_scaled(o->at, o->radius, hit->normal, hit->place);
     } else {
         const int i = m->triangle[y * m->width + x];
         double share[3], at[3] = {0, 0, 0};
@@ -208,15 +210,15 @@ static bool texel_hit(const struct twin *twin, int object, int x, int y,
             return false;
         compute_barycentric(m, &s->triangle[i], x, y, share);
         for (int k = 0; k < 3; k++)
-            vec_add(at, share[k], s->triangle[i].place[k], at);
-        vec_turn(o->turn, 1, at, hit->place);
-        vec_add(hit->place, 1, o->at, hit->place);
+            vec_add_scaled(at, share[k], s->triangle[i].place[k], at);
+        vec_rotate(o->turn, 1, at, hit->place);
+        vec_add_scaled(hit->place, 1, o->at, hit->place);
         hit->triangle = i;
         hit->uv[0] = share[1];
         hit->uv[1] = share[2];
-        twin_finish_triangle(twin, o, hit);
+        reference_finish_triangle_hit(twin, o, hit);
         if (vec_dot(hit->shading, hit->normal) < 0)
-            vec_add(hit->shading, -2, hit->shading, hit->shading);
+            vec_add_scaled(hit->shading, -2, hit->shading, hit->shading);
     }
     return true;
 }
@@ -230,12 +232,12 @@ compute_mean_transmittance(const struct glint_described_material *m,
     double sum = 0;
 
     for (int i = 0; i < N; i++)
-        sum +=
-            2 * (i + .5) / N * compute_transmittance(m, map, (i + .5) / N) / N;
+        sum += 2 * (i + .5) / N *
+               compute_surface_transmittance(m, map, (i + .5) / N) / N;
     return sum;
 }
 
-static void light_map(const struct twin *twin, int object)
+static void compute_incident_light_map(const struct twin *twin, int object)
 {
     const struct glint_description *s = twin->scene;
     struct twin_map *m = &twin->map[object];
@@ -247,26 +249,27 @@ static void light_map(const struct twin *twin, int object)
         struct twin_hit hit;
 
         rgb[0] = rgb[1] = rgb[2] = 0;
-        if (!texel_hit(twin, object, i % m->width, i / m->width, &hit))
+        if (!compute_texel_hit(twin, object, i % m->width, i / m->width, &hit))
             continue;
-        twin_irradiance(twin, hit.shading, rgb);
+        reference_irradiance(twin, hit.shading, rgb);
         for (int c = 0; c < CHANNELS; c++)
             rgb[c] *= mean;
         for (int k = 0; k < s->n_lights; k++) {
             double to[3], light[3], share;
-            const double facing =
-                twin_light(twin, &hit, &s->light[k], to, light, &share);
+            const double facing = reference_light_at_hit(
+                twin, &hit, &s->light[k], to, light, &share);
 
             for (int c = 0; c < CHANNELS && facing > 0; c++)
                 rgb[c] += share * facing *
-                          compute_transmittance(of, m, facing) * light[c];
+                          compute_surface_transmittance(of, m, facing) *
+                          light[c];
         }
     }
 }
 
 /* ------------------------------------------------------------------- spread */
 
-static double get_code(const struct twin_map *m, int table, int x)
+static double read_stream_code(const struct twin_map *m, int table, int x)
 {
     const struct glint_translucent_header *h = m->stone.header;
     const int side = 1 << h->side_log2;
@@ -280,8 +283,8 @@ static double get_code(const struct twin_map *m, int table, int x)
 
 /* Returns the index of the texel ACROSS columns and DOWN rows from texel
  * FROM; -1 outside the map. */
-static int find_neighbour(const struct twin_map *m, int from, int across,
-                          int down)
+static int find_neighbour_texel(const struct twin_map *m, int from, int across,
+                                int down)
 {
     int x = from % m->width + across, y = from / m->width + down;
 
@@ -296,7 +299,8 @@ static int find_neighbour(const struct twin_map *m, int from, int across,
                                                              : y * m->width + x;
 }
 
-/* Adds FROM, convolved with TAP along rows or columns, times SCALE, to TO. */
+/* Adds SCALE times FROM, convolved with the taps TAP along rows or columns, to
+ * TO. */
 static void convolve_map(const struct twin_map *m, const double *from,
                          const int16_t *tap, bool down, double scale,
                          double *to)
@@ -306,7 +310,7 @@ static void convolve_map(const struct twin_map *m, const double *from,
     for (int i = 0; i < m->width * m->height; i++)
         for (int k = 0; k < kernel; k++) {
             const int at =
-                find_neighbour(m, i, down ? 0 : r - k, down ? r - k : 0);
+                find_neighbour_texel(m, i, down ? 0 : r - k, down ? r - k : 0);
 
             if (at >= 0)
                 to[i] += scale * tap[k] * from[at];
@@ -315,7 +319,8 @@ static void convolve_map(const struct twin_map *m, const double *from,
 
 /* Adds the contribution of plane P, channel C, of the light in WORK[0] to
  * OUT. */
-static void add_plane(struct twin_map *m, int c, int p, double *out)
+static void add_plane_contribution(struct twin_map *m, int c, int p,
+                                   double *out)
 {
     const struct glint_translucent_header *h = m->stone.header;
     const int n = m->width * m->height, side = 1 << h->side_log2;
@@ -339,11 +344,11 @@ static void add_plane(struct twin_map *m, int c, int p, double *out)
         if (m->stone.cluster && m->stone.cluster[x / m->width % side * side +
                                                  x % m->width % side] != p)
             continue;
-        out[CHANNELS * (ptrdiff_t)x] += get_code(m, table, x) * sum[x];
+        out[CHANNELS * (ptrdiff_t)x] += read_stream_code(m, table, x) * sum[x];
     }
 }
 
-static void scatter_by_planes(struct twin_map *m)
+static void scatter_light_by_planes(struct twin_map *m)
 {
     const struct glint_translucent_header *h = m->stone.header;
     const int n = m->width * m->height;
@@ -352,11 +357,11 @@ static void scatter_by_planes(struct twin_map *m)
         for (int x = 0; x < n; x++) {
             m->work[x] = m->light[CHANNELS * (ptrdiff_t)x + c];
             if (m->stone.cluster)
-                m->work[x] *= get_code(m, CHANNELS + c, x);
+                m->work[x] *= read_stream_code(m, CHANNELS + c, x);
             m->light[CHANNELS * (ptrdiff_t)x + c] = 0;
         }
         for (uint32_t p = 0; p < h->n_planes; p++)
-            add_plane(m, c, (int)p, m->light + c);
+            add_plane_contribution(m, c, (int)p, m->light + c);
         for (int x = 0; x < n; x++) {
             double *to = &m->light[CHANNELS * (ptrdiff_t)x + c];
 
@@ -365,8 +370,8 @@ static void scatter_by_planes(struct twin_map *m)
     }
 }
 
-static void scatter_by_rows(const struct glint_scatter_rows *rows,
-                            struct twin_map *m)
+static void scatter_light_by_rows(const struct glint_scatter_rows *rows,
+                                  struct twin_map *m)
 {
     const size_t n = CHANNELS * (size_t)m->width * (size_t)m->height;
 
@@ -374,32 +379,32 @@ static void scatter_by_rows(const struct glint_scatter_rows *rows,
     glint_scatter_light_rows(rows, m->work, m->light);
 }
 
-void twin_fill_maps(const struct twin *twin)
+void reference_compute_media_maps(const struct twin *twin)
 {
     for (int i = 0; twin->map && i < twin->scene->n_objects; i++) {
         struct twin_map *m = &twin->map[i];
 
         if (m->material < 0)
             continue;
-        light_map(twin, i);
+        compute_incident_light_map(twin, i);
         if (twin->rows && !m->is_ball)
-            scatter_by_rows(&twin->rows[m->of], m);
+            scatter_light_by_rows(&twin->rows[m->of], m);
         else
-            scatter_by_planes(m);
+            scatter_light_by_planes(m);
     }
 }
 
 /* ------------------------------------------------------------------- showing
  */
 
-/* Returns the reflectance of the coat relative to that at normal incidence,
- * where PASSED is the transmittance. Light that is not transmitted is
- * reflected; the result is limited such that no channel reflects more than
- * 1. */
-static double compute_coat(const struct glint_described_material *m,
-                           const struct twin_map *map, double passed)
+/* Returns the reflectance of the coat / its reflectance at normal incidence,
+ * for the transmittance PASSED. Light that is not transmitted is reflected; the
+ * result is limited such that no channel reflects more than 1. */
+static double compute_coat_reflectance(const struct glint_described_material *m,
+                                       const struct twin_map *map,
+                                       double passed)
 {
-    const double ahead = 1 - compute_transmittance(m, map, 1);
+    const double ahead = 1 - compute_surface_transmittance(m, map, 1);
     const double most = fmax(m->metal[0], fmax(m->metal[1], m->metal[2]));
 
     if (!m->is_metal || ahead <= 0)
@@ -407,8 +412,9 @@ static double compute_coat(const struct glint_described_material *m,
     return fmin((1 - passed) / ahead, 1 / most);
 }
 
-void twin_add_stone(const struct twin *twin, const struct twin_hit *hit,
-                    const double toward[3], double rgb[3])
+void reference_add_medium_light(const struct twin *twin,
+                                const struct twin_hit *hit,
+                                const double toward[3], double rgb[3])
 {
     const struct twin_map *m = &twin->map[hit->object];
     const struct glint_described_material *of =
@@ -416,10 +422,10 @@ void twin_add_stone(const struct twin *twin, const struct twin_hit *hit,
     const double x = hit->uv[0] * m->width - .5;
     const double y = (1 - hit->uv[1]) * m->height - .5;
     const double out =
-        compute_transmittance(of, m, -vec_dot(toward, hit->shading));
+        compute_surface_transmittance(of, m, -vec_dot(toward, hit->shading));
 
     for (int c = 0; c < CHANNELS; c++)
-        rgb[c] *= compute_coat(of, m, out);
+        rgb[c] *= compute_coat_reflectance(of, m, out);
     for (int k = 0; k < 4; k++) {
         const double left = floor(x), top = floor(y);
         const double share =

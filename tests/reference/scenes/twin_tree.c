@@ -17,7 +17,7 @@ struct twin_node {
     int left, right; /* inner node: indices of its halves; n is 0 */
 };
 
-static void compute_bounds(const struct twin *twin, struct twin_node *node)
+static void compute_node_bounds(const struct twin *twin, struct twin_node *node)
 {
     for (int i = 0; i < 3; i++) {
         node->low[i] = HUGE_VAL;
@@ -35,8 +35,8 @@ static void compute_bounds(const struct twin *twin, struct twin_node *node)
     }
 }
 
-/* Moves the triangles of NODE whose centre is below AT along AXIS to its
- * front. Returns their number. */
+/* Moves the triangles of NODE whose centre is below AT along AXIS to the
+ * beginning of the node's list. Returns their number. */
 static int partition_triangles(const struct twin *twin,
                                const struct twin_node *node, int axis,
                                double at)
@@ -60,12 +60,12 @@ static int partition_triangles(const struct twin *twin,
 }
 
 /* Halves node I recursively. *N_NODES is the number of nodes in use. */
-static void halve_node(struct twin *twin, int i, int *n_nodes, int depth)
+static void split_node(struct twin *twin, int i, int *n_nodes, int depth)
 {
     struct twin_node *const node = &twin->node[i];
     int axis = 0, n;
 
-    compute_bounds(twin, node);
+    compute_node_bounds(twin, node);
     if (node->n <= LEAF || depth == DEPTH - 2)
         return;
     for (int k = 1; k < 3; k++)
@@ -81,11 +81,11 @@ static void halve_node(struct twin *twin, int i, int *n_nodes, int depth)
     twin->node[node->right] =
         (struct twin_node){.first = node->first + n, .n = node->n - n};
     node->n = 0;
-    halve_node(twin, node->left, n_nodes, depth + 1);
-    halve_node(twin, node->right, n_nodes, depth + 1);
+    split_node(twin, node->left, n_nodes, depth + 1);
+    split_node(twin, node->right, n_nodes, depth + 1);
 }
 
-enum glint_status twin_grow(struct twin *twin)
+enum glint_status reference_build_tree(struct twin *twin)
 {
     const struct glint_description *s = twin->scene;
     const size_t n = (size_t)s->n_triangles;
@@ -108,14 +108,14 @@ enum glint_status twin_grow(struct twin *twin)
         twin->root[i] = n_nodes++;
         twin->node[twin->root[i]] =
             (struct twin_node){.first = o->first_triangle, .n = o->n_triangles};
-        halve_node(twin, twin->root[i], &n_nodes, 0);
+        split_node(twin, twin->root[i], &n_nodes, 0);
     }
     return GLINT_OK;
 }
 
 /* Returns whether RAY passes the box of NODE before the distance MOST. */
-static bool passes_box(const struct twin_node *node, const struct twin_ray *ray,
-                       double most)
+static bool ray_passes_box(const struct twin_node *node,
+                           const struct twin_ray *ray, double most)
 {
     double from = 0, to = most;
 
@@ -134,17 +134,17 @@ static bool passes_box(const struct twin_node *node, const struct twin_ray *ray,
 
 /* Finds the intersection of RAY with triangle I before hit->t, by
  * [Moller97]. The point is V0 + u (V1 - V0) + v (V2 - V0) (A13). */
-static bool meet_triangle(const struct twin *twin, int i,
-                          const struct twin_ray *ray, struct twin_hit *hit)
+static bool intersect_triangle(const struct twin *twin, int i,
+                               const struct twin_ray *ray, struct twin_hit *hit)
 {
     const struct glint_described_triangle *tri = &twin->scene->triangle[i];
     double a[3], b[3], p[3], q[3], s[3], det, u, v, t;
 
-    vec_add(tri->place[1], -1, tri->place[0], a);
-    vec_add(tri->place[2], -1, tri->place[0], b);
+    vec_add_scaled(tri->place[1], -1, tri->place[0], a);
+    vec_add_scaled(tri->place[2], -1, tri->place[0], b);
     vec_cross(ray->toward, b, p);
     det = vec_dot(a, p);
-    vec_add(ray->from, -1, tri->place[0], s);
+    vec_add_scaled(ray->from, -1, tri->place[0], s);
     vec_cross(s, a, q);
     u = vec_dot(s, p);
     v = vec_dot(ray->toward, q);
@@ -167,9 +167,9 @@ static bool meet_triangle(const struct twin *twin, int i,
     return true;
 }
 
-bool twin_meet_mesh(const struct twin *twin, int object,
-                    const struct twin_ray *ray, double most,
-                    struct twin_hit *hit)
+bool reference_intersect_mesh(const struct twin *twin, int object,
+                              const struct twin_ray *ray, double most,
+                              struct twin_hit *hit)
 {
     int stack[DEPTH], n = 0;
     bool found = false;
@@ -179,7 +179,7 @@ bool twin_meet_mesh(const struct twin *twin, int object,
     while (n) {
         const struct twin_node *node = &twin->node[stack[--n]];
 
-        if (!passes_box(node, ray, hit->t))
+        if (!ray_passes_box(node, ray, hit->t))
             continue;
         if (!node->n) {
             stack[n++] = node->left;
@@ -187,7 +187,7 @@ bool twin_meet_mesh(const struct twin *twin, int object,
         }
         for (int m = node->first; m < node->first + node->n; m++)
             if (twin->order[m] != ray->skip_triangle &&
-                meet_triangle(twin, twin->order[m], ray, hit))
+                intersect_triangle(twin, twin->order[m], ray, hit))
                 found = true;
     }
     return found;

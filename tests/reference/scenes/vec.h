@@ -22,15 +22,15 @@ static inline void vec_cross(const double a[3], const double b[3], double c[3])
 }
 
 /* Sets C to A + S B. */
-static inline void vec_add(const double a[3], double s, const double b[3],
-                           double c[3])
+static inline void vec_add_scaled(const double a[3], double s,
+                                  const double b[3], double c[3])
 {
     for (int i = 0; i < 3; i++)
         c[i] = a[i] + s * b[i];
 }
 
 /* Divides A by its length and returns the length; leaves A = 0 unchanged. */
-static inline double vec_unit(double a[3])
+static inline double vec_normalise(double a[3])
 {
     const double length = sqrt(vec_dot(a, a));
 
@@ -41,8 +41,8 @@ static inline double vec_unit(double a[3])
 
 /* Sets B to A rotated by the unit quaternion Q, or by its inverse if SIGN is
  * -1. */
-static inline void vec_turn(const double q[4], double sign, const double a[3],
-                            double b[3])
+static inline void vec_rotate(const double q[4], double sign, const double a[3],
+                              double b[3])
 {
     const double v[3] = {sign * q[1], sign * q[2], sign * q[3]};
     double t[3], u[3];

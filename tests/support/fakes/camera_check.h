@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * camera_check.h - steps shared by the tests of the V4L2 source. Each test ends
- * with must_close(), which checks that nothing remains open, mapped or
+ * with must_close_camera(), which checks that nothing remains open, mapped or
  * allocated.
  */
 #ifndef GLINT_SUPPORT_CAMERA_CHECK_H
@@ -23,8 +23,8 @@ static struct glint_source_frame frame;
 static const struct glint_v4l2_config any_camera = {
     .device = FAKE_PATH, .input = -1, .range = -1, .matrix = -1};
 
-static inline enum glint_status try_open(const struct glint_v4l2_config *wish,
-                                         enum glint_v4l2_io io)
+static inline enum glint_status
+try_open_camera(const struct glint_v4l2_config *wish, enum glint_v4l2_io io)
 {
     enum glint_status status;
 
@@ -38,39 +38,40 @@ static inline enum glint_status try_open(const struct glint_v4l2_config *wish,
     return status;
 }
 
-static inline void must_open(const struct glint_v4l2_config *wish)
+static inline void must_open_camera(const struct glint_v4l2_config *wish)
 {
-    if (try_open(wish, GLINT_V4L2_AUTO))
+    if (try_open_camera(wish, GLINT_V4L2_AUTO))
         fail_msg("%s", said.text);
 }
 
-/* Checks that the camera is closed, unmapped and freed, and that the
- * driver's rules were kept. */
-static inline void must_be_closed(void)
+/* Checks that the camera is closed, unmapped and freed, and that no rule of the
+ * driver was violated. */
+static inline void must_be_closed_camera(void)
 {
     assert_int_equal(v4l2.source.fd, -1);
     assert_int_equal(v4l2.device.fd, -1);
     assert_int_equal(camera.fd, -1);
     assert_int_equal(camera.n_maps, 0);
     assert_int_equal(camera.breaches, 0);
-    assert_int_equal(fake_camera_blocks(), 0);
+    assert_int_equal(fake_camera_count_leaks(), 0);
 }
 
-static inline void must_close(void)
+static inline void must_close_camera(void)
 {
     v4l2.source.close(&v4l2.source);
     v4l2.source.close(&v4l2.source);
-    must_be_closed();
+    must_be_closed_camera();
 }
 
 /* Checks that opening fails with STATUS and that the message contains TEXT. */
-static inline void must_refuse(const struct glint_v4l2_config *wish,
-                               enum glint_status status, const char *text)
+static inline void must_refuse_to_open(const struct glint_v4l2_config *wish,
+                                       enum glint_status status,
+                                       const char *text)
 {
-    assert_int_equal(try_open(wish, GLINT_V4L2_AUTO), status);
+    assert_int_equal(try_open_camera(wish, GLINT_V4L2_AUTO), status);
     if (!strstr(said.text, text))
         fail_msg("'%s' does not say '%s'", said.text, text);
-    must_be_closed();
+    must_be_closed_camera();
 }
 
 static inline enum glint_status next(void)
@@ -85,7 +86,7 @@ static inline void done(void)
 }
 
 /* Gets a frame, checks that its first byte is CODE, and releases it. */
-static inline void must_get(int code)
+static inline void must_get_frame(int code)
 {
     assert_ok(next());
     assert_non_null(frame.image.plane[0]);
@@ -93,7 +94,7 @@ static inline void must_get(int code)
     done();
 }
 
-static inline void must_get_nothing(void)
+static inline void must_get_no_frame(void)
 {
     assert_ok(next());
     assert_null(frame.image.plane[0]);
@@ -103,18 +104,18 @@ static inline void must_get_nothing(void)
 /* Gets a frame every 10 ms for MS milliseconds of the fake clock. Returns
  * the first status other than GLINT_OK, or GLINT_OK at the end. Sets
  * *FAILED_MS to the time of the last attempt. */
-static inline enum glint_status follow(int ms, int *failed_ms)
+static inline enum glint_status get_frames_during_ms(int ms, int *failed_ms)
 {
-    const int64_t start = fake_camera_now();
+    const int64_t start = fake_camera_time_us();
 
-    while (fake_camera_now() - start < 1000 * (int64_t)ms) {
+    while (fake_camera_time_us() - start < 1000 * (int64_t)ms) {
         const enum glint_status status = next();
 
-        *failed_ms = (int)((fake_camera_now() - start) / 1000);
+        *failed_ms = (int)((fake_camera_time_us() - start) / 1000);
         if (status != GLINT_OK)
             return status;
         done();
-        fake_camera_pass(10000);
+        fake_camera_advance_clock(10000);
     }
     return GLINT_OK;
 }

@@ -47,7 +47,7 @@ __attribute__((destructor)) static void end(void)
     }
 }
 
-static bool must_fail(void)
+static bool must_fail_this_allocation(void)
 {
     const long k = __atomic_add_fetch(&n, 1, __ATOMIC_SEQ_CST);
 
@@ -63,22 +63,23 @@ static bool must_fail(void)
 
 void *malloc(size_t bytes)
 {
-    return must_fail() ? NULL : __libc_malloc(bytes);
+    return must_fail_this_allocation() ? NULL : __libc_malloc(bytes);
 }
 
 void *calloc(size_t count, size_t bytes)
 {
-    return must_fail() ? NULL : __libc_calloc(count, bytes);
+    return must_fail_this_allocation() ? NULL : __libc_calloc(count, bytes);
 }
 
 void *realloc(void *old, size_t bytes)
 {
-    return must_fail() ? NULL : __libc_realloc(old, bytes);
+    return must_fail_this_allocation() ? NULL : __libc_realloc(old, bytes);
 }
 
 int posix_memalign(void **mem, size_t align, size_t bytes)
 {
-    void *const got = must_fail() ? NULL : __libc_memalign(align, bytes);
+    void *const got =
+        must_fail_this_allocation() ? NULL : __libc_memalign(align, bytes);
 
     if (!got)
         return ENOMEM;

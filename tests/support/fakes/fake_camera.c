@@ -30,15 +30,15 @@ static struct {
     bool forever;
 } calls;
 
-/* ------------------------------------------------------------ what may fail */
+/* ------------------------------------------------------------ failing calls */
 
-static int fail_with(int number)
+static int set_errno_and_fail(int number)
 {
     errno = number;
     return -1;
 }
 
-static bool must_fail(void)
+static bool must_fail_this_call(void)
 {
     const int n = ++calls.n;
 
@@ -48,7 +48,7 @@ static bool must_fail(void)
     return true;
 }
 
-int fake_camera_fail_at(int n, int number, bool forever)
+int fake_camera_fail_call(int n, int number, bool forever)
 {
     const int so_far = calls.n;
 
@@ -59,19 +59,19 @@ int fake_camera_fail_at(int n, int number, bool forever)
     return so_far;
 }
 
-void fake_camera_refuse(unsigned long request, int number, int times)
+void fake_camera_fail_request(unsigned long request, int number, int times)
 {
     refusal.request = request;
     refusal.number = number;
     refusal.times = times;
 }
 
-static bool is_refused(unsigned long request, const void *arg)
+static bool is_request_refused(unsigned long request, const void *arg)
 {
     const struct v4l2_requestbuffers *r = arg;
 
     if (refusal.request != request || refusal.times == 0 ||
-        /* a request that frees buffers */
+        /* Requests that free buffers never fail. */
         (request == VIDIOC_REQBUFS && r->count == 0))
         return false;
     if (refusal.times > 0)
@@ -98,12 +98,12 @@ void fake_camera_reset(void)
     };
     refusal.times = 0;
     fake_lacks_jpeg = false;
-    fake_camera_fail_at(0, 0, false);
+    fake_camera_fail_call(0, 0, false);
     now_us = 1000000000;
     n_blocks = 0;
 }
 
-struct fake_frame *fake_camera_deliver(uint32_t sequence, int code)
+struct fake_frame *fake_camera_add_frame(uint32_t sequence, int code)
 {
     struct fake_frame *f = &camera.frame[camera.n_frames++];
 
@@ -112,29 +112,29 @@ struct fake_frame *fake_camera_deliver(uint32_t sequence, int code)
     return f;
 }
 
-void fake_camera_pass(int64_t us)
+void fake_camera_advance_clock(int64_t us)
 {
     now_us += us;
 }
 
-int64_t fake_camera_now(void)
+int64_t fake_camera_time_us(void)
 {
     return now_us;
 }
 
-int fake_camera_blocks(void)
+int fake_camera_count_leaks(void)
 {
     return n_blocks;
 }
 
-int fake_camera_asked(void)
+int fake_camera_count_allocations(void)
 {
     return n_asked;
 }
 
 /* ------------------------------------------------------------------- format */
 
-static int count_blocks(uint32_t fourcc)
+static int count_planes_in_memory(uint32_t fourcc)
 {
     return fourcc == V4L2_PIX_FMT_NV12M || fourcc == V4L2_PIX_FMT_NV21M ? 2
            : fourcc == V4L2_PIX_FMT_YUV420M                             ? 3
@@ -142,7 +142,7 @@ static int count_blocks(uint32_t fourcc)
 }
 
 /* Returns the bytes per row in block BLOCK, 0 for compressed formats. */
-static uint32_t find_stride(const struct fake_mode *m, int block)
+static uint32_t compute_block_stride(const struct fake_mode *m, int block)
 {
     switch (m->fourcc) {
     case V4L2_PIX_FMT_YUYV:
@@ -162,9 +162,9 @@ static uint32_t find_stride(const struct fake_mode *m, int block)
     return m->width + camera.stride_more;
 }
 
-static uint32_t find_size(const struct fake_mode *m, int block)
+static uint32_t compute_block_bytes(const struct fake_mode *m, int block)
 {
-    const uint32_t luma = find_stride(m, block) * m->height;
+    const uint32_t luma = compute_block_stride(m, block) * m->height;
 
     if (camera.sizeimage)
         return camera.sizeimage;
@@ -185,7 +185,7 @@ static uint32_t find_size(const struct fake_mode *m, int block)
     return luma;
 }
 
-static int get_format(struct v4l2_format *f)
+static int answer_get_format(struct v4l2_format *f)
 {
     const struct fake_mode *m = &camera.now;
     struct v4l2_pix_format_mplane *mp = &f->fmt.pix_mp;
@@ -196,8 +196,9 @@ static int get_format(struct v4l2_format *f)
             .width = m->width,
             .height = m->height,
             .pixelformat = m->fourcc,
-            .bytesperline = camera.says_no_stride ? 0 : find_stride(m, 0),
-            .sizeimage = find_size(m, 0),
+            .bytesperline =
+                camera.reports_no_stride ? 0 : compute_block_stride(m, 0),
+            .sizeimage = compute_block_bytes(m, 0),
             .colorspace = camera.colorspace,
             .quantization = camera.quantization,
             .ycbcr_enc = camera.ycbcr_enc};
@@ -208,11 +209,11 @@ static int get_format(struct v4l2_format *f)
     mp->pixelformat = m->fourcc;
     mp->colorspace = camera.colorspace;
     mp->quantization = (uint8_t)camera.quantization;
-    mp->num_planes = (uint8_t)count_blocks(m->fourcc);
+    mp->num_planes = (uint8_t)count_planes_in_memory(m->fourcc);
     for (int i = 0; i < mp->num_planes; i++) {
         mp->plane_fmt[i].bytesperline =
-            camera.says_no_stride ? 0 : find_stride(m, i);
-        mp->plane_fmt[i].sizeimage = find_size(m, i);
+            camera.reports_no_stride ? 0 : compute_block_stride(m, i);
+        mp->plane_fmt[i].sizeimage = compute_block_bytes(m, i);
     }
     return 0;
 }
@@ -225,14 +226,14 @@ static bool has_fourcc(uint32_t fourcc)
     return false;
 }
 
-static int set_format(struct v4l2_format *f)
+static int answer_set_format(struct v4l2_format *f)
 {
     struct fake_mode *m = &camera.now;
     const uint32_t fourcc =
         camera.multiplanar ? f->fmt.pix_mp.pixelformat : f->fmt.pix.pixelformat;
 
     if (camera.n_buffers)
-        return fail_with(EBUSY);
+        return set_errno_and_fail(EBUSY);
     m->width = camera.multiplanar ? f->fmt.pix_mp.width : f->fmt.pix.width;
     m->height = camera.multiplanar ? f->fmt.pix_mp.height : f->fmt.pix.height;
     m->fourcc = has_fourcc(fourcc) && !camera.ignores_fourcc
@@ -248,7 +249,7 @@ static int set_format(struct v4l2_format *f)
             m->fps_num = camera.mode[i].fps_num;
             m->fps_den = camera.mode[i].fps_den;
         }
-    return get_format(f);
+    return answer_get_format(f);
 }
 
 /* Returns mode number INDEX among the modes that WITHIN accepts for KEY,
@@ -271,50 +272,55 @@ find_mode(uint32_t index,
     return NULL;
 }
 
-static bool accept_all(const struct fake_mode *a, const struct fake_mode *b)
+static bool accept_any_mode(const struct fake_mode *a,
+                            const struct fake_mode *b)
 {
     return a && b;
 }
 
-static bool same_fourcc(const struct fake_mode *a, const struct fake_mode *b)
+static bool modes_have_same_fourcc(const struct fake_mode *a,
+                                   const struct fake_mode *b)
 {
     return a->fourcc == b->fourcc;
 }
 
-static bool same_size(const struct fake_mode *a, const struct fake_mode *b)
+static bool modes_have_same_size(const struct fake_mode *a,
+                                 const struct fake_mode *b)
 {
-    return same_fourcc(a, b) && a->width == b->width && a->height == b->height;
+    return modes_have_same_fourcc(a, b) && a->width == b->width &&
+           a->height == b->height;
 }
 
-static bool same_mode(const struct fake_mode *a, const struct fake_mode *b)
+static bool modes_are_equal(const struct fake_mode *a,
+                            const struct fake_mode *b)
 {
-    return same_size(a, b) && a->fps_num == b->fps_num &&
+    return modes_have_same_size(a, b) && a->fps_num == b->fps_num &&
            a->fps_den == b->fps_den;
 }
 
-static int enum_format(struct v4l2_fmtdesc *f)
+static int answer_enum_format(struct v4l2_fmtdesc *f)
 {
     const struct fake_mode key = {.fourcc = 0};
     const struct fake_mode *m =
-        find_mode(f->index, same_fourcc, &key, accept_all);
+        find_mode(f->index, modes_have_same_fourcc, &key, accept_any_mode);
 
     if (!m)
-        return fail_with(EINVAL);
+        return set_errno_and_fail(EINVAL);
     f->pixelformat = m->fourcc;
     memcpy(f->description, "of the fake", 12);
     return 0;
 }
 
-static int enum_size(struct v4l2_frmsizeenum *s)
+static int answer_enum_size(struct v4l2_frmsizeenum *s)
 {
     const struct fake_mode key = {.fourcc = s->pixel_format};
     const struct fake_mode *m =
-        find_mode(s->index, same_size, &key, same_fourcc);
+        find_mode(s->index, modes_have_same_size, &key, modes_have_same_fourcc);
 
     if (camera.has_no_sizes)
-        return fail_with(ENOTTY);
+        return set_errno_and_fail(ENOTTY);
     if (!m || (camera.is_stepwise && s->index))
-        return fail_with(EINVAL);
+        return set_errno_and_fail(EINVAL);
     s->type = V4L2_FRMSIZE_TYPE_DISCRETE;
     s->discrete.width = m->width;
     s->discrete.height = m->height;
@@ -326,16 +332,17 @@ static int enum_size(struct v4l2_frmsizeenum *s)
     return 0;
 }
 
-static int enum_interval(struct v4l2_frmivalenum *i)
+static int answer_enum_interval(struct v4l2_frmivalenum *i)
 {
     const struct fake_mode key = {
         .fourcc = i->pixel_format, .width = i->width, .height = i->height};
-    const struct fake_mode *m = find_mode(i->index, same_mode, &key, same_size);
+    const struct fake_mode *m =
+        find_mode(i->index, modes_are_equal, &key, modes_have_same_size);
 
     if (camera.has_no_sizes)
-        return fail_with(ENOTTY);
+        return set_errno_and_fail(ENOTTY);
     if (!m || (camera.is_stepwise && i->index))
-        return fail_with(EINVAL);
+        return set_errno_and_fail(EINVAL);
     i->type = V4L2_FRMIVAL_TYPE_DISCRETE;
     i->discrete = (struct v4l2_fract){m->fps_den, m->fps_num};
     if (camera.is_stepwise) {
@@ -346,7 +353,7 @@ static int enum_interval(struct v4l2_frmivalenum *i)
     return 0;
 }
 
-static int set_parm(struct v4l2_streamparm *p, bool set)
+static int answer_set_parm(struct v4l2_streamparm *p, bool set)
 {
     struct v4l2_fract *t = &p->parm.capture.timeperframe;
 
@@ -367,50 +374,50 @@ static int set_parm(struct v4l2_streamparm *p, bool set)
 
 /* -------------------------------------------------------------------- input */
 
-static int get_input(struct v4l2_input *input)
+static int answer_get_input(struct v4l2_input *input)
 {
     if (input->index >= camera.n_inputs)
-        return fail_with(EINVAL);
+        return set_errno_and_fail(EINVAL);
     memcpy(input->name, "HDMI", 5);
     input->capabilities = camera.has_dv ? V4L2_IN_CAP_DV_TIMINGS : 0;
     return 0;
 }
 
-static int set_input(int index)
+static int answer_set_input(int index)
 {
     if (index < 0 || (uint32_t)index >= camera.n_inputs)
-        return fail_with(EINVAL);
+        return set_errno_and_fail(EINVAL);
     camera.input = (uint32_t)index;
     return 0;
 }
 
-static int query_timings(struct v4l2_dv_timings *t)
+static int answer_query_timings(struct v4l2_dv_timings *t)
 {
     memset(t, 0, sizeof *t);
     if (!camera.has_signal)
-        return fail_with(ENOLINK);
+        return set_errno_and_fail(ENOLINK);
     t->bt = camera.received;
     return 0;
 }
 
-static int set_timings(const struct v4l2_dv_timings *t)
+static int answer_set_timings(const struct v4l2_dv_timings *t)
 {
     const bool same = t->bt.width == camera.timings.width &&
                       t->bt.height == camera.timings.height;
 
     camera.n_s_dv_timings++;
     if (camera.n_buffers && !same)
-        return fail_with(EBUSY);
+        return set_errno_and_fail(EBUSY);
     camera.timings = t->bt;
     camera.now.width = t->bt.width;
     camera.now.height = t->bt.height;
     return 0;
 }
 
-static int take_event(struct v4l2_event *e)
+static int answer_dequeue_event(struct v4l2_event *e)
 {
     if (camera.n_events == 0)
-        return fail_with(ENOENT);
+        return set_errno_and_fail(ENOENT);
     camera.n_events--;
     memset(e, 0, sizeof *e);
     e->type = V4L2_EVENT_SOURCE_CHANGE;
@@ -420,7 +427,7 @@ static int take_event(struct v4l2_event *e)
 
 /* ------------------------------------------------------------------ buffers */
 
-static bool is_mapped(void)
+static bool is_buffer_mapped(void)
 {
     for (uint32_t i = 0; i < camera.n_buffers; i++)
         for (int k = 0; k < 3; k++)
@@ -429,37 +436,37 @@ static bool is_mapped(void)
     return false;
 }
 
-static int request_buffers(struct v4l2_requestbuffers *r)
+static int answer_request_buffers(struct v4l2_requestbuffers *r)
 {
     camera.n_reqbufs++;
     if (camera.lacks_mmap && r->memory == V4L2_MEMORY_MMAP)
-        return fail_with(EINVAL);
-    if (camera.streams || is_mapped())
-        return fail_with(EBUSY);
+        return set_errno_and_fail(EINVAL);
+    if (camera.streams || is_buffer_mapped())
+        return set_errno_and_fail(EBUSY);
     memset(camera.buffer, 0, sizeof camera.buffer);
     camera.n_queued = 0;
     if (r->count > camera.max_buffers)
         r->count = camera.max_buffers;
     camera.n_buffers = r->count;
     for (uint32_t i = 0; i < r->count; i++)
-        for (int k = 0; k < count_blocks(camera.now.fourcc); k++)
+        for (int k = 0; k < count_planes_in_memory(camera.now.fourcc); k++)
             camera.buffer[i].bytes[k] =
-                find_size(&camera.now, k) - camera.length_less;
+                compute_block_bytes(&camera.now, k) - camera.length_less;
     return 0;
 }
 
-static int query_buffer(struct v4l2_buffer *b)
+static int answer_query_buffer(struct v4l2_buffer *b)
 {
     const struct fake_buffer *own = &camera.buffer[b->index];
 
     if (b->index >= camera.n_buffers)
-        return fail_with(EINVAL);
+        return set_errno_and_fail(EINVAL);
     if (!camera.multiplanar) {
         b->length = own->bytes[0];
         b->m.offset = 16 * 4096 * b->index;
         return 0;
     }
-    b->length = (uint32_t)count_blocks(camera.now.fourcc);
+    b->length = (uint32_t)count_planes_in_memory(camera.now.fourcc);
     for (uint32_t k = 0; k < b->length; k++) {
         b->m.planes[k].length = own->bytes[k];
         b->m.planes[k].m.mem_offset = 16 * 4096 * b->index + 4096 * k;
@@ -467,22 +474,23 @@ static int query_buffer(struct v4l2_buffer *b)
     return 0;
 }
 
-static int queue_buffer(const struct v4l2_buffer *b)
+static int answer_queue_buffer(const struct v4l2_buffer *b)
 {
     struct fake_buffer *own = &camera.buffer[b->index];
 
     if (b->index >= camera.n_buffers || own->queued ||
         (camera.multiplanar &&
-         b->length < (uint32_t)count_blocks(camera.now.fourcc))) {
+         b->length < (uint32_t)count_planes_in_memory(camera.now.fourcc))) {
         camera.breaches++;
-        return fail_with(EINVAL);
+        return set_errno_and_fail(EINVAL);
     }
     own->queued = true;
     if (b->memory == V4L2_MEMORY_USERPTR) {
         own->own[0] = b->m.userptr;
         own->bytes[0] = b->length;
-        for (int k = 0;
-             camera.multiplanar && k < count_blocks(camera.now.fourcc); k++) {
+        for (int k = 0; camera.multiplanar &&
+                        k < count_planes_in_memory(camera.now.fourcc);
+             k++) {
             own->own[k] = b->m.planes[k].m.userptr;
             own->bytes[k] = b->m.planes[k].length;
         }
@@ -491,7 +499,7 @@ static int queue_buffer(const struct v4l2_buffer *b)
     return 0;
 }
 
-static struct fake_frame take_frame(void)
+static struct fake_frame remove_oldest_frame(void)
 {
     const struct fake_frame f = camera.frame[0];
 
@@ -500,8 +508,8 @@ static struct fake_frame take_frame(void)
     return f;
 }
 
-static void fill_buffer(const struct fake_frame *f, const struct fake_buffer *b,
-                        int block)
+static void fill_buffer_with_frame(const struct fake_frame *f,
+                                   const struct fake_buffer *b, int block)
 {
     uint8_t *mem = b->own[block] ? (uint8_t *)b->own[block] : b->map[block];
 
@@ -515,14 +523,15 @@ static void fill_buffer(const struct fake_frame *f, const struct fake_buffer *b,
         memcpy(mem + f->data_offset[block], f->data, f->bytesused[0]);
 }
 
-static uint32_t bytes_used(const struct fake_frame *f, int block)
+static uint32_t compute_bytes_used(const struct fake_frame *f, int block)
 {
     return f->bytesused[block] || f->is_odd
                ? f->bytesused[block]
-               : find_size(&camera.now, block) + f->data_offset[block];
+               : compute_block_bytes(&camera.now, block) +
+                     f->data_offset[block];
 }
 
-static int dequeue_buffer(struct v4l2_buffer *b)
+static int answer_dequeue_buffer(struct v4l2_buffer *b)
 {
     struct fake_frame f;
     struct fake_buffer *own;
@@ -530,42 +539,42 @@ static int dequeue_buffer(struct v4l2_buffer *b)
     if (camera.on_dequeue)
         camera.on_dequeue();
     if (camera.is_broken)
-        return fail_with(EIO);
+        return set_errno_and_fail(EIO);
     if (!camera.streams)
-        return fail_with(EINVAL);
+        return set_errno_and_fail(EINVAL);
     if (camera.n_frames && camera.frame[0].error)
-        return fail_with(take_frame().error);
+        return set_errno_and_fail(remove_oldest_frame().error);
     if (camera.n_frames == 0 || camera.n_queued == 0)
-        return fail_with(EAGAIN);
-    f = take_frame();
+        return set_errno_and_fail(EAGAIN);
+    f = remove_oldest_frame();
     b->index = camera.order[0];
     own = &camera.buffer[b->index];
     camera.n_queued--;
     memmove(camera.order, camera.order + 1,
             (size_t)camera.n_queued * sizeof *camera.order);
     own->queued = false;
-    if (camera.says_index)
-        b->index = (uint32_t)camera.says_index - 1;
+    if (camera.returned_index)
+        b->index = (uint32_t)camera.returned_index - 1;
     b->sequence = f.sequence;
     b->flags = f.flags | (f.unknown_clock ? V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN
                                           : V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC);
     b->timestamp.tv_sec = f.time_us / 1000000;
     b->timestamp.tv_usec = f.time_us % 1000000;
-    for (int k = 0; k < count_blocks(camera.now.fourcc); k++) {
-        fill_buffer(&f, own, k);
+    for (int k = 0; k < count_planes_in_memory(camera.now.fourcc); k++) {
+        fill_buffer_with_frame(&f, own, k);
         if (camera.multiplanar) {
-            b->m.planes[k].bytesused = bytes_used(&f, k);
+            b->m.planes[k].bytesused = compute_bytes_used(&f, k);
             b->m.planes[k].data_offset = f.data_offset[k];
         } else
-            b->bytesused = bytes_used(&f, k);
+            b->bytesused = compute_bytes_used(&f, k);
     }
     return 0;
 }
 
-static int set_streaming(bool on)
+static int answer_stream_on_off(bool on)
 {
     if (on && camera.n_buffers == 0)
-        return fail_with(EINVAL);
+        return set_errno_and_fail(EINVAL);
     if (on && camera.on_stream)
         camera.on_stream();
     camera.n_streamons += on;
@@ -579,16 +588,16 @@ static int set_streaming(bool on)
     return 0;
 }
 
-static int export_buffer(struct v4l2_exportbuffer *e)
+static int answer_export_buffer(struct v4l2_exportbuffer *e)
 {
     e->fd = __real_open64("/dev/null", O_RDWR);
     camera.n_exports++;
     return 0;
 }
 
-/* ------------------------------------------------------- the kernel's calls */
+/* ---------------------------------------------------- replaced system calls */
 
-static int answer_request(unsigned long request, void *arg)
+static int answer_camera_ioctl(unsigned long request, void *arg)
 {
     struct v4l2_capability *cap = arg;
 
@@ -600,51 +609,51 @@ static int answer_request(unsigned long request, void *arg)
                                         .device_caps = camera.caps};
         return 0;
     case VIDIOC_ENUM_FMT:
-        return enum_format(arg);
+        return answer_enum_format(arg);
     case VIDIOC_ENUM_FRAMESIZES:
-        return enum_size(arg);
+        return answer_enum_size(arg);
     case VIDIOC_ENUM_FRAMEINTERVALS:
-        return enum_interval(arg);
+        return answer_enum_interval(arg);
     case VIDIOC_G_FMT:
-        return get_format(arg);
+        return answer_get_format(arg);
     case VIDIOC_S_FMT:
-        return set_format(arg);
+        return answer_set_format(arg);
     case VIDIOC_G_PARM:
     case VIDIOC_S_PARM:
-        return set_parm(arg, request == VIDIOC_S_PARM);
+        return answer_set_parm(arg, request == VIDIOC_S_PARM);
     case VIDIOC_G_INPUT:
         *(int *)arg = (int)camera.input;
         return 0;
     case VIDIOC_S_INPUT:
-        return set_input(*(const int *)arg);
+        return answer_set_input(*(const int *)arg);
     case VIDIOC_ENUMINPUT:
-        return get_input(arg);
+        return answer_get_input(arg);
     case VIDIOC_QUERY_DV_TIMINGS:
-        return query_timings(arg);
+        return answer_query_timings(arg);
     case VIDIOC_G_DV_TIMINGS:
         ((struct v4l2_dv_timings *)arg)->bt = camera.timings;
         return 0;
     case VIDIOC_S_DV_TIMINGS:
-        return set_timings(arg);
+        return answer_set_timings(arg);
     case VIDIOC_SUBSCRIBE_EVENT:
         return 0;
     case VIDIOC_DQEVENT:
-        return take_event(arg);
+        return answer_dequeue_event(arg);
     case VIDIOC_REQBUFS:
-        return request_buffers(arg);
+        return answer_request_buffers(arg);
     case VIDIOC_QUERYBUF:
-        return query_buffer(arg);
+        return answer_query_buffer(arg);
     case VIDIOC_QBUF:
-        return queue_buffer(arg);
+        return answer_queue_buffer(arg);
     case VIDIOC_DQBUF:
-        return dequeue_buffer(arg);
+        return answer_dequeue_buffer(arg);
     case VIDIOC_STREAMON:
     case VIDIOC_STREAMOFF:
-        return set_streaming(request == VIDIOC_STREAMON);
+        return answer_stream_on_off(request == VIDIOC_STREAMON);
     case VIDIOC_EXPBUF:
-        return export_buffer(arg);
+        return answer_export_buffer(arg);
     }
-    return fail_with(ENOTTY);
+    return set_errno_and_fail(ENOTTY);
 }
 
 int __wrap_ioctl(int fd, unsigned long request, ...)
@@ -658,10 +667,11 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
     if (fd != camera.fd || fd < 0)
         return __real_ioctl(fd, request, arg);
     if (request == VIDIOC_STREAMOFF || camera.is_gone)
-        camera.streams = false; /* also if the call fails below */
-    if (must_fail() || is_refused(request, arg))
+        camera.streams = false; /* also if the request fails below */
+    if (must_fail_this_call() || is_request_refused(request, arg))
         return -1;
-    return camera.is_gone ? fail_with(ENODEV) : answer_request(request, arg);
+    return camera.is_gone ? set_errno_and_fail(ENODEV)
+                          : answer_camera_ioctl(request, arg);
 }
 
 int __wrap_open64(const char *path, int flags, ...)
@@ -674,10 +684,10 @@ int __wrap_open64(const char *path, int flags, ...)
     va_end(args);
     if (strcmp(path, FAKE_PATH) != 0)
         return __real_open64(path, flags, mode);
-    if (must_fail())
+    if (must_fail_this_call())
         return -1;
     if (camera.is_gone)
-        return fail_with(ENODEV);
+        return set_errno_and_fail(ENODEV);
     if (camera.fd >= 0)
         camera.breaches++;
     return camera.fd = __real_open64("/dev/null", flags);
@@ -689,7 +699,8 @@ int __wrap_stat64(const char *path, struct stat *st)
 {
     if (strcmp(path, FAKE_PATH) != 0)
         return __real_stat64(path, st);
-    return camera.is_gone ? fail_with(ENOENT) : __real_stat64("/dev/null", st);
+    return camera.is_gone ? set_errno_and_fail(ENOENT)
+                          : __real_stat64("/dev/null", st);
 }
 
 /* Closes the camera as the kernel does: the stream stops, mapped buffers
@@ -700,7 +711,7 @@ int __wrap_close(int fd)
         camera.fd = -1;
         camera.streams = false;
         camera.n_queued = 0;
-        if (!is_mapped())
+        if (!is_buffer_mapped())
             camera.n_buffers = 0;
     }
     return __real_close(fd);
@@ -715,16 +726,16 @@ ssize_t __wrap_read(int fd, void *dst, size_t bytes)
 
     if (fd != camera.fd || fd < 0)
         return __real_read(fd, dst, bytes);
-    if (must_fail())
+    if (must_fail_this_call())
         return -1;
     if (camera.is_gone || camera.read_errno)
-        return fail_with(camera.is_gone ? ENODEV : camera.read_errno);
+        return set_errno_and_fail(camera.is_gone ? ENODEV : camera.read_errno);
     camera.streams = true; /* read() streams until the device is closed. */
     camera.n_buffers = 1;
     if (camera.n_frames == 0)
-        return fail_with(EAGAIN);
-    f = take_frame();
-    n = bytes_used(&f, 0) < bytes ? bytes_used(&f, 0) : bytes;
+        return set_errno_and_fail(EAGAIN);
+    f = remove_oldest_frame();
+    n = compute_bytes_used(&f, 0) < bytes ? compute_bytes_used(&f, 0) : bytes;
     memset(dst, f.code, n);
     if (f.data)
         memcpy(dst, f.data, n);
@@ -743,7 +754,7 @@ void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
 
     if (fd != camera.fd || fd < 0)
         return __real_mmap64(at, bytes, how, flags, fd, offset);
-    if (must_fail())
+    if (must_fail_this_call())
         return MAP_FAILED;
     if (page % 16 > 2 || (uint32_t)(page / 16) >= camera.n_buffers ||
         bytes != b->bytes[page % 16] || bytes == 0) {
@@ -775,7 +786,7 @@ int __wrap_munmap(void *at, size_t bytes)
 
 void *__wrap_malloc(size_t bytes)
 {
-    void *const mem = must_fail() ? NULL : __real_malloc(bytes);
+    void *const mem = must_fail_this_call() ? NULL : __real_malloc(bytes);
 
     n_asked++;
     n_blocks += mem != NULL;
@@ -784,7 +795,7 @@ void *__wrap_malloc(size_t bytes)
 
 void *__wrap_calloc(size_t n, size_t bytes)
 {
-    void *const mem = must_fail() ? NULL : __real_calloc(n, bytes);
+    void *const mem = must_fail_this_call() ? NULL : __real_calloc(n, bytes);
 
     n_asked++;
     n_blocks += mem != NULL;
@@ -793,7 +804,7 @@ void *__wrap_calloc(size_t n, size_t bytes)
 
 void *__wrap_realloc(void *old, size_t bytes)
 {
-    void *const mem = must_fail() ? NULL : __real_realloc(old, bytes);
+    void *const mem = must_fail_this_call() ? NULL : __real_realloc(old, bytes);
 
     n_asked++;
     n_blocks += mem != NULL && old == NULL;
@@ -803,7 +814,7 @@ void *__wrap_realloc(void *old, size_t bytes)
 int __wrap_posix_memalign(void **mem, size_t align, size_t bytes)
 {
     const int number =
-        must_fail() ? 12 : __real_posix_memalign(mem, align, bytes);
+        must_fail_this_call() ? 12 : __real_posix_memalign(mem, align, bytes);
 
     n_asked++;
     n_blocks += number == 0;
@@ -814,7 +825,7 @@ char *__real_strdup(const char *text);
 char *__wrap_strdup(const char *text);
 char *__wrap_strdup(const char *text)
 {
-    char *const mem = must_fail() ? NULL : __real_strdup(text);
+    char *const mem = must_fail_this_call() ? NULL : __real_strdup(text);
 
     n_asked++;
     n_blocks += mem != NULL;
@@ -825,7 +836,8 @@ char *__real_realpath(const char *path, char *into);
 char *__wrap_realpath(const char *path, char *into);
 char *__wrap_realpath(const char *path, char *into)
 {
-    char *const mem = must_fail() ? NULL : __real_realpath(path, into);
+    char *const mem =
+        must_fail_this_call() ? NULL : __real_realpath(path, into);
 
     n_asked++;
     n_blocks += mem != NULL && !into;

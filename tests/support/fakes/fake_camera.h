@@ -33,7 +33,8 @@ struct fake_frame {
     /* image data of bytesused[0] bytes, instead of CODE; NULL: none */
     const void *data;
     uint32_t flags;
-    uint32_t bytesused[3]; /* 0: the whole frame, unless is_odd */
+    /* bytes used per block; 0: the whole frame, unless is_odd */
+    uint32_t bytesused[3];
     uint32_t data_offset[3];
     int64_t time_us;
     /* the driver does not report the clock of its time stamps */
@@ -50,7 +51,7 @@ struct fake_buffer {
 };
 
 struct fake_camera {
-    /* The device: */
+    /* Properties of the device: */
     uint32_t caps;
     bool multiplanar, has_dv, has_no_sizes, is_stepwise;
     uint32_t n_inputs;
@@ -60,11 +61,11 @@ struct fake_camera {
     uint32_t length_less;
     /* sizeimage that the driver reports, bytes; 0: the right value */
     uint32_t sizeimage;
-    bool says_no_stride;  /* the driver reports a bytesperline of 0 */
-    bool rounds;          /* sizes are rounded to multiples of 16 */
-    bool ignores_fourcc;  /* S_FMT always sets the fourcc of the first mode */
-    bool lacks_mmap;      /* REQBUFS rejects MMAP */
-    uint32_t max_buffers; /* max number of buffers from REQBUFS */
+    bool reports_no_stride; /* the driver reports a bytesperline of 0 */
+    bool rounds;            /* sizes are rounded to multiples of 16 */
+    bool ignores_fourcc;    /* S_FMT always sets the fourcc of the first mode */
+    bool lacks_mmap;        /* REQBUFS rejects MMAP */
+    uint32_t max_buffers;   /* max number of buffers from REQBUFS */
     /* frame interval that G_PARM reports; 0/x: that of the mode */
     struct v4l2_fract rate;
     uint32_t quantization, ycbcr_enc, colorspace;
@@ -86,11 +87,12 @@ struct fake_camera {
     struct fake_frame frame[FAKE_FRAMES];
     int n_frames;
     int read_errno; /* errno of read(); 0: no error */
-    /* called at the beginning of each DQBUF, unless NULL */
+    /* called at the beginning of each DQBUF request, unless NULL */
     void (*on_dequeue)(void);
-    /* called at the beginning of each STREAMON, unless NULL */
+    /* called at the beginning of each STREAMON request, unless NULL */
     void (*on_stream)(void);
-    int says_index; /* index that DQBUF returns, plus 1; 0: the true index */
+    /* index that DQBUF returns, plus 1; 0: the true index */
+    int returned_index;
 
     /* Numbers of calls and of violations: */
     int n_maps, n_exports, breaches, n_streamons, n_reqbufs;
@@ -104,28 +106,28 @@ void fake_camera_reset(void);
 
 /* Appends a frame to the pending ones: all bytes CODE, time stamp now. The
  * caller may change the returned frame. */
-struct fake_frame *fake_camera_deliver(uint32_t sequence, int code);
+struct fake_frame *fake_camera_add_frame(uint32_t sequence, int code);
 
 /* Makes the next TIMES requests REQUEST fail with errno NUMBER; TIMES -1:
  * all. */
-void fake_camera_refuse(unsigned long request, int number, int times);
+void fake_camera_fail_request(unsigned long request, int number, int times);
 
-/* Makes call number N from now fail with errno NUMBER, and all later calls
- * as well if FOREVER; N 0: none. Counted are kernel calls for the camera and
- * allocations. Returns the number of calls since the last use of this
- * function. */
-int fake_camera_fail_at(int n, int number, bool forever);
+/* Makes the Nth call from now fail with errno NUMBER, and all later calls as
+ * well if FOREVER; N 0: no call fails. Counts system calls for the camera
+ * and allocations. Returns the number of calls since this function was last
+ * called. */
+int fake_camera_fail_call(int n, int number, bool forever);
 
 /* Returns the number of heap blocks that the code under test has not freed. */
-int fake_camera_blocks(void);
+int fake_camera_count_leaks(void);
 
 /* Returns the number of allocations since the program began. */
-int fake_camera_asked(void);
+int fake_camera_count_allocations(void);
 
 /* Advances the fake clock by US microseconds. Otherwise only sleeping
  * advances it. */
-void fake_camera_pass(int64_t us);
-int64_t fake_camera_now(void);
+void fake_camera_advance_clock(int64_t us);
+int64_t fake_camera_time_us(void);
 
 /* true: glint behaves as if built without libjpeg */
 extern bool fake_lacks_jpeg;

@@ -21,14 +21,14 @@ char fake_tty_path[] = "/tmp/glint-test-tty-XXXXXX";
 struct fake_fb *fake_fb;
 int fake_fb_calls, fake_fb_fail_at, fake_fb_maps;
 
-static bool must_fail(void)
+static bool must_fail_this_call(void)
 {
     return ++fake_fb_calls == fake_fb_fail_at;
 }
 
-/* -------------------------------------------------------- what is called */
+/* ---------------------------------------------------- replaced system calls */
 
-static int fail_with(int number)
+static int set_errno_and_fail(int number)
 {
     errno = number;
     return -1;
@@ -40,32 +40,32 @@ int __wrap_open64(const char *path, int flags, ...)
 
     if (strcmp(path, fake_fb_path) != 0 && !is_tty)
         return __real_open64(path, flags);
-    if (must_fail())
-        return fail_with(EMFILE);
+    if (must_fail_this_call())
+        return set_errno_and_fail(EMFILE);
     if (!strcmp(path, "/dev/tty"))
-        return fail_with(ENXIO); /* as for a daemon, which has no terminal */
+        return set_errno_and_fail(ENXIO); /* a daemon has no terminal */
     if (is_tty)
-        return fake_fb->tty_errno ? fail_with(fake_fb->tty_errno)
+        return fake_fb->tty_errno ? set_errno_and_fail(fake_fb->tty_errno)
                                   : __real_open64(fake_tty_path, flags);
-    return fake_fb->open_errno ? fail_with(fake_fb->open_errno)
+    return fake_fb->open_errno ? set_errno_and_fail(fake_fb->open_errno)
                                : __real_open64(path, flags);
 }
 
-static int answer_pan(const struct fb_var_screeninfo *to)
+static int answer_pan_display(const struct fb_var_screeninfo *to)
 {
     const struct fb_var_screeninfo *const v = &fake_fb->var;
 
     fake_fb->n_pan++;
     if (!fake_fb->can_pan || to->yoffset > v->yres_virtual - v->yres)
-        return fail_with(EINVAL);
+        return set_errno_and_fail(EINVAL);
     fake_fb->var.yoffset = to->yoffset;
     return 0;
 }
 
-static int answer_fb(unsigned long request, void *arg)
+static int answer_framebuffer_ioctl(unsigned long request, void *arg)
 {
     if (fake_fb->gone)
-        return fail_with(ENODEV);
+        return set_errno_and_fail(ENODEV);
     switch (request) {
     case FBIOGET_FSCREENINFO:
         memcpy(arg, &fake_fb->fix, sizeof fake_fb->fix);
@@ -74,18 +74,19 @@ static int answer_fb(unsigned long request, void *arg)
         memcpy(arg, &fake_fb->var, sizeof fake_fb->var);
         return 0;
     case FBIOPAN_DISPLAY:
-        return answer_pan(arg);
+        return answer_pan_display(arg);
     case FBIOBLANK:
-        return fail_with(EINVAL);
+        return set_errno_and_fail(EINVAL);
     case FBIO_WAITFORVSYNC:
         fake_fb->n_vsync++;
-        return fake_fb->vsync_errno ? fail_with(fake_fb->vsync_errno) : 0;
+        return fake_fb->vsync_errno ? set_errno_and_fail(fake_fb->vsync_errno)
+                                    : 0;
     }
     fail_msg("ioctl %lx", request); /* glint must never set the mode */
     return -1;
 }
 
-static int answer_tty(unsigned long request, void *arg, int mode)
+static int answer_console_ioctl(unsigned long request, void *arg, int mode)
 {
     switch (request) {
     case KDGETMODE:
@@ -101,13 +102,13 @@ static int answer_tty(unsigned long request, void *arg, int mode)
             (struct vt_mode){.mode = (char)fake_fb->tty_switching};
         return 0;
     }
-    return fail_with(ENOTTY);
+    return set_errno_and_fail(ENOTTY);
 }
 
 int __wrap_ioctl(int fd, unsigned long request, ...)
 {
-    const bool is_fb = wrapped_is(fd, fake_fb_path),
-               is_tty = wrapped_is(fd, fake_tty_path);
+    const bool is_fb = wrapped_is_file(fd, fake_fb_path),
+               is_tty = wrapped_is_file(fd, fake_tty_path);
     unsigned long arg;
     va_list args;
 
@@ -116,10 +117,10 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
     va_end(args);
     if (!is_fb && !is_tty)
         return __real_ioctl(fd, request, arg);
-    if (!(request == KDSETMODE && arg == KD_TEXT) && must_fail())
-        return fail_with(EIO);
-    return is_fb ? answer_fb(request, (void *)arg) /* NOLINT */
-                 : answer_tty(request, (void *)arg, (int)arg);
+    if (!(request == KDSETMODE && arg == KD_TEXT) && must_fail_this_call())
+        return set_errno_and_fail(EIO);
+    return is_fb ? answer_framebuffer_ioctl(request, (void *)arg) /* NOLINT */
+                 : answer_console_ioctl(request, (void *)arg, (int)arg);
 }
 
 void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
@@ -127,9 +128,9 @@ void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
 {
     void *got = MAP_FAILED;
 
-    if (fd < 0 || !wrapped_is(fd, fake_fb_path))
+    if (fd < 0 || !wrapped_is_file(fd, fake_fb_path))
         return __real_mmap64(at, bytes, how, flags, fd, offset);
-    if (must_fail())
+    if (must_fail_this_call())
         errno = ENOMEM;
     else
         got = __real_mmap64(at, bytes, how, flags, fd, offset);
@@ -145,5 +146,5 @@ int __wrap_munmap(void *at, size_t bytes)
 
 void *__wrap_malloc(size_t bytes)
 {
-    return must_fail() ? NULL : __real_malloc(bytes);
+    return must_fail_this_call() ? NULL : __real_malloc(bytes);
 }

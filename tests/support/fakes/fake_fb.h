@@ -22,7 +22,7 @@ struct fake_fb {
     bool gone, can_pan;
     int open_errno, vsync_errno, n_vsync, n_pan;
     int tty_errno, tty_mode, tty_switching;
-    /* var.yoffset, rows, when text mode was restored */
+    /* var.yoffset at the time when text mode was restored, rows */
     uint32_t yoffset_at_text;
 };
 /* set by the test; shared with forked processes */

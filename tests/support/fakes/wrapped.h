@@ -36,7 +36,7 @@ int __real_posix_memalign(void **mem, size_t align, size_t bytes);
 int __wrap_posix_memalign(void **mem, size_t align, size_t bytes);
 
 /* Returns whether FD is open on the file PATH. */
-static inline bool wrapped_is(int fd, const char *path)
+static inline bool wrapped_is_file(int fd, const char *path)
 {
     struct stat a, b;
 

@@ -10,9 +10,9 @@
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 
-void drawn_open(struct drawn *d, const char *text,
-                const struct glint_description_files *files,
-                const struct scene_dials *dials, const struct tool *tool)
+void drawn_open_scene(struct drawn *d, const char *text,
+                      const struct glint_description_files *files,
+                      const struct scene_dials *dials, const struct tool *tool)
 {
     struct glint_scene_bake_report report;
     struct glint_error error = {""};
@@ -30,7 +30,7 @@ void drawn_open(struct drawn *d, const char *text,
     assert_ok(scene_frame_open(&d->frame, tool, &d->model, dials));
 }
 
-void drawn_close(struct drawn *d)
+void drawn_close_scene(struct drawn *d)
 {
     scene_frame_close(&d->frame);
     free(d->data);
@@ -38,7 +38,8 @@ void drawn_close(struct drawn *d)
     free(d->description);
 }
 
-void drawn_draw(struct drawn *d, int width, int height, int32_t *light_q20)
+void drawn_draw_image(struct drawn *d, int width, int height,
+                      int32_t *light_q20)
 {
     struct glint_image image =
         glint_image_over(light_q20, GLINT_LINEAR_Q20, width, height);
@@ -50,7 +51,7 @@ void drawn_draw(struct drawn *d, int width, int height, int32_t *light_q20)
 
 /* Returns whether pixel I of the reference shows the same object as its
  * neighbours. */
-static int is_inside(const struct twin_pixel *p, int i)
+static int is_inside_object(const struct twin_pixel *p, int i)
 {
     const int x = i % WIDTH, y = i / WIDTH;
 
@@ -63,8 +64,8 @@ static int is_inside(const struct twin_pixel *p, int i)
     return 1;
 }
 
-double drawn_near_twin(const char *text,
-                       const struct glint_description_files *files)
+double drawn_psnr_to_reference(const char *text,
+                               const struct glint_description_files *files)
 {
     static const struct scene_dials dials = {.width = WIDTH,
                                              .height = HEIGHT,
@@ -79,14 +80,14 @@ double drawn_near_twin(const char *text,
     struct twin twin;
     int n = 0;
 
-    drawn_open(&d, text, files, &dials, &tool);
-    drawn_draw(&d, WIDTH, HEIGHT, light_q20);
-    assert_ok(twin_open(&twin, d.description));
-    twin_render(&twin, &view, NULL, exact);
-    twin_close(&twin);
-    drawn_close(&d);
+    drawn_open_scene(&d, text, files, &dials, &tool);
+    drawn_draw_image(&d, WIDTH, HEIGHT, light_q20);
+    assert_ok(reference_open(&twin, d.description));
+    reference_render_image(&twin, &view, NULL, exact);
+    reference_close(&twin);
+    drawn_close_scene(&d);
     for (int i = 0; i < PIXELS; i++)
-        for (int c = 0; c < 3 && is_inside(exact, i); c++, n++)
+        for (int c = 0; c < 3 && is_inside_object(exact, i); c++, n++)
             square += pow(fmin((double)exact[i].rgb[c], 1) -
                               fmin(light_q20[3 * i + c] * 0x1p-20, 1),
                           2);

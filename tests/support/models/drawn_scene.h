@@ -19,18 +19,19 @@ struct drawn {
 
 /* Parses and bakes TEXT and allocates its images; fails the test on an
  * error. TOOL must outlive D. */
-void drawn_open(struct drawn *d, const char *text,
-                const struct glint_description_files *files,
-                const struct scene_dials *dials, const struct tool *tool);
-void drawn_close(struct drawn *d);
+void drawn_open_scene(struct drawn *d, const char *text,
+                      const struct glint_description_files *files,
+                      const struct scene_dials *dials, const struct tool *tool);
+void drawn_close_scene(struct drawn *d);
 
 /* Draws the scene on black into LIGHT_Q20[HEIGHT][WIDTH][3]. */
-void drawn_draw(struct drawn *d, int width, int height, int32_t *light_q20);
+void drawn_draw_image(struct drawn *d, int width, int height,
+                      int32_t *light_q20);
 
 /* Returns the PSNR, dB, of TEXT against the reference renderer, drawn with
  * one sample per pixel, light clamped to 1. Only pixels whose neighbours
  * show the same object count; they must be a third of the 160 x 90 pixels. */
-double drawn_near_twin(const char *text,
-                       const struct glint_description_files *files);
+double drawn_psnr_to_reference(const char *text,
+                               const struct glint_description_files *files);
 
 #endif

@@ -6,7 +6,7 @@
 #include "base/real.h"
 #include "support/model_builder.h"
 
-void frame_waves(struct glint_wave wave[2])
+void set_frame_wavelengths(struct glint_wave wave[2])
 {
     for (int i = 0; i < 2; i++)
         wave[i] = (struct glint_wave){i ? MODEL_WAVE_HI_Q24 : MODEL_WAVE_LO_Q24,
@@ -14,15 +14,15 @@ void frame_waves(struct glint_wave wave[2])
                                       real_of(1, 0)};
 }
 
-struct glint_light frame_light(void)
+struct glint_light make_axial_light(void)
 {
     return (struct glint_light){
         0, 1 << 30, 1 << 30, 0, real_of(1000, 0), {16384, 16384, 16384}, 0};
 }
 
-struct glint_flare_frame frame_rays(const struct glint_lens *lens,
-                                    const struct glint_wave wave[2],
-                                    int fineness)
+struct glint_flare_frame make_frame_rays(const struct glint_lens *lens,
+                                         const struct glint_wave wave[2],
+                                         int fineness)
 {
     return (struct glint_flare_frame){.lens = lens,
                                       .wave = wave,
@@ -32,7 +32,8 @@ struct glint_flare_frame frame_rays(const struct glint_lens *lens,
                                       .only_ghost = -1};
 }
 
-struct glint_flare_config frame_config(int width, int height, int tile_log2)
+struct glint_flare_config make_frame_config(int width, int height,
+                                            int tile_log2)
 {
     static const int32_t square[4][2] = {
         {1 << 30, 0}, {0, 1 << 30}, {-(1 << 30), 0}, {0, -(1 << 30)}};

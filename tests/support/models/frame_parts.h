@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Inputs of a frame of model_auto() for tests: two wavelengths, one red and one
- * green, and a square stop of apothem 0.4, which clips the ghost.
+ * Inputs of a frame of model_make_auto() for tests: two wavelengths, one red
+ * and one green, and a square stop of apothem 0.4, which clips the ghost.
  */
 #ifndef GLINT_TESTS_FRAME_PARTS_H
 #define GLINT_TESTS_FRAME_PARTS_H
@@ -9,19 +9,20 @@
 #include "glint/flare.h"
 
 /* Sets WAVE to the ends of the model's range: red, then green. */
-void frame_waves(struct glint_wave wave[2]);
+void set_frame_wavelengths(struct glint_wave wave[2]);
 
 /* Returns a white light of power 1000 on the axis. */
-struct glint_light frame_light(void);
+struct glint_light make_axial_light(void);
 
 /* Returns the frame's rays for all ghosts of LENS in the colours of WAVE, at
  * 64 pixels per mm. */
-struct glint_flare_frame frame_rays(const struct glint_lens *lens,
-                                    const struct glint_wave wave[2],
-                                    int fineness);
+struct glint_flare_frame make_frame_rays(const struct glint_lens *lens,
+                                         const struct glint_wave wave[2],
+                                         int fineness);
 
-/* Returns a configuration for images of WIDTH x HEIGHT. Capacities for
- * bundles, primitives and cells are 0. */
-struct glint_flare_config frame_config(int width, int height, int tile_log2);
+/* Returns a flare configuration for images of WIDTH x HEIGHT. The caller sets
+ * its capacities for bundles, primitives and cells, which are 0. */
+struct glint_flare_config make_frame_config(int width, int height,
+                                            int tile_log2);
 
 #endif

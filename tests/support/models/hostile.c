@@ -28,14 +28,14 @@ const char *const hostile_name[HOSTILE_FAMILIES] = {
 
 /* ------------------------------------------------------------- polynomials */
 
-/* A polynomial: the sum of one of u, one of v and a multiple of w. */
+/* The polynomial sum(u[k] u^k) + sum(v[k] v^k) + w times the variable w. */
 struct polynomial {
     double u[POWERS], v[POWERS], w;
 };
 
 /* Adds to POWER the Chebyshev polynomial of degree N, which swings between -1
  * and 1, times SIZE. */
-static void add_swings(double *power, int n, double size)
+static void add_chebyshev_polynomial(double *power, int n, double size)
 {
     double last[POWERS] = {1}, here[POWERS] = {0, 1};
 
@@ -51,9 +51,9 @@ static void add_swings(double *power, int n, double size)
 }
 
 /* Writes P as output KIND, with coefficients in units of 2^EXPONENT. */
-static struct glint_model_output put_output(struct model_image *m, int kind,
-                                            const struct polynomial *p,
-                                            int exponent)
+static struct glint_model_output append_output(struct model_image *m, int kind,
+                                               const struct polynomial *p,
+                                               int exponent)
 {
     uint16_t power[2 * POWERS + 1];
     int32_t coef[2 * POWERS + 1];
@@ -73,14 +73,14 @@ static struct glint_model_output put_output(struct model_image *m, int kind,
         power[o.n_terms] = 1 << 12;
         coef[o.n_terms++] = (int32_t)lrint(ldexp(p->w, -exponent));
     }
-    o.term_at = model_put(m, power, o.n_terms * sizeof *power);
-    o.coef_at = model_put(m, coef, o.n_terms * sizeof *coef);
+    o.term_at = model_append_items(m, power, o.n_terms * sizeof *power);
+    o.coef_at = model_append_items(m, coef, o.n_terms * sizeof *coef);
     return o;
 }
 
-/* Returns the exponent with which the magnitudes of P's coefficients add up to
- * less than 2^29 units, and to half of that or more; 0 if P is 0. */
-static int find_exponent(const struct polynomial *p)
+/* Returns the exponent E for which the magnitudes of P's coefficients sum to
+ * 2^28 .. 2^29 units of 2^E; 0 if P is 0. */
+static int find_unit_exponent(const struct polynomial *p)
 {
     double sum = fabs(p->w);
     int exponent;
@@ -92,26 +92,28 @@ static int find_exponent(const struct polynomial *p)
 }
 
 /* Writes P[N] as outputs of the first N kinds. Returns their offset in M. */
-static uint32_t put_outputs(struct model_image *m, const struct polynomial *p,
-                            int n)
+static uint32_t append_outputs(struct model_image *m,
+                               const struct polynomial *p, int n)
 {
     struct glint_model_output o[GLINT_OUT_KINDS];
 
     for (int k = 0; k < n; k++) {
         /* x and y share the larger exponent of the two */
         const int pair = k < GLINT_OUT_ENERGY ? k ^ 1 : k;
-        const int a = find_exponent(&p[k]), b = find_exponent(&p[pair]);
+        const int a = find_unit_exponent(&p[k]),
+                  b = find_unit_exponent(&p[pair]);
 
-        o[k] = put_output(m, k, &p[k], a > b ? a : b);
+        o[k] = append_output(m, k, &p[k], a > b ? a : b);
     }
-    return model_put(m, o, (size_t)n * sizeof *o);
+    return model_append_items(m, o, (size_t)n * sizeof *o);
 }
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* Sets P to a ghost as large as the frame, with the stop as large as its
- * box. */
-static void set_whole(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
+/* Sets P to the outputs of a ghost as large as the frame, whose pupil box fills
+ * the stop. */
+static void set_frame_filling_ghost(struct polynomial p[GLINT_OUT_KINDS],
+                                    uint32_t *seed)
 {
     memset(p, 0, GLINT_OUT_KINDS * sizeof *p);
     p[GLINT_OUT_SENSOR_X].u[1] = 18 + rng_unit(seed);
@@ -124,27 +126,31 @@ static void set_whole(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
     p[GLINT_OUT_ENERGY].u[0] = 0.5;
 }
 
-/* Sets P to a ghost that goes across the frame up to nine times each way and is
- * cut by barrels. */
-static void set_folds(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
+/* Sets P to the outputs of a ghost that folds back and forth across the frame
+ * up to nine times in x and in y, and is clipped by barrels. */
+static void set_folded_ghost(struct polynomial p[GLINT_OUT_KINDS],
+                             uint32_t *seed)
 {
-    set_whole(p, seed);
+    set_frame_filling_ghost(p, seed);
     memset(p, 0, 2 * sizeof *p);
-    add_swings(p[GLINT_OUT_SENSOR_X].u, 9 - rng_below(seed, 3), 18);
-    add_swings(p[GLINT_OUT_SENSOR_X].v, 2 * rng_below(seed, 5), 3);
-    add_swings(p[GLINT_OUT_SENSOR_Y].v, 9 - 2 * rng_below(seed, 2), 12);
+    add_chebyshev_polynomial(p[GLINT_OUT_SENSOR_X].u,
+                             9 - rng_int_below(seed, 3), 18);
+    add_chebyshev_polynomial(p[GLINT_OUT_SENSOR_X].v,
+                             2 * rng_int_below(seed, 5), 3);
+    add_chebyshev_polynomial(p[GLINT_OUT_SENSOR_Y].v,
+                             9 - 2 * rng_int_below(seed, 2), 12);
     for (int k = GLINT_OUT_RADIUS; k < GLINT_OUT_KINDS; k++) {
         p[k].u[0] = 0.8;
-        add_swings(p[k].u, 1 + rng_below(seed, 9), 0.3);
-        add_swings(p[k].v, 2 * rng_below(seed, 5), 0.3);
+        add_chebyshev_polynomial(p[k].u, 1 + rng_int_below(seed, 9), 0.3);
+        add_chebyshev_polynomial(p[k].v, 2 * rng_int_below(seed, 5), 0.3);
     }
 }
 
-static struct glint_model_system make_system(const struct model_image *m,
-                                             uint32_t outputs, int n_outputs,
-                                             uint32_t box)
+static struct glint_model_system
+make_system_of_outputs(const struct model_image *m, uint32_t outputs,
+                       int n_outputs, uint32_t box)
 {
-    const struct glint_model_header *h = model_header(m);
+    const struct glint_model_header *h = model_header_of(m);
 
     return (struct glint_model_system){.sine_hi_q30 = MODEL_ONE_Q30 / 2,
                                        .wave_lo_q24 = h->wave_lo_q24,
@@ -156,107 +162,109 @@ static struct glint_model_system make_system(const struct model_image *m,
                                        .box_terms = 1};
 }
 
-/* Writes a ghost for each pair of SURFACES, the most that a lens can have, with
- * VARIANTS shapes among them. */
-static void put_pairs(struct model_image *m, enum hostile_family family,
-                      uint32_t *seed)
+/* Writes a ghost for each pair of SURFACES, the max number of a lens. The
+ * ghosts share VARIANTS different shapes. */
+static void append_ghost_per_pair(struct model_image *m,
+                                  enum hostile_family family, uint32_t *seed)
 {
     enum { VARIANTS = 300 };
     static struct glint_model_ghost ghost[PAIRS];
     static struct glint_model_system of[PAIRS];
     const int32_t side[] = {0, 4 << 20, 4 << 20};
     const int folds = family == HOSTILE_FOLDS;
-    const uint32_t box = model_put(m, side, sizeof side);
+    const uint32_t box = model_append_items(m, side, sizeof side);
     uint32_t output[VARIANTS], n = 0;
 
     for (int k = 0; k < VARIANTS; k++) {
         struct polynomial p[GLINT_OUT_KINDS];
 
         if (folds)
-            set_folds(p, seed);
+            set_folded_ghost(p, seed);
         else
-            set_whole(p, seed);
+            set_frame_filling_ghost(p, seed);
         if (family == HOSTILE_COLOURS)
             p[GLINT_OUT_SENSOR_X].w = 30;
-        output[k] =
-            put_outputs(m, p, folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1);
+        output[k] = append_outputs(
+            m, p, folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1);
     }
     for (uint32_t j = 1; j < SURFACES; j++)
         for (uint32_t i = 0; i < j; i++, n++) {
             ghost[n] = (struct glint_model_ghost){i, j, n, 1};
-            of[n] = make_system(m, output[n % VARIANTS],
-                                folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1,
-                                box);
+            of[n] = make_system_of_outputs(
+                m, output[n % VARIANTS],
+                folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1, box);
             of[n].annulus = folds && n % 5 == 0 ? GLINT_MAX_ANNULUS : 0;
         }
-    model_end(m, ghost, PAIRS, of, PAIRS);
+    model_append_ghosts(m, ghost, PAIRS, of, PAIRS);
 }
 
-/* Writes ghosts whose rays are invalid, by NUMBER modulo 3: 0: all of them, as
- * their energy is negative; 1: stripes of them, for that reason; 2: those that
- * land far outside the picture. From NUMBER 5 on there are as many ghosts as a
- * lens can have. */
-static void put_lost(struct model_image *m, int number, uint32_t *seed)
+/* Writes ghosts with invalid rays, selected by NUMBER modulo 3. 0: all rays
+ * have negative energy. 1: stripes of rays have negative energy. 2: some rays
+ * land far off-screen. From NUMBER 5 on there are as many ghosts as a lens can
+ * have. */
+static void append_ghosts_of_invalid_rays(struct model_image *m, int number,
+                                          uint32_t *seed)
 {
     static struct glint_model_ghost ghost[PAIRS];
     static struct glint_model_system of[PAIRS];
     const uint32_t n = number < 5 ? 300 : PAIRS;
     const int32_t side[] = {0, 4 << 20, 4 << 20};
-    const uint32_t box = model_put(m, side, sizeof side);
+    const uint32_t box = model_append_items(m, side, sizeof side);
     struct polynomial p[GLINT_OUT_KINDS];
     uint32_t output;
 
-    set_whole(p, seed);
+    set_frame_filling_ghost(p, seed);
     if (number % 3 == 0)
         p[GLINT_OUT_ENERGY].u[0] = -0.5;
     if (number % 3 == 1)
-        add_swings(p[GLINT_OUT_ENERGY].u, 9, 0.6);
+        add_chebyshev_polynomial(p[GLINT_OUT_ENERGY].u, 9, 0.6);
     if (number % 3 == 2)
-        add_swings(p[number % 2].v, 8 + number % 2, 0x1p30);
-    output = put_outputs(m, p, GLINT_OUT_ENERGY + 1);
+        add_chebyshev_polynomial(p[number % 2].v, 8 + number % 2, 0x1p30);
+    output = append_outputs(m, p, GLINT_OUT_ENERGY + 1);
     for (uint32_t k = 0; k < n; k++) {
         ghost[k] = (struct glint_model_ghost){k % 63, 63, k, 1};
-        of[k] = make_system(m, output, GLINT_OUT_ENERGY + 1, box);
+        of[k] = make_system_of_outputs(m, output, GLINT_OUT_ENERGY + 1, box);
     }
-    model_end(m, ghost, n, of, n);
+    model_append_ghosts(m, ghost, n, of, n);
 }
 
-/* Writes one ghost, or two from NUMBER 5 on, with 10000 systems, each for a
- * narrow band and a small range of angles. All systems share outputs and box,
- * so that the file is small. */
-static void put_systems(struct model_image *m, int number, uint32_t *seed)
+/* Writes one ghost, or two from NUMBER 5 on, with 10000 polynomial systems,
+ * each for a narrow band of wavelengths and a small range of angles. All
+ * systems share outputs and box, which keeps the file small. */
+static void append_ghost_of_many_systems(struct model_image *m, int number,
+                                         uint32_t *seed)
 {
     enum { ANGLES = 100, BANDS = 100, N = ANGLES * BANDS };
     static struct glint_model_system of[N];
-    const struct glint_model_header h = *model_header(m);
+    const struct glint_model_header h = *model_header_of(m);
     const struct glint_model_ghost ghost[] = {
         {0, 1, 0, number < 5 ? N : N / 2},
         {0, 2, number < 5 ? N : N / 2, number < 5 ? 0 : N / 2}};
     const int32_t side[] = {0, 4 << 20, 4 << 20};
-    const uint32_t box = model_put(m, side, sizeof side);
+    const uint32_t box = model_append_items(m, side, sizeof side);
     const int32_t wide = (h.wave_hi_q24 - h.wave_lo_q24) / BANDS;
     const int32_t turn = MODEL_ONE_Q30 / 2 / ANGLES;
     struct polynomial p[GLINT_OUT_KINDS];
     uint32_t output;
 
-    set_whole(p, seed);
-    output = put_outputs(m, p, GLINT_OUT_ENERGY + 1);
+    set_frame_filling_ghost(p, seed);
+    output = append_outputs(m, p, GLINT_OUT_ENERGY + 1);
     for (int k = 0; k < N; k++) {
-        of[k] = make_system(m, output, GLINT_OUT_ENERGY + 1, box);
+        of[k] = make_system_of_outputs(m, output, GLINT_OUT_ENERGY + 1, box);
         of[k].sine_lo_q30 = turn * (k / BANDS);
         of[k].sine_hi_q30 = of[k].sine_lo_q30 + turn;
         of[k].wave_lo_q24 = h.wave_lo_q24 + wide * (k % BANDS);
         of[k].wave_hi_q24 = of[k].wave_lo_q24 + wide;
     }
-    model_end(m, ghost, 2, of, N);
+    model_append_ghosts(m, ghost, 2, of, N);
 }
 
-/* Returns the most coefficients that an output can have, on different powers of
- * u and s, in M: at a fraction of s each is rounded, and all round up. Their
- * magnitudes add up to 2^30 - 1, the largest sum that the check of models
- * accepts. V is the power of v. */
-static struct glint_model_output put_sum(struct model_image *m, int kind,
-                                         int exponent, int v)
+/* Writes an output with the max number of coefficients to M and returns it.
+ * Their terms have different powers of u and s and the power V of v; at
+ * fractional s each term is rounded, and all round up. The magnitudes of the
+ * coefficients sum to 2^30 - 1, the max that the validity check accepts. */
+static struct glint_model_output
+append_largest_output(struct model_image *m, int kind, int exponent, int v)
 {
     enum { N = GLINT_MAX_MODEL_TERMS, PART = ((1 << 30) - 1) / N };
     struct glint_model_output o = {.kind = (uint8_t)kind,
@@ -272,14 +280,15 @@ static struct glint_model_output put_sum(struct model_image *m, int kind,
         coef[k] = PART;
     }
     coef[0] += (1 << 30) - 1 - N * PART;
-    o.term_at = model_put(m, power, sizeof power);
-    o.coef_at = model_put(m, coef, sizeof coef);
+    o.term_at = model_append_items(m, power, sizeof power);
+    o.coef_at = model_append_items(m, coef, sizeof coef);
     return o;
 }
 
-/* Writes a ghost of such outputs: all of them, or, by NUMBER, some. Barrels
- * have exponents of which 2^30 is 1 after a shift by 31. */
-static void put_sums(struct model_image *m, int number)
+/* Writes a ghost whose outputs have the max number of coefficients: all
+ * outputs, or some of them, selected by NUMBER. Barrels have exponents of which
+ * 2^30 is 1 after a shift by 31. */
+static void append_ghost_of_largest_outputs(struct model_image *m, int number)
 {
     static const struct glint_model_ghost ghost[] = {{0, 1, 0, 1}};
     const int32_t side[] = {0, 1 << 29, 1 << 29};
@@ -289,78 +298,82 @@ static void put_sums(struct model_image *m, int number)
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
         const int is_barrel = kind > GLINT_OUT_ENERGY;
 
-        o[kind] =
-            put_sum(m, kind,
-                    is_barrel && number % 2 == 0 ? -47
-                    : kind < GLINT_OUT_STOP_X    ? -24 - number
-                                                 : -29 - number,
-                    kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y);
+        o[kind] = append_largest_output(
+            m, kind,
+            is_barrel && number % 2 == 0 ? -47
+            : kind < GLINT_OUT_STOP_X    ? -24 - number
+                                         : -29 - number,
+            kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y);
     }
-    s = make_system(m, model_put(m, o, sizeof o), GLINT_OUT_KINDS,
-                    model_put(m, side, sizeof side));
+    s = make_system_of_outputs(m, model_append_items(m, o, sizeof o),
+                               GLINT_OUT_KINDS,
+                               model_append_items(m, side, sizeof side));
     s.box_exponent = -26;
-    model_end(m, ghost, 1, &s, 1);
+    model_append_ghosts(m, ghost, 1, &s, 1);
 }
 
 /* ------------------------------------------------------------------ editing */
 
 /* Returns the address of OFFSET in M. Baked models are edited in place. */
-static void *find_bytes_at(const struct model_image *m, uint32_t offset)
+static void *model_bytes_at(const struct model_image *m, uint32_t offset)
 {
     return m->data + offset;
 }
 
 /* Sets the coefficients of output O at random; their magnitudes add up to just
  * below 2^30. */
-static void edit_coefficients(const struct model_image *m,
-                              struct glint_model_output *o, uint32_t *seed)
+static void randomise_output_coefficients(const struct model_image *m,
+                                          struct glint_model_output *o,
+                                          uint32_t *seed)
 {
     const int n_wide = o->n_terms - o->n_narrow;
-    int32_t *wide = find_bytes_at(m, o->coef_at);
+    int32_t *wide = model_bytes_at(m, o->coef_at);
     int16_t *narrow = (int16_t *)(void *)(wide + n_wide);
     int64_t left = (INT64_C(1) << 30) - 1;
 
     for (int k = 0; k < o->n_narrow; k++) {
-        narrow[k] = (int16_t)(rng_below(seed, 1 << 9) - (1 << 8));
+        narrow[k] = (int16_t)(rng_int_below(seed, 1 << 9) - (1 << 8));
         left -= (int64_t)abs(narrow[k]) << o->narrow_shift;
     }
     for (int k = 0; k < n_wide && left > 0; k++) {
         const int64_t part =
-            k == n_wide - 1 ? left : left * rng_below(seed, 1 << 20) >> 20;
+            k == n_wide - 1 ? left : left * rng_int_below(seed, 1 << 20) >> 20;
 
-        wide[k] = (int32_t)(rng_below(seed, 2) ? part : -part);
+        wide[k] = (int32_t)(rng_int_below(seed, 2) ? part : -part);
         left -= part;
     }
 }
 
-static void edit_numbers(const struct model_image *m,
-                         struct glint_model_system *s, uint32_t *seed)
+static void randomise_coefficients(const struct model_image *m,
+                                   struct glint_model_system *s, uint32_t *seed)
 {
-    struct glint_model_output *o = find_bytes_at(m, s->output_at);
+    struct glint_model_output *o = model_bytes_at(m, s->output_at);
 
     for (int k = 0; k < s->n_outputs; k++) {
         const int kind = o[k].kind;
 
-        if (rng_below(seed, 3))
-            edit_coefficients(m, &o[k], seed);
-        if (rng_below(seed, 2) && kind > GLINT_OUT_STOP_Y)
-            o[k].exponent = (int16_t)(rng_below(seed, 121) - 80);
-        if (rng_below(seed, 4) == 0)
-            o[k].exponent = (int16_t)(o[k].exponent + rng_below(seed, 9) - 4);
+        if (rng_int_below(seed, 3))
+            randomise_output_coefficients(m, &o[k], seed);
+        if (rng_int_below(seed, 2) && kind > GLINT_OUT_STOP_Y)
+            o[k].exponent = (int16_t)(rng_int_below(seed, 121) - 80);
+        if (rng_int_below(seed, 4) == 0)
+            o[k].exponent =
+                (int16_t)(o[k].exponent + rng_int_below(seed, 9) - 4);
         if (kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y)
             o[k].exponent = o[k - 1].exponent;
         if (kind == GLINT_OUT_ENERGY) {
-            o[k].head = (uint8_t)rng_below(seed, 29);
-            o[k].roots = (uint8_t)rng_below(seed, 3);
+            o[k].head = (uint8_t)rng_int_below(seed, 29);
+            o[k].roots = (uint8_t)rng_int_below(seed, 3);
         }
     }
 }
 
-static void edit_box(const struct model_image *m, struct glint_model_system *s,
-                     int huge, uint32_t *seed)
+static void randomise_pupil_box(const struct model_image *m,
+                                struct glint_model_system *s, int huge,
+                                uint32_t *seed)
 {
     int n = 0;
-    int32_t *box = find_bytes_at(m, s->box_at);
+    int32_t *box = model_bytes_at(m, s->box_at);
 
     for (int bit = 0; bit < GLINT_BOX_TERMS; bit++)
         n += s->box_terms >> bit & 1;
@@ -368,21 +381,22 @@ static void edit_box(const struct model_image *m, struct glint_model_system *s,
         for (int k = 0; k < n; k++)
             box[side * n + k] =
                 k == 0 && huge ? (1 << 30) - 1 - (side == 0) * (1 << 29) : 0;
-    s->box_exponent =
-        huge && rng_below(seed, 2) ? 40 - rng_below(seed, 40) : s->box_exponent;
+    s->box_exponent = huge && rng_int_below(seed, 2)
+                          ? 40 - rng_int_below(seed, 40)
+                          : s->box_exponent;
 }
 
-/* Changes the stop positions of S, by NUMBER modulo 3. 0: all rays meet in the
- * middle of the stop. 1: only the first coefficient is left, larger the larger
- * NUMBER is, so that rays may all miss the stop. 2: positions get the exponent
- * 2 NUMBER - 20, so that hardly any ray meets the stop. */
-static void edit_stop(const struct model_image *m, struct glint_model_system *s,
-                      int number)
+/* Changes the stop positions of S, selected by NUMBER modulo 3. 0: all rays
+ * pass the middle of the stop. 1: only the first coefficient remains, which
+ * grows with NUMBER, so that all rays may miss the stop. 2: positions get the
+ * exponent 2 NUMBER - 20, so that hardly any ray passes the stop. */
+static void randomise_stop_positions(const struct model_image *m,
+                                     struct glint_model_system *s, int number)
 {
-    struct glint_model_output *o = find_bytes_at(m, s->output_at);
+    struct glint_model_output *o = model_bytes_at(m, s->output_at);
 
     for (int k = GLINT_OUT_STOP_X; k <= GLINT_OUT_STOP_Y; k++) {
-        int32_t *wide = find_bytes_at(m, o[k].coef_at);
+        int32_t *wide = model_bytes_at(m, o[k].coef_at);
 
         if (number % 3 == 2) {
             o[k].exponent = (int16_t)(-20 + 2 * number);
@@ -396,7 +410,7 @@ static void edit_stop(const struct model_image *m, struct glint_model_system *s,
     }
 }
 
-static void edit_header(struct glint_model_header *h, uint32_t *seed)
+static void randomise_header(struct glint_model_header *h, uint32_t *seed)
 {
     struct glint_real *const real[] = {
         &h->focal_mm,       &h->back_focal_mm,  &h->entrance_radius_mm,
@@ -405,20 +419,20 @@ static void edit_header(struct glint_model_header *h, uint32_t *seed)
         &h->direct_flux[0], &h->direct_flux[1], &h->stopped_flux[0][0]};
 
     for (size_t k = 0; k < sizeof real / sizeof *real; k++)
-        if (rng_below(seed, 3) == 0)
-            real[k]->exponent = rng_below(seed, 401) - 200;
-    if (rng_below(seed, 3) == 0)
+        if (rng_int_below(seed, 3) == 0)
+            real[k]->exponent = rng_int_below(seed, 401) - 200;
+    if (rng_int_below(seed, 3) == 0)
         h->wave_lo_q24 = 1;
-    if (rng_below(seed, 3) == 0)
+    if (rng_int_below(seed, 3) == 0)
         h->wave_hi_q24 = INT32_MAX;
-    if (rng_below(seed, 3) == 0)
-        h->sine_hi_q30 = rng_below(seed, 2) ? 1 : 1 << 30;
-    if (rng_below(seed, 3) == 0)
+    if (rng_int_below(seed, 3) == 0)
+        h->sine_hi_q30 = rng_int_below(seed, 2) ? 1 : 1 << 30;
+    if (rng_int_below(seed, 3) == 0)
         h->n_parts = h->n_ghosts;
 }
 
-/* Gives H an invalid name, by NUMBER. */
-static void edit_name(struct glint_model_header *h, int number)
+/* Sets the name in H to an invalid one, selected by NUMBER. */
+static void set_invalid_name(struct glint_model_header *h, int number)
 {
     static const char *const name[HOSTILE_EACH] = {"evil\xc2\x9b"
                                                    "31m",
@@ -439,8 +453,10 @@ static void edit_name(struct glint_model_header *h, int number)
         snprintf(h->name, sizeof h->name, "%s", name[number]);
 }
 
-static void edit_model(struct model_image *m, const struct glint_lens *baked,
-                       enum hostile_family family, int number, uint32_t *seed)
+static void edit_all_systems(struct model_image *m,
+                             const struct glint_lens *baked,
+                             enum hostile_family family, int number,
+                             uint32_t *seed)
 {
     struct glint_model_header *h;
     struct glint_model_system *s;
@@ -450,27 +466,27 @@ static void edit_model(struct model_image *m, const struct glint_lens *baked,
     if (!m->data)
         abort();
     memcpy(m->data, baked->header, m->bytes);
-    h = model_header(m);
-    s = find_bytes_at(m, h->system_at);
+    h = model_header_of(m);
+    s = model_bytes_at(m, h->system_at);
     for (uint32_t k = 0; k < h->n_systems; k++)
         if (family == HOSTILE_NUMBERS)
-            edit_numbers(m, &s[k], seed);
+            randomise_coefficients(m, &s[k], seed);
         else if (family == HOSTILE_WINDOWS)
-            edit_stop(m, &s[k], number);
+            randomise_stop_positions(m, &s[k], number);
         else if (family == HOSTILE_POINTS || family == HOSTILE_HUGE)
-            edit_box(m, &s[k], family == HOSTILE_HUGE, seed);
+            randomise_pupil_box(m, &s[k], family == HOSTILE_HUGE, seed);
     if (family == HOSTILE_HEADERS)
-        edit_header(h, seed);
+        randomise_header(h, seed);
     if (family == HOSTILE_TEXTS)
-        edit_name(h, number);
-    model_seal(m);
+        set_invalid_name(h, number);
+    model_seal_checksum(m);
 }
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Returns how many rows of pixels the edges of FLARE cross, summed over
- * edges. */
-static double count_rows(const struct glint_flare *flare)
+/* Returns the number of pixel rows that an edge of FLARE crosses, summed over
+ * all edges. */
+static double count_crossed_rows(const struct glint_flare *flare)
 {
     double rows = 0;
 
@@ -486,17 +502,17 @@ static double count_rows(const struct glint_flare *flare)
     return rows;
 }
 
-/* Returns the millions of instructions that the frame took: all that its plans
- * looked at, vertices and edges of each binning, and the rows and pixels drawn
- * once, times their weights. */
-static double estimate_work(const struct glint_frame *f,
-                            const struct glint_engine_report *r)
+/* Returns the estimated cost of the frame, millions of instructions: a weighted
+ * sum of the objects that its plans examined, the vertices and edges of each
+ * binning, and the rows and pixels drawn. */
+static double estimate_frame_instructions(const struct glint_frame *f,
+                                          const struct glint_engine_report *r)
 {
     double count[GLINT_COST_KINDS] = {
         [GLINT_COST_LOOKED_AT] = (double)r->looked,
         [GLINT_COST_BUNDLES] = (double)f->memory.flare->n_bundles * r->binned,
         [GLINT_COST_EDGES] = (double)r->stats.need_primitives * r->binned,
-        [GLINT_COST_ROWS] = count_rows(f->memory.flare),
+        [GLINT_COST_ROWS] = count_crossed_rows(f->memory.flare),
         [GLINT_COST_LIT] = (double)r->tiles * (1 << 2 * f->cfg.tile_log2)};
     double work = 0;
 
@@ -510,8 +526,9 @@ static double estimate_work(const struct glint_frame *f,
     return work;
 }
 
-static bool make_setup(const struct hostile_scene *scene,
-                       const struct glint_lens *lens, struct glint_setup *setup)
+static bool make_hostile_setup(const struct hostile_scene *scene,
+                               const struct glint_lens *lens,
+                               struct glint_setup *setup)
 {
     static const double nm[3] = {650, 532, 450};
     const double widest = glint_real_value(lens->header->f_number);
@@ -527,8 +544,9 @@ static bool make_setup(const struct hostile_scene *scene,
     return true;
 }
 
-static bool draw_model(const struct hostile_scene *scene,
-                       struct glint_frame *frame, struct hostile_result *result)
+static bool draw_hostile_frame(const struct hostile_scene *scene,
+                               struct glint_frame *frame,
+                               struct hostile_result *result)
 {
     enum { W = HOSTILE_WIDTH, H = HOSTILE_HEIGHT };
     struct glint_image image = {.format = scene->linear ? GLINT_LINEAR_Q20
@@ -551,7 +569,7 @@ static bool draw_model(const struct hostile_scene *scene,
                    : report.coarsened           ? HOSTILE_COARSER
                    : report.stats.primitives    ? HOSTILE_DRAWN
                                                 : HOSTILE_EMPTY,
-        .minsn = estimate_work(frame, &report),
+        .minsn = estimate_frame_instructions(frame, &report),
         .most_minsn = frame->limits.most_minsn * frame->limits.share,
         .bytes = (double)report.arena_bytes,
         .most_bytes = (double)frame->limits.most_bytes * frame->limits.share,
@@ -559,8 +577,8 @@ static bool draw_model(const struct hostile_scene *scene,
     return true;
 }
 
-bool hostile_draw(const struct hostile_scene *scene,
-                  struct hostile_result *result)
+bool hostile_draw_scene(const struct hostile_scene *scene,
+                        struct hostile_result *result)
 {
     static struct glint_setup setup;
     struct glint_lens lens;
@@ -571,7 +589,7 @@ bool hostile_draw(const struct hostile_scene *scene,
                                       .reason = "its setup"};
     if (glint_lens_open(&lens, scene->model.data, scene->model.bytes,
                         &result->reason) != GLINT_OK ||
-        !make_setup(scene, &lens, &setup))
+        !make_hostile_setup(scene, &lens, &setup))
         return true;
     glint_frame_init(
         &frame, &setup,
@@ -581,15 +599,15 @@ bool hostile_draw(const struct hostile_scene *scene,
         NULL);
     frame.lens = &lens;
     frame.cfg.sets = glint_sets_here();
-    drawn = draw_model(scene, &frame, result);
+    drawn = draw_hostile_frame(scene, &frame, result);
     glint_frame_finish(&frame);
     return drawn;
 }
 
 /* -------------------------------------------------------------------- scene */
 
-void hostile_make(struct hostile_scene *scene, enum hostile_family family,
-                  int number, const struct glint_lens *baked)
+void hostile_make_scene(struct hostile_scene *scene, enum hostile_family family,
+                        int number, const struct glint_lens *baked)
 {
     struct model_image *m = &scene->model;
     uint32_t seed = 1 + 1000 * (uint32_t)family + (uint32_t)number;
@@ -606,17 +624,17 @@ void hostile_make(struct hostile_scene *scene, enum hostile_family family,
     }
     if ((family >= HOSTILE_NUMBERS && family <= HOSTILE_HEADERS) ||
         family == HOSTILE_TEXTS) {
-        edit_model(m, baked, family, number, &seed);
+        edit_all_systems(m, baked, family, number, &seed);
         return;
     }
-    model_begin(m, GLINT_BASIS_AUTO, "hostile");
-    model_header(m)->n_surfaces = SURFACES;
+    model_begin_header(m, GLINT_BASIS_AUTO, "hostile");
+    model_header_of(m)->n_surfaces = SURFACES;
     if (family == HOSTILE_LOST)
-        put_lost(m, number, &seed);
+        append_ghosts_of_invalid_rays(m, number, &seed);
     else if (family == HOSTILE_SYSTEMS)
-        put_systems(m, number, &seed);
+        append_ghost_of_many_systems(m, number, &seed);
     else if (family == HOSTILE_SUMS)
-        put_sums(m, number);
+        append_ghost_of_largest_outputs(m, number);
     else
-        put_pairs(m, family, &seed);
+        append_ghost_per_pair(m, family, &seed);
 }

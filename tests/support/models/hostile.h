@@ -4,7 +4,7 @@
  * memory, or overflow. Each is drawn at random from its family; those that
  * glint_lens_open() accepts must be drawn within bounds of work and memory.
  *
- *     hostile_make(&scene, HOSTILE_FOLDS, 3, &baked);
+ *     hostile_make_scene(&scene, HOSTILE_FOLDS, 3, &baked);
  *     glint_lens_open(&lens, scene.model.data, scene.model.bytes, &reason);
  *     free(scene.model.data);
  */
@@ -16,20 +16,23 @@
 
 enum hostile_family {
     HOSTILE_WHOLE, /* 2016 ghosts, each as large as the frame */
-    /* as many ghosts that go across the frame up to nine times each way, cut by
-     * barrels */
+    /* 2016 ghosts that fold across the frame up to nine times in x and y,
+     * clipped by barrels */
     HOSTILE_FOLDS,
-    HOSTILE_LOST,    /* invalid rays: all, or stripes of them; more cells than
-                        an int can count */
-    HOSTILE_SYSTEMS, /* thousands of systems of one ghost */
-    HOSTILE_NUMBERS, /* coefficients at the largest sums, any exponents */
-    HOSTILE_POINTS,  /* boxes of no size */
-    HOSTILE_HUGE,    /* boxes at the largest size, any exponents */
-    HOSTILE_WINDOWS, /* stop positions that leave no window, or hardly one */
+    /* all rays or stripes of rays invalid; or more cells than an int counts */
+    HOSTILE_LOST,
+    HOSTILE_SYSTEMS, /* a ghost with thousands of polynomial systems */
+    /* coefficients with the largest valid sums, any exponents */
+    HOSTILE_NUMBERS,
+    HOSTILE_POINTS,  /* pupil boxes of size 0 */
+    HOSTILE_HUGE,    /* pupil boxes of the largest size, any exponents */
+    HOSTILE_WINDOWS, /* stop positions whose pupil window is empty or tiny */
     HOSTILE_HEADERS, /* numbers of the header at the ends of their ranges */
-    HOSTILE_COLOURS, /* outlines that lie far apart by wavelength */
-    HOSTILE_SUMS,    /* rounding carries sums of coefficients past 2^30 - 1 */
-    HOSTILE_TEXTS,   /* names with bytes that terminals obey, or without end */
+    /* outlines whose position differs much between wavelengths */
+    HOSTILE_COLOURS,
+    HOSTILE_SUMS, /* rounding carries sums of coefficients past 2^30 - 1 */
+    /* names with terminal control bytes, or without a terminating 0 */
+    HOSTILE_TEXTS,
     HOSTILE_FAMILIES
 };
 
@@ -44,40 +47,41 @@ extern const char *const hostile_name[HOSTILE_FAMILIES];
 
 struct hostile_scene {
     struct model_image model;
-    double opening; /* radius of the stop over that of the model's */
+    double opening; /* stop radius / stop radius of the model */
     struct glint_lamp lamp[HOSTILE_LAMPS];
     int n_lamps;
-    bool linear; /* the picture is in linear light */
+    bool linear; /* draws in linear light, not in codes */
 };
 
-/* What became of the frame of a scene. */
+/* Outcome of drawing a hostile scene. */
 enum hostile_outcome {
-    HOSTILE_REFUSED, /* The check of models or the setup refuses the model;
-                        there is no frame. */
-    HOSTILE_EMPTY,   /* The frame shows nothing. */
+    HOSTILE_REFUSED, /* model rejected by the validity check or by setup */
+    HOSTILE_EMPTY,   /* frame without light */
     HOSTILE_DRAWN,
-    HOSTILE_COARSER, /* drawn coarser, to keep within the bound of work */
-    HOSTILE_LESS,    /* drawn without some bundles, for the bound of memory */
+    HOSTILE_COARSER, /* drawn coarser to stay within the work limit */
+    /* drawn without some bundles to stay within the memory limit */
+    HOSTILE_LESS,
     HOSTILE_OUTCOMES
 };
 
 struct hostile_result {
     enum hostile_outcome outcome;
-    double minsn, most_minsn; /* work by counts, and its bound: millions of
-                                 instructions */
-    double bytes, most_bytes; /* memory that drawing took, and its bound */
+    /* estimated work and its limit, millions of instructions */
+    double minsn, most_minsn;
+    /* memory used for drawing, and its limit, bytes */
+    double bytes, most_bytes;
     int plans;
-    const char *reason; /* why the model was refused */
+    const char *reason; /* reason of HOSTILE_REFUSED */
 };
 
 /* Draws SCENE in 640x360 with the default bounds and sets RESULT. Returns false
  * if drawing failed, which no model may cause. */
-bool hostile_draw(const struct hostile_scene *scene,
-                  struct hostile_result *result);
+bool hostile_draw_scene(const struct hostile_scene *scene,
+                        struct hostile_result *result);
 
 /* Makes SCENE with model NUMBER, 0 to HOSTILE_EACH - 1, of FAMILY. Some
  * families are edited copies of BAKED. The caller frees scene->model.data. */
-void hostile_make(struct hostile_scene *scene, enum hostile_family family,
-                  int number, const struct glint_lens *baked);
+void hostile_make_scene(struct hostile_scene *scene, enum hostile_family family,
+                        int number, const struct glint_lens *baked);
 
 #endif

@@ -10,7 +10,7 @@
 
 enum { ONE_Q30 = 1 << 30 };
 
-void scene_begin(struct scene_file *s)
+void scene_begin_header(struct scene_file *s)
 {
     memset(s, 0, sizeof *s - sizeof s->data);
     s->header.magic = GLINT_SCENE_MAGIC;
@@ -24,8 +24,8 @@ void scene_begin(struct scene_file *s)
 }
 
 /* Appends FROM[BYTES] to the data before the tables. Returns its offset. */
-static uint32_t append_data(struct scene_file *s, const void *from,
-                            size_t bytes)
+static uint32_t append_scene_data(struct scene_file *s, const void *from,
+                                  size_t bytes)
 {
     const size_t at = s->tables;
 
@@ -36,7 +36,7 @@ static uint32_t append_data(struct scene_file *s, const void *from,
     return (uint32_t)at;
 }
 
-uint32_t scene_material(struct scene_file *s, const char *name)
+uint32_t scene_add_material(struct scene_file *s, const char *name)
 {
     struct glint_scene_material *m = &s->material[s->header.n_materials];
 
@@ -50,10 +50,9 @@ uint32_t scene_material(struct scene_file *s, const char *name)
     return s->header.n_materials++;
 }
 
-static struct glint_scene_object *add_object(struct scene_file *s,
-                                             const char *name,
-                                             enum glint_scene_object_kind kind,
-                                             uint32_t material)
+static struct glint_scene_object *
+append_object(struct scene_file *s, const char *name,
+              enum glint_scene_object_kind kind, uint32_t material)
 {
     struct glint_scene_object *o = &s->object[s->header.n_objects++];
 
@@ -63,11 +62,12 @@ static struct glint_scene_object *add_object(struct scene_file *s,
     return o;
 }
 
-uint32_t scene_sphere(struct scene_file *s, const char *name, uint32_t material,
-                      int32_t x, int32_t y, int32_t z, int32_t radius)
+uint32_t scene_add_sphere(struct scene_file *s, const char *name,
+                          uint32_t material, int32_t x, int32_t y, int32_t z,
+                          int32_t radius)
 {
     struct glint_scene_object *o =
-        add_object(s, name, GLINT_OBJECT_SPHERE, material);
+        append_object(s, name, GLINT_OBJECT_SPHERE, material);
 
     o->at[0] = x;
     o->at[1] = y;
@@ -76,17 +76,17 @@ uint32_t scene_sphere(struct scene_file *s, const char *name, uint32_t material,
     return s->header.n_objects - 1;
 }
 
-uint32_t scene_plane(struct scene_file *s, const char *name, uint32_t material,
-                     int32_t y)
+uint32_t scene_add_plane(struct scene_file *s, const char *name,
+                         uint32_t material, int32_t y)
 {
-    add_object(s, name, GLINT_OBJECT_PLANE, material)->at[1] = y;
+    append_object(s, name, GLINT_OBJECT_PLANE, material)->at[1] = y;
     return s->header.n_objects - 1;
 }
 
-uint32_t scene_object(struct scene_file *s, const char *name, uint32_t material,
-                      uint32_t mesh)
+uint32_t scene_add_object(struct scene_file *s, const char *name,
+                          uint32_t material, uint32_t mesh)
 {
-    add_object(s, name, GLINT_OBJECT_MESH, material)->mesh = mesh;
+    append_object(s, name, GLINT_OBJECT_MESH, material)->mesh = mesh;
     return s->header.n_objects - 1;
 }
 
@@ -102,14 +102,15 @@ add_light(struct scene_file *s, enum glint_scene_light_kind kind, double rgb)
     return l;
 }
 
-uint32_t scene_sun(struct scene_file *s, const int32_t toward_q30[3])
+uint32_t scene_add_sun(struct scene_file *s, const int32_t toward_q30[3])
 {
     memcpy(add_light(s, GLINT_LIGHT_SUN, 1)->toward_q30, toward_q30,
            3 * sizeof *toward_q30);
     return s->header.n_lights - 1;
 }
 
-uint32_t scene_lamp(struct scene_file *s, const int32_t at[3], int32_t distance)
+uint32_t scene_add_lamp(struct scene_file *s, const int32_t at[3],
+                        int32_t distance)
 {
     const double units = ldexp(distance, -s->header.unit_log2);
 
@@ -122,8 +123,9 @@ uint32_t scene_lamp(struct scene_file *s, const int32_t at[3], int32_t distance)
 
 /* Sets LO and HI to the bounding box of triangle T, or of all vertices if T
  * is NULL. */
-static void find_box(const int32_t (*at)[3], int n, const uint32_t *t,
-                     int32_t lo[3], int32_t hi[3])
+static void compute_bounding_box(const int32_t (*at)[3], int n,
+                                 const uint32_t *t, int32_t lo[3],
+                                 int32_t hi[3])
 {
     for (int k = 0; k < 3; k++) {
         lo[k] = hi[k] = at[t ? t[0] : 0][k];
@@ -136,13 +138,14 @@ static void find_box(const int32_t (*at)[3], int n, const uint32_t *t,
     }
 }
 
-static int is_in_cell(const struct glint_scene_mesh *m, const int32_t (*at)[3],
-                      const uint32_t *t, const int cell[3])
+static int is_triangle_in_cell(const struct glint_scene_mesh *m,
+                               const int32_t (*at)[3], const uint32_t *t,
+                               const int cell[3])
 {
     int32_t lo[3], hi[3];
     int is = 1;
 
-    find_box(at, 3, t, lo, hi);
+    compute_bounding_box(at, 3, t, lo, hi);
     for (int k = 0; k < 3; k++) {
         const int64_t from = m->origin[k] + ((int64_t)cell[k] << m->cell_log2);
 
@@ -152,8 +155,10 @@ static int is_in_cell(const struct glint_scene_mesh *m, const int32_t (*at)[3],
     return is;
 }
 
-static void write_grid(struct scene_file *s, struct glint_scene_mesh *m,
-                       const int32_t (*at)[3], const uint32_t (*triangle)[3])
+static void write_triangle_grid(struct scene_file *s,
+                                struct glint_scene_mesh *m,
+                                const int32_t (*at)[3],
+                                const uint32_t (*triangle)[3])
 {
     const uint32_t cells = m->cells[0] * m->cells[1] * m->cells[2];
     uint32_t *start = malloc((cells + 1) * sizeof *start), n = 0;
@@ -167,20 +172,20 @@ static void write_grid(struct scene_file *s, struct glint_scene_mesh *m,
 
         start[c] = n;
         for (uint32_t t = 0; t < m->n_triangles; t++)
-            if (is_in_cell(m, at, triangle[t], cell))
+            if (is_triangle_in_cell(m, at, triangle[t], cell))
                 ref[n++] = t;
         assert_true(n < SCENE_BYTES / 4);
     }
     start[cells] = n;
-    m->start_at = append_data(s, start, (cells + 1) * sizeof *start);
-    m->ref_at = append_data(s, ref, n * sizeof *ref);
+    m->start_at = append_scene_data(s, start, (cells + 1) * sizeof *start);
+    m->ref_at = append_scene_data(s, ref, n * sizeof *ref);
     free(start);
     free(ref);
 }
 
 /* Chooses a cell size that gives about one cell per triangle. */
-static void size_grid(struct glint_scene_mesh *m, const int32_t lo[3],
-                      const int32_t hi[3])
+static void choose_grid_cell_size(struct glint_scene_mesh *m,
+                                  const int32_t lo[3], const int32_t hi[3])
 {
     double volume = 1;
 
@@ -195,10 +200,10 @@ static void size_grid(struct glint_scene_mesh *m, const int32_t lo[3],
     }
 }
 
-uint32_t scene_mesh(struct scene_file *s, const int32_t (*at)[3],
-                    const int32_t (*uv_q16)[2], const int32_t (*normal_q30)[3],
-                    int n_vertices, const uint32_t (*triangle)[3],
-                    int n_triangles)
+uint32_t scene_add_mesh(struct scene_file *s, const int32_t (*at)[3],
+                        const int32_t (*uv_q16)[2],
+                        const int32_t (*normal_q30)[3], int n_vertices,
+                        const uint32_t (*triangle)[3], int n_triangles)
 {
     struct glint_scene_mesh *m = &s->mesh[s->header.n_meshes];
     struct glint_scene_triangle *t = malloc((size_t)n_triangles * sizeof *t);
@@ -208,19 +213,20 @@ uint32_t scene_mesh(struct scene_file *s, const int32_t (*at)[3],
     assert_non_null(t);
     *m = (struct glint_scene_mesh){.n_vertices = (uint32_t)n_vertices,
                                    .n_triangles = (uint32_t)n_triangles};
-    m->vertex_at = append_data(s, at, (size_t)n_vertices * sizeof *at);
+    m->vertex_at = append_scene_data(s, at, (size_t)n_vertices * sizeof *at);
     if (uv_q16)
-        m->uv_at = append_data(s, uv_q16, (size_t)n_vertices * sizeof *uv_q16);
+        m->uv_at =
+            append_scene_data(s, uv_q16, (size_t)n_vertices * sizeof *uv_q16);
     if (normal_q30)
-        m->normal_at =
-            append_data(s, normal_q30, (size_t)n_vertices * sizeof *normal_q30);
+        m->normal_at = append_scene_data(
+            s, normal_q30, (size_t)n_vertices * sizeof *normal_q30);
     for (int i = 0; i < n_triangles; i++) {
         memcpy(t[i].vertex, triangle[i], sizeof t[i].vertex);
         t[i].material = GLINT_SCENE_NONE;
     }
-    m->triangle_at = append_data(s, t, (size_t)n_triangles * sizeof *t);
+    m->triangle_at = append_scene_data(s, t, (size_t)n_triangles * sizeof *t);
     free(t);
-    find_box(at, n_vertices, NULL, lo, hi);
+    compute_bounding_box(at, n_vertices, NULL, lo, hi);
     for (int k = 0; k < 3; k++)
         m->centre[k] = (int32_t)(((int64_t)lo[k] + hi[k]) / 2);
     for (int i = 0; i < n_vertices; i++)
@@ -229,13 +235,13 @@ uint32_t scene_mesh(struct scene_file *s, const int32_t (*at)[3],
                  hypot(hypot(at[i][0] - m->centre[0], at[i][1] - m->centre[1]),
                        at[i][2] - m->centre[2]));
     m->radius = (int32_t)ceil(radius);
-    size_grid(m, lo, hi);
-    write_grid(s, m, at, triangle);
+    choose_grid_cell_size(m, lo, hi);
+    write_triangle_grid(s, m, at, triangle);
     return s->header.n_meshes++;
 }
 
-uint32_t scene_texture(struct scene_file *s, const uint8_t *rgb,
-                       uint32_t w_log2, uint32_t h_log2)
+uint32_t scene_add_texture(struct scene_file *s, const uint8_t *rgb,
+                           uint32_t w_log2, uint32_t h_log2)
 {
     struct glint_scene_texture *t = &s->texture[s->header.n_textures];
     size_t w = (size_t)1 << w_log2, h = (size_t)1 << h_log2, at = 0, next;
@@ -263,7 +269,7 @@ uint32_t scene_texture(struct scene_file *s, const uint8_t *rgb,
         h = h2;
     }
     *t = (struct glint_scene_texture){w_log2, h_log2,
-                                      append_data(s, all, at + 3)};
+                                      append_scene_data(s, all, at + 3)};
     free(all);
     return s->header.n_textures++;
 }
@@ -278,7 +284,7 @@ static void append_table(struct scene_file *s, uint32_t *at, const void *table,
     s->bytes += bytes;
 }
 
-void scene_seal(struct scene_file *s)
+void scene_seal_checksum(struct scene_file *s)
 {
     struct glint_scene_header *h = &s->header;
 
@@ -299,18 +305,18 @@ void scene_seal(struct scene_file *s)
     glint_blob_seal(s->data, s->bytes);
 }
 
-struct glint_scene_model scene_open(struct scene_file *s)
+struct glint_scene_model scene_open_model(struct scene_file *s)
 {
     struct glint_scene_model model = {0};
     const char *reason = NULL;
 
-    scene_seal(s);
+    scene_seal_checksum(s);
     if (glint_scene_open(&model, s->data, s->bytes, &reason) != GLINT_OK)
         fail_msg("refused: %s", reason);
     return model;
 }
 
-int scene_ball(int rings, int sides, uint32_t (*corners)[3])
+int scene_make_ball(int rings, int sides, uint32_t (*corners)[3])
 {
     const uint32_t first = (uint32_t)(rings * sides), last = first + 1;
     int n = 0;
@@ -338,12 +344,12 @@ const struct glint_scene_parts scene_parts = {
     &glint_scene_wards,  &glint_scene_stones,   NULL,
     &glint_scene_motions};
 
-struct glint_scene *scene_start(struct scene_file *file,
-                                const struct glint_scene_config *cfg,
-                                struct glint_scene_stats *stats)
+struct glint_scene *scene_init_renderer(struct scene_file *file,
+                                        const struct glint_scene_config *cfg,
+                                        struct glint_scene_stats *stats)
 {
     static void *mem;
-    const struct glint_scene_model model = scene_open(file);
+    const struct glint_scene_model model = scene_open_model(file);
     const size_t bytes = glint_scene_bytes(cfg, &model);
     struct glint_scene_stats unread;
     struct glint_scene *s = NULL;

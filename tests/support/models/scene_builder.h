@@ -2,14 +2,14 @@
  *
  * Builds baked scenes in memory.
  *
- *     scene_begin(&s);
- *     m = scene_material(&s, "red");
- *     scene_sphere(&s, "ball", m, 0, 0, 1000, 100);
- *     scene_seal(&s);           after every change
+ *     scene_begin_header(&s);
+ *     m = scene_add_material(&s, "red");
+ *     scene_add_sphere(&s, "ball", m, 0, 0, 1000, 100);
+ *     scene_seal_checksum(&s);           after every change
  *     glint_scene_open(&model, s.data, s.bytes, &reason);
  *
- * Members may be changed until the scene is sealed. The functions that add
- * something return its index.
+ * Members may be changed until the scene is sealed. Functions scene_add_...()
+ * return the index of the added object.
  */
 #ifndef GLINT_TESTS_SCENE_BUILDER_H
 #define GLINT_TESTS_SCENE_BUILDER_H
@@ -36,53 +36,54 @@ struct scene_file {
 
 /* Makes an empty scene. The camera is at the origin, looks along z, is 90
  * degrees wide, and draws onto an image. One unit is 2^16 steps. */
-void scene_begin(struct scene_file *s);
+void scene_begin_header(struct scene_file *s);
 
 /* Adds a white material that returns its colour times the light. */
-uint32_t scene_material(struct scene_file *s, const char *name);
-uint32_t scene_sphere(struct scene_file *s, const char *name, uint32_t material,
-                      int32_t x, int32_t y, int32_t z, int32_t radius);
+uint32_t scene_add_material(struct scene_file *s, const char *name);
+uint32_t scene_add_sphere(struct scene_file *s, const char *name,
+                          uint32_t material, int32_t x, int32_t y, int32_t z,
+                          int32_t radius);
 
 /* Adds a plane through (0, y, 0), facing up. */
-uint32_t scene_plane(struct scene_file *s, const char *name, uint32_t material,
-                     int32_t y);
+uint32_t scene_add_plane(struct scene_file *s, const char *name,
+                         uint32_t material, int32_t y);
 
 /* Add a light of RGB 1 (for a lamp at a distance of DISTANCE steps). */
-uint32_t scene_sun(struct scene_file *s, const int32_t toward_q30[3]);
-uint32_t scene_lamp(struct scene_file *s, const int32_t at[3],
-                    int32_t distance);
+uint32_t scene_add_sun(struct scene_file *s, const int32_t toward_q30[3]);
+uint32_t scene_add_lamp(struct scene_file *s, const int32_t at[3],
+                        int32_t distance);
 
 /* Adds a mesh and its grid. UV_Q16 and NORMAL_Q30 may be NULL. */
-uint32_t scene_mesh(struct scene_file *s, const int32_t (*at)[3],
-                    const int32_t (*uv_q16)[2], const int32_t (*normal_q30)[3],
-                    int n_vertices, const uint32_t (*triangle)[3],
-                    int n_triangles);
-uint32_t scene_object(struct scene_file *s, const char *name, uint32_t material,
-                      uint32_t mesh);
+uint32_t scene_add_mesh(struct scene_file *s, const int32_t (*at)[3],
+                        const int32_t (*uv_q16)[2],
+                        const int32_t (*normal_q30)[3], int n_vertices,
+                        const uint32_t (*triangle)[3], int n_triangles);
+uint32_t scene_add_object(struct scene_file *s, const char *name,
+                          uint32_t material, uint32_t mesh);
 
 /* Adds a texture of 2^W_LOG2 x 2^H_LOG2 texels; mipmap levels are means of
  * codes. */
-uint32_t scene_texture(struct scene_file *s, const uint8_t *rgb,
-                       uint32_t w_log2, uint32_t h_log2);
+uint32_t scene_add_texture(struct scene_file *s, const uint8_t *rgb,
+                           uint32_t w_log2, uint32_t h_log2);
 
 /* Writes header and tables to s->data, and sets size and checksum. */
-void scene_seal(struct scene_file *s);
+void scene_seal_checksum(struct scene_file *s);
 
 /* Seals the scene and opens it; fails the test on an error. */
-struct glint_scene_model scene_open(struct scene_file *s);
+struct glint_scene_model scene_open_model(struct scene_file *s);
 
 /* all optional modules of the scene renderer except highlights */
 extern const struct glint_scene_parts scene_parts;
 
 /* Opens S and starts it with CFG, in memory that the next call frees. Checks
  * that one byte less is rejected. STATS may be NULL. */
-struct glint_scene *scene_start(struct scene_file *s,
-                                const struct glint_scene_config *cfg,
-                                struct glint_scene_stats *stats);
+struct glint_scene *scene_init_renderer(struct scene_file *s,
+                                        const struct glint_scene_config *cfg,
+                                        struct glint_scene_stats *stats);
 
 /* Writes the triangles of a ball, left-handed, to CORNERS. Vertices are
  * RINGS rings of SIDES points, then the pole before the first ring and the
  * pole after the last. Returns the number of triangles, 2 RINGS SIDES. */
-int scene_ball(int rings, int sides, uint32_t (*corners)[3]);
+int scene_make_ball(int rings, int sides, uint32_t (*corners)[3]);
 
 #endif

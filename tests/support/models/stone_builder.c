@@ -8,7 +8,7 @@
 #include "support/test.h"
 
 /* Sets H to a Gaussian of width WIDTH texels with sum 1. */
-static void set_gaussian(double *h, int kernel, double width)
+static void set_gaussian_kernel(double *h, int kernel, double width)
 {
     const int r = kernel / 2;
     double sum = 0;
@@ -24,7 +24,7 @@ static void set_gaussian(double *h, int kernel, double width)
         h[i] /= sum;
 }
 
-static int is_dark(int side, int x)
+static int is_dark_texel(int side, int x)
 {
     return (x % side * 8 / side + x / side * 8 / side) % 2;
 }
@@ -37,9 +37,9 @@ static void *allocate_array(size_t n, size_t bytes)
     return mem;
 }
 
-/* Sets F to two Gaussians, or one that is f times (1 + a term that changes
- * its sign). */
-static void set_fit(struct glint_scatter_fit *f, double albedo)
+/* Sets F to a scattering fit of one or two Gaussian kernels per channel, whose
+ * factors differ between light and dark fields. */
+static void set_scatter_fit(struct glint_scatter_fit *f, double albedo)
 {
     const size_t k2 = (size_t)(f->kernel * f->kernel);
     const size_t texels = (size_t)(f->side * f->side);
@@ -47,14 +47,14 @@ static void set_fit(struct glint_scatter_fit *f, double albedo)
     f->h = allocate_array((size_t)f->kernels * 3 * k2, sizeof *f->h);
     for (int j = 0; j < f->kernels; j++)
         for (int c = 0; c < 3; c++)
-            set_gaussian(f->h + (size_t)(3 * j + c) * k2, f->kernel,
-                         (j ? 2.5 : 5.) - .7 * c);
+            set_gaussian_kernel(f->h + (size_t)(3 * j + c) * k2, f->kernel,
+                                (j ? 2.5 : 5.) - .7 * c);
     f->in = allocate_array(3 * texels, sizeof *f->in);
     f->f = allocate_array((size_t)f->kernels * 3 * texels, sizeof *f->f);
     f->cluster = allocate_array(texels, 1);
     f->out = allocate_array(3 * texels, sizeof *f->out);
     for (size_t x = 0; x < texels; x++) {
-        const int dark = is_dark(f->side, (int)x);
+        const int dark = is_dark_texel(f->side, (int)x);
 
         f->cluster[x] = (uint8_t)(dark && f->kernels > 1);
         for (size_t c = 0; c < 3; c++) {
@@ -67,8 +67,9 @@ static void set_fit(struct glint_scatter_fit *f, double albedo)
     }
 }
 
-void build_stone(struct built_stone *b, enum glint_scatter_model model,
-                 int side, int kernel, double albedo)
+void build_translucent_model(struct built_stone *b,
+                             enum glint_scatter_model model, int side,
+                             int kernel, double albedo)
 {
     struct glint_error error;
     const char *reason = "";
@@ -82,7 +83,7 @@ void build_stone(struct built_stone *b, enum glint_scatter_model model,
         .kernel = kernel,
         .kernels = model == GLINT_SCATTER_ALBEDO ? 1 : 2,
         .rank = 4};
-    set_fit(&b->fit, albedo);
+    set_scatter_fit(&b->fit, albedo);
     if (model != GLINT_SCATTER_CLUSTERED) {
         free(b->fit.in);
         b->fit.in = NULL;
@@ -94,7 +95,7 @@ void build_stone(struct built_stone *b, enum glint_scatter_model model,
         fail_msg("%s", reason);
 }
 
-void free_stone(struct built_stone *b)
+void free_translucent_model(struct built_stone *b)
 {
     glint_scatter_fit_close(&b->fit);
     free(b->data);

@@ -20,8 +20,9 @@ struct built_stone {
  * texels: Gaussians, wider in red than in blue, that scatter the fraction
  * ALBEDO of the light; the albedo varies on a chessboard of 8 x 8 fields.
  * Factored models have a second term that is negative in places. */
-void build_stone(struct built_stone *b, enum glint_scatter_model model,
-                 int side, int kernel, double albedo);
-void free_stone(struct built_stone *b);
+void build_translucent_model(struct built_stone *b,
+                             enum glint_scatter_model model, int side,
+                             int kernel, double albedo);
+void free_translucent_model(struct built_stone *b);
 
 #endif

@@ -14,7 +14,7 @@ static double dot_product(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-int ward_frame(int i, double frame[3][3])
+int ward_build_frame(int i, double frame[3][3])
 {
     const int row = i / WARD_BALL;
     const double x = (i % WARD_BALL + .5) / (WARD_BALL / 2.) - 1;
@@ -38,8 +38,8 @@ int ward_frame(int i, double frame[3][3])
     return 1;
 }
 
-double ward_lobe(const double frame[3][3], const double view[3],
-                 const double alpha[2], int norm, const double in[3])
+double ward_evaluate_lobe(const double frame[3][3], const double view[3],
+                          const double alpha[2], int norm, const double in[3])
 {
     const double ni = dot_product(frame[2], in),
                  no = dot_product(frame[2], view);
@@ -65,19 +65,19 @@ double ward_lobe(const double frame[3][3], const double view[3],
            (4 * GLINT_PI * alpha[0] * alpha[1] * ho * hn * hn * hn);
 }
 
-void ward_sum(const struct glint_sphere *s, const double alpha[2],
-              ward_picture to)
+void ward_sum_texels(const struct glint_sphere *s, const double alpha[2],
+                     ward_picture to)
 {
     for (int i = 0; i < WARD_PIXELS; i++) {
         double frame[3][3];
 
         memset(to[i], 0, sizeof to[i]);
-        if (!ward_frame(i, frame))
+        if (!ward_build_frame(i, frame))
             continue;
         for (int t = 0; t < s->side * s->side; t++) {
             const double w =
-                ward_lobe((const double(*)[3])frame, toward_eye, alpha,
-                          GLINT_WARD_BOUNDED, s->texel[t].toward) *
+                ward_evaluate_lobe((const double(*)[3])frame, toward_eye, alpha,
+                                   GLINT_WARD_BOUNDED, s->texel[t].toward) *
                 s->texel[t].weight;
 
             for (int c = 0; c < 3 && w > 0; c++)
@@ -86,9 +86,10 @@ void ward_sum(const struct glint_sphere *s, const double alpha[2],
     }
 }
 
-void ward_look(const struct glint_environment *e,
-               const struct glint_ward_material *material,
-               const struct glint_ward_options *options, ward_picture to)
+void ward_lookup_picture(const struct glint_environment *e,
+                         const struct glint_ward_material *material,
+                         const struct glint_ward_options *options,
+                         ward_picture to)
 {
     struct glint_ward_lobe l;
 
@@ -99,7 +100,7 @@ void ward_look(const struct glint_environment *e,
         const int32_t view_q14[3] = {0, 0, -(1 << 14)};
 
         memset(to[i], 0, sizeof to[i]);
-        if (!ward_frame(i, frame))
+        if (!ward_build_frame(i, frame))
             continue;
         for (int k = 0; k < 9; k++)
             frame_q14[k / 3][k % 3] =
@@ -118,12 +119,12 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static double clamp_linear(double x)
+static double clamp_linear_light(double x)
 {
     return x;
 }
 
-static double to_code(double x)
+static double encode_srgb(double x)
 {
     return x <= .0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - .055;
 }
@@ -135,7 +136,7 @@ static double compute_psnr(ward_picture want, ward_picture got,
     int n = 0;
 
     for (int i = 0; i < WARD_PIXELS; i++)
-        if (ward_frame(i, frame))
+        if (ward_build_frame(i, frame))
             sorted[n++] = glint_luminance(want[i]);
     qsort(sorted, (size_t)n, sizeof *sorted, compare_doubles);
     exposure = .25 / sorted[n / 2];
@@ -149,12 +150,12 @@ static double compute_psnr(ward_picture want, ward_picture got,
     return -10 * log10(sum / (3 * n));
 }
 
-double ward_psnr(ward_picture want, ward_picture got)
+double ward_compute_psnr(ward_picture want, ward_picture got)
 {
-    return compute_psnr(want, got, clamp_linear);
+    return compute_psnr(want, got, clamp_linear_light);
 }
 
-double ward_psnr_codes(ward_picture want, ward_picture got)
+double ward_compute_psnr_of_codes(ward_picture want, ward_picture got)
 {
-    return compute_psnr(want, got, to_code);
+    return compute_psnr(want, got, encode_srgb);
 }

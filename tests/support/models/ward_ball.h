@@ -17,27 +17,28 @@ typedef double ward_picture[WARD_PIXELS][3];
 /* Sets FRAME to tangent, bitangent and normal at pixel I. Returns 0 off the
  * ball and at its rim, where the normal is within 6 degrees of perpendicular
  * to the view. */
-int ward_frame(int i, double frame[3][3]);
+int ward_build_frame(int i, double frame[3][3]);
 
 /* Returns Ward's lobe towards IN as seen from VIEW, times n . in. NORM: the
  * bounded norm or that of 1992. As in the run time, the lobe is limited to 8
  * times its density. */
-double ward_lobe(const double frame[3][3], const double view[3],
-                 const double alpha[2], int norm, const double in[3]);
+double ward_evaluate_lobe(const double frame[3][3], const double view[3],
+                          const double alpha[2], int norm, const double in[3]);
 
 /* Sets TO to the image of the ball under S by sums over all texels, with the
  * bounded norm. */
-void ward_sum(const struct glint_sphere *s, const double alpha[2],
-              ward_picture to);
+void ward_sum_texels(const struct glint_sphere *s, const double alpha[2],
+                     ward_picture to);
 
 /* Sets TO to the image of the ball by lookups in E. */
-void ward_look(const struct glint_environment *e,
-               const struct glint_ward_material *material,
-               const struct glint_ward_options *options, ward_picture to);
+void ward_lookup_picture(const struct glint_environment *e,
+                         const struct glint_ward_material *material,
+                         const struct glint_ward_options *options,
+                         ward_picture to);
 
 /* Return the PSNR of GOT, dB, exposed so that the median of WANT is 1/4 of
  * white, clamped to white: in linear light, or in sRGB codes. */
-double ward_psnr(ward_picture want, ward_picture got);
-double ward_psnr_codes(ward_picture want, ward_picture got);
+double ward_compute_psnr(ward_picture want, ward_picture got);
+double ward_compute_psnr_of_codes(ward_picture want, ward_picture got);
 
 #endif

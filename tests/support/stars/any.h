@@ -16,10 +16,11 @@ struct star_any {
 };
 
 /* Sets TO to random tables of 1 to STAR_ANY_LINES lines. */
-void star_any(struct star_any *to, uint32_t *seed);
+void star_make_random(struct star_any *to, uint32_t *seed);
 
 /* Returns a random light of power 2^-20 to 2^30, inside an image of WIDTH x
  * HEIGHT or up to 1000 pixels off-screen. */
-struct glint_star_light star_any_light(int width, int height, uint32_t *seed);
+struct glint_star_light star_make_random_light(int width, int height,
+                                               uint32_t *seed);
 
 #endif

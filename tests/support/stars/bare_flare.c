@@ -6,7 +6,7 @@
 
 #include "support/test.h"
 
-void *bare_flare_take(size_t bytes)
+void *bare_flare_carve(size_t bytes)
 {
     void *mem = NULL;
 
@@ -22,13 +22,13 @@ void bare_flare_open(struct bare_flare *bare, int width, int height,
     struct glint_flare_config config;
     size_t bytes;
 
-    shuffle_init(&bare->shuffle, n_workers, order);
+    init_shuffled_workers(&bare->shuffle, n_workers, order);
     glint_flare_defaults(&config, width, height);
     config.tile_log2 = tile_log2;
     config.workers = &bare->shuffle.workers;
     config.max_bundles = config.max_primitives = config.max_refs = 1;
     bytes = glint_flare_bytes(&config);
-    bare->mem = bare_flare_take(bytes);
+    bare->mem = bare_flare_carve(bytes);
     assert_ok(glint_flare_init(&bare->flare, &config, bare->mem, bytes));
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A flare without ghosts, whose tiles stars and veils are drawn with.
+ * A flare renderer without ghosts: tests draw starbursts and veils in its
+ * tiles.
  */
 #ifndef GLINT_TESTS_BARE_FLARE_H
 #define GLINT_TESTS_BARE_FLARE_H
@@ -24,6 +25,6 @@ void bare_flare_close(struct bare_flare *bare);
 
 /* Allocates BYTES, at least 1, aligned to a cache line and filled with 0xa5.
  * The caller frees them. */
-void *bare_flare_take(size_t bytes);
+void *bare_flare_carve(size_t bytes);
 
 #endif

@@ -18,7 +18,7 @@ void star_canvas_open(struct star_canvas *c, int width, int height,
     c->width = width;
     c->height = height;
     bare_flare_open(&c->bare, width, height, tile_log2, n_workers, order);
-    c->mem = bare_flare_take(bytes);
+    c->mem = bare_flare_carve(bytes);
     assert_int_equal(glint_star_init(&c->star, &star, c->mem, bytes - 1),
                      GLINT_E_MEMORY);
     assert_ok(glint_star_init(&c->star, &star, c->mem, bytes));
@@ -30,11 +30,11 @@ void star_canvas_close(struct star_canvas *c)
     free(c->mem);
 }
 
-int64_t star_canvas_draw(struct star_canvas *c,
-                         const struct glint_star_tables *t,
-                         const struct glint_star_light *lights, int n,
-                         struct glint_real faintest,
-                         enum glint_pixel_format format, void *mem)
+int64_t star_canvas_draw_light(struct star_canvas *c,
+                               const struct glint_star_tables *t,
+                               const struct glint_star_light *lights, int n,
+                               struct glint_real faintest,
+                               enum glint_pixel_format format, void *mem)
 {
     struct glint_image image =
         glint_image_over(mem, format, c->width, c->height);
@@ -47,8 +47,8 @@ int64_t star_canvas_draw(struct star_canvas *c,
     return pixels;
 }
 
-struct glint_star_tables *star_canvas_tables(int n_blades, double rotation_deg,
-                                             double airy_px)
+struct glint_star_tables *
+star_canvas_make_tables(int n_blades, double rotation_deg, double airy_px)
 {
     const struct glint_star_optics o = {.n_blades = n_blades,
                                         .rotation_deg = rotation_deg,
@@ -60,7 +60,8 @@ struct glint_star_tables *star_canvas_tables(int n_blades, double rotation_deg,
     return t;
 }
 
-struct glint_star_light star_canvas_light(double x, double y, double power_log2)
+struct glint_star_light star_canvas_make_light(double x, double y,
+                                               double power_log2)
 {
     return (struct glint_star_light){.x_q8 = (int32_t)lrint(256 * x),
                                      .y_q8 = (int32_t)lrint(256 * y),

@@ -16,7 +16,7 @@ struct star_canvas {
     int width, height;
     struct bare_flare bare;
     struct glint_star *star;
-    void *mem; /* memory of the star */
+    void *mem; /* memory of the starburst renderer */
 };
 
 /* Makes a canvas of WIDTH x HEIGHT pixels in tiles of 2^TILE_LOG2 pixels,
@@ -28,21 +28,21 @@ void star_canvas_close(struct star_canvas *canvas);
 
 /* Draws the stars of N lights, down to a light of FAINTEST, onto black into
  * MEM, an image of FORMAT. Returns the reported number of lit pixels. */
-int64_t star_canvas_draw(struct star_canvas *canvas,
-                         const struct glint_star_tables *tables,
-                         const struct glint_star_light *lights, int n,
-                         struct glint_real faintest,
-                         enum glint_pixel_format format, void *mem);
+int64_t star_canvas_draw_light(struct star_canvas *canvas,
+                               const struct glint_star_tables *tables,
+                               const struct glint_star_light *lights, int n,
+                               struct glint_real faintest,
+                               enum glint_pixel_format format, void *mem);
 
 /* Returns the star tables of a stop; AIRY_PX is wavelength times f-number in
  * pixels. */
-struct glint_star_tables *star_canvas_tables(int n_blades, double rotation_deg,
-                                             double airy_px);
+struct glint_star_tables *
+star_canvas_make_tables(int n_blades, double rotation_deg, double airy_px);
 
 /* Returns a white light of power 2^POWER_LOG2 at (X, Y), pixels, including
  * its core. */
-struct glint_star_light star_canvas_light(double x, double y,
-                                          double power_log2);
+struct glint_star_light star_canvas_make_light(double x, double y,
+                                               double power_log2);
 
 /* Returns the green light of LINEAR_Q20, an image WIDTH pixels wide, at (X,
  * Y), interpolated between pixels. */

@@ -14,7 +14,8 @@
  * rest. */
 static struct {
     struct track_options track;
-    double (*food)[3]; /* [n_foods], or NULL: the track is used */
+    /* [n_foods]: positions of foods at rest; NULL: the track is used */
+    double (*food)[3];
     int n_foods;
     double angle_deg;
 } recorded;
@@ -27,7 +28,7 @@ const struct glint_motion_body moving_body = {
               GLINT_PI},
     .phi = {0, GLINT_PI / 2, GLINT_PI, -GLINT_PI / 2, 0, 0}};
 
-static void put_frames(struct glint_motion_baker *baker)
+static void write_track_frames(struct glint_motion_baker *baker)
 {
     const int n = recorded.food ? 2 : recorded.track.n_frames;
     static struct glint_motion_sight s;
@@ -35,12 +36,12 @@ static void put_frames(struct glint_motion_baker *baker)
     struct track track;
     uint32_t seed = 1;
 
-    track_begin(&track, &recorded.track);
+    track_begin_motion(&track, &recorded.track);
     for (int i = 0; i < n; i++) {
         struct track_frame f;
 
         if (!recorded.food)
-            track_next(&track, &f);
+            track_next_frame(&track, &f);
         s.number = i;
         s.n_foods = recorded.food ? recorded.n_foods : MOVING_FOODS;
         s.n_intensities = MOVING_SENSORS;
@@ -71,14 +72,14 @@ static enum glint_status bake_motion(void *ctx, const char *name,
     assert_non_null(baker);
     b.angle_deg = recorded.angle_deg;
     assert_ok(glint_motion_baker_body(baker, &b, error));
-    put_frames(baker);
+    write_track_frames(baker);
     assert_ok(glint_motion_baker_finish(baker, "run", 1, data, bytes, &report,
                                         error));
     glint_motion_baker_close(baker);
     return GLINT_OK;
 }
 
-struct moving *moving_open(const char *text, int tile_log2, int samples)
+struct moving *moving_open_scene(const char *text, int tile_log2, int samples)
 {
     static const struct tool tool = {.name = "test"};
     const struct glint_description_files files = {NULL, NULL,        NULL,
@@ -109,14 +110,14 @@ struct moving *moving_open(const char *text, int tile_log2, int samples)
     return d;
 }
 
-void moving_close(struct moving *d)
+void moving_close_scene(struct moving *d)
 {
     scene_frame_close(&d->frame);
     free(d->data);
     free(d);
 }
 
-void moving_draw(struct moving *d)
+void moving_draw_frame(struct moving *d)
 {
     struct glint_image image = glint_image_over(d->light_q20, GLINT_LINEAR_Q20,
                                                 MOVING_WIDTH, MOVING_HEIGHT);
@@ -125,7 +126,7 @@ void moving_draw(struct moving *d)
     assert_ok(scene_frame_draw(&d->frame, &image));
 }
 
-void moving_of_track(int motion, int n_frames, double angle_deg)
+void moving_bake_track(int motion, int n_frames, double angle_deg)
 {
     recorded.track =
         (struct track_options){motion, n_frames, MOVING_FOODS, 7, 0, 9};
@@ -133,14 +134,14 @@ void moving_of_track(int motion, int n_frames, double angle_deg)
     recorded.angle_deg = angle_deg;
 }
 
-void moving_of_foods(double (*food)[3], int n, double angle_deg)
+void moving_bake_foods(double (*food)[3], int n, double angle_deg)
 {
     recorded.food = food;
     recorded.n_foods = n;
     recorded.angle_deg = angle_deg;
 }
 
-double moving_angle_deg(void)
+double moving_food_angle_deg(void)
 {
     return recorded.angle_deg;
 }

@@ -15,10 +15,10 @@ enum {
     MOVING_WIDTH = 96,
     MOVING_HEIGHT = 64,
     MOVING_FOODS = 5,
-    MOVING_SENSORS = 6 /* in both directions of each axis */
+    MOVING_SENSORS = 6 /* sensors that look in both directions of each axis */
 };
 
-/* The recorded body, except its angle of view. */
+/* The recorded body, without the angle of view of its sensors. */
 extern const struct glint_motion_body moving_body;
 
 struct moving {
@@ -29,16 +29,16 @@ struct moving {
     int32_t light_q20[3 * MOVING_WIDTH * MOVING_HEIGHT];
 };
 
-/* Choose the motion of "motion run" in a text: a track of type MOTION
- * (tracks.h), or N food positions at rest; sensors see food within
+/* Set the motion that the line "motion run" of a scene text loads: a track of
+ * type MOTION (tracks.h), or N food positions at rest; sensors see food within
  * ANGLE_DEG. */
-void moving_of_track(int motion, int n_frames, double angle_deg);
-void moving_of_foods(double (*food)[3], int n, double angle_deg);
-double moving_angle_deg(void);
+void moving_bake_track(int motion, int n_frames, double angle_deg);
+void moving_bake_foods(double (*food)[3], int n, double angle_deg);
+double moving_food_angle_deg(void);
 
 /* Functions fail the test if TEXT cannot be drawn. */
-struct moving *moving_open(const char *text, int tile_log2, int samples);
-void moving_draw(struct moving *d);
-void moving_close(struct moving *d);
+struct moving *moving_open_scene(const char *text, int tile_log2, int samples);
+void moving_draw_frame(struct moving *d);
+void moving_close_scene(struct moving *d);
 
 #endif

@@ -26,8 +26,8 @@ static void multiply_quaternions(const double a[4], const double b[4],
         to[k] = q[k] / length;
 }
 
-static void set_rotation(double x, double y, double z, double angle,
-                         double q[4])
+static void set_rotation_quaternion(double x, double y, double z, double angle,
+                                    double q[4])
 {
     const double s = sin(angle / 2);
 
@@ -59,7 +59,7 @@ static double random_signed(struct track *t)
 }
 
 /* Moves the body one step ahead; it turns back at the walls. */
-static void move_ahead(struct track *t, double step)
+static void step_ahead_or_turn(struct track *t, double step)
 {
     for (int k = 0; k < 3; k++) {
         t->at[k] += step * t->heading[k];
@@ -70,7 +70,7 @@ static void move_ahead(struct track *t, double step)
     }
 }
 
-static void choose_heading(struct track *t)
+static void choose_random_heading(struct track *t)
 {
     double length = 0;
 
@@ -82,19 +82,19 @@ static void choose_heading(struct track *t)
         t->heading[k] /= sqrt(length);
 }
 
-static void move_straight(struct track *t)
+static void move_body_straight(struct track *t)
 {
     double q[4];
 
     if (t->frame % 150 == 0) {
-        choose_heading(t);
-        set_rotation(0, 0, 1, .5 * random_signed(t), q);
+        choose_random_heading(t);
+        set_rotation_quaternion(0, 0, 1, .5 * random_signed(t), q);
         multiply_quaternions(t->turn, q, t->turn);
     }
-    move_ahead(t, .01);
+    step_ahead_or_turn(t, .01);
 }
 
-static void move_spiral(struct track *t)
+static void move_body_along_spiral(struct track *t)
 {
     const double period = 20000, angle = t->frame * .01;
     const double along = fmod(t->frame, 2 * period) / period;
@@ -103,42 +103,42 @@ static void move_spiral(struct track *t)
     t->at[0] = 1 + (SIDE - 2) * (along < 1 ? along : 2 - along);
     t->at[1] = SIDE / 2 + 5 * cos(angle);
     t->at[2] = SIDE / 2 + 5 * sin(angle);
-    set_rotation(1, 0, 0, .01, q);
+    set_rotation_quaternion(1, 0, 0, .01, q);
     multiply_quaternions(t->turn, q, t->turn);
 }
 
-static void move_turning(struct track *t)
+static void move_body_turning(struct track *t)
 {
     double q[4];
 
-    move_straight(t);
-    set_rotation(1, 0, 0, .05 * random_signed(t), q);
+    move_body_straight(t);
+    set_rotation_quaternion(1, 0, 0, .05 * random_signed(t), q);
     multiply_quaternions(t->turn, q, t->turn);
-    set_rotation(0, 1, 0, .05 * random_signed(t), q);
+    set_rotation_quaternion(0, 1, 0, .05 * random_signed(t), q);
     multiply_quaternions(t->turn, q, t->turn);
 }
 
-static void move_random(struct track *t)
+static void move_body_randomly(struct track *t)
 {
     double q[4];
 
-    choose_heading(t);
-    move_ahead(t, .1 * rng_unit(&t->rng));
-    set_rotation(t->heading[1], t->heading[2], t->heading[0],
-                 .3 * random_signed(t), q);
+    choose_random_heading(t);
+    step_ahead_or_turn(t, .1 * rng_unit(&t->rng));
+    set_rotation_quaternion(t->heading[1], t->heading[2], t->heading[0],
+                            .3 * random_signed(t), q);
     multiply_quaternions(t->turn, q, t->turn);
 }
 
 /* --------------------------------------------------------------------- foods
  */
 
-static void place_food(struct track *t, int slot)
+static void place_random_food(struct track *t, int slot)
 {
     for (int k = 0; k < 3; k++)
         t->food[slot][k] = SIDE * rng_unit(&t->rng);
 }
 
-static double round_to(double x, int digits)
+static double round_to_digits(double x, int digits)
 {
     char text[40];
 
@@ -161,7 +161,7 @@ static void observe_foods(struct track *t, struct track_frame *f)
         f->food_distance += sqrt(square) / t->options.n_foods;
         rotate_vector(t->turn, off, false, f->seen[i]);
         for (int k = 0; k < 3; k++)
-            f->seen[i][k] = round_to(f->seen[i][k], t->options.digits);
+            f->seen[i][k] = round_to_digits(f->seen[i][k], t->options.digits);
     }
 }
 
@@ -169,9 +169,11 @@ static void observe_foods(struct track *t, struct track_frame *f)
  */
 
 static void (*const move[TRACK_MOTIONS])(struct track *) = {
-    move_straight, move_spiral, move_turning, move_random};
+    move_body_straight, move_body_along_spiral, move_body_turning,
+    move_body_randomly};
 
-void track_begin(struct track *track, const struct track_options *options)
+void track_begin_motion(struct track *track,
+                        const struct track_options *options)
 {
     struct track *t = track;
 
@@ -180,17 +182,17 @@ void track_begin(struct track *track, const struct track_options *options)
                         .at = {SIDE / 2, SIDE / 2, SIDE / 2},
                         .turn = {1, 0, 0, 0}};
     for (int i = 0; i < 8; i++)
-        rng_bits(&t->rng);
+        rng_bits32(&t->rng);
     for (int i = 0; i < options->n_foods; i++)
-        place_food(t, i);
-    choose_heading(t);
+        place_random_food(t, i);
+    choose_random_heading(t);
     move[options->motion](t);
     memcpy(t->first_at, t->at, sizeof t->at);
     memcpy(t->first_turn, t->turn, sizeof t->turn);
 }
 
 /* Sets POSE to the true pose, in the axes of frame 0. */
-static void set_truth(const struct track *t, struct glint_rigid *pose)
+static void set_true_pose(const struct track *t, struct glint_rigid *pose)
 {
     const double back[4] = {t->first_turn[0], -t->first_turn[1],
                             -t->first_turn[2], -t->first_turn[3]};
@@ -211,7 +213,7 @@ static void set_truth(const struct track *t, struct glint_rigid *pose)
     }
 }
 
-void track_next(struct track *track, struct track_frame *frame)
+void track_next_frame(struct track *track, struct track_frame *frame)
 {
     struct track *t = track;
     double before_at[3], before_turn[4], off[3], spin[4], sine;
@@ -234,18 +236,18 @@ void track_next(struct track *track, struct track_frame *frame)
     if (t->options.reset_every && t->frame > 0 &&
         t->frame % t->options.reset_every == 0) {
         frame->is_new[t->next_slot] = true;
-        place_food(t, t->next_slot);
+        place_random_food(t, t->next_slot);
         t->next_slot = (t->next_slot + 1) % t->options.n_foods;
     }
-    set_truth(t, &frame->pose);
+    set_true_pose(t, &frame->pose);
     observe_foods(t, frame);
     t->frame++;
 }
 
 /* --------------------------------------------------------------------- text */
 
-static void write_body(bool is_second, int n_sensors, double angle_deg,
-                       FILE *to)
+static void write_body_line(bool is_second, int n_sensors, double angle_deg,
+                            FILE *to)
 {
     fprintf(to, "{\"%s\": {\"%s\": 0.5, \"%s\": [",
             is_second ? "szerkezet" : "structure", is_second ? "meret" : "size",
@@ -257,16 +259,16 @@ static void write_body(bool is_second, int n_sensors, double angle_deg,
             is_second ? "latoszog" : "angleofview", angle_deg);
 }
 
-void track_write(const struct track_options *options, bool is_second,
-                 int n_sensors, double angle_deg, FILE *to)
+void track_write_recording(const struct track_options *options, bool is_second,
+                           int n_sensors, double angle_deg, FILE *to)
 {
     struct track t;
     struct track_frame f;
 
-    write_body(is_second, n_sensors, angle_deg, to);
-    track_begin(&t, options);
+    write_body_line(is_second, n_sensors, angle_deg, to);
+    track_begin_motion(&t, options);
     for (int i = 0; i < options->n_frames; i++) {
-        track_next(&t, &f);
+        track_next_frame(&t, &f);
         if (is_second)
             fprintf(to, "{");
         else

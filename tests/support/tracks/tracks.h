@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * The four body motions of row D3, with the positions of stationary foods as
- * the body observes them: random by a seed, frame by frame, in double
- * precision.
+ * The four body motions of row D3, with the positions of stationary foods
+ * (landmarks) as observed from the body: random by a seed, frame by frame, in
+ * double precision.
  *
- *     track_begin(&track, &options);
- *     while (...) track_next(&track, &frame);
+ *     track_begin_motion(&track, &options);
+ *     while (...) track_next_frame(&track, &frame);
  */
 #ifndef GLINT_TESTS_TRACKS_H
 #define GLINT_TESTS_TRACKS_H
@@ -34,7 +34,8 @@ struct track {
     struct track_options options;
     uint32_t rng;
     int frame, next_slot;
-    double at[3], turn[4]; /* position in the box 0 .. 15, and orientation */
+    /* position in the box 0 .. 15, and orientation (quaternion) */
+    double at[3], turn[4];
     double heading[3], spin[4];
     double first_at[3], first_turn[4];
     double food[TRACK_FOODS][3];
@@ -51,12 +52,13 @@ struct track_frame {
     double food_distance; /* mean distance from the body */
 };
 
-void track_begin(struct track *track, const struct track_options *options);
-void track_next(struct track *track, struct track_frame *frame);
+void track_begin_motion(struct track *track,
+                        const struct track_options *options);
+void track_next_frame(struct track *track, struct track_frame *frame);
 
 /* Writes the whole track as a recording (with the alternative key names if
  * IS_SECOND) and N_SENSORS sensors of ANGLE_DEG. */
-void track_write(const struct track_options *options, bool is_second,
-                 int n_sensors, double angle_deg, FILE *to);
+void track_write_recording(const struct track_options *options, bool is_second,
+                           int n_sensors, double angle_deg, FILE *to);
 
 #endif

@@ -34,8 +34,9 @@ static struct glint_bake_options options;
 static struct baked model;
 static double field_mm;
 
-static void bake_lens(struct baked *b, const struct glint_prescription *lens,
-                      const struct glint_bake_options *o)
+static void bake_and_open_model(struct baked *b,
+                                const struct glint_prescription *lens,
+                                const struct glint_bake_options *o)
 {
     struct glint_error error;
     const char *reason = "";
@@ -53,7 +54,7 @@ TEST_OPEN
     glint_bake_defaults(&options);
     options.tolerance = TOLERANCE;
     options.max_deg = MAX_DEG;
-    bake_lens(&model, &heliar, &options);
+    bake_and_open_model(&model, &heliar, &options);
     field_mm = glint_real_value(model.lens.header->field_mm);
 }
 
@@ -66,15 +67,16 @@ struct work {
     int sum, most;
 };
 
-static bool count_work(void *ctx, int more)
+static bool count_work_up_to_limit(void *ctx, int more)
 {
     struct work *const w = ctx;
 
     return __atomic_add_fetch(&w->sum, more, __ATOMIC_RELAXED) <= w->most;
 }
 
-/* Bakes with at most MOST fits on N workers. Returns the work. */
-static int bake_at_most(int most, int n, enum glint_status want)
+/* Bakes with a limit of MOST polynomial fits on N workers, and checks the
+ * status WANT. Returns the number of fits. */
+static int bake_with_work_limit(int most, int n, enum glint_status want)
 {
     struct glint_bake_options o = options;
     struct work work = {0, most};
@@ -84,7 +86,7 @@ static int bake_at_most(int most, int n, enum glint_status want)
     size_t bytes;
 
     assert_ok(glint_pool_create(&o.workers, n));
-    o.allow = count_work;
+    o.allow = count_work_up_to_limit;
     o.allow_ctx = &work;
     assert_true(glint_bake(&heliar, &o, &data, &bytes, &report, &error) ==
                 want);
@@ -94,16 +96,16 @@ static int bake_at_most(int most, int n, enum glint_status want)
     return work.sum;
 }
 
-/* The work of a bake does not depend on the number of workers. A bake that
- * needs one fit more than is allowed ends without a model. */
+/* Checks that the number of fits of a bake does not depend on the number of
+ * workers, and that a bake that needs one fit more than its limit fails. */
 TEST(work_is_limited)
 {
-    const int all = bake_at_most(1 << 30, 1, GLINT_OK);
+    const int all = bake_with_work_limit(1 << 30, 1, GLINT_OK);
 
     assert_true(all > 9);
-    assert_true(bake_at_most(all, 3, GLINT_OK) == all);
-    bake_at_most(all - 1, 3, GLINT_E_UNSUPPORTED);
-    bake_at_most(5, 1, GLINT_E_UNSUPPORTED);
+    assert_true(bake_with_work_limit(all, 3, GLINT_OK) == all);
+    bake_with_work_limit(all - 1, 3, GLINT_E_UNSUPPORTED);
+    bake_with_work_limit(5, 1, GLINT_E_UNSUPPORTED);
 }
 
 static void parse_lens(struct glint_prescription *lens, const char *text)
@@ -115,7 +117,7 @@ static void parse_lens(struct glint_prescription *lens, const char *text)
 }
 
 /* Parses a lens with one pair of surfaces. */
-static void make_singlet(struct glint_prescription *lens)
+static void parse_singlet(struct glint_prescription *lens)
 {
     parse_lens(lens, "name singlet\n"
                      "source none\n"
@@ -136,8 +138,10 @@ static void make_singlet(struct glint_prescription *lens)
     "stop 46 17\n"
 
 /* Bakes the lens of TEXT, or LENS if TEXT is NULL. */
-static void bake_fast(struct baked *b, struct glint_prescription *lens,
-                      const char *text, double tolerance, double max_deg)
+static void parse_and_bake_lens(struct baked *b,
+                                struct glint_prescription *lens,
+                                const char *text, double tolerance,
+                                double max_deg)
 {
     struct glint_bake_options o = options;
 
@@ -145,10 +149,10 @@ static void bake_fast(struct baked *b, struct glint_prescription *lens,
         parse_lens(lens, text);
     o.tolerance = tolerance;
     o.max_deg = max_deg;
-    bake_lens(b, lens, &o);
+    bake_and_open_model(b, lens, &o);
 }
 
-static void make_doublet(struct glint_prescription *lens)
+static void parse_doublet(struct glint_prescription *lens)
 {
     parse_lens(lens, "name doublet\n"
                      "source none\n"
@@ -162,27 +166,27 @@ static void make_doublet(struct glint_prescription *lens)
 
 /* -------------------------------------------------------------------- bytes */
 
-static void check_same_bytes(const struct glint_prescription *lens,
-                             const struct glint_bake_options *o,
-                             const struct baked *expected, int workers,
-                             uint32_t seed)
+static void check_models_are_identical(const struct glint_prescription *lens,
+                                       const struct glint_bake_options *o,
+                                       const struct baked *expected,
+                                       int workers, uint32_t seed)
 {
     struct glint_bake_options shuffled = *o;
     struct shuffle shuffle;
     struct baked b;
 
-    shuffle_init(&shuffle, workers, seed);
+    init_shuffled_workers(&shuffle, workers, seed);
     shuffled.workers = workers ? &shuffle.workers : NULL;
-    bake_lens(&b, lens, &shuffled);
+    bake_and_open_model(&b, lens, &shuffled);
     assert_int_equal(b.bytes, expected->bytes);
     assert_memory_equal(b.data, expected->data, b.bytes);
     assert_memory_equal(&b.report, &expected->report, sizeof b.report);
     free(b.data);
 }
 
-TEST(workers)
+TEST(model_does_not_depend_on_workers)
 {
-    check_same_bytes(&heliar, &options, &model, 3, 11);
+    check_models_are_identical(&heliar, &options, &model, 3, 11);
 }
 
 TEST(repeated_bake_is_identical)
@@ -190,17 +194,17 @@ TEST(repeated_bake_is_identical)
     static struct glint_prescription lens;
     struct baked b;
 
-    make_singlet(&lens);
-    bake_lens(&b, &lens, &options);
+    parse_singlet(&lens);
+    bake_and_open_model(&b, &lens, &options);
     assert_int_equal(b.lens.header->n_ghosts, 1);
     assert_true(b.lens.header->n_systems >= 1);
-    check_same_bytes(&lens, &options, &b, 0, 5);
+    check_models_are_identical(&lens, &options, &b, 0, 5);
     free(b.data);
 }
 
 /* ------------------------------------------------------------------- header */
 
-TEST(header)
+TEST(header_describes_the_lens)
 {
     const struct glint_model_header *h = model.lens.header;
     const uint64_t key = glint_bake_key(&heliar, &options);
@@ -225,9 +229,9 @@ TEST(header)
     }
 }
 
-/* The polynomial of the direct image's flux deviates from traced flux by at
- * most 5e-5. */
-TEST(flux)
+/* Checks that the polynomial of the direct image's flux deviates from traced
+ * flux by at most 5e-5. */
+TEST(flux_polynomial_matches_traced_flux)
 {
     static const double nm[] = {400, 450, 532, 650, 700};
     const struct glint_model_header *h = model.lens.header;
@@ -248,8 +252,8 @@ TEST(flux)
 
 /* ------------------------------------------------------------------- ghosts */
 
-static bool is_covered(const struct glint_lens *lens, int ghost,
-                       double theta_deg, double nm)
+static bool is_ghost_covered_by_model(const struct glint_lens *lens, int ghost,
+                                      double theta_deg, double nm)
 {
     static struct glint_transfer t;
     const double sine = sin(theta_deg * 3.14159265358979323846 / 180);
@@ -258,8 +262,8 @@ static bool is_covered(const struct glint_lens *lens, int ghost,
                                (int32_t)lrint(0x1p24 * 1e6 / (nm * nm)));
 }
 
-/* The model contains each ghost that the pupil search finds. */
-TEST(nothing_missing)
+/* Checks that the model contains each ghost that the pupil search finds. */
+TEST(every_found_ghost_is_in_the_model)
 {
     static const double deg[] = {0, 3, 7, 11};
     int seen = 0, lost_in_field = 0;
@@ -275,22 +279,23 @@ TEST(nothing_missing)
                                          NULL))
                 continue;
             seen++;
-            if (!is_covered(&model.lens, g, deg[k], 532)) {
+            if (!is_ghost_covered_by_model(&model.lens, g, deg[k], 532)) {
                 print_error("ghost %d at %g degrees is missing\n", g, deg[k]);
                 lost_in_field++;
             }
         }
     assert_in_range(seen, 45, 52);
     assert_int_equal(lost_in_field, 0);
-    assert_false(is_covered(&model.lens, 0, MAX_DEG + 0.01, 532));
+    assert_false(
+        is_ghost_covered_by_model(&model.lens, 0, MAX_DEG + 0.01, 532));
 }
 
 /* -------------------------------------------------------------------- parts */
 
 /* Sets UV to the coordinates of a ray in the box of part T. Returns whether
  * the part contains the ray. */
-static bool is_in_part(const struct glint_transfer *t, double x_mm, double y_mm,
-                       double uv[2])
+static bool is_ray_in_part(const struct glint_transfer *t, double x_mm,
+                           double y_mm, double uv[2])
 {
     const double unit = ldexp(1, t->box_exponent);
 
@@ -303,8 +308,9 @@ static bool is_in_part(const struct glint_transfer *t, double x_mm, double y_mm,
 /* Returns the number of N parts that contain the ray from (X, Y). Sets *OFF
  * to the distance, mm, between the sensor position from the last of them and
  * that of RAY. */
-static int count_parts(const struct glint_transfer *part, int n, double x_mm,
-                       double y_mm, const struct glint_ray *ray, double *off)
+static int count_parts_of_ray(const struct glint_transfer *part, int n,
+                              double x_mm, double y_mm,
+                              const struct glint_ray *ray, double *off)
 {
     int found = 0;
 
@@ -312,7 +318,7 @@ static int count_parts(const struct glint_transfer *part, int n, double x_mm,
         struct glint_outputs out;
         double uv[2];
 
-        if (!is_in_part(&part[k], x_mm, y_mm, uv))
+        if (!is_ray_in_part(&part[k], x_mm, y_mm, uv))
             continue;
         found++;
         glint_transfer_ray(&part[k], (int32_t)lrint(ldexp(uv[0], 30)),
@@ -327,10 +333,11 @@ static int count_parts(const struct glint_transfer *part, int n, double x_mm,
     return found;
 }
 
-/* In the stop, rays of a triplet's ghost of surfaces 0 and 3 fold, so its
- * pupil is divided into parts. Each unblocked ray lies in exactly one part,
- * except rays on borders between parts; each part has rays. */
-TEST(parts)
+/* In the stop plane the rays of a triplet's ghost (surfaces 0 and 3) fold,
+ * so its pupil is divided into parts. Checks that each unblocked ray lies in
+ * exactly one part, except on borders between parts, and that no part is
+ * empty. */
+TEST(each_ray_lies_in_one_pupil_part)
 {
     enum { GHOST = 2, MOST = 32, ANGLES = 8, SIDE = 61 };
     static struct glint_transfer part[MOST];
@@ -342,10 +349,10 @@ TEST(parts)
     struct baked b;
 
     if (getenv("GLINT_QUICK") && *getenv("GLINT_QUICK"))
-        skip(); /* takes half a minute under sanitizers, and other tests run the
-                   same code */
+        /* Costs 30 s under sanitizers; other tests run the same code. */
+        skip();
     load_lens(&lens, "../tests/lenses/cooke-triplet");
-    bake_fast(&b, &lens, NULL, 1, 0.5);
+    parse_and_bake_lens(&b, &lens, NULL, 1, 0.5);
     assert_ok(glint_setup_init(&fast, &lens, 0, 0, &nm, 1, &error));
     assert_int_equal(fast.ghost[GHOST].j, 3);
     assert_in_range(b.lens.header->n_parts, 1, MOST - 1);
@@ -375,7 +382,7 @@ TEST(parts)
                 hypot(ray.sensor_x_mm, ray.sensor_y_mm) > 0.99 * 0.55 * 43.2666)
                 continue;
             n_rays++;
-            assert_int_equal(count_parts(part, n, x, y, &ray, &off), 1);
+            assert_int_equal(count_parts_of_ray(part, n, x, y, &ray, &off), 1);
             assert_true(off < 0.1 * 36 / 1920);
         }
     }
@@ -384,9 +391,9 @@ TEST(parts)
     free(b.data);
 }
 
-/* Two barrels cut this ghost within 0.0008 radii of each other. The second
- * one is used only at a smaller tolerance. */
-TEST(near_barrels)
+/* The outlines of two barrels that clip this ghost are 0.0008 stop radii apart.
+ * The second barrel is used only at a smaller tolerance. */
+TEST(near_second_barrel_needs_a_small_tolerance)
 {
     static const double band_nm[2] = {400, 700};
     static const double range[2] = {0.29, 0.305};
@@ -412,8 +419,9 @@ TEST(near_barrels)
     assert_true(rays.missed_cut <= 2.5e-4);
 }
 
-/* A zone cut to a part has the same box, in the coordinates of the part. */
-TEST(cut)
+/* Checks that a zone that is restricted to a part has the same pupil box, in
+ * the coordinates of the part. */
+TEST(cut_zone_keeps_its_box)
 {
     struct glint_zone zone = {.lo = 0.1, .hi = 0.2}, cut;
     const struct glint_zone_part part = {-0.25, 0.5, 0.75, -0.5, 0.75, 3};
@@ -442,9 +450,9 @@ TEST(cut)
     }
 }
 
-/* Cropping a zone that is wider than its ghost, in position and wavelength,
- * removes only invisible regions. */
-TEST(crop)
+/* Checks that cropping a zone that is wider than its ghost, in position and
+ * wavelength, removes only invisible regions. */
+TEST(cropping_removes_only_invisible_regions)
 {
     const double range[2] = {sin(0.1), sin(0.2)};
     static struct glint_visible visible, narrow;
@@ -511,9 +519,9 @@ static bool ray_passes(const struct glint_ray *ray)
            hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= field_mm;
 }
 
-static void measure_ray(struct tally *tally, const struct glint_transfer *t,
-                        const struct glint_path *path,
-                        const double direction[3], uint32_t *seed)
+static void add_ray_errors(struct tally *tally, const struct glint_transfer *t,
+                           const struct glint_path *path,
+                           const double direction[3], uint32_t *seed)
 {
     const int32_t u_q30 = (int32_t)rng_xorshift(seed) / 2;
     const int32_t v_q30 = (int32_t)rng_xorshift(seed) / 2;
@@ -549,8 +557,8 @@ static void measure_ray(struct tally *tally, const struct glint_transfer *t,
 /* Sets RMS to the root mean square errors of SYSTEM of GHOST, in the units
  * of the file, measured without functions of src/bake/measure_model.c.
  * Returns the number of rays measured. */
-static long measure_system(const struct glint_lens *lens, int ghost, int system,
-                           double rms[TRIED])
+static long measure_system_errors(const struct glint_lens *lens, int ghost,
+                                  int system, double rms[TRIED])
 {
     static struct glint_transfer t;
     static struct tally tally;
@@ -575,7 +583,7 @@ static long measure_system(const struct glint_lens *lens, int ghost, int system,
         glint_path_init(&path, &heliar, &setup.ghost[ghost],
                         1e3 / sqrt(wave_q24 * 0x1p-24));
         for (int i = 0; i < PER_BUNDLE; i++)
-            measure_ray(&tally, &t, &path, direction, &seed);
+            add_ray_errors(&tally, &t, &path, direction, &seed);
     }
     tally.sum2[GLINT_OUT_ENERGY] = 0;
     for (long k = 0; k < tally.n; k++) {
@@ -589,29 +597,31 @@ static long measure_system(const struct glint_lens *lens, int ghost, int system,
     return tally.n;
 }
 
-static const struct glint_model_output *get_outputs(const struct baked *b,
-                                                    int system)
+static const struct glint_model_output *system_outputs(const struct baked *b,
+                                                       int system)
 {
     return (const void *)(b->data + b->lens.system[system].output_at);
 }
 
-static double decode_error(uint16_t stored)
+static double decode_stated_error(uint16_t stored)
 {
     return ldexp((double)glint_model_error_q20(stored), -20);
 }
 
-/* The errors in the file are within 30 % of those measured here. */
-TEST(errors_are_true)
+/* Checks that the errors that a model states are within 30 % of those measured
+ * here. */
+TEST(stated_errors_match_measured_errors)
 {
     for (int g = 0; g < setup.n_ghosts; g++)
         for (uint32_t k = 0; k < model.lens.ghost[g].n_systems; k++) {
             const int system = (int)(model.lens.ghost[g].first_system + k);
-            const struct glint_model_output *o = get_outputs(&model, system);
+            const struct glint_model_output *o = system_outputs(&model, system);
             double rms[TRIED];
 
-            assert_true(measure_system(&model.lens, g, system, rms) > 300);
+            assert_true(measure_system_errors(&model.lens, g, system, rms) >
+                        300);
             for (int kind = 0; kind < TRIED; kind++) {
-                const double said = decode_error(o[kind].rms);
+                const double said = decode_stated_error(o[kind].rms);
 
                 if (fabs(rms[kind] - said) > 0.3 * said)
                     fail_msg("system %d: output %d is off by %g, the file says "
@@ -624,8 +634,8 @@ TEST(errors_are_true)
         }
 }
 
-/* The errors are at most 1.6 times the tolerances. */
-TEST(errors_are_small)
+/* Checks that the errors of a model are at most 1.6 times its tolerances. */
+TEST(errors_stay_near_the_tolerances)
 {
     static const double aim[TRIED] = {0.08, 0.08, 4.5e-4, 4.5e-4, 1.2e-2};
 
@@ -633,47 +643,50 @@ TEST(errors_are_small)
     assert_true(model.report.rays > 300 * (int)model.lens.header->n_systems);
     assert_true(model.report.intruders < model.report.rays / 1000);
     for (uint32_t k = 0; k < model.lens.header->n_systems; k++) {
-        const struct glint_model_output *o = get_outputs(&model, (int)k);
+        const struct glint_model_output *o = system_outputs(&model, (int)k);
 
         for (int kind = 0; kind < TRIED; kind++)
-            assert_true(decode_error(o[kind].rms) <=
+            assert_true(decode_stated_error(o[kind].rms) <=
                         1.6 * TOLERANCE * aim[kind]);
     }
 }
 
-/* Near the axis, where light folds into rings, errors decrease with the
- * square of the tolerance. */
-TEST(axis_is_finer)
+/* Checks that near the axis, where light folds into rings, errors decrease with
+ * the square of the tolerance. */
+TEST(errors_near_the_axis_fall_with_squared_tolerance)
 {
     const double tolerance = 0.25, aim_px = 0.04;
     struct glint_prescription lens;
     struct baked b;
 
-    bake_fast(&b, &lens, FAST_SINGLET, tolerance, 4);
+    parse_and_bake_lens(&b, &lens, FAST_SINGLET, tolerance, 4);
     assert_int_equal(b.lens.system[0].sine_lo_q30, 0);
-    assert_true(decode_error(get_outputs(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
-                1.6 * tolerance * tolerance * aim_px);
+    assert_true(
+        decode_stated_error(system_outputs(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
+        1.6 * tolerance * tolerance * aim_px);
     free(b.data);
 }
 
 /* A film with this index reflects nothing at its wavelength, so the energy
  * of a ghost has a zero there, which the fit follows. */
-TEST(energy_has_zeros)
+TEST(fit_follows_a_zero_of_the_energy)
 {
     struct glint_prescription lens;
     struct baked b;
 
-    bake_fast(&b, &lens, FAST_SINGLET "coating 532 1.2316\n", 0.1, 0.5);
+    parse_and_bake_lens(&b, &lens, FAST_SINGLET "coating 532 1.2316\n", 0.1,
+                        0.5);
     for (uint32_t k = 0; k < b.lens.header->n_systems; k++) {
-        assert_true(
-            decode_error(get_outputs(&b, (int)k)[GLINT_OUT_ENERGY].rms) < 1e-3);
+        assert_true(decode_stated_error(
+                        system_outputs(&b, (int)k)[GLINT_OUT_ENERGY].rms) <
+                    1e-3);
     }
     free(b.data);
 }
 
-/* Both measurements of errors detect a wrong coefficient; otherwise they
- * could not fail. */
-TEST(planted_error)
+/* Checks that both measurements of errors detect a wrong coefficient, that is,
+ * that the tests above can fail. */
+TEST(wrong_coefficient_is_detected)
 {
     static const struct glint_fitted_system no_barrels;
     static const double band_nm[2] = {400, 700};
@@ -693,18 +706,19 @@ TEST(planted_error)
     b.lens.system = (const void *)(b.data + b.lens.header->system_at);
     glint_visible_init(&visible, &setup, 0, field_mm, band_nm);
     glint_measure_system(&visible, &b.lens, 0, &no_barrels, &before);
-    o = get_outputs(&b, 0);
-    assert_near(decode_error(o->rms) / before.of[0].rms, 1, 1e-3);
+    o = system_outputs(&b, 0);
+    assert_near(decode_stated_error(o->rms) / before.of[0].rms, 1, 1e-3);
     coef = (void *)(b.data + o->coef_at);
     for (uint32_t k = 1; k < o->n_terms; k++)
         largest = labs(coef[k]) > labs(coef[largest]) ? k : largest;
     coef[largest] = -coef[largest];
     glint_measure_system(&visible, &b.lens, 0, &no_barrels, &after);
-    measure_system(&b.lens, 0, 0, rms);
+    measure_system_errors(&b.lens, 0, 0, rms);
     assert_true(after.of[0].rms > 50 * before.of[0].rms);
     assert_true(after.of[0].max > 50 * before.of[0].max);
     assert_true(rms[0] > 50 * before.of[0].rms);
-    assert_near(after.of[1].rms, before.of[1].rms, 0); /* only x is wrong */
+    /* only sensor x is wrong, so the error of y is unchanged */
+    assert_near(after.of[1].rms, before.of[1].rms, 0);
     free(b.data);
 }
 
@@ -716,7 +730,7 @@ static void check_key_differs(const struct glint_prescription *lens,
     assert_true(glint_bake_key(lens, o) != glint_bake_key(&heliar, &options));
 }
 
-TEST(key)
+TEST(key_depends_on_every_parameter)
 {
     struct glint_prescription lens = heliar;
     struct glint_bake_options o = options;
@@ -762,7 +776,7 @@ TEST(key)
     assert_true(glint_bake_key(&lens, &o) == glint_bake_key(&heliar, &options));
 }
 
-TEST(refusals)
+TEST(rejects_numbers_out_of_range)
 {
     static const double numbers[] = {(double)NAN, -1, 1e9, HUGE_VAL, -HUGE_VAL};
 
@@ -793,40 +807,41 @@ TEST(refusals)
 
 /* ------------------------------------------------------------- odd requests */
 
-TEST(no_ghosts)
+TEST(lens_without_ghosts_gives_an_empty_model)
 {
     static struct glint_prescription lens;
     struct baked b;
 
-    make_singlet(&lens);
+    parse_singlet(&lens);
     lens.n_surfaces = 1; /* the sensor lies in the glass */
     lens.stop_after = 1;
-    bake_lens(&b, &lens, &options);
+    bake_and_open_model(&b, &lens, &options);
     assert_int_equal(b.lens.header->n_ghosts, 0);
     assert_int_equal(b.lens.header->n_systems, 0);
     assert_int_equal(b.report.rays, 0);
     free(b.data);
 }
 
-/* With the loosest tolerance each polynomial still has a term. */
-TEST(loosest)
+/* Checks that with the loosest tolerance each polynomial still has at least one
+ * term. */
+TEST(loosest_tolerance_keeps_a_term)
 {
     static struct glint_prescription lens;
     struct glint_bake_options o = options;
     struct baked b;
 
-    make_singlet(&lens);
+    parse_singlet(&lens);
     o.tolerance = 100;
-    bake_lens(&b, &lens, &o);
+    bake_and_open_model(&b, &lens, &o);
     for (uint32_t k = 0; k < b.lens.header->n_systems; k++)
-        assert_in_range(get_outputs(&b, (int)k)->n_terms, 1,
+        assert_in_range(system_outputs(&b, (int)k)->n_terms, 1,
                         GLINT_MAX_MODEL_TERMS);
     free(b.data);
 }
 
-/* With a field of only 1e-3 mm a ghost may be visible at angle 0 only; each
- * range still has a width. */
-TEST(ranges_have_width)
+/* Checks that each range of angles has a width even in a field of only 1e-3 mm,
+ * in which a ghost may be visible at angle 0 only. */
+TEST(ranges_of_a_tiny_field_have_width)
 {
     static const double band_nm[2] = {400, 700};
     static struct glint_prescription lens;
@@ -835,7 +850,7 @@ TEST(ranges_have_width)
     double range[GLINT_MAX_RANGES][2];
     struct glint_error error;
 
-    make_doublet(&lens);
+    parse_doublet(&lens);
     assert_ok(glint_setup_init(&doublet, &lens, 0, 0, band_nm, 2, &error));
     for (int g = 0; g < doublet.n_ghosts; g++) {
         int n;
@@ -847,9 +862,9 @@ TEST(ranges_have_width)
     }
 }
 
-/* Ghosts whose light enters through a spot of 1/20 mm of the front: their
- * ranges extend to the angles at which the ghosts vanish. */
-TEST(ranges_of_spots)
+/* Checks ghosts whose light enters the front element through a spot of 1/20 mm:
+ * their ranges of angles extend to where the ghosts vanish. */
+TEST(ranges_of_spots_extend_to_where_ghosts_vanish)
 {
     static const struct {
         int ghost;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests baked scenes: the run time accepts them, and they state the values of
- * the text, in steps.
+ * Tests baked scenes: the run time accepts them, and they contain the values of
+ * the text, quantised to steps.
  */
 #include <math.h>
 #include <stdint.h>
@@ -16,8 +16,9 @@
 
 static char mesh_text[1 << 18];
 
-static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
-                                   size_t *bytes, struct glint_error *error)
+static enum glint_status read_mesh_from_text(void *ctx, const char *name,
+                                             uint8_t **data, size_t *bytes,
+                                             struct glint_error *error)
 {
     (void)ctx;
     (void)name;
@@ -29,9 +30,9 @@ static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
     return GLINT_OK;
 }
 
-static enum glint_status read_picture(void *ctx, const char *name,
-                                      struct glint_image *image,
-                                      struct glint_error *error)
+static enum glint_status make_texture_picture(void *ctx, const char *name,
+                                              struct glint_image *image,
+                                              struct glint_error *error)
 {
     uint8_t *mem = malloc(3 * 8 * 2);
 
@@ -56,8 +57,8 @@ struct baked {
 static enum glint_status bake_scene_text(struct baked *b, const char *text,
                                          struct glint_error *error)
 {
-    const struct glint_description_files files = {NULL, read_mesh, read_picture,
-                                                  NULL, NULL,      NULL};
+    const struct glint_description_files files = {
+        NULL, read_mesh_from_text, make_texture_picture, NULL, NULL, NULL};
     struct glint_description *scene = malloc(sizeof *scene);
     enum glint_status status;
     const char *reason = "";
@@ -77,7 +78,7 @@ static enum glint_status bake_scene_text(struct baked *b, const char *text,
     return status;
 }
 
-static void bake_good(struct baked *b, const char *text)
+static void bake_valid_scene_text(struct baked *b, const char *text)
 {
     struct glint_error error = {""};
 
@@ -85,13 +86,13 @@ static void bake_good(struct baked *b, const char *text)
         fail_msg("%s", error.text);
 }
 
-static const void *get_table(const struct baked *b, uint32_t at)
+static const void *baked_table_at(const struct baked *b, uint32_t at)
 {
     return b->data + at;
 }
 
-static void check_vector(const int32_t *v, double x, double y, double z,
-                         double scale)
+static void check_scaled_vector(const int32_t *v, double x, double y, double z,
+                                double scale)
 {
     assert_true(fabs(v[0] - x * scale) <= .5001);
     assert_true(fabs(v[1] - y * scale) <= .5001);
@@ -110,15 +111,15 @@ static void check_vector(const int32_t *v, double x, double y, double z,
     "triangle t 0 0 1 1 0 1 0 1 1 material glass\n"                   \
     "shadow on\nflare lights highlights 3\n"
 
-/* Header, lights, materials and objects of a right-handed scene, whose z is
- * mirrored. */
-TEST(plain)
+/* Checks header, lights, materials and objects of a right-handed scene, whose z
+ * is mirrored. */
+TEST(right_handed_scene_is_mirrored)
 {
     struct baked b;
     const struct glint_scene_header *h;
     double unit;
 
-    bake_good(&b, PLAIN);
+    bake_valid_scene_text(&b, PLAIN);
     h = b.model.header;
     unit = ldexp(1, h->unit_log2);
     assert_string_equal(h->name, "ashop");
@@ -129,17 +130,17 @@ TEST(plain)
     assert_true(h->shadow == 1 && h->flare == 1 && h->highlights == 3);
     assert_int_equal(h->background_q15[0], 16384);
     assert_int_equal(h->background_q15[2], 65536);
-    check_vector(h->camera.at, 0, 1, -4, unit);
-    check_vector(h->camera.axis_q30[0], 1, 0, 0, 0x1p30);
-    check_vector(h->camera.axis_q30[1], 0, 1, 0, 0x1p30);
-    check_vector(h->camera.axis_q30[2], 0, 0, 1, 0x1p30);
+    check_scaled_vector(h->camera.at, 0, 1, -4, unit);
+    check_scaled_vector(h->camera.axis_q30[0], 1, 0, 0, 0x1p30);
+    check_scaled_vector(h->camera.axis_q30[1], 0, 1, 0, 0x1p30);
+    check_scaled_vector(h->camera.axis_q30[2], 0, 0, 1, 0x1p30);
     assert_int_equal(h->camera.tan_x_q24, 1 << 24);
     assert_int_equal(h->n_lights, 2);
-    check_vector(b.model.light[0].toward_q30, .6, 0, -.8, 0x1p30);
+    check_scaled_vector(b.model.light[0].toward_q30, .6, 0, -.8, 0x1p30);
     assert_int_equal(b.model.light[0].radius, 1 << 29);
     assert_true(fabs(glint_real_value(b.model.light[0].rgb[0]) - 1) < 1e-9);
     assert_true(glint_real_value(b.model.light[0].rgb[2]) == 0);
-    check_vector(b.model.light[1].at, 1, 2, -3, unit);
+    check_scaled_vector(b.model.light[1].at, 1, 2, -3, unit);
     assert_int_equal(b.model.light[1].radius, 1 << 17);
     assert_true(glint_real_value(b.model.light[1].rgb[1]) == 7);
     /* .1, .7 and .2 are rounded up, but their sum stays 1 */
@@ -150,10 +151,12 @@ TEST(plain)
     assert_int_equal(b.model.material[0].power_q8, 20 << 8);
     assert_int_equal(b.model.material[1].index_q16, 3 << 15);
     assert_int_equal(b.model.object[0].kind, GLINT_OBJECT_SPHERE);
-    check_vector(b.model.object[0].at, 0, .5, -1, unit);
+    check_scaled_vector(b.model.object[0].at, 0, .5, -1, unit);
     assert_int_equal(b.model.object[0].radius, 1 << 18);
-    /* rotates y to +z of the text, which is -z here: -90 degrees about x */
-    check_vector(b.model.object[1].turn_q30, sqrt(.5), -sqrt(.5), 0, 0x1p30);
+    /* rotates y to +z of the text, which is -z in the baked scene: -90 degrees
+     * about x */
+    check_scaled_vector(b.model.object[1].turn_q30, sqrt(.5), -sqrt(.5), 0,
+                        0x1p30);
     assert_int_equal(b.model.object[2].catcher_q15, 16384);
     assert_int_equal(glint_scene_find(&b.model, "t"), 3);
     free(b.data);
@@ -161,9 +164,9 @@ TEST(plain)
 
 /* Corners are clockwise seen from outside for both hands; left-handed
  * coordinates are unchanged. */
-/* Transparent objects of index 1 are baked as such, and drawn without
- * refraction (A11); other indices are not. */
-TEST(a12_index_1)
+/* Checks that transparent objects of index 1 are baked as such, and drawn
+ * without refraction (A11); other indices are not. */
+TEST(a12_index_1_is_not_refracted)
 {
     static const char *const refract[3] = {"", " refract 1", " refract 1.001"};
     struct baked b[3];
@@ -175,7 +178,7 @@ TEST(a12_index_1)
                  "material m phong 0 .1 .2 pass .9%s\n"
                  "sphere s at 0 0 0 radius 1 material m\n",
                  refract[i]);
-        bake_good(&b[i], text);
+        bake_valid_scene_text(&b[i], text);
     }
     assert_int_equal(b[0].bytes, b[1].bytes);
     assert_memory_equal(b[0].data, b[1].data, b[0].bytes);
@@ -185,7 +188,7 @@ TEST(a12_index_1)
         free(b[i].data);
 }
 
-TEST(hands)
+TEST(both_handednesses_give_the_same_mesh)
 {
     struct baked b;
     const struct glint_scene_mesh *m;
@@ -200,24 +203,26 @@ TEST(hands)
                  "hand %s\nmaterial m phong 0 1 0\n"
                  "triangle t 0 0 1 1 0 1 0 1 1 material m\n",
                  left ? "left" : "right");
-        bake_good(&b, text);
+        bake_valid_scene_text(&b, text);
         unit = ldexp(1, b.model.header->unit_log2);
         m = &b.model.mesh[0];
-        t = get_table(&b, m->triangle_at);
-        v = get_table(&b, m->vertex_at);
+        t = baked_table_at(&b, m->triangle_at);
+        v = baked_table_at(&b, m->vertex_at);
         assert_int_equal(m->n_vertices, 3);
         assert_true(m->uv_at == 0 && m->normal_at == 0);
-        check_vector(v + 3 * t->vertex[0], 0, 0, left ? 1 : -1, unit);
-        check_vector(v + 3 * t->vertex[1], left, !left, left ? 1 : -1, unit);
-        check_vector(v + 3 * t->vertex[2], !left, left, left ? 1 : -1, unit);
+        check_scaled_vector(v + 3 * t->vertex[0], 0, 0, left ? 1 : -1, unit);
+        check_scaled_vector(v + 3 * t->vertex[1], left, !left, left ? 1 : -1,
+                            unit);
+        check_scaled_vector(v + 3 * t->vertex[2], !left, left, left ? 1 : -1,
+                            unit);
         assert_true(t->material == GLINT_SCENE_NONE);
         free(b.data);
     }
 }
 
-/* Textures have mipmap levels down to one texel, averaged in linear light. V
- * points down; integers are subtracted from large U and V. */
-TEST(textures)
+/* Checks that textures have mipmap levels down to one texel, averaged in linear
+ * light. V points down; the integer part of large U and V is removed. */
+TEST(textures_have_averaged_mipmaps)
 {
     struct baked b;
     const struct glint_scene_texture *t;
@@ -225,25 +230,26 @@ TEST(textures)
     const int32_t *uv;
     const uint8_t *texel;
 
-    bake_good(&b, "texture t x.ppm\nmaterial m phong 0 1 0 texture t\n"
-                  "triangle t 0 0 0 1 0 0 0 1 0 "
-                  "uv 1000 -7 1000.5 -7 1001 -6.5 material m\n");
+    bake_valid_scene_text(&b,
+                          "texture t x.ppm\nmaterial m phong 0 1 0 texture t\n"
+                          "triangle t 0 0 0 1 0 0 0 1 0 "
+                          "uv 1000 -7 1000.5 -7 1001 -6.5 material m\n");
     assert_int_equal(b.model.header->n_textures, 1);
     t = b.model.texture;
     assert_true(t->width_log2 == 3 && t->height_log2 == 1);
-    texel = get_table(&b, t->texel_at);
+    texel = baked_table_at(&b, t->texel_at);
     assert_true(texel[0] == 0 && texel[23] == 255);
-    texel += 3 * 16; /* level of 4 x 1 */
+    texel += 3 * 16; /* mipmap level of 4 x 1 texels */
     assert_true(texel[0] == 0 && texel[5] == 0 && texel[6] == 255);
-    texel += 3 * 4; /* level of 2 x 1 */
+    texel += 3 * 4; /* mipmap level of 2 x 1 texels */
     assert_true(texel[0] == 0 && texel[5] == 255);
     texel += 3 * 2; /* code 188: half of the light */
     assert_true(texel[0] == 188 && texel[2] == 188);
-    uv = get_table(&b, b.model.mesh[0].uv_at);
-    tri = get_table(&b, b.model.mesh[0].triangle_at);
+    uv = baked_table_at(&b, b.model.mesh[0].uv_at);
+    tri = baked_table_at(&b, b.model.mesh[0].triangle_at);
     assert_int_equal(uv[2 * tri->vertex[0]], 0);
     assert_int_equal(uv[2 * tri->vertex[0] + 1], 1 << 16);
-    /* the order of the second and third corner is swapped */
+    /* the bake swaps the second and third corner */
     assert_int_equal(uv[2 * tri->vertex[2]], 1 << 15);
     assert_int_equal(uv[2 * tri->vertex[1] + 1], 1 << 15);
     free(b.data);
@@ -251,7 +257,7 @@ TEST(textures)
 
 /* Writes a bumpy sheet of N x N quads as an OBJ file, with a repeated corner
  * and a triangle without area. */
-static void write_sheet(int n)
+static void write_bumpy_sheet(int n)
 {
     char *at = mesh_text;
     uint32_t seed = 3;
@@ -269,13 +275,13 @@ static void write_sheet(int n)
 
 /* Checks that every triangle of the first mesh is listed in exactly those
  * cells that its bounding box touches, with the margin. */
-static void check_lists(const struct baked *b)
+static void check_triangle_lists_of_cells(const struct baked *b)
 {
     const struct glint_scene_mesh *m = b->model.mesh;
-    const uint32_t *start = get_table(b, m->start_at),
-                   *ref = get_table(b, m->ref_at);
-    const int32_t *v = get_table(b, m->vertex_at);
-    const struct glint_scene_triangle *t = get_table(b, m->triangle_at);
+    const uint32_t *start = baked_table_at(b, m->start_at),
+                   *ref = baked_table_at(b, m->ref_at);
+    const int32_t *v = baked_table_at(b, m->vertex_at);
+    const struct glint_scene_triangle *t = baked_table_at(b, m->triangle_at);
 
     for (uint32_t cell = 0; cell < m->cells[0] * m->cells[1] * m->cells[2];
          cell++) {
@@ -311,30 +317,32 @@ static void check_lists(const struct baked *b)
     }
 }
 
-/* Each vertex is stored once, and triangles without area are omitted. */
-TEST(grid)
+/* Checks that each vertex is stored once, and triangles without area are
+ * omitted. */
+TEST(vertices_are_stored_once)
 {
     enum { N = 20 };
     struct baked b;
     const struct glint_scene_mesh *m;
 
-    write_sheet(N);
-    bake_good(&b, "material m phong 0 1 0\n"
-                  "mesh s s.obj at 3 0 0 scale .1 turn 0 0 1 30 material m\n");
+    write_bumpy_sheet(N);
+    bake_valid_scene_text(
+        &b, "material m phong 0 1 0\n"
+            "mesh s s.obj at 3 0 0 scale .1 turn 0 0 1 30 material m\n");
     m = b.model.mesh;
     assert_int_equal(m->n_vertices, (N + 1) * (N + 1));
     assert_int_equal(m->n_triangles, 2 * N * N);
     assert_int_equal(b.report.flat, 1);
     assert_int_equal(b.report.triangles, 2 * N * N);
     assert_true(m->cells[0] * m->cells[1] * m->cells[2] >= N * N / 4);
-    check_lists(&b);
+    check_triangle_lists_of_cells(&b);
     free(b.data);
 }
 
-/* The grid's origin is chosen such that vertices lie 10 steps inside or
- * outside the sides of cells. Triangles are listed in all cells that they
- * touch with the margin. */
-TEST(margin)
+/* Checks triangles in a grid whose origin is chosen such that vertices lie 10
+ * steps inside or outside the sides of cells. Triangles are listed in all cells
+ * that they touch with the margin. */
+TEST(triangles_are_listed_in_all_cells_they_touch)
 {
     for (int k = -10; k <= 10; k += 20) {
         const char *const text = "material m phong 0 1 0\n"
@@ -342,21 +350,21 @@ TEST(margin)
         struct baked b;
         char *end;
 
-        write_sheet(16);
+        write_bumpy_sheet(16);
         end = mesh_text + strlen(mesh_text);
         sprintf(end, "v -1 0 0\nf -1 1 2\n");
-        bake_good(&b, text);
+        bake_valid_scene_text(&b, text);
         sprintf(end, "v %.17g 0 0\nf -1 1 2\n", -1 + k * b.report.step);
         free(b.data);
-        bake_good(&b, text);
-        check_lists(&b);
+        bake_valid_scene_text(&b, text);
+        check_triangle_lists_of_cells(&b);
         free(b.data);
     }
 }
 
-/* The same text gives the same bytes. Objects that are too small for the
- * scene's extent are reported. Extreme scenes can be opened. */
-TEST(extremes)
+/* Checks that the same text gives the same bytes, that objects too small for
+ * the scene's extent are reported, and that extreme scenes can be opened. */
+TEST(extreme_scenes_can_be_opened)
 {
     static const char *const texts[] = {
         "material m phong 0 1 0\nsphere s at 0 0 0 radius 1e-6 material m\n",
@@ -377,8 +385,8 @@ TEST(extremes)
     struct baked a, b;
 
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        bake_good(&a, texts[i]);
-        bake_good(&b, texts[i]);
+        bake_valid_scene_text(&a, texts[i]);
+        bake_valid_scene_text(&b, texts[i]);
         assert_int_equal(a.bytes, b.bytes);
         assert_memory_equal(a.data, b.data, b.bytes);
         free(a.data);

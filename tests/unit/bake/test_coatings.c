@@ -23,8 +23,9 @@ static const char table[] = "name films\n"
                             "surface 80 3 12 1.5168 64.17\n"
                             "surface -400 60 12 air\n";
 
-static enum glint_status read_table(struct glint_prescription *lens,
-                                    const char *line, struct glint_error *error)
+static enum glint_status parse_table_with_line(struct glint_prescription *lens,
+                                               const char *line,
+                                               struct glint_error *error)
 {
     char text[1024] = "";
 
@@ -33,11 +34,12 @@ static enum glint_status read_table(struct glint_prescription *lens,
     return glint_prescription_parse(lens, text, strlen(text), "x.lens", error);
 }
 
-static void read_good_table(struct glint_prescription *lens, const char *line)
+static void parse_valid_table_with_line(struct glint_prescription *lens,
+                                        const char *line)
 {
     struct glint_error error;
 
-    if (read_table(lens, line, &error) != GLINT_OK)
+    if (parse_table_with_line(lens, line, &error) != GLINT_OK)
         fail_msg("%s", error.text);
 }
 
@@ -52,8 +54,9 @@ static void apply_coatings(struct glint_prescription *lens, const char *films)
     glint_prescription_coat(lens, coating, n);
 }
 
-static void check_coatings(const struct glint_prescription *lens,
-                           const double nm[5], const double index[5])
+static void check_coatings_of_surfaces(const struct glint_prescription *lens,
+                                       const double nm[5],
+                                       const double index[5])
 {
     for (int k = 0; k < 5; k++) {
         assert_true(lens->surface[k].coating.nm == nm[k]);
@@ -63,23 +66,24 @@ static void check_coatings(const struct glint_prescription *lens,
 
 /* ------------------------------------------------------------------- tables */
 
-TEST(mixed_line)
+TEST(parses_a_mixed_coating_line)
 {
     static struct glint_prescription lens;
     const double all[5] = {550, 0, 550, 550, 550};
     const double mgf2[5] = {1.38, 0, 1.38, 1.38, 1.38};
 
-    read_good_table(&lens, "");
+    parse_valid_table_with_line(&lens, "");
     assert_int_equal(lens.n_mixed, 0);
-    read_good_table(&lens, "mixed-coating 450 none 620/1.46\n");
+    parse_valid_table_with_line(&lens, "mixed-coating 450 none 620/1.46\n");
     assert_int_equal(lens.n_mixed, 3);
     assert_true(lens.mixed[0].nm == 450 && lens.mixed[0].film[0].index == 1.38);
     assert_true(lens.mixed[1].nm == 0 && lens.mixed[1].n_films == 0);
     assert_true(lens.mixed[2].nm == 620 && lens.mixed[2].film[0].index == 1.46);
-    check_coatings(&lens, all, mgf2); /* the mixed coating is not applied yet */
+    check_coatings_of_surfaces(&lens, all,
+                               mgf2); /* the mixed coating is not applied yet */
 }
 
-TEST(mistakes)
+TEST(rejects_wrong_lines)
 {
     static const char *const bad[][2] = {
         {"mixed-coating\n", "x.lens:10:14: coating wavelength is missing"},
@@ -98,7 +102,8 @@ TEST(mistakes)
         static struct glint_prescription lens;
         struct glint_error error = {""};
 
-        assert_int_equal(read_table(&lens, bad[i][0], &error), GLINT_E_LENS);
+        assert_int_equal(parse_table_with_line(&lens, bad[i][0], &error),
+                         GLINT_E_LENS);
         assert_string_equal(error.text, bad[i][1]);
     }
 }
@@ -110,15 +115,15 @@ TEST(coatings_are_assigned_in_turn)
     static struct glint_prescription lens;
     const double zero[5] = {0};
 
-    read_good_table(&lens, "coating 600 1.5\n");
+    parse_valid_table_with_line(&lens, "coating 600 1.5\n");
     apply_coatings(&lens, "450,500/1.6,none");
-    check_coatings(&lens, (const double[]){450, 0, 500, 0, 450},
-                   (const double[]){1.38, 0, 1.6, 0, 1.38});
+    check_coatings_of_surfaces(&lens, (const double[]){450, 0, 500, 0, 450},
+                               (const double[]){1.38, 0, 1.6, 0, 1.38});
     apply_coatings(&lens, "none");
-    check_coatings(&lens, zero, zero);
+    check_coatings_of_surfaces(&lens, zero, zero);
     apply_coatings(&lens, "480");
-    check_coatings(&lens, (const double[]){480, 0, 480, 480, 480},
-                   (const double[]){1.38, 0, 1.38, 1.38, 1.38});
+    check_coatings_of_surfaces(&lens, (const double[]){480, 0, 480, 480, 480},
+                               (const double[]){1.38, 0, 1.38, 1.38, 1.38});
 }
 
 TEST(rejects_invalid_coatings)
@@ -153,7 +158,7 @@ TEST(rejects_invalid_coatings)
     }
 }
 
-TEST(too_many)
+TEST(rejects_too_many_coatings)
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
     struct glint_error error = {""};
@@ -169,8 +174,8 @@ TEST(too_many)
 }
 
 /* Parses TEXT as one coating and compares its films, {index, quarters}. */
-static void check_films(const char *text, double nm, int n,
-                        const double film[][2])
+static void check_films_of_coating(const char *text, double nm, int n,
+                                   const double film[][2])
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
     struct glint_error error = {""};
@@ -187,7 +192,7 @@ static void check_films(const char *text, double nm, int n,
     }
 }
 
-TEST(films)
+TEST(coatings_have_their_films)
 {
     static const double v[][2] = {{1.38, 1}, {1.69, 1}};
     static const double b3[][2] = {{1.38, 1}, {2.1, 2}, {1.63, 1}};
@@ -196,18 +201,18 @@ TEST(films)
     static const double own[][2] = {{1.46, 1}, {2.3, 0.25}, {1.46, 1.5}};
     static struct glint_prescription lens, other;
 
-    check_films("v-coat", 550, 2, v);
-    check_films("v-coat/600", 600, 2, v);
-    check_films("broadband-3", 520, 3, b3);
-    check_films("broadband-4/510", 510, 4, b4);
-    check_films("510/1.46/2.3:.25/1.46:1.5", 510, 3, own);
+    check_films_of_coating("v-coat", 550, 2, v);
+    check_films_of_coating("v-coat/600", 600, 2, v);
+    check_films_of_coating("broadband-3", 520, 3, b3);
+    check_films_of_coating("broadband-4/510", 510, 4, b4);
+    check_films_of_coating("510/1.46/2.3:.25/1.46:1.5", 510, 3, own);
     /* In a table the same words are separated by blanks. */
-    read_good_table(&lens, "coating 510 1.46 2.3:.25 1.46:1.5\n");
-    read_good_table(&other, "");
+    parse_valid_table_with_line(&lens, "coating 510 1.46 2.3:.25 1.46:1.5\n");
+    parse_valid_table_with_line(&other, "");
     apply_coatings(&other, "510/1.46/2.3:.25/1.46:1.5");
     assert_memory_equal(&lens.surface[0].coating, &other.surface[0].coating,
                         sizeof lens.surface[0].coating);
-    read_good_table(&lens, "coating broadband-3 # as is\n");
+    parse_valid_table_with_line(&lens, "coating broadband-3 # as is\n");
     apply_coatings(&other, "broadband-3");
     assert_memory_equal(&lens.surface[4].coating, &other.surface[4].coating,
                         sizeof lens.surface[4].coating);
@@ -227,14 +232,14 @@ static double compute_reflectance(const struct glint_prescription *lens, int k,
                              glint_coating_at(&s->coating, nm, film));
 }
 
-/* A quarter-wave film reflects least at its own wavelength (surfaces 0, 2
- * and 4). A half-wave film for 550 nm (surface 3) has no effect at 550 nm,
- * and reduces the reflectance on either side. */
-TEST(reflects)
+/* Checks that a quarter-wave film reflects least at its own wavelength
+ * (surfaces 0, 2 and 4). A half-wave film for 550 nm (surface 3) has no effect
+ * at 550 nm, and reduces the reflectance on either side. */
+TEST(quarter_wave_film_reflects_least_at_its_wavelength)
 {
     static struct glint_prescription lens, bare;
 
-    read_good_table(&lens, "");
+    parse_valid_table_with_line(&lens, "");
     bare = lens;
     apply_coatings(&bare, "none");
     apply_coatings(&lens, "450,650,1100,550"); /* nm, for surfaces 0, 2, 3, 4 */
@@ -256,16 +261,16 @@ TEST(reflects)
                 0.9 * compute_reflectance(&bare, 3, 680));
 }
 
-TEST(key)
+TEST(coatings_change_the_key)
 {
     static struct glint_prescription lens, other;
     struct glint_bake_options options;
     uint64_t key;
 
     glint_bake_defaults(&options);
-    read_good_table(&lens, "");
+    parse_valid_table_with_line(&lens, "");
     key = glint_bake_key(&lens, &options);
-    read_good_table(&other, "mixed-coating 450 620\n");
+    parse_valid_table_with_line(&other, "mixed-coating 450 620\n");
     /* a mixed coating does not change the key until it is applied */
     assert_true(glint_bake_key(&other, &options) == key);
     glint_prescription_coat(&other, other.mixed, other.n_mixed);
@@ -285,7 +290,7 @@ TEST(key)
     assert_true(glint_bake_key(&other, &options) != key);
 }
 
-TEST(default_mixed_coatings)
+TEST(default_mixed_coatings_are_valid)
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
     const int n = glint_coatings_mixed(coating);

@@ -27,8 +27,8 @@ static const char *const good[] = {
     "sphere ball at 0 .5 0 radius .5 material red",             /* line 10 */
     "triangle t 0 0 0 1 0 0 0 1 0 uv 0 0 1 0 0 1 material oak", /* line 11 */
     "plane floor at 0 0 0 normal 0 2 0 catcher .6",             /* line 12 */
-    "mesh cup cup.obj scale .5 at 1 0 0 turn 0 2 0 90 material red", /* line 13
-                                                                      */
+    /* line 13 */
+    "mesh cup cup.obj scale .5 at 1 0 0 turn 0 2 0 90 material red",
     "shadow on",                 /* line 14 */
     "flare lights highlights 3", /* line 15 */
 };
@@ -45,8 +45,9 @@ static const char cup[] = "# a cup\n"
                           "usemtl oak\n"
                           "f -4/1 -3/2 -2/3\n";
 
-static enum glint_status read_file(void *ctx, const char *name, uint8_t **data,
-                                   size_t *bytes, struct glint_error *error)
+static enum glint_status read_scene_file(void *ctx, const char *name,
+                                         uint8_t **data, size_t *bytes,
+                                         struct glint_error *error)
 {
     (void)ctx;
     if (strcmp(name, "cup.obj") != 0) {
@@ -60,11 +61,11 @@ static enum glint_status read_file(void *ctx, const char *name, uint8_t **data,
     return GLINT_OK;
 }
 
-/* Returns a picture of 6 x 2 pixels: one third is black, the rest white; as
- * big.ppm the largest texture, black. */
-static enum glint_status read_picture(void *ctx, const char *name,
-                                      struct glint_image *image,
-                                      struct glint_error *error)
+/* Returns a picture of 6 x 2 pixels, a third of them black, the others white;
+ * for big.ppm a black picture of the largest texture size. */
+static enum glint_status make_scene_picture(void *ctx, const char *name,
+                                            struct glint_image *image,
+                                            struct glint_error *error)
 {
     uint8_t *mem = malloc(3 * 6 * 2);
 
@@ -88,12 +89,13 @@ static enum glint_status read_picture(void *ctx, const char *name,
 }
 
 static const struct glint_description_files files = {
-    NULL, read_file, read_picture, NULL, NULL, NULL};
+    NULL, read_scene_file, make_scene_picture, NULL, NULL, NULL};
 
 /* Parses the valid text, with LINE in place of line NUMBER (from 1; 0: no
  * replacement). */
-static enum glint_status parse_line(struct glint_description *scene, int number,
-                                    const char *line, struct glint_error *error)
+static enum glint_status parse_text_with_line(struct glint_description *scene,
+                                              int number, const char *line,
+                                              struct glint_error *error)
 {
     char text[4096] = "", *copy;
     enum glint_status status;
@@ -116,36 +118,36 @@ static enum glint_status parse_line(struct glint_description *scene, int number,
     return status;
 }
 
-static void check_near(const double *a, double x, double y, double z)
+static void check_vector_is_near(const double *a, double x, double y, double z)
 {
     assert_true(fabs(a[0] - x) < 1e-12);
     assert_true(fabs(a[1] - y) < 1e-12);
     assert_true(fabs(a[2] - z) < 1e-12);
 }
 
-TEST(good)
+TEST(parses_every_line)
 {
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
 
     assert_non_null(s);
-    if (parse_line(s, 0, NULL, &error) != GLINT_OK)
+    if (parse_text_with_line(s, 0, NULL, &error) != GLINT_OK)
         fail_msg("%s", error.text);
     assert_true(s->left_handed && s->has_shadows);
-    check_near(s->camera.right, 1, 0, 0);
-    check_near(s->camera.up, 0, 1, 0);
-    check_near(s->camera.forward, 0, 0, 1);
+    check_vector_is_near(s->camera.right, 1, 0, 0);
+    check_vector_is_near(s->camera.up, 0, 1, 0);
+    check_vector_is_near(s->camera.forward, 0, 0, 1);
     assert_true(s->camera.fov_deg == 60);
-    check_near(s->background_colour, .1, .2, .3);
+    check_vector_is_near(s->background_colour, .1, .2, .3);
     assert_int_equal(s->n_lights, 2);
-    check_near(s->light[0].at, 0, .6, -.8);
+    check_vector_is_near(s->light[0].at, 0, .6, -.8);
     assert_string_equal(s->light[1].name, "lamp");
     assert_int_equal(s->n_materials, 3);
     assert_true(s->material[0].power == 20 && s->material[1].power == 32);
     assert_int_equal(s->material[1].texture, 0);
     assert_true(s->material[2].pass == .9 && s->material[2].index == 1.5);
     assert_int_equal(s->n_objects, 4);
-    check_near(s->object[2].normal, 0, 1, 0);
+    check_vector_is_near(s->object[2].normal, 0, 1, 0);
     assert_true(s->object[2].catcher == .6 && s->object[2].material == -1);
     assert_int_equal(s->flare, GLINT_DESCRIBED_FLARE_HIGHLIGHTS);
     assert_int_equal(s->n_highlights, 3);
@@ -154,25 +156,25 @@ TEST(good)
     free(s);
 }
 
-/* The quad becomes two triangles, scaled by 1/2. The material "oak" in the
- * file is that of the scene. */
-TEST(mesh)
+/* Checks that a quad becomes two triangles, scaled by 1/2, and that the
+ * material "oak" in the mesh file is that of the scene. */
+TEST(quad_becomes_two_scaled_triangles)
 {
     struct glint_description *s = malloc(sizeof *s);
     const struct glint_described_object *o;
     struct glint_error error;
 
     assert_non_null(s);
-    assert_ok(parse_line(s, 0, NULL, &error));
+    assert_ok(parse_text_with_line(s, 0, NULL, &error));
     o = &s->object[3];
     assert_int_equal(o->first_triangle, 1);
     assert_int_equal(o->n_triangles, 3);
     assert_true(fabs(o->turn[0] - sqrt(.5)) < 1e-12 &&
                 fabs(o->turn[2] - sqrt(.5)) < 1e-12);
-    check_near(s->triangle[2].place[1], 1, 1, 0);
-    check_near(s->triangle[2].place[2], 0, 1, 0);
+    check_vector_is_near(s->triangle[2].place[1], 1, 1, 0);
+    check_vector_is_near(s->triangle[2].place[2], 0, 1, 0);
     assert_true(s->triangle[2].has_normals && s->triangle[2].has_uv);
-    check_near(s->triangle[2].normal[0], 0, 0, -1);
+    check_vector_is_near(s->triangle[2].normal[0], 0, 0, -1);
     assert_int_equal(s->triangle[2].material, 0);
     assert_int_equal(s->triangle[3].material, 1);
     assert_false(s->triangle[3].has_normals);
@@ -180,16 +182,16 @@ TEST(mesh)
     free(s);
 }
 
-/* Six texels across become eight (nearest power of two by ratio); the mean
- * light is preserved. */
-TEST(texture)
+/* Checks that a texture of six texels is resampled to eight, the power of two
+ * with the nearest ratio, and that its mean light is preserved. */
+TEST(texture_is_resampled_to_a_power_of_two)
 {
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
     const uint8_t *row;
 
     assert_non_null(s);
-    assert_ok(parse_line(s, 0, NULL, &error));
+    assert_ok(parse_text_with_line(s, 0, NULL, &error));
     assert_int_equal(s->texture[0].image.width, 8);
     assert_int_equal(s->texture[0].image.height, 2);
     row = s->texture[0].image.plane[0];
@@ -336,7 +338,7 @@ static const struct mistake {
      "15:7: flare accepts off or lights [highlights N], not"},
 };
 
-TEST(mistakes)
+TEST(rejects_wrong_lines)
 {
     struct glint_description *s = malloc(sizeof *s);
 
@@ -347,41 +349,42 @@ TEST(mistakes)
         char wanted[200];
 
         snprintf(wanted, sizeof wanted, "x.scene:%s", m->error);
-        assert_int_not_equal(parse_line(s, m->line, m->text, &error), GLINT_OK);
+        assert_int_not_equal(parse_text_with_line(s, m->line, m->text, &error),
+                             GLINT_OK);
         if (strncmp(error.text, wanted, strlen(wanted)) != 0)
             fail_msg("'%s': %s", m->text, error.text);
     }
     free(s);
 }
 
-/* Handedness: the same numbers describe mirrored scenes, so the x axis of
- * the camera is reversed. */
-TEST(hands)
+/* Checks that the same numbers with the other handedness describe a mirrored
+ * scene: the x axis of the camera is reversed. */
+TEST(handedness_mirrors_the_camera)
 {
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
 
     assert_non_null(s);
-    assert_ok(parse_line(s, 1, "hand right", &error));
-    check_near(s->camera.right, -1, 0, 0);
-    check_near(s->camera.up, 0, 1, 0);
+    assert_ok(parse_text_with_line(s, 1, "hand right", &error));
+    check_vector_is_near(s->camera.right, -1, 0, 0);
+    check_vector_is_near(s->camera.up, 0, 1, 0);
     glint_description_free(s);
-    assert_ok(parse_line(s, 2, "camera orbit 0 1 0 distance 2 yaw 90 pitch 0",
-                         &error));
-    check_near(s->camera.at, 2, 1, 0);
+    assert_ok(parse_text_with_line(
+        s, 2, "camera orbit 0 1 0 distance 2 yaw 90 pitch 0", &error));
+    check_vector_is_near(s->camera.at, 2, 1, 0);
     /* x points right, z away from the viewer */
-    check_near(s->camera.right, 0, 0, 1);
+    check_vector_is_near(s->camera.right, 0, 0, 1);
     glint_description_free(s);
-    assert_ok(parse_line(s, 2, "camera corners", &error));
-    check_near(s->camera.forward, 0, 0, 1);
-    check_near(s->camera.right, 1, 0, 0);
+    assert_ok(parse_text_with_line(s, 2, "camera corners", &error));
+    check_vector_is_near(s->camera.forward, 0, 0, 1);
+    check_vector_is_near(s->camera.right, 1, 0, 0);
     glint_description_free(s);
     free(s);
 }
 
 static const struct mesh_text {
     const char *text;
-    int n; /* number of triangles; 0: rejected with ERROR */
+    int n; /* number of triangles; 0: the text is rejected with ERROR */
     const char *error;
 } mesh_texts[] = {
     {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", 1, ""},
@@ -412,7 +415,7 @@ static const struct mesh_text {
     {"v 0 0 0\nf 1 1 -\n", 0, "2:7: '-' is not a corner; expected V, V/T"},
 };
 
-TEST(mesh_texts)
+TEST(parses_or_rejects_mesh_texts)
 {
     struct glint_mesh *mesh = malloc(sizeof *mesh);
 
@@ -439,9 +442,9 @@ TEST(mesh_texts)
     free(mesh);
 }
 
-/* Warns of a sun too faint for any code, and of weights that leave objects
- * dark; does not warn of usual values. */
-TEST(warnings)
+/* Checks that the parser warns of a sun too faint for any code, and of weights
+ * that leave objects dark; but not of usual values. */
+TEST(warns_of_invisible_settings)
 {
     static const struct {
         int line;
@@ -456,7 +459,7 @@ TEST(warnings)
 
     assert_non_null(s);
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
-        assert_ok(parse_line(s, odd[i].line, odd[i].text, &error));
+        assert_ok(parse_text_with_line(s, odd[i].line, odd[i].text, &error));
         assert_int_equal(!s->warning[0], !odd[i].warning[0]);
         assert_non_null(strstr(s->warning, odd[i].warning));
         glint_description_free(s);

@@ -12,12 +12,12 @@
 
 enum { HEAD = 32 }; /* work before the first ghost, in fits; see effort.c */
 
-/* Simulates the bake of N ghosts of WORK[] fits each on one worker.
- * EXPECTED: typical work of a ghost passed to glint_effort_expect(); 0: not
- * called. Sets SAID to reported / true remaining time at 1/4, 1/2 and 3/4 of
- * the time. */
-static void simulate_bake(const double *work, int n, bool wide, double expected,
-                          double said[3])
+/* Simulates the bake of N ghosts of WORK[] fits each on one worker. EXPECTED:
+ * work passed to glint_effort_expect(), fits; 0: the function is not called.
+ * Sets SAID to reported / true remaining time after 1/4, 1/2 and 3/4 of the
+ * bake. */
+static void simulate_bake_progress(const double *work, int n, bool wide,
+                                   double expected, double said[3])
 {
     struct glint_effort e;
     double all = HEAD, now = HEAD;
@@ -46,23 +46,23 @@ static void simulate_bake(const double *work, int n, bool wide, double expected,
     assert_true(glint_effort_done(&e) > 0.999);
 }
 
-/* Ghosts of equal work: the reported remaining time is within 25 % of the
- * true one. */
-TEST(equal_ghosts)
+/* Checks, for ghosts of equal work, that the reported remaining time is within
+ * 25 % of the true one. */
+TEST(equal_ghosts_are_estimated_within_25_percent)
 {
     double work[100], said[3];
 
     for (int g = 0; g < 100; g++)
         work[g] = 20;
-    simulate_bake(work, 100, false, 0, said);
+    simulate_bake_progress(work, 100, false, 0, said);
     for (int k = 0; k < 3; k++)
         assert_true(said[k] > 0.8 && said[k] < 1.25);
 }
 
-/* Ghosts whose work differs by factors up to 100, in any order: the estimate
- * at half time is nearly always within a factor of three. An estimate by
- * number of ghosts was wrong by a factor of ten. */
-TEST(random_ghosts)
+/* Checks, for ghosts whose work differs by factors up to 100, in any order,
+ * that the estimate at half time is nearly always within a factor of three. An
+ * estimate by number of ghosts was wrong by a factor of ten. */
+TEST(random_ghosts_are_estimated_within_a_factor_of_3)
 {
     uint32_t seed = 7;
     int off = 0;
@@ -72,27 +72,27 @@ TEST(random_ghosts)
 
         for (int g = 0; g < 20; g++)
             work[g] = ceil(pow(10, 2 * rng_unit(&seed)));
-        simulate_bake(work, 20, true, 0, said);
+        simulate_bake_progress(work, 20, true, 0, said);
         off += fabs(log(said[1])) > log(3);
     }
     assert_in_range(off, 0, 10);
 }
 
-/* The last ghost takes most of the time: its angles are used for the
- * estimate. */
-TEST(long_ghost)
+/* Checks that the angles within the last ghost are used for the estimate if
+ * this ghost takes most of the time. */
+TEST(long_last_ghost_is_estimated_by_its_angles)
 {
     double work[20], said[3];
 
     for (int g = 0; g < 20; g++)
         work[g] = g < 19 ? 5 : 1000;
-    simulate_bake(work, 20, true, 0, said);
+    simulate_bake_progress(work, 20, true, 0, said);
     assert_true(said[1] > 0.5 && said[1] < 2);
     assert_true(said[2] > 0.5 && said[2] < 2);
 }
 
-/* Several workers share ghosts that were not begun, but not a ghost in
- * progress. */
+/* Checks that the estimate divides ghosts that were not begun among the
+ * workers, but not a ghost in progress. */
 TEST(workers_share_ghosts)
 {
     double done[2];
@@ -117,16 +117,16 @@ TEST(workers_share_ghosts)
     }
 }
 
-/* The last ghosts take most of the time, and glint_effort_expect() announced
- * the total work: the estimate is within a factor of two from the first
- * quarter on. */
-TEST(late_ghosts_expected)
+/* Checks, if the last ghosts take most of the time and glint_effort_expect()
+ * announced their work, that the estimate is within a factor of two from the
+ * first quarter on. */
+TEST(announced_work_improves_early_estimates)
 {
     double work[100], said[3];
 
     for (int g = 0; g < 100; g++)
         work[g] = g < 70 ? 1 : 70;
-    simulate_bake(work, 100, false, 20, said);
+    simulate_bake_progress(work, 100, false, 20, said);
     for (int k = 0; k < 3; k++)
         assert_true(said[k] > 0.5 && said[k] < 2);
 }
@@ -136,7 +136,7 @@ struct log {
     double last, most_step;
 };
 
-static void record_progress(void *ctx, double done)
+static void record_reported_progress(void *ctx, double done)
 {
     struct log *log = ctx;
 
@@ -146,8 +146,9 @@ static void record_progress(void *ctx, double done)
     log->n++;
 }
 
-/* A real bake reports each zone, and ends with progress 1. */
-TEST(bake)
+/* Checks that a real bake reports its progress after each zone, and 1 at the
+ * end. */
+TEST(bake_reports_each_zone)
 {
     static struct glint_setup setup;
     static struct glint_prescription heliar;
@@ -162,7 +163,7 @@ TEST(bake)
     glint_bake_defaults(&o);
     o.tolerance = 5;
     o.max_deg = 12;
-    o.progress = record_progress;
+    o.progress = record_reported_progress;
     o.progress_ctx = &log;
     assert_ok(glint_bake(&heliar, &o, &model, &bytes, &report, &error));
     free(model);

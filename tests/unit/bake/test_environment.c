@@ -18,19 +18,19 @@
 
 enum { WIDTH = 128, HEIGHT = 64, SIDE_LOG2 = 5, SIDE = 1 << SIDE_LOG2 };
 
-static double compute_dot(const double a[3], const double b[3])
+static double compute_dot_product(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void random_unit(uint32_t *seed, double d[3])
+static void random_unit_vector(uint32_t *seed, double d[3])
 {
     double length;
 
     do {
         for (int k = 0; k < 3; k++)
             d[k] = rng_signed(seed);
-        length = sqrt(compute_dot(d, d));
+        length = sqrt(compute_dot_product(d, d));
     } while (length > 1 || length < .1);
     for (int k = 0; k < 3; k++)
         d[k] /= length;
@@ -38,7 +38,7 @@ static void random_unit(uint32_t *seed, double d[3])
 
 /* ------------------------------------------------------------- octahedron */
 
-TEST(octahedron)
+TEST(octahedral_mapping_inverts)
 {
     uint32_t seed = 7;
     double sum = 0;
@@ -46,11 +46,11 @@ TEST(octahedron)
     for (int i = 0; i < 2000; i++) {
         double d[3], back[3], u, v;
 
-        random_unit(&seed, d);
+        random_unit_vector(&seed, d);
         glint_sphere_place(d, &u, &v);
         assert_true(u >= 0 && u <= 1 && v >= 0 && v <= 1);
         glint_sphere_toward(u, v, back);
-        assert_true(compute_dot(d, back) > 1 - 1e-12);
+        assert_true(compute_dot_product(d, back) > 1 - 1e-12);
     }
     for (int i = 0; i < 128 * 128; i++) {
         double d[3];
@@ -61,8 +61,9 @@ TEST(octahedron)
     assert_true(fabs(sum / (128 * 128) / (4 * GLINT_PI) - 1) < 1e-3);
 }
 
-/* Texels outside an edge map to neighbours of the texels inside. */
-TEST(edges_meet)
+/* Checks that texels outside an edge of the map are replaced by neighbours, on
+ * the sphere, of the texels inside. */
+TEST(texels_outside_an_edge_map_to_neighbours)
 {
     struct glint_sphere s;
 
@@ -80,9 +81,10 @@ TEST(edges_meet)
                 glint_sphere_index(SIDE, across[e][2], across[e][3]);
 
             assert_true(a < SIDE * SIDE && b < SIDE * SIDE);
-            /* at most the diagonal of the largest texels */
-            assert_true(compute_dot(s.texel[a].toward, s.texel[b].toward) >
-                        cos(2 * sqrt(6) / SIDE));
+            /* distance of at most the diagonal of the largest texels */
+            assert_true(
+                compute_dot_product(s.texel[a].toward, s.texel[b].toward) >
+                cos(2 * sqrt(6) / SIDE));
         }
     }
     glint_sphere_close(&s);
@@ -102,7 +104,7 @@ static const struct glint_float_image image = {WIDTH, HEIGHT, (float *)picture};
 
 /* Fills the picture with LIGHT(direction); R, G and B are 1, 1/2 and 1/4 of
  * it. */
-static void paint_picture(double (*light)(const double d[3]))
+static void paint_panorama(double (*light)(const double d[3]))
 {
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
@@ -131,7 +133,7 @@ static void bake_panorama(struct baked *b,
         fail_msg("%s", reason);
 }
 
-static struct glint_environment_options make_options(void)
+static struct glint_environment_options make_environment_options(void)
 {
     struct glint_environment_options o;
 
@@ -140,8 +142,8 @@ static struct glint_environment_options make_options(void)
     return o;
 }
 
-static double decode_9e5(const struct glint_environment *e, uint32_t word,
-                         int c)
+static double decode_rgb9e5(const struct glint_environment *e, uint32_t word,
+                            int c)
 {
     return ldexp(word >> (9 * c) & 511,
                  (int)(word >> 27) - 12 + e->header->unit_log2);
@@ -151,22 +153,22 @@ static double decode_9e5(const struct glint_environment *e, uint32_t word,
 static double decode_texel(const struct glint_environment *e, int k, size_t i,
                            int c)
 {
-    return decode_9e5(e, ((const uint32_t *)e->texel[k])[i], c);
+    return decode_rgb9e5(e, ((const uint32_t *)e->texel[k])[i], c);
 }
 
-static double uniform_light(const double d[3])
+static double uniform_environment_light(const double d[3])
 {
     (void)d;
     return 12.5;
 }
 
-/* Uniform light stays uniform at all levels. */
-TEST(uniform_light)
+/* Checks that uniform light stays uniform at all levels. */
+TEST(uniform_light_stays_uniform)
 {
-    const struct glint_environment_options o = make_options();
+    const struct glint_environment_options o = make_environment_options();
     struct baked b;
 
-    paint_picture(uniform_light);
+    paint_panorama(uniform_environment_light);
     bake_panorama(&b, &o);
     assert_string_equal(b.environment.header->name, "anight");
     assert_int_equal(b.environment.header->key[1], 1);
@@ -179,26 +181,26 @@ TEST(uniform_light)
                         12.5 / 1000);
     for (int i = 0; i < 1024; i++)
         assert_true(
-            fabs(decode_9e5(&b.environment, b.environment.irradiance[i], 1) -
+            fabs(decode_rgb9e5(&b.environment, b.environment.irradiance[i], 1) -
                  6.25) < 6.25 * .003);
     free(b.data);
 }
 
-static double slope_light(const double d[3])
+static double linear_environment_light(const double d[3])
 {
     return 1 + d[1];
 }
 
 /* Irradiance of light 1 + y on a white surface is 1 + 2/3 y. Rotation by 90
  * degrees to the right moves the light that was ahead to the right. */
-static double ahead_light(const double d[3])
+static double forward_environment_light(const double d[3])
 {
     return 1 + d[2];
 }
 
-TEST(irradiance)
+TEST(irradiance_matches_closed_form)
 {
-    struct glint_environment_options o = make_options();
+    struct glint_environment_options o = make_environment_options();
     double worst = 0;
 
     for (int turned = 0; turned < 2; turned++) {
@@ -206,7 +208,8 @@ TEST(irradiance)
 
         o.turn_deg = 90 * turned;
         o.scale = 1 + turned;
-        paint_picture(turned ? ahead_light : slope_light);
+        paint_panorama(turned ? forward_environment_light
+                              : linear_environment_light);
         bake_panorama(&b, &o);
         for (int i = 0; i < 1024; i++) {
             double n[3], want;
@@ -215,8 +218,8 @@ TEST(irradiance)
                                 ((double)(i / 32) + .5) / 32, n);
             want = o.scale * (1 + 2. / 3 * n[turned ? 0 : 1]);
             worst =
-                fmax(worst, fabs(decode_9e5(&b.environment,
-                                            b.environment.irradiance[i], 0) /
+                fmax(worst, fabs(decode_rgb9e5(&b.environment,
+                                               b.environment.irradiance[i], 0) /
                                      want -
                                  1));
         }
@@ -226,23 +229,23 @@ TEST(irradiance)
     assert_true(worst < .006);
 }
 
-static double patch_light(const double d[3])
+static double patchy_environment_light(const double d[3])
 {
     return 1 + fmax(0, sin(9 * d[0]) * sin(7 * d[1] + 1) + sin(11 * d[2])) +
            (d[0] > .3 && d[1] > .2 ? 5 : 0);
 }
 
-/* Every level equals the sum over all texels without skipped blocks, except
- * for the weight beyond four sigma. */
-TEST(blur)
+/* Checks that every Gaussian level equals the sum over all texels, except for
+ * the weight outside four sigma, where the bake skips blocks. */
+TEST(levels_equal_sums_over_all_texels)
 {
-    struct glint_environment_options o = make_options();
+    struct glint_environment_options o = make_environment_options();
     struct glint_environment_report report = {0};
     struct glint_sphere s;
     struct baked b;
     double worst = 0;
 
-    paint_picture(patch_light);
+    paint_panorama(patchy_environment_light);
     o.max_lights = 0;
     bake_panorama(&b, &o);
     assert_true(glint_sphere_open(&s, 2 * SIDE));
@@ -257,9 +260,10 @@ TEST(blur)
             glint_sphere_toward((i % side + .5) / side,
                                 ((double)(i / side) + .5) / side, d);
             for (int j = 0; j < 4 * SIDE * SIDE; j++) {
-                const double w = s.texel[j].weight *
-                                 exp((compute_dot(d, s.texel[j].toward) - 1) /
-                                     (sigma * sigma));
+                const double w =
+                    s.texel[j].weight *
+                    exp((compute_dot_product(d, s.texel[j].toward) - 1) /
+                        (sigma * sigma));
 
                 sum += w * s.texel[j].light[0];
                 weight += w;
@@ -276,9 +280,9 @@ TEST(blur)
     free(b.data);
 }
 
-/* B5: numbers of texels for a side of 256; the side of a Gaussian level is
- * twice that of a mipmap level. */
-TEST(b5_texels)
+/* B5: checks the numbers of texels for a side of 256; the side of a Gaussian
+ * level is twice that of a mipmap level. */
+TEST(b5_levels_have_the_published_sizes)
 {
     long mip = 0, full = 0, ours = 0;
 
@@ -292,12 +296,12 @@ TEST(b5_texels)
     assert_true(mip == 87381 && full == 589824 && ours == 152928);
 }
 
-TEST(mips)
+TEST(mipmap_levels_average_light)
 {
-    struct glint_environment_options o = make_options();
+    struct glint_environment_options o = make_environment_options();
     struct baked b;
 
-    paint_picture(patch_light);
+    paint_panorama(patchy_environment_light);
     o.max_lights = 0;
     o.levels = GLINT_ENVIRONMENT_MIP;
     bake_panorama(&b, &o);
@@ -324,23 +328,23 @@ TEST(mips)
 
 static const double sun[3] = {.48, .6, .64};
 
-static double day_light(const double d[3])
+static double sky_and_sun_light(const double d[3])
 {
-    return (compute_dot(d, sun) > cos(4 * GLINT_PI / 180) ? 4000 : 0) + 1 +
-           .5 * d[1];
+    return (compute_dot_product(d, sun) > cos(4 * GLINT_PI / 180) ? 4000 : 0) +
+           1 + .5 * d[1];
 }
 
-/* A disc of 4 degrees is found with its direction, light and size; the hole
- * is filled with the surrounding light. */
-TEST(light)
+/* Checks that a disc of 4 degrees is found with its direction, light and size;
+ * the hole is filled with the surrounding light. */
+TEST(disc_light_is_extracted)
 {
-    struct glint_environment_options o = make_options();
+    struct glint_environment_options o = make_environment_options();
     const struct glint_environment_light *l;
     double solid = 0; /* solid angle of the pixels of the disc */
     struct baked b;
     double d[3], power, u, v;
 
-    paint_picture(day_light);
+    paint_panorama(sky_and_sun_light);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++)
             if (picture[y][x][0] > 100)
@@ -354,10 +358,10 @@ TEST(light)
     power = glint_real_value(l->rgb[0]) / (4000 * solid / GLINT_PI);
     print_message("light: %.3f deg off, %.4f of its power, %.2f deg, share "
                   "%.4f, rest %.3f\n",
-                  180 / GLINT_PI * acos(compute_dot(d, sun)), power,
+                  180 / GLINT_PI * acos(compute_dot_product(d, sun)), power,
                   180 / GLINT_PI * asin(ldexp(l->radius_q30, -30)),
                   b.report.light_share, b.report.residual_largest);
-    assert_true(compute_dot(d, sun) > cos(.5 * GLINT_PI / 180));
+    assert_true(compute_dot_product(d, sun) > cos(.5 * GLINT_PI / 180));
     assert_true(fabs(power - 1) < .002);
     assert_true(fabs(asin(ldexp(l->radius_q30, -30)) * 180 / GLINT_PI - 4) <
                 .8);
@@ -370,7 +374,7 @@ TEST(light)
                                                      (int)(SIDE * v)),
                                   0) -
                      1.3) < .08);
-    /* levels and lights together have the picture's light */
+    /* map levels and extracted lights together have the picture's light */
     assert_true(fabs(b.report.light_share -
                      (power * 4000 * solid) /
                          (power * 4000 * solid + 4 * GLINT_PI)) < .002);
@@ -382,18 +386,19 @@ TEST(light)
     free(b.data);
 }
 
-static double window_light(const double d[3])
+static double bright_window_light(const double d[3])
 {
     return (d[2] > .9 ? 500 : 0) + 1;
 }
 
-/* Wide lights stay in the map, and two touching discs lose no light. */
-TEST(areas_stay)
+/* Checks that wide lights are not extracted from the map, and that two touching
+ * discs lose no light. */
+TEST(wide_and_touching_lights_lose_no_light)
 {
-    const struct glint_environment_options o = make_options();
+    const struct glint_environment_options o = make_environment_options();
     struct baked b;
 
-    paint_picture(window_light);
+    paint_panorama(bright_window_light);
     bake_panorama(&b, &o);
     assert_int_equal(b.environment.header->n_lights, 0);
     assert_true(b.report.residual_largest > 250);
@@ -404,13 +409,13 @@ TEST(areas_stay)
 
 TEST(clamps_invalid_samples)
 {
-    const struct glint_environment_options o = make_options();
+    const struct glint_environment_options o = make_environment_options();
     struct glint_environment_options odd;
     struct glint_error error;
     struct glint_float_image narrow = image;
     struct baked b;
 
-    paint_picture(uniform_light);
+    paint_panorama(uniform_environment_light);
     picture[3][4][1] = -1;
     picture[5][6][0] = -2e30f;
     picture[10][8][2] = NAN;
@@ -440,13 +445,13 @@ TEST(clamps_invalid_samples)
     free(b.data);
 }
 
-/* The six faces of a cube map, each of a single light, are in their
- * directions. */
-TEST(cube)
+/* Checks that the six faces of a cube map, each of a different light, appear in
+ * their directions. */
+TEST(cube_faces_have_their_directions)
 {
     static const double middle[6][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},
                                         {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
-    struct glint_environment_options o = make_options();
+    struct glint_environment_options o = make_environment_options();
     struct glint_environment_report report = {0};
     float faces[16][24][3];
     const struct glint_float_image cube = {24, 16, (float *)faces};
@@ -460,14 +465,14 @@ TEST(cube)
     assert_true(glint_sphere_project(&s, &cube, &o, &report));
     for (int i = 0; i < SIDE * SIDE; i++)
         for (int f = 0; f < 6; f++)
-            if (compute_dot(s.texel[i].toward, middle[f]) > .82)
+            if (compute_dot_product(s.texel[i].toward, middle[f]) > .82)
                 assert_true(fabs(s.texel[i].light[0] - (1 + f)) < 1e-9);
     glint_sphere_close(&s);
 }
 
 /* ------------------------------------------------------------------- codes */
 
-TEST(codes)
+TEST(rgb9e5_codes_round_trip)
 {
     enum { N = 4096 };
     static double light[N][3];
@@ -476,7 +481,8 @@ TEST(codes)
 
     for (int i = 0; i < N; i++)
         for (int c = 0; c < 3; c++)
-            light[i][c] = ldexp(rng_below(&seed, 65536), -rng_below(&seed, 20));
+            light[i][c] =
+                ldexp(rng_int_below(&seed, 65536), -rng_int_below(&seed, 20));
     light[0][0] = 65536;
     glint_environment_put_9e5((const double(*)[3])light, N, 0x1p-8, words);
     for (int i = 0; i < N; i++) {
@@ -492,8 +498,8 @@ TEST(codes)
 
 /* ------------------------------------------------------------------- files */
 
-static void check_refused(const struct baked *b, size_t at, uint32_t value,
-                          const char *why)
+static void check_damaged_file_is_rejected(const struct baked *b, size_t at,
+                                           uint32_t value, const char *why)
 {
     unsigned char *copy = malloc(b->bytes);
     struct glint_environment e;
@@ -515,85 +521,89 @@ static void check_refused(const struct baked *b, size_t at, uint32_t value,
 
 TEST(rejects_damaged_files)
 {
-    const struct glint_environment_options o = make_options();
+    const struct glint_environment_options o = make_environment_options();
     struct baked b;
     const struct glint_environment_header *h;
 
-    paint_picture(day_light);
+    paint_panorama(sky_and_sun_light);
     bake_panorama(&b, &o);
     h = b.environment.header;
-    check_refused(&b, AT(magic), 0, "not a baked environment");
-    check_refused(&b, AT(version), 9, "newer");
-    check_refused(&b, AT(crc32), 0, "checksum");
-    check_refused(&b, AT(variant), 2, "unknown");
-    check_refused(&b, AT(code), 2, "unknown");
-    check_refused(&b, AT(name), 0, "name is empty");
-    check_refused(&b, AT(side_log2), 11, "too many");
-    check_refused(&b, AT(side_log2), 6, "too many");
-    check_refused(&b, AT(unit_log2), 101, "unit");
-    check_refused(&b, AT(n_levels), 5, "too many");
-    check_refused(&b, AT(n_lights), 17, "too many");
-    check_refused(&b, AT(level_at), (uint32_t)b.bytes, "outside");
-    check_refused(&b, AT(irradiance_at), 8, "outside");
-    check_refused(&b, AT(light_at), (uint32_t)b.bytes - 4, "outside");
-    check_refused(&b, h->level_at, 4, "side");
-    check_refused(&b, h->level_at + 4, 2, "outside");
-    check_refused(&b, h->level_at + 8, (1u << 28) + 1, "side");
-    check_refused(&b, h->level_at + 12, 1, "side");
-    check_refused(&b, h->light_at, 0, "unit vector");
-    check_refused(&b, h->light_at + 12, 1u << 30, "too large");
-    check_refused(&b, h->light_at + 16, 5, "normalised");
+    check_damaged_file_is_rejected(&b, AT(magic), 0, "not a baked environment");
+    check_damaged_file_is_rejected(&b, AT(version), 9, "newer");
+    check_damaged_file_is_rejected(&b, AT(crc32), 0, "checksum");
+    check_damaged_file_is_rejected(&b, AT(variant), 2, "unknown");
+    check_damaged_file_is_rejected(&b, AT(code), 2, "unknown");
+    check_damaged_file_is_rejected(&b, AT(name), 0, "name is empty");
+    check_damaged_file_is_rejected(&b, AT(side_log2), 11, "too many");
+    check_damaged_file_is_rejected(&b, AT(side_log2), 6, "too many");
+    check_damaged_file_is_rejected(&b, AT(unit_log2), 101, "unit");
+    check_damaged_file_is_rejected(&b, AT(n_levels), 5, "too many");
+    check_damaged_file_is_rejected(&b, AT(n_lights), 17, "too many");
+    check_damaged_file_is_rejected(&b, AT(level_at), (uint32_t)b.bytes,
+                                   "outside");
+    check_damaged_file_is_rejected(&b, AT(irradiance_at), 8, "outside");
+    check_damaged_file_is_rejected(&b, AT(light_at), (uint32_t)b.bytes - 4,
+                                   "outside");
+    check_damaged_file_is_rejected(&b, h->level_at, 4, "side");
+    check_damaged_file_is_rejected(&b, h->level_at + 4, 2, "outside");
+    check_damaged_file_is_rejected(&b, h->level_at + 8, (1u << 28) + 1, "side");
+    check_damaged_file_is_rejected(&b, h->level_at + 12, 1, "side");
+    check_damaged_file_is_rejected(&b, h->light_at, 0, "unit vector");
+    check_damaged_file_is_rejected(&b, h->light_at + 12, 1u << 30, "too large");
+    check_damaged_file_is_rejected(&b, h->light_at + 16, 5, "normalised");
     free(b.data);
 }
 
 /* ------------------------------------------------------------------- texts */
 
-static enum glint_status parse_text(const char *text,
-                                    struct glint_environment_options *o,
-                                    char *source, struct glint_error *error)
+static enum glint_status
+parse_environment_text(const char *text, struct glint_environment_options *o,
+                       char *source, struct glint_error *error)
 {
     return glint_environment_parse(o, source, text, strlen(text),
                                    "n.environment", error);
 }
 
-static void check_wrong_text(const char *text, const char *why)
+static void check_text_is_rejected(const char *text, const char *why)
 {
     struct glint_environment_options o;
     char source[GLINT_ENVIRONMENT_FILE_BYTES];
     struct glint_error error;
 
-    assert_int_equal(parse_text(text, &o, source, &error), GLINT_E_LENS);
+    assert_int_equal(parse_environment_text(text, &o, source, &error),
+                     GLINT_E_LENS);
     if (!strstr(error.text, why))
         fail_msg("%s\nnot\n%s", error.text, why);
 }
 
-TEST(text)
+TEST(parses_environment_text)
 {
     struct glint_environment_options o;
     char source[GLINT_ENVIRONMENT_FILE_BYTES];
     struct glint_error error;
 
-    assert_ok(parse_text("# night\nsource a night.exr\nsize 128\n"
-                         "turn -90\nscale .5\n"
-                         "lights 3 radius 2.5 above 20\n",
-                         &o, source, &error));
+    assert_ok(parse_environment_text("# night\nsource a night.exr\nsize 128\n"
+                                     "turn -90\nscale .5\n"
+                                     "lights 3 radius 2.5 above 20\n",
+                                     &o, source, &error));
     assert_string_equal(source, "a night.exr");
     assert_true(o.side_log2 == 7 && o.turn_deg == -90 && o.scale == .5 &&
                 o.max_lights == 3 && o.light_deg == 2.5 && o.light_above == 20);
-    check_wrong_text("size 128\n",
-                     "n.environment:2:1: the line 'source FILE' is missing");
-    check_wrong_text("source\n",
-                     "n.environment:1:7: the name of the picture is missing");
-    check_wrong_text("source x\nsize 100\n",
-                     "2:6: size accepts 16, 32, 64, 128, 256, 512 or "
-                     "1024, not '100'");
-    check_wrong_text("source x\nturn 400\n", "turn");
-    check_wrong_text("source x\nlights 17\n", "lights");
-    check_wrong_text("source x\nlights 3 radios 2\n", "did you mean 'radius'?");
-    check_wrong_text("source x\nsize 64 64\n",
-                     "'64' is one value too many for size");
-    check_wrong_text("source x\nsource y\n",
-                     "2:1: a second source; the first is on line 1");
-    check_wrong_text("sources x\n",
-                     "unknown word 'sources'; did you mean 'source'?");
+    check_text_is_rejected(
+        "size 128\n", "n.environment:2:1: the line 'source FILE' is missing");
+    check_text_is_rejected(
+        "source\n", "n.environment:1:7: the name of the picture is missing");
+    check_text_is_rejected("source x\nsize 100\n",
+                           "2:6: size accepts 16, 32, 64, 128, 256, 512 or "
+                           "1024, not '100'");
+    check_text_is_rejected("source x\nturn 400\n", "turn");
+    check_text_is_rejected("source x\nlights 17\n", "lights");
+    check_text_is_rejected("source x\nlights 3 radios 2\n",
+                           "did you mean 'radius'?");
+    check_text_is_rejected("source x\nsize 64 64\n",
+                           "'64' is one value too many for size");
+    check_text_is_rejected("source x\nsource y\n",
+                           "2:1: a second source; the first is on line 1");
+    check_text_is_rejected("sources x\n",
+                           "unknown word 'sources'; did you mean 'source'?");
 }

@@ -36,8 +36,9 @@ TEST_CLOSE
     glint_pool_destroy(workers);
 }
 
-static void render_exact(double *out, struct glint_view view,
-                         const struct glint_lamp *lamps, int n_lamps, int grid)
+static void render_exact_flare(double *out, struct glint_view view,
+                               const struct glint_lamp *lamps, int n_lamps,
+                               int grid)
 {
     const struct glint_exact_config cfg = {.setup = &setup,
                                            .view = view,
@@ -50,7 +51,7 @@ static void render_exact(double *out, struct glint_view view,
     assert_ok(glint_exact_render(&cfg, out));
 }
 
-static struct glint_lamp make_lamp(double theta, double phi)
+static struct glint_lamp make_white_lamp(double theta, double phi)
 {
     return (struct glint_lamp){theta, phi, 1, {1, 1, 1}, {0, 0}, 0};
 }
@@ -84,7 +85,8 @@ struct golden {
 
 /* Loads the picture NAME, rendered by an independent program, from ../shared
  * or from the folder in GLINT_SHARED. Returns whether the file exists. */
-static bool load_golden(const char *name, struct glint_float_image *image)
+static bool load_golden_picture(const char *name,
+                                struct glint_float_image *image)
 {
     const char *shared = getenv("GLINT_SHARED");
     struct glint_error error = {""};
@@ -101,20 +103,20 @@ static bool load_golden(const char *name, struct glint_float_image *image)
     return ok;
 }
 
-static void compare_golden(const struct golden *g)
+static void compare_with_golden_picture(const struct golden *g)
 {
     const struct glint_view view = {
         .width = 480, .height = 270, .sensor_width_mm = 36};
-    const struct glint_lamp lamp = make_lamp(g->theta, g->phi);
+    const struct glint_lamp lamp = make_white_lamp(g->theta, g->phi);
     struct glint_float_image want, got;
     struct glint_measure m;
 
-    if (!load_golden(g->name, &want)) {
+    if (!load_golden_picture(g->name, &want)) {
         print_message("no golden picture of %s here\n", g->name);
         skip();
     }
     load_setup(&setup, &lens, g->name);
-    render_exact(rgb, view, &lamp, 1, g->grid);
+    render_exact_flare(rgb, view, &lamp, 1, g->grid);
     got = convert_to_floats(rgb, 0, view);
     assert_true(glint_measure_compare(&want, &got, true, &m));
     print_message("%s: %.1f dB\n", g->name, m.psnr_db);
@@ -122,35 +124,38 @@ static void compare_golden(const struct golden *g)
     assert_true(m.psnr_db >= 50);
 }
 
-TEST(golden_heliar)
+TEST(heliar_matches_golden_picture)
 {
-    compare_golden(&(struct golden){"heliar-tronnier", 7.58, 33.2, 128});
+    compare_with_golden_picture(
+        &(struct golden){"heliar-tronnier", 7.58, 33.2, 128});
 }
 
-TEST(golden_angenieux)
+TEST(angenieux_matches_golden_picture)
 {
-    compare_golden(&(struct golden){"double-gauss-angenieux", 5.33, -20.8, 96});
+    compare_with_golden_picture(
+        &(struct golden){"double-gauss-angenieux", 5.33, -20.8, 96});
 }
 
-TEST(golden_canon)
+TEST(canon_matches_golden_picture)
 {
     if (getenv("GLINT_QUICK") &&
         *getenv("GLINT_QUICK")) /* takes minutes under sanitizers */
         skip();
-    compare_golden(&(struct golden){"canon-zoom-mid", 5.06, 10.2, 64});
+    compare_with_golden_picture(
+        &(struct golden){"canon-zoom-mid", 5.06, 10.2, 64});
 }
 
 /* -------------------------------------------------------------- symmetries */
 
-TEST(axis_light_is_symmetric)
+TEST(light_on_axis_gives_a_symmetric_picture)
 {
     const struct glint_view view = {
         .width = 160, .height = 160, .sensor_width_mm = 24};
-    const struct glint_lamp lamp = make_lamp(0, 0);
+    const struct glint_lamp lamp = make_white_lamp(0, 0);
     double worst = 0, peak = 0;
 
     load_setup(&setup, &lens, "heliar-tronnier");
-    render_exact(rgb, view, &lamp, 1, 128);
+    render_exact_flare(rgb, view, &lamp, 1, 128);
     for (int y = 0; y < 160; y++)
         for (int x = 0; x < 160; x++)
             for (int c = 0; c < 3; c++) {
@@ -167,17 +172,18 @@ TEST(axis_light_is_symmetric)
     assert_true(worst < 2e-3 * peak);
 }
 
-/* Rotating the light by 90 degrees rotates the picture: a quarter turn does
- * not change an octagonal stop and a square picture. */
-TEST(quarter_turn)
+/* Checks that rotating the light by 90 degrees rotates the picture: a quarter
+ * turn does not change an octagonal stop and a square picture. */
+TEST(quarter_turn_of_the_light_rotates_the_picture)
 {
     const struct glint_view view = {
         .width = 160, .height = 160, .sensor_width_mm = 24};
-    const struct glint_lamp lamp = make_lamp(6, 20), turned = make_lamp(6, 110);
+    const struct glint_lamp lamp = make_white_lamp(6, 20),
+                            turned = make_white_lamp(6, 110);
 
     load_setup(&setup, &lens, "double-gauss-angenieux");
-    render_exact(rgb, view, &lamp, 1, 96);
-    render_exact(other, view, &turned, 1, 96);
+    render_exact_flare(rgb, view, &lamp, 1, 96);
+    render_exact_flare(other, view, &turned, 1, 96);
     for (int y = 0; y < 160; y++) /* (x, y) becomes (y, 159 - x) */
         for (int x = 0; x < 160; x++)
             for (int c = 0; c < 3; c++)
@@ -190,16 +196,16 @@ TEST(quarter_turn)
 
 /* ---------------------------------------------------------------- accuracy */
 
-TEST(doubling_the_grid)
+TEST(doubling_the_grid_changes_little)
 {
     const struct glint_view view = {
         .width = 240, .height = 135, .sensor_width_mm = 36};
-    const struct glint_lamp lamp = make_lamp(7.58, 33.2);
+    const struct glint_lamp lamp = make_white_lamp(7.58, 33.2);
     double db;
 
     load_setup(&setup, &lens, "heliar-tronnier");
-    render_exact(rgb, view, &lamp, 1, 256);
-    render_exact(other, view, &lamp, 1, 512);
+    render_exact_flare(rgb, view, &lamp, 1, 256);
+    render_exact_flare(other, view, &lamp, 1, 512);
     db = compute_psnr(other, rgb, view);
     print_message("256 against 512: %.1f dB\n", db);
     assert_true(db > 60);
@@ -211,12 +217,12 @@ TEST(flux_is_bounded)
 {
     const struct glint_view view = {
         .width = 200, .height = 200, .sensor_width_mm = 2000};
-    const struct glint_lamp lamp = make_lamp(10, 45);
+    const struct glint_lamp lamp = make_white_lamp(10, 45);
     const double front = 3.14159265 * 14.5 * 14.5;
     double sum[3] = {0, 0, 0};
 
     load_setup(&setup, &lens, "heliar-tronnier");
-    render_exact(rgb, view, &lamp, 1, 64);
+    render_exact_flare(rgb, view, &lamp, 1, 64);
     for (int i = 0; i < 3 * 200 * 200; i++)
         sum[i % 3] += rgb[i];
     for (int c = 0; c < 3; c++) {
@@ -226,30 +232,32 @@ TEST(flux_is_bounded)
     }
 }
 
-TEST(threads_do_not_matter)
+TEST(picture_does_not_depend_on_threads)
 {
     const struct glint_view view = {
         .width = 120, .height = 67, .sensor_width_mm = 36};
-    const struct glint_lamp lamps[2] = {make_lamp(5, 33), make_lamp(9, -120)};
+    const struct glint_lamp lamps[2] = {make_white_lamp(5, 33),
+                                        make_white_lamp(9, -120)};
     struct glint_workers *const pool = workers;
 
     load_setup(&setup, &lens, "heliar-tronnier");
     workers = NULL;
-    render_exact(rgb, view, lamps, 2, 64);
+    render_exact_flare(rgb, view, lamps, 2, 64);
     for (int n = 2; n <= 8; n += 3) {
         assert_ok(glint_pool_create(&workers, n));
-        render_exact(other, view, lamps, 2, 64);
+        render_exact_flare(other, view, lamps, 2, 64);
         glint_pool_destroy(workers);
         assert_memory_equal(rgb, other, sizeof(double) * 3 * 120 * 67);
     }
     workers = pool;
 }
 
-/* ----------------------------------------------------- integers against it */
+/* --------------------------------------------------------- integer renderer */
 
-static void render_integers(struct glint_view view,
-                            const struct glint_lamp *lamps, int n_lamps,
-                            double *out, struct glint_engine_report *report)
+static void draw_flare_by_integers(struct glint_view view,
+                                   const struct glint_lamp *lamps, int n_lamps,
+                                   double *out,
+                                   struct glint_engine_report *report)
 {
     static float linear[3 * MAX_PIXELS];
     struct glint_frame frame;
@@ -263,22 +271,22 @@ static void render_integers(struct glint_view view,
     glint_frame_finish(&frame);
 }
 
-TEST(integers_match)
+TEST(integer_renderer_matches_exact_renderer)
 {
     static const char *const names[] = {"heliar-tronnier",
                                         "double-gauss-angenieux"};
     const struct glint_view view = {
         .width = 480, .height = 270, .sensor_width_mm = 36};
-    const struct glint_lamp lamps[2] = {make_lamp(7.58, 33.2),
-                                        make_lamp(3.1, -100)};
+    const struct glint_lamp lamps[2] = {make_white_lamp(7.58, 33.2),
+                                        make_white_lamp(3.1, -100)};
 
     for (int i = 0; i < 2; i++) {
         struct glint_engine_report report;
         double db;
 
         load_setup(&setup, &lens, names[i]);
-        render_exact(rgb, view, lamps, 1 + i, 192);
-        render_integers(view, lamps, 1 + i, other, &report);
+        render_exact_flare(rgb, view, lamps, 1 + i, 192);
+        draw_flare_by_integers(view, lamps, 1 + i, other, &report);
         db = compute_psnr(rgb, other, view);
         print_message("%s, %d light(s): %.1f dB\n", names[i], 1 + i, db);
         assert_true(db >= 45);
@@ -287,14 +295,15 @@ TEST(integers_match)
     }
 }
 
-/* A frame whose fields and edges do not fit into memory is drawn in several
- * parts, bit-identical. One thread: each one has memory of its own. */
-TEST(memory_does_not_matter)
+/* Checks that a frame whose ray fields and edges exceed the memory limit is
+ * drawn in several passes, bit-identical. Uses one thread, as each thread has
+ * its own memory. */
+TEST(picture_does_not_depend_on_memory)
 {
     const struct glint_view view = {
         .width = 240, .height = 135, .sensor_width_mm = 36};
-    const struct glint_lamp lamps[2] = {make_lamp(7.58, 33.2),
-                                        make_lamp(3.1, -100)};
+    const struct glint_lamp lamps[2] = {make_white_lamp(7.58, 33.2),
+                                        make_white_lamp(3.1, -100)};
     static float linear[2][3 * 240 * 135];
     struct glint_engine_report report[2];
 
@@ -318,10 +327,10 @@ TEST(memory_does_not_matter)
     assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
 }
 
-/* A lamp with a hundredth of green gives the same green light as a green
- * lamp of that power: quantisation steps are per colour. The hot spot of
- * this lens is much fainter than the size of its box suggests. */
-TEST(faint_colour_keeps_steps)
+/* Checks that a lamp whose green is a hundredth of its power gives the same
+ * green light as a green lamp of that power, as irradiance steps are per
+ * colour. The hot spot of this lens is much fainter than its box suggests. */
+TEST(faint_colour_keeps_its_irradiance_steps)
 {
     const struct glint_view view = {
         .width = 480, .height = 270, .sensor_width_mm = 36};
@@ -331,8 +340,8 @@ TEST(faint_colour_keeps_steps)
     double apart = 0, sum = 0;
 
     load_setup(&setup, &lens, "itoh-zoom-short");
-    render_integers(view, &green, 1, rgb, &report);
-    render_integers(view, &reddish, 1, other, &report);
+    draw_flare_by_integers(view, &green, 1, rgb, &report);
+    draw_flare_by_integers(view, &reddish, 1, other, &report);
     for (int i = 1; i < 3 * view.width * view.height; i += 3) {
         apart += fabs(rgb[i] - other[i]);
         sum += rgb[i];
@@ -341,12 +350,12 @@ TEST(faint_colour_keeps_steps)
     assert_true(apart < 0.001 * sum);
 }
 
-/* -------------------------------------------------------- not round lenses */
+/* --------------------------------------- lenses without rotational symmetry */
 
 /* Loads a triplet. The lines FIRST and SECOND follow the surfaces of its
  * first element. */
-static void load_shaped(const char *before, const char *first,
-                        const char *second)
+static void load_triplet_with_shapes(const char *before, const char *first,
+                                     const char *second)
 {
     static const double rgb_nm[] = {650, 532, 450};
     struct glint_error error = {""};
@@ -364,35 +373,38 @@ static void load_shaped(const char *before, const char *first,
         fail_msg("%s", error.text);
 }
 
-/* A toric with two equal radii is a sphere. Its lens is traced like one that
- * is not round: over the whole pupil, rotated by the light's azimuth. */
-TEST(torics_that_are_spheres)
+/* Checks that a toric with two equal radii gives the picture of a sphere,
+ * although its lens is traced like one without rotational symmetry: over the
+ * whole pupil, rotated by the light's azimuth. */
+TEST(toric_with_equal_radii_equals_a_sphere)
 {
     const struct glint_view view = {
         .width = 180, .height = 120, .sensor_width_mm = 36};
-    const struct glint_lamp lamp = make_lamp(7, 37);
+    const struct glint_lamp lamp = make_white_lamp(7, 37);
     struct glint_engine_report report;
     double db, flux;
 
-    load_shaped("", "", "");
+    load_triplet_with_shapes("", "", "");
     flux = setup.direct_flux[1];
-    render_exact(rgb, view, &lamp, 1, 128);
-    load_shaped("", "shape toric x 40.1\n", "shape toric y -537\n");
+    render_exact_flare(rgb, view, &lamp, 1, 128);
+    load_triplet_with_shapes("", "shape toric x 40.1\n",
+                             "shape toric y -537\n");
     assert_false(glint_prescription_is_round(&lens));
     assert_true(fabs(setup.direct_flux[1] / flux - 1) < 1e-5);
-    render_exact(other, view, &lamp, 1, 128);
+    render_exact_flare(other, view, &lamp, 1, 128);
     db = compute_psnr(rgb, other, view);
     print_message("spheres and torics: %.1f dB\n", db);
     assert_true(db > 60);
-    render_integers(view, &lamp, 1, rgb, &report);
+    draw_flare_by_integers(view, &lamp, 1, rgb, &report);
     db = compute_psnr(other, rgb, view);
     print_message("torics in integers: %.1f dB\n", db);
     assert_true(db >= 50);
 }
 
 /* Draws LAMPS into LINEAR of VIEW with FRAME. */
-static void draw_linear(struct glint_frame *frame, struct glint_view view,
-                        const struct glint_lamp *lamps, int n, float *linear)
+static void draw_lamps_linear(struct glint_frame *frame, struct glint_view view,
+                              const struct glint_lamp *lamps, int n,
+                              float *linear)
 {
     struct glint_engine_report report;
 
@@ -401,9 +413,10 @@ static void draw_linear(struct glint_frame *frame, struct glint_view view,
     assert_ok(glint_frame_draw_alone(frame, lamps, n, 1, linear, &report));
 }
 
-/* Checks that a frame which adopts what a smaller frame found of its lamps, and
- * of others, draws the same bits as one that finds it itself. */
-TEST(what_is_adopted_does_not_matter)
+/* Checks that a frame which adopts the pupil boxes that a smaller frame found,
+ * for the same and for other lamps, draws the same bits as one that searches
+ * for them. */
+TEST(adopted_rays_do_not_change_the_picture)
 {
     const struct glint_view view = {
         .width = 240, .height = 135, .sensor_width_mm = 36};
@@ -412,17 +425,17 @@ TEST(what_is_adopted_does_not_matter)
     const struct glint_lamp lamps[3] = {
         {7.58, 33.2, 1, {1, 1, 1}, {4e-3, 2e-3}, 30},
         {7.9, -70, 1, {1, 1, 1}, {3e-3, 3e-3}, 0},
-        make_lamp(3.1, -100)};
+        make_white_lamp(3.1, -100)};
     static float linear[2][3 * 240 * 135], other_size[3 * 96 * 54];
 
     for (int k = 0; k < 2; k++) {
         struct glint_frame own, adopting, from;
         struct glint_engine_report report;
 
-        load_shaped("", k ? "shape toric x 41\n" : "", "");
-        draw_linear(&own, view, lamps + k, 2, linear[0]);
-        draw_linear(&adopting, view, lamps + 1 - k, 2, linear[1]);
-        draw_linear(&from, small, lamps + k, 2, other_size);
+        load_triplet_with_shapes("", k ? "shape toric x 41\n" : "", "");
+        draw_lamps_linear(&own, view, lamps + k, 2, linear[0]);
+        draw_lamps_linear(&adopting, view, lamps + 1 - k, 2, linear[1]);
+        draw_lamps_linear(&from, small, lamps + k, 2, other_size);
         glint_frame_traces.adopt(&adopting, &from);
         assert_ok(glint_frame_draw_alone(&adopting, lamps + k, 2, 1, linear[1],
                                          &report));
@@ -436,20 +449,21 @@ TEST(what_is_adopted_does_not_matter)
 /* Checks that a frame draws the same bits as a new one after a picture whose
  * lamps differed only in their extent, which exact rays of points do not show,
  * and after one in which most ghosts were muted. */
-TEST(earlier_pictures_do_not_matter)
+TEST(earlier_pictures_do_not_change_the_picture)
 {
     static float linear[2][3 * 240 * 135];
     static struct glint_tint tints[GLINT_MAX_GHOSTS];
     const struct glint_view view = {
         .width = 240, .height = 135, .sensor_width_mm = 36};
-    struct glint_lamp lamps[2] = {make_lamp(7.58, 33.2), make_lamp(3.1, -100)};
+    struct glint_lamp lamps[2] = {make_white_lamp(7.58, 33.2),
+                                  make_white_lamp(3.1, -100)};
 
     for (int k = 0; k < 4; k++) {
         struct glint_frame fresh, used;
         struct glint_engine_report report;
 
-        load_shaped("", k & 1 ? "shape toric x 41\n" : "", "");
-        draw_linear(&fresh, view, lamps, 2, linear[0]);
+        load_triplet_with_shapes("", k & 1 ? "shape toric x 41\n" : "", "");
+        draw_lamps_linear(&fresh, view, lamps, 2, linear[0]);
         lamps[0].axis[0] = k < 2 ? 5e-3 : 0;
         glint_frame_init(&used, &setup, view, NULL);
         used.trace = &glint_frame_traces;
@@ -467,23 +481,25 @@ TEST(earlier_pictures_do_not_matter)
     }
 }
 
-/* A decentre in x for light at azimuth 30 equals a decentre in y at 60,
- * mirrored at the diagonal, and differs from the centred lens. */
-TEST(decentred_at_the_diagonal)
+/* Checks that a decentre in x for light at azimuth 30 equals a decentre in y at
+ * 60, mirrored at the diagonal, and differs from the centred lens. */
+TEST(decentred_lens_is_mirrored_at_the_diagonal)
 {
     const struct glint_view view = {
         .width = 120, .height = 120, .sensor_width_mm = 30};
-    const struct glint_lamp at[2] = {make_lamp(6, 30), make_lamp(6, 60)};
+    const struct glint_lamp at[2] = {make_white_lamp(6, 30),
+                                     make_white_lamp(6, 60)};
     double db;
 
-    load_shaped("group decentre 0.7 0\n", "", "end\n");
-    render_exact(rgb, view, &at[0], 1, 64);
-    load_shaped("group decentre 0 0.7\n", "", "end\n");
-    render_exact(other, view, &at[1], 1, 64);
+    load_triplet_with_shapes("group decentre 0.7 0\n", "", "end\n");
+    render_exact_flare(rgb, view, &at[0], 1, 64);
+    load_triplet_with_shapes("group decentre 0 0.7\n", "", "end\n");
+    render_exact_flare(other, view, &at[1], 1, 64);
     for (int y = 0; y < 120; y++)
         for (int x = 0; x < 120; x++)
             for (int c = 0; c < 3; c++) {
-                /* up in one picture is right in the other */
+                /* the vertical axis of one picture is the horizontal axis of
+                 * the other */
                 const int to = ((119 - x) * 120 + 119 - y) * 3 + c;
 
                 swapped[to] = other[(y * 120 + x) * 3 + c];
@@ -491,8 +507,8 @@ TEST(decentred_at_the_diagonal)
     db = compute_psnr(rgb, swapped, view);
     print_message("decentred, mirrored: %.1f dB\n", db);
     assert_true(db > 55);
-    load_shaped("", "", "");
-    render_exact(other, view, &at[0], 1, 64);
+    load_triplet_with_shapes("", "", "");
+    render_exact_flare(other, view, &at[0], 1, 64);
     assert_true(compute_psnr(rgb, other, view) < 40);
 }
 
@@ -518,14 +534,14 @@ TEST(progress_rises_from_exposure_to_picture)
 {
     const struct glint_view view = {
         .width = 240, .height = 135, .sensor_width_mm = 36};
-    const struct glint_lamp lamp = make_lamp(7.58, 33.2);
+    const struct glint_lamp lamp = make_white_lamp(7.58, 33.2);
     static float linear[3 * 240 * 135];
     struct reports reports = {.rises = true};
     struct glint_response_light light;
     struct glint_engine_report report;
     struct glint_frame frame;
 
-    load_shaped("", "", "");
+    load_triplet_with_shapes("", "", "");
     glint_frame_init(&frame, &setup, view, NULL);
     frame.trace = &glint_frame_traces;
     frame.progress = record_report;

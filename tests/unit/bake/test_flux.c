@@ -12,10 +12,11 @@
 
 static const double nm[3] = {650, 532, 450};
 
-/* Sets MODEL from the header of the model of lens NAME, stopped down to
- * F_NUMBER, and EXACT from traced rays. */
-static void make_setups(const char *name, double f_number,
-                        struct glint_setup *model, struct glint_setup *exact)
+/* Sets up the lens NAME at F_NUMBER twice: MODEL by stopping down its model
+ * header, EXACT from the lens table. */
+static void make_model_and_exact_setups(const char *name, double f_number,
+                                        struct glint_setup *model,
+                                        struct glint_setup *exact)
 {
     static struct glint_prescription lens;
     static struct glint_setup whole;
@@ -35,11 +36,11 @@ static void make_setups(const char *name, double f_number,
     assert_ok(glint_setup_init(exact, &lens, 8, 0, nm, 3, &error));
 }
 
-/* Barrels cut the rim of the widest stops of these lenses, which leaves 1 /
- * 1.027 and 1 / 1.10 of the flux through a full circle. A quarter of a stop
- * further down they cease to cut; there the flux has a kink that its
- * interpolation over three openings cannot reproduce. */
-TEST(fast_lenses)
+/* At their widest stops, barrels of these lenses clip the rim of the pupil,
+ * which leaves 1 / 1.027 and 1 / 1.10 of the flux through a full circle. From a
+ * quarter of a stop down they do not clip it; there the flux has a kink that
+ * its interpolation over three openings cannot reproduce. */
+TEST(barrels_reduce_the_flux_of_fast_lenses)
 {
     static const struct {
         const char *name;
@@ -56,7 +57,8 @@ TEST(fast_lenses)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         static struct glint_setup model, exact;
 
-        make_setups(cases[i].name, cases[i].f_number, &model, &exact);
+        make_model_and_exact_setups(cases[i].name, cases[i].f_number, &model,
+                                    &exact);
         for (int k = 0; k < 3; k++)
             assert_near(model.direct_flux[k] / exact.direct_flux[k], 1,
                         cases[i].within);

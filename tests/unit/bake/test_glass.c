@@ -80,8 +80,8 @@ static const struct {
 
 static struct glint_prescription lens;
 
-static enum glint_status read_medium(const char *medium,
-                                     struct glint_error *error)
+static enum glint_status parse_lens_of_medium(const char *medium,
+                                              struct glint_error *error)
 {
     char text[400];
 
@@ -93,7 +93,7 @@ static enum glint_status read_medium(const char *medium,
 }
 
 /* tolerance: 1e-5, plus half of the last printed decimal */
-static void check_near(double got, double want)
+static void check_index_is_near(double got, double want)
 {
     assert_true(fabs(got - want) < 1.5e-5);
 }
@@ -103,15 +103,15 @@ TEST(printed_indices)
     struct glint_error error = {""};
 
     for (size_t i = 0; i < sizeof printed / sizeof *printed; i++) {
-        if (read_medium(printed[i].name, &error) != GLINT_OK)
+        if (parse_lens_of_medium(printed[i].name, &error) != GLINT_OK)
             fail_msg("%s", error.text);
-        check_near(lens.surface[0].nd, printed[i].nd);
-        check_near(glint_surface_index(&lens.surface[0], 587.5618),
-                   printed[i].nd);
-        check_near(glint_surface_index(&lens.surface[0], 656.2725),
-                   printed[i].nc);
-        check_near(glint_surface_index(&lens.surface[0], 486.1327),
-                   printed[i].nf);
+        check_index_is_near(lens.surface[0].nd, printed[i].nd);
+        check_index_is_near(glint_surface_index(&lens.surface[0], 587.5618),
+                            printed[i].nd);
+        check_index_is_near(glint_surface_index(&lens.surface[0], 656.2725),
+                            printed[i].nc);
+        check_index_is_near(glint_surface_index(&lens.surface[0], 486.1327),
+                            printed[i].nf);
         assert_true(fabs(lens.surface[0].vd * (printed[i].nf - printed[i].nc) /
                              (printed[i].nd - 1) -
                          1) < 2e-3);
@@ -127,9 +127,10 @@ TEST(printed_dispersions)
         const double nd = printed_vd[i].nd;
         double apart;
 
-        if (read_medium(printed_vd[i].name, &error) != GLINT_OK)
+        if (parse_lens_of_medium(printed_vd[i].name, &error) != GLINT_OK)
             fail_msg("%s", error.text);
-        check_near(glint_surface_index(&lens.surface[0], 587.5618), nd);
+        check_index_is_near(glint_surface_index(&lens.surface[0], 587.5618),
+                            nd);
         apart = glint_surface_index(&lens.surface[0], 486.1327) -
                 glint_surface_index(&lens.surface[0], 656.2725);
         assert_true(fabs(apart - (nd - 1) / printed_vd[i].vd) < 1e-6);
@@ -137,8 +138,8 @@ TEST(printed_dispersions)
     }
 }
 
-/* Every row of the catalogue is a plausible glass, so that no coefficient is
- * misprinted. */
+/* Checks that every row of the catalogue is a plausible glass, which reveals
+ * misprinted coefficients. */
 TEST(all_rows_are_glasses)
 {
     struct glint_error error = {""};
@@ -152,7 +153,7 @@ TEST(all_rows_are_glasses)
                          glass);
         assert_ptr_equal(glint_glass_near(glass->name, strlen(glass->name)),
                          glass);
-        assert_ok(read_medium(glass->name, &error));
+        assert_ok(parse_lens_of_medium(glass->name, &error));
         assert_true(lens.surface[0].nd > 1.4 && lens.surface[0].nd < 2.1);
         assert_true(lens.surface[0].vd > 17 && lens.surface[0].vd < 96);
         for (int nm = 365; nm <= 1010; nm += 15) {
@@ -166,20 +167,20 @@ TEST(all_rows_are_glasses)
     assert_null(glint_glass_at(-1));
 }
 
-/* The violet dispersion of a flint differs from that of the two-number
- * formula. */
-TEST(beyond_two_terms)
+/* Checks that the violet dispersion of a flint differs from that of the formula
+ * by nd and Vd alone. */
+TEST(violet_dispersion_is_not_that_of_two_terms)
 {
     struct glint_error error = {""};
     double by_numbers;
 
-    assert_ok(read_medium("N-SF11", &error));
+    assert_ok(parse_lens_of_medium("N-SF11", &error));
     by_numbers = glint_index(lens.surface[0].nd, lens.surface[0].vd, 404.66);
     assert_true(glint_surface_index(&lens.surface[0], 404.66) - by_numbers >
                 4e-3);
 }
 
-TEST(names)
+TEST(misspelt_names_get_a_suggestion)
 {
     static const struct {
         const char *wrong, *meant;
@@ -196,7 +197,8 @@ TEST(names)
 
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         error.text[0] = '\0';
-        assert_int_equal(read_medium(cases[i].wrong, &error), GLINT_E_LENS);
+        assert_int_equal(parse_lens_of_medium(cases[i].wrong, &error),
+                         GLINT_E_LENS);
         assert_non_null(strstr(error.text, "t.lens:5:17: no glass"));
         assert_non_null(strstr(error.text, cases[i].meant));
     }
@@ -208,15 +210,15 @@ TEST(names)
     assert_true(lens.surface[0].sellmeier[0] == 0);
 }
 
-/* Two glasses with equal nd and Vd give different keys. */
-TEST(key)
+/* Checks that two glasses with equal nd and Vd give different keys. */
+TEST(glasses_of_equal_nd_and_vd_have_distinct_keys)
 {
     struct glint_bake_options options;
     struct glint_error error = {""};
     uint64_t key;
 
     glint_bake_defaults(&options);
-    assert_ok(read_medium("N-SK16", &error));
+    assert_ok(parse_lens_of_medium("N-SK16", &error));
     key = glint_bake_key(&lens, &options);
     memset(lens.surface[0].sellmeier, 0, sizeof lens.surface[0].sellmeier);
     assert_true(glint_bake_key(&lens, &options) != key);

@@ -15,10 +15,10 @@ static const double pi = 3.14159265358979323846;
 
 /* ------------------------------------------------------------------- glass */
 
-/* N-BK7 in its catalogue: nd 1.5168, Vd 64.17, nF - nC 0.008054, nF 1.52238,
- * nC 1.51432, ng (435.83 nm) 1.52668. Cauchy's two terms are less exact in
- * the violet. */
-TEST(glass)
+/* Values of N-BK7 in the manufacturer's catalogue: nd 1.5168, Vd 64.17, nF - nC
+ * 0.008054, nF 1.52238, nC 1.51432, ng (435.83 nm) 1.52668. Cauchy's two terms
+ * are less exact in the violet. */
+TEST(bk7_indices_match_the_catalogue)
 {
     assert_near(glint_index(1.5168, 64.17, 587.5618), 1.5168, 1e-15);
     assert_near(glint_index(1.5168, 64.17, 486.1327) -
@@ -34,8 +34,8 @@ TEST(glass)
 /* -------------------------------------------------------------- boundaries */
 
 /* Returns the reflectance of a boundary with a film of index NF; NF 0: bare. */
-static double compute_reflectance(double n1, double n2, double cosine,
-                                  double nf, double phase)
+static double compute_film_reflectance(double n1, double n2, double cosine,
+                                       double nf, double phase)
 {
     const struct glint_film_at film = {nf, phase};
 
@@ -47,7 +47,7 @@ static double compute_bare_reflectance(double n1, double n2, double cosine)
     return glint_reflectance(n1, n2, cosine, NULL, 0);
 }
 
-TEST(bare_boundary)
+TEST(bare_boundary_reflectance)
 {
     assert_near(compute_bare_reflectance(1.0, 1.5, 1.0), 0.04, 1e-16);
     assert_near(compute_bare_reflectance(1.5, 1.0, 1.0), 0.04, 1e-16);
@@ -66,39 +66,44 @@ TEST(bare_boundary)
 
 /* From index 1.5 to 1 the critical angle has the cosine sqrt(5) / 3; smaller
  * cosines give total reflection. */
-TEST(total_reflection)
+TEST(reflects_totally_beyond_the_critical_angle)
 {
     static const double film[] = {0.0, 1.38};
 
     for (int f = 0; f < 2; f++) {
-        assert_true(compute_reflectance(1.5, 1.0, 0.3, film[f], pi) == 1.0);
-        assert_true(compute_reflectance(1.5, 1.0, sqrt(5.0) / 3.0 - 1e-9,
-                                        film[f], pi) == 1.0);
-        assert_true(compute_reflectance(1.5, 1.0, sqrt(5.0) / 3.0 + 1e-9,
-                                        film[f], pi) < 1.0);
+        assert_true(compute_film_reflectance(1.5, 1.0, 0.3, film[f], pi) ==
+                    1.0);
+        assert_true(compute_film_reflectance(1.5, 1.0, sqrt(5.0) / 3.0 - 1e-9,
+                                             film[f], pi) == 1.0);
+        assert_true(compute_film_reflectance(1.5, 1.0, sqrt(5.0) / 3.0 + 1e-9,
+                                             film[f], pi) < 1.0);
     }
 }
 
 /* At normal incidence a quarter-wave film of index f reflects ((n1 n2 - f^2)
  * / (n1 n2 + f^2))^2, so nothing if f^2 = n1 n2. A half-wave film has no
  * effect. */
-TEST(film_by_hand)
+TEST(film_reflectance_matches_hand_computation)
 {
     const double quarter = pi, half = 2.0 * pi;
 
-    assert_near(compute_reflectance(1.0, 2.25, 1.0, 1.5, quarter), 0.0, 1e-30);
-    assert_near(compute_reflectance(2.25, 1.0, 1.0, 1.5, quarter), 0.0, 1e-30);
-    assert_near(compute_reflectance(1.0, 1.52, 1.0, 1.38, quarter), 0.0126008,
-                5e-8);
-    assert_near(compute_reflectance(1.0, 1.5, 1.0, 1.38, half), 0.04, 1e-15);
-    assert_near(compute_reflectance(1.0, 1.5, 1.0, 1.38, 0.0), 0.04, 1e-15);
+    assert_near(compute_film_reflectance(1.0, 2.25, 1.0, 1.5, quarter), 0.0,
+                1e-30);
+    assert_near(compute_film_reflectance(2.25, 1.0, 1.0, 1.5, quarter), 0.0,
+                1e-30);
+    assert_near(compute_film_reflectance(1.0, 1.52, 1.0, 1.38, quarter),
+                0.0126008, 5e-8);
+    assert_near(compute_film_reflectance(1.0, 1.5, 1.0, 1.38, half), 0.04,
+                1e-15);
+    assert_near(compute_film_reflectance(1.0, 1.5, 1.0, 1.38, 0.0), 0.04,
+                1e-15);
     /* a film with the index of one of the media has no effect */
     for (int i = 1; i <= 20; i++) {
         const double c = 0.05 * i;
 
-        assert_near(compute_reflectance(1.0, 1.5, c, 1.5, 2.0),
+        assert_near(compute_film_reflectance(1.0, 1.5, c, 1.5, 2.0),
                     compute_bare_reflectance(1, 1.5, c), 1e-14);
-        assert_near(compute_reflectance(1.0, 1.5, c, 1.0, 2.0),
+        assert_near(compute_film_reflectance(1.0, 1.5, c, 1.0, 2.0),
                     compute_bare_reflectance(1, 1.5, c), 1e-14);
     }
 }
@@ -106,8 +111,8 @@ TEST(film_by_hand)
 /* Returns the reflectance of a film by Airy's sum in complex numbers, as in
  * textbooks: cosines in all three media, amplitudes at both faces of the
  * film. */
-static double compute_airy(double n1, double n2, double c1, double nf,
-                           double phase)
+static double compute_airy_reflectance(double n1, double n2, double c1,
+                                       double nf, double phase)
 {
     const double complex cf = csqrt(1 - n1 * n1 / (nf * nf) * (1 - c1 * c1));
     const double complex c2 = csqrt(1 - n1 * n1 / (n2 * n2) * (1 - c1 * c1));
@@ -122,7 +127,7 @@ static double compute_airy(double n1, double n2, double c1, double nf,
     return 0.5 * (s * s + p * p);
 }
 
-TEST(film_against_airy)
+TEST(film_reflectance_matches_airy)
 {
     /* Indices before, inside and behind the film. In the last three cases,
      * light at grazing angles passes only by frustrated total reflection. */
@@ -138,26 +143,32 @@ TEST(film_against_airy)
                 const double sine = n[k][0] * sqrt(1 - c * c);
 
                 frustrated += sine > n[k][1] && sine < n[k][2];
-                assert_near(
-                    compute_reflectance(n[k][0], n[k][2], c, n[k][1], phase),
-                    compute_airy(n[k][0], n[k][2], c, n[k][1], phase), 1e-11);
+                assert_near(compute_film_reflectance(n[k][0], n[k][2], c,
+                                                     n[k][1], phase),
+                            compute_airy_reflectance(n[k][0], n[k][2], c,
+                                                     n[k][1], phase),
+                            1e-11);
             }
     assert_true(frustrated > 1000);
 }
 
-/* A thin gap transmits light that a thick one reflects totally. */
-TEST(frustrated_reflection)
+/* Checks that a thin gap transmits light that a thick one reflects totally. */
+TEST(thin_gap_transmits_by_frustrated_reflection)
 {
-    assert_true(compute_reflectance(1.7, 1.7, 0.6, 1.01, 1e-3) < 1e-4);
-    assert_near(compute_reflectance(1.7, 1.7, 0.6, 1.01, 60.0), 1.0, 1e-12);
-    assert_near(compute_reflectance(1.7, 1.7, 0.6, 1.01, 1e300), 1.0, 1e-12);
+    assert_true(compute_film_reflectance(1.7, 1.7, 0.6, 1.01, 1e-3) < 1e-4);
+    assert_near(compute_film_reflectance(1.7, 1.7, 0.6, 1.01, 60.0), 1.0,
+                1e-12);
+    assert_near(compute_film_reflectance(1.7, 1.7, 0.6, 1.01, 1e300), 1.0,
+                1e-12);
     /* 1.7 times the sine 0.8 is 1.36, so the angle is critical for the film. */
-    assert_near(compute_reflectance(1.7, 1.7, 0.6, 1.36, 3.0),
-                compute_reflectance(1.7, 1.7, 0.6, 1.36 - 1e-9, 3.0), 1e-7);
+    assert_near(compute_film_reflectance(1.7, 1.7, 0.6, 1.36, 3.0),
+                compute_film_reflectance(1.7, 1.7, 0.6, 1.36 - 1e-9, 3.0),
+                1e-7);
 }
 
-/* The reflectance is 0 .. 1 and the same from both sides of a boundary. */
-TEST(reciprocity)
+/* Checks that the reflectance is 0 .. 1 and the same from both sides of a
+ * boundary. */
+TEST(reflectance_is_equal_from_both_sides)
 {
     static const double film[] = {0.0, 1.38, 1.2, 2.4};
 
@@ -167,8 +178,9 @@ TEST(reciprocity)
                 const double c1 = 1e-3 * i, s1 = sqrt(1 - c1 * c1);
                 const double s2 = s1 / n2, c2 = sqrt(1 - s2 * s2);
                 const double into =
-                    compute_reflectance(1, n2, c1, film[f], 2.6);
-                const double out = compute_reflectance(n2, 1, c2, film[f], 2.6);
+                    compute_film_reflectance(1, n2, c1, film[f], 2.6);
+                const double out =
+                    compute_film_reflectance(n2, 1, c2, film[f], 2.6);
 
                 assert_true(into >= 0.0 && into <= 1.0);
                 assert_true(out >= 0.0 && out <= 1.0);
@@ -182,7 +194,7 @@ TEST(reciprocity)
 
 /* Returns a biconvex lens, R = 50, d = 6, n = 1.5. The constants below were
  * computed by hand from the lensmaker's equation. */
-static struct glint_prescription make_biconvex(void)
+static struct glint_prescription make_biconvex_lens(void)
 {
     struct glint_prescription lens;
 
@@ -204,14 +216,14 @@ static struct glint_prescription make_biconvex(void)
 
 TEST(biconvex_with_stop_behind)
 {
-    const struct glint_prescription lens = make_biconvex();
+    const struct glint_prescription lens = make_biconvex_lens();
     struct glint_optics optics;
 
     glint_optics_of(&lens, &optics);
     assert_near(optics.focal_mm, BICONVEX_F, 1e-12);
     assert_near(optics.back_focal_mm, BICONVEX_BACK, 1e-12);
     assert_near(optics.entrance_radius_mm, BICONVEX_F / 16.0, 1e-12);
-    /* the stop limits the cone to the focus at a plane 10 mm behind the lens */
+    /* the stop, 10 mm behind the lens, limits the cone of rays to the focus */
     assert_near(optics.stop_radius_mm, (BICONVEX_BACK - 10.0) / 16.0, 1e-12);
     assert_near(optics.length_mm, 54.0, 1e-12);
     /* Newton: the stop is BACK - 10 before the rear focus, so its image is
@@ -225,7 +237,7 @@ TEST(biconvex_with_stop_behind)
 
 TEST(biconvex_with_stop_in_front)
 {
-    struct glint_prescription lens = make_biconvex();
+    struct glint_prescription lens = make_biconvex_lens();
     struct glint_optics optics;
 
     lens.stop_after = 0;
@@ -265,7 +277,7 @@ static const struct {
 
 #define N_TABLES ((int)(sizeof(tables) / sizeof(tables[0])))
 
-TEST(published_values)
+TEST(focal_lengths_match_published_values)
 {
     static struct glint_prescription lens;
     struct glint_optics optics;
@@ -292,9 +304,9 @@ TEST(published_values)
 
 /* ------------------------------------------------------------------ ghosts */
 
-/* Pairs are listed in this order, and not across the stop: five surfaces lie
- * before it, three behind it. */
-TEST(ghost_order)
+/* Checks the order of ghosts, which are pairs of surfaces on the same side of
+ * the stop: five surfaces are before it, three behind it. */
+TEST(ghosts_are_listed_in_order)
 {
     static const struct glint_ghost expected[] = {
         {0, 1}, {0, 2}, {0, 3}, {0, 4}, {1, 2}, {1, 3}, {1, 4},

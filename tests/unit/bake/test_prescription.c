@@ -34,8 +34,8 @@ static const char *const good[] = {
 
 /* Writes the valid table to TEXT, with LINE in place of line NUMBER (from 1;
  * 0: no replacement) and END after each line. Returns its size in bytes. */
-static size_t compose_table(char text[4096], int number, const char *line,
-                            const char *end)
+static size_t compose_table_with_line(char text[4096], int number,
+                                      const char *line, const char *end)
 {
     text[0] = 0;
     for (int i = 0; i < N_GOOD; i++) {
@@ -45,9 +45,9 @@ static size_t compose_table(char text[4096], int number, const char *line,
     return strlen(text);
 }
 
-static enum glint_status parse_copy(struct glint_prescription *lens,
-                                    const char *text, size_t bytes,
-                                    struct glint_error *error)
+static enum glint_status parse_copy_of_text(struct glint_prescription *lens,
+                                            const char *text, size_t bytes,
+                                            struct glint_error *error)
 {
     /* The copy has the exact size of the text, so that the address sanitizer
      * detects reads beyond its end. */
@@ -62,32 +62,34 @@ static enum glint_status parse_copy(struct glint_prescription *lens,
     return status;
 }
 
-static void expect_good(struct glint_prescription *lens, const char *text,
-                        size_t bytes)
+static void expect_valid_text(struct glint_prescription *lens, const char *text,
+                              size_t bytes)
 {
     struct glint_error error;
 
-    if (parse_copy(lens, text, bytes, &error))
+    if (parse_copy_of_text(lens, text, bytes, &error))
         fail_msg("%s", error.text);
 }
 
-static void expect_error(const char *text, size_t bytes, const char *expected)
+static void expect_parse_error(const char *text, size_t bytes,
+                               const char *expected)
 {
     static struct glint_prescription lens, before;
     struct glint_error error;
 
     memset(&lens, 0x55, sizeof(lens));
     before = lens;
-    assert_int_equal(parse_copy(&lens, text, bytes, &error), GLINT_E_LENS);
+    assert_int_equal(parse_copy_of_text(&lens, text, bytes, &error),
+                     GLINT_E_LENS);
     assert_string_equal(error.text, expected);
     assert_memory_equal(&lens, &before, sizeof(lens));
 }
 
 /* -------------------------------------------------------------- good tables */
 
-static void expect_surface(const struct glint_surface *s, double radius,
-                           double thickness, double semi, double nd, double vd,
-                           double coating_nm)
+static void expect_surface_values(const struct glint_surface *s, double radius,
+                                  double thickness, double semi, double nd,
+                                  double vd, double coating_nm)
 {
     assert_true(s->radius_mm == radius);
     assert_true(s->thickness_mm == thickness);
@@ -100,85 +102,93 @@ static void expect_surface(const struct glint_surface *s, double radius,
     assert_true(s->coating.film[0].quarters == (coating_nm > 0));
 }
 
-static void expect_tiny(const struct glint_prescription *lens)
+static void expect_tiny_lens(const struct glint_prescription *lens)
 {
     assert_string_equal(lens->name, "tiny-4");
     assert_string_equal(lens->source, "Tiny, US 1,234");
     assert_true(lens->f_number == 8.0);
     assert_true(lens->film_width_mm == 36.0 && lens->film_height_mm == 24.0);
     assert_int_equal(lens->n_surfaces, 4);
-    expect_surface(&lens->surface[0], 50, 6, 12, 1.5168, 64.17, 550);
-    expect_surface(&lens->surface[1], -50, 3, 12, 1, 0, 550);
-    expect_surface(&lens->surface[2], 0, 2, 10, 1.62, 36.3, 550);
-    expect_surface(&lens->surface[3], -80, 40, 10, 1, 0, 550);
+    expect_surface_values(&lens->surface[0], 50, 6, 12, 1.5168, 64.17, 550);
+    expect_surface_values(&lens->surface[1], -50, 3, 12, 1, 0, 550);
+    expect_surface_values(&lens->surface[2], 0, 2, 10, 1.62, 36.3, 550);
+    expect_surface_values(&lens->surface[3], -80, 40, 10, 1, 0, 550);
     assert_int_equal(lens->stop_after, 2);
     assert_true(lens->stop_thickness_mm == 5.0 && lens->stop_semi_mm == 8.0);
     assert_true(lens->check_focal_mm == 0.0 && lens->check_back_mm == 0.0);
 }
 
-TEST(good_table)
+TEST(parses_a_valid_table)
 {
     static struct glint_prescription lens;
     char text[4096];
 
-    expect_good(&lens, text, compose_table(text, 0, NULL, "\n"));
-    expect_tiny(&lens);
-    expect_good(&lens, text, compose_table(text, 0, NULL, "\r\n"));
-    expect_tiny(&lens);
-    expect_good(&lens, text, compose_table(text, 0, NULL, " \t \n\n"));
-    expect_tiny(&lens);
+    expect_valid_text(&lens, text,
+                      compose_table_with_line(text, 0, NULL, "\n"));
+    expect_tiny_lens(&lens);
+    expect_valid_text(&lens, text,
+                      compose_table_with_line(text, 0, NULL, "\r\n"));
+    expect_tiny_lens(&lens);
+    expect_valid_text(&lens, text,
+                      compose_table_with_line(text, 0, NULL, " \t \n\n"));
+    expect_tiny_lens(&lens);
     /* the last line may have no line end */
-    expect_good(&lens, text, compose_table(text, 0, NULL, "\n") - 1);
-    expect_tiny(&lens);
-    expect_good(
+    expect_valid_text(&lens, text,
+                      compose_table_with_line(text, 0, NULL, "\n") - 1);
+    expect_tiny_lens(&lens);
+    expect_valid_text(&lens, text,
+                      compose_table_with_line(
+                          text, 1, "\xef\xbb\xbf# mark\nname tiny-4", "\n"));
+    expect_tiny_lens(&lens);
+    expect_valid_text(
         &lens, text,
-        compose_table(text, 1, "\xef\xbb\xbf# mark\nname tiny-4", "\n"));
-    expect_tiny(&lens);
-    expect_good(&lens, text, compose_table(text, 3, "\tf-number\t+.8E1", "\n"));
-    expect_tiny(&lens);
+        compose_table_with_line(text, 3, "\tf-number\t+.8E1", "\n"));
+    expect_tiny_lens(&lens);
 }
 
-static void expect_coatings(int number, const char *line, const double nm[4],
-                            const double n[4])
+static void expect_surface_coatings(int number, const char *line,
+                                    const double nm[4], const double n[4])
 {
     static struct glint_prescription lens;
     char text[4096];
 
-    expect_good(&lens, text, compose_table(text, number, line, "\n"));
+    expect_valid_text(&lens, text,
+                      compose_table_with_line(text, number, line, "\n"));
     for (int k = 0; k < 4; k++) {
         assert_true(lens.surface[k].coating.nm == nm[k]);
         assert_true(lens.surface[k].coating.film[0].index == n[k]);
     }
 }
 
-TEST(coatings)
+TEST(parses_coating_lines)
 {
     static const double zero[4] = {0};
 
-    expect_coatings(5, "coating none\nglass N-BK7 1.5 64", zero, zero);
-    expect_coatings(10, "surface -80 40 10 air\ncoating 480", /* last line */
-                    (const double[]){480, 480, 480, 480},
-                    (const double[]){1.38, 1.38, 1.38, 1.38});
-    expect_coatings(7, "surface -50 3 12 air coating 600 1.46",
-                    (const double[]){550, 600, 550, 550},
-                    (const double[]){1.38, 1.46, 1.38, 1.38});
-    expect_coatings(7, "surface -50 3 12 air coating none",
-                    (const double[]){550, 0, 550, 550},
-                    (const double[]){1.38, 0, 1.38, 1.38});
-    /* Surface 1 becomes cemented, so it gets no coating. */
-    expect_coatings(7,
-                    "surface -50 3 12 1.7 30\nsurface -90 3 12 air\ncoating "
-                    "500 1.4",
-                    (const double[]){500, 0, 500, 500},
-                    (const double[]){1.4, 0, 1.4, 1.4});
-    expect_coatings(7,
-                    "surface -50 3 12 1.7 30 coating none\n"
-                    "surface -90 3 12 air",
-                    (const double[]){550, 0, 550, 550},
-                    (const double[]){1.38, 0, 1.38, 1.38});
+    expect_surface_coatings(5, "coating none\nglass N-BK7 1.5 64", zero, zero);
+    expect_surface_coatings(
+        10, "surface -80 40 10 air\ncoating 480", /* last line */
+        (const double[]){480, 480, 480, 480},
+        (const double[]){1.38, 1.38, 1.38, 1.38});
+    expect_surface_coatings(7, "surface -50 3 12 air coating 600 1.46",
+                            (const double[]){550, 600, 550, 550},
+                            (const double[]){1.38, 1.46, 1.38, 1.38});
+    expect_surface_coatings(7, "surface -50 3 12 air coating none",
+                            (const double[]){550, 0, 550, 550},
+                            (const double[]){1.38, 0, 1.38, 1.38});
+    /* Surface 1 is cemented now, so it has no coating. */
+    expect_surface_coatings(
+        7,
+        "surface -50 3 12 1.7 30\nsurface -90 3 12 air\ncoating "
+        "500 1.4",
+        (const double[]){500, 0, 500, 500}, (const double[]){1.4, 0, 1.4, 1.4});
+    expect_surface_coatings(7,
+                            "surface -50 3 12 1.7 30 coating none\n"
+                            "surface -90 3 12 air",
+                            (const double[]){550, 0, 550, 550},
+                            (const double[]){1.38, 0, 1.38, 1.38});
 }
 
-TEST(stop_at_either_end)
+TEST(stop_may_be_first_or_last)
 {
     static struct glint_prescription lens;
     static const char last[] = "name a\nf-number 8\nfilm 36 24\n"
@@ -188,13 +198,13 @@ TEST(stop_at_either_end)
                                 "surface 50 6 12 1.5 60\n"
                                 "surface -50 45 12 air";
 
-    expect_good(&lens, last, strlen(last));
+    expect_valid_text(&lens, last, strlen(last));
     assert_int_equal(lens.stop_after, 2);
-    expect_good(&lens, first, strlen(first));
+    expect_valid_text(&lens, first, strlen(first));
     assert_int_equal(lens.stop_after, 0);
 }
 
-TEST(round_stops)
+TEST(parses_round_stops)
 {
     static struct glint_prescription lens;
     static const char table[] = "name a\nf-number 8\nfilm 36 24\n"
@@ -202,15 +212,15 @@ TEST(round_stops)
                                 "surface -50 3 12 air\nstop 40 8";
     char text[sizeof table + 20];
 
-    expect_good(&lens, table, strlen(table));
+    expect_valid_text(&lens, table, strlen(table));
     assert_false(lens.stop_is_circle);
     snprintf(text, sizeof text, "%s  circle # always", table);
-    expect_good(&lens, text, strlen(text));
+    expect_valid_text(&lens, text, strlen(text));
     assert_true(lens.stop_is_circle);
     assert_true(lens.stop_thickness_mm == 40 && lens.stop_semi_mm == 8);
 }
 
-/* The parser rounds decimals like the compiler. */
+/* Checks that the parser rounds decimals like the compiler. */
 TEST(numbers_are_exact)
 {
     static const struct {
@@ -232,7 +242,8 @@ TEST(numbers_are_exact)
 
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
         snprintf(line, sizeof(line), "film 36 %s", cases[i].word);
-        expect_good(&lens, text, compose_table(text, 4, line, "\n"));
+        expect_valid_text(&lens, text,
+                          compose_table_with_line(text, 4, line, "\n"));
         assert_true(lens.film_height_mm == cases[i].value);
     }
 }
@@ -415,68 +426,73 @@ static const struct {
     {2, "# escape \xc2\x9b", "x.lens:2:10: byte 0xc2 is not text (UTF-8)"},
 };
 
-TEST(mistakes)
+TEST(rejects_wrong_lines)
 {
     char text[4096];
 
     for (size_t i = 0; i < sizeof(mistakes) / sizeof(mistakes[0]); i++)
-        expect_error(
-            text,
-            compose_table(text, mistakes[i].number, mistakes[i].line, "\n"),
-            mistakes[i].error);
+        expect_parse_error(text,
+                           compose_table_with_line(text, mistakes[i].number,
+                                                   mistakes[i].line, "\n"),
+                           mistakes[i].error);
 }
 
-TEST(bytes)
+TEST(rejects_invalid_bytes)
 {
     char text[4096], line[300];
     size_t bytes;
 
-    expect_error(NULL, 0, "x.lens:1:1: there is no name line");
-    expect_error("\n\n", 2, "x.lens:3:1: there is no name line");
-    bytes = compose_table(text, 0, NULL, "\n");
+    expect_parse_error(NULL, 0, "x.lens:1:1: there is no name line");
+    expect_parse_error("\n\n", 2, "x.lens:3:1: there is no name line");
+    bytes = compose_table_with_line(text, 0, NULL, "\n");
     text[5] = 0;
-    expect_error(text, bytes, "x.lens:1:6: byte 0x00 is not text (UTF-8)");
+    expect_parse_error(text, bytes,
+                       "x.lens:1:6: byte 0x00 is not text (UTF-8)");
     /* the last byte of the text is the first byte of a multi-byte character */
-    bytes = compose_table(text, 0, NULL, "\n");
+    bytes = compose_table_with_line(text, 0, NULL, "\n");
     text[bytes - 1] = '\xe2';
-    expect_error(text, bytes, "x.lens:10:34: byte 0xe2 is not text (UTF-8)");
+    expect_parse_error(text, bytes,
+                       "x.lens:10:34: byte 0xe2 is not text (UTF-8)");
     memset(line, '#', sizeof(line));
     line[201] = 0;
-    expect_error(text, compose_table(text, 2, line, "\r\n"),
-                 "x.lens:2:201: line is longer than 200 bytes");
+    expect_parse_error(text, compose_table_with_line(text, 2, line, "\r\n"),
+                       "x.lens:2:201: line is longer than 200 bytes");
 }
 
-TEST(longest_line_and_text)
+TEST(rejects_too_long_lines_and_texts)
 {
     static struct glint_prescription lens;
     static char big[70000];
     char text[4096], line[300] = "source ";
 
     memset(line + 7, 'x', 193); /* a line of 200 bytes */
-    expect_good(&lens, text, compose_table(text, 2, line, "\r\n"));
+    expect_valid_text(&lens, text,
+                      compose_table_with_line(text, 2, line, "\r\n"));
     assert_int_equal(strlen(lens.source), 193);
     memset(big, '\n', sizeof(big));
-    memcpy(big, text, compose_table(text, 0, NULL, "\n"));
-    expect_good(&lens, big, 65536);
-    expect_error(big, 65537, "x.lens:1:1: text is longer than 65536 bytes");
+    memcpy(big, text, compose_table_with_line(text, 0, NULL, "\n"));
+    expect_valid_text(&lens, big, 65536);
+    expect_parse_error(big, 65537,
+                       "x.lens:1:1: text is longer than 65536 bytes");
 }
 
-/* A comment may contain any UTF-8 text; a # inside a word does not begin a
- * comment. */
-TEST(utf8_and_comments)
+/* Checks that a comment may contain any UTF-8 text, and that a # inside a word
+ * does not begin a comment. */
+TEST(accepts_utf8_in_comments)
 {
     static struct glint_prescription lens;
     char text[4096];
 
-    expect_good(&lens, text,
-                compose_table(text, 2,
-                              "# \xe2\x82\xac \xf0\x9f\x93\xb7\n"
-                              "source Voigtl\xc3\xa4nder a#1 \t # no",
-                              "\n"));
+    expect_valid_text(
+        &lens, text,
+        compose_table_with_line(text, 2,
+                                "# \xe2\x82\xac \xf0\x9f\x93\xb7\n"
+                                "source Voigtl\xc3\xa4nder a#1 \t # no",
+                                "\n"));
     assert_string_equal(lens.source, "Voigtl\xc3\xa4nder a#1");
 }
 
-TEST(too_many_surfaces)
+TEST(rejects_too_many_surfaces)
 {
     static struct glint_prescription lens;
     static char text[8192];
@@ -486,65 +502,67 @@ TEST(too_many_surfaces)
     for (int k = 0; k < 64; k++)
         n += snprintf(text + n, sizeof(text) - (size_t)n, "surface %s 1 9 %s\n",
                       k % 2 ? "-900" : "900", k % 2 ? "air" : "1.5 60");
-    expect_good(&lens, text, (size_t)n);
+    expect_valid_text(&lens, text, (size_t)n);
     assert_int_equal(lens.n_surfaces, 64);
     n += snprintf(text + n, sizeof(text) - (size_t)n, "surface 9 1 1 1.5 60");
-    expect_error(text, (size_t)n, "x.lens:69:1: more than 64 surfaces");
+    expect_parse_error(text, (size_t)n, "x.lens:69:1: more than 64 surfaces");
 }
 
-static void expect_whole_lens_error(const char *elements, const char *expected)
+static void expect_error_of_elements(const char *elements, const char *expected)
 {
     char text[4096];
 
     snprintf(text, sizeof(text), "name a\nf-number 8\nfilm 36 24\n%s",
              elements);
-    expect_error(text, strlen(text), expected);
+    expect_parse_error(text, strlen(text), expected);
 }
 
-TEST(power)
+TEST(rejects_lenses_without_power)
 {
-    expect_whole_lens_error("stop 1 20\nsurface flat 3 9 1.5 60\n"
-                            "surface flat 9 9 air\n",
-                            "x.lens:7:1: the lens has no refractive power");
+    expect_error_of_elements("stop 1 20\nsurface flat 3 9 1.5 60\n"
+                             "surface flat 9 9 air\n",
+                             "x.lens:7:1: the lens has no refractive power");
     /* With R1 - R2 = d (n - 1) / n, which these decimals satisfy exactly,
      * the lens is afocal. */
-    expect_whole_lens_error("stop 1 20\nsurface 40 60 9 1.5 60\n"
-                            "surface 20 9 9 air\n",
-                            "x.lens:7:1: the lens has no refractive power");
-    expect_whole_lens_error("stop 1 20\nsurface -50 3 9 1.5 60\n"
-                            "surface 50 9 9 air\n",
-                            "x.lens:7:1: the lens has no focus behind it: "
-                            "focal length -49.505 mm, back focal length "
-                            "-50.495 mm");
+    expect_error_of_elements("stop 1 20\nsurface 40 60 9 1.5 60\n"
+                             "surface 20 9 9 air\n",
+                             "x.lens:7:1: the lens has no refractive power");
+    expect_error_of_elements("stop 1 20\nsurface -50 3 9 1.5 60\n"
+                             "surface 50 9 9 air\n",
+                             "x.lens:7:1: the lens has no focus behind it: "
+                             "focal length -49.505 mm, back focal length "
+                             "-50.495 mm");
     /* The stop lies in the focus of a thick plano-convex rod of length R n /
      * (n - 1); two relays image it. */
-    expect_whole_lens_error("surface 20 60 9 1.5 60\nsurface flat 0 9 air\n"
-                            "stop 100 5\n"
-                            "surface 50 3 9 1.5 60\nsurface -50 200 9 air\n"
-                            "surface 50 3 9 1.5 60\nsurface -50 100 9 air\n",
-                            "x.lens:6:10: the stop lies in the focal plane of "
-                            "the surfaces before it");
+    expect_error_of_elements("surface 20 60 9 1.5 60\nsurface flat 0 9 air\n"
+                             "stop 100 5\n"
+                             "surface 50 3 9 1.5 60\nsurface -50 200 9 air\n"
+                             "surface 50 3 9 1.5 60\nsurface -50 100 9 air\n",
+                             "x.lens:6:10: the stop lies in the focal plane of "
+                             "the surfaces before it");
 }
 
-/* Stated focal lengths may deviate by 0.1 %. */
-TEST(stated_values)
+/* Checks that focal lengths stated in a table may deviate by 0.1 % from the
+ * computed ones. */
+TEST(checks_stated_focal_lengths)
 {
     static struct glint_prescription lens;
     char text[4096];
 
-    expect_good(&lens, text,
-                compose_table(text, 2,
-                              "focal-length 38.15\nback-focal-length 29.41",
-                              "\n"));
+    expect_valid_text(
+        &lens, text,
+        compose_table_with_line(
+            text, 2, "focal-length 38.15\nback-focal-length 29.41", "\n"));
     assert_true(lens.check_focal_mm == 38.15);
     assert_true(lens.check_back_mm == 29.41);
-    expect_error(text, compose_table(text, 2, "focal-length 38.08", "\n"),
-                 "x.lens:2:14: focal-length is 38.1194 mm, not the stated "
-                 "38.08 mm");
+    expect_parse_error(
+        text, compose_table_with_line(text, 2, "focal-length 38.08", "\n"),
+        "x.lens:2:14: focal-length is 38.1194 mm, not the stated "
+        "38.08 mm");
 }
 
-/* Errors contain the cause, however long the file name is. */
-TEST(long_file_name)
+/* Checks that errors contain the cause, however long the file name is. */
+TEST(errors_keep_the_cause_after_a_long_file_name)
 {
     static struct glint_prescription lens;
     static char name[2000];
@@ -558,9 +576,9 @@ TEST(long_file_name)
     assert_memory_equal(error.text, "...ddd", 6);
 }
 
-/* Lenses whose smallest f-number, rounded to nearest, would be rejected.
- * glint_prescription_widest() returns one that is accepted. */
-TEST(printed_widest)
+/* Checks lenses whose smallest f-number would be rejected when rounded to
+ * nearest: glint_prescription_widest() returns an f-number that is accepted. */
+TEST(printed_widest_f_number_is_accepted)
 {
     static const char *const names[] = {"heliar-tronnier", "canon-zoom-long",
                                         "itoh-zoom-mid", "nikon-zoom-short"};
@@ -582,7 +600,7 @@ TEST(printed_widest)
     }
 }
 
-TEST(set_f_number)
+TEST(sets_the_f_number)
 {
     static struct glint_prescription lens;
     struct glint_error error;
@@ -612,8 +630,8 @@ TEST(set_f_number)
     assert_true(lens.f_number == 8.0);
 }
 
-/* The example table of the manual is valid. */
-TEST(manual)
+/* Checks that the example table of the manual is valid. */
+TEST(parses_the_table_of_the_manual)
 {
     static const char fence[] = "```lens\n";
     static struct glint_prescription lens;
@@ -626,13 +644,13 @@ TEST(manual)
     start += strlen(fence);
     end = strstr(start, "```");
     assert_non_null(end);
-    expect_good(&lens, start, (size_t)(end - start));
+    expect_valid_text(&lens, start, (size_t)(end - start));
     assert_string_equal(lens.name, "achromat");
 }
 
-/* Tables in the fuzzer's corpus match their names: good-* parse, bad-* are
- * rejected, others may do either. */
-TEST(corpus)
+/* Checks that tables in the fuzzer's corpus match their names: good-* parse,
+ * bad-* are rejected, others may do either. */
+TEST(corpus_tables_match_their_names)
 {
     static struct glint_prescription lens;
     static char text[70000];
@@ -649,8 +667,8 @@ TEST(corpus)
         if (entry->d_name[0] == '.')
             continue;
         snprintf(path, sizeof(path), CORPUS "/%s", entry->d_name);
-        status = parse_copy(&lens, text, read_file(path, text, sizeof(text)),
-                            &error);
+        status = parse_copy_of_text(
+            &lens, text, read_file(path, text, sizeof(text)), &error);
         if (!strncmp(entry->d_name, status ? "good-" : "bad-", status ? 5 : 4))
             fail_msg("%s: %s", path, status ? error.text : "accepted");
         n++;
@@ -659,9 +677,9 @@ TEST(corpus)
     assert_true(n >= 20);
 }
 
-/* Numbers with any number of digits become the nearest double, like the
- * compiler's. */
-TEST(digits)
+/* Checks that numbers with any number of digits become the nearest double, like
+ * the compiler's. */
+TEST(numbers_of_any_length_are_rounded_to_nearest)
 {
     static const struct {
         const char *text;

@@ -15,17 +15,19 @@ static struct glint_prescription lens;
 static struct glint_optics optics;
 static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
 
-/* Returns whether a ray passes all openings, judged from its own record
- * only. */
-static bool ray_passes(const struct glint_path *path, double x, double y,
-                       const double direction[3], struct glint_ray *ray)
+/* Returns whether a ray passes all openings, according to the trace of this
+ * single ray. */
+static bool ray_passes_all_openings(const struct glint_path *path, double x,
+                                    double y, const double direction[3],
+                                    struct glint_ray *ray)
 {
     return glint_trace(path, x, y, direction, ray, NULL) == GLINT_RAY_OK &&
            ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <= optics.stop_radius_mm;
 }
 
-static bool is_in_box(const struct glint_pupil *box, double x, double y)
+static bool is_ray_in_pupil_box(const struct glint_pupil *box, double x,
+                                double y)
 {
     return x >= box->x0_mm && x <= box->x1_mm && y <= box->y1_mm;
 }
@@ -33,8 +35,8 @@ static bool is_in_box(const struct glint_pupil *box, double x, double y)
 /* Checks the pupil box of GHOST at an angle and wavelength against a scan.
  * Adds the number of unblocked rays to *N_SEEN. NEAR: the search for the box
  * starts from the box at 532 nm, and that box is extended, as in a frame. */
-static void check_box(int ghost, double theta_deg, double nm, bool near,
-                      int *n_seen)
+static void check_pupil_box_by_scan(int ghost, double theta_deg, double nm,
+                                    bool near, int *n_seen)
 {
     const double t = theta_deg * 3.14159265358979 / 180;
     const double direction[3] = {sin(t), 0, cos(t)};
@@ -58,14 +60,14 @@ static void check_box(int ghost, double theta_deg, double nm, bool near,
             const double y = semi * 2.0 * j / SCAN;
             struct glint_ray ray;
 
-            if (!ray_passes(&path, x, y, direction, &ray))
+            if (!ray_passes_all_openings(&path, x, y, direction, &ray))
                 continue;
             ++*n_seen;
-            if (!found || !is_in_box(&box, x, y))
+            if (!found || !is_ray_in_pupil_box(&box, x, y))
                 fail_msg("ghost %d at %g degrees: (%g, %g) passes outside "
                          "the box",
                          ghost, theta_deg, x, y);
-            if (near && !(can_extend && is_in_box(&extended, x, y)))
+            if (near && !(can_extend && is_ray_in_pupil_box(&extended, x, y)))
                 fail_msg("ghost %d at %g degrees: (%g, %g) passes outside "
                          "the extended box",
                          ghost, theta_deg, x, y);
@@ -75,7 +77,7 @@ static void check_box(int ghost, double theta_deg, double nm, bool near,
         }
 }
 
-static void check_lens(const char *name, int step)
+static void check_pupil_boxes_of_lens(const char *name, int step)
 {
     static const double angles[] = {0, 3, 7.5, 12, 25};
     int n_ghosts, n_seen = 0;
@@ -85,27 +87,29 @@ static void check_lens(const char *name, int step)
     n_ghosts = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
     for (int ghost = 0; ghost < n_ghosts; ghost += step)
         for (int a = 0; a < 5; a++)
-            check_box(ghost, angles[a], a & 1 ? 450 : 650, a != 2, &n_seen);
+            check_pupil_box_by_scan(ghost, angles[a], a & 1 ? 450 : 650, a != 2,
+                                    &n_seen);
     assert_true(n_seen > 1000);
 }
 
-TEST(heliar)
+TEST(heliar_boxes_match_a_scan)
 {
-    check_lens("heliar-tronnier", 1);
+    check_pupil_boxes_of_lens("heliar-tronnier", 1);
 }
 
-TEST(angenieux)
+TEST(angenieux_boxes_match_a_scan)
 {
-    check_lens("double-gauss-angenieux", 3);
+    check_pupil_boxes_of_lens("double-gauss-angenieux", 3);
 }
 
-TEST(itoh)
+TEST(itoh_boxes_match_a_scan)
 {
-    check_lens("itoh-zoom-long", 7);
+    check_pupil_boxes_of_lens("itoh-zoom-long", 7);
 }
 
-/* A ghost whose light enters through a spot of 1/20 mm. */
-TEST(spot)
+/* Checks a ghost whose light enters the front element through a spot of 1/20
+ * mm. */
+TEST(finds_a_ghost_that_enters_through_a_spot)
 {
     load_lens(&lens, "nikon-zoom-short");
     glint_optics_of(&lens, &optics);
@@ -121,12 +125,13 @@ TEST(spot)
         assert_true(glint_pupil_find(&box, &path, 0.5 * k,
                                      optics.stop_radius_mm, NULL));
         assert_true(box.x1_mm - box.x0_mm < 0.1 && box.y1_mm < 0.1);
-        assert_true(ray_passes(&path, 0.5 * (box.x0_mm + box.x1_mm), 0,
-                               direction, &ray));
+        assert_true(ray_passes_all_openings(
+            &path, 0.5 * (box.x0_mm + box.x1_mm), 0, direction, &ray));
     }
 }
 
-static void load_fisheye(struct glint_path *path, int ghost, double nm)
+static void load_fisheye_ghost_path(struct glint_path *path, int ghost,
+                                    double nm)
 {
     struct glint_error error = {""};
 
@@ -137,10 +142,10 @@ static void load_fisheye(struct glint_path *path, int ghost, double nm)
     glint_path_init(path, &lens, &ghosts[ghost], nm);
 }
 
-/* Ghosts of a fisheye enter through spots of 1/20 mm in a front of 80 mm,
- * around which all rays are invalid. Every wavelength has a spot, next to
- * that of the previous wavelength. */
-TEST(spots_of_fisheye)
+/* Checks ghosts of a fisheye that enter through spots of 1/20 mm in a front of
+ * 80 mm, around which all rays are invalid. Every wavelength must have a spot,
+ * next to that of the previous wavelength. */
+TEST(finds_spots_of_a_fisheye)
 {
     static const struct {
         int ghost;
@@ -158,14 +163,14 @@ TEST(spots_of_fisheye)
             struct glint_ray ray;
             int n = 0;
 
-            load_fisheye(&path, spot[k].ghost, nm);
+            load_fisheye_ghost_path(&path, spot[k].ghost, nm);
             assert_true(glint_pupil_find(&box, &path, spot[k].deg,
                                          optics.stop_radius_mm, NULL));
             assert_true(box.x1_mm - box.x0_mm < 0.3 && box.y1_mm < 0.1);
             for (int i = 0; i <= SCAN; i++)
-                n += ray_passes(&path,
-                                box.x0_mm + (box.x1_mm - box.x0_mm) * i / SCAN,
-                                0, direction, &ray);
+                n += ray_passes_all_openings(
+                    &path, box.x0_mm + (box.x1_mm - box.x0_mm) * i / SCAN, 0,
+                    direction, &ray);
             assert_true(n > SCAN / 2);
             assert_true(nm == 400 || fabs(box.x0_mm - before) < 1);
             before = box.x0_mm;
@@ -173,8 +178,9 @@ TEST(spots_of_fisheye)
     }
 }
 
-/* A crescent with tips thinner than the cells of the search. */
-TEST(tips)
+/* Checks a crescent-shaped pupil with tips thinner than the cells of the search
+ * grid. */
+TEST(finds_thin_tips_of_a_crescent)
 {
     const double t = 12.74 * 3.14159265358979 / 180;
     const double direction[3] = {sin(t), 0, cos(t)};
@@ -185,14 +191,14 @@ TEST(tips)
         struct glint_ray ray;
         int n = 0;
 
-        load_fisheye(&path, 51, nm);
+        load_fisheye_ghost_path(&path, 51, nm);
         assert_true(
             glint_pupil_find(&box, &path, 12.74, optics.stop_radius_mm, NULL));
         for (int j = 0; j <= SCAN; j++)
             for (int i = 0; i <= SCAN; i++) {
                 const double x = -9 + 7.0 * i / SCAN, y = 3.0 * j / SCAN;
 
-                if (!ray_passes(&path, x, y, direction, &ray))
+                if (!ray_passes_all_openings(&path, x, y, direction, &ray))
                     continue;
                 n++;
                 assert_true(x >= box.x0_mm && x <= box.x1_mm && y <= box.y1_mm);
@@ -201,8 +207,9 @@ TEST(tips)
     }
 }
 
-/* At 85 degrees no light of this ghost reaches the stop, so there is no box. */
-TEST(nothing_gets_through)
+/* Checks that there is no pupil box at 85 degrees, where no light of this ghost
+ * reaches the stop. */
+TEST(blocked_ghost_has_no_box)
 {
     struct glint_pupil box;
     struct glint_path path;
@@ -217,9 +224,9 @@ TEST(nothing_gets_through)
 
 /* Checks that a box whose side K was moved inwards by a fifth grows to
  * contain all unblocked rays, and that no other side moves inwards. */
-static void check_growth(const struct glint_path *path,
-                         const double direction[3],
-                         const struct glint_pupil *whole, int k)
+static void check_shrunk_box_grows(const struct glint_path *path,
+                                   const double direction[3],
+                                   const struct glint_pupil *whole, int k)
 {
     const struct glint_openings openings = {
         .path = path,
@@ -242,22 +249,22 @@ static void check_growth(const struct glint_path *path,
             const double x = whole->x0_mm + wide * i * 4 / SCAN;
             const double y = high * j * 8 / SCAN;
 
-            if (ray_passes(path, x, y, direction, &ray) &&
+            if (ray_passes_all_openings(path, x, y, direction, &ray) &&
                 (x < p.x0_mm || x > p.x1_mm || y < p.y0_mm || y > p.y1_mm))
                 fail_msg("side %d: %g, %g mm is outside", k, x, y);
         }
 }
 
-TEST(sides)
+TEST(shrunk_sides_grow_back)
 {
     const double t = 12.74 * 3.14159265358979 / 180;
     const double direction[3] = {sin(t), 0, cos(t)};
     struct glint_pupil whole;
     struct glint_path path;
 
-    load_fisheye(&path, 51, 550);
+    load_fisheye_ghost_path(&path, 51, 550);
     assert_true(
         glint_pupil_find(&whole, &path, 12.74, optics.stop_radius_mm, NULL));
     for (int k = 0; k < 4; k++)
-        check_growth(&path, direction, &whole, k);
+        check_shrunk_box_grows(&path, direction, &whole, k);
 }

@@ -21,7 +21,7 @@ enum { ONE_Q30 = 1 << 30, KINDS = GLINT_OUT_BARREL_0 + 1 };
 static uint32_t seed = 1;
 
 /* Returns a random number, -1 .. 1. */
-static double random_unit(void)
+static double random_signed_unit(void)
 {
     return 2.0 * rng_xorshift(&seed) / UINT32_MAX - 1;
 }
@@ -31,7 +31,7 @@ static int random_int(int lo, int hi)
     return lo + (int)(rng_xorshift(&seed) % (uint32_t)(hi - lo + 1));
 }
 
-/* Returns a random number within +-2^30; one in four is an end, 0, or
+/* Returns a random number within +-2^30; a quarter of them are +-2^30, 0, or
  * adjacent to these. */
 static int32_t random_q30(void)
 {
@@ -40,7 +40,7 @@ static int32_t random_q30(void)
 
     if (random_int(0, 3) == 0)
         return corner[random_int(0, 6)];
-    return (int32_t)lrint(random_unit() * 0x1p30);
+    return (int32_t)lrint(random_signed_unit() * 0x1p30);
 }
 
 /* ------------------------------------------------------------------ systems */
@@ -53,7 +53,8 @@ struct made {
     struct glint_lens lens;
 };
 
-static void make_output(struct glint_fitted_system *s, enum glint_channel kind)
+static void make_random_output(struct glint_fitted_system *s,
+                               enum glint_channel kind)
 {
     struct glint_fitted_output *o = &s->output[s->n_outputs++];
     const int odd = kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
@@ -76,9 +77,9 @@ static void make_output(struct glint_fitted_system *s, enum glint_channel kind)
     o->coef = malloc((size_t)o->n_terms * sizeof *o->coef);
     assert_non_null(o->coef);
     for (int k = 0; k < o->n_terms; k++) {
-        const double unit = random_unit();
+        const double unit = random_signed_unit();
 
-        /* coefficients of one sign bring some sums near the bound */
+        /* coefficients of the same sign bring some sums near the bound */
         o->coef[k] = ldexp(most % 3 ? unit : fabs(unit),
                            scale - random_int(0, most % 5 ? 3 : 20));
     }
@@ -88,17 +89,17 @@ static void make_output(struct glint_fitted_system *s, enum glint_channel kind)
     }
 }
 
-static void make_box(struct glint_fitted_system *s)
+static void make_random_box(struct glint_fitted_system *s)
 {
     s->box = calloc(3 * GLINT_BOX_TERMS, sizeof *s->box);
     assert_non_null(s->box);
-    s->box[0] = 7 * random_unit();
-    s->box[1] = random_unit();
-    s->box[GLINT_BOX_TERMS] = 3 + random_unit();
+    s->box[0] = 7 * random_signed_unit();
+    s->box[1] = random_signed_unit();
+    s->box[GLINT_BOX_TERMS] = 3 + random_signed_unit();
     s->box[2 * GLINT_BOX_TERMS] = 5;
 }
 
-static void make_system(struct made *m)
+static void make_random_system(struct made *m)
 {
     struct glint_fitted_system *s = calloc(1, sizeof *s);
 
@@ -108,13 +109,13 @@ static void make_system(struct made *m)
                                       .sine_hi = 0.6,
                                       .wave_lo = 1 / 0.49,
                                       .wave_hi = 1 / 0.16};
-    make_box(s);
+    make_random_box(s);
     for (int kind = 0; kind < KINDS; kind++)
-        make_output(s, (enum glint_channel)kind);
+        make_random_output(s, (enum glint_channel)kind);
 }
 
 /* Quantises M, writes its model, and opens the model like a program. */
-static void make_model(struct made *m)
+static void quantise_and_open_model(struct made *m)
 {
     static struct glint_setup setup;
     struct glint_quantised_system *const quantised = &m->quantised;
@@ -149,7 +150,7 @@ static void make_model(struct made *m)
         fail_msg("%s", reason);
 }
 
-static void free_made(struct made *m)
+static void free_made_model(struct made *m)
 {
     glint_quantised_finish(&m->quantised);
     glint_fitted_finish(&m->fitted);
@@ -158,13 +159,13 @@ static void free_made(struct made *m)
 
 /* -------------------------------------------------------------------- proof */
 
-static double convert_from_q30(int32_t x_q30)
+static double decode_q30(int32_t x_q30)
 {
     return ldexp(x_q30, -30);
 }
 
 /* Maps X from LO .. HI to -1 .. 1 _q30, rounded like the run time. */
-static int32_t map_to_q30(int32_t x, int32_t lo, int32_t hi)
+static int32_t map_range_to_q30(int32_t x, int32_t lo, int32_t hi)
 {
     const int64_t twice = 2 * (int64_t)x - lo - hi;
 
@@ -187,7 +188,7 @@ static double evaluate_polynomial(const struct glint_fitted_output *o,
     return sum;
 }
 
-static void set_powers(double power[4][16], const double x[4])
+static void set_powers_of_variables(double power[4][16], const double x[4])
 {
     for (int i = 0; i < 4; i++) {
         power[i][0] = 1;
@@ -205,7 +206,7 @@ struct used {
 
 /* Returns the value that the run time computes from VALUE, a polynomial of
  * the energy: limited according to HEAD, then squared ROOTS times. */
-static double compute_energy(int head, int roots, double value)
+static double compute_energy_of_polynomial(int head, int roots, double value)
 {
     if (head || roots)
         value = ldexp(fmin(fmax(value, 0), ldexp(1, 29 - head)), head);
@@ -216,23 +217,24 @@ static double compute_energy(int head, int roots, double value)
 
 /* Compares the run time's outputs OUT with the fitted polynomials. X are the
  * exact variables of the run time. */
-static void compare_outputs(const struct made *m,
-                            const struct glint_outputs *out, const double x[4],
-                            struct used *used)
+static void compare_outputs_with_polynomials(const struct made *m,
+                                             const struct glint_outputs *out,
+                                             const double x[4],
+                                             struct used *used)
 {
     double power[4][16];
 
-    set_powers(power, x);
+    set_powers_of_variables(power, x);
     for (int k = 0; k < m->fitted.system->n_outputs; k++) {
         const struct glint_fitted_output *o = &m->fitted.system->output[k];
         const struct glint_quantised_output *q = &m->quantised.output[k];
-        const double truth =
-            compute_energy(q->head, o->roots,
-                           ldexp(evaluate_polynomial(o, power), -q->exponent));
+        const double truth = compute_energy_of_polynomial(
+            q->head, o->roots,
+            ldexp(evaluate_polynomial(o, power), -q->exponent));
         const double error = fabs(out->at[o->kind] - truth);
         const double most = ldexp(q->rounding_q8, -8) + 1e-6;
 
-        /* limited to 2^29 rather than by the bound */
+        /* energies are limited to 2^29, not by the proven bound */
         if (q->head || o->roots) {
             assert_true(error <= most && out->at[o->kind] <= 1 << 29);
             continue;
@@ -250,8 +252,9 @@ static void compare_outputs(const struct made *m,
     }
 }
 
-static void compare_rays(const struct made *m, int32_t sine_q30,
-                         int32_t wave_q24, int rays, struct used *used)
+static void compare_rays_with_polynomials(const struct made *m,
+                                          int32_t sine_q30, int32_t wave_q24,
+                                          int rays, struct used *used)
 {
     struct glint_transfer t;
 
@@ -259,19 +262,19 @@ static void compare_rays(const struct made *m, int32_t sine_q30,
     for (int k = 0; k < rays; k++) {
         const int32_t u_q30 = random_q30(), v_q30 = random_q30();
         const struct glint_model_system *s = t.system;
-        const double x[4] = {convert_from_q30(u_q30), convert_from_q30(v_q30),
-                             convert_from_q30(map_to_q30(
+        const double x[4] = {decode_q30(u_q30), decode_q30(v_q30),
+                             decode_q30(map_range_to_q30(
                                  sine_q30, s->sine_lo_q30, s->sine_hi_q30)),
-                             convert_from_q30(map_to_q30(
+                             decode_q30(map_range_to_q30(
                                  wave_q24, s->wave_lo_q24, s->wave_hi_q24))};
         struct glint_outputs out;
 
         glint_transfer_ray(&t, u_q30, v_q30, &out);
-        compare_outputs(m, &out, x, used);
+        compare_outputs_with_polynomials(m, &out, x, used);
     }
 }
 
-static struct used check_proofs(int systems)
+static struct used check_proven_bounds(int systems)
 {
     enum { BUNDLES = 8, RAYS = 50 };
     struct used used = {0, 0, 0};
@@ -281,12 +284,12 @@ static struct used check_proofs(int systems)
         struct made m;
 
         seed = 100 * (uint32_t)k + 1;
-        make_system(&m);
-        make_model(&m);
+        make_random_system(&m);
+        quantise_and_open_model(&m);
         s = m.lens.system;
         for (int i = 0; i < BUNDLES; i++) {
-            const double a = 0.5 + 0.5 * convert_from_q30(random_q30());
-            const double b = 0.5 + 0.5 * convert_from_q30(random_q30());
+            const double a = 0.5 + 0.5 * decode_q30(random_q30());
+            const double b = 0.5 + 0.5 * decode_q30(random_q30());
             const int32_t sine_q30 =
                 s->sine_lo_q30 +
                 (int32_t)(a * (s->sine_hi_q30 - s->sine_lo_q30));
@@ -294,27 +297,27 @@ static struct used check_proofs(int systems)
                 s->wave_lo_q24 +
                 (int32_t)(b * (s->wave_hi_q24 - s->wave_lo_q24));
 
-            compare_rays(&m, sine_q30, wave_q24, RAYS, &used);
+            compare_rays_with_polynomials(&m, sine_q30, wave_q24, RAYS, &used);
         }
-        free_made(&m);
+        free_made_model(&m);
     }
     return used;
 }
 
-/* Some value comes near its bound, and some rounding error is at least 2 %
- * of its bound. */
-TEST(proof)
+/* Checks that no value exceeds its proven bound, that some value is near it,
+ * and that some rounding error is at least 2 % of its bound. */
+TEST(rounding_stays_below_its_proven_bound)
 {
-    const struct used used = check_proofs(240);
+    const struct used used = check_proven_bounds(240);
 
     assert_true(used.n > 300000);
     assert_in_range((long)(1000 * used.bound), 800, 1000);
     assert_in_range((long)(1000 * used.rounding), 20, 1000);
 }
 
-/* A coefficient that is wrong by a thousandth exceeds the proven rounding
- * error. */
-TEST(proof_can_fail)
+/* Checks that a coefficient that is wrong by a thousandth exceeds the proven
+ * rounding error, that is, that the test above can fail. */
+TEST(wrong_coefficient_exceeds_the_proven_bound)
 {
     struct glint_outputs out;
     struct glint_transfer t;
@@ -324,10 +327,10 @@ TEST(proof_can_fail)
     int largest = 0;
 
     seed = 5;
-    make_system(&m);
+    make_random_system(&m);
     m.fitted.system->output[GLINT_OUT_ENERGY].roots = 0;
     m.fitted.system->output[GLINT_OUT_ENERGY].most = 0;
-    make_model(&m);
+    quantise_and_open_model(&m);
     o = &m.fitted.system->output[GLINT_OUT_ENERGY];
     for (int k = 1; k < o->n_terms; k++)
         largest = fabs(o->coef[k]) > fabs(o->coef[largest]) ? k : largest;
@@ -335,17 +338,17 @@ TEST(proof_can_fail)
     assert_true(glint_transfer_init(&t, &m.lens, 0, m.lens.system->sine_hi_q30,
                                     m.lens.system->wave_hi_q24));
     glint_transfer_ray(&t, ONE_Q30, ONE_Q30, &out);
-    set_powers(power, (const double[4]){1, 1, 1, 1});
+    set_powers_of_variables(power, (const double[4]){1, 1, 1, 1});
     truth = ldexp(evaluate_polynomial(o, power),
                   -m.quantised.output[GLINT_OUT_ENERGY].exponent);
     assert_true(fabs(out.at[GLINT_OUT_ENERGY] - truth) >
                 ldexp(m.quantised.output[GLINT_OUT_ENERGY].rounding_q8, -8));
-    free_made(&m);
+    free_made_model(&m);
 }
 
 /* ------------------------------------------------------------------ numbers */
 
-TEST(reals)
+TEST(doubles_convert_to_reals)
 {
     static const double exact[] = {
         1, -1, 0.5, 3, -0.1875, 0x1.fffffffcp+40, 0x1p-150, 123456789};
@@ -357,7 +360,7 @@ TEST(reals)
     assert_int_equal(glint_real_of(-6).mantissa, -3 * (ONE_Q30 / 2));
     assert_int_equal(glint_real_of(-6).exponent, -28);
     for (int k = 0; k < 100000; k++) {
-        const double x = ldexp(random_unit(), random_int(-150, 150));
+        const double x = ldexp(random_signed_unit(), random_int(-150, 150));
         const struct glint_real real = glint_real_of(x);
 
         assert_near(glint_real_value(real), x, 0x1p-30 * fabs(x));
@@ -365,7 +368,7 @@ TEST(reals)
     }
 }
 
-TEST(odd_reals)
+TEST(zero_and_infinite_doubles_convert)
 {
     static const double odd[] = {0, -0.0, HUGE_VAL, -HUGE_VAL, (double)NAN};
 
@@ -380,8 +383,9 @@ TEST(odd_reals)
 /* ---------------------------------------------------------------- exponents */
 
 /* Returns the sum of the magnitudes of the coefficients. */
-static int64_t sum_magnitudes(const struct glint_fitted_output *o,
-                              const struct glint_quantised_output *q)
+static int64_t
+sum_coefficient_magnitudes(const struct glint_fitted_output *o,
+                           const struct glint_quantised_output *q)
 {
     int64_t sum = 0;
 
@@ -392,18 +396,20 @@ static int64_t sum_magnitudes(const struct glint_fitted_output *o,
     return sum;
 }
 
-/* Sums of coefficients fit, and use at least half of the available range. */
-TEST(exponents)
+/* Checks that sums of coefficients fit into their range and use at least half
+ * of it. */
+TEST(exponents_use_half_of_the_range)
 {
     for (int k = 0; k < 1000; k++) {
         struct made m;
 
         seed = 7 + (uint32_t)k;
-        make_system(&m);
+        make_random_system(&m);
         assert_ok(glint_quantise(m.fitted.system, &m.quantised));
         for (int i = 0; i < KINDS; i++) {
             const struct glint_quantised_output *q = &m.quantised.output[i];
-            const int64_t sum = sum_magnitudes(&m.fitted.system->output[i], q);
+            const int64_t sum =
+                sum_coefficient_magnitudes(&m.fitted.system->output[i], q);
 
             assert_true(sum <= GLINT_COEF_LIMIT);
             assert_true(q->bound < ONE_Q30);
@@ -413,13 +419,13 @@ TEST(exponents)
         for (int i = 0; i < GLINT_OUT_ENERGY; i += 2)
             assert_int_equal(m.quantised.output[i].exponent,
                              m.quantised.output[i + 1].exponent);
-        free_made(&m);
+        free_made_model(&m);
     }
 }
 
-/* The limit of an energy is at least 1.2 times the largest energy that
- * passes. */
-TEST(head)
+/* Checks that the limit of an energy is at least 1.2 times the largest energy
+ * of an unblocked ray. */
+TEST(energy_limit_has_headroom)
 {
     int cut = 0;
 
@@ -429,44 +435,45 @@ TEST(head)
         struct made m;
 
         seed = 11 + (uint32_t)k;
-        make_system(&m);
+        make_random_system(&m);
         assert_ok(glint_quantise(m.fitted.system, &m.quantised));
         o = &m.fitted.system->output[GLINT_OUT_ENERGY];
         q = &m.quantised.output[GLINT_OUT_ENERGY];
         if (q->head > 0)
             assert_true(ldexp(1.2 * o->most, q->head - q->exponent) < 0x1p29);
         cut += q->head > 0;
-        free_made(&m);
+        free_made_model(&m);
     }
     assert_in_range(cut, 300, 900);
 }
 
-/* Coefficients too small for any exponent of the file are rounded to steps
- * of the smallest exponent. */
-TEST(least_exponent)
+/* Checks that coefficients too small for any exponent of the file are rounded
+ * to steps of the smallest exponent. */
+TEST(tiny_coefficients_use_the_smallest_exponent)
 {
     struct made m;
 
     seed = 3;
-    make_system(&m);
+    make_random_system(&m);
     for (int k = 0; k < KINDS; k++)
         for (int t = 0; t < m.fitted.system->output[k].n_terms; t++)
             m.fitted.system->output[k].coef[t] = k % 2 ? 0 : 0x1p-200;
-    make_model(&m); /* make_model() checks that the model can be opened */
+    quantise_and_open_model(
+        &m); /* quantise_and_open_model() checks that the model can be opened */
     assert_int_equal(m.quantised.output[GLINT_OUT_ENERGY].exponent, -80);
-    free_made(&m);
+    free_made_model(&m);
 }
 
 /* ----------------------------------------------------------------- refusals */
 
-static void check_refused(struct made *m)
+static void check_system_is_rejected(struct made *m)
 {
     assert_int_equal(glint_quantise(m->fitted.system, &m->quantised),
                      GLINT_E_LENS);
-    free_made(m);
+    free_made_model(m);
 }
 
-TEST(not_finite)
+TEST(rejects_numbers_that_are_not_finite)
 {
     static const double odd[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
 
@@ -474,21 +481,21 @@ TEST(not_finite)
         struct glint_fitted_output *o;
         struct made m;
 
-        make_system(&m);
+        make_random_system(&m);
         o = &m.fitted.system->output[k / 6];
         o->coef[o->n_terms - 1] = odd[k % 3];
-        check_refused(&m);
-        make_system(&m);
+        check_system_is_rejected(&m);
+        make_random_system(&m);
         m.fitted.system->box[k % 9] = odd[k % 3];
-        check_refused(&m);
+        check_system_is_rejected(&m);
     }
 }
 
-TEST(no_terms)
+TEST(rejects_outputs_without_terms)
 {
     struct made m;
 
-    make_system(&m);
+    make_random_system(&m);
     m.fitted.system->output[GLINT_OUT_STOP_Y].n_terms = 0;
-    check_refused(&m);
+    check_system_is_rejected(&m);
 }

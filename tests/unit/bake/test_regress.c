@@ -20,8 +20,8 @@ static const struct glint_degrees degrees = {.most = {6, 6, 0, 0},
 
 /* Fits VALUE(u, v) on a grid, LEAST .. 1 along u and -1 .. 1 along v.
  * Returns the residual. */
-static double fit(double (*value)(double u, double v), double least,
-                  struct glint_poly *poly)
+static double fit_polynomial_on_grid(double (*value)(double u, double v),
+                                     double least, struct glint_poly *poly)
 {
     double u[RAYS], v[RAYS], zero[RAYS], one[RAYS], y[RAYS];
     const struct glint_regress_samples samples = {
@@ -61,16 +61,16 @@ static double evaluate_polynomial(const struct glint_poly *poly,
 
 /* On a grid symmetric in u, odd powers explain nothing of an even function
  * and vice versa: the fit does not need terms in between. */
-TEST(symmetric)
+TEST(symmetric_grid_separates_even_and_odd_terms)
 {
     const double x[GLINT_VARIABLES] = {0.3, -0.6, 0, 0};
     struct glint_poly poly;
 
-    assert_true(fit(even_polynomial, -1, &poly) <= 1);
+    assert_true(fit_polynomial_on_grid(even_polynomial, -1, &poly) <= 1);
     assert_int_equal(poly.n, 4);
     assert_near(evaluate_polynomial(&poly, x), even_polynomial(x[0], x[1]),
                 1e-8);
-    assert_true(fit(odd_polynomial, -1, &poly) <= 1);
+    assert_true(fit_polynomial_on_grid(odd_polynomial, -1, &poly) <= 1);
     assert_int_equal(poly.n, 4);
     assert_near(evaluate_polynomial(&poly, x), odd_polynomial(x[0], x[1]),
                 1e-8);
@@ -82,15 +82,15 @@ static double cubic_polynomial(double u, double v)
     return 1 - u + 2 * u * u - 3 * u * u * u;
 }
 
-/* On a twentieth of the range, powers of u are nearly dependent. The
- * component of u^3 orthogonal to lower powers, 10^-5 of its length, is lost
- * in differences of squares and is computed again. */
-TEST(nearly_dependent)
+/* On a twentieth of the range, powers of u are nearly dependent. The component
+ * of u^3 orthogonal to lower powers, 10^-5 of its length, cancels in
+ * differences of squares, so the regression computes it again. */
+TEST(fits_nearly_dependent_powers)
 {
     const double x[GLINT_VARIABLES] = {0.967, 0.4, 0, 0};
     struct glint_poly poly;
 
-    assert_true(fit(cubic_polynomial, 0.95, &poly) <= 1);
+    assert_true(fit_polynomial_on_grid(cubic_polynomial, 0.95, &poly) <= 1);
     assert_near(evaluate_polynomial(&poly, x), cubic_polynomial(x[0], x[1]),
                 1e-8);
 }

@@ -19,8 +19,8 @@ enum { SIDE = 20, KERNEL = 7, K2 = KERNEL * KERNEL, TEXELS = SIDE * SIDE };
 static const enum glint_scatter_model models[] = {
     GLINT_SCATTER_CLUSTERED, GLINT_SCATTER_FACTORED, GLINT_SCATTER_ALBEDO};
 
-static void make_checkerboard(struct glint_scatter_rows *rows, int side,
-                              int kernel)
+static void make_checkerboard_rows(struct glint_scatter_rows *rows, int side,
+                                   int kernel)
 {
     struct glint_stone stone;
     struct glint_error error;
@@ -32,9 +32,9 @@ static void make_checkerboard(struct glint_scatter_rows *rows, int side,
     assert_ok(glint_scatter_compute(&stone, NULL, rows, &error));
 }
 
-static void fit_model(struct glint_scatter_rows *rows,
-                      enum glint_scatter_model model,
-                      struct glint_scatter_fit *fit)
+static void fit_rows_by_model(struct glint_scatter_rows *rows,
+                              enum glint_scatter_model model,
+                              struct glint_scatter_fit *fit)
 {
     struct glint_scatter_options options;
 
@@ -44,7 +44,7 @@ static void fit_model(struct glint_scatter_rows *rows,
 
 /* Returns entry D of kernel J of synthetic rows. The kernels are not
  * symmetric, so that mirroring changes them. */
-static double made_kernel(int j, int d)
+static double synthetic_kernel_entry(int j, int d)
 {
     const int u = d % KERNEL - KERNEL / 2, v = d / KERNEL - KERNEL / 2;
 
@@ -52,10 +52,10 @@ static double made_kernel(int j, int d)
              : exp(-0.1 * u * u - 0.5 * (v - 1) * (v - 1));
 }
 
-/* Sets ROWS to sums over kernels, weighted by WEIGHT at the texel where
- * light leaves and by IN at the texel where it enters. */
-static void make_rows(struct glint_scatter_rows *rows, double (*weight)[2],
-                      const double *in)
+/* Sets ROWS to sums of synthetic kernels, multiplied by WEIGHT of the texel
+ * where light leaves and by IN of the texel where light enters. */
+static void make_synthetic_rows(struct glint_scatter_rows *rows,
+                                double (*weight)[2], const double *in)
 {
     assert_true(glint_scatter_open(rows, SIDE, KERNEL, false));
     for (int x = 0; x < TEXELS; x++)
@@ -66,14 +66,14 @@ static void make_rows(struct glint_scatter_rows *rows, double (*weight)[2],
                 if (to >= 0)
                     glint_scatter_row(rows, x, c)[d] =
                         (float)(in[x] * (c + 1) *
-                                (weight[to][0] * made_kernel(0, d) +
-                                 weight[to][1] * made_kernel(1, d)));
+                                (weight[to][0] * synthetic_kernel_entry(0, d) +
+                                 weight[to][1] * synthetic_kernel_entry(1, d)));
             }
 }
 
-/* Synthetic rows that match a model are fitted by that model, including
- * kernels that are not symmetric. */
-TEST(models_found)
+/* Checks that synthetic rows that match a model are fitted by that model,
+ * including kernels that are not symmetric. */
+TEST(synthetic_rows_are_fitted_by_their_model)
 {
     uint32_t seed = 5;
     static const double bound[3] = {4e-3, 1e-6, 1e-5};
@@ -95,30 +95,32 @@ TEST(models_found)
             }
             in[x] = m == 0 ? 0.5 + rng_unit(&seed) : 1;
         }
-        make_rows(&rows, weight, in);
+        make_synthetic_rows(&rows, weight, in);
         assert_ok(glint_scatter_fit(&rows, &options, NULL, &fit));
-        /* tolerances: alternations end early, and floats have seven digits */
+        /* The alternating fit ends before convergence, and floats have seven
+         * digits. */
         assert_true(fit.error.rmse < (bound[m]));
         glint_scatter_fit_close(&fit);
         glint_scatter_close(&rows);
     }
 }
 
-/* Light scattered by a fit equals that scattered by its entries; uniform
- * light gives the albedo of the data; rows and columns multiply to h. */
-TEST(light)
+/* Checks that light scattered by a fit equals that scattered by its entries;
+ * uniform light gives the albedo of the data; rows and columns multiply to
+ * h. */
+TEST(fit_scatters_light_like_its_entries)
 {
     struct glint_scatter_rows rows, same;
     double light[3 * TEXELS], even[3 * TEXELS], want[3 * TEXELS],
         got[3 * TEXELS];
 
-    make_checkerboard(&rows, SIDE, KERNEL);
+    make_checkerboard_rows(&rows, SIDE, KERNEL);
     assert_true(glint_scatter_open(&same, SIDE, KERNEL, false));
     glint_scatter_test_light(SIDE, light);
     for (int m = 0; m < 3; m++) {
         struct glint_scatter_fit fit;
 
-        fit_model(&rows, models[m], &fit);
+        fit_rows_by_model(&rows, models[m], &fit);
         for (int x = 0; x < TEXELS; x++)
             for (int c = 0; c < 3; c++)
                 for (int d = 0; d < K2; d++)
@@ -148,9 +150,9 @@ TEST(light)
     glint_scatter_close(&same);
 }
 
-/* Fits of a checkerboard of two marbles have a PSNR above 44 dB under lamps
- * and shadows, well above the 40 dB that the run time must reach. More terms
- * and higher ranks have smaller errors. */
+/* Checks that fits of a checkerboard of two marbles have a PSNR above 44 dB
+ * under lamps and shadows, well above the 40 dB that the run time must reach.
+ * More terms and higher ranks have smaller errors. */
 TEST(psnr_is_sufficient)
 {
     static const int parts[4][2] = {{1, 3}, {3, 3}, {5, 1}, {5, 3}};
@@ -158,8 +160,8 @@ TEST(psnr_is_sufficient)
     struct glint_scatter_fit fit;
     double db[4];
 
-    make_checkerboard(&rows, 48, 15);
-    fit_model(&rows, GLINT_SCATTER_CLUSTERED, &fit);
+    make_checkerboard_rows(&rows, 48, 15);
+    fit_rows_by_model(&rows, GLINT_SCATTER_CLUSTERED, &fit);
     assert_true(fit.error.light_db > 44 && fit.error.entry_db > 44);
     glint_scatter_fit_close(&fit);
     for (int i = 0; i < 4; i++) {
@@ -175,9 +177,9 @@ TEST(psnr_is_sufficient)
     glint_scatter_close(&rows);
 }
 
-/* Black media, one texel, kernels wider than the square: results are finite,
- * and exact where the model can represent the data. */
-TEST(extremes)
+/* Checks black media, one texel, and kernels wider than the square: results are
+ * finite, and exact where the model can represent the data. */
+TEST(extreme_media_give_finite_results)
 {
     static const int shape[3][2] = {{1, 9}, {3, 13}, {9, 1}};
 
@@ -188,10 +190,10 @@ TEST(extremes)
             struct glint_scatter_fit fit;
 
             if (i < 3)
-                make_checkerboard(&rows, side, kernel);
+                make_checkerboard_rows(&rows, side, kernel);
             else
                 assert_true(glint_scatter_open(&rows, side, kernel, false));
-            fit_model(&rows, models[m], &fit);
+            fit_rows_by_model(&rows, models[m], &fit);
             assert_true(isfinite(fit.error.rmse) && fit.error.albedo < 0.5);
             for (int d = 0; d < 3 * kernel * kernel; d++)
                 assert_true(isfinite(fit.h[d]));
@@ -204,7 +206,7 @@ TEST(extremes)
         }
 }
 
-static bool stop_third(void *ctx)
+static bool cancel_at_third_call(void *ctx)
 {
     return ++*(int *)ctx > 2;
 }
@@ -219,7 +221,7 @@ TEST(rejects_invalid_options)
     struct glint_scatter_rows rows;
     struct glint_scatter_fit fit;
 
-    make_checkerboard(&rows, 8, 5);
+    make_checkerboard_rows(&rows, 8, 5);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         assert_int_equal(glint_scatter_fit(&rows, &bad[i], NULL, &fit),
                          GLINT_E_ARGUMENT);
@@ -227,7 +229,7 @@ TEST(rejects_invalid_options)
     }
     for (int m = 0; m < 2; m++) {
         int asked = 0;
-        const struct glint_watch watch = {NULL, stop_third, &asked};
+        const struct glint_watch watch = {NULL, cancel_at_third_call, &asked};
         struct glint_scatter_options o;
 
         glint_scatter_defaults(&o, models[m]);
@@ -240,13 +242,13 @@ TEST(rejects_invalid_options)
 
 enum { TALL = 120, WIDE = 40, TERMS = 9 };
 
-static void read_row(const void *ctx, int i, double *to)
+static void read_fitted_row(const void *ctx, int i, double *to)
 {
     memcpy(to, (const double *)ctx + i * WIDE, WIDE * sizeof *to);
 }
 
 /* Sets A to a random matrix whose singular values decrease by half each. */
-static void make_decreasing(double *a)
+static void make_matrix_with_halving_values(double *a)
 {
     uint32_t seed = 9;
 
@@ -266,12 +268,13 @@ static void make_decreasing(double *a)
 typedef int dgesdd_fn(int layout, char job, int m, int n, double *a, int lda,
                       double *s, double *u, int ldu, double *vt, int ldvt);
 
-/* Values and vectors equal those of LAPACK's dgesdd to 1e-10. */
-TEST(terms_lapacke)
+/* Checks that singular values and vectors equal those of LAPACK's dgesdd to
+ * 1e-10. */
+TEST(decomposition_matches_lapack)
 {
     double a[TALL * WIDE], copy[TALL * WIDE], s[WIDE], u[TALL * WIDE],
         vt[WIDE * WIDE];
-    const struct glint_tall m = {TALL, WIDE, read_row, a};
+    const struct glint_tall m = {TALL, WIDE, read_fitted_row, a};
     void *library = dlopen("liblapacke.so.3", RTLD_NOW);
     struct glint_terms terms;
     dgesdd_fn *dgesdd;
@@ -282,7 +285,7 @@ TEST(terms_lapacke)
     }
     *(void **)&dgesdd = dlsym(library, "LAPACKE_dgesdd");
     assert_non_null(dgesdd);
-    make_decreasing(a);
+    make_matrix_with_halving_values(a);
     memcpy(copy, a, sizeof a);
     assert_int_equal(
         dgesdd(101, 'S', TALL, WIDE, copy, WIDE, s, u, WIDE, vt, WIDE), 0);
@@ -303,12 +306,13 @@ TEST(terms_lapacke)
     dlclose(library);
 }
 
-/* Vectors are orthogonal, and the residual is the smallest possible: the
- * squares of the omitted singular values. Also with equal and zero values. */
-TEST(terms)
+/* Checks that singular vectors are orthogonal, and that the residual is the
+ * smallest possible: the squares of the omitted singular values. Also with
+ * equal and zero values. */
+TEST(decomposition_is_orthogonal_and_optimal)
 {
     double a[TALL * WIDE] = {0};
-    const struct glint_tall m = {TALL, WIDE, read_row, a};
+    const struct glint_tall m = {TALL, WIDE, read_fitted_row, a};
     struct glint_terms terms;
 
     a[0] = a[WIDE + 1] = a[2 * WIDE + 2] = 3;
@@ -332,7 +336,7 @@ TEST(terms)
 
 /* Solves a regular system, and a singular one with an undetermined
  * direction. */
-TEST(solve)
+TEST(solves_regular_and_singular_systems)
 {
     double a[9] = {4, 2, 1, 2, 5, 3, 1, 3, 6}, b[3] = {7, 10, 10};
     double open[4] = {1, 1, 1, 1}, c[2] = {2, 2};

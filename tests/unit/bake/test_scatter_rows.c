@@ -13,7 +13,7 @@
 
 enum { SIDE = 24, KERNEL = 13, K2 = KERNEL * KERNEL };
 
-static struct glint_stone make_stone(enum glint_stone_pattern pattern)
+static struct glint_stone make_medium(enum glint_stone_pattern pattern)
 {
     struct glint_stone stone;
 
@@ -25,15 +25,16 @@ static struct glint_stone make_stone(enum glint_stone_pattern pattern)
     return stone;
 }
 
-static void compute_rows(const struct glint_stone *stone,
-                         struct glint_scatter_rows *rows)
+static void compute_scatter_rows(const struct glint_stone *stone,
+                                 struct glint_scatter_rows *rows)
 {
     struct glint_error error;
 
     assert_ok(glint_scatter_compute(stone, NULL, rows, &error));
 }
 
-static double sum_row(const struct glint_scatter_rows *rows, int x, int c)
+static double sum_row_entries(const struct glint_scatter_rows *rows, int x,
+                              int c)
 {
     double sum = 0;
 
@@ -44,7 +45,7 @@ static double sum_row(const struct glint_scatter_rows *rows, int x, int c)
 
 /* Returns the radiant exitance at distance R by [Jensen01], equation 4, with
  * image sources of the far face. */
-static double compute_exitance(const struct glint_slab *s, double r)
+static double compute_radiant_exitance(const struct glint_slab *s, double r)
 {
     const double loss = sqrt(s->absorb / s->diffusion);
     double sum = 0;
@@ -64,16 +65,16 @@ static double compute_exitance(const struct glint_slab *s, double r)
     return s->albedo * sum / (4 * 3.14159265358979);
 }
 
-/* Homogeneous medium, away from its rim: entries two or more texels from the
- * centre, and the sum, are within 2 % of the closed form; the modes alone
- * from three texels on. */
-TEST(closed_form)
+/* Checks a homogeneous medium, away from its rim: entries two or more texels
+ * from the centre, and their sum, are within 2 % of the closed form; sums of
+ * modes alone are from three texels on. */
+TEST(homogeneous_rows_match_the_closed_form)
 {
-    const struct glint_stone stone = make_stone(GLINT_STONE_EVEN);
+    const struct glint_stone stone = make_medium(GLINT_STONE_EVEN);
     struct glint_scatter_rows rows;
     double modes[K2];
 
-    compute_rows(&stone, &rows);
+    compute_scatter_rows(&stone, &rows);
     for (int c = 0; c < 3; c++) {
         const int x = SIDE / 2 * SIDE + SIDE / 2;
         const double area = stone.texel_mm * stone.texel_mm;
@@ -86,7 +87,7 @@ TEST(closed_form)
         for (int u = 2; u <= KERNEL / 2; u++) {
             const int d = K2 / 2 + u;
             const double want =
-                area * compute_exitance(&slab, u * stone.texel_mm);
+                area * compute_radiant_exitance(&slab, u * stone.texel_mm);
             const float *row = glint_scatter_row(&rows, x, c);
 
             /* the mean over a texel exceeds the value at its centre */
@@ -97,16 +98,16 @@ TEST(closed_form)
         }
         for (int d = 0; d < K2; d++)
             sum += closed[d];
-        assert_near(sum_row(&rows, x, c), sum, 0.02 * sum);
+        assert_near(sum_row_entries(&rows, x, c), sum, 0.02 * sum);
     }
     glint_scatter_close(&rows);
 }
 
-/* The total light that leaves a semi-infinite medium equals that of the
- * dipole, [Jensen01], equation 6. */
-TEST(closed_total)
+/* Checks that the total light that leaves a semi-infinite medium equals that of
+ * the dipole, [Jensen01], equation 6. */
+TEST(total_light_matches_the_dipole)
 {
-    struct glint_stone stone = make_stone(GLINT_STONE_EVEN);
+    struct glint_stone stone = make_medium(GLINT_STONE_EVEN);
     struct glint_slab slab;
     double loss, want, sum = 0, *entry = malloc(63 * 63 * sizeof *entry);
 
@@ -127,19 +128,20 @@ TEST(closed_total)
     free(entry);
 }
 
-/* C1: rows are reciprocal, entries are not negative, and no row exceeds 1. */
+/* C1: checks that rows are reciprocal, entries are not negative, and no row
+ * exceeds 1. */
 TEST(c1_reciprocal)
 {
     static const enum glint_stone_pattern pattern[] = {GLINT_STONE_CHESS,
                                                        GLINT_STONE_VEINS};
 
     for (int i = 0; i < 2; i++) {
-        const struct glint_stone stone = make_stone(pattern[i]);
+        const struct glint_stone stone = make_medium(pattern[i]);
         struct glint_scatter_rows rows, turned;
         const size_t bytes = (size_t)SIDE * SIDE * 3 * K2 * sizeof(float);
 
-        compute_rows(&stone, &rows);
-        compute_rows(&stone, &turned);
+        compute_scatter_rows(&stone, &rows);
+        compute_scatter_rows(&stone, &turned);
         glint_scatter_turn(&turned);
         for (size_t e = 0; e < bytes / sizeof(float); e++) {
             assert_true(rows.r[e] >= 0);
@@ -147,14 +149,14 @@ TEST(c1_reciprocal)
         }
         for (int x = 0; x < SIDE * SIDE; x++)
             for (int c = 0; c < 3; c++)
-                assert_true(sum_row(&rows, x, c) <= 1);
+                assert_true(sum_row_entries(&rows, x, c) <= 1);
         glint_scatter_close(&rows);
         glint_scatter_close(&turned);
     }
 }
 
-/* C2: offsets lead away from the lit texel; entries outside the square are
- * 0; measured rows are read unchanged. */
+/* C2: checks that offsets point away from the lit texel; entries outside the
+ * square are 0; measured rows are read unchanged. */
 TEST(c2_places)
 {
     enum { S = 3, N = 5, WIDE = S * N };
@@ -191,15 +193,15 @@ TEST(c2_places)
                      GLINT_E_ARGUMENT);
 }
 
-/* A lamp on one texel shows the row of that texel. */
+/* Checks that a lamp on one texel gives the light of that texel's row. */
 TEST(c2_light)
 {
-    const struct glint_stone stone = make_stone(GLINT_STONE_VEINS);
+    const struct glint_stone stone = make_medium(GLINT_STONE_VEINS);
     double light[SIDE * SIDE * 3] = {0}, seen[SIDE * SIDE * 3];
     struct glint_scatter_rows rows;
     const int x = 2 * SIDE + 5;
 
-    compute_rows(&stone, &rows);
+    compute_scatter_rows(&stone, &rows);
     light[3 * x + 1] = 2;
     glint_scatter_light_rows(&rows, light, seen);
     for (int d = 0; d < K2; d++) {
@@ -213,21 +215,22 @@ TEST(c2_light)
     glint_scatter_close(&rows);
 }
 
-/* Materials at the ends of their ranges, single and in pairs, in thin and
- * thick slabs: entries are finite and not negative, and sums are at most 1.
- * Absorbing media are dark. */
-TEST(extremes)
+/* Checks materials at the ends of their ranges, single and in pairs, in thin
+ * and thick slabs: entries are finite and not negative, and sums are at most 1.
+ * Strongly absorbing media are dark. */
+TEST(extreme_materials_give_valid_rows)
 {
     static const double end[4][2] = {
         {1e-3, 0}, {1e3, 0}, {1e-3, 1e3}, {1e3, 1e3}};
     static const double slab[2] = {0.1, 1000}, texel[2] = {0.01, 100};
 
     for (int i = 0; i < 16; i++) {
-        struct glint_stone stone = make_stone(GLINT_STONE_CHESS);
+        struct glint_stone stone = make_medium(GLINT_STONE_CHESS);
         struct glint_scatter_rows rows;
 
         stone.side = 6;
-        stone.kernel = 7; /* wider than the square from every texel */
+        /* a kernel that exceeds the square from every texel */
+        stone.kernel = 7;
         stone.slab_mm = slab[(i ^ i >> 2) & 1];
         stone.texel_mm = texel[(i >> 1 ^ i >> 2) & 1];
         for (int c = 0; c < 3; c++) {
@@ -236,10 +239,10 @@ TEST(extremes)
             stone.material[1].scatter[c] = end[i >> 2][0];
             stone.material[1].absorb[c] = end[i >> 2][1];
         }
-        compute_rows(&stone, &rows);
+        compute_scatter_rows(&stone, &rows);
         for (int x = 0; x < 36; x++)
             for (int c = 0; c < 3; c++) {
-                const double sum = sum_row(&rows, x, c);
+                const double sum = sum_row_entries(&rows, x, c);
 
                 assert_true(sum >= 0 && sum <= 1 + 1e-6);
                 if ((i & 3) == 2 && i >> 2 == 2)
@@ -251,13 +254,13 @@ TEST(extremes)
     }
 }
 
-TEST(one_texel)
+TEST(medium_of_one_texel_has_one_entry)
 {
-    struct glint_stone stone = make_stone(GLINT_STONE_CHESS);
+    struct glint_stone stone = make_medium(GLINT_STONE_CHESS);
     struct glint_scatter_rows rows;
 
     stone.side = stone.fields = 1;
-    compute_rows(&stone, &rows);
+    compute_scatter_rows(&stone, &rows);
     for (int d = 0; d < K2; d++)
         assert_true(d == K2 / 2 ? rows.r[d] > 0 : rows.r[d] == 0);
     glint_scatter_close(&rows);
@@ -269,7 +272,7 @@ TEST(rejects_invalid_stones)
     struct glint_error error;
 
     for (int i = 0; i < 9; i++) {
-        struct glint_stone stone = make_stone(GLINT_STONE_CHESS);
+        struct glint_stone stone = make_medium(GLINT_STONE_CHESS);
 
         if (i < 2)
             stone.side = i ? 257 : 0;
@@ -296,30 +299,31 @@ TEST(rejects_invalid_stones)
 
 /* Checks that DONE is a fraction that increases with each call, and counts
  * the calls. */
-static void count_calls(void *ctx, double done)
+static void count_progress_calls(void *ctx, double done)
 {
     double *seen = ctx;
 
-    /* each call follows further work */
+    /* some work was done since the previous call */
     assert_true(done > seen[0] && done < 1 + 1e-9);
     seen[0] = done;
     seen[1]++;
 }
 
-static bool stop_after_limit(void *ctx)
+static bool cancel_after_limit(void *ctx)
 {
     const double *seen = ctx;
 
     return seen[1] > seen[2];
 }
 
-/* The computation reports progress and can be cancelled, without memory
- * leaks. */
+/* Checks that the computation reports progress and can be cancelled, without
+ * memory leaks. */
 TEST(reports_progress)
 {
-    const struct glint_stone stone = make_stone(GLINT_STONE_CHESS);
+    const struct glint_stone stone = make_medium(GLINT_STONE_CHESS);
     double seen[3] = {0, 0, 1e9};
-    const struct glint_watch watch = {count_calls, stop_after_limit, seen};
+    const struct glint_watch watch = {count_progress_calls, cancel_after_limit,
+                                      seen};
     struct glint_scatter_rows rows;
     struct glint_error error;
 

@@ -20,8 +20,8 @@ static struct glint_prescription lens;
 static struct glint_path path;
 
 /* Parses a lens whose surfaces are SURFACES. */
-static enum glint_status read_with(const char *surfaces,
-                                   struct glint_error *error)
+static enum glint_status parse_lens_of_surfaces(const char *surfaces,
+                                                struct glint_error *error)
 {
     char text[1500];
 
@@ -30,20 +30,20 @@ static enum glint_status read_with(const char *surfaces,
     return glint_prescription_parse(&lens, text, strlen(text), "t.lens", error);
 }
 
-static void load_surfaces(const char *surfaces)
+static void load_lens_of_surfaces(const char *surfaces)
 {
     struct glint_error error = {""};
 
-    if (read_with(surfaces, &error) != GLINT_OK)
+    if (parse_lens_of_surfaces(surfaces, &error) != GLINT_OK)
         fail_msg("%s: %s", surfaces, error.text);
 }
 
-/* --------------------------------------------------- a second intersection */
+/* ------------------------------------------------ independent intersections */
 
 /* Sag by the definition of the surface, in long double, without derivatives:
  * an implementation independent of the library. */
-static long double compute_sag(const struct glint_surface *s, long double x,
-                               long double y)
+static long double compute_surface_sag(const struct glint_surface *s,
+                                       long double x, long double y)
 {
     const struct glint_shape *const a = &s->shape;
     const long double along2 = a->bend == GLINT_BEND_ROUND ? x * x + y * y
@@ -71,8 +71,8 @@ struct line {
 
 /* Transforms LINE from the lens's frame to that of surface S, by successive
  * rotations. */
-static struct line to_surface(const struct glint_surface *s,
-                              const struct line *line)
+static struct line transform_to_surface_frame(const struct glint_surface *s,
+                                              const struct line *line)
 {
     const struct glint_shape *const a = &s->shape;
     const long double degree = acosl(-1) / 180;
@@ -98,19 +98,20 @@ static struct line to_surface(const struct glint_surface *s,
     return out;
 }
 
-static long double compute_gap(const struct glint_surface *s,
-                               const struct line *l, long double t)
+static long double compute_gap_to_surface(const struct glint_surface *s,
+                                          const struct line *l, long double t)
 {
     return l->at[2] + t * l->way[2] -
-           compute_sag(s, l->at[0] + t * l->way[0], l->at[1] + t * l->way[1]);
+           compute_surface_sag(s, l->at[0] + t * l->way[0],
+                               l->at[1] + t * l->way[1]);
 }
 
 /* Finds the nearest intersection by searching outwards from the vertex plane
  * in small steps, then by bisection. Returns false if there is none within
  * REACH. */
-static bool find_intersection(const struct glint_surface *s,
-                              const struct line *l, long double reach,
-                              long double *t)
+static bool find_nearest_intersection(const struct glint_surface *s,
+                                      const struct line *l, long double reach,
+                                      long double *t)
 {
     const long double plane = -l->at[2] / l->way[2];
     const int n = 4000;
@@ -120,12 +121,16 @@ static bool find_intersection(const struct glint_surface *s,
             long double low = plane + side * reach * k / n;
             long double high = plane + side * reach * (k + 1) / n;
 
-            if (!(compute_gap(s, l, low) * compute_gap(s, l, high) <= 0))
+            if (!(compute_gap_to_surface(s, l, low) *
+                      compute_gap_to_surface(s, l, high) <=
+                  0))
                 continue;
             for (int i = 0; i < 80; i++) {
                 const long double middle = (low + high) / 2;
 
-                if (compute_gap(s, l, low) * compute_gap(s, l, middle) <= 0)
+                if (compute_gap_to_surface(s, l, low) *
+                        compute_gap_to_surface(s, l, middle) <=
+                    0)
                     high = middle;
                 else
                     low = middle;
@@ -138,15 +143,18 @@ static bool find_intersection(const struct glint_surface *s,
 
 /* Refracts WAY at the surface by Snell's law in vector form, with a normal
  * from finite differences of the sag; RATIO is n / n'. */
-static void refract_independently(const struct glint_surface *s,
-                                  const struct line *l, long double t,
-                                  long double ratio, long double way[3])
+static void refract_by_vector_snell(const struct glint_surface *s,
+                                    const struct line *l, long double t,
+                                    long double ratio, long double way[3])
 {
     const long double x = l->at[0] + t * l->way[0];
     const long double y = l->at[1] + t * l->way[1], h = 1e-5L;
     long double n[3] = {
-        -(compute_sag(s, x + h, y) - compute_sag(s, x - h, y)) / (2 * h),
-        -(compute_sag(s, x, y + h) - compute_sag(s, x, y - h)) / (2 * h), 1};
+        -(compute_surface_sag(s, x + h, y) - compute_surface_sag(s, x - h, y)) /
+            (2 * h),
+        -(compute_surface_sag(s, x, y + h) - compute_surface_sag(s, x, y - h)) /
+            (2 * h),
+        1};
     const long double size = sqrtl(n[0] * n[0] + n[1] * n[1] + 1);
     long double c = 0, out;
 
@@ -161,7 +169,7 @@ static void refract_independently(const struct glint_surface *s,
 
 static uint32_t seed = 7;
 
-static double draw_uniform(double low, double high)
+static double random_uniform(double low, double high)
 {
     seed = seed * 1664525u + 1013904223u;
     return low + (high - low) * (seed >> 8) / 0x1p24;
@@ -169,30 +177,32 @@ static double draw_uniform(double low, double high)
 
 /* Compares rays that start within SPAN of the axis. Returns the number of
  * rays that hit the surface. */
-static int compare_rays(const char *surfaces, double span)
+static int compare_rays_near_axis(const char *surfaces, double span)
 {
     const struct glint_surface *const s = lens.surface;
     int met = 0;
 
-    load_surfaces(surfaces);
+    load_lens_of_surfaces(surfaces);
     glint_path_init(&path, &lens, NULL, LINE_D_NM);
     for (int i = 0; i < 60; i++) {
-        const double tilt = draw_uniform(0, 0.5),
-                     turn = draw_uniform(-3.1, 3.1);
+        const double tilt = random_uniform(0, 0.5),
+                     turn = random_uniform(-3.1, 3.1);
         const double direction[3] = {sin(tilt) * cos(turn),
                                      sin(tilt) * sin(turn), cos(tilt)};
-        const double x = draw_uniform(-span, span),
-                     y = draw_uniform(-span, span);
+        const double x = random_uniform(-span, span),
+                     y = random_uniform(-span, span);
         const struct line start = {{x, y, 0},
                                    {direction[0], direction[1], direction[2]}};
-        const struct line own = to_surface(s, &start);
+        const struct line own = transform_to_surface_frame(s, &start);
         double hits[4][2];
         struct glint_ray ray;
         long double t = 0, way[3], at[2];
-        const bool there = find_intersection(s, &own, 3 * s->semi_mm, &t);
+        const bool there =
+            find_nearest_intersection(s, &own, 3 * s->semi_mm, &t);
         enum glint_ray_status status;
 
-        /* glint_trace() overwrites it if the ray hits the form */
+        /* glint_trace() overwrites the NAN if the ray hits the shaped
+         * surface */
         hits[1][0] = (double)NAN;
         status = glint_trace(&path, x, y, direction, &ray, hits);
         for (int k = 0; k < 2; k++)
@@ -200,8 +210,7 @@ static int compare_rays(const char *surfaces, double span)
         if (!there && hypot(hits[1][0], hits[1][1]) < s->semi_mm)
             fail_msg("%s: met at %g, %g", surfaces, hits[1][0], hits[1][1]);
         if (!there || hypotl(at[0], at[1]) > s->semi_mm)
-            continue; /* outside the glass the library continues the profile in
-                         its own way */
+            continue; /* outside the rim the library extrapolates the profile */
         assert_true(isfinite(hits[1][0]));
         if (status != GLINT_RAY_OK)
             continue;
@@ -211,11 +220,12 @@ static int compare_rays(const char *surfaces, double span)
         met++;
         if (s->shape.tilt_deg[0] != 0 || s->shape.tilt_deg[1] != 0 ||
             s[1].radius_mm != 0)
-            continue; /* the next check assumes a plane behind, and no tilt */
-        refract_independently(s, &own, t, 1 / (long double)s->nd, way);
+            /* the next check requires an untilted surface before a plane */
+            continue;
+        refract_by_vector_snell(s, &own, t, 1 / (long double)s->nd, way);
         for (int k = 0; k < 2; k++) {
-            const long double z =
-                compute_gap(s, &own, t) + compute_sag(s, at[0], at[1]);
+            const long double z = compute_gap_to_surface(s, &own, t) +
+                                  compute_surface_sag(s, at[0], at[1]);
             const long double at_flat = at[k] + s->shape.decentre_mm[k] +
                                         (s->thickness_mm - z) / way[2] * way[k];
 
@@ -227,7 +237,7 @@ static int compare_rays(const char *surfaces, double span)
     return met;
 }
 
-TEST(against_second_method)
+TEST(intersections_match_a_second_method)
 {
     static const struct {
         const char *surfaces;
@@ -262,7 +272,8 @@ TEST(against_second_method)
          8}};
 
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const int met = compare_rays(cases[k].surfaces, cases[k].span);
+        const int met =
+            compare_rays_near_axis(cases[k].surfaces, cases[k].span);
 
         if (met < 20)
             fail_msg("%s: only %d rays met", cases[k].surfaces, met);
@@ -271,15 +282,15 @@ TEST(against_second_method)
 
 /* ------------------------------------------------------------ known optics */
 
-/* A hyperboloid with the conic constant -n^2 behind a plane images without
- * spherical aberration. */
+/* Checks that a hyperboloid with the conic constant -n^2 behind a plane images
+ * without spherical aberration. */
 TEST(hyperboloid_has_a_point_focus)
 {
     const double direction[3] = {0, 0, 1};
     struct glint_optics optics;
     struct glint_ray ray;
 
-    load_surfaces(
+    load_lens_of_surfaces(
         "surface flat 12 14 1.5 60\nsurface -25 50 14 air\nshape conic -2.25");
     glint_optics_of(&lens, &optics);
     assert_true(fabs(optics.back_focal_mm - 50) < 1e-9);
@@ -292,22 +303,22 @@ TEST(hyperboloid_has_a_point_focus)
     }
 }
 
-TEST(no_shape_is_a_sphere)
+TEST(surface_without_shape_is_a_sphere)
 {
     const double direction[3] = {0.1, 0.05, sqrt(1 - 0.0125)};
     struct glint_ray ray, same;
 
-    load_surfaces("surface 30 9 9 1.5 60\nsurface -60 90 30 air");
+    load_lens_of_surfaces("surface 30 9 9 1.5 60\nsurface -60 90 30 air");
     glint_path_init(&path, &lens, NULL, 532);
     assert_int_equal(glint_trace(&path, 3, 2, direction, &ray, NULL), 0);
-    load_surfaces(
+    load_lens_of_surfaces(
         "surface 30 9 9 1.5 60\nshape conic 0 A4 0\nsurface -60 90 30 air");
     assert_false(glint_surface_is_shaped(&lens.surface[0]));
     glint_path_init(&path, &lens, NULL, 532);
     assert_int_equal(glint_trace(&path, 3, 2, direction, &same, NULL), 0);
     assert_memory_equal(&ray, &same, sizeof ray);
     /* a conic that differs from the sphere by rounding only */
-    load_surfaces(
+    load_lens_of_surfaces(
         "surface 30 9 9 1.5 60\nshape conic 1e-15\nsurface -60 90 30 air");
     glint_path_init(&path, &lens, NULL, 532);
     assert_int_equal(glint_trace(&path, 3, 2, direction, &same, NULL), 0);
@@ -315,14 +326,14 @@ TEST(no_shape_is_a_sphere)
     assert_true(fabs(ray.energy - same.energy) < 1e-12);
 }
 
-/* Two lenses with the shapes A to D of their surfaces. */
+/* Two lenses whose four surfaces have the shapes A to D. */
 #define TWO_LENSES(a, b, c, d)                            \
     "surface 30 5 9 1.5 60\n" a "surface -60 4 9 air\n" b \
     "surface -40 3 9 1.6 40\n" c "surface 80 90 30 air\n" d
 
-/* Ghosts of spheres are the same, up to rounding, if the spheres are written
- * as conics or as torics with two equal radii. */
-TEST(ghosts_of_spheres)
+/* Checks that ghosts of spheres are the same, up to rounding, if the spheres
+ * are written as conics or as torics with two equal radii. */
+TEST(spheres_as_conics_or_torics_give_the_same_ghosts)
 {
     static const char *const written[] = {
         TWO_LENSES("", "", "", ""),
@@ -336,7 +347,7 @@ TEST(ghosts_of_spheres)
     int n = 0;
 
     for (int w = 0; w < 3; w++) {
-        load_surfaces(written[w]);
+        load_lens_of_surfaces(written[w]);
         n = glint_ghost_list(&lens, ghost, GLINT_MAX_GHOSTS);
         assert_int_equal(n, 6);
         for (int k = 0; k < n; k++) {
@@ -354,13 +365,13 @@ TEST(ghosts_of_spheres)
     }
 }
 
-/* An anamorphic attachment of two cylinders in front of a lens: focal
+/* Checks an anamorphic attachment of two cylinders in front of a lens: focal
  * lengths equal those of paraxial rays in either plane. */
-TEST(anamorphic_focal_lengths)
+TEST(anamorphic_lens_has_two_focal_lengths)
 {
     struct glint_optics optics;
 
-    load_surfaces(
+    load_lens_of_surfaces(
         "surface -80 3 20 1.6 50\nshape cylinder x\nsurface flat 55 20 air\n"
         "surface 120 4 20 1.6 50\nshape cylinder x\nsurface flat 5 20 air\n"
         "surface 50 8 20 1.6 50\nsurface -50 60 20 air");
@@ -383,9 +394,10 @@ TEST(anamorphic_focal_lengths)
     assert_true(fabs(optics.squeeze - 1) > 0.2);
 }
 
-/* glint_path_init_at() rotates the lens: light in the plane at PHI gives the
- * same ray as the rotated light through the lens that is not rotated. */
-TEST(turned_lens)
+/* Checks that glint_path_init_at() rotates the lens: light in the plane at
+ * PHI gives the same ray as the rotated light through the lens that is not
+ * rotated. */
+TEST(rotated_lens_equals_rotated_light)
 {
     const double phi = 33, c = cos(phi * GLINT_PI / 180),
                  s = sin(phi * GLINT_PI / 180);
@@ -393,7 +405,7 @@ TEST(turned_lens)
     const double plain[3] = {0.2 * c, 0.2 * s, sqrt(0.96)};
     struct glint_ray a, b;
 
-    load_surfaces(
+    load_lens_of_surfaces(
         "surface -80 3 20 1.6 50\nshape cylinder x\nsurface flat 25 20 air\n"
         "group decentre 1 2 tilt 3 -2\n"
         "surface 50 9 20 1.6 50\nshape conic -1\nsurface -50 60 20 air\nend");
@@ -411,7 +423,7 @@ TEST(turned_lens)
 
 /* -------------------------------------------------------------------- text */
 
-TEST(mistakes)
+TEST(rejects_wrong_shape_lines)
 {
     static const char *const rows[][2] = {
         {"shape conic 1",
@@ -446,15 +458,15 @@ TEST(mistakes)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct glint_error error = {""};
 
-        if (read_with(rows[k][0], &error) == GLINT_OK ||
+        if (parse_lens_of_surfaces(rows[k][0], &error) == GLINT_OK ||
             strncmp(error.text, rows[k][1], strlen(rows[k][1])) != 0)
             fail_msg("%s: got '%s', not '%s'", rows[k][0], error.text,
                      rows[k][1]);
     }
 }
 
-/* glint_surface_point() at the position where a ray meets a surface returns
- * a point of the ray. */
+/* Checks that glint_surface_point() at the position where a ray meets a surface
+ * returns a point of the ray. */
 TEST(points_lie_on_rays)
 {
     static const char *const shapes[] = {
@@ -470,7 +482,7 @@ TEST(points_lie_on_rays)
         for (int phi = 0; phi < 360; phi += 40) {
             double t;
 
-            load_surfaces(shapes[i]);
+            load_lens_of_surfaces(shapes[i]);
             glint_path_init_at(&path, &lens, NULL, LINE_D_NM, phi);
             assert_int_equal(glint_trace(&path, 1.5, -2, direction, &ray, hits),
                              0);
@@ -481,7 +493,7 @@ TEST(points_lie_on_rays)
             assert_true(fabs(-2 - at[1]) < 1e-9);
         }
     /* The tilted sphere is a sphere with a rotated centre. */
-    load_surfaces(
+    load_lens_of_surfaces(
         "group tilt 20 0\nsurface 40 9 9 1.5 60\nsurface flat 90 30 air\n"
         "end");
     for (int x = -8; x <= 8; x += 4) {
@@ -494,10 +506,10 @@ TEST(points_lie_on_rays)
     }
 }
 
-/* A stop behind the front vertex, around the glass, gives the same rays as a
- * stop in the plane where it lies, as light in front of the glass runs
- * straight. */
-TEST(stop_behind_the_vertex)
+/* Checks that a stop behind the front vertex, around the glass, gives the same
+ * rays as a stop in the plane where it lies, as light in front of the glass
+ * runs straight. */
+TEST(stop_around_the_glass_gives_the_same_rays)
 {
     static const char text[] = "name t\nf-number 4\nfilm 9 9\nstop %s\n"
                                "surface 10 3 7 1.5 60\nshape A4 1e-5\n"
@@ -530,16 +542,16 @@ TEST(stop_behind_the_vertex)
     assert_non_null(strstr(error.text, "thickness must be -100 .. 100000"));
 }
 
-/* Rays traced in a batch and one by one hit the same points, bit-identical
- * for every batch size. */
-TEST(batches_are_identical)
+/* Checks that rays traced in a batch and one by one hit the same points,
+ * bit-identical for every batch size. */
+TEST(batches_equal_single_rays)
 {
     struct glint_launch from[19];
     struct glint_ray many[19], one;
     enum glint_ray_status status[19];
     int traced = 0;
 
-    load_surfaces(
+    load_lens_of_surfaces(
         "surface 20 6 9 1.5 60\nshape conic -2 A4 2e-5 A8 -3e-9\n"
         "surface -30 3 9 air\nsurface -25 2 9 1.6 40\nshape cylinder x\n"
         "surface flat 30 9 air\n");
@@ -563,10 +575,10 @@ TEST(batches_are_identical)
     assert_true(traced > 10);
 }
 
-/* Rays as steep as the profile, or outside the glass, where the first root
- * found need not be the nearest: batches agree with the search for single
+/* Checks rays as steep as the profile, or outside the glass, where the first
+ * root found need not be the nearest: batches agree with the search for single
  * rays. */
-TEST(steep_rays)
+TEST(steep_rays_hit_the_nearest_intersection)
 {
     static const char *const shapes[] = {
         "surface 10 9 9 1.5 60\nshape conic 0.2\nsurface flat 90 30 air",
@@ -578,15 +590,16 @@ TEST(steep_rays)
     int met = 0;
 
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
-        load_surfaces(shapes[i]);
+        load_lens_of_surfaces(shapes[i]);
         glint_path_init(&path, &lens, NULL, LINE_D_NM);
         for (int k = 0; k < 4000; k++) {
             const struct glint_form *const form = &path.form[0];
-            const double tilt = draw_uniform(0, 1.5),
-                         turn = draw_uniform(-3.1, 3.1);
+            const double tilt = random_uniform(0, 1.5),
+                         turn = random_uniform(-3.1, 3.1);
             const double way[3] = {sin(tilt) * cos(turn), sin(tilt) * sin(turn),
                                    cos(tilt)};
-            double at[3] = {draw_uniform(-20, 20), draw_uniform(-20, 20), 0};
+            double at[3] = {random_uniform(-20, 20), random_uniform(-20, 20),
+                            0};
             double normal[3], cosine;
             struct beam b = {.x = {at[0]},
                              .y = {at[1]},

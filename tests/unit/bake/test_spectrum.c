@@ -17,7 +17,7 @@ static double rgb[GLINT_MAX_WAVELENGTHS][3];
 
 /* Sets ALL to the observer's RGB responses at 400 .. 700 nm, each channel
  * divided by its sum. */
-static void set_observer(double all[ALL][3])
+static void set_observer_responses(double all[ALL][3])
 {
     double sum[3] = {0, 0, 0};
 
@@ -47,7 +47,7 @@ TEST(wavelength_positions)
                 nm[2] > 590 && nm[2] < 630);
 }
 
-TEST(flat_is_white)
+TEST(flat_spectrum_is_white)
 {
     for (int n = 1; n <= GLINT_MAX_WAVELENGTHS; n++) {
         double sum[4] = {0, 0, 0, 0};
@@ -84,7 +84,7 @@ static double compute_colour_error(int n, double first_nm, double second_nm,
     double all[ALL][3], few[3] = {0, 0, 0}, true_rgb[3] = {0, 0, 0};
     double most = 0, wrong = 0;
 
-    set_observer(all);
+    set_observer_responses(all);
     glint_spectrum(n, nm, rgb, share);
     for (int c = 0; c < 3; c++) {
         for (int j = 0; j < ALL; j++)
@@ -100,9 +100,9 @@ static double compute_colour_error(int n, double first_nm, double second_nm,
     return wrong / most;
 }
 
-/* Quarter-wave and half-wave films, as in lens tables, have the right
- * colours. */
-TEST(smooth_colours)
+/* Checks that ghosts of quarter-wave and half-wave films have the right
+ * colours, which converge as the number of wavelengths grows. */
+TEST(coating_colours_converge)
 {
     static const double film[] = {430, 460, 520, 560, 640, 680, 1080};
     static const struct {
@@ -133,8 +133,9 @@ TEST(smooth_colours)
     }
 }
 
-/* Returns the visibility of steps when N wavelengths represent a dispersed
- * edge: the largest difference, in any channel, from 3000 wavelengths. */
+/* Returns the height of the colour steps when N wavelengths represent a
+ * dispersed edge: the largest difference from 3000 wavelengths in any
+ * channel. */
 static double compute_step_error(int n)
 {
     enum { FINE = 3000 };
@@ -166,7 +167,7 @@ static double compute_step_error(int n)
     return worst;
 }
 
-TEST(steps)
+TEST(more_wavelengths_make_smaller_colour_steps)
 {
     assert_true(compute_step_error(3) < 0.8);
     assert_true(compute_step_error(5) < 0.5);

@@ -21,9 +21,9 @@ struct shares {
 
 /* Sets R and T to Fresnel's amplitudes for light from a medium of index N1
  * at the cosine C1. */
-static void set_fresnel(double n1, double complex c1, double n2,
-                        double complex c2, int is_p, double complex *r,
-                        double complex *t)
+static void set_fresnel_amplitudes(double n1, double complex c1, double n2,
+                                   double complex c2, int is_p,
+                                   double complex *r, double complex *t)
 {
     const double complex a = is_p ? n2 * c1 : n1 * c1;
     const double complex b = is_p ? n1 * c2 : n2 * c2;
@@ -34,13 +34,14 @@ static void set_fresnel(double n1, double complex c1, double n2,
 
 /* Returns the light that N films reflect and transmit; FILM[0] is next to
  * the medium of lower index. Light comes from N1 at the cosine COSINE to N2. */
-static struct shares compute_rouard(double n1, double n2, double cosine,
-                                    const struct glint_film_at *film, int n,
-                                    int is_p)
+static struct shares compute_stack_by_rouard(double n1, double n2,
+                                             double cosine,
+                                             const struct glint_film_at *film,
+                                             int n, int is_p)
 {
     double index[GLINT_MAX_FILMS + 2];
     double complex c[GLINT_MAX_FILMS + 2], r, t;
-    /* films in the order in which light meets them */
+    /* films in the order in which light passes them */
     struct glint_film_at met[GLINT_MAX_FILMS];
 
     index[0] = n1;
@@ -52,14 +53,15 @@ static struct shares compute_rouard(double n1, double n2, double cosine,
     for (int k = 0; k < n + 2; k++)
         c[k] =
             csqrt(1 - n1 * n1 / (index[k] * index[k]) * (1 - cosine * cosine));
-    set_fresnel(index[n], c[n], n2, c[n + 1], is_p, &r, &t);
+    set_fresnel_amplitudes(index[n], c[n], n2, c[n + 1], is_p, &r, &t);
     for (int k = n; k > 0; k--) {
         /* phase factor of one pass through the film, and of two */
         const double complex once =
             cexp((double complex)I * 0.5 * met[k - 1].phase * c[k]);
         double complex r1, t1;
 
-        set_fresnel(index[k - 1], c[k - 1], index[k], c[k], is_p, &r1, &t1);
+        set_fresnel_amplitudes(index[k - 1], c[k - 1], index[k], c[k], is_p,
+                               &r1, &t1);
         t = t1 * t * once / (1 + r1 * r * once * once);
         r = (r1 + r * once * once) / (1 + r1 * r * once * once);
     }
@@ -68,11 +70,11 @@ static struct shares compute_rouard(double n1, double n2, double cosine,
                                                 creal(n1 * c[0])};
 }
 
-static void expect_as_rouard(double n1, double n2, double cosine,
-                             const struct glint_film_at *film, int n)
+static void expect_stack_equals_rouard(double n1, double n2, double cosine,
+                                       const struct glint_film_at *film, int n)
 {
-    const struct shares s = compute_rouard(n1, n2, cosine, film, n, 0);
-    const struct shares p = compute_rouard(n1, n2, cosine, film, n, 1);
+    const struct shares s = compute_stack_by_rouard(n1, n2, cosine, film, n, 0);
+    const struct shares p = compute_stack_by_rouard(n1, n2, cosine, film, n, 1);
     double of_s, of_p;
 
     glint_reflectance_sp(n1, n2, cosine, film, n, &of_s, &of_p);
@@ -87,9 +89,9 @@ static void expect_as_rouard(double n1, double n2, double cosine,
 
 /* ------------------------------------------------------------------- named */
 
-/* All named coatings on four glasses, from 380 to 780 nm and from 0 to 89
- * degrees, from the air and from the glass. */
-TEST(named)
+/* Checks all named coatings on four glasses, from 380 to 780 nm and from 0 to
+ * 89 degrees, from the air and from the glass. */
+TEST(named_coatings_match_rouard)
 {
     static const double glass[] = {1.46, 1.52, 1.7, 1.95};
     struct glint_coating coating;
@@ -104,9 +106,9 @@ TEST(named)
                     const double sine = sqrt(1 - c * c) / glass[g];
                     const int n = glint_coating_at(&coating, nm, film);
 
-                    expect_as_rouard(1, glass[g], c, film, n);
-                    expect_as_rouard(glass[g], 1, sqrt(1 - sine * sine), film,
-                                     n);
+                    expect_stack_equals_rouard(1, glass[g], c, film, n);
+                    expect_stack_equals_rouard(glass[g], 1,
+                                               sqrt(1 - sine * sine), film, n);
                 }
     assert_int_equal(k, 3);
     assert_null(glint_coating_named(-1, &coating));
@@ -115,7 +117,7 @@ TEST(named)
 /* At the design wavelength and normal incidence, two quarter waves reflect
  * ((a^2 g - b^2) / (a^2 g + b^2))^2, and a half wave between them has no
  * effect. */
-TEST(by_hand)
+TEST(two_film_stack_matches_hand_computation)
 {
     const double g = 1.52, a = 1.38 * 1.38 * g;
     struct glint_coating v, three;
@@ -133,9 +135,10 @@ TEST(by_hand)
                 pow((a - b) / (a + b), 2), 1e-15);
 }
 
-/* Broadband coatings reflect less than a single film over the whole band; a
- * V-coat reflects less at its wavelength and more at the ends of the band. */
-TEST(purpose_of_coatings)
+/* Checks that broadband coatings reflect less than a single film over the whole
+ * band; a V-coat reflects less at its wavelength and more at the ends of the
+ * band. */
+TEST(coatings_reflect_less_in_their_band)
 {
     const struct glint_coating single = {550, 1, {{1.38, 1}}};
     struct glint_coating c[3];
@@ -161,15 +164,15 @@ TEST(purpose_of_coatings)
 
 /* -------------------------------------------------------------------- any */
 
-static double draw_uniform(uint32_t *seed, double lo, double hi)
+static double random_uniform(uint32_t *seed, double lo, double hi)
 {
     *seed = *seed * 1664525u + 1013904223u;
     return lo + (hi - lo) * (*seed >> 8) / 16777216.0;
 }
 
-/* Random stacks of 1 to 8 films, including films that light crosses only by
- * frustrated total reflection. */
-TEST(random_stacks)
+/* Checks random stacks of 1 to 8 films, including films that light crosses only
+ * by frustrated total reflection. */
+TEST(random_stacks_match_rouard)
 {
     uint32_t seed = 1;
     int frustrated = 0;
@@ -177,19 +180,19 @@ TEST(random_stacks)
     for (int i = 0; i < 40000; i++) {
         struct glint_film_at film[GLINT_MAX_FILMS];
         const int n = 1 + i % GLINT_MAX_FILMS;
-        const double n1 = draw_uniform(&seed, 1, 2),
-                     n2 = draw_uniform(&seed, 1, 2);
+        const double n1 = random_uniform(&seed, 1, 2),
+                     n2 = random_uniform(&seed, 1, 2);
         const double most = n1 > n2 ? sqrt(1 - n2 * n2 / (n1 * n1)) : 0;
-        const double c = draw_uniform(&seed, most + 0.02 * (1 - most), 1);
+        const double c = random_uniform(&seed, most + 0.02 * (1 - most), 1);
         const double sine = n1 * sqrt(1 - c * c);
 
         for (int k = 0; k < n; k++) {
-            film[k].n = draw_uniform(&seed, 1.01, 2.5);
-            film[k].phase = draw_uniform(&seed, 0.03, 3 * pi);
+            film[k].n = random_uniform(&seed, 1.01, 2.5);
+            film[k].phase = random_uniform(&seed, 0.03, 3 * pi);
             frustrated += film[k].n < sine;
         }
-        expect_as_rouard(n1, n2, c, film, n);
-        /* and in the reverse direction */
+        expect_stack_equals_rouard(n1, n2, c, film, n);
+        /* the same stack lit from the other side */
         assert_near(glint_reflectance(n1, n2, c, film, n),
                     glint_reflectance(n2, n1, sqrt(1 - sine * sine / (n2 * n2)),
                                       film, n),
@@ -198,8 +201,9 @@ TEST(random_stacks)
     assert_true(frustrated > 1000);
 }
 
-/* Films that transmit no light, grazing incidence, and total reflection. */
-TEST(extreme_stacks)
+/* Checks films that transmit no light, grazing incidence, and total
+ * reflection. */
+TEST(extreme_stacks_match_rouard)
 {
     const struct glint_film_at thick[8] = {
         {1.01, 1e300}, {1.01, 150}, {1.01, 150}, {1.01, 150},
@@ -219,9 +223,10 @@ TEST(extreme_stacks)
 
 /* ------------------------------------------------------------------- paths */
 
-/* A ray through a coated pane has the product of both transmittances, and a
- * ghost that of both reflectances, with stacks as with single films. */
-TEST(path)
+/* Checks that a ray through a coated pane has the product of both
+ * transmittances, and a ghost that of both reflectances, with stacks as with
+ * single films. */
+TEST(ghost_energy_is_the_product_of_reflectances)
 {
     struct glint_prescription lens = {
         .n_surfaces = 2,

@@ -16,25 +16,27 @@
     "stone pale scatter 2 3 4 absorb .1 .2 .3\n" \
     "stone dark scatter .5 .6 .7 absorb 1 2 3\n"
 
-static enum glint_status parse_text(struct glint_stone_text *t,
-                                    const char *text, struct glint_error *error)
+static enum glint_status parse_medium_text(struct glint_stone_text *t,
+                                           const char *text,
+                                           struct glint_error *error)
 {
     return glint_stone_parse(t, text, strlen(text), "x", error);
 }
 
-static void parse_good(struct glint_stone_text *t, const char *text)
+static void parse_valid_medium_text(struct glint_stone_text *t,
+                                    const char *text)
 {
     struct glint_error error = {.text = ""};
 
-    if (parse_text(t, text, &error) != GLINT_OK)
+    if (parse_medium_text(t, text, &error) != GLINT_OK)
         fail_msg("%s: %s", text, error.text);
 }
 
-TEST(all_lines)
+TEST(parses_all_lines)
 {
     struct glint_stone_text t;
 
-    parse_good(
+    parse_valid_medium_text(
         &t, "# a comment\nsize 64\ntexel .25\nkernel 15\nslab 12\nindex 1.3\n"
             "\n" TWO "pattern chess 4 pale dark\nmodel factored\n");
     assert_int_equal(t.stone.side, 64);
@@ -50,12 +52,12 @@ TEST(all_lines)
     assert_int_equal(t.fit.rank, 3);
 }
 
-/* Omitted lines have the defaults in the README. */
-TEST(defaults)
+/* Checks that omitted lines have the defaults in the README. */
+TEST(omitted_lines_have_defaults)
 {
     struct glint_stone_text t;
 
-    parse_good(&t, "stone pale scatter 2 3 4 absorb .1 .2 .3\n");
+    parse_valid_medium_text(&t, "stone pale scatter 2 3 4 absorb .1 .2 .3\n");
     assert_int_equal(t.stone.side, 128);
     assert_int_equal(t.stone.kernel, 29);
     assert_true(t.stone.texel_mm == .61 && t.stone.slab_mm == 6 &&
@@ -64,25 +66,26 @@ TEST(defaults)
     assert_int_equal(t.fit.model, GLINT_SCATTER_CLUSTERED);
     assert_int_equal(t.fit.kernels, 4);
     assert_int_equal(t.fit.rank, 3);
-    parse_good(&t, TWO "pattern veins 3 pale dark\nmodel factored\n");
+    parse_valid_medium_text(&t,
+                            TWO "pattern veins 3 pale dark\nmodel factored\n");
     assert_int_equal(t.fit.kernels, 5);
     assert_int_equal(t.stone.seed, 3);
 }
 
-/* The first medium of a pattern is material 0, in whatever order the media
- * are defined. */
-TEST(order)
+/* Checks that the first medium of a pattern is material 0, in whatever order
+ * the media are defined. */
+TEST(first_medium_of_a_pattern_is_material_0)
 {
     struct glint_stone_text t;
 
-    parse_good(&t, TWO "pattern image a.pgm dark pale\n");
+    parse_valid_medium_text(&t, TWO "pattern image a.pgm dark pale\n");
     assert_string_equal(t.mask, "a.pgm");
     assert_true(t.stone.material[0].scatter[0] == .5 &&
                 t.stone.material[1].scatter[0] == 2);
-    parse_good(&t, "model clustered\ndata rows of it.pfm\n");
+    parse_valid_medium_text(&t, "model clustered\ndata rows of it.pfm\n");
     assert_string_equal(t.rows, "rows of it.pfm");
     assert_int_equal(t.fit.kernels, 4);
-    parse_good(&t, "data a.pfm\nmodel albedo\n");
+    parse_valid_medium_text(&t, "data a.pfm\nmodel albedo\n");
     assert_int_equal(t.fit.kernels, 1);
 }
 
@@ -138,7 +141,8 @@ TEST(rejects_mistakes)
         struct glint_error error = {.text = ""};
         struct glint_stone_text t;
 
-        assert_int_equal(parse_text(&t, wrong[i].text, &error), GLINT_E_LENS);
+        assert_int_equal(parse_medium_text(&t, wrong[i].text, &error),
+                         GLINT_E_LENS);
         if (!strstr(error.text, wrong[i].error))
             fail_msg("%s\ngives '%s', not '%s'", wrong[i].text, error.text,
                      wrong[i].error);
@@ -147,7 +151,8 @@ TEST(rejects_mistakes)
 
 /* Returns the mean difference of SHARE between adjacent columns or rows:
  * within the medium, or, if EDGE is set, across its edges. */
-static double mean_step(const double *share, int side, bool rows, bool edge)
+static double mean_neighbour_difference(const double *share, int side,
+                                        bool rows, bool edge)
 {
     const int first = edge ? side - 1 : 0, end = edge ? side : side - 1;
     double sum = 0;
@@ -162,9 +167,9 @@ static double mean_step(const double *share, int side, bool rows, bool edge)
     return sum / ((double)side * (end - first));
 }
 
-/* The edges of a medium meet on a sphere: differences across them are as
- * small as those within. */
-TEST(veins_go_on_at_edges)
+/* Checks that the texture of veins has no seam on a sphere, where the edges of
+ * a medium meet: differences across edges are as small as those within. */
+TEST(veins_continue_across_edges)
 {
     enum { SIDE = 64, SEEDS = 20 };
     static double share[SIDE * SIDE];
@@ -174,8 +179,8 @@ TEST(veins_go_on_at_edges)
     for (; stone.seed < SEEDS; stone.seed++) {
         glint_stone_shares(&stone, share);
         for (int rows = 0; rows < 2; rows++) {
-            edge += mean_step(share, SIDE, rows, true);
-            within += mean_step(share, SIDE, rows, false);
+            edge += mean_neighbour_difference(share, SIDE, rows, true);
+            within += mean_neighbour_difference(share, SIDE, rows, false);
         }
     }
     if (edge > 1.5 * within)

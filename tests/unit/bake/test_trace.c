@@ -19,7 +19,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* -------------------------------------------------- another program's rays */
+/* ------------------------------------------- rays of an independent program */
 
 struct bundle {
     char lens[64];
@@ -27,7 +27,7 @@ struct bundle {
     double angle_deg, wavelength_nm;
 };
 
-static void parse_bundle_name(struct bundle *bundle, const char *name)
+static void parse_golden_file_name(struct bundle *bundle, const char *name)
 {
     const char *dot = strstr(name, ".ghost");
 
@@ -43,7 +43,7 @@ static void parse_bundle_name(struct bundle *bundle, const char *name)
 
 /* Returns the next comma-separated number and advances *AT behind it; NAN if
  * the column is empty. */
-static double next_column(const char **at)
+static double parse_next_column(const char **at)
 {
     char *end;
     double value = (double)NAN;
@@ -55,10 +55,10 @@ static double next_column(const char **at)
     return value;
 }
 
-/* Largest differences over all files, mm and relative; printed at the end. */
+/* Largest differences over all files: positions in mm, energies relative. */
 static double worst_mm, worst_energy;
 
-static void compare_mm(double got, double expected, const char *where)
+static void compare_lengths_mm(double got, double expected, const char *where)
 {
     const double difference = fabs(got - expected);
 
@@ -69,24 +69,24 @@ static void compare_mm(double got, double expected, const char *where)
         worst_mm = fmax(worst_mm, difference);
 }
 
-static void compare_ray(const struct glint_ray *ray, const char *columns,
-                        const char *where)
+static void compare_ray_with_golden(const struct glint_ray *ray,
+                                    const char *columns, const char *where)
 {
     double energy;
 
-    compare_mm(ray->stop_x_mm, next_column(&columns), where);
-    compare_mm(ray->stop_y_mm, next_column(&columns), where);
-    compare_mm(ray->sensor_x_mm, next_column(&columns), where);
-    compare_mm(ray->sensor_y_mm, next_column(&columns), where);
-    energy = next_column(&columns);
+    compare_lengths_mm(ray->stop_x_mm, parse_next_column(&columns), where);
+    compare_lengths_mm(ray->stop_y_mm, parse_next_column(&columns), where);
+    compare_lengths_mm(ray->sensor_x_mm, parse_next_column(&columns), where);
+    compare_lengths_mm(ray->sensor_y_mm, parse_next_column(&columns), where);
+    energy = parse_next_column(&columns);
     if (!(fabs(ray->energy - energy) <= 1e-7 * energy))
         fail_msg("%s: energy %.12g, expected %.9g", where, ray->energy, energy);
     worst_energy = fmax(worst_energy, fabs(ray->energy / energy - 1.0));
-    compare_mm(ray->rel_radius, next_column(&columns), where);
+    compare_lengths_mm(ray->rel_radius, parse_next_column(&columns), where);
 }
 
-static int compare_bundle(const struct bundle *bundle, FILE *file,
-                          const char *name)
+static int compare_bundle_with_golden(const struct bundle *bundle, FILE *file,
+                                      const char *name)
 {
     static struct glint_prescription lens;
     static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
@@ -101,7 +101,7 @@ static int compare_bundle(const struct bundle *bundle, FILE *file,
                 bundle->ghost);
     glint_path_init(&path, &lens, &ghosts[bundle->ghost],
                     bundle->wavelength_nm);
-    /* skips the header line */
+    /* skip the header line */
     assert_non_null(fgets(line, sizeof(line), file));
     for (int i = 0; i < bundle->n * bundle->n; i++) {
         const double semi = lens.surface[0].semi_mm;
@@ -114,14 +114,14 @@ static int compare_bundle(const struct bundle *bundle, FILE *file,
 
         assert_non_null(fgets(line, sizeof(line), file));
         snprintf(where, sizeof(where), GOLDEN "/%s:%d", name, i + 2);
-        compare_mm(px, next_column(&at), where);
-        compare_mm(py, next_column(&at), where);
+        compare_lengths_mm(px, parse_next_column(&at), where);
+        compare_lengths_mm(py, parse_next_column(&at), where);
         status = glint_trace(&path, px, py, direction, &ray, NULL);
-        if ((int)status != (int)next_column(&at))
+        if ((int)status != (int)parse_next_column(&at))
             fail_msg("%s: status %d", where, (int)status);
         if (status != GLINT_RAY_OK)
             continue;
-        compare_ray(&ray, at, where);
+        compare_ray_with_golden(&ray, at, where);
         ok++;
     }
     return ok;
@@ -141,11 +141,11 @@ TEST(rays_match_other_program)
 
         if (!strstr(entry->d_name, ".csv"))
             continue;
-        parse_bundle_name(&bundle, entry->d_name);
+        parse_golden_file_name(&bundle, entry->d_name);
         snprintf(path, sizeof(path), GOLDEN "/%.250s", entry->d_name);
         file = fopen(path, "r");
         assert_non_null(file);
-        n_rays += compare_bundle(&bundle, file, entry->d_name);
+        n_rays += compare_bundle_with_golden(&bundle, file, entry->d_name);
         fclose(file);
         n_files++;
     }
@@ -159,9 +159,10 @@ TEST(rays_match_other_program)
 /* ------------------------------------------------------------------- paths */
 
 /* Returns a lens of N bare surfaces, alternately into glass of index 1.5 and
- * into air, with the stop behind them. The parser might reject it. */
-static struct glint_prescription simple_lens(int n, const double *radius_mm,
-                                             double thickness_mm)
+ * into air, with the stop behind them. It need not satisfy the parser's
+ * rules. */
+static struct glint_prescription
+make_lens_of_bare_surfaces(int n, const double *radius_mm, double thickness_mm)
 {
     struct glint_prescription lens;
 
@@ -179,9 +180,9 @@ static struct glint_prescription simple_lens(int n, const double *radius_mm,
     return lens;
 }
 
-static void expect_event(const struct glint_event *event,
-                         enum glint_event_kind kind, int surface,
-                         double advance_mm, double n_from, double n_to)
+static void expect_path_event(const struct glint_event *event,
+                              enum glint_event_kind kind, int surface,
+                              double advance_mm, double n_from, double n_to)
 {
     assert_int_equal(event->kind, kind);
     assert_int_equal(event->surface, surface);
@@ -190,30 +191,31 @@ static void expect_event(const struct glint_event *event,
     assert_true(event->n_to == n_to);
 }
 
-/* The path of a ghost of two surfaces 5 mm apart, with the stop 5 mm behind
- * them, has these five events. */
-TEST(ghost_path_events)
+/* Checks that the path of a ghost of two surfaces 5 mm apart, with the stop 5
+ * mm behind them, has these five events. */
+TEST(ghost_path_has_five_events)
 {
     static const double radii[] = {40.0, -40.0};
-    const struct glint_prescription lens = simple_lens(2, radii, 5.0);
+    const struct glint_prescription lens =
+        make_lens_of_bare_surfaces(2, radii, 5.0);
     const struct glint_ghost ghost = {0, 1};
     struct glint_path path;
 
     glint_path_init(&path, &lens, &ghost, 550.0);
     assert_int_equal(path.n_events, 5);
-    expect_event(&path.event[0], GLINT_REFRACT, 0, 0.0, 1.0, 1.5);
-    expect_event(&path.event[1], GLINT_REFLECT, 1, 5.0, 1.5, 1.0);
-    expect_event(&path.event[2], GLINT_REFLECT, 0, -5.0, 1.5, 1.0);
-    expect_event(&path.event[3], GLINT_REFRACT, 1, 5.0, 1.5, 1.0);
-    expect_event(&path.event[4], GLINT_STOP, -1, 5.0, 1.0, 1.0);
+    expect_path_event(&path.event[0], GLINT_REFRACT, 0, 0.0, 1.0, 1.5);
+    expect_path_event(&path.event[1], GLINT_REFLECT, 1, 5.0, 1.5, 1.0);
+    expect_path_event(&path.event[2], GLINT_REFLECT, 0, -5.0, 1.5, 1.0);
+    expect_path_event(&path.event[3], GLINT_REFRACT, 1, 5.0, 1.5, 1.0);
+    expect_path_event(&path.event[4], GLINT_STOP, -1, 5.0, 1.0, 1.0);
     assert_true(path.to_sensor_mm == 50.0);
 }
 
-TEST(direct_path_of_front_stop)
+TEST(direct_path_begins_at_a_front_stop)
 {
     static const double radii[] = {40.0, -40.0};
     static const struct glint_ghost none = {-1, -1};
-    struct glint_prescription lens = simple_lens(2, radii, 5.0);
+    struct glint_prescription lens = make_lens_of_bare_surfaces(2, radii, 5.0);
     const double up[3] = {0.0, 0.6, 0.8};
     struct glint_path path, same;
     struct glint_ray ray;
@@ -224,22 +226,24 @@ TEST(direct_path_of_front_stop)
     glint_path_init(&same, &lens, &none, 550.0);
     assert_int_equal(path.n_events, 3);
     assert_int_equal(same.n_events, 3);
-    expect_event(&path.event[0], GLINT_STOP, -1, -8.0, 1.0, 1.0);
-    expect_event(&path.event[1], GLINT_REFRACT, 0, 8.0, 1.0, 1.5);
+    expect_path_event(&path.event[0], GLINT_STOP, -1, -8.0, 1.0, 1.0);
+    expect_path_event(&path.event[1], GLINT_REFRACT, 0, 8.0, 1.0, 1.5);
     assert_true(path.to_sensor_mm == 5.0);
-    /* The stop lies 8 mm in front of the vertex plane, so the ray from (1,
-     * 2) is extended backwards along its slope of 3/4. */
+    /* The stop lies 8 mm in front of the vertex plane, so the ray through (1,
+     * 2) is extended backwards with its slope of 3/4. */
     assert_int_equal(glint_trace(&path, 1.0, 2.0, up, &ray, NULL),
                      GLINT_RAY_OK);
     assert_near(ray.stop_x_mm, 1.0, 1e-14);
     assert_near(ray.stop_y_mm, -4.0, 1e-14);
 }
 
-/* The longest possible path, across the stop, fits into the array of events. */
-TEST(longest_path)
+/* Checks that the longest possible path, across the stop, fits into the array
+ * of events. */
+TEST(longest_path_fits_the_event_array)
 {
     static double radii[GLINT_MAX_SURFACES];
-    struct glint_prescription lens = simple_lens(GLINT_MAX_SURFACES, radii, 1);
+    struct glint_prescription lens =
+        make_lens_of_bare_surfaces(GLINT_MAX_SURFACES, radii, 1);
     const struct glint_ghost ghost = {0, GLINT_MAX_SURFACES - 1};
     struct glint_path path;
 
@@ -248,11 +252,11 @@ TEST(longest_path)
     assert_int_equal(path.n_events, GLINT_MAX_EVENTS + 1);
 }
 
-/* ------------------------------------------------------- rays done by hand */
+/* ---------------------------------------------------- rays computed by hand */
 
-static enum glint_ray_status trace_one(const struct glint_prescription *lens,
-                                       double py_mm, const double direction[3],
-                                       struct glint_ray *ray)
+static enum glint_ray_status
+trace_single_ray(const struct glint_prescription *lens, double py_mm,
+                 const double direction[3], struct glint_ray *ray)
 {
     struct glint_path path;
 
@@ -265,12 +269,13 @@ static enum glint_ray_status trace_one(const struct glint_prescription *lens,
 TEST(plate_displaces_ray)
 {
     static const double flat[2] = {0.0, 0.0};
-    const struct glint_prescription lens = simple_lens(2, flat, 5.0);
+    const struct glint_prescription lens =
+        make_lens_of_bare_surfaces(2, flat, 5.0);
     const double up[3] = {0.0, 0.6, 0.8};
     const double inside = 5.0 * 0.4 / sqrt(0.84);
     struct glint_ray ray;
 
-    assert_int_equal(trace_one(&lens, 1.0, up, &ray), GLINT_RAY_OK);
+    assert_int_equal(trace_single_ray(&lens, 1.0, up, &ray), GLINT_RAY_OK);
     assert_near(ray.stop_y_mm, 1.0 + inside + 5.0 * 0.75, 1e-14);
     assert_near(ray.sensor_y_mm, 1.0 + inside + 55.0 * 0.75, 1e-13);
     assert_true(ray.sensor_x_mm == 0.0);
@@ -280,45 +285,51 @@ TEST(plate_displaces_ray)
 /* A surface of radius 1e7 mm differs from a plane by its sag, h^2 / 2R =
  * 1.8e-6 mm, and its tilt, h / R = 6e-7: the ray lands lower by (n - 1) h /
  * R * ((5 - sag) / n + 55). */
-TEST(huge_radius)
+TEST(surface_of_huge_radius_acts_as_a_plane)
 {
     static const double huge[2] = {1e7, 0.0};
-    const struct glint_prescription lens = simple_lens(2, huge, 5.0);
+    const struct glint_prescription lens =
+        make_lens_of_bare_surfaces(2, huge, 5.0);
     const double along[3] = {0.0, 0.0, 1.0};
     const double height = 6.0;
     struct glint_ray ray;
 
-    assert_int_equal(trace_one(&lens, height, along, &ray), GLINT_RAY_OK);
+    assert_int_equal(trace_single_ray(&lens, height, along, &ray),
+                     GLINT_RAY_OK);
     assert_near(ray.sensor_y_mm,
                 height - 0.5 * height / 1e7 * ((5.0 - 1.8e-6) / 1.5 + 55.0),
                 1e-13);
-    assert_int_equal(trace_one(&lens, 0.0, along, &ray), GLINT_RAY_OK);
+    assert_int_equal(trace_single_ray(&lens, 0.0, along, &ray), GLINT_RAY_OK);
     assert_true(ray.sensor_y_mm == 0.0);
 }
 
 /* A sphere of radius 0.01 mm: a ray to its centre continues straight on;
  * rays 0.01 mm or more from the axis miss it. */
-TEST(tiny_radius)
+TEST(ray_to_the_centre_of_a_tiny_sphere_goes_straight)
 {
     static const double tiny[1] = {0.01};
-    const struct glint_prescription lens = simple_lens(1, tiny, 5.0);
+    const struct glint_prescription lens =
+        make_lens_of_bare_surfaces(1, tiny, 5.0);
     const double up[3] = {0.0, 0.6, 0.8}, along[3] = {0.0, 0.0, 1.0};
     struct glint_ray ray;
 
-    assert_int_equal(trace_one(&lens, -0.0075, up, &ray), GLINT_RAY_OK);
+    assert_int_equal(trace_single_ray(&lens, -0.0075, up, &ray), GLINT_RAY_OK);
     assert_near(ray.stop_y_mm, -0.0075 + 0.75 * 5.0, 1e-12);
-    assert_int_equal(trace_one(&lens, 0.00999, along, &ray), GLINT_RAY_OK);
-    assert_int_equal(trace_one(&lens, 0.01, along, &ray), GLINT_RAY_MISSED);
-    assert_int_equal(trace_one(&lens, 0.02, along, &ray), GLINT_RAY_MISSED);
+    assert_int_equal(trace_single_ray(&lens, 0.00999, along, &ray),
+                     GLINT_RAY_OK);
+    assert_int_equal(trace_single_ray(&lens, 0.01, along, &ray),
+                     GLINT_RAY_MISSED);
+    assert_int_equal(trace_single_ray(&lens, 0.02, along, &ray),
+                     GLINT_RAY_MISSED);
 }
 
 /* The aplanatic points of a sphere: rays that converge to R + n R behind the
  * vertex meet at R + R / n, without any aberration. With R = 10 and n = 1.5,
  * rays to 25 meet at 16.667 whatever their angle. */
-TEST(aplanatic_sphere)
+TEST(aplanatic_points_are_free_of_aberration)
 {
     static const double radius[1] = {10.0};
-    struct glint_prescription lens = simple_lens(1, radius, 5.0);
+    struct glint_prescription lens = make_lens_of_bare_surfaces(1, radius, 5.0);
     struct glint_ray ray;
 
     lens.stop_thickness_mm = 35.0 / 3.0;
@@ -326,36 +337,39 @@ TEST(aplanatic_sphere)
         const double sine = 0.02 * i, cosine = sqrt(1.0 - sine * sine);
         const double in[3] = {0.0, -sine, cosine};
 
-        assert_int_equal(trace_one(&lens, 25.0 * sine / cosine, in, &ray),
-                         GLINT_RAY_OK);
+        assert_int_equal(
+            trace_single_ray(&lens, 25.0 * sine / cosine, in, &ray),
+            GLINT_RAY_OK);
         assert_near(ray.sensor_y_mm, 0.0, 1e-13);
     }
 }
 
 /* From glass to air, 45 degrees exceed the critical angle of 41.8. */
-TEST(total_reflection)
+TEST(reflects_totally_beyond_the_critical_angle)
 {
     static const double curved[2] = {0.0, -10.0};
-    const struct glint_prescription lens = simple_lens(2, curved, 5.0);
+    const struct glint_prescription lens =
+        make_lens_of_bare_surfaces(2, curved, 5.0);
     const double along[3] = {0.0, 0.0, 1.0};
     struct glint_ray ray = {7.0, 7.0, 7.0, 7.0, 7.0, 7.0};
 
-    assert_int_equal(trace_one(&lens, 10.0 * sqrt(0.5), along, &ray),
+    assert_int_equal(trace_single_ray(&lens, 10.0 * sqrt(0.5), along, &ray),
                      GLINT_RAY_TOTAL_REFLECTION);
     assert_true(ray.stop_x_mm == 7.0 && ray.rel_radius == 7.0);
     /* a sine of exactly 2/3 is critical; a ray with a slightly smaller sine
      * passes */
-    assert_int_equal(trace_one(&lens, 6.66, along, &ray), GLINT_RAY_OK);
+    assert_int_equal(trace_single_ray(&lens, 6.66, along, &ray), GLINT_RAY_OK);
 }
 
 /* A ghost of a plate: light that is reflected twice inside is displaced
  * three times as far within the plate as light that crosses it once. Its
  * energy is (1 - R)^2 R^2 with R = ((1.5 - 1) / 2.5)^2. */
-TEST(plate_ghost)
+TEST(plate_ghost_is_displaced_three_times)
 {
     static const double flat[2] = {0.0, 0.0};
     static const struct glint_ghost ghost = {0, 1};
-    const struct glint_prescription lens = simple_lens(2, flat, 5.0);
+    const struct glint_prescription lens =
+        make_lens_of_bare_surfaces(2, flat, 5.0);
     const double up[3] = {0.0, 0.6, 0.8}, along[3] = {0.0, 0.0, 1.0};
     const double inside = 5.0 * 0.4 / sqrt(0.84);
     struct glint_path path;
@@ -376,33 +390,40 @@ TEST(plate_ghost)
     assert_near(ray.energy, 0.96 * 0.96 * 0.04 * 0.04, 1e-16);
 }
 
-/* Rays that run backwards, sideways or are not finite are reported as
- * missed. */
-TEST(hostile_rays)
+/* Checks that rays that run backwards, sideways or are not finite are reported
+ * as missed. */
+TEST(invalid_rays_are_missed)
 {
     static const double flat[2] = {0.0, 0.0};
-    const struct glint_prescription lens = simple_lens(2, flat, 5.0);
+    const struct glint_prescription lens =
+        make_lens_of_bare_surfaces(2, flat, 5.0);
     const double along[3] = {0.0, 0.0, 1.0}, back[3] = {0.0, 0.0, -1.0};
     const double across[3] = {1.0, 0.0, 0.0},
                  none[3] = {(double)NAN, (double)NAN, (double)NAN};
     struct glint_ray ray;
 
-    assert_int_equal(trace_one(&lens, 0.0, back, &ray), GLINT_RAY_MISSED);
-    assert_int_equal(trace_one(&lens, 0.0, across, &ray), GLINT_RAY_MISSED);
-    assert_int_equal(trace_one(&lens, 0.0, none, &ray), GLINT_RAY_MISSED);
-    assert_int_equal(trace_one(&lens, (double)NAN, along, &ray),
+    assert_int_equal(trace_single_ray(&lens, 0.0, back, &ray),
                      GLINT_RAY_MISSED);
-    assert_int_equal(trace_one(&lens, HUGE_VAL, along, &ray), GLINT_RAY_MISSED);
-    assert_int_equal(trace_one(&lens, 1e200, along, &ray), GLINT_RAY_MISSED);
+    assert_int_equal(trace_single_ray(&lens, 0.0, across, &ray),
+                     GLINT_RAY_MISSED);
+    assert_int_equal(trace_single_ray(&lens, 0.0, none, &ray),
+                     GLINT_RAY_MISSED);
+    assert_int_equal(trace_single_ray(&lens, (double)NAN, along, &ray),
+                     GLINT_RAY_MISSED);
+    assert_int_equal(trace_single_ray(&lens, HUGE_VAL, along, &ray),
+                     GLINT_RAY_MISSED);
+    assert_int_equal(trace_single_ray(&lens, 1e200, along, &ray),
+                     GLINT_RAY_MISSED);
 }
 
-/* ------------------------------------------------------------ many at once */
+/* ---------------------------------------------------------- batches of rays */
 
 /* Checks that N rays traced in a batch, and their hits, are bit-identical to
  * rays traced one by one. Hits of events that are not reached stay
  * unchanged. */
-static void expect_same(const struct glint_path *path, int n,
-                        const struct glint_launch *from)
+static void expect_batch_equals_single_rays(const struct glint_path *path,
+                                            int n,
+                                            const struct glint_launch *from)
 {
     enum { MOST = 40 };
     static double all[MOST * (GLINT_MAX_EVENTS + 1)][2];
@@ -425,7 +446,7 @@ static void expect_same(const struct glint_path *path, int n,
     }
 }
 
-TEST(many_at_once)
+TEST(batch_equals_single_rays)
 {
     static const char *const names[] = {"heliar-tronnier", "canon-zoom-short"};
     static struct glint_prescription lens;
@@ -450,7 +471,7 @@ TEST(many_at_once)
                     1.7 * (i / 9),
                     {sine, 0, i == 7 ? -1 : sqrt(1 - sine * sine)}};
             }
-            expect_same(&path, count, from);
+            expect_batch_equals_single_rays(&path, count, from);
         }
     }
 }
@@ -506,8 +527,9 @@ TEST(axis_goes_straight)
 
 /* Checks that a ray and its mirror image in the plane y = 0 are
  * bit-identical except for the sign of y. */
-static void expect_mirrored(const struct glint_path *path, double px, double py,
-                            const double d[3])
+static void expect_mirrored_ray_is_identical(const struct glint_path *path,
+                                             double px, double py,
+                                             const double d[3])
 {
     const double flipped[3] = {d[0], -d[1], d[2]};
     struct glint_ray a, b;
@@ -526,8 +548,9 @@ static void expect_mirrored(const struct glint_path *path, double px, double py,
 
 /* Checks that a ray rotated by 90 degrees hits the rotated position,
  * bit-identical. */
-static void expect_turned(const struct glint_path *path, double px, double py,
-                          const double d[3])
+static void expect_rotated_ray_is_identical(const struct glint_path *path,
+                                            double px, double py,
+                                            const double d[3])
 {
     const double turned[3] = {-d[1], d[0], d[2]};
     struct glint_ray a, b;
@@ -542,7 +565,7 @@ static void expect_turned(const struct glint_path *path, double px, double py,
     assert_true(a.rel_radius == b.rel_radius);
 }
 
-TEST(symmetry_to_the_bit)
+TEST(mirrored_and_rotated_rays_are_bit_identical)
 {
     static struct glint_prescription lens;
     static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
@@ -557,15 +580,15 @@ TEST(symmetry_to_the_bit)
         for (int i = 0; i < 81; i++) {
             const double px = 3.7 * (i % 9 - 4), py = 3.7 * (i / 9 - 4);
 
-            expect_mirrored(&path, px, py, d);
-            expect_turned(&path, px, py, d);
+            expect_mirrored_ray_is_identical(&path, px, py, d);
+            expect_rotated_ray_is_identical(&path, px, py, d);
         }
     }
 }
 
-/* A distant point is imaged f tan T from the axis by a narrow pencil near
- * the axis, with f = 49.992 mm as in the table. */
-TEST(direct_image)
+/* Checks that a distant point is imaged f tan T from the axis by a narrow
+ * pencil near the axis, with f = 49.992 mm as in the table. */
+TEST(distant_point_is_imaged_at_f_tan_theta)
 {
     static struct glint_prescription lens;
     struct glint_optics optics;
@@ -576,17 +599,19 @@ TEST(direct_image)
     load_lens(&lens, "double-gauss-angenieux");
     glint_optics_of(&lens, &optics);
     for (int i = -4; i <= 4; i++) {
-        assert_int_equal(trace_one(&lens, 0.01 * i, up, &ray), GLINT_RAY_OK);
+        assert_int_equal(trace_single_ray(&lens, 0.01 * i, up, &ray),
+                         GLINT_RAY_OK);
         assert_near(ray.sensor_y_mm, 49.992 * 1e-4, 2e-7);
     }
     /* The chief ray passes the centre of the stop. */
-    assert_int_equal(trace_one(&lens, -optics.entrance_z_mm * sine, up, &ray),
-                     GLINT_RAY_OK);
+    assert_int_equal(
+        trace_single_ray(&lens, -optics.entrance_z_mm * sine, up, &ray),
+        GLINT_RAY_OK);
     assert_near(ray.stop_y_mm, 0.0, 1e-9);
     /* A ray at the rim of the entrance pupil passes the rim of the stop,
      * 1.3200 mm in the table, up to aberrations. */
-    assert_int_equal(trace_one(&lens, optics.entrance_radius_mm,
-                               (const double[3]){0.0, 0.0, 1.0}, &ray),
+    assert_int_equal(trace_single_ray(&lens, optics.entrance_radius_mm,
+                                      (const double[3]){0.0, 0.0, 1.0}, &ray),
                      GLINT_RAY_OK);
     assert_near(ray.stop_y_mm, 1.32, 0.002);
 }

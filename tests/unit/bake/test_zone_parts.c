@@ -10,13 +10,15 @@
 #include "support/lens_check.h"
 #include "support/rng.h"
 
-static bool part_contains(const struct glint_zone_part *p, double u, double v)
+static bool part_contains_position(const struct glint_zone_part *p, double u,
+                                   double v)
 {
     return u >= p->u0 && u < p->u1 && v < p->top &&
            v >= p->top * glint_zone_rim(p->annulus);
 }
 
-/* After any number of halvings, each position lies in exactly one part. */
+/* Checks that after any number of halvings each pupil position lies in exactly
+ * one part. */
 TEST(parts_are_disjoint)
 {
     enum { DEPTH = 8, PARTS = 1 << DEPTH };
@@ -42,24 +44,25 @@ TEST(parts_are_disjoint)
         int found = 0;
 
         for (int k = 0; k < PARTS; k++)
-            found += part_contains(&part[k], u, v);
+            found += part_contains_position(&part[k], u, v);
         assert_int_equal(found, 1);
     }
 }
 
-/* A zone from FROM to TO degrees, of a ghost bright enough that no error is
- * hidden, and an attempt whose error was LEFT tolerances, after 10 for the
- * wider zone. DEPTH 0: the zone is not divided. */
+/* A fit of the zone FROM .. TO, degrees, of a bright ghost: its error was LEFT
+ * tolerances, that of the zone before halving 10 tolerances. DEPTH 0: the pupil
+ * box is not divided. */
 struct attempted {
     bool shaped, far;
     double from, to, left;
-    int depth; /* number of halvings of the box in a thorough fit; -1: the fit
-                  was not thorough */
+    /* number of halvings of the box in a thorough fit; -1: the fit was not
+     * thorough */
+    int depth;
     int axis_depth;
     enum glint_next next;
 };
 
-static enum glint_next decide_next(const struct attempted *c)
+static enum glint_next decide_next_division(const struct attempted *c)
 {
     static struct glint_prescription lens = {.n_surfaces = 2};
     static struct glint_setup setup;
@@ -88,10 +91,10 @@ static enum glint_next decide_next(const struct attempted *c)
     return glint_next(&rules, &piece, &attempt);
 }
 
-/* Parts of wide zones of aspheric lenses do not join without gaps. So their
- * zones are halved where those of spherical lenses would be divided, and
- * their boxes may be divided further. */
-TEST(shaped)
+/* Parts of wide zones of aspheric lenses have gaps between them. So these zones
+ * are halved in angle where those of spherical lenses would be divided into
+ * parts, and their boxes may be halved more often. */
+TEST(wide_zones_of_aspheres_are_halved)
 {
     static const struct attempted all[] = {
         {false, false, 5, 11, 9, -1, 4, GLINT_THOROUGH},
@@ -99,14 +102,14 @@ TEST(shaped)
         {true, false, 5, 8.7, 9, -1, 4, GLINT_HALVE},
         {true, false, 5, 8.5, 9, -1, 4, GLINT_THOROUGH},
         {true, false, 5, 8.5, 7, -1, 4,
-         GLINT_HALVE}, /* since the previous halving helped */
+         GLINT_HALVE}, /* as the previous halving reduced the error */
         {true, false, 5, 11, 0.9, -1, 4, GLINT_KEEP},
         {false, false, 5, 8, 9, 3, 4, GLINT_PART},
         {false, false, 5, 8, 9, 4, 4, GLINT_KEEP},
         {true, false, 5, 8, 9, 5, 4, GLINT_PART},
         {true, false, 5, 8, 9, 6, 4, GLINT_KEEP},
         {true, false, 5, 8, 4, 5, 4, GLINT_KEEP},
-        /* at the axis, the tolerance may allow more halvings */
+        /* zones at the axis may be halved more often, up to axis_depth */
         {false, false, 0, 3, 9, 4, 5, GLINT_PART},
         {true, false, 0, 3, 9, 5, 4, GLINT_PART},
         {true, false, 0, 3, 9, 6, 4, GLINT_KEEP},
@@ -120,7 +123,7 @@ TEST(shaped)
     };
 
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        if (decide_next(&all[i]) != all[i].next)
+        if (decide_next_division(&all[i]) != all[i].next)
             fail_msg("attempt %d: %d, not %d", (int)i,
-                     (int)decide_next(&all[i]), (int)all[i].next);
+                     (int)decide_next_division(&all[i]), (int)all[i].next);
 }

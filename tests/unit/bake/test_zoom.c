@@ -19,7 +19,7 @@ static const char *const ends[] = {"short", "mid", "long"};
 
 static struct glint_prescription zoom, single;
 
-static void load_zoom(const char *name)
+static void load_zoom_lens(const char *name)
 {
     char path[64];
 
@@ -27,7 +27,7 @@ static void load_zoom(const char *name)
     load_lens(&zoom, path);
 }
 
-static void set_zoom(double along)
+static void set_zoom_position(double along)
 {
     struct glint_error error = {""};
 
@@ -35,7 +35,8 @@ static void set_zoom(double along)
         fail_msg("%s", error.text);
 }
 
-static void focus_lens(struct glint_prescription *lens, double metres)
+static void focus_lens_at_distance(struct glint_prescription *lens,
+                                   double metres)
 {
     struct glint_error error = {""};
 
@@ -43,17 +44,17 @@ static void focus_lens(struct glint_prescription *lens, double metres)
         fail_msg("%s", error.text);
 }
 
-/* At its columns a zoom equals the lens of the corresponding table,
- * bit-identical. */
-TEST(columns)
+/* Checks that at a column of its table a zoom equals the lens of the
+ * single-position table, bit-identical. */
+TEST(zoom_at_a_column_equals_its_table)
 {
     for (int k = 0; k < 9; k++) {
         char name[64];
 
         snprintf(name, sizeof name, "%s-%s", zooms[k / 3], ends[k % 3]);
         load_lens(&single, name);
-        load_zoom(zooms[k / 3]);
-        set_zoom(zoom.zoom.along[k % 3]);
+        load_zoom_lens(zooms[k / 3]);
+        set_zoom_position(zoom.zoom.along[k % 3]);
         assert_int_equal(zoom.n_surfaces, single.n_surfaces);
         for (int i = 0; i < zoom.n_surfaces; i++)
             assert_memory_equal(&zoom.surface[i], &single.surface[i],
@@ -65,8 +66,8 @@ TEST(columns)
     }
 }
 
-/* Between columns focal lengths are monotone and the image stays in focus;
- * glint_prescription_zoom_to() finds each focal length again. */
+/* Checks that between columns focal lengths are monotone and the image stays in
+ * focus; glint_prescription_zoom_to() finds each focal length again. */
 TEST(monotone_between_columns)
 {
     enum { STEPS = 40 };
@@ -79,15 +80,15 @@ TEST(monotone_between_columns)
             struct glint_optics optics;
             double along = -1;
 
-            load_zoom(zooms[z]);
-            set_zoom((double)k / STEPS);
+            load_zoom_lens(zooms[z]);
+            set_zoom_position((double)k / STEPS);
             glint_optics_of(&zoom, &optics);
             assert_true(optics.focal_mm > before);
             before = optics.focal_mm;
             assert_near(zoom.surface[zoom.n_surfaces - 1].thickness_mm,
                         optics.back_focal_mm, 1e-6);
             assert_true(zoom.surface[zoom.n_surfaces - 1].thickness_mm > 20);
-            load_zoom(zooms[z]);
+            load_zoom_lens(zooms[z]);
             assert_ok(glint_prescription_zoom_to(&zoom, optics.focal_mm, &along,
                                                  &error));
             assert_near(along, (double)k / STEPS, k % STEPS ? 1e-6 : 1e-12);
@@ -97,8 +98,8 @@ TEST(monotone_between_columns)
 
 /* Returns the sensor position, mm, of a ray through (X, 0) of the front's
  * vertex plane with the slope TANGENT. */
-static double trace_to_sensor(const struct glint_prescription *lens, double x,
-                              double tangent)
+static double trace_ray_to_sensor(const struct glint_prescription *lens,
+                                  double x, double tangent)
 {
     static struct glint_path path;
     const double size = sqrt(1 + tangent * tangent);
@@ -113,52 +114,54 @@ static double trace_to_sensor(const struct glint_prescription *lens, double x,
 
 /* Checks that rays from the focused point meet on the sensor, and that
  * distant light is imaged at the position given by scale_mm. */
-static void check_focus(struct glint_prescription *lens, double metres)
+static void check_lens_is_focused(struct glint_prescription *lens,
+                                  double metres)
 {
     const double h = 1e-3, angle = 1e-5;
     struct glint_optics before, optics;
     double object;
 
     glint_optics_of(lens, &before);
-    focus_lens(lens, metres);
+    focus_lens_at_distance(lens, metres);
     glint_optics_of(lens, &optics);
     object = 1000 * metres - optics.length_mm;
-    assert_near(trace_to_sensor(lens, h, h / object), 0,
+    assert_near(trace_ray_to_sensor(lens, h, h / object), 0,
                 1e-7 * h * before.focal_mm);
-    assert_true(fabs(trace_to_sensor(lens, h, 0)) > 1e-3 * h);
-    assert_near(trace_to_sensor(lens, -optics.entrance_z_mm * angle, angle) /
-                    angle,
-                optics.scale_mm, 1e-4 * optics.scale_mm);
+    assert_true(fabs(trace_ray_to_sensor(lens, h, 0)) > 1e-3 * h);
+    assert_near(
+        trace_ray_to_sensor(lens, -optics.entrance_z_mm * angle, angle) / angle,
+        optics.scale_mm, 1e-4 * optics.scale_mm);
     assert_true(fabs(optics.scale_mm - before.focal_mm) >
                 1e-3 * before.focal_mm);
 }
 
-TEST(focus_lens)
+TEST(focused_lens_images_the_distance_sharply)
 {
     static const double metres[] = {1.5, 5, 30};
 
     for (int k = 0; k < 3; k++) {
         load_lens(&single, "heliar-tronnier");
-        check_focus(&single, metres[k]);
+        check_lens_is_focused(&single, metres[k]);
         load_lens(&single, "double-gauss-angenieux");
-        check_focus(&single, metres[k] / 3);
+        check_lens_is_focused(&single, metres[k] / 3);
         for (int z = 0; z < 9; z++) {
-            load_zoom(zooms[z / 3]);
-            set_zoom(0.5 * (z % 3));
-            check_focus(&zoom, metres[k]);
+            load_zoom_lens(zooms[z / 3]);
+            set_zoom_position(0.5 * (z % 3));
+            check_lens_is_focused(&zoom, metres[k]);
         }
     }
 }
 
-/* Newton's formula, x x' = f^2, holds for a lens that moves as a whole. */
-TEST(newtons_formula)
+/* Checks that Newton's formula, x x' = f^2, holds for a lens that moves as a
+ * whole. */
+TEST(moving_the_lens_obeys_newtons_formula)
 {
     struct glint_optics optics;
     double before, moved;
 
     load_lens(&single, "heliar-tronnier");
     before = single.surface[single.n_surfaces - 1].thickness_mm;
-    focus_lens(&single, 2);
+    focus_lens_at_distance(&single, 2);
     moved = single.surface[single.n_surfaces - 1].thickness_mm - before;
     glint_optics_of(&single, &optics);
     /* the front focus lies about one focal length in front of the lens */
@@ -167,8 +170,9 @@ TEST(newtons_formula)
                 0.5 * optics.focal_mm);
 }
 
-/* A stop in front of the focusing group keeps its distance from the sensor. */
-TEST(front_stop)
+/* Checks that a stop in front of the focusing group keeps its distance from the
+ * sensor. */
+TEST(front_stop_keeps_its_distance_to_the_sensor)
 {
     static const char text[] =
         "name t\nfilm 36 24\nf-number 10\nstop 5 8\nfocus\n"
@@ -183,15 +187,15 @@ TEST(front_stop)
         fail_msg("%s", error.text);
     glint_optics_of(&single, &optics);
     before = optics.length_mm + single.stop_thickness_mm;
-    focus_lens(&single, 3);
+    focus_lens_at_distance(&single, 3);
     glint_optics_of(&single, &optics);
     assert_true(single.stop_thickness_mm < 4.5);
     assert_near(optics.length_mm + single.stop_thickness_mm, before, 1e-9);
 }
 
-/* With a stop in front, elements are still solid: surfaces whose rims do not
- * touch may not pass through each other's vertices. */
-TEST(solid)
+/* Checks that elements behind a front stop are still solid: surfaces whose rims
+ * do not touch may not pass through each other's vertices. */
+TEST(elements_stay_solid_behind_a_front_stop)
 {
     static const char text[] =
         "name t\nfilm 36 24\nf-number 10\nstop 5 8\n"
@@ -201,7 +205,7 @@ TEST(solid)
 
     assert_ok(glint_prescription_parse(&single, text, strlen(text), "t.lens",
                                        &error));
-    focus_lens(&single, 20);
+    focus_lens_at_distance(&single, 20);
     assert_true(single.surface[1].thickness_mm > 0);
     assert_ok(glint_prescription_parse(&single, text, strlen(text), "t.lens",
                                        &error));
@@ -212,7 +216,7 @@ TEST(solid)
 
 /* -------------------------------------------------------------------- text */
 
-static void check_refused(const char *body, const char *cause)
+static void check_table_is_rejected(const char *body, const char *cause)
 {
     struct glint_error error = {""};
     char text[1000];
@@ -228,30 +232,35 @@ static void check_refused(const char *body, const char *cause)
 #define FRONT "surface 50 4 12 1.5 60\nsurface -50 "
 #define BACK  " 12 air\nsurface 40 4 12 1.5 60\nsurface -60 30 12 air\nstop 5 9"
 
-TEST(text)
+TEST(rejects_wrong_columns)
 {
-    check_refused("f-number 10\n" FRONT "4/x" BACK,
-                  "t.lens:5:15: thickness 'x'");
-    check_refused("f-number 10\n" FRONT "4//6" BACK, "thickness");
-    check_refused("f-number 10/11/12\n" FRONT "4/6" BACK,
-                  "thickness has 2 positions, but the lines above have 3");
-    check_refused("f-number 10/11\n" FRONT "4" BACK, "no thickness changes");
-    check_refused("f-number 10\n" FRONT "4/4" BACK,
-                  "focal lengths must only rise or only fall");
-    check_refused("f-number 10\n" FRONT "1/2/3/4/5/6/7/8/9" BACK,
-                  "more than 8 positions");
-    check_refused("f-number 10\nfocal-length 31/99\n" FRONT "4/6" BACK,
-                  "focal-length is");
-    check_refused("f-number 10\nfocus\n" FRONT "4/6" BACK, "end it above");
-    check_refused("f-number 10\nfocus\ngroup tilt 1 0\n" FRONT "4/6" BACK,
-                  "t.lens:5:1: the group above has no end");
-    check_refused("f-number 10\nfocus\nend\n" FRONT "4/6" BACK,
-                  "no surface moves");
+    check_table_is_rejected("f-number 10\n" FRONT "4/x" BACK,
+                            "t.lens:5:15: thickness 'x'");
+    check_table_is_rejected("f-number 10\n" FRONT "4//6" BACK, "thickness");
+    check_table_is_rejected(
+        "f-number 10/11/12\n" FRONT "4/6" BACK,
+        "thickness has 2 positions, but the lines above have 3");
+    check_table_is_rejected("f-number 10/11\n" FRONT "4" BACK,
+                            "no thickness changes");
+    check_table_is_rejected("f-number 10\n" FRONT "4/4" BACK,
+                            "focal lengths must only rise or only fall");
+    check_table_is_rejected("f-number 10\n" FRONT "1/2/3/4/5/6/7/8/9" BACK,
+                            "more than 8 positions");
+    check_table_is_rejected("f-number 10\nfocal-length 31/99\n" FRONT
+                            "4/6" BACK,
+                            "focal-length is");
+    check_table_is_rejected("f-number 10\nfocus\n" FRONT "4/6" BACK,
+                            "end it above");
+    check_table_is_rejected("f-number 10\nfocus\ngroup tilt 1 0\n" FRONT
+                            "4/6" BACK,
+                            "t.lens:5:1: the group above has no end");
+    check_table_is_rejected("f-number 10\nfocus\nend\n" FRONT "4/6" BACK,
+                            "no surface moves");
 }
 
-/* The result of a zoom does not depend on the previous position, even if the
- * table has a single last gap, whose distance from the focus differs per
- * column. */
+/* Checks that the result of a zoom does not depend on the previous position,
+ * even if the table has a single last gap, whose distance from the focus
+ * differs per column. */
 TEST(result_is_independent_of_history)
 {
     static const char text[] =
@@ -266,14 +275,14 @@ TEST(result_is_independent_of_history)
     for (int i = 0; i < 5; i++) {
         single = once;
         assert_ok(glint_prescription_zoom(&single, places[i], &error));
-        set_zoom(places[i]);
+        set_zoom_position(places[i]);
         assert_memory_equal(&zoom, &single, sizeof zoom);
     }
 }
 
-/* With two columns f-numbers are interpolated linearly. Descending focal
- * lengths work like ascending ones. */
-TEST(two_columns)
+/* Checks that with two columns f-numbers are interpolated linearly. Descending
+ * focal lengths work like ascending ones. */
+TEST(two_columns_are_interpolated_linearly)
 {
     static const char *const texts[] = {
         "name t\nfilm 36 24\nf-number 10/20\n" FRONT "4/6" BACK,
@@ -288,7 +297,7 @@ TEST(two_columns)
                                      "t.lens", &error))
             fail_msg("%s", error.text);
         single = zoom;
-        set_zoom(0.3);
+        set_zoom_position(0.3);
         assert_near(zoom.f_number, 13, 1e-9);
         glint_optics_of(&zoom, &optics);
         assert_ok(glint_prescription_zoom_to(&single, optics.focal_mm, &along,
@@ -297,7 +306,7 @@ TEST(two_columns)
     }
 }
 
-TEST(refusals)
+TEST(rejects_invalid_positions)
 {
     struct glint_error error = {""};
     double along;
@@ -309,7 +318,7 @@ TEST(refusals)
     assert_int_equal(glint_prescription_focus(&single, 0.1, &error),
                      GLINT_E_ARGUMENT);
     assert_non_null(strstr(error.text, "only down to 0.2"));
-    load_zoom("canon-zoom");
+    load_zoom_lens("canon-zoom");
     assert_int_equal(glint_prescription_zoom(&zoom, 1.5, &error),
                      GLINT_E_ARGUMENT);
     assert_int_equal(glint_prescription_zoom_to(&zoom, 300, &along, &error),

@@ -13,7 +13,8 @@
 
 TEST(measure_and_place)
 {
-    static uint8_t mem[256]; /* The caller must align the memory. */
+    /* glint_arena_over() leaves the alignment of the memory to the caller. */
+    static uint8_t mem[256];
     struct glint_arena m = glint_arena_measure(), p;
 
     assert_null(glint_arena_take(&m, 3, 4));  /* 64 bytes */
@@ -28,7 +29,7 @@ TEST(measure_and_place)
     assert_true(p.used > p.size);
 }
 
-TEST(overflow_is_full)
+TEST(overflowing_size_fills_the_arena)
 {
     struct glint_arena m = glint_arena_measure();
 
@@ -38,7 +39,7 @@ TEST(overflow_is_full)
 }
 
 /* Checks rounding to nearest, ties up, also of negative numbers. */
-TEST(rounding)
+TEST(rounds_to_nearest_ties_up)
 {
     assert_int_equal(q_shift(5, 1), 3);
     assert_int_equal(q_shift(-5, 1), -2);
@@ -59,7 +60,7 @@ TEST(rounding)
 
 /* Checks that CONFIG=qcheck traps if a result does not fit. Skipped in other
  * builds, in which it may wrap. */
-TEST(overflow_traps)
+TEST(qcheck_traps_on_overflow)
 {
 #ifdef GLINT_Q_CHECK
     {
@@ -81,7 +82,7 @@ TEST(overflow_traps)
 #endif
 }
 
-TEST(image_sizes)
+TEST(image_sizes_match_their_layout)
 {
     struct glint_image image = {.format = GLINT_I420, .width = 5, .height = 3};
     uint8_t mem[27];
@@ -98,7 +99,7 @@ TEST(image_sizes)
     assert_int_equal(image.stride_bytes[1], 3);
 }
 
-static void count_job(void *ctx, int job, int worker)
+static void add_job_number(void *ctx, int job, int worker)
 {
     int *sum = ctx;
 
@@ -106,11 +107,11 @@ static void count_job(void *ctx, int job, int worker)
     *sum += job;
 }
 
-TEST(serial_workers)
+TEST(null_workers_run_jobs_serially)
 {
     int sum = 0;
 
-    glint_workers_run(NULL, 5, count_job, &sum);
+    glint_workers_run(NULL, 5, add_job_number, &sum);
     assert_int_equal(sum, 10);
     assert_int_equal(glint_workers_count(NULL), 1);
 }

@@ -18,7 +18,7 @@ struct file {
     uint32_t word[BYTES / 4];
 };
 
-static void make_file(struct file *f)
+static void make_baked_file(struct file *f)
 {
     memset(f, 0, sizeof *f);
     f->word[0] = kind.magic;
@@ -31,26 +31,26 @@ static void make_file(struct file *f)
     glint_blob_seal(f, BYTES);
 }
 
-static enum glint_blob_fault open_file(const struct file *f, size_t bytes)
+static enum glint_blob_fault open_baked_file(const struct file *f, size_t bytes)
 {
     struct glint_blob blob;
 
     return glint_blob_open(&blob, &kind, f, bytes);
 }
 
-TEST(crc)
+TEST(crc32_of_known_text)
 {
     assert_true(glint_blob_crc32("123456789", 9) == UINT32_C(0xcbf43926));
     assert_true(glint_blob_crc32("", 0) == 0);
 }
 
 /* Checks that fields have the offsets of existing files. */
-TEST(layout)
+TEST(fields_have_the_offsets_of_existing_files)
 {
     struct glint_blob blob;
     struct file f;
 
-    make_file(&f);
+    make_baked_file(&f);
     assert_int_equal(f.word[2], BYTES);
     assert_true(f.word[3] == glint_blob_crc32(&f.word[4], BYTES - 16));
     assert_int_equal(glint_blob_open(&blob, &kind, &f, BYTES), GLINT_BLOB_OK);
@@ -60,7 +60,7 @@ TEST(layout)
     assert_int_equal(glint_blob_check_name(&blob), GLINT_BLOB_OK);
 }
 
-TEST(faults)
+TEST(reports_the_fault_of_a_header)
 {
     static const struct {
         int word;
@@ -75,37 +75,38 @@ TEST(faults)
     struct file f;
 
     for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
-        make_file(&f);
+        make_baked_file(&f);
         f.word[of[k].word] = of[k].value;
-        assert_int_equal(open_file(&f, BYTES), of[k].fault);
+        assert_int_equal(open_baked_file(&f, BYTES), of[k].fault);
     }
-    make_file(&f);
-    assert_int_equal(open_file(&f, 7), GLINT_BLOB_FOREIGN);
-    assert_int_equal(open_file(&f, 8), GLINT_BLOB_TRUNCATED);
-    assert_int_equal(open_file(&f, HEADER - 1), GLINT_BLOB_TRUNCATED);
+    make_baked_file(&f);
+    assert_int_equal(open_baked_file(&f, 7), GLINT_BLOB_FOREIGN);
+    assert_int_equal(open_baked_file(&f, 8), GLINT_BLOB_TRUNCATED);
+    assert_int_equal(open_baked_file(&f, HEADER - 1), GLINT_BLOB_TRUNCATED);
     assert_int_equal(glint_blob_open(&(struct glint_blob){0}, &kind,
                                      (const unsigned char *)&f + 1, BYTES - 4),
                      GLINT_BLOB_UNALIGNED);
 }
 
-/* Checks that a wrong bit in the checksum or after it is detected. */
-TEST(damage)
+/* Checks that any wrong bit from the checksum to the end of the file is
+ * detected. */
+TEST(detects_any_changed_bit)
 {
     struct file f;
 
     for (int bit = 8 * 12; bit < 8 * BYTES; bit++) {
-        make_file(&f);
+        make_baked_file(&f);
         ((unsigned char *)&f)[bit / 8] ^= (unsigned char)(1 << bit % 8);
-        assert_int_equal(open_file(&f, BYTES), GLINT_BLOB_DAMAGED);
+        assert_int_equal(open_baked_file(&f, BYTES), GLINT_BLOB_DAMAGED);
     }
 }
 
-static enum glint_blob_fault check_name(const char *name, size_t length)
+static enum glint_blob_fault check_blob_name(const char *name, size_t length)
 {
     struct glint_blob blob;
     struct file f;
 
-    make_file(&f);
+    make_baked_file(&f);
     memset(&f.word[7], 0, 64);
     memcpy(&f.word[7], name, length);
     glint_blob_seal(&f, BYTES);
@@ -113,25 +114,25 @@ static enum glint_blob_fault check_name(const char *name, size_t length)
     return glint_blob_check_name(&blob);
 }
 
-TEST(names)
+TEST(rejects_endless_and_unprintable_names)
 {
     char longest[64];
 
     memset(longest, '~', sizeof longest);
-    assert_int_equal(check_name(longest, 63), GLINT_BLOB_OK);
-    assert_int_equal(check_name(longest, 64), GLINT_BLOB_NAME_ENDLESS);
-    assert_int_equal(check_name("", 0), GLINT_BLOB_NAME_EMPTY);
-    assert_int_equal(check_name("a\033[2J", 5), GLINT_BLOB_NAME_CONTROL);
-    assert_int_equal(check_name("a\177", 2), GLINT_BLOB_NAME_CONTROL);
-    assert_int_equal(check_name("a\233", 2), GLINT_BLOB_NAME_FOREIGN);
+    assert_int_equal(check_blob_name(longest, 63), GLINT_BLOB_OK);
+    assert_int_equal(check_blob_name(longest, 64), GLINT_BLOB_NAME_ENDLESS);
+    assert_int_equal(check_blob_name("", 0), GLINT_BLOB_NAME_EMPTY);
+    assert_int_equal(check_blob_name("a\033[2J", 5), GLINT_BLOB_NAME_CONTROL);
+    assert_int_equal(check_blob_name("a\177", 2), GLINT_BLOB_NAME_CONTROL);
+    assert_int_equal(check_blob_name("a\233", 2), GLINT_BLOB_NAME_FOREIGN);
 }
 
-TEST(sections)
+TEST(rejects_sections_outside_the_file)
 {
     struct glint_blob blob;
     struct file f;
 
-    make_file(&f);
+    make_baked_file(&f);
     assert_int_equal(glint_blob_open(&blob, &kind, &f, BYTES), GLINT_BLOB_OK);
     assert_ptr_equal(glint_blob_section(&blob, HEADER, 3, 8),
                      &f.word[HEADER / 4]);

@@ -21,17 +21,17 @@ static void check_division(int64_t n, int64_t d)
 }
 
 /* Returns a random number of any magnitude and sign. */
-static int64_t random_number(void)
+static int64_t random_signed_number(void)
 {
     const int64_t size = (int64_t)(random_bits() >> (1 + random_bits() % 63));
 
     return random_bits() & 1 ? -size : size;
 }
 
-TEST(any)
+TEST(random_divisions_are_exact)
 {
     for (int i = 0; i < 1000000; i++) {
-        const int64_t n = random_number(), d = random_number();
+        const int64_t n = random_signed_number(), d = random_signed_number();
 
         if (d != 0)
             check_division(n, d);
@@ -39,7 +39,7 @@ TEST(any)
 }
 
 /* Checks numerators at and next to multiples of D, and powers of two. */
-TEST(borders)
+TEST(divisions_near_multiples_are_exact)
 {
     for (int i = 0; i < 300000; i++) {
         const int64_t d =
@@ -72,7 +72,7 @@ static void check_reciprocal(uint32_t x)
     assert_int_equal(q_reciprocal(x), (UINT64_MAX >> 1) / x);
 }
 
-TEST(reciprocal)
+TEST(reciprocals_are_exact)
 {
     for (uint32_t off = 0; off < 300000; off++) {
         check_reciprocal(UINT32_C(0x80000000) + off);
@@ -84,7 +84,7 @@ TEST(reciprocal)
 
 /* Checks that q_part_q30() differs from n / d by at most 2^-30 upwards and
  * 2^-29 downwards. */
-TEST(part)
+TEST(q30_fraction_is_within_its_error)
 {
     for (int i = 0; i < 300000; i++) {
         const uint64_t d = 1 + (random_bits() >> (2 + random_bits() % 62));

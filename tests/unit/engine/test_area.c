@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the points that represent a lamp of visible extent: their total power,
- * centroid and RMS extent equal the lamp's, they change continuously as the
- * lamp grows, and their number is limited.
+ * Tests the point lights that represent a lamp of visible extent: their total
+ * power, centroid and RMS extent equal the lamp's, they change continuously as
+ * the lamp grows, and their number is limited.
  */
 #include <math.h>
 
@@ -13,7 +13,7 @@ static const double degree = 3.14159265358979323846 / 180;
 
 enum { MOST = 61, PIXELS = 1000 };
 
-static struct glint_lamp make_lamp(double major_px, double minor_px)
+static struct glint_lamp make_disc_lamp(double major_px, double minor_px)
 {
     return (struct glint_lamp){.theta_deg = 9,
                                .phi_deg = 200,
@@ -23,7 +23,8 @@ static struct glint_lamp make_lamp(double major_px, double minor_px)
                                .turn_deg = 30};
 }
 
-static void find_position(const struct glint_lamp *lamp, double *u, double *v)
+static void compute_lamp_position(const struct glint_lamp *lamp, double *u,
+                                  double *v)
 {
     *u = PIXELS * tan(lamp->theta_deg * degree) * cos(lamp->phi_deg * degree);
     *v = PIXELS * tan(lamp->theta_deg * degree) * sin(lamp->phi_deg * degree);
@@ -32,15 +33,15 @@ static void find_position(const struct glint_lamp *lamp, double *u, double *v)
 /* Sets SUM to sums over the points of LAMP: power; power times offset from
  * the lamp, pixels, in u and v; power times squared offset along the lamp's
  * major and minor axis. Returns the number of points. */
-static int compute_sums(const struct glint_lamp *lamp, double thinning,
-                        double sum[5])
+static int compute_point_sums(const struct glint_lamp *lamp, double thinning,
+                              double sum[5])
 {
     struct glint_area area;
     const struct glint_area_rule rule = {PIXELS, MOST, lamp->power, thinning};
     const int n = glint_area_plan(&area, lamp, &rule);
     double u0, v0, u, v;
 
-    find_position(lamp, &u0, &v0);
+    compute_lamp_position(lamp, &u0, &v0);
     for (int i = 0; i < 5; i++)
         sum[i] = 0;
     for (int i = 0; i < n; i++) {
@@ -48,7 +49,7 @@ static int compute_sums(const struct glint_lamp *lamp, double thinning,
         const double c = cos(lamp->turn_deg * degree);
         const double s = sin(lamp->turn_deg * degree);
 
-        find_position(&p, &u, &v);
+        compute_lamp_position(&p, &u, &v);
         u -= u0;
         v -= v0;
         assert_true(p.axis[0] == 0 && p.axis[1] == 0);
@@ -63,7 +64,7 @@ static int compute_sums(const struct glint_lamp *lamp, double thinning,
 
 TEST(small_lamp_is_one_point)
 {
-    const struct glint_lamp lamp = make_lamp(0, 0);
+    const struct glint_lamp lamp = make_disc_lamp(0, 0);
     struct glint_area area;
     struct glint_lamp point;
     int total;
@@ -80,10 +81,10 @@ TEST(small_lamp_is_one_point)
 
 TEST(sums_equal_the_lamp)
 {
-    const struct glint_lamp lamp = make_lamp(30, 10);
+    const struct glint_lamp lamp = make_disc_lamp(30, 10);
     double sum[5];
 
-    assert_int_equal(compute_sums(&lamp, 1, sum), MOST);
+    assert_int_equal(compute_point_sums(&lamp, 1, sum), MOST);
     assert_true(fabs(sum[0] - 5) < 1e-9);
     assert_true(fabs(sum[1] - 0) < 1e-6);
     assert_true(fabs(sum[2] - 0) < 1e-6);
@@ -94,12 +95,12 @@ TEST(sums_equal_the_lamp)
 /* Checks that the points do not move when the lamp's rotation passes 90
  * degrees (a half turn of its axes), and that those of a round lamp do not
  * depend on the rotation. */
-TEST(axes_have_no_sign)
+TEST(half_turn_of_the_axes_keeps_the_points)
 {
     const struct glint_area_rule rule = {PIXELS, MOST, 5, 1};
 
     for (int k = 0; k < 3; k++) {
-        struct glint_lamp lamp = make_lamp(12, k == 0 ? 4 : 12);
+        struct glint_lamp lamp = make_disc_lamp(12, k == 0 ? 4 : 12);
         struct glint_area a, b;
         double most = 0;
         int n;
@@ -113,8 +114,8 @@ TEST(axes_have_no_sign)
             const struct glint_lamp q = glint_area_point(&b, i);
             double u[2], v[2];
 
-            find_position(&p, &u[0], &v[0]);
-            find_position(&q, &u[1], &v[1]);
+            compute_lamp_position(&p, &u[0], &v[0]);
+            compute_lamp_position(&q, &u[1], &v[1]);
             most = fmax(most, hypot(u[0] - u[1], v[0] - v[1]));
         }
         assert_true(most < 1e-9);
@@ -123,15 +124,16 @@ TEST(axes_have_no_sign)
 
 /* Checks, while a lamp grows by 0.005 px per step, that the centroid stays
  * and that the second moments change little per step. */
-TEST(grows_continuously)
+TEST(points_change_continuously_as_a_lamp_grows)
 {
     double last[5], sum[5];
 
-    compute_sums(&(struct glint_lamp){.power = 0}, 1, last);
+    compute_point_sums(&(struct glint_lamp){.power = 0}, 1, last);
     for (int step = 0; step <= 4000; step++) {
-        const struct glint_lamp lamp = make_lamp(step * 0.005, step * 0.005);
+        const struct glint_lamp lamp =
+            make_disc_lamp(step * 0.005, step * 0.005);
 
-        compute_sums(&lamp, 1, sum);
+        compute_point_sums(&lamp, 1, sum);
         assert_true(fabs(sum[1] - 0) < 1e-6);
         assert_true(fabs(sum[2] - 0) < 1e-6);
         if (step > 0)
@@ -149,7 +151,7 @@ TEST(point_count_is_limited)
     int total;
 
     for (int i = 0; i < 10; i++)
-        lamps[i] = make_lamp(3 * i, 2 * i);
+        lamps[i] = make_disc_lamp(3 * i, 2 * i);
     for (int room = 1; room < 700; room++) {
         const struct glint_area_rule rule =
             glint_area_rule_of(lamps, 10, PIXELS, MOST, room, &total);
@@ -170,9 +172,10 @@ TEST(point_count_is_limited)
 
 /* Checks that a lamp of 1/16 of the power gets 1/4 of the points, as steps
  * between faint points are less visible. */
-TEST(faint_lamps_get_fewer)
+TEST(faint_lamps_get_fewer_points)
 {
-    struct glint_lamp lamps[2] = {make_lamp(30, 30), make_lamp(30, 30)};
+    struct glint_lamp lamps[2] = {make_disc_lamp(30, 30),
+                                  make_disc_lamp(30, 30)};
     struct glint_area area;
     struct glint_area_rule rule;
     int total;
@@ -189,7 +192,7 @@ TEST(faint_lamps_get_fewer)
  * square grid with equal area per point, and changes continuously as the
  * disc grows from one point to many. An ellipse 1/100 as wide has a fifth of
  * that distance. */
-TEST(distance_of_points)
+TEST(point_distance_is_that_of_a_square_grid)
 {
     struct glint_area area;
     double last = 0;
@@ -197,7 +200,7 @@ TEST(distance_of_points)
 
     for (int step = 0; step <= 4000; step++) {
         const double radius = step * 0.01; /* RMS radius, pixels */
-        const struct glint_lamp lamp = make_lamp(radius, radius);
+        const struct glint_lamp lamp = make_disc_lamp(radius, radius);
         const struct glint_area_rule rule =
             glint_area_rule_of(&lamp, 1, PIXELS, MOST, 1000, &total);
         double apart;

@@ -28,7 +28,7 @@ static struct machine {
     uint32_t noise;
 } machine;
 
-static double frame_ms(const struct machine *m)
+static double simulated_frame_ms(const struct machine *m)
 {
     const double pixels = glint_dials_half(&m->frame->dials) ? 0.4 : 1;
 
@@ -44,14 +44,14 @@ double __wrap_tool_seconds(void)
         machine.noise ? 0.94 + 0.12 * rng_unit(&machine.noise) : 1;
 
     if (machine.frame)
-        machine.now_s += 1e-3 * frame_ms(&machine) / 3 * noise;
+        machine.now_s += 1e-3 * simulated_frame_ms(&machine) / 3 * noise;
     return machine.now_s;
 }
 
 /* Draws N frames with a budget of BUDGET_MS and returns the report of the
  * last. */
-static struct glint_engine_report draw_frames(struct glint_frame *frame,
-                                              double budget_ms, int n)
+static struct glint_engine_report
+draw_frames_with_budget(struct glint_frame *frame, double budget_ms, int n)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = glint_image_over(px, GLINT_YUYV, WIDTH, HEIGHT);
@@ -64,21 +64,22 @@ static struct glint_engine_report draw_frames(struct glint_frame *frame,
     return report;
 }
 
-static void make_frame(struct glint_frame *frame)
+static void make_test_frame(struct glint_frame *frame)
 {
-    assert_ok(settings_frame(&tool, &opened, WIDTH, HEIGHT, frame));
+    assert_ok(make_frame_from_settings(&tool, &opened, WIDTH, HEIGHT, frame));
 }
 
 static const struct machine machines[] = {
-    {NULL, 1, 3, 1.3, 0.5, 0, 0}, /* costs close to those of the cost model */
+    /* frame times close to those of the cost model */
+    {NULL, 1, 3, 1.3, 0.5, 0, 0},
     {NULL, 0.2, 8, 2, 0, 0, 0},   /* costly rays */
     {NULL, 2, 1, 1, 1.5, 0, 0},   /* costly edges */
-    {NULL, 1, 3, 1.3, 0.5, 0, 7}, /* +-6 percent of noise */
+    {NULL, 1, 3, 1.3, 0.5, 0, 7}, /* frame times with 6 % of noise */
 };
 
 /* Checks that on each machine a frame takes 0.8 to 1.1 of its budget, and
  * that a larger budget does not reduce the quality. */
-TEST(keeps_to_it)
+TEST(frame_time_stays_within_the_budget)
 {
     static const double budget_ms[] = {4.2, 5, 7, 10};
 
@@ -91,10 +92,10 @@ TEST(keeps_to_it)
             double took;
 
             machine = machines[m];
-            make_frame(&frame);
+            make_test_frame(&frame);
             machine.frame = &frame;
-            report = draw_frames(&frame, budget_ms[i], SETTLED);
-            took = frame_ms(&machine);
+            report = draw_frames_with_budget(&frame, budget_ms[i], SETTLED);
+            took = simulated_frame_ms(&machine);
             machine.frame = NULL;
             assert_true(report.quality >= last - 0.05);
             assert_true(took < 1.1 * budget_ms[i]);
@@ -111,8 +112,8 @@ TEST(keeps_to_it)
  * the cost model, and draws N frames. The cheapest level at full resolution
  * takes 4.2 ms. Returns how many of the N frames have full resolution;
  * *LAST: whether the last one has. */
-static int count_full_resolution(double ms, int from, double octaves, int n,
-                                 bool *last)
+static int count_full_resolution_frames(double ms, int from, double octaves,
+                                        int n, bool *last)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = glint_image_over(px, GLINT_YUYV, WIDTH, HEIGHT);
@@ -121,9 +122,9 @@ static int count_full_resolution(double ms, int from, double octaves, int n,
     int n_whole = 0;
 
     machine = (struct machine){NULL, 4, 1, 1.3, 0.5, 0, 0};
-    make_frame(&frame);
+    make_test_frame(&frame);
     machine.frame = &frame;
-    draw_frames(&frame, 2.2, SETTLED);
+    draw_frames_with_budget(&frame, 2.2, SETTLED);
     frame.budget.ms = ms;
     for (int i = from; i < GLINT_QUALITY_LEVELS; i++)
         frame.budget.octaves[i] = frame.budget.octaves[0] + octaves;
@@ -139,11 +140,12 @@ static int count_full_resolution(double ms, int from, double octaves, int n,
 
 /* Checks that levels whose times are overestimated are used in the end if
  * they fit. */
-TEST(tries_again)
+TEST(overestimated_levels_are_used_in_the_end)
 {
     bool last;
 
-    assert_in_range(count_full_resolution(4.6, 1, 1.5, 300, &last), 1, 299);
+    assert_in_range(count_full_resolution_frames(4.6, 1, 1.5, 300, &last), 1,
+                    299);
     assert_true(last);
 }
 
@@ -151,53 +153,55 @@ TEST(tries_again)
  * within some frames if the levels predicted to fit take far less, and that
  * a level which does not fit is not retried too often (14 of these 100
  * frames; 52 without the limit). */
-TEST(tries_next)
+TEST(slightly_too_slow_level_is_tried)
 {
     bool last;
 
-    assert_in_range(count_full_resolution(4.6, 2, 0.95, 20, &last), 1, 20);
+    assert_in_range(count_full_resolution_frames(4.6, 2, 0.95, 20, &last), 1,
+                    20);
     assert_true(last);
     /* A level predicted to exceed the budget by half is not tried. */
-    assert_int_equal(count_full_resolution(4.6, 2, 1.3, 20, &last), 0);
+    assert_int_equal(count_full_resolution_frames(4.6, 2, 1.3, 20, &last), 0);
     assert_in_range(
-        count_full_resolution(4.1, GLINT_QUALITY_LEVELS, 0, 100, &last), 1, 25);
+        count_full_resolution_frames(4.1, GLINT_QUALITY_LEVELS, 0, 100, &last),
+        1, 25);
     assert_false(last);
 }
 
-TEST(ends)
+TEST(extreme_budgets_give_extreme_qualities)
 {
     struct glint_frame frame;
 
     machine = machines[0];
-    make_frame(&frame);
+    make_test_frame(&frame);
     machine.frame = &frame;
-    assert_true(draw_frames(&frame, 0.1, 10).quality == 0);
-    assert_true(draw_frames(&frame, 1e4, 10).quality == 1);
+    assert_true(draw_frames_with_budget(&frame, 0.1, 10).quality == 0);
+    assert_true(draw_frames_with_budget(&frame, 1e4, 10).quality == 1);
     /* The quality drops at once, not after many late frames. */
-    assert_true(draw_frames(&frame, 0.1, 2).quality == 0);
+    assert_true(draw_frames_with_budget(&frame, 0.1, 2).quality == 0);
     machine.frame = NULL;
     glint_frame_finish(&frame);
 }
 
 /* Checks that the veil is dropped if the budget is too small for anything,
  * and returns with a larger budget. */
-TEST(veil)
+TEST(veil_is_dropped_under_a_tiny_budget)
 {
     struct glint_frame frame;
 
     machine = machines[0];
-    make_frame(&frame);
+    make_test_frame(&frame);
     frame.veil.glare = 0.02;
     machine.frame = &frame;
-    assert_true(draw_frames(&frame, 0.1, 4).unveiled);
-    assert_false(draw_frames(&frame, 1e4, 10).unveiled);
+    assert_true(draw_frames_with_budget(&frame, 0.1, 4).unveiled);
+    assert_false(draw_frames_with_budget(&frame, 1e4, 10).unveiled);
     machine.frame = NULL;
     glint_frame_finish(&frame);
 }
 
-/* Checks that the first frame with more lights keeps to the budget, as the
- * plan counts lights. */
-TEST(new_lights)
+/* Checks that the first frame with more lights stays within the budget, as
+ * plans include the number of lights. */
+TEST(first_frame_of_more_lights_keeps_to_the_budget)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = glint_image_over(px, GLINT_YUYV, WIDTH, HEIGHT);
@@ -205,7 +209,7 @@ TEST(new_lights)
     struct glint_frame frame;
 
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
-    make_frame(&frame);
+    make_test_frame(&frame);
     glint_budget_init(&frame.budget, 3);
     /* The simulated clock stands still, so this rate is not corrected. */
     frame.budget.ms_per_minsn = 0.1;
@@ -220,7 +224,7 @@ TEST(new_lights)
 
 /* Checks that the counts of a plan equal those of the drawn frame, and scale
  * with the quality parameters as those of another plan. */
-TEST(counts)
+TEST(counts_of_a_plan_equal_the_drawn_frame)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = glint_image_over(px, GLINT_YUYV, WIDTH, HEIGHT);
@@ -231,7 +235,7 @@ TEST(counts)
     struct glint_cost_plan plan;
 
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
-    make_frame(&frame);
+    make_test_frame(&frame);
     frame.star.share = 1;
     frame.veil.glare = 0.02;
     frame.dials.fineness = 64;
@@ -277,4 +281,4 @@ TEST(counts)
     glint_frame_finish(&frame);
 }
 
-TEST_GROUP(opened_heliar, opened_close);
+TEST_GROUP(open_heliar_lens, close_opened_lens);

@@ -20,32 +20,32 @@ static uint8_t plain[BYTES], dim[BYTES], last[2][BYTES];
 
 /* Sets a bright lamp and fainter ones, over a range of seven octaves, at
  * positions that depend on TIME. */
-static void set_lamps(double time)
+static void set_bright_and_faint_lamps(double time)
 {
     for (int i = 0; i < LIGHTS; i++)
-        lamps[i] = stage_lamp(3 + 1.1 * i + time, 50 * i + 3 * time,
-                              3e5 * exp2(-0.45 * i));
+        lamps[i] = stage_make_lamp(3 + 1.1 * i + time, 50 * i + 3 * time,
+                                   3e5 * exp2(-0.45 * i));
 }
 
-static void draw_image(double codes, uint8_t *picture)
+static void draw_lamps_image(double codes, uint8_t *picture)
 {
     stage.frame.dials = glint_dials_at(1 << 13);
     stage.frame.dials.dim_codes = codes;
     memset(picture, 0, BYTES);
-    assert_true(stage_codes(&stage, lamps, LIGHTS, picture));
+    assert_true(stage_draw_codes(&stage, lamps, LIGHTS, picture));
 }
 
 TEST_OPEN
 {
-    assert_true(stage_open(&stage, "double-gauss-angenieux", W, H));
+    assert_true(stage_open_lens(&stage, "double-gauss-angenieux", W, H));
 }
 
 TEST_CLOSE
 {
-    stage_close(&stage);
+    stage_free(&stage);
 }
 
-static double sum_codes(const uint8_t *picture)
+static double sum_image_codes(const uint8_t *picture)
 {
     double sum = 0;
 
@@ -66,18 +66,19 @@ static double compute_psnr(const uint8_t *a, const uint8_t *b)
 /* Checks that each larger dim_codes gives fewer bundles and an image no
  * closer to that of dim_codes 0 (where each ghost has three wavelengths of
  * its own), above 40 dB and with the same sum of codes within 1 %. */
-TEST(light_stays)
+TEST(larger_dim_codes_draw_fewer_bundles)
 {
     int bundles;
     double before = 99;
 
-    set_lamps(0);
-    draw_image(0, plain);
+    set_bright_and_faint_lamps(0);
+    draw_lamps_image(0, plain);
     bundles = stage.drawn.stats.bundles;
     for (double codes = 0.5; codes <= 8; codes *= 4) {
-        draw_image(codes, dim);
+        draw_lamps_image(codes, dim);
         assert_true(stage.drawn.stats.bundles < bundles);
-        assert_true(fabs(sum_codes(dim) / sum_codes(plain) - 1) < 0.01);
+        assert_true(fabs(sum_image_codes(dim) / sum_image_codes(plain) - 1) <
+                    0.01);
         assert_true(compute_psnr(plain, dim) > 40);
         assert_true(compute_psnr(plain, dim) <= before);
         bundles = stage.drawn.stats.bundles;
@@ -87,18 +88,19 @@ TEST(light_stays)
 
 /* Checks, while lights move for 300 frames, that dim ghosts increase the
  * largest jump of the mean of 8 x 8 pixels by less than half a code. */
-TEST(no_pops)
+TEST(dim_ghosts_do_not_jump_in_motion)
 {
     double worst[2] = {0, 0};
 
     for (int frame = 0; frame < 300; frame++) {
-        set_lamps(0.01 * frame);
+        set_bright_and_faint_lamps(0.01 * frame);
         for (int k = 0; k < 2; k++) {
             uint8_t *now = k ? dim : plain;
 
-            draw_image(k ? 4 : 0, now);
+            draw_lamps_image(k ? 4 : 0, now);
             if (frame) {
-                const double jump = stage_block_jump(&stage, last[k], now);
+                const double jump =
+                    stage_max_block_difference(&stage, last[k], now);
 
                 worst[k] = fmax(worst[k], jump);
             }
@@ -112,18 +114,18 @@ TEST(no_pops)
 
 /* Sets four groups of four lamps, each group within a degree, at positions
  * that depend on TIME, with 3 % of noise in their powers. */
-static void set_groups(double time, uint64_t *noise)
+static void set_lamp_groups(double time, uint64_t *noise)
 {
     for (int i = 0; i < LIGHTS; i++)
-        lamps[i] =
-            stage_lamp(4 + 4 * (i / 4) + 0.2 * (i % 4) + time,
-                       90 * (i / 4) + 3 * (i % 4) + 3 * time,
-                       5e3 * exp2(-(i % 4)) * stage_uniform(noise, 0.97, 1.03));
+        lamps[i] = stage_make_lamp(4 + 4 * (i / 4) + 0.2 * (i % 4) + time,
+                                   90 * (i / 4) + 3 * (i % 4) + 3 * time,
+                                   5e3 * exp2(-(i % 4)) *
+                                       stage_random_uniform(noise, 0.97, 1.03));
 }
 
-/* Returns the total light of a linear image that is planned as for codes,
- * without dropping anything. */
-static double sum_light(double codes)
+/* Returns the total light of a linear image that is planned as for an image in
+ * codes, but drops no ghost. */
+static double sum_image_light(double codes)
 {
     static int32_t light_q20[3 * W * H];
     struct glint_image image =
@@ -146,7 +148,7 @@ static double sum_light(double codes)
  * the bundles, the same light within 6 %, and jumps of the mean of 8 x 8
  * pixels at most half a code larger than with separate ghosts. The frame
  * statistics agree. */
-TEST(shared_rays)
+TEST(dim_ghosts_of_near_lights_are_merged)
 {
     struct glint_account account;
     double worst[2] = {0, 0};
@@ -154,14 +156,15 @@ TEST(shared_rays)
     uint64_t noise = 1;
 
     for (int frame = 0; frame < 300; frame++) {
-        set_groups(0.01 * frame, &noise);
+        set_lamp_groups(0.01 * frame, &noise);
         for (int k = 0; k < 2; k++) {
             uint8_t *now = k ? dim : plain;
 
-            draw_image(k ? 4 : 0, now);
+            draw_lamps_image(k ? 4 : 0, now);
             bundles[k] = stage.drawn.stats.bundles;
             if (frame) {
-                const double jump = stage_block_jump(&stage, last[k], now);
+                const double jump =
+                    stage_max_block_difference(&stage, last[k], now);
 
                 worst[k] = fmax(worst[k], jump);
             }
@@ -170,7 +173,8 @@ TEST(shared_rays)
         assert_true(2 * bundles[1] < bundles[0]);
         assert_true(compute_psnr(plain, dim) > 50);
         if (frame % 100 == 0)
-            assert_true(fabs(sum_light(4) / sum_light(0) - 1) < 0.06);
+            assert_true(fabs(sum_image_light(4) / sum_image_light(0) - 1) <
+                        0.06);
     }
     print_message("of groups: %.2f codes, with dim ghosts %.2f\n", worst[0],
                   worst[1]);
@@ -189,22 +193,22 @@ TEST(shared_rays)
 
 /* Checks that an image is the same bit by bit with 1, 3 or 5 workers, and
  * after another frame. */
-TEST(same_bits)
+TEST(image_is_bit_identical_for_all_workers)
 {
     struct shuffle shuffle;
 
-    set_lamps(1.5);
-    draw_image(4, plain);
+    set_bright_and_faint_lamps(1.5);
+    draw_lamps_image(4, plain);
     for (int n = 1; n <= 5; n += 2) {
-        stage_view(&stage, W, H, 0);
-        shuffle_init(&shuffle, n, 7);
+        stage_set_view(&stage, W, H, 0);
+        init_shuffled_workers(&shuffle, n, 7);
         stage.frame.cfg.workers = &shuffle.workers;
         if (n > 1) {
-            set_lamps(0.7);
-            draw_image(4, dim);
+            set_bright_and_faint_lamps(0.7);
+            draw_lamps_image(4, dim);
         }
-        set_lamps(1.5);
-        draw_image(4, dim);
+        set_bright_and_faint_lamps(1.5);
+        draw_lamps_image(4, dim);
         assert_memory_equal(plain, dim, BYTES);
         stage.frame.cfg.workers = NULL;
     }

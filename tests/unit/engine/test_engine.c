@@ -16,7 +16,7 @@
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
 /* Draws two white lamps on grey into PX and returns the image. */
-static struct glint_image make_picture(uint8_t *px)
+static struct glint_image draw_lamp_picture(uint8_t *px)
 {
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
 
@@ -28,7 +28,7 @@ static struct glint_image make_picture(uint8_t *px)
     return image;
 }
 
-static struct glint_engine *make_engine(void *arena, size_t bytes)
+static struct glint_engine *create_engine(void *arena, size_t bytes)
 {
     struct glint_engine_config cfg;
     struct glint_engine *engine;
@@ -42,27 +42,28 @@ static struct glint_engine *make_engine(void *arena, size_t bytes)
     return engine;
 }
 
-/* Draws the image into PX, US microseconds after the previous one, with the
- * flare of the lamps found. Returns the number of lamps. */
-static int draw_found(struct glint_engine *engine, int32_t us, uint8_t *px,
-                      struct glint_engine_report *report)
+/* Draws the lamp picture into PX, US microseconds after the previous one, with
+ * the flare of the lamps that the engine finds. Returns their number. */
+static int draw_flare_of_found_lamps(struct glint_engine *engine, int32_t us,
+                                     uint8_t *px,
+                                     struct glint_engine_report *report)
 {
     struct glint_engine_lamp lamps[8];
-    const struct glint_image image = make_picture(px);
+    const struct glint_image image = draw_lamp_picture(px);
     const int n = glint_engine_find(engine, &image, us, lamps, 8);
 
     assert_ok(glint_engine_draw(engine, lamps, n, &image, report));
     return n;
 }
 
-TEST(draws)
+TEST(draws_flares_of_found_lamps)
 {
     static uint8_t px[BYTES], plain[BYTES];
-    struct glint_engine *engine = make_engine(NULL, 0);
+    struct glint_engine *engine = create_engine(NULL, 0);
     struct glint_engine_report report;
 
-    make_picture(plain);
-    assert_int_equal(draw_found(engine, 0, px, &report), 2);
+    draw_lamp_picture(plain);
+    assert_int_equal(draw_flare_of_found_lamps(engine, 0, px, &report), 2);
     assert_int_equal(report.lights, 2);
     assert_true(report.ghosts > 0 && report.stats.bundles > 0 &&
                 report.scale > 0);
@@ -75,23 +76,23 @@ TEST(draws)
 
 /* Checks that the engine's memory and the caller's give the same image. If
  * the caller's is too small, the report states how much is enough. */
-TEST(arena)
+TEST(callers_memory_gives_the_same_image)
 {
     static uint8_t want[BYTES], got[BYTES];
-    struct glint_engine *engine = make_engine(NULL, 16 << 20);
+    struct glint_engine *engine = create_engine(NULL, 16 << 20);
     struct glint_engine_report full, little, report;
     void *mem;
 
-    draw_found(engine, 0, want, &full);
+    draw_flare_of_found_lamps(engine, 0, want, &full);
     glint_engine_destroy(engine);
     assert_int_equal(posix_memalign(&mem, 64, 16 << 20), 0);
-    engine = make_engine(mem, 16 << 20);
-    draw_found(engine, 0, got, &report);
+    engine = create_engine(mem, 16 << 20);
+    draw_flare_of_found_lamps(engine, 0, got, &report);
     glint_engine_destroy(engine);
     assert_memory_equal(got, want, BYTES);
     assert_int_equal(report.stats.dropped_bundles, 0);
-    engine = make_engine(mem, 1100 << 10);
-    draw_found(engine, 0, got, &little);
+    engine = create_engine(mem, 1100 << 10);
+    draw_flare_of_found_lamps(engine, 0, got, &little);
     glint_engine_destroy(engine);
     assert_true(little.stats.dropped_bundles > 0);
     assert_int_equal(little.need_bytes, full.need_bytes);
@@ -100,33 +101,34 @@ TEST(arena)
 
 /* Checks that tracked lamps are present after 30 frames, and that reduced
  * quality parameters draw fewer bundles. */
-TEST(follows)
+TEST(tracked_lamps_are_present_after_30_frames)
 {
     static uint8_t px[BYTES];
-    struct glint_engine *engine = make_engine(NULL, 0);
+    struct glint_engine *engine = create_engine(NULL, 0);
     struct glint_engine_report report;
     int n = 0, bundles;
 
     for (int i = 0; i < 30; i++)
-        n = draw_found(engine, 40000, px, &report);
+        n = draw_flare_of_found_lamps(engine, 40000, px, &report);
     assert_int_equal(n, 2);
     bundles = report.stats.bundles;
     glint_engine_set_dials(
         engine,
         glint_dials_coarser(glint_dials_at(1 << 14), glint_dials_at(1 << 12)));
-    draw_found(engine, 40000, px, &report);
+    draw_flare_of_found_lamps(engine, 40000, px, &report);
     assert_in_range(report.stats.bundles, 1, bundles - 1);
     glint_engine_destroy(engine);
 }
 
 /* Draws the given LAMP alone on grey into PX, US microseconds after the
  * previous image; US < 0: time unknown. Returns the exposure. */
-static double draw_given(struct glint_engine *engine,
-                         const struct glint_lamp *lamp, int32_t us, uint8_t *px)
+static double draw_flare_of_given_lamp(struct glint_engine *engine,
+                                       const struct glint_lamp *lamp,
+                                       int32_t us, uint8_t *px)
 {
     struct glint_engine_lamp one = glint_engine_lamp_of(lamp, 1);
     struct glint_engine_report report;
-    const struct glint_image image = make_picture(px);
+    const struct glint_image image = draw_lamp_picture(px);
 
     memset(px, 40, BYTES);
     if (us >= 0)
@@ -138,13 +140,13 @@ static double draw_given(struct glint_engine *engine,
 /* Checks that a given lamp is exposed like a found one: in a still image by
  * a small rendering of its flare, whatever was drawn before; in a video by
  * small steps from frame to frame. */
-TEST(draw_given)
+TEST(given_lamp_is_exposed_like_a_found_one)
 {
     static uint8_t px[BYTES], found[BYTES], again[BYTES];
-    const struct glint_image image = make_picture(px);
+    const struct glint_image image = draw_lamp_picture(px);
     const struct glint_lamp dim = {12, 0, 20, {1, 1, 1}, {0, 0}, 0};
     const struct glint_lamp lit = {12, 0, 2e6, {1, 1, 1}, {0, 0}, 0};
-    struct glint_engine *engine = make_engine(NULL, 0);
+    struct glint_engine *engine = create_engine(NULL, 0);
     struct glint_engine_report report;
     struct glint_engine_lamp lamps[8];
     double alone, scale;
@@ -157,15 +159,15 @@ TEST(draw_given)
         lamps[i] = glint_engine_lamp_of(&lamps[i].lamp, 1);
     assert_ok(glint_engine_draw(engine, lamps, n, &image, &report));
     scale = report.scale;
-    draw_found(engine, 0, found, &report);
+    draw_flare_of_found_lamps(engine, 0, found, &report);
     assert_true(fabs(report.scale / scale - 1) < 1e-6);
-    alone = draw_given(engine, &dim, -1, px);
-    draw_given(engine, &lit, -1, again);
-    assert_true(draw_given(engine, &dim, -1, again) == alone);
+    alone = draw_flare_of_given_lamp(engine, &dim, -1, px);
+    draw_flare_of_given_lamp(engine, &lit, -1, again);
+    assert_true(draw_flare_of_given_lamp(engine, &dim, -1, again) == alone);
     assert_memory_equal(px, again, BYTES);
-    scale = draw_given(engine, &lit, 0, px);
+    scale = draw_flare_of_given_lamp(engine, &lit, 0, px);
     for (int i = 0; i < 8; i++) {
-        const double next = draw_given(engine, &dim, 40000, px);
+        const double next = draw_flare_of_given_lamp(engine, &dim, 40000, px);
 
         assert_true(next >= scale && next <= 1.1 * scale);
         scale = next;
@@ -176,46 +178,46 @@ TEST(draw_given)
 
 /* Checks that a stop set later gives the image of an engine created with it,
  * and that a stop wider than the model's is rejected. */
-TEST(stop)
+TEST(stop_set_later_equals_stop_at_creation)
 {
     static uint8_t open[BYTES], set[BYTES], made[BYTES];
     const double f = glint_real_value(opened.lens.model.lens.header->f_number);
-    struct glint_engine *engine = make_engine(NULL, 0);
+    struct glint_engine *engine = create_engine(NULL, 0);
     struct glint_engine_report report;
     struct glint_engine_config cfg;
     struct glint_error error;
 
-    draw_found(engine, 0, open, &report);
+    draw_flare_of_found_lamps(engine, 0, open, &report);
     assert_int_equal(glint_engine_stop(engine, f / 2, &error),
                      GLINT_E_ARGUMENT);
-    draw_found(engine, 0, set, &report);
+    draw_flare_of_found_lamps(engine, 0, set, &report);
     assert_memory_equal(set, open, BYTES);
     assert_ok(glint_engine_stop(engine, 3 * f, &error));
-    draw_found(engine, 0, set, &report);
+    draw_flare_of_found_lamps(engine, 0, set, &report);
     glint_engine_destroy(engine);
     assert_memory_not_equal(set, open, BYTES);
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     cfg.model = &opened.lens.model.lens;
     cfg.camera.f_number = 3 * f;
     assert_ok(glint_engine_create(&engine, &cfg, &error));
-    draw_found(engine, 0, made, &report);
+    draw_flare_of_found_lamps(engine, 0, made, &report);
     assert_memory_equal(set, made, BYTES);
     assert_ok(glint_engine_stop(engine, f, &error));
-    draw_found(engine, 0, set, &report);
+    draw_flare_of_found_lamps(engine, 0, set, &report);
     assert_memory_equal(set, open, BYTES);
     glint_engine_destroy(engine);
 }
 
 /* Checks that an image of another size, or too many lamps, are rejected at
  * each stage, including automatic exposure. */
-TEST(refuses_pictures)
+TEST(rejects_images_of_wrong_size)
 {
     static uint8_t px[BYTES];
     static float rgb[BYTES];
-    struct glint_engine *engine = make_engine(NULL, 0);
+    struct glint_engine *engine = create_engine(NULL, 0);
     struct glint_engine_report report;
     struct glint_engine_lamp lamps[8];
-    struct glint_image image = make_picture(px);
+    struct glint_image image = draw_lamp_picture(px);
     const int n = glint_engine_find(engine, &image, 0, lamps, 8);
     const int many = GLINT_ENGINE_MAX_LAMPS + 1;
 
@@ -237,12 +239,12 @@ TEST(refuses_pictures)
 /* Checks that layers add up to all parts drawn together, that a given lamp
  * lights a render without detection (twice as much at twice the gain), and
  * that a manual exposure applies from the next image on. */
-TEST(layers)
+TEST(layers_add_up_to_the_whole_flare)
 {
     static uint8_t px[BYTES];
     static float part[BYTES], all[BYTES], sum[BYTES];
     const struct glint_lamp lamp = {12, 30, 1e5, {1, 1, 1}, {0, 0}, 0};
-    const struct glint_image image = make_picture(px);
+    const struct glint_image image = draw_lamp_picture(px);
     struct glint_engine_lamp known = glint_engine_lamp_of(&lamp, 1);
     struct glint_engine_report report;
     struct glint_engine_config cfg;
@@ -283,14 +285,14 @@ TEST(layers)
 
 /* Returns the light of the layer PART of the given LAMP, US microseconds after
  * the previous picture. */
-static double add_layer(struct glint_engine *engine,
-                        const struct glint_lamp *lamp, int32_t us,
-                        unsigned part)
+static double sum_layer_light(struct glint_engine *engine,
+                              const struct glint_lamp *lamp, int32_t us,
+                              unsigned part)
 {
     static uint8_t px[BYTES];
     static float layer[BYTES];
     struct glint_engine_lamp one = glint_engine_lamp_of(lamp, 1);
-    const struct glint_image image = make_picture(px);
+    const struct glint_image image = draw_lamp_picture(px);
     struct glint_engine_report report;
     double sum = 0;
 
@@ -305,30 +307,31 @@ static double add_layer(struct glint_engine *engine,
 /* Checks that a lamp which becomes too bright for the exposure of a video has
  * its ghosts limited, but not its starburst, whose brightness does not depend
  * on the exposure. */
-TEST(star_of_a_limited_lamp)
+TEST(limited_lamp_keeps_its_starburst)
 {
     const struct glint_lamp faint = {5, 30, 1e2, {1, 1, 1}, {0, 0}, 0};
     const struct glint_lamp sun = {5, 30, 1e6, {1, 1, 1}, {0, 0}, 0};
     double still[2], video[2];
 
     for (int k = 0; k < 2; k++) {
-        struct glint_engine *engine = make_engine(NULL, 0);
+        struct glint_engine *engine = create_engine(NULL, 0);
         const unsigned part = k ? GLINT_ENGINE_STAR : GLINT_ENGINE_GHOSTS;
 
-        still[k] = add_layer(engine, &sun, 0, part);
-        add_layer(engine, &faint, 0, part);
+        still[k] = sum_layer_light(engine, &sun, 0, part);
+        sum_layer_light(engine, &faint, 0, part);
         for (int i = 0; i < 3; i++)
-            add_layer(engine, &faint, 40000, part);
-        video[k] = add_layer(engine, &sun, 40000, part);
+            sum_layer_light(engine, &faint, 40000, part);
+        video[k] = sum_layer_light(engine, &sun, 40000, part);
         glint_engine_destroy(engine);
     }
     assert_true(still[0] > 0 && video[0] < 2 * still[0]);
     assert_true(fabs(video[1] / still[1] - 1) < 1e-3);
 }
 
-/* Returns the light of the ghosts of N LAMPS, which were exposed. */
-static double sum_ghosts(struct glint_engine *engine,
-                         const struct glint_engine_lamp *lamps, int n)
+/* Returns the light of the ghosts of the N LAMPS, whose powers include the
+ * exposure. */
+static double sum_ghost_light(struct glint_engine *engine,
+                              const struct glint_engine_lamp *lamps, int n)
 {
     static float layer[BYTES];
     struct glint_engine_report report;
@@ -343,39 +346,39 @@ static double sum_ghosts(struct glint_engine *engine,
 
 /* Checks that the layers of single lamps add up to that of all, one of which is
  * limited. */
-TEST(layers_of_single_lamps)
+TEST(layers_of_single_lamps_add_up)
 {
     static uint8_t px[BYTES];
     const struct glint_lamp faint = {5, 30, 1e2, {1, 1, 1}, {0, 0}, 0};
     const struct glint_lamp sun = {9, -140, 1e6, {1, 1, 1}, {0, 0}, 0};
     struct glint_engine_lamp both[2] = {glint_engine_lamp_of(&faint, 1),
                                         glint_engine_lamp_of(&sun, 2)};
-    struct glint_engine *engine = make_engine(NULL, 0);
-    const struct glint_image image = make_picture(px);
+    struct glint_engine *engine = create_engine(NULL, 0);
+    const struct glint_image image = draw_lamp_picture(px);
     double sum;
 
     for (int i = 0; i < 4; i++)
-        add_layer(engine, &faint, 40000, GLINT_ENGINE_GHOSTS);
+        sum_layer_light(engine, &faint, 40000, GLINT_ENGINE_GHOSTS);
     glint_engine_elapsed(engine, 40000);
     assert_ok(glint_engine_expose(engine, both, 2, &image, 1));
-    sum = sum_ghosts(engine, both, 2);
+    sum = sum_ghost_light(engine, both, 2);
     assert_true(sum > 0);
-    assert_true(fabs((sum_ghosts(engine, &both[0], 1) +
-                      sum_ghosts(engine, &both[1], 1)) /
+    assert_true(fabs((sum_ghost_light(engine, &both[0], 1) +
+                      sum_ghost_light(engine, &both[1], 1)) /
                          sum -
                      1) < 1e-3);
     glint_engine_destroy(engine);
 }
 
-TEST(refuses)
+TEST(rejects_invalid_configurations)
 {
     static uint8_t px[BYTES];
-    struct glint_engine *engine = make_engine(NULL, 0);
+    struct glint_engine *engine = create_engine(NULL, 0);
     struct glint_engine_config cfg;
     struct glint_engine_report report;
     const struct glint_lamp place = {5, 0, 1, {1, 1, 1}, {0, 0}, 0};
     struct glint_engine_lamp lamp = glint_engine_lamp_of(&place, 1);
-    struct glint_image image = make_picture(px);
+    struct glint_image image = draw_lamp_picture(px);
     struct glint_error error;
 
     image.height--;
@@ -413,7 +416,7 @@ TEST(refuses)
 /* Checks that a program compiled for an older library, whose configuration
  * struct is shorter, gets the defaults for the missing members, whatever the
  * memory after the struct contains. */
-TEST(older_program)
+TEST(shorter_config_of_older_programs_gets_defaults)
 {
     struct glint_engine *engine = NULL;
     struct glint_engine_config cfg;
@@ -431,7 +434,7 @@ TEST(older_program)
 /* Checks the options struct of an older program, which lacks the last
  * option: nothing is written behind its end, all other options can be set
  * and used, and the missing option is unknown and has its default. */
-TEST(older_options)
+TEST(shorter_options_of_older_programs_are_respected)
 {
     const size_t bytes = offsetof(struct glint_options, dither);
     struct glint_engine_config cfg;
@@ -460,13 +463,13 @@ TEST(older_options)
 /* Checks that options set by name draw the same image as the same
  * configuration, and that fixed, unknown or out-of-range options change
  * nothing. */
-TEST(set_by_name)
+TEST(options_by_name_equal_the_configuration)
 {
     static uint8_t set[BYTES], made[BYTES];
     const char *const bad[] = {"veil", "strengt", "gain"};
     struct glint_engine_config cfg;
     struct glint_engine_report report;
-    struct glint_engine *engine = make_engine(NULL, 0);
+    struct glint_engine *engine = create_engine(NULL, 0);
     struct glint_error error;
 
     assert_ok(glint_engine_set(engine, "exposure", 3, &error));
@@ -476,7 +479,7 @@ TEST(set_by_name)
                          GLINT_E_ARGUMENT);
         assert_true(error.text[0] != '\0');
     }
-    draw_found(engine, 0, set, &report);
+    draw_flare_of_found_lamps(engine, 0, set, &report);
     glint_engine_destroy(engine);
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     cfg.model = &opened.lens.model.lens;
@@ -484,13 +487,13 @@ TEST(set_by_name)
     cfg.light.exposure_ev = 3;
     cfg.light.gain = 2;
     assert_ok(glint_engine_create(&engine, &cfg, &error));
-    draw_found(engine, 0, made, &report);
+    draw_flare_of_found_lamps(engine, 0, made, &report);
     glint_engine_destroy(engine);
     assert_memory_equal(set, made, BYTES);
 }
 
-static bool is_accepted(struct glint_options *o, const char *name,
-                        const char *text)
+static bool is_option_accepted(struct glint_options *o, const char *name,
+                               const char *text)
 {
     struct glint_error error = {""};
     const bool is_set =
@@ -503,7 +506,7 @@ static bool is_accepted(struct glint_options *o, const char *name,
 /* Checks that stop, dust and colours set by options equal those of a setup
  * made step by step, that front-dust becomes the engine's dirt, and that
  * setting stop by name equals glint_engine_iris(). */
-TEST(configured_camera)
+TEST(camera_options_equal_a_setup_by_steps)
 {
     static uint8_t want[BYTES], got[BYTES];
     const double nm[] = {610, 470};
@@ -531,29 +534,30 @@ TEST(configured_camera)
     cfg.camera.front = on_front;
     cfg.arena_has_all = 1;
     assert_ok(glint_engine_create(&engine, &cfg, &error));
-    draw_found(engine, 0, want, &report);
+    draw_flare_of_found_lamps(engine, 0, want, &report);
     glint_engine_destroy(engine);
 
     glint_options_defaults(&o);
-    assert_true(is_accepted(&o, "stop", "polygon:6,10,round:0.3,soft:0.1"));
-    assert_true(is_accepted(&o, "dust", "0.02,7"));
-    assert_true(is_accepted(&o, "front-dust", "0.05"));
-    assert_true(is_accepted(&o, "wavelengths", "610,470"));
-    assert_true(is_accepted(&o, "balance", NULL));
+    assert_true(
+        is_option_accepted(&o, "stop", "polygon:6,10,round:0.3,soft:0.1"));
+    assert_true(is_option_accepted(&o, "dust", "0.02,7"));
+    assert_true(is_option_accepted(&o, "front-dust", "0.05"));
+    assert_true(is_option_accepted(&o, "wavelengths", "610,470"));
+    assert_true(is_option_accepted(&o, "balance", NULL));
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     glint_engine_configure(&cfg, &o);
     cfg.model = lens;
     assert_ok(glint_engine_create(&engine, &cfg, &error));
-    draw_found(engine, 0, got, &report);
+    draw_flare_of_found_lamps(engine, 0, got, &report);
     assert_memory_equal(got, want, BYTES);
 
     iris.roundness = iris.softness = 0;
     assert_ok(glint_engine_iris(engine, 5, 0, &iris, &error));
-    draw_found(engine, 0, want, &report);
+    draw_flare_of_found_lamps(engine, 0, want, &report);
     assert_memory_not_equal(got, want, BYTES);
     assert_ok(glint_engine_iris(engine, 0, 0, &iris, &error));
     assert_ok(glint_engine_set_text(engine, "stop", "polygon:5", &error));
-    draw_found(engine, 0, got, &report);
+    draw_flare_of_found_lamps(engine, 0, got, &report);
     assert_memory_equal(got, want, BYTES);
     glint_engine_destroy(engine);
     glint_front_free(on_front);
@@ -561,25 +565,26 @@ TEST(configured_camera)
     free(setup);
 }
 
-/* Checks that dust is drawn behind a stop with straight blades and no other
- * option of the iris. */
-TEST(dust_alone)
+/* Checks that dust in the stop is drawn if it is the only option of the iris
+ * that is set. */
+TEST(dust_is_drawn_behind_straight_blades)
 {
     static uint8_t dusty[BYTES], clean[BYTES];
     const struct glint_iris iris = {.dust = 0.02, .dust_seed = 7};
     struct glint_engine_report report;
-    struct glint_engine *engine = make_engine(NULL, 0);
+    struct glint_engine *engine = create_engine(NULL, 0);
     struct glint_error error;
 
-    draw_found(engine, 0, clean, &report);
+    draw_flare_of_found_lamps(engine, 0, clean, &report);
     assert_ok(glint_engine_iris(engine, 8, 0, &iris, &error));
-    draw_found(engine, 0, dusty, &report);
+    draw_flare_of_found_lamps(engine, 0, dusty, &report);
     assert_memory_not_equal(dusty, clean, BYTES);
     glint_engine_destroy(engine);
 }
 
-/* A configuration without STOPS accepts clean, straight blades only. */
-TEST(no_stops)
+/* Checks that a configuration whose STOPS is NULL accepts only stops with
+ * straight blades and without dirt. */
+TEST(config_without_stops_accepts_only_clean_blades)
 {
     struct glint_engine_config cfg;
     struct glint_engine *engine;
@@ -604,7 +609,7 @@ TEST(no_stops)
 /* Checks that each numeric option accepts its limits and rejects values
  * beyond them, and counts as given only after it was set. Of strength and
  * exposure, and of quality and error, the one set last is used. */
-TEST(options)
+TEST(options_accept_their_limits)
 {
     struct glint_options o;
     struct glint_error error;
@@ -639,7 +644,7 @@ TEST(options)
 /* Checks that every default can be set again, that numbers must be finite,
  * that an empty text restores the default, that flags accept yes and no, and
  * that blanks may precede numbers. */
-TEST(option_values)
+TEST(options_accept_their_defaults)
 {
     struct glint_options o, initial;
     struct glint_error error;
@@ -651,8 +656,9 @@ TEST(option_values)
         const struct glint_option *const row = glint_option(i);
 
         if (row->type == GLINT_OPTION_TEXT) {
-            assert_true(!*row->text || is_accepted(&o, row->name, row->text));
-            assert_true(is_accepted(&o, row->name, "") && !o.given[i]);
+            assert_true(!*row->text ||
+                        is_option_accepted(&o, row->name, row->text));
+            assert_true(is_option_accepted(&o, row->name, "") && !o.given[i]);
             continue;
         }
         assert_true(isnan(row->initial) ||
@@ -663,16 +669,17 @@ TEST(option_values)
         assert_int_equal(glint_options_set(&o, row->name, NAN, &error),
                          GLINT_E_ARGUMENT);
         assert_true(row->type == GLINT_OPTION_FLAG ||
-                    !is_accepted(&o, row->name, NULL));
+                    !is_option_accepted(&o, row->name, NULL));
     }
     assert_string_equal(o.wavelengths, initial.wavelengths);
     assert_string_equal(o.threshold, initial.threshold);
-    assert_true(is_accepted(&o, "half", "yes") && o.half);
-    assert_true(is_accepted(&o, "half", "no") && !o.half);
-    assert_false(is_accepted(&o, "half", "maybe"));
-    assert_true(is_accepted(&o, "strength", " 1.5e0") && o.strength == 1.5);
-    assert_false(is_accepted(&o, "strength", "1,5"));
-    assert_false(is_accepted(&o, "no-such-option", "1"));
+    assert_true(is_option_accepted(&o, "half", "yes") && o.half);
+    assert_true(is_option_accepted(&o, "half", "no") && !o.half);
+    assert_false(is_option_accepted(&o, "half", "maybe"));
+    assert_true(is_option_accepted(&o, "strength", " 1.5e0") &&
+                o.strength == 1.5);
+    assert_false(is_option_accepted(&o, "strength", "1,5"));
+    assert_false(is_option_accepted(&o, "no-such-option", "1"));
     assert_int_equal(glint_option_numbers("-1.25, 3", v, 3), 2);
     assert_true(v[0] == -1.25 && v[1] == 3);
     assert_ok(glint_options_set(&o, "veil", 0.5, &error));
@@ -680,4 +687,4 @@ TEST(option_values)
                      GLINT_E_ARGUMENT);
 }
 
-TEST_GROUP(opened_heliar, opened_close);
+TEST_GROUP(open_heliar_lens, close_opened_lens);

@@ -29,20 +29,22 @@ static const struct glint_lamp lamps[] = {{12, 20, 3e6, {1, 1, 1}, {0, 0}, 0},
 
 enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
-static void make_frame(struct glint_frame *frame)
+static void make_test_frame(struct glint_frame *frame)
 {
-    assert_ok(settings_frame(&tool, &opened, WIDTH, HEIGHT, frame));
+    assert_ok(make_frame_from_settings(&tool, &opened, WIDTH, HEIGHT, frame));
     frame->cfg.tile_log2 = 4;
 }
 
-static void draw_frame(struct glint_frame *frame, const struct glint_lamp *lamp,
-                       int n, struct glint_engine_report *report)
+static void draw_explained_frame(struct glint_frame *frame,
+                                 const struct glint_lamp *lamp, int n,
+                                 struct glint_engine_report *report)
 {
     memset(rgb, 0, sizeof rgb);
     assert_ok(glint_frame_draw(frame, lamp, n, 1, &image, report));
 }
 
-static double sum_parts(const struct glint_explain_part *part, int n, int cost)
+static double sum_explained_parts(const struct glint_explain_part *part, int n,
+                                  int cost)
 {
     double s = 0;
 
@@ -62,8 +64,9 @@ static int count_drawn_ghosts(const struct glint_explain *e)
 
 /* Checks the invariants of every frame: E agrees with REPORT, and its parts
  * per ghost, per light and per wavelength each add up to the frame. */
-static void assert_agrees(const struct glint_explain *e,
-                          const struct glint_engine_report *report)
+static void
+assert_explanation_matches_report(const struct glint_explain *e,
+                                  const struct glint_engine_report *report)
 {
     const double pixels = e->stage[GLINT_COST_LIT] / e->all.work;
     const struct glint_explain_part *parts[3] = {e->ghost, e->light, e->wave};
@@ -80,8 +83,9 @@ static void assert_agrees(const struct glint_explain *e,
         long long edges = 0, vertices = 0;
         int bundles = 0;
 
-        assert_true(fabs(sum_parts(parts[by], n[by], 0) - 1) < 0.002);
-        assert_true(fabs(sum_parts(parts[by], n[by], 1) + pixels - 1) < 1e-9);
+        assert_true(fabs(sum_explained_parts(parts[by], n[by], 0) - 1) < 0.002);
+        assert_true(
+            fabs(sum_explained_parts(parts[by], n[by], 1) + pixels - 1) < 1e-9);
         for (int i = 0; i < n[by]; i++) {
             edges += parts[by][i].edges;
             vertices += parts[by][i].vertices;
@@ -97,18 +101,18 @@ static void assert_agrees(const struct glint_explain *e,
 
 /* ------------------------------------------------------------------- tests */
 
-/* Three lights: one outside the model's angles, two drawn, each without some
- * ghosts. */
-TEST(frame)
+/* Explains a frame of three lights: one outside the model's angles, two drawn,
+ * each without some ghosts. */
+TEST(explains_lights_outside_and_inside_the_model)
 {
     struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
 
-    make_frame(&frame);
-    draw_frame(&frame, lamps, N_LAMPS, &report);
+    make_test_frame(&frame);
+    draw_explained_frame(&frame, lamps, N_LAMPS, &report);
     assert_ok(glint_explain_frame(&e, &frame, 1));
-    assert_agrees(&e, &report);
+    assert_explanation_matches_report(&e, &report);
     assert_int_equal(e.n_lights, 2);
     assert_int_equal(glint_explain_bundles(&e.all), 2 * 13 * 3);
     for (int i = 0; i < N_LAMPS; i++)
@@ -125,18 +129,18 @@ TEST(frame)
 
 /* Checks that the peak is within the range of codes, and that light is
  * linear in UNIT. */
-TEST(light)
+TEST(light_is_linear_in_the_unit)
 {
     struct glint_engine_report report;
     struct glint_explain e, twice;
     struct glint_frame frame;
     int most = 0;
 
-    make_frame(&frame);
+    make_test_frame(&frame);
     frame.only_ghost = 11;
-    draw_frame(&frame,
-               (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
-               &report);
+    draw_explained_frame(
+        &frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
+        &report);
     for (int i = 0; i < BYTES; i += 3)
         most = rgb[i] + rgb[i + 1] + rgb[i + 2] > most
                    ? rgb[i] + rgb[i + 1] + rgb[i + 2]
@@ -156,7 +160,7 @@ TEST(light)
 
 /* Checks that each of these outcomes occurs in a frame made for it, and that
  * a frame whose only lamp is outside the model's angles has no bundles. */
-TEST(reasons)
+TEST(every_reason_occurs)
 {
     static const struct {
         struct glint_lamp lamp;
@@ -175,18 +179,18 @@ TEST(reasons)
     struct glint_explain e;
 
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        make_frame(&frame);
+        make_test_frame(&frame);
         frame.only_ghost = cases[i].only_ghost;
-        draw_frame(&frame, &cases[i].lamp, 1, &report);
+        draw_explained_frame(&frame, &cases[i].lamp, 1, &report);
         assert_ok(glint_explain_frame(&e, &frame, 1));
         assert_true(e.all.of[cases[i].outcome] > 0);
         if (e.all.edges)
-            assert_agrees(&e, &report);
+            assert_explanation_matches_report(&e, &report);
         glint_explain_close(&e);
         glint_frame_finish(&frame);
     }
-    make_frame(&frame);
-    draw_frame(&frame, &lamps[2], 1, &report);
+    make_test_frame(&frame);
+    draw_explained_frame(&frame, &lamps[2], 1, &report);
     assert_ok(glint_explain_frame(&e, &frame, 1));
     assert_int_equal(glint_explain_bundles(&e.all), 0);
     assert_true(e.all.flux == 0);
@@ -194,37 +198,37 @@ TEST(reasons)
     glint_frame_finish(&frame);
 }
 
-TEST(room)
+TEST(explains_bundles_dropped_for_memory)
 {
     struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
     size_t need;
 
-    make_frame(&frame);
-    draw_frame(&frame, lamps, N_LAMPS, &report);
+    make_test_frame(&frame);
+    draw_explained_frame(&frame, lamps, N_LAMPS, &report);
     need = report.peak_bytes;
     glint_frame_finish(&frame);
-    make_frame(&frame);
+    make_test_frame(&frame);
     assert_ok(
         glint_frame_reserve(&frame, NULL, need * 9 / 10, N_LAMPS, N_LAMPS));
-    draw_frame(&frame, lamps, N_LAMPS, &report);
+    draw_explained_frame(&frame, lamps, N_LAMPS, &report);
     assert_true(report.stats.dropped_bundles > 0);
     assert_ok(glint_explain_frame(&e, &frame, 1));
-    assert_agrees(&e, &report);
+    assert_explanation_matches_report(&e, &report);
     glint_explain_close(&e);
     glint_frame_finish(&frame);
 }
 
-TEST(order)
+TEST(ghosts_are_sorted_by_light)
 {
     int at[GLINT_MAX_GHOSTS];
     struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
 
-    make_frame(&frame);
-    draw_frame(&frame, lamps, N_LAMPS, &report);
+    make_test_frame(&frame);
+    draw_explained_frame(&frame, lamps, N_LAMPS, &report);
     assert_ok(glint_explain_frame(&e, &frame, 1));
     glint_explain_sort(&e, at);
     for (int i = 1; i < e.n_ghosts; i++)
@@ -235,7 +239,7 @@ TEST(order)
 
 /* Returns whether most of the tile at (X0, Y0) has the colour of a touched
  * tile in a black image. */
-static int is_shaded(const struct glint_image *marked, int x0, int y0)
+static int is_tile_shaded(const struct glint_image *marked, int x0, int y0)
 {
     static const uint8_t shade[3] = {6, 12, 34};
     int n = 0, all = 0;
@@ -248,7 +252,7 @@ static int is_shaded(const struct glint_image *marked, int x0, int y0)
 }
 
 /* Checks that the image shades exactly the tiles that one ghost touches. */
-TEST(picture)
+TEST(picture_shades_the_tiles_of_a_ghost)
 {
     struct explain_title title = {.lens = "heliar", .top = 20};
     struct glint_image marked, unmarked;
@@ -257,11 +261,11 @@ TEST(picture)
     struct glint_explain e;
     int n = 0, outlined = 0;
 
-    make_frame(&frame);
+    make_test_frame(&frame);
     frame.only_ghost = 4;
-    draw_frame(&frame,
-               (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
-               &report);
+    draw_explained_frame(
+        &frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
+        &report);
     assert_true(report.tiles > 10 && report.tiles < 200);
     assert_ok(glint_explain_frame(&e, &frame, 1));
     memset(rgb, 0, sizeof rgb);
@@ -270,8 +274,9 @@ TEST(picture)
     assert_int_equal(marked.height, HEIGHT + 8 * 2 + 3);
     for (int y = 0; y < HEIGHT; y += SIDE)
         for (int x = 0; x < WIDTH; x += SIDE)
-            n += is_shaded(&marked, x, y);
-    /* A tile that label and outline mostly cover does not count as shaded. */
+            n += is_tile_shaded(&marked, x, y);
+    /* A tile that is mostly covered by the label and the outline does not count
+     * as shaded. */
     assert_true(n <= report.tiles && n >= report.tiles - 2);
     title.top = 0;
     assert_ok(explain_mark(&e, &title, &image, &unmarked));
@@ -285,4 +290,4 @@ TEST(picture)
     glint_frame_finish(&frame);
 }
 
-TEST_GROUP(opened_heliar, opened_close);
+TEST_GROUP(open_heliar_lens, close_opened_lens);

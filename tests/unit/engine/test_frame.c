@@ -25,35 +25,35 @@ static int n_allocations; /* number of allocations since this was set to 0 */
 /* number of the allocation that fails, counted from 1; 0: none */
 static int fail_at;
 
-static bool fail_allocation(void)
+static bool must_fail_this_allocation(void)
 {
     return ++n_allocations == fail_at;
 }
 
 void *__wrap_malloc(size_t bytes)
 {
-    if (fail_allocation())
+    if (must_fail_this_allocation())
         return NULL;
     return __real_malloc(bytes);
 }
 
 void *__wrap_calloc(size_t n, size_t bytes)
 {
-    if (fail_allocation())
+    if (must_fail_this_allocation())
         return NULL;
     return __real_calloc(n, bytes);
 }
 
 void *__wrap_realloc(void *old, size_t bytes)
 {
-    if (fail_allocation())
+    if (must_fail_this_allocation())
         return NULL;
     return __real_realloc(old, bytes);
 }
 
 int __wrap_posix_memalign(void **mem, size_t align, size_t bytes)
 {
-    if (fail_allocation())
+    if (must_fail_this_allocation())
         return ENOMEM;
     return __real_posix_memalign(mem, align, bytes);
 }
@@ -71,24 +71,25 @@ enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 static void make_frame_for_lens(const struct opened *of,
                                 struct glint_frame *frame)
 {
-    assert_ok(settings_frame(&tool, of, WIDTH, HEIGHT, frame));
+    assert_ok(make_frame_from_settings(&tool, of, WIDTH, HEIGHT, frame));
     frame->dials.fineness = 16;
 }
 
-static void make_frame(struct glint_frame *frame)
+static void make_heliar_frame(struct glint_frame *frame)
 {
     make_frame_for_lens(&opened, frame);
 }
 
-static void make_even(struct glint_frame *frame, int fineness)
+static void make_frame_of_uniform_grids(struct glint_frame *frame, int fineness)
 {
-    make_frame(frame);
+    make_heliar_frame(frame);
     frame->picture.uniform = true;
     frame->dials.fineness = fineness;
 }
 
-static void draw_frame(struct glint_frame *frame, int n, uint8_t rgb[BYTES],
-                       struct glint_engine_report *report)
+static void draw_lamps_on_grey(struct glint_frame *frame, int n,
+                               uint8_t rgb[BYTES],
+                               struct glint_engine_report *report)
 {
     struct glint_image image =
         glint_image_over(rgb, GLINT_RGB24, WIDTH, HEIGHT);
@@ -97,7 +98,7 @@ static void draw_frame(struct glint_frame *frame, int n, uint8_t rgb[BYTES],
     assert_ok(glint_frame_draw(frame, lamps, n, 1, &image, report));
 }
 
-static int count_different(const uint8_t *a, const uint8_t *b)
+static int count_different_samples(const uint8_t *a, const uint8_t *b)
 {
     int n = 0;
 
@@ -106,7 +107,7 @@ static int count_different(const uint8_t *a, const uint8_t *b)
     return n;
 }
 
-static int count_brighter(const uint8_t *a, const uint8_t *b)
+static int count_brighter_samples(const uint8_t *a, const uint8_t *b)
 {
     int n = 0;
 
@@ -117,26 +118,26 @@ static int count_brighter(const uint8_t *a, const uint8_t *b)
 
 /* Checks that a frame drawn after frames of more and of fewer lamps equals
  * that of a new frame. */
-TEST(same_as_grown)
+TEST(regrown_frame_equals_a_new_frame)
 {
     static const int n_of[] = {1, 5, 0, 2, 5, 3};
     static uint8_t want[BYTES], got[BYTES];
     struct glint_frame reserved, grown;
     struct glint_engine_report report, other;
 
-    make_frame(&reserved);
+    make_heliar_frame(&reserved);
     assert_ok(glint_frame_reserve(&reserved, NULL, 8 << 20, N_LAMPS, N_LAMPS));
     assert_true(reserved.memory.bytes <= 8 << 20);
     for (size_t i = 0; i < sizeof n_of / sizeof *n_of; i++) {
         n_allocations = 0;
-        draw_frame(&reserved, n_of[i], got, &report);
+        draw_lamps_on_grey(&reserved, n_of[i], got, &report);
         assert_int_equal(n_allocations, 0);
-        make_frame(&grown);
-        draw_frame(&grown, n_of[i], want, &other);
+        make_heliar_frame(&grown);
+        draw_lamps_on_grey(&grown, n_of[i], want, &other);
         /* A frame without reserved memory must allocate, or the count would
          * prove nothing. */
         assert_true(n_of[i] == 0 || n_allocations > 0);
-        assert_int_equal(count_different(want, got), 0);
+        assert_int_equal(count_different_samples(want, got), 0);
         assert_int_equal(report.stats.dropped_bundles, 0);
         assert_int_equal(report.stats.dropped_cells, 0);
         assert_int_equal(report.ghosts, other.ghosts);
@@ -144,27 +145,27 @@ TEST(same_as_grown)
             assert_true(report.peak_bytes <= reserved.memory.bytes);
         glint_frame_finish(&grown);
     }
-    draw_frame(&reserved, 0, want, &report);
-    assert_true(count_different(want, got) > 0);
+    draw_lamps_on_grey(&reserved, 0, want, &report);
+    assert_true(count_different_samples(want, got) > 0);
     glint_frame_finish(&reserved);
 }
 
 /* Checks, at the coarsest grids, that less memory draws less, that
  * everything dropped is counted, and that the image never becomes brighter. */
-TEST(too_little)
+TEST(too_little_memory_drops_and_counts)
 {
     static uint8_t full[BYTES], got[BYTES];
     struct glint_frame frame;
     struct glint_engine_report report;
     int n_lost = 0, n_darker = 0;
 
-    make_even(&frame, 8);
-    draw_frame(&frame, N_LAMPS, full, &report);
+    make_frame_of_uniform_grids(&frame, 8);
+    draw_lamps_on_grey(&frame, N_LAMPS, full, &report);
     glint_frame_finish(&frame);
     for (size_t bytes = report.peak_bytes; bytes > 5e4; bytes -= bytes / 32) {
         int lost;
 
-        make_even(&frame, 8);
+        make_frame_of_uniform_grids(&frame, 8);
         if (glint_frame_reserve(&frame, NULL, bytes, N_LAMPS, N_LAMPS) !=
             GLINT_OK) {
             glint_frame_finish(&frame);
@@ -172,17 +173,17 @@ TEST(too_little)
         }
         assert_true(frame.memory.bytes <= bytes);
         n_allocations = 0;
-        draw_frame(&frame, N_LAMPS, got, &report);
+        draw_lamps_on_grey(&frame, N_LAMPS, got, &report);
         assert_int_equal(n_allocations, 0);
         lost = report.stats.dropped_bundles + report.stats.dropped_cells;
-        assert_true(count_different(full, got) == 0 || lost > 0);
-        assert_int_equal(count_brighter(full, got), 0);
-        n_darker += count_different(full, got) > 0;
+        assert_true(count_different_samples(full, got) == 0 || lost > 0);
+        assert_int_equal(count_brighter_samples(full, got), 0);
+        n_darker += count_different_samples(full, got) > 0;
         n_lost += lost > 0;
         glint_frame_finish(&frame);
     }
     assert_true(n_lost >= 5 && n_darker >= 5);
-    make_frame(&frame);
+    make_heliar_frame(&frame);
     assert_int_equal(glint_frame_reserve(&frame, NULL, 1000, N_LAMPS, N_LAMPS),
                      GLINT_E_MEMORY);
     glint_frame_finish(&frame);
@@ -190,34 +191,34 @@ TEST(too_little)
 
 /* Checks that limits of work and of memory make a frame coarser or drop
  * objects, and are reported; without limits the next frame equals the first. */
-TEST(bounds)
+TEST(limits_make_frames_coarser_and_are_reported)
 {
     static uint8_t want[BYTES], got[BYTES];
     struct glint_frame frame;
     struct glint_engine_report full, held;
 
-    make_frame(&frame);
-    draw_frame(&frame, N_LAMPS, want, &full);
+    make_heliar_frame(&frame);
+    draw_lamps_on_grey(&frame, N_LAMPS, want, &full);
     assert_false(full.coarsened);
     frame.limits.most_minsn = 1;
-    draw_frame(&frame, N_LAMPS, got, &held);
+    draw_lamps_on_grey(&frame, N_LAMPS, got, &held);
     assert_true(held.coarsened);
     assert_int_equal(held.drawn_lights, 1);
     assert_true(held.stats.primitives < full.stats.primitives);
     frame.limits.most_minsn = 0;
-    draw_frame(&frame, N_LAMPS, got, &held);
+    draw_lamps_on_grey(&frame, N_LAMPS, got, &held);
     assert_false(held.coarsened);
     assert_memory_equal(got, want, BYTES);
     glint_frame_finish(&frame);
-    make_frame(&frame);
+    make_heliar_frame(&frame);
     frame.limits.most_bytes =
         full.need_bytes * 3 / 4; /* the arena gets 1.25 times the limit */
-    draw_frame(&frame, N_LAMPS, got, &held);
+    draw_lamps_on_grey(&frame, N_LAMPS, got, &held);
     assert_true(held.arena_bytes <= frame.limits.most_bytes * 5 / 4);
     assert_true(held.stats.dropped_bundles > 0 && held.stats.bundles > 0);
     assert_int_equal(held.need_bytes, full.need_bytes);
     frame.limits.most_bytes = 0;
-    draw_frame(&frame, N_LAMPS, got, &held);
+    draw_lamps_on_grey(&frame, N_LAMPS, got, &held);
     assert_int_equal(held.stats.dropped_bundles, 0);
     assert_memory_equal(got, want, BYTES);
     glint_frame_finish(&frame);
@@ -225,19 +226,19 @@ TEST(bounds)
 
 /* Checks that a frame that needs too much memory is drawn completely with
  * coarser grids, reports this, and is the same again in the same memory. */
-TEST(tight)
+TEST(too_little_memory_makes_grids_coarser)
 {
     static uint8_t want[BYTES], got[BYTES], coarse[BYTES];
     struct glint_frame frame;
     struct glint_engine_report full, held;
 
-    make_even(&frame, 64);
-    draw_frame(&frame, N_LAMPS, want, &full);
+    make_frame_of_uniform_grids(&frame, 64);
+    draw_lamps_on_grey(&frame, N_LAMPS, want, &full);
     assert_false(full.tight);
     glint_frame_finish(&frame);
-    make_even(&frame, 64);
+    make_frame_of_uniform_grids(&frame, 64);
     frame.limits.most_bytes = full.need_bytes * 3 / 4;
-    draw_frame(&frame, N_LAMPS, coarse, &held);
+    draw_lamps_on_grey(&frame, N_LAMPS, coarse, &held);
     assert_true(held.coarsened && held.tight);
     assert_true(held.arena_bytes <= frame.limits.most_bytes * 5 / 4);
     assert_int_equal(held.stats.dropped_bundles, 0);
@@ -245,11 +246,11 @@ TEST(tight)
     assert_true(held.stats.primitives < full.stats.primitives);
     assert_int_equal(frame.dials.fineness, 64);
     n_allocations = 0;
-    draw_frame(&frame, N_LAMPS, got, &held);
+    draw_lamps_on_grey(&frame, N_LAMPS, got, &held);
     assert_int_equal(n_allocations, 0);
     assert_memory_equal(got, coarse, BYTES);
     frame.limits.most_bytes = 0;
-    draw_frame(&frame, N_LAMPS, got, &held);
+    draw_lamps_on_grey(&frame, N_LAMPS, got, &held);
     assert_false(held.coarsened || held.tight);
     assert_memory_equal(got, want, BYTES);
     glint_frame_finish(&frame);
@@ -257,17 +258,17 @@ TEST(tight)
 
 /* Draws a frame in BYTES of memory with N workers. Returns whether grids
  * were made coarser. */
-static bool is_tight(int n, size_t bytes, uint8_t rgb[BYTES],
-                     struct glint_engine_report *report)
+static bool makes_grids_coarser(int n, size_t bytes, uint8_t rgb[BYTES],
+                                struct glint_engine_report *report)
 {
     struct shuffle shuffle;
     struct glint_frame frame;
 
-    shuffle_init(&shuffle, n, 7);
-    make_even(&frame, 192);
+    init_shuffled_workers(&shuffle, n, 7);
+    make_frame_of_uniform_grids(&frame, 192);
     frame.cfg.workers = &shuffle.workers;
     frame.limits.most_bytes = bytes;
-    draw_frame(&frame, N_LAMPS, rgb, report);
+    draw_lamps_on_grey(&frame, N_LAMPS, rgb, report);
     glint_frame_finish(&frame);
     return report->tight;
 }
@@ -275,18 +276,18 @@ static bool is_tight(int n, size_t bytes, uint8_t rgb[BYTES],
 /* Checks that the memory limit below which grids become coarser does not
  * depend on the number of workers, lies between the memory needed and that
  * of uneven shares per worker, and that grids are no coarser than necessary. */
-TEST(tight_edge)
+TEST(memory_limit_does_not_depend_on_workers)
 {
     static uint8_t want[BYTES], got[BYTES];
     struct glint_engine_report full, held;
     size_t low, high;
 
-    assert_false(is_tight(1, 0, want, &full));
+    assert_false(makes_grids_coarser(1, 0, want, &full));
     low = full.need_bytes * 3 / 4;
     for (high = full.need_bytes * 3 / 2; high - low > high / 10;) {
         const size_t middle = (low + high) / 2;
 
-        if (is_tight(1, middle, got, &held))
+        if (makes_grids_coarser(1, middle, got, &held))
             low = middle;
         else
             high = middle;
@@ -294,18 +295,18 @@ TEST(tight_edge)
     assert_true(high >= full.need_bytes);
     /* At the limit, uneven shares per worker may drop bundles, which is
      * counted. */
-    assert_false(is_tight(5, high, got, &held));
+    assert_false(makes_grids_coarser(5, high, got, &held));
     assert_true(held.stats.dropped_bundles + held.stats.dropped_cells > 0 ||
-                count_different(got, want) == 0);
-    assert_true(is_tight(1, low, want, &held));
+                count_different_samples(got, want) == 0);
+    assert_true(makes_grids_coarser(1, low, want, &held));
     assert_true(held.stats.primitives > full.stats.primitives / 2);
-    assert_true(is_tight(5, low, got, &held));
+    assert_true(makes_grids_coarser(5, low, got, &held));
     assert_memory_equal(got, want, BYTES);
 }
 
-/* Checks that what reserved memory drops does not depend on the number of
- * workers either. */
-TEST(tight_reserved)
+/* Checks that the bundles dropped for lack of reserved memory do not depend on
+ * the number of workers either. */
+TEST(dropped_bundles_do_not_depend_on_workers)
 {
     static uint8_t got[2][BYTES];
 
@@ -314,12 +315,12 @@ TEST(tight_reserved)
         struct glint_frame frame;
         struct shuffle shuffle;
 
-        shuffle_init(&shuffle, n, 7);
-        make_even(&frame, 192);
+        init_shuffled_workers(&shuffle, n, 7);
+        make_frame_of_uniform_grids(&frame, 192);
         frame.cfg.workers = &shuffle.workers;
         assert_ok(glint_frame_reserve(&frame, NULL, 4 << 20, N_LAMPS, N_LAMPS));
-        draw_frame(&frame, n, got[n > 1], &report);
-        draw_frame(&frame, N_LAMPS, got[n > 1], &report);
+        draw_lamps_on_grey(&frame, n, got[n > 1], &report);
+        draw_lamps_on_grey(&frame, N_LAMPS, got[n > 1], &report);
         assert_true(report.tight && report.stats.dropped_bundles == 0);
         assert_memory_equal(got[n > 1], got[0], BYTES);
         glint_frame_finish(&frame);
@@ -327,17 +328,17 @@ TEST(tight_reserved)
 }
 
 /* Checks that more lamps than max_lights are merged without an allocation. */
-TEST(more_lamps)
+TEST(lamps_above_max_lights_are_merged)
 {
     static uint8_t got[BYTES];
     struct glint_frame frame;
     struct glint_engine_report report;
 
-    make_frame(&frame);
+    make_heliar_frame(&frame);
     frame.dials.max_lights = 2;
     assert_ok(glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS));
     n_allocations = 0;
-    draw_frame(&frame, N_LAMPS, got, &report);
+    draw_lamps_on_grey(&frame, N_LAMPS, got, &report);
     assert_int_equal(n_allocations, 0);
     assert_int_equal(report.drawn_lights, 2);
     assert_int_equal(report.stats.dropped_bundles, 0);
@@ -346,7 +347,7 @@ TEST(more_lamps)
 
 /* Checks that settings changed between frames give the image of a frame
  * created with them. */
-TEST(retune)
+TEST(changed_settings_equal_a_new_frame)
 {
     static const struct {
         int cells, steps, lights;
@@ -361,12 +362,12 @@ TEST(retune)
     struct glint_frame frame, fresh;
     int n_changed = 0;
 
-    make_frame(&frame);
+    make_heliar_frame(&frame);
     assert_ok(glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS));
     for (size_t i = 0; i < sizeof setting / sizeof *setting; i++) {
         struct glint_frame *const both[2] = {&frame, &fresh};
 
-        make_frame(&fresh);
+        make_heliar_frame(&fresh);
         for (int k = 0; k < 2; k++) {
             both[k]->dials.fineness = setting[i].cells;
             both[k]->dials.irradiance_steps = setting[i].steps;
@@ -376,11 +377,11 @@ TEST(retune)
         n_allocations = 0;
         /* The image of the previous settings. */
         memcpy(want, got, BYTES);
-        draw_frame(&frame, N_LAMPS, got, &report);
+        draw_lamps_on_grey(&frame, N_LAMPS, got, &report);
         assert_int_equal(n_allocations, 0);
-        n_changed += i > 0 && count_different(want, got) > 0;
-        draw_frame(&fresh, N_LAMPS, want, &report);
-        assert_int_equal(count_different(want, got), 0);
+        n_changed += i > 0 && count_different_samples(want, got) > 0;
+        draw_lamps_on_grey(&fresh, N_LAMPS, want, &report);
+        assert_int_equal(count_different_samples(want, got), 0);
         glint_frame_finish(&fresh);
     }
     assert_int_equal(n_changed, 4);
@@ -390,7 +391,7 @@ TEST(retune)
 /* Checks, for each allocation that may fail, that a flare is drawn
  * completely or an error is returned, never an image without light; by a
  * model and by exact rays. */
-TEST(no_memory)
+TEST(failed_allocation_draws_completely_or_fails)
 {
     static float want[BYTES], got[BYTES];
     for (int exact = 0; exact < 2; exact++) {
@@ -403,7 +404,8 @@ TEST(no_memory)
 
             make_frame_for_lens(exact ? &exact_scene : &opened, &frame);
             frame.only_ghost = 0;
-            frame.dials.max_lights = 2; /* forces a merge of the three lamps */
+            /* causes the three lamps to be merged */
+            frame.dials.max_lights = 2;
             n_allocations = 0;
             fail_at = nth;
             status = glint_frame_draw_alone(&frame, lamps, 3, 1,
@@ -414,16 +416,17 @@ TEST(no_memory)
             assert_true(status == GLINT_OK || status == GLINT_E_MEMORY);
             if (status == GLINT_OK)
                 assert_memory_equal(want, nth ? got : want, sizeof want);
-            if (n_allocations < nth) /* fewer than NTH allocations */
+            /* the frame has fewer than NTH allocations */
+            if (n_allocations < nth)
                 break;
         }
         assert_true(n_refused >= 5);
     }
 }
 
-/* An engine whose new stop fails for want of memory must draw with the old
- * one. */
-TEST(no_memory_for_stop)
+/* Checks that an engine keeps drawing with the old stop if the allocation for a
+ * new stop fails. */
+TEST(failed_stop_change_keeps_the_old_stop)
 {
     static uint8_t want[BYTES], got[BYTES];
     const struct glint_image image =
@@ -459,7 +462,7 @@ TEST(no_memory_for_stop)
 
 /* Checks that numbers of lamps, ghosts and wavelengths whose product
  * overflows an int are rejected before any bundle is written. */
-TEST(too_many_feeds)
+TEST(rejects_overflowing_numbers_of_bundles)
 {
     enum { N = 66577 };
     struct glint_lamp *many = malloc(N * sizeof *many);
@@ -488,7 +491,7 @@ TEST(too_many_feeds)
 /* Checks that the points of wide lamps may use point_room lights if the
  * lamps fit into max_lights, but only max_lights in reserved memory or with
  * more lamps. */
-TEST(room_for_points)
+TEST(points_of_wide_lamps_use_point_room)
 {
     static const struct {
         int max_lights, point_room, least, most;
@@ -508,7 +511,7 @@ TEST(room_for_points)
     for (size_t k = 0; k < sizeof setting / sizeof *setting; k++) {
         struct glint_frame frame;
 
-        make_frame(&frame);
+        make_heliar_frame(&frame);
         frame.dials.max_lights = setting[k].max_lights;
         frame.dials.area_points = 61;
         frame.picture.point_room = setting[k].point_room;

@@ -31,7 +31,7 @@ TEST_OPEN
     opened.settings.options.starburst = 1;
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
                                "lenses/heliar-tronnier.lens"));
-    assert_ok(settings_frame(&tool, &opened, WIDTH, HEIGHT, &frame));
+    assert_ok(make_frame_from_settings(&tool, &opened, WIDTH, HEIGHT, &frame));
     glint_image_place(&image, rgb);
 }
 
@@ -44,7 +44,7 @@ TEST_CLOSE
 /* Returns the power, in the brightest channel, of the star of a lamp of
  * power POWER at LEVEL (0 .. 1 while it fades). SEEN_PX: RMS radius of the
  * lamp's clipped core in the image, pixels; 0: not clipped. */
-static double star_power(double power, double seen_px, double level)
+static double star_power_at_level(double power, double seen_px, double level)
 {
     const struct glint_lamp lamp = {5, 30, power, {1, .5, 0}, {0, 0}, 0};
 
@@ -58,7 +58,7 @@ static double star_power(double power, double seen_px, double level)
     return glint_real_value(frame.star.light[0].power);
 }
 
-static bool is_near(double a, double b)
+static bool is_relatively_near(double a, double b)
 {
     return fabs(a / b - 1) < 1e-3;
 }
@@ -66,35 +66,37 @@ static bool is_near(double a, double b)
 /* Returns half of the power at which the star of a point lamp is white out
  * to the radius of a core of RMS radius SEEN_PX: power W is white out to
  * cbrt(W a) / pi pixels, where a is wavelength times f-number in pixels. */
-static double white_power(double seen_px)
+static double half_of_white_radius_power(double seen_px)
 {
     const double airy_px = 0.55e-3 * 22 / hypot(36, 24) * 200;
 
     return pow(GLINT_PI * sqrt(2) * seen_px, 3) / airy_px / 2;
 }
 
-TEST(power)
+TEST(clipped_lamps_get_more_star_power)
 {
     /* A lamp that is not clipped keeps its power. */
-    assert_true(is_near(star_power(1000, 0, 1), 1000));
+    assert_true(is_relatively_near(star_power_at_level(1000, 0, 1), 1000));
     /* A clipped lamp gets more power, at most 32 times, and at most so much
      * that its star is white out to the visible core. */
-    assert_true(is_near(star_power(1000, 50, 1), 32000));
-    assert_true(is_near(star_power(1000, 2, 1), white_power(2)));
-    assert_true(is_near(star_power(1000, 0.5, 1), 1000));
-    /* The star fades with the lamp. */
-    assert_true(is_near(star_power(500, 2, 0.5), 0.5 * white_power(2)));
+    assert_true(is_relatively_near(star_power_at_level(1000, 50, 1), 32000));
+    assert_true(is_relatively_near(star_power_at_level(1000, 2, 1),
+                                   half_of_white_radius_power(2)));
+    assert_true(is_relatively_near(star_power_at_level(1000, 0.5, 1), 1000));
+    /* The star of a fading lamp fades with it. */
+    assert_true(is_relatively_near(star_power_at_level(500, 2, 0.5),
+                                   0.5 * half_of_white_radius_power(2)));
 }
 
-static double star_radius(double power, double seen_px)
+static double star_radius_px(double power, double seen_px)
 {
-    star_power(power, seen_px, 1);
+    star_power_at_level(power, seen_px, 1);
     return frame.star.light[0].radius_q8 / 256.0;
 }
 
-/* Returns the radius of the widest lamp that a rim of SEEN_PX can hide, as
- * for still images. */
-static double hidden_radius(double seen_px)
+/* Returns the max radius, pixels, of a lamp that a rim of SEEN_PX pixels can
+ * hide, as computed for still images. */
+static double max_hidden_lamp_radius(double seen_px)
 {
     return floor(256 * seen_px / 6) * 2 / 256;
 }
@@ -102,42 +104,42 @@ static double hidden_radius(double seen_px)
 /* Checks that a lamp whose core is no wider than its own star gets the
  * largest radius that its rim can hide, as in a still image, and that a lamp
  * which fills its core is a disc. */
-TEST(extent)
+TEST(narrow_core_gets_the_radius_its_rim_can_hide)
 {
-    assert_true(star_radius(100, 0) == 0);
-    assert_true(star_radius(1e7, 2) == hidden_radius(2));
-    assert_true(star_radius(1e9, 6) < 0.6 * sqrt(2) * 6);
-    assert_true(star_radius(10, 6) > 0.8 * sqrt(2) * 6);
+    assert_true(star_radius_px(100, 0) == 0);
+    assert_true(star_radius_px(1e7, 2) == max_hidden_lamp_radius(2));
+    assert_true(star_radius_px(1e9, 6) < 0.6 * sqrt(2) * 6);
+    assert_true(star_radius_px(10, 6) > 0.8 * sqrt(2) * 6);
     /* The core of a lamp without glare excludes the part that its own star
      * makes white. */
-    assert_true(star_radius(GLINT_PI * 2 * 6 * 6, 6) < 0.95 * sqrt(2) * 6);
+    assert_true(star_radius_px(GLINT_PI * 2 * 6 * 6, 6) < 0.95 * sqrt(2) * 6);
 }
 
 /* Checks that a spot widened by the glare of a lamp far above white has the
  * spikes of a small lamp, that one barely above white has those of a disc,
  * and that the transition is continuous. A fading lamp keeps its extent. */
-TEST(glare)
+TEST(glare_of_a_small_lamp_does_not_widen_spikes)
 {
     const double white = GLINT_PI * 2 * 50 * 50;
     double before = 1e9;
 
-    assert_true(star_radius(0.9 * white, 50) > 0.6 * sqrt(2) * 50);
-    assert_true(star_radius(6 * white, 50) == hidden_radius(50));
+    assert_true(star_radius_px(0.9 * white, 50) > 0.6 * sqrt(2) * 50);
+    assert_true(star_radius_px(6 * white, 50) == max_hidden_lamp_radius(50));
     for (double over = 0.5; over < 6; over += 0.1) {
-        const double radius = star_radius(over * white, 50);
+        const double radius = star_radius_px(over * white, 50);
 
         assert_true(radius <= before);
         assert_true(over == 0.5 || before - radius < 4);
         before = radius;
     }
-    before = star_radius(3 * white, 50);
-    star_power(1.5 * white, 50, 0.5);
+    before = star_radius_px(3 * white, 50);
+    star_power_at_level(1.5 * white, 50, 0.5);
     assert_true(fabs(frame.star.light[0].radius_q8 / 256.0 - before) < 0.01);
 }
 
 /* Checks that of too many lamps the brightest are drawn, in falling order,
  * whatever the order of the input. */
-TEST(most)
+TEST(brightest_lamps_get_stars)
 {
     enum { N = GLINT_STAR_MAX_LIGHTS + 100 };
     static struct glint_lamp lamps[N];
@@ -146,15 +148,16 @@ TEST(most)
         lamps[i] =
             (struct glint_lamp){5, i * 0.05, i + 1, {1, 1, 1}, {0, 0}, 0};
     assert_ok(glint_frame_star_set(&frame, lamps, N, 1, &image));
-    assert_true(is_near(glint_real_value(frame.star.light[0].power), N));
-    assert_true(is_near(
+    assert_true(
+        is_relatively_near(glint_real_value(frame.star.light[0].power), N));
+    assert_true(is_relatively_near(
         glint_real_value(frame.star.light[GLINT_STAR_MAX_LIGHTS - 1].power),
         101));
 }
 
 /* Checks that a frame allocates nothing after memory was reserved for many
  * lamps. */
-TEST(hold)
+TEST(reserved_memory_prevents_allocations)
 {
     const struct glint_star *star;
     const struct glint_star_tables *tables;
@@ -164,10 +167,10 @@ TEST(hold)
     star = frame.star.star;
     tables = frame.star.tables;
     bytes = glint_frame_star_bytes(&frame);
-    star_power(1000, 0, 1);
+    star_power_at_level(1000, 0, 1);
     assert_ptr_equal(star, frame.star.star);
     assert_int_equal(bytes, glint_frame_star_bytes(&frame));
-    /* tables, and the lamps twice: as given and as drawn */
+    /* memory for tables, and for two lists of lamps: given and drawn */
     assert_true(bytes > 40000 + GLINT_STAR_MAX_LIGHTS * 160);
     assert_true(bytes < (1 << 20) + GLINT_STAR_MAX_LIGHTS * 400);
     assert_ptr_equal(tables, frame.star.tables);
@@ -175,32 +178,32 @@ TEST(hold)
 
 /* Checks that stars take at most a quarter of the budget, whatever their
  * number and brightness. */
-TEST(budget)
+TEST(stars_cost_at_most_a_quarter_of_the_budget)
 {
     const struct glint_budget none = frame.budget;
     double pixels;
 
-    star_power(1e7, 0, 1);
+    star_power_at_level(1e7, 0, 1);
     pixels = frame.star.pixels;
     frame.budget.ms_per_minsn = 0.1;
     frame.budget.ms = 1;
-    star_power(1e7, 0, 1);
+    star_power_at_level(1e7, 0, 1);
     print_message("%.0f pixels, %.0f within 1 ms\n", pixels, frame.star.pixels);
     assert_true(frame.star.pixels > 1000);
     assert_true(frame.star.pixels < 0.5 * pixels);
     assert_true(frame.star.pixels * 0.32e-3 * 0.1 <= 0.25);
     frame.budget.ms = 1e-6;
-    star_power(1e7, 0, 1);
+    star_power_at_level(1e7, 0, 1);
     assert_true(frame.star.pixels == 0);
     frame.budget = none;
 }
 
 /* Checks that camera noise does not make stars flicker: for lamps of three
  * sizes and noise of 2 and 4 codes a star changes by at most 2 % per frame
- * after it has risen, and 7 % in four seconds. Noise of 8 codes hides the
- * rim of the smallest lamp; then 6 % and 25 %, as a star's power goes with
- * the cube of the extent. */
-TEST(noise)
+ * after it has risen, and 7 % in four seconds. Noise of 8 codes hides the rim
+ * of the smallest lamp; then the limits are 6 % and 25 %, as a star's power is
+ * proportional to the cube of the extent. */
+TEST(camera_noise_does_not_make_stars_flicker)
 {
     enum { FRAMES = 100, SETTLED = 25 };
     static const double radius[] = {2, 3, 6};
@@ -210,19 +213,20 @@ TEST(noise)
         struct night night;
         double last = 0, least = HUGE_VAL, most = 0, step = 0;
 
-        night_init(&night, WIDTH, HEIGHT);
+        night_init_parameters(&night, WIDTH, HEIGHT);
         night.sigma = 2 << k / 3;
-        assert_true(night_open(&night));
+        assert_true(night_open_tracker(&night));
         for (int i = 0; i < FRAMES; i++) {
             const struct glint_lamp_track *t = &night.track[0];
             double power;
 
-            night_step(&night, &lamp, 1, 40000);
+            night_draw_and_track(&night, &lamp, 1, 40000);
             if (i < SETTLED)
                 continue;
             assert_int_equal(night.n_tracks, 1);
-            power = star_power((double)t->power_q16 / 65536, t->size_q8 / 256.0,
-                               t->level_q15 / 32768.0);
+            power =
+                star_power_at_level((double)t->power_q16 / 65536,
+                                    t->size_q8 / 256.0, t->level_q15 / 32768.0);
             step = last > 0 ? fmax(step, fabs(log(power / last))) : step;
             least = fmin(least, power);
             most = fmax(most, power);
@@ -234,19 +238,19 @@ TEST(noise)
                       100 * (most / least - 1));
         assert_true(k < 6 ? step < 0.02 && most < 1.07 * least
                           : step < 0.06 && most < 1.25 * least);
-        night_close(&night);
+        night_close_tracker(&night);
     }
 }
 
 /* Checks that a higher star_cull covers fewer pixels. */
-TEST(cull)
+TEST(higher_star_cull_covers_fewer_pixels)
 {
     const double cull = frame.dials.star_cull;
     double last = HUGE_VAL;
 
     for (frame.dials.star_cull = 0.5; frame.dials.star_cull < 300;
          frame.dials.star_cull *= 8) {
-        star_power(1e4, 0, 1);
+        star_power_at_level(1e4, 0, 1);
         print_message("%g times: %.0f pixels\n", frame.dials.star_cull,
                       frame.star.pixels);
         assert_true(frame.star.pixels > 0 && frame.star.pixels < 0.9 * last);

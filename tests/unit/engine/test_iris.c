@@ -25,7 +25,8 @@ enum {
     PHI = 1440
 };
 
-static struct glint_setup make_setup(int n, double rotation_deg, double round)
+static struct glint_setup make_iris_setup(int n, double rotation_deg,
+                                          double round)
 {
     static struct glint_setup s;
 
@@ -40,7 +41,7 @@ static struct glint_setup make_setup(int n, double rotation_deg, double round)
 
 /* Returns the radius of the outline at the azimuth PHI, radians, by
  * bisection. */
-static double find_radius(const struct glint_iris_sides *s, double phi)
+static double find_outline_radius(const struct glint_iris_sides *s, double phi)
 {
     double in = 0, out = 1.5;
 
@@ -57,12 +58,12 @@ static double find_radius(const struct glint_iris_sides *s, double phi)
 
 /* Calls TEST for each number of blades and each roundness, rotated by 17
  * degrees. */
-static void for_each_iris(void (*test)(const struct glint_setup *s,
-                                       const struct glint_iris_sides *sides))
+static void check_each_iris(void (*test)(const struct glint_setup *s,
+                                         const struct glint_iris_sides *sides))
 {
     for (int i = 0; i < N_BLADES * N_ROUND; i++) {
         const struct glint_setup s =
-            make_setup(blades[i / N_ROUND], 17, roundness[i % N_ROUND]);
+            make_iris_setup(blades[i / N_ROUND], 17, roundness[i % N_ROUND]);
         struct glint_iris_sides sides;
 
         glint_iris_sides(&sides, &s);
@@ -74,8 +75,8 @@ static void for_each_iris(void (*test)(const struct glint_setup *s,
 /* Checks that the corners lie on the circle of the f-number, and that the
  * outline's middle between two corners lies on the circle of radius 1 / R
  * through both. */
-static void check_corners(const struct glint_setup *s,
-                          const struct glint_iris_sides *sides)
+static void check_outline_corners(const struct glint_setup *s,
+                                  const struct glint_iris_sides *sides)
 {
     const double half = sin(GLINT_PI / s->n_blades);
     const double k = fmin(s->iris.roundness, 0.9999);
@@ -85,25 +86,25 @@ static void check_corners(const struct glint_setup *s,
         const double at = (17 + i * 360.0 / s->n_blades) * GLINT_PI / 180;
         const double middle = at + GLINT_PI / s->n_blades;
 
-        assert_true(fabs(find_radius(sides, at) - 1) < 1e-9);
-        assert_true(fabs(find_radius(sides, middle) -
+        assert_true(fabs(find_outline_radius(sides, at) - 1) < 1e-9);
+        assert_true(fabs(find_outline_radius(sides, middle) -
                          (cos(GLINT_PI / s->n_blades) + sag)) < 1e-9);
     }
 }
 
-TEST(corners)
+TEST(corners_lie_on_the_f_number_circle)
 {
-    for_each_iris(check_corners);
+    check_each_iris(check_outline_corners);
 }
 
-static void check_convex(const struct glint_setup *s,
-                         const struct glint_iris_sides *sides)
+static void check_outline_is_convex(const struct glint_setup *s,
+                                    const struct glint_iris_sides *sides)
 {
     double x[PHI], y[PHI], area = 0;
 
     for (int i = 0; i < PHI; i++) {
         const double phi = 2 * GLINT_PI * i / PHI;
-        const double r = find_radius(sides, phi);
+        const double r = find_outline_radius(sides, phi);
 
         assert_true(r > 0.49 && r < 1 + 1e-9);
         x[i] = r * cos(phi);
@@ -120,15 +121,15 @@ static void check_convex(const struct glint_setup *s,
     assert_true(fabs(area / GLINT_PI - glint_iris_share(s)) < 2e-4);
 }
 
-TEST(convex_and_area)
+TEST(outline_is_convex_and_has_its_area)
 {
-    for_each_iris(check_convex);
+    check_each_iris(check_outline_is_convex);
 }
 
 /* Checks that points which the integer test classifies lie on the same side
  * of the outline in double precision, at the same distance near the outline. */
-static void check_integers(const struct glint_setup *s,
-                           const struct glint_iris_sides *sides)
+static void check_integer_stop_test(const struct glint_setup *s,
+                                    const struct glint_iris_sides *sides)
 {
     struct glint_stop stop;
     uint32_t seed = 1;
@@ -153,19 +154,20 @@ static void check_integers(const struct glint_setup *s,
     }
 }
 
-TEST(integers)
+TEST(integer_test_agrees_with_the_outline)
 {
-    for_each_iris(check_integers);
+    check_each_iris(check_integer_stop_test);
 }
 
 /* Checks that a rounder stop passes more light, up to that of a circle. */
-TEST(area_grows)
+TEST(rounder_stop_passes_more_light)
 {
     for (int i = 0; i < N_BLADES; i++) {
         double last = 0;
 
         for (int k = 0; k < N_ROUND; k++) {
-            const struct glint_setup s = make_setup(blades[i], 0, roundness[k]);
+            const struct glint_setup s =
+                make_iris_setup(blades[i], 0, roundness[k]);
 
             assert_true(glint_iris_share(&s) > last);
             last = glint_iris_share(&s);
@@ -176,9 +178,9 @@ TEST(area_grows)
 
 /* Checks that a setup rejects values out of range and recomputes the light
  * of the stop. */
-TEST(setup)
+TEST(setup_rejects_values_out_of_range)
 {
-    struct glint_setup s = make_setup(6, 0, 0);
+    struct glint_setup s = make_iris_setup(6, 0, 0);
     struct glint_iris iris = {.roundness = 1.5};
     struct glint_dirt *dirt;
     struct glint_error error;

@@ -15,9 +15,9 @@
 
 enum { WIDTH = 320, HEIGHT = 200, SIDE = 10, X0 = 220, Y0 = 40 };
 
-/* Uses a white square of 10 x 10 pixels on black: centre (225, 45), flux
- * 100; a clipped pixel counts as 2^3 times white. */
-TEST(found_lamp)
+/* Checks the lamp found in a white square of 10 x 10 pixels on black: centre
+ * (225, 45), flux 100; a clipped pixel counts as 2^3 times white. */
+TEST(finds_a_white_square)
 {
     static uint8_t rgb[3 * WIDTH * HEIGHT];
     const struct glint_view view = glint_view_fit(WIDTH, HEIGHT, 36, 24);
@@ -47,7 +47,8 @@ TEST(found_lamp)
 
 enum { W = 320, H = 200 };
 
-static void draw_square(struct glint_image *image, int x0, int y0, int side)
+static void draw_white_square(struct glint_image *image, int x0, int y0,
+                              int side)
 {
     for (int y = y0; y < y0 + side; y++)
         memset(image->plane[0] + y * W + x0, 255, (size_t)side);
@@ -56,7 +57,7 @@ static void draw_square(struct glint_image *image, int x0, int y0, int side)
 /* Checks tracking in a video: a stationary lamp equals that of a still image
  * bit by bit, a new lamp fades in, and after a restart a lamp has full power
  * at once. */
-TEST(tracked_lamps)
+TEST(tracked_stationary_lamp_equals_a_still)
 {
     static uint8_t grey[W * H];
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX],
@@ -66,7 +67,7 @@ TEST(tracked_lamps)
     struct glint_lamp_detector finder = {.headroom_ev = 12, .max = 8};
     struct glint_lamp_finder_config cfg;
 
-    draw_square(&image, 50, 60, 9);
+    draw_white_square(&image, 50, 60, 9);
     glint_lamp_finder_defaults(&cfg, W, H);
     assert_ok(glint_lamp_detector_open(&finder, &cfg));
     for (int frame = 0; frame < 5; frame++)
@@ -77,11 +78,11 @@ TEST(tracked_lamps)
         glint_lamp_detector_frame(&finder, &image, 0, &view, 50, still), 1);
     assert_memory_equal(lamp, still, sizeof *lamp);
 
-    draw_square(&image, 200, 100, 9);
+    draw_white_square(&image, 200, 100, 9);
     assert_int_equal(
         glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp), 2);
     assert_int_equal(finder.n_tracks, 2);
-    /* 40 ms of the 200 ms fade */
+    /* after 40 ms of the fade, which lasts 200 ms */
     assert_near(lamp[1].power, still[0].power / 5, 10);
     assert_int_equal(finder.track[1].state, GLINT_LAMP_RISING);
 
@@ -95,7 +96,7 @@ TEST(tracked_lamps)
 /* Checks a lamp in glare whose clipped core has a rim as wide as its radius:
  * in a video it may be a point, in a still image its axes are at least a
  * sixth of its size. */
-TEST(lamp_in_glare)
+TEST(lamp_in_glare_may_become_a_point)
 {
     static uint8_t grey[W * H];
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
@@ -109,7 +110,8 @@ TEST(lamp_in_glare)
         for (int x = 0; x < W; x++) {
             const double r2 = pow(x - 150, 2) + pow(y - 90, 2);
 
-            grey[y * W + x] = (uint8_t)canvas_srgb_code(fmin(1, 80 / (1 + r2)));
+            grey[y * W + x] =
+                (uint8_t)canvas_encode_srgb(fmin(1, 80 / (1 + r2)));
         }
     glint_lamp_finder_defaults(&cfg, W, H);
     assert_ok(glint_lamp_detector_open(&finder, &cfg));
@@ -128,7 +130,7 @@ TEST(lamp_in_glare)
 
 /* Checks that the four largest of twelve lamps are returned, with and
  * without tracking. */
-TEST(most_lamps)
+TEST(largest_lamps_are_returned)
 {
     static uint8_t grey[W * H];
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
@@ -138,8 +140,8 @@ TEST(most_lamps)
     struct glint_lamp_finder_config cfg;
 
     for (int i = 0; i < 12; i++)
-        draw_square(&image, 20 + 50 * (i % 6), 40 + 100 * (i / 6),
-                    3 + i * 5 % 12);
+        draw_white_square(&image, 20 + 50 * (i % 6), 40 + 100 * (i / 6),
+                          3 + i * 5 % 12);
     glint_lamp_finder_defaults(&cfg, W, H);
     assert_ok(glint_lamp_detector_open(&finder, &cfg));
     for (int us = 0; us <= 40000; us += 40000) {
@@ -151,7 +153,7 @@ TEST(most_lamps)
     glint_lamp_detector_close(&finder);
 }
 
-static void read_text(struct lamp_list *list, const char *text)
+static void read_lamp_list_text(struct lamp_list *list, const char *text)
 {
     char path[] = "/tmp/glint-lamps-XXXXXX";
     struct glint_error error;
@@ -164,9 +166,9 @@ static void read_text(struct lamp_list *list, const char *text)
     remove(path);
 }
 
-/* Checks that of a lamp and a larger flat window, which clip alike, the lamp
- * is kept, as its halo shows that it has more light. */
-TEST(strongest_lamp)
+/* Checks that a lamp is preferred to a larger flat window with the same clipped
+ * codes, as its halo shows that it has more light. */
+TEST(lamp_is_preferred_to_a_flat_window)
 {
     static uint8_t grey[W * H];
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
@@ -179,9 +181,9 @@ TEST(strongest_lamp)
     for (int i = 0; i < W * H; i++) {
         const double r2 = pow(i % W - 80, 2) + pow(i / W - 80, 2);
 
-        grey[i] = (uint8_t)canvas_srgb_code(fmin(1, 80 / (1 + r2)));
+        grey[i] = (uint8_t)canvas_encode_srgb(fmin(1, 80 / (1 + r2)));
     }
-    draw_square(&image, 240, 140, 18);
+    draw_white_square(&image, 240, 140, 18);
     glint_lamp_finder_defaults(&cfg, W, H);
     cfg.judge = 0;
     assert_ok(glint_lamp_detector_open(&finder, &cfg));
@@ -195,7 +197,7 @@ TEST(strongest_lamp)
 
 /* Checks that CSV and JSON lines give the same lamps; a row belongs to one
  * frame, or to all frames. */
-TEST(lists)
+TEST(csv_and_json_lists_give_the_same_lamps)
 {
     static const char *const texts[2] = {
         "frame,x,y,power\n# a lamp\n0,10,20,5\r\n\n*,-30,40,6,1,0.5,0.25\n"
@@ -211,7 +213,7 @@ TEST(lists)
         struct glint_engine_lamp lamp[4];
         double x, y;
 
-        read_text(&list, texts[k]);
+        read_lamp_list_text(&list, texts[k]);
         assert_int_equal(list.n, 3);
         assert_int_equal(lamp_list_frame(&list, 1, &view, 50, lamp, 4), 1);
         glint_view_to_pixel(&view, 50, &lamp[0].lamp, &x, &y);
@@ -230,7 +232,7 @@ TEST(lists)
 /* Checks that text which is not a list of lamps is rejected with the number
  * of the wrong line. In the third text power times colour is too large for
  * an image. */
-TEST(refused_lists)
+TEST(rejects_texts_that_are_not_lamp_lists)
 {
     static const char *const text_and_error[][2] = {
         {"0,1,2,nan\n", "list:1: expected 4, 7 or 8 numbers"},

@@ -15,13 +15,13 @@ static float a[N], b[N];
 static const struct glint_float_image image_a = {SIDE, SIDE, a};
 static const struct glint_float_image image_b = {SIDE, SIDE, b};
 
-static void fill_images(float value)
+static void fill_both_images(float value)
 {
     for (int i = 0; i < N; i++)
         a[i] = b[i] = value;
 }
 
-TEST(equal)
+TEST(equal_images_have_no_difference)
 {
     struct glint_measure m;
 
@@ -32,12 +32,12 @@ TEST(equal)
     assert_true(fabs(m.ssim - 1) < 1e-12);
 }
 
-/* White and linear 0.5 (sRGB code 188) differ by 67 codes. */
-TEST(known_difference)
+/* Checks that white and linear 0.5 (sRGB code 188) differ by 67 codes. */
+TEST(measures_a_known_difference)
 {
     struct glint_measure m;
 
-    fill_images(2);
+    fill_both_images(2);
     for (int i = 0; i < N; i++)
         b[i] = 1;
     assert_true(glint_measure_compare(&image_a, &image_b, false, &m));
@@ -49,18 +49,18 @@ TEST(known_difference)
 }
 
 /* Checks that a difference smaller than a code is measured. */
-TEST(less_than_a_code)
+TEST(measures_differences_below_a_code)
 {
     struct glint_measure m;
 
-    fill_images(0.5f);
+    fill_both_images(0.5f);
     b[0] = 0.50001f;
     assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(m.same_codes && m.psnr_db > 100 && m.psnr_db < 999);
     b[0] = 0.6f;
     assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(!m.same_codes && m.psnr_db < 100);
-    fill_images(1.5f); /* differences above white do not count */
+    fill_both_images(1.5f); /* differences above white do not count */
     b[0] = 2;
     assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(m.same_codes && m.psnr_db == 999);
@@ -69,10 +69,10 @@ TEST(less_than_a_code)
 /* Checks that the brightest 0.1 % of the pixels do not affect the exposure. */
 TEST(exposure_is_a_percentile)
 {
-    fill_images(0.25f);
+    fill_both_images(0.25f);
     for (int i = 0; i < 3 * 4; i++) /* 4 of 4096 pixels */
         a[i] = 1000;
     assert_true(fabs(glint_measure_exposure(&image_a) - 4) < 1e-6);
-    fill_images(0);
+    fill_both_images(0);
     assert_true(glint_measure_exposure(&image_a) == 1);
 }

@@ -23,8 +23,8 @@ compute_projection(struct glint_prescription *lens, const char *name,
     return p;
 }
 
-/* A view without a projection equals a pinhole bit by bit. */
-TEST(zeros_are_tangents)
+/* Checks that a view without a projection equals a pinhole bit by bit. */
+TEST(view_without_projection_is_a_pinhole)
 {
     const struct glint_projection none = {.reach = 0};
 
@@ -37,9 +37,9 @@ TEST(zeros_are_tangents)
     }
 }
 
-/* Angles convert to image positions and back, inside and outside the traced
- * range. */
-TEST(there_and_back)
+/* Checks that angles convert to image positions and back, inside and outside
+ * the traced range. */
+TEST(angles_convert_to_positions_and_back)
 {
     static const char *const names[] = {"heliar-tronnier", "phone/phone-six",
                                         "wide/fisheye-nikkor-6",
@@ -64,8 +64,8 @@ TEST(there_and_back)
     }
 }
 
-/* The direction of a pixel is imaged to the same pixel. */
-TEST(pixels_go_back)
+/* Checks that light from the direction of a pixel is imaged to that pixel. */
+TEST(pixel_directions_are_imaged_to_the_pixel)
 {
     struct glint_prescription lens;
     struct glint_view view;
@@ -88,7 +88,7 @@ TEST(pixels_go_back)
 
 /* Checks the error of the polynomials, and the known type of each
  * projection. */
-TEST(lenses_are_as_known)
+TEST(projections_have_their_known_types)
 {
     struct glint_prescription lens;
     struct glint_projection p;
@@ -110,7 +110,7 @@ TEST(lenses_are_as_known)
 
 /* Checks chief rays between the whole degrees to which the polynomials were
  * fitted. */
-TEST(between_degrees)
+TEST(chief_rays_between_degrees_fit)
 {
     const double degrees[] = {3.5, 11.5, 19.5};
     struct glint_prescription lens;
@@ -128,7 +128,8 @@ TEST(between_degrees)
         double x = 0, before = 0, stop = 0;
         struct glint_ray ray;
 
-        /* The secant method, started at the centre of the front element. */
+        /* Finds the chief ray by the secant method, starting at the centre of
+         * the front element. */
         for (int i = 0; i < 20; i++) {
             const double now = x;
 
@@ -146,7 +147,7 @@ TEST(between_degrees)
     }
 }
 
-TEST(others_are_refused)
+TEST(rejects_lenses_without_a_projection)
 {
     struct glint_prescription lens;
     struct glint_projection p;

@@ -25,32 +25,33 @@ static struct glint_engine_report of_reusing, of_fresh;
 
 TEST_OPEN
 {
-    assert_true(stage_open(&stage, "double-gauss-angenieux", W, H));
+    assert_true(stage_open_lens(&stage, "double-gauss-angenieux", W, H));
 }
 
 TEST_CLOSE
 {
-    stage_close(&stage);
+    stage_free(&stage);
 }
 
-static void open_frames(double px)
+static void open_both_frames(double px)
 {
     glint_frame_like(&reusing, &stage.frame, stage.view);
     glint_frame_like(&fresh, &stage.frame, stage.view);
     reusing.cfg.reuse = &glint_reuse;
     reusing.dials.still_px = px;
     for (int i = 0; i < LIGHTS; i++)
-        lamps[i] = stage_lamp(3 + 2 * i, 50 * i, 3e5 * exp2(-i));
+        lamps[i] = stage_make_lamp(3 + 2 * i, 50 * i, 3e5 * exp2(-i));
 }
 
-static void close_frames(void)
+static void close_both_frames(void)
 {
     glint_frame_finish(&reusing);
     glint_frame_finish(&fresh);
 }
 
-static void draw_frame(struct glint_frame *frame, int n, double scale,
-                       uint8_t *codes, struct glint_engine_report *report)
+static void draw_lamps_with_frame(struct glint_frame *frame, int n,
+                                  double scale, uint8_t *codes,
+                                  struct glint_engine_report *report)
 {
     struct glint_image image = glint_image_over(codes, GLINT_RGB24, W, H);
 
@@ -60,16 +61,16 @@ static void draw_frame(struct glint_frame *frame, int n, double scale,
 
 /* Draws N lamps with and without reuse and compares. Returns whether the
  * frame was reused. */
-static bool draw_both(int n)
+static bool draw_with_and_without_reuse(int n)
 {
-    draw_frame(&reusing, n, 1, got, &of_reusing);
-    draw_frame(&fresh, n, 1, want, &of_fresh);
+    draw_lamps_with_frame(&reusing, n, 1, got, &of_reusing);
+    draw_lamps_with_frame(&fresh, n, 1, want, &of_fresh);
     assert_int_equal(of_fresh.stats.reused, 0);
     assert_memory_equal(got, want, BYTES);
     return of_reusing.stats.reused;
 }
 
-static void set_stop(double opening)
+static void set_stop_of_frames(double opening)
 {
     struct glint_frame *const all[] = {&reusing, &fresh};
 
@@ -81,9 +82,9 @@ static void set_stop(double opening)
 
 /* -------------------------------------------------------------------- same */
 
-/* Changes one object of both frames or of the lamps, and returns true; or
- * changes nothing and returns false: then the frame must be reused. */
-static bool change_video(int time, int *n)
+/* Changes a setting of both frames or the lamps, depending on TIME, and returns
+ * true; or changes nothing and returns false: then the frame must be reused. */
+static bool change_frames_or_lamps(int time, int *n)
 {
     switch (time % 12) {
     case 1: /* one lamp moves by an invisible amount */
@@ -96,7 +97,7 @@ static bool change_video(int time, int *n)
         *n = *n == LIGHTS ? LIGHTS - 1 : LIGHTS;
         return true;
     case 7:
-        set_stop(time % 24 == 7 ? 0.7 : 1);
+        set_stop_of_frames(time % 24 == 7 ? 0.7 : 1);
         return true;
     case 9:
         reusing.dials = glint_dials_at((1 << 11) + 500 * time);
@@ -111,15 +112,15 @@ static bool change_video(int time, int *n)
     }
 }
 
-static void check_video(void)
+static void check_reuse_in_video(void)
 {
     int n = LIGHTS, n_reused = 0;
 
-    open_frames(0);
-    draw_both(n);
+    open_both_frames(0);
+    draw_with_and_without_reuse(n);
     for (int time = 0; time < FRAMES; time++) {
-        const bool turned = change_video(time, &n);
-        const bool reused = draw_both(n);
+        const bool turned = change_frames_or_lamps(time, &n);
+        const bool reused = draw_with_and_without_reuse(n);
 
         n_reused += reused;
         assert_int_equal(reused, !turned);
@@ -131,18 +132,18 @@ static void check_video(void)
         assert_int_equal(of_reusing.ghosts, of_fresh.ghosts);
     }
     assert_int_equal(n_reused, FRAMES / 2);
-    close_frames();
+    close_both_frames();
 }
 
-TEST(same_as_fresh)
+TEST(reused_rays_give_the_same_image)
 {
     struct shuffle shuffle;
 
-    check_video();
+    check_reuse_in_video();
     for (int n = 2; n <= 5; n += 3) {
-        shuffle_init(&shuffle, n, (uint32_t)n);
+        init_shuffled_workers(&shuffle, n, (uint32_t)n);
         stage.frame.cfg.workers = &shuffle.workers;
-        check_video();
+        check_reuse_in_video();
     }
     stage.frame.cfg.workers = NULL;
 }
@@ -150,7 +151,7 @@ TEST(same_as_fresh)
 static struct glint_tint tints[GLINT_MAX_GHOSTS];
 
 /* Changes input K of a frame's plan. Returns false if there is no input K. */
-static bool change_input(int k)
+static bool change_plan_input(int k)
 {
     struct glint_lamp *const l = lamps;
 
@@ -207,55 +208,55 @@ TEST(any_change_prevents_reuse)
 {
     const int things = 14;
 
-    open_frames(0);
+    open_both_frames(0);
     for (int i = 0; i < GLINT_MAX_GHOSTS; i++)
         tints[i] =
             (struct glint_tint){{1 << 14, 1 << 14, 1 << 14}, {1 << 30, -30}};
     reusing.tints = fresh.tints = tints;
-    draw_both(3);
+    draw_with_and_without_reuse(3);
     for (int k = 0; k < things; k++) {
-        assert_true(draw_both(3));
-        assert_true(change_input(k));
-        assert_false(draw_both(3));
+        assert_true(draw_with_and_without_reuse(3));
+        assert_true(change_plan_input(k));
+        assert_false(draw_with_and_without_reuse(3));
     }
-    assert_false(change_input(things));
-    assert_true(draw_both(3));
-    close_frames();
+    assert_false(change_plan_input(things));
+    assert_true(draw_with_and_without_reuse(3));
+    close_both_frames();
 }
 
 /* Checks that a frame restricted to some of its bundles does not restrict
  * the next frame. */
-TEST(restricted)
+TEST(restricted_frame_does_not_restrict_the_next)
 {
-    open_frames(0);
-    draw_both(3);
-    assert_true(draw_both(3));
+    open_both_frames(0);
+    draw_with_and_without_reuse(3);
+    assert_true(draw_with_and_without_reuse(3));
     glint_flare_keep(reusing.memory.flare, -1, 1, -1);
-    assert_false(draw_both(3));
-    assert_true(draw_both(3));
-    close_frames();
+    assert_false(draw_with_and_without_reuse(3));
+    assert_true(draw_with_and_without_reuse(3));
+    close_both_frames();
 }
 
 /* Checks that in reserved memory a frame with more lights than can be
  * remembered is drawn again, and that a linear image after one in codes is
  * not reused. */
-TEST(memory)
+TEST(frame_with_too_many_lights_is_drawn_again)
 {
     static int32_t linear[2][3 * W * H];
     struct glint_image image = {
         .format = GLINT_LINEAR_Q20, .width = W, .height = H};
 
-    open_frames(0);
+    open_both_frames(0);
     reusing.cfg.reuse_lights = 2;
     assert_ok(glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS));
-    draw_both(4);
-    assert_true(draw_both(4));
+    draw_with_and_without_reuse(4);
+    assert_true(draw_with_and_without_reuse(4));
     reusing.cfg.reuse_lights = 3;
     glint_frame_retune(&reusing);
-    draw_both(4);
-    assert_false(draw_both(4));
-    draw_both(3);
-    assert_true(draw_both(3));
+    draw_with_and_without_reuse(4);
+    assert_false(draw_with_and_without_reuse(4));
+    draw_with_and_without_reuse(3);
+    assert_true(draw_with_and_without_reuse(3));
     for (int i = 0; i < 2; i++) {
         glint_image_place(&image, linear[i]);
         assert_ok(glint_frame_draw(i ? &fresh : &reusing, lamps, 3, 1, &image,
@@ -263,13 +264,13 @@ TEST(memory)
         assert_int_equal(of_reusing.stats.reused, 0);
     }
     assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
-    assert_false(draw_both(3));
-    close_frames();
+    assert_false(draw_with_and_without_reuse(3));
+    close_both_frames();
 }
 
 /* ------------------------------------------------------------------- still */
 
-static double sum_codes(const uint8_t *codes)
+static double sum_image_codes(const uint8_t *codes)
 {
     double sum = 0;
 
@@ -278,14 +279,14 @@ static double sum_codes(const uint8_t *codes)
     return sum;
 }
 
-/* Draws stationary lamps with the existing edges, and with edges rebuilt for
- * the same lights and factors, and compares. Returns whether the first was
+/* Compares frames of stationary lamps: one with the existing edges, one with
+ * edges rebuilt for the same lights and factors. Returns whether the first was
  * reused. */
-static bool draw_stationary(int n, double scale)
+static bool draw_stationary_lamps(int n, double scale)
 {
-    draw_frame(&reusing, n, scale, got, &of_reusing);
+    draw_lamps_with_frame(&reusing, n, scale, got, &of_reusing);
     glint_frame_retune(&fresh);
-    draw_frame(&fresh, n, scale, want, &of_fresh);
+    draw_lamps_with_frame(&fresh, n, scale, want, &of_fresh);
     assert_int_equal(of_fresh.stats.reused, 0);
     assert_memory_equal(got, want, BYTES);
     return of_reusing.stats.reused;
@@ -293,15 +294,15 @@ static bool draw_stationary(int n, double scale)
 
 /* Checks that noise in position, power, colour and order of lamps traces no
  * ray, and that changed power and colour are applied. */
-TEST(noise)
+TEST(noise_of_lamps_traces_no_rays)
 {
     const double degree = 0.02; /* 0.02 degrees are 0.1 pixel */
     uint64_t noise = 1;
 
-    open_frames(0.5);
+    open_both_frames(0.5);
     fresh.cfg.reuse = &glint_reuse;
     fresh.dials = reusing.dials;
-    draw_stationary(LIGHTS, 1);
+    draw_stationary_lamps(LIGHTS, 1);
     for (int i = 0; i < 24; i++) {
         const struct glint_lamp first = lamps[0];
         struct glint_lamp was[LIGHTS];
@@ -311,27 +312,29 @@ TEST(noise)
         lamps[LIGHTS - 1] = first;
         memcpy(was, lamps, sizeof was);
         for (int k = 0; k < LIGHTS; k++) {
-            lamps[k].theta_deg += stage_uniform(&noise, -degree, degree);
-            lamps[k].power *= stage_uniform(&noise, i % 8 ? 0.8 : 0, 1.2);
-            lamps[k].rgb[i % 3] *= stage_uniform(&noise, 0.9, 1.1);
+            lamps[k].theta_deg += stage_random_uniform(&noise, -degree, degree);
+            lamps[k].power *=
+                stage_random_uniform(&noise, i % 8 ? 0.8 : 0, 1.2);
+            lamps[k].rgb[i % 3] *= stage_random_uniform(&noise, 0.9, 1.1);
         }
-        assert_true(draw_stationary(LIGHTS, i % 2 ? 0.9 : 1.1));
+        assert_true(draw_stationary_lamps(LIGHTS, i % 2 ? 0.9 : 1.1));
         memcpy(lamps, was, sizeof was);
     }
     fresh.dials.still_px = 0;
     for (double scale = 0.25; scale < 1.65; scale += 0.1) {
-        draw_frame(&reusing, LIGHTS, scale, got, &of_reusing);
-        draw_frame(&fresh, LIGHTS, scale, want, &of_fresh);
+        draw_lamps_with_frame(&reusing, LIGHTS, scale, got, &of_reusing);
+        draw_lamps_with_frame(&fresh, LIGHTS, scale, want, &of_fresh);
         assert_int_equal(of_reusing.stats.reused, scale < 1.5);
-        assert_true(fabs(sum_codes(got) / sum_codes(want) - 1) < 0.005);
-        assert_true(stage_block_jump(&stage, got, want) < 1.5);
+        assert_true(fabs(sum_image_codes(got) / sum_image_codes(want) - 1) <
+                    0.005);
+        assert_true(stage_max_block_difference(&stage, got, want) < 1.5);
     }
-    close_frames();
+    close_both_frames();
 }
 
 /* Returns the distance of LAMP to the nearest light whose rays are reused,
  * pixels. */
-static double distance_px(const struct glint_lamp *lamp)
+static double distance_to_reused_light_px(const struct glint_lamp *lamp)
 {
     const double degree = GLINT_PI / 180;
     const double pixels =
@@ -355,48 +358,48 @@ static double distance_px(const struct glint_lamp *lamp)
 /* Checks that a slowly moving lamp is traced again before it is further off
  * than the tolerance, that a new lamp is traced, and that the end of a lamp
  * traces nothing. */
-TEST(moves)
+TEST(moving_lamp_is_traced_before_the_tolerance)
 {
     int n_reused = 0;
 
-    open_frames(0.5);
+    open_both_frames(0.5);
     fresh.cfg.reuse = &glint_reuse;
     fresh.dials = reusing.dials;
-    draw_stationary(LIGHTS - 1, 1);
+    draw_stationary_lamps(LIGHTS - 1, 1);
     for (int i = 0; i < 60; i++) {
         lamps[2].theta_deg += 0.005;
-        n_reused += draw_stationary(LIGHTS - 1, 1);
-        assert_true(distance_px(&lamps[2]) <= 0.5);
+        n_reused += draw_stationary_lamps(LIGHTS - 1, 1);
+        assert_true(distance_to_reused_light_px(&lamps[2]) <= 0.5);
     }
     assert_true(n_reused > 48 && n_reused < 59);
-    assert_false(draw_stationary(LIGHTS, 1));
-    assert_true(draw_stationary(LIGHTS - 2, 1));
-    assert_true(draw_stationary(LIGHTS, 1));
-    /* fewer lights than are being reused */
+    assert_false(draw_stationary_lamps(LIGHTS, 1));
+    assert_true(draw_stationary_lamps(LIGHTS - 2, 1));
+    assert_true(draw_stationary_lamps(LIGHTS, 1));
+    /* limit below the number of reused lights */
     reusing.dials.max_lights = fresh.dials.max_lights = 2;
-    assert_false(draw_stationary(2, 1));
+    assert_false(draw_stationary_lamps(2, 1));
     assert_int_equal(reusing.lights.n, 2);
-    close_frames();
+    close_both_frames();
 }
 
 /* Checks that with reserved memory lights are reused only if there is memory
  * for them. */
-TEST(reserved)
+TEST(reserved_memory_limits_reuse)
 {
     for (int i = 0; i < 2; i++) {
-        open_frames(i ? 0.5 : 0);
+        open_both_frames(i ? 0.5 : 0);
         assert_ok(glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS));
         reusing.dials.still_px = 0.5;
-        draw_frame(&reusing, LIGHTS, 1, got, &of_reusing);
+        draw_lamps_with_frame(&reusing, LIGHTS, 1, got, &of_reusing);
         assert_int_equal(reusing.still.n, i ? LIGHTS : 0);
-        draw_frame(&reusing, LIGHTS, 1.1, got, &of_reusing);
+        draw_lamps_with_frame(&reusing, LIGHTS, 1.1, got, &of_reusing);
         assert_int_equal(of_reusing.stats.reused, i);
-        close_frames();
+        close_both_frames();
     }
 }
 
-static struct glint_light make_light(double theta_deg, double power,
-                                     const double rgb[3])
+static struct glint_light make_light_of_lamp(double theta_deg, double power,
+                                             const double rgb[3])
 {
     const double degree = GLINT_PI / 180;
     struct glint_light b = {
@@ -412,7 +415,7 @@ static struct glint_light make_light(double theta_deg, double power,
 
 /* Checks reuse factors that were computed by hand. Distances are chords: 1
  * degree is 0.01745. */
-TEST(factors)
+TEST(reuse_factors_match_hand_computation)
 {
     static const double red[3] = {1, 0.5, 0}, other[3] = {1, 0.25, 0.01},
                         blue[3] = {1, 0.5, 0.1}, dark[3] = {0.5, 0.25, 0};
@@ -422,13 +425,13 @@ TEST(factors)
     int64_t sum_q20[2][3];
     struct glint_still s = {2, 0, at, gain_q14, sum_q20};
 
-    light[0] = make_light(5, 1000, red);
-    light[1] = make_light(8, 3, red);
+    light[0] = make_light_of_lamp(5, 1000, red);
+    light[1] = make_light_of_lamp(8, 3, red);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
     assert_int_equal(gain_q14[1][0], 1 << 14);
-    /* The second light is off, and the first is split into two halves. */
-    light[0] = make_light(5.09, 600, dark);
-    light[1] = make_light(4.91, 600, dark);
+    /* The second light is switched off, the first is split into two halves. */
+    light[0] = make_light_of_lamp(5.09, 600, dark);
+    light[1] = make_light_of_lamp(4.91, 600, dark);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
     assert_in_range(gain_q14[0][0], 9830, 9831);
     assert_in_range(gain_q14[0][1], 9830, 9831);
@@ -436,34 +439,35 @@ TEST(factors)
     assert_int_equal(gain_q14[1][0] | gain_q14[1][1], 0);
     assert_int_equal(at[0].power.mantissa, glint_real_of(1000).mantissa);
     /* another colour, brighter */
-    light[0] = make_light(5, 1400, other);
+    light[0] = make_light_of_lamp(5, 1400, other);
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 2);
     assert_in_range(gain_q14[0][0], 22937, 22938);
     assert_in_range(gain_q14[0][1], 11468, 11469);
-    /* blue added, too bright, too far: each is traced again */
-    light[0] = make_light(5, 1000, blue);
+    /* traced again: a light with added blue, one too bright, one too far
+     * away */
+    light[0] = make_light_of_lamp(5, 1000, blue);
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
-    light[0] = make_light(5, 1530, blue);
-    light[1] = make_light(9, 1, blue);
+    light[0] = make_light_of_lamp(5, 1530, blue);
+    light[1] = make_light_of_lamp(9, 1, blue);
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
     assert_int_equal(gain_q14[0][0], 1 << 14);
-    light[0] = make_light(5.11, 1530, blue);
+    light[0] = make_light_of_lamp(5.11, 1530, blue);
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
     assert_int_equal(at[0].sine_q30, light[0].sine_q30);
     light[0].apart_q30 = 2 * near_q30;
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
     assert_int_equal(at[0].apart_q30, 2 * near_q30);
     /* the nearer of two lights within the tolerance */
-    light[0] = make_light(5, 10, red);
-    light[1] = make_light(5.05, 10, red);
+    light[0] = make_light_of_lamp(5, 10, red);
+    light[1] = make_light_of_lamp(5.05, 10, red);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
-    light[0] = make_light(5.01, 5, red);
-    light[1] = make_light(5.04, 8, red);
+    light[0] = make_light_of_lamp(5.01, 5, red);
+    light[1] = make_light_of_lamp(5.04, 8, red);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
     assert_in_range(gain_q14[0][0], 8191, 8193);
     assert_in_range(gain_q14[1][0], 13106, 13108);
-    /* more lights than the limit; no light */
-    light[2] = make_light(1, 1, red);
+    /* more lights than the limit; then no light */
+    light[2] = make_light_of_lamp(1, 1, red);
     assert_int_equal(glint_lights_still(&s, light, 3, near_q30), 0);
     assert_int_equal(glint_lights_still(&s, light, 0, near_q30), 0);
 }

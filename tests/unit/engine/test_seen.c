@@ -16,14 +16,14 @@ enum { WIDTH = 64, HEIGHT = 36 };
 static struct glint_ground ground;
 static float light[HEIGHT][WIDTH][3];
 
-static void set_ground(int code)
+static void fill_background(int code)
 {
     memset(&ground, code, sizeof ground);
 }
 
-/* Sets the flare to light OF (1 = white) in the green channel of its first
- * ROWS rows. */
-static void set_flare(int rows, double of)
+/* Sets the flare to the light OF (1 = white) in the green channel of its first
+ * ROWS rows, to 0 elsewhere. */
+static void set_flare_rows(int rows, double of)
 {
     memset(light, 0, sizeof light);
     for (int y = 0; y < rows; y++)
@@ -31,7 +31,7 @@ static void set_flare(int rows, double of)
             light[y][x][1] = (float)of;
 }
 
-static struct glint_seen measure_visibility(void)
+static struct glint_seen measure_flare_visibility(void)
 {
     struct glint_seen seen;
 
@@ -41,66 +41,68 @@ static struct glint_seen measure_visibility(void)
 
 /* Checks that a light that adds 32 codes on black has visibility 1 there,
  * 1/9 on code 120, and 0 on code 240. */
-TEST(ground)
+TEST(bright_background_lowers_visibility)
 {
     struct glint_seen dark, lit;
-    const double each = canvas_linear(32);
+    const double each = canvas_decode_srgb(32);
 
-    set_ground(0);
-    set_flare(4, each);
-    dark = measure_visibility();
+    fill_background(0);
+    set_flare_rows(4, each);
+    dark = measure_flare_visibility();
     assert_true(fabs(log2(dark.few)) <= 0.126);
     assert_true(dark.many == 0);
-    set_ground(120);
-    lit = measure_visibility();
-    assert_true(fabs(log2(lit.few * (canvas_linear(152) - canvas_linear(120)) /
+    fill_background(120);
+    lit = measure_flare_visibility();
+    assert_true(fabs(log2(lit.few *
+                          (canvas_decode_srgb(152) - canvas_decode_srgb(120)) /
                           each)) <= 0.126);
-    set_ground(240);
-    assert_true(measure_visibility().few ==
+    fill_background(240);
+    assert_true(measure_flare_visibility().few ==
                 0); /* nothing is visible on white */
 }
 
-TEST(area)
+TEST(visibility_ignores_single_pixels)
 {
-    set_ground(0);
-    set_flare(0, 1);
-    assert_true(measure_visibility().few == 0 &&
-                measure_visibility().many == 0);
-    set_flare(HEIGHT / 3, 4 * canvas_linear(32));
-    assert_true(measure_visibility().few == measure_visibility().many);
-    assert_true(fabs(log2(measure_visibility().many) - 2) <= 0.126);
+    fill_background(0);
+    set_flare_rows(0, 1);
+    assert_true(measure_flare_visibility().few == 0 &&
+                measure_flare_visibility().many == 0);
+    set_flare_rows(HEIGHT / 3, 4 * canvas_decode_srgb(32));
+    assert_true(measure_flare_visibility().few ==
+                measure_flare_visibility().many);
+    assert_true(fabs(log2(measure_flare_visibility().many) - 2) <= 0.126);
     light[0][0][0] = 1; /* A single bright pixel does not count. */
-    assert_true(fabs(log2(measure_visibility().few) - 2) <= 0.126);
+    assert_true(fabs(log2(measure_flare_visibility().few) - 2) <= 0.126);
 }
 
 /* Checks the light that makes code 200 white: it counts as 1 in a small
  * ghost with all channels, and as 0 on dark ground and on code 250, where
  * the ghost has no visible edge. */
-TEST(white)
+TEST(only_all_channels_make_white)
 {
-    const float room = (float)(1 - canvas_linear(200));
+    const float room = (float)(1 - canvas_decode_srgb(200));
 
-    set_ground(200);
-    set_flare(1, 1);
-    assert_true(measure_visibility().white ==
+    fill_background(200);
+    set_flare_rows(1, 1);
+    assert_true(measure_flare_visibility().white ==
                 0); /* Green alone is not white. */
     for (int x = 0; x < WIDTH; x++)
         for (int c = 0; c < 3; c++)
             light[0][x][c] = x < 4 ? room : 0;
-    assert_true(fabs(log2(measure_visibility().white)) <= 0.126);
-    set_ground(250);
-    assert_true(measure_visibility().white == 0);
-    set_ground(159);
-    assert_true(measure_visibility().white == 0);
+    assert_true(fabs(log2(measure_flare_visibility().white)) <= 0.126);
+    fill_background(250);
+    assert_true(measure_flare_visibility().white == 0);
+    fill_background(159);
+    assert_true(measure_flare_visibility().white == 0);
 }
 
-/* Checks that an image whose left half is white gives a ground with a white
- * left half. */
-TEST(taken)
+/* Checks that an image whose left half is white gives a background (struct
+ * ground) whose left half is white. */
+TEST(background_is_sampled_from_the_image)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 100, 50);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 50);
 
-    canvas_fill_grey(&image, 0, 0, 50, 50, 255);
+    canvas_fill_grey_box(&image, 0, 0, 50, 50, 255);
     glint_ground_take(&ground, &image);
     assert_int_equal(ground.rgb[90][159][0], 255);
     assert_int_equal(ground.rgb[90][160][2], 0);
@@ -111,8 +113,8 @@ TEST(taken)
 
 /* Returns the peak that the exposure of strength ASKED gives to a flare with
  * peak PEAK, mean MEAN and visibility SEEN. */
-static double exposed_peak(double asked, double peak, double mean,
-                           struct glint_seen seen)
+static double exposed_flare_peak(double asked, double peak, double mean,
+                                 struct glint_seen seen)
 {
     const struct glint_response_light drawn = {{peak, 0, 0}, {mean, 0, 0}};
     struct glint_strength s;
@@ -124,37 +126,45 @@ static double exposed_peak(double asked, double peak, double mean,
     return s.light.peak[0];
 }
 
-TEST(lifted)
+TEST(hidden_flares_are_exposed_brighter)
 {
     const double peak = 1 / 32.0, mean = peak / 300;
     const struct glint_seen plain = {1, 0, 0}, hidden = {0, 0, 0},
                             half = {0.0625, 0, 0};
 
     /* A visible flare has a peak of a quarter of white. */
-    assert_true(fabs(exposed_peak(0.5, peak, mean, plain) - 0.25) < 0.001);
+    assert_true(fabs(exposed_flare_peak(0.5, peak, mean, plain) - 0.25) <
+                0.001);
     /* An invisible flare is brightened until it is visible, at most to 0.6
      * of white. */
-    assert_true(fabs(exposed_peak(0.5, peak, mean, half) - 0.5) < 0.001);
-    assert_true(fabs(exposed_peak(0.5, peak, mean, hidden) - 0.6) < 0.001);
-    /* Strengths keep their steps of two stops. */
-    assert_true(fabs(exposed_peak(0.25, peak, mean, half) - 0.125) < 0.001);
-    assert_true(fabs(exposed_peak(0.25, peak, mean, plain) - 0.0625) < 0.001);
-    /* The mean is limited to 0.04. */
-    assert_true(fabs(exposed_peak(0.5, peak, peak / 10, hidden) - 0.4) < 0.001);
+    assert_true(fabs(exposed_flare_peak(0.5, peak, mean, half) - 0.5) < 0.001);
+    assert_true(fabs(exposed_flare_peak(0.5, peak, mean, hidden) - 0.6) <
+                0.001);
+    /* Halving the strength still darkens the flare by two stops. */
+    assert_true(fabs(exposed_flare_peak(0.25, peak, mean, half) - 0.125) <
+                0.001);
+    assert_true(fabs(exposed_flare_peak(0.25, peak, mean, plain) - 0.0625) <
+                0.001);
+    /* The mean of the flare is limited to 0.04 of white. */
+    assert_true(fabs(exposed_flare_peak(0.5, peak, peak / 10, hidden) - 0.4) <
+                0.001);
 }
 
-TEST(lowered)
+TEST(veils_and_skies_are_exposed_darker)
 {
     const double peak = 1 / 32.0, mean = peak / 20;
     const struct glint_seen veil = {0.5, 0.125, 0}, thick = {9, 9, 0},
                             thin = {1, 0.05, 0}, sky = {0, 0, peak / 0.4},
                             haze = {0, 0, peak / 0.05};
 
-    assert_true(fabs(exposed_peak(0.5, peak, mean, veil) - 0.125) < 0.001);
-    assert_true(fabs(exposed_peak(0.5, peak, mean, thick) - 0.1) < 0.001);
-    assert_true(exposed_peak(0.5, peak, mean, thin) > 0.24);
-    /* Ghosts on a sky that light of 0.4 makes white get two fifths of 0.4,
-     * and at least 0.1. */
-    assert_true(fabs(exposed_peak(0.5, peak, peak / 300, sky) - 0.16) < 0.001);
-    assert_true(fabs(exposed_peak(0.5, peak, peak / 300, haze) - 0.1) < 0.001);
+    assert_true(fabs(exposed_flare_peak(0.5, peak, mean, veil) - 0.125) <
+                0.001);
+    assert_true(fabs(exposed_flare_peak(0.5, peak, mean, thick) - 0.1) < 0.001);
+    assert_true(exposed_flare_peak(0.5, peak, mean, thin) > 0.24);
+    /* Ghosts on a sky that becomes white by light of 0.4 get a peak of two
+     * fifths of 0.4, and at least 0.1. */
+    assert_true(fabs(exposed_flare_peak(0.5, peak, peak / 300, sky) - 0.16) <
+                0.001);
+    assert_true(fabs(exposed_flare_peak(0.5, peak, peak / 300, haze) - 0.1) <
+                0.001);
 }

@@ -22,12 +22,12 @@ enum { PIXELS = 1000000, FRAME_US = 40000 };
  * white by default with the responses below. */
 static const double common = PIXELS / 8.0;
 
-/* Factors on the ghosts of the lamps that were exposed last. */
+/* Factors on the ghosts of each lamp, set by the last exposure. */
 static double part[16];
 
 /* Returns the response of a lens whose flare falls by SLOPE stops from the
  * axis to 20 degrees and whose mean is MEAN stops below its peak. */
-static struct glint_response make_response(double slope, double mean)
+static struct glint_response make_lens_response(double slope, double mean)
 {
     struct glint_response r = {.n = 3, .theta_deg = {0, 10, 20}};
 
@@ -39,7 +39,8 @@ static struct glint_response make_response(double slope, double mean)
     return r;
 }
 
-static struct glint_engine_lamp make_lamp(double theta_deg, double power)
+static struct glint_engine_lamp make_lamp_at_angle(double theta_deg,
+                                                   double power)
 {
     const struct glint_lamp lamp = {theta_deg, 30, power, {1, 1, 1}, {0, 0}, 0};
 
@@ -49,10 +50,10 @@ static struct glint_engine_lamp make_lamp(double theta_deg, double power)
 /* Returns the peak that the exposure gives to the flare of N lamps, lamp i
  * at level[i] (0 .. 1 while fading), US microseconds after the previous
  * frame. */
-static double exposed_peak(struct glint_strength *s,
-                           const struct glint_response *r,
-                           struct glint_engine_lamp *lamps, const double *level,
-                           int n, int us)
+static double exposed_flare_peak(struct glint_strength *s,
+                                 const struct glint_response *r,
+                                 struct glint_engine_lamp *lamps,
+                                 const double *level, int n, int us)
 {
     const struct glint_strength_lamps all = {lamps, part, n, PIXELS};
 
@@ -62,15 +63,15 @@ static double exposed_peak(struct glint_strength *s,
     return glint_largest_channel(s->light.peak);
 }
 
-static double still_peak(double asked, const struct glint_response *r,
-                         double theta, double power)
+static double flare_peak_of_still(double asked, const struct glint_response *r,
+                                  double theta, double power)
 {
-    struct glint_engine_lamp lamp = make_lamp(theta, power);
+    struct glint_engine_lamp lamp = make_lamp_at_angle(theta, power);
     struct glint_strength s;
 
     glint_strength_defaults(&s);
     s.asked = asked;
-    return exposed_peak(&s, r, &lamp, NULL, 1, 0);
+    return exposed_flare_peak(&s, r, &lamp, NULL, 1, 0);
 }
 
 /* ------------------------------------------------------------------- stills */
@@ -84,21 +85,21 @@ TEST_BEFORE
 
 TEST(a_quarter_of_white_by_default)
 {
-    const struct glint_response r = make_response(0, 7);
+    const struct glint_response r = make_lens_response(0, 7);
 
-    assert_true(fabs(still_peak(0.5, &r, 5, common) - 0.25) < 1e-4);
-    assert_true(fabs(still_peak(1, &r, 5, common) - 1) < 1e-3);
-    assert_true(fabs(still_peak(0.25, &r, 5, common) - 0.0625) < 1e-4);
-    assert_true(still_peak(0, &r, 5, common) == 0);
+    assert_true(fabs(flare_peak_of_still(0.5, &r, 5, common) - 0.25) < 1e-4);
+    assert_true(fabs(flare_peak_of_still(1, &r, 5, common) - 1) < 1e-3);
+    assert_true(fabs(flare_peak_of_still(0.25, &r, 5, common) - 0.0625) < 1e-4);
+    assert_true(flare_peak_of_still(0, &r, 5, common) == 0);
 }
 
 TEST(rises_with_strength)
 {
-    const struct glint_response r = make_response(3, 4);
+    const struct glint_response r = make_lens_response(3, 4);
     double last = 0;
 
     for (double asked = 0.01; asked < 4; asked *= 1.1) {
-        const double peak = still_peak(asked, &r, 12, 1e5);
+        const double peak = flare_peak_of_still(asked, &r, 12, 1e5);
 
         assert_true(peak > last);
         last = peak;
@@ -107,13 +108,13 @@ TEST(rises_with_strength)
 
 /* Checks that the flare of a lamp of any power is within a stop of a quarter
  * of white, and grows with the power. */
-TEST(any_power_is_seen)
+TEST(any_lamp_power_gives_a_visible_flare)
 {
-    const struct glint_response r = make_response(8, 7);
+    const struct glint_response r = make_lens_response(8, 7);
     double last = 0;
 
     for (double stops = -4; stops <= 40; stops++) {
-        const double peak = still_peak(0.5, &r, 12, exp2(stops));
+        const double peak = flare_peak_of_still(0.5, &r, 12, exp2(stops));
 
         assert_true(peak >= 0.124 && peak <= 0.501);
         assert_true(peak > last);
@@ -121,10 +122,10 @@ TEST(any_power_is_seen)
     }
 }
 
-TEST(a_veil_is_held_by_its_mean)
+TEST(veil_is_limited_by_its_mean)
 {
-    const struct glint_response r = make_response(0, 0.5);
-    struct glint_engine_lamp lamp = make_lamp(5, PIXELS);
+    const struct glint_response r = make_lens_response(0, 0.5);
+    struct glint_engine_lamp lamp = make_lamp_at_angle(5, PIXELS);
     const struct glint_strength_lamps all = {&lamp, part, 1, PIXELS};
 
     glint_strength_expose(&strength, &r, &all, 0);
@@ -132,34 +133,35 @@ TEST(a_veil_is_held_by_its_mean)
                 1e-6);
 }
 
-TEST(ratios_between_lamps_stay)
+TEST(power_ratios_between_lamps_are_kept)
 {
-    const struct glint_response r = make_response(5, 7);
-    struct glint_engine_lamp lamps[2] = {make_lamp(5, 1e6), make_lamp(9, 1e3)};
+    const struct glint_response r = make_lens_response(5, 7);
+    struct glint_engine_lamp lamps[2] = {make_lamp_at_angle(5, 1e6),
+                                         make_lamp_at_angle(9, 1e3)};
     const struct glint_strength_lamps all = {lamps, part, 2, PIXELS};
 
     glint_strength_expose(&strength, &r, &all, 0);
     assert_true(part[0] == 1 && part[1] == 1);
 }
 
-TEST(many_equal_lamps_share)
+TEST(many_equal_lamps_share_the_exposure)
 {
-    const struct glint_response r = make_response(0, 9);
+    const struct glint_response r = make_lens_response(0, 9);
     struct glint_engine_lamp lamps[16];
     double one, each;
 
     for (int i = 0; i < 16; i++)
-        lamps[i] = make_lamp(i, 1e4);
-    one = still_peak(0.5, &r, 1, 1e4);
-    each =
-        exposed_peak(&strength, &r, lamps, NULL, 16, 0) / 2; /* 2 = 16^(1/4) */
+        lamps[i] = make_lamp_at_angle(i, 1e4);
+    one = flare_peak_of_still(0.5, &r, 1, 1e4);
+    each = exposed_flare_peak(&strength, &r, lamps, NULL, 16, 0) /
+           2; /* 2 = 16^(1/4) */
     assert_true(each > one / 2.2 && each < one);
 }
 
-TEST(by_hand)
+TEST(exposure_matches_hand_computation)
 {
-    const struct glint_response r = make_response(0, 7);
-    struct glint_engine_lamp lamp = make_lamp(5, common);
+    const struct glint_response r = make_lens_response(0, 7);
+    struct glint_engine_lamp lamp = make_lamp_at_angle(5, common);
     const struct glint_strength_lamps all = {&lamp, part, 1, PIXELS};
 
     strength.is_physical = true;
@@ -177,10 +179,10 @@ TEST(by_hand)
     assert_true(fabs(glint_largest_channel(strength.light.peak) - 0.5) < 1e-3);
 }
 
-TEST(lamps_without_light)
+TEST(lamps_without_light_give_a_finite_exposure)
 {
-    const struct glint_response r = make_response(0, 7);
-    struct glint_engine_lamp lamp = make_lamp(5, 0);
+    const struct glint_response r = make_lens_response(0, 7);
+    struct glint_engine_lamp lamp = make_lamp_at_angle(5, 0);
     const struct glint_strength_lamps all = {&lamp, part, 1, PIXELS};
     const struct glint_strength_lamps none = {NULL, NULL, 0, PIXELS};
 
@@ -194,16 +196,17 @@ TEST(lamps_without_light)
 /* Returns the corrected peak of a still image whose flare is drawn STOPS
  * brighter than the response predicts, with a mean MEAN_STOPS below the
  * peak. */
-static double corrected_peak(double asked, double stops, double mean_stops)
+static double corrected_flare_peak(double asked, double stops,
+                                   double mean_stops)
 {
-    const struct glint_response r = make_response(0, 7);
+    const struct glint_response r = make_lens_response(0, 7);
     struct glint_response_light drawn = {{0}, {0}};
     struct glint_strength s;
-    struct glint_engine_lamp lamp = make_lamp(5, common);
+    struct glint_engine_lamp lamp = make_lamp_at_angle(5, common);
 
     glint_strength_defaults(&s);
     s.asked = asked;
-    exposed_peak(&s, &r, &lamp, NULL, 1, 0);
+    exposed_flare_peak(&s, &r, &lamp, NULL, 1, 0);
     assert_false(s.is_drawn);
     drawn.peak[1] = exp2(stops - 5);
     drawn.mean[1] = exp2(stops - 5 - mean_stops);
@@ -215,31 +218,31 @@ static double corrected_peak(double asked, double stops, double mean_stops)
     return s.light.peak[1];
 }
 
-TEST(corrects_to_drawn_flare)
+TEST(exposure_is_corrected_to_the_drawn_flare)
 {
-    assert_true(fabs(corrected_peak(0.5, 0, 7) - 0.25) < 1e-4);
+    assert_true(fabs(corrected_flare_peak(0.5, 0, 7) - 0.25) < 1e-4);
     for (double stops = -12; stops <= 12; stops++) {
-        const double peak = corrected_peak(0.5, stops, 7);
+        const double peak = corrected_flare_peak(0.5, stops, 7);
 
         assert_true(peak > 0.124 && peak < 0.501);
-        /* The mean of a veil is at its bound. */
-        assert_true(fabs(corrected_peak(0.5, stops, 0.5) - 0.015 * exp2(0.5)) <
-                    1e-6);
+        /* The mean of a veil is at its limit. */
+        assert_true(fabs(corrected_flare_peak(0.5, stops, 0.5) -
+                         0.015 * exp2(0.5)) < 1e-6);
     }
-    assert_true(corrected_peak(0, 3, 7) == 0);
+    assert_true(corrected_flare_peak(0, 3, 7) == 0);
 }
 
 /* Checks that a physical exposure, and a flare without light, are not
  * corrected. */
-TEST(keeps_physical_exposure)
+TEST(physical_exposure_is_not_corrected)
 {
     const struct glint_response_light bright = {{9, 9, 9}, {1, 1, 1}};
     const struct glint_response_light none = {{0}, {0}};
-    const struct glint_response r = make_response(0, 7);
-    struct glint_engine_lamp lamp = make_lamp(5, common);
+    const struct glint_response r = make_lens_response(0, 7);
+    struct glint_engine_lamp lamp = make_lamp_at_angle(5, common);
     double scale;
 
-    exposed_peak(&strength, &r, &lamp, NULL, 1, 0);
+    exposed_flare_peak(&strength, &r, &lamp, NULL, 1, 0);
     scale = strength.scale;
     glint_strength_correct(&strength, &none, NULL);
     assert_true(strength.scale == scale && !strength.is_drawn);
@@ -253,15 +256,16 @@ TEST(keeps_physical_exposure)
 /* Checks, while a lamp crosses the image in 200 frames, that its flare
  * changes per frame by at most its response's change and the max step of the
  * factor. */
-TEST(a_lamp_that_crosses)
+TEST(crossing_lamp_changes_gradually)
 {
-    const struct glint_response r = make_response(7, 7);
+    const struct glint_response r = make_lens_response(7, 7);
     double last = 0;
 
     for (int i = 0; i <= 200; i++) {
-        struct glint_engine_lamp lamp = make_lamp(fabs(20 - i * 0.2), 1e5);
+        struct glint_engine_lamp lamp =
+            make_lamp_at_angle(fabs(20 - i * 0.2), 1e5);
         const double peak =
-            exposed_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
+            exposed_flare_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
 
         assert_true(peak > 0.1 && peak < 0.5);
         if (i > 0)
@@ -272,17 +276,17 @@ TEST(a_lamp_that_crosses)
 
 /* Checks that a sun which appears among lamps lowers the common factor
  * gradually, and that its light is limited until then. */
-TEST(a_lamp_that_rises)
+TEST(rising_sun_lowers_the_factor_gradually)
 {
-    const struct glint_response r = make_response(0, 7);
+    const struct glint_response r = make_lens_response(0, 7);
     double scale = 0;
 
     for (int i = 0; i < 250; i++) {
-        struct glint_engine_lamp lamps[2] = {make_lamp(5, 1e3),
-                                             make_lamp(8, 1e6)};
+        struct glint_engine_lamp lamps[2] = {make_lamp_at_angle(5, 1e3),
+                                             make_lamp_at_angle(8, 1e6)};
         const double level[2] = {1, fmin(1, (i - 49) / 5.0)};
-        const double peak =
-            exposed_peak(&strength, &r, lamps, level, i < 50 ? 1 : 2, FRAME_US);
+        const double peak = exposed_flare_peak(&strength, &r, lamps, level,
+                                               i < 50 ? 1 : 2, FRAME_US);
 
         assert_true(peak > 0.1 && peak < 0.8);
         if (i > 0)
@@ -298,22 +302,22 @@ TEST(a_lamp_that_rises)
 
 /* Checks that the factor rises again after the sun leaves, more slowly than
  * it fell. */
-TEST(a_lamp_that_leaves)
+TEST(leaving_sun_raises_the_factor_slowly)
 {
-    const struct glint_response r = make_response(0, 7);
+    const struct glint_response r = make_lens_response(0, 7);
     double scale, first;
 
     {
-        struct glint_engine_lamp lamps[2] = {make_lamp(5, 1e3),
-                                             make_lamp(8, 1e6)};
+        struct glint_engine_lamp lamps[2] = {make_lamp_at_angle(5, 1e3),
+                                             make_lamp_at_angle(8, 1e6)};
 
-        exposed_peak(&strength, &r, lamps, NULL, 2, 0);
+        exposed_flare_peak(&strength, &r, lamps, NULL, 2, 0);
         first = scale = strength.scale;
     }
     for (int i = 0; i < 250; i++) {
-        struct glint_engine_lamp lamp = make_lamp(5, 1e3);
+        struct glint_engine_lamp lamp = make_lamp_at_angle(5, 1e3);
 
-        exposed_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
+        exposed_flare_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
         assert_true(strength.scale >= scale &&
                     strength.scale / scale < exp2(0.081));
         scale = strength.scale;
@@ -323,16 +327,16 @@ TEST(a_lamp_that_leaves)
 
 /* Checks that the flare of a single lamp follows its level: no gain
  * compensates it. */
-TEST(rising_alone)
+TEST(single_lamp_follows_its_level)
 {
-    const struct glint_response r = make_response(0, 7);
+    const struct glint_response r = make_lens_response(0, 7);
     double last = 0;
 
     for (int i = 1; i <= 8; i++) {
         const double level = i / 8.0;
-        struct glint_engine_lamp lamp = make_lamp(5, level * common);
+        struct glint_engine_lamp lamp = make_lamp_at_angle(5, level * common);
         const double peak =
-            exposed_peak(&strength, &r, &lamp, &level, 1, FRAME_US);
+            exposed_flare_peak(&strength, &r, &lamp, &level, 1, FRAME_US);
 
         assert_true(fabs(peak - 0.25 * level) < 0.01);
         assert_true(peak > last);
@@ -342,51 +346,53 @@ TEST(rising_alone)
 
 /* Checks that the exposure adapts at once after a cut and after frames
  * without a lamp. */
-TEST(restarts_after_a_cut)
+TEST(exposure_adapts_at_once_after_a_cut)
 {
-    const struct glint_response r = make_response(0, 7);
-    struct glint_engine_lamp faint = make_lamp(5, 10),
-                             bright = make_lamp(5, common);
+    const struct glint_response r = make_lens_response(0, 7);
+    struct glint_engine_lamp faint = make_lamp_at_angle(5, 10),
+                             bright = make_lamp_at_angle(5, common);
 
-    exposed_peak(&strength, &r, &faint, NULL, 1, FRAME_US);
-    assert_true(exposed_peak(&strength, &r, &bright, NULL, 1, FRAME_US) > 0.3);
+    exposed_flare_peak(&strength, &r, &faint, NULL, 1, FRAME_US);
+    assert_true(exposed_flare_peak(&strength, &r, &bright, NULL, 1, FRAME_US) >
+                0.3);
     assert_true(part[0] < 1);
-    bright = make_lamp(5, common);
-    assert_true(fabs(exposed_peak(&strength, &r, &bright, NULL, 1, 0) - 0.25) <
-                1e-4);
-    exposed_peak(&strength, &r, &faint, NULL, 0, FRAME_US);
-    assert_true(exposed_peak(&strength, &r, &faint, NULL, 1, FRAME_US) > 0.1);
+    bright = make_lamp_at_angle(5, common);
+    assert_true(fabs(exposed_flare_peak(&strength, &r, &bright, NULL, 1, 0) -
+                     0.25) < 1e-4);
+    exposed_flare_peak(&strength, &r, &faint, NULL, 0, FRAME_US);
+    assert_true(exposed_flare_peak(&strength, &r, &faint, NULL, 1, FRAME_US) >
+                0.1);
 }
 
 /* Checks that a strength set by key frames applies in its own frame, also
  * after frames of strength 0, during which the exposure keeps adapting. */
-TEST(strength_by_frame)
+TEST(strength_of_key_frames_applies_at_once)
 {
     static const double asked[] = {0.5, 1, 0.05, 0, 0, 2, 0.5};
-    const struct glint_response r = make_response(0, 7);
+    const struct glint_response r = make_lens_response(0, 7);
     struct glint_strength s;
 
     glint_strength_defaults(&s);
     for (int i = 0; i < 7; i++) {
-        struct glint_engine_lamp lamp = make_lamp(5, common);
+        struct glint_engine_lamp lamp = make_lamp_at_angle(5, common);
 
         s.asked = asked[i];
-        assert_true(fabs(exposed_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
+        assert_true(fabs(exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
                          asked[i] * asked[i]) < 1e-3);
     }
     s.asked = 0;
     for (int i = 0; i < 250; i++) {
-        struct glint_engine_lamp lamp = make_lamp(5, 64 * common);
+        struct glint_engine_lamp lamp = make_lamp_at_angle(5, 64 * common);
 
-        exposed_peak(&s, &r, &lamp, NULL, 1, FRAME_US);
+        exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US);
         assert_true(s.scale == 0);
     }
     {
-        struct glint_engine_lamp lamp = make_lamp(5, 64 * common);
+        struct glint_engine_lamp lamp = make_lamp_at_angle(5, 64 * common);
 
         s.asked = 0.5;
-        assert_true(fabs(exposed_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
-                         still_peak(0.5, &r, 5, 64 * common)) < 1e-3);
+        assert_true(fabs(exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
+                         flare_peak_of_still(0.5, &r, 5, 64 * common)) < 1e-3);
         assert_true(part[0] > 0.998);
     }
 }
@@ -395,7 +401,8 @@ TEST(strength_by_frame)
 
 /* Draws one lamp at several angles and powers with the automatic exposure,
  * and checks its flare's peak: the response of LENS must predict it. */
-static void check_lens(const char *lens, double corner_deg)
+static void check_automatic_exposure_of_lens(const char *lens,
+                                             double corner_deg)
 {
     struct opened opened = {.lens = {.tints = NULL}};
     struct glint_response r;
@@ -403,17 +410,18 @@ static void check_lens(const char *lens, double corner_deg)
 
     settings_defaults(&opened.settings);
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings, lens));
-    assert_ok(settings_frame(&tool, &opened, 640, 360, &frame));
+    assert_ok(make_frame_from_settings(&tool, &opened, 640, 360, &frame));
     assert_ok(glint_response_measure(&frame, 0, &r));
     assert_true(r.n == GLINT_RESPONSE_ANGLES);
     for (int i = 0; i < 6; i++) {
         struct glint_engine_lamp lamp =
-            make_lamp(corner_deg * i / 6, exp2(5 * i - 4) * 100);
+            make_lamp_at_angle(corner_deg * i / 6, exp2(5 * i - 4) * 100);
         const struct glint_strength_lamps all = {&lamp, part, 1, 640 * 360};
         struct glint_response_light drawn;
         struct glint_strength s;
 
-        lamp.lamp.phi_deg = 29 + 180 * (i % 2); /* stays inside the image */
+        /* azimuths for which the lamp is inside the image */
+        lamp.lamp.phi_deg = 29 + 180 * (i % 2);
         glint_strength_defaults(&s);
         glint_strength_expose(&s, &r, &all, 0);
         assert_ok(glint_response_draw(&frame, &lamp.lamp, 1,
@@ -429,16 +437,17 @@ static void check_lens(const char *lens, double corner_deg)
     opened_lens_close(&opened.lens);
 }
 
-TEST(lenses)
+TEST(automatic_exposure_suits_real_lenses)
 {
-    check_lens("lenses/heliar-tronnier.lens", 11.8);
-    check_lens("lenses/double-gauss-angenieux.lens", 22.4);
-    check_lens("lenses/nikon-zoom-mid.lens", 12.5);
+    check_automatic_exposure_of_lens("lenses/heliar-tronnier.lens", 11.8);
+    check_automatic_exposure_of_lens("lenses/double-gauss-angenieux.lens",
+                                     22.4);
+    check_automatic_exposure_of_lens("lenses/nikon-zoom-mid.lens", 12.5);
 }
 
 /* Checks that the response is the same within the memory limits of glint
  * live. */
-TEST(little_memory)
+TEST(response_is_the_same_in_little_memory)
 {
     struct opened opened = {.lens = {.tints = NULL}};
     struct glint_response r, free;
@@ -447,7 +456,7 @@ TEST(little_memory)
     settings_defaults(&opened.settings);
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
                                "lenses/heliar-tronnier.lens"));
-    assert_ok(settings_frame(&tool, &opened, 640, 360, &frame));
+    assert_ok(make_frame_from_settings(&tool, &opened, 640, 360, &frame));
     assert_ok(glint_response_measure(&frame, 2 << 20, &r));
     assert_ok(glint_response_measure(&frame, 0, &free));
     glint_frame_finish(&frame);
@@ -457,9 +466,9 @@ TEST(little_memory)
     opened_lens_close(&opened.lens);
 }
 
-TEST(interpolates)
+TEST(response_is_interpolated_between_angles)
 {
-    const struct glint_response r = make_response(4, 6);
+    const struct glint_response r = make_lens_response(4, 6);
     struct glint_response_light light;
 
     glint_response_at(&r, 10, &light);
@@ -471,7 +480,7 @@ TEST(interpolates)
     assert_true(fabs(log2(light.peak[2]) + 6) < 1e-9);
 }
 
-TEST(looks)
+TEST(response_peak_skips_the_brightest_pixels)
 {
     float rgb[3 * 4000];
     struct glint_response_light light;
@@ -481,7 +490,7 @@ TEST(looks)
         rgb[3 * i + 1] = i == 7 ? 8 : 0;
         rgb[3 * i + 2] = 2;
     }
-    /* brightest four of 4000 pixels */
+    /* The peak is the mean of the brightest four of 4000 pixels. */
     glint_response_around(rgb, 4000, &light);
     assert_true(light.peak[0] == 3997.5 && light.mean[0] == 1999.5);
     assert_true(light.peak[1] == 2 && light.mean[1] == 0.002);

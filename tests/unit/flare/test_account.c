@@ -38,11 +38,11 @@ struct fixture {
 
 /* Opens a model with WAVES wavelengths and N_LIGHTS beams at a sine of 1/8, in
  * different directions. */
-static void open_fixture(struct fixture *f, int n_lights)
+static void open_model_with_beams(struct fixture *f, int n_lights)
 {
-    *f = (struct fixture){.m = model_auto(), .n_lights = n_lights};
-    f->lens = model_open(&f->m);
-    frame_waves(f->wave);
+    *f = (struct fixture){.m = model_make_auto(), .n_lights = n_lights};
+    f->lens = model_open_image(&f->m);
+    set_frame_wavelengths(f->wave);
     for (int i = 0; i < MAX_LIGHTS; i++)
         f->light[i] = (struct glint_light){1 << 27,
                                            1065344904,
@@ -51,14 +51,14 @@ static void open_fixture(struct fixture *f, int n_lights)
                                            real_of(1000 + i, 0),
                                            {16384, 16384, 16384},
                                            0};
-    f->rays = frame_rays(&f->lens, f->wave, 16);
-    f->cfg = frame_config(WIDTH, HEIGHT, 4);
+    f->rays = make_frame_rays(&f->lens, f->wave, 16);
+    f->cfg = make_frame_config(WIDTH, HEIGHT, 4);
     f->cfg.max_bundles = 64;
     f->cfg.max_primitives = 60000;
     f->cfg.max_refs = 120000;
 }
 
-static void bin_edges(struct fixture *f)
+static void plan_and_bin_edges(struct fixture *f)
 {
     const size_t bytes = glint_flare_bytes(&f->cfg);
 
@@ -69,7 +69,7 @@ static void bin_edges(struct fixture *f)
     glint_flare_bin(f->flare, &f->stats);
 }
 
-static void close_fixture(struct fixture *f)
+static void free_model_and_flare(struct fixture *f)
 {
     free(f->mem);
     free(f->m.data);
@@ -77,8 +77,8 @@ static void close_fixture(struct fixture *f)
 
 /* Returns the address of the coefficient of term TERM of output KIND of
  * system SYSTEM. */
-static int32_t *find_coefficient(struct fixture *f, int system, int kind,
-                                 int term)
+static int32_t *coefficient_of_term(struct fixture *f, int system, int kind,
+                                    int term)
 {
     const struct glint_model_system *s = &f->lens.system[system];
     const struct glint_model_output *o =
@@ -95,7 +95,7 @@ struct sums {
 };
 
 /* Checks the statistics of each bundle and returns their sums. */
-static struct sums sum_accounts(struct fixture *f)
+static struct sums sum_bundle_statistics(struct fixture *f)
 {
     struct sums sums = {.n = 0};
 
@@ -121,9 +121,9 @@ static struct sums sum_accounts(struct fixture *f)
     return sums;
 }
 
-static void assert_totals(struct fixture *f)
+static void assert_sums_equal_totals(struct fixture *f)
 {
-    const struct sums s = sum_accounts(f);
+    const struct sums s = sum_bundle_statistics(f);
     struct glint_real brightest, flux;
 
     assert_int_equal(s.of[GLINT_OUTCOME_DRAWN] + s.of[GLINT_OUTCOME_EMPTY],
@@ -138,13 +138,14 @@ static void assert_totals(struct fixture *f)
 
 /* Checks that N bundles have OUTCOME and that all others are drawn or
  * closed. */
-static void assert_outcome(struct fixture *f, enum glint_outcome outcome, int n)
+static void assert_bundle_outcome(struct fixture *f, enum glint_outcome outcome,
+                                  int n)
 {
     struct sums s;
 
-    bin_edges(f);
-    assert_totals(f);
-    s = sum_accounts(f);
+    plan_and_bin_edges(f);
+    assert_sums_equal_totals(f);
+    s = sum_bundle_statistics(f);
     assert_int_equal(s.of[outcome], n);
     assert_int_equal(
         s.of[outcome] + s.of[GLINT_OUTCOME_CLOSED] +
@@ -154,128 +155,131 @@ static void assert_outcome(struct fixture *f, enum glint_outcome outcome, int n)
 
 /* ------------------------------------------------------------------- tests */
 
-/* Ghost 1 is never visible, ghost 2 not at sines below 1/8. */
-TEST(drawn_and_closed)
+/* Ghost 1 of the model is never visible; ghost 2 is not visible at sines below
+ * 1/8. */
+TEST(counts_drawn_and_closed_bundles)
 {
     struct fixture f;
 
-    open_fixture(&f, 3);
-    assert_outcome(&f, GLINT_OUTCOME_DRAWN, 3 * 2 * WAVES);
-    assert_int_equal(sum_accounts(&f).of[GLINT_OUTCOME_CLOSED], 3 * WAVES);
+    open_model_with_beams(&f, 3);
+    assert_bundle_outcome(&f, GLINT_OUTCOME_DRAWN, 3 * 2 * WAVES);
+    assert_int_equal(sum_bundle_statistics(&f).of[GLINT_OUTCOME_CLOSED],
+                     3 * WAVES);
     f.light[1].sine_q30 = 1 << 26;
-    assert_outcome(&f, GLINT_OUTCOME_DRAWN, (3 * 2 - 1) * WAVES);
-    close_fixture(&f);
+    assert_bundle_outcome(&f, GLINT_OUTCOME_DRAWN, (3 * 2 - 1) * WAVES);
+    free_model_and_flare(&f);
 }
 
-TEST(other)
+TEST(counts_bundles_of_other_ghosts)
 {
     struct fixture f;
 
-    open_fixture(&f, 2);
+    open_model_with_beams(&f, 2);
     f.rays.only_ghost = 2;
-    assert_outcome(&f, GLINT_OUTCOME_OTHER, 2 * 2 * WAVES);
-    close_fixture(&f);
+    assert_bundle_outcome(&f, GLINT_OUTCOME_OTHER, 2 * 2 * WAVES);
+    free_model_and_flare(&f);
 }
 
-TEST(beyond)
+TEST(counts_lights_outside_the_model)
 {
     struct fixture f;
 
-    open_fixture(&f, 3);
+    open_model_with_beams(&f, 3);
     for (int i = 0; i < 3; i++) {
         f.light[i].sine_q30 = 1 << 29; /* 30 degrees */
         ((struct glint_model_header *)f.m.data)->sine_hi_q30 = 1 << 28;
-        assert_outcome(&f, GLINT_OUTCOME_BEYOND, (i + 1) * 3 * WAVES);
+        assert_bundle_outcome(&f, GLINT_OUTCOME_BEYOND, (i + 1) * 3 * WAVES);
     }
-    close_fixture(&f);
+    free_model_and_flare(&f);
 }
 
-TEST(dark)
+TEST(counts_bundles_without_light)
 {
     struct fixture f;
 
-    open_fixture(&f, 2);
-    f.light[1].rgb_q14[0] = 0; /* Wavelength 0 has no light without red. */
-    assert_outcome(&f, GLINT_OUTCOME_DARK, 2);
+    open_model_with_beams(&f, 2);
+    f.light[1].rgb_q14[0] = 0; /* Without red, wavelength 0 has no light. */
+    assert_bundle_outcome(&f, GLINT_OUTCOME_DARK, 2);
     f.light[0].power = real_of(0, 0);
-    assert_outcome(&f, GLINT_OUTCOME_DARK, 2 + 4);
-    close_fixture(&f);
+    assert_bundle_outcome(&f, GLINT_OUTCOME_DARK, 2 + 4);
+    free_model_and_flare(&f);
 }
 
-TEST(blocked)
+TEST(counts_bundles_blocked_by_barrels)
 {
     struct fixture f;
 
-    open_fixture(&f, 2);
-    /* above 1: all rays are blocked by the barrel */
-    *find_coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001;
-    *find_coefficient(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
-    assert_outcome(&f, GLINT_OUTCOME_BLOCKED, 2 * WAVES);
-    close_fixture(&f);
+    open_model_with_beams(&f, 2);
+    /* a barrel radius above 1: the barrel blocks all rays */
+    *coefficient_of_term(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001;
+    *coefficient_of_term(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
+    assert_bundle_outcome(&f, GLINT_OUTCOME_BLOCKED, 2 * WAVES);
+    free_model_and_flare(&f);
 }
 
 /* Checks ghost 0 while it is moved to the right of the image, which is 2.5
  * mm wide: far off it is OUTSIDE, closer it is EMPTY, then DRAWN. */
-TEST(outside)
+TEST(counts_bundles_outside_the_image)
 {
     struct fixture f;
 
-    open_fixture(&f, 1);
+    open_model_with_beams(&f, 1);
     f.light[0].sine_q30 = 1 << 26;
-    *find_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 510027366; /* 1.9 mm */
-    assert_outcome(&f, GLINT_OUTCOME_OUTSIDE, WAVES);
-    *find_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 469762048; /* 1.75 mm */
-    assert_outcome(&f, GLINT_OUTCOME_EMPTY, WAVES);
-    *find_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 402653184; /* 1.5 mm */
-    assert_outcome(&f, GLINT_OUTCOME_DRAWN, WAVES);
-    close_fixture(&f);
+    *coefficient_of_term(&f, 0, GLINT_OUT_SENSOR_X, 0) = 510027366; /* 1.9 mm */
+    assert_bundle_outcome(&f, GLINT_OUTCOME_OUTSIDE, WAVES);
+    *coefficient_of_term(&f, 0, GLINT_OUT_SENSOR_X, 0) =
+        469762048; /* 1.75 mm */
+    assert_bundle_outcome(&f, GLINT_OUTCOME_EMPTY, WAVES);
+    *coefficient_of_term(&f, 0, GLINT_OUT_SENSOR_X, 0) = 402653184; /* 1.5 mm */
+    assert_bundle_outcome(&f, GLINT_OUTCOME_DRAWN, WAVES);
+    free_model_and_flare(&f);
 }
 
 /* Checks that bundles fainter than FAINTEST are counted as faint: those of a
  * single light, which are counted separately, and those of several lights,
  * which are counted together. */
-TEST(faint)
+TEST(counts_faint_bundles)
 {
     struct fixture f;
 
     for (int n = 1; n <= MAX_LIGHTS; n++) {
-        open_fixture(&f, n);
+        open_model_with_beams(&f, n);
         f.rays.faintest = real_of(1, 60);
-        assert_outcome(&f, GLINT_OUTCOME_FAINT, n * 2 * WAVES);
-        close_fixture(&f);
+        assert_bundle_outcome(&f, GLINT_OUTCOME_FAINT, n * 2 * WAVES);
+        free_model_and_flare(&f);
     }
 }
 
-TEST(no_room)
+TEST(counts_bundles_without_memory)
 {
     struct glint_flare_stats all;
     struct fixture f;
 
-    open_fixture(&f, 4);
-    bin_edges(&f);
+    open_model_with_beams(&f, 4);
+    plan_and_bin_edges(&f);
     all = f.stats;
     f.cfg.max_bundles = 8;
-    bin_edges(&f);
-    assert_totals(&f);
-    assert_int_equal(sum_accounts(&f).of[GLINT_OUTCOME_NO_ROOM],
+    plan_and_bin_edges(&f);
+    assert_sums_equal_totals(&f);
+    assert_int_equal(sum_bundle_statistics(&f).of[GLINT_OUTCOME_NO_ROOM],
                      4 * 3 * WAVES - 8);
     f.cfg.max_bundles = 64;
     for (int part = 1; part < 4; part++) {
         f.cfg.max_primitives = all.primitives * part / 4;
         f.cfg.max_refs = all.refs;
-        bin_edges(&f);
-        assert_totals(&f);
-        assert_true(sum_accounts(&f).of[GLINT_OUTCOME_NO_ROOM] > 0);
+        plan_and_bin_edges(&f);
+        assert_sums_equal_totals(&f);
+        assert_true(sum_bundle_statistics(&f).of[GLINT_OUTCOME_NO_ROOM] > 0);
         f.cfg.max_primitives = all.primitives;
         f.cfg.max_refs = all.refs * part / 4;
-        bin_edges(&f);
-        assert_totals(&f);
-        assert_true(sum_accounts(&f).of[GLINT_OUTCOME_NO_ROOM] > 0);
+        plan_and_bin_edges(&f);
+        assert_sums_equal_totals(&f);
+        assert_true(sum_bundle_statistics(&f).of[GLINT_OUTCOME_NO_ROOM] > 0);
     }
-    close_fixture(&f);
+    free_model_and_flare(&f);
 }
 
-static void draw_image(struct fixture *f, int32_t *px_q20)
+static void draw_flare_image(struct fixture *f, int32_t *px_q20)
 {
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
@@ -287,16 +291,16 @@ static void draw_image(struct fixture *f, int32_t *px_q20)
 /* Checks that images of single ghosts, of single lights and of single
  * wavelengths each add up to the whole image, within their rounding to
  * 2^-20. Ghost 1, which is closed, is dark. */
-TEST(parts)
+TEST(images_of_parts_add_up)
 {
     static int32_t whole[3 * N], part[3 * N];
     static int64_t sum[3 * N];
     const int parts[3] = {3, 2, WAVES};
     struct fixture f;
 
-    open_fixture(&f, 2);
-    bin_edges(&f);
-    draw_image(&f, whole);
+    open_model_with_beams(&f, 2);
+    plan_and_bin_edges(&f);
+    draw_flare_image(&f, whole);
     for (int by = 0; by < 3; by++) {
         memset(sum, 0, sizeof sum);
         for (int k = 0; k < parts[by]; k++) {
@@ -304,7 +308,7 @@ TEST(parts)
 
             glint_flare_keep(f.flare, by == 0 ? k : -1, by == 1 ? k : -1,
                              by == 2 ? k : -1);
-            draw_image(&f, part);
+            draw_flare_image(&f, part);
             for (int i = 0; i < 3 * N; i++) {
                 sum[i] += part[i];
                 any |= part[i];
@@ -315,58 +319,58 @@ TEST(parts)
             assert_true(llabs(sum[i] - whole[i]) <= parts[by]);
     }
     glint_flare_keep(f.flare, -1, -1, -1);
-    draw_image(&f, part);
+    draw_flare_image(&f, part);
     assert_memory_equal(part, whole, sizeof whole);
-    close_fixture(&f);
+    free_model_and_flare(&f);
 }
 
 /* Checks that collecting statistics does not change the image. */
-TEST(collecting_changes_nothing)
+TEST(statistics_do_not_change_the_image)
 {
     static int32_t before[3 * N], after[3 * N];
     struct fixture f;
 
-    open_fixture(&f, 4);
-    bin_edges(&f);
-    draw_image(&f, before);
-    bin_edges(&f);
-    sum_accounts(&f);
-    draw_image(&f, after);
+    open_model_with_beams(&f, 4);
+    plan_and_bin_edges(&f);
+    draw_flare_image(&f, before);
+    plan_and_bin_edges(&f);
+    sum_bundle_statistics(&f);
+    draw_flare_image(&f, after);
     assert_memory_equal(before, after, sizeof before);
-    close_fixture(&f);
+    free_model_and_flare(&f);
 }
 
 /* Checks the number of terms of ghost 0: sensor x 2, and v^2 s except in the
  * middle of the range of angles; sensor y 2, stop x 1 and stop y 2, energy 1
  * for a given wavelength, barrel 2. */
-TEST(terms)
+TEST(counts_polynomial_terms)
 {
     struct glint_account a;
     struct fixture f;
 
-    open_fixture(&f, 1);
+    open_model_with_beams(&f, 1);
     for (int off = 0; off < 2; off++) {
         f.light[0].sine_q30 = (1 << 27) - (off << 26);
-        bin_edges(&f);
+        plan_and_bin_edges(&f);
         glint_flare_account(f.flare, 0, 0, 0, &a);
         assert_int_equal(a.outcome, GLINT_OUTCOME_DRAWN);
         assert_int_equal(a.outputs, 6);
         assert_int_equal(a.barrels, 1);
         assert_int_equal(a.terms, 2 + off + 2 + 1 + 2 + 1 + 2);
     }
-    close_fixture(&f);
+    free_model_and_flare(&f);
 }
 
 /* Checks the count of rows against one that tests for each row whether any
  * part of it lies between the ends of an edge. */
-TEST(rows)
+TEST(counts_rows_of_edges)
 {
     struct fixture f;
     int64_t want = 0, got = 0;
 
-    open_fixture(&f, 2);
-    f.rays.pixels_per_mm = real_of(200, 0); /* larger than the image */
-    bin_edges(&f);
+    open_model_with_beams(&f, 2);
+    f.rays.pixels_per_mm = real_of(200, 0); /* a ghost larger than the image */
+    plan_and_bin_edges(&f);
     for (int i = 0; i < f.stats.primitives; i++)
         for (int y = 0; y < HEIGHT; y++)
             want += glint_by_edges_of(f.flare)->edge[i].y_q8 < 256 * (y + 1) &&
@@ -381,11 +385,11 @@ TEST(rows)
             }
     assert_true(want > 1000);
     assert_int_equal(got, want);
-    close_fixture(&f);
+    free_model_and_flare(&f);
 }
 
 /* Returns the light in the middle WIDTH x HEIGHT pixels of a larger image. */
-static int64_t light_in_middle(const int32_t *px_q20, int width, int height)
+static int64_t sum_light_in_middle(const int32_t *px_q20, int width, int height)
 {
     int64_t sum = 0;
 
@@ -398,7 +402,7 @@ static int64_t light_in_middle(const int32_t *px_q20, int width, int height)
 /* Scales the stop's polynomials so that the ghost passes a round stop
  * through a small spot of its pupil, with no ray of the prepass near the
  * spot's edge. */
-static void shrink_stop(struct fixture *f)
+static void scale_stop_polynomials(struct fixture *f)
 {
     const struct glint_model_output *o =
         (const void *)(f->m.data + f->lens.system[0].output_at);
@@ -406,24 +410,24 @@ static void shrink_stop(struct fixture *f)
     for (int k = 0; k < f->lens.system[0].n_outputs; k++, o++)
         for (int term = 0; term < o->n_terms; term++)
             if (o->kind == GLINT_OUT_STOP_X || o->kind == GLINT_OUT_STOP_Y)
-                *find_coefficient(f, 0, o->kind, term) =
-                    *find_coefficient(f, 0, o->kind, term) / 5 * 12;
+                *coefficient_of_term(f, 0, o->kind, term) =
+                    *coefficient_of_term(f, 0, o->kind, term) / 5 * 12;
     f->cfg.stop.n_blades = 0;
 }
 
 /* Checks that a ghost with outcome OUTSIDE adds no light to the image: a
  * larger image around it shows where its light falls. Tries all azimuths at
  * growing distances. */
-static void check_outside(int small_stop)
+static void check_outside_adds_no_light(int small_stop)
 {
     enum { WIDE = 4 * WIDTH, HIGH = 4 * HEIGHT };
     static int32_t px_q20[3 * WIDE * HIGH];
     int n_outside = 0, n_drawn = 0;
     struct fixture f;
 
-    open_fixture(&f, 1);
+    open_model_with_beams(&f, 1);
     if (small_stop)
-        shrink_stop(&f);
+        scale_stop_polynomials(&f);
     for (int degrees = 0; degrees < 360; degrees += small_stop ? 90 : 15)
         for (int x_q28 = 1 << 27; x_q28 < 536870912;
              x_q28 += 1 << (small_stop ? 21 : 25)) {
@@ -437,10 +441,10 @@ static void check_outside(int small_stop)
                 (int32_t)lrint(cos(degrees / 57.29578) * 0x1p30);
             f.light[0].sin_q30 =
                 (int32_t)lrint(sin(degrees / 57.29578) * 0x1p30);
-            *find_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = x_q28;
+            *coefficient_of_term(&f, 0, GLINT_OUT_SENSOR_X, 0) = x_q28;
             f.cfg.width = WIDTH;
             f.cfg.height = HEIGHT;
-            bin_edges(&f);
+            plan_and_bin_edges(&f);
             glint_flare_account(f.flare, 0, 0, 0, &a);
             if (a.outcome != GLINT_OUTCOME_OUTSIDE) {
                 n_drawn++;
@@ -449,17 +453,17 @@ static void check_outside(int small_stop)
             n_outside++;
             f.cfg.width = WIDE;
             f.cfg.height = HIGH;
-            bin_edges(&f);
+            plan_and_bin_edges(&f);
             memset(px_q20, 0, sizeof px_q20);
             glint_flare_draw(f.flare, &image);
-            assert_true(light_in_middle(px_q20, WIDE, HIGH) == 0);
+            assert_true(sum_light_in_middle(px_q20, WIDE, HIGH) == 0);
         }
     assert_true(n_outside > 20 && n_drawn > 20);
-    close_fixture(&f);
+    free_model_and_flare(&f);
 }
 
-TEST(outside_is_outside)
+TEST(outside_bundles_add_no_light)
 {
-    check_outside(0);
-    check_outside(1);
+    check_outside_adds_no_light(0);
+    check_outside_adds_no_light(1);
 }

@@ -19,7 +19,7 @@ enum { N_PIXELS = 20000, NEAR_Q30 = 4 };
 static struct glint_model_header header;
 static const struct glint_lens lens = {.header = &header};
 
-static void set_lens(double focal_mm, double width_mm, double height_mm)
+static void set_lens_header(double focal_mm, double width_mm, double height_mm)
 {
     memset(&header, 0, sizeof header);
     header.focal_mm = glint_real_of(focal_mm);
@@ -29,8 +29,9 @@ static void set_lens(double focal_mm, double width_mm, double height_mm)
     header.wave_hi_q24 = (int32_t)(0x1p24 / (0.4 * 0.4));
 }
 
-static struct glint_light aim_in_double(int width, int height, double focal_mm,
-                                        double x, double y)
+static struct glint_light compute_direction_in_double(int width, int height,
+                                                      double focal_mm, double x,
+                                                      double y)
 {
     const struct glint_view view =
         glint_view_fit(width, height, glint_real_value(header.film_width_mm),
@@ -41,8 +42,8 @@ static struct glint_light aim_in_double(int width, int height, double focal_mm,
     return glint_light_of(&lamp, 1);
 }
 
-static void assert_same_light(const struct glint_light *a,
-                              const struct glint_light *b)
+static void assert_same_direction_and_power(const struct glint_light *a,
+                                            const struct glint_light *b)
 {
     assert_in_range(labs((long)a->sine_q30 - b->sine_q30), 0, NEAR_Q30);
     assert_in_range(labs((long)a->cosine_q30 - b->cosine_q30), 0, NEAR_Q30);
@@ -55,7 +56,7 @@ static void assert_same_light(const struct glint_light *a,
 /* Checks the direction of pixels of images of any shape, also far
  * off-screen, through lenses from fisheyes to telephotos and through
  * mirroring lenses (negative focal length). */
-TEST(pixels)
+TEST(pixel_directions_match_double_precision)
 {
     uint32_t seed = 7;
 
@@ -74,25 +75,26 @@ TEST(pixels)
                                 (rng_xorshift(&seed) % 4 ? 1 : -1);
         struct glint_light integers, doubles;
 
-        set_lens(focal_mm, 36, 24);
+        set_lens_header(focal_mm, 36, 24);
         integers = glint_light_from_pixel(&lens, width, height, x_q8, y_q8);
-        doubles =
-            aim_in_double(width, height, focal_mm, x_q8 / 256.0, y_q8 / 256.0);
+        doubles = compute_direction_in_double(width, height, focal_mm,
+                                              x_q8 / 256.0, y_q8 / 256.0);
         if (x_q8 == width * 128 && y_q8 == height * 128)
-            doubles.cos_q30 = 1 << 30; /* at the centre any azimuth is right */
-        assert_same_light(&integers, &doubles);
+            /* at the image centre every azimuth is correct */
+            doubles.cos_q30 = 1 << 30;
+        assert_same_direction_and_power(&integers, &doubles);
     }
 }
 
 /* Checks a direction computed by hand: a pixel 45 degrees to the left.
  * Pixels so far to the upper right that their distance is clamped all have
  * the same direction. */
-TEST(by_hand)
+TEST(direction_matches_hand_computation)
 {
     const int32_t half_q30 = 759250125; /* sqrt(2) / 2 */
     struct glint_light light, farther;
 
-    set_lens(18, 36, 36);
+    set_lens_header(18, 36, 36);
     light = glint_light_from_pixel(&lens, 200, 200, 0, 100 * 256);
     assert_in_range(labs((long)light.sine_q30 - half_q30), 0, 1);
     assert_in_range(labs((long)light.cosine_q30 - half_q30), 0, 1);
@@ -103,12 +105,12 @@ TEST(by_hand)
                                      25600 - (1 << 30));
     assert_in_range(labs((long)light.cos_q30 - half_q30), 0, 1);
     assert_in_range(labs((long)light.sin_q30 - half_q30), 0, 1);
-    assert_same_light(&light, &farther);
+    assert_same_direction_and_power(&light, &farther);
 }
 
-TEST(pixels_per_mm)
+TEST(pixels_per_mm_of_the_film)
 {
-    set_lens(50, 36, 24);
+    set_lens_header(50, 36, 24);
     assert_true(glint_real_value(glint_flare_pixels_per_mm(&lens, 720, 480)) ==
                 20);
     assert_true(glint_real_value(glint_flare_pixels_per_mm(&lens, 72, 480)) ==
@@ -117,7 +119,7 @@ TEST(pixels_per_mm)
                 20);
 }
 
-static void check_waves(const double flux[6])
+static void check_wavelength_fluxes(const double flux[6])
 {
     static const double nm[GLINT_FLARE_WAVES] = {650, 532, 450};
     static struct glint_setup setup;
@@ -145,25 +147,25 @@ static void check_waves(const double flux[6])
 /* Checks wavelength weights against double precision: for the flux
  * polynomial of a real lens, for a constant one, and for wavelengths outside
  * the band, which use its nearer end. */
-TEST(waves)
+TEST(wavelength_weights_match_double_precision)
 {
     static const double lens_flux[6] = {312.4, -41.2, -10.7, 2.9, -0.4, 0.01};
     static const double flat[6] = {1e-3};
 
-    set_lens(50, 36, 24);
-    check_waves(lens_flux);
-    check_waves(flat);
+    set_lens_header(50, 36, 24);
+    check_wavelength_fluxes(lens_flux);
+    check_wavelength_fluxes(flat);
     header.wave_hi_q24 = (int32_t)(0x1p24 / (0.5 * 0.5));
     header.wave_lo_q24 = (int32_t)(0x1p24 / (0.6 * 0.6));
-    check_waves(lens_flux);
+    check_wavelength_fluxes(lens_flux);
 }
 
 /* Checks that weights are 0, not undefined, if the model has no light. */
-TEST(no_light)
+TEST(weights_without_light_are_0)
 {
     struct glint_wave wave[GLINT_FLARE_WAVES];
 
-    set_lens(50, 36, 24);
+    set_lens_header(50, 36, 24);
     glint_flare_waves(wave, &lens);
     for (int i = 0; i < GLINT_FLARE_WAVES; i++)
         assert_int_equal(wave[i].weight.mantissa, 0);

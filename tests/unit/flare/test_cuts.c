@@ -17,7 +17,7 @@ static const struct glint_stop square = {.n_blades = 4,
                                                         {0, -(1 << 30)}},
                                          .apothem_q16 = ONE_Q16};
 
-static struct glint_vertex make_vertex(int x_q16, int y_q16)
+static struct glint_vertex make_stop_vertex(int x_q16, int y_q16)
 {
     return (struct glint_vertex){.x_q8 = x_q16 / 256,
                                  .y_q8 = y_q16 / 256,
@@ -26,8 +26,9 @@ static struct glint_vertex make_vertex(int x_q16, int y_q16)
 }
 
 /* Returns the visible part of the edge from A to B. */
-static struct glint_edge_part find_visible_part(const struct glint_vertex *a,
-                                                const struct glint_vertex *b)
+static struct glint_edge_part
+clip_edge_to_visible_part(const struct glint_vertex *a,
+                          const struct glint_vertex *b)
 {
     const struct glint_vertex *const end[2] = {a, b};
     struct glint_outside out[2];
@@ -41,14 +42,16 @@ static struct glint_edge_part find_visible_part(const struct glint_vertex *a,
 
 /* Checks that an edge from inside to outside the right side is cut at x = 1,
  * in both directions. */
-TEST(part)
+TEST(edge_is_cut_at_the_side)
 {
     for (int from = -ONE_Q16 + 64; from < ONE_Q16; from += 1777)
         for (int to = ONE_Q16; to < 40 * ONE_Q16; to += to / 3) {
-            const struct glint_vertex in = make_vertex(from, 0),
-                                      out = make_vertex(to, 5 * 256);
-            const struct glint_edge_part there = find_visible_part(&in, &out);
-            const struct glint_edge_part back = find_visible_part(&out, &in);
+            const struct glint_vertex in = make_stop_vertex(from, 0),
+                                      out = make_stop_vertex(to, 5 * 256);
+            const struct glint_edge_part there =
+                clip_edge_to_visible_part(&in, &out);
+            const struct glint_edge_part back =
+                clip_edge_to_visible_part(&out, &in);
 
             assert_true(there.visible && back.visible);
             assert_int_equal(there.cut[0], GLINT_CUT_NOTHING);
@@ -63,14 +66,17 @@ TEST(part)
 
 /* Checks that an edge across the whole stop and one across a corner are cut
  * twice, and that an edge outside a corner is invisible. */
-TEST(part_of_two_cuts)
+TEST(edge_across_the_stop_is_cut_twice)
 {
-    const struct glint_vertex left = make_vertex(-2 * ONE_Q16, 0);
-    const struct glint_vertex right = make_vertex(3 * ONE_Q16 / 2, 0);
-    const struct glint_vertex high = make_vertex(0, 5 * ONE_Q16 / 4);
-    const struct glint_vertex past = make_vertex(ONE_Q16 / 2, 5 * ONE_Q16 / 2);
-    const struct glint_edge_part through = find_visible_part(&left, &right);
-    const struct glint_edge_part over = find_visible_part(&right, &high);
+    const struct glint_vertex left = make_stop_vertex(-2 * ONE_Q16, 0);
+    const struct glint_vertex right = make_stop_vertex(3 * ONE_Q16 / 2, 0);
+    const struct glint_vertex high = make_stop_vertex(0, 5 * ONE_Q16 / 4);
+    const struct glint_vertex past =
+        make_stop_vertex(ONE_Q16 / 2, 5 * ONE_Q16 / 2);
+    const struct glint_edge_part through =
+        clip_edge_to_visible_part(&left, &right);
+    const struct glint_edge_part over =
+        clip_edge_to_visible_part(&right, &high);
 
     assert_true(through.visible && over.visible);
     assert_int_equal(through.cut[0], 2);
@@ -81,12 +87,12 @@ TEST(part_of_two_cuts)
     assert_int_equal(over.cut[1], 1);
     assert_true(abs(over.end_q8[0][0] - 256) <= 1);
     assert_true(abs(over.end_q8[1][1] - 256) <= 1);
-    assert_false(find_visible_part(&right, &past).visible);
+    assert_false(clip_edge_to_visible_part(&right, &past).visible);
 }
 
 /* Checks that exactly the cells whose middle is within three quarters of a
  * cell of the upper right corner find that corner. */
-TEST(cross)
+TEST(cells_near_a_corner_find_it)
 {
     const int wide = ONE_Q16 / 4;
 
@@ -95,10 +101,10 @@ TEST(cross)
             const int x = ONE_Q16 - wide * u / 100,
                       y = ONE_Q16 - wide * v / 100;
             const struct glint_vertex corner[4] = {
-                make_vertex(x - wide / 2, y - wide / 2),
-                make_vertex(x + wide / 2, y - wide / 2),
-                make_vertex(x + wide / 2, y + wide / 2),
-                make_vertex(x - wide / 2, y + wide / 2)};
+                make_stop_vertex(x - wide / 2, y - wide / 2),
+                make_stop_vertex(x + wide / 2, y - wide / 2),
+                make_stop_vertex(x + wide / 2, y + wide / 2),
+                make_stop_vertex(x - wide / 2, y + wide / 2)};
             const struct glint_vertex *const of[4] = {&corner[0], &corner[1],
                                                       &corner[2], &corner[3]};
             int32_t at_q8[2] = {0, 0};

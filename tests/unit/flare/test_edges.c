@@ -15,7 +15,7 @@
 
 enum { LOG2 = 3, SIDE = 1 << LOG2, STRIDE = GLINT_EDGE_STRIDE(LOG2) };
 
-static struct glint_edge_sums make_sums(int linear)
+static struct glint_edge_sums make_row_sums(int linear)
 {
     static uint64_t wide[3 * SIDE * STRIDE];
     static uint32_t narrow[3 * SIDE * STRIDE];
@@ -37,8 +37,8 @@ static struct glint_edge_sums make_sums(int linear)
 }
 
 /* Adds an edge from (X0, Y0) to (X1, Y1) with red light to its right. */
-static void add_edge(struct glint_edge_sums *s, int x0_q8, int y0_q8, int x1_q8,
-                     int y1_q8, int64_t light_q20)
+static void add_red_edge(struct glint_edge_sums *s, int x0_q8, int y0_q8,
+                         int x1_q8, int y1_q8, int64_t light_q20)
 {
     static const struct glint_bundle red = {.rgb_q14 = {1 << 14, 0, 0}};
     const int32_t a[2] = {x0_q8, y0_q8}, b[2] = {x1_q8, y1_q8}, first = 0;
@@ -52,7 +52,7 @@ static void add_edge(struct glint_edge_sums *s, int x0_q8, int y0_q8, int x1_q8,
 
 /* Returns the red light of pixel X in row Y of an image in codes, Q16. Half
  * of white gives 128 per 1/256 of the pixel's area. */
-static int read_light(struct glint_edge_sums *s, int x, int y)
+static int read_pixel_light(struct glint_edge_sums *s, int x, int y)
 {
     uint16_t light_q16[STRIDE];
 
@@ -62,21 +62,21 @@ static int read_light(struct glint_edge_sums *s, int x, int y)
 
 /* Checks that a vertical edge, FROM_Q8 right of the pixel's left side and
  * HEIGHT_Q8 high, lights the area to its right. */
-TEST(upright)
+TEST(vertical_edge_lights_its_right)
 {
     for (int from_q8 = 0; from_q8 < 256; from_q8 += 5)
         for (int height_q8 = 1; height_q8 <= 256; height_q8 += 3) {
             const int area_q16 = height_q8 * (256 - from_q8);
-            struct glint_edge_sums s = make_sums(0);
+            struct glint_edge_sums s = make_row_sums(0);
             int32_t linear_q20[STRIDE];
 
-            add_edge(&s, 3 * 256 + from_q8, 512, 3 * 256 + from_q8,
-                     512 + height_q8, 1 << 19);
-            assert_int_equal(read_light(&s, 3, 2),
+            add_red_edge(&s, 3 * 256 + from_q8, 512, 3 * 256 + from_q8,
+                         512 + height_q8, 1 << 19);
+            assert_int_equal(read_pixel_light(&s, 3, 2),
                              (area_q16 + 128) / 256 * 128);
-            s = make_sums(1);
-            add_edge(&s, 3 * 256 + from_q8, 512, 3 * 256 + from_q8,
-                     512 + height_q8, 1 << 19);
+            s = make_row_sums(1);
+            add_red_edge(&s, 3 * 256 + from_q8, 512, 3 * 256 + from_q8,
+                         512 + height_q8, 1 << 19);
             glint_edge_linear(&s, 0, 2, linear_q20);
             assert_int_equal(linear_q20[2], 0);
             assert_int_equal(linear_q20[3], 8 * area_q16);
@@ -87,12 +87,12 @@ TEST(upright)
 /* Checks that an edge from the upper right corner of pixel 3 to the lower
  * left corner of pixel 2 lights a quarter of pixel 2 and three quarters of
  * pixel 3. */
-TEST(slanted)
+TEST(slanted_edge_lights_partial_pixels)
 {
-    struct glint_edge_sums s = make_sums(0);
+    struct glint_edge_sums s = make_row_sums(0);
     uint16_t light_q16[STRIDE];
 
-    add_edge(&s, 4 * 256, 0, 2 * 256, 256, 1 << 19);
+    add_red_edge(&s, 4 * 256, 0, 2 * 256, 256, 1 << 19);
     glint_edge_light(&s, 0, 0, glint_kernels_of(0), light_q16);
     assert_int_equal(light_q16[1], 0);
     assert_int_equal(light_q16[2], 32768 / 4);
@@ -100,30 +100,31 @@ TEST(slanted)
     assert_int_equal(light_q16[4], 32768);
 }
 
-static int draw_below(int n)
+static int random_int_below(int n)
 {
     static uint32_t seed = 1;
 
-    return (int)((uint64_t)rng_bits(&seed) * (uint32_t)n >> 32);
+    return (int)((uint64_t)rng_bits32(&seed) * (uint32_t)n >> 32);
 }
 
 /* Checks that a random edge gives the same light, bit by bit, in a whole
  * tile and in its two halves, which use other code paths: no light left of
  * the edge, and the light of its full height right of it. */
-TEST(parts_of_tiles)
+TEST(edge_gives_the_same_light_in_half_tiles)
 {
     enum { FROM = 4 };
 
     for (int i = 0; i < 20000; i++) {
         const int wide = i % 2 ? 256 * (SIDE + 4) : 600;
-        const int x0 = draw_below(wide) - 512, x1 = draw_below(wide) - 512;
-        const int y0 = draw_below(256 * SIDE - 1), up = i / 2 % 2;
-        const int high = 1 + draw_below(i % 3 ? 256 * SIDE - y0 - 1 : 4);
+        const int x0 = random_int_below(wide) - 512,
+                  x1 = random_int_below(wide) - 512;
+        const int y0 = random_int_below(256 * SIDE - 1), up = i / 2 % 2;
+        const int high = 1 + random_int_below(i % 3 ? 256 * SIDE - y0 - 1 : 4);
         const int32_t left_q8 = x0 < x1 ? x0 : x1, right_q8 = x0 < x1 ? x1 : x0;
         int32_t all_q20[SIDE][STRIDE], part_q20[STRIDE];
-        struct glint_edge_sums s = make_sums(1);
+        struct glint_edge_sums s = make_row_sums(1);
 
-        add_edge(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
+        add_red_edge(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
         for (int y = 0; y < SIDE; y++) {
             const int from = y0 > 256 * y ? y0 : 256 * y;
             const int end =
@@ -140,12 +141,14 @@ TEST(parts_of_tiles)
                     assert_int_equal(all_q20[y][x], most);
             }
         }
-        s = make_sums(1);
+        s = make_row_sums(1);
         for (int part = 0; part < 2;
-             part++) { /* The first half carries its sum to the second. */
+             /* The left half carries its sums over to the right half. */
+             part++) {
             s.tile.x0 = part ? FROM : 0;
             s.tile.x1 = part ? SIDE : FROM;
-            add_edge(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
+            add_red_edge(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high,
+                         1 << 18);
             for (int y = 0; y < SIDE; y++) {
                 glint_edge_linear(&s, 0, y, part_q20);
                 assert_memory_equal(part_q20, all_q20[y] + s.tile.x0,
@@ -158,12 +161,12 @@ TEST(parts_of_tiles)
 /* Checks that packed light is exact to 25 bits, up to 2^40. */
 /* Draws eight edges that each add LIGHT to their right, and if BRIGHT is 1
  * two more that cancel each other and together need wide sums. */
-static void draw_many(int fine, int64_t light_q20, int bright,
-                      uint16_t light_q16[SIDE][STRIDE])
+static void draw_eight_edges(int fine, int64_t light_q20, int bright,
+                             uint16_t light_q16[SIDE][STRIDE])
 {
     static const struct glint_bundle red = {.rgb_q14 = {1 << 14, 0, 0}};
     const int64_t brightest_q20 = INT64_C(1000) << 20;
-    struct glint_edge_sums s = make_sums(0);
+    struct glint_edge_sums s = make_row_sums(0);
     struct glint_edge edge[10];
     int32_t ref[10];
 
@@ -186,21 +189,21 @@ static void draw_many(int fine, int64_t light_q20, int bright,
 
 /* Checks that light does not depend on the width of the sums, up to and
  * above the range of narrow ones. */
-TEST(wide_or_narrow)
+TEST(light_does_not_depend_on_sum_width)
 {
     for (int fine = 0; fine < 2; fine++)
         for (int64_t light_q20 = 1; light_q20 < 1 << 26;
              light_q20 += 1 + light_q20 / 16) {
             uint16_t some[SIDE][STRIDE], all[SIDE][STRIDE];
 
-            draw_many(fine, light_q20, 0, some);
-            draw_many(fine, light_q20, 1, all);
+            draw_eight_edges(fine, light_q20, 0, some);
+            draw_eight_edges(fine, light_q20, 1, all);
             for (int y = 0; y < SIDE; y++)
                 assert_memory_equal(some[y], all[y], SIDE * sizeof **some);
         }
 }
 
-TEST(packing)
+TEST(packed_light_is_within_half_a_step)
 {
     for (int bit = 0; bit < 40; bit++)
         for (int k = 0; k < 64; k++) {

@@ -15,40 +15,40 @@
 #include "support/shuffle.h"
 #include "support/test.h"
 
-/* ---------------------------------------------------- what must not matter */
+/* ------------------------------------------------- tiles, threads and order */
 
-TEST(tiles_do_not_matter)
+TEST(image_does_not_depend_on_tiles)
 {
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
 
     draw_scene(c, want);
-    assert_true(total(want, 0) > 1);
+    assert_true(sum_channel_light(want, 0) > 1);
     for (c.tile_log2 = 4; c.tile_log2 <= 6; c.tile_log2++)
-        same_as_want(c);
+        assert_pixels_equal_want(c);
 }
 
-TEST(threads_do_not_matter)
+TEST(image_does_not_depend_on_threads)
 {
     for (int n = 1; n <= 8; n++) {
-        struct glint_flare_config c = base_config();
+        struct glint_flare_config c = octagonal_stop_config();
 
         draw_scene(c, want);
         assert_ok(glint_pool_create(&c.workers, n));
-        same_as_want(c);
+        assert_pixels_equal_want(c);
         glint_pool_destroy(c.workers);
     }
 }
 
-TEST(order_does_not_matter)
+TEST(image_does_not_depend_on_job_order)
 {
     for (uint32_t seed = 1; seed <= 8; seed++) {
-        struct glint_flare_config c = base_config();
+        struct glint_flare_config c = octagonal_stop_config();
         struct shuffle shuffle;
 
         draw_scene(c, want);
-        shuffle_init(&shuffle, 5, seed);
+        init_shuffled_workers(&shuffle, 5, seed);
         c.workers = &shuffle.workers;
-        same_as_want(c);
+        assert_pixels_equal_want(c);
     }
 }
 
@@ -60,8 +60,8 @@ struct random_picture {
     size_t bytes;
 };
 
-static void make_picture(struct random_picture *p, enum glint_pixel_format f,
-                         uint32_t seed)
+static void make_random_picture(struct random_picture *p,
+                                enum glint_pixel_format f, uint32_t seed)
 {
     p->image =
         (struct glint_image){.format = f,
@@ -77,17 +77,17 @@ static void make_picture(struct random_picture *p, enum glint_pixel_format f,
         p->mem[i] = (uint8_t)(f == GLINT_LINEAR_Q20 ? 0 : i * 7 + (i >> 8));
 }
 
-static void draw_picture(const struct glint_flare_config *cfg,
-                         const struct ghost *list, int n, int backwards,
-                         struct random_picture *p)
+static void draw_random_picture(const struct glint_flare_config *cfg,
+                                const struct ghost *list, int n, int backwards,
+                                struct random_picture *p)
 {
     struct glint_flare_config c = *cfg;
     struct glint_flare_stats stats;
     void *mem;
-    struct glint_flare *f = open_flare(&c, &mem);
+    struct glint_flare *f = allocate_flare(&c, &mem);
 
     for (int i = 0; i < n; i++)
-        add_ghost(f, &list[backwards ? n - 1 - i : i]);
+        add_ghost_to_flare(f, &list[backwards ? n - 1 - i : i]);
     glint_flare_bin(f, &stats);
     glint_flare_draw(f, &p->image);
     assert_int_equal(stats.dropped_bundles, 0);
@@ -96,14 +96,14 @@ static void draw_picture(const struct glint_flare_config *cfg,
 
 static unsigned choose_instruction_sets(void)
 {
-    return (unsigned)draw_number(8) & glint_system_sets();
+    return (unsigned)draw_random_number(8) & glint_system_sets();
 }
 
 /* Checks that light growing from far below a code to far above the range of
  * 32-bit sums never makes a pixel darker. */
-TEST(bright_stays_bright)
+TEST(more_light_never_darkens_a_pixel)
 {
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
     int before = 0;
 
     for (int exponent = -12; exponent < 40; exponent++) {
@@ -112,9 +112,9 @@ TEST(bright_stays_bright)
         struct random_picture p;
         int code;
 
-        make_picture(&p, GLINT_GREY, 0);
+        make_random_picture(&p, GLINT_GREY, 0);
         memset(p.mem, 0, p.bytes);
-        draw_picture(&c, &g, 1, 0, &p);
+        draw_random_picture(&c, &g, 1, 0, &p);
         code = p.mem[75 * WIDTH + 100];
         assert_true(code >= before);
         assert_true(exponent < 12 || code == 255);
@@ -126,38 +126,39 @@ TEST(bright_stays_bright)
 
 /* Checks that many random scenes give the same bytes for all tile sizes,
  * kernels, numbers of workers and job orders. */
-TEST(random_scenes)
+TEST(random_scenes_are_bit_identical)
 {
     for (int k = 0; k < 240; k++) {
         const enum glint_pixel_format format =
-            (enum glint_pixel_format)draw_number(GLINT_RGB565 + 1);
-        const uint32_t seed = (uint32_t)draw_number(1 << 20) + 1;
-        struct glint_flare_config c = base_config();
+            (enum glint_pixel_format)draw_random_number(GLINT_RGB565 + 1);
+        const uint32_t seed = (uint32_t)draw_random_number(1 << 20) + 1;
+        struct glint_flare_config c = octagonal_stop_config();
         struct random_picture plain, other;
         struct shuffle shuffle;
         struct ghost list[6];
-        const int n = 1 + draw_number(6);
+        const int n = 1 + draw_random_number(6);
 
         for (int i = 0; i < n; i++) {
-            list[i] = random_ghost();
-            if (draw_number(8) == 0) /* much larger than the image */
-                list[i].size <<= draw_number(14);
-            /* scales the light by 2^-12 .. 2^7 */
-            list[i].flux_exponent += draw_number(20) - 12;
+            list[i] = make_random_ghost();
+            /* a ghost much larger than the image */
+            if (draw_random_number(8) == 0)
+                list[i].size <<= draw_random_number(14);
+            /* scales the ghost's light by 2^-12 .. 2^7 */
+            list[i].flux_exponent += draw_random_number(20) - 12;
         }
         c.stop.n_blades = k % 5 ? 8 : 0;
-        c.irradiance_steps = draw_number(3) * 30;
-        c.dither = draw_number(2);
+        c.irradiance_steps = draw_random_number(3) * 30;
+        c.dither = draw_random_number(2);
         c.tile_log2 = 6;
         c.max_primitives = 400000;
-        make_picture(&plain, format, seed);
-        draw_picture(&c, list, n, 0, &plain);
-        c.tile_log2 = 3 + draw_number(4);
+        make_random_picture(&plain, format, seed);
+        draw_random_picture(&c, list, n, 0, &plain);
+        c.tile_log2 = 3 + draw_random_number(4);
         c.sets = choose_instruction_sets();
-        shuffle_init(&shuffle, 1 + draw_number(8), seed);
+        init_shuffled_workers(&shuffle, 1 + draw_random_number(8), seed);
         c.workers = &shuffle.workers;
-        make_picture(&other, format, seed);
-        draw_picture(&c, list, n, draw_number(2), &other);
+        make_random_picture(&other, format, seed);
+        draw_random_picture(&c, list, n, draw_random_number(2), &other);
         if (memcmp(plain.mem, other.mem, plain.bytes) != 0)
             fail_msg("scene %d: format %d, tiles %d, sets %u, %d workers", k,
                      (int)format, c.tile_log2, c.sets, shuffle.workers.n);
@@ -166,20 +167,20 @@ TEST(random_scenes)
     }
 }
 
-TEST(bundle_order_does_not_matter)
+TEST(image_does_not_depend_on_bundle_order)
 {
     struct ghost turned[N_GHOSTS];
 
     for (int i = 0; i < N_GHOSTS; i++)
         turned[i] = ghosts[N_GHOSTS - 1 - i];
-    draw_scene(base_config(), want);
-    draw_list(base_config(), turned, N_GHOSTS, pixels);
+    draw_scene(octagonal_stop_config(), want);
+    draw_ghost_list(octagonal_stop_config(), turned, N_GHOSTS, pixels);
     assert_memory_equal(pixels, want, sizeof pixels);
 }
 
 /* Checks that drawing in place on 8 bits does not change padding or pixels
  * that no ghost touches. */
-TEST(untouched_stays)
+TEST(untouched_pixels_are_unchanged)
 {
     enum { STRIDE = WIDTH * 3 + 13 };
     static uint8_t bytes[STRIDE * HEIGHT], before[STRIDE * HEIGHT];
@@ -188,16 +189,16 @@ TEST(untouched_stays)
                                 .height = HEIGHT,
                                 .plane = {bytes},
                                 .stride_bytes = {STRIDE}};
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
     struct glint_flare_stats stats;
     int changed = 0;
     void *mem;
-    struct glint_flare *f = open_flare(&c, &mem);
+    struct glint_flare *f = allocate_flare(&c, &mem);
 
     for (int i = 0; i < STRIDE * HEIGHT; i++)
         before[i] = bytes[i] = (uint8_t)(i * 7 + i / 251);
-    draw_list(c, ghosts, 1, want);
-    add_ghost(f, &ghosts[0]);
+    draw_ghost_list(c, ghosts, 1, want);
+    add_ghost_to_flare(f, &ghosts[0]);
     glint_flare_bin(f, &stats);
     glint_flare_draw(f, &image);
     for (int y = 0; y < HEIGHT; y++)
@@ -215,20 +216,20 @@ TEST(untouched_stays)
 
 /* Checks that drawing into NULL does all work but writing an image, and does
  * not change the next frame. */
-TEST(into_nothing)
+TEST(drawing_into_null_does_all_work)
 {
     static uint8_t bytes[2][3 * WIDTH * HEIGHT];
     struct glint_image image =
         glint_image_over(bytes[0], GLINT_RGB24, WIDTH, HEIGHT);
 
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
     struct glint_flare_stats stats;
     void *mem;
-    struct glint_flare *const f = open_flare(&c, &mem);
+    struct glint_flare *const f = allocate_flare(&c, &mem);
     int tiles;
 
     for (int i = 0; i < 3; i++)
-        add_ghost(f, &ghosts[i]);
+        add_ghost_to_flare(f, &ghosts[i]);
     glint_flare_bin(f, &stats);
     memset(bytes, 20, sizeof bytes);
     glint_flare_draw(f, &image);
@@ -254,8 +255,8 @@ static uint64_t hash_bytes(const void *data, size_t bytes)
     return h;
 }
 
-static void check_golden(FILE *file, bool update, const char *name,
-                         struct glint_flare_config c)
+static void check_golden_hash(FILE *file, bool update, const char *name,
+                              struct glint_flare_config c)
 {
     char line[80], expected[80];
     uint64_t h;
@@ -274,18 +275,18 @@ static void check_golden(FILE *file, bool update, const char *name,
 
 /* Checks that hashes are the same on every CPU; GLINT_GOLDEN_UPDATE=1
  * rewrites them. */
-TEST(golden)
+TEST(hashes_match_the_golden_file)
 {
     const bool update = getenv("GLINT_GOLDEN_UPDATE") != NULL;
     FILE *file = fopen("tests/golden/flare.txt", update ? "w" : "r");
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
 
     assert_non_null(file);
-    check_golden(file, update, "edges", c);
+    check_golden_hash(file, update, "edges", c);
     c.irradiance_steps = 35;
-    check_golden(file, update, "edges-stepped", c);
-    c = base_config();
+    check_golden_hash(file, update, "edges-stepped", c);
+    c = octagonal_stop_config();
     c.stop.n_blades = 0;
-    check_golden(file, update, "edges-circle", c);
+    check_golden_hash(file, update, "edges-circle", c);
     fclose(file);
 }

@@ -17,27 +17,28 @@
 /* Checks the total light of a ghost: an octagonal stop of radius 1 in a grid
  * of 2.5 x 2.5 radii. Its area is 2 sqrt 2 of 6.25; the flux is 16 x 16
  * cells x 1.5e9 / 2^31 x 50000 / 65536, as the slope of the energy cancels. */
-TEST(energy)
+TEST(ghost_has_the_light_that_passes_the_stop)
 {
     const struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
     const double flux =
         256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
 
     /* The stop's corners lie on the rim of the barrel, so only the stop
      * clips. */
     c.stop.apothem_q16 = 60547;
-    draw_list(c, &g, 1, pixels);
-    assert_true(total(pixels, 0) > 0.999 * flux);
-    assert_true(total(pixels, 0) < 1.001 * flux);
-    assert_true(total(pixels, 1) == 0 && total(pixels, 2) == 0);
+    draw_ghost_list(c, &g, 1, pixels);
+    assert_true(sum_channel_light(pixels, 0) > 0.999 * flux);
+    assert_true(sum_channel_light(pixels, 0) < 1.001 * flux);
+    assert_true(sum_channel_light(pixels, 1) == 0 &&
+                sum_channel_light(pixels, 2) == 0);
 }
 
 /* Checks that a ghost only two pixels wide keeps its light at several
  * positions, bent or not. */
-TEST(focused_light_arrives)
+TEST(focused_ghost_keeps_its_light)
 {
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
     const double flux =
         256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
 
@@ -45,27 +46,27 @@ TEST(focused_light_arrives)
         const struct ghost g = {16, 50 + k / 2, 70,           1, 4 * k, 1,
                                 0,  0,          {16384, 0, 0}};
 
-        draw_list(c, &g, 1, pixels);
-        assert_true(total(pixels, 0) > 0.999 * flux);
-        assert_true(total(pixels, 0) < 1.001 * flux);
+        draw_ghost_list(c, &g, 1, pixels);
+        assert_true(sum_channel_light(pixels, 0) > 0.999 * flux);
+        assert_true(sum_channel_light(pixels, 0) < 1.001 * flux);
     }
 }
 
-static int32_t read_pixel(const int32_t *p, int x, int y)
+static int32_t read_pixel_light(const int32_t *p, int x, int y)
 {
     return p[3 * (y * WIDTH + x)];
 }
 
 /* Checks that a flat ghost has, away from its rim, an even irradiance: the
  * flux of a cell divided by its area in pixels. */
-TEST(flat_inside)
+TEST(flat_ghost_is_even_inside)
 {
     struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
     const double cell = 2.5 * 40 / 16;
     const double irradiance = 1.5e9 / 2147483648.0 / (cell * cell);
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
 
-    draw_list(c, &g, 1, pixels);
+    draw_ghost_list(c, &g, 1, pixels);
     for (int y = 65; y < 85; y++) {
         /* Energy at the pixel: 50000 + sx / 8, sx = 65536 (x - 100) / 40. */
         for (int x = 90; x < 110; x++) {
@@ -73,26 +74,26 @@ TEST(flat_inside)
                 (50000 + (x + 0.5 - 100) / 40 * 65536 / 8) / 65536;
             const double q20 = irradiance * energy * 1048576;
 
-            assert_true(read_pixel(pixels, x, y) > 0.985 * q20 - 2 &&
-                        read_pixel(pixels, x, y) < 1.015 * q20 + 2);
+            assert_true(read_pixel_light(pixels, x, y) > 0.985 * q20 - 2 &&
+                        read_pixel_light(pixels, x, y) < 1.015 * q20 + 2);
         }
     }
-    assert_int_equal(read_pixel(pixels, 100, 2), 0);
+    assert_int_equal(read_pixel_light(pixels, 100, 2), 0);
 }
 
 /* Checks that outlines close bit by bit; else a streak would extend to the
  * right end of their rows. */
-TEST(outlines_close)
+TEST(outlines_close_without_streaks)
 {
     for (int k = 0; k < 400; k++) {
-        struct glint_flare_config c = base_config();
-        const struct ghost g = random_ghost();
+        struct glint_flare_config c = octagonal_stop_config();
+        const struct ghost g = make_random_ghost();
 
         c.stop.n_blades = k & 3 ? 8 : 0;
-        c.stop.apothem_q16 -= draw_number(30000);
-        c.irradiance_steps = draw_number(3) * 20;
-        c.tile_log2 = 3 + draw_number(4);
-        draw_list(c, &g, 1, pixels);
+        c.stop.apothem_q16 -= draw_random_number(30000);
+        c.irradiance_steps = draw_random_number(3) * 20;
+        c.tile_log2 = 3 + draw_random_number(4);
+        draw_ghost_list(c, &g, 1, pixels);
         for (int y = 0; y < HEIGHT; y++)
             for (int i = 0; i < 3; i++)
                 assert_int_equal(pixels[3 * ((y + 1) * WIDTH - 1) + i], 0);
@@ -102,15 +103,15 @@ TEST(outlines_close)
 /* Checks that the outline of a cell closes even if a corner is so far
  * outside the stop that the visible parts of its two sides are shorter than
  * 1/256 pixel. */
-TEST(far_corner_closes)
+TEST(outline_closes_around_a_far_corner)
 {
     static const int32_t far_q16[] = {70000, 1 << 20, 700000000, 1000000000,
                                       0x3fffffff};
-    const struct glint_image image = linear_image(pixels);
+    const struct glint_image image = make_linear_image(pixels);
     const int32_t half = 759250125; /* sqrt(1/2) */
 
     for (size_t k = 0; k < sizeof far_q16 / sizeof *far_q16; k++) {
-        struct glint_flare_config c = base_config();
+        struct glint_flare_config c = octagonal_stop_config();
         const struct glint_bundle b = {.n_cells = 1,
                                        .flux_q31 = 1 << 30,
                                        .flux_exponent = 10,
@@ -126,35 +127,36 @@ TEST(far_corner_closes)
             c.stop.normal_q30[i][0] = i == 0 || i == 3 ? half : -half;
             c.stop.normal_q30[i][1] = i < 2 ? half : -half;
         }
-        f = open_flare(&c, &mem);
+        f = allocate_flare(&c, &mem);
         v = glint_flare_add(f, &b);
         for (int i = 0; i < 4; i++)
             v[i] = (struct glint_vertex){.x_q8 = i & 1 ? 7693 : 2573,
                                          .y_q8 = i & 2 ? 7757 : 2637,
                                          .energy_q16 = 65536};
-        v[1].stop_x_q16 = v[2].stop_y_q16 = 65534; /* just inside the stop */
+        /* stop position just inside the stop's outline */
+        v[1].stop_x_q16 = v[2].stop_y_q16 = 65534;
         v[3].stop_x_q16 = v[3].stop_y_q16 = far_q16[k];
         memset(pixels, 0, sizeof pixels);
         glint_flare_bin(f, &stats);
         glint_flare_draw(f, &image);
         free(mem);
-        assert_true(read_pixel(pixels, 12, 12) > 0);
+        assert_true(read_pixel_light(pixels, 12, 12) > 0);
         for (int y = 0; y < HEIGHT; y++)
-            assert_int_equal(read_pixel(pixels, 60, y), 0);
+            assert_int_equal(read_pixel_light(pixels, 60, y), 0);
     }
 }
 
 /* Checks that quantising the irradiance changes the light of a cell by at
  * most half a step. */
-TEST(steps)
+TEST(irradiance_steps_change_little_light)
 {
     static int32_t stepped[3 * WIDTH * HEIGHT];
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
     const struct ghost g = {24, 100, 75, 55, 60, 1, 200, 4, {16384, 0, 0}};
 
-    draw_list(c, &g, 1, pixels);
+    draw_ghost_list(c, &g, 1, pixels);
     c.irradiance_steps = 10;
-    draw_list(c, &g, 1, stepped);
+    draw_ghost_list(c, &g, 1, stepped);
     assert_memory_not_equal(stepped, pixels, sizeof pixels);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
         assert_true(20 * llabs((long long)stepped[i] - pixels[i]) <=
@@ -165,8 +167,8 @@ TEST(steps)
 
 /* Returns whether the ray at the position WEIGHT (bilinear weights of the
  * corners V) in a cell passes STOP and the barrel. */
-static bool is_passed(const struct glint_stop *stop,
-                      const struct glint_vertex *v, const double *weight)
+static bool ray_passes_stop(const struct glint_stop *stop,
+                            const struct glint_vertex *v, const double *weight)
 {
     double x = 0, y = 0, barrel = 0;
 
@@ -185,10 +187,10 @@ static bool is_passed(const struct glint_stop *stop,
 /* Draws the red ghost G into WANT by RAYS rays per cell. Rays are
  * interpolated between the cell's corners; each lights the pixel that it
  * hits. */
-static void draw_rays(const struct ghost *g)
+static void draw_ghost_by_rays(const struct ghost *g)
 {
     enum { RAYS = 4096 };
-    const struct glint_flare_config c = base_config();
+    const struct glint_flare_config c = octagonal_stop_config();
     const double flux_q20 = ldexp(1.5e9 / RAYS / 65536, g->flux_exponent - 11);
     static double sum[HEIGHT * WIDTH];
 
@@ -196,8 +198,9 @@ static void draw_rays(const struct ghost *g)
     for (int cell = 0; cell < g->n * g->n; cell++) {
         const int i = cell % g->n, j = cell / g->n;
         const struct glint_vertex v[4] = {
-            ghost_vertex(g, i, j), ghost_vertex(g, i + 1, j),
-            ghost_vertex(g, i, j + 1), ghost_vertex(g, i + 1, j + 1)};
+            compute_ghost_vertex(g, i, j), compute_ghost_vertex(g, i + 1, j),
+            compute_ghost_vertex(g, i, j + 1),
+            compute_ghost_vertex(g, i + 1, j + 1)};
 
         for (int ray = 0; ray < RAYS; ray++) {
             const double a = fmod(ray * 0.6180339887, 1); /* golden ratio */
@@ -212,7 +215,7 @@ static void draw_rays(const struct ghost *g)
                 energy += weight[k] * v[k].energy_q16;
             }
             if (x >= 0 && x < WIDTH && y >= 0 && y < HEIGHT &&
-                is_passed(&c.stop, v, weight))
+                ray_passes_stop(&c.stop, v, weight))
                 sum[(int)y * WIDTH + (int)x] += flux_q20 * energy;
         }
     }
@@ -222,35 +225,35 @@ static void draw_rays(const struct ghost *g)
 
 /* Checks that the image of G equals that of its rays except for a fraction
  * OFF of the light, and that the total light differs by at most 0.2 %. */
-static void check_rays(const struct ghost *g, double off)
+static void check_image_equals_rays(const struct ghost *g, double off)
 {
     double sum = 0, all;
 
-    draw_list(base_config(), g, 1, pixels);
-    draw_rays(g);
+    draw_ghost_list(octagonal_stop_config(), g, 1, pixels);
+    draw_ghost_by_rays(g);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i += 3)
         sum += abs(pixels[i] - want[i]) / 1048576.0;
-    all = total(want, 0);
+    all = sum_channel_light(want, 0);
     assert_true(sum < off * all);
-    assert_true(fabs(total(pixels, 0) - all) < 0.002 * all);
+    assert_true(fabs(sum_channel_light(pixels, 0) - all) < 0.002 * all);
 }
 
 /* Checks ghosts that are bent, folded, and clipped by stop and barrel, with
  * cells of 4.7 and of 2 pixels. */
-TEST(agrees_with_rays)
+TEST(ghosts_agree_with_traced_rays)
 {
     const struct ghost large = {32, 100, 75, 60, 100, 1, 300, 6, {16384, 0, 0}};
 
-    check_rays(&large, 0.008);
+    check_image_equals_rays(&large, 0.008);
     for (int k = 0; k < 16; k++) {
         const struct ghost small = {16, 100, 75, 9 + k % 4,    60 * k,
                                     1,  300, -2, {16384, 0, 0}};
 
-        check_rays(&small, 0.02);
+        check_image_equals_rays(&small, 0.02);
     }
 }
 
-/* ------------------------------------------------------- polygons by hand */
+/* ------------------------------------------------ polygons computed by hand */
 
 /* One cell of flux 64 and energy 1. Its corners are listed in circular
  * order, in 1/256 px. */
@@ -260,18 +263,18 @@ struct quad {
     int lost; /* bit k: the ray of corner k is invalid */
 };
 
-static struct glint_flare_stats draw_quad(const struct quad *q)
+static struct glint_flare_stats draw_single_quad(const struct quad *q)
 {
     static const int corner[4] = {0, 1, 3, 2}; /* corners in row order */
-    struct glint_flare_config c = base_config();
-    const struct glint_image image = linear_image(pixels);
+    struct glint_flare_config c = octagonal_stop_config();
+    const struct glint_image image = make_linear_image(pixels);
     const struct glint_bundle b = {.n_cells = 1,
                                    .flux_q31 = 1 << 30,
                                    .flux_exponent = 7,
                                    .rgb_q14 = {16384, 0, 0}};
     struct glint_flare_stats stats;
     void *mem;
-    struct glint_flare *f = open_flare(&c, &mem);
+    struct glint_flare *f = allocate_flare(&c, &mem);
     struct glint_vertex *v = glint_flare_add(f, &b);
 
     for (int i = 0; i < 4; i++) {
@@ -289,77 +292,77 @@ static struct glint_flare_stats draw_quad(const struct quad *q)
     return stats;
 }
 
-static void assert_light(int x, int y, double light)
+static void assert_pixel_light(int x, int y, double light)
 {
-    const double got = read_pixel(pixels, x, y) / 1048576.0;
+    const double got = read_pixel_light(pixels, x, y) / 1048576.0;
 
     if (got < light - 1e-4 || got > light + 1e-4)
         print_message("pixel %d,%d: %f, not %f\n", x, y, got, light);
     assert_true(got > light - 1e-4 && got < light + 1e-4);
 }
 
-static void assert_flux(double flux)
+static void assert_total_flux(double flux)
 {
-    assert_true(total(pixels, 0) > 0.999 * flux);
-    assert_true(total(pixels, 0) < 1.001 * flux);
+    assert_true(sum_channel_light(pixels, 0) > 0.999 * flux);
+    assert_true(sum_channel_light(pixels, 0) < 1.001 * flux);
 }
 
 /* Checks that the rectangle from (10.25, 10.5) to (14.25, 12.5) spreads its
  * flux of 64 over eight pixels of area. */
-TEST(rectangle_by_hand)
+TEST(rectangle_matches_hand_computation)
 {
     struct quad q = {{{2624, 2688}, {3648, 2688}, {3648, 3200}, {2624, 3200}},
                      {0, 0, 0, 0},
                      0};
 
-    draw_quad(&q);
-    assert_light(9, 11, 0);
-    assert_light(10, 10, 3);
-    assert_light(11, 10, 4);
-    assert_light(14, 10, 1);
-    assert_light(15, 11, 0);
-    assert_light(10, 11, 6);
-    assert_light(13, 11, 8);
-    assert_light(14, 12, 1);
-    assert_light(12, 13, 0);
+    draw_single_quad(&q);
+    assert_pixel_light(9, 11, 0);
+    assert_pixel_light(10, 10, 3);
+    assert_pixel_light(11, 10, 4);
+    assert_pixel_light(14, 10, 1);
+    assert_pixel_light(15, 11, 0);
+    assert_pixel_light(10, 11, 6);
+    assert_pixel_light(13, 11, 8);
+    assert_pixel_light(14, 12, 1);
+    assert_pixel_light(12, 13, 0);
     /* A barrel radius from 0.5 on the left to 1.5 on the right passes only
      * the left half. */
     q.barrel_q16[0] = q.barrel_q16[3] = 32768;
     q.barrel_q16[1] = q.barrel_q16[2] = 98304;
-    draw_quad(&q);
-    assert_light(10, 11, 6);
-    assert_light(11, 11, 8);
-    assert_light(12, 11, 2);
-    assert_light(13, 11, 0);
+    draw_single_quad(&q);
+    assert_pixel_light(10, 11, 6);
+    assert_pixel_light(11, 11, 8);
+    assert_pixel_light(12, 11, 2);
+    assert_pixel_light(13, 11, 0);
 }
 
 /* Checks that a cell with one invalid corner becomes a triangle with legs of
  * 8 pixels: area 32 and half of the flux, so each pixel has light 1. */
-TEST(triangle_by_hand)
+TEST(triangle_matches_hand_computation)
 {
     const struct quad q = {
         {{2048, 2048}, {4096, 2048}, {9, 9}, {2048, 4096}}, {0, 0, 0, 0}, 4};
 
-    assert_int_equal(draw_quad(&q).dropped_cells, 1);
-    assert_light(8, 8, 1);
-    assert_light(10, 12, 1);
+    assert_int_equal(draw_single_quad(&q).dropped_cells, 1);
+    assert_pixel_light(8, 8, 1);
+    assert_pixel_light(10, 12, 1);
     for (int x = 8; x < 16; x++) {
-        assert_light(x, 23 - x, 0.5);
-        assert_light(x, 24 - x, 0);
+        assert_pixel_light(x, 23 - x, 0.5);
+        assert_pixel_light(x, 24 - x, 0);
     }
-    assert_flux(32);
+    assert_total_flux(32);
 }
 
 /* Checks that slivers, folds, lines and points keep their light at any
  * position. */
-TEST(thin_light_arrives)
+TEST(thin_cells_keep_their_light)
 {
     static const struct quad quads[] = {
         /* 1/256 px wide and 80 px long: vertical, horizontal, diagonal */
         {{{5000, 5000}, {5001, 5000}, {5001, 25480}, {5000, 25480}}, {0}, 0},
         {{{5000, 5000}, {25480, 5000}, {25480, 5001}, {5000, 5001}}, {0}, 0},
         {{{5000, 5000}, {5001, 5000}, {19001, 25480}, {19000, 25480}}, {0}, 0},
-        /* zero area: a line, a line forth and back, a point */
+        /* zero area: a line, a line that runs back and forth, a point */
         {{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}}, {0}, 0},
         {{{5000, 5000}, {9000, 5000}, {5000, 5000}, {9000, 5000}}, {0}, 0},
         {{{5120, 5120}, {5120, 5120}, {5120, 5120}, {5120, 5120}}, {0}, 0},
@@ -371,52 +374,52 @@ TEST(thin_light_arrives)
     };
 
     for (size_t i = 0; i < sizeof quads / sizeof *quads; i++) {
-        assert_int_equal(draw_quad(&quads[i]).dropped_cells, 0);
-        assert_flux(64);
+        assert_int_equal(draw_single_quad(&quads[i]).dropped_cells, 0);
+        assert_total_flux(64);
     }
     /* The barrel passes half of a line. */
-    draw_quad(
+    draw_single_quad(
         &(struct quad){{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}},
                        {32768, 98304, 98304, 32768},
                        0});
-    assert_flux(32);
+    assert_total_flux(32);
 }
 
 /* Checks that light is linear: eight times the flux gives eight times the
  * image, within rounding. */
-TEST(linear_in_light)
+TEST(image_is_linear_in_flux)
 {
     struct ghost g = ghosts[1];
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
 
-    draw_list(c, &g, 1, want);
+    draw_ghost_list(c, &g, 1, want);
     g.flux_exponent += 3;
-    draw_list(c, &g, 1, pixels);
+    draw_ghost_list(c, &g, 1, pixels);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
         assert_true(abs(pixels[i] - 8 * want[i]) <= 24);
 }
 
 /* Checks that cells without area, invalid rays and light out of range cause
  * no error. */
-TEST(hostile_bundles)
+TEST(invalid_bundles_cause_no_error)
 {
-    struct glint_flare_config c = base_config();
-    const struct glint_image image = linear_image(pixels);
+    struct glint_flare_config c = octagonal_stop_config();
+    const struct glint_image image = make_linear_image(pixels);
     struct glint_bundle b = {.n_cells = 4,
                              .flux_q31 = INT32_MAX,
                              .flux_exponent = 900,
                              .rgb_q14 = {65536, -65536, 65536}};
     struct glint_flare_stats stats;
     void *mem;
-    struct glint_flare *f = open_flare(&c, &mem);
+    struct glint_flare *f = allocate_flare(&c, &mem);
     struct glint_vertex *v = glint_flare_add(f, &b);
 
     for (int i = 0; i < 25; i++)
         v[i] = (struct glint_vertex){5000, 5000, 0, 0, {0, 0}, 65536};
     v = glint_flare_add(f, &b);
     for (int i = 0; i < 25; i++) {
-        v[i] = ghost_vertex(&(struct ghost){4, 50, 50, 9, 0, 1, 0, 0, {0}},
-                            i % 5, i / 5);
+        v[i] = compute_ghost_vertex(
+            &(struct ghost){4, 50, 50, 9, 0, 1, 0, 0, {0}}, i % 5, i / 5);
         if (i % 3 == 0)
             v[i].energy_q16 = -1;
     }

@@ -16,9 +16,9 @@
 
 /* Checks that the capacities which glint_flare_bin() requests are
  * sufficient, and that one byte of memory less is rejected. */
-TEST(exact_capacity)
+TEST(requested_capacities_are_sufficient)
 {
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
     struct glint_flare_stats s = draw_scene(c, want);
     struct glint_flare *f;
     void *mem;
@@ -29,7 +29,7 @@ TEST(exact_capacity)
     c.max_vertices = s.need_vertices;
     c.max_primitives = s.need_primitives;
     c.max_refs = s.need_refs;
-    same_as_want(c);
+    assert_pixels_equal_want(c);
     bytes = glint_flare_bytes(&c);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
     assert_int_equal(glint_flare_init(&f, &c, mem, bytes - 1), GLINT_E_MEMORY);
@@ -39,13 +39,13 @@ TEST(exact_capacity)
 
 /* Checks that if any capacity is too small by one, one bundle is dropped and
  * counted, and all others are drawn correctly. */
-TEST(too_little_capacity)
+TEST(missing_capacity_drops_one_bundle)
 {
-    struct glint_flare_config full = base_config();
+    struct glint_flare_config full = octagonal_stop_config();
     struct glint_flare_stats s, less;
 
     s = draw_scene(full, pixels);
-    draw_list(full, ghosts, N_GHOSTS - 1, want);
+    draw_ghost_list(full, ghosts, N_GHOSTS - 1, want);
     for (int k = 0; k < 4; k++) {
         struct glint_flare_config c = full;
 
@@ -76,17 +76,17 @@ TEST(too_little_capacity)
     }
 }
 
-TEST(config_is_checked)
+TEST(rejects_invalid_configurations)
 {
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
 
     assert_int_not_equal(glint_flare_bytes(&c), 0);
     c.tile_log2 = 7;
     assert_int_equal(glint_flare_bytes(&c), 0);
-    c = base_config();
+    c = octagonal_stop_config();
     c.width = GLINT_MAX_SIDE + 1;
     assert_int_equal(glint_flare_bytes(&c), 0);
-    c = base_config();
+    c = octagonal_stop_config();
     c.stop.n_blades = 2;
     assert_int_equal(glint_flare_bytes(&c), 0);
 }
@@ -109,16 +109,16 @@ void __wrap_glint_edges_bin(struct glint_flare *f)
 }
 
 /* Checks that the counts of a frame saturate at INT_MAX instead of wrapping. */
-TEST(counts_are_held)
+TEST(counts_saturate_at_int_max)
 {
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
     struct glint_flare_stats stats;
     struct glint_flare *f;
     void *mem;
 
-    f = open_flare(&c, &mem);
+    f = allocate_flare(&c, &mem);
     for (int i = 0; i < 3; i++)
-        add_ghost(f, &ghosts[i]);
+        add_ghost_to_flare(f, &ghosts[i]);
     counts_many = true;
     glint_flare_bin(f, &stats);
     counts_many = false;

@@ -19,12 +19,12 @@
  * pixels. */
 enum { MANY = 3000, NEAR_Q30 = 60000 };
 
-static double to_double(struct glint_real x)
+static double real_to_double(struct glint_real x)
 {
     return ldexp(x.mantissa, x.exponent);
 }
 
-static struct glint_real to_real(double x)
+static struct glint_real double_to_real(double x)
 {
     int exponent;
     const double fraction = frexp(x, &exponent);
@@ -32,7 +32,7 @@ static struct glint_real to_real(double x)
     return real_of((int64_t)(fraction * 0x1p40), exponent - 40);
 }
 
-static int32_t to_q30(double x)
+static int32_t encode_q30(double x)
 {
     return (int32_t)lrint(x * 0x1p30);
 }
@@ -43,28 +43,28 @@ static struct glint_light make_light(double x, double y, double power)
     const double sine = hypot(x, y);
 
     return (struct glint_light){
-        .sine_q30 = to_q30(sine),
-        .cosine_q30 = to_q30(sqrt(1 - sine * sine)),
-        .cos_q30 = sine > 0 ? to_q30(x / sine) : 1 << 30,
-        .sin_q30 = sine > 0 ? to_q30(y / sine) : 0,
-        .power = to_real(power),
+        .sine_q30 = encode_q30(sine),
+        .cosine_q30 = encode_q30(sqrt(1 - sine * sine)),
+        .cos_q30 = sine > 0 ? encode_q30(x / sine) : 1 << 30,
+        .sin_q30 = sine > 0 ? encode_q30(y / sine) : 0,
+        .power = double_to_real(power),
         .rgb_q14 = {16384, 16384, 16384},
     };
 }
 
-static double random_unit(uint32_t *state)
+static double random_unit_q30(uint32_t *state)
 {
     return rng_xorshift(state) * 0x1p-32;
 }
 
 /* Fills B with lights of powers 1e-6 to 1e9, most of them small. Some lights
  * coincide; some are on the axis with random azimuths. */
-static void fill_random(struct glint_light *b, int n, uint32_t seed)
+static void fill_with_random_lights(struct glint_light *b, int n, uint32_t seed)
 {
     for (int i = 0; i < n; i++) {
-        const double x = 0.6 * (random_unit(&seed) - 0.5);
-        const double y = 0.4 * (random_unit(&seed) - 0.5);
-        const double power = pow(10, -6 + 15 * pow(random_unit(&seed), 4));
+        const double x = 0.6 * (random_unit_q30(&seed) - 0.5);
+        const double y = 0.4 * (random_unit_q30(&seed) - 0.5);
+        const double power = pow(10, -6 + 15 * pow(random_unit_q30(&seed), 4));
 
         b[i] = make_light(x, y, power);
         for (int c = 0; c < 3; c++)
@@ -90,17 +90,17 @@ static void shuffle_lights(struct glint_light *b, int n, uint32_t seed)
     }
 }
 
-static void sum_flux(const struct glint_light *b, int n, double flux[3])
+static void sum_light_flux(const struct glint_light *b, int n, double flux[3])
 {
     flux[0] = flux[1] = flux[2] = 0;
     for (int i = 0; i < n; i++)
         for (int c = 0; c < 3; c++)
-            flux[c] += to_double(b[i].power) * b[i].rgb_q14[c] / 16384;
+            flux[c] += real_to_double(b[i].power) * b[i].rgb_q14[c] / 16384;
 }
 
 /* Checks the invariants of a light that drawing relies on: unit vectors, a
  * normalised power, a largest colour component of 1. */
-static void assert_valid(const struct glint_light *b)
+static void assert_light_is_valid(const struct glint_light *b)
 {
     const double off = hypot(b->sine_q30, b->cosine_q30) * 0x1p-30;
     const double round = hypot(b->cos_q30, b->sin_q30) * 0x1p-30;
@@ -116,7 +116,7 @@ static void assert_valid(const struct glint_light *b)
 
 /* ------------------------------------------------------------------- tests */
 
-TEST(none_and_one)
+TEST(no_light_and_one_light_are_unchanged)
 {
     struct glint_light b = make_light(0.1, -0.2, 3), was = b;
     int apart = 7;
@@ -135,9 +135,9 @@ TEST(none_and_one)
     assert_int_equal(glint_lights_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
 }
 
-/* Checks that the merge distance of two lights is the larger of theirs, in
+/* Checks that two lights are merged by the larger of their merge distances, in
  * any order. */
-TEST(merge_distance)
+TEST(merge_distance_is_the_larger_of_two)
 {
     for (int order = 0; order < 2; order++) {
         struct glint_light b[2] = {make_light(0.1, 0, 3),
@@ -152,7 +152,7 @@ TEST(merge_distance)
 
 /* Checks that lights too few and too far apart to be merged are unchanged
  * bit by bit. */
-TEST(untouched)
+TEST(distant_lights_are_unchanged)
 {
     static struct glint_light b[200], was[200];
     int apart, found = 0;
@@ -172,7 +172,7 @@ TEST(untouched)
     assert_int_equal(found, 200);
 }
 
-TEST(identical)
+TEST(identical_lights_are_merged)
 {
     static struct glint_light b[MANY];
     const struct glint_light one = make_light(-0.11, 0.23, 0.5);
@@ -182,14 +182,14 @@ TEST(identical)
         b[i] = one;
     assert_int_equal(glint_lights_merge(b, MANY, 0, MANY, &apart), 1);
     assert_int_equal(apart, 1);
-    assert_valid(b);
+    assert_light_is_valid(b);
     assert_true(abs(b->sine_q30 - one.sine_q30) < 64 &&
                 abs(b->cos_q30 - one.cos_q30) < 256);
-    assert_true(fabs(to_double(b->power) - 0.5 * MANY) < 1e-5 * MANY);
+    assert_true(fabs(real_to_double(b->power) - 0.5 * MANY) < 1e-5 * MANY);
 }
 
 /* Returns the chord between the directions with sines (X, Y) and (P, Q). */
-static double chord_length(double x, double y, double p, double q)
+static double chord_between_sines(double x, double y, double p, double q)
 {
     const double z = sqrt(1 - x * x - y * y) - sqrt(1 - p * p - q * q);
 
@@ -198,17 +198,18 @@ static double chord_length(double x, double y, double p, double q)
 
 /* Checks that two lights closer than NEAR become one at their centroid by
  * power, and that lights further apart do not. */
-TEST(near)
+TEST(near_lights_merge_at_their_centroid)
 {
     const double near = NEAR_Q30 * 0x1p-30;
     uint32_t seed = 5;
     int apart, n_merged = 0;
 
     for (int k = 0; k < 2000; k++) {
-        const double x = random_unit(&seed) - 0.5, y = random_unit(&seed) - 0.5;
-        const double dx = 2 * near * (random_unit(&seed) - 0.5);
-        const double dy = 2 * near * (random_unit(&seed) - 0.5);
-        const double d = chord_length(x, y, x + dx, y + dy);
+        const double x = random_unit_q30(&seed) - 0.5,
+                     y = random_unit_q30(&seed) - 0.5;
+        const double dx = 2 * near * (random_unit_q30(&seed) - 0.5);
+        const double dy = 2 * near * (random_unit_q30(&seed) - 0.5);
+        const double d = chord_between_sines(x, y, x + dx, y + dy);
         struct glint_light b[2] = {make_light(x, y, 1),
                                    make_light(x + dx, y + dy, 3)};
         const int left = glint_lights_merge(b, 2, NEAR_Q30, 2, &apart);
@@ -219,8 +220,8 @@ TEST(near)
         if (left == 2)
             continue;
         n_merged++;
-        assert_valid(b);
-        assert_true(fabs(to_double(b->power) - 4) < 1e-8);
+        assert_light_is_valid(b);
+        assert_true(fabs(real_to_double(b->power) - 4) < 1e-8);
         assert_true(fabs(b->sine_q30 * 0x1p-60 * b->cos_q30 - x - 0.75 * dx) <
                     1e-8);
         assert_true(fabs(b->sine_q30 * 0x1p-60 * b->sin_q30 - y - 0.75 * dy) <
@@ -229,7 +230,7 @@ TEST(near)
     assert_true(n_merged > 500 && n_merged < 1800);
 }
 
-TEST(axis)
+TEST(lights_on_the_axis_are_merged)
 {
     struct glint_light b[4] = {make_light(0, 0, 1), make_light(0, 0, 1),
                                make_light(2e-9, 0, 1), make_light(-2e-9, 0, 1)};
@@ -239,36 +240,36 @@ TEST(axis)
     int apart;
 
     b[1].cos_q30 = -(1 << 29);
-    b[1].sin_q30 = 929887697; /* azimuth of 120 degrees */
+    b[1].sin_q30 = 929887697; /* sine of the azimuth 120 degrees, Q30 */
     assert_int_equal(glint_lights_merge(b, 4, NEAR_Q30, 4, &apart), 1);
-    assert_valid(b);
+    assert_light_is_valid(b);
     assert_true(b->sine_q30 <= 2);
-    assert_true(fabs(to_double(b->power) - 4) < 1e-8);
+    assert_true(fabs(real_to_double(b->power) - 4) < 1e-8);
     assert_int_equal(glint_lights_merge(far, 2, NEAR_Q30, 1, &apart), 1);
     assert_int_equal(apart, 2);
-    assert_valid(far);
+    assert_light_is_valid(far);
     assert_true(far->sine_q30 <= 2);
     assert_int_equal(glint_lights_merge(aside, 2, NEAR_Q30, 1, &apart), 1);
-    assert_valid(aside);
+    assert_light_is_valid(aside);
 }
 
-TEST(horizon)
+TEST(lights_at_the_horizon_merge_to_valid_ones)
 {
     struct glint_light b[3] = {make_light(1, 0, 1), make_light(-1, 0, 1),
                                make_light(0, 1, 1)};
     int apart;
 
     assert_int_equal(glint_lights_merge(b, 2, 1 << 30, 1, &apart), 1);
-    assert_valid(b);
+    assert_light_is_valid(b);
     b[0] = make_light(1, 0, 1);
     b[1] = make_light(-1, 0, 1);
     assert_int_equal(glint_lights_merge(b, 3, NEAR_Q30, 1, &apart), 1);
-    assert_valid(b);
+    assert_light_is_valid(b);
 }
 
 /* Checks that the result does not depend on the order, bit by bit, for any
  * requested number of lights. */
-TEST(order)
+TEST(merging_does_not_depend_on_order)
 {
     static struct glint_light want[MANY], got[MANY];
 
@@ -276,7 +277,7 @@ TEST(order)
         const int n = k < 12 ? MANY : 400, most = 1 + (int)(k * k) % n;
         int apart, apart_again, left;
 
-        fill_random(want, n, 77 + k / 3);
+        fill_with_random_lights(want, n, 77 + k / 3);
         memcpy(got, want, sizeof got);
         shuffle_lights(got, n, 1000 + k);
         left = glint_lights_merge(want, n, NEAR_Q30, most, &apart);
@@ -287,7 +288,7 @@ TEST(order)
     }
 }
 
-TEST(cap_and_flux)
+TEST(limit_of_lights_keeps_the_flux)
 {
     static struct glint_light b[MANY];
 
@@ -295,22 +296,22 @@ TEST(cap_and_flux)
         double before[3], after[3];
         int apart, left;
 
-        fill_random(b, MANY, 9);
-        sum_flux(b, MANY, before);
+        fill_with_random_lights(b, MANY, 9);
+        sum_light_flux(b, MANY, before);
         left = glint_lights_merge(b, MANY, NEAR_Q30, most, &apart);
         assert_true(apart <= MANY - MANY / 100 && apart > MANY * 9 / 10);
         assert_int_equal(left, most < apart ? most : apart);
-        sum_flux(b, left, after);
+        sum_light_flux(b, left, after);
         for (int c = 0; c < 3; c++)
             assert_true(fabs(after[c] - before[c]) < 1e-4 * before[c]);
         for (int i = 0; i < left; i++)
-            assert_valid(&b[i]);
+            assert_light_is_valid(&b[i]);
     }
 }
 
 /* Checks that the colour of many faint lights is not lost in the rounding of
  * a bright light's. */
-TEST(faint_colour)
+TEST(colour_of_faint_lights_is_kept)
 {
     static struct glint_light b[MANY];
     double flux[3];
@@ -322,14 +323,14 @@ TEST(faint_colour)
     }
     b[0] = make_light(0.1, 0.1, 1);
     assert_int_equal(glint_lights_merge(b, MANY, NEAR_Q30, 1, &apart), 1);
-    sum_flux(b, 1, flux);
+    sum_light_flux(b, 1, flux);
     assert_true(fabs(flux[0] - 1 - 1e-5 * (MANY - 1)) < 1e-5);
     assert_true(fabs(flux[1] - 1) < 1e-4 && fabs(flux[2] - 1) < 1e-4);
 }
 
-/* Checks the sums of powers at the ends of their range, far outside it, and
- * of both together. */
-TEST(powers)
+/* Checks the sums of powers at the ends of their range, far outside it, and of
+ * both kinds. */
+TEST(sums_of_extreme_powers_are_right)
 {
     static const double powers[] = {1e-6, 1e9, 1e-55, 1e55};
 
@@ -342,20 +343,20 @@ TEST(powers)
             int apart;
 
             assert_int_equal(glint_lights_merge(b, 3, NEAR_Q30, 1, &apart), 1);
-            assert_valid(b);
-            assert_true(fabs(to_double(b->power) - sum) < 1e-8 * sum);
+            assert_light_is_valid(b);
+            assert_true(fabs(real_to_double(b->power) - sum) < 1e-8 * sum);
         }
 }
 
 /* Checks that a few bright lights among many faint ones do not move. */
-TEST(bright_ones_stay)
+TEST(bright_lights_do_not_move)
 {
     static struct glint_light b[MANY];
     int apart;
 
-    fill_random(b, MANY, 4);
+    fill_with_random_lights(b, MANY, 4);
     for (int i = 0; i < MANY; i++)
-        b[i].power = to_real(0.01);
+        b[i].power = double_to_real(0.01);
     for (int i = 0; i < 20; i++)
         b[150 * i] = make_light(0.02 * i - 0.2, 0.15 - 0.01 * i, 100);
     assert_int_equal(glint_lights_merge(b, MANY, NEAR_Q30, 128, &apart), 128);

@@ -22,18 +22,18 @@ enum { WIDTH = 160, HEIGHT = 120 };
 
 /* ----------------------------------------------------------------- numbers */
 
-static double to_double(struct glint_real x)
+static double real_to_double(struct glint_real x)
 {
     return ldexp(x.mantissa, x.exponent);
 }
 
-static void assert_near(struct glint_real got, double want)
+static void assert_relatively_near(struct glint_real got, double want)
 {
-    assert_true(fabs(to_double(got) - want) <= fabs(want) * 0x1p-28);
+    assert_true(fabs(real_to_double(got) - want) <= fabs(want) * 0x1p-28);
     assert_true(got.mantissa == 0 || llabs(got.mantissa) >= 1 << 30);
 }
 
-TEST(reals)
+TEST(sums_of_reals_are_right)
 {
     uint32_t seed = 3;
 
@@ -41,10 +41,10 @@ TEST(reals)
         int64_t a, b;
         int e, f;
 
-        rng_bits(&seed);
+        rng_bits32(&seed);
         a = (int64_t)((uint64_t)seed << 30 >> (seed % 61)) + 1;
         e = (int)(seed >> 8 & 127) - 64;
-        rng_bits(&seed);
+        rng_bits32(&seed);
         b = (int64_t)((uint64_t)seed << 30 >> (seed % 61)) + 1;
         f = (int)(seed >> 8 & 127) - 64;
         {
@@ -52,12 +52,13 @@ TEST(reals)
             const struct glint_real z = real_of(b, f);
             const double p = ldexp((double)a, e), q = ldexp((double)b, f);
 
-            assert_near(x, p);
-            assert_near(y, -q);
-            assert_near(real_times(x, y), -p * q);
-            assert_near(real_over(x, y), -p / q);
-            assert_near(real_plus(x, z), p + q);
-            assert_true(fabs(to_double(x) - to_double(z)) < 0x1p-28 * p ||
+            assert_relatively_near(x, p);
+            assert_relatively_near(y, -q);
+            assert_relatively_near(real_times(x, y), -p * q);
+            assert_relatively_near(real_over(x, y), -p / q);
+            assert_relatively_near(real_plus(x, z), p + q);
+            assert_true(fabs(real_to_double(x) - real_to_double(z)) <
+                            0x1p-28 * p ||
                         real_less(x, z) == (p < q));
             assert_true(fabs((double)real_integer(x, 4, INT64_C(1) << 40) -
                              fmin(16 * p, 0x1p40)) <=
@@ -82,21 +83,21 @@ struct fixture {
     struct glint_flare *flare;
 };
 
-static void open_fixture(struct fixture *f)
+static void open_model_and_light(struct fixture *f)
 {
-    *f = (struct fixture){.m = model_auto()};
-    f->lens = model_open(&f->m);
-    frame_waves(f->wave);
-    f->light = frame_light();
-    f->rays = frame_rays(&f->lens, f->wave, 64);
-    f->cfg = frame_config(WIDTH, HEIGHT, 5);
+    *f = (struct fixture){.m = model_make_auto()};
+    f->lens = model_open_image(&f->m);
+    set_frame_wavelengths(f->wave);
+    f->light = make_axial_light();
+    f->rays = make_frame_rays(&f->lens, f->wave, 64);
+    f->cfg = make_frame_config(WIDTH, HEIGHT, 5);
     f->cfg.max_bundles = 16;
     f->cfg.max_vertices = 40000;
     f->cfg.max_primitives = 20000;
     f->cfg.max_refs = 40000;
 }
 
-static void init_flare(struct fixture *f)
+static void allocate_and_init_flare(struct fixture *f)
 {
     const size_t bytes = glint_flare_bytes(&f->cfg);
 
@@ -104,7 +105,7 @@ static void init_flare(struct fixture *f)
     assert_ok(glint_flare_init(&f->flare, &f->cfg, f->mem, bytes));
 }
 
-static void close_fixture(struct fixture *f)
+static void free_model_and_images(struct fixture *f)
 {
     free(f->mem);
     free(f->m.data);
@@ -114,19 +115,20 @@ static struct fixture fx;
 
 TEST_BEFORE
 {
-    open_fixture(&fx);
+    open_model_and_light(&fx);
 }
 
 TEST_AFTER
 {
-    close_fixture(&fx);
+    free_model_and_images(&fx);
 }
 
-static struct glint_flare_stats plan_lights(struct fixture *f, int n_lights)
+static struct glint_flare_stats plan_and_bin_lights(struct fixture *f,
+                                                    int n_lights)
 {
     struct glint_flare_stats s;
 
-    init_flare(f);
+    allocate_and_init_flare(f);
     glint_flare_plan(f->flare, &f->rays, &f->light, n_lights);
     glint_flare_bin(f->flare, &s);
     free(f->mem);
@@ -134,43 +136,44 @@ static struct glint_flare_stats plan_lights(struct fixture *f, int n_lights)
     return s;
 }
 
-TEST(what_is_seen)
+TEST(visible_lights_are_planned)
 {
     int all;
 
-    all = plan_lights(&fx, 1).bundles;
+    all = plan_and_bin_lights(&fx, 1).bundles;
     assert_true(all >= 1);
-    assert_int_equal(plan_lights(&fx, 0).bundles, 0);
+    assert_int_equal(plan_and_bin_lights(&fx, 0).bundles, 0);
     fx.light.power = real_of(0, 0);
-    assert_int_equal(plan_lights(&fx, 1).bundles, 0);
+    assert_int_equal(plan_and_bin_lights(&fx, 1).bundles, 0);
     fx.light.power = real_of(1000, 0);
-    fx.rays.faintest = real_of(1, 60); /* No ghost is this bright. */
-    assert_int_equal(plan_lights(&fx, 1).bundles, 0);
+    /* brighter than any ghost, so all ghosts are dropped */
+    fx.rays.faintest = real_of(1, 60);
+    assert_int_equal(plan_and_bin_lights(&fx, 1).bundles, 0);
     fx.rays.faintest = real_of(1, -60);
-    assert_int_equal(plan_lights(&fx, 1).bundles, all);
+    assert_int_equal(plan_and_bin_lights(&fx, 1).bundles, all);
     fx.light.rgb_q14[0] = 0; /* no red light */
-    assert_true(plan_lights(&fx, 1).bundles < all);
+    assert_true(plan_and_bin_lights(&fx, 1).bundles < all);
 }
 
 /* Checks that an annular pupil, which has no rays in its middle, has no
  * invalid rays there. */
-TEST(a_hole_loses_no_cells)
+TEST(annular_pupil_has_no_invalid_rays)
 {
     struct glint_model_system *system;
     struct glint_flare_stats s;
 
     system =
-        (struct glint_model_system *)(void *)(fx.m.data +
-                                              model_header(&fx.m)->system_at);
-    for (uint32_t i = 0; i < model_header(&fx.m)->n_systems; i++)
+        (struct glint_model_system *)(void *)(fx.m.data + model_header_of(&fx.m)
+                                                              ->system_at);
+    for (uint32_t i = 0; i < model_header_of(&fx.m)->n_systems; i++)
         system[i].annulus = 1;
-    s = plan_lights(&fx, 1);
+    s = plan_and_bin_lights(&fx, 1);
     assert_true(s.bundles >= 1 && s.primitives > 0);
     assert_int_equal(s.dropped_cells, 0);
 }
 
 /* Returns the max light that the flare adds to a pixel, 1 = display white. */
-static double find_peak(struct fixture *f)
+static double find_peak_light(struct fixture *f)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
     struct glint_image image =
@@ -179,7 +182,7 @@ static double find_peak(struct fixture *f)
     int32_t most = 0;
 
     memset(px_q20, 0, sizeof px_q20);
-    init_flare(f);
+    allocate_and_init_flare(f);
     glint_flare_plan(f->flare, &f->rays, &f->light, 1);
     glint_flare_bin(f->flare, &s);
     glint_flare_draw(f->flare, &image);
@@ -192,7 +195,7 @@ static double find_peak(struct fixture *f)
 
 /* Checks that a dropped ghost is fainter than FAINTEST in every pixel, and
  * that a drawn ghost reaches at least an eighth of FAINTEST in some pixel. */
-TEST(faint)
+TEST(dropped_ghosts_are_invisible)
 {
     int n_left_out = 0, n_kept = 0;
 
@@ -203,9 +206,9 @@ TEST(faint)
 
         fx.light.power = real_of(1, e);
         fx.rays.faintest = real_of(0, 0);
-        light = find_peak(&fx);
+        light = find_peak_light(&fx);
         fx.rays.faintest = real_of(1, -10);
-        bundles = plan_lights(&fx, 1).bundles;
+        bundles = plan_and_bin_lights(&fx, 1).bundles;
         n_left_out += bundles == 0 && light > 0x1p-18;
         n_kept += bundles > 0;
         assert_true(bundles > 0 || light <= 0x1p-10);
@@ -214,21 +217,21 @@ TEST(faint)
     assert_true(n_left_out > 3 && n_kept > 3);
 }
 
-static double to_code(int32_t light_q20)
+static double encode_srgb(int32_t light_q20)
 {
     const double x = fmin(1, fmax(0, light_q20 * 0x1p-20));
 
     return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
 }
 
-static void draw_image(struct fixture *f, int32_t *px_q20,
-                       struct glint_flare_stats *s)
+static void draw_flare_image(struct fixture *f, int32_t *px_q20,
+                             struct glint_flare_stats *s)
 {
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
 
     memset(px_q20, 0, sizeof(int32_t) * 3 * WIDTH * HEIGHT);
-    init_flare(f);
+    allocate_and_init_flare(f);
     glint_flare_plan(f->flare, &f->rays, &f->light, 1);
     glint_flare_bin(f->flare, s);
     glint_flare_draw(f->flare, &image);
@@ -239,7 +242,7 @@ static void draw_image(struct fixture *f, int32_t *px_q20,
 /* Checks that the plan for codes draws faint light with fewer edges and
  * nearly the same codes (50 dB), and that the plan for linear light uses as
  * many edges as for bright light. */
-TEST(steps_follow_codes)
+TEST(faint_light_gets_fewer_edges)
 {
     static int32_t linear[3 * WIDTH * HEIGHT], coded[3 * WIDTH * HEIGHT];
     int n_fewer = 0;
@@ -251,15 +254,15 @@ TEST(steps_follow_codes)
 
         fx.light.power = real_of(1, e);
         fx.rays.faintest = real_of(0, 0);
-        draw_image(&fx, linear, &all);
+        draw_flare_image(&fx, linear, &all);
         fx.rays.faintest = real_of(1, -20);
-        draw_image(&fx, coded, &fewer);
+        draw_flare_image(&fx, coded, &fewer);
         assert_true(fewer.primitives <= all.primitives);
         assert_true(e < 0 || all.primitives > 2100);
 
         n_fewer += 2 * fewer.primitives < all.primitives;
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
-            const double off = to_code(coded[i]) - to_code(linear[i]);
+            const double off = encode_srgb(coded[i]) - encode_srgb(linear[i]);
 
             sum += off * off;
         }
@@ -274,7 +277,7 @@ struct extent {
     double light, x, y, square;
 };
 
-static struct extent compute_extent(const int32_t *px_q20)
+static struct extent compute_image_extent(const int32_t *px_q20)
 {
     struct extent e = {0, 0, 0, 0};
 
@@ -296,7 +299,7 @@ static struct extent compute_extent(const int32_t *px_q20)
 /* Checks that distant points of a lamp give wider ghosts at the same
  * position with the same light, and that close points give the ghost of a
  * single light. */
-TEST(points_of_a_lamp)
+TEST(distant_lamp_points_widen_ghosts)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
     struct glint_flare_stats s;
@@ -307,14 +310,14 @@ TEST(points_of_a_lamp)
     fx.light.cosine_q30 = (int32_t)(sqrt(63 / 64.0) * (1 << 30));
     fx.light.cos_q30 = (int32_t)(0.6 * (1 << 30));
     fx.light.sin_q30 = (int32_t)(0.8 * (1 << 30));
-    draw_image(&fx, px_q20, &s);
-    alone = compute_extent(px_q20);
+    draw_flare_image(&fx, px_q20, &s);
+    alone = compute_image_extent(px_q20);
     fx.light.apart_q30 = 1 << 10;
-    draw_image(&fx, px_q20, &s);
-    near = compute_extent(px_q20);
+    draw_flare_image(&fx, px_q20, &s);
+    near = compute_image_extent(px_q20);
     fx.light.apart_q30 = 1 << 28;
-    draw_image(&fx, px_q20, &s);
-    far = compute_extent(px_q20);
+    draw_flare_image(&fx, px_q20, &s);
+    far = compute_image_extent(px_q20);
     assert_true(near.square == alone.square);
     assert_true(far.square > 1.15 * alone.square);
     assert_true(fabs(far.light / alone.light - 1) < 1e-3);
@@ -323,7 +326,7 @@ TEST(points_of_a_lamp)
 
 /* Checks that pixel-snapped edges preserve the total light and nearly all
  * codes. */
-TEST(whole_edges)
+TEST(pixel_snapped_edges_keep_the_light)
 {
     static int32_t smooth[3 * WIDTH * HEIGHT], whole[3 * WIDTH * HEIGHT];
     struct glint_flare_stats s;
@@ -336,11 +339,11 @@ TEST(whole_edges)
 
         fx.light.power = real_of(1, e);
         fx.rays.snap_codes_q8 = 0;
-        draw_image(&fx, smooth, &s);
+        draw_flare_image(&fx, smooth, &s);
         fx.rays.snap_codes_q8 = 4 << 8;
-        draw_image(&fx, whole, &s);
+        draw_flare_image(&fx, whole, &s);
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
-            const double off = to_code(whole[i]) - to_code(smooth[i]);
+            const double off = encode_srgb(whole[i]) - encode_srgb(smooth[i]);
 
             n_changed += whole[i] != smooth[i];
             flux[0] += smooth[i];
@@ -348,16 +351,18 @@ TEST(whole_edges)
             sum += off * off;
             assert_true(fabs(off) < 5);
         }
-        assert_true(sum / (3 * WIDTH * HEIGHT) < 0.05); /* at least 61 dB */
+        /* a PSNR of at least 61 dB */
+        assert_true(sum / (3 * WIDTH * HEIGHT) < 0.05);
         /* Sides of an upright outline may move by half a pixel. */
         assert_true(fabs(flux[1] - flux[0]) < (e > 2 ? 1e-3 : 1e-2) * flux[0]);
     }
     assert_true(n_changed > 10000);
 }
 
-/* Draws a frame of F into IMAGE, at half resolution if HALF. */
-static void draw_half(struct fixture *f, int half, struct glint_image *image,
-                      void *mem)
+/* Draws a frame of F into IMAGE, at full resolution or, if HALF is set, at half
+ * resolution. */
+static void draw_at_half_resolution(struct fixture *f, int half,
+                                    struct glint_image *image, void *mem)
 {
     struct glint_flare_stats s;
 
@@ -368,7 +373,7 @@ static void draw_half(struct fixture *f, int half, struct glint_image *image,
     f->rays.faintest = real_of(163, -22);
     f->rays.half = half ? &glint_half : NULL;
     glint_image_place(image, mem);
-    init_flare(f);
+    allocate_and_init_flare(f);
     glint_flare_plan(f->flare, &f->rays, &f->light, 1);
     glint_flare_bin(f->flare, &s);
     glint_flare_draw(f->flare, image);
@@ -377,7 +382,7 @@ static void draw_half(struct fixture *f, int half, struct glint_image *image,
 }
 
 /* Checks that at half resolution nearly all light stays in its place. */
-TEST(half)
+TEST(half_resolution_keeps_light_in_place)
 {
     static uint8_t codes[2][3 * WIDTH * HEIGHT];
     const int width = WIDTH - 7, height = HEIGHT - 3, n = 3 * width * height;
@@ -387,7 +392,7 @@ TEST(half)
         struct glint_image image = {
             .format = GLINT_RGB24, .width = width, .height = height};
 
-        draw_half(&fx, half, &image, codes[half]);
+        draw_at_half_resolution(&fx, half, &image, codes[half]);
     }
     for (int i = 0; i < n; i++) {
         const double off = codes[1][i] - codes[0][i];
@@ -397,13 +402,13 @@ TEST(half)
         flux[1] += pow(codes[1][i], 2.2);
     }
     assert_true(fabs(flux[1] - flux[0]) < 0.02 * flux[0]);
-    /* The images differ, but by less than 32 dB of noise. */
+    /* The images differ, but have a PSNR of more than 32 dB. */
     assert_true(sum > 0.01 * n && sum < 40 * n);
 }
 
 /* Checks that at half resolution each 2 x 2 pixels have the same light,
  * including the last row and column. */
-TEST(half_of_linear)
+TEST(half_resolution_shares_linear_light)
 {
     static int32_t light_q20[2][3 * WIDTH * HEIGHT];
     const int width = WIDTH - 7, height = HEIGHT - 3;
@@ -413,7 +418,7 @@ TEST(half_of_linear)
         struct glint_image image = {
             .format = GLINT_LINEAR_Q20, .width = width, .height = height};
 
-        draw_half(&fx, half, &image, light_q20[half]);
+        draw_at_half_resolution(&fx, half, &image, light_q20[half]);
     }
     for (int i = 0; i < 3 * width * height; i++) {
         const int x = i / 3 % width, y = i / 3 / width;
@@ -429,7 +434,7 @@ TEST(half_of_linear)
 
 /* Checks, on a textured image, that the light shared by four pixels is close
  * to the light of each. */
-TEST(half_of_yuyv)
+TEST(half_resolution_of_yuyv_is_close)
 {
     static uint8_t px[2][2 * WIDTH * HEIGHT];
     double sum = 0, changed = 0;
@@ -440,7 +445,7 @@ TEST(half_of_yuyv)
 
         for (int i = 0; i < 2 * WIDTH * HEIGHT; i++)
             px[half][i] = (uint8_t)(i % 2 ? 128 : 40 + i * 7 / 2 % 13);
-        draw_half(&fx, half, &image, px[half]);
+        draw_at_half_resolution(&fx, half, &image, px[half]);
     }
     for (int i = 0; i < 2 * WIDTH * HEIGHT; i += 2) {
         const double off = px[1][i] - px[0][i];
@@ -454,7 +459,7 @@ TEST(half_of_yuyv)
 
 /* Checks, for every setting of the plan, that an image is the same bit by
  * bit for all tile sizes, workers, job orders and kernels. */
-TEST(same_bits)
+TEST(image_is_bit_identical_for_all_settings)
 {
     static const int whole_q8[] = {0, 64, 1024, 1 << 15};
     static const enum glint_pixel_format formats[] = {GLINT_RGB24, GLINT_YUYV,
@@ -473,7 +478,8 @@ TEST(same_bits)
         struct glint_flare_stats s;
         struct shuffle shuffle;
 
-        shuffle_init(&shuffle, first ? 1 : 1 + i % 3, rng_xorshift(&seed));
+        init_shuffled_workers(&shuffle, first ? 1 : 1 + i % 3,
+                              rng_xorshift(&seed));
         fx.rays.snap_codes_q8 = whole_q8[i / 36 % 4];
         fx.rays.half = i / 144 ? &glint_half : NULL;
         fx.cfg.width = image.width;
@@ -483,7 +489,7 @@ TEST(same_bits)
         fx.cfg.sets = first ? 0 : rng_xorshift(&seed) & glint_sets_here();
         memset(px[!first], 0, sizeof px[0]);
         glint_image_place(&image, px[!first]);
-        init_flare(&fx);
+        allocate_and_init_flare(&fx);
         glint_flare_plan(fx.flare, &fx.rays, &fx.light, 1);
         glint_flare_bin(fx.flare, &s);
         assert_true(s.bundles > 0 && s.dropped_bundles == 0);
@@ -523,9 +529,10 @@ static double compare_faint_lights(struct fixture *f, int n)
     glint_image_place(&layer, linear);
     memset(linear, 0, sizeof linear);
     memset(codes, 0, sizeof codes);
-    init_flare(f);
+    allocate_and_init_flare(f);
     for (int turn = 0; turn < 2; turn++) {
-        f->rays.faintest = real_of(turn ? 163 : 0, -22); /* light of 1/8 code */
+        /* light that changes a code by 1/8 */
+        f->rays.faintest = real_of(turn ? 163 : 0, -22);
         glint_flare_plan(f->flare, &f->rays, light, n);
         glint_flare_bin(f->flare, &s);
         assert_int_equal(s.dropped_bundles, 0);
@@ -533,7 +540,7 @@ static double compare_faint_lights(struct fixture *f, int n)
         glint_flare_draw(f->flare, turn ? &image : &layer);
     }
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
-        const double want = to_code(linear[i]);
+        const double want = encode_srgb(linear[i]);
 
         most = fmax(most, want);
         sum += (codes[i] - want) * (codes[i] - want);
@@ -545,7 +552,7 @@ static double compare_faint_lights(struct fixture *f, int n)
 /* Checks that lights too faint to be visible singly are visible together,
  * also in codes, and that the same holds for fewer lights whose soft edges
  * draw each as several outlines. */
-TEST(many_faint_lights)
+TEST(many_faint_lights_are_visible_together)
 {
     const struct glint_shade soft = {.method = &glint_shade_method,
                                      .soft_q16 = 6554};
@@ -556,19 +563,19 @@ TEST(many_faint_lights)
     assert_true(compare_faint_lights(&fx, 128) < 0.2);
 }
 
-TEST(room)
+TEST(too_little_capacity_drops_bundles)
 {
     struct glint_flare_stats all, less;
 
-    all = plan_lights(&fx, 1);
+    all = plan_and_bin_lights(&fx, 1);
     fx.cfg.max_bundles = 1;
-    less = plan_lights(&fx, 1);
+    less = plan_and_bin_lights(&fx, 1);
     assert_int_equal(less.need_bundles, all.need_bundles);
     assert_true(less.bundles <= 1);
     assert_true(less.dropped_bundles > 0);
 }
 
-static void draw_bright(struct fixture *f, int32_t *px_q20)
+static void draw_planned_flare(struct fixture *f, int32_t *px_q20)
 {
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
@@ -590,11 +597,11 @@ static void check_rows_and_grids(int32_t opening_q30)
     struct glint_plan plan;
     int64_t light = 0;
 
-    open_fixture(&f);
+    open_model_and_light(&f);
     f.cfg.stop.opening_q30 = opening_q30;
-    init_flare(&f);
+    allocate_and_init_flare(&f);
     glint_flare_plan(f.flare, &f.rays, &f.light, 1);
-    draw_bright(&f, rows);
+    draw_planned_flare(&f, rows);
     plan = (struct glint_plan){.frame = &f.rays,
                                .light = &f.light,
                                .n_lights = 1,
@@ -619,15 +626,15 @@ static void check_rows_and_grids(int32_t opening_q30)
             glint_plan_transfer(&plan, &planned, &scratch.transfer);
             glint_transfer_grid(&scratch.transfer, &place, bundle.n_cells, v);
         }
-    draw_bright(&f, grid);
+    draw_planned_flare(&f, grid);
     assert_memory_equal(rows, grid, sizeof rows);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
         light += rows[i];
     assert_true(light > 0);
-    close_fixture(&f);
+    free_model_and_images(&f);
 }
 
-TEST(rows_and_grids)
+TEST(rows_and_grids_give_the_same_edges)
 {
     check_rows_and_grids(1 << 30);
     check_rows_and_grids(1 << 28);
@@ -636,20 +643,21 @@ TEST(rows_and_grids)
 /* Checks that a hole of radius 0.4 in the model's stop gives the same light
  * as a hole of 0.8 in a stop half as wide, except for the corners of cells,
  * and that closing the stop further reduces the light. */
-TEST(opening)
+TEST(stop_radius_scales_the_opening)
 {
     static int32_t whole[3 * WIDTH * HEIGHT], half[3 * WIDTH * HEIGHT];
     static int32_t less[3 * WIDTH * HEIGHT];
     int64_t light = 0, off = 0, left = 0;
     struct glint_flare_stats s;
 
-    fx.light.power = real_of(1000, 4); /* many steps of 2^-20 */
-    draw_image(&fx, whole, &s);
+    /* a light of many steps of 2^-20, so that rounding is small */
+    fx.light.power = real_of(1000, 4);
+    draw_flare_image(&fx, whole, &s);
     fx.cfg.stop.apothem_q16 *= 2;
     fx.cfg.stop.opening_q30 = 1 << 29;
-    draw_image(&fx, half, &s);
+    draw_flare_image(&fx, half, &s);
     fx.cfg.stop.opening_q30 = 1 << 28;
-    draw_image(&fx, less, &s);
+    draw_flare_image(&fx, less, &s);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
         light += whole[i];
         off += llabs((int64_t)whole[i] - half[i]);
@@ -667,14 +675,14 @@ TEST(opening)
 
 /* Checks that a stop changed between frames gives the image of a flare
  * created with it, and that openings out of range are rejected. */
-TEST(set_stop)
+TEST(changed_stop_equals_a_new_flare)
 {
     static const int32_t bad[] = {-1, 1, (1 << 20) - 1, (1 << 30) + 1};
     static int32_t set[3 * WIDTH * HEIGHT], first[3 * WIDTH * HEIGHT];
     struct glint_flare_stats s;
     struct glint_stop stop;
 
-    init_flare(&fx);
+    allocate_and_init_flare(&fx);
     stop = fx.cfg.stop;
     for (int k = 0; k < 4; k++) {
         stop.opening_q30 = bad[k];
@@ -684,10 +692,10 @@ TEST(set_stop)
     stop.opening_q30 = 1 << 28;
     assert_ok(glint_flare_set_stop(fx.flare, &stop));
     glint_flare_plan(fx.flare, &fx.rays, &fx.light, 1);
-    draw_bright(&fx, set);
+    draw_planned_flare(&fx, set);
     free(fx.mem);
     fx.cfg.stop.opening_q30 = 1 << 28;
-    draw_image(&fx, first, &s);
+    draw_flare_image(&fx, first, &s);
     assert_memory_equal(set, first, sizeof set);
     fx.cfg.stop.opening_q30 = 1;
     assert_int_equal(glint_flare_bytes(&fx.cfg), 0);
@@ -695,7 +703,7 @@ TEST(set_stop)
 
 /* Checks that the finest grid has exactly the max number of cells per row,
  * however strongly a ghost is bent. */
-TEST(finest_grid)
+TEST(finest_grid_has_the_max_cells)
 {
     static struct glint_plan_scratch scratch;
     struct glint_plan plan;
@@ -722,7 +730,7 @@ TEST(finest_grid)
 /* Checks the deviation of rays from linear interpolation: the barrel's 0.5 +
  * u^2 / 2 has second derivative 4 over the box, in u only, so straight lines
  * between rays lie 4 / 12 / n^2 above it in the mean. */
-TEST(sag)
+TEST(sag_matches_the_second_derivative)
 {
     static struct glint_plan_scratch scratch;
     struct glint_bundle_plan planned = {.ghost = 0};
@@ -745,23 +753,23 @@ TEST(sag)
 
 /* Checks that lights beyond the model's angles are not drawn, whatever the
  * polynomials give there, and need no memory unless another light follows. */
-TEST(beyond)
+TEST(lights_outside_the_model_are_not_drawn)
 {
     const int32_t inside_q30 = 1 << 28, outside_q30 = 3 << 27;
     int alone;
 
     fx.light.sine_q30 = inside_q30;
-    alone = plan_lights(&fx, 1).bundles;
+    alone = plan_and_bin_lights(&fx, 1).bundles;
     fx.light.sine_q30 = outside_q30;
-    assert_true(plan_lights(&fx, 1).bundles > 0);
+    assert_true(plan_and_bin_lights(&fx, 1).bundles > 0);
     ((struct glint_model_header *)fx.m.data)->sine_hi_q30 = inside_q30;
-    assert_int_equal(plan_lights(&fx, 1).need_bundles, 0);
+    assert_int_equal(plan_and_bin_lights(&fx, 1).need_bundles, 0);
     for (int last = 0; last < 2; last++) {
         struct glint_light light[2] = {fx.light, fx.light};
         struct glint_flare_stats s;
 
         light[last].sine_q30 = inside_q30;
-        init_flare(&fx);
+        allocate_and_init_flare(&fx);
         glint_flare_plan(fx.flare, &fx.rays, light, 2);
         glint_flare_bin(fx.flare, &s);
         assert_int_equal(s.need_bundles, last ? 12 : 6);
@@ -773,16 +781,16 @@ TEST(beyond)
 
 /* Checks that a frame without light does not change the image, also after a
  * frame with light. */
-TEST(dark_frame)
+TEST(frame_without_light_changes_nothing)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
     struct glint_flare_stats s;
 
-    init_flare(&fx);
+    allocate_and_init_flare(&fx);
     glint_flare_plan(fx.flare, &fx.rays, &fx.light, 1);
-    draw_bright(&fx, px_q20);
+    draw_planned_flare(&fx, px_q20);
     assert_true(glint_flare_tiles(fx.flare) > 0);
     memset(px_q20, 0, sizeof px_q20);
     glint_flare_plan(fx.flare, &fx.rays, &fx.light, 0);

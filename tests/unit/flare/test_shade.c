@@ -16,8 +16,9 @@
 static const struct ghost plain = {16, 100, 75, 60, 0, 1, 0, 0, {16384, 0, 0}};
 
 /* Sets up SETUP with IRIS; returns the dirt in its stop. */
-static struct glint_dirt *make_dirt(struct glint_setup *setup, int n_blades,
-                                    const struct glint_iris *iris)
+static struct glint_dirt *make_dirt_in_stop(struct glint_setup *setup,
+                                            int n_blades,
+                                            const struct glint_iris *iris)
 {
     struct glint_dirt *dirt;
     struct glint_error error;
@@ -33,22 +34,22 @@ static struct glint_dirt *make_dirt(struct glint_setup *setup, int n_blades,
 
 /* Draws G into OUT through an octagonal stop with IRIS, and into CLEAR
  * without it. */
-static struct glint_flare_stats draw_ghost(const struct ghost *g,
-                                           const struct glint_iris *iris,
-                                           int n_blades, int tile_log2,
-                                           int32_t *out)
+static struct glint_flare_stats
+draw_ghost_with_and_without_dirt(const struct ghost *g,
+                                 const struct glint_iris *iris, int n_blades,
+                                 int tile_log2, int32_t *out)
 {
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
     struct glint_flare_stats stats;
     struct glint_setup setup;
-    struct glint_dirt *const dirt = make_dirt(&setup, n_blades, iris);
+    struct glint_dirt *const dirt = make_dirt_in_stop(&setup, n_blades, iris);
 
     glint_setup_stop(&setup, &c.stop);
     c.stop.opening_q30 = 0;
     c.tile_log2 = tile_log2;
     c.max_primitives *= 64;
     c.max_refs *= 64;
-    stats = draw_list(c, g, 1, out);
+    stats = draw_ghost_list(c, g, 1, out);
     glint_dirt_free(dirt);
     return stats;
 }
@@ -56,21 +57,21 @@ static struct glint_flare_stats draw_ghost(const struct ghost *g,
 /* Compares each pixel inside the stop with the clear ghost times the
  * transmission of IRIS. Returns the root mean square difference, divided by
  * the clear ghost's light. */
-static double compare_with_clear(const struct ghost *g,
-                                 const struct glint_iris *iris)
+static double compare_with_clear_ghost(const struct ghost *g,
+                                       const struct glint_iris *iris)
 {
     const struct glint_iris clear = {0};
     struct glint_setup setup;
-    struct glint_dirt *const dirt = make_dirt(&setup, 8, iris);
+    struct glint_dirt *const dirt = make_dirt_in_stop(&setup, 8, iris);
     double sum = 0, all = 0;
     int n = 0;
 
-    draw_ghost(g, &clear, 8, 5, want);
-    draw_ghost(g, iris, 8, 5, pixels);
+    draw_ghost_with_and_without_dirt(g, &clear, 8, 5, want);
+    draw_ghost_with_and_without_dirt(g, iris, 8, 5, pixels);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             const double u = (x + 0.5 - g->cx) / g->size;
-            /* the ghost is sheared */
+            /* undoes the shear of the ghost */
             const double v = (g->cy - y - 0.5) / g->size - u / 5;
             const int at = 3 * (y * WIDTH + x);
             double light = 0, off;
@@ -91,7 +92,7 @@ static double compare_with_clear(const struct ghost *g,
 }
 
 /* Checks position and darkness of dust, on every grid. */
-TEST(dust)
+TEST(dust_has_its_position_and_darkness)
 {
     for (int seed = 1; seed < 5; seed++)
         for (int n = 8; n <= 64; n *= 2) {
@@ -100,14 +101,14 @@ TEST(dust)
 
             g.n = n;
             /* The smallest specks are smaller than a pixel. */
-            assert_true(compare_with_clear(&g, &iris) <
+            assert_true(compare_with_clear_ghost(&g, &iris) <
                         (n == 8 ? 0.085 : 0.045));
         }
 }
 
 /* Checks that a mask is upright: the top row of its image is at the highest
  * y of the stop. */
-TEST(mask)
+TEST(mask_is_upright)
 {
     uint8_t mask[32 * 32];
     const struct glint_iris iris = {
@@ -115,11 +116,11 @@ TEST(mask)
 
     for (int i = 0; i < 32 * 32; i++)
         mask[i] = (uint8_t)(64 + 5 * (i / 32) + (i % 32 > 20 ? 20 : 0));
-    assert_true(compare_with_clear(&plain, &iris) < 0.005);
+    assert_true(compare_with_clear_ghost(&plain, &iris) < 0.005);
 }
 
 /* Checks that the dirt rotates with the blades, from x towards y. */
-TEST(turn)
+TEST(dirt_rotates_with_the_blades)
 {
     const uint8_t mask[4] = {0, 255, 0, 255};
     const struct glint_iris iris = {
@@ -147,37 +148,42 @@ TEST(turn)
 
 /* Checks that a white mask changes almost nothing and that a black one
  * leaves no light. */
-TEST(white_and_black)
+TEST(white_and_black_masks_pass_all_or_nothing)
 {
     uint8_t mask[4] = {255, 255, 255, 255};
     struct glint_iris iris = {.mask = mask, .mask_width = 2, .mask_height = 2};
     const struct glint_iris clear = {0};
 
-    draw_ghost(&plain, &clear, 8, 5, want);
-    draw_ghost(&plain, &iris, 8, 5, pixels);
+    draw_ghost_with_and_without_dirt(&plain, &clear, 8, 5, want);
+    draw_ghost_with_and_without_dirt(&plain, &iris, 8, 5, pixels);
     assert_memory_equal(pixels, want, sizeof pixels);
     memset(mask, 0, sizeof mask);
-    assert_int_equal(draw_ghost(&plain, &iris, 8, 5, pixels).primitives, 0);
-    assert_true(total(pixels, 0) == 0);
+    assert_int_equal(
+        draw_ghost_with_and_without_dirt(&plain, &iris, 8, 5, pixels)
+            .primitives,
+        0);
+    assert_true(sum_channel_light(pixels, 0) == 0);
 }
 
 /* Checks that dust adds few edges: at most one patch per cell. */
-TEST(few)
+TEST(dust_adds_few_edges)
 {
     const struct glint_iris iris = {.dust = 0.3, .dust_seed = 5};
     const struct glint_iris clear = {0};
     int plain_edges, dusty;
 
-    plain_edges = draw_ghost(&plain, &clear, 8, 5, want).primitives;
-    dusty = draw_ghost(&plain, &iris, 8, 5, pixels).primitives;
-    /* cells that are cut are two triangles, of up to five corners */
+    plain_edges =
+        draw_ghost_with_and_without_dirt(&plain, &clear, 8, 5, want).primitives;
+    dusty = draw_ghost_with_and_without_dirt(&plain, &iris, 8, 5, pixels)
+                .primitives;
+    /* clipped cells consist of two polygons of up to five corners */
     assert_true(dusty > plain_edges);
     assert_true(dusty < plain_edges + 16 * 16 * 10);
 }
 
 /* Checks a mask whose one half is white: all light of that half remains,
  * none of the other half, with a sharp boundary. */
-TEST(half)
+TEST(half_mask_passes_half_of_the_light)
 {
     uint8_t mask[64 * 64];
     const struct glint_iris iris = {
@@ -187,10 +193,10 @@ TEST(half)
 
     for (int i = 0; i < 64 * 64; i++)
         mask[i] = i / 64 < 32 ? 255 : 0;
-    draw_ghost(&plain, &clear, 8, 5, want);
-    draw_ghost(&plain, &iris, 8, 5, pixels);
-    kept = total(pixels, 0);
-    all = total(want, 0);
+    draw_ghost_with_and_without_dirt(&plain, &clear, 8, 5, want);
+    draw_ghost_with_and_without_dirt(&plain, &iris, 8, 5, pixels);
+    kept = sum_channel_light(pixels, 0);
+    all = sum_channel_light(want, 0);
     assert_true(fabs(kept / all - 0.5) < 0.005);
     for (int k = 0; k < 3 * WIDTH * HEIGHT; k++)
         assert_true(pixels[k] > -want[3 * (75 * WIDTH + 100)] / 100);
@@ -198,7 +204,7 @@ TEST(half)
 
 /* Checks that a soft edge has the light of its profile, for straight sides,
  * arcs and circles. */
-TEST(soft_edge)
+TEST(soft_edge_has_the_light_of_its_profile)
 {
     for (int k = 0; k < 12; k++) {
         const struct glint_iris clear = {.roundness = k % 3 == 2 ? 0.6 : 0};
@@ -209,34 +215,36 @@ TEST(soft_edge)
         double mean, share;
 
         iris.softness = 0.03 * (1 << k / 3);
-        dirt = make_dirt(&setup, n, &iris);
+        dirt = make_dirt_in_stop(&setup, n, &iris);
         mean = dirt->mean;
         glint_dirt_free(dirt);
-        draw_ghost(&plain, &clear, n, 5, want);
-        draw_ghost(&plain, &iris, n, 5, pixels);
-        share = total(pixels, 0) / total(want, 0);
+        draw_ghost_with_and_without_dirt(&plain, &clear, n, 5, want);
+        draw_ghost_with_and_without_dirt(&plain, &iris, n, 5, pixels);
+        share = sum_channel_light(pixels, 0) / sum_channel_light(want, 0);
         assert_true(fabs(share / mean - 1) < 0.01);
     }
 }
 
 /* Checks that tiles do not change the image, bit by bit. */
-TEST(same_bits)
+TEST(image_does_not_depend_on_tiles)
 {
     const struct glint_iris iris = {
         .roundness = 0.4, .softness = 0.1, .dust = 0.1, .dust_seed = 9};
 
-    draw_ghost(&ghosts[1], &iris, 7, 5, want);
-    assert_true(total(want, 0) + total(want, 1) + total(want, 2) > 0);
+    draw_ghost_with_and_without_dirt(&ghosts[1], &iris, 7, 5, want);
+    assert_true(sum_channel_light(want, 0) + sum_channel_light(want, 1) +
+                    sum_channel_light(want, 2) >
+                0);
     for (int log2 = 3; log2 <= 6; log2++) {
-        draw_ghost(&ghosts[1], &iris, 7, log2, pixels);
+        draw_ghost_with_and_without_dirt(&ghosts[1], &iris, 7, log2, pixels);
         assert_memory_equal(pixels, want, sizeof pixels);
     }
 }
 
 /* Checks that values out of range are rejected. */
-TEST(refused)
+TEST(rejects_values_out_of_range)
 {
-    struct glint_flare_config c = base_config();
+    struct glint_flare_config c = octagonal_stop_config();
     struct glint_shade shade = {.method = &glint_shade_method};
 
     c.stop.shade = &shade;

@@ -28,18 +28,18 @@ struct fixture {
     double sum[3]; /* light of the image, display white x pixels */
 };
 
-static struct fixture *open_fixture(void)
+static struct fixture *open_model_with_tints(void)
 {
     struct fixture *f = calloc(1, sizeof *f);
 
     assert_non_null(f);
-    f->m = model_auto();
-    f->lens = model_open(&f->m);
+    f->m = model_make_auto();
+    f->lens = model_open_image(&f->m);
     assert_true(f->lens.header->n_ghosts <= GHOSTS);
-    frame_waves(f->wave);
-    f->light = frame_light();
-    f->rays = frame_rays(&f->lens, f->wave, 32);
-    f->cfg = frame_config(WIDTH, HEIGHT, 5);
+    set_frame_wavelengths(f->wave);
+    f->light = make_axial_light();
+    f->rays = make_frame_rays(&f->lens, f->wave, 32);
+    f->cfg = make_frame_config(WIDTH, HEIGHT, 5);
     f->cfg.max_bundles = 16;
     f->cfg.max_vertices = 40000;
     f->cfg.max_primitives = 20000;
@@ -49,13 +49,13 @@ static struct fixture *open_fixture(void)
     return f;
 }
 
-static void close_fixture(struct fixture *f)
+static void free_model_with_tints(struct fixture *f)
 {
     free(f->m.data);
     free(f);
 }
 
-static void draw_fixture(struct fixture *f)
+static void draw_tinted_ghosts(struct fixture *f)
 {
     struct glint_image image = {
         .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
@@ -76,84 +76,84 @@ static void draw_fixture(struct fixture *f)
         f->sum[i % 3] += f->px_q20[i] * 0x1p-20;
 }
 
-static void assert_ratio(double got, double want)
+static void assert_relatively_near(double got, double want)
 {
     assert_true(fabs(got - want) <= 1e-3 * fabs(want));
 }
 
-TEST(ones_change_no_bit)
+TEST(gains_of_1_change_no_bit)
 {
     static int32_t plain[SAMPLES];
-    struct fixture *f = open_fixture();
+    struct fixture *f = open_model_with_tints();
 
-    draw_fixture(f);
+    draw_tinted_ghosts(f);
     assert_true(f->sum[0] > 1);
     memcpy(plain, f->px_q20, sizeof plain);
     f->rays.tints = f->tint;
-    draw_fixture(f);
+    draw_tinted_ghosts(f);
     assert_memory_equal(plain, f->px_q20, sizeof plain);
-    close_fixture(f);
+    free_model_with_tints(f);
 }
 
-TEST(gain_and_tint)
+TEST(gain_and_tint_scale_the_light)
 {
-    struct fixture *f = open_fixture();
+    struct fixture *f = open_model_with_tints();
     double plain[3];
 
-    draw_fixture(f);
+    draw_tinted_ghosts(f);
     memcpy(plain, f->sum, sizeof plain);
     f->rays.tints = f->tint;
     for (int i = 0; i < GHOSTS; i++)
         f->tint[i] = (struct glint_tint){{8192, 32768, 0}, real_of(3, 0)};
-    draw_fixture(f);
-    assert_ratio(f->sum[0], 1.5 * plain[0]);
-    assert_ratio(f->sum[1], 6 * plain[1]);
+    draw_tinted_ghosts(f);
+    assert_relatively_near(f->sum[0], 1.5 * plain[0]);
+    assert_relatively_near(f->sum[1], 6 * plain[1]);
     assert_true(f->sum[2] == 0);
-    close_fixture(f);
+    free_model_with_tints(f);
 }
 
 /* Checks, while ghosts are muted one after the other, that the light of the
  * others remains, and that nothing is planned when all are muted. */
-TEST(mute)
+TEST(muted_ghosts_add_no_light)
 {
-    struct fixture *f = open_fixture();
+    struct fixture *f = open_model_with_tints();
     const int n = (int)f->lens.header->n_ghosts;
     double all, left = 0;
     int bundles;
 
-    draw_fixture(f);
+    draw_tinted_ghosts(f);
     all = f->sum[0];
     bundles = f->stats.bundles;
     f->rays.tints = f->tint;
     for (int ghost = 0; ghost < n; ghost++) {
         for (int i = 0; i < n; i++)
             f->tint[i].gain = real_of(i == ghost, 0);
-        draw_fixture(f);
+        draw_tinted_ghosts(f);
         left += f->sum[0];
         assert_true(f->stats.bundles <= bundles);
     }
-    assert_ratio(left, all);
+    assert_relatively_near(left, all);
     for (int i = 0; i < n; i++)
         f->tint[i].gain = real_of(0, 0);
-    draw_fixture(f);
+    draw_tinted_ghosts(f);
     assert_int_equal(f->stats.bundles, 0);
     assert_true(f->sum[0] == 0);
-    close_fixture(f);
+    free_model_with_tints(f);
 }
 
 /* Checks that a gain makes a ghost visible that would be below one code. */
-TEST(faint)
+TEST(gain_makes_a_faint_ghost_visible)
 {
-    struct fixture *f = open_fixture();
+    struct fixture *f = open_model_with_tints();
 
     f->light.power = real_of(1, -30);
     f->rays.faintest = real_of(1, -10);
-    draw_fixture(f);
+    draw_tinted_ghosts(f);
     assert_int_equal(f->stats.bundles, 0);
     f->rays.tints = f->tint;
     for (int i = 0; i < GHOSTS; i++)
         f->tint[i].gain = real_of(1, 40);
-    draw_fixture(f);
+    draw_tinted_ghosts(f);
     assert_true(f->stats.bundles > 0);
-    close_fixture(f);
+    free_model_with_tints(f);
 }

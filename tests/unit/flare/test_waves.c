@@ -20,10 +20,10 @@ static struct opened chosen, three, all;
 static const struct glint_lamp lamp = {
     .theta_deg = 12, .phi_deg = 33, .power = 3e6, .rgb = {1, 1, 1}};
 
-static struct glint_engine_report draw_frame(struct glint_frame *frame,
-                                             const struct opened *opened,
-                                             int width, double power,
-                                             uint8_t *rgb)
+static struct glint_engine_report draw_lamp_frame(struct glint_frame *frame,
+                                                  const struct opened *opened,
+                                                  int width, double power,
+                                                  uint8_t *rgb)
 {
     struct glint_lamp light = lamp;
     struct glint_image image =
@@ -31,7 +31,8 @@ static struct glint_engine_report draw_frame(struct glint_frame *frame,
     struct glint_engine_report report;
 
     light.power *= power;
-    assert_ok(settings_frame(&tool, opened, width, width * 9 / 16, frame));
+    assert_ok(
+        make_frame_from_settings(&tool, opened, width, width * 9 / 16, frame));
     memset(rgb, 0, (size_t)width * (size_t)(width * 9 / 16) * 3);
     assert_ok(glint_frame_draw(frame, &light, 1, 1, &image, &report));
     return report;
@@ -39,7 +40,8 @@ static struct glint_engine_report draw_frame(struct glint_frame *frame,
 
 /* Returns the number of wavelengths planned for GHOST in FRAME; sets
  * *N_DRAWN to the number drawn. */
-static int count_waves(struct glint_frame *frame, int ghost, int *n_drawn)
+static int count_wavelengths_of_ghost(struct glint_frame *frame, int ghost,
+                                      int *n_drawn)
 {
     int n = 0;
 
@@ -56,14 +58,15 @@ static int count_waves(struct glint_frame *frame, int ghost, int *n_drawn)
 }
 
 /* Counts drawn ghosts by their number of wavelengths, and the bundles drawn. */
-static void count_ghosts(struct glint_frame *frame,
-                         int ghosts[GLINT_MAX_WAVELENGTHS + 1], int *bundles)
+static void count_ghosts_by_wavelengths(struct glint_frame *frame,
+                                        int ghosts[GLINT_MAX_WAVELENGTHS + 1],
+                                        int *bundles)
 {
     memset(ghosts, 0, (GLINT_MAX_WAVELENGTHS + 1) * sizeof *ghosts);
     *bundles = 0;
     for (int ghost = 0; ghost < frame->setup->n_ghosts; ghost++) {
         int n_drawn;
-        const int n = count_waves(frame, ghost, &n_drawn);
+        const int n = count_wavelengths_of_ghost(frame, ghost, &n_drawn);
 
         assert_true(n == 4 || n == 6 || n == 10 || n == 17 || n == 28);
         assert_true(n_drawn <= n);
@@ -76,29 +79,29 @@ static void count_ghosts(struct glint_frame *frame,
 
 static uint8_t picture[SAMPLES], other[SAMPLES], truth[SAMPLES];
 
-TEST(small_picture)
+TEST(small_image_needs_few_wavelengths)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles;
     struct glint_frame frame;
     struct glint_engine_report report;
 
     /* In a width of 32 pixels dispersion moves no outline by a pixel. */
-    report = draw_frame(&frame, &chosen, 32, 1, picture);
-    count_ghosts(&frame, ghosts, &bundles);
+    report = draw_lamp_frame(&frame, &chosen, 32, 1, picture);
+    count_ghosts_by_wavelengths(&frame, ghosts, &bundles);
     assert_true(ghosts[4] > 0);
     assert_int_equal(ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28], 0);
     assert_int_equal(bundles, report.stats.bundles);
     glint_frame_finish(&frame);
 }
 
-TEST(large_picture)
+TEST(large_image_needs_more_wavelengths)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, more;
     struct glint_frame frame;
     struct glint_engine_report report;
 
-    report = draw_frame(&frame, &chosen, WIDTH, 100, picture);
-    count_ghosts(&frame, ghosts, &bundles);
+    report = draw_lamp_frame(&frame, &chosen, WIDTH, 100, picture);
+    count_ghosts_by_wavelengths(&frame, ghosts, &bundles);
     more = ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28];
     /* Ghosts get different numbers of wavelengths. */
     assert_true(ghosts[4] > 0 && more > 0);
@@ -106,14 +109,14 @@ TEST(large_picture)
     assert_int_equal(report.stats.dropped_bundles, 0);
     glint_frame_finish(&frame);
     /* Faint ghosts get at most four wavelengths. */
-    draw_frame(&frame, &chosen, WIDTH, 0.01, other);
-    count_ghosts(&frame, ghosts, &bundles);
+    draw_lamp_frame(&frame, &chosen, WIDTH, 0.01, other);
+    count_ghosts_by_wavelengths(&frame, ghosts, &bundles);
     assert_true(ghosts[4] > 0);
     assert_int_equal(ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28], 0);
     glint_frame_finish(&frame);
 }
 
-TEST(dial)
+TEST(dispersion_sets_the_number_of_wavelengths)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], least, bundles, before = 0;
     struct opened set = chosen;
@@ -122,8 +125,8 @@ TEST(dial)
     set.lens.setup.lens = &chosen.lens.table;
     for (double px = 8; px > 0.1; px /= 2) {
         set.settings.dials.dispersion_q8 = (int)(px * 256);
-        draw_frame(&frame, &set, WIDTH, 100, picture);
-        count_ghosts(&frame, ghosts, &bundles);
+        draw_lamp_frame(&frame, &set, WIDTH, 100, picture);
+        count_ghosts_by_wavelengths(&frame, ghosts, &bundles);
         assert_true(bundles >= before);
         least = before ? least : bundles;
         before = bundles;
@@ -134,21 +137,21 @@ TEST(dial)
 
 /* Checks that a dispersion of 0 gives the three default wavelengths, bit by
  * bit. */
-TEST(off)
+TEST(dispersion_of_0_gives_default_wavelengths)
 {
     struct opened set = chosen;
     struct glint_frame frame;
 
     set.settings.dials.dispersion_q8 = 0;
-    draw_frame(&frame, &set, WIDTH, 1, picture);
+    draw_lamp_frame(&frame, &set, WIDTH, 1, picture);
     glint_frame_finish(&frame);
-    draw_frame(&frame, &three, WIDTH, 1, other);
+    draw_lamp_frame(&frame, &three, WIDTH, 1, other);
     glint_frame_finish(&frame);
     assert_memory_equal(picture, other, SAMPLES);
 }
 
 /* Checks that a single set of wavelengths gives the image of the same list. */
-TEST(one_set)
+TEST(single_set_equals_the_list)
 {
     struct opened set = chosen, list = three;
     struct glint_frame frame;
@@ -164,16 +167,16 @@ TEST(one_set)
                sizeof list.lens.setup.rgb[i]);
         list.lens.setup.unit_flux[i] = set.lens.setup.set_wave[i].unit_flux;
     }
-    draw_frame(&frame, &set, WIDTH, 10, picture);
+    draw_lamp_frame(&frame, &set, WIDTH, 10, picture);
     glint_frame_finish(&frame);
-    draw_frame(&frame, &list, WIDTH, 10, other);
+    draw_lamp_frame(&frame, &list, WIDTH, 10, other);
     glint_frame_finish(&frame);
     assert_memory_equal(picture, other, SAMPLES);
 }
 
 /* Checks that ghosts without memory for a larger set use the first set, and
  * that nothing is dropped. */
-TEST(little_room)
+TEST(too_little_memory_uses_the_first_set)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, most = 0;
     struct glint_flare_stats stats;
@@ -183,10 +186,10 @@ TEST(little_room)
     void *mem;
 
     set.settings.dials.dispersion_q8 = 64;
-    draw_frame(&frame, &set, WIDTH, 100, picture);
+    draw_lamp_frame(&frame, &set, WIDTH, 100, picture);
     most = frame.cfg.max_bundles;
     frame.cfg.max_bundles = 4 * frame.setup->n_ghosts;
-    /* Drawing had raised the limit above 4 bundles per ghost. */
+    /* Drawing has raised the capacity above 4 bundles per ghost. */
     assert_true(most > frame.cfg.max_bundles);
     bytes = glint_flare_bytes(&frame.cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
@@ -200,7 +203,7 @@ TEST(little_room)
     assert_int_equal(stats.need_bundles, most);
     assert_int_equal(stats.dropped_bundles, 0);
     assert_true(stats.bundles <= 4 * frame.setup->n_ghosts);
-    count_ghosts(&frame, ghosts, &bundles);
+    count_ghosts_by_wavelengths(&frame, ghosts, &bundles);
     assert_int_equal(bundles, stats.bundles);
     assert_true(ghosts[4] > 0);
     glint_frame_finish(&frame);
@@ -208,7 +211,7 @@ TEST(little_room)
 
 /* Checks that three lamps give the same image bit by bit, whether one worker
  * plans them or several. */
-TEST(same_bits)
+TEST(image_does_not_depend_on_workers)
 {
     const struct glint_lamp lamps[3] = {
         lamp,
@@ -224,7 +227,8 @@ TEST(same_bits)
         struct glint_frame frame;
 
         tool.workers = i ? NULL : pool;
-        assert_ok(settings_frame(&tool, &chosen, WIDTH, HEIGHT, &frame));
+        assert_ok(
+            make_frame_from_settings(&tool, &chosen, WIDTH, HEIGHT, &frame));
         memset(rgb[i], 0, SAMPLES);
         assert_ok(glint_frame_draw(&frame, lamps, 3, 1, &image, &report));
         glint_frame_finish(&frame);
@@ -240,9 +244,9 @@ static int compare_ints(const void *a, const void *b)
     return *(const int *)b - *(const int *)a;
 }
 
-/* Returns the hue step, codes, that is exceeded by only 0.1 % of all pairs
- * of neighbouring pixels: the error of the change of R - G or B - G from one
- * pixel to the next. */
+/* Returns the hue step, codes, that only 0.1 % of all pairs of neighbouring
+ * pixels exceed. A hue step is the error of the change of R - G or B - G from
+ * one pixel to the next. */
 static int measure_hue_step(const uint8_t *rgb)
 {
     static int step[WIDTH * HEIGHT];
@@ -279,18 +283,18 @@ static double compute_psnr(const uint8_t *rgb)
     return 10 * log10(255. * 255 * SAMPLES / squares);
 }
 
-TEST(outlines)
+TEST(more_wavelengths_smooth_the_outlines)
 {
     static uint8_t few[SAMPLES];
     struct glint_frame frame;
     double db[2];
     int step[2];
 
-    draw_frame(&frame, &all, WIDTH, 20, truth);
+    draw_lamp_frame(&frame, &all, WIDTH, 20, truth);
     glint_frame_finish(&frame);
-    draw_frame(&frame, &three, WIDTH, 20, few);
+    draw_lamp_frame(&frame, &three, WIDTH, 20, few);
     glint_frame_finish(&frame);
-    draw_frame(&frame, &chosen, WIDTH, 20, picture);
+    draw_lamp_frame(&frame, &chosen, WIDTH, 20, picture);
     glint_frame_finish(&frame);
     db[0] = compute_psnr(few), db[1] = compute_psnr(picture);
     step[0] = measure_hue_step(few), step[1] = measure_hue_step(picture);
@@ -302,7 +306,7 @@ TEST(outlines)
 
 /* ------------------------------------------------------------------- words */
 
-TEST(words)
+TEST(parses_texts_of_wavelengths)
 {
     struct settings s;
 
@@ -327,14 +331,14 @@ TEST(words)
     assert_false(settings_set(&s, "wavelengths", "650,532,1101"));
     assert_false(settings_set(&s, "wavelengths", "9,17"));
     s.camera.waves.kind = GLINT_WAVES_AUTO;
-    /* ghosts choose their wavelengths, as with a model */
+    /* exact rays choose wavelengths per ghost, as models do */
     s.options.rays = GLINT_RAYS_EXACT;
     assert_true(s.camera.waves.kind == GLINT_WAVES_AUTO);
 }
 
 /* Checks that behind an uncoated lens the sum of all ghosts of a white lamp
  * is white. */
-TEST(white)
+TEST(sum_of_ghosts_of_a_white_lamp_is_white)
 {
     static float rgb[SAMPLES];
     static struct opened bare;
@@ -348,7 +352,7 @@ TEST(white)
         coating_parse_option(&tool, &bare.settings.coating, "none"), -1);
     assert_ok(opened_lens_open(&tool, &bare.lens, &bare.settings,
                                "lenses/heliar-tronnier.lens"));
-    assert_ok(settings_frame(&tool, &bare, WIDTH, HEIGHT, &frame));
+    assert_ok(make_frame_from_settings(&tool, &bare, WIDTH, HEIGHT, &frame));
     assert_ok(glint_frame_draw_alone(&frame, &lamp, 1, 1, rgb, &report));
     for (int i = 0; i < SAMPLES; i++)
         sum[i % 3] += (double)rgb[i];
@@ -359,7 +363,7 @@ TEST(white)
     opened_lens_close(&bare.lens);
 }
 
-static void open_lens(struct opened *opened, const char *waves)
+static void open_lens_with_wavelengths(struct opened *opened, const char *waves)
 {
     settings_defaults(&opened->settings);
     assert_true(settings_set(&opened->settings, "wavelengths", waves));
@@ -370,10 +374,10 @@ static void open_lens(struct opened *opened, const char *waves)
 TEST_OPEN
 {
     assert_ok(tool_start(&tool));
-    open_lens(&chosen, "auto");
-    open_lens(&three, "650,532,450");
-    open_lens(&all,
-              "400,410,420,430,440,450,460,470,480,490,500,510,520,530,540,550,"
+    open_lens_with_wavelengths(&chosen, "auto");
+    open_lens_with_wavelengths(&three, "650,532,450");
+    open_lens_with_wavelengths(
+        &all, "400,410,420,430,440,450,460,470,480,490,500,510,520,530,540,550,"
               "560,570,580,590,600,610,620,630,640,650,660,670,680,690,700");
     all.settings.dials.cull_codes = 0;
 }

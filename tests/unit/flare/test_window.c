@@ -19,8 +19,7 @@ struct shape {
     const char *name;
     uint16_t x_power[3], y_power[3];
     double x[3], y[3];
-    /* polynomial of the barrel, (1 + r^2) / 2 = [0] + [1] u; [0] is 0: no
-     * barrel */
+    /* barrel polynomial (1 + r^2) / 2 = [0] + [1] u; [0] = 0: no barrel */
     double barrel[2];
     /* max ratio of the window's size to the extent of passing rays */
     double slack;
@@ -86,24 +85,24 @@ static const struct shape whole_shape[] = {
     {"at the top", {P(1, 0)}, {P(0, 0), P(0, 1)}, {1}, {-0.9, 1}, {0}, 1.45},
 };
 
-static struct glint_model_system begin_model(struct model_image *m,
-                                             enum glint_basis basis)
+static struct glint_model_system begin_window_model(struct model_image *m,
+                                                    enum glint_basis basis)
 {
     static const int32_t box[GLINT_LENS_SIDES] = {0, 1 << 22, 1 << 22, 0};
     static const int32_t across_q30[2] = {0, ONE / 2};
     struct glint_model_system s;
 
-    model_begin(m, basis, "shape");
+    model_begin_header(m, basis, "shape");
     if (!glint_basis_is_lens(basis))
-        return model_auto_system(m, 0, ONE / 2, MODEL_WAVE_LO_Q24,
-                                 MODEL_WAVE_HI_Q24, 0);
+        return model_make_auto_system(m, 0, ONE / 2, MODEL_WAVE_LO_Q24,
+                                      MODEL_WAVE_HI_Q24, 0);
     s = (struct glint_model_system){.sine_hi_q30 = ONE / 2,
                                     .wave_lo_q24 = MODEL_WAVE_LO_Q24,
                                     .wave_hi_q24 = MODEL_WAVE_HI_Q24,
                                     .box_exponent = -20,
                                     .box_terms = 1};
-    s.box_at = model_put(m, box, sizeof box);
-    s.across_at = model_put(m, across_q30, sizeof across_q30);
+    s.box_at = model_append_items(m, box, sizeof box);
+    s.across_at = model_append_items(m, across_q30, sizeof across_q30);
     return s;
 }
 
@@ -111,7 +110,7 @@ static struct glint_lens
 open_shape(const struct shape *s, enum glint_basis basis, struct model_image *m)
 {
     static const struct glint_model_ghost ghost = {0, 1, 0, 1};
-    const int exponent = -28; /* values up to 4 */
+    const int exponent = -28; /* unit of coefficients for values up to 4 */
     struct model_polynomial p[] = {
         {GLINT_OUT_SENSOR_X, 1, -28, {P(1, 0)}, {1 << 27}},
         {GLINT_OUT_SENSOR_Y, 1, -28, {P(0, 1)}, {1 << 27}},
@@ -119,7 +118,7 @@ open_shape(const struct shape *s, enum glint_basis basis, struct model_image *m)
         {GLINT_OUT_STOP_Y, 0, exponent, {0}, {0}},
         {GLINT_OUT_ENERGY, 1, -30, {P(0, 0)}, {1 << 28}},
         {GLINT_OUT_BARREL_0, 2, exponent, {P(0, 0), P(1, 0)}, {0}}};
-    struct glint_model_system system = begin_model(m, basis);
+    struct glint_model_system system = begin_window_model(m, basis);
     struct glint_lens lens;
     const char *reason = "";
 
@@ -133,15 +132,15 @@ open_shape(const struct shape *s, enum glint_basis basis, struct model_image *m)
     }
     for (int k = 0; k < 2; k++)
         p[5].coef[k] = (int32_t)lrint(ldexp(s->barrel[k], 28));
-    model_outputs(m, &system, p, s->barrel[0] != 0 ? 6 : 5, 0);
-    model_end(m, &ghost, 1, &system, 1);
+    model_write_outputs(m, &system, p, s->barrel[0] != 0 ? 6 : 5, 0);
+    model_append_ghosts(m, &ghost, 1, &system, 1);
     if (glint_lens_open(&lens, m->data, m->bytes, &reason) != GLINT_OK)
         fail_msg("%s: %s", s->name, reason);
     return lens;
 }
 
-static bool is_passed(const struct glint_transfer *t, double radius, int i,
-                      int j)
+static bool ray_passes_stop(const struct glint_transfer *t, double radius,
+                            int i, int j)
 {
     struct glint_outputs out;
     double x, y;
@@ -163,13 +162,14 @@ struct seen {
     int n;
 };
 
-static struct seen find_passing(const struct glint_transfer *t, double radius)
+static struct seen find_range_of_passing_rays(const struct glint_transfer *t,
+                                              double radius)
 {
     struct seen s = {1, -1, t->whole ? 1 : 0, t->whole ? -1 : 0, 0};
 
     for (int j = t->whole ? -DOWN : 0; j <= DOWN; j++)
         for (int i = 0; i <= ACROSS; i++)
-            if (is_passed(t, radius, i, j)) {
+            if (ray_passes_stop(t, radius, i, j)) {
                 s.left = fmin(s.left, 2.0 * i / ACROSS - 1);
                 s.right = fmax(s.right, 2.0 * i / ACROSS - 1);
                 s.low = fmin(s.low, (double)j / DOWN);
@@ -179,7 +179,7 @@ static struct seen find_passing(const struct glint_transfer *t, double radius)
     return s;
 }
 
-static struct seen find_window(const struct glint_transfer *t)
+static struct seen compute_pupil_window(const struct glint_transfer *t)
 {
     const struct glint_box_window *w = &t->window;
 
@@ -189,21 +189,22 @@ static struct seen find_window(const struct glint_transfer *t)
                          0};
 }
 
-static void check_window(const struct shape *s, const struct glint_lens *lens,
-                         double opening)
+static void check_window_contains_rays(const struct shape *s,
+                                       const struct glint_lens *lens,
+                                       double opening)
 {
     static struct glint_window_nodes nodes;
     static struct glint_transfer t;
     struct seen want, got;
 
     assert_int_equal(glint_transfer_init(&t, lens, 0, 0, MODEL_WAVE_LO_Q24), 1);
-    want = find_passing(&t, opening);
+    want = find_range_of_passing_rays(&t, opening);
     if (!glint_window_find(&nodes, &t, (int32_t)(opening * ONE))) {
         if (want.n)
             fail_msg("%s at %g: %d rays are invalid", s->name, opening, want.n);
         return;
     }
-    got = find_window(&t);
+    got = compute_pupil_window(&t);
     assert_true(got.left >= -1 && got.right <= 1 && got.left < got.right);
     assert_true(got.low >= -1 && got.high > got.low && got.high <= 1);
     assert_true(t.whole || t.window.v_from_q30 == 0);
@@ -214,7 +215,7 @@ static void check_window(const struct shape *s, const struct glint_lens *lens,
         fail_msg("%s at %g: %g .. %g, %g .. %g instead of %g .. %g, %g .. %g",
                  s->name, opening, got.left, got.right, got.low, got.high,
                  want.left, want.right, want.low, want.high);
-    /* The extent found is accurate to one step of the search. */
+    /* The search finds the extent to within one step. */
     if (got.right - got.left >
             s->slack * (want.right - want.left + 4.0 / ACROSS) ||
         got.high - got.low > s->slack * (want.high - want.low + 2.0 / DOWN))
@@ -223,7 +224,7 @@ static void check_window(const struct shape *s, const struct glint_lens *lens,
                  want.right, want.low, want.high);
 }
 
-TEST(contains_all_passing_rays)
+TEST(window_contains_all_passing_rays)
 {
     for (size_t k = 0; k < sizeof shape / sizeof *shape; k++) {
         struct model_image m;
@@ -231,13 +232,13 @@ TEST(contains_all_passing_rays)
             open_shape(&shape[k], GLINT_BASIS_AUTO, &m);
 
         for (double opening = 1; opening > 0.01; opening *= 0.93)
-            check_window(&shape[k], &lens, opening);
+            check_window_contains_rays(&shape[k], &lens, opening);
         free(m.data);
     }
 }
 
 /* Checks a box with both halves, whose height of 2^31 overflows 32 bits. */
-TEST(whole_box)
+TEST(box_with_both_halves_does_not_overflow)
 {
     for (size_t k = 0; k < sizeof whole_shape / sizeof *whole_shape; k++) {
         struct model_image m;
@@ -246,14 +247,14 @@ TEST(whole_box)
             GLINT_BASIS_LENS + GLINT_MIRRORS_X + GLINT_MIRRORS_Y, &m);
 
         for (double opening = 1; opening > 0.01; opening *= 0.8)
-            check_window(&whole_shape[k], &lens, opening);
+            check_window_contains_rays(&whole_shape[k], &lens, opening);
         free(m.data);
     }
 }
 
 /* Checks, while the stop closes by 0.2 %, that each side moves by less than
  * a hundredth of the window. */
-TEST(moves_smoothly)
+TEST(window_moves_smoothly_with_the_stop)
 {
     static struct glint_window_nodes nodes;
     static struct glint_transfer t;
@@ -268,7 +269,7 @@ TEST(moves_smoothly)
         glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
         assert_int_equal(
             glint_window_find(&nodes, &t, (int32_t)(opening * ONE)), 1);
-        now = find_window(&t);
+        now = compute_pupil_window(&t);
         if (opening < 0.89)
             worst = fmax(worst, fmax(fabs(now.right - last.right),
                                      fabs(now.high - last.high)) /
@@ -281,7 +282,7 @@ TEST(moves_smoothly)
 }
 
 /* Checks that there is no window if no ray passes. */
-TEST(closed)
+TEST(no_passing_ray_gives_no_window)
 {
     static const struct shape beside = {
         "beside", {P(0, 0), P(1, 0)}, {P(0, 1)}, {0.9, 0.1}, {0.5}, {0}, 1};
@@ -300,14 +301,14 @@ TEST(closed)
 }
 
 /* Checks that in an annular box the window has a lower and an upper end. */
-TEST(annulus)
+TEST(annular_box_has_two_window_ends)
 {
     static struct glint_window_nodes nodes;
     static struct glint_transfer t;
     static const struct shape aside = {
         "upwards", {P(1, 0)}, {P(0, 1), P(0, 3)}, {1}, {-0.64, 1}, {0}, 1};
     struct model_image m;
-    /* y is 0 at v = 0.8 */
+    /* the stop position y is 0 at v = 0.8 */
     const struct glint_lens lens = open_shape(&aside, GLINT_BASIS_AUTO, &m);
     double low, high;
 

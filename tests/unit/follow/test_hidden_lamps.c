@@ -15,11 +15,11 @@ enum { FPS30 = 33333 };
 
 static struct night night;
 
-static void open_night(int width, int height, double sigma)
+static void open_night_without_noise(int width, int height, double sigma)
 {
-    night_init(&night, width, height);
+    night_init_parameters(&night, width, height);
     night.sigma = sigma;
-    assert_true(night_open(&night));
+    assert_true(night_open_tracker(&night));
 }
 
 /* Last energy, largest step from frame to frame, and largest energy. */
@@ -28,7 +28,7 @@ struct steps {
     int n;
 };
 
-static void record_energy(struct steps *s, double energy)
+static void record_energy_step(struct steps *s, double energy)
 {
     if (s->n++ > 0)
         s->largest = fmax(s->largest, fabs(energy - s->last));
@@ -36,9 +36,9 @@ static void record_energy(struct steps *s, double energy)
     s->last = energy;
 }
 
-/* Returns the energy of all tracks in the lower half. Checks that their id
- * is *ID; if that is 0, sets it to theirs. */
-static double energy_below(const struct night *n, uint32_t *id)
+/* Returns the energy of all tracks in the lower half of the image. Checks that
+ * their id is *ID; if *ID is 0, sets it to their id. */
+static double sum_energy_of_lower_half(const struct night *n, uint32_t *id)
 {
     double energy = 0;
 
@@ -49,7 +49,7 @@ static double energy_below(const struct night *n, uint32_t *id)
             continue;
         *id = *id ? *id : t->id;
         assert_int_equal(t->id, *id);
-        energy += night_power(t);
+        energy += night_track_power(t);
     }
     return energy;
 }
@@ -58,7 +58,7 @@ static double energy_below(const struct night *n, uint32_t *id)
  * energy of its track changes by less than a quarter per frame, although the
  * energy of its spot drops to 0 at once, and that the track keeps its id. If
  * N_LAMPS is 2, there is a second, stationary lamp. */
-static void pass_behind_a_pole(int n_lamps)
+static void move_lamp_behind_pole(int n_lamps)
 {
     static const double speeds[] = {0.7, 1, 2, 4, 6};
 
@@ -66,7 +66,7 @@ static void pass_behind_a_pole(int n_lamps)
         struct steps raw = {0, 0, 0, 0}, tracked = {0, 0, 0, 0};
         uint32_t id = 0;
 
-        open_night(320, 200, 2);
+        open_night_without_noise(320, 200, 2);
         night.pole_x0 = 150;
         night.pole_x1 = 170;
         for (int frame = 0; frame * speeds[k] < 180; frame++) {
@@ -74,78 +74,78 @@ static void pass_behind_a_pole(int n_lamps)
                 {70.0 + speeds[k] * frame, 100, 5, 3}, {60, 30, 5, 3}};
             double seen = 0;
 
-            night_step(&night, lamps, n_lamps, FPS30);
+            night_draw_and_track(&night, lamps, n_lamps, FPS30);
             for (int i = 0; i < night.n_spots; i++)
                 if (night.spot[i].y_q8 > 70 * 256)
                     seen += night_spot_power(&night.spot[i]);
-            record_energy(&raw, seen);
-            record_energy(&tracked, energy_below(&night, &id));
+            record_energy_step(&raw, seen);
+            record_energy_step(&tracked, sum_energy_of_lower_half(&night, &id));
         }
         print_message("%.1f px a frame: steps of %.2f -> %.2f\n", speeds[k],
                       raw.largest / raw.most, tracked.largest / tracked.most);
         assert_int_equal(night.n_tracks, n_lamps);
         assert_true(tracked.largest < 0.25 * tracked.most);
-        night_close(&night);
+        night_close_tracker(&night);
     }
 }
 
 TEST(pole_causes_no_jump)
 {
-    pass_behind_a_pole(2);
+    move_lamp_behind_pole(2);
 }
 
-/* Checks that the remaining glow does not count as white, although nothing
- * in the image is brighter. */
-TEST(a_pole_hides_a_lamp_alone)
+/* Checks that the glow around a hidden lamp does not count as white, although
+ * it is the brightest part of the image. */
+TEST(glow_of_a_hidden_lamp_is_not_white)
 {
-    pass_behind_a_pole(1);
+    move_lamp_behind_pole(1);
 }
 
-/* Checks that the white level is remembered, decreasing, as long as a lamp
- * is. */
-TEST(white_level_is_remembered)
+/* Checks that the white level is remembered as long as the hidden lamp's track,
+ * and decays meanwhile. */
+TEST(white_level_is_remembered_and_decays)
 {
     const struct night_lamp lamp = {160, 100, 5, 3};
     int frame = 0;
 
-    open_night(320, 200, 1);
+    open_night_without_noise(320, 200, 1);
     assert_int_equal(glint_lamp_tracker_white_q15(night.tracks, FPS30), 0);
-    night_step(&night, &lamp, 1, FPS30);
+    night_draw_and_track(&night, &lamp, 1, FPS30);
     assert_in_range(glint_lamp_tracker_white_q15(night.tracks, 1442695), 16383,
                     16385);
     assert_in_range(glint_lamp_tracker_white_q15(night.tracks, FPS30), 32000,
                     32100);
     while (frame < 200 && glint_lamp_tracker_white_q15(night.tracks, FPS30)) {
-        night_step(&night, &lamp, 0, FPS30);
+        night_draw_and_track(&night, &lamp, 0, FPS30);
         frame++;
     }
     assert_in_range(frame, 58, 62);
-    night_close(&night);
+    night_close_tracker(&night);
 }
 
 /* Checks two lamps that meet until the finder merges them, and part again:
  * their total energy stays within limits, and neither jumps. */
-TEST(merging_and_splitting)
+TEST(merging_lamps_keep_their_energy)
 {
     struct steps energy = {0, 0, 0, 0};
     double least = HUGE_VAL, both = 0, jump = 0;
     struct glint_lamp_track last[8];
     int n_last = 0, n_merged = 0;
 
-    night_init(&night, 640, 200);
+    night_init_parameters(&night, 640, 200);
     night.sigma = 2;
     night.lights.merge_q15 = 32768 * 30 / 640;
-    assert_true(night_open(&night));
+    assert_true(night_open_tracker(&night));
     for (int frame = 0; frame < 150; frame++) {
         const double apart = frame < 75 ? 90.0 - frame : frame - 60.0;
         const struct night_lamp lamp[2] = {{320 - apart / 2, 90, 4, 3},
                                            {320 + apart / 2, 100, 5, 3}};
 
-        night_step(&night, lamp, 2, FPS30);
+        night_draw_and_track(&night, lamp, 2, FPS30);
         n_merged += night.n_spots == 1;
-        record_energy(&energy, night_energy(&night));
-        both = frame < 20 ? fmax(both, night_energy(&night)) : both;
-        least = fmin(least, night_energy(&night));
+        record_energy_step(&energy, night_sum_track_energies(&night));
+        both = frame < 20 ? fmax(both, night_sum_track_energies(&night)) : both;
+        least = fmin(least, night_sum_track_energies(&night));
         for (int i = 0; i < night.n_tracks; i++)
             for (int j = 0; j < n_last; j++)
                 if (night.track[i].id == last[j].id)
@@ -165,5 +165,5 @@ TEST(merging_and_splitting)
     assert_true(energy.largest < 0.15 * both);
     assert_true(least > 0.8 * both && energy.most < 1.2 * both);
     assert_true(jump < 5);
-    night_close(&night);
+    night_close_tracker(&night);
 }

@@ -36,28 +36,28 @@ TEST_CLOSE
     free(mem);
 }
 
-static void place_random(int n_seekers, int n_spots, int side_q8)
+static void place_seekers_and_spots(int n_seekers, int n_spots, int side_q8)
 {
     match.n_seekers = n_seekers;
     for (int i = 0; i < n_seekers; i++)
         match.seeker[i] =
             (struct glint_seeker){.id = (uint32_t)(i * 7919 % 1021) + 1,
-                                  .x_q8 = rng_below(&seed, side_q8),
-                                  .y_q8 = rng_below(&seed, side_q8),
-                                  .reach_q8 = rng_below(&seed, side_q8 / 4),
-                                  .max_faint_area = rng_below(&seed, 200),
-                                  .is_lost = rng_below(&seed, 4) == 0};
+                                  .x_q8 = rng_int_below(&seed, side_q8),
+                                  .y_q8 = rng_int_below(&seed, side_q8),
+                                  .reach_q8 = rng_int_below(&seed, side_q8 / 4),
+                                  .max_faint_area = rng_int_below(&seed, 200),
+                                  .is_lost = rng_int_below(&seed, 4) == 0};
     for (int i = 0; i < n_spots; i++)
-        spot[i] = (struct glint_spot){.x_q8 = rng_below(&seed, side_q8),
-                                      .y_q8 = rng_below(&seed, side_q8),
-                                      .area = rng_below(&seed, 200),
-                                      .faint = rng_below(&seed, 4) == 0};
+        spot[i] = (struct glint_spot){.x_q8 = rng_int_below(&seed, side_q8),
+                                      .y_q8 = rng_int_below(&seed, side_q8),
+                                      .area = rng_int_below(&seed, 200),
+                                      .faint = rng_int_below(&seed, 4) == 0};
 }
 
 /* Returns the cost of pairing S with P by the definition in the header; -1:
  * out of reach. */
-static int64_t glint_cost_of(const struct glint_seeker *s,
-                             const struct glint_spot *p)
+static int64_t compute_pairing_cost(const struct glint_seeker *s,
+                                    const struct glint_spot *p)
 {
     const int64_t dx = p->x_q8 - s->x_q8, dy = p->y_q8 - s->y_q8;
     const int64_t d2 = dx * dx + dy * dy;
@@ -73,7 +73,7 @@ static int64_t glint_cost_of(const struct glint_seeker *s,
 /* Pairs seekers and spots by repeatedly choosing the cheapest remaining
  * pair. Sets PARTNER[i] to the spot of seeker i, or -1. Returns the number
  * of pairs. */
-static int match_slowly(int n_spots, int32_t *partner)
+static int match_by_cheapest_pairs(int n_spots, int32_t *partner)
 {
     static uint8_t taken[MAX];
     int n = 0;
@@ -87,7 +87,8 @@ static int match_slowly(int n_spots, int32_t *partner)
 
         for (int i = 0; i < match.n_seekers; i++)
             for (int j = 0; j < n_spots && partner[i] < 0; j++) {
-                const int64_t cost = glint_cost_of(&match.seeker[i], &spot[j]);
+                const int64_t cost =
+                    compute_pairing_cost(&match.seeker[i], &spot[j]);
 
                 if (!taken[j] && cost >= 0 && cost < best)
                     best = cost, seeker = i, at = j;
@@ -100,25 +101,26 @@ static int match_slowly(int n_spots, int32_t *partner)
 }
 
 /* Checks the pairs against those of the slow search; no two costs are equal. */
-TEST(against_all_pairs)
+TEST(pairs_match_the_slow_search)
 {
     static int32_t partner[MAX];
     int n_matched = 0;
 
     for (int round = 0; round < 300; round++) {
-        /* up to eight seekers compete for the same spots */
+        /* in every third round up to eight seekers compete for the same
+         * spots */
         const int is_near = round % 3 == 0;
-        const int n_seekers = rng_below(&seed, is_near ? 9 : 40);
-        const int n_spots = rng_below(&seed, 40);
+        const int n_seekers = rng_int_below(&seed, is_near ? 9 : 40);
+        const int n_spots = rng_int_below(&seed, 40);
 
-        place_random(n_seekers, n_spots, 300 << 8);
+        place_seekers_and_spots(n_seekers, n_spots, 300 << 8);
         for (int i = 0; is_near && i < n_seekers; i++) {
             match.seeker[i].x_q8 = match.seeker[i].x_q8 / 8 + (130 << 8);
             match.seeker[i].y_q8 = match.seeker[i].y_q8 / 8 + (130 << 8);
             match.seeker[i].reach_q8 = 600 << 8;
         }
         glint_match_find(&match, spot, n_spots);
-        n_matched += match_slowly(n_spots, partner);
+        n_matched += match_by_cheapest_pairs(n_spots, partner);
         for (int i = 0; i < n_seekers; i++)
             assert_int_equal(match.seeker[i].spot, partner[i]);
     }
@@ -126,14 +128,14 @@ TEST(against_all_pairs)
 }
 
 /* Returns the number of spots nearer to S than spot AT. */
-static int count_nearer(const struct glint_seeker *s, int at)
+static int count_nearer_spots(const struct glint_seeker *s, int at)
 {
     int n = 0;
 
     for (int j = 0; j < MAX; j++) {
-        const int64_t cost = glint_cost_of(s, &spot[j]);
+        const int64_t cost = compute_pairing_cost(s, &spot[j]);
 
-        n += cost >= 0 && cost < glint_cost_of(s, &spot[at]);
+        n += cost >= 0 && cost < compute_pairing_cost(s, &spot[at]);
     }
     return n;
 }
@@ -141,12 +143,12 @@ static int count_nearer(const struct glint_seeker *s, int at)
 /* Checks the max number of seekers and spots, all within reach of each
  * other: no spot is used twice, and each is one of its seeker's eight
  * nearest. */
-TEST(crowd)
+TEST(crowded_seekers_get_distinct_spots)
 {
     static uint8_t seen[MAX];
     int n = 0;
 
-    place_random(MAX, MAX, 30 << 8);
+    place_seekers_and_spots(MAX, MAX, 30 << 8);
     for (int i = 0; i < MAX; i++)
         match.seeker[i].reach_q8 = 1 << 23;
     glint_match_find(&match, spot, MAX);
@@ -159,7 +161,7 @@ TEST(crowd)
         assert_in_range(at, 0, MAX - 1);
         assert_int_equal(seen[at]++, 0);
         assert_int_equal(match.taken[at], 1);
-        assert_true(count_nearer(&match.seeker[i], at) < 8);
+        assert_true(count_nearer_spots(&match.seeker[i], at) < 8);
         n++;
     }
     assert_in_range(n, MAX / 2, MAX);
@@ -167,7 +169,7 @@ TEST(crowd)
 
 /* Checks that a spot exactly at a seeker's max distance is paired, and one
  * further away is not. */
-TEST(reach)
+TEST(reach_includes_the_max_distance)
 {
     static const int32_t way[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
 
@@ -186,29 +188,29 @@ TEST(reach)
 
 /* Places N seekers and N spots at a few positions, so that most costs are
  * equal. All spots of a position differ in one member. */
-static void place_with_ties(int n)
+static void place_with_equal_costs(int n)
 {
     match.n_seekers = n;
     for (int i = 0; i < n; i++) {
         match.seeker[i] =
             (struct glint_seeker){.id = (uint32_t)(i * 7919 % 1021) + 1,
-                                  .x_q8 = rng_below(&seed, 4) << 8,
-                                  .y_q8 = rng_below(&seed, 4) << 8,
+                                  .x_q8 = rng_int_below(&seed, 4) << 8,
+                                  .y_q8 = rng_int_below(&seed, 4) << 8,
                                   .reach_q8 = 2 << 8};
-        spot[i] = (struct glint_spot){.x_q8 = rng_below(&seed, 4) << 8,
-                                      .y_q8 = rng_below(&seed, 4) << 8,
+        spot[i] = (struct glint_spot){.x_q8 = rng_int_below(&seed, 4) << 8,
+                                      .y_q8 = rng_int_below(&seed, 4) << 8,
                                       .power_q16 = i};
     }
 }
 
-/* Shuffles the first N of THINGS, BYTES each. */
+/* Shuffles the first N elements of THINGS, each of BYTES bytes. */
 static void shuffle_items(void *things, int n, size_t bytes)
 {
     uint8_t *const at = things, kept[sizeof(struct glint_spot)];
 
     assert_true(bytes <= sizeof kept);
     for (int i = n - 1; i > 0; i--) {
-        const int j = rng_below(&seed, i + 1);
+        const int j = rng_int_below(&seed, i + 1);
 
         memcpy(kept, at + (size_t)i * bytes, bytes);
         memcpy(at + (size_t)i * bytes, at + (size_t)j * bytes, bytes);
@@ -217,7 +219,7 @@ static void shuffle_items(void *things, int n, size_t bytes)
 }
 
 /* Sets POWER, by seeker id, to the power of the seeker's spot; -1: no spot. */
-static void read_powers(int64_t power[MAX + 1])
+static void read_powers_of_matches(int64_t power[MAX + 1])
 {
     for (int i = 0; i < match.n_seekers; i++) {
         const int32_t at = match.seeker[i].spot;
@@ -228,22 +230,22 @@ static void read_powers(int64_t power[MAX + 1])
 
 /* Checks that ties of cost are decided by ids and the members of spots, not
  * by their order. */
-TEST(order_is_no_matter)
+TEST(ties_do_not_depend_on_order)
 {
     static int64_t power[MAX + 1], again[MAX + 1];
 
     for (int round = 0; round < 100; round++) {
-        const int n = 1 + rng_below(&seed, 60);
+        const int n = 1 + rng_int_below(&seed, 60);
 
-        place_with_ties(n);
+        place_with_equal_costs(n);
         glint_match_find(&match, spot, n);
         memset(power, 0, sizeof power);
         memset(again, 0, sizeof again);
-        read_powers(power);
+        read_powers_of_matches(power);
         shuffle_items(match.seeker, n, sizeof *match.seeker);
         shuffle_items(spot, n, sizeof *spot);
         glint_match_find(&match, spot, n);
-        read_powers(again);
+        read_powers_of_matches(again);
         assert_memory_equal(power, again, sizeof power);
     }
 }

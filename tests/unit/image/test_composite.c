@@ -18,7 +18,7 @@ static uint16_t light[3][N_MOST];
 
 /* Returns a layer with a lamp of three colours near (30, 20) and no light
  * from column 100 on. */
-static struct glint_layer make_layer(int width, int height)
+static struct glint_layer make_lamp_layer(int width, int height)
 {
     static const int most[3] = {65535, 30000, 900};
 
@@ -33,8 +33,8 @@ static struct glint_layer make_layer(int width, int height)
     return (struct glint_layer){{light[0], light[1], light[2]}, MOST};
 }
 
-static struct glint_composite *make_composite(const struct glint_image *image,
-                                              unsigned sets, void **mem)
+static struct glint_composite *create_composite(const struct glint_image *image,
+                                                unsigned sets, void **mem)
 {
     const size_t bytes = glint_composite_bytes();
     struct glint_composite *c;
@@ -44,30 +44,31 @@ static struct glint_composite *make_composite(const struct glint_image *image,
     return c;
 }
 
-static void add_layer(const struct glint_image *image, unsigned sets)
+static void add_layer_to_image(const struct glint_image *image, unsigned sets)
 {
-    const struct glint_layer layer = make_layer(image->width, image->height);
+    const struct glint_layer layer =
+        make_lamp_layer(image->width, image->height);
     void *mem;
 
-    glint_composite_add(make_composite(image, sets, &mem), image, &layer);
+    glint_composite_add(create_composite(image, sets, &mem), image, &layer);
     free(mem);
 }
 
-static double to_linear(double code)
+static double decode_code(double code)
 {
     const double x = code / 255;
 
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
 }
 
-static double to_code(double x)
+static double encode_light(double x)
 {
     return x >= 1 ? 255
                   : 255 * (x <= 0.0031308 ? 12.92 * x
                                           : 1.055 * pow(x, 1 / 2.4) - 0.055);
 }
 
-TEST(definition)
+TEST(composite_matches_its_definition)
 {
     static uint8_t rgb[3 * N_MOST];
     struct glint_image image = {
@@ -76,12 +77,12 @@ TEST(definition)
     for (int code = 0; code < 256; code += 15) {
         memset(rgb, code, sizeof rgb);
         glint_image_place(&image, rgb);
-        add_layer(&image, 0);
+        add_layer_to_image(&image, 0);
         for (int y = 0; y < 77; y++)
             for (int x = 0; x < 131; x++)
                 for (int c = 0; c < 3; c++) {
-                    const double want = to_code(
-                        to_linear(code) + light[c][y * MOST + x] / 65535.0);
+                    const double want = encode_light(
+                        decode_code(code) + light[c][y * MOST + x] / 65535.0);
 
                     assert_true(fabs(rgb[3 * (131 * y + x) + c] - want) < 0.65);
                     if (light[c][y * MOST + x] == 0)
@@ -92,7 +93,7 @@ TEST(definition)
 
 /* Checks that all instruction sets give the same bits, and that pixels
  * without light and guard bytes are unchanged. */
-TEST(formats)
+TEST(all_instruction_sets_give_the_same_bits)
 {
     enum { GUARD = 256, BYTES = 3 * N_MOST + 2 * GUARD };
     static uint8_t plain[BYTES], fast[BYTES];
@@ -112,9 +113,9 @@ TEST(formats)
             memset(plain, 99, sizeof plain);
             memset(fast, 99, sizeof fast);
             glint_image_place(&image, plain + GUARD);
-            add_layer(&image, 0);
+            add_layer_to_image(&image, 0);
             glint_image_place(&image, fast + GUARD);
-            add_layer(&image, glint_sets_here());
+            add_layer_to_image(&image, glint_sets_here());
             assert_memory_equal(plain, fast, sizeof plain);
             for (size_t i = 0; i < BYTES; i++) {
                 changed += plain[i] != 99;
@@ -126,7 +127,7 @@ TEST(formats)
     }
 }
 
-TEST(refusals)
+TEST(rejects_images_that_cannot_be_composited)
 {
     const struct glint_image linear = {
         .format = GLINT_LINEAR_Q20, .width = 8, .height = 8};

@@ -16,14 +16,14 @@ static const enum glint_tone transfers[2] = {GLINT_TONE_SRGB, GLINT_TONE_BT709};
 
 /* Returns the linear light of V, both 0 .. 1, by IEC 61966-2-1 or the
  * inverse of ITU-R BT.709. */
-static double to_light(enum glint_tone transfer, double v)
+static double decode_value(enum glint_tone transfer, double v)
 {
     if (transfer == GLINT_TONE_SRGB)
         return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
     return v < 0.081 ? v / 4.5 : pow((v + 0.099) / 1.099, 1 / 0.45);
 }
 
-static double to_code(enum glint_tone transfer, double light)
+static double encode_light(enum glint_tone transfer, double light)
 {
     if (transfer == GLINT_TONE_SRGB)
         return light <= 0.04045 / 12.92 ? 12.92 * light
@@ -31,7 +31,7 @@ static double to_code(enum glint_tone transfer, double light)
     return light < 0.018 ? 4.5 * light : 1.099 * pow(light, 0.45) - 0.099;
 }
 
-TEST(codes_by_hand)
+TEST(codes_match_hand_computation)
 {
     struct glint_curve curve;
 
@@ -46,14 +46,14 @@ TEST(codes_by_hand)
     assert_int_equal(curve.decode_q20[255], 1 << 20);
 }
 
-TEST(decode_is_the_standard_at_codes)
+TEST(decoding_matches_the_standards)
 {
     for (int t = 0; t < 2; t++) {
         struct glint_curve curve;
 
         glint_curve_init(&curve, transfers[t]);
         for (int i = 0; i < 256; i++) {
-            const double want = to_light(transfers[t], i / 255.0) * 0x1p20;
+            const double want = decode_value(transfers[t], i / 255.0) * 0x1p20;
 
             assert_true(fabs(curve.decode_q20[i] - want) <= 0.51);
             assert_true(i == 0 ||
@@ -62,7 +62,7 @@ TEST(decode_is_the_standard_at_codes)
     }
 }
 
-TEST(decode_rises)
+TEST(decoding_is_monotone)
 {
     for (int t = 0; t < 2; t++) {
         struct glint_curve curve;
@@ -80,7 +80,7 @@ struct errors {
     int n;
 };
 
-static struct errors measure_errors(enum glint_tone transfer)
+static struct errors measure_curve_errors(enum glint_tone transfer)
 {
     const int16_t round[8] = {64, 64, 64, 64, 64, 64, 64, 64};
     struct errors e = {0, 0, 0};
@@ -98,8 +98,8 @@ static struct errors measure_errors(enum glint_tone transfer)
                              round);
             for (int i = 0; i < GLINT_LANES; i++) {
                 const double sum =
-                    to_light(transfer, code / 255.0) + light[i] / 65535.0;
-                const double want = 255 * to_code(transfer, fmin(1, sum));
+                    decode_value(transfer, code / 255.0) + light[i] / 65535.0;
+                const double want = 255 * encode_light(transfer, fmin(1, sum));
                 const double error = fabs(lit[i] - want);
 
                 e.worst = fmax(e.worst, error);
@@ -114,10 +114,10 @@ static struct errors measure_errors(enum glint_tone transfer)
 
 /* Checks that added light is right within 0.62 code and 0.3 code RMS;
  * rounding alone gives 0.5 and 0.289. */
-TEST(added_light)
+TEST(added_light_is_within_rounding)
 {
     for (int t = 0; t < 2; t++) {
-        const struct errors e = measure_errors(transfers[t]);
+        const struct errors e = measure_curve_errors(transfers[t]);
         const double rms = sqrt(e.squares / e.n);
 
         print_message("codes under light are within %.3f, %.4f RMS\n", e.worst,
@@ -127,8 +127,8 @@ TEST(added_light)
     }
 }
 
-static void assert_rgb(const struct glint_ycc *ycc, int y, int cb, int cr,
-                       int r, int g, int b, int within)
+static void assert_ycc_gives_rgb(const struct glint_ycc *ycc, int y, int cb,
+                                 int cr, int r, int g, int b, int within)
 {
     int32_t rgb_q7[3];
 
@@ -140,30 +140,30 @@ static void assert_rgb(const struct glint_ycc *ycc, int y, int cb, int cr,
 
 /* Checks the standards' 100 % colour bars, which are rounded to whole codes,
  * within 1.5 codes. */
-TEST(ycc_bars)
+TEST(colour_bars_convert_within_rounding)
 {
     struct glint_ycc ycc;
 
     glint_ycc_init(&ycc, GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
-    assert_rgb(&ycc, 16, 128, 128, 0, 0, 0, 0);
-    assert_rgb(&ycc, 235, 128, 128, 255, 255, 255, 0);
-    assert_rgb(&ycc, 81, 90, 240, 255, 0, 0, 192);
-    assert_rgb(&ycc, 145, 54, 34, 0, 255, 0, 192);
-    assert_rgb(&ycc, 41, 240, 110, 0, 0, 255, 192);
+    assert_ycc_gives_rgb(&ycc, 16, 128, 128, 0, 0, 0, 0);
+    assert_ycc_gives_rgb(&ycc, 235, 128, 128, 255, 255, 255, 0);
+    assert_ycc_gives_rgb(&ycc, 81, 90, 240, 255, 0, 0, 192);
+    assert_ycc_gives_rgb(&ycc, 145, 54, 34, 0, 255, 0, 192);
+    assert_ycc_gives_rgb(&ycc, 41, 240, 110, 0, 0, 255, 192);
     glint_ycc_init(&ycc, GLINT_MATRIX_BT709, GLINT_RANGE_LIMITED);
-    assert_rgb(&ycc, 235, 128, 128, 255, 255, 255, 0);
-    assert_rgb(&ycc, 63, 102, 240, 255, 0, 0, 192);
-    assert_rgb(&ycc, 173, 42, 26, 0, 255, 0, 192);
-    assert_rgb(&ycc, 32, 240, 118, 0, 0, 255, 192);
+    assert_ycc_gives_rgb(&ycc, 235, 128, 128, 255, 255, 255, 0);
+    assert_ycc_gives_rgb(&ycc, 63, 102, 240, 255, 0, 0, 192);
+    assert_ycc_gives_rgb(&ycc, 173, 42, 26, 0, 255, 0, 192);
+    assert_ycc_gives_rgb(&ycc, 32, 240, 118, 0, 0, 255, 192);
     glint_ycc_init(&ycc, GLINT_MATRIX_BT601, GLINT_RANGE_FULL);
-    assert_rgb(&ycc, 0, 128, 128, 0, 0, 0, 0);
-    assert_rgb(&ycc, 255, 128, 128, 255, 255, 255, 0);
-    assert_rgb(&ycc, 76, 85, 255, 255, 0, 0, 192);
+    assert_ycc_gives_rgb(&ycc, 0, 128, 128, 0, 0, 0, 0);
+    assert_ycc_gives_rgb(&ycc, 255, 128, 128, 255, 255, 255, 0);
+    assert_ycc_gives_rgb(&ycc, 76, 85, 255, 255, 0, 0, 192);
 }
 
 /* Checks the row sums of the matrices, Y_Q15 for luma and 0 for chroma, and
  * that their product is 1. */
-static void check_inverse(const struct glint_ycc *ycc, int y_q15)
+static void check_matrices_are_inverse(const struct glint_ycc *ycc, int y_q15)
 {
     for (int i = 0; i < 3; i++) {
         const int32_t *row = ycc->to_ycc_q15[i];
@@ -188,8 +188,8 @@ TEST(ycc_matrices_are_inverse)
             m ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
 
         glint_ycc_init(&ycc, matrix, GLINT_RANGE_FULL);
-        check_inverse(&ycc, 1 << 15);
+        check_matrices_are_inverse(&ycc, 1 << 15);
         glint_ycc_init(&ycc, matrix, GLINT_RANGE_LIMITED);
-        check_inverse(&ycc, 28142); /* 219 / 255 */
+        check_matrices_are_inverse(&ycc, 28142); /* 219 / 255 */
     }
 }

@@ -39,8 +39,8 @@ static uint32_t seed = 1;
 
 /* Makes an image of guard bytes. Strides are 5 bytes more than a row,
  * negative if UPSIDE_DOWN. */
-static void make_image(enum glint_pixel_format format, int width, int height,
-                       int upside_down)
+static void make_guarded_image(enum glint_pixel_format format, int width,
+                               int height, int upside_down)
 {
     struct glint_image *image = &fixture.image;
 
@@ -62,51 +62,51 @@ static void make_image(enum glint_pixel_format format, int width, int height,
     }
 }
 
-static uint8_t *find_sample(int plane, int x, int y)
+static uint8_t *sample_address(int plane, int x, int y)
 {
     return fixture.image.plane[plane] + y * fixture.image.stride_bytes[plane] +
            x;
 }
 
 /* Returns the bytes per row of plane PLANE. */
-static int row_bytes(int plane)
+static int row_bytes_of_plane(int plane)
 {
     const struct glint_image *image = &fixture.image;
 
     return (int)glint_image_row_bytes(image->format, plane, image->width);
 }
 
-static int row_count(int plane)
+static int row_count_of_plane(int plane)
 {
     const struct glint_image *image = &fixture.image;
 
     return glint_image_plane_height(image->format, plane, image->height);
 }
 
-static void fill_random(int plane, int low, int high)
+static void fill_with_random_codes(int plane, int low, int high)
 {
-    for (int y = 0; y < row_count(plane); y++)
-        for (int x = 0; x < row_bytes(plane); x++)
-            *find_sample(plane, x, y) =
-                (uint8_t)(low + rng_below(&seed, high - low + 1));
+    for (int y = 0; y < row_count_of_plane(plane); y++)
+        for (int x = 0; x < row_bytes_of_plane(plane); x++)
+            *sample_address(plane, x, y) =
+                (uint8_t)(low + rng_int_below(&seed, high - low + 1));
 }
 
 /* Converts light from Q20 to the 0 .. 65535 that kernels receive. */
-static uint16_t light_q16(int32_t light_q20)
+static uint16_t convert_light_to_q16(int32_t light_q20)
 {
     const int32_t l = (light_q20 >> 4) + (light_q20 >> 3 & 1);
 
     return (uint16_t)(l < 0 ? 0 : l > 65535 ? 65535 : l);
 }
 
-static double light_at(int i, int at)
+static double light_of_pixel(int i, int at)
 {
-    return light_q16(fixture.light_q20[i][at]) / 65535.0;
+    return convert_light_to_q16(fixture.light_q20[i][at]) / 65535.0;
 }
 
 /* Adds the light to IMAGE in strips of two rows, the last strip first. */
-static void add_light_to(const struct glint_image *image, int dither,
-                         unsigned sets)
+static void add_light_in_strips(const struct glint_image *image, int dither,
+                                unsigned sets)
 {
     static struct glint_light_rows light;
     static struct glint_resolve_rows rows;
@@ -117,40 +117,40 @@ static void add_light_to(const struct glint_image *image, int dither,
             const int x1 = x0 + TILE < image->width ? x0 + TILE : image->width;
             const int y1 = y0 + 2 < image->height ? y0 + 2 : image->height;
 
-            /* bright where it must not be read */
+            /* bright where light must not be read */
             memset(&light, 0x55, sizeof light);
             for (int i = 0; i < 3; i++)
                 for (int y = y0; y < y1; y++)
                     for (int x = x0; x < x1; x++)
-                        light.rgb_q16[i][y - y0][x - x0] = light_q16(
+                        light.rgb_q16[i][y - y0][x - x0] = convert_light_to_q16(
                             fixture.light_q20[i][y * image->width + x]);
             glint_resolve_stretch(&resolve, image, x0, y0, x1 - x0, y1 - y0,
                                   &light, &rows);
         }
 }
 
-static void add_light(int dither)
+static void add_light_to_image(int dither)
 {
     memcpy(fixture.before, fixture.plane, sizeof fixture.before);
-    add_light_to(&fixture.image, dither, 0);
+    add_light_in_strips(&fixture.image, dither, 0);
 }
 
-static int byte_before(int plane, int x, int y)
+static int sample_before_drawing(int plane, int x, int y)
 {
     return fixture
-        .before[plane][find_sample(plane, x, y) - fixture.plane[plane]];
+        .before[plane][sample_address(plane, x, y) - fixture.plane[plane]];
 }
 
-static void assert_guards_whole(void)
+static void assert_guard_bytes_unchanged(void)
 {
     for (int i = 0; i < 3; i++) {
         static uint8_t inside[PLANE_BYTES];
 
         memset(inside, 0, sizeof inside);
         if (i < glint_image_planes(fixture.image.format))
-            for (int y = 0; y < row_count(i); y++)
-                for (int x = 0; x < row_bytes(i); x++)
-                    inside[find_sample(i, x, y) - fixture.plane[i]] = 1;
+            for (int y = 0; y < row_count_of_plane(i); y++)
+                for (int x = 0; x < row_bytes_of_plane(i); x++)
+                    inside[sample_address(i, x, y) - fixture.plane[i]] = 1;
         for (int k = 0; k < PLANE_BYTES; k++)
             assert_true(inside[k] || fixture.plane[i][k] == GUARD);
     }
@@ -158,22 +158,24 @@ static void assert_guards_whole(void)
 
 /* --------------------------------------------------------------- reference */
 
-/* Returns the change of V, 1 = white, when LIGHT is added. */
-static double code_change(double v, double light)
+/* Returns the change of the encoded value V (1 = white) when the linear light
+ * LIGHT is added. */
+static double expected_code_change(double v, double light)
 {
     const double held = fmax(0, fmin(v, 1));
     const enum glint_tone tone = fixture.image.transfer;
 
-    return light > 0
-               ? canvas_code(canvas_light(held, tone) + light, tone) - held
-               : 0;
+    return light > 0 ? canvas_encode_light(
+                           canvas_decode_value(held, tone) + light, tone) -
+                           held
+                     : 0;
 }
 
 struct coding {
     double kr, kg, kb, black, y_steps, c_steps;
 };
 
-static struct coding image_coding(void)
+static struct coding coding_of_image(void)
 {
     const int bt601 = fixture.image.matrix == GLINT_MATRIX_BT601;
     const int full = fixture.image.range == GLINT_RANGE_FULL;
@@ -188,22 +190,23 @@ static struct coding image_coding(void)
 }
 
 /* Sets RGB to the change of R'G'B' of pixel (X, Y) in a Y'CbCr image. */
-static void ycc_pixel_change(const struct coding *c, int x, int y, int cx,
-                             int cy, double rgb[3])
+static void measured_rgb_change(const struct coding *c, int x, int y, int cx,
+                                int cy, double rgb[3])
 {
-    const double luma = (byte_before(0, x, y) - c->black) / c->y_steps;
-    const double cb = (byte_before(1, cx, cy) - 128) / c->c_steps;
-    const double cr = (byte_before(2, cx, cy) - 128) / c->c_steps;
+    const double luma =
+        (sample_before_drawing(0, x, y) - c->black) / c->y_steps;
+    const double cb = (sample_before_drawing(1, cx, cy) - 128) / c->c_steps;
+    const double cr = (sample_before_drawing(2, cx, cy) - 128) / c->c_steps;
     const int at = y * fixture.image.width + x;
 
     rgb[0] = luma + 2 * (1 - c->kr) * cr;
     rgb[2] = luma + 2 * (1 - c->kb) * cb;
     rgb[1] = (luma - c->kr * rgb[0] - c->kb * rgb[2]) / c->kg;
     for (int i = 0; i < 3; i++)
-        rgb[i] = code_change(rgb[i], light_at(i, at));
+        rgb[i] = expected_code_change(rgb[i], light_of_pixel(i, at));
 }
 
-static void assert_code(double want, int got, double within)
+static void assert_code_is_near(double want, int got, double within)
 {
     want = want < 0 ? 0 : want > 255 ? 255 : want;
     if (fabs(want - got) > within)
@@ -212,88 +215,92 @@ static void assert_code(double want, int got, double within)
 
 /* Checks the chroma sample (CX, CY) and the luma of the pixels that share
  * it. */
-static void check_block(int cx, int cy, double within)
+static void check_chroma_block(int cx, int cy, double within)
 {
     const enum glint_pixel_format format = fixture.image.format;
-    const struct coding c = image_coding();
+    const struct coding c = coding_of_image();
     const int nx = format == GLINT_I444 ? 1 : 2;
     const int ny = format == GLINT_I420 ? 2 : 1;
     double total[3] = {0, 0, 0};
     int n = 0;
 
-    for (int y = cy * ny; y < cy * ny + ny && y < row_count(0); y++)
-        for (int x = cx * nx; x < cx * nx + nx && x < row_bytes(0); x++, n++) {
+    for (int y = cy * ny; y < cy * ny + ny && y < row_count_of_plane(0); y++)
+        for (int x = cx * nx; x < cx * nx + nx && x < row_bytes_of_plane(0);
+             x++, n++) {
             double rgb[3];
 
-            ycc_pixel_change(&c, x, y, cx, cy, rgb);
+            measured_rgb_change(&c, x, y, cx, cy, rgb);
             for (int i = 0; i < 3; i++)
                 total[i] += rgb[i];
-            assert_code(byte_before(0, x, y) +
-                            c.y_steps *
-                                (c.kr * rgb[0] + c.kg * rgb[1] + c.kb * rgb[2]),
-                        *find_sample(0, x, y), within);
+            assert_code_is_near(
+                sample_before_drawing(0, x, y) +
+                    c.y_steps * (c.kr * rgb[0] + c.kg * rgb[1] + c.kb * rgb[2]),
+                *sample_address(0, x, y), within);
         }
     for (int i = 0; i < 3; i++)
         total[i] /= n;
     {
         const double luma = c.kr * total[0] + c.kg * total[1] + c.kb * total[2];
 
-        assert_code(byte_before(1, cx, cy) +
-                        c.c_steps * (total[2] - luma) / 2 / (1 - c.kb),
-                    *find_sample(1, cx, cy), within);
-        assert_code(byte_before(2, cx, cy) +
-                        c.c_steps * (total[0] - luma) / 2 / (1 - c.kr),
-                    *find_sample(2, cx, cy), within);
+        assert_code_is_near(sample_before_drawing(1, cx, cy) +
+                                c.c_steps * (total[2] - luma) / 2 / (1 - c.kb),
+                            *sample_address(1, cx, cy), within);
+        assert_code_is_near(sample_before_drawing(2, cx, cy) +
+                                c.c_steps * (total[0] - luma) / 2 / (1 - c.kr),
+                            *sample_address(2, cx, cy), within);
     }
 }
 
-static void check_ycc(double within)
+static void check_ycc_image(double within)
 {
-    for (int cy = 0; cy < row_count(1); cy++)
-        for (int cx = 0; cx < row_bytes(1); cx++)
-            check_block(cx, cy, within);
+    for (int cy = 0; cy < row_count_of_plane(1); cy++)
+        for (int cx = 0; cx < row_bytes_of_plane(1); cx++)
+            check_chroma_block(cx, cy, within);
 }
 
-static void check_rgb24(double within)
+static void check_rgb24_image(double within)
 {
-    for (int y = 0; y < row_count(0); y++)
-        for (int x = 0; x < row_bytes(0); x++) {
+    for (int y = 0; y < row_count_of_plane(0); y++)
+        for (int x = 0; x < row_bytes_of_plane(0); x++) {
             const double light =
-                light_at(x % 3, y * fixture.image.width + x / 3);
-            const int code = byte_before(0, x, y);
+                light_of_pixel(x % 3, y * fixture.image.width + x / 3);
+            const int code = sample_before_drawing(0, x, y);
 
-            assert_code(code + 255 * code_change(code / 255.0, light),
-                        *find_sample(0, x, y), within);
+            assert_code_is_near(
+                code + 255 * expected_code_change(code / 255.0, light),
+                *sample_address(0, x, y), within);
         }
 }
 
-static void check_grey(double within)
+static void check_grey_image(double within)
 {
-    const struct coding c = image_coding();
+    const struct coding c = coding_of_image();
 
-    for (int y = 0; y < row_count(0); y++)
-        for (int x = 0; x < row_bytes(0); x++) {
+    for (int y = 0; y < row_count_of_plane(0); y++)
+        for (int x = 0; x < row_bytes_of_plane(0); x++) {
             const double weight[3] = {0.2126, 0.7152, 0.0722};
-            const double v = (byte_before(0, x, y) - c.black) / c.y_steps;
+            const double v =
+                (sample_before_drawing(0, x, y) - c.black) / c.y_steps;
             double light = 0;
 
             for (int i = 0; i < 3; i++)
-                light += weight[i] * light_at(i, y * fixture.image.width + x);
-            assert_code(byte_before(0, x, y) +
-                            c.y_steps * code_change(v, light),
-                        *find_sample(0, x, y), within);
+                light +=
+                    weight[i] * light_of_pixel(i, y * fixture.image.width + x);
+            assert_code_is_near(sample_before_drawing(0, x, y) +
+                                    c.y_steps * expected_code_change(v, light),
+                                *sample_address(0, x, y), within);
         }
 }
 
-static void check_picture(double within)
+static void check_image_after_light(double within)
 {
     if (fixture.image.format == GLINT_RGB24)
-        check_rgb24(within);
+        check_rgb24_image(within);
     else if (fixture.image.format == GLINT_GREY)
-        check_grey(within);
+        check_grey_image(within);
     else
-        check_ycc(within);
-    assert_guards_whole();
+        check_ycc_image(within);
+    assert_guard_bytes_unchanged();
 }
 
 /* -------------------------------------------------------------------- cases */
@@ -304,21 +311,22 @@ static const int sizes[][2] = {{1, 1}, {3, 1}, {1, 3}, {7, 5}, {33, 18}};
 
 enum { N_SIZES = sizeof sizes / sizeof *sizes };
 
-/* Fills in random light of all magnitudes, a third of it negative. */
-static void fill_light(void)
+/* Fills the fixture with random light of all magnitudes, a third of it
+ * negative. */
+static void fill_with_random_light(void)
 {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < MAX_SIDE * MAX_SIDE; k++) {
             const int32_t size_q20 =
-                rng_below(&seed, 1 << rng_below(&seed, 23));
+                rng_int_below(&seed, 1 << rng_int_below(&seed, 23));
 
             fixture.light_q20[i][k] =
-                rng_below(&seed, 3) ? size_q20 : -size_q20;
+                rng_int_below(&seed, 3) ? size_q20 : -size_q20;
         }
 }
 
 /* Sets transfer curve, range and matrix of the image by the bits of K. */
-static void set_coding(int k)
+static void set_coding_by_bits(int k)
 {
     fixture.image.transfer = k & 1 ? GLINT_TONE_BT709 : GLINT_TONE_SRGB;
     fixture.image.range = k & 2 ? GLINT_RANGE_LIMITED : GLINT_RANGE_FULL;
@@ -327,60 +335,60 @@ static void set_coding(int k)
 
 /* Checks random images whose chroma differs by up to CHROMA codes from
  * neutral. */
-static void check_random(int chroma, double within)
+static void check_random_images(int chroma, double within)
 {
     for (int f = 0; f < 5; f++)
         for (int s = 0; s < N_SIZES; s++)
             for (int k = 0; k < 16; k++) {
-                make_image(formats[f], sizes[s][0], sizes[s][1], k & 8);
-                set_coding(k);
+                make_guarded_image(formats[f], sizes[s][0], sizes[s][1], k & 8);
+                set_coding_by_bits(k);
                 if (formats[f] == GLINT_RGB24)
                     fixture.image.range = GLINT_RANGE_FULL;
-                fill_random(0, 0, 255);
+                fill_with_random_codes(0, 0, 255);
                 if (glint_image_planes(formats[f]) == 3) {
-                    fill_random(1, 128 - chroma, 127 + chroma);
-                    fill_random(2, 128 - chroma, 127 + chroma);
+                    fill_with_random_codes(1, 128 - chroma, 127 + chroma);
+                    fill_with_random_codes(2, 128 - chroma, 127 + chroma);
                 }
-                fill_light();
-                add_light(0);
-                check_picture(within);
+                fill_with_random_light();
+                add_light_to_image(0);
+                check_image_after_light(within);
             }
 }
 
 TEST(light_adds_up)
 {
     for (int round = 0; round < 4; round++)
-        check_random(40, 0.65);
+        check_random_images(40, 0.65);
 }
 
 /* Checks all codes, including colours far outside the RGB cube. */
-TEST(wild_codes)
+TEST(codes_outside_the_rgb_cube_resolve)
 {
     for (int round = 0; round < 4; round++)
-        check_random(128, 0.65);
+        check_random_images(128, 0.65);
 }
 
-static void check_untouched(int dither)
+static void check_image_is_unchanged(int dither)
 {
     for (int f = 0; f < 5; f++)
         for (int k = 0; k < 16; k++) {
-            make_image(formats[f], 33, 18, k & 8);
-            set_coding(k);
+            make_guarded_image(formats[f], 33, 18, k & 8);
+            set_coding_by_bits(k);
             for (int i = 0; i < glint_image_planes(formats[f]); i++)
-                fill_random(i, 0, 255);
+                fill_with_random_codes(i, 0, 255);
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 33 * 18; j++)
-                    fixture.light_q20[i][j] = -rng_below(&seed, 3);
-            add_light(dither);
+                    fixture.light_q20[i][j] = -rng_int_below(&seed, 3);
+            add_light_to_image(dither);
             assert_memory_equal(fixture.plane, fixture.before,
                                 sizeof fixture.plane);
         }
 }
 
-TEST(untouched_pixels_stay)
+TEST(untouched_pixels_are_unchanged)
 {
-    check_untouched(0);
-    check_untouched(1);
+    check_image_is_unchanged(0);
+    check_image_is_unchanged(1);
 }
 
 /* Checks that light too faint to change a code by half a code changes
@@ -388,35 +396,35 @@ TEST(untouched_pixels_stay)
 TEST(faint_light_changes_nothing)
 {
     for (int f = 0; f < 5; f++) {
-        make_image(formats[f], 33, 18, 0);
+        make_guarded_image(formats[f], 33, 18, 0);
         for (int i = 0; i < glint_image_planes(formats[f]); i++)
-            fill_random(i, 128, 128);
+            fill_with_random_codes(i, 128, 128);
         for (int i = 0; i < 3; i++)
             for (int k = 0; k < 33 * 18; k += 4)
                 fixture.light_q20[i][k] = 1500; /* 0.4 code at 128 */
-        add_light(0);
+        add_light_to_image(0);
         assert_memory_equal(fixture.plane, fixture.before,
                             sizeof fixture.plane);
     }
 }
 
-TEST(white_saturates)
+TEST(strong_light_saturates_at_white)
 {
     for (int f = 0; f < 5; f++)
         for (int k = 0; k < 16; k++) {
-            make_image(formats[f], 7, 5, k & 8);
-            set_coding(k);
-            fill_random(0, 20, 230);
+            make_guarded_image(formats[f], 7, 5, k & 8);
+            set_coding_by_bits(k);
+            fill_with_random_codes(0, 20, 230);
             for (int i = 1; i < glint_image_planes(formats[f]); i++)
-                fill_random(i, 128, 128);
+                fill_with_random_codes(i, 128, 128);
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 7 * 5; j++)
                     fixture.light_q20[i][j] = INT32_MAX >> (j / 4);
-            add_light(0);
+            add_light_to_image(0);
             for (int i = 0; i < glint_image_planes(formats[f]); i++)
-                for (int y = 0; y < row_count(i); y++)
-                    for (int x = 0; x < row_bytes(i); x++)
-                        assert_int_equal(*find_sample(i, x, y),
+                for (int y = 0; y < row_count_of_plane(i); y++)
+                    for (int x = 0; x < row_bytes_of_plane(i); x++)
+                        assert_int_equal(*sample_address(i, x, y),
                                          i > 0              ? 128
                                          : (k & 2) && f > 0 ? 235
                                                             : 255);
@@ -425,69 +433,70 @@ TEST(white_saturates)
 
 /* Checks sRGB codes computed by hand: code 128 has light 226346 / 2^20; 2.5
  * times that is code 194, 4 times is 239, and a quarter of white is 137. */
-TEST(codes_by_hand)
+TEST(codes_match_hand_computation)
 {
-    make_image(GLINT_RGB24, 1, 1, 0);
-    memset(find_sample(0, 0, 0), 128, 3);
+    make_guarded_image(GLINT_RGB24, 1, 1, 0);
+    memset(sample_address(0, 0, 0), 128, 3);
     fixture.light_q20[0][0] = 3 * 226346 / 2;
     fixture.light_q20[1][0] = 3 * 226346;
     fixture.light_q20[2][0] = WHITE_Q20 / 4 - 226346;
-    add_light(0);
-    assert_int_equal(*find_sample(0, 0, 0), 194);
-    assert_int_equal(*find_sample(0, 1, 0), 239);
-    assert_int_equal(*find_sample(0, 2, 0), 137);
+    add_light_to_image(0);
+    assert_int_equal(*sample_address(0, 0, 0), 194);
+    assert_int_equal(*sample_address(0, 1, 0), 239);
+    assert_int_equal(*sample_address(0, 2, 0), 137);
 }
 
 /* Checks that one lit pixel of four changes their chroma sample by a
  * quarter, and that a single pixel in the corner of an image with odd sides
  * changes it completely. */
-TEST(chroma_is_the_mean_of_those_that_exist)
+TEST(chroma_is_the_mean_of_existing_pixels)
 {
-    make_image(GLINT_I420, 3, 3, 0);
+    make_guarded_image(GLINT_I420, 3, 3, 0);
     for (int i = 0; i < 3; i++)
-        fill_random(i, i ? 128 : 0, i ? 128 : 0);
+        fill_with_random_codes(i, i ? 128 : 0, i ? 128 : 0);
     fixture.light_q20[2][0] = WHITE_Q20;
     fixture.light_q20[2][8] = WHITE_Q20;
-    add_light(0);
-    assert_int_equal(*find_sample(0, 0, 0), 29); /* 0.114 * 255 */
-    assert_int_equal(*find_sample(0, 1, 0), 0);
-    assert_int_equal(*find_sample(0, 2, 2), 29);
-    assert_int_equal(*find_sample(1, 0, 0), 160); /* 128 + 127.5 / 4 */
-    assert_int_equal(*find_sample(1, 1, 0), 128);
-    assert_int_equal(*find_sample(1, 1, 1), 255); /* 128 + 127.5 */
-    assert_int_equal(*find_sample(2, 1, 1),
+    add_light_to_image(0);
+    assert_int_equal(*sample_address(0, 0, 0), 29); /* 0.114 * 255 */
+    assert_int_equal(*sample_address(0, 1, 0), 0);
+    assert_int_equal(*sample_address(0, 2, 2), 29);
+    assert_int_equal(*sample_address(1, 0, 0), 160); /* 128 + 127.5 / 4 */
+    assert_int_equal(*sample_address(1, 1, 0), 128);
+    assert_int_equal(*sample_address(1, 1, 1), 255); /* 128 + 127.5 */
+    assert_int_equal(*sample_address(2, 1, 1),
                      107); /* 128 - 0.114 * 127.5 / 0.701 */
 }
 
 /* Checks that with dither the mean of a uniform image is right within 0.1
  * code. */
-TEST(dither_has_the_right_mean)
+TEST(dither_keeps_the_mean)
 {
     for (int light = 0; light < 9000; light += 97) {
         int total = 0;
         double want;
 
-        make_image(GLINT_RGB24, 8, 8, 0);
-        fill_random(0, 200, 200);
+        make_guarded_image(GLINT_RGB24, 8, 8, 0);
+        fill_with_random_codes(0, 200, 200);
         for (int k = 0; k < 64; k++)
             fixture.light_q20[0][k] = light;
-        add_light(1);
+        add_light_to_image(1);
         for (int k = 0; k < 64; k++) {
-            total += *find_sample(0, 3 * (k % 8), k / 8);
-            assert_int_equal(*find_sample(0, 3 * (k % 8) + 1, k / 8), 200);
+            total += *sample_address(0, 3 * (k % 8), k / 8);
+            assert_int_equal(*sample_address(0, 3 * (k % 8) + 1, k / 8), 200);
         }
-        want = 200 + 255 * code_change(200 / 255.0, light_at(0, 0));
+        want =
+            200 + 255 * expected_code_change(200 / 255.0, light_of_pixel(0, 0));
         assert_true(fabs(total / 64.0 - want) <= 0.1);
     }
 }
 
-/* Checks that the dither pattern has each of 64 thresholds once, with
- * neighbours far apart. */
-TEST(dither_pattern)
+/* Checks that the dither pattern has each of 64 thresholds once, and that
+ * neighbouring thresholds differ much. */
+TEST(dither_pattern_has_all_thresholds)
 {
     int seen[64] = {0};
 
-    make_image(GLINT_GREY, 8, 8, 0);
+    make_guarded_image(GLINT_GREY, 8, 8, 0);
     glint_resolve_init(&resolve, &fixture.image, 1, 0);
     for (int k = 0; k < 64; k++)
         seen[(resolve.round_q7[k / 8][k % 8] - 1) / 2]++;
@@ -503,22 +512,23 @@ TEST(dither_in_ycc_stays_within_a_code)
 {
     for (int f = 0; f < 5; f++)
         for (int k = 0; k < 16; k++) {
-            make_image(formats[f], 33, 18, k & 8);
-            set_coding(k);
+            make_guarded_image(formats[f], 33, 18, k & 8);
+            set_coding_by_bits(k);
             if (formats[f] == GLINT_RGB24)
                 fixture.image.range = GLINT_RANGE_FULL;
-            fill_random(0, 0, 255);
+            fill_with_random_codes(0, 0, 255);
             for (int i = 1; i < glint_image_planes(formats[f]); i++)
-                fill_random(i, 100, 156);
-            fill_light();
-            add_light(1);
-            check_picture(1.15);
+                fill_with_random_codes(i, 100, 156);
+            fill_with_random_light();
+            add_light_to_image(1);
+            check_image_after_light(1.15);
         }
 }
 
-TEST(linear_adds_and_saturates)
+TEST(linear_light_adds_and_saturates)
 {
-    static int32_t px_q20[2][9]; /* three pixels per row, the third unused */
+    /* rows of three pixels, the third of which is padding */
+    static int32_t px_q20[2][9];
     const int32_t light_q20[3][2][2] = {{{5, INT32_MAX}, {-7, 1}},
                                         {{-9, INT32_MIN}, {1 << 20, 2}},
                                         {{0, INT32_MAX}, {INT32_MAX - 9, 3}}};
@@ -548,8 +558,8 @@ static const enum glint_pixel_format twins[][2] = {
     {GLINT_RGB24, GLINT_BGR24},   {GLINT_RGB24, GLINT_XRGB8888},
     {GLINT_RGB24, GLINT_XBGR8888}};
 
-static void copy_codes(const struct glint_image *to,
-                       const struct glint_image *from)
+static void copy_image_codes(const struct glint_image *to,
+                             const struct glint_image *from)
 {
     const struct glint_layout *lt = glint_layout_of(to->format);
     const struct glint_layout *lf = glint_layout_of(from->format);
@@ -561,27 +571,27 @@ static void copy_codes(const struct glint_image *to,
                     *glint_layout_at(lf, from, i, x, y);
 }
 
-TEST(layouts_agree)
+TEST(layouts_give_the_same_codes)
 {
     static uint8_t twin_mem[4 * 34 * 18], back_mem[4 * 34 * 18];
     for (size_t t = 0; t < sizeof twins / sizeof *twins; t++)
         for (int s = 0; s < N_SIZES; s++) {
             struct glint_image twin, back;
 
-            make_image(twins[t][0], sizes[s][0], sizes[s][1], 0);
+            make_guarded_image(twins[t][0], sizes[s][0], sizes[s][1], 0);
             for (int i = 0; i < glint_image_planes(twins[t][0]); i++)
-                fill_random(i, 0, 255);
-            fill_light();
+                fill_with_random_codes(i, 0, 255);
+            fill_with_random_light();
             twin = back = fixture.image;
             twin.format = twins[t][1];
             memset(twin_mem, 0x99, sizeof twin_mem);
             glint_image_place(&twin, twin_mem);
             glint_image_place(&back, back_mem);
-            copy_codes(&twin, &fixture.image);
-            add_light(0);
-            add_light_to(&twin, 0, 0);
-            copy_codes(&back, &twin);
-            copy_codes(&twin, &fixture.image);
+            copy_image_codes(&twin, &fixture.image);
+            add_light_to_image(0);
+            add_light_in_strips(&twin, 0, 0);
+            copy_image_codes(&back, &twin);
+            copy_image_codes(&twin, &fixture.image);
             for (int i = 0; i < 3; i++)
                 for (int y = 0; y < back.height; y++)
                     for (int x = 0; x < back.width; x++)
@@ -599,7 +609,7 @@ TEST(layouts_agree)
 
 /* Checks that a row of packed pixels, drawn in one span (where SIMD vectors
  * end anywhere), equals one drawn in spans of eight. */
-TEST(long_stretches_are_short_ones)
+TEST(long_spans_equal_short_spans)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
     static struct glint_light_rows light, part;
@@ -612,10 +622,10 @@ TEST(long_stretches_are_short_ones)
                 .format = packed[k & 1], .width = n, .height = 1};
 
             for (int i = 0; i < 2 * n; i++)
-                want[i] = got[i] = (uint8_t)rng_below(&seed, 256);
+                want[i] = got[i] = (uint8_t)rng_int_below(&seed, 256);
             for (int i = 0; i < 3 * 64; i++)
                 light.rgb_q16[i / 64][0][i % 64] =
-                    (uint16_t)rng_below(&seed, 9000);
+                    (uint16_t)rng_int_below(&seed, 9000);
             glint_resolve_init(&resolve, &image, 0,
                                k & 2 ? glint_system_sets() : 0u);
             glint_image_place(&image, got);
@@ -633,7 +643,7 @@ TEST(long_stretches_are_short_ones)
 }
 
 /* Makes the image uniform in each 2 x 2 pixels, where shared light is exact. */
-static void make_even(void)
+static void make_blocks_uniform(void)
 {
     const struct glint_image *image = &fixture.image;
     const struct glint_layout *l = glint_layout_of(image->format);
@@ -646,8 +656,8 @@ static void make_even(void)
                     *glint_layout_at(l, image, i, x & ~1, y & ~1);
 }
 
-static void add_quads(const struct glint_image *image, int dither,
-                      unsigned sets)
+static void add_light_of_quads(const struct glint_image *image, int dither,
+                               unsigned sets)
 {
     static struct glint_quads_rows rows;
     static struct glint_light_rows light;
@@ -659,15 +669,15 @@ static void add_quads(const struct glint_image *image, int dither,
     for (int y = 0; y < image->height; y += 2) {
         for (int x = 0; x < image->width; x += 2)
             for (int i = 0; i < 3; i++)
-                light.rgb_q16[i][0][x / 2] =
-                    light_q16(fixture.light_q20[i][y * image->width + x]);
+                light.rgb_q16[i][0][x / 2] = convert_light_to_q16(
+                    fixture.light_q20[i][y * image->width + x]);
         glint_resolve_quads(&resolve, image, 0, y, image->width,
                             y + 2 < image->height ? 2 : image->height - y, rgb,
                             &rows);
     }
 }
 
-TEST(quads_of_even_pictures)
+TEST(quads_of_uniform_blocks_are_exact)
 {
     static const enum glint_pixel_format every[] = {
         GLINT_YUYV, GLINT_UYVY,  GLINT_I420,     GLINT_NV12,
@@ -676,11 +686,11 @@ TEST(quads_of_even_pictures)
 
     for (size_t f = 0; f < sizeof every / sizeof *every; f++)
         for (int size = 0; size < 40; size++) {
-            make_image(every[f], 1 + size, 1 + (size * 7) % 40, 0);
+            make_guarded_image(every[f], 1 + size, 1 + (size * 7) % 40, 0);
             for (int i = 0; i < glint_image_planes(every[f]); i++)
-                fill_random(i, 0, 255);
-            make_even();
-            fill_light();
+                fill_with_random_codes(i, 0, 255);
+            make_blocks_uniform();
+            fill_with_random_light();
             for (int i = 0; i < 3; i++)
                 for (int y = 0; y < fixture.image.height; y++)
                     for (int x = 0; x < fixture.image.width; x++)
@@ -689,11 +699,12 @@ TEST(quads_of_even_pictures)
                                 .light_q20[i][(y & ~1) * fixture.image.width +
                                               (x & ~1)];
             memcpy(even, fixture.plane, sizeof even);
-            add_light_to(&fixture.image, 1, 0);
+            add_light_in_strips(&fixture.image, 1, 0);
             memcpy(want, fixture.plane, sizeof want);
             for (int k = 0; k < 2; k++) {
                 memcpy(fixture.plane, even, sizeof even);
-                add_quads(&fixture.image, 1, k ? glint_system_sets() : 0u);
+                add_light_of_quads(&fixture.image, 1,
+                                   k ? glint_system_sets() : 0u);
                 assert_memory_equal(fixture.plane, want, sizeof want);
             }
         }
@@ -702,58 +713,60 @@ TEST(quads_of_even_pictures)
 /* Checks 2 x 2 pixels that differ: shared light changes bright pixels less;
  * none becomes darker or exceeds white, their order is preserved, and strong
  * light makes all four white. */
-TEST(quads_of_edges)
+TEST(quads_of_edges_stay_ordered)
 {
     static const uint8_t luma[2][2] = {{16, 235}, {90, 17}};
 
     for (int strength = 0; strength <= 24; strength++) {
-        make_image(GLINT_YUYV, 32, 2, 0);
+        make_guarded_image(GLINT_YUYV, 32, 2, 0);
         fixture.image.range = GLINT_RANGE_LIMITED;
         for (int x = 0; x < 64; x++)
             for (int y = 0; y < 2; y++)
-                *find_sample(0, x, y) = x % 2 ? 128 : luma[y][x / 2 % 2];
+                *sample_address(0, x, y) = x % 2 ? 128 : luma[y][x / 2 % 2];
         for (int i = 0; i < 3 * 64; i++)
             fixture.light_q20[i / 64][i % 64] = 1 << strength >> 4;
-        add_quads(&fixture.image, 0, 0);
+        add_light_of_quads(&fixture.image, 0, 0);
         for (int x = 0; x < 64; x += 2)
             for (int y = 0; y < 2; y++) {
-                assert_in_range(*find_sample(0, x, y), luma[y][x / 2 % 2], 235);
-                assert_int_equal(*find_sample(0, x + 1, y), 128);
+                assert_in_range(*sample_address(0, x, y), luma[y][x / 2 % 2],
+                                235);
+                assert_int_equal(*sample_address(0, x + 1, y), 128);
                 if (strength == 24)
-                    assert_int_equal(*find_sample(0, x, y), 235);
+                    assert_int_equal(*sample_address(0, x, y), 235);
             }
-        assert_true(*find_sample(0, 0, 0) <= *find_sample(0, 0, 1));
+        assert_true(*sample_address(0, 0, 0) <= *sample_address(0, 0, 1));
     }
 }
 
 /* Returns the RMS difference, codes, between light shared by 2 x 2 pixels
  * and light per pixel, over images whose pixels differ by up to DIFFER
  * codes. */
-static double quads_rms(int differ)
+static double rms_of_quads_and_pixels(int differ)
 {
     static uint8_t want[PLANE_BYTES];
     double sum2 = 0;
     int n = 0;
 
     for (int turn = 0; turn < 50; turn++) {
-        make_image(GLINT_YUYV, 32, 2, 0);
-        fill_random(0, 0, differ);
+        make_guarded_image(GLINT_YUYV, 32, 2, 0);
+        fill_with_random_codes(0, 0, differ);
         for (int x = 0; x < 64; x++)
             for (int y = 0; y < 2; y++)
-                *find_sample(0, x, y) =
-                    (uint8_t)(*find_sample(0, x, y) +
+                *sample_address(0, x, y) =
+                    (uint8_t)(*sample_address(0, x, y) +
                               (x % 2 ? 120 : 20 + 3 * turn));
         for (int i = 0; i < 3 * 64; i++)
             fixture.light_q20[i / 64][i % 64] = 3000 << turn % 8;
         memcpy(fixture.before, fixture.plane, sizeof fixture.before);
-        add_light_to(&fixture.image, 0, 0);
+        add_light_in_strips(&fixture.image, 0, 0);
         memcpy(want, fixture.plane[0], sizeof want);
         memcpy(fixture.plane, fixture.before, sizeof fixture.before);
-        add_quads(&fixture.image, 0, 0);
+        add_light_of_quads(&fixture.image, 0, 0);
         for (int x = 0; x < 64; x += 2)
             for (int y = 0; y < 2; y++, n++) {
-                const int off = *find_sample(0, x, y) -
-                                want[find_sample(0, x, y) - fixture.plane[0]];
+                const int off =
+                    *sample_address(0, x, y) -
+                    want[sample_address(0, x, y) - fixture.plane[0]];
 
                 sum2 += off * off;
             }
@@ -761,16 +774,16 @@ static double quads_rms(int differ)
     return sqrt(sum2 / n);
 }
 
-TEST(quads_are_near)
+TEST(quads_are_near_single_pixels)
 {
-    assert_true(quads_rms(0) < 1e-9);
-    assert_true(quads_rms(8) < 0.5);
-    assert_true(quads_rms(40) < 1.5);
+    assert_true(rms_of_quads_and_pixels(0) < 1e-9);
+    assert_true(rms_of_quads_and_pixels(8) < 0.5);
+    assert_true(rms_of_quads_and_pixels(40) < 1.5);
 }
 
 /* Checks that a span of 2 x 2 pixels equals several short ones, for any
  * remainder at its end. */
-TEST(long_quads_are_short_ones)
+TEST(long_quad_spans_equal_short_spans)
 {
     static const enum glint_pixel_format some[] = {GLINT_YUYV, GLINT_UYVY,
                                                    GLINT_I420};
@@ -787,10 +800,10 @@ TEST(long_quads_are_short_ones)
                 light.rgb_q16[0][0], light.rgb_q16[1][0], light.rgb_q16[2][0]};
 
             for (size_t i = 0; i < bytes; i++)
-                want[i] = got[i] = (uint8_t)rng_below(&seed, 256);
+                want[i] = got[i] = (uint8_t)rng_int_below(&seed, 256);
             for (int i = 0; i < 3 * 64; i++)
                 light.rgb_q16[i / 64][0][i % 64] =
-                    (uint16_t)rng_below(&seed, 9000);
+                    (uint16_t)rng_int_below(&seed, 9000);
             glint_resolve_init(&resolve, &image, 0,
                                k > 2 ? glint_system_sets() : 0u);
             glint_image_place(&image, got);
@@ -812,7 +825,7 @@ TEST(long_quads_are_short_ones)
 
 /* Checks that all codes of RGB565 are unchanged without light, and reach the
  * max green under strong green light. */
-TEST(writes_565)
+TEST(writes_rgb565)
 {
     static uint8_t mem[2 * 32 * 32], before_mem[2 * 32 * 32];
     struct glint_image image = glint_image_over(mem, GLINT_RGB565, 32, 32);
@@ -824,11 +837,11 @@ TEST(writes_565)
         }
         memcpy(before_mem, mem, sizeof mem);
         memset(fixture.light_q20, 0, sizeof fixture.light_q20);
-        add_light_to(&image, 0, 0);
+        add_light_in_strips(&image, 0, 0);
         assert_memory_equal(mem, before_mem, sizeof mem);
         for (int k = 0; k < 1024; k++)
             fixture.light_q20[1][k] = WHITE_Q20;
-        add_light_to(&image, 0, 0);
+        add_light_in_strips(&image, 0, 0);
         for (int k = 0; k < 1024; k++) {
             assert_int_equal(mem[2 * k], before_mem[2 * k] | 0xe0);
             assert_int_equal(mem[2 * k + 1], before_mem[2 * k + 1] | 0x07);
@@ -837,19 +850,19 @@ TEST(writes_565)
 }
 
 /* Checks that fixed images have the same bytes on every machine. */
-TEST(same_on_every_machine)
+TEST(images_match_their_hashes)
 {
     uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a */
 
     seed = 12345;
     for (int f = 0; f < 5; f++)
         for (int k = 0; k < 8; k++) {
-            make_image(formats[f], 33, 18, 0);
-            set_coding(k);
+            make_guarded_image(formats[f], 33, 18, 0);
+            set_coding_by_bits(k);
             for (int i = 0; i < glint_image_planes(formats[f]); i++)
-                fill_random(i, 0, 255);
-            fill_light();
-            add_light(k & 1);
+                fill_with_random_codes(i, 0, 255);
+            fill_with_random_light();
+            add_light_to_image(k & 1);
             for (size_t i = 0; i < sizeof fixture.plane; i++)
                 hash = (hash ^ ((uint8_t *)fixture.plane)[i]) *
                        UINT64_C(1099511628211);

@@ -53,7 +53,7 @@ static void *allocate_fenced(size_t bytes)
     return (uint8_t *)mem + PAGE - bytes;
 }
 
-static void free_blocks(void)
+static void free_fenced_blocks(void)
 {
     while (n_blocks > 0) {
         uint8_t *mem = blocks[--n_blocks];
@@ -81,7 +81,7 @@ static const struct glint_quad_kernels quad_kernels_c = {
 
 enum { N_VARIANTS = sizeof variants / sizeof *variants };
 
-static double now_ns(void)
+static double read_clock_ns(void)
 {
     struct timespec t;
 
@@ -97,13 +97,13 @@ static double now_ns(void)
         if (!getenv("GLINT_BENCH"))                                        \
             break;                                                         \
         for (int round_ = 0; round_ < 1000; round_++) {                    \
-            double t0_ = now_ns(), t1_, t2_;                               \
+            double t0_ = read_clock_ns(), t1_, t2_;                        \
             for (int i_ = 0; i_ < 20; i_++)                                \
                 of_c;                                                      \
-            t1_ = now_ns();                                                \
+            t1_ = read_clock_ns();                                         \
             for (int i_ = 0; i_ < 20; i_++)                                \
                 of_variant;                                                \
-            t2_ = now_ns();                                                \
+            t2_ = read_clock_ns();                                         \
             best[0] = t1_ - t0_ < best[0] ? t1_ - t0_ : best[0];           \
             best[1] = t2_ - t1_ < best[1] ? t2_ - t1_ : best[1];           \
         }                                                                  \
@@ -127,7 +127,7 @@ struct rows {
     int16_t *change[3];
 };
 
-static void make_rows(struct rows *r)
+static void allocate_rows(struct rows *r)
 {
     r->luma = allocate_fenced(N);
     r->cb = allocate_fenced(N);
@@ -138,7 +138,7 @@ static void make_rows(struct rows *r)
     }
 }
 
-static void random_mix(struct glint_mix *mix)
+static void init_random_mix(struct glint_mix *mix)
 {
     const struct glint_image image = {
         .matrix = (enum glint_matrix)(random_bits() & 1),
@@ -148,28 +148,29 @@ static void random_mix(struct glint_mix *mix)
     glint_mix_init(mix, &image);
 }
 
-static void add_luma(const struct glint_kernels *k, const struct rows *r, int n,
-                     const struct glint_mix *mix, const int16_t *round)
+static void add_luma_light(const struct glint_kernels *k, const struct rows *r,
+                           int n, const struct glint_mix *mix,
+                           const int16_t *round)
 {
     const uint16_t *const light[3] = {r->light[0], r->light[1], r->light[2]};
 
     k->add_luma(r->luma, r->cb, r->cr, light, r->change, n, mix, round);
 }
 
-static void check_luma(const struct glint_kernels *k, const char *name)
+static void check_luma_kernel(const struct glint_kernels *k, const char *name)
 {
     const struct glint_kernels *plain = &kernels_c;
     struct glint_mix mix;
     struct rows want, got;
     int16_t round[8];
 
-    make_rows(&want);
-    make_rows(&got);
+    allocate_rows(&want);
+    allocate_rows(&got);
     for (int turn = 0; turn < ROUNDS; turn++) {
         const int n =
             GLINT_LANES * (1 + (int)(random_bits() % (N / GLINT_LANES)));
 
-        random_mix(&mix);
+        init_random_mix(&mix);
         for (int i = 0; i < 8; i++)
             round[i] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < N; i++) {
@@ -181,14 +182,14 @@ static void check_luma(const struct glint_kernels *k, const char *name)
                 want.change[c][i] = got.change[c][i] = 77;
             }
         }
-        add_luma(plain, &want, n, &mix, round);
-        add_luma(k, &got, n, &mix, round);
+        add_luma_light(plain, &want, n, &mix, round);
+        add_luma_light(k, &got, n, &mix, round);
         EXPECT_SAME(got.luma, want.luma, N);
         for (int c = 0; c < 3; c++)
             EXPECT_SAME(got.change[c], want.change[c], 2 * N);
     }
-    BENCH("add_luma", name, add_luma(plain, &want, N, &mix, round),
-          add_luma(k, &got, N, &mix, round));
+    BENCH("add_luma", name, add_luma_light(plain, &want, N, &mix, round),
+          add_luma_light(k, &got, N, &mix, round));
 }
 
 struct pairs {
@@ -197,7 +198,7 @@ struct pairs {
     int16_t *mean[3];
 };
 
-static void make_pairs(struct pairs *p)
+static void allocate_pixel_pairs(struct pairs *p)
 {
     p->luma = allocate_fenced(N);
     p->chroma = allocate_fenced(N);
@@ -207,9 +208,11 @@ static void make_pairs(struct pairs *p)
     }
 }
 
-static void add_pairs(const struct glint_kernels *k, const struct pairs *p,
-                      int n, enum glint_pair_step step,
-                      const struct glint_mix *mix, const int16_t *round)
+static void add_light_to_pairs(const struct glint_kernels *k,
+                               const struct pairs *p, int n,
+                               enum glint_pair_step step,
+                               const struct glint_mix *mix,
+                               const int16_t *round)
 {
     const uint16_t *const light[3] = {p->light[0], p->light[1], p->light[2]};
 
@@ -217,22 +220,22 @@ static void add_pairs(const struct glint_kernels *k, const struct pairs *p,
                  round + 8);
 }
 
-static void check_pairs(const struct glint_kernels *k, const char *name)
+static void check_pair_kernel(const struct glint_kernels *k, const char *name)
 {
     const struct glint_kernels *plain = &kernels_c;
     struct glint_mix mix;
     struct pairs want, got;
     int16_t round[16];
 
-    make_pairs(&want);
-    make_pairs(&got);
+    allocate_pixel_pairs(&want);
+    allocate_pixel_pairs(&got);
     for (int turn = 0; turn < ROUNDS; turn++) {
         const int n =
             GLINT_LANES * (1 + (int)(random_bits() % (N / GLINT_LANES)));
         const enum glint_pair_step step =
             (enum glint_pair_step)(random_bits() % 3);
 
-        random_mix(&mix);
+        init_random_mix(&mix);
         for (int i = 0; i < 16; i++)
             round[i] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < N; i++) {
@@ -244,21 +247,23 @@ static void check_pairs(const struct glint_kernels *k, const char *name)
                     (int16_t)(random_bits() % (GLINT_WHITE_Q15 + 1));
             }
         }
-        add_pairs(plain, &want, n, step, &mix, round);
-        add_pairs(k, &got, n, step, &mix, round);
+        add_light_to_pairs(plain, &want, n, step, &mix, round);
+        add_light_to_pairs(k, &got, n, step, &mix, round);
         EXPECT_SAME(got.luma, want.luma, N);
         EXPECT_SAME(got.chroma, want.chroma, N);
         for (int c = 0; c < 3; c++)
             EXPECT_SAME(got.mean[c], want.mean[c], 2 * N);
     }
     BENCH("add_pairs", name,
-          add_pairs(plain, &want, N, GLINT_PAIRS_ALONE, &mix, round),
-          add_pairs(k, &got, N, GLINT_PAIRS_ALONE, &mix, round));
+          add_light_to_pairs(plain, &want, N, GLINT_PAIRS_ALONE, &mix, round),
+          add_light_to_pairs(k, &got, N, GLINT_PAIRS_ALONE, &mix, round));
 }
 
-static void add_packed(const struct glint_kernels *k, uint8_t *pixels,
-                       uint16_t *const light[3], int n, int luma_at,
-                       const struct glint_mix *mix, const int16_t *round)
+static void add_light_to_packed_pixels(const struct glint_kernels *k,
+                                       uint8_t *pixels,
+                                       uint16_t *const light[3], int n,
+                                       int luma_at, const struct glint_mix *mix,
+                                       const int16_t *round)
 {
     const uint16_t *const rgb[3] = {light[0], light[1], light[2]};
 
@@ -266,7 +271,7 @@ static void add_packed(const struct glint_kernels *k, uint8_t *pixels,
 }
 
 /* Checks packed pixels at odd addresses, with dark spans among them. */
-static void check_packed(const struct glint_kernels *k, const char *name)
+static void check_packed_kernel(const struct glint_kernels *k, const char *name)
 {
     const struct glint_kernels *plain = &kernels_c;
     uint8_t *want = allocate_fenced(2 * N + 1),
@@ -283,19 +288,21 @@ static void check_packed(const struct glint_kernels *k, const char *name)
                   at = (int)(random_bits() & 1);
         const int dark = (int)(random_bits() % N);
 
-        random_mix(&mix);
+        init_random_mix(&mix);
         for (int i = 0; i < 16; i++)
             round[i] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < 2 * N + 1; i++)
             want[i] = got[i] = (uint8_t)random_bits();
         for (int i = 0; i < 3 * N; i++)
             light[i / N][i % N] = i % N > dark ? random_light() : 0;
-        add_packed(plain, want + at, light, n, luma_at, &mix, round);
-        add_packed(k, got + at, light, n, luma_at, &mix, round);
+        add_light_to_packed_pixels(plain, want + at, light, n, luma_at, &mix,
+                                   round);
+        add_light_to_packed_pixels(k, got + at, light, n, luma_at, &mix, round);
         EXPECT_SAME(got, want, 2 * N + 1);
     }
-    BENCH("add_packed", name, add_packed(plain, want, light, N, 0, &mix, round),
-          add_packed(k, got, light, N, 0, &mix, round));
+    BENCH("add_packed", name,
+          add_light_to_packed_pixels(plain, want, light, N, 0, &mix, round),
+          add_light_to_packed_pixels(k, got, light, N, 0, &mix, round));
 }
 
 /* Two rows of luma and of chroma; packed pixels are in luma. */
@@ -303,10 +310,10 @@ struct quads {
     uint8_t *luma[2], *chroma[2];
 };
 
-static void add_quads(const struct glint_quad_kernels *k,
-                      const struct quads *rows, uint16_t *const light[3], int n,
-                      int packed, const struct glint_mix *mix,
-                      int16_t (*round)[8])
+static void add_light_to_quads(const struct glint_quad_kernels *k,
+                               const struct quads *rows,
+                               uint16_t *const light[3], int n, int packed,
+                               const struct glint_mix *mix, int16_t (*round)[8])
 {
     const uint16_t *const rgb[3] = {light[0], light[1], light[2]};
     const int16_t *const r[2] = {round[0], round[1]};
@@ -320,7 +327,8 @@ static void add_quads(const struct glint_quad_kernels *k,
 
 /* Checks blocks of 2 x 2 pixels with dark spans among them; the two rows may
  * be the same row or share their chroma. */
-static void check_quads(const struct glint_quad_kernels *k, const char *name)
+static void check_quad_kernel(const struct glint_quad_kernels *k,
+                              const char *name)
 {
     const struct glint_quad_kernels *plain = &quad_kernels_c;
     uint8_t *want[4], *got[4];
@@ -342,7 +350,7 @@ static void check_quads(const struct glint_quad_kernels *k, const char *name)
         const int one_chroma = one_row || random_bits() % 2;
         const int dark = (int)(random_bits() % (N / 2));
 
-        random_mix(&mix);
+        init_random_mix(&mix);
         for (int i = 0; i < 32; i++)
             round[i / 8][i % 8] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < 8 && one_row; i++)
@@ -358,17 +366,18 @@ static void check_quads(const struct glint_quad_kernels *k, const char *name)
                            {want[2], want[2 + !one_chroma]}};
         b = (struct quads){{got[0], got[!one_row]},
                            {got[2], got[2 + !one_chroma]}};
-        add_quads(plain, &a, light, n, packed, &mix, round);
-        add_quads(k, &b, light, n, packed, &mix, round);
+        add_light_to_quads(plain, &a, light, n, packed, &mix, round);
+        add_light_to_quads(k, &b, light, n, packed, &mix, round);
         for (int i = 0; i < 4; i++)
             EXPECT_SAME(got[i], want[i], 2 * N);
     }
-    BENCH("add_quads", name, add_quads(plain, &a, light, N, 1, &mix, round),
-          add_quads(k, &b, light, N, 1, &mix, round));
+    BENCH("add_quads", name,
+          add_light_to_quads(plain, &a, light, N, 1, &mix, round),
+          add_light_to_quads(k, &b, light, N, 1, &mix, round));
 }
 
 /* Checks every code with every light. */
-static void check_code(const struct glint_kernels *k, const char *name)
+static void check_code_kernel(const struct glint_kernels *k, const char *name)
 {
     const int16_t round[8] = {64, 0, 127, 1, 63, 65, 100, 30};
     const struct glint_kernels *plain = &kernels_c;
@@ -395,7 +404,7 @@ static void check_code(const struct glint_kernels *k, const char *name)
           k->add_code(got, light, N, glint_tone16_of(GLINT_TONE_SRGB), round));
 }
 
-static void check_sum(const struct glint_kernels *k, const char *name)
+static void check_sum_kernel(const struct glint_kernels *k, const char *name)
 {
     const struct glint_kernels *plain = &kernels_c;
     uint32_t *want = allocate_fenced(N * sizeof *want),
@@ -431,7 +440,7 @@ static void check_sum(const struct glint_kernels *k, const char *name)
 
 /* Checks polynomials whose coefficients' magnitudes sum to less than 2^30,
  * which the bake guarantees. */
-static void check_horner(const struct glint_horner *k, const char *name)
+static void check_horner_kernel(const struct glint_horner *k, const char *name)
 {
     const struct glint_horner *plain = glint_horner_of(0);
     int32_t *c = allocate_fenced(160 * sizeof *c),
@@ -464,7 +473,7 @@ static void check_horner(const struct glint_horner *k, const char *name)
 }
 
 /* Returns a random number of magnitude below MOST, often MOST - 1. */
-static int32_t random_below(int64_t most)
+static int32_t random_signed_below(int64_t most)
 {
     const uint32_t x = random_bits();
     const int64_t size = x % 7 == 0 ? most - 1 : (x >> 3) % most >> x % 31;
@@ -472,7 +481,7 @@ static int32_t random_below(int64_t most)
     return (int32_t)(x & 4 ? -size : size);
 }
 
-static void check_turn(glint_turn_fn *turn, const char *name)
+static void check_turn_kernel(glint_turn_fn *turn, const char *name)
 {
     const int64_t most = INT64_C(1) << 30;
     const size_t bytes = GLINT_TURNED * sizeof(int32_t);
@@ -485,15 +494,16 @@ static void check_turn(glint_turn_fn *turn, const char *name)
     int n_lost = 0, n_kept = 0;
 
     for (int round = 0; round < 5 * ROUNDS; round++) {
-        /* Every second round gives results close to the max. */
+        /* results of every second round are close to the max */
         const int near = (int)(random_bits() % 62) + 1;
 
-        t = (struct glint_turn){random_below(2 * most), random_below(2 * most),
+        t = (struct glint_turn){random_signed_below(2 * most),
+                                random_signed_below(2 * most),
                                 round % 2 ? near : 28 + near % 8,
-                                1 + abs(random_below(most))};
+                                1 + abs(random_signed_below(most))};
         for (int i = 0; i < GLINT_TURNED; i++) {
-            x[i] = random_below(most);
-            y[i] = random_below(most);
+            x[i] = random_signed_below(most);
+            y[i] = random_signed_below(most);
             for (int k = 0; k < 2; k++)
                 lost[0][k][i] = lost[1][k][i] = random_bits() % 4 ? 0 : -1;
         }
@@ -511,9 +521,10 @@ static void check_turn(glint_turn_fn *turn, const char *name)
           turn(&t, x, y, out[1], lost[1]));
 }
 
-/* Taps and values have the max of a baked translucent medium: sums are below
- * 2^31 in any order. */
-static void check_convolve(glint_convolve_fn *convolve, const char *name)
+/* Checks convolutions whose taps and values have the max of a baked translucent
+ * medium, so that sums in any order are below 2^31. */
+static void check_convolution_kernel(glint_convolve_fn *convolve,
+                                     const char *name)
 {
     enum { TAPS = 32, VALUES = N + 2 * TAPS };
     int32_t *value = allocate_fenced(VALUES * sizeof *value);
@@ -527,14 +538,15 @@ static void check_convolve(glint_convolve_fn *convolve, const char *name)
         const ptrdiff_t stride = 1 + turn % 2;
 
         for (int i = 0; i < VALUES; i++)
-            value[i] = glint_pair(random_below(32768), random_below(32768));
+            value[i] = glint_pair(random_signed_below(32768),
+                                  random_signed_below(32768));
         for (int k = 0; k < n_taps; k++)
-            tap[k] = glint_pair(random_below(65536 / (2 * n_taps) < 32768
-                                                 ? 65536 / (2 * n_taps)
-                                                 : 32768),
-                                random_below(1024));
+            tap[k] = glint_pair(random_signed_below(65536 / (2 * n_taps) < 32768
+                                                        ? 65536 / (2 * n_taps)
+                                                        : 32768),
+                                random_signed_below(1024));
         for (int i = 0; i < N; i++)
-            got[i] = want[i] = random_below(1 << 20);
+            got[i] = want[i] = random_signed_below(1 << 20);
         glint_convolve_c(want, value, stride, tap, n_taps, n);
         convolve(got, value, stride, tap, n_taps, n);
         EXPECT_SAME(got, want, N * sizeof *got);
@@ -543,28 +555,30 @@ static void check_convolve(glint_convolve_fn *convolve, const char *name)
           convolve(got, value, 2, tap, 15, 32));
 }
 
-static void test_same_bits(void)
+static void test_kernels_are_identical(void)
 {
     for (int v = 0; v < N_VARIANTS; v++) {
         const struct glint_kernels *k = glint_kernels_of(variants[v].set);
 
         if (!(variants[v].set & glint_system_sets()))
             continue;
-        check_horner(glint_horner_of(variants[v].set), variants[v].name);
-        check_turn(glint_turn_of(variants[v].set), variants[v].name);
-        check_convolve(glint_convolve_of(variants[v].set), variants[v].name);
-        check_luma(k, variants[v].name);
-        check_pairs(k, variants[v].name);
-        check_packed(k, variants[v].name);
-        check_quads(glint_quad_kernels_of(variants[v].set), variants[v].name);
-        check_code(k, variants[v].name);
-        check_sum(k, variants[v].name);
+        check_horner_kernel(glint_horner_of(variants[v].set), variants[v].name);
+        check_turn_kernel(glint_turn_of(variants[v].set), variants[v].name);
+        check_convolution_kernel(glint_convolve_of(variants[v].set),
+                                 variants[v].name);
+        check_luma_kernel(k, variants[v].name);
+        check_pair_kernel(k, variants[v].name);
+        check_packed_kernel(k, variants[v].name);
+        check_quad_kernel(glint_quad_kernels_of(variants[v].set),
+                          variants[v].name);
+        check_code_kernel(k, variants[v].name);
+        check_sum_kernel(k, variants[v].name);
     }
 }
 
 /* Checks that a code is unchanged without light, and that more light never
  * makes it darker. */
-static void test_codes_of_c(void)
+static void test_code_kernel_in_c(void)
 {
     const int16_t round[8] = {64, 64, 64, 64, 64, 64, 64, 64};
 
@@ -591,8 +605,8 @@ static void test_codes_of_c(void)
 
 int main(void)
 {
-    test_codes_of_c();
-    test_same_bits();
-    free_blocks();
+    test_code_kernel_in_c();
+    test_kernels_are_identical();
+    free_fenced_blocks();
     return 0;
 }

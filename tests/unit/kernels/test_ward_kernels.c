@@ -56,7 +56,7 @@ static uint8_t *allocate_texels(void)
 
 /* Makes random levels of Gaussians or mipmaps; the last code is the last
  * texel of a level. */
-static void random_texels(struct glint_texels *t, uint8_t *code)
+static void make_random_texels(struct glint_texels *t, uint8_t *code)
 {
     uint32_t used = 0;
     const int is_mip = random_below(2);
@@ -79,7 +79,7 @@ static void random_texels(struct glint_texels *t, uint8_t *code)
     }
 }
 
-static void random_lobe(struct glint_ward_lobe *l)
+static void make_random_lobe(struct glint_ward_lobe *l)
 {
     const double alpha = pow(10, -3 * random_unit());
 
@@ -102,7 +102,7 @@ static void random_lobe(struct glint_ward_lobe *l)
 }
 
 /* Makes a random rotation, and a view direction that is often grazing. */
-static void random_place(struct glint_ward_place *p)
+static void make_random_view(struct glint_ward_place *p)
 {
     const double no = pow(random_unit(), random_below(3) ? 1 : 8) + 0x1p-13;
     const double across = sqrt(fmax(1 - no * no, 0)), turn = 7 * random_unit();
@@ -130,7 +130,7 @@ static void random_place(struct glint_ward_place *p)
     p->root_log2 = random_below(8) - 1;
 }
 
-static double now_ns(void)
+static double read_clock_ns(void)
 {
     struct timespec t;
 
@@ -139,31 +139,32 @@ static double now_ns(void)
 }
 
 /* Prints the min time of many rounds of 8 samples, in C and by SUM. */
-static void print_time(const char *name, glint_ward_sum_fn *sum,
-                       struct glint_ward_lobe *l, const struct glint_texels *t)
+static void print_kernel_time(const char *name, glint_ward_sum_fn *sum,
+                              struct glint_ward_lobe *l,
+                              const struct glint_texels *t)
 {
     struct glint_ward_place p;
     double best[2] = {1e9, 1e9};
     uint64_t rgb[3];
 
-    random_place(&p);
+    make_random_view(&p);
     p.out_q14[0] = p.out_q14[1] = 0;
     p.out_q14[2] = 1 << 14;
     l->n = 8;
     l->norm = GLINT_WARD_BOUNDED;
     for (int round = 0; round < 4000; round++)
         for (int which = 0; which < 2; which++) {
-            const double begin = now_ns();
+            const double begin = read_clock_ns();
 
             for (int k = 0; k < 20; k++)
                 (which ? sum : glint_ward_sum_c)(l, t, &p, rgb);
-            best[which] = fmin(best[which], (now_ns() - begin) / 20);
+            best[which] = fmin(best[which], (read_clock_ns() - begin) / 20);
         }
     printf("ward 8     %-6s C %.0f ns, %.0f ns, %.1f times\n", name, best[0],
            best[1], best[0] / best[1]);
 }
 
-static void check_variant(const char *name, glint_ward_sum_fn *sum)
+static void check_kernel_variant(const char *name, glint_ward_sum_fn *sum)
 {
     uint8_t *const code = allocate_texels();
     struct glint_texels texels;
@@ -172,13 +173,13 @@ static void check_variant(const char *name, glint_ward_sum_fn *sum)
 
     for (int i = 0; i < LOBES; i++) {
         if (i % 100 == 0)
-            random_texels(&texels, code);
-        random_lobe(&lobe);
+            make_random_texels(&texels, code);
+        make_random_lobe(&lobe);
         for (int k = 0; k < PLACES; k++) {
             struct glint_ward_place place;
             uint64_t want[3], got[3];
 
-            random_place(&place);
+            make_random_view(&place);
             glint_ward_sum_c(&lobe, &texels, &place, want);
             sum(&lobe, &texels, &place, got);
             EXPECT(memcmp(want, got, sizeof want) == 0);
@@ -188,21 +189,21 @@ static void check_variant(const char *name, glint_ward_sum_fn *sum)
         }
     }
     EXPECT(n_lit > LOBES * PLACES / 2);
-    random_texels(&texels, code);
+    make_random_texels(&texels, code);
     if (getenv("GLINT_BENCH"))
-        print_time(name, sum, &lobe, &texels);
+        print_kernel_time(name, sum, &lobe, &texels);
     EXPECT(mprotect(code + 4 * CODES, PAGE, PROT_READ | PROT_WRITE) == 0);
     free(code);
 }
 
 int main(void)
 {
-    check_variant("c", glint_ward_sum_of(0));
+    check_kernel_variant("c", glint_ward_sum_of(0));
     for (unsigned set = 1; set; set <<= 1)
         if (set & glint_system_sets())
-            check_variant(set == GLINT_SET_SSE41  ? "sse41"
-                          : set == GLINT_SET_AVX2 ? "avx2"
-                                                  : "neon",
-                          glint_ward_sum_of(set));
+            check_kernel_variant(set == GLINT_SET_SSE41  ? "sse41"
+                                 : set == GLINT_SET_AVX2 ? "avx2"
+                                                         : "neon",
+                                 glint_ward_sum_of(set));
     return 0;
 }

@@ -20,19 +20,19 @@ enum { HEIGHT = 6 };
 
 static uint32_t seed = 1;
 
-/* Fills IMAGE with random bytes, of which one in RARE may exceed 63. */
-static void fill_random(const struct glint_image *image, int rare)
+/* Fills IMAGE with random bytes; one in RARE of them may exceed 63. */
+static void fill_with_random_bytes(const struct glint_image *image, int rare)
 {
     const size_t bytes =
         glint_image_bytes(image->format, image->width, image->height);
 
     for (size_t i = 0; i < bytes; i++)
         image->plane[0][i] =
-            (uint8_t)(rng_below(&seed, rare) ? rng_below(&seed, 64)
-                                             : rng_below(&seed, 256));
+            (uint8_t)(rng_int_below(&seed, rare) ? rng_int_below(&seed, 64)
+                                                 : rng_int_below(&seed, 256));
 }
 
-static struct glint_bright *new_bright(int width, void **mem)
+static struct glint_bright *create_bright_scanner(int width, void **mem)
 {
     struct glint_arena arena = glint_arena_measure();
     struct glint_bright *b = malloc(sizeof *b);
@@ -52,15 +52,16 @@ static int compute_luma(int r, int g, int b)
     return (54 * r + 183 * g + 19 * b + 128) / 256;
 }
 
-static int widen_code(int v, int bits)
+static int widen_code_to_8_bits(int v, int bits)
 {
     return v << (8 - bits) | v >> (2 * bits - 8);
 }
 
 /* Sets *LARGEST to the largest RGB channel and *LUMA to the luma of a pixel,
  * by the definition of YCbCr. */
-static void measure_ycc(const struct glint_image *image, const int code[3],
-                        double *largest, int *luma)
+static void compute_ycc_brightness(const struct glint_image *image,
+                                   const int code[3], double *largest,
+                                   int *luma)
 {
     const int limited = image->range == GLINT_RANGE_LIMITED;
     const int is_709 = image->matrix == GLINT_MATRIX_BT709;
@@ -82,8 +83,8 @@ static const uint8_t *sample_address(const struct glint_image *image, int plane,
 }
 
 /* Sets CODE to Y, Cb, Cr of pixel (X, Y). */
-static void read_codes(const struct glint_image *image, int x, int y,
-                       int code[3])
+static void read_ycc_codes(const struct glint_image *image, int x, int y,
+                           int code[3])
 {
     const int cx = x / 2, cy = y / 2;
     const uint8_t *row = sample_address(image, 0, 0, y);
@@ -110,23 +111,24 @@ static void read_codes(const struct glint_image *image, int x, int y,
     }
 }
 
-static int clipped_value(int luma)
+static int brightness_of_clipped_luma(int luma)
 {
     return 250 + (luma > 177 ? (luma - 177) / 15 : 0);
 }
 
-static int compute_rgb_value(int r, int g, int b)
+static int compute_rgb_brightness(int r, int g, int b)
 {
     const int largest = r > g ? r > b ? r : b : g > b ? g : b;
 
-    return largest < 250 ? largest : clipped_value(compute_luma(r, g, b));
+    return largest < 250 ? largest
+                         : brightness_of_clipped_luma(compute_luma(r, g, b));
 }
 
-/* Sets *LEAST and *MOST to the brightness of pixel (X, Y) by the definition
- * of its format. They differ if the value is so close to a half that it may
- * round either way. */
-static void brightness_range(const struct glint_image *image, int x, int y,
-                             int *least, int *most)
+/* Sets *LEAST and *MOST to the brightness of pixel (X, Y) by the definition of
+ * its format. They differ by 1 if the exact value is so close to a half that
+ * either rounding is correct. */
+static void compute_brightness_range(const struct glint_image *image, int x,
+                                     int y, int *least, int *most)
 {
     const uint8_t *row = sample_address(image, 0, 0, y);
     int code[3], bits, luma, rounded[2];
@@ -135,38 +137,39 @@ static void brightness_range(const struct glint_image *image, int x, int y,
     switch (image->format) {
     case GLINT_RGB24:
         *least = *most =
-            compute_rgb_value(row[3 * x], row[3 * x + 1], row[3 * x + 2]);
+            compute_rgb_brightness(row[3 * x], row[3 * x + 1], row[3 * x + 2]);
         return;
     case GLINT_BGR24:
         *least = *most =
-            compute_rgb_value(row[3 * x + 2], row[3 * x + 1], row[3 * x]);
+            compute_rgb_brightness(row[3 * x + 2], row[3 * x + 1], row[3 * x]);
         return;
     case GLINT_XRGB8888:
         *least = *most =
-            compute_rgb_value(row[4 * x + 2], row[4 * x + 1], row[4 * x]);
+            compute_rgb_brightness(row[4 * x + 2], row[4 * x + 1], row[4 * x]);
         return;
     case GLINT_RGB565:
         bits = row[2 * x] | row[2 * x + 1] << 8;
-        *least = *most = compute_rgb_value(widen_code(bits >> 11, 5),
-                                           widen_code(bits >> 5 & 63, 6),
-                                           widen_code(bits & 31, 5));
+        *least = *most =
+            compute_rgb_brightness(widen_code_to_8_bits(bits >> 11, 5),
+                                   widen_code_to_8_bits(bits >> 5 & 63, 6),
+                                   widen_code_to_8_bits(bits & 31, 5));
         return;
     default:
-        read_codes(image, x, y, code);
-        measure_ycc(image, code, &largest, &luma);
+        read_ycc_codes(image, x, y, code);
+        compute_ycc_brightness(image, code, &largest, &luma);
     }
     for (int i = 0; i < 2; i++) {
         rounded[i] = (int)floor(largest + 0.3 + 0.4 * i);
         rounded[i] = rounded[i] < 0      ? 0
-                     : rounded[i] >= 250 ? clipped_value(luma)
+                     : rounded[i] >= 250 ? brightness_of_clipped_luma(luma)
                                          : rounded[i];
     }
     *least = rounded[0];
     *most = rounded[1];
 }
 
-static void check_scan(struct glint_bright *b, const struct glint_image *image,
-                       int low)
+static void check_scan_of_image(struct glint_bright *b,
+                                const struct glint_image *image, int low)
 {
     int n_bright = 0, n_marked = 0;
 
@@ -179,7 +182,7 @@ static void check_scan(struct glint_bright *b, const struct glint_image *image,
             const int is_marked = any && b->block[x / BRIGHT_BLOCK];
             int least, most;
 
-            brightness_range(image, x, y, &least, &most);
+            compute_brightness_range(image, x, y, &least, &most);
             n_bright += most >= low;
             n_marked += is_marked;
             if (is_marked)
@@ -195,25 +198,25 @@ static void check_scan(struct glint_bright *b, const struct glint_image *image,
         assert_int_equal(n_marked, 0);
 }
 
-TEST(scan_against_every_pixel)
+TEST(scan_matches_a_test_of_every_pixel)
 {
     static const int widths[] = {1, 2, 31, 32, 33, 64, 97, 160};
     static const int rares[] = {2, 50, 2000};
 
     for (int round = 0; round < CANVAS_FORMATS * 8 * 3 * 2; round++) {
         struct glint_image image =
-            canvas_new(canvas_format[round % CANVAS_FORMATS],
-                       widths[round / CANVAS_FORMATS % 8], HEIGHT);
+            canvas_allocate_image(canvas_format[round % CANVAS_FORMATS],
+                                  widths[round / CANVAS_FORMATS % 8], HEIGHT);
         struct glint_bright *b;
         void *mem;
 
-        b = new_bright(image.width, &mem);
+        b = create_bright_scanner(image.width, &mem);
         image.range = round / (CANVAS_FORMATS * 24) ? GLINT_RANGE_LIMITED
                                                     : GLINT_RANGE_FULL;
         image.matrix = (enum glint_matrix)(round % 2);
-        fill_random(&image, rares[round / (CANVAS_FORMATS * 8) % 3]);
+        fill_with_random_bytes(&image, rares[round / (CANVAS_FORMATS * 8) % 3]);
         for (int low = 1; low <= 255; low++)
-            check_scan(b, &image, low);
+            check_scan_of_image(b, &image, low);
         free(b);
         free(mem);
         free(image.plane[0]);
@@ -222,13 +225,13 @@ TEST(scan_against_every_pixel)
 
 /* Checks that a single pixel of exactly the threshold is found anywhere, and
  * one a code below it is not. */
-TEST(no_pixel_is_missed)
+TEST(finds_a_pixel_at_the_threshold)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 96, HEIGHT);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 96, HEIGHT);
     struct glint_bright *b;
     void *mem;
 
-    b = new_bright(image.width, &mem);
+    b = create_bright_scanner(image.width, &mem);
     for (int low = 1; low <= 250; low++)
         for (int x = 0; x < 96; x++) {
             const int value = low < 250 ? low : 254;
@@ -251,29 +254,30 @@ TEST(no_pixel_is_missed)
 
 /* Checks that in a row of dim grey the one code that differs is detected, in
  * the four blocks that are tested together and in the fifth. */
-TEST(no_colour_is_missed)
+TEST(finds_a_differing_code_in_grey)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
 
     for (int round = 0; round < 2000; round++) {
-        struct glint_image image = canvas_new(packed[round % 2], 160, HEIGHT);
+        struct glint_image image =
+            canvas_allocate_image(packed[round % 2], 160, HEIGHT);
         const int chroma_at = round % 2 ? 0 : 1;
         struct glint_bright *b;
         void *mem;
 
-        b = new_bright(image.width, &mem);
+        b = create_bright_scanner(image.width, &mem);
         image.range = round / 2 % 2 ? GLINT_RANGE_LIMITED : GLINT_RANGE_FULL;
         for (int y = 0; y < HEIGHT; y++) {
-            const int luma = rng_below(&seed, 230),
-                      chroma = 100 + rng_below(&seed, 56);
+            const int luma = rng_int_below(&seed, 230),
+                      chroma = 100 + rng_int_below(&seed, 56);
             uint8_t *row = image.plane[0] + y * image.stride_bytes[0];
 
             for (int i = 0; i < 2 * image.width; i++)
                 row[i] = (uint8_t)(i % 2 == chroma_at ? chroma : luma);
-            row[rng_below(&seed, 2 * image.width)] =
-                (uint8_t)rng_below(&seed, 256);
+            row[rng_int_below(&seed, 2 * image.width)] =
+                (uint8_t)rng_int_below(&seed, 256);
         }
-        check_scan(b, &image, 100 + rng_below(&seed, 156));
+        check_scan_of_image(b, &image, 100 + rng_int_below(&seed, 156));
         free(b);
         free(mem);
         free(image.plane[0]);

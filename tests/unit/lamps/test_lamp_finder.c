@@ -18,17 +18,17 @@
 
 /* Returns nearly Gaussian noise of standard deviation SIGMA, a sum of eight
  * uniform numbers. */
-static double draw_noise(double sigma)
+static double random_noise(double sigma)
 {
     double sum = 0;
 
     for (int i = 0; i < 8; i++)
-        sum += rng_below(&finder_seed, 1 << 20) * 0x1p-20 - 0.5;
+        sum += rng_int_below(&finder_seed, 1 << 20) * 0x1p-20 - 0.5;
     return sigma * sum / sqrt(8 / 12.0);
 }
 /* ------------------------------------------------------------ configuration */
 
-TEST(memory_is_exact)
+TEST(needs_exactly_the_stated_memory)
 {
     struct glint_lamp_finder *finder;
     struct glint_lamp_finder_config cfg;
@@ -49,7 +49,7 @@ TEST(memory_is_exact)
     free(mem);
 }
 
-static void assert_refused(struct glint_lamp_finder_config cfg)
+static void assert_config_is_rejected(struct glint_lamp_finder_config cfg)
 {
     static uint64_t mem[16];
     struct glint_lamp_finder *finder;
@@ -59,28 +59,29 @@ static void assert_refused(struct glint_lamp_finder_config cfg)
                      GLINT_E_ARGUMENT);
 }
 
-TEST(bad_configurations_are_refused)
+TEST(rejects_invalid_configurations)
 {
     struct glint_lamp_finder_config good, bad;
 
     glint_lamp_finder_defaults(&good, 640, 480);
     assert_true(glint_lamp_finder_bytes(&good) > 0);
-    bad = good, bad.width = 0, assert_refused(bad);
-    bad = good, bad.width = GLINT_MAX_SIDE + 1, assert_refused(bad);
-    bad = good, bad.height = 0, assert_refused(bad);
-    bad = good, bad.threshold_low_q8 = -20 * 256 - 1, assert_refused(bad);
-    bad = good, bad.threshold_high_q8 = 1, assert_refused(bad);
+    bad = good, bad.width = 0, assert_config_is_rejected(bad);
+    bad = good, bad.width = GLINT_MAX_SIDE + 1, assert_config_is_rejected(bad);
+    bad = good, bad.height = 0, assert_config_is_rejected(bad);
+    bad = good, bad.threshold_low_q8 = -20 * 256 - 1,
+    assert_config_is_rejected(bad);
+    bad = good, bad.threshold_high_q8 = 1, assert_config_is_rejected(bad);
     bad = good, bad.threshold_low_q8 = good.threshold_high_q8 + 1,
-    assert_refused(bad);
-    bad = good, bad.white_code = 256, assert_refused(bad);
-    bad = good, bad.white_code = -1, assert_refused(bad);
-    bad = good, bad.judge = 2, assert_refused(bad);
-    bad = good, bad.min_area = 0, assert_refused(bad);
-    bad = good, bad.max_share_q15 = -1, assert_refused(bad);
-    bad = good, bad.max_share_q15 = 32769, assert_refused(bad);
-    bad = good, bad.merge_q15 = -1, assert_refused(bad);
-    bad = good, bad.merge_q15 = 32769, assert_refused(bad);
-    bad = good, bad.keep_faint = 2, assert_refused(bad);
+    assert_config_is_rejected(bad);
+    bad = good, bad.white_code = 256, assert_config_is_rejected(bad);
+    bad = good, bad.white_code = -1, assert_config_is_rejected(bad);
+    bad = good, bad.judge = 2, assert_config_is_rejected(bad);
+    bad = good, bad.min_area = 0, assert_config_is_rejected(bad);
+    bad = good, bad.max_share_q15 = -1, assert_config_is_rejected(bad);
+    bad = good, bad.max_share_q15 = 32769, assert_config_is_rejected(bad);
+    bad = good, bad.merge_q15 = -1, assert_config_is_rejected(bad);
+    bad = good, bad.merge_q15 = 32769, assert_config_is_rejected(bad);
+    bad = good, bad.keep_faint = 2, assert_config_is_rejected(bad);
 }
 
 TEST(defaults_are_valid_for_every_size)
@@ -97,14 +98,15 @@ TEST(defaults_are_valid_for_every_size)
 
 /* ---------------------------------------------------------------- one light */
 
-TEST(one_pixel)
+TEST(finds_a_lamp_in_an_image_of_one_pixel)
 {
-    struct glint_image image = canvas_new(GLINT_RGB24, 1, 1);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_RGB24, 1, 1);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 200, 250);
 
-    assert_int_equal(finder_find(&cfg, &image), 0);
-    canvas_set_rgb(&image, 0, 0, 255, 255, 255);
-    assert_int_equal(finder_find(&cfg, &image), 1);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 0);
+    canvas_set_rgb_pixel(&image, 0, 0, 255, 255, 255);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
     assert_int_equal(finder_spot[0].x_q8, 128);
     assert_int_equal(finder_spot[0].y_q8, 128);
     assert_int_equal(finder_spot[0].size_q8, 0);
@@ -118,42 +120,44 @@ TEST(one_pixel)
 
 /* Checks moments computed by hand: sRGB code 188 is linear 0.5029; three
  * such pixels touch a white one. */
-TEST(moments_by_hand)
+TEST(moments_match_hand_computation)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 16, 8);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 180, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 16, 8);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 180, 250);
 
-    canvas_set_grey(&image, 10, 5, 188);
-    canvas_set_grey(&image, 11, 5, 255);
-    canvas_set_grey(&image, 12, 5, 188);
-    canvas_set_grey(&image, 11, 6, 188);
-    /* this pixel is too dark to be a seed */
-    canvas_set_grey(&image, 0, 0, 188);
-    assert_int_equal(finder_find(&cfg, &image), 1);
+    canvas_set_grey_pixel(&image, 10, 5, 188);
+    canvas_set_grey_pixel(&image, 11, 5, 255);
+    canvas_set_grey_pixel(&image, 12, 5, 188);
+    canvas_set_grey_pixel(&image, 11, 6, 188);
+    /* a pixel below the upper threshold is not a seed */
+    canvas_set_grey_pixel(&image, 0, 0, 188);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
     assert_int_equal(finder_spot[0].area, 4);
     assert_int_equal(finder_spot[0].n_clipped, 1);
     assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 - 2.5087) < 1e-3);
-    assert_true(fabs(finder_x(0) - 11.5) < 1.0 / 256);
-    assert_true(fabs(finder_y(0) - (5.5 + 0.5029 / 2.5087)) < 1.0 / 256);
+    assert_true(fabs(finder_spot_x(0) - 11.5) < 1.0 / 256);
+    assert_true(fabs(finder_spot_y(0) - (5.5 + 0.5029 / 2.5087)) < 1.0 / 256);
     /* Variances: x 2 * 0.5029 / 2.5087, y 0.2005 - 0.2005^2. */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - sqrt(0.4009 + 0.1603)) <
                 1.0 / 128);
     free(image.plane[0]);
 }
 
-TEST(disc_is_found_to_a_sixteenth)
+TEST(finds_discs_within_a_sixteenth_pixel)
 {
     for (int round = 0; round < 100; round++) {
-        struct glint_image image = canvas_new(GLINT_GREY, 64, 48);
-        struct glint_lamp_finder_config cfg = finder_plain(&image, 2, 250);
-        const double radius = 1.5 + rng_below(&finder_seed, 600) / 100.0;
-        const double cx = 20 + rng_below(&finder_seed, 2000) / 100.0;
-        const double cy = 20 + rng_below(&finder_seed, 1000) / 100.0;
+        struct glint_image image = canvas_allocate_image(GLINT_GREY, 64, 48);
+        struct glint_lamp_finder_config cfg =
+            finder_config_without_filters(&image, 2, 250);
+        const double radius = 1.5 + rng_int_below(&finder_seed, 600) / 100.0;
+        const double cx = 20 + rng_int_below(&finder_seed, 2000) / 100.0;
+        const double cy = 20 + rng_int_below(&finder_seed, 1000) / 100.0;
 
-        canvas_disc(&image, cx, cy, radius, 1);
-        assert_int_equal(finder_find(&cfg, &image), 1);
-        assert_true(fabs(finder_x(0) - cx) < 1.0 / 16);
-        assert_true(fabs(finder_y(0) - cy) < 1.0 / 16);
+        canvas_draw_disc(&image, cx, cy, radius, 1);
+        assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+        assert_true(fabs(finder_spot_x(0) - cx) < 1.0 / 16);
+        assert_true(fabs(finder_spot_y(0) - cy) < 1.0 / 16);
         assert_true(fabs(finder_spot[0].size_q8 / 256.0 - radius / sqrt(2)) <
                     0.1);
         assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 -
@@ -165,8 +169,8 @@ TEST(disc_is_found_to_a_sixteenth)
 
 /* Adds a lamp of RADIUS to a grey image: four times white, falling by a
  * factor e per FALL pixels outside the radius. */
-static void draw_lamp(const struct glint_image *image, double cx, double cy,
-                      double radius, double fall)
+static void draw_lamp_with_glare(const struct glint_image *image, double cx,
+                                 double cy, double radius, double fall)
 {
     const double reach = radius + 8 * fall;
 
@@ -174,28 +178,29 @@ static void draw_lamp(const struct glint_image *image, double cx, double cy,
         for (int x = (int)fmax(cx - reach, 0); x < image->width; x++) {
             const double r = hypot(x + 0.5 - cx, y + 0.5 - cy);
             const double light = 4 * exp(-fmax(r - radius, 0) / fall);
-            const double under = canvas_linear(canvas_get_grey(image, x, y));
+            const double under =
+                canvas_decode_srgb(canvas_read_grey_pixel(image, x, y));
 
             if (r < reach)
-                canvas_set_grey(image, x, y,
-                                canvas_srgb_code(fmin(under + light, 1)));
+                canvas_set_grey_pixel(
+                    image, x, y, canvas_encode_srgb(fmin(under + light, 1)));
         }
 }
 
 /* Checks that with the default configuration, which cuts off the rim evenly,
  * a lamp is found within 0.35 pixels. */
-TEST(disc_with_defaults)
+TEST(finds_discs_with_default_configuration)
 {
     for (int round = 0; round < 100; round++) {
-        struct glint_image image = canvas_new(GLINT_GREY, 640, 480);
-        struct glint_lamp_finder_config cfg = finder_defaults(&image);
-        const double radius = 3 + rng_below(&finder_seed, 900) / 100.0;
-        const double cx = 20 + rng_below(&finder_seed, 60000) / 100.0;
-        const double cy = 20 + rng_below(&finder_seed, 44000) / 100.0;
+        struct glint_image image = canvas_allocate_image(GLINT_GREY, 640, 480);
+        struct glint_lamp_finder_config cfg = finder_default_config(&image);
+        const double radius = 3 + rng_int_below(&finder_seed, 900) / 100.0;
+        const double cx = 20 + rng_int_below(&finder_seed, 60000) / 100.0;
+        const double cy = 20 + rng_int_below(&finder_seed, 44000) / 100.0;
 
-        draw_lamp(&image, cx, cy, radius, 1.5);
-        assert_int_equal(finder_find(&cfg, &image), 1);
-        assert_true(hypot(finder_x(0) - cx, finder_y(0) - cy) < 0.35);
+        draw_lamp_with_glare(&image, cx, cy, radius, 1.5);
+        assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+        assert_true(hypot(finder_spot_x(0) - cx, finder_spot_y(0) - cy) < 0.35);
         free(image.plane[0]);
     }
 }
@@ -209,21 +214,22 @@ TEST(noise_does_not_move_a_light)
     double square = 0;
 
     for (int frame = 0; frame < 100; frame++) {
-        struct glint_image image = canvas_new(GLINT_GREY, 100, 80);
-        struct glint_lamp_finder_config cfg = finder_defaults(&image);
+        struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 80);
+        struct glint_lamp_finder_config cfg = finder_default_config(&image);
 
         cfg.max_share_q15 = 1 << 15;
         for (int y = 0; y < 80; y++)
             for (int x = 0; x < 100; x++) {
                 const double r = hypot(x + 0.5 - 47.3, y + 0.5 - 38.9);
                 const double light = r < 3 ? 2 : 2 * exp(-(r - 3) / 2.5);
-                const double code = canvas_srgb_code(light) + draw_noise(3);
+                const double code = canvas_encode_srgb(light) + random_noise(3);
 
-                canvas_set_grey(&image, x, y,
-                                (int)fmax(0, fmin(255, code + 0.5)));
+                canvas_set_grey_pixel(&image, x, y,
+                                      (int)fmax(0, fmin(255, code + 0.5)));
             }
-        assert_int_equal(finder_find(&cfg, &image), 1);
-        square += pow(finder_x(0) - 47.3, 2) + pow(finder_y(0) - 38.9, 2);
+        assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+        square +=
+            pow(finder_spot_x(0) - 47.3, 2) + pow(finder_spot_y(0) - 38.9, 2);
         free(image.plane[0]);
     }
     print_message("noise of 3 codes: %.3f px rms\n", sqrt(square / 100));
@@ -234,15 +240,17 @@ TEST(noise_does_not_move_a_light)
  * the lamp by less than 0.1 pixels. */
 TEST(sparkle_does_not_move_a_light)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 64, 64);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 150, 200);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 64, 64);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 150, 200);
     double furthest = 0;
 
     for (int k = 0; k < 64; k++) {
-        canvas_fill_grey(&image, 20, 30, 28, 38, 200);
-        canvas_set_grey(&image, 20 + k % 8, 30 + k / 8, 255);
-        assert_int_equal(finder_find(&cfg, &image), 1);
-        furthest = fmax(furthest, hypot(finder_x(0) - 24, finder_y(0) - 34));
+        canvas_fill_grey_box(&image, 20, 30, 28, 38, 200);
+        canvas_set_grey_pixel(&image, 20 + k % 8, 30 + k / 8, 255);
+        assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+        furthest =
+            fmax(furthest, hypot(finder_spot_x(0) - 24, finder_spot_y(0) - 34));
     }
     print_message("sparkle in 8 x 8: %.3f px at most\n", furthest);
     assert_true(furthest < 0.1);
@@ -253,49 +261,52 @@ TEST(sparkle_does_not_move_a_light)
  * darkest lamp that can be found, moves the lamp by less than a pixel. */
 TEST(hot_pixel_among_dim_ones)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 64, 64);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 40, 43);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 64, 64);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 40, 43);
 
-    canvas_fill_grey(&image, 20, 30, 28, 38, 43); /* linear 0.0242 */
-    canvas_set_grey(&image, 24, 34, 255);
-    assert_int_equal(finder_find(&cfg, &image), 1);
-    assert_true(hypot(finder_x(0) - 24, finder_y(0) - 34) < 1);
+    canvas_fill_grey_box(&image, 20, 30, 28, 38, 43); /* linear 0.0242 */
+    canvas_set_grey_pixel(&image, 24, 34, 255);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    assert_true(hypot(finder_spot_x(0) - 24, finder_spot_y(0) - 34) < 1);
     free(image.plane[0]);
 }
 
-TEST(same_every_time)
+TEST(repeated_search_gives_the_same_lamps)
 {
-    struct glint_image image = canvas_new(GLINT_RGB24, 300, 200);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_RGB24, 300, 200);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 200, 250);
     static struct glint_spot first[FINDER_SPOTS];
     int n, dropped;
 
     cfg.merge_q15 = 300;
     for (int i = 0; i < 3 * 300 * 200; i++)
-        image.plane[0][i] = (uint8_t)rng_below(&finder_seed, 256);
-    n = finder_find_at_most(&cfg, &image, 100, &dropped);
+        image.plane[0][i] = (uint8_t)rng_int_below(&finder_seed, 256);
+    n = finder_find_lamps_up_to(&cfg, &image, 100, &dropped);
     memcpy(first, finder_spot, sizeof first);
     for (int round = 0; round < 3; round++) {
-        assert_int_equal(finder_find_at_most(&cfg, &image, 100, &dropped), n);
+        assert_int_equal(finder_find_lamps_up_to(&cfg, &image, 100, &dropped),
+                         n);
         assert_memory_equal(finder_spot, first,
                             (size_t)n * sizeof *finder_spot);
     }
     free(image.plane[0]);
 }
 
-/* ------------------------------------------------------------ what is light */
+/* --------------------------------------------- lamps and other bright areas */
 
-TEST(black_and_white)
+TEST(black_and_white_images_have_no_lamp)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 100, 50);
-    struct glint_lamp_finder_config cfg = finder_defaults(&image);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 50);
+    struct glint_lamp_finder_config cfg = finder_default_config(&image);
 
-    assert_int_equal(finder_find(&cfg, &image), 0);
-    canvas_fill_grey(&image, 0, 0, 100, 50, 255);
-    assert_int_equal(finder_find(&cfg, &image), 0);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 0);
+    canvas_fill_grey_box(&image, 0, 0, 100, 50, 255);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 0);
     cfg.judge = 0;
     cfg.max_share_q15 = 1 << 15;
-    assert_int_equal(finder_find(&cfg, &image), 1);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
     assert_int_equal(finder_spot[0].x_q8, 50 * 256);
     assert_int_equal(finder_spot[0].y_q8, 25 * 256);
     assert_int_equal(finder_spot[0].area, 5000);
@@ -306,14 +317,15 @@ TEST(black_and_white)
 }
 
 /* Checks a large all-white image, the worst case for sums of moments. */
-TEST(large_picture)
+TEST(large_white_image_does_not_overflow)
 {
     enum { SIDE = 8192 };
-    struct glint_image image = canvas_new(GLINT_GREY, SIDE, SIDE);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, SIDE, SIDE);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 200, 250);
 
     memset(image.plane[0], 255, (size_t)SIDE * SIDE);
-    assert_int_equal(finder_find(&cfg, &image), 1);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
     assert_int_equal(finder_spot[0].x_q8, 4096 * 256);
     assert_int_equal(finder_spot[0].y_q8, 4096 * 256);
     assert_int_equal(finder_spot[0].area, 1 << 26);
@@ -324,7 +336,7 @@ TEST(large_picture)
     free(image.plane[0]);
 }
 
-static struct glint_region make_region(int x0, int y0, int x1, int y1)
+static struct glint_region make_white_region(int x0, int y0, int x1, int y1)
 {
     const struct glint_region_light white = {1 << 14,
                                              {1 << 14, 1 << 14, 1 << 14}};
@@ -340,7 +352,7 @@ static struct glint_region make_region(int x0, int y0, int x1, int y1)
 
 /* Checks position, size and light of white rectangles in the largest image,
  * and of the whole image. */
-TEST(largest_regions)
+TEST(largest_regions_are_measured_right)
 {
     enum { S = GLINT_MAX_SIDE };
     static const int box[][4] = {{0, 0, S, S},          {0, 0, S, S / 2},
@@ -351,7 +363,7 @@ TEST(largest_regions)
     for (size_t k = 0; k < sizeof box / sizeof *box; k++) {
         const int *b = box[k];
         const double w = b[2] - b[0], h = b[3] - b[1];
-        const struct glint_region r = make_region(b[0], b[1], b[2], b[3]);
+        const struct glint_region r = make_white_region(b[0], b[1], b[2], b[3]);
         int32_t x_q8, y_q8, rgb_q15[3];
 
         glint_region_centroid(&r, &x_q8, &y_q8);
@@ -368,14 +380,16 @@ TEST(largest_regions)
 
 /* Checks that lamps at both ends of the longest images are found at their
  * positions. */
-TEST(longest_pictures)
+TEST(finds_lamps_at_both_ends_of_long_images)
 {
     enum { LONG = GLINT_MAX_SIDE, SHORT = 64, OFF = 20, SIDE = 6 };
 
     for (int turned = 0; turned < 2; turned++) {
         const int width = turned ? SHORT : LONG, height = turned ? LONG : SHORT;
-        struct glint_image image = canvas_new(GLINT_GREY, width, height);
-        struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+        struct glint_image image =
+            canvas_allocate_image(GLINT_GREY, width, height);
+        struct glint_lamp_finder_config cfg =
+            finder_config_without_filters(&image, 200, 250);
 
         memset(image.plane[0], 0, (size_t)width * (size_t)height);
         for (int end = 0; end < 2; end++)
@@ -386,7 +400,7 @@ TEST(longest_pictures)
                 image.plane[0][(ptrdiff_t)y * image.stride_bytes[0] + x] =
                     (uint8_t)(255 - end);
             }
-        assert_int_equal(finder_find(&cfg, &image), 2);
+        assert_int_equal(finder_find_lamps(&cfg, &image), 2);
         for (int end = 0; end < 2; end++) {
             const int64_t low = OFF * 256 + SIDE * 128;
 
@@ -400,43 +414,47 @@ TEST(longest_pictures)
     }
 }
 
-TEST(sky_is_no_light)
+TEST(sky_is_not_a_lamp)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 100, 100);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 100);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 200, 250);
 
-    cfg.max_share_q15 = 32768 / 10; /* 999.8 pixels, rounded up */
-    canvas_fill_grey(&image, 0, 0, 100, 10, 255);
-    canvas_fill_grey(&image, 40, 50, 44, 54, 255);
-    assert_int_equal(finder_find(&cfg, &image), 2);
-    canvas_set_grey(&image, 7, 10, 255);
-    assert_int_equal(finder_find(&cfg, &image), 1);
+    cfg.max_share_q15 = 32768 / 10; /* max area of 999.8 pixels, rounded up */
+    canvas_fill_grey_box(&image, 0, 0, 100, 10, 255);
+    canvas_fill_grey_box(&image, 40, 50, 44, 54, 255);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 2);
+    canvas_set_grey_pixel(&image, 7, 10, 255);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
     assert_int_equal(finder_spot[0].area, 16);
     free(image.plane[0]);
 }
 
 /* Checks that a lit surface is not a lamp if fewer than one pixel in 8
  * reaches the upper threshold; the glow of a lamp has that many. */
-TEST(few_seeds_are_no_light)
+TEST(surface_with_few_bright_pixels_is_not_a_lamp)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 100, 100);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 100);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 200, 250);
 
-    canvas_fill_grey(&image, 10, 10, 42, 42, 240); /* 1024 pixels */
-    canvas_fill_grey(&image, 10, 10, 42, 14, 255); /* 128 of these pixels */
-    canvas_set_grey(&image, 41, 13, 240);
-    assert_int_equal(finder_find(&cfg, &image), 0);
-    canvas_set_grey(&image, 41, 13, 255);
-    assert_int_equal(finder_find(&cfg, &image), 1);
+    canvas_fill_grey_box(&image, 10, 10, 42, 42, 240); /* 1024 pixels */
+    /* a box of 128 bright pixels */
+    canvas_fill_grey_box(&image, 10, 10, 42, 14, 255);
+    canvas_set_grey_pixel(&image, 41, 13, 240);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 0);
+    canvas_set_grey_pixel(&image, 41, 13, 255);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
     free(image.plane[0]);
 }
 
 /* Checks that a ring around a core belongs to the lamp, but not a darker
  * ring around it, nor a bright ring outside that, which has no seed. */
-TEST(hysteresis)
+TEST(ring_around_a_core_belongs_to_the_lamp)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 60, 60);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 60, 60);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 200, 250);
     int area = 0;
 
     for (int y = 0; y < 60; y++)
@@ -444,14 +462,14 @@ TEST(hysteresis)
             const double r = hypot(x + 0.5 - 30, y + 0.5 - 30);
 
             area += r < 10;
-            canvas_set_grey(&image, x, y,
-                            r < 5    ? 250
-                            : r < 10 ? 200
-                            : r < 15 ? 199
-                            : r < 20 ? 249
-                                     : 0);
+            canvas_set_grey_pixel(&image, x, y,
+                                  r < 5    ? 250
+                                  : r < 10 ? 200
+                                  : r < 15 ? 199
+                                  : r < 20 ? 249
+                                           : 0);
         }
-    assert_int_equal(finder_find(&cfg, &image), 1);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
     assert_int_equal(finder_spot[0].area, area);
     free(image.plane[0]);
 }
@@ -464,24 +482,26 @@ TEST(faint_regions_come_last)
     int most_faint = 0;
 
     for (int round = 0; round < 50; round++) {
-        struct glint_image image = canvas_new(GLINT_GREY, 256, 256);
-        struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 200);
+        struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 256);
+        struct glint_lamp_finder_config cfg =
+            finder_config_without_filters(&image, 100, 200);
         int n_lights, n, max = round % 2 ? FINDER_SPOTS : 20, dropped;
 
         cfg.min_area = 4;
         cfg.merge_q15 = 6 * 32768 / 256;
         for (int i = 0; i < 200; i++) {
-            const int x = rng_below(&finder_seed, 250),
-                      y = rng_below(&finder_seed, 250);
+            const int x = rng_int_below(&finder_seed, 250),
+                      y = rng_int_below(&finder_seed, 250);
 
-            canvas_fill_grey(&image, x, y, x + 1 + rng_below(&finder_seed, 4),
-                             y + 1 + rng_below(&finder_seed, 4),
-                             100 + rng_below(&finder_seed, 156));
+            canvas_fill_grey_box(&image, x, y,
+                                 x + 1 + rng_int_below(&finder_seed, 4),
+                                 y + 1 + rng_int_below(&finder_seed, 4),
+                                 100 + rng_int_below(&finder_seed, 156));
         }
-        n_lights = finder_find_at_most(&cfg, &image, max, &dropped);
+        n_lights = finder_find_lamps_up_to(&cfg, &image, max, &dropped);
         memcpy(light, finder_spot, sizeof light);
         cfg.keep_faint = 1;
-        n = finder_find_at_most(&cfg, &image, max, &dropped);
+        n = finder_find_lamps_up_to(&cfg, &image, max, &dropped);
         assert_in_range(n, n_lights, max);
         assert_memory_equal(light, finder_spot,
                             (size_t)n_lights * sizeof *finder_spot);
@@ -502,21 +522,23 @@ TEST(faint_regions_come_last)
 
 /* Checks the sums of a region that fills the image, made of noise and
  * patches of one code, against double precision. */
-TEST(sums_of_a_large_region)
+TEST(sums_of_a_large_region_match_doubles)
 {
     for (int round = 0; round < 20; round++) {
-        struct glint_image image = canvas_new(GLINT_GREY, 320, 200);
-        struct glint_lamp_finder_config cfg = finder_plain(&image, 1, 1);
+        struct glint_image image = canvas_allocate_image(GLINT_GREY, 320, 200);
+        struct glint_lamp_finder_config cfg =
+            finder_config_without_filters(&image, 1, 1);
         double flux = 0, x_sum = 0, y_sum = 0, r2 = 0;
 
         for (int i = 0; i < 320 * 200; i++)
-            image.plane[0][i] = (uint8_t)(100 + rng_below(&finder_seed, 156));
+            image.plane[0][i] =
+                (uint8_t)(100 + rng_int_below(&finder_seed, 156));
         for (int i = 0; i < 30; i++) {
-            const int x = rng_below(&finder_seed, 250),
-                      y = rng_below(&finder_seed, 150);
+            const int x = rng_int_below(&finder_seed, 250),
+                      y = rng_int_below(&finder_seed, 150);
 
-            canvas_fill_grey(&image, x, y, x + 70, y + 50,
-                             rng_below(&finder_seed, 2) ? 255 : 40);
+            canvas_fill_grey_box(&image, x, y, x + 70, y + 50,
+                                 rng_int_below(&finder_seed, 2) ? 255 : 40);
         }
         for (int i = 0; i < 320 * 200; i++) {
             const double v = image.plane[0][i] / 255.0;
@@ -527,11 +549,11 @@ TEST(sums_of_a_large_region)
             flux += w, x_sum += w * x, y_sum += w * y;
             r2 += w * (x * x + y * y);
         }
-        assert_int_equal(finder_find(&cfg, &image), 1);
+        assert_int_equal(finder_find_lamps(&cfg, &image), 1);
         assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 / flux - 1) <
                     1e-4);
-        assert_true(fabs(finder_x(0) - x_sum / flux) < 0.01);
-        assert_true(fabs(finder_y(0) - y_sum / flux) < 0.01);
+        assert_true(fabs(finder_spot_x(0) - x_sum / flux) < 0.01);
+        assert_true(fabs(finder_spot_y(0) - y_sum / flux) < 0.01);
         assert_true(fabs(finder_spot[0].size_q8 / 256.0 -
                          sqrt(r2 / flux - pow(x_sum / flux, 2) -
                               pow(y_sum / flux, 2))) < 0.02);
@@ -539,64 +561,71 @@ TEST(sums_of_a_large_region)
     }
 }
 
-TEST(small_ones_are_noise)
+TEST(small_regions_are_noise)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 60, 60);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 60, 60);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 200, 250);
 
     cfg.min_area = 5;
-    canvas_fill_grey(&image, 10, 10, 12, 12, 255);
-    assert_int_equal(finder_find(&cfg, &image), 0);
-    /* a fifth pixel touches the square at a corner */
-    canvas_set_grey(&image, 12, 12, 255);
-    assert_int_equal(finder_find(&cfg, &image), 1);
+    canvas_fill_grey_box(&image, 10, 10, 12, 12, 255);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 0);
+    /* a fifth pixel at a corner of the square of four */
+    canvas_set_grey_pixel(&image, 12, 12, 255);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
     free(image.plane[0]);
 }
 
 /* ----------------------------------------------------------- several lights */
 
-TEST(two_discs_by_flux)
+TEST(lamps_are_sorted_by_flux)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 100, 60);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 60);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 100, 250);
 
-    canvas_disc(&image, 20.5, 20.5, 4, 1);
-    canvas_disc(&image, 70.5, 40.5, 6, 1);
-    assert_int_equal(finder_find(&cfg, &image), 2);
-    assert_true(hypot(finder_x(0) - 70.5, finder_y(0) - 40.5) < 1.0 / 16);
-    assert_true(hypot(finder_x(1) - 20.5, finder_y(1) - 20.5) < 1.0 / 16);
+    canvas_draw_disc(&image, 20.5, 20.5, 4, 1);
+    canvas_draw_disc(&image, 70.5, 40.5, 6, 1);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 2);
+    assert_true(hypot(finder_spot_x(0) - 70.5, finder_spot_y(0) - 40.5) <
+                1.0 / 16);
+    assert_true(hypot(finder_spot_x(1) - 20.5, finder_spot_y(1) - 20.5) <
+                1.0 / 16);
     assert_true(finder_spot[0].flux_q16 > finder_spot[1].flux_q16);
     free(image.plane[0]);
 }
 
-TEST(ties_go_by_position)
+TEST(ties_are_sorted_by_position)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 100, 60);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 60);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 100, 250);
 
-    canvas_fill_grey(&image, 50, 20, 52, 22, 255);
-    canvas_fill_grey(&image, 80, 10, 82, 12, 255);
-    canvas_fill_grey(&image, 10, 20, 12, 22, 255);
-    assert_int_equal(finder_find(&cfg, &image), 3);
-    assert_true(finder_x(0) == 81 && finder_x(1) == 11 && finder_x(2) == 51);
+    canvas_fill_grey_box(&image, 50, 20, 52, 22, 255);
+    canvas_fill_grey_box(&image, 80, 10, 82, 12, 255);
+    canvas_fill_grey_box(&image, 10, 20, 12, 22, 255);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 3);
+    assert_true(finder_spot_x(0) == 81 && finder_spot_x(1) == 11 &&
+                finder_spot_x(2) == 51);
     free(image.plane[0]);
 }
 
 /* Checks that regions of nine and three white pixels, 4 pixels apart, are
  * merged into one lamp, 1 pixel from the larger. */
-TEST(near_ones_merge)
+TEST(near_regions_are_merged)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 128, 64);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 128, 64);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 100, 250);
 
-    canvas_fill_grey(&image, 20, 20, 23, 23, 255);
-    canvas_fill_grey(&image, 25, 20, 26, 23, 255);
+    canvas_fill_grey_box(&image, 20, 20, 23, 23, 255);
+    canvas_fill_grey_box(&image, 25, 20, 26, 23, 255);
     cfg.merge_q15 = 4 * 32768 / 128;
-    /* merge distance: less than 4 pixels */
-    assert_int_equal(finder_find(&cfg, &image), 2);
+    /* a merge distance of less than 4 pixels merges nothing */
+    assert_int_equal(finder_find_lamps(&cfg, &image), 2);
     cfg.merge_q15 = 5 * 32768 / 128;
-    assert_int_equal(finder_find(&cfg, &image), 1);
-    assert_true(finder_x(0) == 22.5 && finder_y(0) == 21.5);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    assert_true(finder_spot_x(0) == 22.5 && finder_spot_y(0) == 21.5);
     assert_int_equal(finder_spot[0].area, 12);
     assert_true(finder_spot[0].flux_q16 == 12 << 16);
     /* the squared RMS radius is (9 * (1^2 + 2 / 3) + 3 * 3^2) / 12 = 3.5 in
@@ -606,24 +635,25 @@ TEST(near_ones_merge)
     free(image.plane[0]);
 }
 
-TEST(merged_ones_keep_their_distance)
+TEST(merged_regions_keep_the_merge_distance)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 256, 256);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 256);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 100, 250);
     int n, area = 0;
 
     cfg.merge_q15 = 12 * 32768 / 256;
     for (int i = 0; i < 1000; i++)
-        canvas_set_grey(&image, rng_below(&finder_seed, 256),
-                        rng_below(&finder_seed, 256), 255);
+        canvas_set_grey_pixel(&image, rng_int_below(&finder_seed, 256),
+                              rng_int_below(&finder_seed, 256), 255);
     for (int i = 0; i < 256 * 256; i++)
         area += image.plane[0][i] > 0;
-    n = finder_find(&cfg, &image);
+    n = finder_find_lamps(&cfg, &image);
     for (int i = 0; i < n; i++) {
         area -= finder_spot[i].area;
         for (int j = 0; j < i; j++)
-            assert_true(hypot(finder_x(i) - finder_x(j),
-                              finder_y(i) - finder_y(j)) > 11.99);
+            assert_true(hypot(finder_spot_x(i) - finder_spot_x(j),
+                              finder_spot_y(i) - finder_spot_y(j)) > 11.99);
     }
     assert_int_equal(area, 0);
     free(image.plane[0]);
@@ -631,37 +661,39 @@ TEST(merged_ones_keep_their_distance)
 
 /* Checks a limit of two lights of four: the third is near the first and is
  * merged with it; the fourth is far from all and is dropped. */
-TEST(cap)
+TEST(limit_keeps_the_brightest)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 256, 64);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 64);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 100, 250);
     int dropped;
 
     cfg.merge_q15 = 4 * 32768 / 256;
-    canvas_fill_grey(&image, 20, 20, 26, 26, 255);   /* 36 px */
-    canvas_fill_grey(&image, 100, 20, 105, 25, 255); /* 25 px */
-    /* 12 px, at a distance of 13 */
-    canvas_fill_grey(&image, 35, 20, 37, 26, 255);
-    canvas_fill_grey(&image, 200, 20, 202, 22, 255); /* 4 px */
-    assert_int_equal(finder_find_at_most(&cfg, &image, 2, &dropped), 2);
+    canvas_fill_grey_box(&image, 20, 20, 26, 26, 255);   /* 36 px */
+    canvas_fill_grey_box(&image, 100, 20, 105, 25, 255); /* 25 px */
+    /* a region of 12 pixels at a distance of 13 pixels */
+    canvas_fill_grey_box(&image, 35, 20, 37, 26, 255);
+    canvas_fill_grey_box(&image, 200, 20, 202, 22, 255); /* 4 px */
+    assert_int_equal(finder_find_lamps_up_to(&cfg, &image, 2, &dropped), 2);
     assert_int_equal(dropped, 1);
     assert_int_equal(finder_spot[0].area, 48);
-    assert_true(finder_x(0) == 23 + 13 * 12 / 48.0);
+    assert_true(finder_spot_x(0) == 23 + 13 * 12 / 48.0);
     assert_int_equal(finder_spot[1].area, 25);
     free(image.plane[0]);
 }
 
-TEST(joining_can_change_the_order)
+TEST(merging_can_change_the_order)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 256, 64);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 64);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 100, 250);
     int dropped;
 
     cfg.merge_q15 = 4 * 32768 / 256;
-    canvas_fill_grey(&image, 20, 20, 26, 26, 255);   /* 36 px */
-    canvas_fill_grey(&image, 100, 20, 105, 25, 255); /* 25 px */
-    canvas_fill_grey(&image, 110, 20, 114, 25, 255); /* 20 px */
-    assert_int_equal(finder_find_at_most(&cfg, &image, 2, &dropped), 2);
+    canvas_fill_grey_box(&image, 20, 20, 26, 26, 255);   /* 36 px */
+    canvas_fill_grey_box(&image, 100, 20, 105, 25, 255); /* 25 px */
+    canvas_fill_grey_box(&image, 110, 20, 114, 25, 255); /* 20 px */
+    assert_int_equal(finder_find_lamps_up_to(&cfg, &image, 2, &dropped), 2);
     assert_int_equal(dropped, 0);
     assert_int_equal(finder_spot[0].area, 45);
     assert_int_equal(finder_spot[1].area, 36);
@@ -670,26 +702,29 @@ TEST(joining_can_change_the_order)
 
 /* Checks that of 4096 lights the finder stores the 2048 brightest and
  * returns 1024. */
-TEST(more_lights_than_can_be_held)
+TEST(stores_the_brightest_of_4096_lights)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 256, 256);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 150);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 256);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 100, 150);
     int dropped, bright = 0;
 
     for (int y = 0; y < 256; y += 4)
         for (int x = 0; x < 256; x += 4)
-            canvas_set_grey(&image, x, y, 150 + rng_below(&finder_seed, 106));
-    assert_int_equal(finder_find_at_most(&cfg, &image, 1024, &dropped), 1024);
+            canvas_set_grey_pixel(&image, x, y,
+                                  150 + rng_int_below(&finder_seed, 106));
+    assert_int_equal(finder_find_lamps_up_to(&cfg, &image, 1024, &dropped),
+                     1024);
     assert_int_equal(dropped, 4096 - 1024);
     for (int i = 1; i < 1024; i++)
         assert_true(finder_spot[i].flux_q16 <= finder_spot[i - 1].flux_q16);
     for (int y = 0; y < 256; y += 4)
         for (int x = 0; x < 256; x += 4) {
             const int last =
-                canvas_get_grey(&image, finder_spot[1023].x_q8 >> 8,
-                                finder_spot[1023].y_q8 >> 8);
+                canvas_read_grey_pixel(&image, finder_spot[1023].x_q8 >> 8,
+                                       finder_spot[1023].y_q8 >> 8);
 
-            bright += canvas_get_grey(&image, x, y) > last;
+            bright += canvas_read_grey_pixel(&image, x, y) > last;
         }
     assert_true(bright < 1024);
     free(image.plane[0]);

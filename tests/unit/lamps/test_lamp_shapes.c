@@ -18,58 +18,60 @@
 
 static void assert_one_region(const struct glint_image *image)
 {
-    struct glint_lamp_finder_config cfg = finder_plain(image, 200, 250);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(image, 200, 250);
     int area = 0;
 
     for (int y = 0; y < image->height; y++)
         for (int x = 0; x < image->width; x++)
-            area += canvas_get_grey(image, x, y) == 255;
-    assert_int_equal(finder_find(&cfg, image), 1);
+            area += canvas_read_grey_pixel(image, x, y) == 255;
+    assert_int_equal(finder_find_lamps(&cfg, image), 1);
     assert_int_equal(finder_spot[0].area, area);
     free(image->plane[0]);
 }
 
 /* Checks that a pixel is connected to those at its corners, on both sides
  * and across the blocks in which runs are found, and to none further away. */
-TEST(corners)
+TEST(corner_pixels_are_connected)
 {
     for (int x = 4; x < 68; x++)
         for (int off = -3; off <= 3; off++) {
-            struct glint_image image = canvas_new(GLINT_GREY, 72, 8);
+            struct glint_image image = canvas_allocate_image(GLINT_GREY, 72, 8);
             const struct glint_lamp_finder_config cfg =
-                finder_plain(&image, 200, 250);
+                finder_config_without_filters(&image, 200, 250);
 
-            canvas_set_grey(&image, x, 3, 255);
-            canvas_set_grey(&image, x + off, 4, 255);
-            assert_int_equal(finder_find(&cfg, &image), abs(off) > 1 ? 2 : 1);
+            canvas_set_grey_pixel(&image, x, 3, 255);
+            canvas_set_grey_pixel(&image, x + off, 4, 255);
+            assert_int_equal(finder_find_lamps(&cfg, &image),
+                             abs(off) > 1 ? 2 : 1);
             free(image.plane[0]);
         }
 }
 
-TEST(u_shape)
+TEST(u_shape_is_one_region)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 20, 20);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 20, 20);
 
-    canvas_fill_grey(&image, 2, 2, 4, 18, 255);
-    canvas_fill_grey(&image, 15, 2, 17, 18, 255);
-    canvas_fill_grey(&image, 2, 17, 17, 18, 255);
+    canvas_fill_grey_box(&image, 2, 2, 4, 18, 255);
+    canvas_fill_grey_box(&image, 15, 2, 17, 18, 255);
+    canvas_fill_grey_box(&image, 2, 17, 17, 18, 255);
     assert_one_region(&image);
 }
 
 /* Checks that a spiral with walls 1 pixel wide and 1 pixel apart is one
  * region. */
-TEST(spiral)
+TEST(spiral_is_one_region)
 {
     static const int step[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-    struct glint_image image = canvas_new(GLINT_GREY, 43, 41);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 43, 41);
     int x = 0, y = 0, left = 42, down = 40;
 
-    canvas_set_grey(&image, 0, 0, 255);
+    canvas_set_grey_pixel(&image, 0, 0, 255);
     for (int turn = 0; left > 0 && down > 0; turn++) {
         for (int n = turn & 1 ? down : left; n > 0; n--) {
             x += step[turn & 3][0];
             y += step[turn & 3][1];
-            canvas_set_grey(&image, x, y, 255);
+            canvas_set_grey_pixel(&image, x, y, 255);
         }
         if (turn > 0 && (turn & 1) == 0)
             left -= 2;
@@ -81,16 +83,17 @@ TEST(spiral)
 
 /* Checks rows with the max number of runs: a checkerboard, connected only by
  * corners, and a comb, connected by its last row, are one region each. */
-TEST(checkerboard_and_comb)
+TEST(checkerboard_and_comb_are_one_region)
 {
     for (int width = 254; width <= 255; width++) {
-        struct glint_image board = canvas_new(GLINT_GREY, width, 100);
-        struct glint_image comb = canvas_new(GLINT_GREY, width, 100);
+        struct glint_image board =
+            canvas_allocate_image(GLINT_GREY, width, 100);
+        struct glint_image comb = canvas_allocate_image(GLINT_GREY, width, 100);
 
         for (int y = 0; y < 100; y++)
             for (int x = 0; x < width; x++) {
-                canvas_set_grey(&board, x, y, (x + y) & 1 ? 255 : 0);
-                canvas_set_grey(&comb, x, y, x & 1 && y < 99 ? 0 : 255);
+                canvas_set_grey_pixel(&board, x, y, (x + y) & 1 ? 255 : 0);
+                canvas_set_grey_pixel(&comb, x, y, x & 1 && y < 99 ? 0 : 255);
             }
         assert_one_region(&board);
         assert_one_region(&comb);
@@ -98,7 +101,8 @@ TEST(checkerboard_and_comb)
 }
 
 /* Clears the region at (X, Y) and returns its area, pixels. */
-static int clear_region(const struct glint_image *image, int x, int y)
+static int clear_and_measure_region(const struct glint_image *image, int x,
+                                    int y)
 {
     static int stack[64 * 64 * 8][2];
     int n = 0, area = 0;
@@ -107,9 +111,9 @@ static int clear_region(const struct glint_image *image, int x, int y)
     while (n > 0) {
         x = stack[--n][0], y = stack[n][1];
         if (x < 0 || y < 0 || x >= image->width || y >= image->height ||
-            canvas_get_grey(image, x, y) == 0)
+            canvas_read_grey_pixel(image, x, y) == 0)
             continue;
-        canvas_set_grey(image, x, y, 0);
+        canvas_set_grey_pixel(image, x, y, 0);
         area++;
         for (int k = 0; k < 9; k++)
             if (k != 4)
@@ -118,21 +122,23 @@ static int clear_region(const struct glint_image *image, int x, int y)
     return area;
 }
 
-static void check_against_flood(int width, int height, int percent)
+static void check_regions_by_flood_fill(int width, int height, int percent)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, width, height);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 250, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, width, height);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 250, 250);
     int of_area[64 * 64 + 1] = {0};
     int n, regions = 0;
 
     for (int i = 0; i < width * height; i++)
-        image.plane[0][i] = rng_below(&finder_seed, 100) < percent ? 255 : 0;
-    n = finder_find(&cfg, &image);
+        image.plane[0][i] =
+            rng_int_below(&finder_seed, 100) < percent ? 255 : 0;
+    n = finder_find_lamps(&cfg, &image);
     for (int i = 0; i < n; i++)
         of_area[finder_spot[i].area]--;
     for (int i = 0; i < width * height; i++)
         if (image.plane[0][i]) {
-            of_area[clear_region(&image, i % width, i / width)]++;
+            of_area[clear_and_measure_region(&image, i % width, i / width)]++;
             regions++;
         }
     assert_int_equal(regions, n);
@@ -141,17 +147,17 @@ static void check_against_flood(int width, int height, int percent)
     free(image.plane[0]);
 }
 
-TEST(random_shapes)
+TEST(random_regions_match_flood_fill)
 {
     for (int round = 0; round < 300; round++)
-        check_against_flood(1 + rng_below(&finder_seed, 64),
-                            1 + rng_below(&finder_seed, 64),
-                            10 + rng_below(&finder_seed, 70));
+        check_regions_by_flood_fill(1 + rng_int_below(&finder_seed, 64),
+                                    1 + rng_int_below(&finder_seed, 64),
+                                    10 + rng_int_below(&finder_seed, 70));
 }
 
 /* ------------------------------------------------------------------- colour */
 
-static void assert_colour(int i, double r, double g, double b)
+static void assert_spot_colour(int i, double r, double g, double b)
 {
     const int32_t *c = finder_spot[i].rgb_q15;
 
@@ -162,69 +168,73 @@ static void assert_colour(int i, double r, double g, double b)
                 4);
 }
 
-static void fill_rgb(const struct glint_image *image, int x0, int y0, int x1,
-                     int y1, int r, int g, int b)
+static void fill_rgb_box(const struct glint_image *image, int x0, int y0,
+                         int x1, int y1, int r, int g, int b)
 {
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x++)
-            canvas_set_rgb(image, x, y, r, g, b);
+            canvas_set_rgb_pixel(image, x, y, r, g, b);
 }
 
 /* Checks an unclipped colour: codes (240, 200, 120) are linear (0.8714,
  * 0.5776, 0.1878), luminance 0.6119. */
-TEST(colour_unclipped)
+TEST(unclipped_lamp_has_its_colour)
 {
-    struct glint_image image = canvas_new(GLINT_RGB24, 40, 40);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 150, 200);
+    struct glint_image image = canvas_allocate_image(GLINT_RGB24, 40, 40);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 150, 200);
 
-    fill_rgb(&image, 10, 10, 20, 20, 240, 200, 120);
-    assert_int_equal(finder_find(&cfg, &image), 1);
+    fill_rgb_box(&image, 10, 10, 20, 20, 240, 200, 120);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
     assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 - 61.19) < 0.05);
-    assert_colour(0, 1.4241, 0.9440, 0.3069);
+    assert_spot_colour(0, 1.4241, 0.9440, 0.3069);
     free(image.plane[0]);
 }
 
 /* Checks that a core clipped to white gets the colour of its rim, and
  * without a rim is white. */
-TEST(colour_of_the_rim)
+TEST(clipped_core_gets_the_colour_of_its_rim)
 {
-    struct glint_image image = canvas_new(GLINT_RGB24, 60, 40);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 150, 200);
+    struct glint_image image = canvas_allocate_image(GLINT_RGB24, 60, 40);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 150, 200);
 
-    fill_rgb(&image, 9, 9, 21, 21, 240, 200, 120);
-    fill_rgb(&image, 10, 10, 20, 20, 255, 255, 255);
-    fill_rgb(&image, 30, 10, 39, 19, 255, 255, 255);
-    assert_int_equal(finder_find(&cfg, &image), 2);
-    /* the rim's is 1.42 in Q15: 46531 */
+    fill_rgb_box(&image, 9, 9, 21, 21, 240, 200, 120);
+    fill_rgb_box(&image, 10, 10, 20, 20, 255, 255, 255);
+    fill_rgb_box(&image, 30, 10, 39, 19, 255, 255, 255);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 2);
+    /* red of the rim: 1.42, in Q15 46531 */
     assert_true(finder_spot[0].rgb_q15[0] > 45000);
-    /* the rim's is 0.31 in Q15: 10158 */
+    /* blue of the rim: 0.31, in Q15 10158 */
     assert_true(finder_spot[0].rgb_q15[2] < 13000);
-    assert_colour(1, 1, 1, 1);
+    assert_spot_colour(1, 1, 1, 1);
     free(image.plane[0]);
 }
 
 /* Checks that the colour is the mean if one channel is clipped everywhere. */
-TEST(colour_partly_clipped)
+TEST(partly_clipped_lamp_has_its_mean_colour)
 {
-    struct glint_image image = canvas_new(GLINT_RGB24, 40, 40);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 50, 50);
+    struct glint_image image = canvas_allocate_image(GLINT_RGB24, 40, 40);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 50, 50);
 
-    fill_rgb(&image, 10, 10, 20, 20, 255, 0, 0);
-    assert_int_equal(finder_find(&cfg, &image), 1);
-    assert_colour(0, 1 / 0.2126, 0, 0);
+    fill_rgb_box(&image, 10, 10, 20, 20, 255, 0, 0);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    assert_spot_colour(0, 1 / 0.2126, 0, 0);
     free(image.plane[0]);
 }
 
 /* Checks YCbCr formats in limited range, where 235 is white and code 200 of
  * 255 becomes 16 + 219 * 200 / 255 = 187.8. */
-TEST(ycc_formats)
+TEST(ycc_formats_in_limited_range)
 {
     static const enum glint_pixel_format formats[3] = {GLINT_I420, GLINT_I422,
                                                        GLINT_I444};
 
     for (int f = 0; f < 3; f++) {
-        struct glint_image image = canvas_new(formats[f], 41, 31);
-        struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+        struct glint_image image = canvas_allocate_image(formats[f], 41, 31);
+        struct glint_lamp_finder_config cfg =
+            finder_config_without_filters(&image, 200, 250);
 
         image.range = GLINT_RANGE_LIMITED;
         image.transfer = GLINT_TONE_BT709;
@@ -232,19 +242,19 @@ TEST(ycc_formats)
          * 0.45) */
         cfg.threshold_low_q8 = (int32_t)floor(256 * log2(0.6124) + 0.5);
         cfg.threshold_high_q8 = (int32_t)floor(256 * log2(0.9569) + 0.5);
-        canvas_fill_grey(&image, 0, 0, 41, 31, 16);
+        canvas_fill_grey_box(&image, 0, 0, 41, 31, 16);
         for (int i = 1; i < 3; i++)
             memset(image.plane[i], 128,
                    glint_image_row_bytes(formats[f], i, 41) *
                        (size_t)glint_image_plane_height(formats[f], i, 31));
-        /* 199.1 of 255: too dark */
-        canvas_fill_grey(&image, 36, 26, 41, 31, 187);
-        canvas_fill_grey(&image, 38, 28, 41, 31, 188);
-        canvas_fill_grey(&image, 39, 29, 41, 31, 235);
-        assert_int_equal(finder_find(&cfg, &image), 1);
+        /* equals code 199.1 of 255: below the threshold */
+        canvas_fill_grey_box(&image, 36, 26, 41, 31, 187);
+        canvas_fill_grey_box(&image, 38, 28, 41, 31, 188);
+        canvas_fill_grey_box(&image, 39, 29, 41, 31, 235);
+        assert_int_equal(finder_find_lamps(&cfg, &image), 1);
         assert_int_equal(finder_spot[0].area, 9);
         assert_int_equal(finder_spot[0].n_clipped, 4);
-        assert_colour(0, 1, 1, 1);
+        assert_spot_colour(0, 1, 1, 1);
         /* ((172 / 219 + 0.099) / 1.099)^(1 / 0.45) = 0.6171 */
         assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 -
                          (4 + 5 * 0.6171)) < 0.005);
@@ -254,37 +264,39 @@ TEST(ycc_formats)
 
 /* Checks the colour of BT.601 limited Y, Cb, Cr = 169, 90, 166, which is
  * R'G'B' 238.8, 162.1, 101.5. */
-TEST(ycc_colour)
+TEST(ycc_colour_matches_hand_computation)
 {
-    struct glint_image image = canvas_new(GLINT_I444, 20, 20);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 150, 170);
+    struct glint_image image = canvas_allocate_image(GLINT_I444, 20, 20);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 150, 170);
 
     image.range = GLINT_RANGE_LIMITED;
     for (int i = 0; i < 3; i++) {
         struct glint_image plane = image;
 
         plane.plane[0] = image.plane[i];
-        canvas_fill_grey(&plane, 0, 0, 20, 20, i ? 128 : 16);
-        canvas_fill_grey(&plane, 5, 5, 10, 10,
-                         i == 0   ? 169
-                         : i == 1 ? 90
-                                  : 166);
+        canvas_fill_grey_box(&plane, 0, 0, 20, 20, i ? 128 : 16);
+        canvas_fill_grey_box(&plane, 5, 5, 10, 10,
+                             i == 0   ? 169
+                             : i == 1 ? 90
+                                      : 166);
     }
-    assert_int_equal(finder_find(&cfg, &image), 1);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
     /* linear 0.8615, 0.3620, 0.1315; luminance 0.4515 */
-    assert_colour(0, 1.908, 0.802, 0.291);
+    assert_spot_colour(0, 1.908, 0.802, 0.291);
     free(image.plane[0]);
 }
 
-TEST(negative_stride)
+TEST(finds_lamps_with_negative_stride)
 {
-    struct glint_image image = canvas_new(GLINT_GREY, 40, 30);
-    struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+    struct glint_image image = canvas_allocate_image(GLINT_GREY, 40, 30);
+    struct glint_lamp_finder_config cfg =
+        finder_config_without_filters(&image, 200, 250);
 
-    canvas_fill_grey(&image, 5, 2, 8, 5, 255);
+    canvas_fill_grey_box(&image, 5, 2, 8, 5, 255);
     image.plane[0] += 29 * 40;
     image.stride_bytes[0] = -40;
-    assert_int_equal(finder_find(&cfg, &image), 1);
-    assert_true(finder_x(0) == 6.5 && finder_y(0) == 30 - 3.5);
+    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    assert_true(finder_spot_x(0) == 6.5 && finder_spot_y(0) == 30 - 3.5);
     free(image.plane[0] - 29 * 40);
 }

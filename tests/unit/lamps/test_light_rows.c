@@ -29,24 +29,26 @@ struct fixture {
 };
 
 /* Sets up an image of random codes, many of which repeat the previous pixel. */
-static void make_fixture(struct fixture *f, enum glint_pixel_format format)
+static void make_random_image(struct fixture *f, enum glint_pixel_format format)
 {
     struct glint_arena arena = glint_arena_measure();
     const size_t bytes = glint_image_bytes(format, WIDTH, HEIGHT);
     const int dark =
-        4 * rng_below(&seed, 2); /* bits: 0, or 4 for dark images */
+        /* right shift of random codes, bits: 0, or 4 for dark images */
+        4 * rng_int_below(&seed, 2);
     uint8_t *codes = malloc(bytes);
     const size_t pixel = /* bytes per pixel, or per two pixels */
         format == GLINT_RGB24 || format == GLINT_BGR24 ? 3 : 4;
-    int alike = 0; /* number of bytes that still repeat */
+    int alike = 0; /* number of bytes that still repeat the previous pixel */
 
     assert_non_null(codes);
     for (size_t i = 0; i < bytes; i++, alike--) {
         if (alike <= 0)
-            alike = rng_below(&seed, 3) ? 0 : 4 * rng_below(&seed, 16);
-        codes[i] = (uint8_t)(i >= pixel && (alike > 0 || rng_below(&seed, 2))
-                                 ? codes[i - pixel]
-                                 : rng_below(&seed, 256) >> dark);
+            alike = rng_int_below(&seed, 3) ? 0 : 4 * rng_int_below(&seed, 16);
+        codes[i] =
+            (uint8_t)(i >= pixel && (alike > 0 || rng_int_below(&seed, 2))
+                          ? codes[i - pixel]
+                          : rng_int_below(&seed, 256) >> dark);
     }
     *f = (struct fixture){
         .image = {.format = format, .width = WIDTH, .height = HEIGHT}};
@@ -64,15 +66,16 @@ static void make_fixture(struct fixture *f, enum glint_pixel_format format)
     glint_bright_begin(&f->bright, &f->image);
 }
 
-static void tear_down(struct fixture *f)
+static void free_random_image(struct fixture *f)
 {
     free(f->image.plane[0]);
     free(f->mem);
 }
 
 /* The reference of glint_row_light_add(): adds the pixels one by one. */
-static void add_by_pixel(const struct fixture *f, struct glint_region *region,
-                         int x0, int x1, int y)
+static void add_light_by_pixel(const struct fixture *f,
+                               struct glint_region *region, int x0, int x1,
+                               int y)
 {
     const int32_t clipped_q20 = f->bright.curve->decode_q20[BRIGHT_CLIPPED];
 
@@ -94,11 +97,13 @@ static void add_by_pixel(const struct fixture *f, struct glint_region *region,
     }
 }
 
-/* Checks some runs in two spans of a row, which may overlap. */
-static void check_row(struct fixture *f, int y)
+/* Checks the light of some runs of pixels in two spans of row Y; the spans may
+ * overlap. */
+static void check_runs_of_row(struct fixture *f, int y)
 {
-    const int from = rng_below(&seed, 20), to = from + rng_below(&seed, 20);
-    const int next = to - rng_below(&seed, 5) + 2;
+    const int from = rng_int_below(&seed, 20),
+              to = from + rng_int_below(&seed, 20);
+    const int next = to - rng_int_below(&seed, 5) + 2;
     const int ends[2][2] = {{from, to}, {next < from ? from : next, WIDTH}};
     struct glint_region sum, plain;
 
@@ -115,61 +120,64 @@ static void check_row(struct fixture *f, int y)
 
         if (x0 >= x1)
             continue;
-        /* The first run is the whole span; the other three are parts of it. */
+        /* The first run is the whole span; the other three runs are parts of
+         * the span. */
         for (int j = 0; j < 4; j++) {
-            const int begin = j ? x0 + rng_below(&seed, x1 - x0) : x0;
-            const int end = j ? begin + 1 + rng_below(&seed, x1 - begin) : x1;
+            const int begin = j ? x0 + rng_int_below(&seed, x1 - x0) : x0;
+            const int end =
+                j ? begin + 1 + rng_int_below(&seed, x1 - begin) : x1;
 
             glint_row_light_add(&f->row, &sum, begin, end, WIDTH, y + 1000);
-            add_by_pixel(f, &plain, begin, end, y + 1000);
+            add_light_by_pixel(f, &plain, begin, end, y + 1000);
         }
     }
     assert_memory_equal(&sum, &plain, sizeof sum);
 }
 
-TEST(light_of_runs)
+TEST(light_of_runs_equals_sum_of_pixels)
 {
     for (int round = 0; round < ROUNDS; round++) {
         struct fixture f;
 
-        make_fixture(&f, canvas_format[round % CANVAS_FORMATS]);
+        make_random_image(&f, canvas_format[round % CANVAS_FORMATS]);
         for (int y = 0; y < HEIGHT; y++)
-            check_row(&f, y);
-        tear_down(&f);
+            check_runs_of_row(&f, y);
+        free_random_image(&f);
     }
 }
 
 /* Returns a random region in the image, with any light and any fill of its
  * box. */
-static struct glint_candidate draw_candidate(void)
+static struct glint_candidate make_random_candidate(void)
 {
-    const int x0 = rng_below(&seed, WIDTH - 1),
-              y0 = rng_below(&seed, HEIGHT - 1);
-    const int x1 = x0 + 1 + rng_below(&seed, WIDTH - x0);
-    const int y1 = y0 + 1 + rng_below(&seed, HEIGHT - y0);
+    const int x0 = rng_int_below(&seed, WIDTH - 1),
+              y0 = rng_int_below(&seed, HEIGHT - 1);
+    const int x1 = x0 + 1 + rng_int_below(&seed, WIDTH - x0);
+    const int y1 = y0 + 1 + rng_int_below(&seed, HEIGHT - y0);
     struct glint_candidate c = {.sum = {.x0 = x0, .y0 = y0}};
-    /* bits of light below white */
-    const int hidden = 10 + rng_below(&seed, 11);
-    const int32_t rgb_q20[3] = {(1 << 20) - rng_below(&seed, 1 << hidden),
-                                (1 << 20) - rng_below(&seed, 1 << hidden),
-                                (1 << 20) - rng_below(&seed, 1 << hidden)};
+    /* each channel is darker than white by less than 2^HIDDEN, Q20 */
+    const int hidden = 10 + rng_int_below(&seed, 11);
+    const int32_t rgb_q20[3] = {(1 << 20) - rng_int_below(&seed, 1 << hidden),
+                                (1 << 20) - rng_int_below(&seed, 1 << hidden),
+                                (1 << 20) - rng_int_below(&seed, 1 << hidden)};
     const struct glint_region_light light = region_light_of(rgb_q20);
 
     for (int y = y0; y < y1; y++) {
         glint_region_add_run(&c.sum, x0, x1, y);
         region_add_pixels(&c.sum, &light, x0, x1, y);
     }
-    if (rng_below(&seed, 2)) { /* some fill most of their box, as lamps do */
-        c.sum.area -= rng_below(&seed, c.sum.area) / 8;
-        c.sum.n_clipped = c.sum.area - rng_below(&seed, c.sum.area);
+    if (rng_int_below(&seed,
+                      2)) { /* some fill most of their box, as lamps do */
+        c.sum.area -= rng_int_below(&seed, c.sum.area) / 8;
+        c.sum.n_clipped = c.sum.area - rng_int_below(&seed, c.sum.area);
     } else
-        c.sum.area = 1 + rng_below(&seed, c.sum.area) / 256;
+        c.sum.area = 1 + rng_int_below(&seed, c.sum.area) / 256;
     return c;
 }
 
 /* Checks that the brief score equals the full one if that is -SCORE_DOUBT or
  * more, and otherwise lies between it and -SCORE_DOUBT. */
-TEST(brief_scores)
+TEST(brief_score_bounds_the_full_score)
 {
     int n_kept = 0, n_brief = 0;
 
@@ -180,9 +188,9 @@ TEST(brief_scores)
         const int32_t order = 0;
         struct fixture f;
 
-        make_fixture(&f, canvas_format[round % CANVAS_FORMATS]);
+        make_random_image(&f, canvas_format[round % CANVAS_FORMATS]);
         glint_white_measure(&white, &f.bright, HEIGHT);
-        c[0] = c[1] = draw_candidate();
+        c[0] = c[1] = make_random_candidate();
         for (int brief = 0; brief < 2; brief++) {
             const struct glint_score score = {&f.bright, &white, WIDTH, HEIGHT,
                                               &level,    brief,  0};
@@ -195,7 +203,7 @@ TEST(brief_scores)
             assert_in_range(-c[1].score_q8, SCORE_DOUBT + 1, -c[0].score_q8);
         n_kept += c[0].score_q8 >= -SCORE_DOUBT;
         n_brief += c[0].score_q8 != c[1].score_q8;
-        tear_down(&f);
+        free_random_image(&f);
     }
     print_message("%d of %d kept, %d brief\n", n_kept, CANDIDATES, n_brief);
     assert_true(n_kept > 0 && n_brief > 0);

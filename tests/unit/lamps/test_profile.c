@@ -22,8 +22,10 @@ static uint32_t seed = 1;
 
 /* --------------------------------------------------------------- by hand */
 
-/* Returns an ordinary lamp in the centre of the image. */
-static struct power_lamp make_lamp(enum power_shape shape, double radius)
+/* Returns a lamp of SHAPE in the centre of the image, with the other parameters
+ * at typical values. */
+static struct power_lamp make_default_lamp(enum power_shape shape,
+                                           double radius)
 {
     return (struct power_lamp){.shape = shape,
                                .x = W / 2 + 0.3,
@@ -36,7 +38,7 @@ static struct power_lamp make_lamp(enum power_shape shape, double radius)
                                .rgb = {1, 1, 1}};
 }
 
-static void measure_spots(const struct glint_image *image, int n)
+static void measure_spot_profiles(const struct glint_image *image, int n)
 {
     const size_t bytes = glint_profile_bytes();
     struct glint_profile *profile;
@@ -50,7 +52,7 @@ static void measure_spots(const struct glint_image *image, int n)
 }
 
 /* Finds and measures all bright spots of IMAGE. Returns their number. */
-static int find_spots(const struct glint_image *image)
+static int find_and_measure_spots(const struct glint_image *image)
 {
     struct glint_lamp_finder_config cfg;
     struct glint_lamp_finder *finder;
@@ -70,37 +72,37 @@ static int find_spots(const struct glint_image *image)
     assert_ok(glint_lamp_finder_init(&finder, &cfg, mem, bytes));
     n = glint_lamp_finder_find(finder, image, spot, MAX_SPOTS);
     free(mem);
-    measure_spots(image, n);
+    measure_spot_profiles(image, n);
     return n;
 }
 
-static struct glint_image make_image(uint8_t *px, int width, int height)
+static struct glint_image make_grey_image(uint8_t *px, int width, int height)
 {
     return glint_image_over(px, GLINT_RGB24, width, height);
 }
 
 /* Draws light[] times POWER over BLACK with noise of SIGMA codes, and finds
  * the spots. Returns their number. */
-static int draw_and_find(const struct power_lamp *lamp, double power,
-                         double black, double sigma)
+static int draw_and_find_spots(const struct power_lamp *lamp, double power,
+                               double black, double sigma)
 {
     const struct power_picture settings = {W, H, rgb};
-    const struct glint_image image = make_image(codes, W, H);
+    const struct glint_image image = make_grey_image(codes, W, H);
 
     for (int i = 0; i < 3 * W * H; i++)
         rgb[i] = black + power * lamp->rgb[i % 3] * light[i / 3];
-    power_expose(codes, &settings, 1, sigma, &seed);
-    return find_spots(&image);
+    power_expose_codes(codes, &settings, 1, sigma, &seed);
+    return find_and_measure_spots(&image);
 }
 
-static double power_of_spot(void)
+static double compute_spot_power(void)
 {
     return (double)spot[0].power_q16 / 65536;
 }
 
 /* ------------------------------------------------------------------- tests */
 
-TEST(logarithms)
+TEST(logarithms_match_known_values)
 {
     assert_int_equal(q_log2_q16(1), 0);
     assert_int_equal(q_log2_q16(1024), 10 << 16);
@@ -119,7 +121,7 @@ TEST(logarithms)
     }
 }
 
-TEST(memory)
+TEST(rejects_too_little_memory)
 {
     const size_t bytes = glint_profile_bytes();
     struct glint_profile *profile;
@@ -136,42 +138,44 @@ TEST(memory)
 
 /* Checks that the power of an unclipped lamp is its flux: 13 and 45 white
  * pixels, blurred by Gaussians of 1.6 and 3 pixels. */
-TEST(unclipped_is_the_flux)
+TEST(unclipped_power_is_the_flux)
 {
-    struct power_lamp lamp = make_lamp(POWER_DISC, 0.4);
+    struct power_lamp lamp = make_default_lamp(POWER_DISC, 0.4);
 
     lamp.glare = 0;
     lamp.sigma = 1.6;
-    power_draw(light, W, H, &lamp);
-    assert_int_equal(draw_and_find(&lamp, 13, 0, 0), 1);
-    print_message("13 white pixels unclipped: %.2f\n", power_of_spot());
-    assert_true(power_of_spot() > 0.85 * 13 && power_of_spot() < 1.1 * 13);
+    power_draw_lamp(light, W, H, &lamp);
+    assert_int_equal(draw_and_find_spots(&lamp, 13, 0, 0), 1);
+    print_message("13 white pixels unclipped: %.2f\n", compute_spot_power());
+    assert_true(compute_spot_power() > 0.85 * 13 &&
+                compute_spot_power() < 1.1 * 13);
     lamp.sigma = 3;
-    power_draw(light, W, H, &lamp);
-    assert_int_equal(draw_and_find(&lamp, 45, 0, 0), 1);
-    print_message("45 white pixels unclipped: %.2f\n", power_of_spot());
-    assert_true(power_of_spot() > 0.85 * 45 && power_of_spot() < 1.1 * 45);
+    power_draw_lamp(light, W, H, &lamp);
+    assert_int_equal(draw_and_find_spots(&lamp, 45, 0, 0), 1);
+    print_message("45 white pixels unclipped: %.2f\n", compute_spot_power());
+    assert_true(compute_spot_power() > 0.85 * 45 &&
+                compute_spot_power() < 1.1 * 45);
 }
 
 /* Checks that a tube 36 pixels long, rotated clockwise by 30 degrees, has a
  * longer RMS semi-axis of 18 / sqrt(3), and that a disc has two of half its
  * radius. */
-TEST(extent)
+TEST(extent_of_a_tube_is_its_axis)
 {
-    struct power_lamp lamp = make_lamp(POWER_TUBE, 18);
+    struct power_lamp lamp = make_default_lamp(POWER_TUBE, 18);
 
     lamp.glare = 0.002;
     lamp.angle = 3.14159265 / 6;
-    power_draw(light, W, H, &lamp);
-    assert_int_equal(draw_and_find(&lamp, 2000, 0.002, 0), 1);
+    power_draw_lamp(light, W, H, &lamp);
+    assert_int_equal(draw_and_find_spots(&lamp, 2000, 0.002, 0), 1);
     assert_true(abs(spot[0].axis_q8[0] - 2660) < 200);
     assert_true(spot[0].axis_q8[1] < 550);
     assert_true(abs(spot[0].cos_q15 - 28378) < 300);
     assert_true(abs(spot[0].sin_q15 - 16384) < 500);
-    lamp = make_lamp(POWER_DISC, 12);
+    lamp = make_default_lamp(POWER_DISC, 12);
     lamp.glare = 0;
-    power_draw(light, W, H, &lamp);
-    assert_int_equal(draw_and_find(&lamp, 2000, 0.002, 0), 1);
+    power_draw_lamp(light, W, H, &lamp);
+    assert_int_equal(draw_and_find_spots(&lamp, 2000, 0.002, 0), 1);
     print_message("disc: axes %d and %d\n", spot[0].axis_q8[0],
                   spot[0].axis_q8[1]);
     assert_true(abs(spot[0].axis_q8[0] - 6 * 256) < 200);
@@ -180,13 +184,13 @@ TEST(extent)
 
 /* Checks that the extent of a lamp two pixels wide with the light of 16384
  * white pixels excludes its core of clipped glare, some pixels wide. */
-TEST(glare_is_no_extent)
+TEST(extent_excludes_glare)
 {
-    struct power_lamp lamp = make_lamp(POWER_DISC, 1);
+    struct power_lamp lamp = make_default_lamp(POWER_DISC, 1);
 
     lamp.glare = 0.1;
-    power_draw(light, W, H, &lamp);
-    assert_int_equal(draw_and_find(&lamp, 16384, 0.002, 0), 1);
+    power_draw_lamp(light, W, H, &lamp);
+    assert_int_equal(draw_and_find_spots(&lamp, 16384, 0.002, 0), 1);
     print_message("glare: axes %d of a core of %d pixels, size %d\n",
                   spot[0].axis_q8[0], spot[0].n_clipped, spot[0].size_q8);
     assert_true(spot[0].n_clipped > 20);
@@ -195,7 +199,7 @@ TEST(glare_is_no_extent)
 
 /* Sets light[] to 4 inside RADIUS; outside it starts at RIM and falls as 1 /
  * r^FALL. */
-static void draw_core(double radius, double rim, double fall)
+static void draw_core_and_glare(double radius, double rim, double fall)
 {
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++) {
@@ -207,20 +211,20 @@ static void draw_core(double radius, double rim, double fall)
 
 /* Checks that sodium light, clipped to yellow and white, gets the colour of
  * its fringe: 1.99, 0.79, 0.04 at luminance 1. */
-TEST(colour_is_that_of_the_fringe)
+TEST(clipped_lamp_gets_the_colour_of_its_fringe)
 {
-    struct power_lamp lamp = make_lamp(POWER_DISC, 3);
+    struct power_lamp lamp = make_default_lamp(POWER_DISC, 3);
 
     lamp.rgb[0] = 1.99;
     lamp.rgb[1] = 0.79;
     lamp.rgb[2] = 0.04;
-    power_draw(light, W, H, &lamp);
+    power_draw_lamp(light, W, H, &lamp);
     for (double p = 50; p < 20000; p *= 4) {
-        assert_int_equal(draw_and_find(&lamp, p, 0.01, 1), 1);
+        assert_int_equal(draw_and_find_spots(&lamp, p, 0.01, 1), 1);
         print_message("power %5.0f: %.2f %.2f %.2f, %.0f\n", p,
                       spot[0].rgb_q15[0] / 32768.0,
                       spot[0].rgb_q15[1] / 32768.0,
-                      spot[0].rgb_q15[2] / 32768.0, power_of_spot());
+                      spot[0].rgb_q15[2] / 32768.0, compute_spot_power());
         assert_true(abs(spot[0].rgb_q15[0] - 65200) < 13000);
         assert_true(abs(spot[0].rgb_q15[1] - 25900) < 6000);
         assert_true(spot[0].rgb_q15[2] < 6000);
@@ -230,22 +234,22 @@ TEST(colour_is_that_of_the_fringe)
 /* Checks lamps of 2^4 .. 2^14 white pixels in several sizes and shapes: the
  * error of each power is at most 4.5 stops, and half of them are within one
  * stop. */
-TEST(power_of_clipped_lamps)
+TEST(clipped_power_is_within_4_stops)
 {
     int n = 0, n_near = 0;
 
     for (int shape = 0; shape < POWER_SHAPES; shape++)
         for (double radius = 1; radius < 12; radius *= 2) {
             const struct power_lamp lamp =
-                make_lamp((enum power_shape)shape, radius);
+                make_default_lamp((enum power_shape)shape, radius);
 
-            power_draw(light, W, H, &lamp);
+            power_draw_lamp(light, W, H, &lamp);
             for (int ev = 4; ev <= 14; ev += 2) {
                 double stops;
 
-                if (draw_and_find(&lamp, exp2(ev), 0.01, 1.5) != 1)
+                if (draw_and_find_spots(&lamp, exp2(ev), 0.01, 1.5) != 1)
                     continue;
-                stops = log2(power_of_spot()) - ev;
+                stops = log2(compute_spot_power()) - ev;
                 assert_true(fabs(stops) < 4.5);
                 n_near += fabs(stops) < 1;
                 n++;
@@ -263,18 +267,18 @@ TEST(power_rises_smoothly)
     for (int shape = 0; shape < POWER_SHAPES; shape++)
         for (int radius = 1; radius <= 9; radius += 4) {
             const struct power_lamp lamp =
-                make_lamp((enum power_shape)shape, radius);
+                make_default_lamp((enum power_shape)shape, radius);
             double last = 0, most = 0, least = 1;
 
-            power_draw(light, W, H, &lamp);
+            power_draw_lamp(light, W, H, &lamp);
             for (double ev = 3 + radius / 3; ev < 12; ev += 1 / 32.0) {
-                if (draw_and_find(&lamp, exp2(ev), 0.01, 0) != 1)
+                if (draw_and_find_spots(&lamp, exp2(ev), 0.01, 0) != 1)
                     continue;
                 if (last > 0) {
-                    most = fmax(most, log2(power_of_spot() / last));
-                    least = fmin(least, log2(power_of_spot() / last));
+                    most = fmax(most, log2(compute_spot_power() / last));
+                    least = fmin(least, log2(compute_spot_power() / last));
                 }
-                last = power_of_spot();
+                last = compute_spot_power();
             }
             print_message("shape %d of %d: steps of %+.3f to %+.3f stops\n",
                           shape, radius, least, most);
@@ -285,24 +289,24 @@ TEST(power_rises_smoothly)
 /* Checks, while a sun enters over the left border by half a pixel per step,
  * that each step raises its power by less than 0.1 of the total or lowers it
  * by less than 0.13. */
-TEST(a_sun_that_enters)
+TEST(entering_sun_rises_smoothly)
 {
     enum { OUT = 48, WIDE = W + OUT };
-    struct power_lamp lamp = make_lamp(POWER_DISC, 6);
+    struct power_lamp lamp = make_default_lamp(POWER_DISC, 6);
     static double wide[WIDE * H];
     const double full = 4000;
     double last = 0, most = 0, least = 0;
 
     for (double x = -20; x < 40; x += 0.5) {
         lamp.x = OUT + x;
-        power_draw(wide, WIDE, H, &lamp);
+        power_draw_lamp(wide, WIDE, H, &lamp);
         for (int i = 0; i < W * H; i++)
             light[i] = wide[i / W * WIDE + i % W + OUT];
-        if (draw_and_find(&lamp, full, 0.05, 0) < 1)
+        if (draw_and_find_spots(&lamp, full, 0.05, 0) < 1)
             continue;
-        most = fmax(most, (power_of_spot() - last) / full);
-        least = fmin(least, (power_of_spot() - last) / full);
-        last = power_of_spot();
+        most = fmax(most, (compute_spot_power() - last) / full);
+        least = fmin(least, (compute_spot_power() - last) / full);
+        last = compute_spot_power();
     }
     print_message("entering: steps of %+.3f to %+.3f of it, then %.0f\n", least,
                   most, last);
@@ -310,19 +314,19 @@ TEST(a_sun_that_enters)
 }
 
 /* Checks that noise of 3 codes changes the power by less than 10 %. */
-TEST(noise)
+TEST(noise_changes_power_little)
 {
-    const struct power_lamp lamp = make_lamp(POWER_DISC, 4);
+    const struct power_lamp lamp = make_default_lamp(POWER_DISC, 4);
     double sum = 0, sum2 = 0, still;
     const int n = 40;
 
-    power_draw(light, W, H, &lamp);
-    draw_and_find(&lamp, 600, 0.03, 0);
-    still = power_of_spot();
+    power_draw_lamp(light, W, H, &lamp);
+    draw_and_find_spots(&lamp, 600, 0.03, 0);
+    still = compute_spot_power();
     for (int i = 0; i < n; i++) {
-        draw_and_find(&lamp, 600, 0.03, 3);
-        sum += power_of_spot() / n;
-        sum2 += power_of_spot() * power_of_spot() / n;
+        draw_and_find_spots(&lamp, 600, 0.03, 3);
+        sum += compute_spot_power() / n;
+        sum2 += compute_spot_power() * compute_spot_power() / n;
     }
     print_message("noise: %.0f becomes %.0f +- %.0f\n", still, sum,
                   sqrt(fmax(sum2 - sum * sum, 0)));
@@ -332,21 +336,21 @@ TEST(noise)
 
 /* Checks that each of two adjacent lamps has the power of a single one, not
  * twice as much. */
-TEST(neighbours)
+TEST(adjacent_lamps_have_single_powers)
 {
-    struct power_lamp lamp = make_lamp(POWER_DISC, 3);
+    struct power_lamp lamp = make_default_lamp(POWER_DISC, 3);
     static double other[W * H];
     double alone;
 
     lamp.x = 60;
-    power_draw(light, W, H, &lamp);
-    draw_and_find(&lamp, 500, 0.01, 0);
-    alone = power_of_spot();
+    power_draw_lamp(light, W, H, &lamp);
+    draw_and_find_spots(&lamp, 500, 0.01, 0);
+    alone = compute_spot_power();
     lamp.x = 100;
-    power_draw(other, W, H, &lamp);
+    power_draw_lamp(other, W, H, &lamp);
     for (int i = 0; i < W * H; i++)
         light[i] += other[i];
-    assert_int_equal(draw_and_find(&lamp, 500, 0.01, 0), 2);
+    assert_int_equal(draw_and_find_spots(&lamp, 500, 0.01, 0), 2);
     for (int i = 0; i < 2; i++)
         assert_true(fabs(log2((double)spot[i].power_q16 / 65536 / alone)) <
                     0.7);
@@ -354,15 +358,15 @@ TEST(neighbours)
 
 /* Checks that a white lamp has nearly the same power in all formats: within
  * 0.1 stops, in RGB565 within one. */
-TEST(formats)
+TEST(power_is_the_same_in_all_formats)
 {
     static uint8_t px[4 * W * H];
-    const struct power_lamp lamp = make_lamp(POWER_DISC, 4);
+    const struct power_lamp lamp = make_default_lamp(POWER_DISC, 4);
     double expected;
 
-    power_draw(light, W, H, &lamp);
-    draw_and_find(&lamp, 600, 0.05, 0);
-    expected = power_of_spot();
+    power_draw_lamp(light, W, H, &lamp);
+    draw_and_find_spots(&lamp, 600, 0.05, 0);
+    expected = compute_spot_power();
     for (int f = GLINT_RGB24; f <= GLINT_RGB565; f++) {
         struct glint_image image =
             glint_image_over(px, (enum glint_pixel_format)f, W, H);
@@ -395,15 +399,15 @@ TEST(formats)
                 row[x] = (uint8_t)code;
             }
         }
-        assert_int_equal(find_spots(&image), 1);
-        assert_true(fabs(log2(power_of_spot() / expected)) <
+        assert_int_equal(find_and_measure_spots(&image), 1);
+        assert_true(fabs(log2(compute_spot_power() / expected)) <
                     (f == GLINT_RGB565 ? 1 : 0.1));
     }
 }
 
 /* ---------------------------------------------------------------- extremes */
 
-TEST(white_pictures)
+TEST(white_images_give_valid_results)
 {
     static const int sides[][2] = {{1, 1}, {2, 1}, {1, 7}, {64, 64}};
     static uint8_t white[3 * 64 * 64];
@@ -411,8 +415,8 @@ TEST(white_pictures)
     memset(white, 255, sizeof white);
     for (int i = 0; i < 4; i++) {
         const struct glint_image image =
-            make_image(white, sides[i][0], sides[i][1]);
-        const int n = find_spots(&image);
+            make_grey_image(white, sides[i][0], sides[i][1]);
+        const int n = find_and_measure_spots(&image);
 
         assert_true(n <= 1);
         for (int k = 0; k < n; k++) {
@@ -423,23 +427,23 @@ TEST(white_pictures)
     }
 }
 
-TEST(a_lamp_of_one_pixel)
+TEST(measures_a_lamp_of_one_pixel)
 {
-    const struct glint_image image = make_image(codes, W, H);
+    const struct glint_image image = make_grey_image(codes, W, H);
 
     memset(codes, 0, sizeof codes);
     memset(codes + 3 * (50 * W + 40), 255, 3);
-    assert_int_equal(find_spots(&image), 1);
-    assert_true(power_of_spot() >= 1 && power_of_spot() < 64);
+    assert_int_equal(find_and_measure_spots(&image), 1);
+    assert_true(compute_spot_power() >= 1 && compute_spot_power() < 64);
     assert_int_equal(spot[0].axis_q8[0], 0);
     assert_int_equal(spot[0].axis_q8[1], 0);
 }
 
 /* Checks that results are within their limits, for any spots and images. */
-TEST(any_spots)
+TEST(results_stay_in_range_for_any_spots)
 {
     static const int32_t any[] = {INT32_MIN, -1, 0, 1, 256, 40000, INT32_MAX};
-    struct glint_image image = make_image(codes, W, H);
+    struct glint_image image = make_grey_image(codes, W, H);
 
     for (int round = 0; round < 60; round++) {
         for (int i = 0; i < 3 * W * H; i++)
@@ -453,7 +457,7 @@ TEST(any_spots)
                               : any[(int)(7 * rng_unit(&seed))],
                 .size_q8 = i % 3 ? (int)(2560 * rng_unit(&seed))
                                  : any[(int)(7 * rng_unit(&seed))]};
-        measure_spots(&image, MAX_SPOTS);
+        measure_spot_profiles(&image, MAX_SPOTS);
         for (int i = 0; i < MAX_SPOTS; i++) {
             const struct glint_spot *s = &spot[i];
             const double turn =
@@ -471,34 +475,35 @@ TEST(any_spots)
 /* Checks the width of a large lamp that lights its surroundings to half of
  * white: 18 pixels, or up to twice as much with that light. The glare of a
  * point that clips as far has a smaller extent. */
-TEST(face_in_its_own_light)
+TEST(width_excludes_a_lamps_own_light)
 {
-    const struct power_lamp lamp = make_lamp(POWER_DISC, 36);
+    const struct power_lamp lamp = make_default_lamp(POWER_DISC, 36);
 
     for (double rim = 0.05; rim < 0.57; rim += 0.05) {
-        draw_core(36, rim, 0.5);
-        assert_int_equal(draw_and_find(&lamp, 1, 0, 0), 1);
+        draw_core_and_glare(36, rim, 0.5);
+        assert_int_equal(draw_and_find_spots(&lamp, 1, 0, 0), 1);
         for (int k = 0; k < 2; k++)
             assert_in_range(spot[0].axis_q8[k], 17 * 256, 36 * 256);
     }
     for (double fall = 1; fall < 2.6; fall += 0.25) {
-        draw_core(36, 1, fall);
-        assert_int_equal(draw_and_find(&lamp, 1, 0, 0), 1);
+        draw_core_and_glare(36, 1, fall);
+        assert_int_equal(draw_and_find_spots(&lamp, 1, 0, 0), 1);
         assert_in_range(spot[0].axis_q8[0], 0, 6 * 256);
     }
 }
 
-/* Checks that a ring which lights its surroundings is not widened by its
- * dark middle, as light missing there is not missing at a rim. */
-TEST(ring_is_no_face)
+/* Checks that a ring which lights its surroundings does not get a larger extent
+ * because of its dark middle: light missing in the middle does not count as
+ * missing at a rim. */
+TEST(ring_is_not_widened_by_its_middle)
 {
-    const struct power_lamp lamp = make_lamp(POWER_DISC, 50);
+    const struct power_lamp lamp = make_default_lamp(POWER_DISC, 50);
 
-    draw_core(50, 0.49, 0.1);
+    draw_core_and_glare(50, 0.49, 0.1);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++)
             if (hypot(x + 0.5 - W / 2.0, y + 0.5 - H / 2.0) < 30)
                 light[y * W + x] = 0.49;
-    assert_int_equal(draw_and_find(&lamp, 1, 0, 0), 1);
+    assert_int_equal(draw_and_find_spots(&lamp, 1, 0, 0), 1);
     assert_in_range(spot[0].axis_q8[0], 0, 6 * 256);
 }

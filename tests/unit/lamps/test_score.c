@@ -22,11 +22,11 @@ struct settings {
 
 static struct glint_spot spot[MOST];
 static uint32_t seed;
-/* number of frames that find() passes before the image, as in a video */
+/* number of video frames that draw_and_find_lamps() passes before the image */
 static int n_before;
 static int n_video; /* number of lamps in the last of these frames */
 
-static struct settings new_settings(int width, int height, double light)
+static struct settings make_settings(int width, int height, double light)
 {
     const size_t n = 3 * (size_t)width * (size_t)height;
     struct settings s = {width, height, malloc(n * sizeof *s.light)};
@@ -40,8 +40,9 @@ static struct settings new_settings(int width, int height, double light)
 
 /* Adds a lamp at (X, Y) with a face of LIGHT, whose light falls by a factor
  * e per FALL outside RADIUS; all lengths are fractions of the width. */
-static void add_lamp(const struct settings *s, double x, double y,
-                     double radius, double fall, const double light[3])
+static void add_lamp_with_glare(const struct settings *s, double x, double y,
+                                double radius, double fall,
+                                const double light[3])
 {
     for (int j = 0; j < s->height; j++)
         for (int i = 0; i < s->width; i++) {
@@ -55,8 +56,8 @@ static void add_lamp(const struct settings *s, double x, double y,
 }
 
 /* Fills a box, in fractions of the width, with uniform LIGHT. */
-static void fill_box(const struct settings *s, double x0, double y0, double x1,
-                     double y1, double light)
+static void fill_box_with_light(const struct settings *s, double x0, double y0,
+                                double x1, double y1, double light)
 {
     for (int j = (int)(y0 * s->width); j < (int)(y1 * s->width); j++)
         for (int i = (int)(x0 * s->width); i < (int)(x1 * s->width); i++)
@@ -64,7 +65,7 @@ static void fill_box(const struct settings *s, double x0, double y0, double x1,
                 s->light[3 * (j * s->width + i) + c] = light;
 }
 
-static double to_code(double light)
+static double encode_light(double light)
 {
     const double held = fmin(fmax(light, 0), 1);
 
@@ -78,20 +79,20 @@ static int clamp_code(double code)
 }
 
 /* Converts the codes RGB to full-range BT.601 codes YCC. */
-static void to_ycc(const double rgb[3], double ycc[3])
+static void convert_rgb_to_ycc(const double rgb[3], double ycc[3])
 {
     ycc[0] = 0.299 * rgb[0] + 0.587 * rgb[1] + 0.114 * rgb[2];
     ycc[1] = 128 + (rgb[2] - ycc[0]) / 1.772;
     ycc[2] = 128 + (rgb[0] - ycc[0]) / 1.402;
 }
 
-static void write_pixel(const struct glint_image *image, int x, int y,
-                        const double rgb[3])
+static void write_pixel_of_format(const struct glint_image *image, int x, int y,
+                                  const double rgb[3])
 {
     uint8_t *const row = image->plane[0] + y * image->stride_bytes[0];
     double ycc[3];
 
-    to_ycc(rgb, ycc);
+    convert_rgb_to_ycc(rgb, ycc);
     if (image->format == GLINT_RGB24) {
         for (int c = 0; c < 3; c++)
             row[3 * x + c] = (uint8_t)clamp_code(rgb[c]);
@@ -108,8 +109,8 @@ static void write_pixel(const struct glint_image *image, int x, int y,
 
 /* Draws S as an image of FORMAT with noise of SIGMA codes. Returns the
  * number of lamps found. */
-static int find_lamps(const struct settings *s, enum glint_pixel_format format,
-                      double sigma)
+static int draw_and_find_lamps(const struct settings *s,
+                               enum glint_pixel_format format, double sigma)
 {
     struct glint_image image = {
         .format = format, .width = s->width, .height = s->height};
@@ -128,8 +129,9 @@ static int find_lamps(const struct settings *s, enum glint_pixel_format format,
             double rgb[3];
 
             for (int c = 0; c < 3; c++)
-                rgb[c] = to_code(s->light[3 * (y * s->width + x) + c]) + noise;
-            write_pixel(&image, x, y, rgb);
+                rgb[c] =
+                    encode_light(s->light[3 * (y * s->width + x) + c]) + noise;
+            write_pixel_of_format(&image, x, y, rgb);
         }
     glint_lamp_finder_defaults(&cfg, s->width, s->height);
     assert_int_equal(posix_memalign(&mem, 64, glint_lamp_finder_bytes(&cfg)),
@@ -156,10 +158,10 @@ static void assert_spot_near(const struct settings *s, double x, double y)
     assert_true(least < 0.01);
 }
 
-static void assert_none(struct settings *s)
+static void assert_no_lamp_is_found(struct settings *s)
 {
     for (double sigma = 0; sigma < 3; sigma += 1.5)
-        assert_int_equal(find_lamps(s, GLINT_RGB24, sigma), 0);
+        assert_int_equal(draw_and_find_lamps(s, GLINT_RGB24, sigma), 0);
     free(s->light);
 }
 
@@ -168,7 +170,7 @@ static void assert_none(struct settings *s)
 /* Checks that a lamp of any colour is found, and nothing else. Most of them
  * clip one or two channels; only the yellow and the white lamp have a luma
  * near white. */
-TEST(lamps_of_every_colour)
+TEST(finds_lamps_of_every_colour)
 {
     static const double colours[][3] = {
         {3, 0.1, 0.05}, {0.05, 3, 0.3}, {0.1, 0.15, 3}, {3, 1.2, 0.2},
@@ -177,11 +179,11 @@ TEST(lamps_of_every_colour)
                                                       GLINT_I444};
 
     for (size_t i = 0; i < sizeof colours / sizeof *colours; i++) {
-        struct settings s = new_settings(400, 260, 0.01);
+        struct settings s = make_settings(400, 260, 0.01);
 
-        add_lamp(&s, 0.3, 0.35, 0.015, 0.01, colours[i]);
+        add_lamp_with_glare(&s, 0.3, 0.35, 0.015, 0.01, colours[i]);
         for (int f = 0; f < 3; f++) {
-            assert_int_equal(find_lamps(&s, formats[f], 1), 1);
+            assert_int_equal(draw_and_find_lamps(&s, formats[f], 1), 1);
             assert_spot_near(&s, 0.3, 0.35);
         }
         free(s.light);
@@ -190,62 +192,62 @@ TEST(lamps_of_every_colour)
 
 /* Checks that two lamps of 0.1 to 0.4 of white are found in an image without
  * clipping. */
-TEST(underexposed_night)
+TEST(finds_lamps_in_an_underexposed_night)
 {
     static const double colour[3] = {0.25, 0.22, 0.15};
 
     for (double gain = 0.5; gain <= 1.5; gain += 0.5) {
         const double light[3] = {gain * colour[0], gain * colour[1],
                                  gain * colour[2]};
-        struct settings s = new_settings(400, 260, 0.002);
+        struct settings s = make_settings(400, 260, 0.002);
 
-        add_lamp(&s, 0.3, 0.35, 0.02, 0.01, light);
-        add_lamp(&s, 0.8, 0.15, 0.02, 0.01, light);
-        assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 2);
+        add_lamp_with_glare(&s, 0.3, 0.35, 0.02, 0.01, light);
+        add_lamp_with_glare(&s, 0.8, 0.15, 0.02, 0.01, light);
+        assert_int_equal(draw_and_find_lamps(&s, GLINT_RGB24, 1), 2);
         assert_spot_near(&s, 0.3, 0.35);
         assert_spot_near(&s, 0.8, 0.15);
         free(s.light);
     }
 }
 
-TEST(lamp_before_a_bright_wall)
+TEST(finds_a_lamp_before_a_bright_wall)
 {
     static const double white[3] = {4, 4, 4};
-    struct settings s = new_settings(400, 260, 0.35);
+    struct settings s = make_settings(400, 260, 0.35);
 
-    add_lamp(&s, 0.4, 0.3, 0.03, 0.02, white);
-    assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 1);
+    add_lamp_with_glare(&s, 0.4, 0.3, 0.03, 0.02, white);
+    assert_int_equal(draw_and_find_lamps(&s, GLINT_RGB24, 1), 1);
     assert_spot_near(&s, 0.4, 0.3);
     free(s.light);
 }
 
 /* Checks that the sun is found in a sky brighter than the glow of any lamp,
  * with red clipped far around the sun. */
-TEST(sun_in_haze)
+TEST(finds_the_sun_in_haze)
 {
     static const double sun[3] = {3, 3, 3}, haze[3] = {0.8, 0.35, 0.1};
-    struct settings s = new_settings(400, 260, 0.25);
+    struct settings s = make_settings(400, 260, 0.25);
 
-    add_lamp(&s, 0.5, 0.25, 0.04, 0.02, sun);
-    add_lamp(&s, 0.5, 0.25, 0.04, 0.2, haze);
-    assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 1);
+    add_lamp_with_glare(&s, 0.5, 0.25, 0.04, 0.02, sun);
+    add_lamp_with_glare(&s, 0.5, 0.25, 0.04, 0.2, haze);
+    assert_int_equal(draw_and_find_lamps(&s, GLINT_RGB24, 1), 1);
     assert_spot_near(&s, 0.5, 0.25);
     free(s.light);
 }
 
 /* Checks that the same scene has the same lamps at widths of 320 to 2000
  * pixels. */
-TEST(every_resolution)
+TEST(finds_the_same_lamps_at_every_resolution)
 {
     static const double lamp[3] = {4, 3, 1.5};
 
     for (int width = 320; width <= 2000; width = width * 5 / 2) {
-        struct settings s = new_settings(width, width * 5 / 8, 0.02);
+        struct settings s = make_settings(width, width * 5 / 8, 0.02);
 
-        add_lamp(&s, 0.2, 0.2, 0.008, 0.006, lamp);
-        add_lamp(&s, 0.5, 0.4, 0.012, 0.008, lamp);
-        add_lamp(&s, 0.8, 0.3, 0.03, 0.01, lamp);
-        assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 3);
+        add_lamp_with_glare(&s, 0.2, 0.2, 0.008, 0.006, lamp);
+        add_lamp_with_glare(&s, 0.5, 0.4, 0.012, 0.008, lamp);
+        add_lamp_with_glare(&s, 0.8, 0.3, 0.03, 0.01, lamp);
+        assert_int_equal(draw_and_find_lamps(&s, GLINT_RGB24, 1), 3);
         assert_spot_near(&s, 0.2, 0.2);
         assert_spot_near(&s, 0.5, 0.4);
         assert_spot_near(&s, 0.8, 0.3);
@@ -256,7 +258,7 @@ TEST(every_resolution)
 /* --------------------------------------------------------------- none there */
 
 /* Draws lines of words in LIGHT. */
-static void write_text(const struct settings *s, double light)
+static void draw_lines_of_text(const struct settings *s, double light)
 {
     for (int line = 0; line < 18; line++)
         for (double x = 0.05; x < 0.9; x += 0.012) {
@@ -265,30 +267,31 @@ static void write_text(const struct settings *s, double light)
 
             if (rng_unit(&seed) < 0.15)
                 continue;
-            fill_box(s, x, y, x + 0.003, y + tall, light);
-            fill_box(s, x, y, x + 0.008, y + 0.003, light);
+            fill_box_with_light(s, x, y, x + 0.003, y + tall, light);
+            fill_box_with_light(s, x, y, x + 0.008, y + 0.003, light);
             if (rng_unit(&seed) < 0.5)
-                fill_box(s, x + 0.006, y, x + 0.009, y + tall, light);
+                fill_box_with_light(s, x + 0.006, y, x + 0.009, y + tall,
+                                    light);
         }
 }
 
-TEST(paper_and_text)
+TEST(paper_and_text_give_no_lamp)
 {
-    struct settings page = new_settings(600, 400, 1);
-    struct settings terminal = new_settings(600, 400, 0.0);
-    struct settings desk = new_settings(600, 400, 0.12);
+    struct settings page = make_settings(600, 400, 1);
+    struct settings terminal = make_settings(600, 400, 0.0);
+    struct settings desk = make_settings(600, 400, 0.12);
 
-    write_text(&page, 0.02);
-    write_text(&terminal, 1);
-    fill_box(&desk, 0.1, 0.1, 0.6, 0.5, 0.85);
-    assert_none(&page);
-    assert_none(&terminal);
-    assert_none(&desk);
+    draw_lines_of_text(&page, 0.02);
+    draw_lines_of_text(&terminal, 1);
+    fill_box_with_light(&desk, 0.1, 0.1, 0.6, 0.5, 0.85);
+    assert_no_lamp_is_found(&page);
+    assert_no_lamp_is_found(&terminal);
+    assert_no_lamp_is_found(&desk);
 }
 
 /* Draws the eight bars of a test pattern into the first ROWS rows: white,
  * then yellow to black at codes of 75 % (0.52 in linear light). */
-static void draw_bars(const struct settings *s, int rows)
+static void draw_colour_bars(const struct settings *s, int rows)
 {
     for (int y = 0; y < rows; y++)
         for (int x = 0; x < s->width; x++) {
@@ -304,23 +307,23 @@ static void draw_bars(const struct settings *s, int rows)
 
 /* Checks that neither the white bar of a test pattern nor a white box below
  * the bars is a lamp, but a round lamp in place of the box is. */
-TEST(test_patterns)
+TEST(test_patterns_give_no_lamp)
 {
     static const double white[3] = {1, 1, 1};
 
     for (int width = 320; width <= 1280; width += 320) {
-        struct settings bars = new_settings(width, width * 9 / 16, 0);
-        struct settings box = new_settings(width, width * 9 / 16, 0.005);
-        struct settings lamp = new_settings(width, width * 9 / 16, 0.005);
+        struct settings bars = make_settings(width, width * 9 / 16, 0);
+        struct settings box = make_settings(width, width * 9 / 16, 0.005);
+        struct settings lamp = make_settings(width, width * 9 / 16, 0.005);
 
-        draw_bars(&bars, bars.height);
-        draw_bars(&box, box.height / 2);
-        draw_bars(&lamp, lamp.height / 2);
-        fill_box(&box, 0.8, 0.375, 0.85, 0.425, 1);
-        add_lamp(&lamp, 0.825, 0.4, 0.025, 0.003, white);
-        assert_int_equal(find_lamps(&bars, GLINT_RGB24, 0), 0);
-        assert_int_equal(find_lamps(&box, GLINT_RGB24, 0), 0);
-        assert_int_equal(find_lamps(&lamp, GLINT_RGB24, 0), 1);
+        draw_colour_bars(&bars, bars.height);
+        draw_colour_bars(&box, box.height / 2);
+        draw_colour_bars(&lamp, lamp.height / 2);
+        fill_box_with_light(&box, 0.8, 0.375, 0.85, 0.425, 1);
+        add_lamp_with_glare(&lamp, 0.825, 0.4, 0.025, 0.003, white);
+        assert_int_equal(draw_and_find_lamps(&bars, GLINT_RGB24, 0), 0);
+        assert_int_equal(draw_and_find_lamps(&box, GLINT_RGB24, 0), 0);
+        assert_int_equal(draw_and_find_lamps(&lamp, GLINT_RGB24, 0), 1);
         assert_spot_near(&lamp, 0.825, 0.4);
         free(bars.light);
         free(box.light);
@@ -329,24 +332,24 @@ TEST(test_patterns)
 }
 
 /* Checks that grains of every brightness, many of them white, give no lamp. */
-TEST(snow)
+TEST(snow_gives_no_lamp)
 {
-    struct settings s = new_settings(600, 400, 0.7);
+    struct settings s = make_settings(600, 400, 0.7);
 
     for (int i = 0; i < 3 * 600 * 400; i += 3) {
         const double light = 0.45 + 0.7 * rng_unit(&seed);
 
         s.light[i] = s.light[i + 1] = s.light[i + 2] = light;
     }
-    assert_none(&s);
+    assert_no_lamp_is_found(&s);
 }
 
 /* Checks that a sky from blue to white at the horizon over dark ground, and
  * a uniform sky, give no lamp. */
-TEST(skies)
+TEST(skies_give_no_lamp)
 {
-    struct settings s = new_settings(600, 400, 0.03);
-    struct settings overcast = new_settings(600, 400, 0.95);
+    struct settings s = make_settings(600, 400, 0.03);
+    struct settings overcast = make_settings(600, 400, 0.95);
 
     for (int y = 0; y < 260; y++)
         for (int x = 0; x < 600; x++) {
@@ -356,17 +359,17 @@ TEST(skies)
             px[1] = 0.35 + y * 0.75 / 260;
             px[2] = 0.8 + y * 0.3 / 260;
         }
-    assert_none(&s);
-    assert_none(&overcast);
+    assert_no_lamp_is_found(&s);
+    assert_no_lamp_is_found(&overcast);
 }
 
 /* Checks that noise of up to 9 codes with the lens cap on gives no lamp. */
-TEST(noise_in_the_dark)
+TEST(noise_in_the_dark_gives_no_lamp)
 {
-    struct settings s = new_settings(600, 400, 0.001);
+    struct settings s = make_settings(600, 400, 0.001);
 
     for (double sigma = 0; sigma < 10; sigma += 3)
-        assert_int_equal(find_lamps(&s, GLINT_RGB24, sigma), 0);
+        assert_int_equal(draw_and_find_lamps(&s, GLINT_RGB24, sigma), 0);
     free(s.light);
 }
 
@@ -374,7 +377,8 @@ TEST(noise_in_the_dark)
 
 /* Returns a candidate with score SCORE_Q8 and level LEVEL in a box of 4 x 4
  * pixels at X. It lies inside candidates of lower levels at the same X. */
-static struct glint_candidate make_candidate(int x, int level, int32_t score_q8)
+static struct glint_candidate make_scored_candidate(int x, int level,
+                                                    int32_t score_q8)
 {
     return (struct glint_candidate){
         .sum = {.first = x, .x0 = x, .y0 = 0, .x1 = x + 4, .y1 = 4},
@@ -384,7 +388,7 @@ static struct glint_candidate make_candidate(int x, int level, int32_t score_q8)
 
 enum { ALONE = 40 };
 
-static int32_t find_limit(struct glint_candidate *candidate, int n)
+static int32_t find_score_limit(struct glint_candidate *candidate, int n)
 {
     const struct glint_level level[2] = {{.low = 1}, {.low = 2}};
     const struct glint_score score = {.level = level, .alone_q8 = ALONE};
@@ -398,57 +402,58 @@ static int32_t find_limit(struct glint_candidate *candidate, int n)
 
 /* Checks that only two sure lamps lower the limit for others, neither one
  * lamp, nor a lamp and its own core, nor a lamp and a faint one. */
-TEST(company)
+TEST(two_sure_lamps_lower_the_limit)
 {
     struct glint_candidate c[4] = {
-        make_candidate(0, 0, -50), make_candidate(10, 0, 80),
-        make_candidate(20, 0, -300), make_candidate(30, 0, -1)};
+        make_scored_candidate(0, 0, -50), make_scored_candidate(10, 0, 80),
+        make_scored_candidate(20, 0, -300), make_scored_candidate(30, 0, -1)};
 
-    assert_int_equal(find_limit(c, 4), 0);
-    c[3] = make_candidate(10, 1, 60);
-    assert_int_equal(find_limit(c, 4), 0);
-    c[3] = make_candidate(30, 0, 60);
+    assert_int_equal(find_score_limit(c, 4), 0);
+    c[3] = make_scored_candidate(10, 1, 60);
+    assert_int_equal(find_score_limit(c, 4), 0);
+    c[3] = make_scored_candidate(30, 0, 60);
     c[3].faint = 1;
-    assert_int_equal(find_limit(c, 4), 0);
+    assert_int_equal(find_score_limit(c, 4), 0);
     c[3].faint = 0;
-    assert_int_equal(find_limit(c, 4), -SCORE_COMPANY);
+    assert_int_equal(find_score_limit(c, 4), -SCORE_COMPANY);
 }
 
 /* Checks that if no lamp is sure, the best candidate passes slightly below
  * the limit, unless it is faint; the second best does not, nor one next to a
  * sure lamp. */
-TEST(best_one_alone)
+TEST(best_candidate_passes_slightly_below_the_limit)
 {
-    struct glint_candidate c[4] = {
-        make_candidate(0, 0, -300), make_candidate(10, 0, -ALONE - 1),
-        make_candidate(20, 0, -ALONE), make_candidate(30, 0, -ALONE + 1)};
+    struct glint_candidate c[4] = {make_scored_candidate(0, 0, -300),
+                                   make_scored_candidate(10, 0, -ALONE - 1),
+                                   make_scored_candidate(20, 0, -ALONE),
+                                   make_scored_candidate(30, 0, -ALONE + 1)};
 
-    assert_int_equal(find_limit(c, 2), 0);
-    assert_int_equal(find_limit(c, 3), -ALONE);
-    assert_int_equal(find_limit(c, 4), -ALONE + 1);
+    assert_int_equal(find_score_limit(c, 2), 0);
+    assert_int_equal(find_score_limit(c, 3), -ALONE);
+    assert_int_equal(find_score_limit(c, 4), -ALONE + 1);
     c[3].faint = 1;
-    assert_int_equal(find_limit(c, 4), -ALONE);
-    c[3] = make_candidate(30, 0, 0);
-    assert_int_equal(find_limit(c, 4), 0);
-    assert_int_equal(find_limit(c, 0), 0);
+    assert_int_equal(find_score_limit(c, 4), -ALONE);
+    c[3] = make_scored_candidate(30, 0, 0);
+    assert_int_equal(find_score_limit(c, 4), 0);
+    assert_int_equal(find_score_limit(c, 0), 0);
 }
 
 /* Checks, while the wall behind a lamp becomes brighter, that a still image
  * shows the lamp longer than a video, and that a video before the image does
  * not matter. */
-TEST(video_needs_more)
+TEST(video_needs_a_higher_score)
 {
     static const double white[3] = {4, 4, 4};
     int n_alone = 0, n_after = 0, n_of_video = 0;
 
     for (double wall = 0.2; wall < 0.9; wall += 0.01) {
-        struct settings s = new_settings(300, 200, wall);
+        struct settings s = make_settings(300, 200, wall);
 
-        add_lamp(&s, 0.4, 0.3, 0.03, 0.02, white);
+        add_lamp_with_glare(&s, 0.4, 0.3, 0.03, 0.02, white);
         n_before = 0;
-        n_alone += find_lamps(&s, GLINT_RGB24, 0);
+        n_alone += draw_and_find_lamps(&s, GLINT_RGB24, 0);
         n_before = 1;
-        n_after += find_lamps(&s, GLINT_RGB24, 0);
+        n_after += draw_and_find_lamps(&s, GLINT_RGB24, 0);
         n_of_video += n_video;
         free(s.light);
     }
@@ -459,7 +464,7 @@ TEST(video_needs_more)
 
 /* Checks that a region which differs from a lamp in a single measure is
  * doubted for that measure. */
-TEST(doubt)
+TEST(differing_measure_is_doubted)
 {
     static const struct {
         int measure, value_q8;

@@ -13,7 +13,7 @@
 #include "support/test.h"
 
 /* Opens the model DATA. Returns the error, or NULL if it is valid. */
-static const char *open_error(const void *data, size_t bytes)
+static const char *open_model_error(const void *data, size_t bytes)
 {
     struct glint_lens lens = {0};
     const char *reason = NULL;
@@ -24,20 +24,21 @@ static const char *open_error(const void *data, size_t bytes)
         return NULL;
     }
     assert_non_null(reason);
-    assert_null(lens.header); /* unchanged after an error */
+    /* glint_lens_open() leaves LENS unchanged on an error */
+    assert_null(lens.header);
     return reason;
 }
 
-TEST(crc)
+TEST(crc32_of_known_text)
 {
     assert_true(glint_model_crc32("123456789", 9) == UINT32_C(0xcbf43926));
     assert_true(glint_model_crc32("", 0) == 0);
 }
 
-TEST(accepted)
+TEST(accepts_a_valid_model)
 {
-    struct model_image a = model_auto();
-    struct glint_lens lens = model_open(&a);
+    struct model_image a = model_make_auto();
+    struct glint_lens lens = model_open_image(&a);
 
     assert_int_equal(lens.header->n_ghosts, 3);
     assert_int_equal(lens.ghost[2].j, 3);
@@ -49,9 +50,9 @@ TEST(accepted)
 
 /* Checks truncated copies; each has memory of exactly its size, so that an
  * overread is detected. */
-TEST(truncated)
+TEST(rejects_truncated_models)
 {
-    struct model_image m = model_auto();
+    struct model_image m = model_make_auto();
 
     for (size_t bytes = 0; bytes < m.bytes; bytes++) {
         void *copy = malloc(bytes ? bytes : 1);
@@ -59,33 +60,33 @@ TEST(truncated)
             bytes < 8 ? "this is not a glint model" : "the model is truncated";
 
         memcpy(copy, m.data, bytes);
-        assert_string_equal(open_error(copy, bytes), expected);
+        assert_string_equal(open_model_error(copy, bytes), expected);
         free(copy);
     }
-    assert_string_equal(open_error(m.data, m.bytes + 4),
+    assert_string_equal(open_model_error(m.data, m.bytes + 4),
                         "the model continues after its end");
     free(m.data);
 }
 
-static void check_flips(struct model_image m)
+static void check_every_flipped_bit(struct model_image m)
 {
     for (size_t bit = 0; bit < 8 * (size_t)m.bytes; bit++) {
         m.data[bit / 8] ^= (unsigned char)(1 << bit % 8);
-        assert_non_null(open_error(m.data, m.bytes));
+        assert_non_null(open_model_error(m.data, m.bytes));
         m.data[bit / 8] ^= (unsigned char)(1 << bit % 8);
     }
-    assert_null(open_error(m.data, m.bytes));
+    assert_null(open_model_error(m.data, m.bytes));
     free(m.data);
 }
 
-TEST(flipped_bits)
+TEST(rejects_flipped_bits)
 {
-    check_flips(model_auto());
+    check_every_flipped_bit(model_make_auto());
 }
 
-TEST(not_a_model)
+TEST(rejects_files_that_are_not_models)
 {
-    struct model_image m = model_auto();
+    struct model_image m = model_make_auto();
     uint32_t *word = (uint32_t *)(void *)m.data;
     char text[8192] = "";
     FILE *file = fopen("lenses/heliar-tronnier.lens", "rb");
@@ -96,22 +97,23 @@ TEST(not_a_model)
     bytes = fread(text, 1, sizeof text, file);
     fclose(file);
     memcpy(copy, text, bytes);
-    assert_string_equal(open_error(copy, bytes), "this is not a glint model");
+    assert_string_equal(open_model_error(copy, bytes),
+                        "this is not a glint model");
     free(copy);
     memmove(m.data + 2, m.data, m.bytes);
-    assert_string_equal(open_error(m.data + 2, m.bytes),
+    assert_string_equal(open_model_error(m.data + 2, m.bytes),
                         "the model is not aligned to 4 bytes");
     memmove(m.data, m.data + 2, m.bytes);
     word[1] = GLINT_MODEL_VERSION + 1;
-    assert_string_equal(open_error(m.data, m.bytes),
+    assert_string_equal(open_model_error(m.data, m.bytes),
                         "the model was made by a newer glint");
-    assert_string_equal(open_error(m.data, 8),
+    assert_string_equal(open_model_error(m.data, 8),
                         "the model was made by a newer glint");
     word[1] = GLINT_MODEL_VERSION - 1;
-    assert_string_equal(open_error(m.data, m.bytes),
+    assert_string_equal(open_model_error(m.data, m.bytes),
                         "the model was made by an older glint: bake it again");
     word[1] = 0;
-    assert_string_equal(open_error(m.data, m.bytes),
+    assert_string_equal(open_model_error(m.data, m.bytes),
                         "the model's version is unknown");
     free(m.data);
 }
@@ -223,7 +225,8 @@ static const struct rule auto_rules[] = {
     {GHOST_(0, n_systems), 5, no_systems},
     {GHOST_(0, first_system), UINT32_MAX, no_systems},
     {GHOST_(2, n_systems), UINT32_MAX, no_systems},
-    {GHOST_(1, first_system), UINT32_MAX, NULL}, /* ghost 1 has no systems */
+    /* ignored, as ghost 1 has no systems */
+    {GHOST_(1, first_system), UINT32_MAX, NULL},
     {GHOST_(2, first_system), 1, shared},
     {GHOST_(0, n_systems), 1, NULL},
     {SYSTEM_(0, sine_lo_q30), -1, bad_angles},
@@ -260,9 +263,11 @@ static const struct rule auto_rules[] = {
     {BOX, 0, 4, (1 << 30) - (1 << 19), far_box},
     {BOX, 0, 4, (1 << 30) - (1 << 19) - 1, NULL},
     {BOX, 3 * 4, 4, 0, small_box}, /* half width -s */
-    {BOX, 3 * 4, 4, 1 << 20, NULL}, /* half width 1 - s */
+    /* half width of the box: 1 - s, which is 0 at s = 1 */
+    {BOX, 3 * 4, 4, 1 << 20, NULL},
     {BOX, 3 * 4, 4, (1 << 20) - 1, small_box},
-    {BOX, 5 * 4, 4, 3 << 20, NULL}, /* half width 4 - s + 3 w */
+    /* half width of the box: 4 - s + 3 w, which is 0 at s = 1, w = -1 */
+    {BOX, 5 * 4, 4, 3 << 20, NULL},
     {BOX, 5 * 4, 4, (3 << 20) + 1, small_box},
     {BOX, 5 * 4, 4, -(3 << 20) - 1, small_box},
     {BOX, 6 * 4, 4, -1, small_box},
@@ -307,9 +312,9 @@ static const struct rule auto_rules[] = {
 
 /* clang-format on */
 
-static size_t find_offset(const struct model_image *m, enum table t)
+static size_t compute_table_offset(const struct model_image *m, enum table t)
 {
-    const struct glint_model_header *h = model_header(m);
+    const struct glint_model_header *h = model_header_of(m);
     const struct glint_model_system *s = (const void *)(m->data + h->system_at);
     const struct glint_model_output *o = (const void *)(m->data + s->output_at);
     const size_t at[] = {0,          h->ghost_at, h->system_at, s->output_at,
@@ -318,14 +323,15 @@ static size_t find_offset(const struct model_image *m, enum table t)
     return at[t];
 }
 
-static void check_rule(struct model_image m, const struct rule *r,
-                       size_t number)
+static void check_validity_rule(struct model_image m, const struct rule *r,
+                                size_t number)
 {
     const char *reason;
 
-    memcpy(m.data + find_offset(&m, r->table) + r->at, &r->value, r->bytes);
-    model_seal(&m);
-    reason = open_error(m.data, m.bytes);
+    memcpy(m.data + compute_table_offset(&m, r->table) + r->at, &r->value,
+           r->bytes);
+    model_seal_checksum(&m);
+    reason = open_model_error(m.data, m.bytes);
     if (reason != r->reason &&
         (!reason || !r->reason || strcmp(reason, r->reason) != 0))
         fail_msg("rule %d: '%s', not '%s'", (int)number,
@@ -334,58 +340,59 @@ static void check_rule(struct model_image m, const struct rule *r,
     free(m.data);
 }
 
-TEST(rules)
+TEST(checks_every_rule)
 {
     for (size_t k = 0; k < sizeof auto_rules / sizeof *auto_rules; k++)
-        check_rule(model_auto(), &auto_rules[k], k);
+        check_validity_rule(model_make_auto(), &auto_rules[k], k);
 }
 
-TEST(endless_name)
+TEST(rejects_an_endless_name)
 {
-    struct model_image m = model_auto();
+    struct model_image m = model_make_auto();
 
-    memset(model_header(&m)->name, 'x', 64);
-    model_seal(&m);
-    assert_string_equal(open_error(m.data, m.bytes), "the name does not end");
+    memset(model_header_of(&m)->name, 'x', 64);
+    model_seal_checksum(&m);
+    assert_string_equal(open_model_error(m.data, m.bytes),
+                        "the name does not end");
     free(m.data);
 }
 
-TEST(no_ghosts)
+TEST(accepts_a_model_without_ghosts)
 {
-    struct model_image m = model_auto();
+    struct model_image m = model_make_auto();
 
-    model_header(&m)->n_ghosts = model_header(&m)->n_systems = 0;
-    model_seal(&m);
-    assert_null(open_error(m.data, m.bytes));
+    model_header_of(&m)->n_ghosts = model_header_of(&m)->n_systems = 0;
+    model_seal_checksum(&m);
+    assert_null(open_model_error(m.data, m.bytes));
     free(m.data);
 }
 
 /* Checks that systems which share too many tables are rejected, as checking
  * them would take quadratic time. */
-TEST(shared_tables)
+TEST(rejects_too_many_shared_tables)
 {
     enum { N = 1000 };
     static struct glint_model_system s[N];
     const struct glint_model_ghost ghost = {0, 1, 0, N};
     struct model_image m;
 
-    model_begin(&m, GLINT_BASIS_AUTO, "shared");
+    model_begin_header(&m, GLINT_BASIS_AUTO, "shared");
     for (int k = 0; k < N; k++) {
         s[k] = k ? s[0]
-                 : model_auto_system(&m, 0, 0, MODEL_WAVE_LO_Q24,
-                                     MODEL_WAVE_HI_Q24, 0);
+                 : model_make_auto_system(&m, 0, 0, MODEL_WAVE_LO_Q24,
+                                          MODEL_WAVE_HI_Q24, 0);
         s[k].sine_lo_q30 = 1000 * k;
         s[k].sine_hi_q30 = 1000 * (k + 1);
     }
-    model_end(&m, &ghost, 1, s, N);
-    assert_string_equal(open_error(m.data, m.bytes),
+    model_append_ghosts(&m, &ghost, 1, s, N);
+    assert_string_equal(open_model_error(m.data, m.bytes),
                         "systems share too many tables");
     free(m.data);
 }
 
 /* ------------------------------------------------------------------- corpus */
 
-static void check_corpus(const char *path, struct model_image m)
+static void check_corpus_model(const char *path, struct model_image m)
 {
     const int update = getenv("GLINT_GOLDEN_UPDATE") != NULL;
     FILE *file = fopen(path, update ? "wb" : "rb");
@@ -404,7 +411,7 @@ static void check_corpus(const char *path, struct model_image m)
 
 /* Checks that the models in the fuzzer's corpus have the present layout;
  * GLINT_GOLDEN_UPDATE=1 rewrites them. */
-TEST(corpus)
+TEST(corpus_models_have_the_present_layout)
 {
-    check_corpus("tests/fuzz/corpus/model/auto", model_auto());
+    check_corpus_model("tests/fuzz/corpus/model/auto", model_make_auto());
 }

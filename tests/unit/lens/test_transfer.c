@@ -18,8 +18,8 @@
 
 enum { ONE = MODEL_ONE_Q30 };
 
-static struct glint_outputs trace_ray(const struct glint_transfer *t, int32_t u,
-                                      int32_t v)
+static struct glint_outputs evaluate_ray(const struct glint_transfer *t,
+                                         int32_t u, int32_t v)
 {
     struct glint_outputs out;
 
@@ -29,38 +29,38 @@ static struct glint_outputs trace_ray(const struct glint_transfer *t, int32_t u,
 
 /* Checks rays of the first range of angles: s is -1 .. 1 over sines of 0 ..
  * 1/4. */
-TEST(rays)
+TEST(rays_match_hand_computation)
 {
-    struct model_image m = model_auto();
-    const struct glint_lens lens = model_open(&m);
+    struct model_image m = model_make_auto();
+    const struct glint_lens lens = model_open_image(&m);
     static struct glint_transfer t;
     struct glint_outputs out;
 
     /* s = -1, w = -1: sensor x is 0.25 + 0.5 u + 0.125 v^2 */
     assert_int_equal(glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24),
                      1);
-    out = trace_ray(&t, 0, 0);
+    out = evaluate_ray(&t, 0, 0);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 1 << 26);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 0);
     assert_int_equal(out.at[GLINT_OUT_ENERGY], 1 << 27); /* 0.5 - 0.25 */
     assert_int_equal(out.at[GLINT_OUT_BARREL_0], 1 << 27);
     assert_int_equal(out.at[GLINT_OUT_BARREL_1], 0);
     assert_int_equal(out.at[GLINT_OUT_RADIUS], 0);
-    out = trace_ray(&t, ONE, ONE);
+    out = evaluate_ray(&t, ONE, ONE);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 234881024); /* 0.875 mm */
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 201326592); /* 0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_STOP_X], 268435456);   /* 0.5 */
     assert_int_equal(out.at[GLINT_OUT_STOP_Y], 201326592);   /* 0.375 */
-    /* 1: at the rim of the barrel */
+    /* a barrel value of 1: the ray is at the rim */
     assert_int_equal(out.at[GLINT_OUT_BARREL_0], 268435456);
-    out = trace_ray(&t, -ONE, ONE / 2);
+    out = evaluate_ray(&t, -ONE, ONE / 2);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], -58720256); /* -0.21875 mm */
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 33554432);  /* 0.125 mm */
     assert_int_equal(out.at[GLINT_OUT_STOP_X], -268435456);
     assert_int_equal(out.at[GLINT_OUT_STOP_Y], 125829120); /* 0.234375 */
     /* s = 0, w = 1 */
     glint_transfer_init(&t, &lens, 0, ONE / 8, MODEL_WAVE_HI_Q24);
-    out = trace_ray(&t, ONE, -ONE);
+    out = evaluate_ray(&t, ONE, -ONE);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592);  /* 0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], -201326592); /* -0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_ENERGY], 3 << 27);
@@ -70,7 +70,7 @@ TEST(rays)
 /* Checks the decoding of energies. An energy is the polynomial, its square
  * or its fourth power, times 2^head: half of the max polynomial must give
  * 1/2, 1/4 or 1/16, and negative values 0. */
-TEST(roots)
+TEST(energies_are_decoded_from_roots)
 {
     const int32_t half = (1 << 28) / 2; /* half of 2^(29 - head), head 1 */
     /* The polynomial is 2^-8, so energies are 2^-8, 2^-16 and 2^-32. */
@@ -78,9 +78,9 @@ TEST(roots)
 
     for (int roots = 0; roots <= 2; roots++)
         for (int sign = -1; sign <= 1; sign += 2) {
-            struct model_image m = model_auto();
+            struct model_image m = model_make_auto();
             const struct glint_model_system *s =
-                (const void *)(m.data + model_header(&m)->system_at);
+                (const void *)(m.data + model_header_of(&m)->system_at);
             struct glint_model_output *o =
                 (void *)(m.data + s->output_at + 4 * sizeof *o);
             int32_t *coef = (void *)(m.data + o->coef_at);
@@ -92,11 +92,11 @@ TEST(roots)
             o->roots = (uint8_t)roots;
             coef[0] = sign * half;
             coef[1] = 0;
-            model_seal(&m);
-            lens = model_open(&m);
+            model_seal_checksum(&m);
+            lens = model_open_image(&m);
             assert_int_equal(
                 glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24), 1);
-            assert_int_equal(trace_ray(&t, 0, 0).at[GLINT_OUT_ENERGY],
+            assert_int_equal(evaluate_ray(&t, 0, 0).at[GLINT_OUT_ENERGY],
                              sign < 0 ? 0 : (1 << 29) >> (1 << roots));
             assert_int_equal(t.exponent[GLINT_OUT_ENERGY], scale[roots]);
             free(m.data);
@@ -104,8 +104,9 @@ TEST(roots)
 }
 
 /* Converts the last N coefficients of output O to int16, in the same place. */
-static void convert_to_16bit(struct model_image *m,
-                             struct glint_model_output *o, int n, int shift)
+static void convert_coefficients_to_int16(struct model_image *m,
+                                          struct glint_model_output *o, int n,
+                                          int shift)
 {
     int32_t *const coef = (void *)(m->data + o->coef_at);
     int32_t last[2];
@@ -123,10 +124,10 @@ static void convert_to_16bit(struct model_image *m,
 }
 
 /* Checks that 16-bit coefficients give the same rays as 32-bit ones. */
-TEST(convert_to_16bit)
+TEST(int16_coefficients_give_the_same_rays)
 {
-    struct model_image wide = model_auto(), m = model_auto();
-    const struct glint_lens lens = model_open(&wide);
+    struct model_image wide = model_make_auto(), m = model_make_auto();
+    const struct glint_lens lens = model_open_image(&wide);
     struct glint_lens narrowed;
     static struct glint_transfer t[2];
 
@@ -136,19 +137,19 @@ TEST(convert_to_16bit)
                                                   lens.system->output_at) +
             k;
 
-        convert_to_16bit(&m, o, o->n_terms > 1 ? 2 : 1,
-                         o->n_terms > 2 ? 13 : 14);
+        convert_coefficients_to_int16(&m, o, o->n_terms > 1 ? 2 : 1,
+                                      o->n_terms > 2 ? 13 : 14);
     }
-    model_seal(&m);
-    narrowed = model_open(&m);
+    model_seal_checksum(&m);
+    narrowed = model_open_image(&m);
     glint_transfer_init(&t[0], &lens, 0, ONE / 7, MODEL_WAVE_LO_Q24 + 12345);
     glint_transfer_init(&t[1], &narrowed, 0, ONE / 7,
                         MODEL_WAVE_LO_Q24 + 12345);
     for (int k = -3; k <= 3; k++) {
         const struct glint_outputs a =
-            trace_ray(&t[0], ONE / 3 * k, ONE / 5 * k);
+            evaluate_ray(&t[0], ONE / 3 * k, ONE / 5 * k);
         const struct glint_outputs b =
-            trace_ray(&t[1], ONE / 3 * k, ONE / 5 * k);
+            evaluate_ray(&t[1], ONE / 3 * k, ONE / 5 * k);
 
         for (int i = 0; i < GLINT_OUT_KINDS; i++)
             if (t[0].outputs >> i & 1)
@@ -160,10 +161,10 @@ TEST(convert_to_16bit)
 
 /* Checks that a transfer uses the system and box of the range of angles and
  * band of wavelengths. */
-TEST(init)
+TEST(uses_the_system_of_angle_and_wavelength)
 {
-    struct model_image m = model_auto();
-    const struct glint_lens lens = model_open(&m);
+    struct model_image m = model_make_auto();
+    const struct glint_lens lens = model_open_image(&m);
     static struct glint_transfer t;
     const int32_t middle = (MODEL_WAVE_LO_Q24 + MODEL_WAVE_HI_Q24) / 2;
 
@@ -187,8 +188,9 @@ TEST(init)
     assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 2, middle), 1);
     assert_ptr_equal(t.system, &lens.system[1]);
     /* s = 1, w = 0, coefficients halved */
-    assert_int_equal(trace_ray(&t, ONE, ONE).at[GLINT_OUT_SENSOR_X], 5 << 24);
-    assert_int_equal(trace_ray(&t, 0, 0).at[GLINT_OUT_ENERGY], 1 << 27);
+    assert_int_equal(evaluate_ray(&t, ONE, ONE).at[GLINT_OUT_SENSOR_X],
+                     5 << 24);
+    assert_int_equal(evaluate_ray(&t, 0, 0).at[GLINT_OUT_ENERGY], 1 << 27);
     assert_int_equal(t.box[0], 3 << 19); /* 1.5 mm */
     assert_int_equal(t.box[1], 3 << 20);
     assert_int_equal(t.box[2], 3 << 20);
@@ -199,11 +201,11 @@ TEST(init)
 /* Checks a half width of (s - 1/32)^2 - 1/2048, which is positive at all
  * positions that the check of a model tests, and negative between two of
  * them. */
-TEST(half_size_below_0)
+TEST(half_width_below_0_is_clamped)
 {
-    struct model_image m = model_auto();
+    struct model_image m = model_make_auto();
     struct glint_model_system *s =
-        (void *)(m.data + model_header(&m)->system_at);
+        (void *)(m.data + model_header_of(&m)->system_at);
     const int32_t box[3][3] = {
         {1 << 20, 0, 0},
         {(ONE >> 11) - (ONE >> 12), -(ONE >> 5), ONE / 2},
@@ -212,9 +214,9 @@ TEST(half_size_below_0)
     struct glint_lens lens;
 
     s->box_terms = 1 | 2 | 4;
-    s->box_at = model_put(&m, box, sizeof box);
-    model_seal(&m);
-    lens = model_open(&m);
+    s->box_at = model_append_items(&m, box, sizeof box);
+    model_seal_checksum(&m);
+    lens = model_open_image(&m);
     assert_int_equal(glint_transfer_init(&t, &lens, 0, 33 * (ONE / 256), 1), 1);
     assert_int_equal(t.box[0], 1 << 20);
     assert_int_equal(t.box[1], 0);
@@ -226,9 +228,9 @@ TEST(half_size_below_0)
 
 /* Sets the coefficients of the first system to random values with the
  * largest sums of magnitudes allowed. SEED gives sizes and signs. */
-static void set_max_coefficients(struct model_image *m, uint32_t *seed)
+static void set_largest_coefficients(struct model_image *m, uint32_t *seed)
 {
-    const struct glint_model_header *h = model_header(m);
+    const struct glint_model_header *h = model_header_of(m);
     const struct glint_model_system *s = (const void *)(m->data + h->system_at);
     const struct glint_model_output *o = (const void *)(m->data + s->output_at);
 
@@ -245,14 +247,14 @@ static void set_max_coefficients(struct model_image *m, uint32_t *seed)
             left -= size;
         }
     }
-    model_seal(m);
+    model_seal_checksum(m);
 }
 
 /* Checks that no output leaves its range; CONFIG=qcheck checks every step as
  * well. */
-TEST(extremes)
+TEST(extreme_coefficients_stay_in_range)
 {
-    struct model_image m = model_auto();
+    struct model_image m = model_make_auto();
     static struct glint_transfer t;
     uint32_t seed = 1;
 
@@ -265,11 +267,11 @@ TEST(extremes)
         struct glint_lens lens;
 
         if (k % 20 == 0)
-            set_max_coefficients(&m, &seed);
-        lens = model_open(&m);
+            set_largest_coefficients(&m, &seed);
+        lens = model_open_image(&m);
         assert_int_equal(glint_transfer_init(&t, &lens, 0, sine_q30, wave_q24),
                          1);
-        out = trace_ray(&t, u_q30, v_q30);
+        out = evaluate_ray(&t, u_q30, v_q30);
         for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
             assert_in_range((int64_t)out.at[kind] + 2 * (int64_t)ONE,
                             (uint64_t)ONE - 8, 3 * (uint64_t)ONE + 8);
@@ -279,9 +281,9 @@ TEST(extremes)
 
 /* ----------------------------------------------------------------- vertices */
 
-/* Returns a place at 64 pixels per mm with its origin at pixel (1000, 500),
- * without rotation. */
-static struct glint_place make_place(void)
+/* Returns a sensor-to-image transform: 64 pixels per mm, origin at pixel (1000,
+ * 500), no rotation. */
+static struct glint_place make_sensor_place(void)
 {
     const struct glint_place place = {.cos_q30 = ONE,
                                       .pixels_per_mm = {1 << 30, -24},
@@ -291,11 +293,11 @@ static struct glint_place make_place(void)
     return place;
 }
 
-TEST(grid)
+TEST(grid_covers_the_pupil_box)
 {
-    struct model_image m = model_auto();
-    const struct glint_lens lens = model_open(&m);
-    struct glint_place place = make_place();
+    struct model_image m = model_make_auto();
+    const struct glint_lens lens = model_open_image(&m);
+    struct glint_place place = make_sensor_place();
     static struct glint_transfer t;
     struct glint_vertex v[9], turned[9];
 
@@ -321,7 +323,8 @@ TEST(grid)
         assert_int_equal(v[3 + i].y_q8, 500 << 8);
     }
     place.cos_q30 = 0;
-    place.sin_q30 = ONE; /* light above: x becomes up, y left */
+    /* azimuth 90 degrees: sensor x points up, y to the left */
+    place.sin_q30 = ONE;
     glint_transfer_grid(&t, &place, 2, turned);
     for (int k = 0; k < 9; k++) {
         assert_int_equal(turned[k].x_q8 - (1000 << 8), v[k].y_q8 - (500 << 8));
@@ -336,12 +339,12 @@ TEST(grid)
 /* Checks that the rows of an annular grid lie between the inner rim and the
  * edge of the box, on both sides of the middle, and that their vertices
  * equal those of a finer grid of the whole box. */
-TEST(hollow_grid)
+TEST(annular_grid_rows_leave_the_hole_out)
 {
     enum { N = 16, NODES = N + 1, ANNULUS = 3, SHELL = 6 };
-    struct model_image m = model_auto();
-    const struct glint_lens lens = model_open(&m);
-    const struct glint_place place = make_place();
+    struct model_image m = model_make_auto();
+    const struct glint_lens lens = model_open_image(&m);
+    const struct glint_place place = make_sensor_place();
     static struct glint_transfer t;
     static struct glint_vertex whole[NODES][NODES], shell[SHELL + 1][SHELL + 1];
 
@@ -367,19 +370,19 @@ TEST(hollow_grid)
     free(m.data);
 }
 
-TEST(lost)
+TEST(positions_out_of_range_are_invalid)
 {
-    struct model_image m = model_auto();
-    const struct glint_lens lens = model_open(&m);
-    struct glint_place place = make_place();
+    struct model_image m = model_make_auto();
+    const struct glint_lens lens = model_open_image(&m);
+    struct glint_place place = make_sensor_place();
     static struct glint_transfer t;
     struct glint_vertex v[4];
 
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
-    place.pixels_per_mm.exponent = -10; /* 2^20 pixels per mm */
+    place.pixels_per_mm.exponent = -10; /* a scale of 2^20 pixels per mm */
     glint_transfer_grid(&t, &place, 1, v);
     assert_true(v[1].energy_q16 < 0 && v[3].energy_q16 < 0);
-    /* 0.25 mm off the centre */
+    /* rays that land 0.25 mm off the centre */
     assert_true(v[0].energy_q16 > 0 && v[2].energy_q16 > 0);
     for (int e = -200; e <= 200; e++) {
         place.pixels_per_mm.exponent = e;

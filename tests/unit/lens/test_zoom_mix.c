@@ -25,7 +25,7 @@ struct barrel {
     double middle, u, v2;
 };
 
-static int32_t to_q28(double x)
+static int32_t encode_q28(double x)
 {
     return (int32_t)lrint(ldexp(x, 28));
 }
@@ -53,15 +53,15 @@ make_system(struct model_image *m, double sensor, double energy,
 {
     const int32_t box[3] = {box_middle, 1 << 22, 1 << 22};
     struct model_polynomial p[5 + MOST] = {
-        {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {to_q28(sensor)}},
+        {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {encode_q28(sensor)}},
         {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {1 << 27}},
         {GLINT_OUT_STOP_X,
          2,
          EXPONENT,
          {P(0, 0), P(1, 0)},
-         {to_q28(stop.middle), to_q28(stop.u)}},
-        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {to_q28(stop.v)}},
-        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {to_q28(energy)}}};
+         {encode_q28(stop.middle), encode_q28(stop.u)}},
+        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {encode_q28(stop.v)}},
+        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {encode_q28(energy)}}};
     struct glint_model_system s = {.sine_hi_q30 = ONE / 2,
                                    .wave_lo_q24 = MODEL_WAVE_LO_Q24,
                                    .wave_hi_q24 = MODEL_WAVE_HI_Q24,
@@ -69,34 +69,34 @@ make_system(struct model_image *m, double sensor, double energy,
                                    .box_terms = 1};
     struct glint_model_output *outputs;
 
-    s.box_at = model_put(m, box, sizeof box);
+    s.box_at = model_append_items(m, box, sizeof box);
     for (uint32_t k = 0; k < n; k++)
         p[5 + k] = (struct model_polynomial){(uint8_t)(GLINT_OUT_BARREL_0 + k),
                                              3,
                                              EXPONENT,
                                              {P(0, 0), P(1, 0), P(0, 2)},
-                                             {to_q28(barrel[k].middle),
-                                              to_q28(barrel[k].u),
-                                              to_q28(barrel[k].v2)}};
-    model_outputs(m, &s, p, 5 + n, 0);
+                                             {encode_q28(barrel[k].middle),
+                                              encode_q28(barrel[k].u),
+                                              encode_q28(barrel[k].v2)}};
+    model_write_outputs(m, &s, p, 5 + n, 0);
     outputs = (void *)(m->data + s.output_at);
     outputs[GLINT_OUT_ENERGY].head = head_bits;
     outputs[GLINT_OUT_ENERGY].roots = roots;
     return s;
 }
 
-/* Writes a model with that system to M and opens it. */
-static struct glint_lens open_position(struct model_image *m, double sensor,
-                                       double energy, uint8_t head_bits,
-                                       const struct barrel *barrel, uint32_t n)
+/* Writes a model with the single system of make_system() to M and opens it. */
+static struct glint_lens
+open_model_of_system(struct model_image *m, double sensor, double energy,
+                     uint8_t head_bits, const struct barrel *barrel, uint32_t n)
 {
     static const struct glint_model_ghost ghost = {0, 1, 0, 1};
     struct glint_model_system s;
 
-    model_begin(m, GLINT_BASIS_AUTO, "position");
+    model_begin_header(m, GLINT_BASIS_AUTO, "position");
     s = make_system(m, sensor, energy, head_bits, barrel, n);
-    model_end(m, &ghost, 1, &s, 1);
-    return model_open(m);
+    model_append_ghosts(m, &ghost, 1, &s, 1);
+    return model_open_image(m);
 }
 
 static struct glint_transfer mixed;
@@ -119,9 +119,9 @@ static void interpolate_barrels(const struct barrel *a, uint32_t n_a,
 {
     struct model_image at[2];
     const struct glint_lens first =
-        open_position(&at[0], 0.5, 0.25, head[0], a, n_a);
+        open_model_of_system(&at[0], 0.5, 0.25, head[0], a, n_a);
     const struct glint_lens second =
-        open_position(&at[1], 0.25, 0.5, head[1], b, n_b);
+        open_model_of_system(&at[1], 0.25, 0.5, head[1], b, n_b);
 
     interpolate_models(&first, &second, part);
     free(at[0].data);
@@ -138,7 +138,7 @@ static double evaluate_output(int kind, double u, double v)
 }
 
 /* Checks that output KIND is X at (U, V). */
-static void check_output(int kind, double u, double v, double x)
+static void check_output_at(int kind, double u, double v, double x)
 {
     const double got = evaluate_output(kind, u, v);
 
@@ -146,12 +146,12 @@ static void check_output(int kind, double u, double v, double x)
         fail_msg("output %d at %g, %g is %.9f, not %.9f", kind, u, v, got, x);
 }
 
-static void check_barrel(int kind, struct barrel b)
+static void check_barrel_values(int kind, struct barrel b)
 {
     assert_true(mixed.outputs >> (GLINT_OUT_BARREL_0 + kind) & 1);
-    check_output(GLINT_OUT_BARREL_0 + kind, 0, 0, b.middle);
-    check_output(GLINT_OUT_BARREL_0 + kind, 1, 0, b.middle + b.u);
-    check_output(GLINT_OUT_BARREL_0 + kind, 0, 1, b.middle + b.v2);
+    check_output_at(GLINT_OUT_BARREL_0 + kind, 0, 0, b.middle);
+    check_output_at(GLINT_OUT_BARREL_0 + kind, 1, 0, b.middle + b.u);
+    check_output_at(GLINT_OUT_BARREL_0 + kind, 0, 1, b.middle + b.v2);
 }
 
 static const struct barrel right = {0.3, 0.5, 0.1}, left = {0.3, -0.5, 0.1};
@@ -159,20 +159,20 @@ static const struct barrel more_right = {0.34, 0.54, 0.1};
 static const struct barrel more_left = {0.34, -0.58, 0.14};
 static const struct barrel high = {0.2, 0, 1.2};
 
-TEST(outputs_are_in_proportion)
+TEST(outputs_are_interpolated)
 {
     for (int k = 1; k < 4; k++) {
         const double part = 0.25 * k;
 
         interpolate_barrels(NULL, 0, NULL, 0, part);
-        check_output(GLINT_OUT_SENSOR_X, 1, 0.5, 0.5 - 0.25 * part);
-        check_output(GLINT_OUT_SENSOR_Y, 1, 0.5, 0.25);
-        check_output(GLINT_OUT_ENERGY, 1, 0.5, 0.25 + 0.25 * part);
+        check_output_at(GLINT_OUT_SENSOR_X, 1, 0.5, 0.5 - 0.25 * part);
+        check_output_at(GLINT_OUT_SENSOR_Y, 1, 0.5, 0.25);
+        check_output_at(GLINT_OUT_ENERGY, 1, 0.5, 0.25 + 0.25 * part);
     }
 }
 
 /* Checks that each barrel is matched to the most similar one, in any order. */
-TEST(barrels_find_their_like)
+TEST(barrels_match_the_most_similar)
 {
     const struct barrel a[] = {right, left};
     const struct barrel same[] = {more_right, more_left};
@@ -180,51 +180,51 @@ TEST(barrels_find_their_like)
 
     for (int k = 0; k < 2; k++) {
         interpolate_barrels(a, 2, k ? turned : same, 2, 0.25);
-        check_barrel(0, (struct barrel){0.31, 0.51, 0.1});
-        check_barrel(1, (struct barrel){0.31, -0.52, 0.11});
+        check_barrel_values(0, (struct barrel){0.31, 0.51, 0.1});
+        check_barrel_values(1, (struct barrel){0.31, -0.52, 0.11});
         assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 2) & 1);
     }
 }
 
 /* Checks that a barrel missing at the first position is complete from a
  * quarter of the way on, and opens to 1/2 before that. */
-TEST(barrels_that_come)
+TEST(missing_first_barrel_closes_gradually)
 {
     const struct barrel a[] = {right}, b[] = {more_right, high};
     const struct barrel twice[] = {more_right, more_right};
     const struct barrel other[] = {left};
 
     interpolate_barrels(a, 1, b, 2, 0.5);
-    check_barrel(0, (struct barrel){0.32, 0.52, 0.1});
-    check_barrel(1, high);
+    check_barrel_values(0, (struct barrel){0.32, 0.52, 0.1});
+    check_barrel_values(1, high);
     interpolate_barrels(a, 1, b, 2, 0.125);
-    check_barrel(1, (struct barrel){0.35, 0, 0.6});
+    check_barrel_values(1, (struct barrel){0.35, 0, 0.6});
     interpolate_barrels(a, 1, twice, 2, 0.5);
-    check_barrel(0, (struct barrel){0.32, 0.52, 0.1});
+    check_barrel_values(0, (struct barrel){0.32, 0.52, 0.1});
     /* starts as the most similar barrel */
-    check_barrel(1, (struct barrel){0.32, 0.52, 0.1});
+    check_barrel_values(1, (struct barrel){0.32, 0.52, 0.1});
     interpolate_barrels(a, 1, other, 1,
                         0.5); /* the only other barrel is not similar */
-    check_barrel(0, right);
-    check_barrel(1, left);
+    check_barrel_values(0, right);
+    check_barrel_values(1, left);
 }
 
 /* Checks that a barrel missing at the second position opens after three
  * quarters of the way. */
-TEST(barrels_that_go)
+TEST(missing_second_barrel_opens_gradually)
 {
     const struct barrel a[] = {high, right}, b[] = {more_right};
 
     interpolate_barrels(a, 2, b, 1, 0.5);
-    check_barrel(0, high);
-    check_barrel(1, (struct barrel){0.32, 0.52, 0.1});
+    check_barrel_values(0, high);
+    check_barrel_values(1, (struct barrel){0.32, 0.52, 0.1});
     interpolate_barrels(a, 2, b, 1, 0.875);
-    check_barrel(0, (struct barrel){0.35, 0, 0.6});
+    check_barrel_values(0, (struct barrel){0.35, 0, 0.6});
 }
 
-/* Interpolates at PART between a position without barrels, whose rays pass
- * the stop as in OURS, and one with barrel B, whose rays pass it as in
- * THEIRS; in the opposite order if TURNED. */
+/* Interpolates at PART between a position without barrels and with stop
+ * positions OURS, and one with the barrel B and stop positions THEIRS; in the
+ * opposite order if TURNED is set. */
 static void interpolate_stops(const struct stop *ours,
                               const struct stop *theirs, struct barrel b,
                               double part, bool turned)
@@ -233,9 +233,9 @@ static void interpolate_stops(const struct stop *ours,
     struct glint_lens none, one;
 
     stop = *ours;
-    none = open_position(&at[0], 0.5, 0.25, 0, NULL, 0);
+    none = open_model_of_system(&at[0], 0.5, 0.25, 0, NULL, 0);
     stop = *theirs;
-    one = open_position(&at[1], 0.5, 0.25, 0, &b, 1);
+    one = open_model_of_system(&at[1], 0.5, 0.25, 0, &b, 1);
     stop = usual;
     if (turned)
         interpolate_models(&one, &none, 1 - part);
@@ -245,58 +245,59 @@ static void interpolate_stops(const struct stop *ours,
     free(at[1].data);
 }
 
-static void check_clipping(struct stop ours, struct stop theirs,
-                           struct barrel b, struct barrel expected)
+static void check_clipped_fraction(struct stop ours, struct stop theirs,
+                                   struct barrel b, struct barrel expected)
 {
     for (int k = 0; k < 4; k++) {
-        if (k == 2) { /* the stop may be inverted */
+        if (k == 2) { /* the image of the stop may be inverted */
             ours = (struct stop){-ours.middle, -ours.u, -ours.v};
             theirs = (struct stop){-theirs.middle, -theirs.u, -theirs.v};
         }
         interpolate_stops(&ours, &theirs, b, 0.5, k & 1);
-        check_barrel(0, expected);
+        check_barrel_values(0, expected);
     }
 }
 
-/* Checks that a barrel missing at one position clips as much of the stop as
- * at the other position, or of the box if that is less or the stop moves by
- * more than half a box. */
-TEST(barrels_stay_in_the_stop)
+/* Checks that a barrel missing at one position starts so that it clips the same
+ * part of the stop as at the other position; or the same part of the box, if
+ * that is less or if the stop moves by more than half a box. */
+TEST(missing_barrel_clips_as_much_of_the_stop)
 {
     const struct stop wide = {-0.1, 0.8, 0.8}, aside = {0.3, 0.5, 0.5};
     const struct barrel r = {0.9, 0.5, 0}, l = {0.9, -0.5, 0};
     const struct barrel up = {0.4, 0, 0.5};
 
-    check_clipping(usual, wide, r, (struct barrel){0.93125, 0.40625, 0});
-    check_clipping(wide, usual, r, r);
-    check_clipping(wide, usual, l, l);
-    check_clipping(aside, usual, r, r);
-    check_clipping(aside, usual, l, (struct barrel){0.75, -0.5, 0});
-    check_clipping(usual, wide, up, (struct barrel){0.4, 0, 0.3125});
-    check_clipping(wide, usual, up, up);
-    check_clipping(usual, (struct stop){0, 0, 0}, l, l);
-    check_clipping((struct stop){0, -0.2, 0.5}, (struct stop){0, 1.6, 0.5}, r,
-                   r);
+    check_clipped_fraction(usual, wide, r,
+                           (struct barrel){0.93125, 0.40625, 0});
+    check_clipped_fraction(wide, usual, r, r);
+    check_clipped_fraction(wide, usual, l, l);
+    check_clipped_fraction(aside, usual, r, r);
+    check_clipped_fraction(aside, usual, l, (struct barrel){0.75, -0.5, 0});
+    check_clipped_fraction(usual, wide, up, (struct barrel){0.4, 0, 0.3125});
+    check_clipped_fraction(wide, usual, up, up);
+    check_clipped_fraction(usual, (struct stop){0, 0, 0}, l, l);
+    check_clipped_fraction((struct stop){0, -0.2, 0.5},
+                           (struct stop){0, 1.6, 0.5}, r, r);
 }
 
 /* Checks that the two most similar barrels are matched, in either order, and
  * that a remaining one starts as the most similar barrel. */
-TEST(barrels_find_the_nearest)
+TEST(most_similar_barrels_are_matched)
 {
     const struct barrel one[] = {right};
     const struct barrel two[] = {{0.3, 0.5, 0.5}, more_right};
 
     interpolate_barrels(one, 1, two, 2, 0.25);
-    check_barrel(0, (struct barrel){0.31, 0.51, 0.1});
-    check_barrel(1, (struct barrel){0.3, 0.5, 0.2});
+    check_barrel_values(0, (struct barrel){0.31, 0.51, 0.1});
+    check_barrel_values(1, (struct barrel){0.3, 0.5, 0.2});
     interpolate_barrels(two, 2, one, 1, 0.25);
-    check_barrel(0, (struct barrel){0.3, 0.5, 0.4});
-    check_barrel(1, (struct barrel){0.33, 0.53, 0.1});
+    check_barrel_values(0, (struct barrel){0.3, 0.5, 0.4});
+    check_barrel_values(1, (struct barrel){0.33, 0.53, 0.1});
 }
 
 /* Checks that interpolated energies fit only under the smaller of both
  * heads. */
-TEST(energies_have_heads_and_roots)
+TEST(energies_keep_the_smaller_head)
 {
     const double value = 0.375;
 
@@ -305,10 +306,10 @@ TEST(energies_have_heads_and_roots)
         head[0] = (uint8_t)(k % 3 ? 3 : 0);
         head[1] = (uint8_t)(k % 3 == 1 ? 1 : 2);
         interpolate_barrels(NULL, 0, NULL, 0, 0.5);
-        check_output(GLINT_OUT_ENERGY, 0, 0, roots ? value * value : value);
+        check_output_at(GLINT_OUT_ENERGY, 0, 0, roots ? value * value : value);
         glint_blend_fade(&mixed, ONE / 4);
-        check_output(GLINT_OUT_ENERGY, 0, 0,
-                     (roots ? value * value : value) / 4);
+        check_output_at(GLINT_OUT_ENERGY, 0, 0,
+                        (roots ? value * value : value) / 4);
     }
     roots = head[0] = head[1] = 0;
 }
@@ -318,8 +319,9 @@ TEST(energies_have_heads_and_roots)
 /* Writes a model to M and opens it. Its box is centred at MIDDLE with the
  * half sides HALF and RISE, mm; its sensor x and y are the pupil coordinates
  * times SLOPE; its barrel is a circle of 4 mm in the pupil. */
-static struct glint_lens open_box(struct model_image *m, double middle,
-                                  double half, double rise, double slope)
+static struct glint_lens open_model_of_box(struct model_image *m, double middle,
+                                           double half, double rise,
+                                           double slope)
 {
     static const struct glint_model_ghost ghost = {0, 1, 0, 1};
     const int32_t box[3] = {(int32_t)ldexp(middle, 20),
@@ -329,8 +331,12 @@ static struct glint_lens open_box(struct model_image *m, double middle,
          2,
          EXPONENT,
          {P(0, 0), P(1, 0)},
-         {to_q28(middle * slope), to_q28(half * slope)}},
-        {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {to_q28(rise * slope)}},
+         {encode_q28(middle * slope), encode_q28(half * slope)}},
+        {GLINT_OUT_SENSOR_Y,
+         1,
+         EXPONENT,
+         {P(0, 1)},
+         {encode_q28(rise * slope)}},
         {GLINT_OUT_STOP_X, 1, EXPONENT, {P(1, 0)}, {1 << 27}},
         {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {1 << 27}},
         {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {1 << 26}},
@@ -338,35 +344,36 @@ static struct glint_lens open_box(struct model_image *m, double middle,
          4,
          EXPONENT,
          {P(0, 0), P(1, 0), P(2, 0), P(0, 2)},
-         {to_q28(0.5 + middle * middle / 32), to_q28(middle * half / 16),
-          to_q28(half * half / 32), to_q28(rise * rise / 32)}}};
+         {encode_q28(0.5 + middle * middle / 32),
+          encode_q28(middle * half / 16), encode_q28(half * half / 32),
+          encode_q28(rise * rise / 32)}}};
     struct glint_model_system s;
 
-    model_begin(m, GLINT_BASIS_AUTO, "box");
+    model_begin_header(m, GLINT_BASIS_AUTO, "box");
     s = make_system(m, 0, 0, 0, NULL, 0);
-    s.box_at = model_put(m, box, sizeof box);
-    model_outputs(m, &s, p, 6, 0);
-    model_end(m, &ghost, 1, &s, 1);
-    return model_open(m);
+    s.box_at = model_append_items(m, box, sizeof box);
+    model_write_outputs(m, &s, p, 6, 0);
+    model_append_ghosts(m, &ghost, 1, &s, 1);
+    return model_open_image(m);
 }
 
 /* Checks that linear functions of the pupil position are interpolated at
  * each position, even if the boxes differ in position and size. */
-TEST(boxes_move)
+TEST(outputs_are_interpolated_across_moving_boxes)
 {
     struct model_image at[2];
-    const struct glint_lens a = open_box(&at[0], 0, 4, 3, 0.125);
-    const struct glint_lens b = open_box(&at[1], 0.5, 4.5, 4, 0.0625);
+    const struct glint_lens a = open_model_of_box(&at[0], 0, 4, 3, 0.125);
+    const struct glint_lens b = open_model_of_box(&at[1], 0.5, 4.5, 4, 0.0625);
 
     for (int k = 1; k < 4; k++) {
         const double part = 0.25 * k, slope = 0.125 - 0.0625 * part;
 
         interpolate_models(&a, &b, part);
         for (int i = -2; i <= 2; i++) {
-            check_output(GLINT_OUT_SENSOR_X, 0.5 * i, 0.5,
-                         slope * (0.5 * part + (4 + 0.5 * part) * 0.5 * i));
-            check_output(GLINT_OUT_SENSOR_Y, 0.5 * i, 0.5,
-                         slope * 0.5 * (3 + part));
+            check_output_at(GLINT_OUT_SENSOR_X, 0.5 * i, 0.5,
+                            slope * (0.5 * part + (4 + 0.5 * part) * 0.5 * i));
+            check_output_at(GLINT_OUT_SENSOR_Y, 0.5 * i, 0.5,
+                            slope * 0.5 * (3 + part));
         }
     }
     free(at[0].data);
@@ -376,7 +383,7 @@ TEST(boxes_move)
 /* Checks that the first barrel is that circle at (U, V), which is the pupil
  * position (X, Y) mm, as closely as boxes this different can be
  * interpolated. */
-static void check_circle(double u, double v, double x, double y)
+static void check_first_barrel_is_circle(double u, double v, double x, double y)
 {
     const double got = evaluate_output(GLINT_OUT_BARREL_0, u, v);
 
@@ -385,15 +392,16 @@ static void check_circle(double u, double v, double x, double y)
 }
 
 /* Checks that a barrel moves with its box. */
-TEST(barrels_go_along_with_boxes)
+TEST(barrels_move_with_their_box)
 {
     const struct barrel a = {0.3, 0.5, 0.1}, b = {0.3, 0.9, 0.1};
     struct model_image at[2];
-    const struct glint_lens first = open_position(&at[0], 0.5, 0.25, 0, &a, 1);
+    const struct glint_lens first =
+        open_model_of_system(&at[0], 0.5, 0.25, 0, &a, 1);
     struct glint_lens second;
 
-    box_middle = 1 << 22; /* shifted by half a box */
-    second = open_position(&at[1], 0.5, 0.25, 0, &b, 1);
+    box_middle = 1 << 22; /* both boxes are shifted by half a box */
+    second = open_model_of_system(&at[1], 0.5, 0.25, 0, &b, 1);
     box_middle = 0;
     interpolate_models(&first, &second, 0.5);
     assert_true(mixed.outputs >> GLINT_OUT_BARREL_0 & 1);
@@ -405,19 +413,19 @@ TEST(barrels_go_along_with_boxes)
 /* Checks that barrels with equal shape in the pupil are matched even if
  * their boxes, and so their polynomials, differ much; one in a distant box
  * is not. */
-TEST(barrels_are_the_same_on_the_pupil)
+TEST(barrels_match_by_shape_in_the_pupil)
 {
     struct model_image at[3];
-    const struct glint_lens a = open_box(&at[0], 0, 4, 2, 0);
-    const struct glint_lens b = open_box(&at[1], 1, 6.5, 3, 0);
-    const struct glint_lens c = open_box(&at[2], 7, 0.5, 2, 0);
+    const struct glint_lens a = open_model_of_box(&at[0], 0, 4, 2, 0);
+    const struct glint_lens b = open_model_of_box(&at[1], 1, 6.5, 3, 0);
+    const struct glint_lens c = open_model_of_box(&at[2], 7, 0.5, 2, 0);
 
-    for (int k = 0; k < 2; k++) { /* either may come first */
+    for (int k = 0; k < 2; k++) { /* barrels in either order */
         interpolate_models(k ? &b : &a, k ? &a : &b, 0.5);
         assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
-        check_circle(1, 0, 0.5 + 5.25, 0);
-        check_circle(-1, 0, 0.5 - 5.25, 0);
-        check_circle(0, 1, 0.5, 2.5);
+        check_first_barrel_is_circle(1, 0, 0.5 + 5.25, 0);
+        check_first_barrel_is_circle(-1, 0, 0.5 - 5.25, 0);
+        check_first_barrel_is_circle(0, 1, 0.5, 2.5);
     }
     interpolate_models(&a, &c, 0.5);
     assert_true(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
@@ -427,9 +435,10 @@ TEST(barrels_are_the_same_on_the_pupil)
 
 /* Writes a model to M and opens it; its BOX is unrealistic, in units of
  * 2^EXPONENT, with one barrel. */
-static struct glint_lens open_coarse(struct model_image *m,
-                                     const int32_t box[3], int16_t exponent,
-                                     const struct model_polynomial *barrel)
+static struct glint_lens
+open_model_with_coarse_box(struct model_image *m, const int32_t box[3],
+                           int16_t exponent,
+                           const struct model_polynomial *barrel)
 {
     static const struct glint_model_ghost ghost = {0, 1, 0, 1};
     struct model_polynomial p[6] = {
@@ -441,18 +450,18 @@ static struct glint_lens open_coarse(struct model_image *m,
     struct glint_model_system s;
 
     p[5] = *barrel;
-    model_begin(m, GLINT_BASIS_AUTO, "coarse");
+    model_begin_header(m, GLINT_BASIS_AUTO, "coarse");
     s = make_system(m, 0, 0, 0, NULL, 0);
-    s.box_at = model_put(m, box, 3 * sizeof *box);
+    s.box_at = model_append_items(m, box, 3 * sizeof *box);
     s.box_exponent = exponent;
-    model_outputs(m, &s, p, 6, 0);
-    model_end(m, &ghost, 1, &s, 1);
-    return model_open(m);
+    model_write_outputs(m, &s, p, 6, 0);
+    model_append_ghosts(m, &ghost, 1, &s, 1);
+    return model_open_image(m);
 }
 
 /* Checks a box half a unit wide, in which rounding moves positions by more
  * than its width: barrels are still evaluated inside it. */
-TEST(places_stay_in_both_boxes)
+TEST(narrow_boxes_evaluate_barrels_inside)
 {
     static const int32_t wide[3] = {0, 5, 5};
     static const int32_t narrow[3] = {4 << 20, (1 << 19) + 1000,
@@ -461,12 +470,14 @@ TEST(places_stay_in_both_boxes)
                                        2,
                                        EXPONENT,
                                        {P(0, 0), P(1, 0)},
-                                       {to_q28(-1.6), to_q28(2)}};
+                                       {encode_q28(-1.6), encode_q28(2)}};
     const struct model_polynomial b = {
-        GLINT_OUT_BARREL_0, 1, EXPONENT - 2, {P(9, 0)}, {to_q28(2.4)}};
+        GLINT_OUT_BARREL_0, 1, EXPONENT - 2, {P(9, 0)}, {encode_q28(2.4)}};
     struct model_image at[2];
-    const struct glint_lens first = open_coarse(&at[0], wide, 0, &a);
-    const struct glint_lens second = open_coarse(&at[1], narrow, -20, &b);
+    const struct glint_lens first =
+        open_model_with_coarse_box(&at[0], wide, 0, &a);
+    const struct glint_lens second =
+        open_model_with_coarse_box(&at[1], narrow, -20, &b);
 
     interpolate_models(&first, &second, 0.5);
     assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
@@ -486,33 +497,34 @@ struct part {
     int annulus;
 };
 
-static bool is_dark(double sensor)
+static bool is_ghost_dark(double sensor)
 {
     return !(sensor < 0 || sensor > 0);
 }
 
 /* Writes a model of N ghosts and parts to M and opens it; all energies are
  * 1/4. */
-static struct glint_lens open_parts(struct model_image *m,
-                                    const struct part *part, uint32_t n)
+static struct glint_lens open_model_of_ghosts_and_parts(struct model_image *m,
+                                                        const struct part *part,
+                                                        uint32_t n)
 {
     struct glint_model_ghost ghost[2 * WHOLE];
     struct glint_model_system s[2 * WHOLE];
     uint32_t n_systems = 0;
 
-    model_begin(m, GLINT_BASIS_AUTO, "parts");
-    model_header(m)->n_parts = n - WHOLE;
+    model_begin_header(m, GLINT_BASIS_AUTO, "parts");
+    model_header_of(m)->n_parts = n - WHOLE;
     for (uint32_t k = 0; k < n; k++) {
-        ghost[k] =
-            (struct glint_model_ghost){(uint8_t)part[k].i, (uint8_t)part[k].j,
-                                       n_systems, !is_dark(part[k].sensor)};
-        if (is_dark(part[k].sensor))
+        ghost[k] = (struct glint_model_ghost){(uint8_t)part[k].i,
+                                              (uint8_t)part[k].j, n_systems,
+                                              !is_ghost_dark(part[k].sensor)};
+        if (is_ghost_dark(part[k].sensor))
             continue;
         s[n_systems] = make_system(m, part[k].sensor, 0.25, 0, NULL, 0);
         s[n_systems++].annulus = (uint8_t)part[k].annulus;
     }
-    model_end(m, ghost, n, s, n_systems);
-    return model_open(m);
+    model_append_ghosts(m, ghost, n, s, n_systems);
+    return model_open_image(m);
 }
 
 static struct glint_zoom_lens zoom;
@@ -524,22 +536,23 @@ struct sight {
     double part, sensor, energy;
 };
 
-static void check_ghosts(const struct sight *sight, size_t n)
+static void check_interpolated_ghosts(const struct sight *sight, size_t n)
 {
     for (const struct sight *s = sight; s < sight + n; s++) {
         glint_zoom_set(&zoom, (int32_t)ldexp(s->part, 30));
         if (glint_transfer_init(&mixed, &zoom.lens, s->ghost, 0,
-                                MODEL_WAVE_LO_Q24) == is_dark(s->sensor))
+                                MODEL_WAVE_LO_Q24) == is_ghost_dark(s->sensor))
             fail_msg("ghost %d at %g is %s", s->ghost, s->part,
-                     is_dark(s->sensor) ? "not dark" : "dark");
-        if (is_dark(s->sensor))
+                     is_ghost_dark(s->sensor) ? "not dark" : "dark");
+        if (is_ghost_dark(s->sensor))
             continue;
-        check_output(GLINT_OUT_SENSOR_X, 1, 0, s->sensor);
-        check_output(GLINT_OUT_ENERGY, 0, 0, s->energy);
+        check_output_at(GLINT_OUT_SENSOR_X, 1, 0, s->sensor);
+        check_output_at(GLINT_OUT_ENERGY, 0, 0, s->energy);
     }
 }
 
-#define SHOWS(sights) check_ghosts(sights, sizeof(sights) / sizeof *(sights))
+#define SHOWS(sights) \
+    check_interpolated_ghosts(sights, sizeof(sights) / sizeof *(sights))
 
 /* A zoom position: its fraction of the way, its ghosts and parts, and the
  * centre of their boxes. */
@@ -552,8 +565,8 @@ struct position {
 
 enum { MOST_POSITIONS = 3 };
 
-static void open_zoom(struct model_image at[MOST_POSITIONS],
-                      const struct position *position, int n)
+static void open_zoom_of_positions(struct model_image at[MOST_POSITIONS],
+                                   const struct position *position, int n)
 {
     int32_t along_q30[MOST_POSITIONS];
     struct glint_lens lens[MOST_POSITIONS];
@@ -562,21 +575,22 @@ static void open_zoom(struct model_image at[MOST_POSITIONS],
     for (int k = 0; k < n; k++) {
         along_q30[k] = (int32_t)ldexp(position[k].along, 30);
         box_middle = position[k].middle;
-        lens[k] = open_parts(&at[k], position[k].part, position[k].n);
+        lens[k] = open_model_of_ghosts_and_parts(&at[k], position[k].part,
+                                                 position[k].n);
     }
     box_middle = 0;
     if (glint_zoom_join(&zoom, lens, along_q30, n, &reason) != GLINT_OK)
         fail_msg("%s", reason);
 }
 
-static void free_models(const struct model_image *at, int n)
+static void free_position_models(const struct model_image *at, int n)
 {
     for (int k = 0; k < n; k++)
         free(at[k].data);
 }
 
 /* Checks that a ghost that is dark at one position fades towards it. */
-TEST(ghosts_fade)
+TEST(dark_ghosts_fade)
 {
     static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
     static const struct part b[] = {{0, 1, 0, 0}, {0, 2, 0.75, 0}};
@@ -591,14 +605,14 @@ TEST(ghosts_fade)
                                           {1, 1, 0.75, 0.25}};
     struct model_image at[MOST_POSITIONS];
 
-    open_zoom(at, both, 2);
+    open_zoom_of_positions(at, both, 2);
     SHOWS(sights);
-    free_models(at, 2);
+    free_position_models(at, 2);
 }
 
 /* Checks that a ghost continues (is extrapolated) into the dark position if
  * two positions define its motion. */
-TEST(ghosts_go_on)
+TEST(ghosts_are_extrapolated_into_the_dark)
 {
     static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
     static const struct part b[] = {{0, 1, 0.4, 0}, {0, 2, 0.25, 0}};
@@ -614,15 +628,15 @@ TEST(ghosts_go_on)
                                           {1, 0, 0, 0}};
     struct model_image at[MOST_POSITIONS];
 
-    open_zoom(at, all, 3);
+    open_zoom_of_positions(at, all, 3);
     SHOWS(sights);
-    free_models(at, 3);
+    free_position_models(at, 3);
 }
 
 /* Checks that a ghost is not extrapolated over more than the distance of
  * both positions, nor with parts, whose number may change, nor if boxes are
  * too far apart. */
-TEST(ghosts_that_cannot_go_on)
+TEST(unsafe_ghosts_are_not_extrapolated)
 {
     static const struct part a[] = {
         {0, 1, 0.5, 0}, {0, 2, 0.5, 0}, {0, 1, 0.5, 0}};
@@ -639,16 +653,16 @@ TEST(ghosts_that_cannot_go_on)
     for (int t = 0; t < 3; t++) {
         struct model_image at[MOST_POSITIONS];
 
-        open_zoom(at, all[t], 3);
-        check_ghosts(&half[t], 1);
-        free_models(at, 3);
+        open_zoom_of_positions(at, all[t], 3);
+        check_interpolated_ghosts(&half[t], 1);
+        free_position_models(at, 3);
     }
 }
 
 /* Checks that sums of magnitudes stay below 2^30, as vectors and heads
  * require, even if extrapolation moves a ghost to three times the max of a
  * model. */
-TEST(going_on_stays_small)
+TEST(extrapolated_sums_stay_in_range)
 {
     static const struct part a[] = {{0, 1, -3.9, 0}, {0, 2, 0.5, 0}};
     static const struct part b[] = {{0, 1, 3.9, 0}, {0, 2, 0.5, 0}};
@@ -659,7 +673,7 @@ TEST(going_on_stays_small)
         {0, 0.96875, 3 * 3.9 - 2 * 3.9 / 16, 0.25}};
     struct model_image at[MOST_POSITIONS];
 
-    open_zoom(at, all, 3);
+    open_zoom_of_positions(at, all, 3);
     SHOWS(sights);
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
         int64_t sum = 0;
@@ -669,13 +683,13 @@ TEST(going_on_stays_small)
                 sum += llabs((long long)mixed.table[kind][y][x]);
         assert_true(!(mixed.outputs >> kind & 1) || sum < ONE);
     }
-    free_models(at, 3);
+    free_position_models(at, 3);
 }
 
 /* Checks that if two positions divide a pupil differently, the nearer one is
  * drawn, and that parts are interpolated with those of the same ghost, in
  * any order. */
-TEST(parts_go_with_their_ghost)
+TEST(parts_are_interpolated_with_their_ghost)
 {
     static const struct part a[] = {
         {0, 1, 0.5, 0}, {0, 2, 0.25, 0}, {0, 2, 0.375, 0}};
@@ -688,63 +702,67 @@ TEST(parts_go_with_their_ghost)
         {3, 0.75, 0.75, 0.25}};
     struct model_image at[MOST_POSITIONS];
 
-    open_zoom(at, both, 2);
+    open_zoom_of_positions(at, both, 2);
     assert_int_equal(zoom.header.n_ghosts, 4);
     assert_int_equal(zoom.header.n_parts, 2);
     SHOWS(sights);
-    free_models(at, 2);
+    free_position_models(at, 2);
 }
 
-static double interpolate_linear(double a, double b)
+static double interpolate_linearly(double a, double b)
 {
     return 0.75 * a + 0.25 * b;
 }
 
 /* Checks that the numbers of the whole lens are interpolated, each by its
  * own rule. */
-TEST(numbers_are_in_proportion)
+TEST(lens_numbers_are_interpolated)
 {
     static const struct part part[] = {{0, 1, 0.5, 0}, {0, 2, 0.25, 0}};
     static const struct position both[] = {{0, part, 2, 0}, {1, part, 2, 0}};
-    static const double by[2] = {1, 96}; /* also with different exponents */
+    /* second time with coefficients 96 times as large, so with other
+     * exponents */
+    static const double by[2] = {1, 96};
     struct model_image at[MOST_POSITIONS];
     const struct glint_model_header *const z = &zoom.header;
     const char *reason = "";
 
-    open_zoom(at, both, 2);
+    open_zoom_of_positions(at, both, 2);
     for (int k = 0; k < 2; k++) {
-        struct glint_model_header *const h = model_header(&at[k]);
+        struct glint_model_header *const h = model_header_of(&at[k]);
 
-        h->focal_mm = model_real(50 * by[k]);
-        h->back_focal_mm = model_real(40 * by[1 - k]);
-        h->entrance_radius_mm = model_real(7 * by[k]);
-        h->stop_radius_mm = model_real(5 * by[1 - k]);
-        h->f_number = model_real(2 * by[k]);
+        h->focal_mm = model_real_from_double(50 * by[k]);
+        h->back_focal_mm = model_real_from_double(40 * by[1 - k]);
+        h->entrance_radius_mm = model_real_from_double(7 * by[k]);
+        h->stop_radius_mm = model_real_from_double(5 * by[1 - k]);
+        h->f_number = model_real_from_double(2 * by[k]);
         for (int i = 0; i < GLINT_FLUX_TERMS; i++) {
-            h->direct_flux[i] = model_real((i + 1) * by[k]);
-            h->stopped_flux[0][i] = model_real((i + 20) * by[k]);
-            h->stopped_flux[1][i] = model_real(-(i + 30) * by[1 - k]);
+            h->direct_flux[i] = model_real_from_double((i + 1) * by[k]);
+            h->stopped_flux[0][i] = model_real_from_double((i + 20) * by[k]);
+            h->stopped_flux[1][i] =
+                model_real_from_double(-(i + 30) * by[1 - k]);
         }
-        model_seal(&at[k]);
+        model_seal_checksum(&at[k]);
         if (glint_lens_open(&zoom.model[k], at[k].data, at[k].bytes, &reason))
             fail_msg("%s", reason);
     }
     glint_zoom_set(&zoom, ONE / 4);
-    assert_true(glint_real_value(z->focal_mm) == interpolate_linear(50, 4800));
+    assert_true(glint_real_value(z->focal_mm) ==
+                interpolate_linearly(50, 4800));
     assert_true(glint_real_value(z->back_focal_mm) ==
-                interpolate_linear(3840, 40));
+                interpolate_linearly(3840, 40));
     assert_true(glint_real_value(z->entrance_radius_mm) ==
-                interpolate_linear(7, 672));
+                interpolate_linearly(7, 672));
     assert_true(glint_real_value(z->stop_radius_mm) ==
-                interpolate_linear(480, 5));
-    assert_true(glint_real_value(z->f_number) == interpolate_linear(2, 192));
+                interpolate_linearly(480, 5));
+    assert_true(glint_real_value(z->f_number) == interpolate_linearly(2, 192));
     for (int i = 0; i < GLINT_FLUX_TERMS; i++) {
         assert_true(glint_real_value(z->direct_flux[i]) ==
-                    (i + 1) * interpolate_linear(1, 96));
+                    (i + 1) * interpolate_linearly(1, 96));
         assert_true(glint_real_value(z->stopped_flux[0][i]) ==
-                    (i + 20) * interpolate_linear(1, 96));
+                    (i + 20) * interpolate_linearly(1, 96));
         assert_true(glint_real_value(z->stopped_flux[1][i]) ==
-                    -(i + 30) * interpolate_linear(96, 1));
+                    -(i + 30) * interpolate_linearly(96, 1));
     }
-    free_models(at, 2);
+    free_position_models(at, 2);
 }

@@ -80,7 +80,7 @@ TEST_CLOSE
 static const int32_t middle_q24 = (int32_t)(1e6 / (532. * 532.) * (1 << 24));
 
 /* Checks that the zoom at a position equals its model bit by bit. */
-TEST(positions)
+TEST(zoom_at_a_position_equals_its_model)
 {
     static struct glint_transfer a, b;
 
@@ -118,7 +118,7 @@ struct off {
     double pixels, energies;
 };
 
-static struct off measure_error(double along)
+static struct off measure_error_at_position(double along)
 {
     static struct glint_transfer t;
     static struct glint_prescription at;
@@ -176,26 +176,27 @@ static struct off measure_error(double along)
     return (struct off){sqrt(sum / n) * 1920 / 24, sqrt(energies / n)};
 }
 
-TEST(between)
+TEST(interpolation_is_accurate_between_positions)
 {
     for (int k = 0; k <= 4; k++) {
-        const struct off off = measure_error(0.25 * k);
+        const struct off off = measure_error_at_position(0.25 * k);
 
         print_message("at %g: %.3f pixels, %.4f of the energy\n", 0.25 * k,
                       off.pixels, off.energies);
         assert_true(off.pixels < (k % 2 ? 8 : 0.1));
         assert_true(off.energies < 0.01);
     }
-    assert_true(measure_error(0.48).pixels < 1 &&
-                measure_error(0.52).pixels < 1);
+    assert_true(measure_error_at_position(0.48).pixels < 1 &&
+                measure_error_at_position(0.52).pixels < 1);
 }
 
 /* --------------------------------------------------------------- some ghosts
  */
 
-/* Checks that ghost G of A and of B is equal half-way and beyond. */
-static void check_equal(struct glint_zoom_lens *a, struct glint_zoom_lens *b,
-                        int g)
+/* Checks that ghost G is equal in the zooms A and B half-way between the
+ * positions and beyond. */
+static void check_ghosts_are_equal(struct glint_zoom_lens *a,
+                                   struct glint_zoom_lens *b, int g)
 {
     static struct glint_transfer from, to;
 
@@ -216,7 +217,7 @@ static void check_equal(struct glint_zoom_lens *a, struct glint_zoom_lens *b,
 
 /* Checks that if only one ghost is baked at the middle position, that ghost
  * is interpolated between three positions, the others between two. */
-TEST(some)
+TEST(partly_baked_position_interpolates_its_ghosts)
 {
     static struct glint_zoom_lens some, two;
     static struct glint_prescription at;
@@ -246,8 +247,8 @@ TEST(some)
     assert_ok(glint_bake_zoom(pair, 2, &of_two, &n_two, &error));
     assert_ok(glint_zoom_open(&some, of_some, n_some, &reason));
     assert_ok(glint_zoom_open(&two, of_two, n_two, &reason));
-    check_equal(&some, &two, 0);
-    check_equal(&some, &zoom, 1);
+    check_ghosts_are_equal(&some, &two, 0);
+    check_ghosts_are_equal(&some, &zoom, 1);
     free(three[1].data);
     free(of_some);
     free(of_two);
@@ -255,7 +256,7 @@ TEST(some)
 
 /* ----------------------------------------------------------------- refusals */
 
-static void expect_error(const char *cause)
+static void expect_open_error(const char *cause)
 {
     const char *reason = "";
 
@@ -266,7 +267,7 @@ static void expect_error(const char *cause)
         fail_msg("'%s' does not say '%s'", reason, cause);
 }
 
-TEST(refusals)
+TEST(rejects_invalid_zooms)
 {
     struct glint_zoom_header *const h = (void *)file;
     struct glint_zoom_model *const m = (void *)(file + h->model_at);
@@ -280,27 +281,27 @@ TEST(refusals)
                      GLINT_E_LENS);
     file[bytes / 2] ^= 1;
     m[1].along_q30 = 1 << 30;
-    expect_error("do not rise");
+    expect_open_error("do not rise");
     m[1] = kept;
     m[0].along_q30 = 1;
-    expect_error("from end to end");
+    expect_open_error("from end to end");
     m[0].along_q30 = 0;
     m[1].at = (uint32_t)bytes;
-    expect_error("outside");
+    expect_open_error("outside");
     m[1] = kept;
     m[1].at += 4;
-    expect_error("glint model");
+    expect_open_error("glint model");
     m[1] = kept;
     m[1].has_at = (uint32_t)bytes;
-    expect_error("list of ghosts");
+    expect_open_error("list of ghosts");
     m[1] = kept;
     m[0].has_at = h->model_at;
-    expect_error("lacks ghosts");
+    expect_open_error("lacks ghosts");
     m[0].has_at = 0;
     h->n_models = 1;
-    expect_error("fewer than 2");
+    expect_open_error("fewer than 2");
     h->n_models = 1000;
-    expect_error("or too many");
+    expect_open_error("or too many");
     h->n_models = POSITIONS;
     glint_blob_seal(file, bytes);
     assert_ok(glint_zoom_open(&zoom, file, bytes, &reason));

@@ -17,8 +17,9 @@ enum { WIDTH = MOVING_WIDTH, HEIGHT = MOVING_HEIGHT, SAMPLES = 4 };
 /* Returns the cosine between ray and normal where the ray through (X, Y), Q8
  * pixels from the image centre, enters a ball of RADIUS at C in camera
  * coordinates; -1: it misses the ball. */
-static double compute_cosine(const struct glint_scene *s, const int32_t c[3],
-                             double radius, double x_q8, double y_q8)
+static double compute_cosine_to_normal(const struct glint_scene *s,
+                                       const int32_t c[3], double radius,
+                                       double x_q8, double y_q8)
 {
     const double per_tan = (double)s->view.per_tan_q8;
     const double d[3] = {x_q8 / per_tan, -y_q8 / per_tan, 1};
@@ -34,8 +35,9 @@ static double compute_cosine(const struct glint_scene *s, const int32_t c[3],
 }
 
 /* Returns the coverage of pixel (X, Y) by shell L, 0 .. 1. */
-static double shell_coverage(const struct glint_scene *s,
-                             const struct glint_motion_layer *l, int x, int y)
+static double compute_shell_coverage(const struct glint_scene *s,
+                                     const struct glint_motion_layer *l, int x,
+                                     int y)
 {
     const double share =
         1 - s->material[l->material].pass_q15 / (double)GLINT_SCENE_ONE_Q15;
@@ -45,16 +47,19 @@ static double shell_coverage(const struct glint_scene *s,
 
     glint_view_seen(&s->view, l->ball->at, c);
     for (int k = 0; k < SAMPLES; k++)
-        hits +=
-            compute_cosine(s, c, l->ball->radius, x_q8 + glint_sample(s, k, 0),
-                           y_q8 + glint_sample(s, k, 1)) >= 0;
+        hits += compute_cosine_to_normal(s, c, l->ball->radius,
+                                         x_q8 + glint_sample(s, k, 0),
+                                         y_q8 + glint_sample(s, k, 1)) >= 0;
     return share * hits / SAMPLES *
-           (1 - fmax(0, compute_cosine(s, c, l->ball->radius, x_q8, y_q8)) / 2);
+           (1 - fmax(0, compute_cosine_to_normal(s, c, l->ball->radius, x_q8,
+                                                 y_q8)) /
+                    2);
 }
 
 /* Returns the coverage of pixel (X, Y) by line L, 0 .. 1. */
-static double line_coverage(const struct glint_scene *s,
-                            const struct glint_motion_layer *l, int x, int y)
+static double compute_line_coverage(const struct glint_scene *s,
+                                    const struct glint_motion_layer *l, int x,
+                                    int y)
 {
     const double dx = (glint_place(s, x, 0) - l->x_q8) / 256.;
     const double dy = (glint_place(s, y, 1) - l->y_q8) / 256.;
@@ -70,13 +75,13 @@ static double line_coverage(const struct glint_scene *s,
 }
 
 /* Draws only shells, lines and box, and compares them with their definition. */
-static void compare_layers(struct moving *d)
+static void compare_layers_with_definition(struct moving *d)
 {
     const struct glint_scene *s = d->frame.scene;
     const struct glint_motion_state *m = s->motion;
     double worst = 0;
 
-    moving_draw(d);
+    moving_draw_frame(d);
     assert_true(m->n_layers > 0);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
@@ -84,8 +89,8 @@ static void compare_layers(struct moving *d)
 
             for (int i = 0; i < m->n_layers; i++) {
                 const struct glint_motion_layer *l = &m->layer[i];
-                const double a = l->ball ? shell_coverage(s, l, x, y)
-                                         : line_coverage(s, l, x, y);
+                const double a = l->ball ? compute_shell_coverage(s, l, x, y)
+                                         : compute_line_coverage(s, l, x, y);
 
                 for (int c = 0; c < 3; c++)
                     rgb[c] += a * (s->material[l->material].rgb_q15[c] /
@@ -98,7 +103,7 @@ static void compare_layers(struct moving *d)
                     fabs(rgb[c] -
                          ldexp(d->light_q20[3 * (y * WIDTH + x) + c], -20)));
         }
-    /* each layer is rounded to 1/256, the mean of a rim to one sample */
+    /* each layer is rounded to 1/256, the coverage of a rim to one sample */
     if (worst > (m->n_layers + 2) / 256.)
         fail_msg("%d layers, off by %.4f", m->n_layers, worst);
 }
@@ -112,7 +117,7 @@ TEST(layers_are_as_defined)
         "camera fov 30 at 0 3 30 toward 0 1 0\n",
         "camera fov 53 at 1 14 0 toward 0 0 0.5\n"};
 
-    moving_of_foods(food, 4, 50);
+    moving_bake_foods(food, 4, 50);
     for (int i = 0; i < 4; i++)
         for (int tile_log2 = 4; tile_log2 <= 6; tile_log2++) {
             char text[400];
@@ -122,42 +127,42 @@ TEST(layers_are_as_defined)
             strcat(text, "material shells phong 1 0 0 colour 0 .5 1 pass .4\n"
                          "motion run x size .6 sensors .2 foods .5 shells 1.8 "
                          "lines .3 box .1\n");
-            d = moving_open(text, tile_log2, SAMPLES);
+            d = moving_open_scene(text, tile_log2, SAMPLES);
             glint_scene_show_kind(d->frame.scene, GLINT_KIND_FOODS, 0);
             glint_scene_show_kind(d->frame.scene, GLINT_KIND_BODY, 0);
             glint_scene_show_kind(d->frame.scene, GLINT_KIND_SENSORS, 0);
-            compare_layers(d);
-            moving_close(d);
+            compare_layers_with_definition(d);
+            moving_close_scene(d);
         }
 }
 
-/* Checks a food that no sensor detects, inside or in front of the shell of
- * one that is detected: where it is visible, the shell is hidden. */
+/* Checks an undetected food inside or in front of the shell of a detected food:
+ * it occludes the shell. */
 TEST(nearer_objects_hide_layers)
 {
     double food[3][3] = {{5, 0, 0}, {5, 3, 3}, {0, -9, 9}};
     const int middle = 3 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
 
-    moving_of_foods(food, 3, 50);
+    moving_bake_foods(food, 3, 50);
     for (int i = 0; i < 2; i++) {
         struct moving *d =
-            moving_open(i ? "camera fov 30 at 5 12 12 toward 5 0 0\n"
-                            "motion run x size .6 foods 1 shells 2\n"
-                          : "camera fov 30 at 5 12 12 toward 5 0 0\n"
-                            "motion run x size .6 foods 1 shells 5.4\n",
-                        5, SAMPLES);
+            moving_open_scene(i ? "camera fov 30 at 5 12 12 toward 5 0 0\n"
+                                  "motion run x size .6 foods 1 shells 2\n"
+                                : "camera fov 30 at 5 12 12 toward 5 0 0\n"
+                                  "motion run x size .6 foods 1 shells 5.4\n",
+                              5, SAMPLES);
         int32_t with[2][3];
 
         for (int k = 0; k < 2; k++) {
             glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, k);
-            moving_draw(d);
+            moving_draw_frame(d);
             memcpy(with[k], d->light_q20 + middle, sizeof with[k]);
         }
         assert_int_equal(d->frame.scene->motion->n_layers, 1);
         if (i)
             assert_memory_equal(with[0], with[1], sizeof with[0]);
-        else /* the shell is so wide that the food is inside it */
+        else /* a shell so wide that the food is inside */
             assert_memory_not_equal(with[0], with[1], sizeof with[0]);
-        moving_close(d);
+        moving_close_scene(d);
     }
 }

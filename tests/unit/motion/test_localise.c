@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the localisation of a body by the foods that it observes: rows D1 to D6
- * of recorded motion, on the four motions of tests/support/tracks.
+ * Tests the localisation of a body by the foods that it observes: requirements
+ * D1 to D6 of recorded motion, for the four body motions of
+ * tests/support/tracks. Foods are the landmarks.
  */
 #include <math.h>
 #include <stdint.h>
@@ -26,24 +27,24 @@ struct errors {
 
 /* Localises the body on a track, by FOUR foods if not NULL, else by ALL
  * foods. */
-static struct errors measure_errors(const struct track_options *options,
-                                    struct glint_localiser *all,
-                                    struct four *four)
+static struct errors measure_pose_errors(const struct track_options *options,
+                                         struct glint_localiser *all,
+                                         struct four *four)
 {
     struct errors e = {.n = 0};
     struct track track;
     double s[5] = {0};
 
-    track_begin(&track, options);
+    track_begin_motion(&track, options);
     for (int i = 0; i < options->n_frames; i++) {
         struct glint_located located;
         struct track_frame f;
         const double(*const seen)[3] = (const double(*)[3])f.seen;
         double square = 0;
 
-        track_next(&track, &f);
-        if (four ? four_localise(four, options->n_foods, seen, f.is_new,
-                                 &located)
+        track_next_frame(&track, &f);
+        if (four ? four_localise_body(four, options->n_foods, seen, f.is_new,
+                                      &located)
                  : glint_localise(all, options->n_foods, seen, f.is_new,
                                   &located))
             break;
@@ -70,26 +71,27 @@ static struct errors measure_errors(const struct track_options *options,
     return e;
 }
 
-static struct errors measure_four(const struct track_options *options,
-                                  enum four_fit fit,
-                                  enum four_arithmetic arithmetic)
+static struct errors
+measure_errors_of_four_foods(const struct track_options *options,
+                             enum four_fit fit, enum four_arithmetic arithmetic)
 {
     struct four four;
 
-    four_init(&four, fit, arithmetic);
-    return measure_errors(options, NULL, &four);
+    four_init_localiser(&four, fit, arithmetic);
+    return measure_pose_errors(options, NULL, &four);
 }
 
-static struct errors measure_all(const struct track_options *options,
-                                 bool average)
+static struct errors
+measure_errors_of_all_foods(const struct track_options *options, bool average)
 {
     struct glint_localiser all;
 
     glint_localiser_init(&all, average);
-    return measure_errors(options, &all, NULL);
+    return measure_pose_errors(options, &all, NULL);
 }
 
-static struct track_options make_track(int motion, int reset_every, int digits)
+static struct track_options make_track_options(int motion, int reset_every,
+                                               int digits)
 {
     return (struct track_options){
         motion, FRAMES, 5, reset_every, digits, (uint32_t)(SEED + motion)};
@@ -100,9 +102,11 @@ static struct track_options make_track(int motion, int reset_every, int digits)
 TEST(row_d1_four_foods_do_not_drift)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
-        const struct track_options o = make_track(m, 0, 0);
-        const struct errors f = measure_four(&o, FOUR_FIRST, FOUR_FLOAT32);
-        const struct errors d = measure_four(&o, FOUR_FIRST, FOUR_DOUBLE);
+        const struct track_options o = make_track_options(m, 0, 0);
+        const struct errors f =
+            measure_errors_of_four_foods(&o, FOUR_FIRST, FOUR_FLOAT32);
+        const struct errors d =
+            measure_errors_of_four_foods(&o, FOUR_FIRST, FOUR_DOUBLE);
 
         print_message("  motion %d: float32 %.1e, double %.1e\n", m, f.last,
                       d.last);
@@ -117,9 +121,11 @@ TEST(row_d1_four_foods_do_not_drift)
 TEST(row_d2_the_chain_drifts)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
-        const struct track_options o = make_track(m, 0, 0);
-        const struct errors c = measure_four(&o, FOUR_CHAIN, FOUR_FLOAT32);
-        const struct errors f = measure_four(&o, FOUR_FIRST, FOUR_FLOAT32);
+        const struct track_options o = make_track_options(m, 0, 0);
+        const struct errors c =
+            measure_errors_of_four_foods(&o, FOUR_CHAIN, FOUR_FLOAT32);
+        const struct errors f =
+            measure_errors_of_four_foods(&o, FOUR_FIRST, FOUR_FLOAT32);
 
         print_message("  motion %d: %.1e, then %.1e\n", m, c.first, c.last);
         assert_int_equal(c.n, FRAMES);
@@ -132,14 +138,16 @@ TEST(row_d2_the_chain_drifts)
 /* Row D5: foods end and others appear. Rigid fits and averages over a food's
  * lifetime keep the error below 1e-4; the published solution has a thousand
  * times more. */
-TEST(row_d5_resets)
+TEST(row_d5_resets_keep_the_error_small)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
-        const struct track_options o = make_track(m, 200, 6);
-        const struct errors life = measure_all(&o, true);
-        const struct errors all = measure_all(&o, false);
-        const struct errors four = measure_four(&o, FOUR_FIRST, FOUR_DOUBLE);
-        const struct errors best = measure_four(&o, FOUR_BEST, FOUR_DOUBLE);
+        const struct track_options o = make_track_options(m, 200, 6);
+        const struct errors life = measure_errors_of_all_foods(&o, true);
+        const struct errors all = measure_errors_of_all_foods(&o, false);
+        const struct errors four =
+            measure_errors_of_four_foods(&o, FOUR_FIRST, FOUR_DOUBLE);
+        const struct errors best =
+            measure_errors_of_four_foods(&o, FOUR_BEST, FOUR_DOUBLE);
 
         print_message("  motion %d: life mean %.1e, all %.1e, first4 %.1e, "
                       "best4 %.1e\n",
@@ -152,11 +160,12 @@ TEST(row_d5_resets)
 }
 
 /* Row D6: errors correlate weakly with mean distances of foods. */
-TEST(row_d6_distance_of_foods)
+TEST(row_d6_error_depends_weakly_on_food_distance)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
-        const struct track_options o = make_track(m, 0, 0);
-        const struct errors e = measure_four(&o, FOUR_FIRST, FOUR_FLOAT32);
+        const struct track_options o = make_track_options(m, 0, 0);
+        const struct errors e =
+            measure_errors_of_four_foods(&o, FOUR_FIRST, FOUR_FLOAT32);
 
         print_message("  motion %d: %.2f\n", m, e.correlation);
         assert_true(e.correlation > .1 && e.correlation < .7);
@@ -165,9 +174,9 @@ TEST(row_d6_distance_of_foods)
 
 /* Checks that two of five foods may vanish at once, leaving three, and one
  * of four. */
-TEST(two_may_vanish_at_once)
+TEST(two_foods_may_vanish_at_once)
 {
-    struct track_options o = make_track(0, 0, 0);
+    struct track_options o = make_track_options(0, 0, 0);
     struct glint_localiser l;
     struct four four;
     struct glint_located located;
@@ -177,9 +186,9 @@ TEST(two_may_vanish_at_once)
     const bool three[5] = {true, true, false, true, false};
 
     glint_localiser_init(&l, true);
-    track_begin(&track, &o);
+    track_begin_motion(&track, &o);
     for (int i = 0; i < 100; i++) {
-        track_next(&track, &f);
+        track_next_frame(&track, &f);
         assert_null(glint_localise(&l, 5, (const double(*)[3])f.seen,
                                    i == 50 ? two : f.is_new, &located));
         for (int k = 0; k < 3; k++)
@@ -188,17 +197,17 @@ TEST(two_may_vanish_at_once)
     assert_non_null(strstr(
         glint_localise(&l, 5, (const double(*)[3])f.seen, three, &located),
         "three foods"));
-    four_init(&four, FOUR_FIRST, FOUR_DOUBLE);
-    assert_null(four_localise(&four, 5, (const double(*)[3])f.seen, f.is_new,
-                              &located));
+    four_init_localiser(&four, FOUR_FIRST, FOUR_DOUBLE);
+    assert_null(four_localise_body(&four, 5, (const double(*)[3])f.seen,
+                                   f.is_new, &located));
     assert_non_null(strstr(
-        four_localise(&four, 5, (const double(*)[3])f.seen, two, &located),
+        four_localise_body(&four, 5, (const double(*)[3])f.seen, two, &located),
         "four foods"));
 }
 
 /* Checks that collinear foods, or coplanar foods for the method of four, are
  * rejected within 2^-20 of the limit. */
-TEST(flat_bases_are_refused)
+TEST(rejects_collinear_and_coplanar_foods)
 {
     const double line[4][3] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {5, 5, 5}};
     double flat[5][3] = {
@@ -213,23 +222,23 @@ TEST(flat_bases_are_refused)
     assert_non_null(
         strstr(glint_localise(&l, 4, line, none, &located), "on a line"));
     for (int k = 0; k < 2; k++) {
-        four_init(&four, FOUR_FIRST, FOUR_DOUBLE);
-        assert_null(
-            four_localise(&four, 5, (const double(*)[3])flat, none, &located));
+        four_init_localiser(&four, FOUR_FIRST, FOUR_DOUBLE);
+        assert_null(four_localise_body(&four, 5, (const double(*)[3])flat, none,
+                                       &located));
         if (k == 0)
             assert_non_null(
-                strstr(four_localise(&four, 5, (const double(*)[3])flat, none,
-                                     &located),
+                strstr(four_localise_body(&four, 5, (const double(*)[3])flat,
+                                          none, &located),
                        "in a plane"));
         else
-            assert_null(four_localise(&four, 5, (const double(*)[3])flat, none,
-                                      &located));
+            assert_null(four_localise_body(&four, 5, (const double(*)[3])flat,
+                                           none, &located));
         flat[3][2] = 1e-4;
     }
 }
 
 /* Checks that float32, emulated by rounding doubles, has the bits of float. */
-TEST(rounded_doubles_are_floats)
+TEST(rounded_doubles_equal_floats)
 {
     uint32_t seed = 3;
 
@@ -238,11 +247,11 @@ TEST(rounded_doubles_are_floats)
         const float b = (float)(rng_unit(&seed) * 30 - 15);
         const volatile float product = a * b, sum = a + b, ratio = a / b;
 
-        assert_true(four_rounded(FOUR_FLOAT32, (double)a * (double)b) ==
+        assert_true(four_round_value(FOUR_FLOAT32, (double)a * (double)b) ==
                     (double)product);
-        assert_true(four_rounded(FOUR_FLOAT32, (double)a + (double)b) ==
+        assert_true(four_round_value(FOUR_FLOAT32, (double)a + (double)b) ==
                     (double)sum);
-        assert_true(four_rounded(FOUR_FLOAT32, (double)a / (double)b) ==
+        assert_true(four_round_value(FOUR_FLOAT32, (double)a / (double)b) ==
                     (double)ratio);
     }
 }

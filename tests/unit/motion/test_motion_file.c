@@ -43,12 +43,12 @@ static void bake_track(struct baked *baked, int n_frames, int reset_every,
     baker = glint_motion_baker_open();
     assert_non_null(baker);
     assert_ok(glint_motion_baker_body(baker, &body, &error));
-    track_begin(&track, &o);
+    track_begin_motion(&track, &o);
     for (int i = 0; i < n_frames; i++) {
         static struct glint_motion_sight s;
         struct track_frame f;
 
-        track_next(&track, &f);
+        track_next_frame(&track, &f);
         truth[i] = f.pose;
         s.number = i;
         s.n_foods = FOODS;
@@ -70,7 +70,7 @@ static void bake_track(struct baked *baked, int n_frames, int reset_every,
         glint_motion_open(&baked->motion, baked->data, baked->bytes, &reason));
 }
 
-static int read_block(void *ctx, uint32_t block, uint8_t *to)
+static int read_motion_block(void *ctx, uint32_t block, uint8_t *to)
 {
     struct baked *baked = ctx;
 
@@ -119,12 +119,12 @@ TEST(poses_are_the_true_ones)
 
 /* Checks that a frame read by blocks equals that in memory, and that frames
  * at the end need as few blocks as those at the beginning. */
-TEST(any_frame_by_few_blocks)
+TEST(any_frame_needs_few_blocks)
 {
     static uint32_t words[GLINT_MOTION_BLOCK / 4];
     uint8_t *const buffer = (uint8_t *)words;
     static struct glint_motion streamed;
-    struct glint_motion_blocks blocks = {.read = read_block};
+    struct glint_motion_blocks blocks = {.read = read_motion_block};
     struct glint_motion_frame f, g;
     struct baked baked;
     const char *reason;
@@ -137,13 +137,13 @@ TEST(any_frame_by_few_blocks)
     blocks.n_blocks = (uint32_t)(baked.bytes / GLINT_MOTION_BLOCK);
     assert_ok(glint_motion_over(&streamed, &blocks, buffer, &reason));
     for (int i = 0; i < 2000; i++) {
-        const uint32_t k = (uint32_t)rng_below(&seed, FRAMES);
+        const uint32_t k = (uint32_t)rng_int_below(&seed, FRAMES);
 
         baked.reads = 0;
         assert_ok(glint_motion_frame(&streamed, k, &f));
         assert_ok(glint_motion_frame(&baked.motion, k, &g));
         assert_memory_equal(&f, &g, sizeof f);
-        /* blocks of poses, index, events, intensities */
+        /* at most one block each of poses, index, events and intensities */
         assert_true(baked.reads <= 4);
     }
     assert_int_equal(glint_motion_frame(&streamed, FRAMES, &f),
@@ -158,7 +158,7 @@ TEST(damage_is_found)
     static uint32_t words[GLINT_MOTION_BLOCK / 4];
     uint8_t *const buffer = (uint8_t *)words;
     static struct glint_motion streamed;
-    struct glint_motion_blocks blocks = {.read = read_block};
+    struct glint_motion_blocks blocks = {.read = read_motion_block};
     struct baked baked;
     struct glint_motion motion;
     const char *reason;
@@ -168,12 +168,12 @@ TEST(damage_is_found)
     blocks.ctx = &baked;
     blocks.n_blocks = (uint32_t)(baked.bytes / GLINT_MOTION_BLOCK);
     for (int i = 0; i < 300; i++) {
-        const size_t at = (size_t)rng_below(&seed, (int)baked.bytes);
+        const size_t at = (size_t)rng_int_below(&seed, (int)baked.bytes);
         const unsigned char was = baked.data[at];
         const uint32_t header = GLINT_MOTION_BLOCK;
         bool found = false;
 
-        baked.data[at] ^= (unsigned char)(1 << rng_below(&seed, 8));
+        baked.data[at] ^= (unsigned char)(1 << rng_int_below(&seed, 8));
         assert_int_equal(
             glint_motion_open(&motion, baked.data, baked.bytes, &reason),
             GLINT_E_FORMAT);
@@ -184,8 +184,8 @@ TEST(damage_is_found)
 
             found = glint_motion_frame(&streamed, k, &f) != GLINT_OK;
         }
-        /* except the checksum of the whole file, which is not checked when
-         * reading by blocks */
+        /* The checksum of the whole file (bytes 12 .. 15) is not checked when
+         * reading by blocks. */
         assert_true(found || (at >= 12 && at < 16 && at < header));
         baked.data[at] = was;
     }
@@ -200,11 +200,12 @@ TEST(damage_is_found)
 /* Checks reading by blocks: a name with control characters is rejected as in
  * a whole file, and a frame with an unreadable block returns an error,
  * whichever block it is. */
-TEST(blocks_are_not_trusted)
+TEST(blocks_are_validated)
 {
     static uint8_t buffer[GLINT_MOTION_BLOCK] __attribute__((aligned(8)));
     struct baked baked;
-    struct glint_motion_blocks blocks = {.read = read_block, .ctx = &baked};
+    struct glint_motion_blocks blocks = {.read = read_motion_block,
+                                         .ctx = &baked};
     struct glint_motion motion;
     struct glint_motion_frame frame;
     struct glint_motion_header *header;
@@ -250,7 +251,7 @@ TEST(blocks_are_not_trusted)
 
 /* Checks that a file with random words and a valid checksum is rejected or
  * can be read. */
-TEST(hostile_words_do_no_harm)
+TEST(random_words_are_rejected_or_readable)
 {
     struct baked baked;
     unsigned char *copy;
@@ -265,8 +266,8 @@ TEST(hostile_words_do_no_harm)
         const char *reason;
         /* Every second change is in the header. */
         const size_t at =
-            4 * (size_t)rng_below(&seed, i % 2 ? 46 : (int)baked.bytes / 4);
-        uint32_t word = rng_bits(&seed) >> rng_below(&seed, 32);
+            4 * (size_t)rng_int_below(&seed, i % 2 ? 46 : (int)baked.bytes / 4);
+        uint32_t word = rng_bits32(&seed) >> rng_int_below(&seed, 32);
 
         memcpy(copy, baked.data, baked.bytes);
         memcpy(copy + at, &word, 4);
@@ -286,8 +287,8 @@ TEST(hostile_words_do_no_harm)
     free(baked.data);
 }
 
-/* Checks sizes from 1e-6 to 1e6. */
-TEST(units_follow_the_size)
+/* Checks that tracks scaled by 1e-6 to 1e4 keep their relative precision. */
+TEST(unit_adapts_to_the_size)
 {
     for (int power = -6; power <= 4; power++) {
         const double scale = pow(10, power);

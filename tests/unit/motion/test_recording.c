@@ -18,7 +18,7 @@ struct text {
     size_t left, most; /* bytes left; max bytes per read */
 };
 
-static long read_text(void *ctx, char *to, size_t n)
+static long read_recording_text(void *ctx, char *to, size_t n)
 {
     struct text *t = ctx;
 
@@ -39,8 +39,8 @@ struct baked {
 };
 
 /* Bakes TEXT, which is read in pieces of at most MOST bytes. */
-static enum glint_status bake_text(const char *text, size_t most,
-                                   struct baked *baked)
+static enum glint_status bake_recording_text(const char *text, size_t most,
+                                             struct baked *baked)
 {
     struct text t = {text, strlen(text), most};
     struct glint_motion_baker *baker;
@@ -50,8 +50,8 @@ static enum glint_status bake_text(const char *text, size_t most,
     memset(baked, 0, sizeof *baked);
     baker = glint_motion_baker_open();
     assert_non_null(baker);
-    status =
-        glint_recording_read(baker, "run.json", read_text, &t, &baked->error);
+    status = glint_recording_read(baker, "run.json", read_recording_text, &t,
+                                  &baked->error);
     if (status == GLINT_OK)
         status = glint_motion_baker_finish(baker, "run", 7, &baked->data,
                                            &baked->bytes, &baked->report,
@@ -63,8 +63,8 @@ static enum glint_status bake_text(const char *text, size_t most,
     return status;
 }
 
-/* A recording of two frames with the alternative key names; %s are STRUCTURE
- * and FRAMES. */
+/* A recording of two frames with the alternative key names. The two %s are
+ * STRUCTURE and FRAMES. */
 #define BODY                                                                 \
     "\"structure\": {\"size\": .5e0, \"sensors\": [{\"theta\": 0, \"phi\": " \
     "0}], \"angleofview\": 60}"
@@ -77,74 +77,79 @@ static enum glint_status bake_text(const char *text, size_t most,
 #define RUN(frames) "{" BODY_0 ", \"frames\": [" frames "]}"
 #define FRAME       "{\"foods\": " FOODS("2") "}"
 
-static void expect_error(const char *text, const char *why)
+static void bake_must_fail(const char *text, const char *why)
 {
     struct baked baked;
 
-    assert_int_equal(bake_text(text, 1 << 20, &baked), GLINT_E_LENS);
+    assert_int_equal(bake_recording_text(text, 1 << 20, &baked), GLINT_E_LENS);
     if (!strstr(baked.error.text, why))
         fail_msg("'%s' does not say '%s'", baked.error.text, why);
     assert_null(baked.data);
 }
 
-TEST(bad_recordings_are_refused)
+TEST(rejects_invalid_recordings)
 {
-    expect_error("", "run.json:1:1: the text ends within the recording");
-    expect_error("[]", "run.json:1:1: '{' is expected here");
-    expect_error("{" BODY ", \"frames\": [" FRAME "]}", "invalid token");
-    expect_error("{\"frames\": [" FRAME "]}", "there is no structure");
-    expect_error("{" BODY_0 ", \"frames\": []}", "there are no frames");
-    expect_error("{" BODY_0 "}", "there are no frames");
-    expect_error("{" BODY_0 ", \"frames\": 3}", "'[' is expected");
-    expect_error(RUN("{}"), "frame 0: there is no array 'foods'");
-    expect_error(RUN("3"), "frame 0: it is not a JSON object");
-    expect_error(RUN(FRAME ",\n {\"foods\": 5}"), "run.json:2:2: frame 1: ");
-    expect_error(RUN(FRAME ", {\"foods\": " FOODS("NaN") "}"), "invalid token");
-    expect_error(RUN(FRAME ", {\"foods\": " FOODS("1e999") "}"), "overflow");
-    expect_error(RUN(FRAME ", {\"foods\": " FOODS("1e7") "}"),
-                 "not within +-1e6");
-    expect_error(RUN(FRAME ", {\"foods\": " FOODS("\"2\"") "}"),
-                 "'x' of food 0 is not a number");
-    expect_error(RUN(FRAME ", {\"foods\": [{\"x\": 1, \"z\": 2}]}"),
-                 "frame 1: food 0 has no 'y'");
-    expect_error(RUN("{\"foods\": [{\"x\":1,\"y\":0,\"z\":0}]}"),
-                 "fewer than three foods");
-    expect_error(RUN(FRAME ", {\"foods\": [{\"x\":1,\"y\":0,\"z\":0},{\"x\":1,"
-                           "\"y\":1,\"z\":0},{\"x\":1,\"y\":0,\"z\":1}]}"),
-                 "the number of foods differs");
-    expect_error(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
-                     "2") "}, {\"frame_num\": 6, \"foods\": " FOODS("2") "}"),
-                 "frame 1: frames are missing: 6 follows 4");
-    expect_error(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
-                     "2") "}, {\"frame_num\": 4, \"foods\": " FOODS("2") "}"),
-                 "out of order: 4 follows 4");
-    expect_error(RUN("{\"frame_num\": -1, \"foods\": " FOODS("2") "}"),
-                 "'frame_num' is not a whole number");
-    expect_error(RUN("{\"rv\": [1, 2], \"foods\": " FOODS("2") "}"),
-                 "'rv' needs three numbers");
-    expect_error(RUN("{\"foods\": " FOODS("2")), "']' closes what '{' opened");
-    expect_error("{" BODY_0 ", \"frames\": [" FRAME ", {\"foods\": [{\"x\": 1",
-                 "the text ends within frame 1");
-    expect_error("{" BODY_0 ", " BODY_0 "}", "a second 'structure'");
-    expect_error(RUN(FRAME) " {", "text follows the end of the recording");
-    expect_error("{\"structure\": {\"size\": -1, \"angleofview\": 60}}",
-                 "the size of the body");
-    expect_error("{\"structure\": {\"size\": 1, \"angleofview\": 0}}",
-                 "the angle of view");
-    expect_error("{\"structure\": {\"size\": 1}}",
-                 "the structure has no 'angleofview'");
-    expect_error(
+    bake_must_fail("", "run.json:1:1: the text ends within the recording");
+    bake_must_fail("[]", "run.json:1:1: '{' is expected here");
+    bake_must_fail("{" BODY ", \"frames\": [" FRAME "]}", "invalid token");
+    bake_must_fail("{\"frames\": [" FRAME "]}", "there is no structure");
+    bake_must_fail("{" BODY_0 ", \"frames\": []}", "there are no frames");
+    bake_must_fail("{" BODY_0 "}", "there are no frames");
+    bake_must_fail("{" BODY_0 ", \"frames\": 3}", "'[' is expected");
+    bake_must_fail(RUN("{}"), "frame 0: there is no array 'foods'");
+    bake_must_fail(RUN("3"), "frame 0: it is not a JSON object");
+    bake_must_fail(RUN(FRAME ",\n {\"foods\": 5}"), "run.json:2:2: frame 1: ");
+    bake_must_fail(RUN(FRAME ", {\"foods\": " FOODS("NaN") "}"),
+                   "invalid token");
+    bake_must_fail(RUN(FRAME ", {\"foods\": " FOODS("1e999") "}"), "overflow");
+    bake_must_fail(RUN(FRAME ", {\"foods\": " FOODS("1e7") "}"),
+                   "not within +-1e6");
+    bake_must_fail(RUN(FRAME ", {\"foods\": " FOODS("\"2\"") "}"),
+                   "'x' of food 0 is not a number");
+    bake_must_fail(RUN(FRAME ", {\"foods\": [{\"x\": 1, \"z\": 2}]}"),
+                   "frame 1: food 0 has no 'y'");
+    bake_must_fail(RUN("{\"foods\": [{\"x\":1,\"y\":0,\"z\":0}]}"),
+                   "fewer than three foods");
+    bake_must_fail(RUN(FRAME
+                       ", {\"foods\": [{\"x\":1,\"y\":0,\"z\":0},{\"x\":1,"
+                       "\"y\":1,\"z\":0},{\"x\":1,\"y\":0,\"z\":1}]}"),
+                   "the number of foods differs");
+    bake_must_fail(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
+                       "2") "}, {\"frame_num\": 6, \"foods\": " FOODS("2") "}"),
+                   "frame 1: frames are missing: 6 follows 4");
+    bake_must_fail(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
+                       "2") "}, {\"frame_num\": 4, \"foods\": " FOODS("2") "}"),
+                   "out of order: 4 follows 4");
+    bake_must_fail(RUN("{\"frame_num\": -1, \"foods\": " FOODS("2") "}"),
+                   "'frame_num' is not a whole number");
+    bake_must_fail(RUN("{\"rv\": [1, 2], \"foods\": " FOODS("2") "}"),
+                   "'rv' needs three numbers");
+    bake_must_fail(RUN("{\"foods\": " FOODS("2")),
+                   "']' closes what '{' opened");
+    bake_must_fail("{" BODY_0 ", \"frames\": [" FRAME
+                   ", {\"foods\": [{\"x\": 1",
+                   "the text ends within frame 1");
+    bake_must_fail("{" BODY_0 ", " BODY_0 "}", "a second 'structure'");
+    bake_must_fail(RUN(FRAME) " {", "text follows the end of the recording");
+    bake_must_fail("{\"structure\": {\"size\": -1, \"angleofview\": 60}}",
+                   "the size of the body");
+    bake_must_fail("{\"structure\": {\"size\": 1, \"angleofview\": 0}}",
+                   "the angle of view");
+    bake_must_fail("{\"structure\": {\"size\": 1}}",
+                   "the structure has no 'angleofview'");
+    bake_must_fail(
         "{\"structure\": {\"angleofview\": 1, \"size\": 1, \"sensors\": "
         "[{\"theta\": 1}]}}",
         "a sensor has no 'phi'");
-    expect_error("{\"a\": [1, 2}", "'}' closes what '[' opened");
-    expect_error("{\"a\": \"b\nc\"}", "a string must end on its line");
-    expect_error("{\"a\" 1}", "':' is expected");
-    expect_error("{\"a\": , }", "a value is expected");
+    bake_must_fail("{\"a\": [1, 2}", "'}' closes what '[' opened");
+    bake_must_fail("{\"a\": \"b\nc\"}", "a string must end on its line");
+    bake_must_fail("{\"a\" 1}", "':' is expected");
+    bake_must_fail("{\"a\": , }", "a value is expected");
 }
 
-/* Checks collinear foods, and three that vanish at once. */
-TEST(what_cannot_be_localised_is_refused)
+/* Checks that collinear foods, and three foods that vanish at once, are
+ * rejected. */
+TEST(rejects_recordings_that_cannot_be_localised)
 {
 #define LINE                                                             \
     "{\"foods\": [{\"x\":0,\"y\":0,\"z\":0},{\"x\":1,\"y\":0,\"z\":0},{" \
@@ -155,18 +160,19 @@ TEST(what_cannot_be_localised_is_refused)
     "},{\"x\":1,\"y\":1,\"z\":1}]}"
     struct baked baked;
 
-    expect_error(RUN(LINE ", " LINE),
-                 "frame 1: the foods with known positions lie on a line");
-    expect_error(RUN(FRAME ", " GONE("true", "1")),
-                 "frame 1: fewer than three foods have known positions");
-    assert_ok(bake_text(RUN(FRAME ", " GONE("true", "false")), 9, &baked));
+    bake_must_fail(RUN(LINE ", " LINE),
+                   "frame 1: the foods with known positions lie on a line");
+    bake_must_fail(RUN(FRAME ", " GONE("true", "1")),
+                   "frame 1: fewer than three foods have known positions");
+    assert_ok(
+        bake_recording_text(RUN(FRAME ", " GONE("true", "false")), 9, &baked));
     assert_int_equal(baked.report.n_resets, 1);
     free(baked.data);
 }
 
 /* Checks unknown keys (also nested), trailing commas, any order, pieces of
  * any size, and brackets and escapes in strings. */
-TEST(tolerated_deviations)
+TEST(accepts_deviations_of_syntax)
 {
     static const char text[] =
         "\n{\"made by\": \"a \\\" ] tool, }\", \"notes\": [1, {\"x\": [[], "
@@ -176,8 +182,8 @@ TEST(tolerated_deviations)
                                                " ,\n],\n" BODY_0 ",\n}\n";
     struct baked whole, bits;
 
-    assert_ok(bake_text(text, 1 << 20, &whole));
-    assert_ok(bake_text(text, 1, &bits));
+    assert_ok(bake_recording_text(text, 1 << 20, &whole));
+    assert_ok(bake_recording_text(text, 1, &bits));
     assert_int_equal(whole.bytes, bits.bytes);
     assert_memory_equal(whole.data, bits.data, whole.bytes);
     assert_int_equal(whole.motion.header.n_frames, 2);
@@ -188,14 +194,14 @@ TEST(tolerated_deviations)
     free(bits.data);
 }
 
-static char *write_recording(const struct track_options *o, bool is_second)
+static char *write_recording_file(const struct track_options *o, bool is_second)
 {
     FILE *file = tmpfile();
     char *text;
     long n;
 
     assert_non_null(file);
-    track_write(o, is_second, 2, 60, file);
+    track_write_recording(o, is_second, 2, 60, file);
     n = ftell(file);
     rewind(file);
     text = malloc((size_t)n + 1);
@@ -208,17 +214,17 @@ static char *write_recording(const struct track_options *o, bool is_second)
 
 /* Checks that both sets of key names give the same motion, that `reset` in
  * the first frame has no effect, and row D11: the sums of rv and tv. */
-TEST(both_sets_of_keys)
+TEST(both_sets_of_key_names_are_equal)
 {
     const struct track_options o = {2, 500, 5, 60, 6, 11};
-    char *first = write_recording(&o, false),
-         *second = write_recording(&o, true);
+    char *first = write_recording_file(&o, false),
+         *second = write_recording_file(&o, true);
     char *reset = strstr(first, "false");
     struct baked a, b;
 
     memcpy(reset, "true ", 5);
-    assert_ok(bake_text(first, 4096, &a));
-    assert_ok(bake_text(second, 4096, &b));
+    assert_ok(bake_recording_text(first, 4096, &a));
+    assert_ok(bake_recording_text(second, 4096, &b));
     assert_int_equal(a.motion.header.n_frames, 500);
     assert_int_equal(a.motion.header.n_events, b.motion.header.n_events);
     assert_int_equal(a.report.n_resets, 8);
@@ -249,8 +255,8 @@ TEST(moving_food_is_reported)
 {
     struct baked baked;
 
-    assert_ok(
-        bake_text(RUN(FRAME ", {\"foods\": " FOODS("2.1") "}"), 4096, &baked));
+    assert_ok(bake_recording_text(RUN(FRAME ", {\"foods\": " FOODS("2.1") "}"),
+                                  4096, &baked));
     assert_int_equal(baked.report.bad_frames, 1);
     assert_int_equal(baked.report.residual_frame, 1);
     assert_true(baked.report.residual > .02 && baked.report.residual < .1);

@@ -52,34 +52,34 @@ TEST(row_d8_seek_is_play)
     struct moving *d;
     uint32_t seed = 3;
 
-    moving_of_track(3, N, 60);
-    d = moving_open(LOOK RUN, 5, 4);
+    moving_bake_track(3, N, 60);
+    d = moving_open_scene(LOOK RUN, 5, 4);
     assert_int_equal(glint_scene_frames(d->frame.scene), N);
     for (int k = 0; k < N; k++) {
         glint_scene_seek(d->frame.scene, (uint32_t)k);
-        moving_draw(d);
+        moving_draw_frame(d);
         played[k] = hash_image(d);
         assert_true(k == 0 || played[k] != played[k - 1]);
     }
     for (int i = 0; i < 200; i++) {
-        const uint32_t k = (uint32_t)rng_below(&seed, N);
+        const uint32_t k = (uint32_t)rng_int_below(&seed, N);
 
         glint_scene_seek(d->frame.scene, k);
-        moving_draw(d);
+        moving_draw_frame(d);
         assert_true(hash_image(d) == played[k]);
     }
     glint_scene_seek(d->frame.scene, 1u << 31);
-    moving_draw(d);
+    moving_draw_frame(d);
     assert_true(hash_image(d) == played[N - 1]);
-    moving_close(d);
+    moving_close_scene(d);
     for (int log2 = 3; log2 <= 6; log2++) {
-        d = moving_open(LOOK RUN, log2, 4);
+        d = moving_open_scene(LOOK RUN, log2, 4);
         for (uint32_t k = 0; k < N; k += 13) {
             glint_scene_seek(d->frame.scene, k);
-            moving_draw(d);
+            moving_draw_frame(d);
             assert_true(hash_image(d) == played[k]);
         }
-        moving_close(d);
+        moving_close_scene(d);
     }
 }
 
@@ -97,10 +97,10 @@ static void rotate_vector(const double q[4], const double v[3], double at[3])
     at[2] = v[2] + 2 * (q[0] * c[2] + q[1] * c[1] - q[2] * c[0]);
 }
 
-/* Returns by how much food F of FRAME is inside the angle of sensor S,
- * radians, by the formula of row D7. */
-static double compute_margin(const struct glint_motion_frame *frame,
-                             double size, int s, int f)
+/* Returns the margin, radians, by which food F of FRAME is inside the detection
+ * angle of sensor S (formula of requirement D7); negative: outside. */
+static double compute_detection_margin(const struct glint_motion_frame *frame,
+                                       double size, int s, int f)
 {
     const double axis[3] = {sin(moving_body.theta[s]) * cos(moving_body.phi[s]),
                             sin(moving_body.theta[s]) * sin(moving_body.phi[s]),
@@ -119,7 +119,7 @@ static double compute_margin(const struct glint_motion_frame *frame,
         dot += d * to[k];
         square += d * d;
     }
-    return moving_angle_deg() * GLINT_PI / 360 - acos(dot / sqrt(square));
+    return moving_food_angle_deg() * GLINT_PI / 360 - acos(dot / sqrt(square));
 }
 
 /* Row D7: in 10 000 frames of random steps, rotations and foods, with six
@@ -131,9 +131,9 @@ TEST(row_d7_detection_is_brute_force)
     struct moving *d[2];
     int seen[2] = {0, 0}, close = 0;
 
-    moving_of_track(3, N, 75);
-    d[0] = moving_open(LOOK RUN "detect angle", 5, 1);
-    d[1] = moving_open(LOOK RUN "detect both .3", 5, 1);
+    moving_bake_track(3, N, 75);
+    d[0] = moving_open_scene(LOOK RUN "detect angle", 5, 1);
+    d[1] = moving_open_scene(LOOK RUN "detect both .3", 5, 1);
     for (uint32_t k = 0; k < N; k++) {
         const struct glint_motion_frame *frame =
             &d[0]->frame.scene->motion->frame;
@@ -142,7 +142,7 @@ TEST(row_d7_detection_is_brute_force)
             glint_scene_seek(d[i]->frame.scene, k);
         for (int f = 0; f < FOODS; f++)
             for (int s = 0; s < SENSORS; s++) {
-                const double margin = compute_margin(frame, .6, s, f);
+                const double margin = compute_detection_margin(frame, .6, s, f);
                 const int bright = frame->intensity[f][s] > 76; /* .3 * 255 */
                 const int got[2] = {
                     (int)(glint_scene_seen_by(d[0]->frame.scene, (uint32_t)f) >>
@@ -165,8 +165,8 @@ TEST(row_d7_detection_is_brute_force)
     print_message("  %d of %d seen, %d of them bright; %d too close to tell\n",
                   seen[0], N * FOODS * SENSORS, seen[1], close);
     assert_true(close < 10 && seen[0] > 10000 && seen[1] > 5000);
-    moving_close(d[0]);
-    moving_close(d[1]);
+    moving_close_scene(d[0]);
+    moving_close_scene(d[1]);
 }
 
 /* Checks that the comparison of angles by squares equals that in exact
@@ -177,14 +177,14 @@ TEST(angles_are_compared_exactly)
     int seen = 0;
 
     for (int i = 0; i < 200000; i++) {
-        const int bits = 1 + rng_below(&seed, 29);
-        int32_t axis[3], d[3], c = (int32_t)rng_bits(&seed) >> 1;
+        const int bits = 1 + rng_int_below(&seed, 29);
+        int32_t axis[3], d[3], c = (int32_t)rng_bits32(&seed) >> 1;
         int64_t v[3];
         long double dot = 0, square = 0;
 
         for (int k = 0; k < 3; k++) {
-            v[k] = (int32_t)rng_bits(&seed);
-            d[k] = (int32_t)rng_bits(&seed) >> (32 - bits);
+            v[k] = (int32_t)rng_bits32(&seed);
+            d[k] = (int32_t)rng_bits32(&seed) >> (32 - bits);
         }
         assert_true(glint_unit(v, axis));
         if (i % 3 == 0) /* on the axis */
@@ -214,7 +214,7 @@ TEST(angles_are_compared_exactly)
 /* Checks that a control line which fails leaves camera and appearances
  * unchanged (camera in a sensor, or free), and that the next line is
  * executed. */
-TEST(lines_that_fail_change_nothing)
+TEST(failed_control_lines_change_nothing)
 {
     static const struct control_line bright = {
         .verb = CONTROL_COLOUR, .v = {.6, .6, .6}, .n = 3}; /* of all metals */
@@ -224,8 +224,8 @@ TEST(lines_that_fail_change_nothing)
     struct steer steer;
     struct moving *d;
 
-    moving_of_track(3, 20, 60);
-    d = moving_open(LOOK METALS RUN, 5, 4);
+    moving_bake_track(3, 20, 60);
+    d = moving_open_scene(LOOK METALS RUN, 5, 4);
     assert_ok(steer_open(&steer, &d->model));
     for (int i = 0; i < 2; i++) {
         struct steer was;
@@ -234,7 +234,7 @@ TEST(lines_that_fail_change_nothing)
         control_parse(before[i], "f:1", &line, &error);
         assert_ok(
             steer_execute_line(&steer, d->frame.scene, &line, "", &error));
-        moving_draw(d);
+        moving_draw_frame(d);
         hash = hash_image(d);
         was = steer;
         control_parse("distance 9e5", "f:2", &line, &error);
@@ -245,16 +245,16 @@ TEST(lines_that_fail_change_nothing)
         assert_int_equal(
             steer_execute_line(&steer, d->frame.scene, &bright, "", &error),
             GLINT_E_FORMAT);
-        moving_draw(d);
+        moving_draw_frame(d);
         assert_true(hash_image(d) == hash);
         steer_apply_state(&steer, d->frame.scene);
-        moving_draw(d);
+        moving_draw_frame(d);
         assert_true(hash_image(d) == hash);
     }
     control_parse("orbit 30 20", "f:3", &line, &error);
     assert_ok(steer_execute_line(&steer, d->frame.scene, &line, "", &error));
     steer_close(&steer);
-    moving_close(d);
+    moving_close_scene(d);
 }
 
 /* -------------------------------------------------------------------- row D9
@@ -262,7 +262,7 @@ TEST(lines_that_fail_change_nothing)
 
 /* Returns the mean column of pixels that are more red than blue, -1 if there
  * are none. Sets *N to their number. */
-static double mean_column(const struct moving *d, int *n)
+static double compute_mean_red_column(const struct moving *d, int *n)
 {
     double sum = 0;
 
@@ -280,23 +280,24 @@ static double mean_column(const struct moving *d, int *n)
 
 /* Row D9: a camera in a sensor has the object ahead in the centre and the
  * sensor's field of view; leaving it restores the previous image. */
-TEST(row_d9_a_camera_in_a_sensor)
+TEST(row_d9_camera_in_a_sensor)
 {
-    /* ahead of sensor 0, 20 degrees to its side, behind it, and another */
+    /* foods ahead of sensor 0, ahead of sensor 1, and two others */
     double food[4][3] = {{6, 0, 0}, {0, 6, 0}, {0, -3, 7}, {-9, 1, 2}};
     uint64_t outside;
     struct moving *d;
     int n;
 
-    moving_of_foods(food, 4, 60);
-    d = moving_open(LOOK RUN, 5, 4);
-    moving_draw(d);
+    moving_bake_foods(food, 4, 60);
+    d = moving_open_scene(LOOK RUN, 5, 4);
+    moving_draw_frame(d);
     outside = hash_image(d);
-    for (int k = 0; k < 2; k++) { /* food k is ahead of sensor k */
+    for (int k = 0; k < 2; k++) { /* sensor k is directed at food k */
         assert_ok(glint_scene_enter(d->frame.scene, k));
         glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
-        moving_draw(d);
-        assert_true(fabs(mean_column(d, &n) - (WIDTH - 1) / 2.) < .5);
+        moving_draw_frame(d);
+        assert_true(fabs(compute_mean_red_column(d, &n) - (WIDTH - 1) / 2.) <
+                    .5);
         /* radius .5 at a distance of 6 - .6, in an image 2 tan 30 wide */
         assert_true(fabs(sqrt(n / GLINT_PI) -
                          .5 / 5.4 * WIDTH / (2 * tan(GLINT_PI / 6))) < 1);
@@ -305,17 +306,17 @@ TEST(row_d9_a_camera_in_a_sensor)
                      GLINT_E_ARGUMENT);
     assert_ok(glint_scene_enter(d->frame.scene, -1));
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 1);
-    moving_draw(d);
+    moving_draw_frame(d);
     assert_true(hash_image(d) == outside);
-    moving_close(d);
-    d = moving_open(
+    moving_close_scene(d);
+    d = moving_open_scene(
         "camera sensor 2\nlight sun direction .3 .8 .6 colour 5e4 5e4 "
         "5e4\n" RUN,
         5, 4);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
-    moving_draw(d);
-    assert_true(fabs(mean_column(d, &n) - (WIDTH - 1) / 2.) < .5);
-    moving_close(d);
+    moving_draw_frame(d);
+    assert_true(fabs(compute_mean_red_column(d, &n) - (WIDTH - 1) / 2.) < .5);
+    moving_close_scene(d);
 }
 
 /* ------------------------------------------------------------------- row D10
@@ -330,56 +331,56 @@ TEST(row_d10_detections)
     double any[3][3] = {{4, 5, 3}, {-5, 4, 6}, {5, 3, -4}};
     struct moving *d;
 
-    moving_of_foods(three, 3, 50);
-    d = moving_open(LOOK RUN, 5, 4);
+    moving_bake_foods(three, 3, 50);
+    d = moving_open_scene(LOOK RUN, 5, 4);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 0), 1);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 1), 2);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 2), 16);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 3), 0);
-    moving_close(d);
-    moving_of_foods(any, 3, 360);
-    d = moving_open(LOOK RUN, 5, 4);
+    moving_close_scene(d);
+    moving_bake_foods(any, 3, 360);
+    d = moving_open_scene(LOOK RUN, 5, 4);
     for (uint32_t f = 0; f < 3; f++)
         assert_int_equal(glint_scene_seen_by(d->frame.scene, f), 63);
-    moving_close(d);
-    moving_of_foods(corner, 4, 100);
-    d = moving_open(LOOK RUN, 5, 4);
+    moving_close_scene(d);
+    moving_bake_foods(corner, 4, 100);
+    d = moving_open_scene(LOOK RUN, 5, 4);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 0), 1 | 2);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 1), 2 | 4);
-    moving_close(d);
+    moving_close_scene(d);
 }
 
 /* Checks that each type of object is visible, can be hidden and shown again,
  * and can be resized. */
-TEST(kinds_are_hidden_and_sized)
+TEST(object_types_can_be_hidden_and_resized)
 {
     double food[4][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}, {-5, -4, 6}};
     uint64_t whole;
     struct moving *d;
 
-    moving_of_foods(food, 4, 50);
-    d = moving_open(LOOK RUN, 5, 4);
-    moving_draw(d);
+    moving_bake_foods(food, 4, 50);
+    d = moving_open_scene(LOOK RUN, 5, 4);
+    moving_draw_frame(d);
     whole = hash_image(d);
     for (int kind = 0; kind < GLINT_KINDS; kind++) {
         const int32_t steps = 1 << d->model.header->unit_log2;
 
         glint_scene_show_kind(d->frame.scene, (enum glint_scene_kind)kind, 0);
-        moving_draw(d);
+        moving_draw_frame(d);
         assert_true(hash_image(d) != whole);
         glint_scene_show_kind(d->frame.scene, (enum glint_scene_kind)kind, 1);
-        moving_draw(d);
+        moving_draw_frame(d);
         assert_true(hash_image(d) == whole);
         assert_ok(glint_scene_size_kind(d->frame.scene,
                                         (enum glint_scene_kind)kind, steps));
-        moving_draw(d);
+        moving_draw_frame(d);
         assert_true(hash_image(d) != whole);
         whole = hash_image(d);
         assert_int_equal(glint_scene_size_kind(d->frame.scene,
                                                (enum glint_scene_kind)kind, 0),
                          GLINT_E_ARGUMENT);
     }
-    moving_close(d);
+    moving_close_scene(d);
 }
 
 /* Checks that a shell over black has the fraction of light that its material
@@ -391,30 +392,30 @@ TEST(shells_let_light_pass)
     const int middle = 3 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
     struct moving *d;
 
-    moving_of_foods(food, 3, 50);
-    d = moving_open("camera fov 30 at 5 0 10 toward 5 0 0\n"
-                    "material shells phong 1 0 0 colour 0 .5 1 pass .5\n"
-                    "material foods phong 1 0 0 colour 1 0 0\n"
-                    "motion run x size .6 foods .5 shells 4\n",
-                    5, 4);
-    moving_draw(d);
-    /* the food's red of 1 behind a shell of coverage 1/4 */
+    moving_bake_foods(food, 3, 50);
+    d = moving_open_scene("camera fov 30 at 5 0 10 toward 5 0 0\n"
+                          "material shells phong 1 0 0 colour 0 .5 1 pass .5\n"
+                          "material foods phong 1 0 0 colour 1 0 0\n"
+                          "motion run x size .6 foods .5 shells 4\n",
+                          5, 4);
+    moving_draw_frame(d);
+    /* food of red 1 behind a shell of coverage 1/4 */
     assert_true(abs(d->light_q20[middle] - (3 << 18)) < 1 << 14);
     assert_true(abs(d->light_q20[middle + 2] - (1 << 18)) < 1 << 14);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_FOODS, 0);
-    moving_draw(d);
+    moving_draw_frame(d);
     assert_true(d->light_q20[middle] == 0);
     assert_true(abs(d->light_q20[middle + 2] - (1 << 18)) < 1 << 14);
     assert_true(abs(glint_scene_cover(d->frame.scene, 256 * WIDTH / 2,
                                       256 * HEIGHT / 2, 1024) -
                     64) < 8);
-    moving_close(d);
+    moving_close_scene(d);
 }
 
 /* Checks that lines leaving the widest image are drawn until their whole
  * width is off-screen: an edge of the box, 200 pixels wide, leaves it
  * obliquely. */
-TEST(wide_lines_leave_wide_pictures)
+TEST(wide_lines_are_drawn_until_off_screen)
 {
     enum { WIDE = 8192, LOW = 16 };
     static int32_t light_q20[3 * WIDE * LOW];
@@ -432,8 +433,8 @@ TEST(wide_lines_leave_wide_pictures)
     int32_t at[3], away, aside;
     struct moving *d;
 
-    moving_of_foods(food, 3, 50);
-    d = moving_open(LOOK "motion run x lines .1 box 1\n", 5, 1);
+    moving_bake_foods(food, 3, 50);
+    d = moving_open_scene(LOOK "motion run x lines .1 box 1\n", 5, 1);
     assert_ok(scene_frame_open(&frame, &tool, &d->model, &dials));
     m = frame.scene->motion;
     away = m->high[0] / 4;
@@ -454,27 +455,28 @@ TEST(wide_lines_leave_wide_pictures)
                                 3 * sizeof *light_q20);
     assert_true(light_q20[3 * WIDE - 1] > 0);
     scene_frame_close(&frame);
-    moving_close(d);
+    moving_close_scene(d);
 }
 
 /* Checks that lamps move with the body, by the positions passed to the lens. */
-TEST(lamps_ride_on_the_body)
+TEST(lamps_move_with_the_body)
 {
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     struct moving *d;
 
-    moving_of_track(0, 100, 60);
-    d = moving_open("camera fov 60 at 0 0 30 toward 0 0 0\n"
-                    "light lamp at 0 1 0 colour 5 5 5 on run\nflare lights\n"
-                    "motion run x size .5\n",
-                    5, 1);
+    moving_bake_track(0, 100, 60);
+    d = moving_open_scene(
+        "camera fov 60 at 0 0 30 toward 0 0 0\n"
+        "light lamp at 0 1 0 colour 5 5 5 on run\nflare lights\n"
+        "motion run x size .5\n",
+        5, 1);
     for (uint32_t k = 0; k < 100; k += 9) {
         const struct glint_motion_state *m = d->frame.scene->motion;
         double q[4], up[3], at[3];
         const double y[3] = {0, 1, 0};
 
         glint_scene_seek(d->frame.scene, k);
-        moving_draw(d);
+        moving_draw_frame(d);
         for (int i = 0; i < 4; i++)
             q[i] = ldexp(m->frame.pose.turn_q14[i], -14);
         rotate_vector(q, y, up);
@@ -485,7 +487,7 @@ TEST(lamps_ride_on_the_body)
             fabs(lamp[0].x_q8 / 256. - WIDTH / 2. -
                  at[0] / (30 - at[2]) * WIDTH / (2 * tan(GLINT_PI / 6))) < .1);
     }
-    moving_close(d);
+    moving_close_scene(d);
 }
 
 /* ------------------------------------------------------------------ hostile */
@@ -495,44 +497,45 @@ TEST(missing_module_is_named)
     struct glint_scene_parts parts;
     struct moving *d;
 
-    moving_of_track(0, 10, 60);
-    d = moving_open(LOOK RUN, 5, 1);
+    moving_bake_track(0, 10, 60);
+    d = moving_open_scene(LOOK RUN, 5, 1);
     parts = d->frame.cfg.parts;
     assert_null(glint_scene_lacks(&parts, &d->model));
     parts.motions = NULL;
     assert_string_equal(glint_scene_lacks(&parts, &d->model), "motions");
-    moving_close(d);
+    moving_close_scene(d);
 }
 
 /* Checks cameras anywhere, also inside shells and lines, and objects from
  * one step to a quarter of the space: no overflow (CONFIG=qcheck), no
  * endless loop. */
-TEST(extremes_of_places_and_sizes)
+TEST(extreme_positions_and_sizes_do_not_overflow)
 {
     struct moving *d;
     uint32_t seed = 8;
 
-    moving_of_track(3, 60, 170);
-    d = moving_open(LOOK RUN, 5, 4);
+    moving_bake_track(3, 60, 170);
+    d = moving_open_scene(LOOK RUN, 5, 4);
     for (int i = 0; i < 400; i++) {
         struct glint_scene *s = d->frame.scene;
         int32_t at[3], axis_q30[3][3] = {{0}};
-        const int shift = rng_below(&seed, 28), turn = rng_below(&seed, 3);
+        const int shift = rng_int_below(&seed, 28),
+                  turn = rng_int_below(&seed, 3);
 
-        glint_scene_seek(s, (uint32_t)rng_below(&seed, 60));
+        glint_scene_seek(s, (uint32_t)rng_int_below(&seed, 60));
         for (int k = 0; k < 3; k++) {
-            at[k] = ((int32_t)rng_bits(&seed) >> 4) >> shift;
+            at[k] = ((int32_t)rng_bits32(&seed) >> 4) >> shift;
             axis_q30[k][(k + turn) % 3] = 1 << 30;
         }
         if (i % 4 == 1) /* inside a food, or in the body */
             memcpy(at, s->motion->food_at[i % FOODS], sizeof at);
         assert_ok(glint_scene_set_camera(s, at, (const int32_t(*)[3])axis_q30));
-        glint_scene_size_kind(s, (enum glint_scene_kind)rng_below(&seed, 6),
-                              1 << rng_below(&seed, 27));
-        moving_draw(d);
+        glint_scene_size_kind(s, (enum glint_scene_kind)rng_int_below(&seed, 6),
+                              1 << rng_int_below(&seed, 27));
+        moving_draw_frame(d);
     }
     for (int k = 0; k < SENSORS; k++)
         if (glint_scene_enter(d->frame.scene, k) == GLINT_OK)
-            moving_draw(d);
-    moving_close(d);
+            moving_draw_frame(d);
+    moving_close_scene(d);
 }

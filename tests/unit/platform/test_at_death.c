@@ -25,12 +25,12 @@ static void write_child_pipe(char c)
         _exit(98);
 }
 
-static void write_1(void)
+static void write_1_at_exit(void)
 {
     write_child_pipe('1');
 }
 
-static void write_2(void)
+static void write_2_at_exit(void)
 {
     write_child_pipe('2');
 }
@@ -38,7 +38,8 @@ static void write_2(void)
 /* Runs DIE(NUMBER) in a child that has registered two functions. Checks that
  * the child ends with CODE, an exit code as a shell reports it (128 + N for
  * signal N), and that the functions wrote TEXT. */
-static void expect_end(void (*die)(int), int number, int code, const char *text)
+static void expect_end_of_child(void (*die)(int), int number, int code,
+                                const char *text)
 {
     const struct rlimit no_core = {0, 0};
     ssize_t n;
@@ -53,8 +54,9 @@ static void expect_end(void (*die)(int), int number, int code, const char *text)
             signal(i, SIG_DFL); /* replaces cmocka's handler */
         close(child_pipe[0]);
         setrlimit(RLIMIT_CORE, &no_core);
-        if (!glint_at_death(write_1) || !glint_at_death(write_2) ||
-            !glint_at_death(write_1))
+        if (!glint_at_death(write_1_at_exit) ||
+            !glint_at_death(write_2_at_exit) ||
+            !glint_at_death(write_1_at_exit))
             _exit(97);
         die(number);
         _exit(0);
@@ -86,26 +88,27 @@ static void end_by_abort(int number)
     abort();
 }
 
-static int report_at_work(void)
+static int report_library_busy(void)
 {
     write_child_pipe('r');
     return 1;
 }
 
-static int report_idle(void)
+static int report_library_idle(void)
 {
     return 0;
 }
 
-static void end_by_library(int number)
+static void end_by_abort_in_library(int number)
 {
-    glint_at_death_in_library(number ? report_at_work : report_idle);
+    glint_at_death_in_library(number ? report_library_busy
+                                     : report_library_idle);
     abort();
 }
 
-static void end_by_library_exit(int number)
+static void end_by_exit_in_library(int number)
 {
-    glint_at_death_in_library(report_at_work);
+    glint_at_death_in_library(report_library_busy);
     exit(number);
 }
 
@@ -115,7 +118,7 @@ static void end_by_quick_exit(int number)
 }
 
 /* Ends the process by a real page fault, which sanitizers do not intercept. */
-static void end_by_fault(int number)
+static void end_by_page_fault(int number)
 {
     const size_t bytes = (size_t)sysconf(_SC_PAGESIZE);
     volatile char *const page =
@@ -125,7 +128,7 @@ static void end_by_fault(int number)
     *page = 1;
 }
 
-static void handle_own(int number)
+static void run_own_signal_handler(int number)
 {
     write_child_pipe('h');
     glint_at_death_by(number);
@@ -133,18 +136,18 @@ static void handle_own(int number)
 
 static void end_by_own_handler(int number)
 {
-    signal(number, handle_own);
+    signal(number, run_own_signal_handler);
     raise(number);
 }
 
-static void end_by_ignored(int number)
+static void end_after_ignored_signals(int number)
 {
     signal(number, SIG_IGN);
     raise(number);
     _exit(5);
 }
 
-TEST(signals)
+TEST(functions_run_at_every_deadly_signal)
 {
     const int deadly[] = {SIGHUP,    SIGINT,  SIGTERM, SIGQUIT, SIGUSR1,
                           SIGUSR2,   SIGALRM, SIGABRT, SIGSEGV, SIGBUS,
@@ -158,42 +161,42 @@ TEST(signals)
                           SIGRTMIN};
 
     for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
-        expect_end(end_by_raise, deadly[i], 128 + deadly[i], "21");
+        expect_end_of_child(end_by_raise, deadly[i], 128 + deadly[i], "21");
 }
 
-TEST(faults)
+TEST(functions_run_at_faults)
 {
-    expect_end(end_by_fault, 0, 128 + SIGSEGV, "21");
-    expect_end(end_by_abort, 0, 128 + SIGABRT, "21");
+    expect_end_of_child(end_by_page_fault, 0, 128 + SIGSEGV, "21");
+    expect_end_of_child(end_by_abort, 0, 128 + SIGABRT, "21");
 }
 
-/* abort() in a library ends the process with exit code 1, abort() in glint
- * itself with SIGABRT. */
-TEST(library)
+/* Checks that abort() in a library ends the process with exit code 1, abort()
+ * in glint itself with SIGABRT. */
+TEST(abort_in_a_library_ends_with_code_1)
 {
-    expect_end(end_by_library, 1, 1, "21r");
-    expect_end(end_by_library_exit, 4, 4, "21r");
-    expect_end(end_by_library, 0, 128 + SIGABRT, "21");
+    expect_end_of_child(end_by_abort_in_library, 1, 1, "21r");
+    expect_end_of_child(end_by_exit_in_library, 4, 4, "21r");
+    expect_end_of_child(end_by_abort_in_library, 0, 128 + SIGABRT, "21");
 }
 
-TEST(exit)
+TEST(functions_run_at_exit)
 {
-    expect_end(end_by_exit, 3, 3, "21");
-    expect_end(end_by_quick_exit, 3, 3, "");
+    expect_end_of_child(end_by_exit, 3, 3, "21");
+    expect_end_of_child(end_by_quick_exit, 3, 3, "");
 }
 
 /* Checks that the functions run when a handler of the application ends the
  * process with glint_at_death_by(). */
-TEST(own_handler)
+TEST(functions_run_from_own_handler)
 {
-    expect_end(end_by_own_handler, SIGINT, 128 + SIGINT, "h21");
+    expect_end_of_child(end_by_own_handler, SIGINT, 128 + SIGINT, "h21");
 }
 
 /* Checks that SIGPIPE and SIGXFSZ are ignored from the first call on: the
  * child survives both and ends with its own exit code. */
-TEST(ignored)
+TEST(ignores_sigpipe_and_sigxfsz)
 {
-    expect_end(end_by_ignored, SIGHUP, 5, "");
-    expect_end(end_by_raise, SIGPIPE, 0, "");
-    expect_end(end_by_raise, SIGXFSZ, 0, "");
+    expect_end_of_child(end_after_ignored_signals, SIGHUP, 5, "");
+    expect_end_of_child(end_by_raise, SIGPIPE, 0, "");
+    expect_end_of_child(end_by_raise, SIGXFSZ, 0, "");
 }

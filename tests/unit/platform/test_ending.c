@@ -8,7 +8,7 @@
 #include "support/test.h"
 #include "video/y4m.h"
 
-TEST(letters_of_any_case_end_a_name)
+TEST(endings_match_in_any_case)
 {
     assert_true(glint_ends_in("clip.y4m", ".y4m"));
     assert_true(glint_ends_in("in.d/CLIP.Y4M", ".y4m"));
@@ -20,7 +20,7 @@ TEST(letters_of_any_case_end_a_name)
     assert_false(glint_ends_in("", ".y4m"));
 }
 
-TEST(the_ending_is_that_of_the_last_part)
+TEST(ending_is_that_of_the_last_path_component)
 {
     assert_string_equal(glint_ending_of("a.b/flare.tar.gz"), ".gz");
     assert_string_equal(glint_ending_of("X.BMP"), ".BMP");

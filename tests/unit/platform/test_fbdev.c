@@ -28,7 +28,7 @@
 
 /* Sets the fake framebuffer to 8 x 6 pixels of XRGB8888, 40 bytes per row,
  * without off-screen rows. */
-static void reset_one_page(void)
+static void reset_fake_to_one_page(void)
 {
     uint8_t old[256];
     int fd;
@@ -62,15 +62,15 @@ static void reset_one_page(void)
 
 /* Sets the fake framebuffer to two screens with vertical panning in steps of
  * one row, as the vc4 driver has them. */
-static void reset_two_pages(void)
+static void reset_fake_to_two_pages(void)
 {
-    reset_one_page();
+    reset_fake_to_one_page();
     fake_fb->var.yres_virtual = 12;
     fake_fb->fix.ypanstep = 1;
     fake_fb->can_pan = true;
 }
 
-static const uint8_t *read_memory(void)
+static const uint8_t *read_screen_byte(void)
 {
     static uint8_t mem[FB_BYTES];
     const int fd = open(fake_fb_path, O_RDONLY);
@@ -80,7 +80,7 @@ static const uint8_t *read_memory(void)
     return mem;
 }
 
-static void write_memory(off_t at, uint8_t value)
+static void write_screen_byte(off_t at, uint8_t value)
 {
     const int fd = open(fake_fb_path, O_WRONLY);
 
@@ -102,8 +102,8 @@ static const struct glint_image *make_grey_image(int width, int height,
     return &image;
 }
 
-static void open_sink(struct glint_fbdev *fb,
-                      const struct glint_fbdev_options *options)
+static void open_framebuffer_sink(struct glint_fbdev *fb,
+                                  const struct glint_fbdev_options *options)
 {
     static const struct glint_fbdev_options none;
     struct glint_error error;
@@ -112,7 +112,8 @@ static void open_sink(struct glint_fbdev *fb,
         fail_msg("%s", error.text);
 }
 
-static void draw_image(struct glint_fbdev *fb, const struct glint_image *image)
+static void draw_and_free_image(struct glint_fbdev *fb,
+                                const struct glint_image *image)
 {
     struct glint_error error;
 
@@ -122,9 +123,9 @@ static void draw_image(struct glint_fbdev *fb, const struct glint_image *image)
 
 /* Checks six rows of 40 bytes from byte FIRST on: each pixel is CODE, CODE,
  * CODE, 0, and the 8 bytes of padding are unchanged. */
-static void expect_screen(size_t first, int code)
+static void expect_screen_rows(size_t first, int code)
 {
-    const uint8_t *const mem = read_memory() + first;
+    const uint8_t *const mem = read_screen_byte() + first;
 
     for (int y = 0; y < 6; y++)
         for (int x = 0; x < 40; x++) {
@@ -140,17 +141,18 @@ static void expect_screen(size_t first, int code)
 
 /* Runs in a child process: shows the second screen, then ends by signal HOW,
  * or by exit() if HOW is 0. */
-static void end_child(int how)
+static void end_child_by_signal(int how)
 {
     static const struct glint_fbdev_options options = {.console = true};
     struct glint_fbdev fb;
 
     for (int i = 1; i < SIGRTMIN; i++)
         signal(i, SIG_DFL);
-    open_sink(&fb, NULL); /* changes the order of the list of open sinks */
+    open_framebuffer_sink(
+        &fb, NULL); /* a second sink, so that the list of open sinks changes */
     fb.sink.close(&fb.sink);
-    open_sink(&fb, &options);
-    draw_image(&fb, make_grey_image(8, 6, 1));
+    open_framebuffer_sink(&fb, &options);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 1));
     if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
         _exit(99);
     if (fork() == 0)
@@ -166,13 +168,13 @@ static void end_child(int how)
 
 TEST_BEFORE
 {
-    reset_one_page();
+    reset_fake_to_one_page();
 }
 
 /* Checks that the console returns to text mode and the first screen to view
  * after each end of a process. Runs first, as the first open installs the
  * signal handlers of the whole process. */
-TEST(every_end)
+TEST(console_is_restored_after_every_end)
 {
     static const int ends[] = {0,       SIGINT,  SIGTERM, SIGHUP,
                                SIGQUIT, SIGSEGV, SIGABRT};
@@ -181,10 +183,10 @@ TEST(every_end)
         int how;
         pid_t child;
 
-        reset_two_pages();
+        reset_fake_to_two_pages();
         child = fork();
         if (child == 0)
-            end_child(ends[i]);
+            end_child_by_signal(ends[i]);
         assert_int_equal(waitpid(child, &how, 0), child);
         if (ends[i] == 0)
             assert_int_equal(how, 0);
@@ -197,18 +199,19 @@ TEST(every_end)
     }
 }
 
-TEST(draws)
+TEST(draws_a_grey_image)
 {
     struct glint_fbdev fb;
 
-    open_sink(&fb, NULL);
+    open_framebuffer_sink(&fb, NULL);
     assert_string_equal(fb.id, "fake");
     assert_int_equal(fb.n_pages, 1);
-    draw_image(&fb, make_grey_image(8, 6, 100));
-    expect_screen(0, 100);
-    draw_image(&fb, make_grey_image(16, 12, 50));
-    expect_screen(0, 50);
-    assert_int_equal(read_memory()[6 * 40], 0xaa); /* row below the screen */
+    draw_and_free_image(&fb, make_grey_image(8, 6, 100));
+    expect_screen_rows(0, 100);
+    draw_and_free_image(&fb, make_grey_image(16, 12, 50));
+    expect_screen_rows(0, 50);
+    assert_int_equal(read_screen_byte()[6 * 40],
+                     0xaa); /* first byte of the row below the screen */
     fb.sink.close(&fb.sink);
     fb.sink.close(&fb.sink);
     assert_int_equal(fb.fd, -1);
@@ -217,184 +220,185 @@ TEST(draws)
 
 /* Checks that the area around the image is black, whatever the previous
  * image covered. */
-TEST(borders)
+TEST(border_around_the_image_is_black)
 {
     struct glint_fbdev fb;
     const uint8_t *mem;
 
-    open_sink(&fb, NULL);
-    draw_image(&fb, make_grey_image(8, 6, 100));
-    draw_image(&fb, make_grey_image(8, 2, 50));
-    mem = read_memory();
+    open_framebuffer_sink(&fb, NULL);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 100));
+    draw_and_free_image(&fb, make_grey_image(8, 2, 50));
+    mem = read_screen_byte();
     for (int y = 0; y < 6; y++)
         assert_int_equal(mem[40 * y], y == 2 || y == 3 ? 50 : 0);
     /* The border is not redrawn for an image of the same size. */
-    write_memory(0, 123);
-    draw_image(&fb, make_grey_image(8, 2, 50));
-    assert_int_equal(read_memory()[0], 123);
+    write_screen_byte(0, 123);
+    draw_and_free_image(&fb, make_grey_image(8, 2, 50));
+    assert_int_equal(read_screen_byte()[0], 123);
     fb.sink.close(&fb.sink);
 }
 
-TEST(odd_start)
+TEST(screen_may_start_inside_a_page)
 {
     struct glint_fbdev fb;
 
     fake_fb->fix.smem_start = 0xfd000064;
-    open_sink(&fb, NULL);
-    draw_image(&fb, make_grey_image(8, 6, 77));
-    expect_screen(0x64, 77);
-    assert_int_equal(read_memory()[0x63], 0xaa);
+    open_framebuffer_sink(&fb, NULL);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 77));
+    expect_screen_rows(0x64, 77);
+    assert_int_equal(read_screen_byte()[0x63], 0xaa);
     fb.sink.close(&fb.sink);
     /* A console that has scrolled shows rows further down. */
-    reset_one_page();
+    reset_fake_to_one_page();
     fake_fb->var.yres_virtual = 20;
     fake_fb->var.yoffset = 5;
-    open_sink(&fb, NULL);
-    draw_image(&fb, make_grey_image(8, 6, 78));
-    expect_screen(5 * 40, 78);
-    assert_int_equal(read_memory()[5 * 40 - 1], 0xaa);
-    draw_image(&fb, make_grey_image(8, 2, 78));
+    open_framebuffer_sink(&fb, NULL);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 78));
+    expect_screen_rows(5 * 40, 78);
+    assert_int_equal(read_screen_byte()[5 * 40 - 1], 0xaa);
+    draw_and_free_image(&fb, make_grey_image(8, 2, 78));
     fake_fb->var.yoffset = 14;
-    draw_image(&fb, make_grey_image(8, 2, 79));
-    assert_int_equal(read_memory()[14 * 40], 0);
-    assert_int_equal(read_memory()[16 * 40], 79);
+    draw_and_free_image(&fb, make_grey_image(8, 2, 79));
+    assert_int_equal(read_screen_byte()[14 * 40], 0);
+    assert_int_equal(read_screen_byte()[16 * 40], 79);
     fb.sink.close(&fb.sink);
 }
 
-TEST(pages)
+TEST(frames_alternate_between_two_pages)
 {
     struct glint_fbdev fb;
 
-    reset_two_pages();
-    open_sink(&fb, NULL);
+    reset_fake_to_two_pages();
+    open_framebuffer_sink(&fb, NULL);
     assert_int_equal(fb.n_pages, 2);
     assert_int_equal(fake_fb->var.yoffset, 0);
     for (int i = 1; i <= 5; i++) {
         const uint32_t shown = i % 2 ? 6 : 0;
-        const int before = read_memory()[(6 - shown) * 40];
+        const int before = read_screen_byte()[(6 - shown) * 40];
 
-        draw_image(&fb, make_grey_image(8, 6, 10 * i));
+        draw_and_free_image(&fb, make_grey_image(8, 6, 10 * i));
         assert_int_equal(fake_fb->var.yoffset, shown);
-        assert_int_equal(read_memory()[shown * 40], 10 * i);
-        assert_int_equal(read_memory()[(6 - shown) * 40], before);
+        assert_int_equal(read_screen_byte()[shown * 40], 10 * i);
+        assert_int_equal(read_screen_byte()[(6 - shown) * 40], before);
     }
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb->var.yoffset, 0);
     /* A killed glint left the second page in view. */
     fake_fb->var.yoffset = 6;
-    open_sink(&fb, NULL);
-    draw_image(&fb, make_grey_image(8, 6, 1));
+    open_framebuffer_sink(&fb, NULL);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 1));
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb->var.yoffset, 0);
 }
 
-TEST(no_pages)
+TEST(without_panning_one_page_is_used)
 {
     struct glint_fbdev fb;
 
-    reset_two_pages();
+    reset_fake_to_two_pages();
     fake_fb->can_pan = false;
-    open_sink(&fb, NULL);
+    open_framebuffer_sink(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
-    draw_image(&fb, make_grey_image(8, 6, 9));
-    assert_int_equal(read_memory()[0], 9);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 9));
+    assert_int_equal(read_screen_byte()[0], 9);
     fb.sink.close(&fb.sink);
 
-    reset_two_pages();
-    fake_fb->fix.smem_len = 11 * 40; /* less than two pages of 6 rows */
-    open_sink(&fb, NULL);
+    reset_fake_to_two_pages();
+    fake_fb->fix.smem_len = 11 * 40; /* less memory than two pages of 6 rows */
+    open_framebuffer_sink(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
     assert_int_equal(fake_fb->n_pan, 0);
     fb.sink.close(&fb.sink);
 
-    reset_two_pages();
+    reset_fake_to_two_pages();
     fake_fb->fix.ypanstep =
         4; /* The 6 rows of a page are not a multiple of 4. */
-    open_sink(&fb, NULL);
+    open_framebuffer_sink(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
     fb.sink.close(&fb.sink);
 
     /* The first panning request succeeds, later ones fail. */
-    reset_two_pages();
-    open_sink(&fb, NULL);
-    draw_image(&fb, make_grey_image(8, 6, 9));
+    reset_fake_to_two_pages();
+    open_framebuffer_sink(&fb, NULL);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 9));
     fake_fb->can_pan = false;
     fake_fb->n_pan = 0;
-    draw_image(&fb, make_grey_image(8, 6, 11));
-    assert_int_equal(read_memory()[fake_fb->var.yoffset * 40], 11);
-    draw_image(&fb, make_grey_image(8, 6, 12));
-    assert_int_equal(fake_fb->n_pan, 1); /* not repeated after the failure */
+    draw_and_free_image(&fb, make_grey_image(8, 6, 11));
+    assert_int_equal(read_screen_byte()[fake_fb->var.yoffset * 40], 11);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 12));
+    /* panning is not repeated after a failure */
+    assert_int_equal(fake_fb->n_pan, 1);
     fb.sink.close(&fb.sink);
 }
 
-TEST(vsync)
+TEST(failed_vsync_ends_waiting)
 {
     const struct glint_fbdev_options options = {.vsync = true};
     struct glint_fbdev fb;
 
-    open_sink(&fb, &options);
+    open_framebuffer_sink(&fb, &options);
     for (int i = 0; i < 3; i++)
-        draw_image(&fb, make_grey_image(8, 6, i));
+        draw_and_free_image(&fb, make_grey_image(8, 6, i));
     /* After a failure the sink stops waiting for vsync. */
     assert_int_equal(fake_fb->n_vsync, 1);
     fb.sink.close(&fb.sink);
-    reset_one_page();
+    reset_fake_to_one_page();
     fake_fb->vsync_errno = 0;
-    open_sink(&fb, &options);
+    open_framebuffer_sink(&fb, &options);
     for (int i = 0; i < 3; i++)
-        draw_image(&fb, make_grey_image(8, 6, i));
+        draw_and_free_image(&fb, make_grey_image(8, 6, i));
     assert_int_equal(fake_fb->n_vsync, 3);
     fb.sink.close(&fb.sink);
     fake_fb->n_vsync = 0;
-    open_sink(&fb, NULL);
-    draw_image(&fb, make_grey_image(8, 6, 1));
+    open_framebuffer_sink(&fb, NULL);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 1));
     assert_int_equal(fake_fb->n_vsync, 0);
     fb.sink.close(&fb.sink);
 }
 
-TEST(goes_away)
+TEST(reports_a_removed_framebuffer)
 {
     struct glint_fbdev fb;
     struct glint_error error;
     char want[128];
 
     snprintf(want, sizeof want, "%s: the framebuffer went away", fake_fb_path);
-    open_sink(&fb, NULL);
-    draw_image(&fb, make_grey_image(8, 6, 5));
+    open_framebuffer_sink(&fb, NULL);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 5));
     fake_fb->gone = true;
     assert_int_equal(fb.sink.put(&fb.sink, make_grey_image(8, 6, 6), &error),
                      GLINT_E_DEVICE);
     assert_string_equal(error.text, want);
-    assert_int_equal(read_memory()[0], 5);
+    assert_int_equal(read_screen_byte()[0], 5);
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb_maps, 0);
 }
 
 /* Checks that the sink adopts the modes that another program sets: 16 bits
  * per pixel, then two screens of 32 bits. */
-TEST(mode_changes)
+TEST(adopts_changed_modes)
 {
     struct glint_fbdev fb;
     const uint8_t *mem;
 
-    open_sink(&fb, NULL);
-    draw_image(&fb, make_grey_image(8, 6, 255));
+    open_framebuffer_sink(&fb, NULL);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 255));
     fake_fb->var.bits_per_pixel = 16;
     fake_fb->var.red = (struct fb_bitfield){11, 5, 0};
     fake_fb->var.green = (struct fb_bitfield){5, 6, 0};
     fake_fb->var.blue = (struct fb_bitfield){0, 5, 0};
     fake_fb->var.xres = 4;
     fake_fb->fix.line_length = 64;
-    draw_image(&fb, make_grey_image(4, 6, 255));
+    draw_and_free_image(&fb, make_grey_image(4, 6, 255));
     assert_int_equal(fb.width, 4);
-    mem = read_memory();
+    mem = read_screen_byte();
     for (int i = 0; i < 8; i++)
         assert_int_equal(mem[5 * 64 + i], 255);
     assert_int_equal(mem[5 * 64 + 8], 0xaa);
-    reset_two_pages();
-    draw_image(&fb, make_grey_image(8, 6, 3));
+    reset_fake_to_two_pages();
+    draw_and_free_image(&fb, make_grey_image(8, 6, 3));
     assert_int_equal(fb.n_pages, 2);
-    assert_int_equal(read_memory()[6 * 40], 3);
+    assert_int_equal(read_screen_byte()[6 * 40], 3);
     /* The page is mapped again and its old mapping removed. */
     assert_int_equal(fake_fb_maps, 0);
     fb.sink.close(&fb.sink);
@@ -402,27 +406,27 @@ TEST(mode_changes)
 
 /* Checks that the usual bit fields (XRGB8888) are used with a driver that
  * reports none. */
-TEST(no_fields)
+TEST(missing_bit_fields_mean_xrgb8888)
 {
     static const struct fb_bitfield none;
     struct glint_fbdev fb;
 
     fake_fb->var.red = fake_fb->var.green = fake_fb->var.blue = none;
-    open_sink(&fb, NULL);
-    draw_image(&fb, make_grey_image(8, 6, 100));
-    expect_screen(0, 100);
+    open_framebuffer_sink(&fb, NULL);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 100));
+    expect_screen_rows(0, 100);
     fb.sink.close(&fb.sink);
     fake_fb->var.bits_per_pixel = 16;
-    open_sink(&fb, NULL);
-    draw_image(&fb, make_grey_image(8, 6, 255));
+    open_framebuffer_sink(&fb, NULL);
+    draw_and_free_image(&fb, make_grey_image(8, 6, 255));
     assert_int_equal(fb.layout.green.length, 6);
-    assert_int_equal(read_memory()[15], 255);
+    assert_int_equal(read_screen_byte()[15], 255);
     fb.sink.close(&fb.sink);
 }
 
 /* ---------------------------------------------------------------- refusals */
 
-static void expect_refused(const char *part)
+static void expect_open_fails(const char *part)
 {
     static const struct glint_fbdev_options options = {.console = true};
     struct glint_fbdev fb;
@@ -437,53 +441,53 @@ static void expect_refused(const char *part)
     assert_int_equal(fake_fb->tty_mode, KD_TEXT);
 }
 
-TEST(refuses)
+TEST(reports_why_opening_fails)
 {
     static const struct glint_fbdev_options none;
     struct glint_fbdev fb;
     struct glint_error error;
 
     fake_fb->open_errno = ENOENT;
-    expect_refused("there is no framebuffer");
+    expect_open_fails("there is no framebuffer");
     fake_fb->open_errno = EACCES;
-    expect_refused("usermod -aG video");
-    reset_one_page();
+    expect_open_fails("usermod -aG video");
+    reset_fake_to_one_page();
     fake_fb->fix.visual = FB_VISUAL_PSEUDOCOLOR;
     fake_fb->var.bits_per_pixel = 8;
-    expect_refused("pixels of 8 bits (type 0, visual 3) are not packed");
-    reset_one_page();
+    expect_open_fails("pixels of 8 bits (type 0, visual 3) are not packed");
+    reset_fake_to_one_page();
     fake_fb->fix.type = FB_TYPE_PLANES;
-    expect_refused("not packed true colour");
-    reset_one_page();
+    expect_open_fails("not packed true colour");
+    reset_fake_to_one_page();
     fake_fb->var.grayscale = 1;
-    expect_refused("not packed true colour");
-    reset_one_page();
+    expect_open_fails("not packed true colour");
+    reset_fake_to_one_page();
     fake_fb->var.bits_per_pixel = 4000000000;
-    expect_refused("not packed true colour");
-    reset_one_page();
+    expect_open_fails("not packed true colour");
+    reset_fake_to_one_page();
     fake_fb->fix.line_length = 31;
-    expect_refused("too small for 8 x 6");
-    reset_one_page();
+    expect_open_fails("too small for 8 x 6");
+    reset_fake_to_one_page();
     fake_fb->fix.line_length = 0;
-    expect_refused("too small for 8 x 6");
-    reset_one_page();
+    expect_open_fails("too small for 8 x 6");
+    reset_fake_to_one_page();
     fake_fb->fix.smem_len = 6 * 40 - 1;
-    expect_refused("too small for 8 x 6");
-    reset_one_page();
+    expect_open_fails("too small for 8 x 6");
+    reset_fake_to_one_page();
     fake_fb->var.yres = 0;
-    expect_refused("is 8 x 0 pixels large");
-    reset_one_page();
+    expect_open_fails("is 8 x 0 pixels large");
+    reset_fake_to_one_page();
     fake_fb->var.xres = 100000;
-    expect_refused("is 100000 x 6 pixels large");
-    reset_one_page();
+    expect_open_fails("is 100000 x 6 pixels large");
+    reset_fake_to_one_page();
     fake_fb->gone = true;
-    expect_refused("went away");
+    expect_open_fails("went away");
     assert_int_equal(glint_fbdev_open(&fb, "/dev/null", &none, &error),
                      GLINT_E_DEVICE);
     assert_string_equal(error.text, "/dev/null: is not a framebuffer");
 }
 
-TEST(names)
+TEST(environment_variable_names_the_framebuffer)
 {
     static const struct glint_fbdev_options none;
     struct glint_fbdev fb;
@@ -501,45 +505,45 @@ TEST(names)
 
 /* ----------------------------------------------------------------- console */
 
-static void check_console(bool taken, int during, int after)
+static void check_console_modes(bool taken, int during, int after)
 {
     static const struct glint_fbdev_options options = {.console = true};
     struct glint_fbdev fb;
 
-    open_sink(&fb, &options);
+    open_framebuffer_sink(&fb, &options);
     assert_int_equal(fb.has_note, !taken);
     assert_int_equal(fake_fb->tty_mode, during);
-    draw_image(&fb, make_grey_image(8, 6, 1));
+    draw_and_free_image(&fb, make_grey_image(8, 6, 1));
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb->tty_mode, after);
     if (!taken)
         assert_non_null(strstr(fb.note.text, "may show in the picture"));
 }
 
-TEST(console)
+TEST(console_mode_is_set_and_restored)
 {
-    check_console(true, KD_GRAPHICS, KD_TEXT);
+    check_console_modes(true, KD_GRAPHICS, KD_TEXT);
     /* A killed program left graphics mode set. */
     fake_fb->tty_mode = KD_GRAPHICS;
-    check_console(true, KD_GRAPHICS, KD_TEXT);
+    check_console_modes(true, KD_GRAPHICS, KD_TEXT);
     fake_fb->tty_mode = KD_GRAPHICS; /* An X server owns the console. */
     fake_fb->tty_switching = VT_PROCESS;
-    check_console(false, KD_GRAPHICS, KD_GRAPHICS);
-    reset_one_page();
+    check_console_modes(false, KD_GRAPHICS, KD_GRAPHICS);
+    reset_fake_to_one_page();
     fake_fb->tty_errno = EACCES;
-    check_console(false, KD_TEXT, KD_TEXT);
+    check_console_modes(false, KD_TEXT, KD_TEXT);
 }
 
 /* Checks that a console which was released is not touched at the end of the
  * process, even if another file has reused its descriptor. */
-TEST(let_go)
+TEST(released_console_is_not_touched)
 {
     int how;
     pid_t child;
 
     child = fork();
     if (child == 0) {
-        check_console(true, KD_GRAPHICS, KD_TEXT);
+        check_console_modes(true, KD_GRAPHICS, KD_TEXT);
         fake_fb->tty_mode = KD_GRAPHICS;
         while (open(fake_tty_path, O_RDWR) < 20)
             ;
@@ -554,7 +558,7 @@ TEST(let_go)
 
 /* Draws three frames of two sizes. Returns false if a call failed; then an
  * error message is expected. */
-static bool draw_frames(void)
+static bool draw_three_frames(void)
 {
     static const struct glint_fbdev_options options = {.console = true,
                                                        .vsync = true};
@@ -580,34 +584,35 @@ static bool draw_frames(void)
     return !status;
 }
 
-static void check_failures(bool pages)
+static void check_every_failing_call(bool pages)
 {
-    const int fds = scratch_count("/proc/self/fd");
+    const int fds = scratch_count_entries("/proc/self/fd");
     int n_failed = 0, n = 0, n_last;
 
     do {
         n++;
         if (pages)
-            reset_two_pages();
+            reset_fake_to_two_pages();
         else
-            reset_one_page();
+            reset_fake_to_one_page();
         fake_fb_fail_at = n;
-        n_failed += !draw_frames();
+        n_failed += !draw_three_frames();
         n_last = fake_fb_calls;
         fake_fb_fail_at = 0;
         assert_int_equal(fake_fb_maps, 0);
-        assert_int_equal(scratch_count("/proc/self/fd"), fds);
+        assert_int_equal(scratch_count_entries("/proc/self/fd"), fds);
         assert_int_equal(fake_fb->tty_mode, KD_TEXT);
         assert_int_equal(fake_fb->var.yoffset, 0);
     } while (n <= n_last);
-    assert_true(n_failed >= 8); /* Failures of some calls are not reported. */
+    /* Some failing calls have no effect, so not every run fails. */
+    assert_true(n_failed >= 8);
     assert_true(n > 15);
 }
 
-TEST(every_failure)
+TEST(every_failing_call_is_handled)
 {
-    check_failures(false);
-    check_failures(true);
+    check_every_failing_call(false);
+    check_every_failing_call(true);
 }
 
 TEST_OPEN

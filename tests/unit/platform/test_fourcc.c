@@ -18,7 +18,8 @@ static uint32_t parse_fourcc(const char *text)
     return fourcc;
 }
 
-static void expect_format(const char *text, enum glint_pixel_format want)
+static void expect_format_of_name(const char *text,
+                                  enum glint_pixel_format want)
 {
     enum glint_pixel_format format = GLINT_LINEAR_Q20;
 
@@ -26,33 +27,33 @@ static void expect_format(const char *text, enum glint_pixel_format want)
     assert_int_equal(format, want);
 }
 
-TEST(formats)
+TEST(names_give_their_formats)
 {
-    expect_format("YUYV", GLINT_YUYV);
-    expect_format("yuyv422", GLINT_YUYV);
-    expect_format("UYVY", GLINT_UYVY);
-    expect_format("nv12", GLINT_NV12);
-    expect_format("NM12", GLINT_NV12);
-    expect_format("NV21", GLINT_NV21);
-    expect_format("NM21", GLINT_NV21);
-    expect_format("YU12", GLINT_I420);
-    expect_format("yuv420p", GLINT_I420);
-    expect_format("YM12", GLINT_I420);
-    expect_format("422P", GLINT_I422);
-    expect_format("YM16", GLINT_I422);
-    expect_format("yuv444p", GLINT_I444);
-    expect_format("GREY", GLINT_GREY);
-    expect_format("gray", GLINT_GREY);
-    expect_format("RGB3", GLINT_RGB24);
-    expect_format("bgr24", GLINT_BGR24);
-    expect_format("XR24", GLINT_XRGB8888);
-    expect_format("AR24", GLINT_XRGB8888);
-    expect_format("RGBP", GLINT_RGB565);
+    expect_format_of_name("YUYV", GLINT_YUYV);
+    expect_format_of_name("yuyv422", GLINT_YUYV);
+    expect_format_of_name("UYVY", GLINT_UYVY);
+    expect_format_of_name("nv12", GLINT_NV12);
+    expect_format_of_name("NM12", GLINT_NV12);
+    expect_format_of_name("NV21", GLINT_NV21);
+    expect_format_of_name("NM21", GLINT_NV21);
+    expect_format_of_name("YU12", GLINT_I420);
+    expect_format_of_name("yuv420p", GLINT_I420);
+    expect_format_of_name("YM12", GLINT_I420);
+    expect_format_of_name("422P", GLINT_I422);
+    expect_format_of_name("YM16", GLINT_I422);
+    expect_format_of_name("yuv444p", GLINT_I444);
+    expect_format_of_name("GREY", GLINT_GREY);
+    expect_format_of_name("gray", GLINT_GREY);
+    expect_format_of_name("RGB3", GLINT_RGB24);
+    expect_format_of_name("bgr24", GLINT_BGR24);
+    expect_format_of_name("XR24", GLINT_XRGB8888);
+    expect_format_of_name("AR24", GLINT_XRGB8888);
+    expect_format_of_name("RGBP", GLINT_RGB565);
 }
 
 /* Expected FOURCCs are computed by hand: the first letter is the lowest
  * byte. */
-TEST(words)
+TEST(fourccs_match_hand_computation)
 {
     assert_int_equal(glint_fourcc_of(GLINT_YUYV), 0x56595559);
     assert_int_equal(glint_fourcc_of(GLINT_I420), 0x32315559);
@@ -65,7 +66,7 @@ TEST(words)
     assert_int_equal(parse_fourcc("pRAA"), 0x41415270);
 }
 
-TEST(there_and_back)
+TEST(formats_and_fourccs_are_inverse)
 {
     for (int i = GLINT_RGB24; i <= GLINT_XBGR8888; i++) {
         const uint32_t fourcc = glint_fourcc_of((enum glint_pixel_format)i);
@@ -81,7 +82,7 @@ TEST(there_and_back)
     }
 }
 
-TEST(refuses)
+TEST(rejects_unknown_fourccs)
 {
     enum glint_pixel_format format;
     uint32_t fourcc;
@@ -99,9 +100,10 @@ TEST(refuses)
 
 /* ------------------------------------------------------------------ colours */
 
-static bool read_colour(struct glint_image *image,
-                        enum glint_pixel_format format, uint32_t space,
-                        uint32_t enc, uint32_t quantization, uint32_t xfer)
+static bool convert_v4l2_colour(struct glint_image *image,
+                                enum glint_pixel_format format, uint32_t space,
+                                uint32_t enc, uint32_t quantization,
+                                uint32_t xfer)
 {
     const struct glint_v4l2_colour colour = {space, enc, quantization, xfer};
 
@@ -109,55 +111,62 @@ static bool read_colour(struct glint_image *image,
     return glint_v4l2_colour_read(&colour, image);
 }
 
-TEST(colour_defaults)
+TEST(undeclared_colour_has_defaults)
 {
     struct glint_image i;
 
     /* vivid and most webcams report sRGB and leave the other fields at their
      * defaults. */
-    assert_true(read_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_SRGB, 0, 0, 0));
+    assert_true(
+        convert_v4l2_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_SRGB, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_LIMITED);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
     assert_int_equal(i.transfer, GLINT_TONE_SRGB);
     /* JPEG has full range. */
-    assert_true(read_colour(&i, GLINT_I420, V4L2_COLORSPACE_JPEG, 0, 0, 0));
+    assert_true(
+        convert_v4l2_colour(&i, GLINT_I420, V4L2_COLORSPACE_JPEG, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
-    assert_true(read_colour(&i, GLINT_NV12, V4L2_COLORSPACE_REC709, 0, 0, 0));
+    assert_true(
+        convert_v4l2_colour(&i, GLINT_NV12, V4L2_COLORSPACE_REC709, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_LIMITED);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
     assert_int_equal(i.transfer, GLINT_TONE_BT709);
-    assert_true(
-        read_colour(&i, GLINT_NV12, V4L2_COLORSPACE_SMPTE170M, 0, 0, 0));
+    assert_true(convert_v4l2_colour(&i, GLINT_NV12, V4L2_COLORSPACE_SMPTE170M,
+                                    0, 0, 0));
     assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
     assert_int_equal(i.transfer, GLINT_TONE_BT709);
-    assert_true(read_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0, 0, 0));
+    assert_true(
+        convert_v4l2_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
-    assert_true(read_colour(&i, GLINT_GREY, V4L2_COLORSPACE_SRGB, 0, 0, 0));
+    assert_true(
+        convert_v4l2_colour(&i, GLINT_GREY, V4L2_COLORSPACE_SRGB, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
 }
 
-TEST(colour_stated)
+TEST(declared_colour_is_used)
 {
     struct glint_image i;
 
-    assert_true(read_colour(&i, GLINT_UYVY, V4L2_COLORSPACE_SRGB,
-                            V4L2_YCBCR_ENC_709, V4L2_QUANTIZATION_FULL_RANGE,
-                            V4L2_XFER_FUNC_709));
+    assert_true(convert_v4l2_colour(
+        &i, GLINT_UYVY, V4L2_COLORSPACE_SRGB, V4L2_YCBCR_ENC_709,
+        V4L2_QUANTIZATION_FULL_RANGE, V4L2_XFER_FUNC_709));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
     assert_int_equal(i.transfer, GLINT_TONE_BT709);
     /* Checks that a colour space without a counterpart in glint returns
      * false. */
-    assert_false(read_colour(&i, GLINT_NV12, V4L2_COLORSPACE_BT2020, 0, 0, 0));
+    assert_false(
+        convert_v4l2_colour(&i, GLINT_NV12, V4L2_COLORSPACE_BT2020, 0, 0, 0));
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
-    assert_false(read_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0,
-                             V4L2_QUANTIZATION_LIM_RANGE, 0));
+    assert_false(convert_v4l2_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0,
+                                     V4L2_QUANTIZATION_LIM_RANGE, 0));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
-    assert_false(read_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_RAW, 0, 0, 0));
+    assert_false(
+        convert_v4l2_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_RAW, 0, 0, 0));
 }
 
-TEST(colour_there_and_back)
+TEST(colour_declarations_are_inverse)
 {
     for (int i = 0; i < 8; i++) {
         const struct glint_image image = {

@@ -16,15 +16,15 @@
 
 static struct glint_error error;
 
-static void expect_file(const char *name, const char *data, size_t bytes)
+static void expect_file_bytes(const char *name, const char *data, size_t bytes)
 {
     char got[400];
-    FILE *const f = fopen(scratch_path(name), "rb");
+    FILE *const f = fopen(scratch_path_of(name), "rb");
     const size_t n = f ? fread(got, 1, sizeof got, f) : 0;
 
     assert_non_null(f);
     fclose(f);
-    unlink(scratch_path(name));
+    unlink(scratch_path_of(name));
     assert_int_equal(n, bytes);
     assert_memory_equal(got, data, bytes);
 }
@@ -39,117 +39,127 @@ static void add_light_to_file(const char *name, const char *to, float light)
 
     for (int i = 0; i < 36; i++)
         layer[i] = light;
-    assert_ok(glint_kept_open(&kept, scratch_path(name), &error));
+    assert_ok(glint_kept_open(&kept, scratch_path_of(name), &error));
     glint_samples_add(&kept.samples, layer);
-    if (glint_kept_save(&kept, scratch_path(to), NULL, &options, &error))
+    if (glint_kept_save(&kept, scratch_path_of(to), NULL, &options, &error))
         fail_msg("%s", error.text);
     glint_kept_close(&kept);
     glint_kept_close(&kept);
-    unlink(scratch_path(name));
+    unlink(scratch_path_of(name));
 }
 
-static void check_same(const char *name, const char *data, size_t bytes)
+static void check_rewritten_file_is_identical(const char *name,
+                                              const char *data, size_t bytes)
 {
-    scratch_put(name, data, bytes);
+    scratch_write_file(name, data, bytes);
     add_light_to_file(name,
                       name[0] == 'a'   ? "b.pfm"
                       : name[0] == 'c' ? "b.pgm"
                                        : "b.ppm",
                       0);
-    expect_file(name[0] == 'a'   ? "b.pfm"
-                : name[0] == 'c' ? "b.pgm"
-                                 : "b.ppm",
-                data, bytes);
+    expect_file_bytes(name[0] == 'a'   ? "b.pfm"
+                      : name[0] == 'c' ? "b.pgm"
+                                       : "b.ppm",
+                      data, bytes);
 }
 
 /* Checks that comments, bit depth, byte order and bytes after the image are
  * preserved. */
-TEST(stays)
+TEST(comments_and_depth_are_preserved)
 {
-    check_same("x.ppm", BYTES("P6 #hello\n2 1 #x\n255\nabcdef"));
-    check_same("x.ppm", BYTES("P6 1 1 1023\n\x03\xff\x01\x02\x00\x01P6 tail"));
-    check_same("x.ppm", BYTES("P6 1 1 100\nabc"));
-    check_same("c.pgm", BYTES("P5 1 2 65535\n\x12\x34\xab\xcd"));
-    check_same("a.pfm", BYTES("PF\n1 2\n-2.5\nabcdefghijklABCDEFGHIJKL"));
-    check_same("a.pfm", BYTES("Pf 1 1 1 abcd"));
-    check_same("a.pfm", BYTES("PF 1 1 1 \x7f\xc0\0\1\x80\0\0\0\xff\x80\0\0"));
+    check_rewritten_file_is_identical("x.ppm",
+                                      BYTES("P6 #hello\n2 1 #x\n255\nabcdef"));
+    check_rewritten_file_is_identical(
+        "x.ppm", BYTES("P6 1 1 1023\n\x03\xff\x01\x02\x00\x01P6 tail"));
+    check_rewritten_file_is_identical("x.ppm", BYTES("P6 1 1 100\nabc"));
+    check_rewritten_file_is_identical("c.pgm",
+                                      BYTES("P5 1 2 65535\n\x12\x34\xab\xcd"));
+    check_rewritten_file_is_identical(
+        "a.pfm", BYTES("PF\n1 2\n-2.5\nabcdefghijklABCDEFGHIJKL"));
+    check_rewritten_file_is_identical("a.pfm", BYTES("Pf 1 1 1 abcd"));
+    check_rewritten_file_is_identical(
+        "a.pfm", BYTES("PF 1 1 1 \x7f\xc0\0\1\x80\0\0\0\xff\x80\0\0"));
 }
 
-TEST(light)
+TEST(light_is_added_to_float_files)
 {
-    scratch_put("x.pfm", BYTES("Pf 1 2 1 \x40\0\0\0\xbf\x80\0\0"));
+    scratch_write_file("x.pfm", BYTES("Pf 1 2 1 \x40\0\0\0\xbf\x80\0\0"));
     add_light_to_file("x.pfm", "y.pfm", 1);
-    expect_file("y.pfm", BYTES("Pf 1 2 1 \x40\x40\0\0\0\0\0\0"));
-    scratch_put("x.ppm", BYTES("P6 1 1 65535\n\0\0\0\0\xff\xff"));
+    expect_file_bytes("y.pfm", BYTES("Pf 1 2 1 \x40\x40\0\0\0\0\0\0"));
+    scratch_write_file("x.ppm", BYTES("P6 1 1 65535\n\0\0\0\0\xff\xff"));
     add_light_to_file("x.ppm", "y.ppm", 0.5F);
-    expect_file("y.ppm", BYTES("P6 1 1 65535\n\xbc\x40\xbc\x40\xff\xff"));
+    expect_file_bytes("y.ppm", BYTES("P6 1 1 65535\n\xbc\x40\xbc\x40\xff\xff"));
 }
 
 /* Checks conversion to another file type: the bit depth becomes one that the
  * type supports, and losses are reported. */
-TEST(converts)
+TEST(converts_to_other_file_types)
 {
     struct glint_kept kept;
     struct glint_kept_options options = {.quality = 0};
 
-    scratch_put("x.pfm", BYTES("PF 1 1 1 \x40\0\0\0\x3f\x80\0\0\0\0\0\0"));
-    assert_ok(glint_kept_open(&kept, scratch_path("x.pfm"), &error));
+    scratch_write_file("x.pfm",
+                       BYTES("PF 1 1 1 \x40\0\0\0\x3f\x80\0\0\0\0\0\0"));
+    assert_ok(glint_kept_open(&kept, scratch_path_of("x.pfm"), &error));
     assert_true(kept.is_float);
     assert_false(glint_kept_is_same_type(&kept, "x.ppm"));
     assert_true(glint_kept_is_same_type(&kept, "y.pfm"));
-    assert_ok(
-        glint_kept_save(&kept, scratch_path("y.ppm"), NULL, &options, &error));
+    assert_ok(glint_kept_save(&kept, scratch_path_of("y.ppm"), NULL, &options,
+                              &error));
     assert_non_null(strstr(options.said, "clipped"));
     glint_kept_close(&kept);
-    unlink(scratch_path("x.pfm"));
-    expect_file("y.ppm", BYTES("P6\n1 1\n65535\n\xff\xff\xff\xff\0\0"));
-    scratch_put("x.pgm", BYTES("P5 1 1 255\n\xbc"));
+    unlink(scratch_path_of("x.pfm"));
+    expect_file_bytes("y.ppm", BYTES("P6\n1 1\n65535\n\xff\xff\xff\xff\0\0"));
+    scratch_write_file("x.pgm", BYTES("P5 1 1 255\n\xbc"));
     add_light_to_file("x.pgm", "y.ppm", 0);
-    expect_file("y.ppm", BYTES("P6\n1 1\n255\n\xbc\xbc\xbc"));
+    expect_file_bytes("y.ppm", BYTES("P6\n1 1\n255\n\xbc\xbc\xbc"));
 }
 
-TEST(copy)
+TEST(copies_files_unchanged)
 {
     struct glint_kept kept;
 
-    scratch_put("x.ppm", BYTES("P6 1 1 255\nabc and more"));
-    assert_ok(glint_kept_open(&kept, scratch_path("x.ppm"), &error));
-    assert_ok(glint_kept_copy(&kept, scratch_path("y.ppm"), &error));
+    scratch_write_file("x.ppm", BYTES("P6 1 1 255\nabc and more"));
+    assert_ok(glint_kept_open(&kept, scratch_path_of("x.ppm"), &error));
+    assert_ok(glint_kept_copy(&kept, scratch_path_of("y.ppm"), &error));
     glint_kept_close(&kept);
-    unlink(scratch_path("x.ppm"));
-    expect_file("y.ppm", BYTES("P6 1 1 255\nabc and more"));
+    unlink(scratch_path_of("x.ppm"));
+    expect_file_bytes("y.ppm", BYTES("P6 1 1 255\nabc and more"));
 }
 
-static void check_refusal(enum glint_status status, const char *data,
-                          size_t bytes, const char *cause)
+static void check_file_is_rejected(enum glint_status status, const char *data,
+                                   size_t bytes, const char *cause)
 {
     struct glint_kept kept;
 
-    scratch_put("x", data, bytes);
-    assert_int_equal(glint_kept_open(&kept, scratch_path("x"), &error), status);
+    scratch_write_file("x", data, bytes);
+    assert_int_equal(glint_kept_open(&kept, scratch_path_of("x"), &error),
+                     status);
     if (!strstr(error.text, cause))
         fail_msg("%s", error.text);
-    unlink(scratch_path("x"));
+    unlink(scratch_path_of("x"));
 }
 
-TEST(refuses)
+TEST(rejects_invalid_files)
 {
     struct glint_kept kept;
     char *const stated = getenv("GLINT_OIIO");
 
-    check_refusal(GLINT_E_FORMAT, BYTES(""), "is empty");
-    check_refusal(GLINT_E_FORMAT, BYTES("P6 2 2 65535 abcdef"), "ends after");
-    check_refusal(GLINT_E_FORMAT, BYTES("PF 2 2 x abc"), "malformed");
-    check_refusal(GLINT_E_UNSUPPORTED, BYTES("YUV4MPEG2 W2 H2\n"),
-                  "is a video");
+    check_file_is_rejected(GLINT_E_FORMAT, BYTES(""), "is empty");
+    check_file_is_rejected(GLINT_E_FORMAT, BYTES("P6 2 2 65535 abcdef"),
+                           "ends after");
+    check_file_is_rejected(GLINT_E_FORMAT, BYTES("PF 2 2 x abc"), "malformed");
+    check_file_is_rejected(GLINT_E_UNSUPPORTED, BYTES("YUV4MPEG2 W2 H2\n"),
+                           "is a video");
     assert_int_equal(glint_kept_open(&kept, "/nowhere/x", &error), GLINT_E_IO);
     assert_int_equal(glint_kept_check("a.y4m", &error), GLINT_E_UNSUPPORTED);
     /* A plug-in that is loaded already cannot be made unavailable. */
     if (!stated) {
         setenv("GLINT_OIIO", "/nowhere/glint-oiio.so", 1);
-        check_refusal(GLINT_E_UNSUPPORTED, BYTES("\x89PNG"), "plug-in");
+        check_file_is_rejected(GLINT_E_UNSUPPORTED, BYTES("\x89PNG"),
+                               "plug-in");
         unsetenv("GLINT_OIIO");
     }
 }
 
-TEST_GROUP(scratch_open_dir, scratch_close_dir);
+TEST_GROUP(scratch_create_dir, scratch_remove_dir);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the MJPEG decoder: frames encoded here by libjpeg decode to the planes
- * they were made of and to libjpeg's own scan lines; deviations of real cameras
- * are accepted; damaged frames are handled.
+ * Tests the MJPEG decoder: frames that the test encodes by libjpeg decode to
+ * their original planes and to libjpeg's own scan lines; deviations of real
+ * cameras are accepted; damaged frames are handled.
  */
 #include <stdint.h>
 
@@ -22,7 +22,7 @@
 
 static struct glint_error error;
 
-/* ---------------------------------------------------------- frames to test */
+/* -------------------------------------------------- encoding of test frames */
 
 /* Parameters for encoding a frame. */
 struct coding {
@@ -45,7 +45,7 @@ struct bytes {
     size_t n;
 };
 
-static struct bytes copy_bytes(const void *data, size_t n)
+static struct bytes allocate_copy_of_bytes(const void *data, size_t n)
 {
     const struct bytes b = {malloc(n ? n : 1), n};
 
@@ -56,7 +56,7 @@ static struct bytes copy_bytes(const void *data, size_t n)
 
 /* Returns the sample of plane P at (X, Y): a gradient per plane, plus noise
  * if C is noisy. */
-static uint8_t make_sample(const struct coding *c, int p, int x, int y)
+static uint8_t make_plane_sample(const struct coding *c, int p, int x, int y)
 {
     static const int base[] = {20, 60, 200}, dx[] = {2, 1, -1},
                      dy[] = {1, 2, 0};
@@ -66,24 +66,25 @@ static uint8_t make_sample(const struct coding *c, int p, int x, int y)
     return (uint8_t)(c->noisy ? value + (int)(hash >> 27) : value % 256);
 }
 
-static int count_planes(const struct coding *c)
+static int count_planes_of_coding(const struct coding *c)
 {
     return c->factor[1][0] ? 3 : 1;
 }
 
-static void write_planes(struct jpeg_compress_struct *j, const struct coding *c)
+static void compress_planes(struct jpeg_compress_struct *j,
+                            const struct coding *c)
 {
     static uint8_t mem[3][32][2048];
     JSAMPROW row[3][32];
     JSAMPARRAY planes[3] = {row[0], row[1], row[2]};
 
     for (int mcu = 0; j->next_scanline < j->image_height; mcu++) {
-        for (int p = 0; p < count_planes(c); p++)
+        for (int p = 0; p < count_planes_of_coding(c); p++)
             for (int y = 0; y < c->factor[p][1] * 8; y++) {
                 row[p][y] = mem[p][y];
                 for (int x = 0; x < 2048; x++)
-                    mem[p][y][x] =
-                        make_sample(c, p, x, mcu * c->factor[p][1] * 8 + y);
+                    mem[p][y][x] = make_plane_sample(
+                        c, p, x, mcu * c->factor[p][1] * 8 + y);
             }
         jpeg_write_raw_data(j, planes, (JDIMENSION)(j->max_v_samp_factor * 8));
     }
@@ -91,8 +92,9 @@ static void write_planes(struct jpeg_compress_struct *j, const struct coding *c)
 
 /* Returns a frame encoded with C. TUNE, unless NULL, changes libjpeg's
  * settings before encoding. */
-static struct bytes encode_frame(const struct coding *c,
-                                 void (*tune)(struct jpeg_compress_struct *))
+static struct bytes
+encode_jpeg_frame(const struct coding *c,
+                  void (*tune)(struct jpeg_compress_struct *))
 {
     struct jpeg_compress_struct j;
     struct jpeg_error_mgr errors;
@@ -105,30 +107,31 @@ static struct bytes encode_frame(const struct coding *c,
     jpeg_mem_dest(&j, &data, &n);
     j.image_width = (JDIMENSION)c->width;
     j.image_height = (JDIMENSION)c->height;
-    j.input_components = count_planes(c);
-    j.in_color_space = count_planes(c) == 3 ? JCS_YCbCr : JCS_GRAYSCALE;
+    j.input_components = count_planes_of_coding(c);
+    j.in_color_space =
+        count_planes_of_coding(c) == 3 ? JCS_YCbCr : JCS_GRAYSCALE;
     jpeg_set_defaults(&j);
     jpeg_set_quality(&j, 100, TRUE);
     j.restart_interval = (unsigned)c->restart;
     j.optimize_coding = c->optimised;
     j.raw_data_in = TRUE;
-    for (int p = 0; p < count_planes(c); p++) {
+    for (int p = 0; p < count_planes_of_coding(c); p++) {
         j.comp_info[p].h_samp_factor = c->factor[p][0];
         j.comp_info[p].v_samp_factor = c->factor[p][1];
     }
     if (tune)
         tune(&j);
     jpeg_start_compress(&j, TRUE);
-    write_planes(&j, c);
+    compress_planes(&j, c);
     jpeg_finish_compress(&j);
     jpeg_destroy_compress(&j);
-    exact = copy_bytes(data, n);
+    exact = allocate_copy_of_bytes(data, n);
     free(data);
     return exact;
 }
 
 /* Returns the offset of the first segment MARKER at or after AT. */
-static size_t find_segment(const struct bytes *b, int marker, size_t at)
+static size_t find_jpeg_segment(const struct bytes *b, int marker, size_t at)
 {
     while (at + 1 < b->n && (b->data[at] != 0xff || b->data[at + 1] != marker))
         at++;
@@ -151,10 +154,10 @@ static void replace_bytes(struct bytes *b, size_t at, size_t cut,
     b->n += n - cut;
 }
 
-static void remove_segments(struct bytes *b, int marker, int times)
+static void remove_jpeg_segments(struct bytes *b, int marker, int times)
 {
     for (int i = 0; i < times; i++) {
-        const size_t at = find_segment(b, marker, 0);
+        const size_t at = find_jpeg_segment(b, marker, 0);
         const size_t length = (size_t)(b->data[at + 2] << 8 | b->data[at + 3]);
 
         replace_bytes(b, at, 2 + length, "", 0);
@@ -163,7 +166,7 @@ static void remove_segments(struct bytes *b, int marker, int times)
 
 /* ----------------------------------------------------------------- checking */
 
-static struct glint_mjpeg *open_decoder(int width, int height)
+static struct glint_mjpeg *open_mjpeg_decoder(int width, int height)
 {
     struct glint_mjpeg *d;
 
@@ -172,8 +175,8 @@ static struct glint_mjpeg *open_decoder(int width, int height)
 }
 
 /* Decodes frame B, checks that this succeeds, and returns the image. */
-static struct glint_image decode_frame(struct glint_mjpeg *d,
-                                       const struct bytes *b)
+static struct glint_image decode_valid_frame(struct glint_mjpeg *d,
+                                             const struct bytes *b)
 {
     struct glint_image image;
 
@@ -182,8 +185,8 @@ static struct glint_image decode_frame(struct glint_mjpeg *d,
     return image;
 }
 
-static void expect_refusal(struct glint_mjpeg *d, const struct bytes *b,
-                           enum glint_status status, const char *text)
+static void expect_decoding_fails(struct glint_mjpeg *d, const struct bytes *b,
+                                  enum glint_status status, const char *text)
 {
     struct glint_image image = {.width = 77};
 
@@ -195,15 +198,16 @@ static void expect_refusal(struct glint_mjpeg *d, const struct bytes *b,
     assert_memory_equal(error.text, NAME ": MJPEG: ", strlen(NAME ": MJPEG: "));
 }
 
-static void expect_planes(const struct glint_image *i, const struct coding *c)
+static void expect_decoded_planes(const struct glint_image *i,
+                                  const struct coding *c)
 {
     assert_int_equal(i->width, c->width);
     assert_int_equal(i->height, c->height);
     assert_int_equal(i->range, GLINT_RANGE_FULL);
     assert_int_equal(i->matrix, GLINT_MATRIX_BT601);
     assert_int_equal(i->transfer, GLINT_TONE_SRGB);
-    assert_int_equal(glint_image_planes(i->format), count_planes(c));
-    for (int p = 0; p < count_planes(c); p++) {
+    assert_int_equal(glint_image_planes(i->format), count_planes_of_coding(c));
+    for (int p = 0; p < count_planes_of_coding(c); p++) {
         const int across = (int)glint_image_row_bytes(i->format, p, i->width);
         const int down = glint_image_plane_height(i->format, p, i->height);
 
@@ -211,18 +215,19 @@ static void expect_planes(const struct glint_image *i, const struct coding *c)
             for (int x = 0; x < across; x++) {
                 const int is = i->plane[p][y * i->stride_bytes[p] + x];
 
-                if (abs(is - make_sample(c, p, x, y)) > 3)
+                if (abs(is - make_plane_sample(c, p, x, y)) > 3)
                     fail_msg("plane %d, %d, %d: %d is not %d", p, x, y, is,
-                             make_sample(c, p, x, y));
+                             make_plane_sample(c, p, x, y));
             }
     }
-    for (int p = count_planes(c); p < 3; p++)
+    for (int p = count_planes_of_coding(c); p < 3; p++)
         assert_null(i->plane[p]);
 }
 
 /* Checks the planes against libjpeg's scan lines, decoded with chroma
  * replicated, not interpolated. */
-static void expect_scanlines(const struct glint_image *i, const struct bytes *b)
+static void expect_libjpeg_scanlines(const struct glint_image *i,
+                                     const struct bytes *b)
 {
     const int halved = i->format == GLINT_I420 || i->format == GLINT_I422;
     const int halved_down = i->format == GLINT_I420;
@@ -254,20 +259,21 @@ static void expect_scanlines(const struct glint_image *i, const struct bytes *b)
 
 /* ------------------------------------------------------------- whole frames */
 
-static void check_coding(const struct coding *c, enum glint_pixel_format format)
+static void check_decoding_of_coding(const struct coding *c,
+                                     enum glint_pixel_format format)
 {
-    struct glint_mjpeg *const d = open_decoder(c->width, c->height);
-    const struct bytes b = encode_frame(c, NULL);
-    const struct glint_image image = decode_frame(d, &b);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(c->width, c->height);
+    const struct bytes b = encode_jpeg_frame(c, NULL);
+    const struct glint_image image = decode_valid_frame(d, &b);
 
     assert_int_equal(image.format, format);
-    expect_planes(&image, c);
-    expect_scanlines(&image, &b);
+    expect_decoded_planes(&image, c);
+    expect_libjpeg_scanlines(&image, &b);
     free(b.data);
     glint_mjpeg_close(d);
 }
 
-TEST(codings)
+TEST(decodes_every_coding)
 {
     static const struct {
         int factor[3][2];
@@ -279,7 +285,8 @@ TEST(codings)
         {{{1, 2}, {1, 2}, {1, 2}}, GLINT_I444},
         {{{1, 3}, {1, 3}, {1, 3}}, GLINT_I444},
         {{{2, 1}, {1, 1}, {1, 1}}, GLINT_I422},
-        {{{2, 2}, {1, 2}, {1, 2}}, GLINT_I422}, /* as ffmpeg encodes 4:2:2 */
+        /* sampling factors by which ffmpeg encodes 4:2:2 */
+        {{{2, 2}, {1, 2}, {1, 2}}, GLINT_I422},
         {{{2, 2}, {1, 1}, {1, 1}}, GLINT_I420},
     };
     static const int size[][2] = {
@@ -293,7 +300,7 @@ TEST(codings)
             struct coding c = {.width = size[s][0], .height = size[s][1]};
 
             memcpy(c.factor, way[i].factor, sizeof c.factor);
-            check_coding(&c, way[i].format);
+            check_decoding_of_coding(&c, way[i].format);
         }
 }
 
@@ -301,7 +308,7 @@ TEST(codings)
  * quantiser steps of 1. The DC difference is 400: category 9 (code 1111110),
  * value 110010000, end of block 1010, padding. All samples decode to 128 +
  * 400 / 8 = 178. */
-TEST(by_hand)
+TEST(decodes_a_frame_written_by_hand)
 {
     static const uint8_t head[] = {0xff, 0xd8, 0xff, 0xdb, 0, 67, 0};
     static const uint8_t tail[] = {
@@ -310,15 +317,15 @@ TEST(by_hand)
         0,    0xff, 0xda, 0,    8,   1, 1, 0, 0, 63, 0, /* scan header (SOS) */
         0xfd, 0x90, 0xaf, 0xff, 0xd9};
     uint8_t frame[sizeof head + 64 + sizeof tail];
-    struct glint_mjpeg *const d = open_decoder(8, 8);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(8, 8);
     struct bytes b;
     struct glint_image image;
 
     memcpy(frame, head, sizeof head);
     memset(frame + sizeof head, 1, 64);
     memcpy(frame + sizeof head + 64, tail, sizeof tail);
-    b = copy_bytes(frame, sizeof frame);
-    image = decode_frame(d, &b);
+    b = allocate_copy_of_bytes(frame, sizeof frame);
+    image = decode_valid_frame(d, &b);
     assert_int_equal(image.format, GLINT_GREY);
     for (int y = 0; y < 8; y++)
         for (int x = 0; x < 8; x++)
@@ -328,39 +335,41 @@ TEST(by_hand)
     glint_mjpeg_close(d);
 }
 
-/* ---------------------------------------------------------- what cameras do */
+/* ---------------------------------------------------- deviations of cameras */
 
-TEST(no_huffman_tables)
+TEST(missing_huffman_tables_are_the_standard_ones)
 {
-    struct glint_mjpeg *const d = open_decoder(64, 48);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(64, 48);
     struct coding own = y420;
-    struct bytes b = encode_frame(&y422, NULL), other;
+    struct bytes b = encode_jpeg_frame(&y422, NULL), other;
     struct glint_image image;
 
     own.optimised = true;
-    other = encode_frame(&own, NULL);
-    remove_segments(&b, 0xc4, 4);
-    image = decode_frame(d, &b);
-    expect_planes(&image, &y422);
-    image = decode_frame(d, &other);
-    expect_planes(&image, &own);
-    image = decode_frame(d, &b); /* the tables of OTHER must not be used */
-    expect_planes(&image, &y422);
+    other = encode_jpeg_frame(&own, NULL);
+    remove_jpeg_segments(&b, 0xc4, 4);
+    image = decode_valid_frame(d, &b);
+    expect_decoded_planes(&image, &y422);
+    image = decode_valid_frame(d, &other);
+    expect_decoded_planes(&image, &own);
+    image =
+        /* the decoder must not use the Huffman tables of OTHER */
+        decode_valid_frame(d, &b);
+    expect_decoded_planes(&image, &y422);
     free(other.data);
     free(b.data);
     glint_mjpeg_close(d);
 }
 
-TEST(nothing_is_kept)
+TEST(tables_are_not_kept_between_frames)
 {
-    struct glint_mjpeg *const d = open_decoder(64, 48);
-    struct bytes whole = encode_frame(&y422, NULL),
-                 bare = encode_frame(&y422, NULL);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(64, 48);
+    struct bytes whole = encode_jpeg_frame(&y422, NULL),
+                 bare = encode_jpeg_frame(&y422, NULL);
 
-    remove_segments(&bare, 0xdb, 2);
-    decode_frame(d, &whole);
-    expect_refusal(d, &bare, GLINT_E_FORMAT, "Quantization table");
-    decode_frame(d, &whole);
+    remove_jpeg_segments(&bare, 0xdb, 2);
+    decode_valid_frame(d, &whole);
+    expect_decoding_fails(d, &bare, GLINT_E_FORMAT, "Quantization table");
+    decode_valid_frame(d, &whole);
     free(whole.data);
     free(bare.data);
     glint_mjpeg_close(d);
@@ -368,7 +377,7 @@ TEST(nothing_is_kept)
 
 /* Checks that frames decode with every combination of these deviations of
  * cameras. */
-TEST(camera_habits)
+TEST(decodes_deviations_of_cameras)
 {
     static const uint8_t avi1[] = {0xff, 0xe0, 0, 16, 'A', 'V', 'I', '1', 0,
                                    0,    0,    0, 0,  0,   0,   0,   0,   0};
@@ -376,86 +385,88 @@ TEST(camera_habits)
     static const uint8_t filler[] = {0xff, 0xff, 0xff};
     static const uint8_t comment[] = {0xff, 0xfe, 0, 4, 0xff, 0xd8};
     struct coding c = y422;
-    struct glint_mjpeg *const d = open_decoder(64, 48);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(64, 48);
 
     c.restart = 4;
     c.noisy = true;
     for (int habits = 1; habits < 128; habits++) {
-        struct bytes b = encode_frame(&c, NULL);
+        struct bytes b = encode_jpeg_frame(&c, NULL);
         struct glint_image image;
 
         if (habits & 1) { /* An AVI1 segment replaces JFIF. */
-            remove_segments(&b, 0xe0, 1);
+            remove_jpeg_segments(&b, 0xe0, 1);
             replace_bytes(&b, 2, 0, avi1, sizeof avi1);
         }
         /* An additional start of image precedes the quantiser tables. */
         if (habits & 2)
-            replace_bytes(&b, find_segment(&b, 0xdb, 0), 0, soi, sizeof soi);
+            replace_bytes(&b, find_jpeg_segment(&b, 0xdb, 0), 0, soi,
+                          sizeof soi);
         if (habits & 4) /* A second start of image follows the first. */
             replace_bytes(&b, 0, 0, soi, sizeof soi);
         if (habits & 8) /* Two extra bytes precede the third restart marker. */
-            replace_bytes(&b, find_segment(&b, 0xd2, 300), 0, "\x12\x34", 2);
+            replace_bytes(&b, find_jpeg_segment(&b, 0xd2, 300), 0, "\x12\x34",
+                          2);
         if (habits & 16) /* Half of the frame is repeated after its end. */
             replace_bytes(&b, b.n, 0, b.data, b.n / 2);
         else if (habits & 32) /* The end-of-image marker is missing. */
             b.n -= 2;
         if (habits & 64) {
-            replace_bytes(&b, find_segment(&b, 0xdb, 0), 0, comment,
+            replace_bytes(&b, find_jpeg_segment(&b, 0xdb, 0), 0, comment,
                           sizeof comment);
-            replace_bytes(&b, find_segment(&b, 0xdb, 0), 0, filler,
+            replace_bytes(&b, find_jpeg_segment(&b, 0xdb, 0), 0, filler,
                           sizeof filler);
         }
         b = (struct bytes){realloc(b.data, b.n), b.n};
-        image = decode_frame(d, &b);
-        expect_planes(&image, &c);
+        image = decode_valid_frame(d, &b);
+        expect_decoded_planes(&image, &c);
         free(b.data);
     }
     glint_mjpeg_close(d);
 }
 
-TEST(sizes_change)
+TEST(frames_may_be_smaller_but_not_larger)
 {
     struct coding small = y420, high = grey;
-    struct glint_mjpeg *const d = open_decoder(64, 48);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(64, 48);
     struct bytes b[3];
     struct glint_image image;
 
     small.width = 31;
     small.height = 17;
     high.height = 49;
-    b[0] = encode_frame(&y422, NULL);
-    b[1] = encode_frame(&small, NULL);
-    b[2] = encode_frame(&high, NULL);
+    b[0] = encode_jpeg_frame(&y422, NULL);
+    b[1] = encode_jpeg_frame(&small, NULL);
+    b[2] = encode_jpeg_frame(&high, NULL);
     for (int i = 0; i < 4; i++) {
-        image = decode_frame(d, &b[i % 2]);
-        expect_planes(&image, i % 2 ? &small : &y422);
-        expect_refusal(d, &b[2], GLINT_E_UNSUPPORTED,
-                       "frame of 64 x 49 pixels is larger than 64 x 48");
+        image = decode_valid_frame(d, &b[i % 2]);
+        expect_decoded_planes(&image, i % 2 ? &small : &y422);
+        expect_decoding_fails(d, &b[2], GLINT_E_UNSUPPORTED,
+                              "frame of 64 x 49 pixels is larger than 64 x 48");
     }
     for (int i = 0; i < 3; i++)
         free(b[i].data);
     glint_mjpeg_close(d);
 }
 
-/* --------------------------------------------------------- what is refused */
+/* ---------------------------------------------------------- rejected frames */
 
-static void tune_progressive(struct jpeg_compress_struct *j)
+static void set_progressive_coding(struct jpeg_compress_struct *j)
 {
     jpeg_simple_progression(j);
 }
 
-static void tune_rgb(struct jpeg_compress_struct *j)
+static void set_rgb_coding(struct jpeg_compress_struct *j)
 {
     j->in_color_space = JCS_RGB;
     jpeg_set_colorspace(j, JCS_RGB);
 }
 
-static void tune_arithmetic(struct jpeg_compress_struct *j)
+static void set_arithmetic_coding(struct jpeg_compress_struct *j)
 {
     j->arith_code = TRUE;
 }
 
-static void tune_scans(struct jpeg_compress_struct *j)
+static void set_two_scans(struct jpeg_compress_struct *j)
 {
     static const jpeg_scan_info scans[] = {
         {1, {0, 0, 0, 0}, 0, 63, 0, 0},
@@ -466,19 +477,20 @@ static void tune_scans(struct jpeg_compress_struct *j)
     j->num_scans = 2;
 }
 
-static void check_refusal(struct coding c,
-                          void (*tune)(struct jpeg_compress_struct *),
-                          const char *text)
+static void
+check_coding_is_rejected(struct coding c,
+                         void (*tune)(struct jpeg_compress_struct *),
+                         const char *text)
 {
-    struct glint_mjpeg *const d = open_decoder(64, 48);
-    const struct bytes b = encode_frame(&c, tune);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(64, 48);
+    const struct bytes b = encode_jpeg_frame(&c, tune);
 
-    expect_refusal(d, &b, GLINT_E_UNSUPPORTED, text);
+    expect_decoding_fails(d, &b, GLINT_E_UNSUPPORTED, text);
     free(b.data);
     glint_mjpeg_close(d);
 }
 
-TEST(refusals)
+TEST(rejects_unsupported_codings)
 {
     static const struct coding y444 = {64, 48, {{1, 1}, {1, 1}, {1, 1}},
                                        0,  0,  0};
@@ -489,38 +501,38 @@ TEST(refusals)
     };
     struct coding c = y444;
 
-    check_refusal(y444, tune_progressive, "several scans");
-    check_refusal(y444, tune_scans, "several scans");
-    check_refusal(y420, tune_arithmetic, "arithmetic");
-    check_refusal(y444, tune_rgb, "components");
+    check_coding_is_rejected(y444, set_progressive_coding, "several scans");
+    check_coding_is_rejected(y444, set_two_scans, "several scans");
+    check_coding_is_rejected(y420, set_arithmetic_coding, "arithmetic");
+    check_coding_is_rejected(y444, set_rgb_coding, "components");
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
         memcpy(c.factor, odd[i], sizeof c.factor);
-        check_refusal(c, NULL, "subsampling");
+        check_coding_is_rejected(c, NULL, "subsampling");
     }
     assert_string_equal(
         error.text,
         NAME ": MJPEG: chroma subsampling 2x1,1x1,2x1 is not supported");
 }
 
-TEST(deep_and_odd_processes)
+TEST(rejects_other_depths_and_processes)
 {
-    struct glint_mjpeg *const d = open_decoder(64, 48);
-    struct bytes b = encode_frame(&y420, NULL);
-    const size_t frame = find_segment(&b, 0xc0, 0);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(64, 48);
+    struct bytes b = encode_jpeg_frame(&y420, NULL);
+    const size_t frame = find_jpeg_segment(&b, 0xc0, 0);
 
     b.data[frame + 4] = 12;
-    expect_refusal(d, &b, GLINT_E_UNSUPPORTED, "precision 12");
+    expect_decoding_fails(d, &b, GLINT_E_UNSUPPORTED, "precision 12");
     b.data[frame + 4] = 8;
     b.data[frame + 1] = 0xc3;
-    expect_refusal(d, &b, GLINT_E_UNSUPPORTED, "SOF type 0xc3");
+    expect_decoding_fails(d, &b, GLINT_E_UNSUPPORTED, "SOF type 0xc3");
     b.data[frame + 1] = 0xc0;
     b.data[frame + 6] = 0; /* height 0: a later DNL marker would set it */
-    expect_refusal(d, &b, GLINT_E_FORMAT, "Empty JPEG image");
+    expect_decoding_fails(d, &b, GLINT_E_FORMAT, "Empty JPEG image");
     free(b.data);
     glint_mjpeg_close(d);
 }
 
-TEST(open)
+TEST(open_rejects_invalid_sizes)
 {
     struct glint_mjpeg *d = (struct glint_mjpeg *)&error;
 
@@ -537,29 +549,29 @@ TEST(open)
 
 /* ------------------------------------------------------------------- damage */
 
-static void check_truncations(struct coding c)
+static void check_every_truncation(struct coding c)
 {
-    struct glint_mjpeg *const d = open_decoder(c.width, c.height);
-    const struct bytes whole = encode_frame(&c, NULL);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(c.width, c.height);
+    const struct bytes whole = encode_jpeg_frame(&c, NULL);
     const size_t end = whole.n - 2;
 
     assert_int_equal(whole.data[end + 1], 0xd9);
     for (size_t n = 0; n < end; n++) {
-        const struct bytes b = copy_bytes(whole.data, n);
+        const struct bytes b = allocate_copy_of_bytes(whole.data, n);
 
-        expect_refusal(d, &b, GLINT_E_FORMAT,
-                       n == 0    ? "frame is empty"
-                       : n < 100 ? "frame ends in its header"
-                                 : "");
+        expect_decoding_fails(d, &b, GLINT_E_FORMAT,
+                              n == 0    ? "frame is empty"
+                              : n < 100 ? "frame ends in its header"
+                                        : "");
         if (n == end - 1)
             assert_non_null(strstr(error.text, "frame ends in row "));
         free(b.data);
     }
     for (size_t n = end; n <= whole.n; n++) {
-        const struct bytes b = copy_bytes(whole.data, n);
-        const struct glint_image image = decode_frame(d, &b);
+        const struct bytes b = allocate_copy_of_bytes(whole.data, n);
+        const struct glint_image image = decode_valid_frame(d, &b);
 
-        expect_planes(&image, &c);
+        expect_decoded_planes(&image, &c);
         free(b.data);
     }
     free(whole.data);
@@ -570,14 +582,14 @@ TEST(every_truncation)
 {
     struct coding c = {33, 17, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 1};
 
-    check_truncations(c);
+    check_every_truncation(c);
     c.restart = 2;
-    check_truncations(c);
+    check_every_truncation(c);
     c.noisy = false;
     c.factor[0][1] = 2;
-    check_truncations(c);
+    check_every_truncation(c);
     c.factor[1][0] = 0;
-    check_truncations(c);
+    check_every_truncation(c);
 }
 
 /* Redirects stderr to FILE. Returns a duplicate of the old stderr, to
@@ -592,11 +604,11 @@ static int redirect_stderr(FILE *file)
 
 /* Checks that decoding frames with random damage prints nothing to stderr,
  * and that the next intact frame decodes correctly. */
-TEST(damage)
+TEST(damaged_frames_print_nothing)
 {
     struct coding c = {48, 32, {{2, 1}, {1, 1}, {1, 1}}, 3, 0, 1};
-    struct glint_mjpeg *const d = open_decoder(48, 32);
-    const struct bytes whole = encode_frame(&c, NULL);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(48, 32);
+    const struct bytes whole = encode_jpeg_frame(&c, NULL);
     FILE *const said = tmpfile();
     int kept, n_refused = 0;
     uint32_t seed = 1;
@@ -605,12 +617,12 @@ TEST(damage)
     assert_non_null(said);
     kept = redirect_stderr(said);
     for (int i = 0; i < 3000; i++) {
-        struct bytes b = copy_bytes(whole.data, whole.n);
+        struct bytes b = allocate_copy_of_bytes(whole.data, whole.n);
         enum glint_status status;
 
         for (int n = 1 + i % 4; n > 0; n--)
-            b.data[(rng_bits(&seed) >> 8) % b.n] =
-                (uint8_t)(rng_bits(&seed) >> 8);
+            b.data[(rng_bits32(&seed) >> 8) % b.n] =
+                (uint8_t)(rng_bits32(&seed) >> 8);
         status = glint_mjpeg_decode(d, b.data, b.n, &image, &error);
         assert_true(status == GLINT_OK || status == GLINT_E_FORMAT ||
                     status == GLINT_E_UNSUPPORTED);
@@ -624,25 +636,25 @@ TEST(damage)
     fclose(said);
     /* Some damage cannot be detected. */
     assert_in_range(n_refused, 300, 2999);
-    image = decode_frame(d, &whole);
-    expect_planes(&image, &c);
+    image = decode_valid_frame(d, &whole);
+    expect_decoded_planes(&image, &c);
     free(whole.data);
     glint_mjpeg_close(d);
 }
 
-TEST(garbage)
+TEST(rejects_random_bytes)
 {
-    struct glint_mjpeg *const d = open_decoder(64, 64);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(64, 64);
     uint32_t seed = 2;
 
     for (size_t n = 0; n < 600; n++) {
-        struct bytes b = copy_bytes("", 0);
+        struct bytes b = allocate_copy_of_bytes("", 0);
         uint8_t noise[600];
 
         for (size_t i = 0; i < n; i++)
-            noise[i] = n % 3 ? (uint8_t)(rng_bits(&seed) >> 8) : 0;
+            noise[i] = n % 3 ? (uint8_t)(rng_bits32(&seed) >> 8) : 0;
         replace_bytes(&b, 0, 0, noise, n);
-        expect_refusal(d, &b, GLINT_E_FORMAT, "");
+        expect_decoding_fails(d, &b, GLINT_E_FORMAT, "");
         /* Noise after a start-of-image marker may look like a large frame. */
         if (n > 2) {
             struct glint_image image;
@@ -658,38 +670,38 @@ TEST(garbage)
 
 /* Checks that a missing restart interval, which would shift all later
  * blocks, is detected by the numbers of the restart markers. */
-TEST(lost_interval)
+TEST(detects_a_missing_restart_interval)
 {
     struct coding c = y422;
-    struct glint_mjpeg *const d = open_decoder(64, 48);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(64, 48);
     struct bytes b;
     size_t from;
 
     c.restart = 4;
     c.noisy = true;
-    b = encode_frame(&c, NULL);
-    from = find_segment(&b, 0xd1, 300);
-    replace_bytes(&b, from, find_segment(&b, 0xd2, from) - from, "", 0);
-    expect_refusal(d, &b, GLINT_E_FORMAT, "instead of RST1");
+    b = encode_jpeg_frame(&c, NULL);
+    from = find_jpeg_segment(&b, 0xd1, 300);
+    replace_bytes(&b, from, find_jpeg_segment(&b, 0xd2, from) - from, "", 0);
+    expect_decoding_fails(d, &b, GLINT_E_FORMAT, "instead of RST1");
     free(b.data);
     glint_mjpeg_close(d);
 }
 
 /* Checks that the heap in use after 100 valid and damaged frames equals that
  * after 10. */
-TEST(memory_is_constant)
+TEST(decoding_does_not_grow_the_heap)
 {
-    struct glint_mjpeg *const d = open_decoder(720, 405);
+    struct glint_mjpeg *const d = open_mjpeg_decoder(720, 405);
     struct coding c = {720, 405, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 1};
-    const struct bytes whole = encode_frame(&c, NULL);
-    const struct bytes half = copy_bytes(whole.data, whole.n / 2);
+    const struct bytes whole = encode_jpeg_frame(&c, NULL);
+    const struct bytes half = allocate_copy_of_bytes(whole.data, whole.n / 2);
     struct mallinfo2 early = {0}, late;
 
     for (int i = 0; i < 100; i++) {
         if (i == 10)
             early = mallinfo2();
-        decode_frame(d, &whole);
-        expect_refusal(d, &half, GLINT_E_FORMAT, "frame ends in row ");
+        decode_valid_frame(d, &whole);
+        expect_decoding_fails(d, &half, GLINT_E_FORMAT, "frame ends in row ");
     }
     late = mallinfo2();
     assert_int_equal(late.uordblks, early.uordblks);

@@ -8,7 +8,7 @@
 #include "jpeg/mjpeg.h"
 #include "support/test.h"
 
-TEST(refusal)
+TEST(reports_that_libjpeg_is_missing)
 {
     struct glint_mjpeg *decoder;
     struct glint_error error;

@@ -38,11 +38,11 @@ int __wrap_close(int fd)
 
 TEST_OPEN
 {
-    scratch_open_dir();
+    scratch_create_dir();
     snprintf(path, sizeof path, "%s/x.ppm", scratch_dir);
 }
 
-static void write_file(const char *text)
+static void write_text_file(const char *text)
 {
     FILE *const f = fopen(path, "w");
 
@@ -51,7 +51,7 @@ static void write_file(const char *text)
     fclose(f);
 }
 
-static void expect_file(const char *text)
+static void expect_file_text(const char *text)
 {
     struct glint_error error;
     uint8_t *data;
@@ -63,7 +63,7 @@ static void expect_file(const char *text)
     free(data);
 }
 
-static mode_t read_mode(const char *name)
+static mode_t read_file_mode(const char *name)
 {
     struct stat st;
 
@@ -71,7 +71,7 @@ static mode_t read_mode(const char *name)
     return st.st_mode & 0777;
 }
 
-static void open_text(struct glint_output *out, const char *text)
+static void open_output_with_text(struct glint_output *out, const char *text)
 {
     struct glint_error error;
 
@@ -79,7 +79,7 @@ static void open_text(struct glint_output *out, const char *text)
     assert_ok(glint_output_write(out, text, strlen(text), &error));
 }
 
-static void check_death(int signal_number, int handled)
+static void check_no_file_after_signal(int signal_number, int handled)
 {
     int how;
     const pid_t child = fork();
@@ -105,20 +105,21 @@ static void check_death(int signal_number, int handled)
         assert_true(WIFSIGNALED(how));
         assert_int_equal(WTERMSIG(how), signal_number);
     }
-    assert_int_equal(scratch_count(scratch_dir), 0);
+    assert_int_equal(scratch_count_entries(scratch_dir), 0);
 }
 
 /* Checks that no file is left behind by a signal. Runs first, as the first
  * open installs the signal handlers of the whole process. */
-TEST(signals)
+TEST(no_file_is_left_after_signals)
 {
-    check_death(SIGINT, 0);
-    check_death(SIGTERM, 0);
-    check_death(SIGHUP, 0);
-    check_death(SIGHUP, 1); /* nohup sets SIGHUP to be ignored. */
+    check_no_file_after_signal(SIGINT, 0);
+    check_no_file_after_signal(SIGTERM, 0);
+    check_no_file_after_signal(SIGHUP, 0);
+    check_no_file_after_signal(SIGHUP,
+                               1); /* nohup sets SIGHUP to be ignored. */
 }
 
-TEST(exit)
+TEST(no_file_is_left_after_exit)
 {
     int how;
     const pid_t child = fork();
@@ -131,36 +132,37 @@ TEST(exit)
     }
     assert_int_equal(waitpid(child, &how, 0), child);
     assert_int_equal(how, 0);
-    assert_int_equal(scratch_count(scratch_dir), 0);
+    assert_int_equal(scratch_count_entries(scratch_dir), 0);
 }
 
-TEST(commit)
+TEST(commit_creates_the_file)
 {
     const mode_t old = umask(027);
     struct glint_error error;
     struct glint_output out;
 
-    open_text(&out, "one");
+    open_output_with_text(&out, "one");
     assert_int_equal(access(path, F_OK), -1);
-    assert_int_equal(scratch_count(scratch_dir), 1); /* the temporary file */
+    assert_int_equal(scratch_count_entries(scratch_dir),
+                     1); /* the temporary file */
     assert_string_equal(strrchr(out.tmp, '.'), ".ppm");
     assert_ok(glint_output_commit(&out, &error));
     umask(old);
-    expect_file("one");
-    assert_int_equal(read_mode(path), 0640);
-    assert_int_equal(scratch_count(scratch_dir), 1);
+    expect_file_text("one");
+    assert_int_equal(read_file_mode(path), 0640);
+    assert_int_equal(scratch_count_entries(scratch_dir), 1);
     glint_output_abort(&out); /* nothing to remove after a commit */
     unlink(path);
 }
 
-TEST(abort)
+TEST(abort_leaves_no_file)
 {
     struct glint_output out;
 
-    open_text(&out, "one");
+    open_output_with_text(&out, "one");
     glint_output_abort(&out);
     glint_output_abort(&out);
-    assert_int_equal(scratch_count(scratch_dir), 0);
+    assert_int_equal(scratch_count_entries(scratch_dir), 0);
 }
 
 TEST(replaces_at_commit)
@@ -168,28 +170,28 @@ TEST(replaces_at_commit)
     struct glint_error error;
     struct glint_output out;
 
-    write_file("old");
+    write_text_file("old");
     chmod(path, 0604);
-    open_text(&out, "new");
-    expect_file("old");
+    open_output_with_text(&out, "new");
+    expect_file_text("old");
     glint_output_abort(&out);
-    expect_file("old");
-    open_text(&out, "new");
+    expect_file_text("old");
+    open_output_with_text(&out, "new");
     assert_ok(glint_output_commit(&out, &error));
-    expect_file("new");
-    assert_int_equal(read_mode(path), 0604);
-    assert_int_equal(scratch_count(scratch_dir), 1);
+    expect_file_text("new");
+    assert_int_equal(read_file_mode(path), 0604);
+    assert_int_equal(scratch_count_entries(scratch_dir), 1);
     unlink(path);
 }
 
 /* Checks that a temporary file is locked, which prevents other processes
  * from deleting it as left over. */
-TEST(locked)
+TEST(temporary_file_is_locked)
 {
     struct glint_output out;
     int fd;
 
-    open_text(&out, "one");
+    open_output_with_text(&out, "one");
     fd = open(out.tmp, O_RDONLY);
     assert_true(fd >= 0);
     assert_int_equal(flock(fd, LOCK_EX | LOCK_NB), -1);
@@ -199,64 +201,64 @@ TEST(locked)
 }
 
 /* Checks that an existing file with the temporary name is not overwritten. */
-TEST(taken_name)
+TEST(existing_temporary_name_is_not_overwritten)
 {
     struct glint_error error;
     struct glint_output out;
     char taken[80];
     unsigned n;
 
-    open_text(&out, "one");
+    open_output_with_text(&out, "one");
     assert_int_equal(sscanf(strrchr(out.tmp, '-'), "-%u", &n), 1);
     glint_output_abort(&out);
-    write_file("theirs");
+    write_text_file("theirs");
     snprintf(taken, sizeof taken, "%s/.glint-%ld-%u.ppm", scratch_dir,
              (long)getpid(), n + 1);
     assert_int_equal(rename(path, taken), 0);
-    open_text(&out, "ours");
+    open_output_with_text(&out, "ours");
     assert_string_not_equal(out.tmp, taken);
     assert_ok(glint_output_commit(&out, &error));
-    expect_file("ours");
+    expect_file_text("ours");
     assert_int_equal(rename(taken, path), 0);
-    expect_file("theirs");
+    expect_file_text("theirs");
     unlink(path);
 }
 
 /* Checks that flushed data is in the file before the commit, and only once
  * after it. */
-TEST(flush)
+TEST(flushed_data_is_in_the_file)
 {
     struct glint_error error;
     struct glint_output out;
     struct stat st;
 
-    open_text(&out, "one");
+    open_output_with_text(&out, "one");
     assert_ok(glint_output_flush(&out, &error));
     assert_int_equal(stat(out.tmp, &st), 0);
     assert_int_equal(st.st_size, 3);
     assert_ok(glint_output_write(&out, "two", 3, &error));
     assert_ok(glint_output_commit(&out, &error));
-    expect_file("onetwo");
+    expect_file_text("onetwo");
     unlink(path);
 }
 
 /* Checks that data loss which a file system reports only at close() is an
  * error. */
-TEST(close_fails)
+TEST(failing_close_is_an_error)
 {
     struct glint_error error;
     struct glint_output out;
 
-    write_file("old");
-    open_text(&out, "new");
+    write_text_file("old");
+    open_output_with_text(&out, "new");
     close_errno = EIO;
     assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
-    expect_file("old");
-    assert_int_equal(scratch_count(scratch_dir), 1);
-    open_text(&out, "new");
+    expect_file_text("old");
+    assert_int_equal(scratch_count_entries(scratch_dir), 1);
+    open_output_with_text(&out, "new");
     close_errno = EINTR;
     assert_ok(glint_output_commit(&out, &error));
-    expect_file("new");
+    expect_file_text("new");
     unlink(path);
 }
 
@@ -268,12 +270,12 @@ TEST(follows_links)
     struct stat st;
 
     snprintf(link_path, sizeof link_path, "%s/link.ppm", scratch_dir);
-    write_file("old");
+    write_text_file("old");
     assert_int_equal(symlink(path, link_path), 0);
     assert_ok(glint_output_open(&out, link_path, GLINT_OUTPUT_BINARY, &error));
     assert_ok(glint_output_write(&out, "new", 3, &error));
     assert_ok(glint_output_commit(&out, &error));
-    expect_file("new");
+    expect_file_text("new");
     assert_int_equal(lstat(link_path, &st), 0);
     assert_true(S_ISLNK(st.st_mode));
     unlink(link_path);
@@ -282,7 +284,7 @@ TEST(follows_links)
 
 /* Checks that writes smaller than, larger than and equal to the buffer
  * arrive in order. */
-TEST(sizes)
+TEST(writes_of_any_size_keep_their_order)
 {
     static const size_t sizes[] = {1, 65535, 1, 65536, 3, 200000, 65537, 7};
     static uint8_t data[200000];
@@ -291,7 +293,7 @@ TEST(sizes)
     struct glint_error error;
     struct glint_output out;
 
-    open_text(&out, "");
+    open_output_with_text(&out, "");
     for (size_t i = 0; i < 8; i++) {
         memset(data, (int)i + 1, sizes[i]);
         assert_ok(glint_output_write(&out, data, sizes[i], &error));
@@ -307,7 +309,7 @@ TEST(sizes)
     unlink(path);
 }
 
-TEST(full_device)
+TEST(full_device_is_an_error)
 {
     static uint8_t data[100000];
     struct glint_error error;
@@ -331,7 +333,7 @@ TEST(full_device)
 
 /* Writes more than the process's file size limit, which simulates a full
  * disk. Returns 0 if the error is reported. */
-static int overflow_disk(void)
+static int write_beyond_file_size_limit(void)
 {
     static uint8_t data[100000];
     const struct rlimit limit = {5000, 5000};
@@ -346,22 +348,22 @@ static int overflow_disk(void)
     return glint_output_commit(&out, &error) == GLINT_E_OUTPUT ? 0 : 3;
 }
 
-TEST(full_disk)
+TEST(full_disk_keeps_the_old_file)
 {
     int how;
 
-    write_file("old");
+    write_text_file("old");
     const pid_t child = fork();
     if (child == 0)
-        _exit(overflow_disk());
+        _exit(write_beyond_file_size_limit());
     assert_int_equal(waitpid(child, &how, 0), child);
     assert_int_equal(how, 0);
-    expect_file("old");
-    assert_int_equal(scratch_count(scratch_dir), 1);
+    expect_file_text("old");
+    assert_int_equal(scratch_count_entries(scratch_dir), 1);
     unlink(path);
 }
 
-TEST(closed_pipe)
+TEST(closed_pipe_is_an_error)
 {
     static uint8_t data[100000];
     char name[32];
@@ -382,7 +384,7 @@ TEST(closed_pipe)
 }
 
 /* Checks that all data reaches a non-blocking pipe with a slow reader. */
-TEST(nonblocking_pipe)
+TEST(nonblocking_pipe_gets_all_data)
 {
     static uint8_t data[300000];
     struct glint_error error;
@@ -413,7 +415,7 @@ TEST(nonblocking_pipe)
     assert_int_equal(how, 0);
 }
 
-static void check_refusal(const char *name, const char *text)
+static void check_path_is_rejected(const char *name, const char *text)
 {
     struct glint_error error;
     struct glint_output out;
@@ -424,18 +426,19 @@ static void check_refusal(const char *name, const char *text)
     assert_int_equal(out.fd, -1);
 }
 
-TEST(refuses)
+TEST(rejects_paths_that_cannot_be_written)
 {
     char name[300], text[300];
     struct glint_error error;
     struct glint_output out;
 
-    check_refusal("/nowhere/x.ppm",
-                  "/nowhere/x.ppm: cannot create a temporary file in its "
-                  "folder '/nowhere': No such file or directory");
-    check_refusal("", ": No such file or directory");
+    check_path_is_rejected(
+        "/nowhere/x.ppm",
+        "/nowhere/x.ppm: cannot create a temporary file in its "
+        "folder '/nowhere': No such file or directory");
+    check_path_is_rejected("", ": No such file or directory");
     snprintf(text, sizeof text, "%s: Is a directory", scratch_dir);
-    check_refusal(scratch_dir, text);
+    check_path_is_rejected(scratch_dir, text);
 
     /* The message truncates a long name at its beginning and keeps the
      * cause. */
@@ -449,7 +452,7 @@ TEST(refuses)
     assert_non_null(strstr(error.text, "': No such file or directory"));
 }
 
-TEST(checks)
+TEST(checks_paths_before_writing)
 {
     struct glint_error error;
     char name[300], text[300];
@@ -467,10 +470,10 @@ TEST(checks)
     assert_ok(glint_output_check("/dev/null", &error));
     snprintf(name, sizeof name, "%s/x.ppm", scratch_dir);
     assert_ok(glint_output_check(name, &error));
-    assert_int_equal(scratch_count(scratch_dir), 0);
+    assert_int_equal(scratch_count_entries(scratch_dir), 0);
 }
 
-TEST(many_at_a_time)
+TEST(limits_the_number_of_open_outputs)
 {
     struct glint_output out[17];
     struct glint_error error;
@@ -481,15 +484,15 @@ TEST(many_at_a_time)
         snprintf(name, sizeof name, "%s/%d", scratch_dir, n);
         if (glint_output_open(&out[n], name, GLINT_OUTPUT_TEXT, &error))
             break;
-        assert_int_equal(scratch_count(scratch_dir), n + 1);
+        assert_int_equal(scratch_count_entries(scratch_dir), n + 1);
     }
     assert_int_equal(n, 16);
     while (n-- > 0)
         glint_output_abort(&out[n]);
-    assert_int_equal(scratch_count(scratch_dir), 0);
+    assert_int_equal(scratch_count_entries(scratch_dir), 0);
 }
 
 TEST_CLOSE
 {
-    scratch_close_dir();
+    scratch_remove_dir();
 }

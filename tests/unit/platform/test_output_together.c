@@ -12,7 +12,8 @@
 #include "support/scratch.h"
 #include "support/test.h"
 
-/* number of times that another process replaces the file during the open */
+/* number of times that another process still replaces the file while it is
+ * being opened */
 static int others;
 
 char *__real_realpath(const char *path, char *resolved);
@@ -35,7 +36,7 @@ char *__wrap_realpath(const char *path, char *resolved)
     return __real_realpath(path, resolved);
 }
 
-static void write_file(const char *path, const char *text)
+static void write_file_and_others(const char *path, const char *text)
 {
     struct glint_error error = {""};
     struct glint_output out;
@@ -45,15 +46,15 @@ static void write_file(const char *path, const char *text)
     assert_ok(glint_output_commit(&out, &error));
 }
 
-TEST(together)
+TEST(files_appear_together)
 {
     char path[96], text[16] = "";
     FILE *f;
 
     snprintf(path, sizeof path, "%s/manifest.jsonl", scratch_dir);
-    write_file(path, "first");
+    write_file_and_others(path, "first");
     others = 3;
-    write_file(path, "second");
+    write_file_and_others(path, "second");
     assert_int_equal(others, 0);
     f = fopen(path, "r");
     assert_non_null(f);
@@ -63,4 +64,4 @@ TEST(together)
     remove(path);
 }
 
-TEST_GROUP(scratch_open_dir, scratch_close_dir);
+TEST_GROUP(scratch_create_dir, scratch_remove_dir);

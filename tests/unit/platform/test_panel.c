@@ -26,13 +26,13 @@ static const double constants[2][4] = {
     [GLINT_MATRIX_BT709] = {1.5748, -.187324, -.468124, 1.8556},
 };
 
-static int round_to_code(double code)
+static int round_and_clamp_code(double code)
 {
     return (int)floor(fmin(fmax(code, 0), 255) + .5);
 }
 
-static void compute_reference(int rgb[3], const struct glint_image *image,
-                              double luma, double cb, double cr)
+static void compute_rgb_of_ycc(int rgb[3], const struct glint_image *image,
+                               double luma, double cb, double cr)
 {
     const bool full = image->range == GLINT_RANGE_FULL;
     const double *const k = constants[image->matrix];
@@ -40,9 +40,9 @@ static void compute_reference(int rgb[3], const struct glint_image *image,
     const double u = full ? cb - 128 : (cb - 128) * 255 / 224;
     const double v = full ? cr - 128 : (cr - 128) * 255 / 224;
 
-    rgb[0] = round_to_code(y + k[0] * v);
-    rgb[1] = round_to_code(y + k[1] * u + k[2] * v);
-    rgb[2] = round_to_code(y + k[3] * u);
+    rgb[0] = round_and_clamp_code(y + k[0] * v);
+    rgb[1] = round_and_clamp_code(y + k[1] * u + k[2] * v);
+    rgb[2] = round_and_clamp_code(y + k[3] * u);
 }
 
 struct tally {
@@ -51,9 +51,11 @@ struct tally {
 };
 
 /* Converts a row of all luma codes with chroma (CB, CR), compares each pixel
- * with reference() and adds the differences to tally T. */
-static void check_luma_row(struct tally *t, struct glint_row_rgb *row,
-                           struct glint_image *image, int cb, int cr)
+ * with compute_rgb_of_ycc() and adds the differences to tally T. */
+static void check_row_of_all_luma_codes(struct tally *t,
+                                        struct glint_row_rgb *row,
+                                        struct glint_image *image, int cb,
+                                        int cr)
 {
     memset(image->plane[1], cb, 256);
     memset(image->plane[2], cr, 256);
@@ -61,7 +63,7 @@ static void check_luma_row(struct tally *t, struct glint_row_rgb *row,
     for (int y = 0; y < 256; y++) {
         int want[3];
 
-        compute_reference(want, image, y, cb, cr);
+        compute_rgb_of_ycc(want, image, y, cb, cr);
         for (int i = 0; i < 3; i++) {
             const int off = abs(row->channel[i][y] - want[i]);
 
@@ -74,7 +76,8 @@ static void check_luma_row(struct tally *t, struct glint_row_rgb *row,
     }
 }
 
-static void check_mix(enum glint_matrix matrix, enum glint_range range)
+static void check_ycc_to_rgb_conversion(enum glint_matrix matrix,
+                                        enum glint_range range)
 {
 #ifdef GLINT_SANITIZED
     enum { STEP = 4 };
@@ -94,19 +97,19 @@ static void check_mix(enum glint_matrix matrix, enum glint_range range)
         codes[i] = (uint8_t)i;
     for (int cb = 0; cb < 256; cb += STEP)
         for (int cr = 0; cr < 256; cr += STEP)
-            check_luma_row(&t, &row, &image, cb, cr);
+            check_row_of_all_luma_codes(&t, &row, &image, cb, cr);
     print_message("matrix %d range %d: %.3f %% equal, worst %d\n", matrix,
                   range, 100. * (double)t.n_equal / (double)t.n, t.worst);
     assert_int_equal(t.worst, 1);
     assert_true(t.n_equal > t.n / 1000 * 996);
 }
 
-TEST(every_colour)
+TEST(every_colour_is_converted_right)
 {
-    check_mix(GLINT_MATRIX_BT601, GLINT_RANGE_FULL);
-    check_mix(GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
-    check_mix(GLINT_MATRIX_BT709, GLINT_RANGE_FULL);
-    check_mix(GLINT_MATRIX_BT709, GLINT_RANGE_LIMITED);
+    check_ycc_to_rgb_conversion(GLINT_MATRIX_BT601, GLINT_RANGE_FULL);
+    check_ycc_to_rgb_conversion(GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
+    check_ycc_to_rgb_conversion(GLINT_MATRIX_BT709, GLINT_RANGE_FULL);
+    check_ycc_to_rgb_conversion(GLINT_MATRIX_BT709, GLINT_RANGE_LIMITED);
 }
 
 /* ------------------------------------------------------------------- bars */
@@ -162,7 +165,7 @@ static const struct layout_case {
      {0x3f000, 0xfc0, 0x3f, 0x3ffff, 0, 0x20820}},
 };
 
-static uint32_t read_word(const uint8_t *px, int bytes)
+static uint32_t read_panel_word(const uint8_t *px, int bytes)
 {
     uint32_t word = 0;
 
@@ -171,19 +174,19 @@ static uint32_t read_word(const uint8_t *px, int bytes)
     return word;
 }
 
-static void expect_words(const struct layout_case *c, const uint8_t *mem)
+static void expect_panel_words(const struct layout_case *c, const uint8_t *mem)
 {
     static const uint32_t beyond = 0xa5a5a5a5;
     const int bytes = c->layout.bytes;
 
     for (int i = 0; i < 6; i++)
-        if (read_word(mem + i * bytes, bytes) != c->word[i])
+        if (read_panel_word(mem + i * bytes, bytes) != c->word[i])
             fail_msg("%s: bar %d is %08x", c->name, i,
-                     (unsigned)read_word(mem + i * bytes, bytes));
+                     (unsigned)read_panel_word(mem + i * bytes, bytes));
     assert_memory_equal(mem + 6 * bytes, &beyond, 4);
 }
 
-TEST(layouts)
+TEST(writes_every_pixel_layout)
 {
     static uint8_t bars[] = {255, 0,   0,   0, 255, 0, 0,   0,   255,
                              255, 255, 255, 0, 0,   0, 128, 128, 128};
@@ -200,10 +203,10 @@ TEST(layouts)
         assert_ok(glint_panel_open(&panel, &cfg, &error));
         memset(mem, 0xa5, sizeof mem);
         glint_panel_draw(&panel, &image, mem, 6 * cfg.layout.bytes);
-        expect_words(&layouts[i], mem);
+        expect_panel_words(&layouts[i], mem);
         glint_panel_clear(&panel, mem, 6 * cfg.layout.bytes);
         assert_int_equal(
-            read_word(mem + 5 * cfg.layout.bytes, cfg.layout.bytes),
+            read_panel_word(mem + 5 * cfg.layout.bytes, cfg.layout.bytes),
             layouts[i].word[4]);
         glint_panel_close(&panel);
     }
@@ -235,7 +238,7 @@ TEST(writes_565_there_and_back)
 }
 
 /* Checks that each 8-bit code becomes the nearest code of 1 .. 8 bits. */
-TEST(fewer_bits)
+TEST(codes_become_the_nearest_of_fewer_bits)
 {
     uint8_t ramp[256], mem[2 * 256];
 
@@ -254,14 +257,14 @@ TEST(fewer_bits)
         glint_row_pack_write(&pack, mem, channel, 0, 256);
         for (int i = 0; i < 256; i++) {
             const int most = (1 << n) - 1;
-            const int got = (int)read_word(mem + 2 * i, 2) & most;
+            const int got = (int)read_panel_word(mem + 2 * i, 2) & most;
 
             assert_int_equal(got, (int)floor(i * most / 255. + .5));
         }
     }
 }
 
-TEST(refuses_layouts)
+TEST(rejects_invalid_layouts)
 {
     static const struct glint_pixel_layout bad[] = {
         {1, {5, 3}, {2, 3}, {0, 2}, {0, 0}},      /* 8 bits per pixel */
@@ -304,9 +307,9 @@ TEST(refuses_layouts)
 /* Returns an image of random codes in FORMAT; the caller frees the memory.
  * Rows have |PAD| bytes of padding; the image is stored bottom row first if
  * PAD is negative. */
-static uint8_t *make_picture(struct glint_image *image,
-                             enum glint_pixel_format format, int width,
-                             int height, int pad)
+static uint8_t *make_random_picture(struct glint_image *image,
+                                    enum glint_pixel_format format, int width,
+                                    int height, int pad)
 {
     const size_t bytes = glint_image_bytes(format, width, height) +
                          3 * (size_t)(abs(pad) * height);
@@ -316,7 +319,7 @@ static uint8_t *make_picture(struct glint_image *image,
 
     assert_non_null(mem);
     for (size_t i = 0; i < bytes; i++)
-        mem[i] = (uint8_t)(rng_bits(&seed) >> 8);
+        mem[i] = (uint8_t)(rng_bits32(&seed) >> 8);
     *image = (struct glint_image){.format = format,
                                   .width = width,
                                   .height = height,
@@ -336,7 +339,8 @@ static uint8_t *make_picture(struct glint_image *image,
 
 /* Returns Y', Cb or Cr (I = 0, 1, 2) of pixel (X, Y), read by the definition
  * of the image's format. */
-static int read_sample(const struct glint_image *im, int i, int x, int y)
+static int read_picture_sample(const struct glint_image *im, int i, int x,
+                               int y)
 {
     const uint8_t *row[3];
 
@@ -367,8 +371,8 @@ static int read_sample(const struct glint_image *im, int i, int x, int y)
     }
 }
 
-static void compute_pixel(int rgb[3], const struct glint_image *im, int x,
-                          int y)
+static void compute_panel_pixel(int rgb[3], const struct glint_image *im, int x,
+                                int y)
 {
     const uint8_t *const row = im->plane[0] + y * im->stride_bytes[0];
 
@@ -392,24 +396,25 @@ static void compute_pixel(int rgb[3], const struct glint_image *im, int x,
     case GLINT_RGB565: {
         const int word = row[2 * x] | row[2 * x + 1] << 8;
 
-        /* within 1 of widening by repeated bits */
+        /* differs by at most 1 from widening by repeated bits */
         rgb[0] = (word >> 11) * 255 / 31;
         rgb[1] = (word >> 5 & 63) * 255 / 63;
         rgb[2] = (word & 31) * 255 / 31;
         return;
     }
     default:
-        compute_reference(rgb, im, read_sample(im, 0, x, y),
-                          read_sample(im, 1, x, y), read_sample(im, 2, x, y));
+        compute_rgb_of_ycc(rgb, im, read_picture_sample(im, 0, x, y),
+                           read_picture_sample(im, 1, x, y),
+                           read_picture_sample(im, 2, x, y));
     }
 }
 
-static void expect_pixel(const struct glint_image *im, int from_x, int from_y,
-                         const uint8_t *px)
+static void expect_panel_pixel(const struct glint_image *im, int from_x,
+                               int from_y, const uint8_t *px)
 {
     int want[3];
 
-    compute_pixel(want, im, from_x, from_y);
+    compute_panel_pixel(want, im, from_x, from_y);
     for (int i = 0; i < 3; i++)
         if (abs(px[2 - i] - want[i]) > 1)
             fail_msg("format %d, %d x %d, pixel %d %d, channel %d: %d, not %d",
@@ -417,8 +422,8 @@ static void expect_pixel(const struct glint_image *im, int from_x, int from_y,
                      px[2 - i], want[i]);
 }
 
-static void check_format(enum glint_pixel_format format, int width, int height,
-                         int pad, int panel_width)
+static void check_drawing_of_format(enum glint_pixel_format format, int width,
+                                    int height, int pad, int panel_width)
 {
     const struct glint_panel_config cfg = {.width = panel_width,
                                            .height = height,
@@ -431,7 +436,8 @@ static void check_format(enum glint_pixel_format format, int width, int height,
     struct glint_error error;
     struct glint_image image;
     struct glint_panel panel;
-    uint8_t *const codes = make_picture(&image, format, width, height, pad);
+    uint8_t *const codes =
+        make_random_picture(&image, format, width, height, pad);
 
     assert_non_null(mem);
     assert_ok(glint_panel_open(&panel, &cfg, &error));
@@ -439,8 +445,8 @@ static void check_format(enum glint_pixel_format format, int width, int height,
     glint_panel_draw(&panel, &image, mem, stride);
     for (int y = 0; y < panel.shown.height; y++)
         for (int x = 0; x < panel.shown.width; x++)
-            expect_pixel(&image, panel.seen.x + x, panel.seen.y + y,
-                         mem + y * stride + 4 * (panel.shown.x + x));
+            expect_panel_pixel(&image, panel.seen.x + x, panel.seen.y + y,
+                               mem + y * stride + 4 * (panel.shown.x + x));
     glint_panel_close(&panel);
     free(codes);
     free(mem);
@@ -448,29 +454,32 @@ static void check_format(enum glint_pixel_format format, int width, int height,
 
 /* Checks that every format is drawn correctly. Each image is an exact
  * allocation, so that a sanitizer detects overreads. */
-TEST(formats)
+TEST(draws_every_format)
 {
     for (int f = GLINT_RGB24; f <= GLINT_XBGR8888; f++) {
         const enum glint_pixel_format format = (enum glint_pixel_format)f;
 
         if (format == GLINT_LINEAR_Q20)
             continue;
-        check_format(format, 64, 4, 0, 64);
-        check_format(format, 101, 3, 0, 101); /* odd width and height */
-        check_format(format, 1, 1, 0, 1);
-        check_format(format, 37, 5, 11, 37);
-        check_format(format, 37, 5, -3, 37);
+        check_drawing_of_format(format, 64, 4, 0, 64);
+        check_drawing_of_format(format, 101, 3, 0,
+                                101); /* odd width and height */
+        check_drawing_of_format(format, 1, 1, 0, 1);
+        check_drawing_of_format(format, 37, 5, 11, 37);
+        check_drawing_of_format(format, 37, 5, -3, 37);
         /* cropped, starting at an odd pixel */
-        check_format(format, 66, 3, 0, 63);
-        check_format(format, 33, 3, 0, 70); /* centred on a wider panel */
+        check_drawing_of_format(format, 66, 3, 0, 63);
+        check_drawing_of_format(format, 33, 3, 0,
+                                70); /* centred on a wider panel */
     }
 }
 
 /* ----------------------------------------------------------------- geometry */
 
-static void expect_area(int panel_width, int panel_height, int width,
-                        int height, enum glint_panel_fit fit, int x, int y,
-                        int shown_width, int shown_height)
+static void expect_image_area_on_panel(int panel_width, int panel_height,
+                                       int width, int height,
+                                       enum glint_panel_fit fit, int x, int y,
+                                       int shown_width, int shown_height)
 {
     const struct glint_panel_config cfg = {.width = panel_width,
                                            .height = panel_height,
@@ -489,22 +498,29 @@ static void expect_area(int panel_width, int panel_height, int width,
     glint_panel_close(&p);
 }
 
-TEST(areas)
+TEST(image_areas_fit_the_panel)
 {
-    expect_area(640, 480, 640, 480, GLINT_PANEL_FIT, 0, 0, 640, 480);
-    expect_area(480, 320, 640, 360, GLINT_PANEL_FIT, 0, 25, 480, 270);
-    expect_area(800, 480, 640, 480, GLINT_PANEL_FIT, 80, 0, 640, 480);
-    expect_area(1366, 768, 640, 480, GLINT_PANEL_FIT, 171, 0, 1024, 768);
-    expect_area(320, 240, 1, 8192, GLINT_PANEL_FIT, 159, 0, 1, 240);
-    expect_area(1, 240, 8192, 1, GLINT_PANEL_FIT, 0, 119, 1, 1);
-    expect_area(800, 480, 640, 360, GLINT_PANEL_CENTRE, 80, 60, 640, 360);
-    expect_area(480, 320, 640, 360, GLINT_PANEL_CENTRE, 0, 0, 480, 320);
+    expect_image_area_on_panel(640, 480, 640, 480, GLINT_PANEL_FIT, 0, 0, 640,
+                               480);
+    expect_image_area_on_panel(480, 320, 640, 360, GLINT_PANEL_FIT, 0, 25, 480,
+                               270);
+    expect_image_area_on_panel(800, 480, 640, 480, GLINT_PANEL_FIT, 80, 0, 640,
+                               480);
+    expect_image_area_on_panel(1366, 768, 640, 480, GLINT_PANEL_FIT, 171, 0,
+                               1024, 768);
+    expect_image_area_on_panel(320, 240, 1, 8192, GLINT_PANEL_FIT, 159, 0, 1,
+                               240);
+    expect_image_area_on_panel(1, 240, 8192, 1, GLINT_PANEL_FIT, 0, 119, 1, 1);
+    expect_image_area_on_panel(800, 480, 640, 360, GLINT_PANEL_CENTRE, 80, 60,
+                               640, 360);
+    expect_image_area_on_panel(480, 320, 640, 360, GLINT_PANEL_CENTRE, 0, 0,
+                               480, 320);
 }
 
 /* Draws the grey ramp 0 .. 8 as an image of 9 x 1 pixels, or 3 x 3 if DOWN,
  * and stores the code of each panel pixel in SHOWN. */
-static void draw_ramp(uint8_t *shown, bool down, int panel_width,
-                      int panel_height, int bytes)
+static void draw_and_read_grey_ramp(uint8_t *shown, bool down, int panel_width,
+                                    int panel_height, int bytes)
 {
     static uint8_t ramp[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     const struct glint_panel_config cfg = {
@@ -528,7 +544,7 @@ static void draw_ramp(uint8_t *shown, bool down, int panel_width,
     glint_panel_close(&panel);
 }
 
-TEST(nearest)
+TEST(scales_by_nearest_pixel)
 {
     static const uint8_t third[] = {1, 4, 7},
                          twice[] = {0, 0, 1, 1, 2, 2, 3, 3, 4,
@@ -539,19 +555,19 @@ TEST(nearest)
     uint8_t shown[36];
 
     for (int bytes = 2; bytes <= 4; bytes++) {
-        draw_ramp(shown, false, 3, 1, bytes);
+        draw_and_read_grey_ramp(shown, false, 3, 1, bytes);
         assert_memory_equal(shown, third, sizeof third);
-        draw_ramp(shown, false, 18, 2, bytes);
+        draw_and_read_grey_ramp(shown, false, 18, 2, bytes);
         assert_memory_equal(shown, twice, sizeof twice);
         assert_memory_equal(shown + 18, twice, sizeof twice);
-        draw_ramp(shown, true, 6, 6, bytes);
+        draw_and_read_grey_ramp(shown, true, 6, 6, bytes);
         assert_memory_equal(shown, square, sizeof square);
     }
 }
 
 /* Checks that bytes around the image and in the padding of rows are not
  * written. */
-TEST(borders)
+TEST(writes_only_inside_the_image_area)
 {
     enum { STRIDE = 53, ROWS = 12 };
     const struct glint_panel_config cfg = {
@@ -586,7 +602,7 @@ TEST(borders)
 
 /* Checks that ordered dither to 5 bits keeps the mean of 8 x 8 equal pixels
  * within 1/64 of code * 31 / 255. */
-TEST(dither)
+TEST(dither_keeps_the_mean)
 {
     struct glint_panel_config cfg = {
         .width = 8,
@@ -607,7 +623,7 @@ TEST(dither)
         memset(codes, code, sizeof codes);
         glint_panel_draw(&panel, &image, mem, 16);
         for (int i = 0; i < 64; i++)
-            sum += (int)read_word(mem + 2 * i, 2) >> 11;
+            sum += (int)read_panel_word(mem + 2 * i, 2) >> 11;
         if (fabs(sum / 64. - code * 31 / 255.) > 1 / 64.)
             fail_msg("code %d: %d / 64", code, sum);
     }

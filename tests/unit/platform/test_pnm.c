@@ -20,7 +20,7 @@ static struct glint_error error;
 
 /* Returns an allocated copy of exactly BYTES bytes, so that ASan detects
  * overreads. */
-static void *copy_bytes(const void *data, size_t bytes)
+static void *allocate_copy_of_bytes(const void *data, size_t bytes)
 {
     void *const copy = malloc(bytes ? bytes : 1);
 
@@ -29,10 +29,10 @@ static void *copy_bytes(const void *data, size_t bytes)
     return copy;
 }
 
-static enum glint_status read_pnm(struct glint_image *image, const char *data,
-                                  size_t bytes)
+static enum glint_status read_pnm_copy(struct glint_image *image,
+                                       const char *data, size_t bytes)
 {
-    void *const copy = copy_bytes(data, bytes);
+    void *const copy = allocate_copy_of_bytes(data, bytes);
     const enum glint_status status =
         glint_pnm_read(image, copy, bytes, "x.ppm", &error);
 
@@ -40,10 +40,10 @@ static enum glint_status read_pnm(struct glint_image *image, const char *data,
     return status;
 }
 
-static enum glint_status read_pfm(struct glint_float_image *floats,
-                                  const char *data, size_t bytes)
+static enum glint_status read_pfm_copy(struct glint_float_image *floats,
+                                       const char *data, size_t bytes)
 {
-    void *const copy = copy_bytes(data, bytes);
+    void *const copy = allocate_copy_of_bytes(data, bytes);
     const enum glint_status status =
         glint_pfm_read(floats, copy, bytes, "x.pfm", &error);
 
@@ -53,13 +53,13 @@ static enum glint_status read_pfm(struct glint_float_image *floats,
 
 /* --------------------------------------------------------------------- PNM */
 
-static void expect_pnm(const char *data, size_t bytes,
-                       enum glint_pixel_format format, int width, int height,
-                       const char *samples)
+static void expect_pnm_pixels(const char *data, size_t bytes,
+                              enum glint_pixel_format format, int width,
+                              int height, const char *samples)
 {
     struct glint_image image;
 
-    assert_ok(read_pnm(&image, data, bytes));
+    assert_ok(read_pnm_copy(&image, data, bytes));
     assert_int_equal(image.format, format);
     assert_int_equal(image.width, width);
     assert_int_equal(image.height, height);
@@ -70,89 +70,93 @@ static void expect_pnm(const char *data, size_t bytes,
     free(image.plane[0]);
 }
 
-TEST(kinds)
+TEST(reads_every_pnm_type)
 {
-    expect_pnm(BYTES("P6\n2 1\n255\nabcdef"), GLINT_RGB24, 2, 1, "abcdef");
-    expect_pnm(BYTES("P5\n2 3\n255\nabcdef"), GLINT_GREY, 2, 3, "abcdef");
+    expect_pnm_pixels(BYTES("P6\n2 1\n255\nabcdef"), GLINT_RGB24, 2, 1,
+                      "abcdef");
+    expect_pnm_pixels(BYTES("P5\n2 3\n255\nabcdef"), GLINT_GREY, 2, 3,
+                      "abcdef");
     /* Bytes after the first image are ignored. */
-    expect_pnm(BYTES("P5 1 1 255 aP5 1 1 255 b"), GLINT_GREY, 1, 1, "a");
+    expect_pnm_pixels(BYTES("P5 1 1 255 aP5 1 1 255 b"), GLINT_GREY, 1, 1, "a");
     /* samples may look like white space */
-    expect_pnm(BYTES("P5\n3 1\n255\n\n #"), GLINT_GREY, 3, 1, "\n #");
+    expect_pnm_pixels(BYTES("P5\n3 1\n255\n\n #"), GLINT_GREY, 3, 1, "\n #");
 }
 
-TEST(comments)
+TEST(accepts_comments)
 {
-    expect_pnm(BYTES("P5#made by\n# GIMP\n 2\t\r\n#x\n1#y\n255\nab"),
-               GLINT_GREY, 2, 1, "ab");
+    expect_pnm_pixels(BYTES("P5#made by\n# GIMP\n 2\t\r\n#x\n1#y\n255\nab"),
+                      GLINT_GREY, 2, 1, "ab");
     /* A comment may end the header; its line feed is the separator. */
-    expect_pnm(BYTES("P5 2 1 255#end\nab"), GLINT_GREY, 2, 1, "ab");
-    expect_pnm(BYTES("P5 0002 01 00255 ab"), GLINT_GREY, 2, 1, "ab");
+    expect_pnm_pixels(BYTES("P5 2 1 255#end\nab"), GLINT_GREY, 2, 1, "ab");
+    expect_pnm_pixels(BYTES("P5 0002 01 00255 ab"), GLINT_GREY, 2, 1, "ab");
 }
 
-TEST(maxima)
+TEST(scales_samples_to_255)
 {
     /* 1 of 2 is 127.5 and rounds up; 3 is clamped to 2. */
-    expect_pnm(BYTES("P5 4 1 2 \x00\x01\x02\x03"), GLINT_GREY, 4, 1,
-               "\x00\x80\xff\xff");
-    expect_pnm(BYTES("P5 2 1 1 \x00\x01"), GLINT_GREY, 2, 1, "\x00\xff");
+    expect_pnm_pixels(BYTES("P5 4 1 2 \x00\x01\x02\x03"), GLINT_GREY, 4, 1,
+                      "\x00\x80\xff\xff");
+    expect_pnm_pixels(BYTES("P5 2 1 1 \x00\x01"), GLINT_GREY, 2, 1, "\x00\xff");
     /* 16 bits: 128 of 65535 is 0.498 of an 8-bit step and rounds down; 129
      * is 0.502 and rounds up. */
-    expect_pnm(BYTES("P5 5 1 65535 \x00\x80\x00\x81\xff\xff\x80\x80\x00\x00"),
-               GLINT_GREY, 5, 1, "\x00\x01\xff\x80\x00");
+    expect_pnm_pixels(
+        BYTES("P5 5 1 65535 \x00\x80\x00\x81\xff\xff\x80\x80\x00\x00"),
+        GLINT_GREY, 5, 1, "\x00\x01\xff\x80\x00");
     /* 10 bits, and a sample above the maximum, which is clamped */
-    expect_pnm(BYTES("P6 1 1 1023 \x03\xff\x02\x00\xff\xff"), GLINT_RGB24, 1, 1,
-               "\xff\x80\xff");
+    expect_pnm_pixels(BYTES("P6 1 1 1023 \x03\xff\x02\x00\xff\xff"),
+                      GLINT_RGB24, 1, 1, "\xff\x80\xff");
 }
 
-static void check_pnm_refusal(enum glint_status status, const char *data,
-                              size_t bytes)
+static void check_pnm_is_rejected(enum glint_status status, const char *data,
+                                  size_t bytes)
 {
     struct glint_image image = {.width = 77};
 
-    if (read_pnm(&image, data, bytes) != status)
+    if (read_pnm_copy(&image, data, bytes) != status)
         fail_msg("%s", data);
     assert_memory_equal(error.text, "x.ppm: ", 7);
     assert_int_equal(image.width, 77);
 }
 
-TEST(hostile_headers)
+TEST(rejects_invalid_headers)
 {
-    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES(""));
-    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P"));
-    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P6"));
-    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P61 1 255 abc"));
-    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P3 1 1 255 1 2 3"));
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 0 1 255 abc"));
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 0 255 abc"));
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 -1 1 255 abc"));
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1.5 1 255 abc"));
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 0 abc"));
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 65536 abcdef"));
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 255"));
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 255abc"));
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 255#abc"));
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 # 255 abc"));
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 \0001 1 255 abc"));
-    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P6 32769 1 255 abc"));
-    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P6 1 32769 255 abc"));
-    check_pnm_refusal(GLINT_E_UNSUPPORTED,
-                      BYTES("P6 99999999999999999999 4294967297 255 abc"));
+    check_pnm_is_rejected(GLINT_E_UNSUPPORTED, BYTES(""));
+    check_pnm_is_rejected(GLINT_E_UNSUPPORTED, BYTES("P"));
+    check_pnm_is_rejected(GLINT_E_UNSUPPORTED, BYTES("P6"));
+    check_pnm_is_rejected(GLINT_E_UNSUPPORTED, BYTES("P61 1 255 abc"));
+    check_pnm_is_rejected(GLINT_E_UNSUPPORTED, BYTES("P3 1 1 255 1 2 3"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 0 1 255 abc"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 1 0 255 abc"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 -1 1 255 abc"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 1.5 1 255 abc"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 1 1 0 abc"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 1 1 65536 abcdef"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 1 1 255"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 1 1 255abc"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 1 1 255#abc"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 1 1 # 255 abc"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 \0001 1 255 abc"));
+    check_pnm_is_rejected(GLINT_E_UNSUPPORTED, BYTES("P6 32769 1 255 abc"));
+    check_pnm_is_rejected(GLINT_E_UNSUPPORTED, BYTES("P6 1 32769 255 abc"));
+    check_pnm_is_rejected(GLINT_E_UNSUPPORTED,
+                          BYTES("P6 99999999999999999999 4294967297 255 abc"));
     /* Nothing is allocated for a size whose samples are missing. */
-    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 8192 8192 65535 abc"));
+    check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 8192 8192 65535 abc"));
     assert_string_equal(
         error.text,
         "x.ppm: ends after 3 of 402653184 bytes of a 8192 x 8192 picture");
 }
 
-TEST(truncated_pnm)
+TEST(rejects_truncated_pnm)
 {
     static const char ppm[] =
         "P6\n# x\n2 1\n65535\n\0\1\2\3\4\5\6\7\10\11\12\13";
     struct glint_image image;
 
     for (size_t n = 0; n < sizeof ppm - 1; n++)
-        check_pnm_refusal(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, ppm, n);
-    assert_ok(read_pnm(&image, ppm, sizeof ppm - 1));
+        check_pnm_is_rejected(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, ppm,
+                              n);
+    assert_ok(read_pnm_copy(&image, ppm, sizeof ppm - 1));
     free(image.plane[0]);
 }
 
@@ -169,12 +173,12 @@ TEST(truncated_pnm)
 
 static const float two_pixels[6] = {1, -2, 0.5F, 0, 3, 4};
 
-static void expect_pfm(const char *data, size_t bytes, int width, int height,
-                       const float *values)
+static void expect_pfm_pixels(const char *data, size_t bytes, int width,
+                              int height, const float *values)
 {
     struct glint_float_image floats;
 
-    assert_ok(read_pfm(&floats, data, bytes));
+    assert_ok(read_pfm_copy(&floats, data, bytes));
     assert_int_equal(floats.width, width);
     assert_int_equal(floats.height, height);
     assert_memory_equal(floats.rgb, values,
@@ -182,84 +186,85 @@ static void expect_pfm(const char *data, size_t bytes, int width, int height,
     free(floats.rgb);
 }
 
-TEST(floats)
+TEST(reads_grey_and_colour_pfm)
 {
     static const float grey[6] = {3, 3, 3, 4, 4, 4};
 
-    expect_pfm(BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF), 1, 2,
-               two_pixels);
-    expect_pfm(BYTES("PF\n2 1\n-1.0\n" ONE TWO HALF ZERO THREE FOUR), 2, 1,
-               two_pixels);
-    expect_pfm(BYTES("Pf 2 1 -0.5 " THREE FOUR), 2, 1, grey);
-    expect_pfm(BYTES("Pf\n2 1\n1\n\x40\x40\x00\x00\x40\x80\x00\x00"), 2, 1,
-               grey);
+    expect_pfm_pixels(BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF), 1,
+                      2, two_pixels);
+    expect_pfm_pixels(BYTES("PF\n2 1\n-1.0\n" ONE TWO HALF ZERO THREE FOUR), 2,
+                      1, two_pixels);
+    expect_pfm_pixels(BYTES("Pf 2 1 -0.5 " THREE FOUR), 2, 1, grey);
+    expect_pfm_pixels(BYTES("Pf\n2 1\n1\n\x40\x40\x00\x00\x40\x80\x00\x00"), 2,
+                      1, grey);
 }
 
-TEST(special_floats)
+TEST(reads_nan_infinity_and_denormals)
 {
     struct glint_float_image floats;
 
-    assert_ok(read_pfm(&floats, BYTES("PF 1 1 -1 \x00\x00\xc0\x7f"
-                                      "\x00\x00\x80\x7f"
-                                      "\x01\x00\x00\x00")));
+    assert_ok(read_pfm_copy(&floats, BYTES("PF 1 1 -1 \x00\x00\xc0\x7f"
+                                           "\x00\x00\x80\x7f"
+                                           "\x01\x00\x00\x00")));
     assert_true(isnan(floats.rgb[0]));
     assert_true(isinf(floats.rgb[1]));
     assert_true(floats.rgb[2] > 0 && floats.rgb[2] < 1e-44F);
     free(floats.rgb);
 }
 
-static void check_pfm_refusal(enum glint_status status, const char *data,
-                              size_t bytes)
+static void check_pfm_is_rejected(enum glint_status status, const char *data,
+                                  size_t bytes)
 {
     struct glint_float_image floats = {77, 0, NULL};
 
-    if (read_pfm(&floats, data, bytes) != status)
+    if (read_pfm_copy(&floats, data, bytes) != status)
         fail_msg("%s", data);
     assert_memory_equal(error.text, "x.pfm: ", 7);
     assert_int_equal(floats.width, 77);
 }
 
-TEST(hostile_pfm)
+TEST(rejects_invalid_pfm)
 {
-    check_pfm_refusal(GLINT_E_UNSUPPORTED, BYTES(""));
-    check_pfm_refusal(GLINT_E_UNSUPPORTED, BYTES("PF"));
-    check_pfm_refusal(GLINT_E_UNSUPPORTED, BYTES("PG\n1 1\n-1\n"));
-    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 0 1 -1 " ONE));
-    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 0 -1 " ONE));
-    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 -1 -1 " ONE));
-    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 1 0 " ONE));
-    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 1 nan " ONE));
-    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 1 -inf " ONE));
-    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 1 -1x " ONE));
-    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1x 1 -1 " ONE));
-    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 1 -1\0 " ONE));
-    check_pfm_refusal(
+    check_pfm_is_rejected(GLINT_E_UNSUPPORTED, BYTES(""));
+    check_pfm_is_rejected(GLINT_E_UNSUPPORTED, BYTES("PF"));
+    check_pfm_is_rejected(GLINT_E_UNSUPPORTED, BYTES("PG\n1 1\n-1\n"));
+    check_pfm_is_rejected(GLINT_E_FORMAT, BYTES("Pf 0 1 -1 " ONE));
+    check_pfm_is_rejected(GLINT_E_FORMAT, BYTES("Pf 1 0 -1 " ONE));
+    check_pfm_is_rejected(GLINT_E_FORMAT, BYTES("Pf 1 -1 -1 " ONE));
+    check_pfm_is_rejected(GLINT_E_FORMAT, BYTES("Pf 1 1 0 " ONE));
+    check_pfm_is_rejected(GLINT_E_FORMAT, BYTES("Pf 1 1 nan " ONE));
+    check_pfm_is_rejected(GLINT_E_FORMAT, BYTES("Pf 1 1 -inf " ONE));
+    check_pfm_is_rejected(GLINT_E_FORMAT, BYTES("Pf 1 1 -1x " ONE));
+    check_pfm_is_rejected(GLINT_E_FORMAT, BYTES("Pf 1x 1 -1 " ONE));
+    check_pfm_is_rejected(GLINT_E_FORMAT, BYTES("Pf 1 1 -1\0 " ONE));
+    check_pfm_is_rejected(
         GLINT_E_FORMAT,
         BYTES("Pf 1 1 -1.0000000000000000000000000000000000000 " ONE));
-    check_pfm_refusal(GLINT_E_UNSUPPORTED, BYTES("Pf 32769 1 -1 " ONE));
-    check_pfm_refusal(GLINT_E_UNSUPPORTED,
-                      BYTES("Pf 1 9999999999999999 -1 " ONE));
-    check_pfm_refusal(GLINT_E_FORMAT, BYTES("PF 8192 8192 -1 " ONE));
+    check_pfm_is_rejected(GLINT_E_UNSUPPORTED, BYTES("Pf 32769 1 -1 " ONE));
+    check_pfm_is_rejected(GLINT_E_UNSUPPORTED,
+                          BYTES("Pf 1 9999999999999999 -1 " ONE));
+    check_pfm_is_rejected(GLINT_E_FORMAT, BYTES("PF 8192 8192 -1 " ONE));
 }
 
-TEST(truncated_pfm)
+TEST(rejects_truncated_pfm)
 {
     static const char pfm[] = "PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF;
 
     for (size_t n = 0; n < sizeof pfm - 1; n++)
-        check_pfm_refusal(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, pfm, n);
+        check_pfm_is_rejected(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, pfm,
+                              n);
 }
 
 /* ----------------------------------------------------------------- writing */
 
-static void open_path(struct glint_output *out)
+static void open_output_file(struct glint_output *out)
 {
     assert_ok(
         glint_output_open(out, scratch_file, GLINT_OUTPUT_BINARY, &error));
 }
 
-static void expect_path(struct glint_output *out, const char *want,
-                        size_t want_bytes)
+static void expect_output_bytes(struct glint_output *out, const char *want,
+                                size_t want_bytes)
 {
     uint8_t *data;
     size_t bytes;
@@ -271,7 +276,7 @@ static void expect_path(struct glint_output *out, const char *want,
     free(data);
 }
 
-TEST(write_ppm)
+TEST(writes_ppm)
 {
     uint8_t padded[] = "abcdef--ghijkl--";
     struct glint_image image = {.format = GLINT_RGB24,
@@ -281,27 +286,28 @@ TEST(write_ppm)
                                 .stride_bytes = {8, 0, 0}};
     struct glint_output out;
 
-    open_path(&out);
+    open_output_file(&out);
     assert_ok(glint_pnm_write(&out, &image, &error));
-    expect_path(&out, BYTES("P6\n2 2\n255\nabcdefghijkl"));
+    expect_output_bytes(&out, BYTES("P6\n2 2\n255\nabcdefghijkl"));
 
     image.plane[0] = padded + 8; /* bottom row first in memory */
     image.stride_bytes[0] = -8;
-    open_path(&out);
+    open_output_file(&out);
     assert_ok(glint_pnm_write(&out, &image, &error));
-    expect_path(&out, BYTES("P6\n2 2\n255\nghijklabcdef"));
+    expect_output_bytes(&out, BYTES("P6\n2 2\n255\nghijklabcdef"));
 }
 
-TEST(write_pfm)
+TEST(writes_pfm)
 {
     float values[6];
     const struct glint_float_image floats = {1, 2, values};
     struct glint_output out;
 
     memcpy(values, two_pixels, sizeof values);
-    open_path(&out);
+    open_output_file(&out);
     assert_ok(glint_pfm_write(&out, &floats, &error));
-    expect_path(&out, BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF));
+    expect_output_bytes(&out,
+                        BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF));
 }
 
 /* Checks a round trip with an odd width and more rows than are encoded at a
@@ -318,7 +324,7 @@ TEST(pfm_round_trip)
 
     for (int i = 0; i < N; i++)
         values[i] = (float)i * 0.37F - 100;
-    open_path(&out);
+    open_output_file(&out);
     assert_ok(glint_pfm_write(&out, &floats, &error));
     assert_ok(glint_output_commit(&out, &error));
     assert_ok(glint_input_slurp(&data, &bytes, scratch_file, 100000, &error));
@@ -328,4 +334,4 @@ TEST(pfm_round_trip)
     free(data);
 }
 
-TEST_GROUP(scratch_open_file, scratch_close_file);
+TEST_GROUP(scratch_create_file, scratch_remove_file);

@@ -33,7 +33,7 @@ struct tally {
     int clashes;
 };
 
-static void count_run(void *ctx, int job, int worker)
+static void count_job_run(void *ctx, int job, int worker)
 {
     struct tally *const t = ctx;
 
@@ -46,7 +46,7 @@ static void count_run(void *ctx, int job, int worker)
     __atomic_fetch_sub(&t->busy[worker], 1, __ATOMIC_RELAXED);
 }
 
-static void check_rounds(int n_threads)
+static void check_jobs_run_once(int n_threads)
 {
     static const int n_jobs[] = {0, 1, 2, 3, 7, 64, MAX_JOBS};
     struct glint_workers *workers;
@@ -59,7 +59,7 @@ static void check_rounds(int n_threads)
 
         memset(&tally, 0, sizeof tally);
         tally.n_workers = n_threads;
-        glint_workers_run(workers, n, count_run, &tally);
+        glint_workers_run(workers, n, count_job_run, &tally);
         assert_int_equal(tally.clashes, 0);
         for (int job = 0; job < MAX_JOBS; job++)
             assert_int_equal(tally.runs[job], job < n);
@@ -67,15 +67,15 @@ static void check_rounds(int n_threads)
     glint_pool_destroy(workers);
 }
 
-TEST(every_job_once)
+TEST(every_job_runs_once)
 {
     static const int n_threads[] = {1, 2, 3, 8, GLINT_MAX_WORKERS};
 
     for (size_t i = 0; i < sizeof n_threads / sizeof *n_threads; i++)
-        check_rounds(n_threads[i]);
+        check_jobs_run_once(n_threads[i]);
 }
 
-static void add_job(void *ctx, int job, int worker)
+static void add_job_number(void *ctx, int job, int worker)
 {
     uint64_t *const sums = ctx;
 
@@ -92,13 +92,13 @@ TEST(results_are_visible)
     for (int round = 0; round < 2000; round++) {
         uint64_t sums[4] = {0, 0, 0, 0};
 
-        workers->run(workers, 100, add_job, sums);
+        workers->run(workers, 100, add_job_number, sums);
         assert_int_equal(sums[0] + sums[1] + sums[2] + sums[3], 4950);
     }
     glint_pool_destroy(workers);
 }
 
-TEST(idle_pools)
+TEST(idle_pools_can_be_destroyed)
 {
     struct glint_workers *workers;
 
@@ -109,7 +109,7 @@ TEST(idle_pools)
     glint_pool_destroy(NULL);
 }
 
-TEST(refuses)
+TEST(rejects_invalid_numbers_of_workers)
 {
     struct glint_workers *workers = NULL;
 
@@ -120,7 +120,7 @@ TEST(refuses)
 }
 
 /* Checks that a pool of default size has one worker per online processor. */
-TEST(one_per_processor)
+TEST(default_pool_has_a_worker_per_processor)
 {
     const long n = sysconf(_SC_NPROCESSORS_ONLN);
     struct glint_workers *workers;
@@ -150,7 +150,7 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
 }
 
 /* Checks that a pool that could not start all threads still runs all jobs. */
-TEST(fewer_threads)
+TEST(missing_threads_do_not_lose_jobs)
 {
     for (int left = 0; left < 4; left++) {
         struct glint_workers *workers;
@@ -160,7 +160,7 @@ TEST(fewer_threads)
         assert_ok(glint_pool_create(&workers, 8));
         threads_left = -1;
         assert_int_equal(workers->n, left + 1);
-        workers->run(workers, 100, add_job, sums);
+        workers->run(workers, 100, add_job_number, sums);
         for (int i = 0; i < 8; i++) {
             assert_true(i <= left || sums[i] == 0);
             sum += sums[i];
@@ -172,8 +172,8 @@ TEST(fewer_threads)
 
 /* ------------------------------------------------------------------- stacks */
 
-/* Touches as much stack as baking may need. Not inlined, so that its callers
- * do not need that much stack themselves. */
+/* Uses as much stack as baking may need. Not inlined, so that its callers do
+ * not need that much stack themselves. */
 __attribute__((noinline)) static int use_stack(void *ctx)
 {
     volatile char hole[GLINT_BAKE_STACK_BYTES];
@@ -183,8 +183,8 @@ __attribute__((noinline)) static int use_stack(void *ctx)
     return *(int *)ctx + hole[512];
 }
 
-/* The calling thread waits, so that the helper thread runs dig() on its own
- * stack. */
+/* The calling thread waits, so that the helper thread runs use_stack() on its
+ * own stack. */
 static void use_stack_in_helper(void *ctx, int job, int worker)
 {
     int *const dug = ctx;
@@ -212,7 +212,7 @@ static void run_with_small_stack(int (*work)(void))
     assert_int_equal(WEXITSTATUS(how), 0);
 }
 
-static int use_stack_in_pool(void)
+static int use_stack_in_pool_thread(void)
 {
     struct glint_workers *workers;
     int dug = 0;
@@ -223,7 +223,7 @@ static int use_stack_in_pool(void)
     return dug != 2;
 }
 
-static int use_stack_on_thread(void)
+static int use_stack_in_large_thread(void)
 {
     int two = 2;
 
@@ -231,11 +231,12 @@ static int use_stack_on_thread(void)
            3;
 }
 
-TEST(stacks)
+TEST(threads_have_enough_stack)
 {
-    run_with_small_stack(use_stack_in_pool);
-    run_with_small_stack(use_stack_on_thread);
-    threads_left = 0; /* If no thread can start, dig() is called directly. */
+    run_with_small_stack(use_stack_in_pool_thread);
+    run_with_small_stack(use_stack_in_large_thread);
+    /* If no thread can start, use_stack() is called directly. */
+    threads_left = 0;
     assert_int_equal(glint_process_on_stack(SIZE_MAX / 4, use_stack, &(int){4}),
                      5);
     threads_left = -1;
@@ -251,8 +252,8 @@ static void write_child_pipe(void)
         _exit(98);
 }
 
-/* Faults in the helper thread; the calling thread waits. */
-static void fault_job(void *ctx, int job, int worker)
+/* Causes a fault in the helper thread while the calling thread waits. */
+static void fault_in_helper_thread(void *ctx, int job, int worker)
 {
     volatile char *const nowhere = ctx;
 
@@ -264,7 +265,7 @@ static void fault_job(void *ctx, int job, int worker)
 
 /* Checks that a fault in a helper thread runs the functions registered for
  * the end of the process. */
-TEST(fault_in_helper)
+TEST(fault_in_a_helper_runs_functions)
 {
     const size_t bytes = (size_t)sysconf(_SC_PAGESIZE);
     void *const nowhere =
@@ -283,7 +284,7 @@ TEST(fault_in_helper)
         setrlimit(RLIMIT_CORE, &no_core);
         if (!glint_at_death(write_child_pipe) || glint_pool_create(&workers, 2))
             _exit(97);
-        workers->run(workers, 2, fault_job, nowhere);
+        workers->run(workers, 2, fault_in_helper_thread, nowhere);
         _exit(96);
     }
     close(child_pipe[1]);

@@ -14,9 +14,9 @@
 
 /* Returns a description of WIDTH x HEIGHT pixels at MEM: three channels of
  * type SAMPLE, or four with alpha. */
-static struct glint_samples make_samples(int width, int height,
-                                         enum glint_sample sample,
-                                         bool has_alpha, void *mem)
+static struct glint_samples describe_samples(int width, int height,
+                                             enum glint_sample sample,
+                                             bool has_alpha, void *mem)
 {
     const size_t bytes = glint_sample_bytes(sample);
     struct glint_samples s = {.width = width,
@@ -40,7 +40,7 @@ static struct glint_samples make_samples(int width, int height,
     return s;
 }
 
-TEST(half)
+TEST(half_floats_round_trip)
 {
     for (unsigned i = 0; i < 65536; i++) {
         const float value = glint_half_decode((uint16_t)i);
@@ -58,7 +58,7 @@ TEST(half)
 
 /* Expected values are computed by hand: sRGB 0.5 is 0.21404 linear, BT.709
  * 0.5 is 0.25959. */
-TEST(curves)
+TEST(tone_curves_match_hand_computation)
 {
     struct glint_tone_curve t;
 
@@ -91,7 +91,7 @@ static void write_be32(uint8_t *at, uint32_t v)
 
 /* Writes an ICC profile with Adobe RGB's primaries and a gamma of GAMMA_Q8;
  * returns its size in bytes. */
-static size_t make_profile(uint8_t p[400], unsigned gamma_q8)
+static size_t write_icc_profile(uint8_t p[400], unsigned gamma_q8)
 {
     static const char *const names[] = {"rXYZ", "gXYZ", "bXYZ",
                                         "rTRC", "gTRC", "bTRC"};
@@ -120,12 +120,12 @@ static size_t make_profile(uint8_t p[400], unsigned gamma_q8)
 
 /* Expected values are computed by hand: Adobe RGB 0.5 is 0.5^2.19922 =
  * 0.21776 linear, and Adobe green contributes -0.398 to sRGB red. */
-TEST(profile)
+TEST(icc_profile_matches_hand_computation)
 {
     struct glint_colours c;
     uint8_t p[400];
 
-    make_profile(p, 563);
+    write_icc_profile(p, 563);
     assert_true(glint_icc_read(&c, p, sizeof p));
     assert_false(c.is_srgb);
     assert_true(fabs(glint_tone_curve_decode(&c.transfer[1], 0.5) - 0.21776) <
@@ -137,7 +137,7 @@ TEST(profile)
     memcpy(p + 16, "CMYK", 4);
     assert_false(glint_icc_read(&c, p, sizeof p));
     for (size_t n = 0; n < 400; n++) { /* truncated at any byte */
-        make_profile(p, 563);
+        write_icc_profile(p, 563);
         uint8_t *const exact = malloc(n + 1);
 
         memcpy(exact, p, n);
@@ -148,7 +148,7 @@ TEST(profile)
 
 /* Checks that a tone curve table accepts any float and clamps those outside
  * its range. */
-TEST(tables_of_any_float)
+TEST(curve_table_accepts_any_float)
 {
     struct glint_tone_curve t = {
         .gamma = 1, .a = 1, .n_entries = 3, .entry = {0, 16384, 65535}};
@@ -165,7 +165,8 @@ TEST(light_is_added)
 {
     uint16_t mem[] = {0, 1000, 65535, 32768, 32768, 32768};
     uint16_t before[6];
-    struct glint_samples s = make_samples(2, 1, GLINT_SAMPLE_U16, false, mem);
+    struct glint_samples s =
+        describe_samples(2, 1, GLINT_SAMPLE_U16, false, mem);
     float layer[6] = {0};
 
     memcpy(before, mem, sizeof mem);
@@ -180,16 +181,17 @@ TEST(light_is_added)
 }
 
 /* Checks that floats may exceed white and that NaN is preserved. */
-TEST(floats)
+TEST(floats_keep_their_range)
 {
     float mem[] = {2, -0.25F, NAN};
-    struct glint_samples s = make_samples(1, 1, GLINT_SAMPLE_FLOAT, false, mem);
+    struct glint_samples s =
+        describe_samples(1, 1, GLINT_SAMPLE_FLOAT, false, mem);
     const float layer[] = {0.5F, 0.5F, 0.5F};
     struct glint_image proxy;
     double white;
 
     assert_ok(glint_samples_proxy(&s, &proxy, &white));
-    assert_true(white >= 2); /* the brightest 1 % is this pixel */
+    assert_true(white >= 2); /* this pixel is the brightest 1 % */
     assert_int_equal(proxy.plane[0][1], 0);
     assert_int_equal(proxy.plane[0][2], 0);
     free(proxy.plane[0]);
@@ -201,10 +203,10 @@ TEST(floats)
 
 /* Checks that transparent pixels count as dark unless alpha is
  * premultiplied, and that alpha is preserved. */
-TEST(alpha)
+TEST(transparent_pixels_count_as_dark)
 {
     uint8_t mem[] = {255, 255, 255, 0, 200, 200, 200, 255};
-    struct glint_samples s = make_samples(2, 1, GLINT_SAMPLE_U8, true, mem);
+    struct glint_samples s = describe_samples(2, 1, GLINT_SAMPLE_U8, true, mem);
     const float layer[] = {1, 1, 1, 0.01F, 0.01F, 0.01F};
     struct glint_image proxy;
     double white;
@@ -223,7 +225,7 @@ TEST(alpha)
     assert_in_range(mem[4], 201, 203);
 }
 
-static void expect_near(float is, double wanted)
+static void expect_float_near(float is, double wanted)
 {
     assert_true(fabs((double)is - wanted) < 1e-6);
 }
@@ -231,7 +233,7 @@ static void expect_near(float is, double wanted)
 /* Checks the alpha of a pixel after an object is composited onto it,
  * straight and premultiplied: an object of coverage 0.5 and light 0.5 over a
  * pixel of alpha 0.25 and light 0.2. */
-TEST(cover)
+TEST(alpha_after_compositing)
 {
     const double behind = 0.25 * 0.2, light = 0.5 * behind + 0.5 * 0.5;
     const double rgb[3] = {light, light, light}, alpha = 1 - 0.75 * 0.5;
@@ -239,32 +241,32 @@ TEST(cover)
     for (int premultiplied = 0; premultiplied < 2; premultiplied++) {
         float mem[8] = {0, 0, 0, 0.25F, 9, 9, 9, 0.5F}, seen[3];
         struct glint_samples s =
-            make_samples(2, 1, GLINT_SAMPLE_FLOAT, true, mem);
+            describe_samples(2, 1, GLINT_SAMPLE_FLOAT, true, mem);
 
         s.is_premultiplied = premultiplied;
         mem[0] = mem[1] = mem[2] = premultiplied ? 0.05F : 0.2F;
         glint_samples_light(&s, 0, 0, seen);
-        expect_near(seen[0], behind);
+        expect_float_near(seen[0], behind);
         glint_samples_set(&s, 0, 0, rgb, 0.5);
-        expect_near(mem[3], alpha);
-        expect_near(mem[0], premultiplied ? light : light / alpha);
+        expect_float_near(mem[3], alpha);
+        expect_float_near(mem[0], premultiplied ? light : light / alpha);
         glint_samples_light(&s, 0, 0, seen);
-        expect_near(seen[0], light);
-        expect_near(mem[7], 0.5);
+        expect_float_near(seen[0], light);
+        expect_float_near(mem[7], 0.5);
         /* Light with coverage 0 changes neither alpha nor the colour of a
          * fully transparent pixel. */
         mem[3] = 0;
         glint_samples_set(&s, 0, 0, rgb, 0);
-        expect_near(mem[3], 0);
-        expect_near(mem[0], light);
+        expect_float_near(mem[3], 0);
+        expect_float_near(mem[0], light);
         glint_samples_set(&s, 0, 0, rgb, 1);
-        expect_near(mem[3], 1);
+        expect_float_near(mem[3], 1);
     }
 }
 
 /* Checks the 8 EXIF orientations of an image stored as 2 x 3 pixels. Each
  * string lists the letters of the pixels of the upright image. */
-TEST(orientations)
+TEST(every_exif_orientation_is_upright)
 {
     static const char *const upright[] = {"abcdef", "badcfe", "fedcba",
                                           "efcdab", "acebdf", "ecafdb",
@@ -275,7 +277,7 @@ TEST(orientations)
         mem[i] = (uint8_t)("abcdef"[i / 3]);
     for (int o = 1; o <= 8; o++) {
         struct glint_samples s =
-            make_samples(2, 3, GLINT_SAMPLE_U8, false, mem);
+            describe_samples(2, 3, GLINT_SAMPLE_U8, false, mem);
         struct glint_image proxy;
         double white;
 
@@ -290,10 +292,11 @@ TEST(orientations)
 
 /* Checks an EXR data window that is smaller than the display window and
  * extends outside it. */
-TEST(windows)
+TEST(exr_data_window_may_differ)
 {
     float mem[] = {1, 1, 1, 0.5F, 0.5F, 0.5F};
-    struct glint_samples s = make_samples(2, 1, GLINT_SAMPLE_FLOAT, false, mem);
+    struct glint_samples s =
+        describe_samples(2, 1, GLINT_SAMPLE_FLOAT, false, mem);
     const float layer[] = {4, 4, 4, 4, 4, 4};
     struct glint_image image;
     float rgb[3];
@@ -313,17 +316,18 @@ TEST(windows)
 /* Checks conversion from 8 bits with straight alpha to premultiplied floats
  * and back. A destination without alpha receives the pixels composited over
  * black. */
-TEST(convert)
+TEST(straight_and_premultiplied_alpha_convert)
 {
     uint8_t mem[] = {188, 0, 255, 128}, back[4], flat[3];
     float floats[4];
-    struct glint_samples from = make_samples(1, 1, GLINT_SAMPLE_U8, true, mem);
+    struct glint_samples from =
+        describe_samples(1, 1, GLINT_SAMPLE_U8, true, mem);
     struct glint_samples to =
-        make_samples(1, 1, GLINT_SAMPLE_FLOAT, true, floats);
+        describe_samples(1, 1, GLINT_SAMPLE_FLOAT, true, floats);
     struct glint_samples again =
-        make_samples(1, 1, GLINT_SAMPLE_U8, true, back);
+        describe_samples(1, 1, GLINT_SAMPLE_U8, true, back);
     struct glint_samples opaque =
-        make_samples(1, 1, GLINT_SAMPLE_U8, false, flat);
+        describe_samples(1, 1, GLINT_SAMPLE_U8, false, flat);
 
     to.is_premultiplied = true;
     glint_samples_convert(&to, &from);
@@ -332,5 +336,5 @@ TEST(convert)
     glint_samples_convert(&again, &to);
     assert_memory_equal(back, mem, 4);
     glint_samples_convert(&opaque, &from);
-    assert_int_equal(flat[2], 188); /* half of white, encoded */
+    assert_int_equal(flat[2], 188); /* sRGB code of half of white */
 }

@@ -26,8 +26,9 @@
 #include "support/test.h"
 
 /* Returns an image with its planes in MEM. */
-static struct glint_image make_image(enum glint_pixel_format format, int width,
-                                     int height, void *mem)
+static struct glint_image make_image_over_memory(enum glint_pixel_format format,
+                                                 int width, int height,
+                                                 void *mem)
 {
     struct glint_image image = glint_image_over(mem, format, width, height);
 
@@ -39,11 +40,13 @@ static struct glint_image make_image(enum glint_pixel_format format, int width,
 
 /* Converts FROM, 3 x 3 pixels of FORMAT, to PLANAR and checks that the
  * concatenated planes equal WANT. */
-static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
-                          enum glint_pixel_format planar, const char *want)
+static void expect_converted_planes(enum glint_pixel_format format,
+                                    const uint8_t *from,
+                                    enum glint_pixel_format planar,
+                                    const char *want)
 {
     const struct glint_image image =
-        make_image(format, 3, 3, (uint8_t *)(uintptr_t)from);
+        make_image_over_memory(format, 3, 3, (uint8_t *)(uintptr_t)from);
     struct glint_image to;
     struct glint_row_rgb row;
     uint8_t mem[64], work[64];
@@ -52,7 +55,7 @@ static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
     assert_int_equal(glint_planar_format(format), planar);
     assert_int_equal(strlen(want), n);
     memset(mem, '-', sizeof mem);
-    to = make_image(planar, 3, 3, mem);
+    to = make_image_over_memory(planar, 3, 3, mem);
     assert_true(glint_row_rgb_bytes(3) <= sizeof work);
     glint_row_rgb_init(&row, work, 3);
     glint_planar_write(&to, &image, &row);
@@ -63,25 +66,27 @@ static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
 }
 
 /* Letters are samples: luma a .., Cb A .., Cr 1 .. */
-TEST(planes)
+TEST(converts_packed_to_planar)
 {
-    expect_planes(GLINT_YUYV, (const uint8_t *)"aAb1cB.2dCe3fD.4gEh5iF.6",
-                  GLINT_I422, "abcdefghiABCDEF123456");
-    expect_planes(GLINT_UYVY, (const uint8_t *)"Aa1bBc2.Cd3eDf4.Eg5hFi6.",
-                  GLINT_I422, "abcdefghiABCDEF123456");
-    expect_planes(GLINT_NV12, (const uint8_t *)"abcdefghiA1B2C3D4", GLINT_I420,
-                  "abcdefghiABCD1234");
-    expect_planes(GLINT_NV21, (const uint8_t *)"abcdefghi1A2B3C4D", GLINT_I420,
-                  "abcdefghiABCD1234");
-    expect_planes(GLINT_I420, (const uint8_t *)"abcdefghiABCD1234", GLINT_I420,
-                  "abcdefghiABCD1234");
-    expect_planes(GLINT_GREY, (const uint8_t *)"abcdefghi", GLINT_GREY,
-                  "abcdefghi");
+    expect_converted_planes(GLINT_YUYV,
+                            (const uint8_t *)"aAb1cB.2dCe3fD.4gEh5iF.6",
+                            GLINT_I422, "abcdefghiABCDEF123456");
+    expect_converted_planes(GLINT_UYVY,
+                            (const uint8_t *)"Aa1bBc2.Cd3eDf4.Eg5hFi6.",
+                            GLINT_I422, "abcdefghiABCDEF123456");
+    expect_converted_planes(GLINT_NV12, (const uint8_t *)"abcdefghiA1B2C3D4",
+                            GLINT_I420, "abcdefghiABCD1234");
+    expect_converted_planes(GLINT_NV21, (const uint8_t *)"abcdefghi1A2B3C4D",
+                            GLINT_I420, "abcdefghiABCD1234");
+    expect_converted_planes(GLINT_I420, (const uint8_t *)"abcdefghiABCD1234",
+                            GLINT_I420, "abcdefghiABCD1234");
+    expect_converted_planes(GLINT_GREY, (const uint8_t *)"abcdefghi",
+                            GLINT_GREY, "abcdefghi");
 }
 
 /* Computes Y', Cb and Cr of an RGB colour with the standard's coefficients. */
-static void compute_reference(int ycc[3], const int rgb[3],
-                              const struct glint_image *as)
+static void compute_ycc_of_rgb(int ycc[3], const int rgb[3],
+                               const struct glint_image *as)
 {
     const bool full = as->range == GLINT_RANGE_FULL;
     const double kr = as->matrix == GLINT_MATRIX_BT601 ? .299 : .2126;
@@ -95,11 +100,13 @@ static void compute_reference(int ycc[3], const int rgb[3],
     ycc[2] = (int)fmin(255, floor(128 + (full ? cr : cr * 224 / 255) + .5));
 }
 
-static void check_colours(enum glint_matrix matrix, enum glint_range range)
+static void check_rgb_to_ycc_colours(enum glint_matrix matrix,
+                                     enum glint_range range)
 {
     uint8_t rgb[3 * 256], ycc[3 * 256], work[2048];
-    const struct glint_image from = make_image(GLINT_RGB24, 256, 1, rgb);
-    struct glint_image to = make_image(GLINT_I444, 256, 1, ycc);
+    const struct glint_image from =
+        make_image_over_memory(GLINT_RGB24, 256, 1, rgb);
+    struct glint_image to = make_image_over_memory(GLINT_I444, 256, 1, ycc);
     struct glint_row_rgb row;
     long n_off = 0;
 
@@ -117,7 +124,7 @@ static void check_colours(enum glint_matrix matrix, enum glint_range range)
             const int px[] = {rgb[3 * x], rgb[3 * x + 1], rgb[3 * x + 2]};
             int want[3];
 
-            compute_reference(want, px, &to);
+            compute_ycc_of_rgb(want, px, &to);
             for (int k = 0; k < 3; k++) {
                 assert_true(abs(ycc[256 * k + x] - want[k]) <= 1);
                 n_off += ycc[256 * k + x] != want[k];
@@ -130,11 +137,12 @@ static void check_colours(enum glint_matrix matrix, enum glint_range range)
 
 /* Checks that pure blue and red of full range, whose chroma would be 255.5,
  * are clamped to 255. */
-static void check_last_codes(void)
+static void check_clamped_chroma_codes(void)
 {
     uint8_t rgb[] = {0, 0, 255, 255, 0, 0}, ycc[6], work[64];
-    const struct glint_image from = make_image(GLINT_RGB24, 2, 1, rgb);
-    struct glint_image to = make_image(GLINT_I444, 2, 1, ycc);
+    const struct glint_image from =
+        make_image_over_memory(GLINT_RGB24, 2, 1, rgb);
+    struct glint_image to = make_image_over_memory(GLINT_I444, 2, 1, ycc);
     struct glint_row_rgb row;
 
     to.range = GLINT_RANGE_FULL;
@@ -144,7 +152,7 @@ static void check_last_codes(void)
     assert_int_equal(ycc[5], 255);
 }
 
-TEST(from_rgb)
+TEST(converts_rgb_to_ycc)
 {
     static const uint8_t colours[] = {255, 255, 255, 0, 0, 0,   255, 0,   0,
                                       0,   255, 0,   0, 0, 255, 128, 128, 128,
@@ -154,17 +162,17 @@ TEST(from_rgb)
                                "\x80\x80\x5a\x36\xf0\x80\x80\x80\x80"
                                "\x80\x80\xf0\x22\x6e\x80\x80\x80\x80";
 
-    expect_planes(GLINT_RGB24, colours, GLINT_I444, want);
-    check_last_codes();
-    check_colours(GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
-    check_colours(GLINT_MATRIX_BT601, GLINT_RANGE_FULL);
-    check_colours(GLINT_MATRIX_BT709, GLINT_RANGE_LIMITED);
-    check_colours(GLINT_MATRIX_BT709, GLINT_RANGE_FULL);
+    expect_converted_planes(GLINT_RGB24, colours, GLINT_I444, want);
+    check_clamped_chroma_codes();
+    check_rgb_to_ycc_colours(GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
+    check_rgb_to_ycc_colours(GLINT_MATRIX_BT601, GLINT_RANGE_FULL);
+    check_rgb_to_ycc_colours(GLINT_MATRIX_BT709, GLINT_RANGE_LIMITED);
+    check_rgb_to_ycc_colours(GLINT_MATRIX_BT709, GLINT_RANGE_FULL);
 }
 
 /* --------------------------------------------------------------------- Y4M */
 
-static void expect_file(const char *want, size_t bytes)
+static void expect_file_bytes(const char *want, size_t bytes)
 {
     char got[512];
     const int fd = open(scratch_file, O_RDONLY);
@@ -175,13 +183,13 @@ static void expect_file(const char *want, size_t bytes)
     assert_memory_equal(got, want, bytes);
 }
 
-TEST(y4m)
+TEST(writes_y4m)
 {
     static const char want[] =
         "YUV4MPEG2 W4 H2 F25:1 Ip A1:1 C422 XCOLORRANGE=FULL\n"
         "FRAME\nabcdefghABCD1234FRAME\nabcdefghABCD1234";
     struct glint_image image =
-        make_image(GLINT_YUYV, 4, 2, (void *)"aAb1cBd2eCf3gDh4");
+        make_image_over_memory(GLINT_YUYV, 4, 2, (void *)"aAb1cBd2eCf3gDh4");
     struct glint_y4m_sink y4m;
     struct glint_error error;
 
@@ -194,18 +202,19 @@ TEST(y4m)
     assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_E_OUTPUT);
     assert_ok(glint_y4m_sink_finish(&y4m, &error));
     assert_ok(glint_y4m_sink_finish(&y4m, &error));
-    expect_file(want, sizeof want - 1);
+    expect_file_bytes(want, sizeof want - 1);
 }
 
 /* Checks that a format which Y4M supports is written without a copy, and
  * that RGB is converted and declared as limited range. */
-TEST(y4m_formats)
+TEST(y4m_writes_supported_formats_without_copy)
 {
     static const char planes[] = "YUV4MPEG2 W2 H2 F0:0 Ip A1:1 C420jpeg "
                                  "XCOLORRANGE=LIMITED\nFRAME\nabcdA1";
     static const char white[] = "YUV4MPEG2 W1 H1 F30:1 Ip A1:1 C444 "
                                 "XCOLORRANGE=LIMITED\nFRAME\n\xeb\x80\x80";
-    struct glint_image image = make_image(GLINT_I420, 2, 2, (void *)"abcdA1");
+    struct glint_image image =
+        make_image_over_memory(GLINT_I420, 2, 2, (void *)"abcdA1");
     struct glint_y4m_sink y4m;
     struct glint_error error;
 
@@ -214,21 +223,22 @@ TEST(y4m_formats)
     assert_null(y4m.mem);
     y4m.sink.close(&y4m.sink);
     y4m.sink.close(&y4m.sink);
-    expect_file(planes, sizeof planes - 1);
-    image = make_image(GLINT_BGR24, 1, 1, (void *)"\xff\xff\xff");
+    expect_file_bytes(planes, sizeof planes - 1);
+    image = make_image_over_memory(GLINT_BGR24, 1, 1, (void *)"\xff\xff\xff");
     image.range = GLINT_RANGE_FULL;
     glint_y4m_sink_open(&y4m, scratch_file, 30, 1);
     assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
     y4m.sink.close(&y4m.sink);
-    expect_file(white, sizeof white - 1);
+    expect_file_bytes(white, sizeof white - 1);
 }
 
 /* Checks that frames are dropped, without blocking, when nobody reads a pipe
  * of 64 KiB. */
-TEST(y4m_slow_reader)
+TEST(y4m_drops_frames_for_a_slow_reader)
 {
     static uint8_t mem[4096 * 3], sink_hole[65536];
-    const struct glint_image image = make_image(GLINT_GREY, 96, 128, mem);
+    const struct glint_image image =
+        make_image_over_memory(GLINT_GREY, 96, 128, mem);
     struct glint_y4m_sink y4m;
     struct glint_error error;
     char name[32];
@@ -256,10 +266,10 @@ TEST(y4m_slow_reader)
     close(fd[1]);
 }
 
-TEST(y4m_refused)
+TEST(y4m_reports_an_invalid_path)
 {
     const struct glint_image image =
-        make_image(GLINT_YUYV, 2, 1, (void *)"aAb1");
+        make_image_over_memory(GLINT_YUYV, 2, 1, (void *)"aAb1");
     struct glint_y4m_sink y4m;
     struct glint_error error;
 
@@ -269,10 +279,10 @@ TEST(y4m_refused)
     y4m.sink.close(&y4m.sink);
 }
 
-TEST(null)
+TEST(null_sink_accepts_images)
 {
     const struct glint_image image =
-        make_image(GLINT_YUYV, 2, 1, (void *)"aAb1");
+        make_image_over_memory(GLINT_YUYV, 2, 1, (void *)"aAb1");
     struct glint_null_sink null;
     struct glint_error error;
 
@@ -285,8 +295,9 @@ TEST(null)
 /* ------------------------------------------------------------- V4L2 output */
 
 static struct {
-    uint32_t caps, stride, size, fourcc; /* 0: the requested value */
-    unsigned long fail_request;          /* ioctl() request that fails */
+    /* values that the driver sets; 0: the requested value */
+    uint32_t caps, stride, size, fourcc;
+    unsigned long fail_request; /* ioctl() request that fails */
     int fail_errno, write_errno;
     int n_streaming;
     ssize_t most; /* max bytes per write(); 0: no limit */
@@ -297,7 +308,7 @@ static struct {
 ssize_t __real_write(int fd, const void *data, size_t bytes);
 ssize_t __wrap_write(int fd, const void *data, size_t bytes);
 
-static void answer_format(struct v4l2_format *f)
+static void answer_set_format(struct v4l2_format *f)
 {
     struct v4l2_pix_format *const px = &f->fmt.pix;
 
@@ -317,7 +328,7 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
     va_start(args, request);
     arg = va_arg(args, void *);
     va_end(args);
-    if (!wrapped_is(fd, scratch_file) || !node.caps)
+    if (!wrapped_is_file(fd, scratch_file) || !node.caps)
         return __real_ioctl(fd, request, arg);
     if (node.fail_errno && request == node.fail_request) {
         errno = node.fail_errno;
@@ -329,7 +340,7 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
                                      .capabilities = V4L2_CAP_DEVICE_CAPS,
                                      .device_caps = node.caps};
     else if (request == VIDIOC_S_FMT)
-        answer_format(arg);
+        answer_set_format(arg);
     else if (request == VIDIOC_S_PARM)
         memcpy(&node.parm, arg, sizeof node.parm);
     else if (request == VIDIOC_STREAMON)
@@ -341,7 +352,7 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
 
 ssize_t __wrap_write(int fd, const void *data, size_t bytes)
 {
-    if (!node.caps || !wrapped_is(fd, scratch_file))
+    if (!node.caps || !wrapped_is_file(fd, scratch_file))
         return __real_write(fd, data, bytes);
     if (node.write_errno) {
         errno = node.write_errno;
@@ -352,15 +363,15 @@ ssize_t __wrap_write(int fd, const void *data, size_t bytes)
     return __real_write(fd, data, bytes);
 }
 
-static void reset_node(void)
+static void reset_fake_v4l2_node(void)
 {
     memset(&node, 0, sizeof node);
     node.caps = V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_READWRITE;
     assert_int_equal(truncate(scratch_file, 0), 0);
 }
 
-static void open_sink(struct glint_v4l2_sink *out,
-                      const struct glint_image *like)
+static void open_v4l2_sink(struct glint_v4l2_sink *out,
+                           const struct glint_image *like)
 {
     struct glint_error error;
 
@@ -368,15 +379,16 @@ static void open_sink(struct glint_v4l2_sink *out,
         fail_msg("%s", error.text);
 }
 
-TEST(v4l2)
+TEST(v4l2_writes_an_image)
 {
-    struct glint_image image = make_image(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+    struct glint_image image =
+        make_image_over_memory(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
     struct glint_error error;
 
-    reset_node();
+    reset_fake_v4l2_node();
     image.matrix = GLINT_MATRIX_BT709;
-    open_sink(&out, &image);
+    open_v4l2_sink(&out, &image);
     assert_string_equal(out.card, "fake");
     assert_int_equal(node.set.fmt.pix.pixelformat, V4L2_PIX_FMT_YUYV);
     assert_int_equal(node.set.fmt.pix.ycbcr_enc, V4L2_YCBCR_ENC_709);
@@ -385,7 +397,7 @@ TEST(v4l2)
     assert_int_equal(node.set.fmt.pix.priv, V4L2_PIX_FMT_PRIV_MAGIC);
     assert_int_equal(node.parm.parm.output.timeperframe.denominator, 30);
     assert_ok(out.sink.put(&out.sink, &image, &error));
-    expect_file("aAb1cBd2", 8);
+    expect_file_bytes("aAb1cBd2", 8);
     assert_int_equal(out.n_frames, 1);
     assert_int_equal(node.n_streaming, 1);
     out.sink.close(&out.sink);
@@ -393,12 +405,13 @@ TEST(v4l2)
     assert_int_equal(out.fd, -1);
 }
 
-/* Checks rows with padding, of the device and of the image. */
-TEST(v4l2_strides)
+/* Checks that rows are converted between the padding of the image and that of
+ * the device. */
+TEST(v4l2_writes_padded_rows)
 {
     static const uint8_t zero;
     struct glint_image image =
-        make_image(GLINT_I420, 4, 2, (void *)"abcdefghABCD");
+        make_image_over_memory(GLINT_I420, 4, 2, (void *)"abcdefghABCD");
     struct glint_v4l2_sink out;
     struct glint_error error;
     char want[] = "abcd..efgh..AB.CD.";
@@ -406,48 +419,48 @@ TEST(v4l2_strides)
     for (char *c = want; *c; c++)
         if (*c == '.')
             *c = (char)zero;
-    reset_node();
+    reset_fake_v4l2_node();
     node.stride = 6;
     node.size = 100;
-    open_sink(&out, &image);
+    open_v4l2_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
-    expect_file(want, 18);
+    expect_file_bytes(want, 18);
     out.sink.close(&out.sink);
 
-    reset_node();
-    image = make_image(GLINT_YUYV, 2, 2, (void *)"aAb1..cBd2");
+    reset_fake_v4l2_node();
+    image = make_image_over_memory(GLINT_YUYV, 2, 2, (void *)"aAb1..cBd2");
     image.stride_bytes[0] = 6;
-    open_sink(&out, &image);
+    open_v4l2_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
-    expect_file("aAb1cBd2", 8);
+    expect_file_bytes("aAb1cBd2", 8);
     out.sink.close(&out.sink);
 
-    reset_node();
-    image = make_image(GLINT_NV12, 2, 2, (void *)"abcdA1");
+    reset_fake_v4l2_node();
+    image = make_image_over_memory(GLINT_NV12, 2, 2, (void *)"abcdA1");
     node.stride = 3;
-    open_sink(&out, &image);
+    open_v4l2_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
-    expect_file("ab\0cd\0A1", 9);
+    expect_file_bytes("ab\0cd\0A1", 9);
     out.sink.close(&out.sink);
 
-    reset_node(); /* planes that are not contiguous */
-    image = make_image(GLINT_NV12, 2, 2, (void *)"abcd..A1");
+    reset_fake_v4l2_node(); /* an image whose planes are not contiguous */
+    image = make_image_over_memory(GLINT_NV12, 2, 2, (void *)"abcd..A1");
     image.plane[1] += 2;
-    open_sink(&out, &image);
+    open_v4l2_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
-    expect_file("abcdA1", 6);
+    expect_file_bytes("abcdA1", 6);
     out.sink.close(&out.sink);
 }
 
-TEST(v4l2_no_room)
+TEST(v4l2_drops_frames_without_a_buffer)
 {
     const struct glint_image image =
-        make_image(GLINT_GREY, 4, 1, (void *)"abcd");
+        make_image_over_memory(GLINT_GREY, 4, 1, (void *)"abcd");
     struct glint_v4l2_sink out;
     struct glint_error error;
 
-    reset_node();
-    open_sink(&out, &image);
+    reset_fake_v4l2_node();
+    open_v4l2_sink(&out, &image);
     node.write_errno = EAGAIN;
     assert_ok(out.sink.put(&out.sink, &image, &error));
     assert_int_equal(out.n_dropped, 1);
@@ -463,10 +476,11 @@ TEST(v4l2_no_room)
     out.sink.close(&out.sink);
 }
 
-static void expect_refused(enum glint_status status, const char *part)
+static void expect_sink_rejects_image(enum glint_status status,
+                                      const char *part)
 {
     const struct glint_image image =
-        make_image(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+        make_image_over_memory(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
     struct glint_error error;
 
@@ -479,35 +493,41 @@ static void expect_refused(enum glint_status status, const char *part)
     assert_null(out.mem);
 }
 
-TEST(v4l2_refuses)
+TEST(v4l2_rejects_unsuitable_devices)
 {
-    struct glint_image image = make_image(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+    struct glint_image image =
+        make_image_over_memory(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
     struct glint_error error;
 
-    reset_node();
+    reset_fake_v4l2_node();
     node.caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_READWRITE;
-    expect_refused(GLINT_E_DEVICE, "fake is not a video output");
+    expect_sink_rejects_image(GLINT_E_DEVICE, "fake is not a video output");
     node.caps = V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_STREAMING;
-    expect_refused(GLINT_E_DEVICE, "does not accept frames by write()");
-    reset_node();
+    expect_sink_rejects_image(GLINT_E_DEVICE,
+                              "does not accept frames by write()");
+    reset_fake_v4l2_node();
     node.fourcc = V4L2_PIX_FMT_MJPEG;
-    expect_refused(GLINT_E_DEVICE, "accepts MJPG 2 x 2, not YUYV 2 x 2");
-    reset_node();
+    expect_sink_rejects_image(GLINT_E_DEVICE,
+                              "accepts MJPG 2 x 2, not YUYV 2 x 2");
+    reset_fake_v4l2_node();
     node.fail_request = VIDIOC_S_FMT;
     node.fail_errno = EBUSY;
-    expect_refused(GLINT_E_DEVICE, "VIDIOC_S_FMT: Device or resource busy; "
-                                   "another program");
-    reset_node();
+    expect_sink_rejects_image(GLINT_E_DEVICE,
+                              "VIDIOC_S_FMT: Device or resource busy; "
+                              "another program");
+    reset_fake_v4l2_node();
     node.stride = 8;
     node.size = 15;
-    expect_refused(GLINT_E_DEVICE, "frames of 15 bytes with rows of 8");
-    reset_node();
+    expect_sink_rejects_image(GLINT_E_DEVICE,
+                              "frames of 15 bytes with rows of 8");
+    reset_fake_v4l2_node();
     node.fail_request = VIDIOC_QUERYCAP;
     node.fail_errno = ENODEV;
-    expect_refused(GLINT_E_DEVICE, "VIDIOC_QUERYCAP: No such device");
+    expect_sink_rejects_image(GLINT_E_DEVICE,
+                              "VIDIOC_QUERYCAP: No such device");
     node.caps = 0; /* a regular file */
-    expect_refused(GLINT_E_DEVICE, "is not a video device");
+    expect_sink_rejects_image(GLINT_E_DEVICE, "is not a video device");
     image.format = GLINT_I444;
     assert_int_equal(
         glint_v4l2_sink_open(&out, scratch_file, &image, 0, 0, &error),
@@ -518,20 +538,20 @@ TEST(v4l2_refuses)
         GLINT_E_DEVICE);
     assert_non_null(strstr(error.text, "modprobe v4l2loopback"));
     /* The driver reports this pixel format by another FOURCC. */
-    reset_node();
+    reset_fake_v4l2_node();
     node.fourcc = V4L2_PIX_FMT_BGR32;
     image.format = GLINT_XRGB8888;
-    open_sink(&out, &image);
+    open_v4l2_sink(&out, &image);
     out.sink.close(&out.sink);
     image.format = GLINT_YUYV;
     /* The driver has no frame rate setting. */
-    reset_node();
+    reset_fake_v4l2_node();
     node.fail_request = VIDIOC_S_PARM;
     node.fail_errno = ENOTTY;
-    open_sink(&out, &image);
+    open_v4l2_sink(&out, &image);
     image.width = 1;
     assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_E_DEVICE);
     out.sink.close(&out.sink);
 }
 
-TEST_GROUP(scratch_open_file, scratch_close_file);
+TEST_GROUP(scratch_create_file, scratch_remove_file);

@@ -33,7 +33,7 @@ static const struct {
     {"\"\\", "\"\\", "\"\\\"\\\\\""},
 };
 
-TEST(clean)
+TEST(replaces_invalid_utf8)
 {
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char text[64];
@@ -44,7 +44,7 @@ TEST(clean)
     }
 }
 
-TEST(errors)
+TEST(error_texts_are_valid_utf8)
 {
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         struct glint_error error;
@@ -56,7 +56,7 @@ TEST(errors)
     }
 }
 
-TEST(json)
+TEST(json_strings_are_valid_utf8)
 {
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         FILE *file = tmpfile();
@@ -71,7 +71,7 @@ TEST(json)
     }
 }
 
-TEST(writer)
+TEST(json_writer_prints_objects)
 {
     FILE *file = tmpfile();
     struct json_writer json = {.to = file};

@@ -12,7 +12,8 @@
 
 /* Returns the FOURCC that the source chooses from the N modes of LIST when
  * 64 x 48 pixels at FPS frames per second are requested. */
-static uint32_t choose_fourcc(const struct fake_mode *list, int n, int fps)
+static uint32_t open_and_read_fourcc(const struct fake_mode *list, int n,
+                                     int fps)
 {
     struct glint_v4l2_config wish = any_camera;
     uint32_t fourcc;
@@ -24,9 +25,9 @@ static uint32_t choose_fourcc(const struct fake_mode *list, int n, int fps)
     wish.height = 48;
     wish.fps_num = fps;
     wish.fps_den = 1;
-    must_open(&wish);
+    must_open_camera(&wish);
     fourcc = v4l2.device.format.fourcc;
-    must_close();
+    must_close_camera();
     return fourcc;
 }
 
@@ -35,7 +36,7 @@ TEST_BEFORE
     fake_camera_reset();
 }
 
-TEST(cheapest)
+TEST(chooses_the_cheapest_format)
 {
     static const struct fake_mode equal[] = {
         {V4L2_PIX_FMT_MJPEG, 64, 48, 30, 1},
@@ -52,20 +53,20 @@ TEST(cheapest)
     static const struct fake_mode foreign[] = {
         {V4L2_PIX_FMT_H264, 64, 48, 30, 1}, {V4L2_PIX_FMT_GREY, 64, 48, 30, 1}};
 
-    assert_int_equal(choose_fourcc(equal, 4, 30), V4L2_PIX_FMT_YUYV);
-    assert_int_equal(choose_fourcc(equal, 3, 30), V4L2_PIX_FMT_NV12);
-    assert_int_equal(choose_fourcc(equal, 2, 30), V4L2_PIX_FMT_RGB24);
-    assert_int_equal(choose_fourcc(slow, 3, 30), V4L2_PIX_FMT_MJPEG);
-    assert_int_equal(choose_fourcc(slow, 3, 10), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(open_and_read_fourcc(equal, 4, 30), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(open_and_read_fourcc(equal, 3, 30), V4L2_PIX_FMT_NV12);
+    assert_int_equal(open_and_read_fourcc(equal, 2, 30), V4L2_PIX_FMT_RGB24);
+    assert_int_equal(open_and_read_fourcc(slow, 3, 30), V4L2_PIX_FMT_MJPEG);
+    assert_int_equal(open_and_read_fourcc(slow, 3, 10), V4L2_PIX_FMT_YUYV);
     /* no mode reaches the rate */
-    assert_int_equal(choose_fourcc(slow, 3, 60), V4L2_PIX_FMT_YUYV);
-    assert_int_equal(choose_fourcc(small, 2, 30), V4L2_PIX_FMT_RGB24);
-    assert_int_equal(choose_fourcc(foreign, 2, 30), V4L2_PIX_FMT_GREY);
+    assert_int_equal(open_and_read_fourcc(slow, 3, 60), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(open_and_read_fourcc(small, 2, 30), V4L2_PIX_FMT_RGB24);
+    assert_int_equal(open_and_read_fourcc(foreign, 2, 30), V4L2_PIX_FMT_GREY);
 }
 
 /* Checks that a rate requested without a size is searched among the modes of
  * the camera's present size. */
-TEST(rate_alone)
+TEST(rate_without_size_keeps_the_size)
 {
     struct glint_v4l2_config wish = any_camera;
 
@@ -73,16 +74,16 @@ TEST(rate_alone)
     camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_MJPEG, 64, 48, 30, 1};
     wish.fps_num = 30;
     wish.fps_den = 1;
-    must_open(&wish);
+    must_open_camera(&wish);
     assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_MJPEG);
     assert_int_equal(v4l2.device.format.fps_num, 30);
-    must_close();
+    must_close_camera();
 }
 
 /* Checks that intervals of 333334 units of 100 ns (reported by some USB
  * cameras) and of 1001/30000 s match a request of 30 frames per second, and
  * that 24 frames per second do not match 25. */
-TEST(almost_the_rate)
+TEST(nearly_equal_rates_match)
 {
     static const struct fake_mode usb[] = {
         {V4L2_PIX_FMT_YUYV, 64, 48, 10000000, 333334},
@@ -94,12 +95,12 @@ TEST(almost_the_rate)
         {V4L2_PIX_FMT_YUYV, 64, 48, 24, 1},
         {V4L2_PIX_FMT_MJPEG, 64, 48, 25, 1}};
 
-    assert_int_equal(choose_fourcc(usb, 2, 30), V4L2_PIX_FMT_YUYV);
-    assert_int_equal(choose_fourcc(ntsc, 2, 30), V4L2_PIX_FMT_YUYV);
-    assert_int_equal(choose_fourcc(film, 2, 25), V4L2_PIX_FMT_MJPEG);
+    assert_int_equal(open_and_read_fourcc(usb, 2, 30), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(open_and_read_fourcc(ntsc, 2, 30), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(open_and_read_fourcc(film, 2, 25), V4L2_PIX_FMT_MJPEG);
 }
 
-TEST(stepwise)
+TEST(chooses_from_stepwise_sizes)
 {
     struct glint_v4l2_config wish = any_camera;
 
@@ -107,46 +108,47 @@ TEST(stepwise)
     camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_RGB24, 256, 128, 60, 1};
     wish.width = 200;
     wish.height = 100;
-    must_open(&wish);
+    must_open_camera(&wish);
     assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_RGB24);
     assert_int_equal(v4l2.device.format.width, 200);
-    must_close();
+    must_close_camera();
     fake_camera_reset();
     camera.has_no_sizes = true;
-    must_open(&wish);
+    must_open_camera(&wish);
     assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_YUYV);
-    must_close();
+    must_close_camera();
 }
 
 /* Checks that MJPG is not chosen in a build without libjpeg. */
-TEST(no_jpeg)
+TEST(mjpg_needs_libjpeg)
 {
     fake_lacks_jpeg = true;
     camera.mode[0].fourcc = V4L2_PIX_FMT_MJPEG;
     camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_GREY, 64, 48, 30, 1};
-    must_open(NULL);
+    must_open_camera(NULL);
     assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_GREY);
-    must_close();
+    must_close_camera();
 }
 
-TEST(unread_format)
+TEST(rejects_unsupported_formats)
 {
     struct glint_v4l2_config wish = any_camera;
 
     camera.mode[0].fourcc = camera.now.fourcc = V4L2_PIX_FMT_H264;
-    must_refuse(NULL, GLINT_E_UNSUPPORTED,
-                FAKE_PATH
-                ": delivers pixel format H264, which glint does not support; "
-                "--list-formats");
+    must_refuse_to_open(
+        NULL, GLINT_E_UNSUPPORTED,
+        FAKE_PATH ": delivers pixel format H264, which glint does not support; "
+                  "--list-formats");
     fake_camera_reset();
     wish.fourcc = V4L2_PIX_FMT_NV12;
-    must_refuse(&wish, GLINT_E_DEVICE,
-                "does not support NV12 (the driver returns YUYV instead)");
+    must_refuse_to_open(
+        &wish, GLINT_E_DEVICE,
+        "does not support NV12 (the driver returns YUYV instead)");
 }
 
 /* Checks that the format which the camera sets is used, even if another was
  * requested. */
-TEST(believes)
+TEST(uses_the_format_that_the_camera_sets)
 {
     struct glint_v4l2_config wish = any_camera;
 
@@ -155,19 +157,19 @@ TEST(believes)
     wish.height = 40;
     wish.fps_num = 25;
     wish.fps_den = 1;
-    must_open(&wish);
+    must_open_camera(&wish);
     assert_int_equal(v4l2.device.format.width, 64);
     assert_int_equal(v4l2.device.format.height, 48);
     assert_int_equal(v4l2.device.format.fps_num, 30);
-    fake_camera_deliver(0, 9);
+    fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
     assert_int_equal(frame.image.width, 64);
     assert_int_equal(frame.image.height, 48);
     done();
-    must_close();
+    must_close_camera();
 }
 
-TEST(odd_rates)
+TEST(invalid_rates_are_unknown)
 {
     static const struct v4l2_fract odd[] = {
         {1, 0}, {1, UINT32_MAX}, {UINT32_MAX, 1}, {UINT32_MAX, UINT32_MAX}};
@@ -175,53 +177,54 @@ TEST(odd_rates)
     for (int i = 0; i < 4; i++) {
         fake_camera_reset();
         camera.rate = odd[i];
-        must_open(NULL);
+        must_open_camera(NULL);
         /* A rate out of range is reported as unknown. */
         assert_int_equal(v4l2.device.format.fps_num, 0);
-        must_close();
+        must_close_camera();
     }
 }
 
-TEST(inputs)
+TEST(selects_the_input)
 {
     struct glint_v4l2_config wish = any_camera;
 
     camera.n_inputs = 2;
     wish.input = 1;
-    must_open(&wish);
+    must_open_camera(&wish);
     assert_int_equal(camera.input, 1);
-    must_close();
+    must_close_camera();
     wish.input = 2;
-    must_refuse(&wish, GLINT_E_DEVICE, "has no input 2");
-    fake_camera_refuse(VIDIOC_S_INPUT, EBUSY, 1);
-    must_refuse(&wish, GLINT_E_DEVICE,
-                "VIDIOC_S_INPUT: Device or resource busy; another program");
+    must_refuse_to_open(&wish, GLINT_E_DEVICE, "has no input 2");
+    fake_camera_fail_request(VIDIOC_S_INPUT, EBUSY, 1);
+    must_refuse_to_open(
+        &wish, GLINT_E_DEVICE,
+        "VIDIOC_S_INPUT: Device or resource busy; another program");
 }
 
-TEST(colours)
+TEST(reads_the_colour_declaration)
 {
     struct glint_v4l2_config wish = any_camera;
 
     camera.quantization = V4L2_QUANTIZATION_FULL_RANGE;
     camera.ycbcr_enc = V4L2_YCBCR_ENC_709;
-    must_open(NULL);
+    must_open_camera(NULL);
     assert_int_equal(v4l2.device.format.range, GLINT_RANGE_FULL);
     assert_int_equal(v4l2.device.format.matrix, GLINT_MATRIX_BT709);
-    must_close();
+    must_close_camera();
     wish.range = GLINT_RANGE_LIMITED;
     wish.matrix = GLINT_MATRIX_BT601;
-    must_open(&wish);
-    fake_camera_deliver(0, 9);
+    must_open_camera(&wish);
+    fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
     assert_int_equal(frame.image.range, GLINT_RANGE_LIMITED);
     assert_int_equal(frame.image.matrix, GLINT_MATRIX_BT601);
     done();
-    must_close();
+    must_close_camera();
 }
 
 /* Checks that a long device name, as udev creates them, is accepted, and
  * that one longer than the buffer is rejected. */
-TEST(long_names)
+TEST(limits_the_device_name)
 {
     struct glint_v4l2_config wish = any_camera;
     char name[400];
@@ -230,19 +233,19 @@ TEST(long_names)
     memcpy(name, "/dev/", 5);
     name[120] = '\0';
     wish.device = name;
-    must_refuse(&wish, GLINT_E_DEVICE, "xxx: no such device");
+    must_refuse_to_open(&wish, GLINT_E_DEVICE, "xxx: no such device");
     assert_int_equal(strlen(v4l2.device.path), 120);
     name[120] = 'x';
     name[399] = '\0';
-    must_refuse(&wish, GLINT_E_DEVICE, "name is too long");
+    must_refuse_to_open(&wish, GLINT_E_DEVICE, "name is too long");
     wish.device = "77"; /* short for /dev/video77 */
-    must_open(&wish);
-    must_close();
+    must_open_camera(&wish);
+    must_close_camera();
 }
 
 /* ------------------------------------------------------------------- layout */
 
-static void use_format(uint32_t fourcc, bool multiplanar)
+static void set_camera_format(uint32_t fourcc, bool multiplanar)
 {
     fake_camera_reset();
     camera.mode[0].fourcc = camera.now.fourcc = fourcc;
@@ -253,192 +256,192 @@ static void use_format(uint32_t fourcc, bool multiplanar)
 
 /* Checks the plane's offset from the start of BLOCK and its stride, in
  * bytes. */
-static void expect_plane(int plane, const uint8_t *block, ptrdiff_t offset,
-                         ptrdiff_t stride)
+static void expect_plane_offset_and_stride(int plane, const uint8_t *block,
+                                           ptrdiff_t offset, ptrdiff_t stride)
 {
     assert_int_equal(frame.image.plane[plane] - block, offset);
     assert_int_equal(frame.image.stride_bytes[plane], stride);
 }
 
-static const uint8_t *find_block(int k)
+static const uint8_t *mapped_block(int k)
 {
     return camera.buffer[0].map[k];
 }
 
-TEST(strides)
+TEST(reads_padded_rows)
 {
-    use_format(V4L2_PIX_FMT_YUYV, false);
+    set_camera_format(V4L2_PIX_FMT_YUYV, false);
     camera.stride_more = 24;
-    must_open(NULL);
-    fake_camera_deliver(0, 9);
+    must_open_camera(NULL);
+    fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane(0, find_block(0), 0, 2 * 64 + 24);
+    expect_plane_offset_and_stride(0, mapped_block(0), 0, 2 * 64 + 24);
     done();
-    must_close();
+    must_close_camera();
     camera.stride_more = 0;
-    camera.says_no_stride = true;
-    must_open(NULL);
-    fake_camera_deliver(0, 9);
+    camera.reports_no_stride = true;
+    must_open_camera(NULL);
+    fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane(0, find_block(0), 0, 2 * 64);
+    expect_plane_offset_and_stride(0, mapped_block(0), 0, 2 * 64);
     done();
-    must_close();
+    must_close_camera();
 }
 
-TEST(one_block)
+TEST(reads_planes_in_one_block)
 {
-    use_format(V4L2_PIX_FMT_NV12, false);
+    set_camera_format(V4L2_PIX_FMT_NV12, false);
     camera.stride_more = 16;
-    must_open(NULL);
-    fake_camera_deliver(0, 9);
+    must_open_camera(NULL);
+    fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane(0, find_block(0), 0, 80);
-    expect_plane(1, find_block(0), 80 * 48, 80);
+    expect_plane_offset_and_stride(0, mapped_block(0), 0, 80);
+    expect_plane_offset_and_stride(1, mapped_block(0), 80 * 48, 80);
     done();
-    must_close();
-    use_format(V4L2_PIX_FMT_YUV420, true);
+    must_close_camera();
+    set_camera_format(V4L2_PIX_FMT_YUV420, true);
     camera.stride_more = 16;
-    must_open(NULL);
-    fake_camera_deliver(0, 9);
+    must_open_camera(NULL);
+    fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane(0, find_block(0), 0, 80);
-    expect_plane(1, find_block(0), 80 * 48, 40);
-    expect_plane(2, find_block(0), 80 * 48 + 40 * 24, 40);
+    expect_plane_offset_and_stride(0, mapped_block(0), 0, 80);
+    expect_plane_offset_and_stride(1, mapped_block(0), 80 * 48, 40);
+    expect_plane_offset_and_stride(2, mapped_block(0), 80 * 48 + 40 * 24, 40);
     done();
-    must_close();
+    must_close_camera();
 }
 
-TEST(several_blocks)
+TEST(reads_planes_in_several_blocks)
 {
     struct fake_frame *f;
 
-    use_format(V4L2_PIX_FMT_NV12M, true);
+    set_camera_format(V4L2_PIX_FMT_NV12M, true);
     camera.stride_more = 16;
-    must_open(NULL);
+    must_open_camera(NULL);
     assert_int_equal(v4l2.device.format.n_blocks, 2);
-    fake_camera_deliver(0, 9);
+    fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
     assert_int_equal(frame.image.format, GLINT_NV12);
-    expect_plane(0, find_block(0), 0, 80);
-    expect_plane(1, find_block(1), 0, 80);
+    expect_plane_offset_and_stride(0, mapped_block(0), 0, 80);
+    expect_plane_offset_and_stride(1, mapped_block(1), 0, 80);
     done();
-    must_close();
-    use_format(V4L2_PIX_FMT_YUV420M, true);
-    must_open(NULL);
-    f = fake_camera_deliver(0, 9);
-    f->is_odd = true; /* keeps the sizes below as they are set */
+    must_close_camera();
+    set_camera_format(V4L2_PIX_FMT_YUV420M, true);
+    must_open_camera(NULL);
+    f = fake_camera_add_frame(0, 9);
+    f->is_odd = true; /* a bytesused of 0 means 0 bytes */
     f->bytesused[0] = 64 * 48;
     f->bytesused[1] = f->bytesused[2] = 32 * 24;
     assert_int_equal(next(), GLINT_OK);
     assert_non_null(frame.image.plane[0]);
-    expect_plane(2, find_block(2), 0, 32);
+    expect_plane_offset_and_stride(2, mapped_block(2), 0, 32);
     done();
-    f = fake_camera_deliver(1, 9);
+    f = fake_camera_add_frame(1, 9);
     f->is_odd = true;
     f->bytesused[0] = 64 * 48;
     f->bytesused[1] = 32 * 24;
-    must_get_nothing(); /* the third plane is empty */
+    must_get_no_frame(); /* the third plane is empty */
     assert_int_equal(frame.n_corrupt, 1);
-    must_close();
+    must_close_camera();
 }
 
 /* Checks that data which the driver puts before the image is skipped. */
-TEST(data_offset)
+TEST(skips_data_before_the_image)
 {
     struct fake_frame *f;
 
-    use_format(V4L2_PIX_FMT_YUYV, true);
+    set_camera_format(V4L2_PIX_FMT_YUYV, true);
     camera.sizeimage = 2 * 64 * 48 + 32;
-    must_open(NULL);
-    f = fake_camera_deliver(0, 9);
+    must_open_camera(NULL);
+    f = fake_camera_add_frame(0, 9);
     f->is_odd = true;
     f->data_offset[0] = 32;
     f->bytesused[0] = 2 * 64 * 48 + 32;
     assert_int_equal(next(), GLINT_OK);
-    expect_plane(0, find_block(0), 32, 2 * 64);
+    expect_plane_offset_and_stride(0, mapped_block(0), 32, 2 * 64);
     done();
-    f = fake_camera_deliver(1, 9);
+    f = fake_camera_add_frame(1, 9);
     f->is_odd = true;
     f->data_offset[0] = 33;
     f->bytesused[0] = 2 * 64 * 48 + 32;
-    must_get_nothing();
+    must_get_no_frame();
     assert_int_equal(frame.n_corrupt, 1);
-    f = fake_camera_deliver(2, 9);
+    f = fake_camera_add_frame(2, 9);
     f->is_odd = true;
-    f->data_offset[0] = 4000; /* beyond the 100 bytes used */
+    f->data_offset[0] = 4000; /* an offset beyond the 100 bytes used */
     f->bytesused[0] = 100;
-    must_get_nothing();
+    must_get_no_frame();
     assert_int_equal(frame.n_corrupt, 1);
-    must_close();
+    must_close_camera();
 }
 
-TEST(too_small)
+TEST(rejects_too_small_buffers)
 {
     camera.sizeimage = 2 * 64 * 48 - 1;
-    must_refuse(
+    must_refuse_to_open(
         NULL, GLINT_E_DEVICE,
         "64x48 YUYV needs more bytes than the 6143 that the driver reports");
     fake_camera_reset();
     /* The driver reports a larger buffer than it has. */
     camera.length_less = 1;
-    must_open(NULL);
-    fake_camera_deliver(0, 9);
-    must_get_nothing();
+    must_open_camera(NULL);
+    fake_camera_add_frame(0, 9);
+    must_get_no_frame();
     assert_int_equal(frame.n_corrupt, 1);
-    must_close();
+    must_close_camera();
     fake_camera_reset();
     camera.now.width = GLINT_MAX_SIDE + 1;
-    must_refuse(NULL, GLINT_E_UNSUPPORTED, "pictures of ");
+    must_refuse_to_open(NULL, GLINT_E_UNSUPPORTED, "pictures of ");
 }
 
 /* ------------------------------------------------------------------- frames */
 
-static void deliver_odd(uint32_t sequence, uint32_t bytesused)
+static void deliver_frame_of_bytes(uint32_t sequence, uint32_t bytesused)
 {
-    struct fake_frame *f = fake_camera_deliver(sequence, 9);
+    struct fake_frame *f = fake_camera_add_frame(sequence, 9);
 
     f->is_odd = true;
     f->bytesused[0] = bytesused;
 }
 
-TEST(damaged)
+TEST(skips_damaged_frames)
 {
-    must_open(NULL);
-    deliver_odd(0, 0);
-    deliver_odd(1, 2 * 64 * 48 - 1);
-    deliver_odd(2, 2 * 64 * 48 + 1);
-    fake_camera_deliver(3, 9)->flags = V4L2_BUF_FLAG_ERROR;
-    must_get_nothing();
+    must_open_camera(NULL);
+    deliver_frame_of_bytes(0, 0);
+    deliver_frame_of_bytes(1, 2 * 64 * 48 - 1);
+    deliver_frame_of_bytes(2, 2 * 64 * 48 + 1);
+    fake_camera_add_frame(3, 9)->flags = V4L2_BUF_FLAG_ERROR;
+    must_get_no_frame();
     assert_int_equal(frame.n_corrupt, 4);
     assert_int_equal(frame.n_dropped, 0);
     assert_int_equal(camera.n_queued, 4);
-    deliver_odd(4, 2 * 64 * 48);
-    must_get(9);
+    deliver_frame_of_bytes(4, 2 * 64 * 48);
+    must_get_frame(9);
     assert_int_equal(frame.n_corrupt, 0);
-    must_close();
+    must_close_camera();
 }
 
 /* Checks that an intact frame is delivered even if a damaged frame precedes
  * or follows it. */
-TEST(damaged_among_whole)
+TEST(delivers_intact_frames_among_damaged)
 {
-    must_open(NULL);
-    fake_camera_deliver(0, 9)->flags = V4L2_BUF_FLAG_ERROR;
-    fake_camera_deliver(1, 8);
-    fake_camera_deliver(2, 7)->flags = V4L2_BUF_FLAG_ERROR;
-    must_get(8);
+    must_open_camera(NULL);
+    fake_camera_add_frame(0, 9)->flags = V4L2_BUF_FLAG_ERROR;
+    fake_camera_add_frame(1, 8);
+    fake_camera_add_frame(2, 7)->flags = V4L2_BUF_FLAG_ERROR;
+    must_get_frame(8);
     assert_int_equal(frame.n_corrupt, 2);
     assert_int_equal(frame.n_late, 0);
     assert_int_equal(camera.n_queued, 4);
-    must_close();
+    must_close_camera();
 }
 
-TEST(newest)
+TEST(delivers_the_newest_frame)
 {
-    must_open(NULL);
-    must_get_nothing();
+    must_open_camera(NULL);
+    must_get_no_frame();
     for (int i = 0; i < 3; i++)
-        fake_camera_deliver((uint32_t)i, 10 + i)->time_us = 5000 + i;
+        fake_camera_add_frame((uint32_t)i, 10 + i)->time_us = 5000 + i;
     assert_int_equal(next(), GLINT_OK);
     assert_int_equal(frame.image.plane[0][0], 12);
     assert_int_equal(frame.n_late, 2);
@@ -447,63 +450,65 @@ TEST(newest)
     assert_int_equal(frame.time_us, 5002);
     /* One of the four buffers is lent to the caller. */
     assert_int_equal(camera.n_queued, 3);
-    fake_camera_deliver(3, 13);
+    fake_camera_add_frame(3, 13);
     done();
     assert_int_equal(camera.n_queued, 4);
     done(); /* A second release has no effect. */
     assert_int_equal(camera.n_queued, 4);
-    must_get(13);
-    must_close();
+    must_get_frame(13);
+    must_close_camera();
 }
 
-static int64_t read_stamp(int64_t stamp_us, bool unknown_clock)
+static int64_t read_frame_time_stamp(int64_t stamp_us, bool unknown_clock)
 {
-    struct fake_frame *f = fake_camera_deliver(0, 1);
+    struct fake_frame *f = fake_camera_add_frame(0, 1);
 
     f->time_us = stamp_us;
     f->unknown_clock = unknown_clock;
-    must_get(1);
+    must_get_frame(1);
     return frame.time_us;
 }
 
 /* Checks that a plausible time stamp of an unknown clock is used, and that
  * no time stamp is later than the present. */
-TEST(stamps)
+TEST(time_stamps_are_never_in_the_future)
 {
-    const int64_t now_us = fake_camera_now();
+    const int64_t now_us = fake_camera_time_us();
 
-    must_open(NULL);
-    assert_int_equal(read_stamp(now_us - 30000, false), now_us - 30000);
-    assert_int_equal(read_stamp(now_us - 30000, true), now_us - 30000);
-    assert_int_equal(read_stamp(now_us - 9000000, true), now_us);
-    assert_int_equal(read_stamp(now_us + 5000, false), now_us);
-    assert_int_equal(read_stamp(now_us + 5000, true), now_us);
-    must_close();
+    must_open_camera(NULL);
+    assert_int_equal(read_frame_time_stamp(now_us - 30000, false),
+                     now_us - 30000);
+    assert_int_equal(read_frame_time_stamp(now_us - 30000, true),
+                     now_us - 30000);
+    assert_int_equal(read_frame_time_stamp(now_us - 9000000, true), now_us);
+    assert_int_equal(read_frame_time_stamp(now_us + 5000, false), now_us);
+    assert_int_equal(read_frame_time_stamp(now_us + 5000, true), now_us);
+    must_close_camera();
 }
 
 /* Checks that a lent frame is unchanged while other frames arrive. */
-TEST(lent)
+TEST(lent_frame_is_unchanged)
 {
     struct glint_source_frame kept;
 
-    must_open(NULL);
-    fake_camera_deliver(0, 50);
+    must_open_camera(NULL);
+    fake_camera_add_frame(0, 50);
     assert_int_equal(next(), GLINT_OK);
     kept = frame;
     for (int i = 1; i < 20; i++) {
-        fake_camera_deliver((uint32_t)i, i);
-        must_get(i);
+        fake_camera_add_frame((uint32_t)i, i);
+        must_get_frame(i);
         assert_int_equal(kept.image.plane[0][0], 50);
         assert_int_equal(camera.n_queued, 3);
     }
     v4l2.source.done(&v4l2.source, &kept);
     assert_int_equal(camera.n_queued, 4);
-    must_close();
+    must_close_camera();
 }
 
 /* Checks that an open camera has its format locked but does not stream
  * before start(), also after a restart, and that next() starts it as well. */
-TEST(streams_when_started)
+TEST(streams_only_when_started)
 {
     assert_int_equal(
         glint_v4l2_open(&v4l2, &any_camera, GLINT_V4L2_AUTO, 4, &said),
@@ -519,175 +524,178 @@ TEST(streams_when_started)
         assert_int_equal(v4l2.source.start(&v4l2.source, &said), GLINT_OK);
         assert_int_equal(camera.n_streamons, i + 1);
         camera.is_broken = true;
-        must_get_nothing();
+        must_get_no_frame();
     }
     assert_false(camera.streams);
-    fake_camera_deliver(0, 5);
-    must_get(5);
+    fake_camera_add_frame(0, 5);
+    must_get_frame(5);
     assert_int_equal(camera.n_streamons, 3);
-    must_close();
+    must_close_camera();
 }
 
-static int count_dropped(uint32_t sequence)
+static int count_dropped_before_sequence(uint32_t sequence)
 {
-    fake_camera_deliver(sequence, 9);
-    must_get(9);
+    fake_camera_add_frame(sequence, 9);
+    must_get_frame(9);
     return frame.n_dropped;
 }
 
-TEST(sequence)
+TEST(sequence_gaps_are_dropped_frames)
 {
-    must_open(NULL);
+    must_open_camera(NULL);
     /* The sequence may start at any number. */
-    assert_int_equal(count_dropped(1000), 0);
-    assert_int_equal(count_dropped(1001), 0);
-    assert_int_equal(count_dropped(1005), 3);
-    assert_int_equal(count_dropped(1005), 0);
-    assert_int_equal(count_dropped(3),
-                     0); /* sequence restarted by the driver */
-    assert_int_equal(count_dropped(4), 0);
-    must_close();
-    must_open(NULL);
-    assert_int_equal(count_dropped(UINT32_MAX - 1), 0);
-    assert_int_equal(count_dropped(UINT32_MAX), 0);
-    assert_int_equal(count_dropped(0), 0);
-    assert_int_equal(count_dropped(2), 1);
-    must_close();
-    must_open(NULL);
-    /* left over from before the stream, as v4l2loopback sends it */
-    assert_int_equal(count_dropped(0), 0);
-    assert_int_equal(count_dropped(28), 0);
-    assert_int_equal(count_dropped(30), 1);
-    must_close();
-    must_open(NULL); /* Some drivers leave the sequence at 0. */
+    assert_int_equal(count_dropped_before_sequence(1000), 0);
+    assert_int_equal(count_dropped_before_sequence(1001), 0);
+    assert_int_equal(count_dropped_before_sequence(1005), 3);
+    assert_int_equal(count_dropped_before_sequence(1005), 0);
+    assert_int_equal(count_dropped_before_sequence(3),
+                     0); /* the driver restarted the sequence */
+    assert_int_equal(count_dropped_before_sequence(4), 0);
+    must_close_camera();
+    must_open_camera(NULL);
+    assert_int_equal(count_dropped_before_sequence(UINT32_MAX - 1), 0);
+    assert_int_equal(count_dropped_before_sequence(UINT32_MAX), 0);
+    assert_int_equal(count_dropped_before_sequence(0), 0);
+    assert_int_equal(count_dropped_before_sequence(2), 1);
+    must_close_camera();
+    must_open_camera(NULL);
+    /* v4l2loopback delivers a frame from before the stream */
+    assert_int_equal(count_dropped_before_sequence(0), 0);
+    assert_int_equal(count_dropped_before_sequence(28), 0);
+    assert_int_equal(count_dropped_before_sequence(30), 1);
+    must_close_camera();
+    must_open_camera(NULL); /* Some drivers leave the sequence at 0. */
     for (int i = 0; i < 5; i++)
-        assert_int_equal(count_dropped(0), 0);
-    must_close();
+        assert_int_equal(count_dropped_before_sequence(0), 0);
+    must_close_camera();
 }
 
 /* Checks that gaps and damaged frames before a delivered frame are counted
  * together. */
-TEST(gaps_add_up)
+TEST(gaps_and_damaged_frames_are_counted_together)
 {
-    must_open(NULL);
-    assert_int_equal(count_dropped(6),
-                     0); /* left over from before the stream */
-    assert_int_equal(count_dropped(0), 0);
-    fake_camera_deliver(2, 1)->flags = V4L2_BUF_FLAG_ERROR;
-    fake_camera_deliver(5, 2);
-    fake_camera_deliver(7, 3);
-    must_get(3);
+    must_open_camera(NULL);
+    assert_int_equal(count_dropped_before_sequence(6),
+                     0); /* a frame from before the stream */
+    assert_int_equal(count_dropped_before_sequence(0), 0);
+    fake_camera_add_frame(2, 1)->flags = V4L2_BUF_FLAG_ERROR;
+    fake_camera_add_frame(5, 2);
+    fake_camera_add_frame(7, 3);
+    must_get_frame(3);
     assert_int_equal(frame.n_dropped, 4);
     assert_int_equal(frame.n_corrupt, 1);
     assert_int_equal(frame.n_late, 1);
-    must_close();
+    must_close_camera();
 }
 
 /* Checks that implausible jumps of the sequence are not counted as dropped
  * frames, and that their sum does not overflow. */
-TEST(leaps)
+TEST(implausible_sequence_jumps_are_not_counted)
 {
-    must_open(NULL);
-    assert_int_equal(count_dropped(0), 0);
+    must_open_camera(NULL);
+    assert_int_equal(count_dropped_before_sequence(0), 0);
     for (uint32_t i = 1; i <= 3; i++)
-        fake_camera_deliver(i * 0x7fffffff, 9);
-    must_get(9);
+        fake_camera_add_frame(i * 0x7fffffff, 9);
+    must_get_frame(9);
     assert_int_equal(frame.n_dropped, 0);
-    must_close();
+    must_close_camera();
 }
 
-TEST(jpeg)
+TEST(decodes_mjpg)
 {
     static const char garbage[] = "not a JPEG at all";
 
     if (!glint_mjpeg_available())
         skip();
     camera.mode[0].fourcc = V4L2_PIX_FMT_MJPEG;
-    must_open(NULL);
+    must_open_camera(NULL);
     for (uint32_t i = 0; i < 3; i++) {
-        struct fake_frame *f = fake_camera_deliver(i, 0);
+        struct fake_frame *f = fake_camera_add_frame(i, 0);
 
         f->data = garbage;
         f->bytesused[0] = sizeof garbage;
     }
-    must_get_nothing();
+    must_get_no_frame();
     assert_int_equal(frame.n_corrupt, 1);
     assert_int_equal(frame.n_late, 2);
     assert_int_equal(camera.n_queued, 4);
-    must_close();
+    must_close_camera();
 }
 
-/* --------------------------------------------------- other kinds of memory */
+/* ------------------------------------------------------- other memory types */
 
-static void check_io_method(enum glint_v4l2_io wish, enum glint_v4l2_io got)
+static void check_chosen_io_method(enum glint_v4l2_io wish,
+                                   enum glint_v4l2_io got)
 {
-    if (try_open(NULL, wish))
+    if (try_open_camera(NULL, wish))
         fail_msg("%s", said.text);
     assert_int_equal(v4l2.io, got);
     for (uint32_t i = 0; i < 10; i++) {
-        fake_camera_deliver(i, 20 + (int)i);
-        must_get(20 + (int)i);
+        fake_camera_add_frame(i, 20 + (int)i);
+        must_get_frame(20 + (int)i);
         assert_int_equal(frame.n_dropped, 0);
     }
     assert_int_equal(camera.n_maps, got == GLINT_V4L2_MMAP ? 4 : 0);
-    must_close();
+    must_close_camera();
 }
 
-TEST(memory)
+TEST(every_memory_type_is_used)
 {
-    check_io_method(GLINT_V4L2_AUTO, GLINT_V4L2_MMAP);
-    check_io_method(GLINT_V4L2_MMAP, GLINT_V4L2_MMAP);
-    check_io_method(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
+    check_chosen_io_method(GLINT_V4L2_AUTO, GLINT_V4L2_MMAP);
+    check_chosen_io_method(GLINT_V4L2_MMAP, GLINT_V4L2_MMAP);
+    check_chosen_io_method(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
     camera.lacks_mmap = true;
-    check_io_method(GLINT_V4L2_AUTO, GLINT_V4L2_USERPTR);
-    use_format(V4L2_PIX_FMT_NV12M, true);
-    check_io_method(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
+    check_chosen_io_method(GLINT_V4L2_AUTO, GLINT_V4L2_USERPTR);
+    set_camera_format(V4L2_PIX_FMT_NV12M, true);
+    check_chosen_io_method(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
     fake_camera_reset();
     camera.caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_READWRITE;
-    check_io_method(GLINT_V4L2_AUTO, GLINT_V4L2_READ);
-    check_io_method(GLINT_V4L2_READ, GLINT_V4L2_READ);
+    check_chosen_io_method(GLINT_V4L2_AUTO, GLINT_V4L2_READ);
+    check_chosen_io_method(GLINT_V4L2_READ, GLINT_V4L2_READ);
 }
 
 /* Checks that a type of memory which the device lacks is reported as such,
  * not as a failed request. */
-TEST(no_such_memory)
+TEST(reports_a_missing_memory_type)
 {
-    assert_int_equal(try_open(NULL, GLINT_V4L2_READ), GLINT_E_DEVICE);
+    assert_int_equal(try_open_camera(NULL, GLINT_V4L2_READ), GLINT_E_DEVICE);
     assert_non_null(
         strstr(said.text, "as --io allows: Operation not supported"));
-    must_be_closed();
+    must_be_closed_camera();
     camera.caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_READWRITE;
-    assert_int_equal(try_open(NULL, GLINT_V4L2_MMAP), GLINT_E_DEVICE);
+    assert_int_equal(try_open_camera(NULL, GLINT_V4L2_MMAP), GLINT_E_DEVICE);
     assert_non_null(strstr(said.text, "as --io allows: "));
-    must_be_closed();
+    must_be_closed_camera();
 }
 
-TEST(few_buffers)
+TEST(works_with_two_buffers)
 {
     camera.max_buffers = 2;
-    must_open(NULL);
+    must_open_camera(NULL);
     assert_int_equal(v4l2.n_buffers, 2);
     for (uint32_t i = 0; i < 10; i++) {
-        fake_camera_deliver(i, (int)i);
-        must_get((int)i);
+        fake_camera_add_frame(i, (int)i);
+        must_get_frame((int)i);
     }
-    must_close();
+    must_close_camera();
     camera.max_buffers = 0;
-    must_refuse(NULL, GLINT_E_DEVICE, "VIDIOC_REQBUFS: Cannot allocate memory");
+    must_refuse_to_open(NULL, GLINT_E_DEVICE,
+                        "VIDIOC_REQBUFS: Cannot allocate memory");
 }
 
 /* Checks that the message names the request that failed first, even if a
  * fallback was tried or a resource freed after it. */
-TEST(names_what_failed)
+TEST(message_names_the_first_failed_request)
 {
-    fake_camera_refuse(VIDIOC_QUERYBUF, EIO, 1);
-    must_refuse(NULL, GLINT_E_DEVICE,
-                FAKE_PATH ": VIDIOC_QUERYBUF: Input/output error");
-    fake_camera_refuse(VIDIOC_REQBUFS, ENOMEM, -1);
-    must_refuse(NULL, GLINT_E_DEVICE,
-                FAKE_PATH ": VIDIOC_REQBUFS: Cannot allocate memory");
-    fake_camera_refuse(VIDIOC_REQBUFS, EBUSY, -1);
-    must_refuse(NULL, GLINT_E_DEVICE,
-                "VIDIOC_REQBUFS: Device or resource busy; another program is "
-                "using it");
+    fake_camera_fail_request(VIDIOC_QUERYBUF, EIO, 1);
+    must_refuse_to_open(NULL, GLINT_E_DEVICE,
+                        FAKE_PATH ": VIDIOC_QUERYBUF: Input/output error");
+    fake_camera_fail_request(VIDIOC_REQBUFS, ENOMEM, -1);
+    must_refuse_to_open(NULL, GLINT_E_DEVICE,
+                        FAKE_PATH ": VIDIOC_REQBUFS: Cannot allocate memory");
+    fake_camera_fail_request(VIDIOC_REQBUFS, EBUSY, -1);
+    must_refuse_to_open(
+        NULL, GLINT_E_DEVICE,
+        "VIDIOC_REQBUFS: Device or resource busy; another program is "
+        "using it");
 }

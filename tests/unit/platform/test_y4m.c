@@ -32,7 +32,7 @@ struct memory {
     bool fails;
 };
 
-static ptrdiff_t read_memory(void *ctx, void *dst, size_t bytes)
+static ptrdiff_t read_from_memory(void *ctx, void *dst, size_t bytes)
 {
     struct memory *const m = ctx;
     size_t n = m->bytes - m->at;
@@ -56,7 +56,7 @@ static enum glint_status parse_header(struct glint_y4m_header *header,
 
 /* ------------------------------------------------------------------ header */
 
-TEST(ffmpeg_header)
+TEST(parses_a_header_of_ffmpeg)
 {
     static const char line[] = "YUV4MPEG2 W720 H405 F25:1 Ip A1:1 C420mpeg2 "
                                "XYSCSS=420MPEG2 XCOLORRANGE=LIMITED";
@@ -79,13 +79,14 @@ TEST(ffmpeg_header)
     assert_memory_equal(printed, line, sizeof line - 1);
     assert_int_equal(printed[len - 1], '\n');
 
-    h.range = GLINT_RANGE_FULL; /* differs from the range that was read */
+    h.range = GLINT_RANGE_FULL; /* a range that differs from that in the tags */
     glint_y4m_header_print(printed, &h);
     assert_non_null(strstr(printed, " XCOLORRANGE=FULL\n"));
     assert_null(strstr(printed, "LIMITED"));
 }
 
-static void expect_format(const char *tag, enum glint_pixel_format format)
+static void expect_format_of_tags(const char *tag,
+                                  enum glint_pixel_format format)
 {
     struct glint_y4m_header h;
     char line[100], printed[GLINT_Y4M_PRINTED];
@@ -102,26 +103,26 @@ static void expect_format(const char *tag, enum glint_pixel_format format)
     assert_string_equal(printed + strlen(line), "\n");
 }
 
-TEST(formats)
+TEST(parses_every_format)
 {
-    expect_format("", GLINT_I420);
-    expect_format(" C420", GLINT_I420);
-    expect_format(" C420jpeg", GLINT_I420);
-    expect_format(" C420mpeg2", GLINT_I420);
-    expect_format(" C420paldv", GLINT_I420);
-    expect_format(" It C422", GLINT_I422);
-    expect_format(" I? A0:0 C444", GLINT_I444);
-    expect_format(" Im A10:11 Cmono", GLINT_GREY);
-    expect_format(" Ib C420 Zwhat XANY=thing", GLINT_I420);
-    expect_format(" C420p10 XANY=thing Ip", GLINT_I420);
-    expect_format(" C422p12", GLINT_I422);
-    expect_format(" C444p16", GLINT_I444);
-    expect_format(" Cmono9", GLINT_GREY);
-    expect_format(" C411", GLINT_I422);
-    expect_format(" C444alpha", GLINT_I444);
+    expect_format_of_tags("", GLINT_I420);
+    expect_format_of_tags(" C420", GLINT_I420);
+    expect_format_of_tags(" C420jpeg", GLINT_I420);
+    expect_format_of_tags(" C420mpeg2", GLINT_I420);
+    expect_format_of_tags(" C420paldv", GLINT_I420);
+    expect_format_of_tags(" It C422", GLINT_I422);
+    expect_format_of_tags(" I? A0:0 C444", GLINT_I444);
+    expect_format_of_tags(" Im A10:11 Cmono", GLINT_GREY);
+    expect_format_of_tags(" Ib C420 Zwhat XANY=thing", GLINT_I420);
+    expect_format_of_tags(" C420p10 XANY=thing Ip", GLINT_I420);
+    expect_format_of_tags(" C422p12", GLINT_I422);
+    expect_format_of_tags(" C444p16", GLINT_I444);
+    expect_format_of_tags(" Cmono9", GLINT_GREY);
+    expect_format_of_tags(" C411", GLINT_I422);
+    expect_format_of_tags(" C444alpha", GLINT_I444);
 }
 
-TEST(range_and_matrix)
+TEST(parses_range_and_matrix)
 {
     struct glint_y4m_header h;
 
@@ -146,7 +147,7 @@ TEST(range_and_matrix)
     assert_int_equal(h.matrix, GLINT_MATRIX_BT709);
 }
 
-static void check_refusal(enum glint_status status, const char *line)
+static void check_stream_is_rejected(enum glint_status status, const char *line)
 {
     struct glint_y4m_header h = {.width = 77};
 
@@ -156,7 +157,7 @@ static void check_refusal(enum glint_status status, const char *line)
     assert_int_equal(h.width, 77);
 }
 
-TEST(hostile_headers)
+TEST(rejects_invalid_headers)
 {
     static const char *const malformed[] = {
         "",
@@ -187,23 +188,25 @@ TEST(hostile_headers)
     };
 
     for (size_t i = 0; i < sizeof malformed / sizeof *malformed; i++)
-        check_refusal(GLINT_E_FORMAT, malformed[i]);
-    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W32769 H3");
-    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H32769");
-    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W4294967299 H3");
-    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C440");
-    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C444alphap10");
-    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420jpegp10");
-    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 Cmono8");
-    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p11");
-    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p100");
+        check_stream_is_rejected(GLINT_E_FORMAT, malformed[i]);
+    check_stream_is_rejected(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W32769 H3");
+    check_stream_is_rejected(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H32769");
+    check_stream_is_rejected(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W4294967299 H3");
+    check_stream_is_rejected(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C440");
+    check_stream_is_rejected(GLINT_E_UNSUPPORTED,
+                             "YUV4MPEG2 W3 H3 C444alphap10");
+    check_stream_is_rejected(GLINT_E_UNSUPPORTED,
+                             "YUV4MPEG2 W3 H3 C420jpegp10");
+    check_stream_is_rejected(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 Cmono8");
+    check_stream_is_rejected(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p11");
+    check_stream_is_rejected(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p100");
     assert_string_equal(
         error.text,
         "x.y4m: C420p100 is not a supported colour space: 420, 422, 444 (up to "
         "p16), 411, 444alpha and mono (up to mono16) are");
 }
 
-TEST(own_header)
+TEST(prints_a_header)
 {
     struct glint_y4m_header h;
     char printed[GLINT_Y4M_PRINTED];
@@ -222,15 +225,15 @@ TEST(own_header)
 
 /* ----------------------------------------------------------------- reading */
 
-TEST(frames)
+TEST(reads_frames_in_pieces)
 {
     for (size_t chunk = 1; chunk < 90; chunk++) {
         struct memory memory = {BYTES(SMALL), 0, chunk, false};
         struct glint_y4m_reader reader;
         const struct glint_image *frame;
 
-        assert_ok(glint_y4m_reader_start(&reader, read_memory, &memory, "x.y4m",
-                                         &error));
+        assert_ok(glint_y4m_reader_start(&reader, read_from_memory, &memory,
+                                         "x.y4m", &error));
         assert_ok(glint_y4m_reader_next(&reader, &frame, &error));
         assert_int_equal(frame->format, GLINT_I420);
         assert_int_equal(frame->transfer, GLINT_TONE_BT709);
@@ -259,8 +262,8 @@ static enum glint_status read_all_frames(const char *data, size_t bytes,
     struct memory memory = {data, bytes, 0, 7, fails};
     struct glint_y4m_reader reader;
     const struct glint_image *frame = NULL;
-    enum glint_status status =
-        glint_y4m_reader_start(&reader, read_memory, &memory, "x.y4m", &error);
+    enum glint_status status = glint_y4m_reader_start(&reader, read_from_memory,
+                                                      &memory, "x.y4m", &error);
 
     while (!status &&
            !(status = glint_y4m_reader_next(&reader, &frame, &error)) && frame)
@@ -272,7 +275,7 @@ static enum glint_status read_all_frames(const char *data, size_t bytes,
 
 /* Checks that a stream truncated at any byte ends with the right message.
  * The header has 22 bytes, the first frame 6 + 17, the second 14 + 17. */
-TEST(every_truncation)
+TEST(reports_every_truncation)
 {
     long frames;
 
@@ -297,7 +300,7 @@ TEST(every_truncation)
     assert_string_equal(error.text, "x.y4m: is not a YUV4MPEG2 stream");
 }
 
-TEST(long_lines)
+TEST(rejects_too_long_lines)
 {
     static char text[2000];
     const size_t magic = strlen("YUV4MPEG2 W1 H1 C444 X");
@@ -322,7 +325,7 @@ TEST(long_lines)
     assert_int_equal(frames, 1);
 }
 
-TEST(hostile_frames)
+TEST(rejects_invalid_frames)
 {
     static const struct {
         const char *text;
@@ -347,7 +350,7 @@ TEST(hostile_frames)
 
 /* -------------------------------------------------------------- round trips */
 
-static void expect_path(const char *want, size_t want_bytes)
+static void expect_file_bytes(const char *want, size_t want_bytes)
 {
     uint8_t *data;
     size_t bytes;
@@ -359,15 +362,15 @@ static void expect_path(const char *want, size_t want_bytes)
 }
 
 /* Checks that DATA, copied frame by frame to a file, is unchanged. */
-static void check_copy(const char *data, size_t bytes)
+static void check_copied_stream_is_identical(const char *data, size_t bytes)
 {
     struct memory memory = {data, bytes, 0, 5000, false};
     struct glint_y4m_reader reader;
     struct glint_y4m_writer writer;
     const struct glint_image *frame;
 
-    assert_ok(
-        glint_y4m_reader_start(&reader, read_memory, &memory, "x.y4m", &error));
+    assert_ok(glint_y4m_reader_start(&reader, read_from_memory, &memory,
+                                     "x.y4m", &error));
     assert_ok(
         glint_y4m_writer_open(&writer, scratch_file, &reader.header, &error));
     while (!glint_y4m_reader_next(&reader, &frame, &error) && frame)
@@ -376,55 +379,59 @@ static void check_copy(const char *data, size_t bytes)
     assert_int_equal(writer.n_frames, reader.n_frames);
     assert_ok(glint_y4m_writer_commit(&writer, &error));
     glint_y4m_reader_close(&reader);
-    expect_path(data, bytes);
+    expect_file_bytes(data, bytes);
 }
 
-TEST(copies)
+TEST(copies_streams_unchanged)
 {
-    check_copy(BYTES(SMALL));
-    check_copy(BYTES("YUV4MPEG2 W3 H1 F0:0 It A1:1 C422 XYSCSS=422\n"
-                     "FRAME\nabcBCbc"));
-    check_copy(BYTES("YUV4MPEG2 W2 H1 F5:1 C444\nFRAME\nabBCbc"));
-    check_copy(BYTES("YUV4MPEG2 W2 H1 F5:1 Cmono XCOLORRANGE=FULL\n"
-                     "FRAME\nab"));
-    check_copy(BYTES("YUV4MPEG2 W1 H1 F5:1\nFRAME\nabc"));
+    check_copied_stream_is_identical(BYTES(SMALL));
+    check_copied_stream_is_identical(
+        BYTES("YUV4MPEG2 W3 H1 F0:0 It A1:1 C422 XYSCSS=422\n"
+              "FRAME\nabcBCbc"));
+    check_copied_stream_is_identical(
+        BYTES("YUV4MPEG2 W2 H1 F5:1 C444\nFRAME\nabBCbc"));
+    check_copied_stream_is_identical(
+        BYTES("YUV4MPEG2 W2 H1 F5:1 Cmono XCOLORRANGE=FULL\n"
+              "FRAME\nab"));
+    check_copied_stream_is_identical(BYTES("YUV4MPEG2 W1 H1 F5:1\nFRAME\nabc"));
     /* A stream without frames is valid. */
-    check_copy(BYTES("YUV4MPEG2 W8192 H8192 F5:1\n"));
+    check_copied_stream_is_identical(BYTES("YUV4MPEG2 W8192 H8192 F5:1\n"));
 }
 
-/* --------------------------------------------------------- depth and layout */
+/* ----------------------------------------------------- bit depth and layout */
 
 /* Reads the frame in DATA and checks that its 8-bit planes equal SEEN. */
-static void check_planes(const char *data, size_t bytes, const char *seen,
-                         size_t n_seen)
+static void check_8bit_planes(const char *data, size_t bytes, const char *seen,
+                              size_t n_seen)
 {
     const struct glint_image *frame;
     struct memory m = {data, bytes, 0, 7, false};
     struct glint_y4m_reader reader;
 
     assert_ok(
-        glint_y4m_reader_start(&reader, read_memory, &m, "x.y4m", &error));
+        glint_y4m_reader_start(&reader, read_from_memory, &m, "x.y4m", &error));
     assert_ok(glint_y4m_reader_next(&reader, &frame, &error));
     assert_non_null(frame);
     assert_memory_equal(frame->plane[0], seen, n_seen);
     glint_y4m_reader_close(&reader);
 }
 
-TEST(deep_frames)
+TEST(reads_deep_frames)
 {
     /* 3 x 1 of 10 bits: luma 3, chroma 2 and 2 samples of two bytes */
-    check_planes(BYTES("YUV4MPEG2 W3 H1 C420p10\nFRAME\n"
-                       "\x40\x00\xac\x03\xff\x03"
-                       "\x00\x02\x04\x02"
-                       "\xff\x01\x00\x00"),
-                 BYTES("\x10\xeb\xff"
-                       "\x80\x81"
-                       "\x7f\x00"));
-    check_planes(BYTES("YUV4MPEG2 W2 H1 Cmono16\nFRAME\n\xff\x12\x00\xab"),
-                 BYTES("\x12\xab"));
-    check_planes(BYTES("YUV4MPEG2 W6 H1 C411\nFRAME\nabcdefuvUV"),
-                 BYTES("abcdefuuvUUV"));
-    check_planes(BYTES("YUV4MPEG2 W1 H1 C444alpha\nFRAME\nabcd"), BYTES("abc"));
+    check_8bit_planes(BYTES("YUV4MPEG2 W3 H1 C420p10\nFRAME\n"
+                            "\x40\x00\xac\x03\xff\x03"
+                            "\x00\x02\x04\x02"
+                            "\xff\x01\x00\x00"),
+                      BYTES("\x10\xeb\xff"
+                            "\x80\x81"
+                            "\x7f\x00"));
+    check_8bit_planes(BYTES("YUV4MPEG2 W2 H1 Cmono16\nFRAME\n\xff\x12\x00\xab"),
+                      BYTES("\x12\xab"));
+    check_8bit_planes(BYTES("YUV4MPEG2 W6 H1 C411\nFRAME\nabcdefuvUV"),
+                      BYTES("abcdefuuvUUV"));
+    check_8bit_planes(BYTES("YUV4MPEG2 W1 H1 C444alpha\nFRAME\nabcd"),
+                      BYTES("abc"));
 }
 
 /* Fills PLANES with a frame of 3 x 3 pixels in format TAG, luma CODE, chroma
@@ -453,7 +460,7 @@ static void add_light_to_frame(const char *tag, int code, int middle,
     glint_y4m_light_add(&light, planes, layer);
 }
 
-static int read_16bit(const uint8_t *planes, int i)
+static int read_16bit_sample(const uint8_t *planes, int i)
 {
     return planes[2 * i] | planes[2 * i + 1] << 8;
 }
@@ -461,34 +468,35 @@ static int read_16bit(const uint8_t *planes, int i)
 /* Checks that white light of 0.18 becomes 0.409 by BT.709 (by hand: 1.099 *
  * 0.18^0.45 - 0.099 = 0.4090), which is 64 + 876 * 0.4090 = 422.3 in 10
  * bits. */
-TEST(light)
+TEST(adds_light_to_10_bit_codes)
 {
     float layer[27] = {0};
     uint8_t planes[72];
 
     add_light_to_frame("C420p10", 500, 512, layer, planes);
     for (int i = 0; i < 9; i++)
-        assert_int_equal(read_16bit(planes, i), 500);
+        assert_int_equal(read_16bit_sample(planes, i), 500);
     layer[3 * 4] = layer[3 * 4 + 1] = layer[3 * 4 + 2] = 0.18F;
     add_light_to_frame("C420p10", 64, 512, layer, planes);
     for (int i = 0; i < 17; i++)
-        assert_int_equal(read_16bit(planes, i), i == 4  ? 422
-                                                : i < 9 ? 64
-                                                        : 512);
+        assert_int_equal(read_16bit_sample(planes, i), i == 4  ? 422
+                                                       : i < 9 ? 64
+                                                               : 512);
     add_light_to_frame("Cmono12 XCOLORRANGE=FULL", 0, 0, layer, planes);
-    assert_int_equal(read_16bit(planes, 4), 1675); /* 4095 * 0.40901 */
+    assert_int_equal(read_16bit_sample(planes, 4), 1675); /* 4095 * 0.40901 */
     /* red light of 9, which clips, on the last of 3 x 3 pixels, the only
      * pixel of its chroma sample */
     layer[3 * 8] = 9;
     add_light_to_frame("C420p10", 64, 512, layer, planes);
-    assert_int_equal(read_16bit(planes, 8), 326);  /* 64 + 876 * 0.299 */
-    assert_int_equal(read_16bit(planes, 12), 361); /* 512 - 896 * 0.1687 */
-    assert_int_equal(read_16bit(planes, 16), 960); /* 512 + 896 * 0.5 */
-    assert_int_equal(read_16bit(planes, 9), 512);
+    assert_int_equal(read_16bit_sample(planes, 8), 326); /* 64 + 876 * 0.299 */
+    assert_int_equal(read_16bit_sample(planes, 12),
+                     361); /* 512 - 896 * 0.1687 */
+    assert_int_equal(read_16bit_sample(planes, 16), 960); /* 512 + 896 * 0.5 */
+    assert_int_equal(read_16bit_sample(planes, 9), 512);
 }
 
 /* Checks that codes at or above white, and alpha, are unchanged. */
-TEST(light_stays)
+TEST(codes_above_white_are_unchanged)
 {
     float layer[27];
     uint8_t planes[72];
@@ -498,9 +506,9 @@ TEST(light_stays)
     add_light_to_frame("C444p12 XCOLORRANGE=LIMITED", 3760, 2048, layer,
                        planes);
     for (int i = 0; i < 27; i++)
-        assert_int_equal(read_16bit(planes, i), i < 9 ? 3760 : 2048);
+        assert_int_equal(read_16bit_sample(planes, i), i < 9 ? 3760 : 2048);
     add_light_to_frame("C444p12", 4000, 2048, layer, planes);
-    assert_int_equal(read_16bit(planes, 0), 4000);
+    assert_int_equal(read_16bit_sample(planes, 0), 4000);
     add_light_to_frame("C444alpha", 16, 128, layer, planes);
     assert_int_equal(planes[35], 128);
     assert_in_range(planes[0], 170, 176);
@@ -508,7 +516,7 @@ TEST(light_stays)
 
 /* Returns the linear light of code V by the standards' formulas, 1 = diffuse
  * white: 203 cd/m2 for PQ, code 0.75 for HLG [BT.2408]. */
-static double compute_light(enum glint_transfer_curve curve, double v)
+static double decode_transfer_code(enum glint_transfer_curve curve, double v)
 {
     const double a = 0.17883277, b = 1 - 4 * a, c = 0.5 - a * log(4 * a);
     double p;
@@ -543,12 +551,12 @@ static double compute_light(enum glint_transfer_curve curve, double v)
 }
 
 /* Checks the transfer tables against the standards' formulas. */
-TEST(transfers)
+TEST(transfer_tables_match_the_standards)
 {
     for (int t = 0; t < GLINT_TRANSFERS; t++)
         for (int i = 0; i <= GLINT_Y4M_STEPS; i++) {
             const double want =
-                compute_light((enum glint_transfer_curve)t, i / 4096.0);
+                decode_transfer_code((enum glint_transfer_curve)t, i / 4096.0);
             const int32_t light_q24 = glint_transfer_light_q24(
                 (enum glint_transfer_curve)t, i, GLINT_Y4M_STEPS);
 
@@ -562,28 +570,29 @@ TEST(transfers)
 }
 
 /* Returns the code V, 0 .. 1, of LIGHT, by bisection. */
-static double compute_code(enum glint_transfer_curve curve, double light)
+static double encode_transfer_light(enum glint_transfer_curve curve,
+                                    double light)
 {
     double low = 0, high = 1;
 
     for (int i = 0; i < 60; i++) {
         const double middle = (low + high) / 2;
 
-        *(compute_light(curve, middle) < light ? &low : &high) = middle;
+        *(decode_transfer_code(curve, middle) < light ? &low : &high) = middle;
     }
     return high;
 }
 
 /* Adds LIGHT (red of BT.709 if IS_RED, else white) to 16-bit grounds of
  * 0.001 .. 4 times white in CURVE, and compares the increase with LIGHT. */
-static void check_added(enum glint_transfer_curve curve,
-                        enum glint_primaries primaries, double light,
-                        bool is_red)
+static void check_added_light(enum glint_transfer_curve curve,
+                              enum glint_primaries primaries, double light,
+                              bool is_red)
 {
     static const double red_2020[] = {0.627404, 0.069097, 0.016391};
     static struct glint_y4m_light y4m;
     struct glint_y4m_header h;
-    const double most = fmin(4, compute_light(curve, 1) - light);
+    const double most = fmin(4, decode_transfer_code(curve, 1) - light);
     float layer[3] = {(float)light, is_red ? 0 : (float)light,
                       is_red ? 0 : (float)light};
 
@@ -593,24 +602,25 @@ static void check_added(enum glint_transfer_curve curve,
     h.primaries = primaries;
     glint_y4m_light_init(&y4m, &h);
     /* Logarithmic curves have no codes near 0 light. */
-    for (double ground = fmax(0.001, 2 * compute_light(curve, 1e-5));
+    for (double ground = fmax(0.001, 2 * decode_transfer_code(curve, 1e-5));
          ground < most; ground *= 1.7) {
-        const int code = (int)(65535 * compute_code(curve, ground) + 0.5);
+        const int code =
+            (int)(65535 * encode_transfer_light(curve, ground) + 0.5);
         uint8_t planes[6] = {
             (uint8_t)code, (uint8_t)(code >> 8), 0, 128, 0, 128};
         double y, cb, cr, rgb[3];
 
         glint_y4m_light_add(&y4m, planes, layer);
-        y = read_16bit(planes, 0) / 65535.0;
-        cb = (read_16bit(planes, 1) - 32768) / 65535.0;
-        cr = (read_16bit(planes, 2) - 32768) / 65535.0;
+        y = read_16bit_sample(planes, 0) / 65535.0;
+        cb = (read_16bit_sample(planes, 1) - 32768) / 65535.0;
+        cr = (read_16bit_sample(planes, 2) - 32768) / 65535.0;
         rgb[0] = y + 2 * (1 - 0.2627) * cr;
         rgb[2] = y + 2 * (1 - 0.0593) * cb;
         rgb[1] = (y - 0.2627 * rgb[0] - 0.0593 * rgb[2]) / 0.678;
         for (int c = 0; c < 3; c++) {
             const double want = light * (is_red ? red_2020[c] : 1);
-            const double got = compute_light(curve, rgb[c]) -
-                               compute_light(curve, code / 65535.0);
+            const double got = decode_transfer_code(curve, rgb[c]) -
+                               decode_transfer_code(curve, code / 65535.0);
 
             assert_true(fabs(got - want) <=
                         0.02 * want + 2e-4 * (ground + light));
@@ -620,22 +630,22 @@ static void check_added(enum glint_transfer_curve curve,
 
 /* Checks that light is added in the linear light of the stream's transfer
  * function and primaries, within 2 % and the rounding to 16 bits. */
-TEST(light_of_transfers)
+TEST(light_is_added_in_linear_light)
 {
     for (int t = 0; t < GLINT_TRANSFERS; t++)
         for (double light = 0.02; light < 1; light *= 3) {
-            check_added((enum glint_transfer_curve)t, GLINT_PRIMARIES_BT709,
-                        light, false);
-            check_added((enum glint_transfer_curve)t, GLINT_PRIMARIES_BT2020,
-                        light, false);
-            check_added((enum glint_transfer_curve)t, GLINT_PRIMARIES_BT2020,
-                        light, true);
+            check_added_light((enum glint_transfer_curve)t,
+                              GLINT_PRIMARIES_BT709, light, false);
+            check_added_light((enum glint_transfer_curve)t,
+                              GLINT_PRIMARIES_BT2020, light, false);
+            check_added_light((enum glint_transfer_curve)t,
+                              GLINT_PRIMARIES_BT2020, light, true);
         }
 }
 
 /* Checks the SDR copy of a PQ stream: white (203 cd/m2) and everything above
  * becomes white of BT.709, also in 8 bits. */
-TEST(graded_copy)
+TEST(pq_copy_is_graded_to_sdr)
 {
     static const double nits[] = {0, 20.3, 203, 4000};
     static const int want[] = {16, 80, 235, 235};
@@ -647,12 +657,14 @@ TEST(graded_copy)
 
     for (int i = 0; i < 4; i++) {
         const int code =
-            (int)(64.5 + 876 * compute_code(GLINT_TRANSFER_PQ, nits[i] / 203));
+            (int)(64.5 + 876 * encode_transfer_light(GLINT_TRANSFER_PQ,
+                                                     nits[i] / 203));
 
         bytes[at + 2 * (size_t)i] = (char)code;
         bytes[at + 2 * (size_t)i + 1] = (char)(code >> 8);
     }
-    assert_ok(glint_y4m_reader_start(&in, read_memory, &memory, "pq", &error));
+    assert_ok(
+        glint_y4m_reader_start(&in, read_from_memory, &memory, "pq", &error));
     in.header.transfer = GLINT_TRANSFER_PQ;
     in.header.primaries = GLINT_PRIMARIES_BT2020;
     assert_ok(glint_y4m_reader_next(&in, &frame, &error));
@@ -663,7 +675,7 @@ TEST(graded_copy)
 
 /* Checks that a video of 720 x 405 pixels with 203 rows of chroma, as ffmpeg
  * writes it, is copied unchanged. */
-TEST(odd_video)
+TEST(copies_a_video_of_odd_height)
 {
     enum { FRAME = 720 * 405 + 2 * 360 * 203, HEADER = 80 };
     const size_t bytes = HEADER + 2 * (6 + FRAME);
@@ -679,13 +691,13 @@ TEST(odd_video)
             data[i] = (char)(i * 7);
     memcpy(data + HEADER, "FRAME\n", 6);
     memcpy(data + HEADER + 6 + FRAME, "FRAME\n", 6);
-    check_copy(data, HEADER + 2 * (6 + FRAME));
+    check_copied_stream_is_identical(data, HEADER + 2 * (6 + FRAME));
     free(data);
 }
 
 /* Checks that images with padded rows, or stored bottom row first, are
  * written without padding, top row first. */
-TEST(strides)
+TEST(writes_images_without_padding)
 {
     uint8_t luma[] = "ab--cd--ef--", cb[] = "y-z-", cr[] = "Y-Z-";
     const struct glint_image frame = {.format = GLINT_I420,
@@ -700,11 +712,11 @@ TEST(strides)
     assert_ok(glint_y4m_writer_open(&writer, scratch_file, &header, &error));
     assert_ok(glint_y4m_writer_put(&writer, &frame, "", &error));
     assert_ok(glint_y4m_writer_commit(&writer, &error));
-    expect_path(BYTES("YUV4MPEG2 W2 H3 F1:1 Ip A1:1 C420jpeg\n"
-                      "FRAME\nefcdabyzYZ"));
+    expect_file_bytes(BYTES("YUV4MPEG2 W2 H3 F1:1 Ip A1:1 C420jpeg\n"
+                            "FRAME\nefcdabyzYZ"));
 }
 
-TEST(full_device)
+TEST(full_device_is_an_error)
 {
     struct glint_y4m_header header;
     struct glint_y4m_writer writer;
@@ -723,7 +735,7 @@ TEST(full_device)
     glint_y4m_writer_abort(&writer);
 }
 
-TEST(missing_file)
+TEST(reports_a_missing_file)
 {
     struct glint_y4m_reader reader;
 
@@ -734,4 +746,4 @@ TEST(missing_file)
     glint_y4m_reader_close(&reader);
 }
 
-TEST_GROUP(scratch_open_file, scratch_close_file);
+TEST_GROUP(scratch_create_file, scratch_remove_file);

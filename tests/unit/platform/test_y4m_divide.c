@@ -15,7 +15,7 @@ static int64_t divide_rounded(int64_t n, int64_t d)
 }
 
 /* Returns the number of K in -MOST .. MOST for which K 2^UP / D is wrong. */
-static long count_wrong_shares(int32_t most, int up, int32_t d)
+static long count_wrong_quotients(int32_t most, int up, int32_t d)
 {
     const int64_t factor = y4m_share_factor(up, d);
     long wrong = 0;
@@ -27,25 +27,27 @@ static long count_wrong_shares(int32_t most, int up, int32_t d)
 }
 
 /* Checks the division of codes of 8 .. 16 bits, in full and limited range. */
-TEST(codes)
+TEST(divides_codes_exactly)
 {
     for (int bits = 8; bits <= 16; bits++) {
         const int32_t most = (1 << bits) - 1;
 
-        assert_int_equal(count_wrong_shares(most, 20, most), 0);
-        assert_int_equal(count_wrong_shares(most, 20, 219 << (bits - 8)), 0);
-        assert_int_equal(count_wrong_shares(most, 20, 224 << (bits - 8)), 0);
+        assert_int_equal(count_wrong_quotients(most, 20, most), 0);
+        assert_int_equal(count_wrong_quotients(most, 20, 219 << (bits - 8)), 0);
+        assert_int_equal(count_wrong_quotients(most, 20, 224 << (bits - 8)), 0);
     }
 }
 
 static const int32_t kr_q16[2] = {13933, 19595}, kb_q16[2] = {4732, 7471};
 
 /* Checks the division of colour differences, for BT.709 and BT.601. */
-TEST(differences)
+TEST(divides_colour_differences_exactly)
 {
     for (int m = 0; m < 2; m++) {
-        assert_int_equal(count_wrong_shares(1 << 20, 15, 65536 - kr_q16[m]), 0);
-        assert_int_equal(count_wrong_shares(1 << 20, 15, 65536 - kb_q16[m]), 0);
+        assert_int_equal(count_wrong_quotients(1 << 20, 15, 65536 - kr_q16[m]),
+                         0);
+        assert_int_equal(count_wrong_quotients(1 << 20, 15, 65536 - kb_q16[m]),
+                         0);
     }
 }
 
@@ -54,7 +56,7 @@ static int32_t clamp_quotient(int64_t v)
     return v < 0 ? 0 : v > 1 << 20 ? 1 << 20 : (int32_t)v;
 }
 
-TEST(green)
+TEST(divides_green_exactly)
 {
     long wrong = 0;
 
@@ -76,7 +78,7 @@ TEST(green)
     assert_int_equal(wrong, 0);
 }
 
-TEST(halves)
+TEST(halves_round_to_nearest)
 {
     for (int s = 1; s < 24; s++)
         for (int64_t n = -70000; n < 70000; n++)

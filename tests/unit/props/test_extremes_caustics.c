@@ -18,7 +18,7 @@ enum { W = 144, H = 96, N = 3 * W * H };
 static struct stage stage;
 static float test[N], exact[N];
 
-static double find_peak(const float *rgb)
+static double find_peak_light(const float *rgb)
 {
     double most = 0;
 
@@ -31,22 +31,23 @@ static double find_peak(const float *rgb)
  * equals that of the exact image within 1 % (outlines are 0.1 pixel off,
  * ghosts about twenty pixels wide). At its edge a fold's irradiance is
  * unbounded, but a pixel averages it; the grid may be off by 10 % there. */
-TEST(folds)
+TEST(folded_ghosts_keep_their_light)
 {
     double flux = 0, high = 0;
 
-    assert_true(stage_load(&stage, "heliar-tronnier"));
-    assert_true(stage_prepare(&stage, 8) && stage_model(&stage, 1, 60));
-    stage_view(&stage, W, H, 0);
+    assert_true(stage_load_lens(&stage, "heliar-tronnier"));
+    assert_true(stage_set_up_lens(&stage, 8) &&
+                stage_bake_or_load_model(&stage, 1, 60));
+    stage_set_view(&stage, W, H, 0);
     for (int k = 0; k < 4; k++) {
-        const struct glint_lamp lamp = stage_lamp(3.1 * k, 40 * k, 1);
+        const struct glint_lamp lamp = stage_make_lamp(3.1 * k, 40 * k, 1);
 
-        assert_true(stage_linear(&stage, &lamp, 1, test));
-        assert_true(stage_exact(&stage, &lamp, 1, 192, exact));
-        flux = fmax(
-            flux,
-            fabs(stage_flux(&stage, test) / stage_flux(&stage, exact) - 1));
-        high = fmax(high, find_peak(test) / find_peak(exact) - 1);
+        assert_true(stage_draw_linear(&stage, &lamp, 1, test));
+        assert_true(stage_draw_exact(&stage, &lamp, 1, 192, exact));
+        flux = fmax(flux, fabs(stage_sum_image(&stage, test) /
+                                   stage_sum_image(&stage, exact) -
+                               1));
+        high = fmax(high, find_peak_light(test) / find_peak_light(exact) - 1);
     }
     assert_at_most("caustics: all ghosts of the Heliar, flux", flux, 0.01, "");
     assert_at_most("caustics: brightest pixel, above the exact one", high, 0.1,
@@ -54,7 +55,7 @@ TEST(folds)
 }
 
 /* Makes a lens with a single ghost and its sensor GAP_MM behind the stop. */
-static void open_singlet(double gap_mm, double f_number)
+static void open_singlet_with_gap(double gap_mm, double f_number)
 {
     char text[300];
 
@@ -64,15 +65,15 @@ static void open_singlet(double gap_mm, double f_number)
              "surface -60 1 9 air\n"
              "stop 50 8\n",
              f_number);
-    stage_close(&stage);
-    assert_true(stage_parse(&stage, text));
+    stage_free(&stage);
+    assert_true(stage_parse_lens(&stage, text));
     stage.lens.stop_thickness_mm = gap_mm;
-    assert_true(stage_prepare(&stage, 0));
+    assert_true(stage_set_up_lens(&stage, 0));
 }
 
 /* Returns the gap at which paraxial rays of the ghost meet on the sensor,
  * mm; behind the stop they are straight lines. */
-static double focus_mm(void)
+static double compute_ghost_focus_mm(void)
 {
     const struct glint_ghost ghost = {0, 1};
     const double along[3] = {0, 0, 1};
@@ -82,7 +83,7 @@ static double focus_mm(void)
         struct glint_path path;
         struct glint_ray ray;
 
-        open_singlet(5 + k, 16);
+        open_singlet_with_gap(5 + k, 16);
         glint_path_init(&path, &stage.lens, &ghost, 532);
         assert_int_equal(glint_trace(&path, 0.1, 0, along, &ray, NULL),
                          GLINT_RAY_OK);
@@ -91,31 +92,31 @@ static double focus_mm(void)
     return 5 + x[0] / (x[0] - x[1]);
 }
 
-/* Checks a ghost whose paraxial rays focus on the sensor: a point with a
- * halo of aberrations. 6 % of the light may be missing, as the outermost
- * part of the halo is next to rays lost by total reflection, and cells with
- * two invalid corners are not drawn. */
-TEST(focus)
+/* Checks a ghost whose paraxial rays focus on the sensor: a point with a halo
+ * of aberrations. 6 % of the light may be missing, as the outermost part of the
+ * halo is next to rays that total reflection removes, and cells with two
+ * invalid corners are not drawn. */
+TEST(focused_ghost_keeps_its_light)
 {
     double flux = 0;
 
-    open_singlet(focus_mm(), 16);
-    stage_view(&stage, W, H, 36);
+    open_singlet_with_gap(compute_ghost_focus_mm(), 16);
+    stage_set_view(&stage, W, H, 36);
     for (int k = 0; k < 6; k++) {
-        const struct glint_lamp lamp = stage_lamp(1 + 0.11 * k, 31 * k, 1);
+        const struct glint_lamp lamp = stage_make_lamp(1 + 0.11 * k, 31 * k, 1);
 
-        assert_true(stage_linear(&stage, &lamp, 1, test));
-        assert_true(stage_exact(&stage, &lamp, 1, 256, exact));
-        assert_true(stage_flux(&stage, exact) > 0);
-        flux = fmax(
-            flux,
-            fabs(stage_flux(&stage, test) / stage_flux(&stage, exact) - 1));
+        assert_true(stage_draw_linear(&stage, &lamp, 1, test));
+        assert_true(stage_draw_exact(&stage, &lamp, 1, 256, exact));
+        assert_true(stage_sum_image(&stage, exact) > 0);
+        flux = fmax(flux, fabs(stage_sum_image(&stage, test) /
+                                   stage_sum_image(&stage, exact) -
+                               1));
     }
     assert_at_most("caustics: a ghost in focus, flux", flux, 0.06, "");
 }
 
 /* Returns the sum of the 7 x 7 pixels around pixel AT. */
-static double sum_around(const float *rgb, int at)
+static double sum_pixels_around(const float *rgb, int at)
 {
     double sum = 0;
 
@@ -126,7 +127,7 @@ static double sum_around(const float *rgb, int at)
     return sum;
 }
 
-static int find_brightest(const float *rgb)
+static int find_brightest_pixel(const float *rgb)
 {
     int most = 0;
 
@@ -136,15 +137,15 @@ static int find_brightest(const float *rgb)
 }
 
 /* Checks a stopped-down ghost that is a point with cells smaller than 1/256
- * pixel, the precision of corners: its light must arrive. Only light around
- * the point is compared, since near total reflection faint light goes far
- * away and the exact image would need a grid of a thousand cells. 2 % are
- * allowed: at f/400 the exact grid has only six rays across the stop. Images
- * by exact rays, which are interpolated, lose up to 6.3 % there. */
-TEST(point)
+ * pixel, the precision of corners: its light must arrive. Only light around the
+ * point is compared, since near total reflection faint light lands far away and
+ * the exact image would need a grid of a thousand cells. 2 % are allowed: at
+ * f/400 the exact grid has only six rays across the stop. Images by exact rays,
+ * which are interpolated, lose up to 6.3 % there. */
+TEST(ghost_smaller_than_corner_precision_keeps_its_light)
 {
     static const double f_number[] = {80, 150, 400};
-    const double focus = focus_mm();
+    const double focus = compute_ghost_focus_mm();
     /* max errors: exact rays; models; exact rays at f/400 */
     double apart[3] = {0, 0, 0};
 
@@ -152,21 +153,22 @@ TEST(point)
         const int modelled = k & 1;
         const int which = k == 4 ? 2 : modelled;
 
-        open_singlet(focus, f_number[k / 2]);
-        assert_true(!modelled || stage_model(&stage, 1, 3));
-        stage_view(&stage, W, H, 36);
+        open_singlet_with_gap(focus, f_number[k / 2]);
+        assert_true(!modelled || stage_bake_or_load_model(&stage, 1, 3));
+        stage_set_view(&stage, W, H, 36);
         for (int i = 0; i < 3; i++) {
-            const struct glint_lamp lamp = stage_lamp(1 + 0.11 * i, 31 * i, 1);
+            const struct glint_lamp lamp =
+                stage_make_lamp(1 + 0.11 * i, 31 * i, 1);
             double want;
             int at;
 
-            assert_true(stage_linear(&stage, &lamp, 1, test));
-            assert_true(stage_exact(&stage, &lamp, 1, 512, exact));
-            at = find_brightest(exact);
-            want = sum_around(exact, at);
+            assert_true(stage_draw_linear(&stage, &lamp, 1, test));
+            assert_true(stage_draw_exact(&stage, &lamp, 1, 512, exact));
+            at = find_brightest_pixel(exact);
+            want = sum_pixels_around(exact, at);
             assert_true(want > 0);
-            apart[which] =
-                fmax(apart[which], fabs(sum_around(test, at) / want - 1));
+            apart[which] = fmax(apart[which],
+                                fabs(sum_pixels_around(test, at) / want - 1));
         }
     }
     assert_at_most("caustics: a ghost that is a point, exact rays, flux",
@@ -178,18 +180,18 @@ TEST(point)
 
 /* Checks a frame that shows a hundredth of a ghost: a few cells, thousands
  * of pixels wide, have the light of the exact image. */
-TEST(huge)
+TEST(huge_ghost_has_the_light_of_exact_rays)
 {
-    const struct glint_lamp lamp = stage_lamp(2, 33, 1);
+    const struct glint_lamp lamp = stage_make_lamp(2, 33, 1);
     struct glint_measure m;
 
-    open_singlet(90, 16);
-    assert_true(stage_model(&stage, 4, 3));
-    stage_view(&stage, W, H, 0.15);
-    assert_true(stage_linear(&stage, &lamp, 1, test));
-    assert_true(stage_exact(&stage, &lamp, 1, 192, exact));
-    m = stage_compare(&stage, exact, test);
-    assert_true(stage_flux(&stage, exact) > 0);
+    open_singlet_with_gap(90, 16);
+    assert_true(stage_bake_or_load_model(&stage, 4, 3));
+    stage_set_view(&stage, W, H, 0.15);
+    assert_true(stage_draw_linear(&stage, &lamp, 1, test));
+    assert_true(stage_draw_exact(&stage, &lamp, 1, 192, exact));
+    m = stage_compare_images(&stage, exact, test);
+    assert_true(stage_sum_image(&stage, exact) > 0);
     assert_at_most("caustics: a ghost 100 times the frame, flux",
                    fabs(m.flux - 1), 0.03, "");
     assert_at_least("caustics: a ghost 100 times the frame, against exact",
@@ -198,5 +200,5 @@ TEST(huge)
 
 TEST_CLOSE
 {
-    stage_close(&stage);
+    stage_free(&stage);
 }

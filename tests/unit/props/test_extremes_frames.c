@@ -20,16 +20,17 @@ static double power_of_mm;
 
 TEST_OPEN
 {
-    const struct glint_lamp lamp = stage_lamp(7.5, 33, 1);
+    const struct glint_lamp lamp = stage_make_lamp(7.5, 33, 1);
 
-    if (!stage_load(&heliar, "heliar-tronnier") || !stage_prepare(&heliar, 8) ||
-        !stage_model(&heliar, 1, 60))
+    if (!stage_load_lens(&heliar, "heliar-tronnier") ||
+        !stage_set_up_lens(&heliar, 8) ||
+        !stage_bake_or_load_model(&heliar, 1, 60))
         fail();
-    stage_view(&heliar, 252, 168, 36);
-    power_of_mm = stage_power(&heliar, &lamp) / 7 / 7;
+    stage_set_view(&heliar, 252, 168, 36);
+    power_of_mm = stage_find_exposed_power(&heliar, &lamp) / 7 / 7;
 }
 
-static void *allocate_bytes(size_t bytes)
+static void *allocate_image_bytes(size_t bytes)
 {
     void *p = malloc(bytes);
 
@@ -38,14 +39,14 @@ static void *allocate_bytes(size_t bytes)
 }
 
 /* Draws onto an image of FORMAT and WIDTH x HEIGHT with PX_MM pixels per mm. */
-static void draw_lamp(enum glint_pixel_format format, int width, int height,
-                      double px_mm, uint8_t *bytes)
+static void draw_lamp_in_format(enum glint_pixel_format format, int width,
+                                int height, double px_mm, uint8_t *bytes)
 {
     const struct glint_lamp lamp =
-        stage_lamp(7.5, 33, power_of_mm * px_mm * px_mm);
+        stage_make_lamp(7.5, 33, power_of_mm * px_mm * px_mm);
     struct glint_image image = glint_image_over(bytes, format, width, height);
 
-    stage_view(&heliar, width, height, width / px_mm);
+    stage_set_view(&heliar, width, height, width / px_mm);
     assert_ok(
         glint_frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn));
 }
@@ -56,15 +57,15 @@ static void draw_lamp(enum glint_pixel_format format, int width, int height,
  * of a larger image of the same scale and parity of sides. None may differ,
  * unless one frame drops a ghost as invisible that the other draws, as
  * off-screen light counts as lit in the larger one. */
-static int count_differing(int width, int height, const uint8_t *large,
-                           int large_w, int large_h, double px_mm)
+static int count_differing_samples(int width, int height, const uint8_t *large,
+                                   int large_w, int large_h, double px_mm)
 {
-    uint8_t *small = allocate_bytes((size_t)width * (size_t)height * 3);
+    uint8_t *small = allocate_image_bytes((size_t)width * (size_t)height * 3);
     const int x0 = (large_w - width) / 2, y0 = (large_h - height) / 2;
     int n = 0;
 
     memset(small, 40, (size_t)width * (size_t)height * 3);
-    draw_lamp(GLINT_RGB24, width, height, px_mm, small);
+    draw_lamp_in_format(GLINT_RGB24, width, height, px_mm, small);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < 3 * width; x++)
             n += small[(size_t)y * 3 * (size_t)width + (size_t)x] !=
@@ -74,22 +75,22 @@ static int count_differing(int width, int height, const uint8_t *large,
     return n;
 }
 
-TEST(every_size)
+TEST(every_size_is_part_of_a_larger_frame)
 {
     static const int sizes[][2] = {{1, 1},   {1, 199},   {301, 1},  {3, 199},
                                    {65, 63}, {301, 3},   {17, 129}, {127, 65},
                                    {7, 9},   {299, 199}, {193, 1},  {1, 65}};
     enum { W = 301, H = 199 };
-    uint8_t *large = allocate_bytes(3 * W * H);
+    uint8_t *large = allocate_image_bytes(3 * W * H);
     int n = 0, lit = 0;
 
     memset(large, 40, 3 * W * H);
-    draw_lamp(GLINT_RGB24, W, H, 7, large);
+    draw_lamp_in_format(GLINT_RGB24, W, H, 7, large);
     for (int i = 0; i < 3 * W * H; i++)
         lit += large[i] != 40;
     assert_true(lit > W * H);
     for (int i = 0; i < 12; i++)
-        n += count_differing(sizes[i][0], sizes[i][1], large, W, H, 7);
+        n += count_differing_samples(sizes[i][0], sizes[i][1], large, W, H, 7);
     free(large);
     assert_at_most("frames: 1x1 to 301x199, samples that differ from the large "
                    "frame's middle",
@@ -98,18 +99,18 @@ TEST(every_size)
 
 /* Checks that the middle of the largest frame equals a small frame: no loss
  * of precision far from the middle, no overflow. */
-TEST(largest)
+TEST(middle_of_the_largest_frame_is_exact)
 {
     enum { SIDE = 8192, MIDDLE = 512 };
-    uint8_t *large = allocate_bytes((size_t)SIDE * SIDE),
-            *small = allocate_bytes(MIDDLE * MIDDLE);
+    uint8_t *large = allocate_image_bytes((size_t)SIDE * SIDE),
+            *small = allocate_image_bytes(MIDDLE * MIDDLE);
     int n = 0, corners = 0;
 
     memset(large, 0, (size_t)SIDE * SIDE);
     memset(small, 0, MIDDLE * MIDDLE);
-    draw_lamp(GLINT_GREY, SIDE, SIDE, 250, large);
+    draw_lamp_in_format(GLINT_GREY, SIDE, SIDE, 250, large);
     assert_int_equal(heliar.drawn.stats.dropped_bundles, 0);
-    draw_lamp(GLINT_GREY, MIDDLE, MIDDLE, 250, small);
+    draw_lamp_in_format(GLINT_GREY, MIDDLE, MIDDLE, 250, small);
     for (int y = 0; y < MIDDLE; y++)
         for (int x = 0; x < MIDDLE; x++)
             n += small[y * MIDDLE + x] !=
@@ -125,11 +126,11 @@ TEST(largest)
 }
 
 /* Checks that the middles of the longest frames equal short frames. */
-TEST(longest)
+TEST(middle_of_the_longest_frames_is_exact)
 {
     enum { LONG = GLINT_MAX_SIDE, SHORT = 64, MIDDLE = 512 };
-    uint8_t *large = allocate_bytes(LONG * SHORT),
-            *small = allocate_bytes(MIDDLE * SHORT);
+    uint8_t *large = allocate_image_bytes(LONG * SHORT),
+            *small = allocate_image_bytes(MIDDLE * SHORT);
     int n = 0, lit[2] = {0, 0};
 
     for (int turned = 0; turned < 2; turned++) {
@@ -138,9 +139,9 @@ TEST(longest)
 
         memset(large, 0, LONG * SHORT);
         memset(small, 0, MIDDLE * SHORT);
-        draw_lamp(GLINT_GREY, w, h, 1000, large);
+        draw_lamp_in_format(GLINT_GREY, w, h, 1000, large);
         assert_int_equal(heliar.drawn.stats.dropped_bundles, 0);
-        draw_lamp(GLINT_GREY, sw, sh, 1000, small);
+        draw_lamp_in_format(GLINT_GREY, sw, sh, 1000, small);
         for (int y = 0; y < sh; y++)
             for (int x = 0; x < sw; x++)
                 n += small[y * sw + x] !=
@@ -162,18 +163,19 @@ TEST(longest)
 /* Draws with rows padded by PAD bytes, bottom row first if DOWN is -1.
  * Returns the number of rows that differ plus the number of bytes written
  * outside the rows. */
-static int count_wrong(enum glint_pixel_format format, int pad, int down)
+static int count_wrong_samples_of_layout(enum glint_pixel_format format,
+                                         int pad, int down)
 {
     enum { W = 157, H = 83, ROOM = 1 << 19 };
     static uint8_t want[ROOM], got[ROOM];
     struct glint_image plain = {.format = format, .width = W, .height = H};
     struct glint_image image = plain;
     const struct glint_lamp lamp =
-        stage_lamp(7.5, 33, power_of_mm * W * W / 24 / 24);
+        stage_make_lamp(7.5, 33, power_of_mm * W * W / 24 / 24);
     uint8_t *at = got + 4096;
     int n = 0;
 
-    stage_view(&heliar, W, H, 24);
+    stage_set_view(&heliar, W, H, 24);
     memset(want, 90, sizeof want);
     glint_image_place(&plain, want);
     assert_ok(
@@ -205,15 +207,18 @@ static int count_wrong(enum glint_pixel_format format, int pad, int down)
     return n;
 }
 
-TEST(strides)
+TEST(strides_do_not_change_the_image)
 {
     int n = 0;
 
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
         /* YUYV and UYVY need even strides, int32 multiples of 4. */
-        n += count_wrong((enum glint_pixel_format)format, 52, 1);
-        n += count_wrong((enum glint_pixel_format)format, 0, -1);
-        n += count_wrong((enum glint_pixel_format)format, 4, -1);
+        n += count_wrong_samples_of_layout((enum glint_pixel_format)format, 52,
+                                           1);
+        n += count_wrong_samples_of_layout((enum glint_pixel_format)format, 0,
+                                           -1);
+        n += count_wrong_samples_of_layout((enum glint_pixel_format)format, 4,
+                                           -1);
     }
     assert_at_most("frames: strides of 13 formats, rows or bytes that differ",
                    n, 0, "");
@@ -224,7 +229,7 @@ TEST(strides)
 /* Checks that a cell whose sides lie exactly on borders of tiles and pixels
  * lights exactly the pixels inside it, with its exact flux, for every tile
  * size. */
-TEST(on_tile_borders)
+TEST(cells_on_tile_borders_are_exact)
 {
     enum { W = 192, H = 192 };
     static int32_t pixels[3 * W * H], first[3 * W * H];
@@ -283,5 +288,5 @@ TEST(on_tile_borders)
 
 TEST_CLOSE
 {
-    stage_close(&heliar);
+    stage_free(&heliar);
 }

@@ -31,20 +31,20 @@ struct worst {
     double db, flux;
 };
 
-static struct worst new_worst(void)
+static struct worst make_worst_errors(void)
 {
     return (struct worst){999, 0};
 }
 
-static void compare_with_exact(struct worst *worst,
-                               const struct glint_lamp *lamp, const char *what,
-                               double value)
+static void compare_model_with_exact(struct worst *worst,
+                                     const struct glint_lamp *lamp,
+                                     const char *what, double value)
 {
     struct glint_measure m;
 
-    assert_true(stage_linear(&stage, lamp, 1, test));
-    assert_true(stage_exact(&stage, lamp, 1, 128, exact));
-    m = stage_compare(&stage, exact, test);
+    assert_true(stage_draw_linear(&stage, lamp, 1, test));
+    assert_true(stage_draw_exact(&stage, lamp, 1, 128, exact));
+    m = stage_compare_images(&stage, exact, test);
     if (m.psnr_db < LEAST_DB || fabs(m.flux - 1) > MOST_FLUX)
         print_message("  %s %g: %.1f dB, flux x %.4f\n", what, value, m.psnr_db,
                       m.flux);
@@ -52,15 +52,15 @@ static void compare_with_exact(struct worst *worst,
     worst->flux = fmax(worst->flux, fabs(m.flux - 1));
 }
 
-static bool report_worst(const char *what, struct worst worst)
+static bool report_worst_errors(const char *what, struct worst worst)
 {
     char name[100];
     bool ok;
 
     snprintf(name, sizeof name, "lenses: %s, against exact", what);
-    ok = extreme_at_least(name, worst.db, LEAST_DB, "dB");
+    ok = extreme_check_at_least(name, worst.db, LEAST_DB, "dB");
     snprintf(name, sizeof name, "lenses: %s, flux", what);
-    return extreme_at_most(name, worst.flux, MOST_FLUX, "") && ok;
+    return extreme_check_at_most(name, worst.flux, MOST_FLUX, "") && ok;
 }
 
 /* A cemented doublet with the stop behind it: three surfaces, three ghosts. */
@@ -70,78 +70,80 @@ static const char doublet[] = "name doublet\nf-number 5.6\nfilm 36 24\n"
                               "surface -129.94 2 13 air\n"
                               "stop 93 10\n";
 
-static void open_text(const char *text, int n_blades)
+static void open_lens_text(const char *text, int n_blades)
 {
-    stage_close(&stage);
-    assert_true(stage_parse(&stage, text));
-    assert_true(stage_prepare(&stage, n_blades));
+    stage_free(&stage);
+    assert_true(stage_parse_lens(&stage, text));
+    assert_true(stage_set_up_lens(&stage, n_blades));
 }
 
-static void bake_model(double max_deg)
+static void bake_opened_lens(double max_deg)
 {
-    assert_true(stage_model(&stage, 4, max_deg));
-    stage_view(&stage, W, H, 0);
+    assert_true(stage_bake_or_load_model(&stage, 4, max_deg));
+    stage_set_view(&stage, W, H, 0);
 }
 
 /* ---------------------------------------------------------------- the stop */
 
-TEST(f_numbers)
+TEST(extreme_f_numbers_match_exact_rays)
 {
     static const double f[] = {5.1, 8, 16, 45, 128, 1000};
-    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
-    struct worst worst = new_worst();
+    const struct glint_lamp lamp = stage_make_lamp(6, 25, 1);
+    struct worst worst = make_worst_errors();
 
     for (int k = 0; k < 6; k++) {
         struct glint_error error;
 
-        stage_close(&stage);
-        assert_true(stage_parse(&stage, doublet));
+        stage_free(&stage);
+        assert_true(stage_parse_lens(&stage, doublet));
         if (glint_prescription_set_f_number(&stage.lens, f[k], &error))
             fail_msg("%s", error.text);
-        assert_true(stage_prepare(&stage, 8));
-        bake_model(8);
-        compare_with_exact(&worst, &lamp, "f/", f[k]);
+        assert_true(stage_set_up_lens(&stage, 8));
+        bake_opened_lens(8);
+        compare_model_with_exact(&worst, &lamp, "f/", f[k]);
     }
-    assert_true(report_worst("f/5.1 (open) to f/1000", worst));
+    assert_true(report_worst_errors("f/5.1 (open) to f/1000", worst));
 }
 
-TEST(blades)
+TEST(extreme_numbers_of_blades_match_exact_rays)
 {
-    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
-    struct worst worst = new_worst();
+    const struct glint_lamp lamp = stage_make_lamp(6, 25, 1);
+    struct worst worst = make_worst_errors();
 
-    open_text(doublet, 0);
-    bake_model(8);
+    open_lens_text(doublet, 0);
+    bake_opened_lens(8);
     for (int n = 0; n <= 64; n += n == 0 ? 3 : n < 12 ? 1 : 13) {
-        assert_true(stage_prepare(&stage, n));
-        assert_true(stage_model(&stage, 4, 8));
-        stage_view(&stage, W, H, 0);
-        compare_with_exact(&worst, &lamp, "blades", n);
+        assert_true(stage_set_up_lens(&stage, n));
+        assert_true(stage_bake_or_load_model(&stage, 4, 8));
+        stage_set_view(&stage, W, H, 0);
+        compare_model_with_exact(&worst, &lamp, "blades", n);
     }
-    assert_true(report_worst("stops of 3 to 64 blades and a circle", worst));
+    assert_true(
+        report_worst_errors("stops of 3 to 64 blades and a circle", worst));
 }
 
 /* Checks that the outline of a round stop 300 pixels wide, whose ghost is
  * otherwise hardly bent, shows no chords. The limit of 50 dB is between the
  * 44.4 dB of 8 cells and the 54.5 dB of the planned cells. */
-TEST(round_stop)
+TEST(outline_of_a_round_stop_shows_no_chords)
 {
     enum { WIDE = 432, HIGH = 288 };
     const size_t bytes = sizeof(float) * 3 * WIDE * HIGH;
-    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    const struct glint_lamp lamp = stage_make_lamp(6, 25, 1);
     float *drawn = malloc(bytes), *want = malloc(bytes);
     struct glint_error error;
     double db;
 
     assert_true(drawn && want);
-    stage_close(&stage);
-    assert_true(stage_parse(&stage, doublet));
+    stage_free(&stage);
+    assert_true(stage_parse_lens(&stage, doublet));
     assert_ok(glint_prescription_set_f_number(&stage.lens, 64, &error));
-    assert_true(stage_prepare(&stage, 0) && stage_model(&stage, 2, 8));
-    stage_view(&stage, WIDE, HIGH, 0);
-    assert_true(stage_linear(&stage, &lamp, 1, drawn));
-    assert_true(stage_exact(&stage, &lamp, 1, 128, want));
-    db = stage_compare(&stage, want, drawn).psnr_db;
+    assert_true(stage_set_up_lens(&stage, 0) &&
+                stage_bake_or_load_model(&stage, 2, 8));
+    stage_set_view(&stage, WIDE, HIGH, 0);
+    assert_true(stage_draw_linear(&stage, &lamp, 1, drawn));
+    assert_true(stage_draw_exact(&stage, &lamp, 1, 128, want));
+    db = stage_compare_images(&stage, want, drawn).psnr_db;
     free(drawn);
     free(want);
     assert_at_least("lenses: outline of a round stop, 300 pixels", db, 50,
@@ -152,7 +154,7 @@ TEST(round_stop)
  * outline with 8 cells as with 128, as chords lie on both sides of it. 48 dB
  * is between the 46.0 dB of chords inside the outline and the 49.9 dB of
  * chords around it. */
-TEST(barrels)
+TEST(barrel_outline_needs_few_cells)
 {
     static const char narrow[] = "name narrow\nf-number 5.6\nfilm 36 24\n"
                                  "surface 61.47 6 7 1.5168 64.17\n"
@@ -161,20 +163,20 @@ TEST(barrels)
                                  "stop 93 10\n";
     enum { WIDE = 432, HIGH = 288 };
     const size_t bytes = sizeof(float) * 3 * WIDE * HIGH;
-    const struct glint_lamp lamp = stage_lamp(7, 25, 1);
+    const struct glint_lamp lamp = stage_make_lamp(7, 25, 1);
     float *drawn = malloc(bytes), *want = malloc(bytes);
     double db;
 
     assert_true(drawn && want);
-    open_text(narrow, 8);
-    assert_true(stage_model(&stage, 1, 8));
-    stage_view(&stage, WIDE, HIGH, 0);
+    open_lens_text(narrow, 8);
+    assert_true(stage_bake_or_load_model(&stage, 1, 8));
+    stage_set_view(&stage, WIDE, HIGH, 0);
     stage.frame.picture.uniform = true;
     stage.frame.dials.fineness = 128;
-    assert_true(stage_linear(&stage, &lamp, 1, want));
+    assert_true(stage_draw_linear(&stage, &lamp, 1, want));
     stage.frame.dials.fineness = 8;
-    assert_true(stage_linear(&stage, &lamp, 1, drawn));
-    db = stage_compare(&stage, want, drawn).psnr_db;
+    assert_true(stage_draw_linear(&stage, &lamp, 1, drawn));
+    db = stage_compare_images(&stage, want, drawn).psnr_db;
     free(drawn);
     free(want);
     assert_at_least("lenses: outline of barrels, 8 cells against 128", db, 48,
@@ -186,22 +188,22 @@ TEST(barrels)
 /* Checks sensors of several sizes. A model is valid for its film plus a
  * tenth, so a larger sensor needs another model, baked as in
  * tools/glint/model/settings.c. */
-TEST(sensors)
+TEST(extreme_sensor_sizes_match_exact_rays)
 {
     static const double mm[] = {1, 2.5, 6.4, 36, 100};
-    const struct glint_lamp lamp = stage_lamp(4, 25, 1);
-    struct worst worst = new_worst();
+    const struct glint_lamp lamp = stage_make_lamp(4, 25, 1);
+    struct worst worst = make_worst_errors();
 
     for (int k = 0; k < 5; k++) {
-        stage_close(&stage);
-        assert_true(stage_parse(&stage, doublet));
+        stage_free(&stage);
+        assert_true(stage_parse_lens(&stage, doublet));
         stage.lens.film_width_mm = mm[k];
         stage.lens.film_height_mm = mm[k] * H / W;
-        assert_true(stage_prepare(&stage, 8));
-        bake_model(6);
-        compare_with_exact(&worst, &lamp, "sensor", mm[k]);
+        assert_true(stage_set_up_lens(&stage, 8));
+        bake_opened_lens(6);
+        compare_model_with_exact(&worst, &lamp, "sensor", mm[k]);
     }
-    assert_true(report_worst("sensors of 1 to 100 mm", worst));
+    assert_true(report_worst_errors("sensors of 1 to 100 mm", worst));
 }
 
 /* Multiplies all lengths of the lens by FACTOR, except the thickness of
@@ -220,14 +222,14 @@ static void scale_lens(struct glint_prescription *l, double factor)
     l->check_focal_mm = l->check_back_mm = 0;
 }
 
-static void open_scaled(double factor, double max_deg)
+static void open_scaled_lens(double factor, double max_deg)
 {
-    stage_close(&stage);
-    assert_true(stage_load(&stage, "heliar-tronnier"));
+    stage_free(&stage);
+    assert_true(stage_load_lens(&stage, "heliar-tronnier"));
     scale_lens(&stage.lens, factor);
-    assert_true(stage_prepare(&stage, 8));
-    assert_true(stage_model(&stage, 4, max_deg));
-    stage_view(&stage, W, H, 0);
+    assert_true(stage_set_up_lens(&stage, 8));
+    assert_true(stage_bake_or_load_model(&stage, 4, max_deg));
+    stage_set_view(&stage, W, H, 0);
 }
 
 /* Checks that a lens scaled by 1000 or 1/1000 gives the same image on a
@@ -236,24 +238,24 @@ static void open_scaled(double factor, double max_deg)
  * and single rays may fall on the other side of a threshold. Models are
  * fitted again and must agree to 50 dB; less would reveal a fixed length in
  * mm in the bake. */
-TEST(scaled)
+TEST(scaled_lens_gives_the_same_image)
 {
     static const double factor[] = {0x1p-10, 0x1p10, 1e-3, 1e3};
     static float exact_one[3 * W * H], test_one[3 * W * H];
-    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    const struct glint_lamp lamp = stage_make_lamp(6, 25, 1);
     double bits = 0, db_exact = 999, db_model = 999, db_bits = 999;
 
-    open_scaled(1, 8);
-    assert_true(stage_linear(&stage, &lamp, 1, test_one));
-    assert_true(stage_exact(&stage, &lamp, 1, 128, exact_one));
+    open_scaled_lens(1, 8);
+    assert_true(stage_draw_linear(&stage, &lamp, 1, test_one));
+    assert_true(stage_draw_exact(&stage, &lamp, 1, 128, exact_one));
     for (int k = 0; k < 4; k++) {
         double exact_db, model_db;
 
-        open_scaled(factor[k], 8);
-        assert_true(stage_linear(&stage, &lamp, 1, test));
-        assert_true(stage_exact(&stage, &lamp, 1, 128, exact));
-        exact_db = stage_compare(&stage, exact_one, exact).psnr_db;
-        model_db = stage_compare(&stage, test_one, test).psnr_db;
+        open_scaled_lens(factor[k], 8);
+        assert_true(stage_draw_linear(&stage, &lamp, 1, test));
+        assert_true(stage_draw_exact(&stage, &lamp, 1, 128, exact));
+        exact_db = stage_compare_images(&stage, exact_one, exact).psnr_db;
+        model_db = stage_compare_images(&stage, test_one, test).psnr_db;
         print_message("  x %g: exact %.1f dB, model %.1f dB\n", factor[k],
                       exact_db, model_db);
         if (k < 2) {
@@ -273,55 +275,55 @@ TEST(scaled)
                     50, "dB");
 }
 
-TEST(focal_lengths)
+TEST(extreme_focal_lengths_match_exact_rays)
 {
     static const double focal[] = {1, 10, 1000, 10000};
-    struct worst worst = new_worst();
+    struct worst worst = make_worst_errors();
     struct glint_optics o;
 
     for (int k = 0; k < 4; k++) {
-        const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+        const struct glint_lamp lamp = stage_make_lamp(6, 25, 1);
 
-        stage_close(&stage);
-        assert_true(stage_parse(&stage, doublet));
+        stage_free(&stage);
+        assert_true(stage_parse_lens(&stage, doublet));
         glint_optics_of(&stage.lens, &o);
         scale_lens(&stage.lens, focal[k] / o.focal_mm);
-        assert_true(stage_prepare(&stage, 8));
-        bake_model(8);
-        compare_with_exact(&worst, &lamp, "focal length", focal[k]);
+        assert_true(stage_set_up_lens(&stage, 8));
+        bake_opened_lens(8);
+        compare_model_with_exact(&worst, &lamp, "focal length", focal[k]);
     }
-    assert_true(report_worst("focal lengths of 1 mm to 10 m", worst));
+    assert_true(report_worst_errors("focal lengths of 1 mm to 10 m", worst));
 }
 
 /* ------------------------------------------------------------------- radii */
 
-TEST(smallest_ball)
+TEST(smallest_ball_lens_matches_exact_rays)
 {
-    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
-    struct worst worst = new_worst();
+    const struct glint_lamp lamp = stage_make_lamp(6, 25, 1);
+    struct worst worst = make_worst_errors();
 
-    stage_close(&stage);
+    stage_free(&stage);
     /* Radii of 1/100 mm (scaled from 1.1) are the smallest valid ones. */
-    assert_true(stage_parse(&stage, "name ball\nf-number 4\nfilm 1 0.7\n"
-                                    "surface 1.1 1.1 1 1.5168 64.17\n"
-                                    "stop 1.1 0.3\n"
-                                    "surface -1.1 0.6 1 1.62 36.4\n"
-                                    "surface -1.6 0.5 1.5 air\n"));
+    assert_true(stage_parse_lens(&stage, "name ball\nf-number 4\nfilm 1 0.7\n"
+                                         "surface 1.1 1.1 1 1.5168 64.17\n"
+                                         "stop 1.1 0.3\n"
+                                         "surface -1.1 0.6 1 1.62 36.4\n"
+                                         "surface -1.6 0.5 1.5 air\n"));
     scale_lens(&stage.lens, 0.01 / 1.1);
-    assert_true(stage_prepare(&stage, 8));
-    bake_model(8);
-    compare_with_exact(&worst, &lamp, "ball of mm", 0.01);
-    assert_true(report_worst("radii of 1e-2 mm", worst));
+    assert_true(stage_set_up_lens(&stage, 8));
+    bake_opened_lens(8);
+    compare_model_with_exact(&worst, &lamp, "ball of mm", 0.01);
+    assert_true(report_worst_errors("radii of 1e-2 mm", worst));
 }
 
 /* Checks that a surface 28 mm wide with a radius of 1e7 mm, which differs
  * from a plane by 1e-5 mm (1/50 wavelength), gives the image of a plane. */
-TEST(nearly_planes)
+TEST(almost_plane_surface_matches_exact_rays)
 {
     static const char *const radius[] = {"flat", "1e7", "-1e7", "1e9"};
-    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    const struct glint_lamp lamp = stage_make_lamp(6, 25, 1);
     static float plane[3 * W * H];
-    struct worst worst = new_worst();
+    struct worst worst = make_worst_errors();
     double db = 999;
 
     for (int k = 0; k < 4; k++) {
@@ -334,14 +336,14 @@ TEST(nearly_planes)
                  "surface 51.68 5 12 1.5168 64.17\n"
                  "surface %s 2 12 air\nstop 92 10\n",
                  radius[k], radius[k], radius[k]);
-        open_text(text, 8);
-        bake_model(8);
-        compare_with_exact(&worst, &lamp, "radius", k);
+        open_lens_text(text, 8);
+        bake_opened_lens(8);
+        compare_model_with_exact(&worst, &lamp, "radius", k);
         if (k == 0)
             memcpy(plane, exact, sizeof plane);
-        db = fmin(db, stage_compare(&stage, plane, exact).psnr_db);
+        db = fmin(db, stage_compare_images(&stage, plane, exact).psnr_db);
     }
-    assert_true(report_worst("planes and radii of 1e7 mm", worst));
+    assert_true(report_worst_errors("planes and radii of 1e7 mm", worst));
     assert_at_least("lenses: radii of 1e7 mm against planes", db, 70, "dB");
 }
 
@@ -349,13 +351,13 @@ TEST(nearly_planes)
 
 /* Makes a lens of N surfaces with a focal length near 100 mm, the stop
  * behind the first SPLIT of them and the sensor at the focus. */
-static void open_many(int n, int split)
+static void open_lens_of_many_surfaces(int n, int split)
 {
     struct glint_prescription *l = &stage.lens;
     struct glint_optics o;
 
-    stage_close(&stage);
-    assert_true(stage_parse(&stage, doublet));
+    stage_free(&stage);
+    assert_true(stage_parse_lens(&stage, doublet));
     l->n_surfaces = n;
     l->stop_after = split;
     /* Rear surfaces are almost planes, so that all elements have about the
@@ -379,17 +381,17 @@ static void open_many(int n, int split)
     else
         l->surface[n - 1].thickness_mm = o.back_focal_mm;
     assert_true(o.stop_radius_mm > 1 && o.stop_radius_mm < 6);
-    assert_true(stage_prepare(&stage, 8));
+    assert_true(stage_set_up_lens(&stage, 8));
 }
 
 /* Checks 2 to 64 surfaces. A single surface has the same medium on both
  * sides and is rejected. Two surfaces with the stop between them have no
  * ghost; more must give the right image. */
-TEST(surfaces)
+TEST(lenses_of_2_to_64_surfaces_match_exact_rays)
 {
     static const int n[] = {2, 4, 8, 16, 32, 64};
-    const struct glint_lamp lamp = stage_lamp(2, 25, 1);
-    struct worst worst = new_worst();
+    const struct glint_lamp lamp = stage_make_lamp(2, 25, 1);
+    struct worst worst = make_worst_errors();
     struct glint_error error;
     struct glint_prescription lens;
     static const char one[] = "name one\nf-number 8\nfilm 36 24\n"
@@ -398,28 +400,29 @@ TEST(surfaces)
     assert_int_equal(
         glint_prescription_parse(&lens, one, sizeof one - 1, "one", &error),
         GLINT_E_LENS);
-    for (int k = 0; k < (extreme_long() ? 6 : 4); k++) {
-        open_many(n[k], n[k] / 2);
+    for (int k = 0; k < (extreme_is_long_run() ? 6 : 4); k++) {
+        open_lens_of_many_surfaces(n[k], n[k] / 2);
         if (n[k] == 2)
             assert_int_equal(stage.setup.n_ghosts, 0);
-        bake_model(3);
-        compare_with_exact(&worst, &lamp, "surfaces", n[k]);
+        bake_opened_lens(3);
+        compare_model_with_exact(&worst, &lamp, "surfaces", n[k]);
     }
-    assert_true(report_worst(
-        extreme_long() ? "2 to 64 surfaces" : "2 to 16 surfaces", worst));
+    assert_true(report_worst_errors(extreme_is_long_run() ? "2 to 64 surfaces"
+                                                          : "2 to 16 surfaces",
+                                    worst));
 }
 
 /* Checks that a model without ghosts does not change the image. */
-TEST(no_ghosts)
+TEST(model_without_ghosts_changes_nothing)
 {
-    const struct glint_lamp lamp = stage_lamp(2, 25, 1e9);
+    const struct glint_lamp lamp = stage_make_lamp(2, 25, 1e9);
     static uint8_t codes[3 * W * H];
     int changed = 0;
 
-    open_many(2, 1);
-    bake_model(3);
+    open_lens_of_many_surfaces(2, 1);
+    bake_opened_lens(3);
     memset(codes, 77, sizeof codes);
-    assert_true(stage_codes(&stage, &lamp, 1, codes));
+    assert_true(stage_draw_codes(&stage, &lamp, 1, codes));
     for (int i = 0; i < 3 * W * H; i++)
         changed += codes[i] != 77;
     assert_at_most("lenses: no ghosts, samples changed", changed, 0, "samples");
@@ -428,32 +431,33 @@ TEST(no_ghosts)
 /* Checks 64 surfaces before the stop, which have 2016 pairs. Rays are exact,
  * as baking so many ghosts takes an hour; planning, binning and summing have
  * the same work. */
-TEST(two_thousand_ghosts)
+TEST(two_thousand_ghosts_are_drawn)
 {
-    const struct glint_lamp lamp = stage_lamp(2, 25, 1);
-    struct worst worst = new_worst();
+    const struct glint_lamp lamp = stage_make_lamp(2, 25, 1);
+    struct worst worst = make_worst_errors();
 
-    if (!extreme_long()) {
+    if (!extreme_is_long_run()) {
         skip();
         return;
     }
-    open_many(64, 64);
+    open_lens_of_many_surfaces(64, 64);
     assert_int_equal(stage.setup.n_ghosts, 2016);
-    stage_view(&stage, W, H, 0);
+    stage_set_view(&stage, W, H, 0);
     stage.frame.dials.fineness = 32;
-    assert_true(stage_linear(&stage, &lamp, 1, test));
-    assert_true(stage_exact(&stage, &lamp, 1, 48, exact));
+    assert_true(stage_draw_linear(&stage, &lamp, 1, test));
+    assert_true(stage_draw_exact(&stage, &lamp, 1, 48, exact));
     {
-        const struct glint_measure m = stage_compare(&stage, exact, test);
+        const struct glint_measure m =
+            stage_compare_images(&stage, exact, test);
 
         worst = (struct worst){m.psnr_db, fabs(m.flux - 1)};
         assert_int_equal(stage.drawn.stats.dropped_bundles, 0);
         print_message("  %d of 2016 ghosts drawn\n", stage.drawn.ghosts);
     }
-    assert_true(report_worst("2016 ghosts, exact rays", worst));
+    assert_true(report_worst_errors("2016 ghosts, exact rays", worst));
 }
 
 TEST_CLOSE
 {
-    stage_close(&stage);
+    stage_free(&stage);
 }

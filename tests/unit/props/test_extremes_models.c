@@ -15,38 +15,40 @@
 
 static struct stage stage;
 
-/* Returns whether the family takes seconds, as it has thousands of ghosts. */
-static bool is_heavy(int family)
+/* Returns whether drawing a model of FAMILY costs seconds, as it has thousands
+ * of ghosts. */
+static bool is_slow_family(int family)
 {
     return family == HOSTILE_WHOLE || family == HOSTILE_FOLDS ||
            family == HOSTILE_COLOURS;
 }
 
-static bool is_drawn(int family, int number)
+static bool is_model_drawn(int family, int number)
 {
-    return extreme_long() || number == 8 || (number == 3 && !is_heavy(family));
+    return extreme_is_long_run() || number == 8 ||
+           (number == 3 && !is_slow_family(family));
 }
 
 /* Work may exceed its limit by this factor, as plans estimate it roughly,
  * and replanning (coarser or with more memory) costs work as well. */
 #define MOST_WORK 1.5
 
-TEST(hostile_models)
+TEST(hostile_models_stay_within_their_bounds)
 {
     double work = 0, memory = 0;
     int n_of[HOSTILE_OUTCOMES] = {0}, n_failed = 0;
 
-    assert_true(stage_open(&stage, "heliar-tronnier", 96, 64));
+    assert_true(stage_open_lens(&stage, "heliar-tronnier", 96, 64));
     for (int family = 0; family < HOSTILE_FAMILIES; family++)
         for (int number = 0; number < HOSTILE_EACH; number++) {
             struct hostile_scene scene;
             struct hostile_result r;
 
-            if (!is_drawn(family, number))
+            if (!is_model_drawn(family, number))
                 continue;
-            hostile_make(&scene, (enum hostile_family)family, number,
-                         &stage.file.lens);
-            n_failed += !hostile_draw(&scene, &r);
+            hostile_make_scene(&scene, (enum hostile_family)family, number,
+                               &stage.file.lens);
+            n_failed += !hostile_draw_scene(&scene, &r);
             free(scene.model.data);
             n_of[r.outcome]++;
             if (r.outcome == HOSTILE_REFUSED)
@@ -54,7 +56,7 @@ TEST(hostile_models)
             work = fmax(work, r.minsn / r.most_minsn);
             memory = fmax(memory, r.bytes / r.most_bytes);
         }
-    stage_close(&stage);
+    stage_free(&stage);
     /* Most models must be valid, so that they are actually drawn. */
     assert_true(n_of[HOSTILE_COARSER] >= 2);
     assert_true(n_of[HOSTILE_DRAWN] >= 5);

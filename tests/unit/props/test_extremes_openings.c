@@ -29,31 +29,31 @@ static const char doublet[] = "name doublet\nf-number 5.1\nfilm 36 24\n"
                               "surface -129.94 2 13 air\n"
                               "stop 93 10\n";
 
-static void open_wide(int n_blades)
+static void open_doublet_wide_open(int n_blades)
 {
-    stage_close(&stage);
-    assert_true(stage_parse(&stage, doublet));
-    assert_true(stage_prepare(&stage, n_blades));
-    assert_true(stage_model(&stage, 1, 12));
-    stage_view(&stage, W, H, 0);
+    stage_free(&stage);
+    assert_true(stage_parse_lens(&stage, doublet));
+    assert_true(stage_set_up_lens(&stage, n_blades));
+    assert_true(stage_bake_or_load_model(&stage, 1, 12));
+    stage_set_view(&stage, W, H, 0);
 }
 
 /* Draws the lens by a model baked at F_NUMBER. */
-static void draw_native(double f_number, int n_blades,
-                        const struct glint_lamp *lamp)
+static void draw_by_model_of_f_number(double f_number, int n_blades,
+                                      const struct glint_lamp *lamp)
 {
     struct glint_error error;
 
-    stage_close(&stage);
-    assert_true(stage_parse(&stage, doublet));
+    stage_free(&stage);
+    assert_true(stage_parse_lens(&stage, doublet));
     assert_ok(glint_prescription_set_f_number(&stage.lens, f_number, &error));
-    assert_true(stage_prepare(&stage, n_blades));
-    assert_true(stage_model(&stage, 1, 12));
-    stage_view(&stage, W, H, 0);
-    assert_true(stage_linear(&stage, lamp, 1, native));
+    assert_true(stage_set_up_lens(&stage, n_blades));
+    assert_true(stage_bake_or_load_model(&stage, 1, 12));
+    stage_set_view(&stage, W, H, 0);
+    assert_true(stage_draw_linear(&stage, lamp, 1, native));
 }
 
-TEST(against_exact)
+TEST(stopped_down_model_matches_exact_rays)
 {
     static const double f[] = {OPEN_F, 5.3, 5.6, 8, 11, 16, 22, 45, 128};
     static const double angle[][2] = {{0.1, 10}, {6, 25}, {11, 80}};
@@ -61,17 +61,17 @@ TEST(against_exact)
     bool is_near;
 
     for (int blades = 0; blades <= 8; blades += 8) {
-        open_wide(blades);
+        open_doublet_wide_open(blades);
         for (int k = 0; k < 9; k++) {
-            assert_true(stage_stop(&stage, f[k]));
+            assert_true(stage_stop_down(&stage, f[k]));
             for (int i = 0; i < 3; i++) {
                 const struct glint_lamp lamp =
-                    stage_lamp(angle[i][0], angle[i][1], 1);
+                    stage_make_lamp(angle[i][0], angle[i][1], 1);
                 struct glint_measure m;
 
-                assert_true(stage_linear(&stage, &lamp, 1, drawn));
-                assert_true(stage_exact(&stage, &lamp, 1, 192, exact));
-                m = stage_compare(&stage, exact, drawn);
+                assert_true(stage_draw_linear(&stage, &lamp, 1, drawn));
+                assert_true(stage_draw_exact(&stage, &lamp, 1, 192, exact));
+                m = stage_compare_images(&stage, exact, drawn);
                 if (m.psnr_db < 50)
                     print_message("  f/%g at %g: %.1f dB, flux x %.4f\n", f[k],
                                   angle[i][0], m.psnr_db, m.flux);
@@ -80,82 +80,84 @@ TEST(against_exact)
             }
         }
     }
-    is_near =
-        extreme_at_least("openings: f/5.1 to f/128 of one model, against exact",
-                         worst, 50, "dB");
-    assert_true(extreme_at_most("openings: the same, flux", flux, 0.01, "") &&
-                is_near);
+    is_near = extreme_check_at_least(
+        "openings: f/5.1 to f/128 of one model, against exact", worst, 50,
+        "dB");
+    assert_true(
+        extreme_check_at_most("openings: the same, flux", flux, 0.01, "") &&
+        is_near);
 }
 
 /* Checks that a stopped-down model gives the image of a model baked there,
  * with at most a third more edges. */
-TEST(against_native)
+TEST(stopped_down_model_equals_a_native_one)
 {
     static const double f[] = {8, 22};
-    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    const struct glint_lamp lamp = stage_make_lamp(6, 25, 1);
     double worst = 999, more = 0;
     bool is_near;
 
     for (int k = 0; k < 2; k++) {
         int n;
 
-        open_wide(8);
-        assert_true(stage_stop(&stage, f[k]));
-        assert_true(stage_linear(&stage, &lamp, 1, drawn));
+        open_doublet_wide_open(8);
+        assert_true(stage_stop_down(&stage, f[k]));
+        assert_true(stage_draw_linear(&stage, &lamp, 1, drawn));
         n = stage.drawn.stats.primitives;
-        draw_native(f[k], 8, &lamp);
+        draw_by_model_of_f_number(f[k], 8, &lamp);
         more = fmax(more, (double)n / stage.drawn.stats.primitives);
-        worst = fmin(worst, stage_compare(&stage, native, drawn).psnr_db);
+        worst =
+            fmin(worst, stage_compare_images(&stage, native, drawn).psnr_db);
     }
-    is_near = extreme_at_least(
+    is_near = extreme_check_at_least(
         "openings: f/8 and f/22 of one model, against one baked there", worst,
         50, "dB");
-    assert_true(
-        extreme_at_most("openings: the same, edges", more, 1.33, "times") &&
-        is_near);
+    assert_true(extreme_check_at_most("openings: the same, edges", more, 1.33,
+                                      "times") &&
+                is_near);
 }
 
-static double to_code(double x)
+static double encode_srgb(double x)
 {
     x = fmin(1, fmax(0, x));
     return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
 }
 
 /* Sets MEAN to the means of green over blocks of 8 x 8 pixels, codes. */
-static void set_blocks(const float *rgb, double exposure, double *mean)
+static void compute_block_means(const float *rgb, double exposure, double *mean)
 {
     memset(mean, 0, BLOCKS * sizeof *mean);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++)
             mean[y / 8 * (W / 8) + x / 8] +=
-                to_code(exposure * (double)rgb[3 * (y * W + x) + 1]) / 64;
+                encode_srgb(exposure * (double)rgb[3 * (y * W + x) + 1]) / 64;
 }
 
 /* Checks, while the stop closes and ghosts shrink, that the error of a block
  * against the exact image changes by at most 1.5 codes per frame, while
  * blocks of the exact image change by tens of codes. */
-TEST(closing)
+TEST(closing_stop_causes_no_jump)
 {
-    const int frames = extreme_long() ? 100 : 34;
-    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    const int frames = extreme_is_long_run() ? 100 : 34;
+    const struct glint_lamp lamp = stage_make_lamp(6, 25, 1);
     static double got[2][BLOCKS], want[2][BLOCKS];
     double pop = 0, own = 0, exposure = 1;
 
-    open_wide(8);
+    open_doublet_wide_open(8);
     for (int k = 0; k < frames; k++) {
         const double f = OPEN_F * pow(11, k / (frames - 1.0));
         double *now = got[k & 1], *then = got[~k & 1];
         double *exactly = want[k & 1], *before = want[~k & 1];
 
-        assert_true(stage_stop(&stage, f));
-        assert_true(stage_linear(&stage, &lamp, 1, drawn));
-        assert_true(stage_exact(&stage, &lamp, 1, 128, exact));
+        assert_true(stage_stop_down(&stage, f));
+        assert_true(stage_draw_linear(&stage, &lamp, 1, drawn));
+        assert_true(stage_draw_exact(&stage, &lamp, 1, 128, exact));
         if (k == 0)
-            exposure = stage_power(&stage, &lamp);
+            exposure = stage_find_exposed_power(&stage, &lamp);
         /* The ghosts' irradiance is constant, while the direct image gets
          * fainter. */
-        set_blocks(drawn, exposure * pow(OPEN_F / f, 2), now);
-        set_blocks(exact, exposure * pow(OPEN_F / f, 2), exactly);
+        compute_block_means(drawn, exposure * pow(OPEN_F / f, 2), now);
+        compute_block_means(exact, exposure * pow(OPEN_F / f, 2), exactly);
         for (int b = 0; k > 0 && b < BLOCKS; b++) {
             const double step = exactly[b] - before[b];
 
@@ -171,5 +173,5 @@ TEST(closing)
 
 TEST_CLOSE
 {
-    stage_close(&stage);
+    stage_free(&stage);
 }

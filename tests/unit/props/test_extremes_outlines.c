@@ -27,10 +27,10 @@ struct offsets {
     double sum, squares, most;
 };
 
-/* Returns the position of the outline, pixels outwards from the start of the
- * window: the window's light divided by that of the pixel before it. AT is
- * the last pixel of the inner part; STEP leads outwards. */
-static double find_end(const float *rgb, int at, int step)
+/* Returns the position of an outline, pixels from the start of a window of
+ * pixels across it: the light of the window / the light of the pixel before it.
+ * AT is the last pixel of the inner part; STEP leads outwards. */
+static double find_outline_position(const float *rgb, int at, int step)
 {
     double sum = 0;
 
@@ -39,8 +39,9 @@ static double find_end(const float *rgb, int at, int step)
     return sum / (double)rgb[at - 3 * step];
 }
 
-/* Returns whether the outline is clean: even light inside, none outside. */
-static bool is_end(const float *rgb, int at, int step)
+/* Returns whether the outline can be measured: even light inside, no light
+ * outside. */
+static bool is_clean_outline(const float *rgb, int at, int step)
 {
     const double first = (double)rgb[at - INSIDE * step];
 
@@ -63,14 +64,16 @@ static double gradient_cosine2(const float *rgb, int at, int step)
     return a * a / (a * a + b * b + 1e-300);
 }
 
-static void add_offset(struct offsets *o, int at, int step)
+static void add_outline_offset(struct offsets *o, int at, int step)
 {
     const double cos2 = gradient_cosine2(finest, at, step);
     double off;
 
-    if (cos2 < 0.5 || !is_end(finest, at, step) || !(drawn[at - 3 * step] > 0))
+    if (cos2 < 0.5 || !is_clean_outline(finest, at, step) ||
+        !(drawn[at - 3 * step] > 0))
         return;
-    off = fabs(find_end(drawn, at, step) - find_end(finest, at, step)) *
+    off = fabs(find_outline_position(drawn, at, step) -
+               find_outline_position(finest, at, step)) *
           sqrt(cos2);
     o->n++;
     o->sum += off;
@@ -78,7 +81,7 @@ static void add_offset(struct offsets *o, int at, int step)
     o->most = fmax(o->most, off);
 }
 
-static void add_ghost(struct offsets *o)
+static void add_outline_offsets_of_ghost(struct offsets *o)
 {
     for (int y = INSIDE; y < H - INSIDE; y++)
         for (int x = INSIDE; x < W - INSIDE; x++)
@@ -87,16 +90,16 @@ static void add_ghost(struct offsets *o)
 
                 if (!(finest[at] > 0))
                     continue;
-                add_offset(o, at, 3);
-                add_offset(o, at, -3);
-                add_offset(o, at, 3 * W);
-                add_offset(o, at, -3 * W);
+                add_outline_offset(o, at, 3);
+                add_outline_offset(o, at, -3);
+                add_outline_offset(o, at, 3 * W);
+                add_outline_offset(o, at, -3 * W);
             }
 }
 
-static void add_angle(double theta_deg, struct offsets *o)
+static void add_offsets_at_angle(double theta_deg, struct offsets *o)
 {
-    const struct glint_lamp lamp = stage_lamp(theta_deg, 33, 1);
+    const struct glint_lamp lamp = stage_make_lamp(theta_deg, 33, 1);
     struct glint_frame *f = &stage.frame;
 
     for (int ghost = 0; ghost < stage.of_model.n_ghosts; ghost++) {
@@ -104,7 +107,7 @@ static void add_angle(double theta_deg, struct offsets *o)
         f->picture.uniform = true;
         f->dials.fineness = 256;
         f->dials.irradiance_steps = 0;
-        assert_true(stage_linear(&stage, &lamp, 1, finest));
+        assert_true(stage_draw_linear(&stage, &lamp, 1, finest));
         if (stage.drawn.stats.primitives == 0)
             continue;
         f->picture.uniform = false;
@@ -113,8 +116,8 @@ static void add_angle(double theta_deg, struct offsets *o)
                 glint_quality_at(glint_quality_for_error(error_px[k])).dials;
             /* Quantised irradiance does not matter for outlines. */
             f->dials.irradiance_steps = 0;
-            assert_true(stage_linear(&stage, &lamp, 1, drawn));
-            add_ghost(&o[k]);
+            assert_true(stage_draw_linear(&stage, &lamp, 1, drawn));
+            add_outline_offsets_of_ghost(&o[k]);
         }
     }
 }
@@ -122,17 +125,18 @@ static void add_angle(double theta_deg, struct offsets *o)
 /* Checks that no outline is off by more than 1.5 times --error plus 1/20
  * pixel, as grids depend on the mean bend of a ghost; and, since most are
  * far better, that the mean is at most a fifth of --error. */
-static void check_outlines(const char *lens)
+static void check_outline_offsets(const char *lens)
 {
     struct offsets o[ERRORS] = {{0, 0, 0, 0}};
     bool ok = true;
 
-    stage_close(&stage);
-    assert_true(stage_load(&stage, lens));
-    assert_true(stage_prepare(&stage, 8) && stage_model(&stage, 1, 60));
-    stage_view(&stage, W, H, 0);
-    add_angle(5, o);
-    add_angle(12, o);
+    stage_free(&stage);
+    assert_true(stage_load_lens(&stage, lens));
+    assert_true(stage_set_up_lens(&stage, 8) &&
+                stage_bake_or_load_model(&stage, 1, 60));
+    stage_set_view(&stage, W, H, 0);
+    add_offsets_at_angle(5, o);
+    add_offsets_at_angle(12, o);
     for (int k = 0; k < ERRORS; k++) {
         char name[100];
 
@@ -143,24 +147,26 @@ static void check_outlines(const char *lens)
                       sqrt(o[k].squares / o[k].n), o[k].most, o[k].n);
         snprintf(name, sizeof name, "outlines: %s, --error %g, mean", lens,
                  error_px[k]);
-        ok &= extreme_at_most(name, o[k].sum / o[k].n, 0.2 * error_px[k], "px");
+        ok &= extreme_check_at_most(name, o[k].sum / o[k].n, 0.2 * error_px[k],
+                                    "px");
         snprintf(name, sizeof name, "outlines: %s, --error %g, anywhere", lens,
                  error_px[k]);
-        ok &= extreme_at_most(name, o[k].most, 1.5 * error_px[k] + 0.05, "px");
+        ok &= extreme_check_at_most(name, o[k].most, 1.5 * error_px[k] + 0.05,
+                                    "px");
     }
     assert_true(ok);
 }
 
-TEST(check_outlines)
+TEST(outlines_stay_within_the_error_limit)
 {
-    check_outlines("heliar-tronnier");
-    if (!extreme_long())
+    check_outline_offsets("heliar-tronnier");
+    if (!extreme_is_long_run())
         return;
-    check_outlines("double-gauss-angenieux");
-    check_outlines("nikon-zoom-mid");
+    check_outline_offsets("double-gauss-angenieux");
+    check_outline_offsets("nikon-zoom-mid");
 }
 
 TEST_CLOSE
 {
-    stage_close(&stage);
+    stage_free(&stage);
 }

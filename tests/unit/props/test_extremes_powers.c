@@ -23,7 +23,7 @@ static uint8_t codes[2][N];
 
 TEST_OPEN
 {
-    assert_true(stage_open(&heliar, "heliar-tronnier", W, H));
+    assert_true(stage_open_lens(&heliar, "heliar-tronnier", W, H));
 }
 
 /* ------------------------------------------------------------- linear light */
@@ -32,28 +32,29 @@ TEST_OPEN
  * a power-of-two scale, so for powers of two each image equals that of power
  * 1 bit by bit. For powers of ten, irradiance rounds to other steps of 1 %,
  * and pixels may be off by half a step; their sum must be within 0.1 %. */
-TEST(linear_in_power)
+TEST(image_is_linear_in_power)
 {
-    const struct glint_lamp lamp = stage_lamp(7.5, 33, 1);
+    const struct glint_lamp lamp = stage_make_lamp(7.5, 33, 1);
     double apart = 0, flux = 0, of_one;
 
-    assert_true(stage_linear(&heliar, &lamp, 1, one));
-    of_one = stage_flux(&heliar, one);
+    assert_true(stage_draw_linear(&heliar, &lamp, 1, one));
+    of_one = stage_sum_image(&heliar, one);
     assert_true(of_one > 0);
     for (int k = -20; k <= 30; k += 5) {
-        const struct glint_lamp other = stage_lamp(7.5, 33, exp2(k));
+        const struct glint_lamp other = stage_make_lamp(7.5, 33, exp2(k));
 
-        assert_true(stage_linear(&heliar, &other, 1, test));
+        assert_true(stage_draw_linear(&heliar, &other, 1, test));
         for (int i = 0; i < N; i++)
             apart =
                 fmax(apart, fabs((double)test[i] * exp2(-k) - (double)one[i]));
     }
     for (int k = -6; k <= 9; k++) {
-        const struct glint_lamp other = stage_lamp(7.5, 33, pow(10, k));
+        const struct glint_lamp other = stage_make_lamp(7.5, 33, pow(10, k));
 
-        assert_true(stage_linear(&heliar, &other, 1, test));
-        flux = fmax(flux,
-                    fabs(stage_flux(&heliar, test) / pow(10, k) / of_one - 1));
+        assert_true(stage_draw_linear(&heliar, &other, 1, test));
+        flux = fmax(
+            flux,
+            fabs(stage_sum_image(&heliar, test) / pow(10, k) / of_one - 1));
     }
     assert_at_most("powers: 2^-20 to 2^30 in linear light, bits", apart, 0, "");
     assert_at_most("powers: 1e-6 to 1e9 in linear light, flux", flux, 0.001,
@@ -66,19 +67,19 @@ TEST(linear_in_power)
  * below one code to saturation, that no sample becomes darker than the
  * ground or than at the previous power, as by a sum that wraps. The
  * brightest light leaves all pixels white that it reaches. */
-TEST(codes_never_fall)
+TEST(more_power_never_darkens_codes)
 {
     uint64_t r = 5;
     int fallen = 0, white = 0, lit = 0;
     static uint8_t ground[N], last[N];
 
     for (int i = 0; i < N; i++)
-        last[i] = ground[i] = (uint8_t)stage_random(&r);
+        last[i] = ground[i] = (uint8_t)stage_random_bits(&r);
     for (double power = 1e-6; power < 1e31; power *= power < 1e9 ? 4 : 1e4) {
-        const struct glint_lamp lamp = stage_lamp(7.5, 33, power);
+        const struct glint_lamp lamp = stage_make_lamp(7.5, 33, power);
 
         memcpy(codes[0], ground, N);
-        assert_true(stage_codes(&heliar, &lamp, 1, codes[0]));
+        assert_true(stage_draw_codes(&heliar, &lamp, 1, codes[0]));
         for (int i = 0; i < N; i++) {
             fallen += codes[0][i] < ground[i] || codes[0][i] < last[i];
             last[i] = codes[0][i];
@@ -100,25 +101,25 @@ TEST(codes_never_fall)
 
 /* Checks that a power of 0, below 0 or NaN draws nothing, alone and next to
  * a light, in codes and in linear light. */
-TEST(no_power)
+TEST(invalid_powers_draw_nothing)
 {
     const double none[] = {
         0, -1, -1e9, (double)NAN, (double)INFINITY, -(double)INFINITY, 1e-300};
-    struct glint_lamp pair[2] = {stage_lamp(7.5, 33, 100)};
+    struct glint_lamp pair[2] = {stage_make_lamp(7.5, 33, 100)};
     int changed = 0;
 
     memset(codes[1], 0, N);
-    assert_true(stage_codes(&heliar, pair, 1, codes[1]));
+    assert_true(stage_draw_codes(&heliar, pair, 1, codes[1]));
     for (int k = 0; k < 7; k++) {
-        pair[1] = stage_lamp(4, -80, none[k]);
+        pair[1] = stage_make_lamp(4, -80, none[k]);
         memset(codes[0], 0, N);
-        assert_true(stage_codes(&heliar, pair + 1, 1, codes[0]));
+        assert_true(stage_draw_codes(&heliar, pair + 1, 1, codes[0]));
         for (int i = 0; i < N; i++)
             changed += codes[0][i] != 0;
-        assert_true(stage_codes(&heliar, pair, 2, codes[0]));
+        assert_true(stage_draw_codes(&heliar, pair, 2, codes[0]));
         for (int i = 0; i < N; i++)
             changed += codes[0][i] != codes[1][i];
-        assert_true(stage_linear(&heliar, pair + 1, 1, test));
+        assert_true(stage_draw_linear(&heliar, pair + 1, 1, test));
         for (int i = 0; i < N; i++)
             changed += test[i] != 0;
     }
@@ -128,8 +129,9 @@ TEST(no_power)
 
 /* ------------------------------------------------------------------- files */
 
-static enum glint_status read_text(const char *text, struct lamp_list *list,
-                                   struct glint_error *error)
+static enum glint_status read_lamp_list_text(const char *text,
+                                             struct lamp_list *list,
+                                             struct glint_error *error)
 {
     char path[] = "/tmp/glint-powers-XXXXXX";
     const int fd = mkstemp(path);
@@ -143,9 +145,9 @@ static enum glint_status read_text(const char *text, struct lamp_list *list,
     return status;
 }
 
-/* Checks that a power in a file is rejected, with its line, unless it can be
- * drawn. */
-TEST(files)
+/* Checks that a lamp power in a file that cannot be drawn is rejected with its
+ * line number. */
+TEST(rejects_invalid_powers_in_files)
 {
     static const char *const bad[] = {"nan",       "inf",   "-inf", "-1",
                                       "1e999",     "1e400", "",     "x",
@@ -165,7 +167,7 @@ TEST(files)
                           : "0,1,2,1\n0,1,2,%s\n",
                      bad[k]);
             memset(&error, 0, sizeof error);
-            if (read_text(text, &list, &error) == GLINT_OK) {
+            if (read_lamp_list_text(text, &list, &error) == GLINT_OK) {
                 print_message("taken: %s", text);
                 lamp_list_free(&list);
                 wrong++;
@@ -176,7 +178,7 @@ TEST(files)
         }
     for (int k = 0; k < 6; k++) {
         snprintf(text, sizeof text, "0,1,2,%s\n", good[k]);
-        if (read_text(text, &list, &error) != GLINT_OK) {
+        if (read_lamp_list_text(text, &list, &error) != GLINT_OK) {
             print_message("refused: %s: %s\n", text, error.text);
             wrong++;
         } else {
@@ -190,5 +192,5 @@ TEST(files)
 
 TEST_CLOSE
 {
-    stage_close(&heliar);
+    stage_free(&heliar);
 }

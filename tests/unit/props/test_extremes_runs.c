@@ -29,7 +29,7 @@ static uint64_t hash_image(const uint8_t *codes)
 }
 
 /* Returns the resident memory of this process, KiB, or 0 if unknown. */
-static long resident_kib(void)
+static long read_resident_kib(void)
 {
     FILE *file = fopen("/proc/self/statm", "r");
     long size = 0, pages = 0;
@@ -44,50 +44,53 @@ static long resident_kib(void)
 /* Sets the lamps of frame K: one leaves the image on one side, enters on the
  * other and passes near the axis; a second one appears and vanishes, so that
  * the memory needed rises and falls. Returns the number of lamps. */
-static int set_lamps(int k, struct glint_lamp *lamp)
+static int set_lamps_of_frame(int k, struct glint_lamp *lamp)
 {
     const double t = 6.283185307179586 * k / ROUND;
 
-    lamp[0] = stage_lamp(fabs(14 * cos(t)), 33 + 40 * sin(3 * t), 3000);
-    lamp[1] = stage_lamp(6 + 5 * sin(2 * t), -100 + 360.0 * k / ROUND, 800);
+    lamp[0] = stage_make_lamp(fabs(14 * cos(t)), 33 + 40 * sin(3 * t), 3000);
+    lamp[1] =
+        stage_make_lamp(6 + 5 * sin(2 * t), -100 + 360.0 * k / ROUND, 800);
     return k % ROUND < ROUND / 3 ? 2 : 1;
 }
 
-TEST(round_and_round)
+TEST(repeated_frames_are_identical)
 {
-    const int n = extreme_long() ? 100000 : 600;
+    const int n = extreme_is_long_run() ? 100000 : 600;
     static uint64_t first[ROUND];
     static uint8_t codes[N];
     size_t bytes = 0;
     long resident = 0;
     int differ = 0;
 
-    assert_true(stage_load(&heliar, "heliar-tronnier"));
-    assert_true(stage_prepare(&heliar, 8) && stage_model(&heliar, 1, 60));
-    stage_view(&heliar, W, H, 0);
+    assert_true(stage_load_lens(&heliar, "heliar-tronnier"));
+    assert_true(stage_set_up_lens(&heliar, 8) &&
+                stage_bake_or_load_model(&heliar, 1, 60));
+    stage_set_view(&heliar, W, H, 0);
     for (int k = 0; k < n; k++) {
         struct glint_lamp lamp[2];
         uint64_t hash;
 
         memset(codes, 30, sizeof codes);
-        assert_true(stage_codes(&heliar, lamp, set_lamps(k, lamp), codes));
+        assert_true(stage_draw_codes(&heliar, lamp, set_lamps_of_frame(k, lamp),
+                                     codes));
         hash = hash_image(codes);
         if (k < ROUND)
             first[k] = hash;
         differ += hash != first[k % ROUND];
         if (k == 2 * ROUND - 1) {
             bytes = heliar.frame.memory.bytes;
-            resident = resident_kib();
+            resident = read_resident_kib();
         }
-        if (extreme_long() && k % 1000 == 0)
+        if (extreme_is_long_run() && k % 1000 == 0)
             fprintf(stderr, "\rframe %d of %d ", k, n);
     }
-    if (extreme_long())
+    if (extreme_is_long_run())
         fprintf(stderr, "\r%d frames            \n", n);
     /* Frames must differ, or the comparison would prove nothing. */
     assert_true(first[0] != first[ROUND / 4]);
     assert_at_most(
-        extreme_long()
+        extreme_is_long_run()
             ? "runs: 100 000 frames, that differ from the first round's"
             : "runs: 600 frames, that differ from the first round's",
         differ, 0, "frames");
@@ -96,7 +99,7 @@ TEST(round_and_round)
     /* stdio and the allocator may need this memory once, for any number of
      * frames. */
     assert_at_most("runs: memory at the end, above the second round's",
-                   (double)(resident_kib() - resident), 256, "KiB");
+                   (double)(read_resident_kib() - resident), 256, "KiB");
 #else
     (void)resident;
 #endif
@@ -104,5 +107,5 @@ TEST(round_and_round)
 
 TEST_CLOSE
 {
-    stage_close(&heliar);
+    stage_free(&heliar);
 }

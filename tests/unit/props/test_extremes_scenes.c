@@ -20,7 +20,7 @@
 /* light at which the run time saturates */
 #define MOST_LIGHT 2047.0
 
-/* Difference of an image, or the worst of several. */
+/* Errors of an image, or the largest errors of several images. */
 struct outcome {
     /* PSNR of light up to 1, in pixels whose neighbours show the same object */
     double db;
@@ -28,7 +28,7 @@ struct outcome {
     double share; /* max error of light / (light + 1/255) */
 };
 
-static void read_text(struct glint_description *scene, const char *text)
+static void parse_scene_text(struct glint_description *scene, const char *text)
 {
     static const struct glint_description_files none = {NULL, NULL, NULL,
                                                         NULL, NULL, NULL};
@@ -40,8 +40,8 @@ static void read_text(struct glint_description *scene, const char *text)
 }
 
 /* Draws SCENE by the integer renderer in linear light. */
-static void draw_scene(const struct glint_description *scene, int width,
-                       int height, int32_t *light_q20)
+static void draw_scene_linear(const struct glint_description *scene, int width,
+                              int height, int32_t *light_q20)
 {
     const struct tool tool = {.name = "extremes"};
     const struct scene_dials dials = {.width = width,
@@ -70,8 +70,8 @@ static void draw_scene(const struct glint_description *scene, int width,
 
 /* Returns whether pixel (X, Y) of the reference shows the same as its
  * neighbours. */
-static int is_inside(const struct twin_pixel *p, int width, int height, int x,
-                     int y)
+static int is_inside_object(const struct twin_pixel *p, int width, int height,
+                            int x, int y)
 {
     const struct twin_pixel *const here = &p[y * width + x];
 
@@ -105,18 +105,18 @@ static void compare_renderers(const char *text, int width, int height,
     struct twin twin;
 
     assert_true(scene && exact && light_q20);
-    read_text(scene, text);
-    draw_scene(scene, width, height, light_q20);
-    assert_ok(twin_open(&twin, scene));
-    twin_render(&twin, &view, NULL, exact);
-    twin_close(&twin);
+    parse_scene_text(scene, text);
+    draw_scene_linear(scene, width, height, light_q20);
+    assert_ok(reference_open(&twin, scene));
+    reference_render_image(&twin, &view, NULL, exact);
+    reference_close(&twin);
     for (size_t i = 0; i < n; i++) {
         const int x = (int)i % width, y = (int)i / width;
         const double want = fmin((double)exact[i].rgb[1], MOST_LIGHT);
         const double got = ldexp(light_q20[3 * i + 1], -20);
 
         wrong += (want > .004) != (got > .004) && fabs(want - got) > .004;
-        if (!is_inside(exact, width, height, x, y))
+        if (!is_inside_object(exact, width, height, x, y))
             continue;
         inside++;
         square += pow(fmin(got, 1) - fmin(want, 1), 2);
@@ -134,7 +134,7 @@ static void compare_renderers(const char *text, int width, int height,
 
 /* Prints the errors of WORST, for scenes of type WHAT, with their limits,
  * and checks them. */
-static void check_outcome(const char *what, const struct outcome *worst)
+static void check_worst_errors(const char *what, const struct outcome *worst)
 {
     char name[96];
 
@@ -151,7 +151,7 @@ static void check_outcome(const char *what, const struct outcome *worst)
 
 /* Checks a floor seen and lit at ever flatter angles, and a ball hit by
  * grazing rays. */
-TEST(grazing)
+TEST(grazing_rays_match_the_reference)
 {
     struct outcome worst = NOTHING_YET;
     char text[600];
@@ -173,11 +173,11 @@ TEST(grazing)
                  fmax(10 * flat, .1), flat);
         compare_renderers(text, 96, 54, &worst);
     }
-    check_outcome("floors and balls that graze, to 1e-5", &worst);
+    check_worst_errors("floors and balls that graze, to 1e-5", &worst);
 }
 
 /* Checks the same ball and pyramid at sizes from 1e-6 to 1e5. */
-TEST(sizes)
+TEST(tiny_and_huge_objects_match_the_reference)
 {
     struct outcome worst = NOTHING_YET;
     char text[900];
@@ -197,12 +197,12 @@ TEST(sizes)
             break;
         compare_renderers(text, 96, 54, &worst);
     }
-    check_outcome("sizes 1e-6 to 1e3", &worst);
+    check_worst_errors("sizes 1e-6 to 1e3", &worst);
 }
 
 /* Checks a sun, whose light does not depend on positions, on objects up to
  * 1e6 wide. */
-TEST(large)
+TEST(large_objects_in_sunlight_match_the_reference)
 {
     struct outcome worst = NOTHING_YET;
     char text[600];
@@ -224,7 +224,7 @@ TEST(large)
 
 /* Checks lamps and suns of any power: objects are proportionally bright up
  * to saturation. */
-TEST(powers)
+TEST(extreme_light_powers_match_the_reference)
 {
     struct outcome worst = NOTHING_YET;
     char text[600];
@@ -248,7 +248,7 @@ TEST(powers)
 }
 
 /* Checks objects behind, around and across the camera. */
-TEST(behind)
+TEST(objects_behind_the_camera_match_the_reference)
 {
     static const char head[] =
         "light lamp at 0 3 1 colour 6 6 6\nlight lamp at 1 1 9 colour 50 50 "
@@ -275,11 +275,11 @@ TEST(behind)
         snprintf(text, sizeof text, "%s%s", head, things[i]);
         compare_renderers(text, 96, 54, &worst);
     }
-    check_outcome("behind, around and across the camera", &worst);
+    check_worst_errors("behind, around and across the camera", &worst);
 }
 
 /* Checks images of one pixel, and of max width and height. */
-TEST(pictures)
+TEST(extreme_image_sizes_match_the_reference)
 {
     static const int size[][2] = {{1, 1},    {1, 2},    {2, 1},
                                   {8192, 8}, {8, 4096}, {1, 333}};
@@ -293,12 +293,12 @@ TEST(pictures)
             "sphere ball at 0 .5 0 radius .5 material m\n"
             "plane floor at 0 0 0 normal 0 1 0 material m\nshadow on\n",
             size[i][0], size[i][1], &worst);
-    check_outcome("one pixel to 8192 wide and 4096 high", &worst);
+    check_worst_errors("one pixel to 8192 wide and 4096 high", &worst);
 }
 
 /* Checks Phong powers of 1 and 4096, glass of index 1/4 to 4, and mirrors in
  * mirrors. */
-TEST(surfaces)
+TEST(extreme_materials_match_the_reference)
 {
     static const char *const materials[] = {
         "0 0 1 power 1",
@@ -323,7 +323,7 @@ TEST(surfaces)
                  "plane floor at 0 -1 0 normal 0 1 0 material w\n",
                  materials[i]);
         compare_renderers(text, 160, 90, &worst);
-        /* the same from inside the ball, near its rim */
+        /* the same materials seen from inside the ball, near its rim */
         snprintf(text + strlen(text), sizeof text - strlen(text),
                  "camera fov 90 at .9 0 -4 toward .9 0 -9\n");
         compare_renderers(text, 160, 90, &worst);

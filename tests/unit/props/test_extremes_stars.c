@@ -32,8 +32,8 @@ static uint8_t codes[N], others[N];
 /* Returns the max relative difference between the drawn star of a light of
  * power 2^POWER_LOG2 at AT and its tables; differences below one step of a
  * linear image are ignored. */
-static double max_difference(const struct glint_star_tables *t,
-                             const double at[2], int power_log2)
+static double max_relative_difference(const struct glint_star_tables *t,
+                                      const double at[2], int power_log2)
 {
     double most = 0;
 
@@ -52,24 +52,24 @@ static double max_difference(const struct glint_star_tables *t,
     return most;
 }
 
-TEST(far_powers)
+TEST(distant_star_light_matches_direct_sums)
 {
     double most = 0;
 
     for (int i = 0; i < 12; i++) {
         struct glint_star_tables *t =
-            star_canvas_tables(blades[i % 4], 7 * i, airy_px[i / 4]);
+            star_canvas_make_tables(blades[i % 4], 7 * i, airy_px[i / 4]);
         struct star_canvas c;
 
         star_canvas_open(&c, WIDTH, HEIGHT, 5, 1, 1);
         for (int ev = -20; ev <= 30; ev += 10) {
             const double *at = place[PLACES - 1 - i % 2];
             const struct glint_star_light light =
-                star_canvas_light(at[0], at[1], ev);
+                star_canvas_make_light(at[0], at[1], ev);
 
-            star_canvas_draw(&c, t, &light, 1, glint_real_of(0),
-                             GLINT_LINEAR_Q20, linear_q20);
-            most = fmax(most, max_difference(t, at, ev));
+            star_canvas_draw_light(&c, t, &light, 1, glint_real_of(0),
+                                   GLINT_LINEAR_Q20, linear_q20);
+            most = fmax(most, max_relative_difference(t, at, ev));
         }
         star_canvas_close(&c);
         glint_star_tables_free(t);
@@ -80,7 +80,7 @@ TEST(far_powers)
 
 /* Checks that the position of a light inside its pixel does not change its
  * star's total light. */
-TEST(corners)
+TEST(position_in_the_pixel_keeps_star_light)
 {
     static const double within[][2] = {
         {0, 0}, {0.5, 0.5}, {0, 0.5}, {0.25, 0.75}, {0.996, 0.004}};
@@ -88,18 +88,18 @@ TEST(corners)
 
     for (int i = 0; i < 12; i++) {
         struct glint_star_tables *t =
-            star_canvas_tables(blades[i % 4], 3, airy_px[i / 4] / 4);
+            star_canvas_make_tables(blades[i % 4], 3, airy_px[i / 4] / 4);
         struct star_canvas c;
         double low = HUGE_VAL, high = 0;
 
         star_canvas_open(&c, WIDTH, HEIGHT, 5, 1, 1);
         for (int k = 0; k < 5; k++) {
             const struct glint_star_light light =
-                star_canvas_light(48 + within[k][0], 41 + within[k][1], 8);
+                star_canvas_make_light(48 + within[k][0], 41 + within[k][1], 8);
             double sum = 0;
 
-            star_canvas_draw(&c, t, &light, 1, glint_real_of(0),
-                             GLINT_LINEAR_Q20, linear_q20);
+            star_canvas_draw_light(&c, t, &light, 1, glint_real_of(0),
+                                   GLINT_LINEAR_Q20, linear_q20);
             for (int p = 1; p < N; p += 3)
                 sum += linear_q20[p];
             low = fmin(low, sum);
@@ -115,25 +115,25 @@ TEST(corners)
 
 /* Checks that twice the power nowhere gives less light, and that an
  * invisible power gives none. */
-TEST(rising)
+TEST(more_power_never_darkens_stars)
 {
     double most = 0;
     int dark = 0;
 
     for (int i = 0; i < 4 * PLACES; i++) {
         struct glint_star_tables *t =
-            star_canvas_tables(blades[i % 4], 1, airy_px[i % 3]);
+            star_canvas_make_tables(blades[i % 4], 1, airy_px[i % 3]);
         struct star_canvas c;
 
         star_canvas_open(&c, WIDTH, HEIGHT, 5, 1, 1);
         memset(others, 0, sizeof others);
         for (int ev = -20; ev <= 30; ev++) {
             const struct glint_star_light light =
-                star_canvas_light(place[i / 4][0], place[i / 4][1], ev);
+                star_canvas_make_light(place[i / 4][0], place[i / 4][1], ev);
 
-            star_canvas_draw(&c, t, &light, 1,
-                             glint_real_of(0.25 / 255 / 12.92), GLINT_RGB24,
-                             codes);
+            star_canvas_draw_light(&c, t, &light, 1,
+                                   glint_real_of(0.25 / 255 / 12.92),
+                                   GLINT_RGB24, codes);
             for (int k = 0; k < N; k++) {
                 most = fmax(most, others[k] - codes[k]);
                 dark += ev < -12 && codes[k] > 0;

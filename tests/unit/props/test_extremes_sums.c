@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests sums at their limits: thousands of lights, bundles that sum to the max
- * value of an image and above, and the range checks of CONFIG=qcheck.
+ * value of an image and above it, and the range checks of CONFIG=qcheck.
  */
 #include <math.h>
 #include <signal.h>
@@ -24,22 +24,22 @@ static struct glint_lamp lamp[LIGHTS];
 
 TEST_OPEN
 {
-    assert_true(stage_open(&heliar, "heliar-tronnier", W, H));
+    assert_true(stage_open_lens(&heliar, "heliar-tronnier", W, H));
 }
 
 /* ------------------------------------------------------------------ lights */
 
 /* Checks that 10 000 lights at one position give the image of one light of
  * 10 000 times the power; their powers are added with 31 bits. */
-TEST(same_place)
+TEST(ten_thousand_lights_at_one_position_add_up)
 {
-    const struct glint_lamp sum = stage_lamp(7.5, 33, LIGHTS);
+    const struct glint_lamp sum = stage_make_lamp(7.5, 33, LIGHTS);
     double apart = 0, most = 0;
 
     for (int i = 0; i < LIGHTS; i++)
-        lamp[i] = stage_lamp(7.5, 33, 1);
-    assert_true(stage_linear(&heliar, lamp, LIGHTS, test));
-    assert_true(stage_linear(&heliar, &sum, 1, part));
+        lamp[i] = stage_make_lamp(7.5, 33, 1);
+    assert_true(stage_draw_linear(&heliar, lamp, LIGHTS, test));
+    assert_true(stage_draw_linear(&heliar, &sum, 1, part));
     assert_int_equal(heliar.drawn.drawn_lights, 1);
     for (int i = 0; i < N; i++) {
         apart = fmax(apart, fabs((double)test[i] - (double)part[i]));
@@ -52,42 +52,42 @@ TEST(same_place)
 /* Checks that lights spread over the frame are merged to 128 without loss of
  * light. Merged lights draw their ghosts in one place, so some of the light
  * leaves the frame: 3 % are allowed. */
-TEST(spread)
+TEST(spread_lights_are_merged_without_loss)
 {
-    const int n = extreme_long() ? LIGHTS : 1000;
+    const int n = extreme_is_long_run() ? LIGHTS : 1000;
     uint64_t r = 11;
     double whole = 0;
 
     for (int i = 0; i < n; i++)
-        lamp[i] =
-            stage_lamp(stage_uniform(&r, 0, 12), stage_uniform(&r, -180, 180),
-                       exp(stage_uniform(&r, -4, 4)));
+        lamp[i] = stage_make_lamp(stage_random_uniform(&r, 0, 12),
+                                  stage_random_uniform(&r, -180, 180),
+                                  exp(stage_random_uniform(&r, -4, 4)));
     heliar.frame.dials.fineness = 16;
-    assert_true(stage_linear(&heliar, lamp, n, test));
+    assert_true(stage_draw_linear(&heliar, lamp, n, test));
     assert_int_equal(heliar.drawn.drawn_lights, 128);
     for (int i = 0; i < n; i += 125) {
-        assert_true(
-            stage_linear(&heliar, lamp + i, n - i < 125 ? n - i : 125, part));
-        whole += stage_flux(&heliar, part);
+        assert_true(stage_draw_linear(&heliar, lamp + i,
+                                      n - i < 125 ? n - i : 125, part));
+        whole += stage_sum_image(&heliar, part);
     }
     heliar.frame.dials.fineness = 64;
-    assert_at_most(extreme_long() ? "sums: 10 000 lights merged, flux"
-                                  : "sums: 1000 lights merged, flux",
-                   fabs(stage_flux(&heliar, test) / whole - 1), 0.03, "");
+    assert_at_most(extreme_is_long_run() ? "sums: 10 000 lights merged, flux"
+                                         : "sums: 1000 lights merged, flux",
+                   fabs(stage_sum_image(&heliar, test) / whole - 1), 0.03, "");
 }
 
 /* Checks that 10 000 suns give white everywhere, without a sum that wraps. */
-TEST(ten_thousand_suns)
+TEST(ten_thousand_suns_give_white)
 {
     static uint8_t codes[N];
     uint64_t r = 12;
     int dark = 0;
 
     for (int i = 0; i < LIGHTS; i++)
-        lamp[i] = stage_lamp(stage_uniform(&r, 0, 10),
-                             stage_uniform(&r, -180, 180), 1e9);
+        lamp[i] = stage_make_lamp(stage_random_uniform(&r, 0, 10),
+                                  stage_random_uniform(&r, -180, 180), 1e9);
     memset(codes, 9, sizeof codes);
-    assert_true(stage_codes(&heliar, lamp, LIGHTS, codes));
+    assert_true(stage_draw_codes(&heliar, lamp, LIGHTS, codes));
     for (int i = 0; i < N; i++)
         dark += codes[i] != 255;
     assert_at_most("sums: 10 000 suns, samples that are not white", dark, 0,
@@ -102,7 +102,7 @@ enum { SIDE = 64, MANY = 1 << 15 };
  * and in linear light. Returns the value of each pixel in linear light, or
  * -1 if pixels differ or codes are not white. Sets HELD to the counts of
  * clamped values: cells before they were added, and samples. */
-static double draw_pile(int count, int log2, int held[2])
+static double draw_overlapping_bundles(int count, int log2, int held[2])
 {
     struct glint_flare_config c = {.width = SIDE,
                                    .height = SIDE,
@@ -160,7 +160,7 @@ static double draw_pile(int count, int log2, int held[2])
  * times white, is exact below and saturates above. A cell adds at most 2048
  * to a pixel, and all cells together 2^24; more is clamped before it is
  * added (by_edges.c). Both clamps must be counted. */
-TEST(piles)
+TEST(piled_light_saturates)
 {
     static const struct {
         int count, log2;
@@ -178,7 +178,8 @@ TEST(piles)
 
     for (int k = 0; k < 15; k++) {
         int held[2];
-        const double got = draw_pile(piles[k].count, piles[k].log2, held);
+        const double got =
+            draw_overlapping_bundles(piles[k].count, piles[k].log2, held);
         const int samples = piles[k].holds < 2048 ? 0 : 3 * SIDE * SIDE;
 
         miscounted += held[0] != piles[k].held_cells || held[1] != samples;
@@ -196,8 +197,8 @@ TEST(piles)
 
 /* ------------------------------------------------------------------- traps */
 
-/* Returns whether F ends in a trap, in a child process. */
-static int is_trapped(void (*f)(void))
+/* Calls F in a child process. Returns whether F ended in a trap. */
+static int call_ends_in_trap(void (*f)(void))
 {
     const pid_t pid = fork();
     int status = 0;
@@ -216,38 +217,38 @@ static int is_trapped(void (*f)(void))
 static volatile int64_t one = 1;
 static volatile int64_t sink;
 
-static void narrow_most(void)
+static void narrow_extreme_values(void)
 {
     sink = q_narrow(INT32_MAX * one) + q_narrow(INT32_MIN * one);
 }
-static void narrow_above(void)
+static void narrow_above_range(void)
 {
     sink = q_narrow(INT32_MAX + one);
 }
-static void narrow_below(void)
+static void narrow_below_range(void)
 {
     sink = q_narrow(INT32_MIN - one);
 }
-static void shift_most(void)
+static void shift_to_extreme_values(void)
 {
     sink = q_shift(one << 62, 1) + q_shift(-(one << 62), 1);
 }
-static void shift_above(void)
+static void shift_above_range(void)
 {
     sink = q_shift((one << 62) + one, 1);
 }
-static void multiply_most(void)
+static void multiply_to_extreme_values(void)
 {
     sink = q_mul((int32_t)(INT32_MAX * one), 1 << 30, 30);
 }
-static void multiply_above(void)
+static void multiply_above_range(void)
 {
     sink = q_mul((int32_t)(INT32_MAX * one), INT32_MAX, 30);
 }
 
 /* Checks that the limits of each range pass in every build, and that one
  * step above traps only in builds that check ranges. */
-TEST(is_trapped)
+TEST(only_checked_builds_trap_out_of_range)
 {
 #ifdef GLINT_Q_CHECK
     const int checked = 1;
@@ -256,12 +257,13 @@ TEST(is_trapped)
 #endif
     int wrong = 0;
 
-    wrong += is_trapped(narrow_most) + is_trapped(shift_most) +
-             is_trapped(multiply_most);
-    wrong += is_trapped(narrow_above) != checked;
-    wrong += is_trapped(narrow_below) != checked;
-    wrong += is_trapped(shift_above) != checked;
-    wrong += is_trapped(multiply_above) != checked;
+    wrong += call_ends_in_trap(narrow_extreme_values) +
+             call_ends_in_trap(shift_to_extreme_values) +
+             call_ends_in_trap(multiply_to_extreme_values);
+    wrong += call_ends_in_trap(narrow_above_range) != checked;
+    wrong += call_ends_in_trap(narrow_below_range) != checked;
+    wrong += call_ends_in_trap(shift_above_range) != checked;
+    wrong += call_ends_in_trap(multiply_above_range) != checked;
     assert_at_most(checked ? "sums: bounds of q.h, with traps"
                            : "sums: bounds of q.h, without traps",
                    wrong, 0, "cases");
@@ -269,5 +271,5 @@ TEST(is_trapped)
 
 TEST_CLOSE
 {
-    stage_close(&heliar);
+    stage_free(&heliar);
 }

@@ -23,44 +23,44 @@ static int32_t light_q20[BYTES], drawn_q20[BYTES];
 
 /* The test image at (X, Y), each -1 .. 1: linear, so that cells interpolate
  * it exactly. */
-static double test_image(int channel, double x, double y)
+static double linear_image_value(int channel, double x, double y)
 {
     static const double across[3] = {.4, -.3, 0}, down[3] = {0, .2, -.4};
 
     return .5 + across[channel] * x + down[channel] * y;
 }
 
-static struct glint_image make_linear(int32_t *q20)
+static struct glint_image make_linear_image_over(int32_t *q20)
 {
     return glint_image_over(q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
 }
 
-static void fill_image(void)
+static void fill_linear_image(void)
 {
     for (int i = 0; i < BYTES; i++) {
         const int x = i / 3 % WIDTH, y = i / 3 / WIDTH; /* NOLINT: rows */
 
-        light_q20[i] =
-            (int32_t)lrint(0x1p20 * test_image(i % 3, 2 * (x + .5) / WIDTH - 1,
-                                               2 * (y + .5) / HEIGHT - 1));
+        light_q20[i] = (int32_t)lrint(
+            0x1p20 * linear_image_value(i % 3, 2 * (x + .5) / WIDTH - 1,
+                                        2 * (y + .5) / HEIGHT - 1));
     }
 }
 
-static struct glint_scene *start_scene(struct glint_workers *workers)
+static struct glint_scene *start_scene_renderer(struct glint_workers *workers)
 {
-    const struct glint_scene_model model = scene_open(&file);
+    const struct glint_scene_model model = scene_open_model(&file);
     struct glint_scene_config cfg;
 
     glint_scene_defaults(&cfg, WIDTH, HEIGHT);
     cfg.workers = workers;
     cfg.parts = scene_parts;
     bytes = glint_scene_bytes(&cfg, &model);
-    return scene_start(&file, &cfg, NULL);
+    return scene_init_renderer(&file, &cfg, NULL);
 }
 
 static void draw_scene(struct glint_scene *s)
 {
-    struct glint_image image = make_linear(drawn_q20);
+    struct glint_image image = make_linear_image_over(drawn_q20);
 
     memcpy(drawn_q20, light_q20, sizeof drawn_q20);
     glint_scene_look_around(s, &image);
@@ -69,22 +69,22 @@ static void draw_scene(struct glint_scene *s)
 
 /* Adds a ball of radius 1.5 at z = 4 that reflects REFLECT, transmits PASS
  * and has the refractive index INDEX. */
-static void add_ball(double reflect, double pass, double index)
+static void add_reflecting_ball(double reflect, double pass, double index)
 {
     uint32_t m;
 
-    scene_begin(&file);
-    m = scene_material(&file, "m");
+    scene_begin_header(&file);
+    m = scene_add_material(&file, "m");
     file.material[m].ambient_q15 = file.material[m].diffuse_q15 = 0;
     file.material[m].reflect_q15 = (int32_t)(reflect * 32768);
     file.material[m].pass_q15 = (int32_t)(pass * 32768);
     file.material[m].index_q16 = (int32_t)(index * 65536);
-    scene_sphere(&file, "ball", m, 0, 0, 4 * UNIT, 3 * UNIT / 2);
+    scene_add_sphere(&file, "ball", m, 0, 0, 4 * UNIT, 3 * UNIT / 2);
 }
 
 /* Sets D to the ray through the centre of pixel (I, K) in an image 90
  * degrees wide. Returns its distance to the ball, or 0 if it misses. */
-static double intersect_ball(int i, int k, double d[3])
+static double intersect_ball_at_pixel(int i, int k, double d[3])
 {
     double length, along, off2;
 
@@ -101,7 +101,7 @@ static double intersect_ball(int i, int k, double d[3])
 
 /* Sets AT to the position of direction D in the image, x right, y down, -1
  * .. 1. Directions off-screen are mirrored at the image's edge. */
-static void find_position(const double d[3], double at[2])
+static void find_image_position(const double d[3], double at[2])
 {
     const double x = d[0], y = -d[1] * WIDTH / HEIGHT;
     const double edge = fmax(fabs(x), fabs(y));
@@ -111,18 +111,18 @@ static void find_position(const double d[3], double at[2])
     at[1] = over > 0 ? y / over : 0;
 }
 
-TEST(mirror)
+TEST(mirror_shows_the_image_around_the_scene)
 {
     int n = 0, behind = 0;
     double worst = 0;
 
-    add_ball(1, 0, 1);
-    fill_image();
-    draw_scene(start_scene(NULL));
+    add_reflecting_ball(1, 0, 1);
+    fill_linear_image();
+    draw_scene(start_scene_renderer(NULL));
     for (int i = 0; i < BYTES; i++) {
         double d[3], normal[3], at[2], dot = 0;
-        const double t =
-            intersect_ball(i / 3 % WIDTH, i / 3 / WIDTH, d); /* NOLINT */
+        const double t = intersect_ball_at_pixel(i / 3 % WIDTH, i / 3 / WIDTH,
+                                                 d); /* NOLINT */
 
         if (t == 0)
             continue;
@@ -132,31 +132,31 @@ TEST(mirror)
         }
         for (int c = 0; c < 3; c++)
             d[c] -= 2 * dot * normal[c];
-        find_position(d, at);
+        find_image_position(d, at);
         worst = fmax(worst, fabs(drawn_q20[i] * 0x1p-20 -
-                                 test_image(i % 3, at[0], at[1])));
+                                 linear_image_value(i % 3, at[0], at[1])));
         behind += d[2] < 0;
         n++;
     }
     assert_true(n > 1000 && behind > 100 && behind < n);
-    /* Cells end half a cell inside the image, and samples are off the
-     * pixel's centre. */
+    /* The cells of the environment end half a cell inside the image, and
+     * samples are not at the pixel's centre. */
     assert_true(worst < .02);
 }
 
 /* Checks that glass with an index near 1 shows what is behind it. */
-TEST(glass)
+TEST(glass_of_index_1_shows_the_image_behind_it)
 {
     double worst = 0;
     int n = 0;
 
-    add_ball(0, 1, 1.0001);
-    fill_image();
-    draw_scene(start_scene(NULL));
+    add_reflecting_ball(0, 1, 1.0001);
+    fill_linear_image();
+    draw_scene(start_scene_renderer(NULL));
     for (int i = 0; i < BYTES; i++) {
         double d[3];
 
-        if (intersect_ball(i / 3 % WIDTH, i / 3 / WIDTH, d) ==
+        if (intersect_ball_at_pixel(i / 3 % WIDTH, i / 3 / WIDTH, d) ==
             0) /* NOLINT: rows */
             continue;
         worst = fmax(worst, fabs(drawn_q20[i] - (double)light_q20[i]));
@@ -166,38 +166,38 @@ TEST(glass)
     assert_true(worst < .01 * 0x1p20);
 }
 
-TEST(same_bits)
+TEST(image_is_bit_identical_for_all_workers)
 {
     static int32_t serial_q20[BYTES];
     struct shuffle shuffle;
 
-    add_ball(.7, .3, 1.5);
-    fill_image();
-    draw_scene(start_scene(NULL));
+    add_reflecting_ball(.7, .3, 1.5);
+    fill_linear_image();
+    draw_scene(start_scene_renderer(NULL));
     memcpy(serial_q20, drawn_q20, sizeof serial_q20);
     for (uint32_t order = 1; order < 4; order++) {
-        shuffle_init(&shuffle, 3, order);
-        draw_scene(start_scene(&shuffle.workers));
+        init_shuffled_workers(&shuffle, 3, order);
+        draw_scene(start_scene_renderer(&shuffle.workers));
         assert_memory_equal(serial_q20, drawn_q20, sizeof serial_q20);
     }
 }
 
 /* Checks that only scenes that show the image pay for it, and that without
  * it they show black. */
-TEST(pay_for_use)
+TEST(only_scenes_that_show_the_image_pay_for_it)
 {
-    struct glint_image image = make_linear(drawn_q20);
+    struct glint_image image = make_linear_image_over(drawn_q20);
     struct glint_scene *s;
     size_t without;
 
-    add_ball(0, .5, 1);
-    s = start_scene(NULL);
+    add_reflecting_ball(0, .5, 1);
+    s = start_scene_renderer(NULL);
     without = bytes;
     assert_null(s->around.light_q15);
-    add_ball(1, 0, 1);
-    s = start_scene(NULL);
+    add_reflecting_ball(1, 0, 1);
+    s = start_scene_renderer(NULL);
     assert_true(bytes >= without + WIDTH / 2 * (HEIGHT / 2) * 6);
-    fill_image();
+    fill_linear_image();
     memcpy(drawn_q20, light_q20, sizeof drawn_q20);
     glint_scene_draw(s, &image);
     assert_int_equal(drawn_q20[3 * (HEIGHT / 2 * WIDTH + WIDTH / 2)], 0);
@@ -211,7 +211,7 @@ TEST(pay_for_use)
 
 /* Checks that a grey image of each format and any size gives the same grey
  * everywhere. */
-TEST(formats)
+TEST(grey_image_of_each_format_is_even)
 {
     static const int side[][2] = {{2, 2}, {8, 4}, {66, 34}, {700, 6}, {2, 642}};
     static uint8_t picture[1 << 17], block[1 << 20];

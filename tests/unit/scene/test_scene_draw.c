@@ -26,7 +26,7 @@ enum {
 
 static struct scene_file file;
 
-static struct glint_scene_config make_config(void)
+static struct glint_scene_config make_scene_config(void)
 {
     struct glint_scene_config cfg;
 
@@ -54,14 +54,14 @@ static uint32_t add_ball_mesh(double size)
         at[i][1] = (int32_t)lround(r * sin(b) * sin(a));
         at[i][2] = (int32_t)lround(r * cos(b));
     }
-    n = scene_ball(RINGS, SIDES, t);
-    return scene_mesh(&file, (const int32_t(*)[3])at, NULL, NULL, N,
-                      (const uint32_t(*)[3])t, n);
+    n = scene_make_ball(RINGS, SIDES, t);
+    return scene_add_mesh(&file, (const int32_t(*)[3])at, NULL, NULL, N,
+                          (const uint32_t(*)[3])t, n);
 }
 
 /* Makes a scene of balls, a mesh and a floor, with reflection, transmission
  * and a texture. */
-static void make_scene(void)
+static void make_scene_of_all_objects(void)
 {
     static const int32_t sun[3] = {ONE_Q30 / 5 * 3, ONE_Q30 / 5 * 4, 0};
     static const int32_t lamp[3] = {-3 * UNIT, 5 * UNIT, 2 * UNIT};
@@ -69,12 +69,12 @@ static void make_scene(void)
 
     for (int i = 0; i < 3 * 64; i++)
         rgb[i] = (uint8_t)(i * 37);
-    scene_begin(&file);
+    scene_begin_header(&file);
     file.header.shadow = file.header.flare = 1;
-    scene_material(&file, "plain");
-    scene_material(&file, "mirror");
-    scene_material(&file, "glass");
-    scene_material(&file, "wood");
+    scene_add_material(&file, "plain");
+    scene_add_material(&file, "mirror");
+    scene_add_material(&file, "glass");
+    scene_add_material(&file, "wood");
     file.material[0].diffuse_q15 = 26000;
     file.material[0].specular_q15 = 6000;
     file.material[1].diffuse_q15 = 9000;
@@ -82,18 +82,19 @@ static void make_scene(void)
     file.material[2].diffuse_q15 = 2000;
     file.material[2].pass_q15 = 28000;
     file.material[2].index_q16 = 98304;
-    file.material[3].texture = scene_texture(&file, rgb, 3, 3);
-    scene_sphere(&file, "mirror", 1, -2 * UNIT, 0, 7 * UNIT, UNIT);
-    scene_sphere(&file, "glass", 2, UNIT / 2, -UNIT / 3, 5 * UNIT, UNIT / 2);
-    scene_plane(&file, "floor", 3, -UNIT);
-    file.object[scene_object(&file, "rock", 0, add_ball_mesh(1))].at[2] =
+    file.material[3].texture = scene_add_texture(&file, rgb, 3, 3);
+    scene_add_sphere(&file, "mirror", 1, -2 * UNIT, 0, 7 * UNIT, UNIT);
+    scene_add_sphere(&file, "glass", 2, UNIT / 2, -UNIT / 3, 5 * UNIT,
+                     UNIT / 2);
+    scene_add_plane(&file, "floor", 3, -UNIT);
+    file.object[scene_add_object(&file, "rock", 0, add_ball_mesh(1))].at[2] =
         6 * UNIT;
-    scene_sun(&file, sun);
+    scene_add_sun(&file, sun);
     file.light[0].radius = ONE_Q30 / 20;
-    scene_lamp(&file, lamp, 4 * UNIT);
+    scene_add_lamp(&file, lamp, 4 * UNIT);
 }
 
-static void fill_image(uint8_t *px, size_t n)
+static void fill_image_with_pattern(uint8_t *px, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         px[i] = (uint8_t)(40 + i * 7 / 2 % 90);
@@ -109,22 +110,22 @@ static void draw_scene(struct glint_scene_config cfg,
     struct glint_scene_stats stats;
     struct shuffle shuffle;
 
-    fill_image(px, BYTES);
-    shuffle_init(&shuffle, workers, order);
+    fill_image_with_pattern(px, BYTES);
+    init_shuffled_workers(&shuffle, workers, order);
     cfg.workers = &shuffle.workers;
-    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
+    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
     assert_int_equal(stats.objects, 4);
     assert_int_equal(stats.dropped_objects, 0);
 }
 
-TEST(any_order)
+TEST(image_does_not_depend_on_job_order)
 {
     static uint8_t px[2][BYTES];
 
-    make_scene();
+    make_scene_of_all_objects();
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
         static const int samples[4] = {4, 16, 8, 1};
-        struct glint_scene_config cfg = make_config();
+        struct glint_scene_config cfg = make_scene_config();
         const size_t bytes =
             glint_image_bytes((enum glint_pixel_format)format, WIDTH, HEIGHT);
         uint8_t before[64];
@@ -134,7 +135,7 @@ TEST(any_order)
         cfg.half_shading = format & 1;
 
         draw_scene(cfg, (enum glint_pixel_format)format, 1, 1, px[0]);
-        fill_image(px[1], BYTES);
+        fill_image_with_pattern(px[1], BYTES);
         for (size_t i = 0; i < bytes; i++)
             changed += px[0][i] != px[1][i];
         assert_true(changed > (int)bytes / 6);
@@ -151,46 +152,46 @@ TEST(any_order)
 
 /* ------------------------------------------------------------------- cover */
 
-TEST(nothing)
+TEST(invisible_objects_change_nothing)
 {
     static uint8_t px[BYTES], before[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_I420, WIDTH, HEIGHT);
-    const struct glint_scene_config cfg = make_config();
+    const struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_stats stats;
 
-    fill_image(px, BYTES);
-    fill_image(before, BYTES);
-    make_scene();
+    fill_image_with_pattern(px, BYTES);
+    fill_image_with_pattern(before, BYTES);
+    make_scene_of_all_objects();
     for (int i = 0; i < 4; i++)
         file.object[i].hidden = 1;
-    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
+    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
     assert_memory_equal(px, before, BYTES);
     assert_int_equal(stats.objects, 0);
-    make_scene();
+    make_scene_of_all_objects();
     /* all objects but the floor are behind the camera */
     file.header.camera.axis_q30[0][0] = -ONE_Q30;
     file.header.camera.axis_q30[2][2] = -ONE_Q30;
     file.object[2].hidden = 1;
-    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
+    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
     assert_memory_equal(px, before, BYTES);
-    /* A plane that only receives shadows, in a scene without shadows. */
-    make_scene();
+    /* A shadow catcher in a scene without shadows changes nothing. */
+    make_scene_of_all_objects();
     for (int i = 0; i < 4; i++)
         file.object[i].hidden = i != 2;
     file.object[2].catcher_q15 = 20000;
-    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
+    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
     assert_memory_equal(px, before, BYTES);
-    /* One object that casts a shadow on it darkens the image. */
-    make_scene();
+    /* An object that casts a shadow on the catcher darkens the image. */
+    make_scene_of_all_objects();
     file.object[2].catcher_q15 = 32768;
     file.object[0].hidden = file.object[1].hidden = 1;
-    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
+    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
     assert_memory_not_equal(px, before, BYTES);
 }
 
 /* Checks that a scene of one ball covers as many pixels as its disc, and
  * that the image size hardly affects the memory. */
-TEST(ball_alone)
+TEST(ball_covers_its_disc)
 {
     static uint8_t px[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
@@ -199,16 +200,16 @@ TEST(ball_alone)
     struct glint_scene *s;
     int64_t sum = 0;
 
-    scene_begin(&file);
-    scene_material(&file, "m");
-    scene_sphere(&file, "ball", 0, 0, 0, 100 * UNIT, 40 * UNIT);
+    scene_begin_header(&file);
+    scene_add_material(&file, "m");
+    scene_add_sphere(&file, "ball", 0, 0, 0, 100 * UNIT, 40 * UNIT);
     glint_scene_defaults(&cfg, WIDTH, HEIGHT);
-    s = scene_start(&file, &cfg, &stats);
+    s = scene_init_renderer(&file, &cfg, &stats);
     memset(px, 0, sizeof px);
     glint_scene_draw(s, &image);
     for (int i = 0; i < s->cover_across * s->cover_down; i++)
         sum += s->cover[i];
-    /* f tan(asin(.4)) pixels of radius */
+    /* the disc has a radius of f tan(asin(.4)) pixels */
     assert_true(
         fabs((double)sum / 256 / (3.14159265 * pow(WIDTH / 2. * .436436, 2)) -
              1) < 2e-3);
@@ -216,7 +217,7 @@ TEST(ball_alone)
 
 /* Checks the memory limits at 320x240 with two workers: only Phong-shaded
  * balls and planes need at most 120 KiB, a sun with shadows 60 KiB more. */
-TEST(memory)
+TEST(memory_stays_within_its_limits)
 {
     static const int32_t toward_q30[3] = {0, 0, -(1 << 30)};
     struct glint_workers two = {.n = 2};
@@ -224,19 +225,19 @@ TEST(memory)
     struct glint_scene_model model;
     size_t bytes;
 
-    scene_begin(&file);
-    scene_material(&file, "m");
+    scene_begin_header(&file);
+    scene_add_material(&file, "m");
     for (int i = 0; i < 8; i++)
-        scene_sphere(&file, "ball", 0, 0, 0, 100 * UNIT, 4 * UNIT);
+        scene_add_sphere(&file, "ball", 0, 0, 0, 100 * UNIT, 4 * UNIT);
     glint_scene_defaults(&cfg, 320, 240);
     cfg.workers = &two;
-    model = scene_open(&file);
+    model = scene_open_model(&file);
     bytes = glint_scene_bytes(&cfg, &model);
     print_message("8 balls: %zu bytes", bytes);
     assert_in_range(bytes, 1, 120 << 10);
-    scene_sun(&file, toward_q30);
+    scene_add_sun(&file, toward_q30);
     file.header.shadow = 1;
-    model = scene_open(&file);
+    model = scene_open_model(&file);
     print_message(", with a sun's shadows: %zu\n",
                   glint_scene_bytes(&cfg, &model));
     assert_in_range(glint_scene_bytes(&cfg, &model), bytes + 1,
@@ -245,28 +246,28 @@ TEST(memory)
 
 /* Checks that from any position inside a closed mesh all samples hit it,
  * although some vertices are behind the camera. */
-TEST(no_leaks)
+TEST(closed_mesh_has_no_leaks)
 {
     static uint8_t px[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
-    struct glint_scene_config cfg = make_config();
+    struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_stats stats;
     uint32_t seed = 1;
 
     cfg.max_refs = 1 << 18;
     for (int i = 0; i < 60; i++) {
         struct glint_scene *s;
-        double size = exp2(rng_below(&seed, 16) - 5);
+        double size = exp2(rng_int_below(&seed, 16) - 5);
 
-        scene_begin(&file);
-        scene_material(&file, "m");
+        scene_begin_header(&file);
+        scene_add_material(&file, "m");
         file.material[0].diffuse_q15 = 0;
-        scene_object(&file, "rock", 0, add_ball_mesh(size));
+        scene_add_object(&file, "rock", 0, add_ball_mesh(size));
         for (int k = 0; k < 3; k++)
             file.header.camera.at[k] =
                 (int32_t)((rng_unit(&seed) - .5) * .8 * size * UNIT);
-        file.header.camera.tan_x_q24 = 1 << (20 + rng_below(&seed, 8));
-        s = scene_start(&file, &cfg, &stats);
+        file.header.camera.tan_x_q24 = 1 << (20 + rng_int_below(&seed, 8));
+        s = scene_init_renderer(&file, &cfg, &stats);
         assert_int_equal(stats.dropped_objects, 0);
         memset(px, 255, sizeof px);
         glint_scene_draw(s, &image);
@@ -276,15 +277,15 @@ TEST(no_leaks)
 }
 
 /* Checks that a sample shows the first object that its ray hits. */
-TEST(samples)
+TEST(sample_shows_the_first_object)
 {
-    const struct glint_scene_config cfg = make_config();
+    const struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_stats stats;
     const struct glint_scene *s;
     int n = 0, other = 0;
 
-    make_scene();
-    s = scene_start(&file, &cfg, &stats);
+    make_scene_of_all_objects();
+    s = scene_init_renderer(&file, &cfg, &stats);
     for (int y = 0; y < HEIGHT; y += 32)
         for (int x = 0; x < WIDTH; x += 32) {
             const struct glint_box tile = {x, y,
@@ -316,22 +317,22 @@ TEST(samples)
     assert_true(n == WIDTH * HEIGHT && other <= 5);
 }
 
-/* Draws the scene of make() in linear light. */
-static void draw_linear(int edge_samples, int half, int32_t *px_q20)
+/* Draws the scene of make_scene_of_all_objects() in linear light. */
+static void draw_scene_linear(int edge_samples, int half, int32_t *px_q20)
 {
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
-    struct glint_scene_config cfg = make_config();
+    struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_stats stats;
 
     cfg.edge_samples = edge_samples;
     cfg.half_shading = half;
     memset(px_q20, 0, sizeof *px_q20 * 3 * WIDTH * HEIGHT);
-    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
+    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
 }
 
 /* Returns the root mean square difference, 1 = display white. */
-static double compute_rms(const int32_t *a_q20, const int32_t *b_q20)
+static double compute_rms_difference(const int32_t *a_q20, const int32_t *b_q20)
 {
     double sum = 0;
 
@@ -343,26 +344,27 @@ static double compute_rms(const int32_t *a_q20, const int32_t *b_q20)
 /* Checks that more samples per pixel come closer to 16 samples, and that
  * with 2 x 2 shading only pixels whose neighbours show the same object
  * change. */
-TEST(dials)
+TEST(more_samples_come_closer)
 {
     static int32_t all[3 * WIDTH * HEIGHT], some[3 * WIDTH * HEIGHT];
     double last = 1;
     int changed = 0;
 
-    make_scene();
-    draw_linear(16, 0, all);
+    make_scene_of_all_objects();
+    draw_scene_linear(16, 0, all);
     for (int n = 1; n <= 8; n *= n == 1 ? 4 : 2) {
         double off;
 
-        draw_linear(n, 0, some);
-        off = compute_rms(some, all);
+        draw_scene_linear(n, 0, some);
+        off = compute_rms_difference(some, all);
         print_message("%d samples: %.1f dB\n", n, -20 * log10(off));
         assert_true(off > 0 && off < .8 * last);
         last = off;
     }
-    draw_linear(16, 1, some);
-    print_message("two by two: %.1f dB\n", -20 * log10(compute_rms(some, all)));
-    assert_true(compute_rms(some, all) < .1);
+    draw_scene_linear(16, 1, some);
+    print_message("two by two: %.1f dB\n",
+                  -20 * log10(compute_rms_difference(some, all)));
+    assert_true(compute_rms_difference(some, all) < .1);
     for (int y = 0; y < HEIGHT - 1; y += 2)
         for (int x = 0; x < WIDTH - 1; x += 2) {
             const int i = 3 * (y * WIDTH + x);
@@ -380,19 +382,20 @@ TEST(dials)
     assert_in_range(changed, 500, WIDTH * HEIGHT / 4);
 }
 
-TEST(capacity)
+TEST(exact_capacity_is_sufficient)
 {
-    struct glint_scene_config cfg = make_config();
+    struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_stats stats;
-    const struct glint_scene_model model = (make_scene(), scene_open(&file));
+    const struct glint_scene_model model =
+        (make_scene_of_all_objects(), scene_open_model(&file));
 
-    scene_start(&file, &cfg, &stats);
+    scene_init_renderer(&file, &cfg, &stats);
     assert_true(stats.need_refs == stats.refs && stats.refs > 0);
     cfg.max_refs = stats.need_refs;
-    scene_start(&file, &cfg, &stats);
+    scene_init_renderer(&file, &cfg, &stats);
     assert_int_equal(stats.dropped_objects, 0);
     cfg.max_refs--;
-    scene_start(&file, &cfg, &stats);
+    scene_init_renderer(&file, &cfg, &stats);
     assert_int_equal(stats.dropped_objects, 1);
     assert_true(stats.refs == 0 && stats.need_refs == cfg.max_refs + 1);
     cfg.parts.bounces = NULL;
@@ -408,9 +411,9 @@ TEST(capacity)
     assert_int_equal(glint_scene_bytes(&cfg, &model), 0);
 }
 
-TEST(poses)
+TEST(changed_poses_equal_a_new_scene)
 {
-    const struct glint_scene_config cfg = make_config();
+    const struct glint_scene_config cfg = make_scene_config();
     const int32_t at[4] = {UNIT, 0, 9 * UNIT}, far[3] = {GLINT_SCENE_SPAN - 9};
     const int32_t turn[4] = {ONE_Q30 / 5 * 3, 0, ONE_Q30 / 5 * 4, 0};
     const int32_t axes[3][3] = {{ONE_Q30}, {0, ONE_Q30}, {0, 0, -ONE_Q30}};
@@ -419,8 +422,8 @@ TEST(poses)
     struct glint_scene *s;
     int32_t x[3] = {1 << 20, 0, 0}, to[3];
 
-    make_scene();
-    s = scene_start(&file, &cfg, &stats);
+    make_scene_of_all_objects();
+    s = scene_init_renderer(&file, &cfg, &stats);
     assert_ok(glint_scene_set_pose(s, 0, at, turn));
     assert_int_equal(glint_scene_set_pose(s, 0, far, turn), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_pose(s, 4, at, turn), GLINT_E_ARGUMENT);
@@ -439,9 +442,10 @@ TEST(poses)
 
 /* ----------------------------------------------------------------- shadows */
 
-/* Sets SURFACE to a random point near the objects of make(), on their side
- * of the floor. */
-static void random_place(uint32_t *seed, struct glint_met_surface *surface)
+/* Sets SURFACE to a random point near the objects of
+ * make_scene_of_all_objects(), above the floor. */
+static void set_random_surface_point(uint32_t *seed,
+                                     struct glint_met_surface *surface)
 {
     static const int32_t at[3] = {0, 0, 6 * UNIT};
 
@@ -455,27 +459,27 @@ static void random_place(uint32_t *seed, struct glint_met_surface *surface)
 /* Checks that the shadow grid of a sun gives the same results as rays tested
  * against all objects: also far below objects, outside the grid, and from
  * oblique surfaces. */
-TEST(shadows)
+TEST(shadow_grid_equals_brute_force)
 {
     uint32_t seed = 1;
     int n = 0, other = 0, partly = 0, dark = 0;
 
     for (int points = 1; points <= 16; points *= 4) {
-        struct glint_scene_config cfg = make_config();
+        struct glint_scene_config cfg = make_scene_config();
         struct glint_scene_stats stats;
         struct glint_scene *s;
 
         cfg.shadow_points = points;
-        make_scene();
+        make_scene_of_all_objects();
         file.object[2].catcher_q15 = points == 4 ? 20000 : 0;
-        s = scene_start(&file, &cfg, &stats);
+        s = scene_init_renderer(&file, &cfg, &stats);
         assert_true(s->lit[0].shadow && s->lit[0].shadow->is_ready);
         assert_null(s->lit[1].shadow);
         for (int i = 0; i < 20000; i++) {
             struct glint_met_surface surface;
             int32_t by_grid, by_rays;
 
-            random_place(&seed, &surface);
+            set_random_surface_point(&seed, &surface);
             s->lit[0].shadow->is_ready = 1;
             by_grid = glint_scene_reaches(s, &surface, &s->lit[0]);
             s->lit[0].shadow->is_ready = 0;
@@ -494,16 +498,16 @@ TEST(shadows)
     assert_true(dark > 500 && partly > 200 && other <= 3);
 }
 
-/* A square mesh across each axis, which lies in a side of its grid, keeps the
- * light of a lamp from a point behind it, on either side. */
-TEST(flat_shadows)
+/* Checks that a square mesh perpendicular to each axis, which coincides with a
+ * side of its grid, occludes a lamp for points behind it, from either side. */
+TEST(flat_mesh_shadows_a_lamp)
 {
     static const uint32_t t[2][3] = {{0, 1, 2}, {0, 2, 3}};
 
     for (int axis = 0; axis < 3; axis++)
         for (int side = -1; side <= 1; side += 2) {
             const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-            const struct glint_scene_config cfg = make_config();
+            const struct glint_scene_config cfg = make_scene_config();
             struct glint_met_surface surface = {.object = 0};
             int32_t at[4][3], lamp[3] = {0, 0, 0};
             struct glint_scene_stats stats;
@@ -514,16 +518,16 @@ TEST(flat_shadows)
                 at[i][u] = i == 1 || i == 2 ? UNIT : -UNIT;
                 at[i][v] = i >= 2 ? UNIT : -UNIT;
             }
-            scene_begin(&file);
+            scene_begin_header(&file);
             file.header.shadow = 1;
-            scene_material(&file, "m");
-            scene_sphere(&file, "far", 0, 90 * UNIT, 0, 0, UNIT);
-            scene_object(&file, "flat", 0,
-                         scene_mesh(&file, (const int32_t(*)[3])at, NULL, NULL,
-                                    4, t, 2));
+            scene_add_material(&file, "m");
+            scene_add_sphere(&file, "far", 0, 90 * UNIT, 0, 0, UNIT);
+            scene_add_object(&file, "flat", 0,
+                             scene_add_mesh(&file, (const int32_t(*)[3])at,
+                                            NULL, NULL, 4, t, 2));
             lamp[axis] = 3 * side * UNIT;
-            scene_lamp(&file, lamp, UNIT);
-            s = scene_start(&file, &cfg, &stats);
+            scene_add_lamp(&file, lamp, UNIT);
+            s = scene_init_renderer(&file, &cfg, &stats);
             surface.place[axis] = -side * UNIT;
             surface.place[u] = UNIT / 3;
             surface.face_q30[axis] = side < 0 ? -ONE_Q30 : ONE_Q30;
@@ -537,13 +541,13 @@ TEST(flat_shadows)
 /* Checks two shortcuts: shadow catchers are shaded only where shadows may
  * fall, and small balls use a single depth. Images equal those that shade
  * all pixels with exact depths. */
-TEST(confined)
+TEST(confined_shading_equals_full_shading)
 {
     static uint8_t px[2][BYTES];
     struct glint_image image = {
         .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
     const struct glint_box all = {0, 0, WIDTH, HEIGHT};
-    const struct glint_scene_config cfg = make_config();
+    const struct glint_scene_config cfg = make_scene_config();
     uint32_t seed = 1;
     int less = 0, flat = 0;
 
@@ -551,16 +555,16 @@ TEST(confined)
         struct glint_scene_stats stats;
         struct glint_scene *s;
 
-        make_scene();
+        make_scene_of_all_objects();
         file.object[2].catcher_q15 = 30000;
         file.object[2].hidden = file.object[3].hidden = i % 3 == 0;
         file.header.n_lights = 1;
         for (int k = 0; k < 4; k += k == 1 ? 2 : 1)
             for (int j = 0; j < 3; j++)
-                file.object[k].at[j] += rng_below(&seed, UNIT) - UNIT / 3;
-        s = scene_start(&file, &cfg, &stats);
+                file.object[k].at[j] += rng_int_below(&seed, UNIT) - UNIT / 3;
+        s = scene_init_renderer(&file, &cfg, &stats);
         for (int k = 0; k < 2; k++) {
-            fill_image(px[k], BYTES);
+            fill_image_with_pattern(px[k], BYTES);
             glint_image_place(&image, px[k]);
             glint_scene_draw(s, &image);
             less += k == 0 && s->placed[2].box.x1 - s->placed[2].box.x0 < WIDTH;
@@ -579,7 +583,7 @@ TEST(confined)
 /* ------------------------------------------------------------------ lights */
 
 /* Sets a sun above the camera's axis to the direction with tangents X and Y. */
-static void set_sun(double x, double y)
+static void set_sun_direction(double x, double y)
 {
     const double length = sqrt(x * x + y * y + 1);
     const double to[3] = {x / length, y / length, 1 / length};
@@ -588,16 +592,16 @@ static void set_sun(double x, double y)
         file.light[0].toward_q30[k] = (int32_t)lround(ldexp(to[k], 30));
 }
 
-static double to_double(struct glint_real x)
+static double real_to_double(struct glint_real x)
 {
     return glint_real_value(x);
 }
 
 /* Checks position and light of the lights passed to the lens, and both again
  * through the same pinhole in double precision. */
-TEST(lights)
+TEST(lights_for_the_lens_match_double_precision)
 {
-    const struct glint_scene_config cfg = make_config();
+    const struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     struct glint_scene_stats stats;
     uint32_t seed = 1;
@@ -607,43 +611,45 @@ TEST(lights)
         const double f = WIDTH / 2., cosine = 1 / sqrt(1 + x * x + y * y);
         double power;
 
-        make_scene();
+        make_scene_of_all_objects();
         for (int k = 0; k < 4; k++)
             file.object[k].hidden = 1;
-        set_sun(x, y);
+        set_sun_direction(x, y);
         file.light[1].at[0] = (int32_t)(x * 8 * UNIT);
         file.light[1].at[1] = (int32_t)(y * 8 * UNIT);
         file.light[1].at[2] = 8 * UNIT;
         assert_int_equal(
-            glint_scene_lights(scene_start(&file, &cfg, &stats), lamp), 2);
+            glint_scene_lights(scene_init_renderer(&file, &cfg, &stats), lamp),
+            2);
         power = 3.14159265358979 * f * f / pow(cosine, 3);
         for (int k = 0; k < 2; k++) {
             assert_int_equal(lamp[k].share, 16);
             assert_true(fabs(lamp[k].x_q8 / 256. - WIDTH / 2. - f * x) < .02);
             assert_true(fabs(lamp[k].y_q8 / 256. - HEIGHT / 2. + f * y) < .02);
         }
-        assert_true(fabs(to_double(lamp[0].rgb[1]) / power - 1) < 1e-6);
-        power *= 16 * cosine * cosine / 64; /* 1 at distance 4 */
-        assert_true(fabs(to_double(lamp[1].rgb[1]) / power - 1) < 1e-4);
+        assert_true(fabs(real_to_double(lamp[0].rgb[1]) / power - 1) < 1e-6);
+        /* power 1 at a distance of 4 units */
+        power *= 16 * cosine * cosine / 64;
+        assert_true(fabs(real_to_double(lamp[1].rgb[1]) / power - 1) < 1e-4);
         assert_true(abs(lamp[0].radius_q8 - (int)(256 * f * .05 / cosine)) <=
                     1);
     }
-    make_scene();
+    make_scene_of_all_objects();
     file.header.flare = 0;
-    assert_int_equal(glint_scene_lights(scene_start(&file, &cfg, &stats), lamp),
-                     0);
+    assert_int_equal(
+        glint_scene_lights(scene_init_renderer(&file, &cfg, &stats), lamp), 0);
 }
 
 /* Checks that scene and lens agree on a light's direction: the flare's
  * pinhole converts the pixel from the scene to the direction in the scene. */
-TEST(lens_agrees)
+TEST(lens_and_scene_agree_on_directions)
 {
-    struct model_image image = model_auto();
-    const struct glint_lens lens = model_open(&image);
+    struct model_image image = model_make_auto();
+    const struct glint_lens lens = model_open_image(&image);
     const double f =
         glint_real_value(lens.header->focal_mm) *
         glint_real_value(glint_flare_pixels_per_mm(&lens, WIDTH, HEIGHT));
-    struct glint_scene_config cfg = make_config();
+    struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     struct glint_scene_stats stats;
     uint32_t seed = 1;
@@ -654,15 +660,16 @@ TEST(lens_agrees)
         struct glint_light light;
         double tangent;
 
-        make_scene();
+        make_scene_of_all_objects();
         file.header.camera.kind = GLINT_CAMERA_LENS;
         file.header.camera.tan_x_q24 = 0;
         file.header.n_lights = 1;
         for (int k = 0; k < 4; k++)
             file.object[k].hidden = 1;
-        set_sun(x, y);
+        set_sun_direction(x, y);
         assert_int_equal(
-            glint_scene_lights(scene_start(&file, &cfg, &stats), lamp), 1);
+            glint_scene_lights(scene_init_renderer(&file, &cfg, &stats), lamp),
+            1);
         light = glint_light_from_pixel(&lens, WIDTH, HEIGHT, lamp[0].x_q8,
                                        lamp[0].y_q8);
         tangent = (double)light.sine_q30 / light.cosine_q30;
@@ -674,23 +681,24 @@ TEST(lens_agrees)
 
 /* Checks that the visible fraction of a sun falls to 0 in steps while it
  * sets behind a ball. */
-TEST(hidden_light)
+TEST(setting_sun_is_occluded_gradually)
 {
-    const struct glint_scene_config cfg = make_config();
+    const struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     struct glint_scene_stats stats;
     int last = 16, levels = 0;
 
-    make_scene();
+    make_scene_of_all_objects();
     file.header.n_lights = 1;
     for (int k = 1; k < 4; k++)
         file.object[k].hidden = 1;
     for (int i = 0; i <= 60; i++) {
         int share;
 
-        set_sun(-2 / 7. + .3 - i * .005, 0);
+        set_sun_direction(-2 / 7. + .3 - i * .005, 0);
         assert_int_equal(
-            glint_scene_lights(scene_start(&file, &cfg, &stats), lamp), 1);
+            glint_scene_lights(scene_init_renderer(&file, &cfg, &stats), lamp),
+            1);
         share = lamp[0].share;
         assert_true(share <= last);
         levels += share < last;
@@ -700,17 +708,17 @@ TEST(hidden_light)
 }
 
 /* Checks that lamps in the image are dimmed by the coverage of objects. */
-TEST(cover)
+TEST(lamps_are_dimmed_by_coverage)
 {
     static uint8_t px[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
-    const struct glint_scene_config cfg = make_config();
+    const struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_stats stats;
     struct glint_scene *s;
 
-    make_scene();
+    make_scene_of_all_objects();
     file.object[2].hidden = 1;
-    s = scene_start(&file, &cfg, &stats);
+    s = scene_init_renderer(&file, &cfg, &stats);
     glint_scene_draw(s, &image);
     /* the middle of the mesh, and a corner of the image */
     assert_int_equal(glint_scene_cover(s, 128 * WIDTH, 128 * HEIGHT, 256), 256);
@@ -720,11 +728,11 @@ TEST(cover)
                     20, 90);
 }
 
-static int64_t sum_cover(const struct glint_image *image)
+static int64_t sum_scene_coverage(const struct glint_image *image)
 {
-    const struct glint_scene_config cfg = make_config();
+    const struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_stats stats;
-    struct glint_scene *s = scene_start(&file, &cfg, &stats);
+    struct glint_scene *s = scene_init_renderer(&file, &cfg, &stats);
     int64_t sum = 0;
 
     memset(image->plane[0], 128, WIDTH * HEIGHT * 3);
@@ -735,23 +743,23 @@ static int64_t sum_cover(const struct glint_image *image)
 }
 
 /* Checks that a shadow on a catcher darkens the image but hides no lamp. */
-TEST(shadow_hides_nothing)
+TEST(shadows_hide_no_lamps)
 {
     static uint8_t px[BYTES], alone[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
     int64_t cover;
     int n_dark = 0;
 
-    make_scene();
+    make_scene_of_all_objects();
     file.header.n_lights = 1;
-    set_sun(0, 20);
+    set_sun_direction(0, 20);
     file.object[1].hidden = file.object[2].hidden = file.object[3].hidden = 1;
     file.object[2].catcher_q15 = 32768;
-    cover = sum_cover(&image);
+    cover = sum_scene_coverage(&image);
     memcpy(alone, px, sizeof alone);
     file.object[2].hidden = 0;
     assert_true(cover > 0);
-    assert_int_equal(sum_cover(&image), cover);
+    assert_int_equal(sum_scene_coverage(&image), cover);
     for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
         n_dark += px[i] < alone[i];
     assert_true(n_dark > 100);

@@ -67,21 +67,21 @@ static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
 static const struct glint_description_files files = {NULL,     NULL, NULL,
                                                      bake_sky, NULL, NULL};
 
-static enum glint_status parse_text(const char *text,
-                                    struct glint_description *scene,
-                                    struct glint_error *error)
+static enum glint_status parse_scene_text(const char *text,
+                                          struct glint_description *scene,
+                                          struct glint_error *error)
 {
     error->text[0] = '\0';
     return glint_description_parse(scene, text, strlen(text), "x.scene", &files,
                                    error);
 }
 
-static void open_text(struct drawn *d, const char *text,
-                      const struct scene_dials *dials)
+static void open_scene_text(struct drawn *d, const char *text,
+                            const struct scene_dials *dials)
 {
     static const struct tool tool = {.name = "test"};
 
-    drawn_open(d, text, &files, dials, &tool);
+    drawn_open_scene(d, text, &files, dials, &tool);
 }
 
 /* --------------------------------------------------------------- reference */
@@ -102,7 +102,7 @@ static void open_text(struct drawn *d, const char *text,
     "sphere c at 1.2 .5 0 radius .5 material old\n"                 \
     "plane p at 0 0 0 normal .1 1 0 material "
 
-TEST(equals_reference)
+TEST(image_equals_the_reference)
 {
     static const struct {
         const char *what, *text;
@@ -122,7 +122,7 @@ TEST(equals_reference)
                                "2e4\n" BALLS "old\n"}};
 
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
-        const double db = drawn_near_twin(row[i].text, &files);
+        const double db = drawn_psnr_to_reference(row[i].text, &files);
 
         print_message("%s: %.1f dB\n", row[i].what, db);
         assert_true(db >= 60);
@@ -132,16 +132,16 @@ TEST(equals_reference)
 /* ------------------------------------------------------------------- texts */
 
 /* Row B7: an anisotropy ratio above 10 is clamped to 10, with a warning. */
-TEST(clamped_ratio)
+TEST(clamped_anisotropy_is_warned_of)
 {
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
 
     assert_non_null(s);
-    assert_ok(
-        parse_text("material m ward specular .9 .9 .9 alpha .002 .4 norm 1992\n"
-                   "environment 9e5\nsphere s at 0 0 -3 radius 1 material m\n",
-                   s, &error));
+    assert_ok(parse_scene_text(
+        "material m ward specular .9 .9 .9 alpha .002 .4 norm 1992\n"
+        "environment 9e5\nsphere s at 0 0 -3 radius 1 material m\n",
+        s, &error));
     assert_non_null(strstr(s->warning, "limited to 10"));
     assert_true(fabs(s->material[0].alpha[0] - .04) < 1e-12);
     assert_true(s->material[0].norm == GLINT_DESCRIBED_1992);
@@ -153,7 +153,7 @@ TEST(clamped_ratio)
 
 /* Checks that a model opens only if the program names the module it needs
  * and the model's environment is intact. */
-TEST(needs_module)
+TEST(missing_module_is_rejected)
 {
     static const struct scene_dials dials = {
         .width = 16, .height = 9, .edge_samples = 1, .shadow_points = 1};
@@ -162,7 +162,7 @@ TEST(needs_module)
     struct drawn d;
     void *mem;
 
-    open_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
+    open_scene_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
     cfg = d.frame.cfg;
     assert_int_equal(posix_memalign(&mem, 64, d.frame.bytes), 0);
     assert_ok(glint_scene_init(&scene, &cfg, &d.model, mem, d.frame.bytes));
@@ -181,12 +181,12 @@ TEST(needs_module)
         glint_scene_init(&scene, &cfg, &d.model, mem, d.frame.bytes),
         GLINT_E_FORMAT);
     free(mem);
-    drawn_close(&d);
+    drawn_close_scene(&d);
 }
 
 /* Row B2: colours and alphas change between frames; the image equals that of
  * a scene baked with the new values. */
-TEST(b2_looks)
+TEST(b2_changed_materials_equal_a_new_scene)
 {
     static const char *const text[2] = {
         STAGE "environment 9e5\nlight sun direction 1 1 1 colour 1e4 1e4 1e4\n"
@@ -202,16 +202,16 @@ TEST(b2_looks)
     struct drawn d;
     int material;
 
-    open_text(&d, text[0], &dials);
-    drawn_draw(&d, 64, 36, want);
+    open_scene_text(&d, text[0], &dials);
+    drawn_draw_image(&d, 64, 36, want);
     material = glint_scene_find_material(&d.model, "m");
     assert_ok(glint_scene_get_look(d.frame.scene, material, &look));
-    drawn_close(&d);
-    open_text(&d, text[1], &dials);
-    drawn_draw(&d, 64, 36, got);
+    drawn_close_scene(&d);
+    open_scene_text(&d, text[1], &dials);
+    drawn_draw_image(&d, 64, 36, got);
     assert_memory_not_equal(got, want, sizeof want);
     assert_ok(glint_scene_set_look(d.frame.scene, material, &look));
-    drawn_draw(&d, 64, 36, got);
+    drawn_draw_image(&d, 64, 36, got);
     assert_memory_equal(got, want, sizeof want);
     assert_ok(glint_scene_get_look(d.frame.scene, material, &now));
     assert_memory_equal(&now, &look, sizeof now);
@@ -224,7 +224,7 @@ TEST(b2_looks)
     assert_int_equal(glint_scene_set_look(d.frame.scene, material, &now),
                      GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_find_material(&d.model, "none"), -1);
-    drawn_close(&d);
+    drawn_close_scene(&d);
 }
 
 #define STEERED(turn, radius, material)                            \
@@ -233,9 +233,9 @@ TEST(b2_looks)
           "material white\nsphere a at 0 .5 0 radius " radius      \
           " material " material "\n"
 
-/* Material, radius and environment change between frames; the image equals
- * that of a scene baked with the new values. */
-TEST(b8_steered)
+/* Checks, if material, radius and environment change between frames, that the
+ * image equals that of a scene baked with the new values. */
+TEST(b8_changed_objects_equal_a_new_scene)
 {
     static const struct scene_dials dials = {
         .width = 64, .height = 36, .edge_samples = 4, .shadow_points = 4};
@@ -244,18 +244,18 @@ TEST(b8_steered)
     struct glint_scene *s;
     struct drawn d;
 
-    open_text(&d, STEERED("90", ".25", "mirror"), &dials);
-    drawn_draw(&d, 64, 36, want);
-    drawn_close(&d);
-    open_text(&d, STEERED("0", ".5", "steel"), &dials);
+    open_scene_text(&d, STEERED("90", ".25", "mirror"), &dials);
+    drawn_draw_image(&d, 64, 36, want);
+    drawn_close_scene(&d);
+    open_scene_text(&d, STEERED("0", ".5", "steel"), &dials);
     s = d.frame.scene;
-    drawn_draw(&d, 64, 36, got);
+    drawn_draw_image(&d, 64, 36, got);
     assert_memory_not_equal(got, want, sizeof want);
     assert_ok(glint_scene_turn_environment(s, right_q30));
     assert_ok(glint_scene_set_radius(s, 1, d.model.object[1].radius / 2));
     assert_ok(glint_scene_set_material(
         s, 1, glint_scene_find_material(&d.model, "mirror")));
-    drawn_draw(&d, 64, 36, got);
+    drawn_draw_image(&d, 64, 36, got);
     assert_memory_equal(got, want, sizeof want);
     assert_int_equal(glint_scene_turn_environment(s, none_q30),
                      GLINT_E_ARGUMENT);
@@ -266,23 +266,23 @@ TEST(b8_steered)
                      GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_material(s, 1, 99), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_material(s, -1, 0), GLINT_E_ARGUMENT);
-    drawn_draw(&d, 64, 36, got);
+    drawn_draw_image(&d, 64, 36, got);
     assert_memory_equal(got, want, sizeof want);
-    drawn_close(&d);
-    open_text(&d,
-              STAGE "light sun direction 1 1 1 colour 1 1 1\n" BALLS "white\n",
-              &dials);
+    drawn_close_scene(&d);
+    open_scene_text(
+        &d, STAGE "light sun direction 1 1 1 colour 1 1 1\n" BALLS "white\n",
+        &dials);
     assert_int_equal(glint_scene_turn_environment(d.frame.scene, right_q30),
                      GLINT_E_ARGUMENT);
-    drawn_close(&d);
+    drawn_close_scene(&d);
 }
 
 #define UNDER(environments) \
     STAGE environments "shadow on\nbackground environment\n" BALLS "white\n"
 
-/* The visible environment and its brightness change between frames; the
- * image equals that of a scene which has only that environment. */
-TEST(b8_environments)
+/* Checks, if the visible environment and its brightness change between frames,
+ * that the image equals that of a scene which has only that environment. */
+TEST(b8_changed_environment_equals_a_new_scene)
 {
     static const struct scene_dials dials = {
         .width = 64, .height = 36, .edge_samples = 4, .shadow_points = 4};
@@ -295,39 +295,39 @@ TEST(b8_environments)
     struct drawn d;
 
     for (int i = 0; i < 3; i++) {
-        open_text(&d, alone[i], &dials);
+        open_scene_text(&d, alone[i], &dials);
         assert_int_equal(d.model.header->n_lights, i ? 4 : 2);
-        drawn_draw(&d, 64, 36, want[i]);
-        drawn_close(&d);
+        drawn_draw_image(&d, 64, 36, want[i]);
+        drawn_close_scene(&d);
     }
-    open_text(&d,
-              UNDER("environment 9e5 turn 30\n"
-                    "environment sub/dusk.exr scale .5\n"),
-              &dials);
+    open_scene_text(&d,
+                    UNDER("environment 9e5 turn 30\n"
+                          "environment sub/dusk.exr scale .5\n"),
+                    &dials);
     s = d.frame.scene;
     assert_int_equal(d.model.header->n_lights, 4);
     assert_int_equal(glint_scene_find_environment(&d.model, "dusk"), 1);
     for (int round = 0; round < 2; round++) {
         assert_ok(glint_scene_set_environment(s, 0));
-        drawn_draw(&d, 64, 36, got);
+        drawn_draw_image(&d, 64, 36, got);
         assert_memory_equal(got, want[0], sizeof got);
         assert_ok(glint_scene_set_environment(s, 1));
-        drawn_draw(&d, 64, 36, got);
+        drawn_draw_image(&d, 64, 36, got);
         assert_memory_equal(got, want[1], sizeof got);
         assert_ok(glint_scene_scale_environment(s, three));
-        drawn_draw(&d, 64, 36, got);
+        drawn_draw_image(&d, 64, 36, got);
         assert_memory_equal(got, want[2], sizeof got);
     }
     assert_int_equal(glint_scene_set_environment(s, 2), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_environment(s, -1), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_scale_environment(s, none), GLINT_E_ARGUMENT);
-    drawn_draw(&d, 64, 36, got);
+    drawn_draw_image(&d, 64, 36, got);
     assert_memory_equal(got, want[2], sizeof got);
-    drawn_close(&d);
+    drawn_close_scene(&d);
 }
 
 /* Opens D's modified file again. Returns the error, or NULL. */
-static const char *reopen_error(struct drawn *d)
+static const char *reopen_modified_file_error(struct drawn *d)
 {
     struct glint_scene_model model;
     const char *reason = "";
@@ -339,15 +339,15 @@ static const char *reopen_error(struct drawn *d)
 }
 
 /* Sets FIELD to VALUE, expects the error REASON, and restores it. */
-#define REFUSES(field, value, reason)                  \
-    do {                                               \
-        const int32_t was = (int32_t)(field);          \
-        (field) = (value);                             \
-        assert_string_equal(reopen_error(&d), reason); \
-        memcpy(&(field), &was, sizeof(field));         \
+#define REFUSES(field, value, reason)                                \
+    do {                                                             \
+        const int32_t was = (int32_t)(field);                        \
+        (field) = (value);                                           \
+        assert_string_equal(reopen_modified_file_error(&d), reason); \
+        memcpy(&(field), &was, sizeof(field));                       \
     } while (0)
 
-TEST(environment_tables)
+TEST(rejects_invalid_environment_tables)
 {
     static const struct scene_dials dials = {.width = 16, .height = 9};
     static const char range[] =
@@ -356,7 +356,7 @@ TEST(environment_tables)
     struct glint_scene_light *light;
     struct drawn d;
 
-    open_text(&d, UNDER("environment 9e5\n"), &dials);
+    open_scene_text(&d, UNDER("environment 9e5\n"), &dials);
     e = (void *)(d.data + d.model.header->environment_at);
     light = (void *)(d.data + d.model.header->light_at);
     REFUSES(e->name[0], '\0',
@@ -370,25 +370,27 @@ TEST(environment_tables)
     light[1].radius = 0;
     REFUSES(light[1].kind, GLINT_LIGHT_LAMP,
             "a light of the environment is not a sun");
-    drawn_close(&d);
+    drawn_close_scene(&d);
 }
 
 /* Checks environments that cannot be distinguished by name, and too many
  * environments. */
-TEST(environment_names)
+TEST(rejects_ambiguous_environment_names)
 {
     char text[32 * 17 + 1] = "";
     struct glint_description description;
     struct glint_error error;
 
-    assert_int_equal(parse_text("environment a/9e5.hdr\nenvironment 9e5\n",
-                                &description, &error),
-                     GLINT_E_LENS);
+    assert_int_equal(
+        parse_scene_text("environment a/9e5.hdr\nenvironment 9e5\n",
+                         &description, &error),
+        GLINT_E_LENS);
     assert_string_equal(error.text, "x.scene:2:13: a second environment '9e5'; "
                                     "files are identified by their names");
     for (int i = 0; i < 17; i++)
         sprintf(text + strlen(text), "environment sky%d\n", i);
-    assert_int_equal(parse_text(text, &description, &error), GLINT_E_LENS);
+    assert_int_equal(parse_scene_text(text, &description, &error),
+                     GLINT_E_LENS);
     assert_string_equal(error.text, "x.scene:17:13: more than 16 environments");
 }
 
@@ -396,7 +398,7 @@ TEST(environment_names)
 
 /* Returns the total light of an image of a ball 40 pixels wide, of almost
  * mirror-like metal under a sun, moved by (DX, DY) pixels. */
-static double sum_light(struct drawn *d, double dx, double dy)
+static double sum_light_of_metal_ball(struct drawn *d, double dx, double dy)
 {
     enum { SIDE = 64 };
     static int32_t light_q20[3 * SIDE * SIDE];
@@ -408,7 +410,7 @@ static double sum_light(struct drawn *d, double dx, double dy)
     double sum = 0;
 
     assert_ok(glint_scene_set_pose(d->frame.scene, 0, at, o->turn_q30));
-    drawn_draw(d, SIDE, SIDE, light_q20);
+    drawn_draw_image(d, SIDE, SIDE, light_q20);
     for (int i = 0; i < SIDE * SIDE; i++)
         sum += light_q20[3 * i + 1] * 0x1p-20;
     return sum;
@@ -416,32 +418,32 @@ static double sum_light(struct drawn *d, double dx, double dy)
 
 /* Checks that a sun's highlight smaller than a pixel keeps its light within
  * 5 % while it moves by fractions of a pixel. */
-TEST(highlight_steady)
+TEST(subpixel_highlight_is_steady)
 {
     static const struct scene_dials dials = {
         .width = 64, .height = 64, .edge_samples = 1, .shadow_points = 1};
     double least = HUGE_VAL, most = 0;
     struct drawn d;
 
-    open_text(&d,
-              "camera fov 20 at 0 0 4 toward 0 0 0\n"
-              "material m ward specular .9 .9 .9 alpha .002 .002\n"
-              "light sun direction .5 .6 1 colour 2e4 2e4 2e4\n"
-              "sphere s at 0 0 0 radius .44 material m\n",
-              &dials);
+    open_scene_text(&d,
+                    "camera fov 20 at 0 0 4 toward 0 0 0\n"
+                    "material m ward specular .9 .9 .9 alpha .002 .002\n"
+                    "light sun direction .5 .6 1 colour 2e4 2e4 2e4\n"
+                    "sphere s at 0 0 0 radius .44 material m\n",
+                    &dials);
     for (int k = 0; k < 49; k++) {
-        const double sum = sum_light(&d, k % 7 / 7., k / 7 / 7.);
+        const double sum = sum_light_of_metal_ball(&d, k % 7 / 7., k / 7 / 7.);
 
         least = fmin(least, sum);
         most = fmax(most, sum);
     }
-    drawn_close(&d);
+    drawn_close_scene(&d);
     print_message("highlight: %.4f to %.4f\n", least, most);
     assert_true(least > 0 && most < 1.05 * least);
 }
 
 /* Checks the statistics of metal: environment lookups per object. */
-TEST(account)
+TEST(lookups_are_counted_per_object)
 {
     static const struct scene_dials dials = {.width = 32,
                                              .height = 32,
@@ -452,8 +454,8 @@ TEST(account)
     struct scene_account account;
     struct drawn d;
 
-    open_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
-    drawn_draw(&d, 32, 32, light_q20);
+    open_scene_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
+    drawn_draw_image(&d, 32, 32, light_q20);
     assert_ok(scene_account_collect(&account, &d.frame));
     /* objects 0 .. 3: steel, brushed, old, white */
     for (int i = 0; i < 4; i++) {
@@ -461,11 +463,11 @@ TEST(account)
 
         assert_true(n[GLINT_SCENE_SHADED] > 0);
         assert_int_equal(n[GLINT_SCENE_LOOKUPS] % 9, 0);
-        /* The ray through the centre of a pixel at the rim may miss. */
+        /* At the rim, the ray through a pixel's centre may miss the ball. */
         assert_true(i == 3 ? n[GLINT_SCENE_LOOKUPS] == 0
                            : 20 * n[GLINT_SCENE_LOOKUPS] >
                                  9 * 19 * n[GLINT_SCENE_SHADED]);
     }
     scene_account_free(&account);
-    drawn_close(&d);
+    drawn_close_scene(&d);
 }

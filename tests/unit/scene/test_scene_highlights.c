@@ -32,7 +32,7 @@ static const struct scene_dials dials = {
     .width = SIDE, .height = SIDE, .edge_samples = 4, .shadow_points = 1};
 static struct tool tool = {.name = "test"};
 
-static void open_text(const char *text, const struct scene_dials *with)
+static void open_scene_text(const char *text, const struct scene_dials *with)
 {
     const struct glint_description_files files = {NULL, NULL, NULL,
                                                   NULL, NULL, NULL};
@@ -51,7 +51,7 @@ static void open_text(const char *text, const struct scene_dials *with)
     assert_ok(scene_frame_open(&frame, &tool, &model, with));
 }
 
-static void close_text(void)
+static void close_scene(void)
 {
     scene_frame_close(&frame);
     free(data);
@@ -59,7 +59,7 @@ static void close_text(void)
 }
 
 /* Draws the scene on black and finds its highlights. */
-static void draw_scene(void)
+static void draw_and_find_highlights(void)
 {
     static int32_t light_q20[3 * PIXELS];
     struct glint_image image =
@@ -71,7 +71,7 @@ static void draw_scene(void)
     n = glint_scene_find_highlights(frame.scene, found);
 }
 
-static double power_of_spot(int i)
+static double highlight_power(int i)
 {
     return (double)found[i].spot.power_q16 * 0x1p-16;
 }
@@ -86,7 +86,7 @@ static double power_of_spot(int i)
 
 /* --------------------------------------------------------------- reference */
 
-TEST(equals_reference)
+TEST(highlights_equal_the_reference)
 {
     static const struct {
         const char *what, *text;
@@ -112,11 +112,11 @@ TEST(equals_reference)
         struct twin twin;
         int all;
 
-        open_text(row[i].text, &dials);
-        draw_scene();
-        assert_ok(twin_open(&twin, &description));
-        all = twin_highlights(&twin, &view, exact);
-        twin_close(&twin);
+        open_scene_text(row[i].text, &dials);
+        draw_and_find_highlights();
+        assert_ok(reference_open(&twin, &description));
+        all = reference_find_highlights(&twin, &view, exact);
+        reference_close(&twin);
         assert_int_equal(n, all);
         for (int k = 0; k < n; k++) {
             const struct glint_spot *s = &found[k].spot;
@@ -124,10 +124,10 @@ TEST(equals_reference)
                 (pow(s->axis_q8[0], 2) + pow(s->axis_q8[1], 2)) / 65536;
 
             print_message("%s: power %.2f, exact %.2f; off %.3f %.3f px\n",
-                          row[i].what, power_of_spot(k), exact[k].power,
+                          row[i].what, highlight_power(k), exact[k].power,
                           s->x_q8 / 256. - exact[k].x,
                           s->y_q8 / 256. - exact[k].y);
-            assert_true(fabs(power_of_spot(k) / exact[k].power - 1) <
+            assert_true(fabs(highlight_power(k) / exact[k].power - 1) <
                         row[i].off);
             assert_true(fabs(s->x_q8 / 256. - exact[k].x) < .05);
             assert_true(fabs(s->y_q8 / 256. - exact[k].y) < .05);
@@ -137,14 +137,14 @@ TEST(equals_reference)
                 assert_true(fabs(s->rgb_q15[c] / 32768. - exact[k].rgb[c]) <
                             .02);
         }
-        close_text();
+        close_scene();
     }
 }
 
 /* ------------------------------------------------------------------- moves */
 
 /* Moves the ball by (DX, DY) pixels from its original position. */
-static void move_ball(double dx, double dy)
+static void move_ball_by_pixels(double dx, double dy)
 {
     const double pixel = 2 * tan(10 * GLINT_PI / 180) * 4 / SIDE;
     const struct glint_scene_object *o = &model.object[0];
@@ -158,7 +158,7 @@ static void move_ball(double dx, double dy)
 /* Checks, at subpixel steps, that the power varies by at most 5 % and the
  * position follows. The last text's highlight is barely above white: its
  * power may vary, as it is too faint for any flare. */
-TEST(steady_in_motion)
+TEST(highlights_are_steady_in_motion)
 {
     enum { TEXTS = 5 };
     static const char *const text[TEXTS] = {
@@ -175,15 +175,15 @@ TEST(steady_in_motion)
             double least = HUGE_VAL, most = 0, off = 0, from[2] = {0, 0};
 
             with.edge_samples = samples;
-            open_text(text[i], &with);
+            open_scene_text(text[i], &with);
             for (int k = 0; k < 81; k++) {
                 const double x = k % 9 / 8., y = k / 9 / 8.;
 
-                move_ball(x, y);
-                draw_scene();
+                move_ball_by_pixels(x, y);
+                draw_and_find_highlights();
                 assert_int_equal(n, 1);
-                least = fmin(least, power_of_spot(0));
-                most = fmax(most, power_of_spot(0));
+                least = fmin(least, highlight_power(0));
+                most = fmax(most, highlight_power(0));
                 if (k == 0) {
                     from[0] = found[0].spot.x_q8 / 256.;
                     from[1] = found[0].spot.y_q8 / 256.;
@@ -195,18 +195,18 @@ TEST(steady_in_motion)
                           i, samples, least, most, off);
             assert_true(most < (i == TEXTS - 1 ? 1.5 : 1.05) * least);
             assert_true(off < .15);
-            close_text();
+            close_scene();
         }
 }
 
 /* Checks that highlights are the same bit by bit, for any tiles and workers. */
-TEST(same_bits)
+TEST(highlights_are_bit_identical)
 {
     static const char text[] = CAMERA STEEL(".03 .2") SUN BALL
         "light sun direction -1 -.3 1 colour 1e4 1e4 1e4\n"
         "sphere t at .3 .3 .4 radius .12 material m\n";
     struct glint_scene_highlight first[MOST];
-    /* power of the brightest highlight with every pixel shaded */
+    /* power of the brightest highlight if every pixel is shaded */
     double full = 0;
     int n_first = 0;
 
@@ -218,20 +218,21 @@ TEST(same_bits)
                 with.tile_log2 = tile;
                 with.half_shading = half;
                 assert_ok(glint_pool_create(&tool.workers, threads));
-                open_text(text, &with);
-                draw_scene();
+                open_scene_text(text, &with);
+                draw_and_find_highlights();
                 if (tile == 3 && threads == 1) {
                     memcpy(first, found, sizeof first);
                     n_first = n;
                     assert_true(n >= 3);
-                    full = half ? full : power_of_spot(0);
-                    assert_true(fabs(power_of_spot(0) / full - 1) < .1);
+                    full = half ? full : highlight_power(0);
+                    assert_true(fabs(highlight_power(0) / full - 1) < .1);
                 }
                 assert_int_equal(n, n_first);
                 assert_memory_equal(found, first, sizeof first);
-                draw_scene(); /* drawing again gives the same */
+                /* drawing again gives the same highlights */
+                draw_and_find_highlights();
                 assert_memory_equal(found, first, sizeof first);
-                close_text();
+                close_scene();
                 glint_pool_destroy(tool.workers);
                 tool.workers = NULL;
             }
@@ -240,45 +241,46 @@ TEST(same_bits)
 /* ------------------------------------------------------------------- what is
  */
 
-static int count_highlights(const char *text)
+static int count_found_highlights(const char *text)
 {
-    open_text(text, &dials);
-    draw_scene();
-    close_text();
+    open_scene_text(text, &dials);
+    draw_and_find_highlights();
+    close_scene();
     return n;
 }
 
 /* Checks that discs of lights, backgrounds, shadow catchers and pixels below
  * white are not highlights, and that none are found if none are requested. */
-TEST(no_highlights)
+TEST(other_bright_objects_are_no_highlights)
 {
-    assert_int_equal(count_highlights(CAMERA STEEL(".05 .05") SUN BALL), 1);
+    assert_int_equal(count_found_highlights(CAMERA STEEL(".05 .05") SUN BALL),
+                     1);
     assert_int_equal(
-        count_highlights(
+        count_found_highlights(
             "camera fov 20 at 0 0 4 toward 0 0 0\nflare lights\n" STEEL(
                 ".05 .05") SUN BALL),
         0);
     assert_int_equal(
-        count_highlights(
+        count_found_highlights(
             "camera fov 20 at 0 0 4 toward 0 0 0\n" STEEL(".05 .05") SUN BALL),
         0);
-    assert_int_equal(
-        count_highlights(CAMERA STEEL(".05 .05") BALL
+    assert_int_equal(count_found_highlights(
+                         CAMERA STEEL(".05 .05") BALL
                          "light sun direction .1 .1 -1 colour 1e5 1e5 1e5\n"),
-        0);
-    assert_int_equal(
-        count_highlights(CAMERA "background colour 9 9 9\n" STEEL(".3 .3") BALL
+                     0);
+    assert_int_equal(count_found_highlights(
+                         CAMERA "background colour 9 9 9\n" STEEL(".3 .3") BALL
                          "plane p at 0 0 -1 normal 0 0 1 catcher .5\n"
                          "light lamp at 0 4 1 colour 1 1 1\nshadow on\n"),
-        0);
-    assert_int_equal(count_highlights(CAMERA "material m phong 1 0 0\n" BALL),
                      0);
+    assert_int_equal(
+        count_found_highlights(CAMERA "material m phong 1 0 0\n" BALL), 0);
 }
 
 /* Checks that touching squares and centres within 12 pixels are merged, that
- * only the brightest are kept if there are too many, and that merged
+ * only the brightest are returned if there are too many, and that merged
  * highlights lie at their centroid by light. */
-TEST(merged_highlights)
+TEST(near_highlights_are_merged)
 {
     static const char two[] = CAMERA STEEL(".01 .01") BRIGHT
         "sphere a at -.01 0 0 radius .012 material m\n"
@@ -287,10 +289,10 @@ TEST(merged_highlights)
     double before = HUGE_VAL;
 
     snprintf(text, sizeof text, two, ".1");
-    assert_int_equal(count_highlights(text), 1);
+    assert_int_equal(count_found_highlights(text), 1);
     assert_int_equal(found[0].object, 0);
     snprintf(text, sizeof text, two, ".4");
-    assert_int_equal(count_highlights(text), 2);
+    assert_int_equal(count_found_highlights(text), 2);
     assert_int_equal(found[0].object + found[1].object, 1);
     for (int i = 0; i < 40; i++) {
         snprintf(text, sizeof text,
@@ -299,19 +301,19 @@ TEST(merged_highlights)
                  "sphere b at %g 0 0 radius .012 material m\n"
                  "sphere c at -.5 0 0 radius .0145 material m\n",
                  .1 + .002 * i, .2 + .002 * i);
-        assert_in_range(count_highlights(text), 2, 3);
-        assert_true(power_of_spot(0) > power_of_spot(1));
+        assert_in_range(count_found_highlights(text), 2, 3);
+        assert_true(highlight_power(0) > highlight_power(1));
     }
     strcpy(text, CAMERA STEEL(".01 .01") BRIGHT);
     for (int i = 0; i < 16; i++)
         snprintf(text + strlen(text), 100,
                  "sphere b%d at %g %g 0 radius %g material m\n", i,
                  .32 * (i % 4) - .48, .32 * (i / 4) - .48, .02 + .001 * i);
-    assert_int_equal(count_highlights(text), 8);
+    assert_int_equal(count_found_highlights(text), 8);
     for (int i = 0; i < n; i++) {
         assert_int_equal(found[i].object, 15 - i);
-        assert_true(power_of_spot(i) < before);
-        before = power_of_spot(i);
+        assert_true(highlight_power(i) < before);
+        before = highlight_power(i);
     }
 }
 
@@ -320,7 +322,7 @@ TEST(merged_highlights)
 /* Checks that the power is proportional to the light up to its saturation,
  * and that a ball of one pixel, or with its highlight at the image's border,
  * has the power of the visible part. */
-TEST(extremes)
+TEST(power_is_linear_up_to_saturation)
 {
     static char text[400];
     double last = 0;
@@ -330,51 +332,52 @@ TEST(extremes)
                  CAMERA STEEL(".1 .1") BALL
                  "light lamp at 1 1 2 colour 1e%d 1e%d 1e%d\n",
                  e, e, e);
-        open_text(text, &dials);
-        draw_scene();
+        open_scene_text(text, &dials);
+        draw_and_find_highlights();
         assert_true(n <= 1 && (n == 1) == (e >= 0));
         if (n == 1) {
-            print_message("colour 1e%d: power %.4g\n", e, power_of_spot(0));
-            assert_true(power_of_spot(0) >= last && power_of_spot(0) <= 0x1p26);
+            print_message("colour 1e%d: power %.4g\n", e, highlight_power(0));
+            assert_true(highlight_power(0) >= last &&
+                        highlight_power(0) <= 0x1p26);
             assert_true(found[0].spot.axis_q8[1] >= 128);
-            if (last > 500 && power_of_spot(0) < 1e5)
-                assert_true(power_of_spot(0) / last > 9 &&
-                            power_of_spot(0) / last < 25);
-            last = power_of_spot(0);
+            if (last > 500 && highlight_power(0) < 1e5)
+                assert_true(highlight_power(0) / last > 9 &&
+                            highlight_power(0) / last < 25);
+            last = highlight_power(0);
         }
-        close_text();
+        close_scene();
     }
     assert_true(last > 1e6);
-    count_highlights(CAMERA STEEL(".05 .05") SUN BALL);
+    count_found_highlights(CAMERA STEEL(".05 .05") SUN BALL);
     last = found[0].spot.x_q8 / 256.;
     for (int e = -20; e <= 20; e++) { /* across the left border */
-        open_text(CAMERA STEEL(".05 .05") SUN BALL, &dials);
-        move_ball(e / 2. - last, 0);
-        draw_scene();
+        open_scene_text(CAMERA STEEL(".05 .05") SUN BALL, &dials);
+        move_ball_by_pixels(e / 2. - last, 0);
+        draw_and_find_highlights();
         for (int i = 0; i < n; i++)
             assert_true(found[i].spot.x_q8 >= 0 && found[i].spot.y_q8 >= 0 &&
                         found[i].spot.x_q8 < 256 * SIDE &&
-                        power_of_spot(i) > 0);
+                        highlight_power(i) > 0);
         assert_int_equal(n, e > 4 ? 1 : e < -18 ? 0 : n);
-        close_text();
+        close_scene();
     }
     assert_int_equal(
-        count_highlights(CAMERA STEEL(
+        count_found_highlights(CAMERA STEEL(
             ".05 .05") "light sun direction .5 .6 1 colour 2e8 2e8 1e8\n"
                        "sphere s at 0 0 0 radius .0073 material m\n"),
         1);
-    print_message("a ball of a pixel: power %.3f\n", power_of_spot(0));
+    print_message("a ball of a pixel: power %.3f\n", highlight_power(0));
     assert_true(fabs(found[0].spot.x_q8 / 256. - SIDE / 2) < 1);
 }
 
 /* Checks the brightest light that the sums of a square can hold: its colour
  * is white. */
-TEST(brightest)
+TEST(brightest_highlight_is_white)
 {
     static const int32_t max_q15[3] = {1 << 30, 1 << 30, 1 << 30};
 
-    open_text(CAMERA STEEL(".05 .05") SUN BALL, &dials);
-    draw_scene();
+    open_scene_text(CAMERA STEEL(".05 .05") SUN BALL, &dials);
+    draw_and_find_highlights();
     glint_scene_highlights.begin(frame.scene->bright);
     for (int i = 0; i < 2; i++)
         glint_scene_highlights.note(frame.scene->bright, 0, 0, 0, max_q15,
@@ -382,5 +385,5 @@ TEST(brightest)
     assert_int_equal(glint_scene_find_highlights(frame.scene, found), 1);
     for (int c = 0; c < 3; c++)
         assert_true(abs(found[0].spot.rgb_q15[c] - (1 << 15)) <= 8);
-    close_text();
+    close_scene();
 }

@@ -13,7 +13,7 @@
 static struct scene_file file;
 
 /* Makes a scene with an object of every type. */
-static struct scene_file *make_scene(void)
+static struct scene_file *make_scene_of_all_types(void)
 {
     static const int32_t at[4][3] = {
         {0, 0, 0}, {4000, 0, 0}, {0, 4000, 0}, {0, 0, 4000}};
@@ -25,20 +25,20 @@ static struct scene_file *make_scene(void)
         {0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
     static const uint8_t rgb[3 * 8] = {1, 2, 3};
 
-    scene_begin(&file);
-    scene_material(&file, "white");
-    scene_texture(&file, rgb, 2, 1);
-    scene_mesh(&file, at, uv_q16, normal_q30, 4, t, 4);
-    scene_sphere(&file, "ball", 0, 0, 0, 3000, 1000);
-    scene_plane(&file, "floor", 0, -500);
-    scene_object(&file, "cup", 0, 0);
-    scene_sun(&file, up_q30);
-    scene_lamp(&file, above, 5000);
+    scene_begin_header(&file);
+    scene_add_material(&file, "white");
+    scene_add_texture(&file, rgb, 2, 1);
+    scene_add_mesh(&file, at, uv_q16, normal_q30, 4, t, 4);
+    scene_add_sphere(&file, "ball", 0, 0, 0, 3000, 1000);
+    scene_add_plane(&file, "floor", 0, -500);
+    scene_add_object(&file, "cup", 0, 0);
+    scene_add_sun(&file, up_q30);
+    scene_add_lamp(&file, above, 5000);
     return &file;
 }
 
 /* Opens scene S. Returns the error, or NULL if it is valid. */
-static const char *open_error(const struct scene_file *s)
+static const char *open_scene_error(const struct scene_file *s)
 {
     struct glint_scene_model model = {0};
     const char *reason = NULL;
@@ -46,23 +46,24 @@ static const char *open_error(const struct scene_file *s)
     if (glint_scene_open(&model, s->data, s->bytes, &reason) == GLINT_OK)
         return NULL;
     assert_non_null(reason);
-    assert_null(model.header); /* unchanged after an error */
+    /* glint_scene_open() leaves MODEL unchanged on an error */
+    assert_null(model.header);
     return reason;
 }
 
-static void expect_error(struct scene_file *s, const char *expected)
+static void expect_scene_error(struct scene_file *s, const char *expected)
 {
     const char *reason;
 
-    scene_seal(s);
-    reason = open_error(s);
+    scene_seal_checksum(s);
+    reason = open_scene_error(s);
     assert_non_null(reason);
     assert_string_equal(reason, expected);
 }
 
-TEST(accepted)
+TEST(accepts_a_valid_scene)
 {
-    struct glint_scene_model m = scene_open(make_scene());
+    struct glint_scene_model m = scene_open_model(make_scene_of_all_types());
 
     assert_ptr_equal(m.header, file.data);
     assert_string_equal(m.object[2].name, "cup");
@@ -72,12 +73,12 @@ TEST(accepted)
     assert_true(m.mesh[0].uv_at && m.light[1].kind == GLINT_LIGHT_LAMP);
 }
 
-TEST(truncated)
+TEST(rejects_truncated_scenes)
 {
     struct glint_scene_model model;
     const char *reason;
 
-    scene_seal(make_scene());
+    scene_seal_checksum(make_scene_of_all_types());
     for (size_t bytes = 8; bytes < file.bytes; bytes++) {
         void *copy = malloc(bytes);
 
@@ -88,15 +89,16 @@ TEST(truncated)
         free(copy);
     }
     file.data[20] ^= 1;
-    assert_string_equal(open_error(&file),
+    assert_string_equal(open_scene_error(&file),
                         "the checksum is wrong: the scene is damaged");
 }
 
 /* Sets MEMBER of an intact scene to VALUE and expects the error REASON. */
-#define REFUSES(member, value, reason) \
-    (make_scene(), file.member = (value), expect_error(&file, (reason)))
+#define REFUSES(member, value, reason)                 \
+    (make_scene_of_all_types(), file.member = (value), \
+     expect_scene_error(&file, (reason)))
 
-TEST(header)
+TEST(rejects_invalid_headers)
 {
     REFUSES(header.variant, 2, "the scene's variant is unknown");
     REFUSES(header.unit_log2, 61, "the scene's unit is out of range");
@@ -114,7 +116,7 @@ TEST(header)
     REFUSES(header.camera.tan_y_q24, 1, "the camera's field is out of range");
 }
 
-TEST(lights)
+TEST(rejects_invalid_lights)
 {
     REFUSES(light[0].kind, 2, "a light's kind is unknown");
     REFUSES(light[0].name[0], 0,
@@ -129,7 +131,7 @@ TEST(lights)
             "a light is negative or not normalised");
 }
 
-TEST(materials)
+TEST(rejects_invalid_materials)
 {
     REFUSES(material[0].name[2], ' ',
             "a material's name is empty, endless or not printable");
@@ -157,29 +159,29 @@ TEST(materials)
 
 /* Checks that a grid list which lacks a triangle, or contains one twice, is
  * rejected. */
-TEST(grid_lists)
+TEST(rejects_wrong_grid_lists)
 {
     const struct glint_scene_mesh *m = &file.mesh[0];
     uint32_t *start, *ref, cells, end;
 
-    make_scene();
+    make_scene_of_all_types();
     cells = m->cells[0] * m->cells[1] * m->cells[2];
     start = file.data + m->start_at / 4;
     end = start[cells];
     for (uint32_t i = 0; i <= cells; i++)
         start[i] -= start[i] == end;
-    expect_error(&file, "a grid's list lacks a triangle");
-    make_scene();
+    expect_scene_error(&file, "a grid's list lacks a triangle");
+    make_scene_of_all_types();
     ref = file.data + m->ref_at / 4;
     assert_true(start[1] > 1);
     ref[0] = ref[1];
-    expect_error(&file, "a grid's list does not rise");
-    make_scene();
-    scene_seal(&file);
-    assert_null(open_error(&file));
+    expect_scene_error(&file, "a grid's list does not rise");
+    make_scene_of_all_types();
+    scene_seal_checksum(&file);
+    assert_null(open_scene_error(&file));
 }
 
-TEST(meshes)
+TEST(rejects_invalid_meshes)
 {
     REFUSES(mesh[0].radius, 2000,
             "a vertex is outside the bounding sphere of its mesh");
@@ -197,13 +199,13 @@ TEST(meshes)
             "a vertex's u or v is out of range");
     REFUSES(mesh[0].normal_at, file.mesh[0].vertex_at,
             "a vertex's normal is not a unit vector");
-    make_scene();
+    make_scene_of_all_types();
     for (int i = 0; i < 63; i++)
         file.mesh[file.header.n_meshes++] = file.mesh[0];
-    expect_error(&file, "tables share bytes");
+    expect_scene_error(&file, "tables share bytes");
 }
 
-TEST(objects)
+TEST(rejects_invalid_objects)
 {
     REFUSES(object[0].kind, 3, "an object's kind is unknown");
     REFUSES(object[0].material, 1, "an object's material is out of range");
@@ -216,19 +218,19 @@ TEST(objects)
     REFUSES(object[0].turn_q30[1], 1 << 24, "an object's pose is out of range");
     REFUSES(object[0].at[0], GLINT_SCENE_SPAN - 1000,
             "an object is too far out");
-    make_scene();
+    make_scene_of_all_types();
     file.object[0].at[0] = GLINT_SCENE_SPAN - 1001;
-    scene_open(&file);
+    scene_open_model(&file);
 }
 
 /* Checks that, whatever the value of one word in a file with a valid
  * checksum, opening reads nothing outside the file (ASan) and terminates. */
-TEST(any_word)
+TEST(any_word_is_rejected_or_harmless)
 {
     static const uint32_t value[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff};
     uint32_t seed = 1;
 
-    scene_seal(make_scene());
+    scene_seal_checksum(make_scene_of_all_types());
     for (size_t i = 4; i < file.bytes / 4; i++)
         for (int k = 0; k < 6; k++) {
             uint32_t *copy = malloc(file.bytes);
@@ -236,7 +238,7 @@ TEST(any_word)
             const char *reason;
 
             memcpy(copy, file.data, file.bytes);
-            copy[i] = k < 5 ? value[k] : rng_bits(&seed);
+            copy[i] = k < 5 ? value[k] : rng_bits32(&seed);
             glint_blob_seal(copy, file.bytes);
             glint_scene_open(&model, copy, file.bytes, &reason);
             free(copy);

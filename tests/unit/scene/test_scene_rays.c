@@ -33,14 +33,15 @@ static void assert_near_vector(const int32_t v[3], double x, double y, double z,
 }
 
 /* Sets V to the corners AT, in units, times SIZE. */
-static void set_triangle(int32_t v[3][3], const double at[9], double size)
+static void set_scaled_triangle(int32_t v[3][3], const double at[9],
+                                double size)
 {
     for (int i = 0; i < 9; i++)
         v[i / 3][i % 3] = (int32_t)llround(at[i] * size * ONE);
 }
 
-static int hits_triangle(const struct glint_scene_ray *ray, int32_t v[3][3],
-                         struct glint_spot_on *spot)
+static int ray_hits_triangle(const struct glint_scene_ray *ray, int32_t v[3][3],
+                             struct glint_spot_on *spot)
 {
     const int32_t *const vertex[3] = {v[0], v[1], v[2]};
     struct glint_sheared sheared;
@@ -53,7 +54,8 @@ static const struct glint_scene_ray ahead = {{0}, {0, 0, ONE_Q30}};
 
 static const double first[9] = {0, 40, 120, 30, -40, 60, -30, -40, 60};
 
-static struct glint_scene_ray make_ray(const double from[3], const double to[3])
+static struct glint_scene_ray make_ray_from_doubles(const double from[3],
+                                                    const double to[3])
 {
     struct glint_scene_ray ray;
     const double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
@@ -68,7 +70,7 @@ static struct glint_scene_ray make_ray(const double from[3], const double to[3])
 
 /* ------------------------------------------------------------- A1, A2, A3 */
 
-TEST(a1_unit)
+TEST(a1_unit_vectors)
 {
     const int64_t v[3] = {0, 6, 8}, zero[3] = {0};
     uint32_t seed = 1;
@@ -79,14 +81,14 @@ TEST(a1_unit)
     assert_near_vector(unit_q30, 0, .6, .8, 1);
     assert_false(glint_unit(zero, unit_q30));
     for (int i = 0; i < 200000; i++) {
-        const int shift = rng_below(&seed, 60);
+        const int shift = rng_int_below(&seed, 60);
         double length = 0;
         int64_t w[3];
 
         for (int k = 0; k < 3; k++) {
-            w[k] =
-                (int64_t)((uint64_t)rng_bits(&seed) << 32 | rng_bits(&seed)) >>
-                2 >> shift;
+            w[k] = (int64_t)((uint64_t)rng_bits32(&seed) << 32 |
+                             rng_bits32(&seed)) >>
+                   2 >> shift;
             length += ldexp((double)w[k], -31) * ldexp((double)w[k], -31);
         }
         if (!glint_unit(w, unit_q30))
@@ -99,14 +101,15 @@ TEST(a1_unit)
     }
 }
 
-TEST(roots)
+TEST(square_roots_are_exact)
 {
     uint32_t seed = 1;
 
     for (uint64_t x = 0; x < 70000; x++)
         assert_int_equal(glint_root(x), q_root(x));
     for (int i = 0; i < 300000; i++) {
-        const uint64_t bits = (uint64_t)rng_bits(&seed) << 32 | rng_bits(&seed);
+        const uint64_t bits =
+            (uint64_t)rng_bits32(&seed) << 32 | rng_bits32(&seed);
         const uint64_t x = bits >> (i % 64), r = q_root(x);
 
         assert_int_equal(glint_root(x), r);
@@ -116,7 +119,7 @@ TEST(roots)
     assert_true(glint_root(UINT64_MAX) == UINT32_MAX);
 }
 
-TEST(ratios)
+TEST(ratios_saturate)
 {
     uint32_t seed = 1;
 
@@ -125,8 +128,8 @@ TEST(ratios)
     assert_int_equal(glint_ratio(UINT64_MAX >> 2, 1), GLINT_FAR);
     assert_int_equal(glint_ratio(90, 1), 90);
     for (int i = 0; i < 300000; i++) {
-        const uint64_t n = ((uint64_t)rng_bits(&seed) << 28) >> (i % 59);
-        const uint64_t d = ((uint64_t)rng_bits(&seed) << 28) >> (i / 59 % 60);
+        const uint64_t n = ((uint64_t)rng_bits32(&seed) << 28) >> (i % 59);
+        const uint64_t d = ((uint64_t)rng_bits32(&seed) << 28) >> (i / 59 % 60);
         const double exact = (double)n / (double)(d | 1);
         const int32_t q = glint_ratio(n, d | 1);
 
@@ -137,7 +140,7 @@ TEST(ratios)
     }
 }
 
-TEST(a2_normal)
+TEST(a2_triangle_normal)
 {
     int32_t v[3][3], normal_q30[3], a[3], b[3];
     const int32_t *const clockwise[3] = {v[0], v[1], v[2]};
@@ -156,13 +159,13 @@ TEST(a2_normal)
     assert_near_vector(normal_q30, 0, -.6, .8, 1);
 }
 
-TEST(a3_plane)
+TEST(a3_plane_intersection)
 {
     const int32_t *vertex[3];
     int32_t v[3][3], normal_q30[3], hit[3];
     struct glint_spot_on spot;
 
-    set_triangle(v, first, 1);
+    set_scaled_triangle(v, first, 1);
     for (int k = 0; k < 3; k++)
         vertex[k] = v[k];
     glint_triangle_normal(vertex, normal_q30);
@@ -171,14 +174,14 @@ TEST(a3_plane)
     assert_int_equal(glint_ray_plane(&ahead, v[0], normal_q30), 90 * ONE);
     assert_true(glint_ray_go(&ahead, 90 * ONE, hit));
     assert_true(hit[0] == 0 && hit[1] == 0 && hit[2] == 90 * ONE);
-    assert_true(hits_triangle(&ahead, v, &spot));
+    assert_true(ray_hits_triangle(&ahead, v, &spot));
     assert_int_equal(spot.t, 90 * ONE);
 }
 
 /* ------------------------------------------------------------- A4 and A5 */
 
-static double double_area(const double a[3], const double b[3],
-                          const double c[3])
+static double compute_double_area(const double a[3], const double b[3],
+                                  const double c[3])
 {
     const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     const double w[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
@@ -193,16 +196,17 @@ static double double_area(const double a[3], const double b[3],
  * within .005. */
 static int is_inside_by_areas(const double v[9], const double p[3])
 {
-    const double s = double_area(v, v + 3, v + 6);
+    const double s = compute_double_area(v, v + 3, v + 6);
 
-    return fabs(s - double_area(v, v + 3, p) - double_area(v + 3, v + 6, p) -
-                double_area(v + 6, v, p)) < .005;
+    return fabs(s - compute_double_area(v, v + 3, p) -
+                compute_double_area(v + 3, v + 6, p) -
+                compute_double_area(v + 6, v, p)) < .005;
 }
 
 /* Aims random rays at a box five times the area of a triangle of height
  * SIZE. Returns the fraction that the area test classifies wrongly. Checks
  * that glint's test is right except near the edges. */
-static double area_errors(double size)
+static double count_errors_of_area_test(double size)
 {
     double v[9], from[3] = {0};
     int wrong = 0, n = 0, ours = 0;
@@ -212,7 +216,7 @@ static double area_errors(double size)
 
     for (int i = 0; i < 9; i++)
         v[i] = first[i] * size / 80;
-    set_triangle(steps, v, 1);
+    set_scaled_triangle(steps, v, 1);
     for (; n < 4000; n++) {
         /* position in the triangle: down from its top 0 .. 1, across -1 .. 1 */
         const double down = .5 + 1.58 * (rng_unit(&seed) - .5);
@@ -227,30 +231,31 @@ static double area_errors(double size)
             at[k] = p[k] * ONE;
         }
         wrong += is_inside_by_areas(v, p) != is_in;
-        ray = make_ray(from, at);
+        ray = make_ray_from_doubles(from, at);
         if (fabs(u) * size > .01 * size && fabs(w) > .01 &&
             fabs(u + w - 1) > .01)
-            ours += hits_triangle(&ray, steps, &spot) != is_in;
+            ours += ray_hits_triangle(&ray, steps, &spot) != is_in;
     }
     assert_int_equal(ours, 0);
     return (double)wrong / n;
 }
 
-TEST(a4_areas)
+TEST(a4_area_test_of_triangles)
 {
     const double p[3] = {0, 0, 90};
 
-    assert_near_int(llround(double_area(first, first + 3, first + 6) * 16),
-                    6000 * 16, 0);
-    assert_near_int(llround(double_area(first, first + 3, p) * 16), 1500 * 16,
-                    0);
-    assert_near_int(llround(double_area(first + 6, first, p) * 16), 1500 * 16,
-                    0);
-    assert_near_int(llround(double_area(first + 3, first + 6, p) * 16),
+    assert_near_int(
+        llround(compute_double_area(first, first + 3, first + 6) * 16),
+        6000 * 16, 0);
+    assert_near_int(llround(compute_double_area(first, first + 3, p) * 16),
+                    1500 * 16, 0);
+    assert_near_int(llround(compute_double_area(first + 6, first, p) * 16),
+                    1500 * 16, 0);
+    assert_near_int(llround(compute_double_area(first + 3, first + 6, p) * 16),
                     3000 * 16, 0);
-    assert_true(area_errors(80) == 0);
+    assert_true(count_errors_of_area_test(80) == 0);
     for (double size = .1; size > .005; size /= 10) {
-        const double share = area_errors(size);
+        const double share = count_errors_of_area_test(size);
 
         print_message("areas are wrong for %.1f %% of rays at size %g\n",
                       100 * share, size);
@@ -258,7 +263,7 @@ TEST(a4_areas)
     }
 }
 
-TEST(a5_nearest)
+TEST(a5_nearest_triangle)
 {
     static const double u[9] = {0, 30, 40, 40, -30, 120, -40, -30, 120},
                         y[9] = {-50, 30, 124, 50, 30, 124, 0, -30, 44},
@@ -269,15 +274,15 @@ TEST(a5_nearest)
     int32_t v[3][3];
 
     for (int i = 0; i < 3; i++) {
-        set_triangle(v, each[i], 1);
-        assert_true(hits_triangle(&ahead, v, &spot));
+        set_scaled_triangle(v, each[i], 1);
+        assert_true(ray_hits_triangle(&ahead, v, &spot));
         assert_near_int(spot.t, expected[i] * ONE, 1);
     }
 }
 
 /* Checks that rays through edges and vertices hit the triangle, from either
  * side. */
-TEST(on_edges)
+TEST(rays_through_edges_hit)
 {
     static const double on_edge[9] = {0, -9, 50, 0, 9, 40, 9, 0, 30},
                         on_vertex[9] = {0, 0, 50, 9, 9, 40, 9, -9, 30};
@@ -288,18 +293,18 @@ TEST(on_edges)
     for (int i = 0; i < 12; i++) {
         int32_t v[3][3], turned[3][3];
 
-        set_triangle(v, each[i % 2], 1);
+        set_scaled_triangle(v, each[i % 2], 1);
         for (int k = 0; k < 9; k++)
             turned[k / 3][k % 3] =
                 v[(i / 6 ? 8 - k / 3 + i / 2 : k / 3 + i / 2) % 3][k % 3];
-        assert_true(hits_triangle(&ahead, turned, &spot));
+        assert_true(ray_hits_triangle(&ahead, turned, &spot));
         assert_near_int(spot.t, expected[i % 2] * ONE, 1);
     }
 }
 
 /* ----------------------------------------------------------- A9, A12, A14 */
 
-TEST(a9_mirror)
+TEST(a9_mirrored_direction)
 {
     uint32_t seed = 1;
 
@@ -309,8 +314,8 @@ TEST(a9_mirror)
         double length = 0;
 
         for (int k = 0; k < 3; k++) {
-            v[k] = (int32_t)rng_bits(&seed) >> 1;
-            w[k] = (int32_t)rng_bits(&seed) >> 1;
+            v[k] = (int32_t)rng_bits32(&seed) >> 1;
+            w[k] = (int32_t)rng_bits32(&seed) >> 1;
         }
         if (!glint_unit(v, d) || !glint_unit(w, n))
             continue;
@@ -324,7 +329,7 @@ TEST(a9_mirror)
     }
 }
 
-TEST(a12_bend)
+TEST(a12_refracted_direction)
 {
     const int32_t n[3] = {0, 0, -ONE_Q30};
     uint32_t seed = 1;
@@ -352,7 +357,7 @@ TEST(a12_bend)
     }
 }
 
-TEST(a14_misses)
+TEST(a14_degenerate_triangles_are_missed)
 {
     const int32_t up[3] = {0, ONE_Q30, 0}, ground[3] = {0, -ONE, 0};
     static const double flat[9] = {-9, 0, 10, 9, 0, 10, 0, 0, 30},
@@ -372,19 +377,19 @@ TEST(a14_misses)
         const int32_t *const vertex[3] = {v[0], v[1], v[2]};
         struct glint_sheared sheared;
 
-        set_triangle(v, each[i], 1);
+        set_scaled_triangle(v, each[i], 1);
         glint_shear(&ahead, &sheared);
         assert_false(glint_ray_triangle(&sheared, vertex, &spot));
         assert_false(glint_ray_hold(&sheared, vertex, &spot));
         assert_int_equal(glint_triangle_normal(vertex, n), i == 0);
     }
-    set_triangle(v, first, -1); /* behind the ray's origin */
-    assert_false(hits_triangle(&ahead, v, &spot));
+    set_scaled_triangle(v, first, -1); /* a triangle behind the ray's origin */
+    assert_false(ray_hits_triangle(&ahead, v, &spot));
 }
 
 /* --------------------------------------------------------------------- A15 */
 
-TEST(a15_sphere)
+TEST(a15_sphere_intersections)
 {
     const int32_t centre[3] = {0, 0, 10 * ONE}, far[3] = {0, 0, -10 * ONE};
     const int32_t aside[3] = {3 * ONE, 0, 10 * ONE}, me[3] = {0, 0, ONE};
@@ -399,11 +404,12 @@ TEST(a15_sphere)
     assert_near_vector(n, 0, 0, -1, 0);
     glint_chord_end(&c, &ahead, centre, 1, place, n);
     assert_true(place[2] == 12 * ONE && n[2] == ONE_Q30);
-    /* grazing, and one step outside */
+    /* a grazing ray, and a ray one step outside */
     assert_true(glint_ray_sphere(&ahead, aside, 3 * ONE, &c));
     assert_true(c.t[0] == 10 * ONE && c.t[1] == 10 * ONE);
     assert_false(glint_ray_sphere(&ahead, aside, 3 * ONE - 1, &c));
-    /* from inside, and behind the origin */
+    /* a ray from inside the ball, and a ball behind the ray's
+     * origin */
     assert_true(glint_ray_sphere(&ahead, me, 2 * ONE, &c));
     assert_true(c.t[0] == -ONE && c.t[1] == 3 * ONE);
     assert_true(glint_ray_sphere(&ahead, far, 2 * ONE, &c));
@@ -414,7 +420,7 @@ TEST(a15_sphere)
 
 /* Returns the fraction of rays that hit or miss wrongly, among rays that
  * pass a ball of radius 1/2 at DISTANCE within a hundredth of its rim. */
-static double rim_errors(double distance)
+static double count_errors_at_ball_rim(double distance)
 {
     const double unit = exp2(floor(log2(GLINT_FAR / 4.0 / distance)));
     const int32_t radius = (int32_t)(unit / 2);
@@ -451,10 +457,10 @@ static double rim_errors(double distance)
     return (double)wrong / RAYS;
 }
 
-TEST(a15_rim)
+TEST(a15_rays_at_the_rim)
 {
     for (double distance = 1; distance < 2e4; distance *= 10) {
-        const double share = rim_errors(distance);
+        const double share = count_errors_at_ball_rim(distance);
 
         print_message("ball of radius 0.5 at %5.0f: %.4f %% wrong\n", distance,
                       100 * share);
@@ -471,7 +477,8 @@ enum {
     TRIANGLES = 2 * SIDES * RINGS
 };
 
-static void make_ball(double at[BALL][3], uint32_t t[TRIANGLES][3], double size)
+static void make_bumpy_ball_mesh(double at[BALL][3], uint32_t t[TRIANGLES][3],
+                                 double size)
 {
     uint32_t seed = 5;
 
@@ -486,7 +493,7 @@ static void make_ball(double at[BALL][3], uint32_t t[TRIANGLES][3], double size)
         at[i][1] = r * sin(b) * sin(a);
         at[i][2] = r * cos(b);
     }
-    assert_int_equal(scene_ball(RINGS, SIDES, t), TRIANGLES);
+    assert_int_equal(scene_make_ball(RINGS, SIDES, t), TRIANGLES);
 }
 
 /* Baseline: the intersection of [Moller97] in Q16.16. */
@@ -496,7 +503,7 @@ static int32_t mul_q16(int32_t a, int32_t b)
 }
 
 /* Returns A + B with wraparound. */
-static int32_t add_wrapping(int32_t a, uint32_t b)
+static int32_t add_with_wraparound(int32_t a, uint32_t b)
 {
     return (int32_t)((uint32_t)a + b);
 }
@@ -504,20 +511,20 @@ static int32_t add_wrapping(int32_t a, uint32_t b)
 static void cross_q16(const int32_t a[3], const int32_t b[3], int32_t to[3])
 {
     for (int k = 0; k < 3; k++)
-        to[k] =
-            add_wrapping(mul_q16(a[(k + 1) % 3], b[(k + 2) % 3]),
-                         -(uint32_t)mul_q16(a[(k + 2) % 3], b[(k + 1) % 3]));
+        to[k] = add_with_wraparound(
+            mul_q16(a[(k + 1) % 3], b[(k + 2) % 3]),
+            -(uint32_t)mul_q16(a[(k + 2) % 3], b[(k + 1) % 3]));
 }
 
 static int32_t dot_q16(const int32_t a[3], const int32_t b[3])
 {
-    return add_wrapping(
-        add_wrapping(mul_q16(a[0], b[0]), (uint32_t)mul_q16(a[1], b[1])),
+    return add_with_wraparound(
+        add_with_wraparound(mul_q16(a[0], b[0]), (uint32_t)mul_q16(a[1], b[1])),
         (uint32_t)mul_q16(a[2], b[2]));
 }
 
-static int naive_hits_triangle(const struct glint_scene_ray *ray,
-                               int32_t v[3][3])
+static int ray_hits_triangle_q16(const struct glint_scene_ray *ray,
+                                 int32_t v[3][3])
 {
     int32_t d[3], e1[3], e2[3], s[3], p[3], q[3], det, u, w, sign;
 
@@ -534,9 +541,9 @@ static int naive_hits_triangle(const struct glint_scene_ray *ray,
     w = dot_q16(d, q);
     sign = det;
     if (det < 0) {
-        det = add_wrapping(0, -(uint32_t)det);
-        u = add_wrapping(0, -(uint32_t)u);
-        w = add_wrapping(0, -(uint32_t)w);
+        det = add_with_wraparound(0, -(uint32_t)det);
+        u = add_with_wraparound(0, -(uint32_t)u);
+        w = add_with_wraparound(0, -(uint32_t)w);
     }
     return det != 0 && u >= 0 && w >= 0 && (int64_t)u + w <= det &&
            (dot_q16(e2, q) ^ sign) >= 0;
@@ -545,7 +552,7 @@ static int naive_hits_triangle(const struct glint_scene_ray *ray,
 /* Aims RAYS from inside a closed mesh at vertices, edges and the interior of
  * triangles, a third each. Returns the number of rays that hit no triangle,
  * or, for the last third, not exactly one. */
-static int count_misses(double size, int is_naive)
+static int count_rays_through_mesh(double size, int is_naive)
 {
     enum { RAYS = 1500 };
     double at[BALL][3];
@@ -553,9 +560,9 @@ static int count_misses(double size, int is_naive)
     int n = 0;
     uint32_t seed = 3;
 
-    make_ball(at, t, size * ONE);
+    make_bumpy_ball_mesh(at, t, size * ONE);
     for (int i = 0; i < RAYS; i++) {
-        const uint32_t *aim = t[rng_below(&seed, TRIANGLES)];
+        const uint32_t *aim = t[rng_int_below(&seed, TRIANGLES)];
         double w[3] = {.1 + rng_unit(&seed), .1 + rng_unit(&seed), 0}, from[3],
                to[3];
         struct glint_scene_ray ray;
@@ -570,36 +577,37 @@ static int count_misses(double size, int is_naive)
                 to[k] += w[j] * round(at[aim[j]][k]) / (w[0] + w[1] + w[2]);
             from[k] = round(from[k]);
         }
-        ray = make_ray(from, to);
+        ray = make_ray_from_doubles(from, to);
         for (int j = 0; j < TRIANGLES; j++) {
             struct glint_spot_on spot;
             int32_t v[3][3];
 
             for (int k = 0; k < 9; k++)
                 v[k / 3][k % 3] = (int32_t)llround(at[t[j][k / 3]][k % 3]);
-            met += is_naive ? naive_hits_triangle(&ray, v)
-                            : hits_triangle(&ray, v, &spot);
+            met += is_naive ? ray_hits_triangle_q16(&ray, v)
+                            : ray_hits_triangle(&ray, v, &spot);
         }
         n += i % 3 == 2 ? met != 1 : met == 0;
     }
     return n;
 }
 
-TEST(no_leaks)
+TEST(closed_mesh_has_no_leaks)
 {
     for (double size = .01; size < 3000; size *= 7)
-        assert_int_equal(count_misses(size, 0), 0);
-    assert_true(count_misses(.01, 1) > 400);
-    assert_true(count_misses(200, 1) > 400);
+        assert_int_equal(count_rays_through_mesh(size, 0), 0);
+    assert_true(count_rays_through_mesh(.01, 1) > 400);
+    assert_true(count_rays_through_mesh(200, 1) > 400);
 }
 
-/* Plain Q16.16 overflows at the tutorial's first triangle. */
-TEST(naive_wraps)
+/* Checks that plain Q16.16 arithmetic overflows at the tutorial's first
+ * triangle. */
+TEST(plain_q16_arithmetic_overflows)
 {
     int32_t v[3][3], a[3], b[3], n[3];
     int64_t d = 0;
 
-    set_triangle(v, first, 1);
+    set_scaled_triangle(v, first, 1);
     v3_minus(v[1], v[0], a);
     v3_minus(v[2], v[0], b);
     cross_q16(a, b, n);
@@ -609,7 +617,7 @@ TEST(naive_wraps)
 }
 
 /* Checks that the barycentric weights of a hit reproduce its position. */
-TEST(weights)
+TEST(barycentric_weights_reproduce_the_hit)
 {
     uint32_t seed = 9;
 
@@ -620,16 +628,17 @@ TEST(weights)
         int32_t v[3][3], hit[3];
 
         for (int k = 0; k < 3; k++) {
-            from[k] = rng_below(&seed, 1000);
+            from[k] = rng_int_below(&seed, 1000);
             sum += w[k] = .02 + rng_unit(&seed);
         }
         for (int k = 0; k < 9; k++) {
-            v[k / 3][k % 3] = (k % 3 == 2) * 40000 + rng_below(&seed, 30000);
+            v[k / 3][k % 3] =
+                (k % 3 == 2) * 40000 + rng_int_below(&seed, 30000);
             to[k % 3] += w[k / 3] / sum * v[k / 3][k % 3];
         }
-        ray = make_ray(from, to);
-        if (!hits_triangle(&ray, v, &spot))
-            continue; /* rounding: a sliver's ray */
+        ray = make_ray_from_doubles(from, to);
+        if (!ray_hits_triangle(&ray, v, &spot))
+            continue; /* rays at slivers may miss because of rounding */
         assert_true(glint_ray_go(&ray, spot.t, hit));
         assert_int_equal(spot.part_q30[0] + spot.part_q30[1] + spot.part_q30[2],
                          ONE_Q30);

@@ -17,18 +17,19 @@ enum { UNIT = 1 << 16, ONE_Q30 = 1 << 30, SIDE = 64 };
 
 static struct scene_file file;
 
-static struct glint_scene *start_scene(int shadow_points)
+static struct glint_scene *start_renderer(int shadow_points)
 {
     struct glint_scene_config cfg;
 
     glint_scene_defaults(&cfg, SIDE, SIDE);
     cfg.shadow_points = shadow_points;
     cfg.parts = scene_parts;
-    return scene_start(&file, &cfg, NULL);
+    return scene_init_renderer(&file, &cfg, NULL);
 }
 
-static struct glint_scene_ray make_ray(double x, double y, double z, double dx,
-                                       double dy, double dz)
+static struct glint_scene_ray make_ray_from_doubles(double x, double y,
+                                                    double z, double dx,
+                                                    double dy, double dz)
 {
     const double at[3] = {x, y, z}, d[3] = {dx, dy, dz};
     const double length = sqrt(dx * dx + dy * dy + dz * dz);
@@ -41,9 +42,9 @@ static struct glint_scene_ray make_ray(double x, double y, double z, double dx,
     return ray;
 }
 
-static int shade_ray(const struct glint_scene *s,
-                     const struct glint_scene_ray *ray,
-                     struct glint_met_shade *to)
+static int intersect_and_shade_ray(const struct glint_scene *s,
+                                   const struct glint_scene_ray *ray,
+                                   struct glint_met_shade *to)
 {
     struct glint_met_surface surface;
     struct glint_met met;
@@ -55,12 +56,12 @@ static int shade_ray(const struct glint_scene *s,
     return 1;
 }
 
-static int32_t red_light(const struct glint_scene *s,
-                         struct glint_scene_ray ray)
+static int32_t shaded_red_light_q15(const struct glint_scene *s,
+                                    struct glint_scene_ray ray)
 {
     struct glint_met_shade to;
 
-    assert_true(shade_ray(s, &ray, &to));
+    assert_true(intersect_and_shade_ray(s, &ray, &to));
     return to.rgb_q15[0];
 }
 
@@ -69,7 +70,7 @@ static int32_t red_light(const struct glint_scene *s,
 /* Checks that of three triangles behind each other the nearest is visible,
  * in any order, and that a triangle which the ray misses never counts as the
  * nearest. */
-TEST(a5_seen)
+TEST(a5_nearest_triangle_is_visible)
 {
     static const int at[4][9] = {
         {0, 30, 40, 40, -30, 120, -40, -30, 120},
@@ -77,24 +78,25 @@ TEST(a5_seen)
         {-30, 0, 37, 30, 40, 117, 30, -40, 117}, /* blue triangle */
         {10, 10, 20, 20, 10, 20, 10, 20, 20}};   /* off the ray */
     static const uint32_t t[1][3] = {{0, 1, 2}};
-    const struct glint_scene_ray ahead = make_ray(0, 0, 0, 0, 0, 1);
+    const struct glint_scene_ray ahead =
+        make_ray_from_doubles(0, 0, 0, 0, 0, 1);
 
     for (int first = 0; first < 4; first++) {
         struct glint_scene *s;
         struct glint_met met;
 
-        scene_begin(&file);
-        scene_material(&file, "m");
+        scene_begin_header(&file);
+        scene_add_material(&file, "m");
         for (int i = 0; i < 4; i++) {
             int32_t v[3][3];
 
             for (int k = 0; k < 9; k++)
                 v[k / 3][k % 3] = at[(first + i) % 4][k] * UNIT;
-            scene_object(
-                &file, (const char[2]){(char)('a' + i), 0}, 0,
-                scene_mesh(&file, (const int32_t(*)[3])v, NULL, NULL, 3, t, 1));
+            scene_add_object(&file, (const char[2]){(char)('a' + i), 0}, 0,
+                             scene_add_mesh(&file, (const int32_t(*)[3])v, NULL,
+                                            NULL, 3, t, 1));
         }
-        s = start_scene(1);
+        s = start_renderer(1);
         assert_true(glint_scene_meet(s, &ahead, GLINT_NOTHING, 0, &met));
         assert_int_equal(met.object, (6 - first) % 4);
         assert_in_range(met.t, 77 * UNIT - 1, 77 * UNIT + 1);
@@ -103,7 +105,7 @@ TEST(a5_seen)
 
 /* -------------------------------------------------------------------- A6 */
 
-TEST(a6_corners)
+TEST(a6_corner_rays)
 {
     const struct glint_scene_camera camera = {
         .kind = GLINT_CAMERA_CORNERS,
@@ -128,21 +130,22 @@ TEST(a6_corners)
 }
 
 /* Checks that a point is projected to the pixel whose ray passes through it. */
-TEST(view_and_back)
+TEST(projection_inverts_pixel_rays)
 {
     uint32_t seed = 3;
 
-    scene_begin(&file);
+    scene_begin_header(&file);
     for (int i = 0; i < 20000; i++) {
-        const int x_q8 = rng_below(&seed, 1 << 16) - (1 << 15);
-        const int y_q8 = rng_below(&seed, 1 << 16) - (1 << 15);
+        const int x_q8 = rng_int_below(&seed, 1 << 16) - (1 << 15);
+        const int y_q8 = rng_int_below(&seed, 1 << 16) - (1 << 15);
         struct glint_scene_ray ray;
         struct glint_corner c;
         struct glint_scene_view view;
         int32_t place[3], seen[3], seen_q30[3];
 
-        file.header.camera.at[0] = rng_below(&seed, 100000);
-        file.header.camera.tan_x_q24 = (1 << 12) + rng_below(&seed, 1 << 24);
+        file.header.camera.at[0] = rng_int_below(&seed, 100000);
+        file.header.camera.tan_x_q24 =
+            (1 << 12) + rng_int_below(&seed, 1 << 24);
         assert_true(glint_view_init(&view, &file.header.camera, 256, 256, 0));
         glint_view_ray(&view, x_q8, y_q8, &ray, seen_q30);
         assert_true(glint_ray_go(&ray, (1 << 26), place));
@@ -159,25 +162,27 @@ TEST(view_and_back)
 
 /* ---------------------------------------------------------------- A7, A8 */
 
-TEST(a7_lamp)
+TEST(a7_diffuse_light_of_a_lamp)
 {
     const int32_t lamp[3] = {0, 40 * UNIT, 0};
     struct glint_scene *s;
     struct glint_met_shade to;
-    const struct glint_scene_ray down = make_ray(0, 10, 30, 0, -1, 0);
+    const struct glint_scene_ray down =
+        make_ray_from_doubles(0, 10, 30, 0, -1, 0);
 
-    scene_begin(&file);
-    scene_plane(&file, "floor", scene_material(&file, "red"), 0);
+    scene_begin_header(&file);
+    scene_add_plane(&file, "floor", scene_add_material(&file, "red"), 0);
     file.material[0].rgb_q15[1] = file.material[0].rgb_q15[2] = 0;
-    scene_lamp(&file, lamp, 50 * UNIT); /* irradiance 1 at a distance of 50 */
-    s = start_scene(1);
-    assert_true(shade_ray(s, &down, &to));
+    scene_add_lamp(&file, lamp,
+                   50 * UNIT); /* light of irradiance 1 at a distance of 50 */
+    s = start_renderer(1);
+    assert_true(intersect_and_shade_ray(s, &down, &to));
     assert_int_equal(to.cover_q8, 256);
     assert_in_range(to.rgb_q15[0], 26212, 26216); /* 204 of 255 */
     assert_true(to.rgb_q15[1] == 0 && to.rgb_q15[2] == 0);
 }
 
-TEST(power)
+TEST(phong_power_matches_double_precision)
 {
     double worst = 0;
 
@@ -199,21 +204,21 @@ TEST(power)
 
 /* Checks a ball under a sun at many points against Phong's formula in double
  * precision. */
-TEST(a8_phong)
+TEST(a8_phong_matches_double_precision)
 {
     const int32_t sun[3] = {ONE_Q30 / 5 * 3, ONE_Q30 / 5 * 4, 0};
     struct glint_scene *s;
     uint32_t seed = 1;
 
-    scene_begin(&file);
-    scene_sphere(&file, "ball", scene_material(&file, "m"), 0, 0, 10 * UNIT,
-                 2 * UNIT);
+    scene_begin_header(&file);
+    scene_add_sphere(&file, "ball", scene_add_material(&file, "m"), 0, 0,
+                     10 * UNIT, 2 * UNIT);
     file.material[0].ambient_q15 = 3277;
     file.material[0].diffuse_q15 = 19661;
     file.material[0].specular_q15 = 9830;
     file.material[0].rgb_q15[0] = 16384;
-    scene_sun(&file, sun);
-    s = start_scene(1);
+    scene_add_sun(&file, sun);
+    s = start_renderer(1);
     for (int i = 0; i < 20000; i++) {
         const double a = 6.2831853 * rng_unit(&seed);
         const double r = 1.99 * sqrt(rng_unit(&seed));
@@ -227,7 +232,8 @@ TEST(a8_phong)
         if (cosine > 0)
             expected += .6 * .5 * cosine + .3 * pow(gloss, 32);
         assert_true(
-            fabs(red_light(s, make_ray(2 * n[0], 2 * n[1], 0, 0, 0, 1)) /
+            fabs(shaded_red_light_q15(
+                     s, make_ray_from_doubles(2 * n[0], 2 * n[1], 0, 0, 0, 1)) /
                      32768. -
                  expected) < 2e-3);
     }
@@ -238,30 +244,35 @@ TEST(a8_phong)
 /* Draws a floor, a lamp 4 above it, and a ball of radius 1 centred at height
  * H between them. Returns the light on the floor below the lamp. HIDDEN: the
  * ball is hidden. */
-static int32_t light_under_ball(double h, int hidden)
+static int32_t measure_light_under_ball(double h, int hidden)
 {
     const int32_t lamp[3] = {0, 4 * UNIT, 10 * UNIT};
 
-    scene_begin(&file);
+    scene_begin_header(&file);
     file.header.shadow = 1;
-    scene_material(&file, "m");
-    scene_plane(&file, "floor", 0, 0);
-    scene_sphere(&file, "ball", 0, 0, (int32_t)(h * UNIT), 10 * UNIT, UNIT);
+    scene_add_material(&file, "m");
+    scene_add_plane(&file, "floor", 0, 0);
+    scene_add_sphere(&file, "ball", 0, 0, (int32_t)(h * UNIT), 10 * UNIT, UNIT);
     file.object[1].hidden = (uint32_t)hidden;
-    scene_lamp(&file, lamp, 4 * UNIT);
-    return red_light(start_scene(1), make_ray(2, .5, 10, -2, -.5, 0));
+    scene_add_lamp(&file, lamp, 4 * UNIT);
+    return shaded_red_light_q15(start_renderer(1),
+                                make_ray_from_doubles(2, .5, 10, -2, -.5, 0));
 }
 
-TEST(a10_shadow)
+TEST(a10_ball_shadows_a_floor)
 {
-    const int32_t lit = light_under_ball(2, 1);
+    const int32_t lit = measure_light_under_ball(2, 1);
 
     assert_in_range(lit, 32760, 32768);
-    assert_int_equal(light_under_ball(2, 0), 0); /* between lamp and floor */
-    assert_int_equal(light_under_ball(5.01, 0), lit); /* above the lamp */
-    assert_int_equal(light_under_ball(4.99, 0), 0); /* just touching the lamp */
-    assert_int_equal(light_under_ball(6, 0), lit);
-    assert_int_equal(light_under_ball(-1.01, 0), lit); /* below the floor */
+    assert_int_equal(measure_light_under_ball(2, 0),
+                     0); /* a ball between lamp and floor */
+    assert_int_equal(measure_light_under_ball(5.01, 0),
+                     lit); /* above the lamp */
+    assert_int_equal(measure_light_under_ball(4.99, 0),
+                     0); /* a ball that just touches the lamp */
+    assert_int_equal(measure_light_under_ball(6, 0), lit);
+    assert_int_equal(measure_light_under_ball(-1.01, 0),
+                     lit); /* below the floor */
 }
 
 /* Checks that surfaces without an occluder have the same light, bit by bit,
@@ -285,28 +296,31 @@ TEST(a10_no_acne)
             struct glint_met_shade to[2];
 
             if (i == 0) {
-                scene_begin(&file);
-                scene_material(&file, "m");
-                scene_sun(&file, sun);
+                scene_begin_header(&file);
+                scene_add_material(&file, "m");
+                scene_add_sun(&file, sun);
                 if (kind == 0)
-                    scene_sphere(&file, "a", 0, 5000, -300, 9 * UNIT, 90000);
+                    scene_add_sphere(&file, "a", 0, 5000, -300, 9 * UNIT,
+                                     90000);
                 else if (kind == 1)
-                    scene_plane(&file, "a", 0, -3 * UNIT);
+                    scene_add_plane(&file, "a", 0, -3 * UNIT);
                 else
-                    scene_object(&file, "a", 0,
-                                 scene_mesh(&file, at, NULL, NULL, 4, t, 4));
+                    scene_add_object(
+                        &file, "a", 0,
+                        scene_add_mesh(&file, at, NULL, NULL, 4, t, 4));
                 file.header.shadow = 1;
-                s = start_scene(1);
+                s = start_renderer(1);
             }
-            ray = make_ray(0, 0, 0, rng_unit(&seed) * .3 - .15,
-                           rng_unit(&seed) * .3 - .15 - .25 * (kind == 1), 1);
+            ray = make_ray_from_doubles(
+                0, 0, 0, rng_unit(&seed) * .3 - .15,
+                rng_unit(&seed) * .3 - .15 - .25 * (kind == 1), 1);
             file.header.shadow = 0;
             memcpy(file.data, &file.header, sizeof file.header);
-            if (!shade_ray(s, &ray, &to[0]))
+            if (!intersect_and_shade_ray(s, &ray, &to[0]))
                 continue;
             file.header.shadow = 1;
             memcpy(file.data, &file.header, sizeof file.header);
-            shade_ray(s, &ray, &to[1]);
+            intersect_and_shade_ray(s, &ray, &to[1]);
             assert_memory_equal(&to[0], &to[1], sizeof *to);
             n += to[0].rgb_q15[0] > 0;
         }
@@ -315,22 +329,23 @@ TEST(a10_no_acne)
 
 /* Checks that across the penumbra of a wide light the light falls
  * monotonically from full to none. */
-TEST(a10_soft)
+TEST(a10_penumbra_is_monotone)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
     int32_t last = 0, levels = 0;
     struct glint_scene *s;
 
-    scene_begin(&file);
+    scene_begin_header(&file);
     file.header.shadow = 1;
-    scene_material(&file, "m");
-    scene_plane(&file, "floor", 0, 0);
-    scene_sphere(&file, "ball", 0, 0, 5 * UNIT, 10 * UNIT, UNIT);
-    scene_sun(&file, up);
+    scene_add_material(&file, "m");
+    scene_add_plane(&file, "floor", 0, 0);
+    scene_add_sphere(&file, "ball", 0, 0, 5 * UNIT, 10 * UNIT, UNIT);
+    scene_add_sun(&file, up);
     file.light[0].radius = ONE_Q30 / 10;
-    s = start_scene(16);
+    s = start_renderer(16);
     for (int i = 0; i <= 40; i++) {
-        const int32_t light = red_light(s, make_ray(i * .05, .2, 10, 0, -1, 0));
+        const int32_t light = shaded_red_light_q15(
+            s, make_ray_from_doubles(i * .05, .2, 10, 0, -1, 0));
 
         assert_true(light >= last);
         levels += light > last;
@@ -338,12 +353,14 @@ TEST(a10_soft)
     }
     assert_true(levels > 8);
     assert_in_range(last, 32767, 32768);
-    assert_int_equal(red_light(s, make_ray(.1, .2, 10, 0, -1, 0)), 0);
+    assert_int_equal(
+        shaded_red_light_q15(s, make_ray_from_doubles(.1, .2, 10, 0, -1, 0)),
+        0);
 }
 
 /* ---------------------------------------------------------------- A11, A12 */
 
-static void make_transparent(struct glint_scene_material *m)
+static void make_material_transparent(struct glint_scene_material *m)
 {
     m->diffuse_q15 = 0;
     m->pass_q15 = 32768;
@@ -351,24 +368,25 @@ static void make_transparent(struct glint_scene_material *m)
 
 /* Checks that a fully transparent ball occludes neither a ball behind it nor
  * the image. */
-TEST(a11_pass)
+TEST(a11_transparent_ball_occludes_nothing)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
     struct glint_scene *s;
     uint32_t seed = 1;
     int behind = 0, within = 0, rim = 0;
 
-    scene_begin(&file);
-    scene_material(&file, "m");
-    make_transparent(&file.material[scene_material(&file, "clear")]);
-    scene_sphere(&file, "far", 0, UNIT / 2, UNIT / 3, 20 * UNIT, 3 * UNIT);
-    scene_sphere(&file, "near", 1, 0, 0, 10 * UNIT, 2 * UNIT);
-    scene_sun(&file, up);
-    s = start_scene(1);
+    scene_begin_header(&file);
+    scene_add_material(&file, "m");
+    make_material_transparent(
+        &file.material[scene_add_material(&file, "clear")]);
+    scene_add_sphere(&file, "far", 0, UNIT / 2, UNIT / 3, 20 * UNIT, 3 * UNIT);
+    scene_add_sphere(&file, "near", 1, 0, 0, 10 * UNIT, 2 * UNIT);
+    scene_add_sun(&file, up);
+    s = start_renderer(1);
     for (int i = 0; i < 20000; i++) {
-        struct glint_scene_ray ray =
-            make_ray(0, 0, i % 2 ? 9 : 0, rng_unit(&seed) * .4 - .2,
-                     rng_unit(&seed) * .4 - .2, 1);
+        struct glint_scene_ray ray = make_ray_from_doubles(
+            0, 0, i % 2 ? 9 : 0, rng_unit(&seed) * .4 - .2,
+            rng_unit(&seed) * .4 - .2, 1);
         struct glint_met_shade with, without;
         struct glint_chord chord;
         int is;
@@ -376,9 +394,9 @@ TEST(a11_pass)
         if (!glint_ray_sphere(&ray, s->placed[1].at, 2 * UNIT, &chord))
             continue;
         within++;
-        assert_true(shade_ray(s, &ray, &with));
+        assert_true(intersect_and_shade_ray(s, &ray, &with));
         glint_scene_show(s, 1, 0);
-        is = shade_ray(s, &ray, &without);
+        is = intersect_and_shade_ray(s, &ray, &without);
         glint_scene_show(s, 1, 1);
         behind += is;
         if ((with.cover_q8 != 0) != is) {
@@ -398,8 +416,8 @@ TEST(a11_pass)
  * ball of RADIUS is computed, in floats, to be outside it: its squared
  * distance from the centre exceeds the squared radius plus MORE. Correct is
  * false. */
-static int is_outside(const double middle[3], double radius, const double d[3],
-                      double more)
+static int is_second_hit_outside(const double middle[3], double radius,
+                                 const double d[3], double more)
 {
     const double along = middle[0] * d[0] + middle[1] * d[1] + middle[2] * d[2];
     const double square = middle[0] * middle[0] + middle[1] * middle[1] +
@@ -418,7 +436,7 @@ static int is_outside(const double middle[3], double radius, const double d[3],
 
 /* Checks that each ray through a ball of half transmission enters and leaves
  * it exactly once; the baselines hit the ball again. */
-TEST(a11_left_once)
+TEST(a11_ray_leaves_a_ball_once)
 {
     enum { RAYS = 100000 };
     int n = 0, outside = 0, farther = 0;
@@ -431,27 +449,28 @@ TEST(a11_left_once)
         const double radius = 30;
         struct glint_scene *s;
 
-        scene_begin(&file);
-        scene_material(&file, "half");
+        scene_begin_header(&file);
+        scene_add_material(&file, "half");
         file.material[0].diffuse_q15 = 0;
         file.material[0].pass_q15 = 16384;
-        scene_sphere(&file, "ball", 0, (int32_t)(middle[0] * UNIT),
-                     (int32_t)(middle[1] * UNIT), (int32_t)(middle[2] * UNIT),
-                     (int32_t)(radius * UNIT));
-        s = start_scene(1);
+        scene_add_sphere(&file, "ball", 0, (int32_t)(middle[0] * UNIT),
+                         (int32_t)(middle[1] * UNIT),
+                         (int32_t)(middle[2] * UNIT), (int32_t)(radius * UNIT));
+        s = start_renderer(1);
         for (int i = 0; i < 1000; i++) {
             const double x = middle[0] / middle[2] + .4 * rng_unit(&seed) - .2;
             const double y = middle[1] / middle[2] + .4 * rng_unit(&seed) - .2;
             const double length = sqrt(x * x + y * y + 1);
             const double d[3] = {x / length, y / length, 1 / length};
-            const struct glint_scene_ray ray = make_ray(0, 0, 0, x, y, 1);
+            const struct glint_scene_ray ray =
+                make_ray_from_doubles(0, 0, 0, x, y, 1);
             struct glint_met_shade to;
 
-            if (!shade_ray(s, &ray, &to))
+            if (!intersect_and_shade_ray(s, &ray, &to))
                 continue;
             assert_int_equal(to.cover_q8, 128);
-            outside += is_outside(middle, radius, d, 0);
-            farther += is_outside(middle, radius, d, .001);
+            outside += is_second_hit_outside(middle, radius, d, 0);
+            farther += is_second_hit_outside(middle, radius, d, .001);
             n++;
         }
     }
@@ -463,7 +482,7 @@ TEST(a11_left_once)
 
 /* Checks that a glass ball refracts rays as computed in double precision:
  * the texture coordinate seen behind it is right. */
-TEST(a12_ball)
+TEST(a12_glass_ball_refracts)
 {
     uint8_t rgb[3 * 256];
     struct glint_scene *s;
@@ -472,26 +491,29 @@ TEST(a12_ball)
 
     for (int i = 0; i < 256; i++)
         rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = (uint8_t)i;
-    scene_begin(&file);
-    file.header.camera.tan_x_q24 = 1 << 12; /* pixels smaller than texels */
-    scene_material(&file, "m");
+    scene_begin_header(&file);
+    /* a field of view in which pixels are smaller than texels */
+    file.header.camera.tan_x_q24 = 1 << 12;
+    scene_add_material(&file, "m");
     file.material[0].ambient_q15 = 32768;
     file.material[0].diffuse_q15 = 0;
-    file.material[0].texture = scene_texture(&file, rgb, 8, 0);
-    make_transparent(&file.material[scene_material(&file, "glass")]);
+    file.material[0].texture = scene_add_texture(&file, rgb, 8, 0);
+    make_material_transparent(
+        &file.material[scene_add_material(&file, "glass")]);
     file.material[1].index_q16 = 3 << 15;
     /* a wall behind the ball: the floor rotated by 90 degrees about x, one
      * texture repeat per unit */
-    scene_plane(&file, "wall", 0, 0);
+    scene_add_plane(&file, "wall", 0, 0);
     file.object[0].at[2] = 30 * UNIT;
     file.object[0].turn_q30[0] = 759250125;
     file.object[0].turn_q30[1] = -759250125;
-    scene_sphere(&file, "ball", 1, 0, 0, 10 * UNIT, 2 * UNIT);
-    s = start_scene(1);
+    scene_add_sphere(&file, "ball", 1, 0, 0, 10 * UNIT, 2 * UNIT);
+    s = start_renderer(1);
     for (int i = 0; i < 3000; i++) {
         const double dx = rng_unit(&seed) * .2 - .1;
         const double cosine0 = cos(atan(dx));
-        /* in the x-z plane: entry, path inside, exit */
+        /* expected path in the x-z plane: entry point, path inside the ball,
+         * exit point */
         const double b = 10 * cosine0, q = 10 * sin(atan(dx));
         const double t = b - sqrt(4 - q * q);
         const double px = t * sin(atan(dx)), pz = t * cosine0 - 10;
@@ -502,13 +524,13 @@ TEST(a12_ball)
         const double x = 2 * sin(phi_out), z = 10 - 2 * cos(phi_out);
         const double heading = atan(dx) - turn;
         const double at = x + (30 - z) * tan(heading);
-        struct glint_scene_ray ray = make_ray(0, 0, 0, dx, 0, 1);
+        struct glint_scene_ray ray = make_ray_from_doubles(0, 0, 0, dx, 0, 1);
         struct glint_met_shade to;
         double u = at - floor(at), code;
 
         if (u < .02 || u > .98)
             continue;
-        assert_true(shade_ray(s, &ray, &to));
+        assert_true(intersect_and_shade_ray(s, &ray, &to));
         code = to.rgb_q15[0] / 32768.;
         code = 255 * (code < .0031308 ? 12.92 * code
                                       : 1.055 * pow(code, 1 / 2.4) - .055);
@@ -520,23 +542,26 @@ TEST(a12_ball)
 
 /* Checks rays inside a ball of index 1.5 that hit its surface beyond the
  * critical angle of 41.8 degrees: total reflection, so nothing is visible. */
-TEST(a12_within)
+TEST(a12_total_reflection_inside_a_ball)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
     struct glint_scene *s;
     int dark = 0;
 
-    scene_begin(&file);
+    scene_begin_header(&file);
     file.header.background = GLINT_BACKGROUND_COLOUR;
     file.header.background_q15[0] = 8192;
-    make_transparent(&file.material[scene_material(&file, "glass")]);
+    make_material_transparent(
+        &file.material[scene_add_material(&file, "glass")]);
     file.material[0].index_q16 = 3 << 15;
-    scene_sphere(&file, "ball", 0, 0, 0, 0, 2 * UNIT);
-    scene_sun(&file, up);
-    s = start_scene(1);
+    scene_add_sphere(&file, "ball", 0, 0, 0, 0, 2 * UNIT);
+    scene_add_sun(&file, up);
+    s = start_renderer(1);
     for (int i = 0; i <= 100; i++) {
-        const double x = 2 * i / 101.; /* sine of the angle: x / 2 */
-        const int32_t red = red_light(s, make_ray(x, 0, 0, 0, 0, 1));
+        /* the ray's angle of incidence has the sine x / 2 */
+        const double x = 2 * i / 101.;
+        const int32_t red =
+            shaded_red_light_q15(s, make_ray_from_doubles(x, 0, 0, 0, 0, 1));
 
         if (fabs(x / 2 - 1 / 1.5) > .001)
             assert_int_equal(red, x / 2 < 1 / 1.5 ? 8192 : 0);
@@ -547,7 +572,7 @@ TEST(a12_within)
 
 /* --------------------------------------------------------------------- A13 */
 
-TEST(a13_texture)
+TEST(a13_texture_coordinates)
 {
     static const int32_t at[3][3] = {{-300000, -200000, 900000},
                                      {400000, -100000, 1200000},
@@ -559,13 +584,14 @@ TEST(a13_texture)
     struct glint_scene *s;
     uint32_t seed = 1;
 
-    scene_begin(&file);
-    scene_material(&file, "m");
+    scene_begin_header(&file);
+    scene_add_material(&file, "m");
     file.material[0].ambient_q15 = 32768;
     file.material[0].diffuse_q15 = 0;
-    file.material[0].texture = scene_texture(&file, rgb, 1, 1);
-    scene_object(&file, "a", 0, scene_mesh(&file, at, uv_q16, NULL, 3, t, 1));
-    s = start_scene(1);
+    file.material[0].texture = scene_add_texture(&file, rgb, 1, 1);
+    scene_add_object(&file, "a", 0,
+                     scene_add_mesh(&file, at, uv_q16, NULL, 3, t, 1));
+    s = start_renderer(1);
     for (int i = 0; i < 20000; i++) {
         double w[3] = {1, 0, 0}, place[3] = {0}, uv[2] = {0};
         struct glint_met_surface surface;
@@ -586,10 +612,9 @@ TEST(a13_texture)
                 if (k < 2)
                     uv[k] += w[j] * uv_q16[j][k];
             }
-        ray = make_ray(0, 0, 0, place[0], place[1], place[2]);
+        ray = make_ray_from_doubles(0, 0, 0, place[0], place[1], place[2]);
         assert_true(glint_scene_meet_id(s, &ray, ray.toward_q30, 0, &met) &&
                     glint_scene_surface(s, &ray, &met, &surface));
-        /* half a texel; 1/256 texel is 128 in Q15 */
         for (int k = 0; k < 2; k++)
             assert_true(fabs(surface.uv_q16[k] - uv[k]) < (i < 3 ? 8 : 16));
         glint_scene_shade(s, &ray, &surface, &to);
@@ -609,7 +634,7 @@ TEST(a13_texture)
 }
 
 /* Checks that a distant texture has its mean colour. */
-TEST(a13_levels)
+TEST(a13_distant_texture_has_its_mean)
 {
     uint8_t rgb[3 * 64 * 64];
     int32_t lowest = 32768, highest = 0;
@@ -619,17 +644,19 @@ TEST(a13_levels)
     for (int i = 0; i < 64 * 64; i++)
         for (int c = 0; c < 3; c++)
             rgb[3 * i + c] = (uint8_t)(((i ^ i >> 6) & 1) * 255);
-    scene_begin(&file);
-    scene_material(&file, "m");
+    scene_begin_header(&file);
+    scene_add_material(&file, "m");
     file.material[0].ambient_q15 = 32768;
     file.material[0].diffuse_q15 = 0;
-    file.material[0].texture = scene_texture(&file, rgb, 6, 6);
-    scene_plane(&file, "floor", 0, -UNIT);
-    s = start_scene(1);
+    file.material[0].texture = scene_add_texture(&file, rgb, 6, 6);
+    scene_add_plane(&file, "floor", 0, -UNIT);
+    s = start_renderer(1);
     for (int i = 0; i < 2000; i++) {
         const double x = rng_unit(&seed) - .5;
-        const int32_t near = red_light(s, make_ray(x / 9, -.99, 0, x, -1, .1));
-        const int32_t far = red_light(s, make_ray(x, 0, 0, x, -.02, 1));
+        const int32_t near = shaded_red_light_q15(
+            s, make_ray_from_doubles(x / 9, -.99, 0, x, -1, .1));
+        const int32_t far =
+            shaded_red_light_q15(s, make_ray_from_doubles(x, 0, 0, x, -.02, 1));
 
         assert_true(near >= 0 && near <= 32768);
         assert_in_range(far, 6900, 7200); /* linear light of code 127.5 */
@@ -638,10 +665,12 @@ TEST(a13_levels)
      * height 1, and half a texel at height 1/4. */
     for (int i = 0; i < 500; i++) {
         const double x = rng_unit(&seed), z = rng_unit(&seed);
-        const int32_t close = red_light(s, make_ray(x, -.75, z, 0, -1, 0));
+        const int32_t close = shaded_red_light_q15(
+            s, make_ray_from_doubles(x, -.75, z, 0, -1, 0));
 
-        assert_in_range(red_light(s, make_ray(x, .001, z, 0, -1, 0)), 6900,
-                        7200);
+        assert_in_range(shaded_red_light_q15(
+                            s, make_ray_from_doubles(x, .001, z, 0, -1, 0)),
+                        6900, 7200);
         lowest = close < lowest ? close : lowest;
         highest = close > highest ? close : highest;
     }

@@ -21,8 +21,8 @@
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 
-/* Parameters of the model that read_stone() builds, and the mesh that
- * read_mesh() returns. */
+/* Parameters of the model that build_medium_by_name() builds, and the mesh that
+ * read_mesh_of_test() returns. */
 static int side = 64, kernel = 15;
 static double albedo = .9;
 static const char *mesh_text;
@@ -44,8 +44,9 @@ static const char quad_text[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n"
                                 "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
                                 "f 1/1 2/2 3/3 4/4\n";
 
-static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
-                                   size_t *bytes, struct glint_error *error)
+static enum glint_status read_mesh_of_test(void *ctx, const char *name,
+                                           uint8_t **data, size_t *bytes,
+                                           struct glint_error *error)
 {
     (void)ctx;
     (void)name;
@@ -57,23 +58,25 @@ static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
     return GLINT_OK;
 }
 
-/* Builds the model; NAME is its file name. */
-static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
-                                    size_t *bytes, struct glint_error *error)
+/* Builds the translucent medium that the scene text names; NAME is its file
+ * name. */
+static enum glint_status build_medium_by_name(void *ctx, const char *name,
+                                              uint8_t **data, size_t *bytes,
+                                              struct glint_error *error)
 {
     struct built_stone b;
 
     (void)ctx;
     (void)error;
-    build_stone(&b,
-                name[0] == 'f'   ? GLINT_SCATTER_FACTORED
-                : name[0] == 'c' ? GLINT_SCATTER_CLUSTERED
-                                 : GLINT_SCATTER_ALBEDO,
-                side, kernel, albedo);
+    build_translucent_model(&b,
+                            name[0] == 'f'   ? GLINT_SCATTER_FACTORED
+                            : name[0] == 'c' ? GLINT_SCATTER_CLUSTERED
+                                             : GLINT_SCATTER_ALBEDO,
+                            side, kernel, albedo);
     *data = b.data;
     *bytes = b.bytes;
     b.data = NULL;
-    free_stone(&b);
+    free_translucent_model(&b);
     return GLINT_OK;
 }
 
@@ -101,26 +104,26 @@ static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
 }
 
 static const struct glint_description_files files = {
-    NULL, read_mesh, NULL, bake_sky, NULL, read_stone};
+    NULL, read_mesh_of_test, NULL, bake_sky, NULL, build_medium_by_name};
 
-static enum glint_status parse_text(const char *text,
-                                    struct glint_description *s,
-                                    struct glint_error *error)
+static enum glint_status parse_scene_text(const char *text,
+                                          struct glint_description *s,
+                                          struct glint_error *error)
 {
     error->text[0] = '\0';
     return glint_description_parse(s, text, strlen(text), "x.scene", &files,
                                    error);
 }
 
-static void open_text(struct drawn *d, const char *text,
-                      const struct scene_dials *dials, struct tool *tool)
+static void open_scene_text(struct drawn *d, const char *text,
+                            const struct scene_dials *dials, struct tool *tool)
 {
-    drawn_open(d, text, &files, dials, tool);
+    drawn_open_scene(d, text, &files, dials, tool);
 }
 
-static void draw_scene(struct drawn *d, int32_t *light_q20)
+static void draw_translucent_scene(struct drawn *d, int32_t *light_q20)
 {
-    drawn_draw(d, WIDTH, HEIGHT, light_q20);
+    drawn_draw_image(d, WIDTH, HEIGHT, light_q20);
 }
 
 static const struct scene_dials one_sample = {
@@ -157,7 +160,7 @@ static const struct scene_dials one_sample = {
           " " #specular " " #specular " alpha .1 .1\nenvironment sky\n"
 #define BRIGHT_BALL "sphere a at 0 .6 0 radius .8 material b\n"
 
-TEST(equals_reference)
+TEST(image_equals_the_reference)
 {
     static const struct {
         const char *what, *text, *mesh;
@@ -187,7 +190,7 @@ TEST(equals_reference)
         double db;
 
         mesh_text = row[i].mesh;
-        db = drawn_near_twin(row[i].text, &files);
+        db = drawn_psnr_to_reference(row[i].text, &files);
         print_message("%s: %.1f dB\n", row[i].what, db);
         assert_true(db >= 60);
     }
@@ -205,9 +208,9 @@ static double compute_psnr(const int32_t *a, const int32_t *b)
     return -10 * log10(square / (3 * PIXELS) + 1e-12);
 }
 
-/* The texture repeats twice around a ball and is symmetric after half of
- * that; so a ball rotated by quarter turns must look the same, whether the
- * seam or the interior of the map is visible. */
+/* Checks seams: the texture repeats twice around a ball, and each repeat is
+ * symmetric, so a ball rotated by quarter turns must give the same image,
+ * whether the seam or the interior of the map is visible. */
 TEST(seams)
 {
     static int32_t first[3 * PIXELS], light[3 * PIXELS];
@@ -222,9 +225,9 @@ TEST(seams)
                  STAGE "sphere s at 0 .5 0 radius .9 turn 0 1 0 %d material "
                        "%c\n",
                  90 * (k % 4), model[k / 4]);
-        open_text(&d, text, &one_sample, &tool);
-        draw_scene(&d, k % 4 ? light : first);
-        drawn_close(&d);
+        open_scene_text(&d, text, &one_sample, &tool);
+        draw_translucent_scene(&d, k % 4 ? light : first);
+        drawn_close_scene(&d);
         if (k % 4)
             assert_true(compute_psnr(light, first) > 75);
     }
@@ -248,10 +251,10 @@ TEST(stretch)
                  "f 1/1 2/2 3/3 4/4\n",
                  places[i]);
         mesh_text = mesh;
-        db = drawn_near_twin(STAGE
-                             "mesh m quad.obj at 0 .2 0 material c\n"
-                             "sphere b at 0 .7 0 radius .3 material grey\n",
-                             &files);
+        db = drawn_psnr_to_reference(
+            STAGE "mesh m quad.obj at 0 .2 0 material c\n"
+                  "sphere b at 0 .7 0 radius .3 material grey\n",
+            &files);
         print_message("stretched %d: %.1f dB\n", i, db);
         assert_true(db >= 60);
     }
@@ -272,7 +275,7 @@ TEST(kernel_beyond_map)
                  STAGE "mesh m quad.obj at 0 .2 0 material %c\n"
                        "sphere b at 0 .9 0 radius .5 material %c\n",
                  "cfa"[i], "cfa"[i]);
-        db = drawn_near_twin(text, &files);
+        db = drawn_psnr_to_reference(text, &files);
         print_message("beyond the map, %c: %.1f dB\n", "cfa"[i], db);
         assert_true(db >= 60);
     }
@@ -288,27 +291,27 @@ TEST(kernel_beyond_map)
 
 /* Checks that threads, tiles, kernels and the order of updates do not change
  * the image, bit by bit. */
-TEST(same_bits)
+TEST(image_is_bit_identical)
 {
     static int32_t want[3 * PIXELS], got[3 * PIXELS];
     struct shuffle shuffle;
     struct tool tool = {.name = "test", .sets_off = ~0U};
     struct drawn d;
 
-    shuffle_init(&shuffle, 3, 7);
+    init_shuffled_workers(&shuffle, 3, 7);
     mesh_text = cube_text;
-    open_text(&d, MIXED, &one_sample, &tool);
-    draw_scene(&d, want);
-    drawn_close(&d);
+    open_scene_text(&d, MIXED, &one_sample, &tool);
+    draw_translucent_scene(&d, want);
+    drawn_close_scene(&d);
     for (int k = 0; k < 3; k++) {
         struct scene_dials dials = one_sample;
 
         tool.sets_off = k == 1 ? ~0U : 0;
         tool.workers = k ? &shuffle.workers : NULL;
         dials.tile_log2 = 4 + k;
-        open_text(&d, MIXED, &dials, &tool);
-        draw_scene(&d, got);
-        drawn_close(&d);
+        open_scene_text(&d, MIXED, &dials, &tool);
+        draw_translucent_scene(&d, got);
+        drawn_close_scene(&d);
         assert_memory_equal(got, want, sizeof want);
     }
 }
@@ -317,7 +320,8 @@ TEST(same_bits)
  */
 
 /* Rotates the camera about the origin by ANGLE, radians, and draws. */
-static void draw_rotated(struct drawn *d, double angle, int32_t *light_q20)
+static void draw_from_rotated_camera(struct drawn *d, double angle,
+                                     int32_t *light_q20)
 {
     const double unit = ldexp(1, d->model.header->unit_log2);
     const int32_t s = (int32_t)lrint(0x1p30 * sin(angle));
@@ -328,7 +332,7 @@ static void draw_rotated(struct drawn *d, double angle, int32_t *light_q20)
                            (int32_t)(-4 * unit * cos(angle))};
 
     assert_ok(glint_scene_set_camera(d->frame.scene, at, axis_q30));
-    draw_scene(d, light_q20);
+    draw_translucent_scene(d, light_q20);
 }
 
 /* Checks that texels are computed once, when they become visible, that all
@@ -343,30 +347,31 @@ TEST(updates)
 
     mesh_text = cube_text;
     side = 128;
-    open_text(&d, MIXED, &one_sample, &tool);
-    draw_rotated(&d, 0, turned);
+    open_scene_text(&d, MIXED, &one_sample, &tool);
+    draw_from_rotated_camera(&d, 0, turned);
     first = d.frame.map_texels;
     for (int k = 1; k <= 12; k++) {
-        draw_rotated(&d, k * .5, turned);
+        draw_from_rotated_camera(&d, k * .5, turned);
         sum += d.frame.map_texels;
-        open_text(&other, MIXED, &one_sample, &tool);
-        draw_rotated(&other, k * .5, fresh);
+        open_scene_text(&other, MIXED, &one_sample, &tool);
+        draw_from_rotated_camera(&other, k * .5, fresh);
         assert_memory_equal(turned, fresh, sizeof fresh);
         assert_true(other.frame.map_texels >= d.frame.map_texels);
-        drawn_close(&other);
+        drawn_close_scene(&other);
     }
     print_message("texels: %d at first, %d in a turn\n", first, sum);
-    /* three balls of 256 x 128 texels and a cube of 128 x 128 */
+    /* the maps of three balls have 256 x 128 texels, that of a cube 128 x
+     * 128 */
     assert_true(first < 75000 && sum > 20000 && first + sum <= 7 << 14);
-    draw_scene(&d, turned);
+    draw_translucent_scene(&d, turned);
     assert_int_equal(d.frame.map_texels, 0);
-    drawn_close(&d);
+    drawn_close_scene(&d);
     side = 64;
 }
 
 /* Checks that a coat which is replaced gives the image of a scene that had
  * the new coat from the start. */
-TEST(coat_changes)
+TEST(changed_coat_equals_a_new_scene)
 {
     static int32_t changed[3 * PIXELS], fresh[3 * PIXELS];
     enum { MATERIAL = 4 }; /* index after the materials of LOOKS */
@@ -374,22 +379,22 @@ TEST(coat_changes)
     struct glint_scene_look look;
     struct drawn d;
 
-    open_text(&d, BRIGHT(.75) BRIGHT_BALL, &one_sample, &tool);
-    draw_scene(&d, fresh);
+    open_scene_text(&d, BRIGHT(.75) BRIGHT_BALL, &one_sample, &tool);
+    draw_translucent_scene(&d, fresh);
     assert_ok(glint_scene_get_look(d.frame.scene, MATERIAL, &look));
-    drawn_close(&d);
-    open_text(&d, BRIGHT(.25) BRIGHT_BALL, &one_sample, &tool);
-    draw_scene(&d, changed);
+    drawn_close_scene(&d);
+    open_scene_text(&d, BRIGHT(.25) BRIGHT_BALL, &one_sample, &tool);
+    draw_translucent_scene(&d, changed);
     assert_true(memcmp(changed, fresh, sizeof fresh) != 0);
     assert_ok(glint_scene_set_look(d.frame.scene, MATERIAL, &look));
-    draw_scene(&d, changed);
+    draw_translucent_scene(&d, changed);
     assert_memory_equal(changed, fresh, sizeof fresh);
-    drawn_close(&d);
+    drawn_close_scene(&d);
 }
 
 /* Checks that the cost of light maps is counted in the frame that computes
  * them, and not again. */
-TEST(account)
+TEST(light_maps_are_counted_once)
 {
     static int32_t light[3 * PIXELS];
     static int16_t seen[PIXELS];
@@ -397,27 +402,28 @@ TEST(account)
     struct glint_scene_part object[2], all;
     struct drawn d;
 
-    open_text(&d,
-              "camera fov 30 at 0 0 4 toward 0 0 0\nlight lamp at 3 3 9 colour "
-              "9 9 9\nmaterial m translucent c.glint\nmaterial g phong .1 .7 "
-              ".2\nsphere s at 0 0 0 radius .5 material m\n"
-              "sphere t at .8 0 0 radius .2 material g\n",
-              &one_sample, &tool);
-    draw_rotated(&d, 0, light);
+    open_scene_text(
+        &d,
+        "camera fov 30 at 0 0 4 toward 0 0 0\nlight lamp at 3 3 9 colour "
+        "9 9 9\nmaterial m translucent c.glint\nmaterial g phong .1 .7 "
+        ".2\nsphere s at 0 0 0 radius .5 material m\n"
+        "sphere t at .8 0 0 radius .2 material g\n",
+        &one_sample, &tool);
+    draw_from_rotated_camera(&d, 0, light);
     glint_scene_account(d.frame.scene, object, &all, seen);
     assert_int_equal(object[0].count[GLINT_SCENE_TEXELS],
                      4 * object[0].count[GLINT_SCENE_SHADED]);
     assert_int_equal(object[0].count[GLINT_SCENE_SHADOWS], 0);
     assert_true(d.frame.map_texels > 0);
-    draw_scene(&d, light);
+    draw_translucent_scene(&d, light);
     assert_int_equal(d.frame.map_texels, 0);
-    drawn_close(&d);
+    drawn_close_scene(&d);
 }
 
 /* ------------------------------------------------------------------ extremes
  */
 
-static double max_light(const int32_t *light_q20)
+static double find_max_light(const int32_t *light_q20)
 {
     double most = 0;
 
@@ -427,7 +433,8 @@ static double max_light(const int32_t *light_q20)
 }
 
 /* Checks that a fully absorbing medium is black, and that one without
- * absorption returns at most the light it receives, at any strength. */
+ * absorption returns at most the light it receives, for any power of the
+ * light. */
 TEST(albedo_0_and_1)
 {
     static int32_t light[3 * PIXELS];
@@ -449,18 +456,18 @@ TEST(albedo_0_and_1)
                  "sphere s at 0 0 0 radius 1 material m\n",
                  fmin(1600 * power, 1e9), fmin(1600 * power, 1e9),
                  fmin(1600 * power, 1e9), model[k / 8]);
-        open_text(&d, text, &one_sample, &tool);
-        draw_scene(&d, light);
+        open_scene_text(&d, text, &one_sample, &tool);
+        draw_translucent_scene(&d, light);
         if (albedo == 0) {
-            assert_true(max_light(light) == 0);
+            assert_true(find_max_light(light) == 0);
         } else {
             /* Near the poles, where texels are narrow, light accumulates. */
-            assert_true(max_light(light) <=
+            assert_true(find_max_light(light) <=
                         fmin(1.3 * 1.06 * fmin(power, 6.2e5), 32768) + 1e-4);
             if (power > 1e-2)
-                assert_true(max_light(light) > .3 * fmin(power, 1000));
+                assert_true(find_max_light(light) > .3 * fmin(power, 1000));
         }
-        drawn_close(&d);
+        drawn_close_scene(&d);
     }
     albedo = .9;
     kernel = 15;
@@ -470,7 +477,7 @@ TEST(albedo_0_and_1)
 /* ------------------------------------------------------------------ refusals
  */
 
-static void expect_refused(const char *text, const char *reason)
+static void expect_scene_is_rejected(const char *text, const char *reason)
 {
     struct glint_description *s = malloc(sizeof *s);
     struct glint_scene_bake_report report;
@@ -479,7 +486,7 @@ static void expect_refused(const char *text, const char *reason)
     size_t bytes;
 
     assert_non_null(s);
-    if (parse_text(text, s, &error) == GLINT_OK) {
+    if (parse_scene_text(text, s, &error) == GLINT_OK) {
         if (glint_scene_bake(s, "x", 1, &data, &bytes, &report, &error) ==
             GLINT_OK) {
             snprintf(error.text, sizeof error.text, "%s", s->warning);
@@ -492,7 +499,7 @@ static void expect_refused(const char *text, const char *reason)
     free(s);
 }
 
-TEST(refused)
+TEST(rejects_unsuitable_meshes)
 {
     static const char stretched[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n"
                                     "vt 0 0\nvt .4 0\nvt .4 1\nvt 0 1\n"
@@ -506,39 +513,40 @@ TEST(refused)
     static const char point[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nvt .5 .5\n"
                                 "f 1/1 2/1 3/1\n";
 
-    expect_refused(STAGE "plane p at 0 0 0 normal 0 1 0 material c\n",
-                   "an infinite plane cannot");
-    expect_refused(STAGE "triangle t 0 0 0 1 0 0 0 1 0 material c\n",
-                   "has no texture coordinates");
+    expect_scene_is_rejected(STAGE "plane p at 0 0 0 normal 0 1 0 material c\n",
+                             "an infinite plane cannot");
+    expect_scene_is_rejected(STAGE "triangle t 0 0 0 1 0 0 0 1 0 material c\n",
+                             "has no texture coordinates");
     mesh_text = bare;
-    expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
-                   "x.scene:9:8: material c is translucent, but a face has no");
+    expect_scene_is_rejected(
+        STAGE "mesh m a.obj at 0 0 0 material c\n",
+        "x.scene:9:8: material c is translucent, but a face has no");
     mesh_text = outside;
-    expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
-                   "must be 0 to 1, not 2");
+    expect_scene_is_rejected(STAGE "mesh m a.obj at 0 0 0 material c\n",
+                             "must be 0 to 1, not 2");
     mesh_text = twice;
-    expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
-                   "belong to two places");
+    expect_scene_is_rejected(STAGE "mesh m a.obj at 0 0 0 material c\n",
+                             "belong to two places");
     mesh_text = point;
-    expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
-                   "covers no texel");
+    expect_scene_is_rejected(STAGE "mesh m a.obj at 0 0 0 material c\n",
+                             "covers no texel");
     mesh_text = stretched;
-    expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
-                   "stretched up to 1.58");
+    expect_scene_is_rejected(STAGE "mesh m a.obj at 0 0 0 material c\n",
+                             "stretched up to 1.58");
 }
 
 /* Checks that a program without the module names the one that a scene needs. */
-TEST(missing_module)
+TEST(missing_module_is_named)
 {
     struct tool tool = {.name = "test"};
     struct glint_scene_config cfg;
     struct drawn d;
 
-    open_text(&d, STAGE BALLS, &one_sample, &tool);
+    open_scene_text(&d, STAGE BALLS, &one_sample, &tool);
     cfg = d.frame.cfg;
     assert_true(glint_scene_bytes(&cfg, &d.model) > 0);
     cfg.parts.stones = NULL;
     assert_string_equal(glint_scene_lacks(&cfg.parts, &d.model), "stones");
     assert_int_equal(glint_scene_bytes(&cfg, &d.model), 0);
-    drawn_close(&d);
+    drawn_close_scene(&d);
 }

@@ -23,7 +23,7 @@ struct map {
     struct glint_environment e;
 };
 
-static void paint_map(int is_even)
+static void paint_environment_image(int is_even)
 {
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
@@ -36,7 +36,7 @@ static void paint_map(int is_even)
         }
 }
 
-static void open_map(struct map *m, int levels)
+static void bake_and_open_environment(struct map *m, int levels)
 {
     struct glint_environment_options o;
     struct glint_environment_report report;
@@ -53,7 +53,7 @@ static void open_map(struct map *m, int levels)
     assert_ok(glint_environment_open(&m->e, m->data, bytes, &reason));
 }
 
-static struct glint_ward_material make_material(double x, double y)
+static struct glint_ward_material make_metal_material(double x, double y)
 {
     return (struct glint_ward_material){
         {32768, 32768, 32768},
@@ -67,7 +67,7 @@ static const struct glint_ward_options eight = {8, GLINT_WARD_CONSTANT, 0, 0};
 
 /* Returns the albedo of the norm NORM of the lobe under uniform light of 1,
  * by an integral in double precision. NO: cosine of the view direction. */
-static double integrate_albedo(int norm, double no, double alpha)
+static double integrate_lobe_albedo(int norm, double no, double alpha)
 {
     const double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double view[3] = {sqrt(1 - no * no), 0, no};
@@ -81,12 +81,12 @@ static double integrate_albedo(int norm, double no, double alpha)
             const double in[3] = {sqrt(1 - z * z) * cos(phi),
                                   sqrt(1 - z * z) * sin(phi), z};
 
-            sum += ward_lobe(frame, view, both, norm, in);
+            sum += ward_evaluate_lobe(frame, view, both, norm, in);
         }
     return sum * 2 * GLINT_PI / (N * N);
 }
 
-TEST(furnace)
+TEST(furnace_albedo_is_1)
 {
     static const double cosine[4] = {1, .7, .3, .1};
     /* for the bounded norm, whose albedo is below 1 at grazing angles */
@@ -96,18 +96,18 @@ TEST(furnace)
     struct glint_ward_options o = {32, GLINT_WARD_PUBLISHED, 0, 0};
     struct map m;
 
-    paint_map(1);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
+    paint_environment_image(1);
+    bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
     for (int norm = 0; norm < 2; norm++)
         for (int k = 0; k < 4; k++) {
             const double no = cosine[k];
             const int32_t view_q14[3] = {
                 (int32_t)lrint(0x1p14 * sqrt(1 - no * no)), 0,
                 (int32_t)lrint(0x1p14 * no)};
-            struct glint_ward_material material = make_material(.05, .05);
+            struct glint_ward_material material = make_metal_material(.05, .05);
             struct glint_ward_lobe lobe;
             int32_t rgb_q15[3];
-            double want = integrate_albedo(norm, no, .05), got;
+            double want = integrate_lobe_albedo(norm, no, .05), got;
 
             material.norm = (enum glint_ward_norm)norm;
             glint_ward_prepare(&lobe, &m.e, &material, &o);
@@ -133,8 +133,8 @@ static double decode_texel(const struct glint_environment *e, int k, size_t i,
                  (int)(word >> 27) - 12 + e->header->unit_log2);
 }
 
-static double lookup_level(const struct glint_environment *e, int k,
-                           const double toward[3], int c)
+static double lookup_level_in_double(const struct glint_environment *e, int k,
+                                     const double toward[3], int c)
 {
     const int side = 1 << e->level[k].side_log2;
     double u, v, x, y, sum = 0;
@@ -151,23 +151,23 @@ static double lookup_level(const struct glint_environment *e, int k,
     return sum;
 }
 
-static double lookup_levels(const struct glint_environment *e,
-                            const double toward[3], double level, int c)
+static double lookup_between_levels(const struct glint_environment *e,
+                                    const double toward[3], double level, int c)
 {
     const double last = e->header->n_levels - 1;
     const int k = (int)(level = fmin(fmax(level, 0), last));
 
-    return level <= k
-               ? lookup_level(e, k, toward, c)
-               : (4 - pow(4, level - k)) / 3 * lookup_level(e, k, toward, c) +
-                     (pow(4, level - k) - 1) / 3 *
-                         lookup_level(e, k + 1, toward, c);
+    return level <= k ? lookup_level_in_double(e, k, toward, c)
+                      : (4 - pow(4, level - k)) / 3 *
+                                lookup_level_in_double(e, k, toward, c) +
+                            (pow(4, level - k) - 1) / 3 *
+                                lookup_level_in_double(e, k + 1, toward, c);
 }
 
-/* Draws N half-vector slopes for alpha 1 with constant footprints. Returns
- * b. */
-static double draw_slopes(int n, const double alpha[2],
-                          double slope[GLINT_WARD_SAMPLES][2])
+/* Draws N half-vector slopes for alpha 1 with constant footprints. Returns the
+ * footprint factor b. */
+static double draw_half_vector_slopes(int n, const double alpha[2],
+                                      double slope[GLINT_WARD_SAMPLES][2])
 {
     const double f = (n == 1 ? 1 : n == 4 ? 1.4 : n == 32 ? 3 : 2) / n;
     const double least = fmin(alpha[0], alpha[1]);
@@ -198,12 +198,12 @@ static double draw_slopes(int n, const double alpha[2],
     return b;
 }
 
-static void reference_pixel(const struct glint_environment *e,
-                            const double alpha[2], int n,
-                            const double frame[3][3], double rgb[3])
+static void compute_pixel_by_samples(const struct glint_environment *e,
+                                     const double alpha[2], int n,
+                                     const double frame[3][3], double rgb[3])
 {
     double slope[GLINT_WARD_SAMPLES][2];
-    const double blur = 2 * draw_slopes(n, alpha, slope);
+    const double blur = 2 * draw_half_vector_slopes(n, alpha, slope);
     const double texel = sqrt(4 * GLINT_PI) / (1 << SIDE_LOG2);
 
     for (int k = 0; k < n; k++) {
@@ -212,7 +212,7 @@ static void reference_pixel(const struct glint_environment *e,
 
         length = sqrt(h[0] * h[0] + h[1] * h[1] + 1);
         for (int j = 0; j < 3; j++)
-            ho -= h[j] / length * frame[j][2]; /* the eye is at -z */
+            ho -= h[j] / length * frame[j][2]; /* the viewer is at -z */
         for (int j = 0; j < 3; j++) {
             toward[j] = j == 2 ? 1 : 0;
             for (int i = 0; i < 3; i++)
@@ -222,25 +222,25 @@ static void reference_pixel(const struct glint_environment *e,
         if (ho <= 0 || ni <= 0)
             continue;
         for (int c = 0; c < 3; c++)
-            rgb[c] +=
-                fmin(ni / (ho / length), 8) / n *
-                lookup_levels(e, toward, log2(2 * sqrt(blur * ho) / texel), c);
+            rgb[c] += fmin(ni / (ho / length), 8) / n *
+                      lookup_between_levels(
+                          e, toward, log2(2 * sqrt(blur * ho) / texel), c);
     }
 }
 
-TEST(equals_reference)
+TEST(samples_approximate_the_sum_over_texels)
 {
     static const int samples[5] = {1, 4, 8, 16, 32};
     static ward_picture want, got;
     double least = 200;
     struct map m;
 
-    paint_map(0);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
+    paint_environment_image(0);
+    bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
     for (int k = 0; k < 10; k++) {
         const double alpha[2] = {.05, k / 5 ? .05 : .3};
         const struct glint_ward_material material =
-            make_material(alpha[0], alpha[1]);
+            make_metal_material(alpha[0], alpha[1]);
         struct glint_ward_options o = eight;
 
         o.samples = samples[k % 5];
@@ -248,12 +248,12 @@ TEST(equals_reference)
         for (int i = 0; i < WARD_PIXELS; i++) {
             double frame[3][3];
 
-            if (ward_frame(i, frame))
-                reference_pixel(&m.e, alpha, o.samples,
-                                (const double(*)[3])frame, want[i]);
+            if (ward_build_frame(i, frame))
+                compute_pixel_by_samples(&m.e, alpha, o.samples,
+                                         (const double(*)[3])frame, want[i]);
         }
-        ward_look(&m.e, &material, &o, got);
-        least = fmin(least, ward_psnr(want, got));
+        ward_lookup_picture(&m.e, &material, &o, got);
+        least = fmin(least, ward_compute_psnr(want, got));
     }
     free(m.data);
     print_message("reference: %.1f dB at least\n", least);
@@ -264,8 +264,9 @@ TEST(equals_reference)
 
 /* Sets TO to the average of N uniform directions of the hemisphere, each
  * looked up in the map level of its solid angle. */
-static void render_uniform(const struct glint_environment *e,
-                           const double alpha[2], int n, ward_picture to)
+static void render_by_uniform_directions(const struct glint_environment *e,
+                                         const double alpha[2], int n,
+                                         ward_picture to)
 {
     const double view[3] = {0, 0, -1};
     const double level =
@@ -275,7 +276,7 @@ static void render_uniform(const struct glint_environment *e,
         double frame[3][3];
 
         memset(to[i], 0, sizeof to[i]);
-        for (int k = 0; k < n && ward_frame(i, frame); k++) {
+        for (int k = 0; k < n && ward_build_frame(i, frame); k++) {
             const double z = (k + .5) / n, turn = 2 * GLINT_PI * .618034 * k;
             double toward[3], w;
 
@@ -283,11 +284,11 @@ static void render_uniform(const struct glint_environment *e,
                 toward[j] = z * frame[2][j] +
                             sqrt(1 - z * z) * (cos(turn) * frame[0][j] +
                                                sin(turn) * frame[1][j]);
-            w = ward_lobe((const double(*)[3])frame, view, alpha,
-                          GLINT_WARD_BOUNDED, toward) *
+            w = ward_evaluate_lobe((const double(*)[3])frame, view, alpha,
+                                   GLINT_WARD_BOUNDED, toward) *
                 2 * GLINT_PI / n;
             for (int c = 0; c < 3; c++)
-                to[i][c] += w * lookup_levels(e, toward, level, c);
+                to[i][c] += w * lookup_between_levels(e, toward, level, c);
         }
     }
 }
@@ -297,7 +298,7 @@ struct reference {
     ward_picture want;
 };
 
-static void sum_texels(const double alpha[2], struct reference *r)
+static void render_by_sum_of_texels(const double alpha[2], struct reference *r)
 {
     struct glint_environment_options o;
     struct glint_environment_report report = {0};
@@ -305,14 +306,14 @@ static void sum_texels(const double alpha[2], struct reference *r)
     glint_environment_defaults(&o);
     assert_true(glint_sphere_open(&r->sphere, 1 << SIDE_LOG2));
     assert_true(glint_sphere_project(&r->sphere, &image, &o, &report));
-    ward_sum(&r->sphere, alpha, r->want);
+    ward_sum_texels(&r->sphere, alpha, r->want);
     glint_sphere_close(&r->sphere);
 }
 
 /* Row B1: half vectors drawn by the published density of the lobe have less
  * error than uniform directions at every number of samples, up to alphas of
  * .2. Row B4: Gaussian levels have less error than mipmaps with 8 samples. */
-TEST(b1_b4)
+TEST(b1_b4_sampled_lobe_beats_uniform_directions)
 {
     static const double alphas[3][2] = {{.05, .05}, {.2, .2}, {.05, .2}};
     static const int samples[4] = {1, 4, 8, 32};
@@ -320,32 +321,32 @@ TEST(b1_b4)
     static ward_picture got;
     struct map gauss, mip;
 
-    paint_map(0);
-    open_map(&gauss, GLINT_ENVIRONMENT_GAUSS);
-    open_map(&mip, GLINT_ENVIRONMENT_MIP);
+    paint_environment_image(0);
+    bake_and_open_environment(&gauss, GLINT_ENVIRONMENT_GAUSS);
+    bake_and_open_environment(&mip, GLINT_ENVIRONMENT_MIP);
     for (int a = 0; a < 3; a++) {
         const struct glint_ward_material material =
-            make_material(alphas[a][0], alphas[a][1]);
+            make_metal_material(alphas[a][0], alphas[a][1]);
         double by_gauss, by_mip;
 
-        sum_texels(alphas[a], &r);
+        render_by_sum_of_texels(alphas[a], &r);
         for (int k = 0; k < 4; k++) {
             const struct glint_ward_options o = {samples[k],
                                                  GLINT_WARD_PUBLISHED, 0, 0};
             double ward, whole;
 
-            ward_look(&mip.e, &material, &o, got);
-            ward = ward_psnr(r.want, got);
-            render_uniform(&mip.e, alphas[a], samples[k], got);
-            whole = ward_psnr(r.want, got);
+            ward_lookup_picture(&mip.e, &material, &o, got);
+            ward = ward_compute_psnr(r.want, got);
+            render_by_uniform_directions(&mip.e, alphas[a], samples[k], got);
+            whole = ward_compute_psnr(r.want, got);
             print_message("B1, alpha %g, %g, N %d: %.1f dB, hemisphere %.1f\n",
                           alphas[a][0], alphas[a][1], samples[k], ward, whole);
             assert_true(ward > whole);
         }
-        ward_look(&gauss.e, &material, &eight, got);
-        by_gauss = ward_psnr(r.want, got);
-        ward_look(&mip.e, &material, &eight, got);
-        by_mip = ward_psnr(r.want, got);
+        ward_lookup_picture(&gauss.e, &material, &eight, got);
+        by_gauss = ward_compute_psnr(r.want, got);
+        ward_lookup_picture(&mip.e, &material, &eight, got);
+        by_mip = ward_compute_psnr(r.want, got);
         print_message("B4, alpha %g, %g: %.1f dB, mips %.1f\n", alphas[a][0],
                       alphas[a][1], by_gauss, by_mip);
         assert_true(by_gauss > by_mip);
@@ -356,21 +357,21 @@ TEST(b1_b4)
 
 /* Row B2: while colours and alphas change over one baked environment, each
  * lobe is that of its material, and colours are factors. */
-TEST(b2_changes)
+TEST(b2_materials_share_an_environment)
 {
     static ward_picture red, white, wide;
-    struct glint_ward_material material = make_material(.05, .1);
+    struct glint_ward_material material = make_metal_material(.05, .1);
     struct map m;
     double differ = 0;
 
-    paint_map(0);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
-    ward_look(&m.e, &material, &eight, white);
+    paint_environment_image(0);
+    bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
+    ward_lookup_picture(&m.e, &material, &eight, white);
     material.specular_q15[0] = 1 << 14;
     material.specular_q15[1] = 0;
-    ward_look(&m.e, &material, &eight, red);
-    material = make_material(.3, .1);
-    ward_look(&m.e, &material, &eight, wide);
+    ward_lookup_picture(&m.e, &material, &eight, red);
+    material = make_metal_material(.3, .1);
+    ward_lookup_picture(&m.e, &material, &eight, wide);
     for (int i = 0; i < WARD_PIXELS; i++) {
         assert_true(fabs(red[i][0] - white[i][0] / 2) <= 0x1p-15);
         assert_true(red[i][1] == 0 && red[i][2] == white[i][2]);
@@ -382,23 +383,23 @@ TEST(b2_changes)
 
 /* Row B8: 8 samples are sufficient: at least 30 dB in display codes, on a
  * map of spots and waves. */
-TEST(b8_eight)
+TEST(b8_eight_samples_are_sufficient)
 {
     static const double alphas[3][2] = {{.05, .05}, {.1, .1}, {.05, .2}};
     static struct reference r;
     static ward_picture got;
     struct map m;
 
-    paint_map(0);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
+    paint_environment_image(0);
+    bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
     for (int a = 0; a < 3; a++) {
         const struct glint_ward_material material =
-            make_material(alphas[a][0], alphas[a][1]);
+            make_metal_material(alphas[a][0], alphas[a][1]);
         double db;
 
-        sum_texels(alphas[a], &r);
-        ward_look(&m.e, &material, &eight, got);
-        db = ward_psnr_codes(r.want, got);
+        render_by_sum_of_texels(alphas[a], &r);
+        ward_lookup_picture(&m.e, &material, &eight, got);
+        db = ward_compute_psnr_of_codes(r.want, got);
         print_message("B8, alpha %g, %g: %.1f dB\n", alphas[a][0], alphas[a][1],
                       db);
         assert_true(db >= 30);
@@ -407,26 +408,26 @@ TEST(b8_eight)
 }
 
 /* Row B6: more samples come closer to the sum over all texels. */
-TEST(b6_samples)
+TEST(b6_more_samples_come_closer)
 {
     static const int samples[3] = {1, 8, 32};
     static const double alpha[2] = {.1, .1};
-    const struct glint_ward_material material = make_material(.1, .1);
+    const struct glint_ward_material material = make_metal_material(.1, .1);
     static struct reference r;
     static ward_picture got;
     struct map m;
     double last = 0;
 
-    paint_map(0);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
-    sum_texels(alpha, &r);
+    paint_environment_image(0);
+    bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
+    render_by_sum_of_texels(alpha, &r);
     for (int k = 0; k < 3; k++) {
         struct glint_ward_options o = eight;
         double db;
 
         o.samples = samples[k];
-        ward_look(&m.e, &material, &o, got);
-        db = ward_psnr(r.want, got);
+        ward_lookup_picture(&m.e, &material, &o, got);
+        db = ward_compute_psnr(r.want, got);
         print_message("B6, N %d: %.1f dB\n", samples[k], db);
         assert_true(db > last + 1);
         last = db;
@@ -436,28 +437,28 @@ TEST(b6_samples)
 
 /* Checks extreme environments (black, one texel of 1e9, scales of 1e-6 ..
  * 1e9): the image of a ball changes only by its scale. */
-TEST(extreme_lights)
+TEST(extreme_environments_only_scale_the_image)
 {
     static ward_picture one, got;
-    const struct glint_ward_material material = make_material(.1, .1);
+    const struct glint_ward_material material = make_metal_material(.1, .1);
     struct map m;
 
     memset(pixels, 0, sizeof pixels);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
-    ward_look(&m.e, &material, &eight, got);
+    bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
+    ward_lookup_picture(&m.e, &material, &eight, got);
     for (int i = 0; i < WARD_PIXELS; i++)
         assert_true(got[i][0] == 0 && got[i][1] == 0 && got[i][2] == 0);
     free(m.data);
-    paint_map(0);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
-    ward_look(&m.e, &material, &eight, one);
+    paint_environment_image(0);
+    bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
+    ward_lookup_picture(&m.e, &material, &eight, one);
     free(m.data);
     for (int power = -12; power <= 12; power += 6) {
-        paint_map(0);
+        paint_environment_image(0);
         for (int i = 0; i < HEIGHT * WIDTH * 3; i++)
             ((float *)pixels)[i] *= ldexpf(1, power);
-        open_map(&m, GLINT_ENVIRONMENT_GAUSS);
-        ward_look(&m.e, &material, &eight, got);
+        bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
+        ward_lookup_picture(&m.e, &material, &eight, got);
         for (int i = 0; i < WARD_PIXELS; i++)
             assert_true(
                 fabs(got[i][0] - fmin(ldexp(one[i][0], power), 1 << 15)) <=
@@ -466,8 +467,8 @@ TEST(extreme_lights)
     }
     memset(pixels, 0, sizeof pixels);
     pixels[HEIGHT / 2][WIDTH / 2][1] = 1e9f;
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
-    ward_look(&m.e, &material, &eight, got);
+    bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
+    ward_lookup_picture(&m.e, &material, &eight, got);
     for (int i = 0; i < WARD_PIXELS; i++)
         assert_true(got[i][0] == 0 && got[i][1] >= 0 && got[i][1] <= 1 << 15);
     free(m.data);
@@ -475,38 +476,38 @@ TEST(extreme_lights)
 
 /* Row B7: an anisotropy ratio of 200 is clamped to 10, and the call reports
  * it. */
-TEST(b7_clamped)
+TEST(b7_extreme_anisotropy_is_clamped)
 {
     struct glint_ward_lobe held, plain;
-    struct glint_ward_material material = make_material(.001, .2);
+    struct glint_ward_material material = make_metal_material(.001, .2);
     struct map m;
 
-    paint_map(0);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
+    paint_environment_image(0);
+    bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
     memset(&held, 0, sizeof held);
     memset(&plain, 0, sizeof plain);
     assert_int_equal(glint_ward_prepare(&held, &m.e, &material, &eight), 1);
     material.alpha_q24[0] = (material.alpha_q24[1] + 9) / 10;
     assert_int_equal(glint_ward_prepare(&plain, &m.e, &material, &eight), 0);
     assert_memory_equal(&held, &plain, sizeof held);
-    material = make_material(.2, .001);
+    material = make_metal_material(.2, .001);
     assert_int_equal(glint_ward_prepare(&held, &m.e, &material, &eight), 1);
     free(m.data);
 }
 
 /* Checks that any valid material, view and file gives light within range. */
-TEST(extremes)
+TEST(any_valid_material_gives_light_in_range)
 {
     static const double alpha[4] = {.001, .01, .5, 1};
     struct map m;
     int32_t most = 0;
 
-    paint_map(0);
+    paint_environment_image(0);
     pixels[9][9][0] = 1e9f;
-    open_map(&m, GLINT_ENVIRONMENT_MIP);
+    bake_and_open_environment(&m, GLINT_ENVIRONMENT_MIP);
     for (int k = 0; k < 16 * GLINT_WARD_SAMPLES; k++) {
         struct glint_ward_material material =
-            make_material(alpha[k & 3], alpha[k >> 2 & 3]);
+            make_metal_material(alpha[k & 3], alpha[k >> 2 & 3]);
         const struct glint_ward_options o = {
             1 + k / 16, (enum glint_ward_rule)(k & 1), k % 7 * 200 - 600, 0};
         const int32_t frame_q14[3][3] = {

@@ -40,23 +40,23 @@ static double compute_psnr(const struct built_stone *b)
     return db;
 }
 
-TEST(close_to_fit)
+TEST(integers_are_close_to_their_fit)
 {
     for (int m = 0; m < 3; m++) {
         struct built_stone b;
         double db;
 
-        build_stone(&b, models[m], 128, 29, .9);
+        build_translucent_model(&b, models[m], 128, 29, .9);
         db = compute_psnr(&b);
         print_message("model %d: %.1f dB, taps of %d bits, ranks lose %.4f\n",
                       m, db, b.report.tap_bits, b.report.kernel_loss);
         assert_true(db > 45);
-        free_stone(&b);
+        free_translucent_model(&b);
     }
 }
 
 /* Bakes B again with RANK and returns the PSNR. */
-static double psnr_of_rank(struct built_stone *b, int rank)
+static double bake_and_measure_psnr_of_rank(struct built_stone *b, int rank)
 {
     struct glint_error error;
     const char *reason;
@@ -70,21 +70,22 @@ static double psnr_of_rank(struct built_stone *b, int rank)
     return compute_psnr(b);
 }
 
-/* Two products approximate as well as four where light varies slowly: the
- * largest singular values alone reach 51 dB, and one product 37 dB. */
-TEST(ranks)
+/* Checks that two products approximate as well as four where light varies
+ * slowly: the largest singular values alone reach 51 dB, and one product 37
+ * dB. */
+TEST(more_products_approximate_better)
 {
     for (int m = 0; m < 3; m += 2) {
         struct built_stone b;
         double db[2];
 
-        build_stone(&b, models[m], 128, 29, .9);
-        db[0] = psnr_of_rank(&b, 2);
-        db[1] = psnr_of_rank(&b, 1);
+        build_translucent_model(&b, models[m], 128, 29, .9);
+        db[0] = bake_and_measure_psnr_of_rank(&b, 2);
+        db[1] = bake_and_measure_psnr_of_rank(&b, 1);
         print_message("model %d: rank 2 %.1f dB, rank 1 %.1f\n", m, db[0],
                       db[1]);
         assert_true(db[0] > 60 && db[1] > 45 && db[1] < db[0]);
-        free_stone(&b);
+        free_translucent_model(&b);
     }
 }
 
@@ -93,110 +94,120 @@ TEST(ranks)
 /* Damages an intact translucent medium; its checksum is set afterwards. */
 typedef void damage_fn(struct glint_translucent_header *h, unsigned char *data);
 
-static int16_t *find_taps(const struct glint_translucent_header *h,
-                          unsigned char *data)
+static int16_t *kernel_taps(const struct glint_translucent_header *h,
+                            unsigned char *data)
 {
     return (int16_t *)(void *)(data + h->tap_at);
 }
 
-/* Each tap is within its range, but the sum is too large. */
-static void widen_column(struct glint_translucent_header *h,
-                         unsigned char *data)
+/* Each tap of a column is within its range, but their sum is too large. */
+static void set_too_large_column_taps(struct glint_translucent_header *h,
+                                      unsigned char *data)
 {
     for (uint32_t k = 0; k < h->kernel * h->rank * h->n_planes; k++)
-        find_taps(h,
-                  data)[(2 * (k / h->kernel) + 1) * h->kernel + k % h->kernel] =
+        kernel_taps(
+            h, data)[(2 * (k / h->kernel) + 1) * h->kernel + k % h->kernel] =
             k % 2 ? 2047 : -2047;
 }
 
-static void widen_row(struct glint_translucent_header *h, unsigned char *data)
+static void set_too_large_row_taps(struct glint_translucent_header *h,
+                                   unsigned char *data)
 {
     for (uint32_t k = 0; k < h->kernel; k++)
-        find_taps(h, data)[k] = k % 2 ? 2047 : -2047;
+        kernel_taps(h, data)[k] = k % 2 ? 2047 : -2047;
 }
 
-static void clear_shift(struct glint_translucent_header *h, unsigned char *data)
+static void decrement_shift(struct glint_translucent_header *h,
+                            unsigned char *data)
 {
     uint32_t *shift = (uint32_t *)(void *)(data + h->shift_at);
 
     shift[0]--;
 }
 
-static void raise_shift(struct glint_translucent_header *h, unsigned char *data)
+static void set_shift_out_of_range(struct glint_translucent_header *h,
+                                   unsigned char *data)
 {
     uint32_t *shift = (uint32_t *)(void *)(data + h->shift_at);
 
     shift[3 * h->n_planes * h->rank - 1] = 17;
 }
 
-static void raise_tap(struct glint_translucent_header *h, unsigned char *data)
+static void set_tap_out_of_range(struct glint_translucent_header *h,
+                                 unsigned char *data)
 {
-    find_taps(h, data)[0] = -32768;
+    kernel_taps(h, data)[0] = -32768;
 }
 
-static void raise_cluster(struct glint_translucent_header *h,
-                          unsigned char *data)
+static void set_cluster_out_of_range(struct glint_translucent_header *h,
+                                     unsigned char *data)
 {
     data[h->cluster_at + 100] = (unsigned char)h->n_planes;
 }
 
-static void raise_transmittance(struct glint_translucent_header *h,
-                                unsigned char *data)
+static void set_transmittance_out_of_range(struct glint_translucent_header *h,
+                                           unsigned char *data)
 {
     uint16_t *table = (uint16_t *)(void *)(data + h->transmit_at);
 
     table[GLINT_TRANSLUCENT_COSINES] = 32769;
 }
 
-static void raise_gain(struct glint_translucent_header *h, unsigned char *data)
+static void set_gain_out_of_range(struct glint_translucent_header *h,
+                                  unsigned char *data)
 {
     (void)data;
     h->gain[2] = (struct glint_real){1 << 30, -30};
 }
 
-static void raise_planes(struct glint_translucent_header *h,
-                         unsigned char *data)
+static void set_planes_out_of_range(struct glint_translucent_header *h,
+                                    unsigned char *data)
 {
     (void)data;
     h->n_planes = GLINT_TRANSLUCENT_MOST_PLANES + 1;
 }
 
-static void make_even(struct glint_translucent_header *h, unsigned char *data)
+static void set_even_kernel_size(struct glint_translucent_header *h,
+                                 unsigned char *data)
 {
     (void)data;
     h->kernel--;
 }
 
-static void move_taps(struct glint_translucent_header *h, unsigned char *data)
+static void move_taps_beyond_end(struct glint_translucent_header *h,
+                                 unsigned char *data)
 {
     (void)data;
     h->tap_at = h->bytes - 4;
 }
 
 /* Checks that every sum and offset that the loops rely on is validated. */
-TEST(refused)
+TEST(rejects_every_invalid_field)
 {
     static const struct {
         damage_fn *damage;
         const char *reason;
     } row[] = {
-        {widen_column, "the columns of a plane of the stone do not fit"},
-        {widen_row, "the rows of a plane of the stone do not fit"},
-        {clear_shift, "the rows of a plane of the stone do not fit"},
-        {raise_shift, "the rows of a plane of the stone do not fit"},
-        {raise_tap, "a tap of the stone has too many bits"},
-        {raise_cluster, "a texel's cluster is out of range"},
-        {raise_transmittance, "the stone's transmittance is not 0 .. 1"},
-        {raise_gain, "the stone's gain is not normalised, or not 0 .. 1"},
-        {raise_planes, "the stone has too many planes or ranks"},
-        {make_even, "the stone's side or kernel is out of range"},
-        {move_taps, "a table lies outside the stone"}};
+        {set_too_large_column_taps,
+         "the columns of a plane of the stone do not fit"},
+        {set_too_large_row_taps, "the rows of a plane of the stone do not fit"},
+        {decrement_shift, "the rows of a plane of the stone do not fit"},
+        {set_shift_out_of_range, "the rows of a plane of the stone do not fit"},
+        {set_tap_out_of_range, "a tap of the stone has too many bits"},
+        {set_cluster_out_of_range, "a texel's cluster is out of range"},
+        {set_transmittance_out_of_range,
+         "the stone's transmittance is not 0 .. 1"},
+        {set_gain_out_of_range,
+         "the stone's gain is not normalised, or not 0 .. 1"},
+        {set_planes_out_of_range, "the stone has too many planes or ranks"},
+        {set_even_kernel_size, "the stone's side or kernel is out of range"},
+        {move_taps_beyond_end, "a table lies outside the stone"}};
 
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         const char *reason = "nothing";
         struct built_stone b;
 
-        build_stone(&b, GLINT_SCATTER_CLUSTERED, 32, 29, .9);
+        build_translucent_model(&b, GLINT_SCATTER_CLUSTERED, 32, 29, .9);
         row[i].damage((struct glint_translucent_header *)(void *)b.data,
                       b.data);
         glint_blob_seal(b.data, b.bytes);
@@ -204,6 +215,6 @@ TEST(refused)
             glint_translucent_open(&b.stone, b.data, b.bytes, &reason),
             GLINT_E_FORMAT);
         assert_string_equal(reason, row[i].reason);
-        free_stone(&b);
+        free_translucent_model(&b);
     }
 }

@@ -16,13 +16,13 @@ struct entry {
     double x_mm, y_mm, direction[2], w;
 };
 
-static double interpolate_linear(double lo, double hi, double x)
+static double interpolate_linearly(double lo, double hi, double x)
 {
     return 0.5 * (lo + hi) + 0.5 * x * (hi - lo);
 }
 
-static struct entry find_entry(const struct glint_skew_piece *p,
-                               const double x[GLINT_VARIABLES])
+static struct entry compute_pupil_entry(const struct glint_skew_piece *p,
+                                        const double x[GLINT_VARIABLES])
 {
     const struct glint_zone *z = &p->zone;
 
@@ -30,12 +30,12 @@ static struct entry find_entry(const struct glint_skew_piece *p,
                               x[GLINT_U] * glint_zone_side(z, z->half_x, x),
                           glint_zone_side(z, z->middle_y, x) +
                               x[GLINT_V] * glint_zone_side(z, z->half_y, x),
-                          {interpolate_linear(z->lo, z->hi, x[GLINT_S]),
-                           interpolate_linear(z->y_lo, z->y_hi, x[GLINT_P])},
-                          interpolate_linear(p->w0, p->w1, x[GLINT_W])};
+                          {interpolate_linearly(z->lo, z->hi, x[GLINT_S]),
+                           interpolate_linearly(z->y_lo, z->y_hi, x[GLINT_P])},
+                          interpolate_linearly(p->w0, p->w1, x[GLINT_W])};
 }
 
-static void assert_same(const struct entry *a, const struct entry *b)
+static void assert_pieces_are_same(const struct entry *a, const struct entry *b)
 {
     assert_true(fabs(a->x_mm - b->x_mm) < 1e-12);
     assert_true(fabs(a->y_mm - b->y_mm) < 1e-12);
@@ -44,13 +44,13 @@ static void assert_same(const struct entry *a, const struct entry *b)
     assert_true(fabs(a->w - b->w) < 1e-14);
 }
 
-static void fill_random(uint32_t *seed, double side[GLINT_BOX_TERMS])
+static void fill_output_randomly(uint32_t *seed, double side[GLINT_BOX_TERMS])
 {
     for (int k = 0; k < GLINT_BOX_TERMS; k++)
         side[k] = 2 * rng_unit(seed) - 1;
 }
 
-static struct glint_skew_piece random_piece(uint32_t *seed)
+static struct glint_skew_piece make_random_piece(uint32_t *seed)
 {
     struct glint_skew_piece p = {.zone = {.lo = -0.1,
                                           .hi = 0.3,
@@ -61,19 +61,19 @@ static struct glint_skew_piece random_piece(uint32_t *seed)
                                  .w1 = 0.5,
                                  .depth = 3};
 
-    fill_random(seed, p.zone.middle);
-    fill_random(seed, p.zone.middle_y);
-    fill_random(seed, p.zone.half_x);
-    fill_random(seed, p.zone.half_y);
+    fill_output_randomly(seed, p.zone.middle);
+    fill_output_randomly(seed, p.zone.middle_y);
+    fill_output_randomly(seed, p.zone.half_x);
+    fill_output_randomly(seed, p.zone.half_y);
     return p;
 }
 
-TEST(halves)
+TEST(halves_equal_the_whole_piece)
 {
     uint32_t seed = 5;
 
     for (int k = 0; k < 1000; k++) {
-        const struct glint_skew_piece p = random_piece(&seed);
+        const struct glint_skew_piece p = make_random_piece(&seed);
         const int variable = k % GLINT_VARIABLES;
         double whole[GLINT_VARIABLES], half[GLINT_VARIABLES];
         struct glint_skew_piece piece[2];
@@ -85,9 +85,9 @@ TEST(halves)
         if (whole[variable] < 0)
             half[variable] = -half[variable];
         glint_piece_halve(&p, variable, &piece[0], &piece[1]);
-        a = find_entry(&p, whole);
-        b = find_entry(&piece[whole[variable] > 0], half);
-        assert_same(&a, &b);
+        a = compute_pupil_entry(&p, whole);
+        b = compute_pupil_entry(&piece[whole[variable] > 0], half);
+        assert_pieces_are_same(&a, &b);
         for (int i = 0; i < 2; i++) {
             assert_int_equal(piece[i].depth, 4);
             assert_int_equal(piece[i].parts,
@@ -97,9 +97,9 @@ TEST(halves)
 }
 
 /* Sets output O to one term: power POWER of VARIABLE. */
-static void set_output(struct glint_fitted_output *o, double *coef,
-                       enum glint_channel kind, int variable, int power,
-                       bool met)
+static void set_output_to_one_term(struct glint_fitted_output *o, double *coef,
+                                   enum glint_channel kind, int variable,
+                                   int power, bool met)
 {
     *o = (struct glint_fitted_output){
         .kind = kind, .n_terms = 1, .coef = coef, .grain = 0.5, .met = met};
@@ -107,32 +107,32 @@ static void set_output(struct glint_fitted_output *o, double *coef,
     o->power[0][variable] = (uint8_t)power;
 }
 
-TEST(shares)
+TEST(error_is_shared_by_variables)
 {
     static struct glint_fitted_system system;
     double coef[3], share[GLINT_VARIABLES];
 
-    set_output(&system.output[0], &coef[0], GLINT_OUT_SENSOR_X, GLINT_S, 1,
-               true);
-    set_output(&system.output[1], &coef[1], GLINT_OUT_STOP_X, GLINT_V, 3,
-               false);
-    set_output(&system.output[2], &coef[2], GLINT_OUT_ENERGY, GLINT_W, 5,
-               false);
+    set_output_to_one_term(&system.output[0], &coef[0], GLINT_OUT_SENSOR_X,
+                           GLINT_S, 1, true);
+    set_output_to_one_term(&system.output[1], &coef[1], GLINT_OUT_STOP_X,
+                           GLINT_V, 3, false);
+    set_output_to_one_term(&system.output[2], &coef[2], GLINT_OUT_ENERGY,
+                           GLINT_W, 5, false);
     system.n_outputs = 3;
     glint_piece_shares(&system, share);
     assert_true(share[GLINT_V] == 2 * 0.875);
     assert_true(share[GLINT_S] == 0 && share[GLINT_W] == 0);
 
-    /* If all outputs met their tolerances, all count. */
+    /* If all outputs meet their tolerances, all outputs count. */
     system.output[1].met = true;
     glint_piece_shares(&system, share);
     assert_true(share[GLINT_V] == 2 * 0.875 && share[GLINT_S] == 2 * 0.5);
     assert_true(share[GLINT_U] == 0 && share[GLINT_W] == 0);
 }
 
-TEST(numbers)
+TEST(pieces_are_numbered_by_part)
 {
-    /* two parts of one patch, and a third system next to them */
+    /* two parts of one piece, and a system of the next piece */
     struct glint_fitted_system has[] = {
         {.part = 1, .sine_hi = 0.1, .y_hi = 0.1, .wave_hi = 6},
         {.part = 0, .sine_hi = 0.1, .y_hi = 0.1, .wave_hi = 6},

@@ -27,10 +27,10 @@ static struct glint_lens model;
 static struct glint_setup setup;
 static unsigned char *data;
 
-/* Bakes a doublet behind two additional surfaces: BEFORE, the first surface,
- * FIRST, the second, AFTER. */
-static void bake_doublet(const char *before, const char *first,
-                         const char *after)
+/* Bakes a doublet behind two additional surfaces. The lens table has BEFORE,
+ * the first surface, FIRST, the second surface, AFTER. */
+static void bake_doublet_with_surfaces(const char *before, const char *first,
+                                       const char *after)
 {
     static const double rgb_nm[] = {650, 532, 450};
     struct glint_bake_options options;
@@ -67,13 +67,14 @@ static void free_model(void)
     data = NULL;
 }
 
-/* A bundle of the model, the exact path, and the errors so far. */
+/* A bundle of the model, the exact path of the same ghost, and the sums of
+ * errors between them. */
 struct meter {
     struct glint_transfer t;
     struct glint_path path;
     double direction[3];
     int n; /* number of compared rays that pass */
-    /* exact rays that pass, and those that no bundle covers */
+    /* exact rays that pass, and those of them that no bundle covers */
     int through, lost;
     double places2, stops2, energies2;
     double off; /* max distance between a vertex and its ray, pixels */
@@ -85,23 +86,23 @@ static const struct glint_place place = {.cos_q30 = ONE,
                                          .middle_x_q8 = 960 << 8,
                                          .middle_y_q8 = 540 << 8};
 
-static double to_double(const struct meter *m, const struct glint_outputs *o,
-                        int kind)
+static double real_to_double(const struct meter *m,
+                             const struct glint_outputs *o, int kind)
 {
     return ldexp(o->at[kind], m->t.exponent[kind]);
 }
 
 /* Returns the distance between V and the landing position of the ray (X, Y),
  * pixels. */
-static double vertex_distance(const struct glint_vertex *v, double x_mm,
-                              double y_mm)
+static double distance_to_landing_position_px(const struct glint_vertex *v,
+                                              double x_mm, double y_mm)
 {
     return hypot(v->x_q8 / 256.0 - 960 - 53 * x_mm,
                  540 - v->y_q8 / 256.0 - 53 * y_mm);
 }
 
-static bool is_passed(const struct meter *m, double x_mm, double y_mm,
-                      struct glint_ray *ray)
+static bool ray_passes_stop(const struct meter *m, double x_mm, double y_mm,
+                            struct glint_ray *ray)
 {
     return glint_trace(&m->path, x_mm, y_mm, m->direction, ray, NULL) ==
                GLINT_RAY_OK &&
@@ -113,7 +114,7 @@ static bool is_passed(const struct meter *m, double x_mm, double y_mm,
 
 /* Counts the rays of a grid over the front that pass, and those of them
  * outside the box; without a bundle all count as outside. */
-static void count_rays(struct meter *m, bool has_bundle)
+static void count_passing_rays(struct meter *m, bool has_bundle)
 {
     const double x = m->t.sign, y = m->t.side ? -m->t.sign : m->t.sign;
     const double unit = ldexp(1, m->t.box_exponent);
@@ -122,7 +123,7 @@ static void count_rays(struct meter *m, bool has_bundle)
         const double at[2] = {(k % 49 - 24) / 2., (k / 49 - 24) / 2.};
         struct glint_ray ray;
 
-        if (!is_passed(m, at[0], at[1], &ray))
+        if (!ray_passes_stop(m, at[0], at[1], &ray))
             continue;
         m->through++;
         m->lost += !has_bundle ||
@@ -133,8 +134,8 @@ static void count_rays(struct meter *m, bool has_bundle)
 
 /* Compares ray (I, J) of a grid. The model's coordinates are those of the
  * lens, mirrored by the signs X and Y. */
-static void compare_ray(struct meter *m, int i, int j,
-                        const struct glint_vertex *v)
+static void compare_grid_ray(struct meter *m, int i, int j,
+                             const struct glint_vertex *v)
 {
     const double x = m->t.sign, y = m->t.side ? -m->t.sign : m->t.sign;
     const double u = 2.0 * i / CELLS - 1, w = 2.0 * j / CELLS - 1;
@@ -143,26 +144,30 @@ static void compare_ray(struct meter *m, int i, int j,
     struct glint_outputs o;
     struct glint_ray ray;
 
-    if (!is_passed(m, x * unit * (m->t.box[0] + u * m->t.box[1]),
-                   y * unit * (m->t.box[3] + w * m->t.box[2]), &ray))
+    if (!ray_passes_stop(m, x * unit * (m->t.box[0] + u * m->t.box[1]),
+                         y * unit * (m->t.box[3] + w * m->t.box[2]), &ray))
         return;
     glint_transfer_ray(&m->t, (int32_t)lrint(u * 0x1p30),
                        (int32_t)lrint(w * 0x1p30), &o);
     m->places2 +=
-        pow(x * to_double(m, &o, GLINT_OUT_SENSOR_X) - ray.sensor_x_mm, 2) +
-        pow(y * to_double(m, &o, GLINT_OUT_SENSOR_Y) - ray.sensor_y_mm, 2);
+        pow(x * real_to_double(m, &o, GLINT_OUT_SENSOR_X) - ray.sensor_x_mm,
+            2) +
+        pow(y * real_to_double(m, &o, GLINT_OUT_SENSOR_Y) - ray.sensor_y_mm, 2);
     m->stops2 +=
-        pow(x * to_double(m, &o, GLINT_OUT_STOP_X) - ray.stop_x_mm / stop, 2) +
-        pow(y * to_double(m, &o, GLINT_OUT_STOP_Y) - ray.stop_y_mm / stop, 2);
-    m->energies2 += pow(to_double(m, &o, GLINT_OUT_ENERGY) / ray.energy - 1, 2);
-    m->off = fmax(m->off,
-                  vertex_distance(v, x * to_double(m, &o, GLINT_OUT_SENSOR_X),
-                                  y * to_double(m, &o, GLINT_OUT_SENSOR_Y)));
+        pow(x * real_to_double(m, &o, GLINT_OUT_STOP_X) - ray.stop_x_mm / stop,
+            2) +
+        pow(y * real_to_double(m, &o, GLINT_OUT_STOP_Y) - ray.stop_y_mm / stop,
+            2);
+    m->energies2 +=
+        pow(real_to_double(m, &o, GLINT_OUT_ENERGY) / ray.energy - 1, 2);
+    m->off = fmax(m->off, distance_to_landing_position_px(
+                              v, x * real_to_double(m, &o, GLINT_OUT_SENSOR_X),
+                              y * real_to_double(m, &o, GLINT_OUT_SENSOR_Y)));
     m->n++;
 }
 
 /* Compares bundles of random ghosts, directions and wavelengths. */
-static void compare_all_rays(struct meter *m)
+static void compare_random_bundles(struct meter *m)
 {
     static struct glint_vertex vertex[NODES * NODES];
     uint32_t seed = 7;
@@ -170,7 +175,7 @@ static void compare_all_rays(struct meter *m)
     /* A part has its own box and is not a ghost of the table. */
     assert_int_equal(model.header->n_parts, 0);
     for (int k = 0; k < BUNDLES; k++) {
-        const int ghost = rng_below(&seed, (int)model.header->n_ghosts);
+        const int ghost = rng_int_below(&seed, (int)model.header->n_ghosts);
         const double theta = MAX_DEG * 0.99 * rng_unit(&seed) * PI / 180;
         const double phi = 2 * PI * rng_unit(&seed);
         const double nm = 420 + 260 * rng_unit(&seed);
@@ -187,24 +192,24 @@ static void compare_all_rays(struct meter *m)
         is_lit = glint_transfer_init_at(
             &m->t, &model, ghost, (int32_t)lrint(sin(theta) * 0x1p30), azimuth,
             (int32_t)lrint(0x1p24 * 1e6 / (nm * nm)));
-        count_rays(m, is_lit);
+        count_passing_rays(m, is_lit);
         if (!is_lit)
             continue;
         at.cos_q30 = m->t.sign * ONE;
         glint_transfer_grid(&m->t, &at, CELLS, vertex);
         for (int j = 0; j < NODES; j++)
             for (int i = 0; i < NODES; i++)
-                compare_ray(m, i, j, &vertex[j * NODES + i]);
+                compare_grid_ray(m, i, j, &vertex[j * NODES + i]);
     }
 }
 
-static void check_errors(void)
+static void check_ray_errors(void)
 {
     static struct meter m;
     double pixels, radii, share;
 
     m = (struct meter){.n = 0};
-    compare_all_rays(&m);
+    compare_random_bundles(&m);
     assert_true(m.n > 500);
     print_message("%d of %d exact rays are invalid\n", m.lost, m.through);
     assert_true(m.through > 1000 && 1000 * m.lost < m.through);
@@ -220,27 +225,28 @@ static void check_errors(void)
     assert_true(m.off < 0.01);
 }
 
-TEST(cylinder)
+TEST(cylinder_model_matches_exact_rays)
 {
-    bake_doublet("", "shape cylinder x\n", "");
+    bake_doublet_with_surfaces("", "shape cylinder x\n", "");
     assert_int_equal(model.header->basis,
                      GLINT_BASIS_LENS + GLINT_MIRRORS_X + GLINT_MIRRORS_Y);
-    check_errors();
+    check_ray_errors();
     free_model();
 }
 
-TEST(toric_aside)
+TEST(decentred_toric_model_matches_exact_rays)
 {
-    bake_doublet("group decentre 0.6 0\n", "shape toric y 300\n", "end\n");
+    bake_doublet_with_surfaces("group decentre 0.6 0\n", "shape toric y 300\n",
+                               "end\n");
     assert_int_equal(model.header->basis, GLINT_BASIS_LENS + GLINT_MIRRORS_Y);
-    check_errors();
+    check_ray_errors();
     free_model();
 }
 
-TEST(tilted)
+TEST(tilted_model_matches_exact_rays)
 {
-    bake_doublet("group decentre 0 0.4 tilt 2 1\n", "", "end\n");
+    bake_doublet_with_surfaces("group decentre 0 0.4 tilt 2 1\n", "", "end\n");
     assert_int_equal(model.header->basis, GLINT_BASIS_LENS);
-    check_errors();
+    check_ray_errors();
     free_model();
 }

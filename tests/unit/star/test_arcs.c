@@ -17,9 +17,9 @@
 #include "support/test.h"
 
 /* Returns the mean of |F|^2 / A^2 times q^3 / AT^3 for q from 0.8 to 1.2 AT. */
-static double mean_pattern(double (*f)(const struct glint_arcs *, double,
-                                       double),
-                           const struct glint_arcs *arcs, double at, double phi)
+static double
+mean_scaled_pattern(double (*f)(const struct glint_arcs *, double, double),
+                    const struct glint_arcs *arcs, double at, double phi)
 {
     enum { N = 400 };
     double sum = 0;
@@ -32,18 +32,20 @@ static double mean_pattern(double (*f)(const struct glint_arcs *, double,
     return sum;
 }
 
-static double circle_pattern(const struct glint_arcs *arcs, double x, double y)
+static double compute_circle_pattern(const struct glint_arcs *arcs, double x,
+                                     double y)
 {
     (void)arcs;
     return glint_psf_transform(0, 0, x, y);
 }
 
-static double polygon_pattern(const struct glint_arcs *arcs, double x, double y)
+static double compute_polygon_pattern(const struct glint_arcs *arcs, double x,
+                                      double y)
 {
     return glint_psf_transform(arcs->n, arcs->rotation_deg, x, y);
 }
 
-TEST(ends)
+TEST(arcs_end_at_the_corners)
 {
     static const int blades[] = {3, 5, 6, 8, 9, 64};
 
@@ -54,19 +56,20 @@ TEST(ends)
             double one, other;
 
             glint_arcs_init(&arcs, blades[i], 10, 0.9999);
-            one = mean_pattern(glint_arcs_transform, &arcs, at, phi);
-            other = mean_pattern(circle_pattern, &arcs, at, phi);
+            one = mean_scaled_pattern(glint_arcs_transform, &arcs, at, phi);
+            other = mean_scaled_pattern(compute_circle_pattern, &arcs, at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
             glint_arcs_init(&arcs, blades[i], 10, 1e-3);
-            one = mean_pattern(glint_arcs_transform, &arcs, at, phi);
-            other = mean_pattern(polygon_pattern, &arcs, at, phi);
+            one = mean_scaled_pattern(glint_arcs_transform, &arcs, at, phi);
+            other =
+                mean_scaled_pattern(compute_polygon_pattern, &arcs, at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
         }
 }
 
 /* Checks that the two methods of summing an arc agree at q = 5, where they
  * are switched. */
-TEST(no_step)
+TEST(switching_methods_causes_no_step)
 {
     struct glint_arcs arcs;
 
@@ -86,7 +89,7 @@ TEST(no_step)
 
 /* Checks the sum over a circle, including fans and the light between them,
  * exactly, and single directions roughly. */
-TEST(far)
+TEST(distant_pattern_sums_over_a_circle)
 {
     enum { PHIS = 48 };
 
@@ -98,8 +101,9 @@ TEST(far)
         for (int i = 0; i < PHIS; i++) {
             const double phi = 2 * GLINT_PI * i / PHIS, at = k < 12 ? 12 : 60;
             const double one =
-                mean_pattern(glint_arcs_transform, &arcs, at, phi);
-            const double other = mean_pattern(glint_arcs_far, &arcs, at, phi);
+                mean_scaled_pattern(glint_arcs_transform, &arcs, at, phi);
+            const double other =
+                mean_scaled_pattern(glint_arcs_far, &arcs, at, phi);
 
             assert_true(other > 0.3 * one && other < 3 * one);
             exact += one;
@@ -111,7 +115,7 @@ TEST(far)
 
 /* Returns the number of positions on a circle of R pixels that are brighter
  * than both neighbours and the mean. */
-static int count_peaks(const struct glint_psf *p, double r)
+static int count_peaks_on_circle(const struct glint_psf *p, double r)
 {
     enum { N = 720 };
     double light[N], mean = 0;
@@ -132,7 +136,7 @@ static int count_peaks(const struct glint_psf *p, double r)
 
 /* Checks that 5, 6 and 8 blades give 10, 6 and 8 fans, which rotate with the
  * blades. */
-TEST(fans)
+TEST(fans_rotate_with_the_blades)
 {
     static const int blades[3] = {5, 6, 8}, fans[3] = {10, 6, 8};
 
@@ -142,11 +146,11 @@ TEST(fans)
 
         assert_ok(glint_psf_init_iris(&one, blades[i], 20, 1, 0.2, 0));
         assert_ok(glint_psf_init_iris(&turned, blades[i], 21, 1, 0.2, 0));
-        assert_int_equal(count_peaks(&one, 200), fans[i]);
+        assert_int_equal(count_peaks_on_circle(&one, 200), fans[i]);
         for (int k = 0; k < 90; k++) {
             const double phi = k * GLINT_PI / 180, turn = GLINT_PI / 180;
 
-            /* y points down here */
+            /* y points down in glint_psf_light() */
             glint_psf_light(&one, 40 * cos(phi), 40 * sin(phi), a);
             glint_psf_light(&turned, 40 * cos(phi - turn), 40 * sin(phi - turn),
                             b);
@@ -159,7 +163,7 @@ TEST(fans)
 
 /* Checks that a soft edge preserves the centre and removes the light far
  * out. */
-TEST(soft)
+TEST(soft_edge_removes_distant_light)
 {
     struct glint_psf hard, soft;
     double a[3], b[3];
@@ -178,8 +182,8 @@ TEST(soft)
     glint_psf_finish(&soft);
 }
 
-static struct glint_star_tables *make_tables(int n_blades, double round,
-                                             double soft)
+static struct glint_star_tables *make_star_tables(int n_blades, double round,
+                                                  double soft)
 {
     const struct glint_star_optics o = {.n_blades = n_blades,
                                         .f_number = 2 / 0.55,
@@ -194,11 +198,11 @@ static struct glint_star_tables *make_tables(int n_blades, double round,
 
 /* Returns the full width at half maximum, pixels, of the upward spike of a
  * lamp of RADIUS pixels, 100 pixels from it. */
-static int spike_width(double round, double soft, double radius)
+static int measure_spike_width_px(double round, double soft, double radius)
 {
     enum { SIDE = 255, ROW = 27 };
-    struct glint_star_tables *t = make_tables(6, round, soft);
-    struct glint_star_light lamp = star_canvas_light(127.5, 127.5, 20);
+    struct glint_star_tables *t = make_star_tables(6, round, soft);
+    struct glint_star_light lamp = star_canvas_make_light(127.5, 127.5, 20);
     int32_t *linear_q20 = malloc(3 * SIDE * SIDE * sizeof *linear_q20);
     const int32_t *row = linear_q20 + 3 * SIDE * ROW;
     struct star_canvas canvas;
@@ -207,8 +211,8 @@ static int spike_width(double round, double soft, double radius)
     assert_non_null(linear_q20);
     lamp.radius_q8 = (int32_t)(256 * radius);
     star_canvas_open(&canvas, SIDE, SIDE, 5, 1, 1);
-    star_canvas_draw(&canvas, t, &lamp, 1, glint_real_of(0x1p-21),
-                     GLINT_LINEAR_Q20, linear_q20);
+    star_canvas_draw_light(&canvas, t, &lamp, 1, glint_real_of(0x1p-21),
+                           GLINT_LINEAR_Q20, linear_q20);
     star_canvas_close(&canvas);
     for (int x = 90; x < 165; x++)
         n += 2 * row[3 * x + 1] > row[3 * 127 + 1];
@@ -219,13 +223,13 @@ static int spike_width(double round, double soft, double radius)
 
 /* Checks that a lamp's extent widens fans as it widens lines, and that
  * almost straight blades give almost the same as straight ones. */
-TEST(wide_lamp)
+TEST(wide_lamp_widens_fans)
 {
     for (int radius = 4; radius <= 16; radius *= 2) {
-        const int straight = spike_width(0, 0, radius);
-        const int close = spike_width(0.001, 0.001, radius);
-        const int round = spike_width(0.03, 0, radius);
-        const int soft = spike_width(0, 0.003, radius);
+        const int straight = measure_spike_width_px(0, 0, radius);
+        const int close = measure_spike_width_px(0.001, 0.001, radius);
+        const int round = measure_spike_width_px(0.03, 0, radius);
+        const int soft = measure_spike_width_px(0, 0.003, radius);
 
         assert_int_equal(close, straight);
         assert_true(4 * round > 3 * straight && 3 * round < 4 * straight);
@@ -235,11 +239,11 @@ TEST(wide_lamp)
 
 /* Checks that blades of curvature 1 have the tables of a circle, and those
  * close to it a halo as even. */
-TEST(to_circle)
+TEST(round_blades_become_a_circle)
 {
-    struct glint_star_tables *circle = make_tables(0, 0, 0);
-    struct glint_star_tables *one = make_tables(6, 1, 0);
-    struct glint_star_tables *near = make_tables(6, 0.97, 0);
+    struct glint_star_tables *circle = make_star_tables(0, 0, 0);
+    struct glint_star_tables *one = make_star_tables(6, 1, 0);
+    struct glint_star_tables *near = make_star_tables(6, 0.97, 0);
 
     assert_int_equal(glint_star_tables_bytes(one),
                      glint_star_tables_bytes(circle));

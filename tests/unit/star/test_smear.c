@@ -30,8 +30,8 @@ struct stop {
     struct glint_star_tables *tables;
 };
 
-static void open_stop(struct stop *s, const struct glint_iris *iris,
-                      double airy_px)
+static void open_stop_with_iris(struct stop *s, const struct glint_iris *iris,
+                                double airy_px)
 {
     struct glint_star_optics o = {.n_blades = 8,
                                   .rotation_deg = 10,
@@ -51,7 +51,7 @@ static void open_stop(struct stop *s, const struct glint_iris *iris,
     assert_ok(glint_star_tables_make(&s->tables, &o));
 }
 
-static void close_stop(struct stop *s)
+static void free_stop(struct stop *s)
 {
     glint_star_tables_free(s->tables);
     glint_smear_finish(&s->smear);
@@ -62,18 +62,18 @@ static void draw_star(const struct stop *s, double power_log2, int32_t *to)
 {
     struct star_canvas canvas;
     const struct glint_star_light light =
-        star_canvas_light(150.3, 150.6, power_log2);
+        star_canvas_make_light(150.3, 150.6, power_log2);
 
     star_canvas_open(&canvas, SIDE, SIDE, 5, 1, 0);
-    star_canvas_draw(&canvas, s->tables, &light, 1, glint_real_of(0),
-                     GLINT_LINEAR_Q20, to);
+    star_canvas_draw_light(&canvas, s->tables, &light, 1, glint_real_of(0),
+                           GLINT_LINEAR_Q20, to);
     star_canvas_close(&canvas);
 }
 
 /* ------------------------------------------------------------------ direct */
 
 /* Sets the amplitudes of the stop and the integral of their squares. */
-static void set_amplitudes(const struct stop *s)
+static void set_stop_amplitudes(const struct stop *s)
 {
     all_light = 0;
     for (int j = 0; j < 2 * FINE; j++)
@@ -96,7 +96,7 @@ static void set_amplitudes(const struct stop *s)
 }
 
 /* Returns the power spectrum |G(q)|^2 of the stop's amplitudes. */
-static double power_spectrum(double qx, double qy)
+static double compute_power_spectrum(double qx, double qy)
 {
     const double step = -2 * GLINT_PI / FINE;
     double re = 0, im = 0;
@@ -123,7 +123,7 @@ static double power_spectrum(double qx, double qy)
 
 /* Returns the green light of the pixel at (X, Y) from the light, y down, by
  * direct summation. */
-static double sum_direct(double x, double y, double airy_px)
+static double sum_pixel_directly(double x, double y, double airy_px)
 {
     double sum = 0, weights = 0;
 
@@ -139,14 +139,15 @@ static double sum_direct(double x, double y, double airy_px)
             const double at_x = x + (k % POINTS + 0.5) / POINTS - 0.5;
             const double at_y = y + (row + 0.5) / POINTS - 0.5;
 
-            sum += rgb[1] * power_spectrum(at_x / (2 * a), -at_y / (2 * a)) /
+            sum += rgb[1] *
+                   compute_power_spectrum(at_x / (2 * a), -at_y / (2 * a)) /
                    (4 * a * a * all_light * POINTS * POINTS);
         }
     }
     return sum / weights;
 }
 
-static double to_code(double light)
+static double encode_srgb(double light)
 {
     const double held = fmin(fmax(light, 0), 1);
 
@@ -155,7 +156,7 @@ static double to_code(double light)
 }
 
 /* Checks stars against direct summation, near the light and further out. */
-TEST(sum_direct)
+TEST(stars_match_direct_summation)
 {
     const struct glint_iris iris = {.dust = 0.1, .dust_seed = 4};
     const double airy_px = 1, power_log2 = 9;
@@ -163,8 +164,8 @@ TEST(sum_direct)
     struct stop s;
     double squares = 0, most = 0;
 
-    open_stop(&s, &iris, airy_px);
-    set_amplitudes(&s);
+    open_stop_with_iris(&s, &iris, airy_px);
+    set_stop_amplitudes(&s);
     draw_star(&s, power_log2, linear);
     for (int k = 0; k < n; k++) {
         const double r = 6 * exp2(k * 2.5 / n), phi = 2.4 * k;
@@ -172,25 +173,26 @@ TEST(sum_direct)
         const int y = (int)(150.6 + r * sin(phi));
         const double light =
             exp2(power_log2) *
-            sum_direct(x + 0.5 - 150.3, y + 0.5 - 150.6, airy_px);
+            sum_pixel_directly(x + 0.5 - 150.3, y + 0.5 - 150.6, airy_px);
         const double off =
-            to_code(linear[3 * (y * SIDE + x) + 1] * 0x1p-20) - to_code(light);
+            encode_srgb(linear[3 * (y * SIDE + x) + 1] * 0x1p-20) -
+            encode_srgb(light);
 
         squares += off * off / n;
         most = fmax(most, fabs(off));
         if (getenv("SHOW"))
             fprintf(stderr, "r %.1f: %.2f, direct %.2f\n", r,
-                    to_code(linear[3 * (y * SIDE + x) + 1] * 0x1p-20),
-                    to_code(light));
+                    encode_srgb(linear[3 * (y * SIDE + x) + 1] * 0x1p-20),
+                    encode_srgb(light));
     }
     printf("smear: %.1f dB against direct summation, %.1f codes at most\n",
            10 * log10(255 * 255 / squares), most);
     assert_true(10 * log10(255 * 255 / squares) > 40);
-    close_stop(&s);
+    free_stop(&s);
 }
 
 /* Checks the total light, for any size of the pattern. */
-TEST(energy)
+TEST(total_light_does_not_depend_on_size)
 {
     const struct glint_iris iris = {.dust = 0.2, .dust_seed = 7};
 
@@ -200,7 +202,7 @@ TEST(energy)
         struct stop s;
         double sum = 0, beyond;
 
-        open_stop(&s, &iris, airy_px);
+        open_stop_with_iris(&s, &iris, airy_px);
         draw_star(&s, 10, linear);
         for (int i = 1; i < 3 * SIDE * SIDE; i += 3)
             sum += linear[i] * 0x1p-30;
@@ -212,53 +214,55 @@ TEST(energy)
                sum + beyond, beyond);
         assert_true(fabs(sum + beyond - 1) < 0.01);
         glint_psf_finish(&psf);
-        close_stop(&s);
+        free_stop(&s);
     }
 }
 
 /* Checks that tiles and workers do not change the image, bit by bit. */
-TEST(same_bits)
+TEST(image_is_bit_identical)
 {
     const struct glint_iris iris = {.dust = 0.05, .dust_seed = 3};
-    const struct glint_star_light light = star_canvas_light(80.2, 33.9, 14);
+    const struct glint_star_light light =
+        star_canvas_make_light(80.2, 33.9, 14);
     struct stop s;
 
-    open_stop(&s, &iris, 0.5);
+    open_stop_with_iris(&s, &iris, 0.5);
     for (int k = 3; k <= 6; k++) {
         struct star_canvas canvas;
 
         star_canvas_open(&canvas, SIDE, SIDE, k, 1 + k % 3, (uint32_t)k);
-        star_canvas_draw(&canvas, s.tables, &light, 1, glint_real_of(1e-5),
-                         GLINT_LINEAR_Q20, k == 3 ? linear : again);
+        star_canvas_draw_light(&canvas, s.tables, &light, 1,
+                               glint_real_of(1e-5), GLINT_LINEAR_Q20,
+                               k == 3 ? linear : again);
         star_canvas_close(&canvas);
         if (k > 3)
             assert_memory_equal(again, linear, sizeof linear);
     }
-    close_stop(&s);
+    free_stop(&s);
 }
 
 /* Checks that a white mask equals no mask, and that a black one gives no
  * smear. */
-TEST(white_and_black)
+TEST(white_mask_is_no_mask)
 {
     uint8_t mask[4] = {255, 255, 255, 255};
     const struct glint_iris iris = {
         .mask = mask, .mask_width = 2, .mask_height = 2};
     struct stop s;
 
-    open_stop(&s, &iris, 0.5);
+    open_stop_with_iris(&s, &iris, 0.5);
     assert_true(fabs(s.smear.clear - 1) < 1e-9);
     assert_true(fabs(glint_smear_within(&s.smear, 100)) < 1e-9);
-    close_stop(&s);
+    free_stop(&s);
     memset(mask, 0, sizeof mask);
-    open_stop(&s, &iris, 0.5);
+    open_stop_with_iris(&s, &iris, 0.5);
     assert_null(s.smear.sum);
-    close_stop(&s);
+    free_stop(&s);
 }
 
 /* Checks that a mask with a hole gives the pattern of the hole: the smaller
  * the hole, the wider the first dark ring. */
-TEST(hole)
+TEST(smaller_hole_gives_a_wider_ring)
 {
     enum { N = 128 };
     uint8_t mask[N * N];
@@ -269,7 +273,7 @@ TEST(hole)
 
     for (int i = 0; i < N * N; i++)
         mask[i] = hypot(i % N - 63.5, i / N - 63.5) < N / 8.0 ? 255 : 0;
-    open_stop(&s, &iris, 3);
+    open_stop_with_iris(&s, &iris, 3);
     assert_true(s.smear.clear < 1e-6);
     draw_star(&s, 12, linear);
     for (int r = 4; r < 25; r++) {
@@ -282,7 +286,7 @@ TEST(hole)
         }
     }
     printf("smear: dark at %.0f px\n", dark);
-    /* 1.22 * 3 px * 4 */
+    /* radius of the dark ring: 1.22 * 3 px * 4 */
     assert_true(fabs(dark - 14.64) < 1.6);
-    close_stop(&s);
+    free_stop(&s);
 }

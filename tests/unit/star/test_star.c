@@ -24,26 +24,26 @@ enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT };
 
 /* Draws N lights into LINEAR_Q20, linear light, down to a light of FAINTEST.
  * Returns the reported number of lit pixels. */
-static double draw_down_to_light(const struct glint_star_tables *t,
-                                 const struct glint_star_light *lights, int n,
-                                 struct glint_real faintest,
-                                 int32_t *linear_q20)
+static double draw_down_to_faintest_light(const struct glint_star_tables *t,
+                                          const struct glint_star_light *lights,
+                                          int n, struct glint_real faintest,
+                                          int32_t *linear_q20)
 {
     struct star_canvas c;
     double pixels;
 
     star_canvas_open(&c, WIDTH, HEIGHT, 5, 1, 1);
-    pixels = (double)star_canvas_draw(&c, t, lights, n, faintest,
-                                      GLINT_LINEAR_Q20, linear_q20);
+    pixels = (double)star_canvas_draw_light(&c, t, lights, n, faintest,
+                                            GLINT_LINEAR_Q20, linear_q20);
     star_canvas_close(&c);
     return pixels;
 }
 
-static void draw_linear(const struct glint_star_tables *t,
-                        const struct glint_star_light *lights, int n,
-                        int32_t *linear_q20)
+static void draw_lights_linear(const struct glint_star_tables *t,
+                               const struct glint_star_light *lights, int n,
+                               int32_t *linear_q20)
 {
-    draw_down_to_light(t, lights, n, glint_real_of(0), linear_q20);
+    draw_down_to_faintest_light(t, lights, n, glint_real_of(0), linear_q20);
 }
 
 static int32_t linear_q20[N];
@@ -51,7 +51,7 @@ static uint8_t codes[N];
 
 /* Returns the sum of channel C over all pixels, divided by the light of
  * power 2^10. */
-static double sum_channel(const int32_t *q20, int c)
+static double sum_channel_of_pixels(const int32_t *q20, int c)
 {
     double sum = 0;
 
@@ -60,7 +60,7 @@ static double sum_channel(const int32_t *q20, int c)
     return sum;
 }
 
-static double light_at(double x, double y)
+static double green_light_at(double x, double y)
 {
     return star_canvas_green(linear_q20, WIDTH, x, y);
 }
@@ -69,7 +69,7 @@ static double light_at(double x, double y)
 
 /* Returns the number of peaks above twice the mean on a circle of RADIUS
  * pixels. */
-static int count_spikes(double radius)
+static int count_spikes_on_circle(double radius)
 {
     enum { STEPS = 720 };
     double ring[STEPS], mean = 0;
@@ -78,7 +78,8 @@ static int count_spikes(double radius)
     for (int i = 0; i < STEPS; i++) {
         const double a = 2 * GLINT_PI * (i + 0.5) / STEPS;
 
-        ring[i] = light_at(48.5 + radius * cos(a), 41.5 + radius * sin(a));
+        ring[i] =
+            green_light_at(48.5 + radius * cos(a), 41.5 + radius * sin(a));
         mean += ring[i] / STEPS;
     }
     for (int i = 0; i < 2 * STEPS; i++) {
@@ -90,24 +91,25 @@ static int count_spikes(double radius)
     return n;
 }
 
-TEST(spikes)
+TEST(even_and_odd_blades_give_their_spikes)
 {
     static const int blades[] = {3, 5, 6, 7, 8, 9};
 
     for (int i = 0; i < 6; i++) {
         const int n = blades[i];
-        struct glint_star_tables *t = star_canvas_tables(n, 11, 0.3);
-        const struct glint_star_light light = star_canvas_light(48.5, 41.5, 10);
+        struct glint_star_tables *t = star_canvas_make_tables(n, 11, 0.3);
+        const struct glint_star_light light =
+            star_canvas_make_light(48.5, 41.5, 10);
 
-        draw_linear(t, &light, 1, linear_q20);
-        assert_int_equal(count_spikes(32), n % 2 ? 2 * n : n);
+        draw_lights_linear(t, &light, 1, linear_q20);
+        assert_int_equal(count_spikes_on_circle(32), n % 2 ? 2 * n : n);
         glint_star_tables_free(t);
     }
 }
 
 /* Checks that the first dark ring of a round stop is at 1.21967 times
  * wavelength times f-number. */
-TEST(ring)
+TEST(first_dark_ring_of_a_circle)
 {
     double dark = 0, least = 1;
 
@@ -122,20 +124,21 @@ TEST(ring)
 
 /* Checks that in an image, which sums all wavelengths, the dark ring is that
  * of 550 nm, measured in green. */
-TEST(drawn_ring)
+TEST(drawn_dark_ring_is_that_of_550_nm)
 {
-    struct glint_star_tables *t = star_canvas_tables(0, 0, 5);
-    const struct glint_star_light light = star_canvas_light(48.5, 41.5, 10);
+    struct glint_star_tables *t = star_canvas_make_tables(0, 0, 5);
+    const struct glint_star_light light =
+        star_canvas_make_light(48.5, 41.5, 10);
     double dark = 0, least = 1e9;
 
-    draw_linear(t, &light, 1, linear_q20);
+    draw_lights_linear(t, &light, 1, linear_q20);
     for (double r = 4; r < 9; r += 0.01) {
         double here = 0;
 
         for (int i = 0; i < 64; i++) {
             const double a = 2 * GLINT_PI * i / 64;
 
-            here += light_at(48.5 + r * cos(a), 41.5 + r * sin(a)) / 64;
+            here += green_light_at(48.5 + r * cos(a), 41.5 + r * sin(a)) / 64;
         }
         dark = here < least ? r : dark;
         least = fmin(least, here);
@@ -146,25 +149,27 @@ TEST(drawn_ring)
 }
 
 /* Checks that the light inside and outside the image sums to the total. */
-TEST(energy)
+TEST(light_sums_to_the_total)
 {
     static const int blades[] = {0, 3, 5, 8, 64};
     static const double airy_px[] = {0.03, 0.12, 0.4, 1.1, 2.5};
 
     for (int i = 0; i < 25; i++) {
         struct glint_star_tables *t =
-            star_canvas_tables(blades[i % 5], 5, airy_px[i / 5]);
-        const struct glint_star_light light = star_canvas_light(48.3, 41.7, 10);
+            star_canvas_make_tables(blades[i % 5], 5, airy_px[i / 5]);
+        const struct glint_star_light light =
+            star_canvas_make_light(48.3, 41.7, 10);
         struct glint_psf psf;
 
         assert_ok(glint_psf_init(&psf, blades[i % 5], 5, airy_px[i / 5]));
-        draw_linear(t, &light, 1, linear_q20);
+        draw_lights_linear(t, &light, 1, linear_q20);
         for (int c = 0; c < 3; c++) {
             /* The light outside the image's sides is about that outside a
              * circle of 48 pixels. */
             const double beyond = glint_psf_beyond(&psf, 48, c);
 
-            assert_true(fabs(sum_channel(linear_q20, c) + beyond - 1) < 0.01);
+            assert_true(
+                fabs(sum_channel_of_pixels(linear_q20, c) + beyond - 1) < 0.01);
         }
         glint_psf_finish(&psf);
         glint_star_tables_free(t);
@@ -177,8 +182,9 @@ enum { WAVES = 48 };
 
 /* Sets RGB to the light of a pixel at (X, Y) from the light, averaged over
  * POINTS^2 points. */
-static void sum_pixel(int n_blades, double rotation_deg, double airy_px,
-                      double x, double y, int points, double rgb[3])
+static void sum_pixel_directly(int n_blades, double rotation_deg,
+                               double airy_px, double x, double y, int points,
+                               double rgb[3])
 {
     const double area =
         n_blades ? 0.5 * n_blades * sin(2 * GLINT_PI / n_blades) : GLINT_PI;
@@ -207,7 +213,7 @@ static void sum_pixel(int n_blades, double rotation_deg, double airy_px,
     }
 }
 
-static uint8_t to_code(double light)
+static uint8_t encode_srgb(double light)
 {
     const double held = fmin(fmax(light, 0), 1);
 
@@ -218,29 +224,30 @@ static uint8_t to_code(double light)
 
 /* Direct summation is done for every second pixel, in a chessboard pattern;
  * the others stay 0. */
-static bool is_summed(int i)
+static bool is_pixel_summed_directly(int i)
 {
     return (i % WIDTH + i / WIDTH) % 2 == 0;
 }
 
-static void sum_picture(int n_blades, double rotation_deg, double airy_px,
-                        int points, double (*direct)[3])
+static void sum_picture_directly(int n_blades, double rotation_deg,
+                                 double airy_px, int points,
+                                 double (*direct)[3])
 {
     for (int i = 0; i < N / 3; i++) {
         const double x = i % WIDTH + 0.5 - 30.3, y = i / WIDTH + 0.5 - 25.6;
         const double r = hypot(x, y);
         const int times = r < 2 ? 8 : r < 6 ? 2 : 1;
 
-        if (is_summed(i))
-            sum_pixel(n_blades, rotation_deg, airy_px, x, y, points * times,
-                      direct[i]);
+        if (is_pixel_summed_directly(i))
+            sum_pixel_directly(n_blades, rotation_deg, airy_px, x, y,
+                               points * times, direct[i]);
     }
 }
 
 /* Checks that images of three stops at three powers have at least 50 dB. All
  * pixels of so small an image are near the light; in 1080p the same errors
  * would give 24 dB more. */
-TEST(direct)
+TEST(images_match_direct_summation)
 {
     static const struct {
         int n_blades;
@@ -257,19 +264,19 @@ TEST(direct)
     for (int k = 0; k < 9; k++) {
         const int s = k / 3, p = k % 3, n = stop[s].n_blades;
         struct glint_star_tables *t =
-            star_canvas_tables(n, stop[s].rotation_deg, stop[s].airy_px);
+            star_canvas_make_tables(n, stop[s].rotation_deg, stop[s].airy_px);
         const struct glint_star_light light =
-            star_canvas_light(30.3, 25.6, power_log2[p]);
+            star_canvas_make_light(30.3, 25.6, power_log2[p]);
         double square = 0, db;
 
         if (p == 0)
-            sum_picture(n, stop[s].rotation_deg, stop[s].airy_px, points,
-                        direct);
-        star_canvas_draw(&c, t, &light, 1, least, GLINT_RGB24, codes);
+            sum_picture_directly(n, stop[s].rotation_deg, stop[s].airy_px,
+                                 points, direct);
+        star_canvas_draw_light(&c, t, &light, 1, least, GLINT_RGB24, codes);
         for (int i = 0; i < N; i++)
-            square += is_summed(i / 3)
-                          ? pow(codes[i] - to_code(direct[i / 3][i % 3] *
-                                                   exp2(power_log2[p])),
+            square += is_pixel_summed_directly(i / 3)
+                          ? pow(codes[i] - encode_srgb(direct[i / 3][i % 3] *
+                                                       exp2(power_log2[p])),
                                 2)
                           : 0;
         db = 10 * log10(255.0 * 255 * N / 2 / square);
@@ -285,32 +292,32 @@ TEST(direct)
 /* Returns the total light along a line across the spike, 30 px right of the
  * light. Sets *WIDTH to the number of its pixels that are at least half as
  * bright as its middle. */
-static double measure_spike(double *width)
+static double measure_spike_profile(double *width)
 {
     double sum = 0;
 
     *width = 0;
     for (int i = -140; i <= 140; i++) {
-        const double light = light_at(60.5, 41.5 + 0.1 * i);
+        const double light = green_light_at(60.5, 41.5 + 0.1 * i);
 
         sum += light * 0.1;
-        *width += light > 0.5 * light_at(60.5, 41.5) ? 0.1 : 0;
+        *width += light > 0.5 * green_light_at(60.5, 41.5) ? 0.1 : 0;
     }
     return sum;
 }
 
 /* Checks that a lamp that is a disc has a spike as wide as the disc, with as
  * much light as that of a point. */
-TEST(extent)
+TEST(wide_lamp_widens_its_spikes)
 {
-    struct glint_star_tables *t = star_canvas_tables(4, 45, 0.5);
-    struct glint_star_light light = star_canvas_light(30.5, 41.5, 10);
+    struct glint_star_tables *t = star_canvas_make_tables(4, 45, 0.5);
+    struct glint_star_light light = star_canvas_make_light(30.5, 41.5, 10);
     double width[2], sum[2];
 
     for (int i = 0; i < 2; i++) {
         light.radius_q8 = i * 4 * 256;
-        draw_linear(t, &light, 1, linear_q20);
-        sum[i] = measure_spike(&width[i]);
+        draw_lights_linear(t, &light, 1, linear_q20);
+        sum[i] = measure_spike_profile(&width[i]);
     }
     print_message("a spike is %.1f px wide, of a disc %.1f, with %.3f times "
                   "the light\n",
@@ -323,8 +330,8 @@ TEST(extent)
 
 /* Returns the max relative difference between the drawn light of power 2^25
  * at PLACE and its tables. */
-static double max_difference(const struct glint_star_tables *t,
-                             const double place[2])
+static double max_relative_difference(const struct glint_star_tables *t,
+                                      const double place[2])
 {
     double most = 0;
 
@@ -345,21 +352,21 @@ static double max_difference(const struct glint_star_tables *t,
 
 /* Checks that far from the light, where the pixels of a row are
  * interpolated, they are within 3 % of the tables. */
-TEST(far)
+TEST(distant_pixels_match_the_tables)
 {
     static const double place[][2] = {
         {-60, 41}, {-250.3, 20}, {48, -180}, {300, 400}, {-2000, 900}};
     double most = 0;
 
     for (int n = 3; n <= 8; n += 5) {
-        struct glint_star_tables *t = star_canvas_tables(n, 13 * n, 0.4);
+        struct glint_star_tables *t = star_canvas_make_tables(n, 13 * n, 0.4);
 
         for (int i = 0; i < 5; i++) {
             const struct glint_star_light light =
-                star_canvas_light(place[i][0], place[i][1], 25);
+                star_canvas_make_light(place[i][0], place[i][1], 25);
 
-            draw_linear(t, &light, 1, linear_q20);
-            most = fmax(most, max_difference(t, place[i]));
+            draw_lights_linear(t, &light, 1, linear_q20);
+            most = fmax(most, max_relative_difference(t, place[i]));
         }
         glint_star_tables_free(t);
     }
@@ -367,7 +374,7 @@ TEST(far)
     assert_true(most < 0.03);
 }
 
-static int count_lit(void)
+static int count_lit_pixels(void)
 {
     int n = 0;
 
@@ -379,22 +386,23 @@ static int count_lit(void)
 /* Checks the predicted number of pixels of a star: 0.75 to 1.2 times the lit
  * pixels for a round stop, and 1 to 2 times for six blades, as pixels of
  * spikes are counted twice. */
-TEST(pixels)
+TEST(predicts_the_number_of_pixels)
 {
     static const double place[][2] = {{48, 41}, {0, 0}, {-20, 60}};
     const struct glint_real least = {1 << 30, -30 - 12};
 
     for (int n = 0; n <= 6; n += 6) {
-        struct glint_star_tables *t = star_canvas_tables(n, 11, 0.3);
+        struct glint_star_tables *t = star_canvas_make_tables(n, 11, 0.3);
 
         for (int i = 0; i < 3; i++) {
             struct glint_star_light light =
-                star_canvas_light(place[i][0], place[i][1], 8);
+                star_canvas_make_light(place[i][0], place[i][1], 8);
             double times;
 
             light.radius_q8 = 0;
-            times = draw_down_to_light(t, &light, 1, least, linear_q20);
-            times /= count_lit();
+            times =
+                draw_down_to_faintest_light(t, &light, 1, least, linear_q20);
+            times /= count_lit_pixels();
             print_message("%d blades: %.2f times the pixels that are lit\n", n,
                           times);
             assert_true(n ? times > 1 && times < 2
@@ -408,19 +416,19 @@ TEST(pixels)
 
 /* Checks, while a light moves by 0.05 pixels per frame, that neither the
  * total light nor any pixel jumps. */
-TEST(motion)
+TEST(moving_light_causes_no_jump)
 {
-    struct glint_star_tables *t = star_canvas_tables(7, 3, 0.2);
+    struct glint_star_tables *t = star_canvas_make_tables(7, 3, 0.2);
     static int32_t last_q20[N];
     double least = 2, most = 0, jump = 0, peak = 0;
 
     for (int frame = 0; frame < 200; frame++) {
         const struct glint_star_light light =
-            star_canvas_light(40 + 0.05 * frame, 41.2 + 0.013 * frame, 10);
+            star_canvas_make_light(40 + 0.05 * frame, 41.2 + 0.013 * frame, 10);
         double sum;
 
-        draw_linear(t, &light, 1, linear_q20);
-        sum = sum_channel(linear_q20, 1);
+        draw_lights_linear(t, &light, 1, linear_q20);
+        sum = sum_channel_of_pixels(linear_q20, 1);
         least = fmin(least, sum);
         most = fmax(most, sum);
         for (int i = 0; i < N; i++) {
@@ -441,7 +449,7 @@ TEST(motion)
 }
 
 /* Returns the angle of the spike near ANGLE_DEG, degrees, y up. */
-static double spike_angle(double angle_deg)
+static double find_spike_angle_deg(double angle_deg)
 {
     double sum = 0, turn = 0;
 
@@ -450,25 +458,27 @@ static double spike_angle(double angle_deg)
         double light = 0;
 
         for (double r = 20; r < 36; r += 0.25)
-            light += light_at(48.5 + r * cos(a), 41.5 - r * sin(a));
+            light += green_light_at(48.5 + r * cos(a), 41.5 - r * sin(a));
         sum += light;
         turn += d * light;
     }
     return angle_deg + turn / sum;
 }
 
-TEST(rotation)
+TEST(spikes_rotate_with_the_stop)
 {
-    const struct glint_star_light light = star_canvas_light(48.5, 41.5, 10);
+    const struct glint_star_light light =
+        star_canvas_make_light(48.5, 41.5, 10);
 
     for (int n = 5; n <= 8; n++) {
         double angle[2];
 
         for (int i = 0; i < 2; i++) {
-            struct glint_star_tables *t = star_canvas_tables(n, 20 + i, 0.3);
+            struct glint_star_tables *t =
+                star_canvas_make_tables(n, 20 + i, 0.3);
 
-            draw_linear(t, &light, 1, linear_q20);
-            angle[i] = spike_angle(20.5 + 180.0 / n);
+            draw_lights_linear(t, &light, 1, linear_q20);
+            angle[i] = find_spike_angle_deg(20.5 + 180.0 / n);
             glint_star_tables_free(t);
         }
         assert_true(fabs(angle[0] - 20 - 180.0 / n) < 0.1);

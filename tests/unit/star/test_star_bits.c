@@ -23,7 +23,7 @@ static struct star_any any;
 
 static const struct glint_real all = {0, 0};
 
-/* light of an eighth of a code near black, 1 / 26357 */
+/* light that changes a code near black by 1/8: 1 / 26357 */
 static const struct glint_real eighth = {0x4f8f7a00, -45};
 
 /* ------------------------------------------------------------------ bits */
@@ -36,27 +36,28 @@ static void draw_stars(const struct glint_star_light *lights, int n_lights,
     struct star_canvas c;
 
     star_canvas_open(&c, WIDTH, HEIGHT, tile_log2, n_workers, order);
-    star_canvas_draw(&c, &any.tables, lights, n_lights,
-                     format == GLINT_LINEAR_Q20 ? all : eighth, format, mem);
+    star_canvas_draw_light(&c, &any.tables, lights, n_lights,
+                           format == GLINT_LINEAR_Q20 ? all : eighth, format,
+                           mem);
     star_canvas_close(&c);
 }
 
 /* Checks that workers, tiles and the order of jobs do not change codes, bit
  * by bit. */
-TEST(same_bits)
+TEST(codes_are_bit_identical)
 {
     uint32_t seed = 7;
 
     for (int i = 0; i < 30; i++) {
         struct glint_star_light lights[STAR_CANVAS_LIGHTS];
-        const int n = 1 + rng_below(&seed, STAR_CANVAS_LIGHTS);
+        const int n = 1 + rng_int_below(&seed, STAR_CANVAS_LIGHTS);
 
-        star_any(&any, &seed);
+        star_make_random(&any, &seed);
         for (int k = 0; k < n; k++)
-            lights[k] = star_any_light(WIDTH, HEIGHT, &seed);
+            lights[k] = star_make_random_light(WIDTH, HEIGHT, &seed);
         for (int k = 0; k < 5; k++) {
             draw_stars(lights, n, k ? 2 + k : 6, k ? 1 + k % MAX_WORKERS : 1,
-                       rng_bits(&seed), GLINT_RGB24, k ? others : codes);
+                       rng_bits32(&seed), GLINT_RGB24, k ? others : codes);
             if (k)
                 assert_memory_equal(codes, others, N);
         }
@@ -65,18 +66,18 @@ TEST(same_bits)
 
 /* Checks that tiles do not change linear light, bit by bit, including
  * distant lights. */
-TEST(same_light)
+TEST(linear_light_is_bit_identical)
 {
     uint32_t seed = 99;
 
     for (int i = 0; i < 24; i++) {
         struct glint_star_light light;
 
-        star_any(&any, &seed);
-        light = star_any_light(WIDTH, HEIGHT, &seed);
+        star_make_random(&any, &seed);
+        light = star_make_random_light(WIDTH, HEIGHT, &seed);
         if (i % 2) {
-            light.x_q8 = rng_below(&seed, 60000) - 20000;
-            light.y_q8 = rng_below(&seed, 60000) - 20000;
+            light.x_q8 = rng_int_below(&seed, 60000) - 20000;
+            light.y_q8 = rng_int_below(&seed, 60000) - 20000;
         }
         draw_stars(&light, 1, 6, 1, 1, GLINT_LINEAR_Q20, linear_q20);
         for (int tile_log2 = 3; tile_log2 < 6; tile_log2++) {
@@ -93,7 +94,7 @@ static uint64_t hash_word(uint64_t h, uint64_t x)
 
 /* Checks that every machine draws the same: codes and linear light of 40
  * stars have this hash. */
-TEST(same_machines)
+TEST(images_match_their_hash)
 {
     const uint64_t want = UINT64_C(0x22829f9dca1d9529);
     uint64_t h = UINT64_C(14695981039346656037);
@@ -104,8 +105,8 @@ TEST(same_machines)
         struct glint_star_light light;
         bool is_lit = false;
 
-        star_any(&any, &seed);
-        light = star_any_light(WIDTH, HEIGHT, &seed);
+        star_make_random(&any, &seed);
+        light = star_make_random_light(WIDTH, HEIGHT, &seed);
         draw_stars(&light, 1, 5, 1, 1, GLINT_LINEAR_Q20, linear_q20);
         draw_stars(&light, 1, 5, 1, 1, GLINT_RGB24, codes);
         for (int k = 0; k < N; k++) {
@@ -127,7 +128,7 @@ TEST(same_machines)
  * of one code, from invisible to saturated: with the light at a pixel's
  * centre, at its corner, on the image's border, and 1000 px off-screen on
  * two sides. */
-TEST(powers)
+TEST(more_power_never_darkens_codes)
 {
     static const int place_q8[][2] = {{48 * 256 + 128, 41 * 256 + 128},
                                       {48 * 256, 41 * 256},
@@ -141,7 +142,7 @@ TEST(powers)
         struct star_canvas c;
         int lit = 0;
 
-        star_any(&any, &seed);
+        star_make_random(&any, &seed);
         star_canvas_open(&c, WIDTH, HEIGHT, 5, 1, 1);
         memset(others, 0, N);
         for (int ev = -20; ev <= 30; ev++) {
@@ -152,8 +153,8 @@ TEST(powers)
                 .power = real_of(1, ev),
                 .rgb_q14 = {16384, 16384, 16384}};
 
-            star_canvas_draw(&c, &any.tables, &light, 1, eighth, GLINT_RGB24,
-                             codes);
+            star_canvas_draw_light(&c, &any.tables, &light, 1, eighth,
+                                   GLINT_RGB24, codes);
             for (int k = 0; k < N; k++)
                 assert_true(codes[k] + 1 >= others[k]);
             memcpy(others, codes, N);
@@ -167,12 +168,12 @@ TEST(powers)
 
 /* Checks that invalid lights draw nothing: without power or colour, or
  * further away than the limit. */
-TEST(none)
+TEST(invalid_lights_draw_nothing)
 {
     struct glint_star_light light[4];
     uint32_t seed = 5;
 
-    star_any(&any, &seed);
+    star_make_random(&any, &seed);
     for (int i = 0; i < 4; i++)
         light[i] = (struct glint_star_light){
             48 * 256, 41 * 256, -1, real_of(1, 20), {16384, 16384, 16384}};

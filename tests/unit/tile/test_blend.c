@@ -16,32 +16,34 @@ enum { WIDTH = 91, HEIGHT = 53, N = WIDTH * HEIGHT, GREY_CODE = 120 };
 static int32_t light_q20[3 * N];
 static uint8_t *const px = (uint8_t *)light_q20;
 
-/* A pass of stripes; some cover, some emit light, some do both. */
+/* A pass that draws stripes: some are opaque or partly opaque, some emit light,
+ * some do both. */
 struct stripes {
     int step, light_q16[3];
     int linear;
     struct glint_box tile;
-    int even; /* offset of the stripes in rows of even numbers */
+    int even; /* offset of the stripes in even rows */
 };
 
-static int compute_cover(const struct stripes *s, int x, int y)
+static int compute_stripe_coverage(const struct stripes *s, int x, int y)
 {
     return (x / s->step + (y % 2 ? 0 : s->even)) % 5 * 64;
 }
 
-static int compute_light(const struct stripes *s, int x, int y, int channel)
+static int compute_stripe_light(const struct stripes *s, int x, int y,
+                                int channel)
 {
     return (x / 5 + y / 3) % 3 ? s->light_q16[channel] : 0;
 }
 
-static void *begin_row(const void *self, struct glint_box row, int worker)
+static void *begin_tile_row(const void *self, struct glint_box row, int worker)
 {
     (void)row;
     (void)worker;
     return *(struct stripes *const *)self;
 }
 
-static int set_tile(void *state, struct glint_box tile)
+static int set_current_tile(void *state, struct glint_box tile)
 {
     struct stripes *s = state;
 
@@ -49,8 +51,8 @@ static int set_tile(void *state, struct glint_box tile)
     return 1;
 }
 
-static enum glint_given set_rows(void *state,
-                                 const struct glint_pass_rows *rows)
+static enum glint_given
+set_coverage_and_light_of_rows(void *state, const struct glint_pass_rows *rows)
 {
     const struct stripes *s = state;
 
@@ -58,20 +60,22 @@ static enum glint_given set_rows(void *state,
         for (int i = 0; i < s->tile.x1 - s->tile.x0; i++) {
             const int x = s->tile.x0 + i, y = rows->y + row;
 
-            rows->cover->cover_q8[row][i] = (uint16_t)compute_cover(s, x, y);
+            rows->cover->cover_q8[row][i] =
+                (uint16_t)compute_stripe_coverage(s, x, y);
             for (int c = 0; c < 3; c++)
                 if (s->linear)
-                    rows->light_q20[c][i] = 16 * compute_light(s, x, y, c);
+                    rows->light_q20[c][i] =
+                        16 * compute_stripe_light(s, x, y, c);
                 else
                     rows->light->rgb_q16[c][row][i] =
-                        (uint16_t)compute_light(s, x, y, c);
+                        (uint16_t)compute_stripe_light(s, x, y, c);
         }
     return s->step < WIDTH ? GLINT_GIVES_COVER : GLINT_GIVES_LIGHT;
 }
 
 /* Draws the N_PASSES passes of S onto IMAGE. */
-static void draw_passes(const struct glint_image *image, int half,
-                        struct stripes *s, int n_passes)
+static void draw_stripe_passes(const struct glint_image *image, int half,
+                               struct stripes *s, int n_passes)
 {
     static struct glint_resolve resolve;
     static struct glint_light_rows light;
@@ -96,43 +100,45 @@ static void draw_passes(const struct glint_image *image, int half,
     glint_resolve_init(&resolve, image, 0, glint_sets_here());
     for (int i = 0; i < n_passes; i++) {
         s[i].linear = image->format == GLINT_LINEAR_Q20;
-        pass[i] = (struct glint_pass){&self[i], begin_row, set_tile, set_rows};
+        pass[i] =
+            (struct glint_pass){&self[i], begin_tile_row, set_current_tile,
+                                set_coverage_and_light_of_rows};
     }
     for (int row = 0; row < glint_tiles_down(&tiles); row++)
         glint_tile_rows(&tiles, pass, n_passes, row, 0, &scratch);
 }
 
-static double to_linear(double code)
+static double decode_srgb(double code)
 {
     const double x = code / 255;
 
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
 }
 
-static double to_code(double x)
+static double encode_srgb(double x)
 {
     return 255 * (x <= 0.0031308 ? 12.92 * x
                                  : 1.055 * pow(fmin(1, x), 1 / 2.4) - 0.055);
 }
 
 /* Returns the expected linear light of a channel of pixel (X, Y). */
-static double expected_light(const struct stripes *s, int n_passes, int half,
-                             int x, int y, int channel)
+static double compute_expected_light(const struct stripes *s, int n_passes,
+                                     int half, int x, int y, int channel)
 {
-    double light = to_linear(GREY_CODE);
+    double light = decode_srgb(GREY_CODE);
 
     x >>= half;
     y >>= half;
     for (int i = 0; i < n_passes; i++, s++) {
         if (s->step < WIDTH)
-            light *= 1 - compute_cover(s, x, y) / 256.;
-        light += fmin(1, compute_light(s, x, y, channel) / 65535.);
+            light *= 1 - compute_stripe_coverage(s, x, y) / 256.;
+        light += fmin(1, compute_stripe_light(s, x, y, channel) / 65535.);
     }
     return light;
 }
 
 /* Returns an image of uniform grey. */
-static struct glint_image grey_image(enum glint_pixel_format format)
+static struct glint_image make_grey_image(enum glint_pixel_format format)
 {
     struct glint_image image = glint_image_over(px, format, WIDTH, HEIGHT);
 
@@ -145,7 +151,7 @@ static struct glint_image grey_image(enum glint_pixel_format format)
     for (int i = 0; i < 4 * N && format == GLINT_YUYV; i++)
         px[i] = i % 2 ? 128 : GREY_CODE;
     for (int i = 0; i < 3 * N && format == GLINT_LINEAR_Q20; i++)
-        light_q20[i] = (int32_t)(to_linear(GREY_CODE) * 0x1p20);
+        light_q20[i] = (int32_t)(decode_srgb(GREY_CODE) * 0x1p20);
     return image;
 }
 
@@ -156,17 +162,18 @@ static struct stripes make_grey_stripes(int step, int light_q16)
 
 /* Checks that the first sample of each pixel, STEP bytes apart, is within
  * OFF of the expected value. */
-static void check_codes(enum glint_pixel_format format, int step, int half,
-                        struct stripes *s, int n_passes, double off)
+static void check_codes_of_pixels(enum glint_pixel_format format, int step,
+                                  int half, struct stripes *s, int n_passes,
+                                  double off)
 {
-    const struct glint_image image = grey_image(format);
+    const struct glint_image image = make_grey_image(format);
     double sum = 0;
 
-    draw_passes(&image, half, s, n_passes);
+    draw_stripe_passes(&image, half, s, n_passes);
     for (int i = 0; i < N; i++) {
         const int x = i % WIDTH, y = i / WIDTH;
         const double want =
-            to_code(expected_light(s, n_passes, half, x, y, 0)) -
+            encode_srgb(compute_expected_light(s, n_passes, half, x, y, 0)) -
             px[y * image.stride_bytes[0] + step * x];
 
         assert_true(fabs(want) < off);
@@ -175,7 +182,7 @@ static void check_codes(enum glint_pixel_format format, int step, int half,
     assert_true(fabs(sum / N) < 0.3);
 }
 
-TEST(codes)
+TEST(blends_codes)
 {
     for (int half = 0; half < 2; half++)
         for (int i = 0; i < 4; i++) {
@@ -183,44 +190,45 @@ TEST(codes)
                                    make_grey_stripes(i / 2 ? 4 : WIDTH, 21000)};
 
             for (int n = 1; n <= 2; n++) {
-                check_codes(GLINT_RGB24, 3, half, s, n, 1.0);
-                check_codes(GLINT_XRGB8888, 4, half, s, n, 1.0);
-                check_codes(GLINT_I444, 1, half, s, n, 1.0);
-                check_codes(GLINT_I420, 1, half, s, n, 1.0);
-                check_codes(GLINT_NV12, 1, half, s, n, 1.0);
-                check_codes(GLINT_YUYV, 2, half, s, n, 1.0);
-                check_codes(GLINT_GREY, 1, half, s, n, 1.0);
+                check_codes_of_pixels(GLINT_RGB24, 3, half, s, n, 1.0);
+                check_codes_of_pixels(GLINT_XRGB8888, 4, half, s, n, 1.0);
+                check_codes_of_pixels(GLINT_I444, 1, half, s, n, 1.0);
+                check_codes_of_pixels(GLINT_I420, 1, half, s, n, 1.0);
+                check_codes_of_pixels(GLINT_NV12, 1, half, s, n, 1.0);
+                check_codes_of_pixels(GLINT_YUYV, 2, half, s, n, 1.0);
+                check_codes_of_pixels(GLINT_GREY, 1, half, s, n, 1.0);
             }
         }
 }
 
 /* Checks two rows, of which one is completely covered where the other is not
  * covered. */
-TEST(rows)
+TEST(blends_two_rows)
 {
     struct stripes s = make_grey_stripes(64, 9000);
 
     s.even = 4;
-    check_codes(GLINT_RGB24, 3, 0, &s, 1, 1.0);
-    check_codes(GLINT_I420, 1, 0, &s, 1, 1.0);
-    check_codes(GLINT_YUYV, 2, 0, &s, 1, 1.0);
+    check_codes_of_pixels(GLINT_RGB24, 3, 0, &s, 1, 1.0);
+    check_codes_of_pixels(GLINT_I420, 1, 0, &s, 1, 1.0);
+    check_codes_of_pixels(GLINT_YUYV, 2, 0, &s, 1, 1.0);
 }
 
-TEST(linear)
+TEST(blends_linear_light)
 {
     for (int i = 0; i < 8; i++) {
-        const struct glint_image image = grey_image(GLINT_LINEAR_Q20);
+        const struct glint_image image = make_grey_image(GLINT_LINEAR_Q20);
         struct stripes s[2] = {
             {i % 2 ? 7 : WIDTH, {900, 8000, 65535}, 0, {0}, 0},
             {i / 2 % 2 ? 4 : WIDTH, {70, 50, 30}, 0, {0}, 0}};
 
-        draw_passes(&image, i / 4, s, 2);
+        draw_stripe_passes(&image, i / 4, s, 2);
         for (int k = 0; k < 3 * N; k++) {
-            const double want = expected_light(s, 2, i / 4, k / 3 % WIDTH,
-                                               k / 3 / WIDTH, k % 3) *
-                                0x1p20;
+            const double want =
+                compute_expected_light(s, 2, i / 4, k / 3 % WIDTH,
+                                       k / 3 / WIDTH, k % 3) *
+                0x1p20;
 
-            /* as the max is 65535, not 65536 */
+            /* the max of light_q16 is 65535, not 65536 */
             assert_true(fabs(light_q20[k] - want) < 20);
         }
     }
@@ -228,10 +236,11 @@ TEST(linear)
 
 /* Checks that a completely covered pixel keeps no colour, and that shared
  * chroma is the mean. */
-TEST(chroma)
+TEST(covered_pixels_keep_no_colour)
 {
     struct stripes s =
-        make_grey_stripes(2, 0); /* cover 0, 1/4, 1/2, 3/4, 1 by pairs */
+        /* coverage of pairs of pixels: 0, 1/4, 1/2, 3/4, 1 */
+        make_grey_stripes(2, 0);
     struct glint_image image = {
         .format = GLINT_I420, .width = WIDTH, .height = HEIGHT};
 
@@ -240,7 +249,7 @@ TEST(chroma)
             px[i] = (uint8_t)(i < N ? 120 : 150);
         glint_image_place(&image, px);
         s.step = 2 - odd;
-        draw_passes(&image, 0, &s, 1);
+        draw_stripe_passes(&image, 0, &s, 1);
         for (int i = 0; i < 46; i++) {
             const int code = image.plane[1][i];
 

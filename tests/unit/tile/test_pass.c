@@ -31,7 +31,7 @@ struct on_row {
     struct glint_box row, tile;
 };
 
-static int is_inside(const struct triangle *t, int x_q3, int y_q3)
+static int is_inside_triangle(const struct triangle *t, int x_q3, int y_q3)
 {
     int in = 1;
 
@@ -45,17 +45,17 @@ static int is_inside(const struct triangle *t, int x_q3, int y_q3)
 }
 
 /* Returns the coverage of pixel (X, Y), Q8. */
-static int compute_cover(const struct triangle *t, int x, int y)
+static int compute_pixel_coverage(const struct triangle *t, int x, int y)
 {
     int n = 0;
 
     for (int k = 0; k < 16; k++)
-        n += is_inside(t, (8 * x + 2 * (k % 4) + 1) << t->half,
-                       (8 * y + 2 * (k / 4) + 1) << t->half);
+        n += is_inside_triangle(t, (8 * x + 2 * (k % 4) + 1) << t->half,
+                                (8 * y + 2 * (k / 4) + 1) << t->half);
     return 16 * n;
 }
 
-static void *begin_row(const void *self, struct glint_box row, int worker)
+static void *begin_tile_row(const void *self, struct glint_box row, int worker)
 {
     const struct triangle *t = self;
 
@@ -64,7 +64,7 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     return &t->at[worker];
 }
 
-static int set_tile(void *state, struct glint_box tile)
+static int set_current_tile(void *state, struct glint_box tile)
 {
     struct on_row *r = state;
 
@@ -76,7 +76,8 @@ static int set_tile(void *state, struct glint_box tile)
     return r->triangle->on;
 }
 
-static enum glint_given set_rows(void *state, const struct glint_pass_rows *out)
+static enum glint_given set_coverage_of_rows(void *state,
+                                             const struct glint_pass_rows *out)
 {
     const struct on_row *r = state;
     const struct triangle *t = r->triangle;
@@ -85,7 +86,8 @@ static enum glint_given set_rows(void *state, const struct glint_pass_rows *out)
     assert_true(out->n == 1 || (out->n == 2 && out->y % 2 == 0));
     for (int i = 0; i < out->n * (r->tile.x1 - r->tile.x0); i++) {
         const int row = i % out->n, x = i / out->n;
-        const int cover_q8 = compute_cover(t, r->tile.x0 + x, out->y + row);
+        const int cover_q8 =
+            compute_pixel_coverage(t, r->tile.x0 + x, out->y + row);
 
         any |= cover_q8;
         out->cover->cover_q8[row][x] = (uint16_t)cover_q8;
@@ -101,7 +103,7 @@ static enum glint_given set_rows(void *state, const struct glint_pass_rows *out)
 
 /* Returns the triangle as the light of the flare: its colour; its power is
  * an eighth of its area in pixels. */
-static struct glint_light make_light(const struct triangle *t)
+static struct glint_light make_light_of_triangle(const struct triangle *t)
 {
     const int(*p)[2] = t->corner;
     const int area2 = (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]) -
@@ -118,7 +120,7 @@ struct glint_frame {
     struct glint_image image;
     struct triangle triangle;
     struct glint_flare_config cfg;
-    /* alone 1: the flare is drawn by glint_flare_draw(), without the pass */
+    /* alone = 1: glint_flare_draw() draws the flare without the pass */
     int half, n_workers, n_lights, alone;
     uint32_t order;
 };
@@ -138,12 +140,12 @@ static const struct glint_frame first = {
     .n_workers = 1,
     .n_lights = 1};
 
-static void draw_passes(struct glint_frame *f, struct glint_flare *flare)
+static void draw_triangle_pass(struct glint_frame *f, struct glint_flare *flare)
 {
     static struct glint_blend_rows rows[MAX_WORKERS];
     struct on_row at[MAX_WORKERS];
-    const struct glint_pass pass = {&f->triangle, begin_row, set_tile,
-                                    set_rows};
+    const struct glint_pass pass = {&f->triangle, begin_tile_row,
+                                    set_current_tile, set_coverage_of_rows};
     const struct glint_flare_under under = {&pass, 1, &glint_blend, rows};
 
     memset(rows, 0xa5, sizeof rows); /* dirty rows reveal what is left unset */
@@ -154,17 +156,17 @@ static void draw_passes(struct glint_frame *f, struct glint_flare *flare)
 }
 
 /* Returns byte I of the image before drawing. */
-static uint8_t ground_byte(int i)
+static uint8_t background_byte(int i)
 {
     return (uint8_t)(40 + i * 7 / 2 % 90);
 }
 
-static void draw_frame(struct glint_frame f, uint8_t *px)
+static void draw_flare_and_triangle(struct glint_frame f, uint8_t *px)
 {
     const struct glint_wave wave = {
         MODEL_WAVE_LO_Q24, {16384, 12000, 5000}, real_of(1, 0)};
-    const struct glint_light light = make_light(&f.triangle);
-    struct model_image m = model_auto();
+    const struct glint_light light = make_light_of_triangle(&f.triangle);
+    struct model_image m = model_make_auto();
     struct glint_lens lens;
     const struct glint_flare_frame planned = {.lens = &lens,
                                               .wave = &wave,
@@ -180,14 +182,14 @@ static void draw_frame(struct glint_frame f, uint8_t *px)
     struct shuffle shuffle;
     void *mem;
 
-    /* every fourth byte 0: light below white */
+    /* every fourth byte is 0, so that linear light is below white */
     for (int i = 0; i < BYTES; i++)
         px[i] = f.image.format == GLINT_LINEAR_Q20 && i % 4 == 3
                     ? 0
-                    : ground_byte(i);
+                    : background_byte(i);
     glint_image_place(&f.image, px);
-    shuffle_init(&shuffle, f.n_workers, f.order);
-    lens = model_open(&m);
+    init_shuffled_workers(&shuffle, f.n_workers, f.order);
+    lens = model_open_image(&m);
     f.cfg.workers = &shuffle.workers;
     assert_int_equal(posix_memalign(&mem, 64, glint_flare_bytes(&f.cfg)), 0);
     assert_ok(glint_flare_init(&flare, &f.cfg, mem, glint_flare_bytes(&f.cfg)));
@@ -198,7 +200,7 @@ static void draw_frame(struct glint_frame f, uint8_t *px)
     if (f.alone)
         glint_flare_draw(flare, &f.image);
     else
-        draw_passes(&f, flare);
+        draw_triangle_pass(&f, flare);
     free(mem);
     free(m.data);
 }
@@ -214,7 +216,7 @@ static const enum glint_pixel_format formats[N_FORMATS] = {
 
 /* Checks that workers, tiles, the order of jobs and kernels do not change
  * the image, bit by bit. */
-TEST(same_bits)
+TEST(image_is_bit_identical)
 {
     uint32_t seed = 5;
 
@@ -223,13 +225,13 @@ TEST(same_bits)
 
         f.image.format = formats[i / 2];
         f.half = i % 2;
-        draw_frame(f, one);
+        draw_flare_and_triangle(f, one);
         for (int k = 0; k < 9; k++) {
             f.cfg.tile_log2 = 3 + k % 4;
             f.n_workers = 1 + k % MAX_WORKERS;
             f.order = rng_xorshift(&seed);
             f.cfg.sets = rng_xorshift(&seed) & glint_sets_here();
-            draw_frame(f, other);
+            draw_flare_and_triangle(f, other);
             assert_memory_equal(one, other, BYTES);
         }
     }
@@ -237,7 +239,7 @@ TEST(same_bits)
 
 /* Checks that without the triangle the image is that of the flare alone, and
  * with it a different one. */
-TEST(off)
+TEST(inactive_pass_changes_nothing)
 {
     for (int i = 0; i < 2 * N_FORMATS; i++) {
         struct glint_frame f = first;
@@ -245,12 +247,12 @@ TEST(off)
         f.image.format = formats[i / 2];
         f.half = i % 2;
         f.alone = 1;
-        draw_frame(f, one);
+        draw_flare_and_triangle(f, one);
         f.alone = 0;
-        draw_frame(f, other);
+        draw_flare_and_triangle(f, other);
         assert_memory_not_equal(one, other, BYTES);
         f.triangle.on = 0;
-        draw_frame(f, other);
+        draw_flare_and_triangle(f, other);
         assert_memory_equal(one, other, BYTES);
     }
 }
@@ -258,27 +260,28 @@ TEST(off)
 /* Checks on any background that completely covered pixels have the
  * triangle's colour and uncovered ones are unchanged, and that the flare is
  * added to both. */
-TEST(sets)
+TEST(covered_pixels_have_the_passs_colour)
 {
     struct glint_frame f = first;
     int n_set = 0, n_kept = 0, n_lit = 0;
 
-    draw_frame(f, other);
+    draw_flare_and_triangle(f, other);
     f.n_lights = 0;
-    draw_frame(f, one);
+    draw_flare_and_triangle(f, one);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i += 3) {
         const int cover_q8 =
-            compute_cover(&f.triangle, i / 3 % WIDTH, i / 3 / WIDTH);
+            compute_pixel_coverage(&f.triangle, i / 3 % WIDTH, i / 3 / WIDTH);
 
         n_set += cover_q8 == GLINT_COVER_ALL;
         n_kept += cover_q8 == 0;
         n_lit += cover_q8 == GLINT_COVER_ALL && other[i + 1] > one[i + 1];
-        if (cover_q8 == GLINT_COVER_ALL) /* codes of 1, 0.397, 0.137 */
+        /* sRGB codes of the triangle's light 1, 0.397, 0.137 */
+        if (cover_q8 == GLINT_COVER_ALL)
             assert_true(one[i] == 255 && one[i + 1] == 169 &&
                         one[i + 2] == 104);
         else if (cover_q8 == 0)
-            assert_true(one[i] == ground_byte(i) &&
-                        one[i + 1] == ground_byte(i + 1));
+            assert_true(one[i] == background_byte(i) &&
+                        one[i + 1] == background_byte(i + 1));
         assert_true(other[i] >= one[i]);
     }
     assert_true(n_set > 1000 && n_kept > 1000 && n_lit > 100);

@@ -35,7 +35,8 @@ struct command {
     int grid;
 };
 
-static int log_option(void *ctx, const struct option *option, const char *value)
+static int log_applied_option(void *ctx, const struct option *option,
+                              const char *value)
 {
     struct command *const c = ctx;
     const size_t used = strlen(c->log);
@@ -55,13 +56,14 @@ static int log_option(void *ctx, const struct option *option, const char *value)
 static struct command command;
 static struct glint_error error;
 
-static struct config make_config(void)
+static struct config make_empty_config(void)
 {
     command = (struct command){.tool = {.name = "live"}};
-    return (struct config){&command.tool, options, log_option, &command, NULL};
+    return (struct config){&command.tool, options, log_applied_option, &command,
+                           NULL};
 }
 
-/* ------------------------------------------------------- what was printed */
+/* -------------------------------------------------------- captured messages */
 
 static FILE *said;
 static int kept_stderr;
@@ -75,7 +77,7 @@ static void capture_stderr(void)
                 dup2(fileno(said), STDERR_FILENO) >= 0);
 }
 
-static void expect_message(const char *want)
+static void expect_stderr_message(const char *want)
 {
     char text[1024];
     size_t n;
@@ -92,16 +94,17 @@ static void expect_message(const char *want)
 
 /* ----------------------------------------------------------------- taking */
 
-static void expect_options(const char *text, size_t bytes, const char *log)
+static void expect_applied_options(const char *text, size_t bytes,
+                                   const char *log)
 {
-    struct config config = make_config();
+    struct config config = make_empty_config();
     char *const exact = malloc(bytes + 1);
 
     assert_non_null(exact);
     memcpy(exact, text, bytes);
     capture_stderr();
     assert_ok(config_parse(&config, "x.ini", exact, bytes, &error));
-    expect_message("");
+    expect_stderr_message("");
     assert_string_equal(command.log, log);
     assert_string_equal(error.text, "");
     assert_null(command.tool.where);
@@ -110,52 +113,56 @@ static void expect_options(const char *text, size_t bytes, const char *log)
     config_free(&config);
 }
 
-TEST(entries)
+TEST(applies_entries_in_order)
 {
-    expect_options(BYTES(""), "");
-    expect_options(BYTES("\n\n"), "");
-    expect_options(BYTES("grid=64"), "grid=64;");
-    expect_options(BYTES("[lens]\nlens = heliar tronnier \n[light]\n"
-                         "light = 1,2\nlight = 3,4\nlens=other\n"
-                         "[flare]\ndither = yes\nbalance = no\ngrid: 8\n"),
-                   "lens=heliar tronnier;light=1,2;light=3,4;lens=other;"
-                   "dither=(none);grid=8;");
-    expect_options(BYTES("[camera]\n[output]\nthreads=2\nquiet=yes\n"),
-                   "threads=2;quiet=(none);");
-    expect_options(BYTES("tint=\ntint=warm\n"), "tint=;tint=warm;");
-    expect_options(BYTES("lens = stop = polygon:6\nlens: a:b\n"),
-                   "lens=stop = polygon:6;lens=a:b;");
+    expect_applied_options(BYTES(""), "");
+    expect_applied_options(BYTES("\n\n"), "");
+    expect_applied_options(BYTES("grid=64"), "grid=64;");
+    expect_applied_options(
+        BYTES("[lens]\nlens = heliar tronnier \n[light]\n"
+              "light = 1,2\nlight = 3,4\nlens=other\n"
+              "[flare]\ndither = yes\nbalance = no\ngrid: 8\n"),
+        "lens=heliar tronnier;light=1,2;light=3,4;lens=other;"
+        "dither=(none);grid=8;");
+    expect_applied_options(BYTES("[camera]\n[output]\nthreads=2\nquiet=yes\n"),
+                           "threads=2;quiet=(none);");
+    expect_applied_options(BYTES("tint=\ntint=warm\n"), "tint=;tint=warm;");
+    expect_applied_options(BYTES("lens = stop = polygon:6\nlens: a:b\n"),
+                           "lens=stop = polygon:6;lens=a:b;");
 }
 
-TEST(layout)
+TEST(accepts_blanks_and_line_ends)
 {
-    expect_options(BYTES("\xef\xbb\xbfgrid=64\r\n  \t \r\nlens = a b\r\n"),
-                   "grid=64;lens=a b;");
-    expect_options(BYTES("\xef\xbb\xbf; note\n# lens=x\n ; x\n\t# y\ngrid=5"),
-                   "grid=5;");
-    expect_options(BYTES("grid = 7 ; cells\nlens = a;b\nlens = c # d\n"),
-                   "grid=7;lens=a;b;lens=c # d;");
+    expect_applied_options(
+        BYTES("\xef\xbb\xbfgrid=64\r\n  \t \r\nlens = a b\r\n"),
+        "grid=64;lens=a b;");
+    expect_applied_options(
+        BYTES("\xef\xbb\xbf; note\n# lens=x\n ; x\n\t# y\ngrid=5"), "grid=5;");
+    expect_applied_options(
+        BYTES("grid = 7 ; cells\nlens = a;b\nlens = c # d\n"),
+        "grid=7;lens=a;b;lens=c # d;");
     /* An indented line does not continue the previous one. */
-    expect_options(BYTES("[lens]\n  lens = a\n  grid = 9\n\tlight=1,2\n"),
-                   "lens=a;grid=9;light=1,2;");
-    expect_options(BYTES("lens=\xc3\xa4\xc3\xb6.lens\nlens=\"q\"\n"),
-                   "lens=\xc3\xa4\xc3\xb6.lens;lens=\"q\";");
+    expect_applied_options(
+        BYTES("[lens]\n  lens = a\n  grid = 9\n\tlight=1,2\n"),
+        "lens=a;grid=9;light=1,2;");
+    expect_applied_options(BYTES("lens=\xc3\xa4\xc3\xb6.lens\nlens=\"q\"\n"),
+                           "lens=\xc3\xa4\xc3\xb6.lens;lens=\"q\";");
 }
 
 /* Checks that a line of the max length is accepted, and that a longer one is
  * rejected unless it is a comment. */
-TEST(long_lines)
+TEST(limits_the_line_length)
 {
     char text[1000], log[1000];
 
     for (int n = CONFIG_LINE - 2; n <= CONFIG_LINE + 300; n++) {
-        struct config config = make_config();
+        struct config config = make_empty_config();
         const int used =
             snprintf(text, sizeof text, "grid=4\nlens=%0*d\n", n - 5, 1);
 
         if (n <= CONFIG_LINE) {
             snprintf(log, sizeof log, "grid=4;lens=%0*d;", n - 5, 1);
-            expect_options(text, (size_t)used, log);
+            expect_applied_options(text, (size_t)used, log);
             continue;
         }
         assert_int_equal(
@@ -164,14 +171,14 @@ TEST(long_lines)
         assert_string_equal(error.text, "x.ini:2: has a line that is too long");
         assert_string_equal(command.log, "");
         text[7] = ';';
-        expect_options(text, (size_t)used, "grid=4;");
+        expect_applied_options(text, (size_t)used, "grid=4;");
     }
 }
 
 /* Checks that values outlive the text until config_free(). */
-TEST(values_stay)
+TEST(values_outlive_the_text)
 {
-    struct config config = make_config();
+    struct config config = make_empty_config();
     char text[] = "lens=first\ngrid=16\ndither=yes\nlens=second";
 
     assert_ok(config_parse(&config, "x.ini", text, sizeof text - 1, &error));
@@ -183,9 +190,10 @@ TEST(values_stay)
 
 /* --------------------------------------------------------------- mistakes */
 
-static void expect_mistake(const char *text, size_t bytes, const char *want)
+static void expect_config_error(const char *text, size_t bytes,
+                                const char *want)
 {
-    struct config config = make_config();
+    struct config config = make_empty_config();
 
     assert_int_equal(config_parse(&config, "x.ini", text, bytes, &error),
                      EXIT_INPUT);
@@ -194,61 +202,67 @@ static void expect_mistake(const char *text, size_t bytes, const char *want)
     config_free(&config);
 }
 
-TEST(mistakes)
+TEST(reports_mistakes_with_their_line)
 {
-    expect_mistake(BYTES("grid=64\n\n[lens]\ngrdi=5\n"),
-                   "x.ini:4: grdi is not an option of configuration files");
-    expect_mistake(BYTES("--grid=64\n"),
-                   "x.ini:1: --grid is not an option of configuration files");
-    expect_mistake(BYTES("gri=64\n"),
-                   "x.ini:1: gri is not an option of configuration files");
-    expect_mistake(BYTES("config=y.ini\n"),
-                   "x.ini:1: config is not an option of configuration files");
-    expect_mistake(BYTES("help=yes"),
-                   "x.ini:1: help is not an option of configuration files");
-    expect_mistake(BYTES("grid=64\nversion=yes"),
-                   "x.ini:2: version is not an option of configuration files");
-    expect_mistake(BYTES("grid=64\nlens\n"),
-                   "x.ini:2: is neither [section] nor name = value");
-    expect_mistake(BYTES("[lens\ngrid=64\n"),
-                   "x.ini:1: is neither [section] nor name = value");
-    expect_mistake(BYTES("lens ; = x\ngrid=64\nfoo=1\n"),
-                   "x.ini:1: is neither [section] nor name = value");
-    expect_mistake(BYTES("foo=1\nlens\n"),
-                   "x.ini:1: foo is not an option of configuration files");
-    expect_mistake(BYTES("=5\n"),
-                   "x.ini:1:  is not an option of configuration files");
-    expect_mistake(BYTES("grid=\n"), "x.ini:1: grid needs a value");
-    expect_mistake(BYTES("grid= ; 64\n"), "x.ini:1: grid needs a value");
-    expect_mistake(BYTES("dither=maybe\n"),
-                   "x.ini:1: dither accepts yes or no");
-    expect_mistake(BYTES("dither=\n"), "x.ini:1: dither accepts yes or no");
-    expect_mistake(BYTES("grid=4\ndither=yes\n\ndither=no\n"),
-                   "x.ini:4: dither is stated twice");
-    expect_mistake(BYTES("grid=4\nlens=a\0b\n"),
-                   "x.ini:2: holds a control character");
-    expect_mistake(BYTES("lens=a\x1b[2J\n"),
-                   "x.ini:1: holds a control character");
-    expect_mistake(BYTES("lens=a\rgrid=5\n"),
-                   "x.ini:1: holds a control character");
+    expect_config_error(
+        BYTES("grid=64\n\n[lens]\ngrdi=5\n"),
+        "x.ini:4: grdi is not an option of configuration files");
+    expect_config_error(
+        BYTES("--grid=64\n"),
+        "x.ini:1: --grid is not an option of configuration files");
+    expect_config_error(BYTES("gri=64\n"),
+                        "x.ini:1: gri is not an option of configuration files");
+    expect_config_error(
+        BYTES("config=y.ini\n"),
+        "x.ini:1: config is not an option of configuration files");
+    expect_config_error(
+        BYTES("help=yes"),
+        "x.ini:1: help is not an option of configuration files");
+    expect_config_error(
+        BYTES("grid=64\nversion=yes"),
+        "x.ini:2: version is not an option of configuration files");
+    expect_config_error(BYTES("grid=64\nlens\n"),
+                        "x.ini:2: is neither [section] nor name = value");
+    expect_config_error(BYTES("[lens\ngrid=64\n"),
+                        "x.ini:1: is neither [section] nor name = value");
+    expect_config_error(BYTES("lens ; = x\ngrid=64\nfoo=1\n"),
+                        "x.ini:1: is neither [section] nor name = value");
+    expect_config_error(BYTES("foo=1\nlens\n"),
+                        "x.ini:1: foo is not an option of configuration files");
+    expect_config_error(BYTES("=5\n"),
+                        "x.ini:1:  is not an option of configuration files");
+    expect_config_error(BYTES("grid=\n"), "x.ini:1: grid needs a value");
+    expect_config_error(BYTES("grid= ; 64\n"), "x.ini:1: grid needs a value");
+    expect_config_error(BYTES("dither=maybe\n"),
+                        "x.ini:1: dither accepts yes or no");
+    expect_config_error(BYTES("dither=\n"),
+                        "x.ini:1: dither accepts yes or no");
+    expect_config_error(BYTES("grid=4\ndither=yes\n\ndither=no\n"),
+                        "x.ini:4: dither is stated twice");
+    expect_config_error(BYTES("grid=4\nlens=a\0b\n"),
+                        "x.ini:2: holds a control character");
+    expect_config_error(BYTES("lens=a\x1b[2J\n"),
+                        "x.ini:1: holds a control character");
+    expect_config_error(BYTES("lens=a\rgrid=5\n"),
+                        "x.ini:1: holds a control character");
 }
 
 /* Checks that an error reported by the command keeps its message and gets
  * the line number; earlier entries are applied, later ones are not. */
-TEST(bad_value)
+TEST(bad_value_keeps_the_commands_message)
 {
-    struct config config = make_config();
+    struct config config = make_empty_config();
 
     capture_stderr();
     assert_int_equal(config_parse(&config, "x.ini",
                                   BYTES("lens=a\ngrid=3\nlens=b\n"), &error),
                      EXIT_INPUT);
-    expect_message("glint live: x.ini:2: --grid: '3' is not valid\n");
+    expect_stderr_message("glint live: x.ini:2: --grid: '3' is not valid\n");
     assert_string_equal(error.text, "");
     assert_string_equal(command.log, "lens=a;grid=3;");
     assert_null(command.tool.where);
     config_free(&config);
-    config = make_config();
+    config = make_empty_config();
     assert_int_equal(config_parse(&config, "x.ini",
                                   BYTES("list-devices=yes\nlens=b\n"), &error),
                      EXIT_INPUT);
@@ -258,10 +272,10 @@ TEST(bad_value)
     config_free(&config);
 }
 
-TEST(long_name)
+TEST(long_file_name_keeps_the_message)
 {
     char name[300];
-    struct config config = make_config();
+    struct config config = make_empty_config();
 
     memset(name, 'n', sizeof name);
     strcpy(name + sizeof name - 7, "/x.ini");
@@ -271,29 +285,30 @@ TEST(long_name)
                "nnn/x.ini:1: foo is not an option of configuration files"));
 }
 
-TEST(unknown_section)
+TEST(skips_unknown_sections)
 {
     static const char text[] = "[lens]\nlens=a\n\n[camra]\n\ngrid=5\n"
                                "light=1,2\n[output]\nlens=b\n[]\nlens=c\n";
-    struct config config = make_config();
+    struct config config = make_empty_config();
 
     capture_stderr();
     assert_ok(config_parse(&config, "x.ini", BYTES(text), &error));
-    expect_message("glint live: x.ini:4: the section [camra] is unknown; its "
-                   "lines are used all the same\n");
+    expect_stderr_message(
+        "glint live: x.ini:4: the section [camra] is unknown; its "
+        "lines are used all the same\n");
     assert_string_equal(command.log, "lens=a;grid=5;light=1,2;lens=b;lens=c;");
     config_free(&config);
-    config = make_config();
+    config = make_empty_config();
     command.tool.quiet = true;
     capture_stderr();
     assert_ok(config_parse(&config, "x.ini", BYTES(text), &error));
-    expect_message("");
+    expect_stderr_message("");
     config_free(&config);
 }
 
 /* -------------------------------------------------------------------- files */
 
-static void write_file(const char *text)
+static void write_config_file(const char *text)
 {
     FILE *const file = fopen(scratch_file, "w");
 
@@ -304,22 +319,23 @@ static void write_file(const char *text)
 
 /* Checks that options of the file are applied before those of the command
  * line, which override them. */
-TEST(line_wins)
+TEST(command_line_overrides_the_file)
 {
     char *line[] = {"live",     "--grid", "32",         "in", "--conf",
                     "/nowhere", "--con",  scratch_file, "-q", NULL};
-    struct config config = make_config();
+    struct config config = make_empty_config();
     const char *found;
     int c, index;
 
-    write_file("lens=a\ngrid=16\n");
+    write_config_file("lens=a\ngrid=16\n");
     found = tool_find_option_value(9, line, TOOL_COMMON_SHORT, options, 'C');
     assert_string_equal(found, scratch_file);
     assert_ok(config_read(&config, found));
     assert_int_equal(command.grid, 16);
     while ((c = getopt_long(9, line, TOOL_COMMON_SHORT, options, &index)) >= 0)
         if (c != 'C' && c != 'q')
-            assert_int_equal(log_option(&command, &options[index], optarg), -1);
+            assert_int_equal(
+                log_applied_option(&command, &options[index], optarg), -1);
     assert_int_equal(command.grid, 32);
     assert_string_equal(command.log, "lens=a;grid=16;grid=32;");
     assert_string_equal(line[optind], "in");
@@ -330,46 +346,47 @@ TEST(line_wins)
 
 /* Checks that the old values remain valid if a new file, as on SIGHUP, has
  * an error. */
-TEST(reload)
+TEST(failed_reload_keeps_the_old_values)
 {
-    struct config first = make_config(), second;
+    struct config first = make_empty_config(), second;
     const char *lens;
     char want[200];
 
-    write_file("lens=a\n");
+    write_config_file("lens=a\n");
     assert_ok(config_read(&first, scratch_file));
     lens = command.lens;
-    write_file("lens=b\ngrid=x\n");
-    second = make_config();
+    write_config_file("lens=b\ngrid=x\n");
+    second = make_empty_config();
     capture_stderr();
     assert_int_equal(config_read(&second, scratch_file), EXIT_INPUT);
     snprintf(want, sizeof want, "glint live: %s:2: --grid: 'x' is not valid\n",
              scratch_file);
-    expect_message(want);
+    expect_stderr_message(want);
     assert_null(second.values);
     assert_string_equal(lens, "a");
     config_free(&first);
 }
 
-TEST(files)
+TEST(reads_files)
 {
-    struct config config = make_config();
+    struct config config = make_empty_config();
     char want[200];
 
-    write_file("grid=64\nfoo=1\n");
+    write_config_file("grid=64\nfoo=1\n");
     capture_stderr();
     assert_int_equal(config_read(&config, scratch_file), EXIT_INPUT);
     snprintf(want, sizeof want,
              "glint live: %s:2: foo is not an option of configuration files\n",
              scratch_file);
-    expect_message(want);
+    expect_stderr_message(want);
     capture_stderr();
     assert_int_equal(config_read(&config, "/nowhere/x.ini"), EXIT_INPUT);
-    expect_message("glint live: /nowhere/x.ini: No such file or directory\n");
+    expect_stderr_message(
+        "glint live: /nowhere/x.ini: No such file or directory\n");
     capture_stderr();
     assert_int_equal(config_read(&config, "/dev/zero"), EXIT_INPUT);
-    expect_message("glint live: /dev/zero: is a device, not a file\n");
+    expect_stderr_message("glint live: /dev/zero: is a device, not a file\n");
     assert_null(config.values);
 }
 
-TEST_GROUP(scratch_open_file, scratch_close_file);
+TEST_GROUP(scratch_create_file, scratch_remove_file);

@@ -8,7 +8,7 @@
 #include "options/config.h"
 #include "support/test.h"
 
-TEST(refusal)
+TEST(reports_that_inih_is_missing)
 {
     struct config config = {0};
     struct glint_error error;

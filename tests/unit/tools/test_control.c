@@ -25,8 +25,8 @@ static struct control_line line;
 static struct glint_error error;
 static struct controls input;
 
-static void expect_line(const char *text, enum control_verb verb, int frame,
-                        int n)
+static void expect_parsed_line(const char *text, enum control_verb verb,
+                               int frame, int n)
 {
     assert_ok(control_parse(text, "f:1", &line, &error));
     assert_int_equal(line.verb, verb);
@@ -35,42 +35,43 @@ static void expect_line(const char *text, enum control_verb verb, int frame,
     assert_false(line.is_change);
 }
 
-TEST(lines)
+TEST(parses_every_command)
 {
-    expect_line("orbit 30 -10", CONTROL_ORBIT, -1, 2);
+    expect_parsed_line("orbit 30 -10", CONTROL_ORBIT, -1, 2);
     assert_true(line.v[0] == 30 && line.v[1] == -10);
-    expect_line("  25\tdistance 2.5  # near\r\n", CONTROL_DISTANCE, 25, 1);
+    expect_parsed_line("  25\tdistance 2.5  # near\r\n", CONTROL_DISTANCE, 25,
+                       1);
     assert_true(line.v[0] == 2.5);
-    expect_line("set steel alpha .05 .2", CONTROL_ALPHA, -1, 2);
+    expect_parsed_line("set steel alpha .05 .2", CONTROL_ALPHA, -1, 2);
     assert_string_equal(line.name[0], "steel");
     assert_int_equal(line.name_column[0], 5);
     assert_int_equal(line.column, 17);
-    expect_line("set steel alpha .05", CONTROL_ALPHA, -1, 1);
-    expect_line("set red colour 1 0 0", CONTROL_COLOUR, -1, 3);
-    expect_line("set steel diffuse 0 0 .1", CONTROL_DIFFUSE, -1, 3);
-    expect_line("material ball steel", CONTROL_MATERIAL, -1, 0);
+    expect_parsed_line("set steel alpha .05", CONTROL_ALPHA, -1, 1);
+    expect_parsed_line("set red colour 1 0 0", CONTROL_COLOUR, -1, 3);
+    expect_parsed_line("set steel diffuse 0 0 .1", CONTROL_DIFFUSE, -1, 3);
+    expect_parsed_line("material ball steel", CONTROL_MATERIAL, -1, 0);
     assert_string_equal(line.name[1], "steel");
-    expect_line("show ball", CONTROL_SHOW, -1, 0);
-    expect_line("0 hide ball", CONTROL_HIDE, 0, 0);
-    expect_line("size ball .25", CONTROL_SIZE, -1, 1);
-    expect_line("environment turn -90", CONTROL_TURN, -1, 1);
-    expect_line("environment scale .5", CONTROL_SCALE, -1, 1);
-    expect_line("3 environment map forest # at dusk", CONTROL_MAP, 3, 0);
+    expect_parsed_line("show ball", CONTROL_SHOW, -1, 0);
+    expect_parsed_line("0 hide ball", CONTROL_HIDE, 0, 0);
+    expect_parsed_line("size ball .25", CONTROL_SIZE, -1, 1);
+    expect_parsed_line("environment turn -90", CONTROL_TURN, -1, 1);
+    expect_parsed_line("environment scale .5", CONTROL_SCALE, -1, 1);
+    expect_parsed_line("3 environment map forest # at dusk", CONTROL_MAP, 3, 0);
     assert_string_equal(line.name[0], "forest");
     assert_int_equal(line.name_column[0], 19);
-    expect_line("environment next", CONTROL_NEXT_MAP, -1, 0);
-    expect_line("step", CONTROL_STEP, -1, 0);
-    expect_line("step -3", CONTROL_STEP, -1, 1);
-    expect_line("jump 12", CONTROL_JUMP, -1, 1);
-    expect_line("play", CONTROL_PLAY, -1, 0);
-    expect_line("play 12.5", CONTROL_PLAY, -1, 1);
-    expect_line("pause", CONTROL_PAUSE, -1, 0);
-    expect_line("stop", CONTROL_STOP, -1, 0);
-    expect_line("", CONTROL_NONE, -1, 0);
-    expect_line(" # all a comment", CONTROL_NONE, -1, 0);
+    expect_parsed_line("environment next", CONTROL_NEXT_MAP, -1, 0);
+    expect_parsed_line("step", CONTROL_STEP, -1, 0);
+    expect_parsed_line("step -3", CONTROL_STEP, -1, 1);
+    expect_parsed_line("jump 12", CONTROL_JUMP, -1, 1);
+    expect_parsed_line("play", CONTROL_PLAY, -1, 0);
+    expect_parsed_line("play 12.5", CONTROL_PLAY, -1, 1);
+    expect_parsed_line("pause", CONTROL_PAUSE, -1, 0);
+    expect_parsed_line("stop", CONTROL_STOP, -1, 0);
+    expect_parsed_line("", CONTROL_NONE, -1, 0);
+    expect_parsed_line(" # all a comment", CONTROL_NONE, -1, 0);
 }
 
-static void expect_error(const char *text, const char *cause)
+static void expect_parse_error(const char *text, const char *cause)
 {
     memset(&line, 0x55, sizeof line);
     assert_int_equal(control_parse(text, "f:1", &line, &error), GLINT_E_FORMAT);
@@ -78,52 +79,60 @@ static void expect_error(const char *text, const char *cause)
     assert_int_equal(line.n, 0x55555555); /* unchanged */
 }
 
-TEST(mistakes)
+TEST(rejects_wrong_commands)
 {
     static char text[400];
 
-    expect_error("orbti 3 4",
-                 "f:1:1: 'orbti' is not a command; did you mean 'orbit'?");
-    expect_error("frob", "f:1:1: 'frob' is not a command");
-    expect_error("orbit 3", "f:1:8: expected orbit YAW PITCH");
-    expect_error("orbit 3 x",
-                 "f:1:9: 'x' is not a number; expected orbit YAW PITCH");
-    expect_error("orbit 3 4 5",
-                 "f:1:11: '5' is one value too many; expected orbit YAW PITCH");
-    expect_error("orbit 3 400",
-                 "f:1:9: orbit YAW PITCH must be -360 to 360, not 400");
-    expect_error("orbit nan 4",
-                 "f:1:7: 'nan' is not a number; expected orbit YAW PITCH");
-    expect_error("set", "f:1:4: expected set MATERIAL alpha X [Y]");
-    expect_error("set steel", "f:1:10: expected set MATERIAL alpha X [Y]");
-    expect_error("set steel alhpa 1",
-                 "f:1:11: 'alhpa' is not a word of set; did you mean 'alpha'?");
-    expect_error("environment", "f:1:12: expected environment turn DEG");
-    expect_error(
+    expect_parse_error(
+        "orbti 3 4", "f:1:1: 'orbti' is not a command; did you mean 'orbit'?");
+    expect_parse_error("frob", "f:1:1: 'frob' is not a command");
+    expect_parse_error("orbit 3", "f:1:8: expected orbit YAW PITCH");
+    expect_parse_error("orbit 3 x",
+                       "f:1:9: 'x' is not a number; expected orbit YAW PITCH");
+    expect_parse_error(
+        "orbit 3 4 5",
+        "f:1:11: '5' is one value too many; expected orbit YAW PITCH");
+    expect_parse_error("orbit 3 400",
+                       "f:1:9: orbit YAW PITCH must be -360 to 360, not 400");
+    expect_parse_error(
+        "orbit nan 4",
+        "f:1:7: 'nan' is not a number; expected orbit YAW PITCH");
+    expect_parse_error("set", "f:1:4: expected set MATERIAL alpha X [Y]");
+    expect_parse_error("set steel",
+                       "f:1:10: expected set MATERIAL alpha X [Y]");
+    expect_parse_error(
+        "set steel alhpa 1",
+        "f:1:11: 'alhpa' is not a word of set; did you mean 'alpha'?");
+    expect_parse_error("environment", "f:1:12: expected environment turn DEG");
+    expect_parse_error(
         "environment nxt",
         "f:1:13: 'nxt' is not a word of environment; did you mean 'next'?");
-    expect_error("environment map", "f:1:16: expected environment map NAME");
-    expect_error(
+    expect_parse_error("environment map",
+                       "f:1:16: expected environment map NAME");
+    expect_parse_error(
         "environment map a b",
         "f:1:19: 'b' is one value too many; expected environment map NAME");
-    expect_error("environment scale 0",
-                 "f:1:19: environment scale X must be 1e-06 to 1000000, not 0");
-    expect_error("set steel alpha 0",
-                 "f:1:17: set MATERIAL alpha X [Y] must be 0.001 to 1, not 0");
-    expect_error("jump 1.5", "f:1:6: jump N needs whole numbers, not 1.5");
-    expect_error("-1 stop",
-                 "f:1:1: a frame must be a whole number from 0, not '-1'");
-    expect_error("1.5 stop",
-                 "f:1:1: a frame must be a whole number from 0, not '1.5'");
-    expect_error("7 ", "f:1:3: a command must follow the frame");
-    expect_error("show a23456789012345678901234567890123",
-                 "f:1:6: a name has at most 31 letters");
+    expect_parse_error(
+        "environment scale 0",
+        "f:1:19: environment scale X must be 1e-06 to 1000000, not 0");
+    expect_parse_error(
+        "set steel alpha 0",
+        "f:1:17: set MATERIAL alpha X [Y] must be 0.001 to 1, not 0");
+    expect_parse_error("jump 1.5",
+                       "f:1:6: jump N needs whole numbers, not 1.5");
+    expect_parse_error(
+        "-1 stop", "f:1:1: a frame must be a whole number from 0, not '-1'");
+    expect_parse_error(
+        "1.5 stop", "f:1:1: a frame must be a whole number from 0, not '1.5'");
+    expect_parse_error("7 ", "f:1:3: a command must follow the frame");
+    expect_parse_error("show a23456789012345678901234567890123",
+                       "f:1:6: a name has at most 31 letters");
     memset(text, 'a', sizeof text - 1);
-    expect_error(text, "f:1:256: a line has at most 255 bytes");
+    expect_parse_error(text, "f:1:256: a line has at most 255 bytes");
 }
 
 /* Checks that all forms of one word have the same number of names. */
-TEST(forms)
+TEST(forms_of_a_word_have_equal_names)
 {
     for (int i = 0; i < control_n_forms; i++)
         for (int k = 0; k < i; k++)
@@ -135,7 +144,7 @@ TEST(forms)
             }
 }
 
-TEST(keys)
+TEST(keys_become_commands)
 {
     assert_int_equal(keyboard_parse_key("\033[Cx", 4, &line), 3);
     assert_int_equal(line.verb, CONTROL_ORBIT);
@@ -156,43 +165,45 @@ TEST(keys)
     assert_int_equal(keyboard_open(&(struct keyboard){0}, -1), GLINT_E_IO);
 }
 
-static int play_line(struct playback *p, const char *text, double elapsed_s)
+static int play_control_line(struct playback *p, const char *text,
+                             double elapsed_s)
 {
     assert_ok(control_parse(text, "f:1", &line, &error));
     assert_int_equal(playback_execute_line(p, &line), *text != 0);
     return playback_next(p, elapsed_s);
 }
 
-TEST(playback)
+TEST(playback_advances_frames)
 {
     struct playback p;
 
     playback_init(&p);
-    /* one frame per picture, however long it takes */
+    /* without a rate, each picture shows the next frame, however long a picture
+     * takes */
     for (int i = 0; i < 5; i++)
         assert_int_equal(playback_next(&p, 7), i);
-    assert_int_equal(play_line(&p, "pause", 1), 4);
-    assert_int_equal(play_line(&p, "", 1), 4);
-    assert_int_equal(play_line(&p, "step", 1), 5);
-    assert_int_equal(play_line(&p, "step -2", 1), 3);
-    assert_int_equal(play_line(&p, "step -9", 1), 0);
-    assert_int_equal(play_line(&p, "jump 20", 1), 20);
-    assert_int_equal(play_line(&p, "", 1), 20);
-    assert_int_equal(play_line(&p, "play 10", .1), 21);
+    assert_int_equal(play_control_line(&p, "pause", 1), 4);
+    assert_int_equal(play_control_line(&p, "", 1), 4);
+    assert_int_equal(play_control_line(&p, "step", 1), 5);
+    assert_int_equal(play_control_line(&p, "step -2", 1), 3);
+    assert_int_equal(play_control_line(&p, "step -9", 1), 0);
+    assert_int_equal(play_control_line(&p, "jump 20", 1), 20);
+    assert_int_equal(play_control_line(&p, "", 1), 20);
+    assert_int_equal(play_control_line(&p, "play 10", .1), 21);
     /* at 40 pictures per second each frame is shown 4 times */
     for (int i = 1; i < 40; i++)
         assert_int_equal(playback_next(&p, .025), 21 + i / 4);
-    assert_int_equal(play_line(&p, "play 0", 9), 30);
-    assert_int_equal(play_line(&p, "stop", 9), 0);
-    assert_int_equal(play_line(&p, "", 9), 0);
+    assert_int_equal(play_control_line(&p, "play 0", 9), 30);
+    assert_int_equal(play_control_line(&p, "stop", 9), 0);
+    assert_int_equal(play_control_line(&p, "", 9), 0);
     p.last = 2;
-    assert_int_equal(play_line(&p, "play", 1), 1);
-    assert_int_equal(play_line(&p, "", 1), 2);
-    assert_int_equal(play_line(&p, "", 1), 2);
-    assert_int_equal(play_line(&p, "jump 9", 1), 2);
+    assert_int_equal(play_control_line(&p, "play", 1), 1);
+    assert_int_equal(play_control_line(&p, "", 1), 2);
+    assert_int_equal(play_control_line(&p, "", 1), 2);
+    assert_int_equal(play_control_line(&p, "jump 9", 1), 2);
 }
 
-static void expect_next(int picture, enum control_verb verb)
+static void expect_next_command(int picture, enum control_verb verb)
 {
     const struct control_line *const l = controls_next(&input, picture);
 
@@ -200,7 +211,7 @@ static void expect_next(int picture, enum control_verb verb)
     assert_int_equal(l->verb, verb);
 }
 
-static enum glint_status read_text(const char *text)
+static enum glint_status read_controls_from_text(const char *text)
 {
     FILE *const file = fopen(scratch_file, "w");
 
@@ -212,24 +223,26 @@ static enum glint_status read_text(const char *text)
 
 /* Checks that lines are applied in order, and that a line for a later
  * picture delays those after it. */
-TEST(file)
+TEST(file_lines_are_applied_in_order)
 {
     char where[CONTROL_WHERE], wanted[CONTROL_WHERE];
 
-    assert_ok(read_text("orbit 1 2\n\n# none\n3 stop\nplay\n2 pause"));
+    assert_ok(
+        read_controls_from_text("orbit 1 2\n\n# none\n3 stop\nplay\n2 pause"));
     assert_int_equal(controls_get_line(&input, 3)->verb, CONTROL_PAUSE);
     assert_null(controls_get_line(&input, 4));
-    expect_next(0, CONTROL_ORBIT);
+    expect_next_command(0, CONTROL_ORBIT);
     assert_null(controls_next(&input, 2));
-    expect_next(3, CONTROL_STOP);
+    expect_next_command(3, CONTROL_STOP);
     controls_format_location(&input, -1, where);
     snprintf(wanted, sizeof wanted, "%s:4", scratch_file);
     assert_string_equal(where, wanted);
-    expect_next(3, CONTROL_PLAY);
-    expect_next(3, CONTROL_PAUSE);
+    expect_next_command(3, CONTROL_PLAY);
+    expect_next_command(3, CONTROL_PAUSE);
     assert_null(controls_next(&input, 9));
     controls_close(&input);
-    assert_int_equal(read_text("stop\n  jumb 3\n"), GLINT_E_FORMAT);
+    assert_int_equal(read_controls_from_text("stop\n  jumb 3\n"),
+                     GLINT_E_FORMAT);
     snprintf(wanted, sizeof wanted,
              "%s:2:3: 'jumb' is not a command; did you mean 'jump'?",
              scratch_file);
@@ -241,7 +254,7 @@ TEST(file)
 
 /* Checks that lines from a pipe are applied when complete, and that invalid
  * lines are counted and do not end reading. */
-TEST(pipe)
+TEST(pipe_lines_are_applied_when_complete)
 {
     int to;
 
@@ -254,25 +267,26 @@ TEST(pipe)
     assert_int_equal(write(to, "pau", 3), 3);
     assert_null(controls_next(&input, 1));
     assert_int_equal(write(to, "se\nrubbish\n5 play\nstop\n", 23), 23);
-    expect_next(2, CONTROL_PAUSE);
+    expect_next_command(2, CONTROL_PAUSE);
     assert_null(controls_next(&input, 2));
     assert_int_equal(input.n_bad, 1);
     assert_non_null(strstr(input.bad.text, ":2:1: 'rubbish' is not a command"));
     assert_null(controls_next(&input, 4));
-    expect_next(5, CONTROL_PLAY);
-    expect_next(5, CONTROL_STOP);
-    for (int i = 0; i < 700; i++) /* a line that is too long */
+    expect_next_command(5, CONTROL_PLAY);
+    expect_next_command(5, CONTROL_STOP);
+    for (int i = 0; i < 700; i++) /* writes a line that is too long */
         assert_int_equal(write(to, "7", 1), 1);
     assert_int_equal(write(to, "\nstep\n", 6), 6);
-    expect_next(6, CONTROL_STEP);
+    expect_next_command(6, CONTROL_STEP);
     assert_int_equal(input.n_bad, 2);
     close(to);
     controls_close(&input);
     unlink(scratch_file);
 }
 
-/* Opens the keys of the terminal PATH in a new session, and ends. */
-static void read_keys(const char *path, int is_killed)
+/* Reads keys from the terminal PATH in a new session; then the process ends, or
+ * is killed if IS_KILLED is set. */
+static void read_terminal_keys(const char *path, int is_killed)
 {
     struct keyboard keys;
     int fd;
@@ -291,7 +305,7 @@ static void read_keys(const char *path, int is_killed)
 
 /* Checks that keys arrive at once, and that the terminal's mode is restored,
  * however the process ends. */
-TEST(terminal)
+TEST(terminal_mode_is_restored)
 {
     for (int is_killed = 0; is_killed < 2; is_killed++) {
         const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
@@ -303,7 +317,7 @@ TEST(terminal)
         assert_int_equal(grantpt(terminal) | unlockpt(terminal), 0);
         child = fork();
         if (child == 0)
-            read_keys(ptsname(terminal), is_killed);
+            read_terminal_keys(ptsname(terminal), is_killed);
         fd = open(ptsname(terminal), O_RDWR | O_NOCTTY);
         do
             assert_int_equal(tcgetattr(fd, &now), 0);
@@ -320,4 +334,4 @@ TEST(terminal)
     }
 }
 
-TEST_GROUP(scratch_open_file, scratch_close_file);
+TEST_GROUP(scratch_create_file, scratch_remove_file);

@@ -10,21 +10,23 @@
 #include "desk/keys.h"
 #include "support/test.h"
 
-static enum glint_status parse_text(struct keys *keys, const char *text,
-                                    struct glint_error *error)
+static enum glint_status parse_key_file_text(struct keys *keys,
+                                             const char *text,
+                                             struct glint_error *error)
 {
     return keys_parse(keys, "k.csv", text, strlen(text), error);
 }
 
-TEST(values)
+TEST(interpolates_values_between_keys)
 {
     struct glint_error error = {""};
     struct keys k;
 
-    assert_ok(parse_text(&k,
-                         "# remark\nframe, gain ,exposure,x,y\n10,1,-2,0,0\n"
-                         "20,3,,100,\n\n30,,8,,50\r\n",
-                         &error));
+    assert_ok(
+        parse_key_file_text(&k,
+                            "# remark\nframe, gain ,exposure,x,y\n10,1,-2,0,0\n"
+                            "20,3,,100,\n\n30,,8,,50\r\n",
+                            &error));
     assert_true(keys_has_column(&k, KEYS_GAIN) &&
                 !keys_has_column(&k, KEYS_STRENGTH));
     assert_true(keys_interpolate_at(&k, KEYS_STRENGTH, 15, 7) == 7);
@@ -42,7 +44,7 @@ TEST(values)
 }
 
 /* Checks that the right two of many keys are used. */
-TEST(many)
+TEST(uses_the_right_two_of_many_keys)
 {
     static char text[40000] = "frame,gain\n";
     struct glint_error error = {""};
@@ -55,7 +57,7 @@ TEST(many)
         at += (size_t)snprintf(text + at, sizeof text - at, "%d,%d\n", frame,
                                gain);
     }
-    assert_ok(parse_text(&k, text, &error));
+    assert_ok(parse_key_file_text(&k, text, &error));
     for (int i = 0; i < 999; i++) {
         assert_true(keys_interpolate_at(&k, KEYS_GAIN, 3 * i, 0) == i * i);
         assert_true(keys_interpolate_at(&k, KEYS_GAIN, 3 * i + 1, 0) ==
@@ -64,7 +66,7 @@ TEST(many)
     keys_free(&k);
 }
 
-TEST(refused)
+TEST(rejects_wrong_key_files)
 {
     static const char *const bad[][2] = {
         {"0,1\n", "k.csv:1: '0' is not a column; the first line names"},
@@ -94,7 +96,8 @@ TEST(refused)
         struct glint_error error = {""};
         struct keys k;
 
-        assert_int_equal(parse_text(&k, bad[i][0], &error), GLINT_E_FORMAT);
+        assert_int_equal(parse_key_file_text(&k, bad[i][0], &error),
+                         GLINT_E_FORMAT);
         assert_ptr_equal(strstr(error.text, bad[i][1]), error.text);
         assert_int_equal(k.n[KEYS_FRAME], 0);
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests glint live from its command line to its exit code with a fake camera:
- * resources, cost per frame, signals and lost cameras.
+ * resources, cost per frame, signals and unplugged cameras.
  */
 #include <stdint.h>
 
@@ -24,9 +24,10 @@ static char said_path[] = "/tmp/glint-test-said-XXXXXX";
 static char shot_dir[] = "/tmp/glint-test-shot-XXXXXX";
 
 static int n_waits, n_unwaited;
-static void (*script)(int wait); /* called at each wait with its number */
+/* called at each wait of the program, with the number of the wait */
+static void (*script)(int wait);
 
-/* Each wait delivers a frame; the script may remove it. */
+/* Each wait of the program delivers a frame, which the script may remove. */
 int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
                  const sigset_t *mask);
 int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
@@ -38,9 +39,9 @@ int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
     (void)mask;
     n_waits++;
     n_unwaited = 0;
-    fake_camera_pass(33333);
+    fake_camera_advance_clock(33333);
     if (camera.n_frames < 100)
-        fake_camera_deliver((uint32_t)n_waits, n_waits % 2 ? 0x80 : 0x7f);
+        fake_camera_add_frame((uint32_t)n_waits, n_waits % 2 ? 0x80 : 0x7f);
     if (script)
         script(n_waits);
     return 1;
@@ -53,12 +54,12 @@ static void on_dequeue(void)
         raise(SIGTERM);
 }
 
-static void fail_without_wait(void)
+static void fail_after_many_dequeues(void)
 {
     assert_true(n_unwaited < 1000);
 }
 
-static void write_config(const char *text)
+static void write_live_config(const char *text)
 {
     FILE *const f = fopen(config_path, "w");
 
@@ -67,11 +68,11 @@ static void write_config(const char *text)
     fclose(f);
 }
 
-/* Runs `glint live -d FAKE -o null -q LINE` with stderr to a file. Returns
- * its exit code. Unless LINE sets the stop, it is a circle: computing the
- * starburst of rounded blades, at each start and reload, would take 100
- * times longer than the rest. */
-static int run_live(const char *line)
+/* Runs `glint live -d FAKE -o null -q LINE` with stderr to a file. Returns its
+ * exit code. Unless LINE sets the stop, the stop is a circle: the starburst of
+ * rounded blades, computed at each start and reload, would cost 100 times as
+ * much as the rest of the test. */
+static int run_live_command(const char *line)
 {
     static char words[1024];
     char *argv[64] = {NULL};
@@ -96,7 +97,7 @@ static int run_live(const char *line)
 }
 
 /* Returns the number of times that TEXT was printed to stderr. */
-static int count_messages(const char *text)
+static int count_stderr_messages(const char *text)
 {
     static char all[100000];
     FILE *const f = fopen(said_path, "r");
@@ -110,13 +111,13 @@ static int count_messages(const char *text)
     return n;
 }
 
-static void expect_no_leaks(void)
+static void expect_camera_closed_without_leaks(void)
 {
-    fail_without_wait();
+    fail_after_many_dequeues();
     assert_int_equal(camera.fd, -1);
     assert_int_equal(camera.n_maps, 0);
     assert_int_equal(camera.breaches, 0);
-    assert_int_equal(fake_camera_blocks(), 0);
+    assert_int_equal(fake_camera_count_leaks(), 0);
 }
 
 /* ------------------------------------------------------------------ frames */
@@ -126,8 +127,8 @@ static int asked[200], blocks[200];
 static void count_allocations(int wait)
 {
     if (wait < 200) {
-        asked[wait] = fake_camera_asked();
-        blocks[wait] = fake_camera_blocks();
+        asked[wait] = fake_camera_count_allocations();
+        blocks[wait] = fake_camera_count_leaks();
     }
 }
 
@@ -136,11 +137,11 @@ TEST_BEFORE
     fake_camera_reset();
 }
 
-TEST(frames)
+TEST(frames_allocate_no_memory)
 {
     script = count_allocations;
-    assert_ok(run_live("--count 150 --stop polygon:6,round:0.2"));
-    expect_no_leaks();
+    assert_ok(run_live_command("--count 150 --stop polygon:6,round:0.2"));
+    expect_camera_closed_without_leaks();
     assert_int_equal(n_waits, 150);
     assert_true(asked[2] >= 5);
     /* drawing frames allocates nothing */
@@ -149,23 +150,24 @@ TEST(frames)
 
 static int asked_at_stream[200], n_streams;
 
-static void count_stream(void)
+static void count_allocations_at_stream_start(void)
 {
-    asked_at_stream[n_streams++] = fake_camera_asked();
+    asked_at_stream[n_streams++] = fake_camera_count_allocations();
 }
 
 /* Runs LINE with the waits of FOLLOW. Checks that streaming was started
  * N_STARTS times, each time after all set-up: nothing is allocated between
  * it and frame WAIT + 1 of the following waits. */
-static void check_setup_order(const char *line, void (*follow)(int wait),
-                              const int *wait, int n_starts)
+static void check_allocations_before_streaming(const char *line,
+                                               void (*follow)(int wait),
+                                               const int *wait, int n_starts)
 {
     fake_camera_reset();
-    camera.on_stream = count_stream;
+    camera.on_stream = count_allocations_at_stream_start;
     n_streams = 0;
     script = follow;
-    assert_ok(run_live(line));
-    expect_no_leaks();
+    assert_ok(run_live_command(line));
+    expect_camera_closed_without_leaks();
     assert_int_equal(n_streams, n_starts);
     for (int i = 0; i < n_starts; i++)
         if (asked[wait[i]] != asked_at_stream[i])
@@ -173,13 +175,13 @@ static void check_setup_order(const char *line, void (*follow)(int wait),
                      asked[wait[i]] - asked_at_stream[i], i);
 }
 
-static void unplug_camera(int wait)
+static void unplug_camera_during_wait(int wait)
 {
     camera.is_gone = wait >= 20 && wait < 30;
     count_allocations(wait);
 }
 
-static void change_size(int wait)
+static void change_camera_size(int wait)
 {
     if (wait % 10 == 5) {
         camera.now.width = wait % 20 == 5 ? 128 : 64;
@@ -191,25 +193,28 @@ static void change_size(int wait)
 
 /* Checks that the camera starts streaming only after all set-up: at the
  * start, after it was unplugged, and at another size. */
-TEST(streams_last)
+TEST(streaming_starts_after_all_setup)
 {
     static const int start[] = {10}, back[] = {10, 40},
                      sizes[] = {4, 14, 24, 29};
 
-    check_setup_order("--count 20", count_allocations, start, 1);
-    check_setup_order("--count 50 --reconnect", unplug_camera, back, 2);
-    check_setup_order("--count 27", change_size, sizes, 4);
+    check_allocations_before_streaming("--count 20", count_allocations, start,
+                                       1);
+    check_allocations_before_streaming("--count 50 --reconnect",
+                                       unplug_camera_during_wait, back, 2);
+    check_allocations_before_streaming("--count 27", change_camera_size, sizes,
+                                       4);
 }
 
-TEST(skip)
+TEST(skips_frames_before_counting)
 {
     script = NULL;
-    assert_ok(run_live("--count 5 --skip 20"));
+    assert_ok(run_live_command("--count 5 --skip 20"));
     assert_int_equal(n_waits, 25);
-    expect_no_leaks();
+    expect_camera_closed_without_leaks();
 }
 
-static void stop_at_30(int wait)
+static void raise_sigterm_at_wait_30(int wait)
 {
     if (wait == 30)
         raise(SIGTERM);
@@ -219,7 +224,7 @@ static void stop_at_30(int wait)
 
 static int last_shot = 149;
 
-static void reload_often(int wait)
+static void raise_reload_signals(int wait)
 {
     /* Both snapshots are of frames with the same code. */
     if (wait == 3 || wait == last_shot)
@@ -229,7 +234,7 @@ static void reload_often(int wait)
     count_allocations(wait);
 }
 
-static const char *read_snapshot(int number)
+static const char *read_snapshot_file(int number)
 {
     static char mem[2][20000], path[64];
     char *const into = mem[number % 2];
@@ -246,7 +251,7 @@ static const char *read_snapshot(int number)
 }
 
 /* Checks that many reloads neither increase memory nor change the image. */
-TEST(reloads)
+TEST(reloads_neither_leak_nor_change_the_image)
 {
     char line[200];
 
@@ -254,55 +259,58 @@ TEST(reloads)
              "lens = " LENS "\nlight = 5,60,1e4\nmemory = 4\n"
              "snapshot = %s/%%02d.ppm\n",
              shot_dir);
-    write_config(line);
+    write_live_config(line);
     for (int exact = 0; exact < 2; exact++) {
         fake_camera_reset();
-        script = reload_often;
+        script = raise_reload_signals;
         last_shot = exact ? 29 : 149; /* Exact rays take 0.15 s per frame. */
         snprintf(line, sizeof line, "--count %d --config %s%s", last_shot + 1,
                  config_path, exact ? " --rays exact --grid 8" : "");
-        assert_ok(run_live(line));
-        expect_no_leaks();
-        assert_int_equal(count_messages("glint live: reloaded"),
+        assert_ok(run_live_command(line));
+        expect_camera_closed_without_leaks();
+        assert_int_equal(count_stderr_messages("glint live: reloaded"),
                          exact ? 3 : 15);
         assert_int_equal(blocks[last_shot - 1], blocks[exact ? 18 : 28]);
-        assert_memory_equal(read_snapshot(1), read_snapshot(2), 3 * 64 * 48);
+        assert_memory_equal(read_snapshot_file(1), read_snapshot_file(2),
+                            3 * 64 * 48);
     }
     last_shot = 149;
 }
 
-static void write_bad_config(int wait)
+static void write_invalid_config(int wait)
 {
     if (wait == 20)
-        write_config("lens = " LENS "\nno-such-thing = 1\n");
+        write_live_config("lens = " LENS "\nno-such-thing = 1\n");
     if (wait == 60)
-        write_config("lens = " LENS "\nlights = /nowhere/lights.csv\n");
+        write_live_config("lens = " LENS "\nlights = /nowhere/lights.csv\n");
     if (wait == 80)
-        write_config("lens = " LENS "\nlight = 5,60,1e4\n");
+        write_live_config("lens = " LENS "\nlight = 5,60,1e4\n");
     if (wait >= 20)
-        reload_often(wait);
+        raise_reload_signals(wait);
 }
 
-TEST(bad_reloads)
+TEST(invalid_reload_keeps_the_old_settings)
 {
     char line[200];
 
-    write_config("lens = " LENS "\n");
+    write_live_config("lens = " LENS "\n");
     fake_camera_reset();
-    script = write_bad_config;
+    script = write_invalid_config;
     snprintf(line, sizeof line, "--count 100 --config %s", config_path);
-    assert_ok(run_live(line));
-    expect_no_leaks();
+    assert_ok(run_live_command(line));
+    expect_camera_closed_without_leaks();
     assert_int_equal(
-        count_messages("not reloaded: the previous configuration stays in use"),
+        count_stderr_messages(
+            "not reloaded: the previous configuration stays in use"),
         6);
-    assert_int_equal(count_messages("live: reloaded"), 2);
-    assert_int_equal(count_messages(":2: no-such-thing is not an option"), 4);
+    assert_int_equal(count_stderr_messages("live: reloaded"), 2);
+    assert_int_equal(
+        count_stderr_messages(":2: no-such-thing is not an option"), 4);
 }
 
 /* ---------------------------------------------------------------- snapshot */
 
-static void silence_and_snapshot(int wait)
+static void request_snapshot_without_frames(int wait)
 {
     if (wait > 10 && wait < 40)
         camera.n_frames = 0;
@@ -310,7 +318,7 @@ static void silence_and_snapshot(int wait)
         raise(SIGUSR2);
 }
 
-static void snapshot_at_2(int wait)
+static void request_snapshot_at_wait_2(int wait)
 {
     if (wait == 2)
         raise(SIGUSR2);
@@ -318,7 +326,7 @@ static void snapshot_at_2(int wait)
 
 /* Checks that with --layer flare and almost no light the image is black in
  * every format and range. */
-TEST(black)
+TEST(flare_layer_without_light_is_black)
 {
     static const uint32_t kind[] = {V4L2_PIX_FMT_YUYV,  V4L2_PIX_FMT_UYVY,
                                     V4L2_PIX_FMT_NV12,  V4L2_PIX_FMT_BGR24,
@@ -331,14 +339,14 @@ TEST(black)
 
         fake_camera_reset();
         camera.mode[0].fourcc = camera.now.fourcc = kind[i / 2];
-        script = snapshot_at_2;
+        script = request_snapshot_at_wait_2;
         snprintf(line, sizeof line,
                  "--count 3 --layer flare --exposure -60 --range %s --snapshot "
                  "%s/%%02d.ppm",
                  i % 2 ? "full" : "limited", shot_dir);
-        assert_ok(run_live(line));
-        expect_no_leaks();
-        rgb = read_snapshot(1) + strlen("P6\n64 48\n255\n");
+        assert_ok(run_live_command(line));
+        expect_camera_closed_without_leaks();
+        rgb = read_snapshot_file(1) + strlen("P6\n64 48\n255\n");
         for (int k = 0; k < 3 * 64 * 48; k++)
             if (rgb[k] != 0)
                 fail_msg("%.4s: byte %d is %d", (const char *)&kind[i / 2], k,
@@ -347,7 +355,7 @@ TEST(black)
 }
 
 /* Checks that a snapshot is taken of the next frame, without a busy loop. */
-TEST(snapshot_waits)
+TEST(snapshot_waits_for_the_next_frame)
 {
     char line[100], path[60], said[80];
 
@@ -356,42 +364,43 @@ TEST(snapshot_waits)
     snprintf(line, sizeof line, "--count 20 --snapshot %s/%%02d.ppm", shot_dir);
     unlink(path);
     fake_camera_reset();
-    script = silence_and_snapshot;
-    assert_ok(run_live(line));
-    expect_no_leaks();
-    assert_int_equal(count_messages(said), 1);
+    script = request_snapshot_without_frames;
+    assert_ok(run_live_command(line));
+    expect_camera_closed_without_leaks();
+    assert_int_equal(count_stderr_messages(said), 1);
     assert_int_equal(unlink(path), 0);
 }
 
 /* -------------------------------------------------------------- lost again */
 
-TEST(unplugged)
+TEST(unplugged_camera_ends_the_run)
 {
-    script = unplug_camera;
-    assert_int_equal(run_live("--count 100"), EXIT_DEVICE);
-    expect_no_leaks();
-    assert_int_equal(count_messages("the camera is gone\n"), 1);
+    script = unplug_camera_during_wait;
+    assert_int_equal(run_live_command("--count 100"), EXIT_DEVICE);
+    expect_camera_closed_without_leaks();
+    assert_int_equal(count_stderr_messages("the camera is gone\n"), 1);
     assert_true(n_waits <= 21);
 }
 
-TEST(comes_back)
+TEST(reconnects_to_a_camera_that_returns)
 {
     {
         fake_camera_reset();
-        script = unplug_camera;
-        assert_ok(run_live("--count 100 --reconnect"));
-        expect_no_leaks();
-        assert_int_equal(count_messages("waiting for the camera"), 1);
-        assert_int_equal(count_messages("(Fake): YUYV 64x48 at 30 fps"), 2);
+        script = unplug_camera_during_wait;
+        assert_ok(run_live_command("--count 100 --reconnect"));
+        expect_camera_closed_without_leaks();
+        assert_int_equal(count_stderr_messages("waiting for the camera"), 1);
+        assert_int_equal(count_stderr_messages("(Fake): YUYV 64x48 at 30 fps"),
+                         2);
     }
 }
 
-TEST(other_sizes)
+TEST(adapts_to_changed_camera_sizes)
 {
-    script = change_size;
-    assert_ok(run_live("--count 150"));
-    expect_no_leaks();
-    assert_true(count_messages("YUYV 128x48") >= 7);
+    script = change_camera_size;
+    assert_ok(run_live_command("--count 150"));
+    expect_camera_closed_without_leaks();
+    assert_true(count_stderr_messages("YUYV 128x48") >= 7);
     assert_int_equal(blocks[149], blocks[29]);
 }
 
@@ -399,7 +408,7 @@ TEST(other_sizes)
 
 /* Checks that if any call fails once, frames continue, or the run ends with
  * an exit code and a message. */
-TEST(every_failure)
+TEST(every_failing_call_is_handled)
 {
     int n = 0, n_failed = 0, n_calls;
 
@@ -409,24 +418,24 @@ TEST(every_failure)
 
         n += n < 60 ? 1 : 7;
         fake_camera_reset();
-        fake_camera_fail_at(n, ENOMEM, false);
-        code = run_live("--count 6");
-        n_calls = fake_camera_fail_at(0, 0, false);
-        expect_no_leaks();
+        fake_camera_fail_call(n, ENOMEM, false);
+        code = run_live_command("--count 6");
+        n_calls = fake_camera_fail_call(0, 0, false);
+        expect_camera_closed_without_leaks();
         if (code != EXIT_OK) {
             n_failed++;
-            assert_true(count_messages("glint live: ") >= 1);
+            assert_true(count_stderr_messages("glint live: ") >= 1);
         }
     } while (n <= n_calls);
     assert_true(n_failed >= 10);
 }
 
 /* Runs last, as the request to stop cannot be reset. */
-TEST(stops)
+TEST(sigterm_stops_the_run)
 {
-    script = stop_at_30;
-    assert_ok(run_live(""));
-    expect_no_leaks();
+    script = raise_sigterm_at_wait_30;
+    assert_ok(run_live_command(""));
+    expect_camera_closed_without_leaks();
     assert_int_equal(n_waits, 30);
 }
 

@@ -15,7 +15,7 @@
 
 static struct live_adapt adapt;
 
-/* Counts and times of a run. */
+/* Counts and times of a simulated run. */
 static struct seen {
     int n_frames, n_missed;
     int n_down, n_up;
@@ -25,7 +25,7 @@ static struct seen {
 /* Simulates a machine that takes cost_ms[step] per frame for SECONDS. A
  * frame that takes longer than a period misses the frames that arrive
  * meanwhile. */
-static void simulate_machine(const double *cost_ms, double seconds)
+static void simulate_machine_for_seconds(const double *cost_ms, double seconds)
 {
     double now_s = 0;
 
@@ -64,102 +64,103 @@ TEST_BEFORE
     live_adapt_init(&adapt);
 }
 
-TEST(easy)
+TEST(enough_time_keeps_step_0)
 {
     static const double cost[8] = {25, 20, 15, 10, 8, 6, 5, 4};
 
-    simulate_machine(cost, 600);
+    simulate_machine_for_seconds(cost, 600);
     assert_int_equal(adapt.step, 0);
     assert_true(seen.last_change_s < 0); /* no change of step */
 }
 
 /* Checks that half a second of misses changes the step, by more than one
  * step if a frame takes more than two periods. */
-TEST(overload)
+TEST(misses_reduce_the_quality)
 {
     static const double cost[8] = {80, 70, 45, 26, 20, 15, 10, 5};
 
-    simulate_machine(cost, 3);
+    simulate_machine_for_seconds(cost, 3);
     assert_int_equal(adapt.step, 3);
     assert_true(seen.first_down_s > 0.2 && seen.first_down_s < 0.5);
     assert_true(seen.last_change_s < 1.5);
-    simulate_machine(cost,
-                     600); /* The step stays, as there is no spare time. */
+    simulate_machine_for_seconds(
+        cost, 600); /* The step stays, as there is no spare time. */
     assert_int_equal(adapt.step, 3);
     assert_int_equal(seen.n_down, 0);
     assert_int_equal(seen.n_missed, 0);
 }
 
-TEST(worst)
+TEST(too_slow_machine_stays_at_the_last_step)
 {
     static const double cost[8] = {900, 900, 900, 900, 900, 900, 900, 900};
     static const double none[8] = {0, 0, 0, 0, 0, 0, 0, 0};
 
-    simulate_machine(cost, 600);
+    simulate_machine_for_seconds(cost, 600);
     assert_int_equal(adapt.step, LIVE_MAX_STEP);
     assert_int_equal(seen.n_down, LIVE_MAX_STEP);
-    simulate_machine(none, 600);
+    simulate_machine_for_seconds(none, 600);
     assert_int_equal(adapt.step, 0);
     assert_int_equal(seen.n_up, LIVE_MAX_STEP);
 }
 
 /* Checks that a single slow frame, as when an image is saved, changes
  * nothing. */
-TEST(hiccup)
+TEST(single_slow_frame_changes_nothing)
 {
     static const double cost[8] = {20, 15, 10, 8, 6, 5, 4, 3};
 
-    simulate_machine(cost, 0.2);
+    simulate_machine_for_seconds(cost, 0.2);
     assert_false(live_adapt_add_frame(&adapt, 30, PERIOD_MS, 0));
-    simulate_machine(cost, 10);
+    simulate_machine_for_seconds(cost, 10);
     assert_int_equal(adapt.step, 0);
     assert_int_equal(seen.n_down, 0);
 }
 
-/* Checks that after a burst of many lights all steps down are reversed,
- * within some seconds each. */
-TEST(recovers)
+/* Checks that after a burst of many lights the quality returns to the first
+ * step, within some seconds per step. */
+TEST(quality_recovers_after_a_burst)
 {
     static const double heavy[8] = {150, 120, 90, 70, 50, 29, 20, 10};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
-    simulate_machine(heavy, 4);
+    simulate_machine_for_seconds(heavy, 4);
     assert_int_equal(adapt.step, 5);
-    simulate_machine(light, 15);
+    simulate_machine_for_seconds(light, 15);
     assert_int_equal(adapt.step, 0);
     assert_int_equal(seen.n_down, 0);
 }
 
-/* Checks that a step up that takes too long is tried less and less often. */
-TEST(does_not_oscillate)
+/* Checks that a finer step that is too slow is tried less and less often. */
+TEST(slow_step_is_tried_less_and_less)
 {
     static const double cost[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     int n_early;
 
-    simulate_machine(cost, 60);
+    simulate_machine_for_seconds(cost, 60);
     n_early = seen.n_up;
     assert_int_equal(adapt.step, 3);
     assert_in_range(n_early, 1, 6);
-    simulate_machine(cost, 600);
+    simulate_machine_for_seconds(cost, 600);
     assert_in_range(seen.n_up, 5, 12); /* once per minute */
     assert_true(seen.n_missed < seen.n_frames / 100);
 }
 
-/* Checks that a step up that once took too long is tried again later. */
-TEST(forgets)
+/* Checks that a finer step that was once too slow is tried again later. */
+TEST(slow_step_is_tried_again_later)
 {
     static const double heavy[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
-    simulate_machine(heavy, 300);
-    /* waits at most a minute, then as short as at first */
-    simulate_machine(light, 75);
+    simulate_machine_for_seconds(heavy, 300);
+    /* the wait before a retry grows to at most a minute, and restarts with the
+     * first value */
+    simulate_machine_for_seconds(light, 75);
     assert_int_equal(adapt.step, 0);
 }
 
 /* Checks that step 0 has the requested quality parameters, and that no step
  * is finer than the previous one. */
-TEST(steps)
+TEST(steps_become_coarser)
 {
     static const struct glint_dials ask[] = {
         {64, 69, 1024, 256, 128, 0, 0.125, 7, 0, 1, 0, 10, {0}},

@@ -16,7 +16,7 @@
 static struct live_stats stats;
 static char text[LIVE_STATS_TEXT];
 
-static void add_latency(int64_t us)
+static void add_frame_of_latency(int64_t us)
 {
     const struct live_frame_times t = {.shown = true, .shown_us = us};
 
@@ -32,17 +32,17 @@ static int compare_int64(const void *a, const void *b)
 
 /* ------------------------------------------------------------- percentiles */
 
-static void check_percentiles(int n, int64_t low_us, int64_t span_us)
+static void check_latency_percentiles(int n, int64_t low_us, int64_t span_us)
 {
     static int64_t us[1000];
     uint32_t seed = (uint32_t)n;
 
     live_stats_start(&stats, 0);
     for (int i = 0; i < n; i++) {
-        const int64_t r = (rng_bits(&seed) >> 8) % span_us;
+        const int64_t r = (rng_bits32(&seed) >> 8) % span_us;
 
         us[i] = low_us + r * r / span_us; /* most latencies are short */
-        add_latency(us[i]);
+        add_frame_of_latency(us[i]);
     }
     qsort(us, (size_t)n, sizeof *us, compare_int64);
     for (int percent = 1; percent <= 100; percent++) {
@@ -56,12 +56,12 @@ static void check_percentiles(int n, int64_t low_us, int64_t span_us)
     }
 }
 
-TEST(percentiles)
+TEST(percentiles_match_sorted_latencies)
 {
     for (int n = 1; n <= 1000; n = n < 120 ? n + 1 : n + 97) {
-        check_percentiles(n, 0, 1000);
-        check_percentiles(n, 12345, 50000);
-        check_percentiles(n, 0, 999999);
+        check_latency_percentiles(n, 0, 1000);
+        check_latency_percentiles(n, 12345, 50000);
+        check_latency_percentiles(n, 0, 999999);
     }
 }
 
@@ -69,16 +69,16 @@ TEST(extreme_latencies)
 {
     live_stats_start(&stats, 0);
     assert_true(live_stats_latency_ms(&stats.second, 50) == -1);
-    add_latency(-5000);
+    add_frame_of_latency(-5000);
     assert_true(live_stats_latency_ms(&stats.second, 50) == 0.05);
-    add_latency(999999);
+    add_frame_of_latency(999999);
     assert_true(live_stats_latency_ms(&stats.second, 50) == 0.05);
     assert_true(live_stats_latency_ms(&stats.second, 51) == 999.95);
     for (int i = 0; i < 98; i++)
-        add_latency(0);
+        add_frame_of_latency(0);
     assert_true(live_stats_latency_ms(&stats.second, 99) == 0.05);
     assert_true(live_stats_latency_ms(&stats.second, 100) == 999.95);
-    add_latency(INT64_C(3000000000000));
+    add_frame_of_latency(INT64_C(3000000000000));
     assert_true(live_stats_latency_ms(&stats.second, 98) == 0.05);
     assert_true(live_stats_latency_ms(&stats.second, 99) == 999.95);
     assert_true(live_stats_latency_ms(&stats.second, 100) == 3e9);
@@ -86,13 +86,13 @@ TEST(extreme_latencies)
 
 /* Checks that a full bin halves all bins, and that percentiles and rare
  * latencies are preserved. */
-TEST(full_bin)
+TEST(full_bin_halves_all_bins)
 {
     live_stats_start(&stats, 0);
     stats.total.bin[50] = UINT32_MAX;
     stats.total.bin[60] = UINT32_MAX - 1;
     stats.total.bin[70] = 1;
-    add_latency(5050);
+    add_frame_of_latency(5050);
     assert_int_equal(stats.total.bin[50], 0x80000001);
     assert_int_equal(stats.total.bin[60], 0x7fffffff);
     assert_int_equal(stats.total.bin[70], 1);
@@ -100,7 +100,7 @@ TEST(full_bin)
     assert_true(live_stats_latency_ms(&stats.total, 51) == 6.05);
     assert_int_equal(stats.second.bin[50], 1);
     /* The sum of all counts also exceeds 32 bits. */
-    add_latency(2000000);
+    add_frame_of_latency(2000000);
     stats.total.bin[50] = stats.total.bin[60] = UINT32_MAX;
     stats.total.bin[LIVE_BINS] = UINT32_MAX;
     assert_true(live_stats_latency_ms(&stats.total, 33) == 5.05);
@@ -134,16 +134,16 @@ static const struct live_frame_times frames[] = {
     {.shown = false, .n_corrupt = 4, .stage_us = {99, 99, 99, 99, 99, 99}},
 };
 
-static void add_frames(void)
+static void add_recorded_frames(void)
 {
     live_stats_start(&stats, 5000000);
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++)
         live_stats_add(&stats, &frames[i]);
 }
 
-TEST(json)
+TEST(prints_json)
 {
-    add_frames();
+    add_recorded_frames();
     assert_string_equal(
         live_stats_json(&stats, 6000000, false, text),
         "{\"t\":1.000,\"fps\":2.00,\"frames\":2,\"drops\":2,\"late\":1,"
@@ -156,9 +156,9 @@ TEST(json)
 
 /* Checks that after a second its statistics restart, while those of the run
  * continue. */
-TEST(seconds)
+TEST(statistics_restart_each_second)
 {
-    add_frames();
+    add_recorded_frames();
     assert_false(live_stats_due(&stats, 5999999));
     assert_true(live_stats_due(&stats, 6000000));
     live_stats_begin_second(&stats, 6000250);
@@ -182,7 +182,7 @@ TEST(seconds)
         "\"reused\":2,\"total\":true}");
 }
 
-TEST(no_frames)
+TEST(prints_no_frames)
 {
     live_stats_start(&stats, 7);
     live_stats_add(&stats, &frames[2]);
@@ -198,9 +198,9 @@ TEST(no_frames)
                         "\033[K");
 }
 
-TEST(lines)
+TEST(prints_a_line)
 {
-    add_frames();
+    add_recorded_frames();
     assert_string_equal(live_stats_line(&stats, 6000000, true, text),
                         "\r2.0 fps  12.3 ms, p99 20.1  2 dropped 1 late 4 bad"
                         "  3 lights 39 ghosts  q 0.38\033[K");
@@ -214,7 +214,7 @@ TEST(lines)
 }
 
 /* Checks that counts and times at their max values are printed completely. */
-TEST(large_counts)
+TEST(prints_large_counts)
 {
     struct live_frame_times t = {.shown = true,
                                  .n_dropped = INT_MAX,

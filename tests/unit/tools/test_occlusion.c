@@ -18,7 +18,7 @@ static const struct glint_view view = {
 static const double focal_mm = 50;
 
 /* Returns a mask a quarter as large as the image, black left of COLUMN. */
-static struct occlusion make_mask(int column)
+static struct occlusion make_half_black_mask(int column)
 {
     struct occlusion o = {.file = "mask.ppm", .black = 0, .white = 255};
 
@@ -32,8 +32,8 @@ static struct occlusion make_mask(int column)
 
 /* Returns the fraction of light that O leaves of a lamp of power 8 and
  * RADIUS pixels at (X, Y). */
-static double remaining_light(struct occlusion *o, double x, double y,
-                              double radius)
+static double measure_unoccluded_fraction(struct occlusion *o, double x,
+                                          double y, double radius)
 {
     struct glint_lamp lamp = {.power = 8, .rgb = {1, 1, 1}};
     struct glint_engine_lamp known;
@@ -49,28 +49,32 @@ static double remaining_light(struct occlusion *o, double x, double y,
     return known.lamp.power / 8;
 }
 
-TEST(share)
+TEST(mask_occludes_a_fraction_of_a_lamp)
 {
-    struct occlusion o = make_mask(SIDE / 2);
+    struct occlusion o = make_half_black_mask(SIDE / 2);
 
-    assert_true(fabs(remaining_light(&o, 200, 100, 20) - 1) < 1e-9);
-    assert_true(remaining_light(&o, 60, 100, 20) == 0);
-    assert_true(fabs(remaining_light(&o, 128, 100, 20) - 0.5) < 0.03);
+    assert_true(fabs(measure_unoccluded_fraction(&o, 200, 100, 20) - 1) < 1e-9);
+    assert_true(measure_unoccluded_fraction(&o, 60, 100, 20) == 0);
+    assert_true(fabs(measure_unoccluded_fraction(&o, 128, 100, 20) - 0.5) <
+                0.03);
     /* area of the segment of a disc beyond half its radius, as a fraction */
-    assert_true(fabs(remaining_light(&o, 118, 100, 20) - 0.1955) < 0.04);
-    assert_true(fabs(remaining_light(&o, 128, 100, 0) - 0.5) <
-                0.1);                                   /* a point lamp */
-    assert_true(remaining_light(&o, -30, 100, 5) == 1); /* off-screen */
+    assert_true(fabs(measure_unoccluded_fraction(&o, 118, 100, 20) - 0.1955) <
+                0.04);
+    assert_true(fabs(measure_unoccluded_fraction(&o, 128, 100, 0) - 0.5) <
+                0.1); /* a point lamp */
+    assert_true(measure_unoccluded_fraction(&o, -30, 100, 5) ==
+                1); /* off-screen */
 }
 
 /* Checks that a lamp that crosses the edge of a mask fades in small steps. */
-TEST(no_step)
+TEST(lamp_crossing_a_mask_fades_gradually)
 {
-    struct occlusion o = make_mask(SIDE / 2);
+    struct occlusion o = make_half_black_mask(SIDE / 2);
     double last = 0;
 
     for (int i = 0; i <= 120; i++) {
-        const double now = remaining_light(&o, 98 + 0.5 * i, 90, 15);
+        const double now =
+            measure_unoccluded_fraction(&o, 98 + 0.5 * i, 90, 15);
 
         assert_true(now >= last - 0.02 && now - last < 0.05);
         last = now;
@@ -78,27 +82,28 @@ TEST(no_step)
     assert_true(fabs(last - 1) < 1e-9);
 }
 
-TEST(fade)
+TEST(lamp_fades_outside_the_border)
 {
     struct occlusion o = {.fade_px = 100};
     double last = 1;
 
-    assert_true(remaining_light(&o, 10, 10, 5) == 1 &&
-                remaining_light(&o, 256, 256, 0) == 1);
+    assert_true(measure_unoccluded_fraction(&o, 10, 10, 5) == 1 &&
+                measure_unoccluded_fraction(&o, 256, 256, 0) == 1);
     for (int i = 0; i <= 110; i++) {
-        const double now = remaining_light(&o, 256 + i, 128, 0);
+        const double now = measure_unoccluded_fraction(&o, 256 + i, 128, 0);
 
         assert_true(now <= last && last - now < 0.02);
         assert_true(i == 0 || i > 99 || (now > 0 && now < 1));
         last = now;
     }
     assert_true(last == 0);
-    assert_true(fabs(remaining_light(&o, -30, -40, 0) - 0.5) < 1e-9);
+    assert_true(fabs(measure_unoccluded_fraction(&o, -30, -40, 0) - 0.5) <
+                1e-9);
 }
 
-TEST(nothing_asked)
+TEST(no_occlusion_by_default)
 {
     struct occlusion o = {.fade_px = 0};
 
-    assert_true(remaining_light(&o, -500, 10, 5) == 1);
+    assert_true(measure_unoccluded_fraction(&o, -500, 10, 5) == 1);
 }

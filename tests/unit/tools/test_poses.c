@@ -26,7 +26,7 @@ static struct glint_error error;
 
 /* Makes a scene of two objects, a sun and a lamp, with 16 steps per unit and
  * handedness HAND. */
-static void make_scene(uint32_t hand)
+static void make_scene_of_two_objects(uint32_t hand)
 {
     header = (struct glint_scene_header){
         .variant = hand, .unit_log2 = 4, .n_objects = 2, .n_lights = 2};
@@ -40,18 +40,18 @@ static void make_scene(uint32_t hand)
         .header = &header, .light = light, .object = object};
 }
 
-static enum glint_status read_text(const char *text, uint32_t hand)
+static enum glint_status open_poses_text(const char *text, uint32_t hand)
 {
     FILE *const file = fopen(scratch_file, "w");
 
     assert_non_null(file);
     fputs(text, file);
     fclose(file);
-    make_scene(hand);
+    make_scene_of_two_objects(hand);
     return poses_open(&poses, scratch_file, false, &model, &error);
 }
 
-static void expect_pose(int frame, int thing, int x)
+static void expect_next_pose(int frame, int thing, int x)
 {
     const struct pose *const p = poses_next(&poses, frame);
 
@@ -62,34 +62,34 @@ static void expect_pose(int frame, int thing, int x)
 
 /* Checks that poses are sorted by frame, then by line; "*" counts as frame
  * 0. */
-TEST(order)
+TEST(poses_are_sorted_by_frame)
 {
-    assert_ok(read_text("frame,object,x,y,z,qw,qx,qy,qz\n"
-                        "7,cup,1,0,0\n# no pose\n\n"
-                        "3,camera,2,0,0\n"
-                        "{\"y\":0,\"object\":\"ball\",\"frame\":3,"
-                        "\"x\":3,\"z\":0}\n"
-                        "*,lamp,4,0,0\n",
-                        GLINT_HAND_LEFT));
-    expect_pose(0, 3, 64);
+    assert_ok(open_poses_text("frame,object,x,y,z,qw,qx,qy,qz\n"
+                              "7,cup,1,0,0\n# no pose\n\n"
+                              "3,camera,2,0,0\n"
+                              "{\"y\":0,\"object\":\"ball\",\"frame\":3,"
+                              "\"x\":3,\"z\":0}\n"
+                              "*,lamp,4,0,0\n",
+                              GLINT_HAND_LEFT));
+    expect_next_pose(0, 3, 64);
     assert_null(poses_next(&poses, 0));
     assert_null(poses_next(&poses, 2));
-    expect_pose(5, POSES_CAMERA, 32);
-    expect_pose(5, 0, 48);
+    expect_next_pose(5, POSES_CAMERA, 32);
+    expect_next_pose(5, 0, 48);
     assert_null(poses_next(&poses, 6));
-    expect_pose(100, 1, 16);
+    expect_next_pose(100, 1, 16);
     assert_null(poses_next(&poses, 100));
     poses_close(&poses);
 }
 
 /* Checks that in a scene of the other handedness a pose is mirrored. */
-TEST(hand)
+TEST(other_handedness_mirrors_poses)
 {
     static const char text[] = "0,ball,1,2,3,2,.4,.6,.8\n0,sun,1,2,2\n";
     struct pose pose[2][2];
 
     for (uint32_t hand = 0; hand < 2; hand++) {
-        assert_ok(read_text(text, hand));
+        assert_ok(open_poses_text(text, hand));
         for (int i = 0; i < 2; i++)
             pose[hand][i] = *poses_next(&poses, 0);
         poses_close(&poses);
@@ -109,41 +109,42 @@ TEST(hand)
         fabs(pose[0][0].turn_q30[0] / (double)ONE_Q30 - 2 / sqrt(5.16)) < 1e-9);
 }
 
-static void expect_error(const char *text, int line, const char *cause)
+static void expect_poses_error(const char *text, int line, const char *cause)
 {
     char where[64];
 
-    assert_int_equal(read_text(text, GLINT_HAND_LEFT), GLINT_E_FORMAT);
+    assert_int_equal(open_poses_text(text, GLINT_HAND_LEFT), GLINT_E_FORMAT);
     snprintf(where, sizeof where, ":%d: ", line);
     if (!strstr(error.text, where) || !strstr(error.text, cause))
         fail_msg("'%s' of '%s'", error.text, text);
 }
 
-TEST(mistakes)
+TEST(rejects_wrong_lines)
 {
-    expect_error("0,ball,1,2\n", 1, "expected frame,object,x,y,z");
-    expect_error("\n0,ball,1,2,3,4\n", 2, "expected frame,object,x,y,z");
-    expect_error("0,ball,1,2,3,1,0,0,0,0\n", 1, "expected frame,object,x,y,z");
-    expect_error("0,ball,1,two,3\n", 1, "are numbers");
-    expect_error("-3,ball,1,2,3\n", 1, "frame must be");
-    expect_error("-1,ball,1,2,3\n", 1, "frame must be");
-    expect_error("1.5,ball,1,2,3\n", 1, "frame must be");
-    expect_error("0,bell,1,2,3\n", 1, "no 'bell'; did you mean 'ball'?");
-    expect_error("0,ball,1e8,2,3\n", 1, "out of the range");
-    expect_error("0,sun,0,0,0\n", 1, "must not be 0 0 0");
-    expect_error("0,ball,0,0,0,0,0,0,0\n", 1, "must not be all 0");
-    expect_error("frame,ball\n", 1, "the heading");
-    expect_error("{\"x\":1}\n", 1, "are needed");
-    expect_error("{\"x\":1\n", 1, "expected , or }");
-    expect_error("{\"x\" 1}\n", 1, "expected :");
-    expect_error("{\"w\":1}\n", 1, "a key is none of");
-    expect_error("{\"object\":3}\n", 1, "object is a");
+    expect_poses_error("0,ball,1,2\n", 1, "expected frame,object,x,y,z");
+    expect_poses_error("\n0,ball,1,2,3,4\n", 2, "expected frame,object,x,y,z");
+    expect_poses_error("0,ball,1,2,3,1,0,0,0,0\n", 1,
+                       "expected frame,object,x,y,z");
+    expect_poses_error("0,ball,1,two,3\n", 1, "are numbers");
+    expect_poses_error("-3,ball,1,2,3\n", 1, "frame must be");
+    expect_poses_error("-1,ball,1,2,3\n", 1, "frame must be");
+    expect_poses_error("1.5,ball,1,2,3\n", 1, "frame must be");
+    expect_poses_error("0,bell,1,2,3\n", 1, "no 'bell'; did you mean 'ball'?");
+    expect_poses_error("0,ball,1e8,2,3\n", 1, "out of the range");
+    expect_poses_error("0,sun,0,0,0\n", 1, "must not be 0 0 0");
+    expect_poses_error("0,ball,0,0,0,0,0,0,0\n", 1, "must not be all 0");
+    expect_poses_error("frame,ball\n", 1, "the heading");
+    expect_poses_error("{\"x\":1}\n", 1, "are needed");
+    expect_poses_error("{\"x\":1\n", 1, "expected , or }");
+    expect_poses_error("{\"x\" 1}\n", 1, "expected :");
+    expect_poses_error("{\"w\":1}\n", 1, "a key is none of");
+    expect_poses_error("{\"object\":3}\n", 1, "object is a");
     assert_int_equal(poses_open(&poses, "/no/such/file", false, &model, &error),
                      GLINT_E_IO);
 }
 
 /* Checks that a pipe returns lines as they arrive, only when complete. */
-TEST(pipe)
+TEST(pipe_returns_complete_lines)
 {
     static const char parts[4][64] = {"0,ba",
                                       "ll,1,0,0\nrubbish\n5,cup,2,0,0\n",
@@ -152,7 +153,7 @@ TEST(pipe)
 
     unlink(scratch_file);
     assert_int_equal(mkfifo(scratch_file, 0600), 0);
-    make_scene(GLINT_HAND_LEFT);
+    make_scene_of_two_objects(GLINT_HAND_LEFT);
     assert_ok(poses_open(&poses, scratch_file, true, &model, &error));
     assert_null(poses_next(&poses, 0));
     to = open(scratch_file, O_WRONLY);
@@ -163,26 +164,26 @@ TEST(pipe)
         if (i == 0)
             assert_null(poses_next(&poses, 1));
         if (i == 1)
-            expect_pose(2, 0, 16);
+            expect_next_pose(2, 0, 16);
         if (i == 2)
-            expect_pose(3, 1, 48);
+            expect_next_pose(3, 1, 48);
     }
     assert_null(poses_next(&poses, 4));
-    expect_pose(5, 1, 32);
+    expect_next_pose(5, 1, 32);
     assert_int_equal(poses.n_bad, 2);
     assert_non_null(strstr(poses.bad.text, ":2: "));
-    /* a line that is too long, and the next line */
+    /* writes a line that is too long, then a valid line */
     for (int i = 0; i < 700; i++)
         assert_int_equal(write(to, "7", 1), 1);
     assert_int_equal(write(to, "\n*,ball,9,0,0\n", 14), 14);
-    expect_pose(6, 0, 144);
+    expect_next_pose(6, 0, 144);
     assert_int_equal(poses.n_bad, 3);
-    /* without a writer, and with a new one */
+    /* a pipe without a writer, and with a new writer */
     close(to);
     assert_null(poses_next(&poses, 7));
     to = open(scratch_file, O_WRONLY);
     assert_int_equal(write(to, "*,ball,8,0,0\n", 13), 13);
-    expect_pose(8, 0, 128);
+    expect_next_pose(8, 0, 128);
     close(to);
     poses_close(&poses);
     unlink(scratch_file);
@@ -190,7 +191,7 @@ TEST(pipe)
 
 /* Checks that a pipe whose writer never pauses is read only up to its limit
  * per frame. */
-TEST(flood)
+TEST(pipe_is_read_up_to_a_limit_per_frame)
 {
     static char lines[1 << 18];
     const size_t most = sizeof lines - 16;
@@ -201,7 +202,7 @@ TEST(flood)
         n += (size_t)sprintf(lines + n, "*,ball,1,0,0\n");
     unlink(scratch_file);
     assert_int_equal(mkfifo(scratch_file, 0600), 0);
-    make_scene(GLINT_HAND_LEFT);
+    make_scene_of_two_objects(GLINT_HAND_LEFT);
     assert_ok(poses_open(&poses, scratch_file, true, &model, &error));
     to = open(scratch_file, O_WRONLY | O_NONBLOCK);
     for (int frame = 0; frame < 3; frame++) {
@@ -218,4 +219,4 @@ TEST(flood)
     unlink(scratch_file);
 }
 
-TEST_GROUP(scratch_open_file, scratch_close_file);
+TEST_GROUP(scratch_create_file, scratch_remove_file);

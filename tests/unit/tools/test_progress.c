@@ -13,26 +13,26 @@
 
 static double now_s;
 
-static double clock_s(void)
+static double read_fake_clock_s(void)
 {
     return now_s;
 }
 
-static struct tool_progress start_progress(bool quiet, bool is_terminal)
+static struct tool_progress start_fake_progress(bool quiet, bool is_terminal)
 {
     const struct tool tool = {.name = "bake", .quiet = quiet};
     struct tool_progress p;
 
     tool_progress_start(&p, &tool, "bake");
-    p.clock = clock_s;
+    p.clock = read_fake_clock_s;
     p.started = 0;
     p.is_terminal = is_terminal;
     return p;
 }
 
 /* Returns what P prints when DONE (0 .. 1) is reached at AT_S seconds. */
-static const char *show_progress(struct tool_progress *p, double at_s,
-                                 double done)
+static const char *print_progress_at(struct tool_progress *p, double at_s,
+                                     double done)
 {
     static char text[400];
     FILE *const file = tmpfile();
@@ -52,95 +52,95 @@ static const char *show_progress(struct tool_progress *p, double at_s,
     return text;
 }
 
-TEST(short_work)
+TEST(short_work_prints_nothing)
 {
-    struct tool_progress p = start_progress(false, false);
+    struct tool_progress p = start_fake_progress(false, false);
 
     for (int k = 0; k <= 99; k++)
-        assert_string_equal(show_progress(&p, 0.1 * k, k / 100.), "");
-    assert_string_equal(show_progress(&p, 500, 1),
-                        ""); /* nothing is left to do */
+        assert_string_equal(print_progress_at(&p, 0.1 * k, k / 100.), "");
+    assert_string_equal(print_progress_at(&p, 500, 1),
+                        ""); /* prints nothing at the end of the work */
 }
 
 TEST(line_every_ten_seconds)
 {
-    struct tool_progress p = start_progress(false, false);
+    struct tool_progress p = start_fake_progress(false, false);
 
-    assert_string_equal(show_progress(&p, 5, 0.1),
+    assert_string_equal(print_progress_at(&p, 5, 0.1),
                         "bake: will take about 45 s\n");
-    assert_string_equal(show_progress(&p, 9.9, 0.2), "");
-    assert_string_equal(show_progress(&p, 10, 0.25),
+    assert_string_equal(print_progress_at(&p, 9.9, 0.2), "");
+    assert_string_equal(print_progress_at(&p, 10, 0.25),
                         "bake: 25 % in 10 s, about 30 s left\n");
-    assert_string_equal(show_progress(&p, 19.9, 0.4), "");
+    assert_string_equal(print_progress_at(&p, 19.9, 0.4), "");
     /* If the estimate falls back, the displayed progress does not. */
-    assert_string_equal(show_progress(&p, 20, 0.2),
+    assert_string_equal(print_progress_at(&p, 20, 0.2),
                         "bake: 40 % in 20 s, about 80 s left\n");
 }
 
 /* Checks that the second part of the work continues where the first ends. */
-TEST(parts)
+TEST(second_part_continues_the_first)
 {
-    struct tool_progress p = start_progress(false, false);
+    struct tool_progress p = start_fake_progress(false, false);
 
     tool_progress_part(&p, 0, 0.6);
-    assert_string_equal(show_progress(&p, 5, 0.5), "");
+    assert_string_equal(print_progress_at(&p, 5, 0.5), "");
     tool_progress_part(&p, 0.6, 0.4);
-    assert_string_equal(show_progress(&p, 20, 0.5),
+    assert_string_equal(print_progress_at(&p, 20, 0.5),
                         "bake: 80 % in 20 s, about 5 s left\n");
 }
 
 /* Checks that an estimate is printed once, after 5 s, for work of 20 s or
  * more. */
-TEST(long_work)
+TEST(long_work_prints_an_estimate_once)
 {
-    struct tool_progress p = start_progress(false, false);
+    struct tool_progress p = start_fake_progress(false, false);
 
-    assert_string_equal(show_progress(&p, 5, 0), "");
-    assert_string_equal(show_progress(&p, 4.9, 0.1), "");
-    assert_string_equal(show_progress(&p, 5, 0.1),
+    assert_string_equal(print_progress_at(&p, 5, 0), "");
+    assert_string_equal(print_progress_at(&p, 4.9, 0.1), "");
+    assert_string_equal(print_progress_at(&p, 5, 0.1),
                         "bake: will take about 45 s\n");
-    assert_string_equal(show_progress(&p, 6, 0.02), "");
-    p = start_progress(false, false);
+    assert_string_equal(print_progress_at(&p, 6, 0.02), "");
+    p = start_fake_progress(false, false);
     p.less = "a larger --tolerance";
     p.besides = ", and reports";
-    assert_string_equal(show_progress(&p, 6, 0.01),
+    assert_string_equal(print_progress_at(&p, 6, 0.01),
                         "bake: will take about 10 minutes, and reports; less "
                         "with a larger --tolerance\n");
 }
 
-/* Checks that a clock that waits for the first report leaves out what came
- * before, and that shorter work has an estimate on request. */
+/* Checks that a clock that starts at the first report excludes the time before
+ * it, and that short work gets an estimate on request. */
 TEST(clock_of_first_report)
 {
-    struct tool_progress p = start_progress(false, false);
+    struct tool_progress p = start_fake_progress(false, false);
 
     p.waits = true;
     p.least_s = 3;
-    assert_string_equal(show_progress(&p, 50, 0.01), "");
-    assert_string_equal(show_progress(&p, 50.7, 0.2), "");
-    assert_string_equal(show_progress(&p, 51, 0.25),
+    assert_string_equal(print_progress_at(&p, 50, 0.01), "");
+    assert_string_equal(print_progress_at(&p, 50.7, 0.2), "");
+    assert_string_equal(print_progress_at(&p, 51, 0.25),
                         "bake: will take about 3 s\n");
 }
 
-TEST(quiet)
+TEST(quiet_prints_nothing)
 {
     for (int is_terminal = 0; is_terminal < 2; is_terminal++) {
-        struct tool_progress p = start_progress(true, is_terminal);
+        struct tool_progress p = start_fake_progress(true, is_terminal);
 
-        assert_string_equal(show_progress(&p, 1, 0.01), "");
-        assert_string_equal(show_progress(&p, 100, 0.5), "");
+        assert_string_equal(print_progress_at(&p, 1, 0.01), "");
+        assert_string_equal(print_progress_at(&p, 100, 0.5), "");
     }
 }
 
 /* Checks that a terminal gets a bar ten times per second, and at the end. */
-TEST(bar)
+TEST(terminal_gets_a_bar)
 {
-    struct tool_progress p = start_progress(false, true);
+    struct tool_progress p = start_fake_progress(false, true);
 
-    assert_string_equal(show_progress(&p, 5, 0.5),
+    assert_string_equal(print_progress_at(&p, 5, 0.5),
                         "\rbake [###############...............]  50 %  "
                         "5 s left \033[K");
-    assert_string_equal(show_progress(&p, 5.05, 0.6), "");
-    assert_non_null(strstr(show_progress(&p, 5.2, 0.6), " 60 %  3 s left"));
-    assert_non_null(strstr(show_progress(&p, 5.15, 1), "100 %  0 s left"));
+    assert_string_equal(print_progress_at(&p, 5.05, 0.6), "");
+    assert_non_null(strstr(print_progress_at(&p, 5.2, 0.6), " 60 %  3 s left"));
+    assert_non_null(strstr(print_progress_at(&p, 5.15, 1), "100 %  0 s left"));
 }

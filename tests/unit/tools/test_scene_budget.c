@@ -15,8 +15,9 @@
 
 enum { WIDTH = 64, HEIGHT = 36, BYTES = 3 * WIDTH * HEIGHT };
 
-/* Checks the --quality of each level: the one with the same parameters. */
-TEST(qualities)
+/* Checks that the --quality of each level is the one with the same
+ * parameters. */
+TEST(levels_have_their_quality)
 {
     static const double quality[SCENE_BUDGET_LEVELS] = {1, .5, .375, .125, 0};
 
@@ -37,7 +38,7 @@ TEST(qualities)
 }
 
 /* Checks that the steps of glint live go down the levels to the last. */
-TEST(steps)
+TEST(live_steps_follow_the_levels)
 {
     struct live_adapt adapt;
     double last = 1;
@@ -53,7 +54,7 @@ TEST(steps)
     assert_true(last == 0);
 }
 
-static void draw_scene(struct over_scene *over, uint8_t *pixels)
+static void simulate_scene_frame(struct over_scene *over, uint8_t *pixels)
 {
     struct glint_image image =
         glint_image_over(pixels, GLINT_RGB24, WIDTH, HEIGHT);
@@ -64,7 +65,7 @@ static void draw_scene(struct over_scene *over, uint8_t *pixels)
 
 /* Checks that a scene that was drawn coarser and then finer gives the image
  * of a new scene with the same parameters. */
-TEST(coarser)
+TEST(changed_level_equals_a_new_scene)
 {
     static const struct tool tool = {.name = "test", .quiet = true};
     static uint8_t fine[BYTES], coarse[BYTES], got[BYTES];
@@ -74,16 +75,16 @@ TEST(coarser)
     assert_ok(over_scene_open(&over, &tool));
     scene_dials_set_quality(&dials, 0);
     assert_ok(over_scene_allocate(&over, &dials));
-    draw_scene(&over, coarse);
+    simulate_scene_frame(&over, coarse);
     dials = (struct scene_dials){.width = WIDTH, .height = HEIGHT};
     assert_ok(over_scene_allocate(&over, &dials));
-    draw_scene(&over, fine);
+    simulate_scene_frame(&over, fine);
     assert_memory_not_equal(fine, coarse, BYTES);
     assert_ok(over_scene_set_quality(&over, 0));
-    draw_scene(&over, got);
+    simulate_scene_frame(&over, got);
     assert_memory_equal(got, coarse, BYTES);
     assert_ok(over_scene_set_quality(&over, 1));
-    draw_scene(&over, got);
+    simulate_scene_frame(&over, got);
     assert_memory_equal(got, fine, BYTES);
     over_scene_close(&over);
 }
@@ -93,7 +94,7 @@ TEST(coarser)
 /* time of each level, ms, at the machine's usual speed */
 static const double level_ms[SCENE_BUDGET_LEVELS] = {40, 40, 24, 12, 8};
 
-static struct scene_budget new_budget(void)
+static struct scene_budget make_scene_budget(void)
 {
     const struct scene_dials dials = {.width = WIDTH, .height = HEIGHT};
     struct scene_budget budget;
@@ -104,8 +105,8 @@ static struct scene_budget new_budget(void)
 
 /* Draws N frames that take SLOWER times the table's time, with a limit of
  * LIMIT_MS. Returns the number of frames above the limit. */
-static int count_late(struct scene_budget *b, int n, double slower,
-                      double limit_ms)
+static int count_late_frames(struct scene_budget *b, int n, double slower,
+                             double limit_ms)
 {
     int late = 0;
 
@@ -120,46 +121,46 @@ static int count_late(struct scene_budget *b, int n, double slower,
 
 /* Checks that the finest level that fits is reached from finer levels and,
  * later, from coarser ones. */
-TEST(follows)
+TEST(finest_fitting_level_is_reached)
 {
-    struct scene_budget b = new_budget();
+    struct scene_budget b = make_scene_budget();
 
-    assert_int_equal(count_late(&b, 100, 1, 1000), 0);
+    assert_int_equal(count_late_frames(&b, 100, 1, 1000), 0);
     assert_int_equal(b.level, 0);
-    count_late(&b, 12, 1, 30);
+    count_late_frames(&b, 12, 1, 30);
     assert_int_equal(b.level, 2);
-    assert_int_equal(count_late(&b, 300, 1, 30), 0);
+    assert_int_equal(count_late_frames(&b, 300, 1, 30), 0);
     assert_int_equal(b.level, 2);
-    count_late(&b, 7, 2, 30);
+    count_late_frames(&b, 7, 2, 30);
     assert_int_equal(b.level, 3);
-    count_late(&b, 12, 10, 30);
+    count_late_frames(&b, 12, 10, 30);
     assert_int_equal(b.level, SCENE_BUDGET_LEVELS - 1);
-    count_late(&b, 200, 1, 30);
+    count_late_frames(&b, 200, 1, 30);
     assert_int_equal(b.level, 2);
-    count_late(&b, 200, .5, 30);
+    count_late_frames(&b, 200, .5, 30);
     /* equals level 0 with the requested parameters */
     assert_int_equal(b.level, 1);
 }
 
 /* Checks that a level that is too slow is rarely tried again. */
-TEST(rests)
+TEST(slow_level_is_rarely_tried)
 {
-    struct scene_budget b = new_budget();
+    struct scene_budget b = make_scene_budget();
 
-    count_late(&b, 7, 1, 22);
+    count_late_frames(&b, 7, 1, 22);
     assert_int_equal(b.level, 3);
-    assert_true(count_late(&b, 1000, 1, 22) <= 14);
+    assert_true(count_late_frames(&b, 1000, 1, 22) <= 14);
 }
 
 /* Checks that one slow frame changes nothing. */
-TEST(one_slow)
+TEST(single_slow_frame_changes_nothing)
 {
-    struct scene_budget b = new_budget();
+    struct scene_budget b = make_scene_budget();
 
-    count_late(&b, 12, 1, 30);
+    count_late_frames(&b, 12, 1, 30);
     assert_int_equal(b.level, 2);
     assert_false(scene_budget_update_level(&b, 300, 30));
-    assert_int_equal(count_late(&b, 100, 1, 30), 0);
+    assert_int_equal(count_late_frames(&b, 100, 1, 30), 0);
     assert_int_equal(b.level, 2);
 }
 
@@ -167,9 +168,10 @@ TEST(one_slow)
  * flare uses the time that the scene leaves, within LEAST_MS at quality 0
  * and MOST_MS at quality 1. Checks that the scene settles at LEVEL and that
  * at most 10 frames are late, not counting the first 20. */
-static void check_shared_budget(double least_ms, double most_ms, int level)
+static void check_budget_shared_with_flare(double least_ms, double most_ms,
+                                           int level)
 {
-    struct scene_budget b = new_budget();
+    struct scene_budget b = make_scene_budget();
     double flare_ms = 0, quality = 0;
     int late = 0;
 
@@ -184,15 +186,19 @@ static void check_shared_budget(double least_ms, double most_ms, int level)
         late += i >= 20 && scene_ms + flare_ms > 60;
     }
     assert_int_equal(b.level, level);
-    assert_true(late <= 10); /* late frames of trials */
+    assert_true(late <= 10); /* late frames caused by trials of a finer level */
 }
 
-TEST(shares)
+TEST(budget_is_shared_with_the_flare)
 {
-    check_shared_budget(1, 2, 0);    /* a flare that needs almost no time */
-    check_shared_budget(10, 200, 2); /* a flare that could use all the time */
-    check_shared_budget(30, 200, 2); /* a flare that leaves half of the time */
-    check_shared_budget(50, 200, 4); /* a flare that leaves almost no time */
+    check_budget_shared_with_flare(1, 2,
+                                   0); /* a flare that needs almost no time */
+    check_budget_shared_with_flare(10, 200,
+                                   2); /* a flare that could use all the time */
+    check_budget_shared_with_flare(
+        30, 200, 2); /* a flare that leaves half of the time */
+    check_budget_shared_with_flare(50, 200,
+                                   4); /* a flare that leaves almost no time */
     assert_true(scene_budget_limit_flare(60, 59, 0) == 6);
 }
 
@@ -207,7 +213,7 @@ double __wrap_tool_seconds(void)
 }
 
 /* Checks that images of a scene with a budget equal those of its quality. */
-TEST(draws)
+TEST(images_equal_those_of_the_quality)
 {
     static const struct tool tool = {.name = "test", .quiet = true};
     static uint8_t coarse[BYTES], got[BYTES];
@@ -218,16 +224,16 @@ TEST(draws)
     assert_ok(over_scene_open(&over, &tool));
     scene_dials_set_quality(&dials, 0);
     assert_ok(over_scene_allocate(&over, &dials));
-    draw_scene(&over, coarse);
+    simulate_scene_frame(&over, coarse);
     dials = (struct scene_dials){.width = WIDTH, .height = HEIGHT};
     assert_ok(over_scene_allocate(&over, &dials));
     over.budget_ms = 2 * over.ms;
     for (int i = 0; i < 20; i++)
-        draw_scene(&over, got);
+        simulate_scene_frame(&over, got);
     assert_true(scene_budget_flare_quality(&over.budget) == .5);
     step_s = 3e-3;
     for (int i = 0; i < 20; i++)
-        draw_scene(&over, got);
+        simulate_scene_frame(&over, got);
     assert_true(scene_budget_flare_quality(&over.budget) == 0);
     assert_memory_equal(got, coarse, BYTES);
     over_scene_close(&over);

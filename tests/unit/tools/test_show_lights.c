@@ -14,8 +14,8 @@
 enum { WIDTH = 96, HEIGHT = 64, GUARD = 4096 };
 
 /* Returns a grey image between guard bytes of 0xee. */
-static struct glint_image new_image(enum glint_pixel_format format,
-                                    uint8_t **mem)
+static struct glint_image
+make_guarded_grey_image(enum glint_pixel_format format, uint8_t **mem)
 {
     struct glint_image image = {
         .format = format, .width = WIDTH, .height = HEIGHT};
@@ -29,7 +29,8 @@ static struct glint_image new_image(enum glint_pixel_format format,
     return image;
 }
 
-static void assert_guards(const struct glint_image *image, const uint8_t *mem)
+static void assert_guard_bytes_unchanged(const struct glint_image *image,
+                                         const uint8_t *mem)
 {
     const size_t bytes = glint_image_bytes(image->format, WIDTH, HEIGHT);
 
@@ -39,7 +40,7 @@ static void assert_guards(const struct glint_image *image, const uint8_t *mem)
     }
 }
 
-static struct glint_lamp_track make_track(int x, int y)
+static struct glint_lamp_track make_lamp_track(int x, int y)
 {
     return (struct glint_lamp_track){.id = 907,
                                      .state = GLINT_LAMP_STEADY,
@@ -50,14 +51,14 @@ static struct glint_lamp_track make_track(int x, int y)
 
 /* Checks that with lines one pixel wide a mark is a cross of 5 pixels, a box
  * of +-8 and the digits 907. */
-TEST(what_is_drawn)
+TEST(mark_is_a_cross_a_box_and_digits)
 {
     static const char *const number[5] = {"### ### ###", "# # # #   #",
                                           "### # #   #", "  # # #  # ",
                                           "### ###  # "};
-    const struct glint_lamp_track track = make_track(30, 20);
+    const struct glint_lamp_track track = make_lamp_track(30, 20);
     uint8_t *mem;
-    struct glint_image image = new_image(GLINT_RGB24, &mem);
+    struct glint_image image = make_guarded_grey_image(GLINT_RGB24, &mem);
     const uint8_t *px = image.plane[0];
     int n_green = 0;
 
@@ -83,7 +84,7 @@ TEST(what_is_drawn)
 
 /* Checks green at the mark's centre: (0, 255, 0) is (145, 54, 34) in BT.601
  * limited range and (182, 30, 12) in BT.709 full range. */
-TEST(colours_of_formats)
+TEST(marks_are_green_in_every_format)
 {
     static const struct {
         enum glint_pixel_format format;
@@ -105,9 +106,10 @@ TEST(colours_of_formats)
         {0, 255, 0}, {145, 54, 34}, {182, 30, 12}};
 
     for (unsigned i = 0; i < 2 * sizeof at / sizeof *at; i++) {
-        const struct glint_lamp_track track = make_track(30, 20);
+        const struct glint_lamp_track track = make_lamp_track(30, 20);
         uint8_t *mem;
-        struct glint_image image = new_image(at[i / 2].format, &mem);
+        struct glint_image image =
+            make_guarded_grey_image(at[i / 2].format, &mem);
 
         image.matrix = i & 1 ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
         image.range = i & 1 ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED;
@@ -119,11 +121,11 @@ TEST(colours_of_formats)
     }
 }
 
-TEST(writes_565)
+TEST(writes_rgb565)
 {
-    struct glint_lamp_track track = make_track(30, 20);
+    struct glint_lamp_track track = make_lamp_track(30, 20);
     uint8_t *mem;
-    struct glint_image image = new_image(GLINT_RGB565, &mem);
+    struct glint_image image = make_guarded_grey_image(GLINT_RGB565, &mem);
 
     track.state = GLINT_LAMP_FADING;
     show_lamp_mark(&image, &track);
@@ -134,21 +136,22 @@ TEST(writes_565)
 
 /* Checks that marks inside, across the borders and far off-screen do not
  * write to the guard bytes. */
-TEST(clipped_at_the_borders)
+TEST(marks_are_clipped_at_the_borders)
 {
     static const int places[] = {-(1 << 20), -100, -9, -1,     0,      5,
                                  47,         63,   95, 96 + 8, 96 + 9, 1 << 20};
 
     for (int i = 0; i < 144 * CANVAS_FORMATS; i++) {
         struct glint_lamp_track track =
-            make_track(places[i % 12], places[i / 12 % 12]);
+            make_lamp_track(places[i % 12], places[i / 12 % 12]);
         uint8_t *mem;
-        struct glint_image image = new_image(canvas_format[i / 144], &mem);
+        struct glint_image image =
+            make_guarded_grey_image(canvas_format[i / 144], &mem);
 
         track.id = UINT32_MAX;
         track.size_q8 = i % 7 ? 512 : 1 << 21;
         show_lamp_mark(&image, &track);
-        assert_guards(&image, mem);
+        assert_guard_bytes_unchanged(&image, mem);
         free(mem);
     }
 }

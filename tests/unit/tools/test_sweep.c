@@ -16,14 +16,14 @@
 
 /* Returns whether A dominates B: it is cheaper and not worse, or better and
  * not costlier. */
-static int is_dominating(const double *cost, const double *quality, int a,
-                         int b)
+static int point_dominates_point(const double *cost, const double *quality,
+                                 int a, int b)
 {
     return cost[a] <= cost[b] && quality[a] >= quality[b] &&
            (cost[a] < cost[b] || quality[a] > quality[b]);
 }
 
-TEST(front_by_hand)
+TEST(pareto_front_matches_hand_computation)
 {
     static const double cost[] = {5, 1, 3, 2, 4, 3, 0, 2};
     static const double quality[] = {50, 20, 40, 10, 40, 30, (double)NAN, 35};
@@ -41,7 +41,7 @@ TEST(front_by_hand)
  * setting on the line between two levels, one above it, one costlier than an
  * equal level, one cheaper than all, and one between levels of which one
  * draws at half resolution. */
-TEST(above_the_ladder)
+TEST(measures_db_above_the_quality_levels)
 {
     struct sweep_setting level = {.kind = SWEEP_QUALITY}, halves = level;
     const struct sweep_setting dial = {.kind = SWEEP_ALONE};
@@ -69,7 +69,7 @@ TEST(above_the_ladder)
 /* Checks that no setting dominates one on the front, and that each setting
  * off the front is dominated by one on it. Values are few, so many are
  * equal. */
-TEST(front_of_many)
+TEST(pareto_front_of_many_settings)
 {
     enum { N = 60 };
     double cost[N], quality[N];
@@ -80,7 +80,7 @@ TEST(front_of_many)
         int on[N] = {0}, n;
 
         for (int i = 0; i < N; i++) {
-            rng_bits(&seed);
+            rng_bits32(&seed);
             cost[i] = seed >> 24 & 31;
             quality[i] = seed >> 16 & 31;
         }
@@ -91,7 +91,7 @@ TEST(front_of_many)
             int is_beaten = 0, is_met = 0;
 
             for (int k = 0; k < N; k++) {
-                is_beaten |= is_dominating(cost, quality, k, i);
+                is_beaten |= point_dominates_point(cost, quality, k, i);
                 is_met |=
                     on[k] && cost[k] == cost[i] && quality[k] == quality[i];
             }
@@ -101,7 +101,7 @@ TEST(front_of_many)
 }
 
 /* Checks the checksums of the smallest PNG against zlib's. */
-TEST(png)
+TEST(smallest_png_matches_zlib)
 {
     static const uint8_t red[] = {255, 0, 0};
     static const char want[] =
@@ -120,7 +120,8 @@ TEST(png)
 }
 
 /* Returns a hash of the settings in S, except the parameter NAME. */
-static uint64_t settings_without(const struct settings *s, const char *name)
+static uint64_t hash_settings_without(const struct settings *s,
+                                      const char *name)
 {
     const double all[] = {
         strcmp(name, "grid") ? s->dials.fineness : 0,
@@ -144,7 +145,7 @@ static uint64_t settings_without(const struct settings *s, const char *name)
 
 /* Checks that each non-default value of a parameter changes the settings,
  * and changes no other parameter. */
-TEST(parameters)
+TEST(each_parameter_changes_the_settings)
 {
     struct sweep_setting standard = {.alone = -1, .quality = -1};
     struct settings plain;
@@ -165,17 +166,17 @@ TEST(parameters)
             set.value[d] = p->value[i];
             sweep_apply_setting(&other, &set, false);
             has_standard |= p->value[i] == p->standard;
-            assert_true(settings_without(&other, p->name) ==
-                        settings_without(&plain, p->name));
-            assert_true((settings_without(&other, "") ==
-                         settings_without(&plain, "")) ==
+            assert_true(hash_settings_without(&other, p->name) ==
+                        hash_settings_without(&plain, p->name));
+            assert_true((hash_settings_without(&other, "") ==
+                         hash_settings_without(&plain, "")) ==
                         (p->value[i] == p->standard));
         }
         assert_true(has_standard);
     }
 }
 
-static int is_half(const struct settings *settings)
+static int is_at_half_resolution(const struct settings *settings)
 {
     return glint_dials_half(&settings->dials);
 }
@@ -183,7 +184,7 @@ static int is_half(const struct settings *settings)
 /* Checks that a better level is never coarser, among levels at full
  * resolution and among those at half, and that the middle level is the
  * default settings. */
-TEST(ladder)
+TEST(better_levels_are_never_coarser)
 {
     struct settings last, settings, plain;
 
@@ -202,15 +203,17 @@ TEST(ladder)
     settings_set_quality(&last, 0);
     for (int i = 1; i <= 100; i++) {
         settings_set_quality(&settings, i / 100.);
-        if (is_half(&settings) ==
-            is_half(&last)) { /* otherwise the resolution rises */
+        if (is_at_half_resolution(&settings) ==
+            /* except where the resolution changes from half to full */
+            is_at_half_resolution(&last)) {
             assert_in_range(settings.dials.fineness, last.dials.fineness,
                             GLINT_MAX_CELLS);
             assert_true(settings.quantum <= last.quantum);
         }
         assert_true(settings.dials.cull_codes <= last.dials.cull_codes);
         assert_true(settings.tolerance <= last.tolerance);
-        assert_true(is_half(&settings) <= is_half(&last));
+        assert_true(is_at_half_resolution(&settings) <=
+                    is_at_half_resolution(&last));
         last = settings;
     }
     assert_true(settings_set(&settings, "quality", "0.25") &&

@@ -20,13 +20,13 @@ static const struct synth_item named = {.width = 64,
                                         .coating = "mixed",
                                         .quality = 0.3};
 
-static double read_field(const struct synth_item *item, int k)
+static double read_json_field(const struct synth_item *item, int k)
 {
     return *(const double *)(const void *)((const char *)item +
                                            synth_field[k].at);
 }
 
-TEST(lines_hold_all)
+TEST(lines_contain_all_fields)
 {
     static const struct synth_result none;
     struct synth_ranges ranges;
@@ -50,7 +50,8 @@ TEST(lines_hold_all)
                 assert_string_equal((char *)&item + synth_field[k].at,
                                     (char *)&back + synth_field[k].at);
             else
-                assert_true(read_field(&item, k) == read_field(&back, k));
+                assert_true(read_json_field(&item, k) ==
+                            read_json_field(&back, k));
         for (int k = 0; k < (int)item.n_lights; k++)
             assert_memory_equal(&item.light[k], &back.light[k],
                                 sizeof item.light[k]);
@@ -58,7 +59,7 @@ TEST(lines_hold_all)
     }
 }
 
-TEST(numbers_keep_to_ranges)
+TEST(random_numbers_stay_in_range)
 {
     struct synth_ranges ranges;
     double low[SYNTH_FIELDS], high[SYNTH_FIELDS];
@@ -77,12 +78,13 @@ TEST(numbers_keep_to_ranges)
         assert_true(item.light[0].power == 1);
         for (int k = 0; k < SYNTH_FIELDS; k++)
             if (synth_field[k].law > SYNTH_COUNTED &&
-                read_field(&item, k) != 0) {
-                low[k] = fmin(low[k], read_field(&item, k));
-                high[k] = fmax(high[k], read_field(&item, k));
+                read_json_field(&item, k) != 0) {
+                low[k] = fmin(low[k], read_json_field(&item, k));
+                high[k] = fmax(high[k], read_json_field(&item, k));
             }
     }
-    assert_in_range(zeros, 1850, 2150); /* 5 sigma are 158 */
+    /* 2000 expected; five standard deviations are 158 */
+    assert_in_range(zeros, 1850, 2150);
     for (int k = 0; k < SYNTH_FIELDS; k++) {
         const double span = synth_field[k].high - synth_field[k].low;
 
@@ -95,7 +97,7 @@ TEST(numbers_keep_to_ranges)
 }
 
 /* Checks that a changed range of one number does not change the others. */
-TEST(numbers_stand_alone)
+TEST(random_numbers_are_independent)
 {
     struct synth_item a = named, b = named;
     struct synth_ranges ranges;
@@ -122,7 +124,7 @@ TEST(numbers_stand_alone)
 }
 
 /* Checks that sensor noise has the variance of photon noise plus read noise. */
-TEST(noise_is_of_photons)
+TEST(noise_is_photon_and_read_noise)
 {
     enum { SIDE = 256, N = 3 * SIDE * SIDE };
     struct synth_item item = {

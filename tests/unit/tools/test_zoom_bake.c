@@ -31,8 +31,8 @@ static void set_zoom_position(struct glint_prescription *at, double along)
 
 /* Bakes both ends and the positions needed for an error of HALFWAY_DB in
  * between. Sets KEY to the keys of the models of the ends. */
-static void bake_zoom(const struct glint_bake_options *options,
-                      double halfway_db, uint64_t key[2])
+static void bake_zoom_positions(const struct glint_bake_options *options,
+                                double halfway_db, uint64_t key[2])
 {
     static struct glint_zoom_lens zoom;
     struct tool tool = {.name = "test", .quiet = true};
@@ -57,8 +57,9 @@ static void bake_zoom(const struct glint_bake_options *options,
 
 /* Returns the model key of the position ALONG (0 .. 1) whose neighbour is at
  * BESIDE; BESIDE < 0: no neighbour. */
-static uint64_t compute_key(const struct glint_bake_options *options,
-                            double along, double beside)
+static uint64_t
+compute_key_of_position(const struct glint_bake_options *options, double along,
+                        double beside)
 {
     struct glint_prescription at, other;
     struct glint_bake_options with = *options;
@@ -70,9 +71,9 @@ static uint64_t compute_key(const struct glint_bake_options *options,
     return glint_bake_key(&at, &with);
 }
 
-/* Checks the step between positions: an interval may be halved four times,
- * so the finest step is 1/16. */
-TEST(ends_know_what_lies_a_finest_step_off)
+/* Checks that both ends are baked with the finest step between positions, which
+ * is 1/16 as an interval may be halved four times. */
+TEST(ends_are_baked_with_a_finest_step)
 {
     struct glint_bake_options options;
     struct glint_error error = {""};
@@ -83,12 +84,14 @@ TEST(ends_know_what_lies_a_finest_step_off)
         fail_msg("%s", error.text);
     glint_bake_defaults(&options);
     options.max_deg = 3;
-    bake_zoom(&options, 1, key);
-    assert_true(key[0] == compute_key(&options, 0, 1 / 16.0));
-    assert_true(key[1] == compute_key(&options, 1, 15 / 16.0));
-    bake_zoom(&options, 0, key);
-    assert_true(key[0] == compute_key(&options, 0, -1));
-    assert_true(key[1] == compute_key(&options, 1, -1));
-    assert_true(compute_key(&options, 0, 1) != compute_key(&options, 0, -1));
-    assert_true(compute_key(&options, 0, 1) != compute_key(&options, 0, 0.5));
+    bake_zoom_positions(&options, 1, key);
+    assert_true(key[0] == compute_key_of_position(&options, 0, 1 / 16.0));
+    assert_true(key[1] == compute_key_of_position(&options, 1, 15 / 16.0));
+    bake_zoom_positions(&options, 0, key);
+    assert_true(key[0] == compute_key_of_position(&options, 0, -1));
+    assert_true(key[1] == compute_key_of_position(&options, 1, -1));
+    assert_true(compute_key_of_position(&options, 0, 1) !=
+                compute_key_of_position(&options, 0, -1));
+    assert_true(compute_key_of_position(&options, 0, 1) !=
+                compute_key_of_position(&options, 0, 0.5));
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests the error of a zoom lens of two elements that was baked at both ends:
- * lights come from the reported angles, ends are exact, the middle is not.
+ * lights come from the reported angles, the error is small at the ends and
+ * larger half-way.
  */
 #include <math.h>
 #include <stdint.h>
@@ -71,9 +72,10 @@ TEST_CLOSE
 /* Measures the errors of the ghosts whose first error is below 0, with
  * lights up to MAX_DEG that are shifted by SHIFT of their spacing. ALONG is
  * the zoom position, LENS the table at that position. */
-static void measure_up_to(double max_deg, const struct glint_prescription *lens,
-                          double along, double shift,
-                          struct zoom_error error[GHOSTS])
+static void measure_errors_up_to_angle(double max_deg,
+                                       const struct glint_prescription *lens,
+                                       double along, double shift,
+                                       struct zoom_error error[GHOSTS])
 {
     const struct tool tool = {.name = "test"};
     struct glint_error message = {""};
@@ -84,24 +86,25 @@ static void measure_up_to(double max_deg, const struct glint_prescription *lens,
         fail_msg("%s", message.text);
 }
 
-static void measure_ghosts(const struct glint_prescription *lens, double along,
-                           double shift, struct zoom_error error[GHOSTS])
+static void measure_ghost_errors(const struct glint_prescription *lens,
+                                 double along, double shift,
+                                 struct zoom_error error[GHOSTS])
 {
-    measure_up_to(MAX_DEG, lens, along, shift, error);
+    measure_errors_up_to_angle(MAX_DEG, lens, along, shift, error);
 }
 
-enum { EACH = 4 }; /* of the angles, one in EACH is always measured */
+enum { EACH = 4 }; /* one in EACH of the angles is always measured */
 
 /* Marks the errors of ghost 0 as wanted (-1) and those of the other ghost as
  * done (2). */
-static void mark_wanted(struct zoom_error error[GHOSTS])
+static void mark_errors_to_measure(struct zoom_error error[GHOSTS])
 {
     for (int g = 0; g < GHOSTS; g++)
         for (int a = 0; a < ZOOM_ANGLES; a++)
             error[g].of[a] = g == 0 ? -1 : 2;
 }
 
-static double max_error(const struct zoom_error *error)
+static double max_error_of_angles(const struct zoom_error *error)
 {
     double most = 0;
 
@@ -110,12 +113,12 @@ static double max_error(const struct zoom_error *error)
     return most;
 }
 
-TEST(ends_are_exact)
+TEST(errors_at_baked_positions_are_small)
 {
     struct zoom_error end[GHOSTS];
 
-    mark_wanted(end);
-    measure_ghosts(&at[0], 0, 0.5, end);
+    mark_errors_to_measure(end);
+    measure_ghost_errors(&at[0], 0, 0.5, end);
     for (int a = 0; a < ZOOM_ANGLES; a++) {
         /* 49.2 dB: a model of 50 dB against interpolated exact rays */
         assert_true(end[0].of[a] >= 0 && end[0].of[a] < 1.2e-5);
@@ -125,30 +128,30 @@ TEST(ends_are_exact)
 
 /* Checks that the middle is not exact, and that the last angle of one
  * interval is the first of the next. */
-TEST(lights_are_shifted)
+TEST(lights_of_adjacent_intervals_meet)
 {
     struct zoom_error begin[GHOSTS], end[GHOSTS];
 
-    mark_wanted(begin);
-    mark_wanted(end);
-    measure_ghosts(&at[2], 0.5, 0, begin);
-    measure_ghosts(&at[2], 0.5, 1, end);
-    assert_true(max_error(&begin[0]) > 3e-5);
+    mark_errors_to_measure(begin);
+    mark_errors_to_measure(end);
+    measure_ghost_errors(&at[2], 0.5, 0, begin);
+    measure_ghost_errors(&at[2], 0.5, 1, end);
+    assert_true(max_error_of_angles(&begin[0]) > 3e-5);
     for (int a = 0; a + EACH < ZOOM_ANGLES; a += EACH)
         assert_true(end[0].of[a] == begin[0].of[a + EACH]);
 }
 
-/* Checks that where a ghost vanishes (here in the model as well) angles
- * between those that are always measured are measured too. */
-TEST(ends_of_ghosts_are_found)
+/* Checks that additional angles are measured around the angle where a ghost
+ * vanishes (in this test the model's ghost vanishes as well). */
+TEST(angles_where_ghosts_vanish_are_measured)
 {
     struct zoom_error halves[GHOSTS], there[GHOSTS];
     int ends = 0;
 
-    mark_wanted(halves);
-    mark_wanted(there);
-    measure_up_to(80, &at[0], 0, 0, halves);
-    measure_up_to(80, &at[0], 0, 0.5, there);
+    mark_errors_to_measure(halves);
+    mark_errors_to_measure(there);
+    measure_errors_up_to_angle(80, &at[0], 0, 0, halves);
+    measure_errors_up_to_angle(80, &at[0], 0, 0.5, there);
     for (int a = 0; a + EACH < ZOOM_ANGLES; a += EACH) {
         const double *const of = &halves[0].of[a];
 
@@ -162,10 +165,10 @@ TEST(ends_of_ghosts_are_found)
     assert_int_equal(ends, 1);
 }
 
-/* Checks that lights go up to 1.5 times the half diagonal, here further than
- * the model was baked for, so that at the last angles whole ghosts count as
+/* Checks that lights go up to 1.5 times the half diagonal, further than this
+ * test's model was baked for, so that at the last angles whole ghosts count as
  * errors. */
-TEST(lights_end_beyond_the_corner)
+TEST(lights_reach_beyond_the_corner)
 {
     const double corner_mm = 0.5 * hypot(24, 16);
     struct zoom_error asked[GHOSTS], all[GHOSTS], less[GHOSTS];
@@ -174,12 +177,12 @@ TEST(lights_end_beyond_the_corner)
 
     glint_optics_of(&at[0], &optics);
     corner_deg = 180 / GLINT_PI * atan(corner_mm / optics.focal_mm);
-    mark_wanted(asked);
-    mark_wanted(all);
-    mark_wanted(less);
-    measure_up_to(1.5 * corner_deg, &at[0], 0, 0.5, asked);
-    measure_up_to(80, &at[0], 0, 0.5, all);
-    measure_up_to(1.4 * corner_deg, &at[0], 0, 0.5, less);
+    mark_errors_to_measure(asked);
+    mark_errors_to_measure(all);
+    mark_errors_to_measure(less);
+    measure_errors_up_to_angle(1.5 * corner_deg, &at[0], 0, 0.5, asked);
+    measure_errors_up_to_angle(80, &at[0], 0, 0.5, all);
+    measure_errors_up_to_angle(1.4 * corner_deg, &at[0], 0, 0.5, less);
     assert_memory_equal(asked, all, sizeof all);
     assert_memory_not_equal(asked, less, sizeof all);
 }

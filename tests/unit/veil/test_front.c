@@ -20,7 +20,7 @@ enum { WIDTH = 131, HEIGHT = 75 };
 
 static const struct glint_real one = {1 << 30, -30};
 
-/* An octagonal stop behind a front element of 20 mm. */
+/* Optics of an octagonal stop behind a front element of 20 mm. */
 static const struct glint_front_optics optics = {.tangent = 1. / WIDTH,
                                                  .z = 1.4,
                                                  .radius = 0.12,
@@ -28,7 +28,7 @@ static const struct glint_front_optics optics = {.tangent = 1. / WIDTH,
                                                  .height = HEIGHT,
                                                  .n_blades = 8};
 
-static struct glint_front_dirt *make_dirt(const struct glint_front *front)
+static struct glint_front_dirt *make_front_dirt(const struct glint_front *front)
 {
     struct glint_front_dirt *dirt;
     struct glint_error error;
@@ -37,8 +37,9 @@ static struct glint_front_dirt *make_dirt(const struct glint_front *front)
     return dirt;
 }
 
-static struct glint_front_table *make_table(const struct glint_front_dirt *dirt,
-                                            const struct glint_setup *setup)
+static struct glint_front_table *
+make_front_table(const struct glint_front_dirt *dirt,
+                 const struct glint_setup *setup)
 {
     struct glint_front_table *table;
 
@@ -48,12 +49,12 @@ static struct glint_front_table *make_table(const struct glint_front_dirt *dirt,
 
 /* ---------------------------------------------------------------- the table */
 
-TEST(table)
+TEST(table_has_the_dust_fractions)
 {
     static const struct glint_setup setup = {.n_blades = 8};
     struct glint_front_dirt *dirt =
-        make_dirt(&(struct glint_front){.dust = 0.05, .dust_seed = 3});
-    struct glint_front_table *t = make_table(dirt, &setup);
+        make_front_dirt(&(struct glint_front){.dust = 0.05, .dust_seed = 3});
+    struct glint_front_table *t = make_front_table(dirt, &setup);
     double worst = 0;
 
     assert_int_equal(t->front.n_x, GLINT_VEIL_FRONT_NODES(WIDTH));
@@ -77,13 +78,13 @@ TEST(table)
 /* Checks that a mask over the left half of the front (seen from the sensor,
  * x right) covers the right half of the image, whose light comes from there,
  * and that up in the mask is up on the front. */
-TEST(mask)
+TEST(mask_is_mirrored_by_the_lens)
 {
     static const uint8_t left[4] = {0, 255, 0, 255}, high[4] = {0, 0, 255, 255};
     static const struct glint_setup setup = {.n_blades = 8};
 
     for (int k = 0; k < 2; k++) {
-        struct glint_front_dirt *dirt = make_dirt(&(struct glint_front){
+        struct glint_front_dirt *dirt = make_front_dirt(&(struct glint_front){
             .mask = k ? high : left, .mask_width = 2, .mask_height = 2});
         const double low =
             glint_front_covered(dirt, &optics, &setup, WIDTH / 2 - (k ? 0 : 30),
@@ -97,7 +98,7 @@ TEST(mask)
     }
 }
 
-TEST(refuses)
+TEST(rejects_invalid_dirt)
 {
     static const uint8_t mask[4] = {0, 0, 0, 0};
     static const struct glint_front bad[] = {
@@ -113,7 +114,7 @@ TEST(refuses)
                          GLINT_E_ARGUMENT);
         assert_null(dirt);
     }
-    assert_null(make_dirt(&(struct glint_front){0}));
+    assert_null(make_front_dirt(&(struct glint_front){0}));
     glint_front_free(NULL);
 }
 
@@ -129,33 +130,33 @@ struct scene {
     struct glint_veil_front front;
 };
 
-static void open_scene(struct scene *s, int tile_log2, int n_workers,
-                       uint32_t order)
+static void open_haze_scene(struct scene *s, int tile_log2, int n_workers,
+                            uint32_t order)
 {
     const struct glint_veil_config cfg = {n_workers, WIDTH, HEIGHT, 1};
     const size_t bytes = glint_veil_bytes(&cfg);
     uint32_t seed = 9;
 
     bare_flare_open(&s->bare, WIDTH, HEIGHT, tile_log2, n_workers, order);
-    s->mem = bare_flare_take(bytes);
+    s->mem = bare_flare_carve(bytes);
     assert_ok(glint_veil_init(&s->veil, &cfg, s->mem, bytes));
     for (size_t i = 0; i < sizeof s->part_q16 / 2; i++)
-        s->part_q16[i] = (uint16_t)rng_below(&seed, 65536);
+        s->part_q16[i] = (uint16_t)rng_int_below(&seed, 65536);
     s->front = (struct glint_veil_front){
         glint_veil_front_row, GLINT_VEIL_FRONT_NODES(WIDTH),
         GLINT_VEIL_FRONT_NODES(HEIGHT), s->part_q16};
 }
 
-static void close_scene(struct scene *s)
+static void close_haze_scene(struct scene *s)
 {
     bare_flare_close(&s->bare);
     free(s->mem);
 }
 
-/* Draws onto MEM the haze of a lamp, which is uniform: LIGHT, 1 = white,
- * where the dirt is densest. */
-static void draw_haze(struct scene *s, double light,
-                      enum glint_pixel_format format, void *mem)
+/* Draws the uniform haze of a lamp onto MEM. LIGHT: light of the haze where the
+ * dirt is densest, 1 = white. */
+static void draw_haze_of_lamp(struct scene *s, double light,
+                              enum glint_pixel_format format, void *mem)
 {
     const int32_t rgb_q14[3] = {16384, 16384, 16384};
     struct glint_image image = glint_image_over(mem, format, WIDTH, HEIGHT);
@@ -185,14 +186,14 @@ static void draw_haze(struct scene *s, double light,
 
 /* Checks that linear images get light times fraction, interpolated linearly
  * between nodes. */
-TEST(light)
+TEST(linear_light_is_interpolated_between_nodes)
 {
     static int32_t linear_q20[3 * WIDTH * HEIGHT];
     static struct scene s;
     double worst = 0;
 
-    open_scene(&s, 5, 1, 1);
-    draw_haze(&s, 0.25, GLINT_LINEAR_Q20, linear_q20);
+    open_haze_scene(&s, 5, 1, 1);
+    draw_haze_of_lamp(&s, 0.25, GLINT_LINEAR_Q20, linear_q20);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             const uint16_t *at = s.part_q16 + y / 4 * s.front.n_x + x / 4;
@@ -208,13 +209,13 @@ TEST(light)
     print_message("light off by %.6f of white\n", worst);
     assert_true(worst < 1e-4);
     glint_veil_front(s.veil, NULL, NULL, 0);
-    close_scene(&s);
+    close_haze_scene(&s);
 }
 
 /* Checks codes: tiles, workers and order do not change them bit by bit, for
  * dim light and for light above white; more light is nowhere darker; every
  * machine draws the same. */
-TEST(bits)
+TEST(codes_are_bit_identical)
 {
     const uint64_t want = UINT64_C(0x5b5e6baa4b36eb8a);
     static uint8_t first[3 * WIDTH * HEIGHT], other[sizeof first];
@@ -228,12 +229,12 @@ TEST(bits)
 
         memset(first, 0, sizeof first);
         memset(other, 0, sizeof other);
-        open_scene(&s, 6, 1, 1);
-        draw_haze(&s, light, GLINT_RGB24, first);
-        close_scene(&s);
-        open_scene(&s, 3 + k % 3, 1 + k % 3, 7 + (uint32_t)k);
-        draw_haze(&s, light, GLINT_RGB24, other);
-        close_scene(&s);
+        open_haze_scene(&s, 6, 1, 1);
+        draw_haze_of_lamp(&s, light, GLINT_RGB24, first);
+        close_haze_scene(&s);
+        open_haze_scene(&s, 3 + k % 3, 1 + k % 3, 7 + (uint32_t)k);
+        draw_haze_of_lamp(&s, light, GLINT_RGB24, other);
+        close_haze_scene(&s);
         assert_memory_equal(first, other, sizeof first);
         for (size_t i = 0; i < sizeof first; i++) {
             assert_true(first[i] >= before[i]);

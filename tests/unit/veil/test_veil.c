@@ -23,7 +23,7 @@ enum { MAX_WORKERS = 3 };
 static int32_t linear_q20[MAX_N];
 static const struct glint_real one = {1 << 30, -30};
 
-/* A veil, and a flare without ghosts to draw it with. */
+/* A veil, and a flare renderer without ghosts that draws it. */
 struct canvas {
     int width, height, cells[2];
     struct bare_flare bare;
@@ -31,8 +31,8 @@ struct canvas {
     void *mem; /* memory of the veil */
 };
 
-static void open_canvas(struct canvas *c, int width, int height, int tile_log2,
-                        int n_workers, uint32_t order)
+static void open_veil_canvas(struct canvas *c, int width, int height,
+                             int tile_log2, int n_workers, uint32_t order)
 {
     const struct glint_veil_config veil = {n_workers, width, height, 0};
     const size_t bytes = glint_veil_bytes(&veil);
@@ -41,20 +41,20 @@ static void open_canvas(struct canvas *c, int width, int height, int tile_log2,
     c->height = height;
     glint_veil_cells(width, height, c->cells);
     bare_flare_open(&c->bare, width, height, tile_log2, n_workers, order);
-    c->mem = bare_flare_take(bytes);
+    c->mem = bare_flare_carve(bytes);
     assert_int_equal(glint_veil_init(&c->veil, &veil, c->mem, bytes - 1),
                      GLINT_E_MEMORY);
     assert_ok(glint_veil_init(&c->veil, &veil, c->mem, bytes));
 }
 
-static void close_canvas(struct canvas *c)
+static void close_veil_canvas(struct canvas *c)
 {
     bare_flare_close(&c->bare);
     free(c->mem);
 }
 
 /* Sets TABLE[N] to a Gaussian of SIGMA cells. */
-static void set_gaussian(int32_t *table_q30, int n, double sigma)
+static void set_gaussian_table(int32_t *table_q30, int n, double sigma)
 {
     double at[GLINT_VEIL_CELLS + 1], sum = 0;
     int32_t rest = 1 << 30;
@@ -73,31 +73,34 @@ static void set_gaussian(int32_t *table_q30, int n, double sigma)
 }
 
 /* Makes a spread of SIGMA pixels with the fraction SHARE of all light. */
-static struct glint_veil_spread make_spread(const struct canvas *c,
-                                            double sigma, double share)
+static struct glint_veil_spread make_gaussian_spread(const struct canvas *c,
+                                                     double sigma, double share)
 {
     struct glint_veil_spread s;
 
-    set_gaussian(s.across_q30, c->cells[0], sigma * c->cells[0] / c->width);
-    set_gaussian(s.down_q30, c->cells[1], sigma * c->cells[1] / c->height);
+    set_gaussian_table(s.across_q30, c->cells[0],
+                       sigma * c->cells[0] / c->width);
+    set_gaussian_table(s.down_q30, c->cells[1],
+                       sigma * c->cells[1] / c->height);
     s.share =
         glint_real_of(share * c->cells[0] * c->cells[1] / c->width / c->height);
     return s;
 }
 
 /* Returns an image with its pixels in MEM. */
-static struct glint_image make_image(const struct canvas *c,
-                                     enum glint_pixel_format format, void *mem)
+static struct glint_image make_image_over_memory(const struct canvas *c,
+                                                 enum glint_pixel_format format,
+                                                 void *mem)
 {
     return glint_image_over(mem, format, c->width, c->height);
 }
 
 /* Draws the veil onto black in linear light. Returns the sum of channel
  * CHANNEL, white x pixels. */
-static double draw_linear(struct canvas *c, int channel)
+static double draw_veil_linear(struct canvas *c, int channel)
 {
     const struct glint_image image =
-        make_image(c, GLINT_LINEAR_Q20, linear_q20);
+        make_image_over_memory(c, GLINT_LINEAR_Q20, linear_q20);
     double sum = 0;
 
     memset(linear_q20, 0, 12 * (size_t)c->width * (size_t)c->height);
@@ -107,12 +110,12 @@ static double draw_linear(struct canvas *c, int channel)
     return sum;
 }
 
-static void clear_light(struct canvas *c)
+static void clear_veil_light(struct canvas *c)
 {
     glint_veil_look(c->veil, NULL, one, &c->bare.shuffle.workers);
 }
 
-static void add_lamp(struct canvas *c, double x, double y, double power)
+static void add_lamp_to_veil(struct canvas *c, double x, double y, double power)
 {
     const int32_t rgb_q14[3] = {16384, 8192, 0};
 
@@ -124,7 +127,7 @@ static void add_lamp(struct canvas *c, double x, double y, double power)
 
 /* Checks that for any image size and lamp position the veil has the
  * specified fraction of the light, within 0.1 %. */
-TEST(energy)
+TEST(veil_has_its_fraction_of_the_light)
 {
     static const int size[][2] = {{163, 121}, {64, 36}, {97, 3},  {1, 1},
                                   {5, 121},   {2, 2},   {160, 90}};
@@ -136,34 +139,34 @@ TEST(energy)
             struct glint_veil_spread s;
             const double x = 0.5 * (i % 3), y = 0.5 * (i / 3);
 
-            open_canvas(&c, size[k][0], size[k][1], 5, 1, 1);
-            s = make_spread(&c, sigma[i % 3], 0.03);
-            clear_light(&c);
-            add_lamp(&c, x * c.width, y * c.height, 500);
+            open_veil_canvas(&c, size[k][0], size[k][1], 5, 1, 1);
+            s = make_gaussian_spread(&c, sigma[i % 3], 0.03);
+            clear_veil_light(&c);
+            add_lamp_to_veil(&c, x * c.width, y * c.height, 500);
             glint_veil_spread(c.veil, &s, 1);
             /* weights are not exact at the middle of three columns */
-            assert_true(fabs(draw_linear(&c, 0) / 15 - 1) < 1e-3);
-            assert_true(fabs(draw_linear(&c, 1) / 7.5 - 1) < 1e-3);
-            assert_true(draw_linear(&c, 2) == 0);
-            close_canvas(&c);
+            assert_true(fabs(draw_veil_linear(&c, 0) / 15 - 1) < 1e-3);
+            assert_true(fabs(draw_veil_linear(&c, 1) / 7.5 - 1) < 1e-3);
+            assert_true(draw_veil_linear(&c, 2) == 0);
+            close_veil_canvas(&c);
         }
 }
 
 /* Checks that far from borders and wider than cells a lamp's veil is the
  * specified Gaussian, widened by the interpolation between cells. */
-TEST(shape)
+TEST(veil_of_a_lamp_is_a_gaussian)
 {
     struct canvas c;
     struct glint_veil_spread s;
     double worst = 0;
     const double sigma = 14;
 
-    open_canvas(&c, 160, 120, 6, 2, 1);
-    s = make_spread(&c, sigma, 1);
-    clear_light(&c);
-    add_lamp(&c, 81.3, 60.2, 4096);
+    open_veil_canvas(&c, 160, 120, 6, 2, 1);
+    s = make_gaussian_spread(&c, sigma, 1);
+    clear_veil_light(&c);
+    add_lamp_to_veil(&c, 81.3, 60.2, 4096);
     glint_veil_spread(c.veil, &s, 1);
-    draw_linear(&c, 0);
+    draw_veil_linear(&c, 0);
     for (int y = 30; y < 90; y++)
         for (int x = 40; x < 120; x++) {
             /* a quadratic spline adds a quarter of a squared cell, twice;
@@ -178,13 +181,13 @@ TEST(shape)
         }
     print_message("off by %.5f of the brightest\n", worst);
     assert_true(worst < 0.01);
-    close_canvas(&c);
+    close_veil_canvas(&c);
 }
 
 /* Checks, in each format, that on uniform white the veil is uniform, and
  * that a black spot in it has the veiling glare index of ISO 9358: with the
  * share V / (1 - V), V of the white light. */
-TEST(index)
+TEST(black_spot_has_the_veiling_glare_index)
 {
     static uint8_t codes[4 * MAX_WIDTH * MAX_HEIGHT];
 
@@ -196,8 +199,8 @@ TEST(index)
 
         if (f == GLINT_LINEAR_Q20)
             continue;
-        open_canvas(&c, 162, 121, 5, 2, 3);
-        image = make_image(&c, (enum glint_pixel_format)f, codes);
+        open_veil_canvas(&c, 162, 121, 5, 2, 3);
+        image = make_image_over_memory(&c, (enum glint_pixel_format)f, codes);
         for (int p = 0; p < glint_image_planes(image.format); p++)
             memset(image.plane[p], p ? 128 : 255,
                    (size_t)image.stride_bytes[p] *
@@ -208,23 +211,23 @@ TEST(index)
             else if (f == GLINT_UYVY)
                 codes[2 * i] = 128;
         }
-        s = make_spread(&c, 20, 0.05 / 0.95);
+        s = make_gaussian_spread(&c, 20, 0.05 / 0.95);
         glint_veil_look(c.veil, &image, one, &c.bare.shuffle.workers);
         glint_veil_spread(c.veil, &s, 1);
-        draw_linear(&c, 1);
+        draw_veil_linear(&c, 1);
         for (int i = 0; i < 162 * 121; i++) {
             least = fmin(least, linear_q20[3 * i + 1] * 0x1p-20);
             most = fmax(most, linear_q20[3 * i + 1] * 0x1p-20);
         }
         assert_true(fabs(least / (1 + least) - 0.05) < 5e-4);
         assert_true(fabs(most / (1 + most) - 0.05) < 5e-4);
-        close_canvas(&c);
+        close_veil_canvas(&c);
     }
 }
 
 /* Checks that the veil of an image has the position and colour of the
  * image's light, in linear light. */
-TEST(picture)
+TEST(veil_of_an_image_has_its_colours)
 {
     static uint8_t codes[3 * MAX_WIDTH * MAX_HEIGHT];
     struct canvas c;
@@ -232,53 +235,53 @@ TEST(picture)
     struct glint_veil_spread s;
     double sum[3] = {0}, at[2] = {0};
 
-    open_canvas(&c, 161, 121, 5, 1, 1);
-    image = make_image(&c, GLINT_RGB24, codes);
+    open_veil_canvas(&c, 161, 121, 5, 1, 1);
+    image = make_image_over_memory(&c, GLINT_RGB24, codes);
     memset(codes, 0, sizeof codes);
     for (int y = 20; y < 40; y++)
         for (int x = 100; x < 130; x++) {
             codes[3 * (161 * y + x)] = 255;
             codes[3 * (161 * y + x) + 1] = 188; /* half of white */
         }
-    s = make_spread(&c, 6, 0.1);
+    s = make_gaussian_spread(&c, 6, 0.1);
     glint_veil_look(c.veil, &image, glint_real_of(2), &c.bare.shuffle.workers);
     glint_veil_spread(c.veil, &s, 1);
-    draw_linear(&c, 0);
+    draw_veil_linear(&c, 0);
     for (int i = 0; i < 161 * 121; i++) {
         for (int k = 0; k < 3; k++)
             sum[k] += linear_q20[3 * i + k] * 0x1p-20;
         at[0] += linear_q20[3 * i] * 0x1p-20 * (i % 161 + 0.5);
         at[1] += linear_q20[3 * i] * 0x1p-20 * (i / 161 + 0.5);
     }
-    /* cells of four pixels cover three to five */
+    /* a cell of four pixels covers three to five pixels here */
     assert_true(fabs(sum[0] / (600 * 0.2) - 1) < 0.03);
     assert_true(fabs(sum[1] / sum[0] - 0.5029) < 2e-3); /* sRGB 188 */
     assert_true(sum[2] == 0);
     assert_true(fabs(at[0] / sum[0] - 115) < 0.5);
     assert_true(fabs(at[1] / sum[0] - 30) < 0.5);
-    close_canvas(&c);
+    close_veil_canvas(&c);
 }
 
 /* ------------------------------------------------------------------ flicker */
 
 /* Checks that a lamp that moves by 0.05 px does not change the veil's total
  * light, and that no pixel changes by more than the Gaussian's slope allows. */
-TEST(steady)
+TEST(moving_lamp_keeps_the_veil_steady)
 {
     static int32_t before_q20[MAX_N];
     struct canvas c;
     struct glint_veil_spread s;
     double least = 1e9, most = 0, jump = 0, peak = 0;
 
-    open_canvas(&c, 160, 90, 5, 1, 1);
-    s = make_spread(&c, 8, 0.1);
+    open_veil_canvas(&c, 160, 90, 5, 1, 1);
+    s = make_gaussian_spread(&c, 8, 0.1);
     for (int i = 0; i < 200; i++) {
         double sum;
 
-        clear_light(&c);
-        add_lamp(&c, 60 + 0.05 * i, 40 + 0.02 * i, 3000);
+        clear_veil_light(&c);
+        add_lamp_to_veil(&c, 60 + 0.05 * i, 40 + 0.02 * i, 3000);
         glint_veil_spread(c.veil, &s, 1);
-        sum = draw_linear(&c, 0);
+        sum = draw_veil_linear(&c, 0);
         least = fmin(least, sum);
         most = fmax(most, sum);
         for (int k = 0; k < 3 * 160 * 90; k++) {
@@ -293,14 +296,14 @@ TEST(steady)
     assert_true(most / least < 1.0005);
     /* the max slope of a Gaussian is 0.61 of its peak / sigma */
     assert_true(jump / peak < 1.2 * 0.61 * hypot(0.05, 0.02) / 8);
-    close_canvas(&c);
+    close_veil_canvas(&c);
 }
 
 /* --------------------------------------------------------------------- bits */
 
 /* Sets a spread to random numbers, without floating point. */
-static void random_spread(struct glint_veil_spread *s, const struct canvas *c,
-                          uint32_t *seed)
+static void set_random_spread(struct glint_veil_spread *s,
+                              const struct canvas *c, uint32_t *seed)
 {
     int32_t *const table[2] = {s->across_q30, s->down_q30};
 
@@ -308,19 +311,20 @@ static void random_spread(struct glint_veil_spread *s, const struct canvas *c,
         int32_t rest = 1 << 30;
 
         for (int d = c->cells[k]; d > 0; d--) {
-            table[k][d] = rng_below(seed, 1 << 22);
+            table[k][d] = rng_int_below(seed, 1 << 22);
             rest -= (d == c->cells[k] ? 1 : 2) * table[k][d];
         }
         table[k][0] = rest;
     }
-    s->share = (struct glint_real){(1 << 30) + rng_below(seed, 1 << 24),
-                                   -38 - rng_below(seed, 4)};
+    s->share = (struct glint_real){(1 << 30) + rng_int_below(seed, 1 << 24),
+                                   -38 - rng_int_below(seed, 4)};
 }
 
 /* Draws the veil of a random image (seed SEED) onto it. */
-static void draw_random(uint32_t seed, int tile_log2, int n_workers,
-                        uint32_t order, enum glint_pixel_format format,
-                        uint8_t *mem)
+static void draw_veil_of_random_image(uint32_t seed, int tile_log2,
+                                      int n_workers, uint32_t order,
+                                      enum glint_pixel_format format,
+                                      uint8_t *mem)
 {
     struct canvas c;
     struct glint_image image;
@@ -328,26 +332,26 @@ static void draw_random(uint32_t seed, int tile_log2, int n_workers,
     const size_t bytes = glint_image_bytes(format, 130, 75);
     const int32_t rgb_q14[3] = {16384, 9000, 3};
 
-    open_canvas(&c, 130, 75, tile_log2, n_workers, order);
-    image = make_image(&c, format, mem);
+    open_veil_canvas(&c, 130, 75, tile_log2, n_workers, order);
+    image = make_image_over_memory(&c, format, mem);
     for (size_t i = 0; i < bytes; i++)
-        mem[i] = (uint8_t)(rng_below(&seed, 256) *
+        mem[i] = (uint8_t)(rng_int_below(&seed, 256) *
                            (format == GLINT_LINEAR_Q20 && i % 4 == 3 ? 0 : 1));
     glint_veil_look(c.veil, &image, one, &c.bare.shuffle.workers);
     for (int i = 0; i < 3; i++)
-        glint_veil_lamp(c.veil, rng_below(&seed, 130 * 256),
-                        rng_below(&seed, 75 * 256),
+        glint_veil_lamp(c.veil, rng_int_below(&seed, 130 * 256),
+                        rng_int_below(&seed, 75 * 256),
                         (struct glint_real){1 << 30, -30 + 3 * i}, rgb_q14);
     for (int i = 0; i < 2; i++)
-        random_spread(&s[i], &c, &seed);
+        set_random_spread(&s[i], &c, &seed);
     glint_veil_spread(c.veil, s, 2);
     glint_veil_draw(c.veil, NULL, c.bare.flare, &image);
-    close_canvas(&c);
+    close_veil_canvas(&c);
 }
 
 /* Checks that workers, tiles and the order of jobs do not change the image
  * bit by bit, in any format, and that every machine draws the same. */
-TEST(same_bits)
+TEST(veil_is_bit_identical)
 {
     const uint64_t want = UINT64_C(0x8c34ca68742ff06b);
     static uint8_t first[12 * 130 * 75], other[12 * 130 * 75];
@@ -357,10 +361,11 @@ TEST(same_bits)
         const enum glint_pixel_format format = (enum glint_pixel_format)f;
         const size_t bytes = glint_image_bytes(format, 130, 75);
 
-        draw_random(7 + (uint32_t)f, 6, 1, 1, format, first);
+        draw_veil_of_random_image(7 + (uint32_t)f, 6, 1, 1, format, first);
         for (int k = 0; k < 4; k++) {
-            draw_random(7 + (uint32_t)f, 3 + k % 4, 1 + k % MAX_WORKERS,
-                        100 + (uint32_t)k, format, other);
+            draw_veil_of_random_image(7 + (uint32_t)f, 3 + k % 4,
+                                      1 + k % MAX_WORKERS, 100 + (uint32_t)k,
+                                      format, other);
             assert_memory_equal(first, other, bytes);
         }
         for (size_t i = 0; i < bytes; i++)
@@ -375,32 +380,32 @@ TEST(same_bits)
 
 /* Checks lamps of any power at and outside the borders: more power is
  * nowhere less light, and lamps outside the limit are skipped. */
-TEST(extremes)
+TEST(extreme_lamps_give_valid_veils)
 {
     static const double place[][2] = {{0, 0},     {160, 90}, {80.5, 45},
                                       {-0.01, 3}, {161, 3},  {1160, 3}};
     struct canvas c;
     struct glint_veil_spread s;
 
-    open_canvas(&c, 160, 90, 5, 1, 1);
-    s = make_spread(&c, 8, 0.9);
+    open_veil_canvas(&c, 160, 90, 5, 1, 1);
+    s = make_gaussian_spread(&c, 8, 0.9);
     for (int k = 0; k < 6; k++) {
         double before = -1;
 
         for (int p = -20; p <= 60; p += 5) {
             double sum;
 
-            clear_light(&c);
-            add_lamp(&c, place[k][0], place[k][1], ldexp(1, p));
+            clear_veil_light(&c);
+            add_lamp_to_veil(&c, place[k][0], place[k][1], ldexp(1, p));
             glint_veil_spread(c.veil, &s, 1);
-            sum = draw_linear(&c, 0);
+            sum = draw_veil_linear(&c, 0);
             assert_true(sum >= before);
             assert_true(k < 3 || sum == 0);
             assert_true(p < 10 || k >= 3 || sum > 0);
             before = sum;
         }
     }
-    close_canvas(&c);
+    close_veil_canvas(&c);
     assert_int_equal(
         glint_veil_bytes(&(struct glint_veil_config){0, 160, 90, 0}), 0);
     assert_int_equal(glint_veil_bytes(&(struct glint_veil_config){1, 0, 90, 0}),

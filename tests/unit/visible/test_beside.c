@@ -18,8 +18,8 @@
 enum {
     MAX_DEG = 9,
     GHOSTS = 7,
-    CUT = 3,  /* a ghost without light above 7 degrees */
-    UNCUT = 2 /* a ghost that no barrel clips */
+    CUT = 3,  /* index of a ghost without light above 7 degrees */
+    UNCUT = 2 /* index of a ghost that no barrel clips */
 };
 
 /* The second group moves by 12 mm, and so do its barrels; end position
@@ -59,7 +59,7 @@ TEST_OPEN
     assert_int_equal(setup[0].n_ghosts, GHOSTS);
 }
 
-static void set_ghost(int ghost)
+static void set_ghost_of_both_setups(int ghost)
 {
     for (int k = 0; k < 2; k++)
         glint_visible_init(&alone[k], &setup[k], ghost, 16, band_nm);
@@ -69,7 +69,7 @@ static void set_ghost(int ghost)
     both[0].n_beside = 1;
 }
 
-static bool is_in(double (*range)[2], int n, double lo, double hi)
+static bool is_in_a_range(double (*range)[2], int n, double lo, double hi)
 {
     for (int k = 0; k < n; k++)
         if (range[k][0] <= lo && hi <= range[k][1])
@@ -79,7 +79,7 @@ static bool is_in(double (*range)[2], int n, double lo, double hi)
 
 /* Checks that every range of either position is inside a range of both,
  * which begins and ends where one of either does. */
-TEST(ranges)
+TEST(ranges_cover_those_of_both_positions)
 {
     int wider = 0;
 
@@ -87,14 +87,16 @@ TEST(ranges)
         double of[3][GLINT_MAX_RANGES][2], last = -1;
         int n[3];
 
-        set_ghost(g);
+        set_ghost_of_both_setups(g);
         n[2] = glint_visible_ranges(&both[0], MAX_DEG, of[2]);
         for (int k = 0; k < 2; k++) {
             n[k] = glint_visible_ranges(&alone[k], MAX_DEG, of[k]);
             for (int i = 0; i < n[k]; i++)
-                assert_true(is_in(of[2], n[2], of[k][i][0], of[k][i][1]));
+                assert_true(
+                    is_in_a_range(of[2], n[2], of[k][i][0], of[k][i][1]));
         }
-        wider += n[2] > 0 && !is_in(of[0], n[0], of[2][0][0], of[2][0][1]);
+        wider +=
+            n[2] > 0 && !is_in_a_range(of[0], n[0], of[2][0][0], of[2][0][1]);
         for (int i = 0; i < n[2]; i++) {
             int begins = 0, ends = 0;
 
@@ -112,7 +114,7 @@ TEST(ranges)
 }
 
 /* Checks that touching ranges are joined, and that ranges are sorted. */
-TEST(joined)
+TEST(touching_ranges_are_joined)
 {
     static const struct {
         double more[2], range[3][2];
@@ -151,8 +153,8 @@ TEST(joined)
 
 /* Returns the index in RAYS of the ray with the position of ray I of OF; -1:
  * none. */
-static int find_ray(const struct glint_zone_rays *rays,
-                    const struct glint_zone_rays *of, int i)
+static int find_ray_at_position(const struct glint_zone_rays *rays,
+                                const struct glint_zone_rays *of, int i)
 {
     for (int k = 0; k < rays->n; k++)
         if (rays->x[GLINT_U][k] == of->x[GLINT_U][i] &&
@@ -163,14 +165,14 @@ static int find_ray(const struct glint_zone_rays *rays,
     return -1;
 }
 
-static double ray_margin(const struct glint_zone_rays *rays, int i)
+static double compute_ray_margin(const struct glint_zone_rays *rays, int i)
 {
     return fmax(rays->at[RAY_EXCESS][i], rays->at[RAY_FIELD][i]);
 }
 
 /* Checks that each ray lands where it does at a single position, and that
  * its excess over the rims is the smaller one of both positions. */
-TEST(rays)
+TEST(rays_land_as_at_a_single_position)
 {
     static struct glint_visible_profile profile;
     static struct glint_zone_rays of[3], energies;
@@ -178,20 +180,20 @@ TEST(rays)
     struct glint_zone zone;
     int own = 0, beside = 0;
 
-    set_ghost(CUT);
+    set_ghost_of_both_setups(CUT);
     glint_visible_profile_find(&both[0], range, &profile);
     glint_zone_init(&zone, &profile, range[0], range[1], false);
     for (int k = 0; k < 3; k++)
         glint_zone_trace(&zone, k < 2 ? &alone[k] : &both[0], &of[k],
                          &energies);
     for (int i = 0; i < of[2].n; i++) {
-        const int a = find_ray(&of[0], &of[2], i);
-        const int b = find_ray(&of[1], &of[2], i);
+        const int a = find_ray_at_position(&of[0], &of[2], i);
+        const int b = find_ray_at_position(&of[1], &of[2], i);
 
         if (a < 0 || b < 0)
             continue;
         assert_true(of[2].at[RAY_SENSOR_X][i] == of[0].at[RAY_SENSOR_X][a]);
-        if (ray_margin(&of[0], a) < ray_margin(&of[1], b)) {
+        if (compute_ray_margin(&of[0], a) < compute_ray_margin(&of[1], b)) {
             assert_true(of[2].at[RAY_EXCESS][i] == of[0].at[RAY_EXCESS][a] &&
                         of[2].at[RAY_FIELD][i] == of[0].at[RAY_FIELD][a]);
             own++;
@@ -206,14 +208,14 @@ TEST(rays)
 
 /* Checks that boxes of both positions contain those of either, and are no
  * wider. */
-TEST(boxes)
+TEST(boxes_contain_those_of_both_positions)
 {
     static struct glint_visible_profile of[3];
     const double range[2] = {0, glint_sin_deg(4)};
     int moved = 0;
 
     for (int g = 1; g < 4; g++) {
-        set_ghost(g);
+        set_ghost_of_both_setups(g);
         for (int k = 0; k < 2; k++)
             glint_visible_profile_find(&alone[k], range, &of[k]);
         glint_visible_profile_find(&both[0], range, &of[2]);
@@ -235,8 +237,8 @@ TEST(boxes)
 
 /* Returns the number of green rays that pass GHOST of the model DATA at
  * DEGREES; -1: it has no polynomials there. */
-static int count_rays(const unsigned char *data, size_t bytes, int ghost,
-                      double degrees)
+static int count_passing_green_rays(const unsigned char *data, size_t bytes,
+                                    int ghost, double degrees)
 {
     enum { ACROSS = 40 };
     struct glint_transfer t;
@@ -271,7 +273,7 @@ static int count_rays(const unsigned char *data, size_t bytes, int ghost,
 
 /* Checks that a barrel which clips only at the other position is chosen: the
  * rear one, a fifth as wide there. */
-TEST(barrels)
+TEST(barrel_of_the_other_position_is_chosen)
 {
     static const double rgb_nm[] = {650, 532, 450};
     static struct glint_setup narrower;
@@ -284,7 +286,7 @@ TEST(barrels)
     struct glint_zone zone;
     int n[2];
 
-    set_ghost(UNCUT);
+    set_ghost_of_both_setups(UNCUT);
     lens.surface[lens.n_surfaces - 1].semi_mm *= 0.2;
     if (glint_setup_init(&narrower, &lens, 0, 0, rgb_nm, 3, &error) != GLINT_OK)
         fail_msg("%s", error.text);
@@ -303,7 +305,7 @@ TEST(barrels)
 /* Checks that if a ghost is visible only at the other position, the model
  * baked with that position has its polynomials, and its barrels block all
  * light. */
-TEST(models)
+TEST(ghost_visible_at_the_other_position_is_baked)
 {
     const bool ghosts[GHOSTS] = {[CUT] = true};
     struct glint_bake_options options;
@@ -322,16 +324,17 @@ TEST(models)
                        &error) != GLINT_OK)
             fail_msg("%s", error.text);
     }
-    assert_int_equal(count_rays(data[0], bytes[0], CUT, 8.5), -1);
-    assert_true(count_rays(data[1], bytes[1], CUT, 8.5) > 3000);
-    assert_in_range(count_rays(data[2], bytes[2], CUT, 8.5), 0, 3);
-    assert_true(count_rays(data[2], bytes[2], CUT, 2.5) > 1000);
+    assert_int_equal(count_passing_green_rays(data[0], bytes[0], CUT, 8.5), -1);
+    assert_true(count_passing_green_rays(data[1], bytes[1], CUT, 8.5) > 3000);
+    assert_in_range(count_passing_green_rays(data[2], bytes[2], CUT, 8.5), 0,
+                    3);
+    assert_true(count_passing_green_rays(data[2], bytes[2], CUT, 2.5) > 1000);
     for (int k = 0; k < 3; k++)
         free(data[k]);
 }
 
 /* Checks that a different lens is rejected as a position. */
-TEST(refused)
+TEST(rejects_a_different_lens)
 {
     struct glint_prescription other = at[1];
     struct glint_bake_options options;

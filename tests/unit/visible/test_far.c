@@ -18,8 +18,8 @@ static struct glint_setup setup;
 static struct glint_visible visible;
 static struct glint_zone zone;
 
-static void open_ghost(const char *name, double f_number, int ghost,
-                       double max_deg)
+static void open_ghost_of_lens(const char *name, double f_number, int ghost,
+                               double max_deg)
 {
     struct glint_error error = {""};
 
@@ -30,30 +30,30 @@ static void open_ghost(const char *name, double f_number, int ghost,
     glint_visible_reach(&visible, max_deg);
 }
 
-TEST(reach)
+TEST(wide_angle_ghosts_are_marked_far)
 {
     static struct glint_visible part;
 
-    open_ghost("wide/fisheye-zuiko-8", 11, 37, 60);
+    open_ghost_of_lens("wide/fisheye-zuiko-8", 11, 37, 60);
     assert_false(visible.far || visible.wide);
-    open_ghost("wide/fisheye-zuiko-8", 11, 37, 61);
+    open_ghost_of_lens("wide/fisheye-zuiko-8", 11, 37, 61);
     assert_true(visible.far && visible.wide && !visible.shaped);
     glint_visible_narrow(&part, &visible, -1, 0);
     assert_true(part.far && part.wide);
-    open_ghost("anamorphic/anamorphic-schneider", 11, 7, 85);
+    open_ghost_of_lens("anamorphic/anamorphic-schneider", 11, 7, 85);
     assert_false(visible.far);
 }
 
 /* Makes zone DEG of GHOST and finds its barrels, by the rules for FAR lights
  * or the normal ones. */
-static void find_barrels(int ghost, const double deg[2], bool far,
-                         struct glint_zone_rays *rays)
+static void find_barrels_of_zone(int ghost, const double deg[2], bool far,
+                                 struct glint_zone_rays *rays)
 {
     static struct glint_visible_profile profile;
     static glint_zone_sampling sampling;
     const double range[2] = {glint_sin_deg(deg[0]), glint_sin_deg(deg[1])};
 
-    open_ghost("wide/fisheye-zuiko-8", 11, ghost, 85);
+    open_ghost_of_lens("wide/fisheye-zuiko-8", 11, ghost, 85);
     glint_visible_profile_find(&visible, range, &profile);
     assert_true(profile.n > 0);
     glint_zone_init(&zone, &profile, range[0], range[1], true);
@@ -67,14 +67,14 @@ static const double grazed_deg[2] = {82.85, 83.25};
 /* Checks a ghost whose rays pass the second surface, almost a hemisphere,
  * within 0.003 of its rim and are invalid outside: its barrel blocks a part
  * of the light, though no ray passes outside by 1e-3. */
-TEST(grazed_barrel)
+TEST(grazed_barrel_is_found)
 {
     static struct glint_zone_rays rays;
 
-    find_barrels(GRAZED, grazed_deg, true, &rays);
+    find_barrels_of_zone(GRAZED, grazed_deg, true, &rays);
     assert_int_equal(rays.n_barrels, 1);
     assert_int_equal(visible.path[0].event[rays.barrel[0]].surface, 1);
-    find_barrels(GRAZED, grazed_deg, false, &rays);
+    find_barrels_of_zone(GRAZED, grazed_deg, false, &rays);
     assert_int_equal(rays.n_barrels, 0);
     assert_true(rays.missed_cut > 1e-4);
 }
@@ -83,15 +83,15 @@ TEST(grazed_barrel)
  * chosen first, even if others block more rays in total. A ray that misses a
  * surface is outside it, so a barrel there can block it: four barrels block
  * all. */
-TEST(first_barrel)
+TEST(barrel_that_blocks_most_is_first)
 {
     static struct glint_zone_rays rays;
     static const double deg[2] = {80, 84};
 
-    find_barrels(24, deg, true, &rays);
+    find_barrels_of_zone(24, deg, true, &rays);
     assert_int_equal(visible.path[0].event[rays.barrel[0]].surface, 1);
     assert_true(rays.missed_cut <= 1e-3);
-    find_barrels(24, deg, false, &rays);
+    find_barrels_of_zone(24, deg, false, &rays);
     assert_int_equal(visible.path[0].event[rays.barrel[0]].surface, 8);
 }
 
@@ -114,10 +114,11 @@ static const struct glint_tolerance tolerance = {.sensor_mm = 7.5e-4,
                                                  .brightness = &brightness};
 static struct glint_zone_buffers buffers;
 
-/* Fits the zone of the grazed barrel. STOPPED: one in this many rays counts
- * as blocked by something that the fit does not know; 0: none. */
-static void fit_zone(bool far, int stopped, struct glint_fitted_system *system,
-                     struct glint_zone_errors *errors)
+/* Fits the zone of the grazed barrel. STOPPED: one in STOPPED rays counts as
+ * blocked for a reason that the fit does not know; 0: none. */
+static void fit_zone_of_grazed_barrel(bool far, int stopped,
+                                      struct glint_fitted_system *system,
+                                      struct glint_zone_errors *errors)
 {
     struct glint_zone_task task = {.zone = &zone,
                                    .visible = &visible,
@@ -128,9 +129,9 @@ static void fit_zone(bool far, int stopped, struct glint_fitted_system *system,
 
     glint_brightness_angles(&brightness, 85);
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
-        /* much less than this ghost's brightness */
+        /* a level much lower than this ghost's brightness */
         brightness.level[k] = 1e-9;
-    find_barrels(GRAZED, grazed_deg, true, &buffers.rays);
+    find_barrels_of_zone(GRAZED, grazed_deg, true, &buffers.rays);
     visible.far = far;
     glint_zone_trace(&zone, &visible, &buffers.rays, &buffers.energies);
     for (int i = 0; stopped && i < buffers.rays.n; i += stopped)
@@ -140,14 +141,14 @@ static void fit_zone(bool far, int stopped, struct glint_fitted_system *system,
     assert_ok(glint_zone_fit(&task, &aim, &buffers, system, errors));
 }
 
-static void free_system(struct glint_fitted_system *system)
+static void free_fitted_system(struct glint_fitted_system *system)
 {
     while (system->n_outputs > 0)
         free(system->output[--system->n_outputs].coef);
 }
 
 /* Returns the RMS error of the barrel's fit over rays that graze it. */
-static double barrel_error(const struct glint_fitted_system *system)
+static double compute_barrel_rms_error(const struct glint_fitted_system *system)
 {
     const struct glint_fitted_output *o =
         &system->output[system->n_outputs - 1];
@@ -174,37 +175,38 @@ static double barrel_error(const struct glint_fitted_system *system)
 }
 
 /* Checks that the grazed barrel is fitted to less than a hundredth of 0.003
- * of its rim, in which the whole ghost lies, and that for other lights,
- * where it matters little, it is not. */
-TEST(fit_of_grazed_barrel)
+ * of its rim, in which the whole ghost lies, and that it is fitted less
+ * precisely by the rules for lights nearer to the axis, where such barrels
+ * matter little. */
+TEST(grazed_barrel_is_fitted_within_its_margin)
 {
     struct glint_fitted_system system;
     struct glint_zone_errors errors;
 
     for (int far = 0; far < 2; far++) {
-        fit_zone(far, 0, &system, &errors);
-        assert_true((barrel_error(&system) < 1e-5) == far);
-        free_system(&system);
+        fit_zone_of_grazed_barrel(far, 0, &system, &errors);
+        assert_true((compute_barrel_rms_error(&system) < 1e-5) == far);
+        free_fitted_system(&system);
     }
 }
 
 /* Checks that for lights this far off the axis, rays that pass although they
  * should not count as errors of outlines: a tenth of the visible rays is
  * five times the tolerance. */
-TEST(leaks)
+TEST(leaking_rays_count_as_outline_errors)
 {
     struct glint_fitted_system system;
     struct glint_zone_errors errors;
 
-    fit_zone(true, 0, &system, &errors);
+    fit_zone_of_grazed_barrel(true, 0, &system, &errors);
     assert_true(errors.outlines < 1);
-    free_system(&system);
-    fit_zone(true, 10, &system, &errors);
+    free_fitted_system(&system);
+    fit_zone_of_grazed_barrel(true, 10, &system, &errors);
     assert_near(errors.outlines, 5.5, 0.5);
-    free_system(&system);
-    fit_zone(false, 10, &system, &errors);
+    free_fitted_system(&system);
+    fit_zone_of_grazed_barrel(false, 10, &system, &errors);
     assert_true(errors.outlines < 1);
-    free_system(&system);
+    free_fitted_system(&system);
 }
 
 TEST_OPEN

@@ -23,8 +23,8 @@ static uint32_t find_bar_colour(unsigned x, unsigned y, unsigned width,
     return (y - top) * 3 / (height - top) == c ? x * 256 / width : 0;
 }
 
-static void put_pixel(uint8_t *dst, const struct fb_var_screeninfo *var,
-                      unsigned x, unsigned y)
+static void write_bar_pixel(uint8_t *dst, const struct fb_var_screeninfo *var,
+                            unsigned x, unsigned y)
 {
     const struct fb_bitfield *field[3] = {&var->red, &var->green, &var->blue};
     uint32_t pixel = 0;
@@ -37,7 +37,7 @@ static void put_pixel(uint8_t *dst, const struct fb_var_screeninfo *var,
         dst[i] = (uint8_t)(pixel >> 8 * i);
 }
 
-static void draw_bars(const char *path)
+static void draw_colour_bars(const char *path)
 {
     struct fb_var_screeninfo var;
     struct fb_fix_screeninfo fix;
@@ -56,12 +56,12 @@ static void draw_bars(const char *path)
         die("mmap: %s", strerror(errno));
     for (unsigned y = 0; y < var.yres; y++)
         for (unsigned x = 0; x < var.xres; x++)
-            put_pixel(memory + (size_t)y * fix.line_length +
-                          x * (var.bits_per_pixel / 8),
-                      &var, x, y);
+            write_bar_pixel(memory + (size_t)y * fix.line_length +
+                                x * (var.bits_per_pixel / 8),
+                            &var, x, y);
 }
 
-static void write_expected(const char *name, const char *size)
+static void write_expected_image(const char *name, const char *size)
 {
     struct layout layout;
     unsigned width, height;
@@ -80,8 +80,8 @@ static void write_expected(const char *name, const char *size)
 int main(int argc, char **argv)
 {
     if (argc == 3)
-        write_expected(argv[1], argv[2]);
+        write_expected_image(argv[1], argv[2]);
     else
-        draw_bars(argc == 2 ? argv[1] : "/dev/fb0");
+        draw_colour_bars(argc == 2 ? argv[1] : "/dev/fb0");
     return 0;
 }

@@ -8,7 +8,7 @@
  */
 #include "device.h"
 
-static void print_control(int fd, const struct v4l2_queryctrl *query)
+static void print_camera_control(int fd, const struct v4l2_queryctrl *query)
 {
     struct v4l2_control control = {query->id, 0};
     printf("0x%08x %s (%d .. %d)", query->id, (const char *)query->name,
@@ -18,7 +18,8 @@ static void print_control(int fd, const struct v4l2_queryctrl *query)
     putchar('\n');
 }
 
-static int is_wanted(const struct v4l2_queryctrl *query, const char *name)
+static int is_control_requested(const struct v4l2_queryctrl *query,
+                                const char *name)
 {
     char *end;
     unsigned long id = strtoul(name, &end, 16);
@@ -28,18 +29,18 @@ static int is_wanted(const struct v4l2_queryctrl *query, const char *name)
 
 /* Prints the control NAME, or all controls if NAME is NULL; or sets it to
  * VALUE unless that is NULL. Returns the number of controls. */
-static int process_controls(int fd, const char *name, const char *value)
+static int print_or_set_controls(int fd, const char *name, const char *value)
 {
     int n = 0;
     struct v4l2_queryctrl query = {.id = V4L2_CTRL_FLAG_NEXT_CTRL};
     for (; try_ioctl(fd, VIDIOC_QUERYCTRL, &query) == 0;
          query.id |= V4L2_CTRL_FLAG_NEXT_CTRL) {
         if (query.type == V4L2_CTRL_TYPE_CTRL_CLASS ||
-            (name && !is_wanted(&query, name)))
+            (name && !is_control_requested(&query, name)))
             continue;
         n++;
         if (!value) {
-            print_control(fd, &query);
+            print_camera_control(fd, &query);
             continue;
         }
         struct v4l2_control control = {query.id, atoi(value)};
@@ -62,8 +63,8 @@ int main(int argc, char **argv)
     } else if (argc == 4 && strcmp(argv[2], "input") == 0) {
         int input = atoi(argv[3]);
         must_ioctl(fd, VIDIOC_S_INPUT, &input, "VIDIOC_S_INPUT");
-    } else if (process_controls(fd, argc > 2 ? argv[2] : NULL,
-                                argc > 3 ? argv[3] : NULL) == 0) {
+    } else if (print_or_set_controls(fd, argc > 2 ? argv[2] : NULL,
+                                     argc > 3 ? argv[3] : NULL) == 0) {
         die("%s: no such control", argc > 2 ? argv[2] : argv[1]);
     }
     return 0;

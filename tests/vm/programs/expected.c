@@ -20,7 +20,7 @@ static void exit_with_error(const char *why)
     exit(2);
 }
 
-static struct glint_pixel_layout to_pixel_layout(const struct layout *l)
+static struct glint_pixel_layout convert_to_pixel_layout(const struct layout *l)
 {
     struct glint_pixel_layout p = {
         .bytes = (int)l->n_bytes,
@@ -32,7 +32,8 @@ static struct glint_pixel_layout to_pixel_layout(const struct layout *l)
 }
 
 /* Writes a pixel with 8 bits per channel, like the emulator's screenshot. */
-static void write_pixel(const struct layout *l, const uint8_t *at, FILE *file)
+static void write_rgb_pixel(const struct layout *l, const uint8_t *at,
+                            FILE *file)
 {
     uint32_t word = 0;
 
@@ -43,7 +44,7 @@ static void write_pixel(const struct layout *l, const uint8_t *at, FILE *file)
              file);
 }
 
-static void write_yuyv(const struct glint_image *frame, FILE *file)
+static void write_yuyv_frame(const struct glint_image *frame, FILE *file)
 {
     for (int y = 0; y < frame->height; y++) {
         const uint8_t *row[3];
@@ -57,14 +58,15 @@ static void write_yuyv(const struct glint_image *frame, FILE *file)
     }
 }
 
-static void write_panel(const struct glint_image *frame, int w, int h,
-                        const struct layout *layout, enum glint_panel_fit fit,
-                        FILE *file)
+static void write_panel_screen(const struct glint_image *frame, int w, int h,
+                               const struct layout *layout,
+                               enum glint_panel_fit fit, FILE *file)
 {
     const ptrdiff_t stride = (ptrdiff_t)layout->n_bytes * w;
     const struct glint_panel_config cfg = {.width = w,
                                            .height = h,
-                                           .layout = to_pixel_layout(layout),
+                                           .layout =
+                                               convert_to_pixel_layout(layout),
                                            .image_width = frame->width,
                                            .image_height = frame->height,
                                            .fit = fit};
@@ -80,7 +82,7 @@ static void write_panel(const struct glint_image *frame, int w, int h,
     glint_panel_draw(&panel, frame, mem, stride);
     fprintf(file, "P6\n%d %d\n255\n", w, h);
     for (size_t i = 0; i < (size_t)w * (size_t)h; i++)
-        write_pixel(layout, mem + i * layout->n_bytes, file);
+        write_rgb_pixel(layout, mem + i * layout->n_bytes, file);
     free(mem);
     glint_panel_close(&panel);
 }
@@ -113,10 +115,10 @@ int main(int argc, char **argv)
     if (!file)
         exit_with_error("cannot write");
     if (yuyv)
-        write_yuyv(frame, file);
+        write_yuyv_frame(frame, file);
     else
-        write_panel(frame, w, h, &layout,
-                    centre ? GLINT_PANEL_CENTRE : GLINT_PANEL_FIT, file);
+        write_panel_screen(frame, w, h, &layout,
+                           centre ? GLINT_PANEL_CENTRE : GLINT_PANEL_FIT, file);
     glint_y4m_reader_close(&in);
     return fclose(file) == 0 ? 0 : 1;
 }

@@ -34,7 +34,8 @@ struct feed {
     uint8_t *memory[N_BUFFERS];
 };
 
-static void add_frame(struct feed *feed, const uint8_t *bytes, size_t n_bytes)
+static void add_frame_bytes(struct feed *feed, const uint8_t *bytes,
+                            size_t n_bytes)
 {
     feed->frame = realloc(feed->frame,
                           (size_t)(feed->n_frames + 1) * sizeof *feed->frame);
@@ -43,7 +44,7 @@ static void add_frame(struct feed *feed, const uint8_t *bytes, size_t n_bytes)
     feed->frame[feed->n_frames++] = (struct frame){bytes, n_bytes};
 }
 
-static void add_file(struct feed *feed, const char *path)
+static void add_frame_file(struct feed *feed, const char *path)
 {
     size_t n_bytes;
     const uint8_t *bytes = read_file(path, &n_bytes);
@@ -54,14 +55,14 @@ static void add_file(struct feed *feed, const char *path)
         die("%s: %zu bytes are no whole frames of %zu", path, n_bytes, step);
     size_t at = 0;
     do { /* an empty file is one empty frame */
-        add_frame(feed, bytes + at, step);
+        add_frame_bytes(feed, bytes + at, step);
         at += step;
     } while (at < n_bytes);
 }
 
 /* Declares BT.709's curve. Must be last, as S_FMT with only size and format
  * would reset it. */
-static void set_curve(int fd)
+static void set_transfer_curve(int fd)
 {
     struct v4l2_format format = {.type = V4L2_BUF_TYPE_VIDEO_OUTPUT};
     must_ioctl(fd, VIDIOC_G_FMT, &format, "VIDIOC_G_FMT");
@@ -70,9 +71,9 @@ static void set_curve(int fd)
     must_ioctl(fd, VIDIOC_S_FMT, &format, "VIDIOC_S_FMT");
 }
 
-/* Returns the output that accepts DV timings, which is HDMI; -1: none, as
- * with v4l2loopback. */
-static int hdmi_output(int fd)
+/* Returns the index of the HDMI output, the first that accepts DV timings; -1
+ * if there is none, as with v4l2loopback. */
+static int find_hdmi_output(int fd)
 {
     struct v4l2_output output = {.index = 0};
     for (; try_ioctl(fd, VIDIOC_ENUMOUTPUT, &output) == 0; output.index++)
@@ -80,7 +81,7 @@ static int hdmi_output(int fd)
             return (int)output.index;
     return -1;
 }
-static int hdmi_input(int fd)
+static int find_hdmi_input(int fd)
 {
     struct v4l2_input input = {.index = 0};
     for (; try_ioctl(fd, VIDIOC_ENUMINPUT, &input) == 0; input.index++)
@@ -89,7 +90,7 @@ static int hdmi_input(int fd)
     die("the camera has no HDMI input");
 }
 
-static double timings_fps(const struct v4l2_bt_timings *bt)
+static double compute_timings_fps(const struct v4l2_bt_timings *bt)
 {
     double pixels = (double)V4L2_DV_BT_FRAME_WIDTH(bt) *
                     (double)V4L2_DV_BT_FRAME_HEIGHT(bt);
@@ -98,15 +99,15 @@ static double timings_fps(const struct v4l2_bt_timings *bt)
 
 /* Returns the progressive timings of a size whose rate is nearest to FPS, or
  * to 60 if FPS is 0. */
-static struct v4l2_dv_timings find_timings(int fd, uint32_t width,
-                                           uint32_t height, double fps)
+static struct v4l2_dv_timings find_nearest_timings(int fd, uint32_t width,
+                                                   uint32_t height, double fps)
 {
     struct v4l2_enum_dv_timings at = {.index = 0};
     struct v4l2_dv_timings best = {.type = 0};
     double least = 1e9;
     for (; try_ioctl(fd, VIDIOC_ENUM_DV_TIMINGS, &at) == 0; at.index++) {
         const struct v4l2_bt_timings *bt = &at.timings.bt;
-        double off = timings_fps(bt) - (fps > 0.0 ? fps : 60.0);
+        double off = compute_timings_fps(bt) - (fps > 0.0 ? fps : 60.0);
         off = off < 0.0 ? -off : off;
         if (bt->width == width && bt->height == height && !bt->interlaced &&
             off < least) {
@@ -119,7 +120,7 @@ static struct v4l2_dv_timings find_timings(int fd, uint32_t width,
     return best;
 }
 
-static void set_control(int fd, const char *name, int32_t value)
+static void set_control_by_name(int fd, const char *name, int32_t value)
 {
     struct v4l2_queryctrl query = {.id = V4L2_CTRL_FLAG_NEXT_CTRL};
     while (try_ioctl(fd, VIDIOC_QUERYCTRL, &query) == 0) {
@@ -135,25 +136,27 @@ static void set_control(int fd, const char *name, int32_t value)
 
 /* Sets the same timings on both ends of the cable, and the format on the
  * camera. */
-static void wire_hdmi(int out, int socket, const char *camera, uint32_t fourcc,
-                      uint32_t width, uint32_t height, double fps)
+static void connect_hdmi_ends(int out, int socket, const char *camera,
+                              uint32_t fourcc, uint32_t width, uint32_t height,
+                              double fps)
 {
     if (!camera)
         die("vivid's output needs -c CAMERA");
     int in = open_device(camera);
-    int input = hdmi_input(in);
+    int input = find_hdmi_input(in);
     must_ioctl(out, VIDIOC_S_OUTPUT, &socket, "VIDIOC_S_OUTPUT");
     must_ioctl(in, VIDIOC_S_INPUT, &input, "VIDIOC_S_INPUT");
-    struct v4l2_dv_timings timings = find_timings(out, width, height, fps);
+    struct v4l2_dv_timings timings =
+        find_nearest_timings(out, width, height, fps);
     must_ioctl(out, VIDIOC_S_DV_TIMINGS, &timings, "VIDIOC_S_DV_TIMINGS (out)");
     must_ioctl(in, VIDIOC_S_DV_TIMINGS, &timings, "VIDIOC_S_DV_TIMINGS (in)");
     set_format(in, V4L2_BUF_TYPE_VIDEO_CAPTURE, fourcc, width, height);
-    set_control(in, "OSD Text Mode", 2);
-    set_control(in, "Loop Video", 1);
+    set_control_by_name(in, "OSD Text Mode", 2);
+    set_control_by_name(in, "Loop Video", 1);
     close(in);
 }
 
-static void wait_for_frame(struct timespec *next, double fps)
+static void wait_for_frame_time(struct timespec *next, double fps)
 {
     long step = (long)(1e9 / fps);
     next->tv_nsec += step;
@@ -181,8 +184,9 @@ static void request_buffers(struct feed *feed)
     }
 }
 
-/* Returns a buffer that the device does not use; waits until there is one. */
-static uint32_t free_buffer(const struct feed *feed, long i)
+/* Returns the index of a buffer that the device does not use; waits until there
+ * is one. */
+static uint32_t wait_for_free_buffer(const struct feed *feed, long i)
 {
     if (i < (long)feed->n_buffers)
         return (uint32_t)i;
@@ -204,7 +208,7 @@ static void queue_frame(const struct feed *feed, const struct frame *frame,
                         long i)
 {
     int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
-    struct v4l2_buffer buffer = {.index = free_buffer(feed, i),
+    struct v4l2_buffer buffer = {.index = wait_for_free_buffer(feed, i),
                                  .type = (uint32_t)type,
                                  .memory = V4L2_MEMORY_MMAP,
                                  .bytesused = (uint32_t)frame->n_bytes,
@@ -228,7 +232,7 @@ static void write_frames(const struct feed *feed, long count, double fps)
         if (i == N_BUFFERS)
             close(open("/tmp/fed", O_CREAT | O_WRONLY, 0644));
         if (fps > 0.0)
-            wait_for_frame(&next, fps);
+            wait_for_frame_time(&next, fps);
     }
 }
 
@@ -264,17 +268,17 @@ int main(int argc, char **argv)
     size_of(word[2], &width, &height);
     struct feed feed = {.fd = open_device(word[0]),
                         .packed_bytes = packed_bytes(fourcc, width, height)};
-    int socket = hdmi_output(feed.fd);
+    int socket = find_hdmi_output(feed.fd);
     if (socket >= 0)
-        wire_hdmi(feed.fd, socket, camera, fourcc, width, height, fps);
+        connect_hdmi_ends(feed.fd, socket, camera, fourcc, width, height, fps);
     else if (fps <= 0.0)
         fps = 30.0;
     feed.image_bytes =
         set_format(feed.fd, V4L2_BUF_TYPE_VIDEO_OUTPUT, fourcc, width, height);
     if (is_video)
-        set_curve(feed.fd);
+        set_transfer_curve(feed.fd);
     for (char **path = word + 3; *path; path++)
-        add_file(&feed, *path);
+        add_frame_file(&feed, *path);
     if (socket >= 0)
         request_buffers(&feed);
     write_frames(&feed, count, fps);

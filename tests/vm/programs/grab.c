@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * grab [-s SKIP] DEVICE FOURCC WxH COUNT OUT [REFERENCE] - reads frames of a
- * camera, and writes them to a file only after the last, so that none is lost
- * meanwhile. Prints for each frame which frame of REFERENCE (a file of frames
- * of this size) it equals bit by bit, and fails if there is none.
+ * grab [-s SKIP] DEVICE FOURCC WxH COUNT OUT [REFERENCE] - captures COUNT
+ * frames of a camera and writes them to OUT after the last one, so that writing
+ * causes no dropped frames. Prints for each frame which frame of REFERENCE (a
+ * file of frames of this size) it equals bit by bit, and fails if there is
+ * none.
  */
 #include <poll.h>
 #include <sys/mman.h>
@@ -49,7 +50,7 @@ static void start_camera(struct camera *camera)
 }
 
 /* Copies the next frame to DST[image_bytes]. Returns its number of bytes. */
-static size_t next_frame(const struct camera *camera, uint8_t *dst)
+static size_t copy_next_frame(const struct camera *camera, uint8_t *dst)
 {
     struct pollfd ready = {.fd = camera->fd, .events = POLLIN};
     if (poll(&ready, 1, 5000) != 1)
@@ -72,8 +73,8 @@ struct reference {
     size_t n_bytes;
 };
 
-static int find_frame(const struct reference *reference, const uint8_t *frame,
-                      size_t n_bytes)
+static int find_reference_frame(const struct reference *reference,
+                                const uint8_t *frame, size_t n_bytes)
 {
     for (size_t at = 0; at + n_bytes <= reference->n_bytes; at += n_bytes)
         if (memcmp(reference->bytes + at, frame, n_bytes) == 0)
@@ -81,8 +82,8 @@ static int find_frame(const struct reference *reference, const uint8_t *frame,
     return -1;
 }
 
-static int grab_frames(const struct camera *camera, int skip, int count,
-                       FILE *out, const struct reference *reference)
+static int grab_camera_frames(const struct camera *camera, int skip, int count,
+                              FILE *out, const struct reference *reference)
 {
     int n_strange = 0;
     uint8_t *frames = malloc((size_t)count * camera->image_bytes);
@@ -91,9 +92,10 @@ static int grab_frames(const struct camera *camera, int skip, int count,
         die("no memory for %d frames", count);
     for (int i = -skip; i < count; i++) {
         uint8_t *dst = frames + n_bytes;
-        size_t n = next_frame(camera, dst);
+        size_t n = copy_next_frame(camera, dst);
         if (i >= 0) {
-            int found = reference->bytes ? find_frame(reference, dst, n) : 0;
+            int found =
+                reference->bytes ? find_reference_frame(reference, dst, n) : 0;
             if (reference->bytes)
                 printf(", frame %d", found);
             n_strange += found < 0;
@@ -128,7 +130,7 @@ int main(int argc, char **argv)
     if (!out)
         die("%s: %s", word[4], strerror(errno));
     start_camera(&camera);
-    int n_strange = grab_frames(&camera, skip, count, out, &reference);
+    int n_strange = grab_camera_frames(&camera, skip, count, out, &reference);
     printf("%d frames, %d not of the reference\n", count, n_strange);
     return n_strange > 0;
 }

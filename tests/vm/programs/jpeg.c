@@ -4,7 +4,8 @@
  *     Writes the first frame, C422 of limited range, as a camera would send it:
  *     4:2:2, full range. Its colours become grey.
  * jpeg decode OUT.y4m IN.jpg...
- *     Decodes frames of one size and kind, as glint takes them from a camera.
+ * Decodes frames of one size and format like those that glint receives from a
+ * camera.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +26,7 @@ static void exit_with_error(const char *why)
     exit(2);
 }
 
-static uint8_t to_full_range(uint8_t code)
+static uint8_t widen_to_full_range(uint8_t code)
 {
     const int value = ((code - 16) * 255 + 109) / 219;
 
@@ -33,19 +34,20 @@ static uint8_t to_full_range(uint8_t code)
 }
 
 /* Compresses a row of LUMA with grey chroma. */
-static void write_row(struct jpeg_compress_struct *j, const uint8_t *luma)
+static void compress_luma_row(struct jpeg_compress_struct *j,
+                              const uint8_t *luma)
 {
     static uint8_t ycc[3 * MAX_SIDE];
     JSAMPROW row = ycc;
 
     for (size_t x = 0; x < j->image_width; x++) {
-        ycc[3 * x] = to_full_range(luma[x]);
+        ycc[3 * x] = widen_to_full_range(luma[x]);
         ycc[3 * x + 1] = ycc[3 * x + 2] = 128;
     }
     jpeg_write_scanlines(j, &row, 1);
 }
 
-static void write_jpeg(const struct glint_image *image, FILE *file)
+static void write_grey_jpeg(const struct glint_image *image, FILE *file)
 {
     struct jpeg_compress_struct j;
     struct jpeg_error_mgr errors;
@@ -62,7 +64,7 @@ static void write_jpeg(const struct glint_image *image, FILE *file)
     j.comp_info[0].v_samp_factor = 1;
     jpeg_start_compress(&j, TRUE);
     for (int y = 0; y < image->height; y++)
-        write_row(&j, image->plane[0] + y * image->stride_bytes[0]);
+        compress_luma_row(&j, image->plane[0] + y * image->stride_bytes[0]);
     jpeg_finish_compress(&j);
     jpeg_destroy_compress(&j);
 }
@@ -82,7 +84,7 @@ static void encode_file(const char *from, const char *to)
     file = fopen(to, "wb");
     if (!file)
         exit_with_error("cannot write");
-    write_jpeg(frame, file);
+    write_grey_jpeg(frame, file);
     glint_y4m_reader_close(&in);
     if (fclose(file) != 0)
         exit_with_error("cannot write");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * panel LAYOUT WxH RAW NAME - writes NAME.ppm and NAME.png from the memory of a
- * framebuffer, for emulators without a display to take a screenshot of.
+ * framebuffer, for emulators that cannot take screenshots.
  */
 #include <stdint.h>
 #include <stdio.h>
@@ -15,7 +15,7 @@ struct picture {
     uint8_t *rgb;
 };
 
-static FILE *open_named(const char *name, const char *suffix)
+static FILE *open_named_framebuffer(const char *name, const char *suffix)
 {
     char path[4096];
     snprintf(path, sizeof path, "%s%s", name, suffix);
@@ -27,8 +27,8 @@ static FILE *open_named(const char *name, const char *suffix)
     return file;
 }
 
-static int read_raw(const char *path, const struct layout *layout,
-                    struct picture *picture)
+static int read_raw_screen(const char *path, const struct layout *layout,
+                           struct picture *picture)
 {
     FILE *file = fopen(path, "rb");
     uint8_t *dst = picture->rgb, bytes[4];
@@ -73,19 +73,20 @@ static void write_be32(struct png *png, uint32_t value)
     write_bytes(png, bytes, 4);
 }
 
-static void begin_chunk(struct png *png, const char *type, uint32_t n_bytes)
+static void begin_png_chunk(struct png *png, const char *type, uint32_t n_bytes)
 {
     write_be32(png, n_bytes);
     png->crc = 0xffffffffu;
     write_bytes(png, (const uint8_t *)type, 4);
 }
 
-static void end_chunk(struct png *png)
+static void end_png_chunk(struct png *png)
 {
     write_be32(png, ~png->crc);
 }
 
-static void write_with_checksum(struct png *png, const uint8_t *bytes, size_t n)
+static void write_and_add_checksum(struct png *png, const uint8_t *bytes,
+                                   size_t n)
 {
     write_bytes(png, bytes, n);
     for (size_t i = 0; i < n; i++) {
@@ -94,11 +95,12 @@ static void write_with_checksum(struct png *png, const uint8_t *bytes, size_t n)
     }
 }
 
-static void write_rows(struct png *png, const struct picture *picture)
+static void write_compressed_rows(struct png *png,
+                                  const struct picture *picture)
 {
     static const uint8_t zlib[2] = {0x78, 0x01}, no_filter = 0;
     uint32_t n = picture->width * 3, block = n + 1;
-    begin_chunk(png, "IDAT", picture->height * (block + 5) + 6);
+    begin_png_chunk(png, "IDAT", picture->height * (block + 5) + 6);
     write_bytes(png, zlib, 2);
     png->s1 = 1;
     for (unsigned y = 0; y < picture->height; y++) {
@@ -106,32 +108,32 @@ static void write_rows(struct png *png, const struct picture *picture)
                            (uint8_t)(block >> 8), (uint8_t)~block,
                            (uint8_t)(~block >> 8)};
         write_bytes(png, head, 5);
-        write_with_checksum(png, &no_filter, 1);
-        write_with_checksum(png, picture->rgb + (size_t)y * n, n);
+        write_and_add_checksum(png, &no_filter, 1);
+        write_and_add_checksum(png, picture->rgb + (size_t)y * n, n);
     }
     write_be32(png, png->s2 << 16 | png->s1);
-    end_chunk(png);
+    end_png_chunk(png);
 }
 
 static void write_png(const char *name, const struct picture *picture)
 {
     static const uint8_t rgb8[5] = {8, 2, 0, 0, 0};
-    struct png png = {.file = open_named(name, ".png")};
+    struct png png = {.file = open_named_framebuffer(name, ".png")};
     fwrite("\x89PNG\r\n\x1a\n", 1, 8, png.file);
-    begin_chunk(&png, "IHDR", 13);
+    begin_png_chunk(&png, "IHDR", 13);
     write_be32(&png, picture->width);
     write_be32(&png, picture->height);
     write_bytes(&png, rgb8, 5);
-    end_chunk(&png);
-    write_rows(&png, picture);
-    begin_chunk(&png, "IEND", 0);
-    end_chunk(&png);
+    end_png_chunk(&png);
+    write_compressed_rows(&png, picture);
+    begin_png_chunk(&png, "IEND", 0);
+    end_png_chunk(&png);
     fclose(png.file);
 }
 
 static void write_ppm(const char *name, const struct picture *picture)
 {
-    FILE *file = open_named(name, ".ppm");
+    FILE *file = open_named_framebuffer(name, ".ppm");
     fprintf(file, "P6\n%u %u\n255\n", picture->width, picture->height);
     fwrite(picture->rgb, 3, (size_t)picture->width * picture->height, file);
     fclose(file);
@@ -148,7 +150,7 @@ int main(int argc, char **argv)
         return 2;
     }
     picture.rgb = malloc((size_t)picture.width * picture.height * 3 + 1);
-    if (!picture.rgb || !read_raw(argv[3], &layout, &picture)) {
+    if (!picture.rgb || !read_raw_screen(argv[3], &layout, &picture)) {
         fprintf(stderr, "%s: no picture of %s\n", argv[3], argv[2]);
         return 1;
     }

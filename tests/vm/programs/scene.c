@@ -61,7 +61,7 @@ static uint8_t compute_luma(const struct scene *s, int frame, int x, int y)
 }
 
 /* Returns Y, Cb, Cr of the bar at X: BT.709, 75 %, from white to black. */
-static const uint8_t *find_bar(const struct scene *s, int x)
+static const uint8_t *find_bar_colour(const struct scene *s, int x)
 {
     static const uint8_t bar[8][3] = {
         {180, 128, 128}, {168, 44, 136}, {145, 147, 44}, {133, 63, 52},
@@ -71,17 +71,18 @@ static const uint8_t *find_bar(const struct scene *s, int x)
 }
 
 /* Returns whether row Y is in the lowest sixth, which contains the bars. */
-static int is_bar(const struct scene *s, int y)
+static int is_row_of_bars(const struct scene *s, int y)
 {
     return y >= s->height - s->height / 6;
 }
 
 static uint8_t compute_chroma(const struct scene *s, int x, int y, int which)
 {
-    return is_bar(s, y) ? find_bar(s, x)[which] : 128;
+    return is_row_of_bars(s, y) ? find_bar_colour(s, x)[which] : 128;
 }
 
-static void write_yuyv(const struct scene *s, const uint8_t *luma, FILE *file)
+static void write_yuyv_frame(const struct scene *s, const uint8_t *luma,
+                             FILE *file)
 {
     for (int y = 0; y < s->height; y++)
         for (int x = 0; x < s->width; x++) {
@@ -92,8 +93,8 @@ static void write_yuyv(const struct scene *s, const uint8_t *luma, FILE *file)
 
 /* Writes luma, then chroma: for NV12 interleaved and at half resolution in
  * both directions, else two planes at half the width. */
-static void write_planes(const struct scene *s, const uint8_t *luma, int nv12,
-                         FILE *file)
+static void write_planar_frame(const struct scene *s, const uint8_t *luma,
+                               int nv12, FILE *file)
 {
     fwrite(luma, 1, (size_t)s->width * (size_t)s->height, file);
     if (nv12)
@@ -111,12 +112,12 @@ static void write_frame(const struct scene *s, const char *format,
                         const uint8_t *luma, FILE *file)
 {
     if (strcmp(format, "YUYV") == 0) {
-        write_yuyv(s, luma, file);
+        write_yuyv_frame(s, luma, file);
         return;
     }
     if (strcmp(format, "y4m") == 0)
         fputs("FRAME\n", file);
-    write_planes(s, luma, strcmp(format, "NV12") == 0, file);
+    write_planar_frame(s, luma, strcmp(format, "NV12") == 0, file);
 }
 
 int main(int argc, char **argv)
@@ -155,8 +156,8 @@ int main(int argc, char **argv)
     for (int f = 0; f < s.n_frames; f++) {
         for (int y = 0; y < s.height; y++)
             for (int x = 0; x < s.width; x++)
-                luma[y * s.width + x] = is_bar(&s, y)
-                                            ? find_bar(&s, x)[0]
+                luma[y * s.width + x] = is_row_of_bars(&s, y)
+                                            ? find_bar_colour(&s, x)[0]
                                             : compute_luma(&s, f, x, y);
         write_frame(&s, format, luma, file);
     }
