@@ -43,7 +43,7 @@ $(OUT)/tests/unit/test_live: LDFLAGS += -Wl,--wrap=ppoll
 $(OUT)/tests/unit/test_frame: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc \
         -Wl,--wrap=realloc,--wrap=posix_memalign
 $(OUT)/tests/unit/test_budget $(OUT)/tests/unit/test_scene_budget: LDFLAGS += \
-        -Wl,--wrap=tool_seconds
+        -Wl,--wrap=tool_clock_s
 $(fake_bins): LDFLAGS += $(FAKE_CAMERA:%=-Wl,--wrap=%)
 $(fake_bins): $(OUT)/tests/support/fakes/fake_camera.o
 $(OUT)/tests/unit/test_fbdev: $(OUT)/tests/support/fakes/fake_fb.o

@@ -37,8 +37,8 @@ static double simulated_frame_ms(const struct machine *m)
            m->steps_ms * m->frame->dials.irradiance_steps / 69.;
 }
 
-double __wrap_tool_seconds(void);
-double __wrap_tool_seconds(void)
+double __wrap_tool_clock_s(void);
+double __wrap_tool_clock_s(void)
 {
     const double noise =
         machine.noise ? 0.94 + 0.12 * rng_unit(&machine.noise) : 1;

@@ -205,8 +205,8 @@ TEST(budget_is_shared_with_the_flare)
 static double now_s, step_s;
 
 /* Each reading of the clock advances it by one step. */
-double __wrap_tool_seconds(void);
-double __wrap_tool_seconds(void)
+double __wrap_tool_clock_s(void);
+double __wrap_tool_clock_s(void)
 {
     now_s += step_s;
     return now_s;
