@@ -302,23 +302,26 @@ static bool have_lines_same_keys(const struct recipe *r, const char *a,
     return true;
 }
 
-/* Reads the table in the figure's file. */
+/* Reads the rows between the markers of the figure's file, which may have other
+ * tables. */
 static void read_figure_table(const struct recipe *r, struct table *t)
 {
     static char line[TEXT];
     char path[256];
-    bool inside = false;
+    bool has_begun = false, inside = false;
     FILE *file;
 
     snprintf(path, sizeof path, "tests/figures/%s.md", r->name);
     file = fopen(path, "r");
     while (file && fgets(line, sizeof line, file)) {
         line[strcspn(line, "\n")] = '\0';
+        if (strncmp(line, "<!-- begin", 10) == 0)
+            has_begun = true;
         if (strncmp(line, "<!-- end", 8) == 0)
-            inside = false;
+            break;
         if (inside && *line == '|' && t->n < TABLE_ROWS)
             t->line[t->n++] = strdup(line);
-        if (strncmp(line, "|---", 4) == 0)
+        if (has_begun && strncmp(line, "|---", 4) == 0)
             inside = true;
     }
     if (file)
