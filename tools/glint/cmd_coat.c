@@ -33,23 +33,21 @@ static const char help[] =
     "  --glass ND[,VD]     glass below the coating (default 1.5168,64.17)\n"
     "  --surface K         surface of a lens, counted from 0 at the front\n"
     "  --coating C         coating of the lens; values of glint overlay\n"
-    "  --angles A[,...]    degrees, up to 8 (default 0,15,30,45,60)\n"
-    "  --band NM,NM        wavelengths in nm (default 380,780)\n"
     "  -o, --output FILE   write plots: unpolarised light by wavelength, and s "
     "and\n"
     "                      p by angle at 450, 550, 650 nm\n"
     "  --json              print one JSON object, with s and p\n";
 
-enum { MAX_ANGLES = 8, STEPS = 40, MAX_TEXT = 160 };
+enum { ANGLES = 5, STEPS = 40, MAX_TEXT = 160 };
+
+static const double angle_deg[ANGLES] = {0, 15, 30, 45, 60};
+static const double band_nm[2] = {380, 780};
 
 struct coat {
     const char *output;
     int surface; /* surface of the lens, from 0; -1: a coating without a lens */
     struct coating on_lens;
     double glass[2]; /* nd and Vd of the glass below the coating */
-    int n_angles;
-    double angle_deg[MAX_ANGLES];
-    double band_nm[2];
     struct glint_coating coating;
     char name[MAX_TEXT]; /* coating or lens, for titles */
 };
@@ -73,9 +71,9 @@ static struct reflected compute_reflectance(const struct coat *c, double nm,
 }
 
 /* Returns wavelength number K of the printed table, nm; K = 0 .. STEPS. */
-static double table_wavelength_nm(const struct coat *c, int k)
+static double table_wavelength_nm(int k)
 {
-    return c->band_nm[0] + (c->band_nm[1] - c->band_nm[0]) * k / STEPS;
+    return band_nm[0] + (band_nm[1] - band_nm[0]) * k / STEPS;
 }
 
 /* ------------------------------------------------------------------- words */
@@ -83,15 +81,15 @@ static double table_wavelength_nm(const struct coat *c, int k)
 static void print_reflectance_text(const struct coat *c)
 {
     printf("%s, on index %g\n\n      nm", c->name, c->glass[0]);
-    for (int a = 0; a < c->n_angles; a++)
-        printf("  %5g deg", c->angle_deg[a]);
+    for (int a = 0; a < ANGLES; a++)
+        printf("  %5g deg", angle_deg[a]);
     printf("\n");
     for (int k = 0; k <= STEPS; k += 2) {
-        printf("%8.1f", table_wavelength_nm(c, k));
-        for (int a = 0; a < c->n_angles; a++)
+        printf("%8.1f", table_wavelength_nm(k));
+        for (int a = 0; a < ANGLES; a++)
             printf("  %7.3f %%",
-                   100 * compute_reflectance(c, table_wavelength_nm(c, k),
-                                             c->angle_deg[a])
+                   100 * compute_reflectance(c, table_wavelength_nm(k),
+                                             angle_deg[a])
                              .both);
         printf("\n");
     }
@@ -108,12 +106,12 @@ static void print_reflectance_json(const struct coat *c)
                    c->coating.film[i].quarters);
     json_write(&json, "], reflected: [");
     for (int k = 0; k <= STEPS; k++)
-        for (int a = 0; a < c->n_angles; a++) {
-            const struct reflected r = compute_reflectance(
-                c, table_wavelength_nm(c, k), c->angle_deg[a]);
+        for (int a = 0; a < ANGLES; a++) {
+            const struct reflected r =
+                compute_reflectance(c, table_wavelength_nm(k), angle_deg[a]);
 
             json_write(&json, "{nm: %g, deg: %g, s: %.9g, p: %.9g}",
-                       table_wavelength_nm(c, k), c->angle_deg[a], r.s, r.p);
+                       table_wavelength_nm(k), angle_deg[a], r.s, r.p);
         }
     json_write(&json, "]}\n");
 }
@@ -162,19 +160,19 @@ static void draw_reflectance_curve(const struct plot *plot,
 
 static void plot_over_wavelength(const struct coat *c, struct plot *plot)
 {
-    struct curve v = {c, 0, 0, c->band_nm[0], c->band_nm[1]};
+    struct curve v = {c, 0, 0, band_nm[0], band_nm[1]};
     char words[32];
 
     plot->x.words = "nm";
     plot->y.words = "% reflected, unpolarised";
     plot_extend_axes(plot, v.lo, 0);
-    for (int a = 0; a < c->n_angles; a++) {
-        v.fixed = c->angle_deg[a];
+    for (int a = 0; a < ANGLES; a++) {
+        v.fixed = angle_deg[a];
         fit_axes_to_curve(plot, &v);
     }
     plot_draw_frame(plot);
-    for (int a = 0; a < c->n_angles; a++) {
-        v.fixed = c->angle_deg[a];
+    for (int a = 0; a < ANGLES; a++) {
+        v.fixed = angle_deg[a];
         draw_reflectance_curve(plot, &v, plot_colour_of_series(a));
         snprintf(words, sizeof words, "%g degrees", v.fixed);
         plot_draw_legend_entry(plot, 's', plot_colour_of_series(a), words);
@@ -240,19 +238,10 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
             tool_parse_integer(value, 0, GLINT_MAX_SURFACES - 1, &o->surface);
     else if (c == 'C')
         return coating_parse_option(tool, &o->on_lens, value);
-    else if (c == 'b')
-        good = tool_parse_numbers(value, o->band_nm, 2) == 2 &&
-               o->band_nm[0] >= 100 && o->band_nm[0] < o->band_nm[1] &&
-               o->band_nm[1] <= 5000;
     else if (c == 'g')
         good = tool_parse_numbers(value, o->glass, 2) > 0 &&
                o->glass[0] >= 1.01 && o->glass[0] <= 4 && o->glass[1] >= 0;
-    else if (c == 'a') {
-        o->n_angles = tool_parse_numbers(value, o->angle_deg, MAX_ANGLES);
-        good = o->n_angles > 0;
-        for (int k = 0; k < o->n_angles; k++)
-            good = good && o->angle_deg[k] >= 0 && o->angle_deg[k] < 90;
-    } else
+    else
         return tool_option(tool, c, value);
     return good ? -1 : -2;
 }
@@ -265,8 +254,6 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         {"surface", required_argument, NULL, 's'},
         {"coating", required_argument, NULL, 'C'},
         {"glass", required_argument, NULL, 'g'},
-        {"angles", required_argument, NULL, 'a'},
-        {"band", required_argument, NULL, 'b'},
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
     int code = tool_parse_options(
@@ -342,11 +329,7 @@ static int parse_coating_text(const struct tool *tool, const char *text,
 int cmd_coat(int argc, char **argv)
 {
     struct tool tool = {.name = "coat", .help = help};
-    struct coat c = {.surface = -1,
-                     .glass = {1.5168, 64.17},
-                     .n_angles = 5,
-                     .angle_deg = {0, 15, 30, 45, 60},
-                     .band_nm = {380, 780}};
+    struct coat c = {.surface = -1, .glass = {1.5168, 64.17}};
     int code = parse_options(&tool, argc, argv, &c);
 
     if (code >= 0)

@@ -54,26 +54,20 @@ static const char help[] =
     "                      visible, with number, surfaces and fraction of "
     "light\n"
     "  --size WxH          size of the frame without IN\n"
-    "  --picture P         codes: drawn over 8 bits (IN, or black); linear: "
-    "drawn\n"
-    "                      at full precision (default with --size)\n"
     "  --top N             list and mark N ghosts and lights (default 20)\n";
 
 enum {
-    OPT_PICTURE = ENGINE_OPTIONS_END,
-    OPT_TOP,
+    OPT_TOP = ENGINE_OPTIONS_END,
     OPT_SIZE,
     OPT_SAVE_GHOSTS,
     OPT_GHOST_SHEET
 };
 
-enum { AUTO, CODES, LINEAR };
-
 struct explain_command {
     struct drawing drawing;
     const char *input, *output, *ghosts, *sheet;
     int width, height; /* --size, pixels; 0: size of the input */
-    int picture, top;
+    int top;
     struct glint_image
         image; /* 8-bit copy of the input on which the flare is drawn */
 };
@@ -81,7 +75,6 @@ struct explain_command {
 static const struct option own[] = {
     {"output", required_argument, NULL, 'o'},
     {"size", required_argument, NULL, OPT_SIZE},
-    {"picture", required_argument, NULL, OPT_PICTURE},
     {"top", required_argument, NULL, OPT_TOP},
     {"save-ghosts", required_argument, NULL, OPT_SAVE_GHOSTS},
     {"ghost-sheet", required_argument, NULL, OPT_GHOST_SHEET},
@@ -90,8 +83,6 @@ static const struct option own[] = {
 static bool parse_option(struct explain_command *c, int option,
                          const char *value)
 {
-    static const char *const pictures[] = {"codes", "linear", NULL};
-
     switch (option) {
     case 'o':
         c->output = value;
@@ -104,9 +95,6 @@ static bool parse_option(struct explain_command *c, int option,
         return *value != '\0';
     case OPT_SIZE:
         return tool_parse_size(value, &c->width, &c->height);
-    case OPT_PICTURE:
-        c->picture = tool_find_word(value, pictures) + 1;
-        return c->picture > 0;
     case OPT_TOP:
         return tool_parse_integer(value, 0, GLINT_MAX_GHOSTS, &c->top);
     }
@@ -119,10 +107,6 @@ static int check_options(struct tool *tool, const struct explain_command *c)
 
     if (c->input && c->width)
         return tool_usage(tool, "needs one input picture, or --size WxH");
-    if (c->input && c->picture == LINEAR)
-        return tool_usage(tool, "--picture linear needs --size");
-    if (c->drawing.line.settings.options.scene && c->picture == LINEAR)
-        return tool_usage(tool, "--picture linear excludes --scene");
     if (!c->drawing.line.settings.options.scene &&
         strcmp(c->drawing.line.settings.options.lens, "none") == 0)
         return tool_usage(tool, "--lens none without --scene leaves nothing to "
@@ -376,9 +360,7 @@ static int check_outputs_differ_from_inputs(const struct tool *tool,
 
 static int explain_frame(struct tool *tool, struct explain_command *c)
 {
-    const bool linear =
-        c->picture == LINEAR || (c->picture == AUTO && c->width &&
-                                 !c->drawing.line.settings.options.scene);
+    const bool linear = c->width && !c->drawing.line.settings.options.scene;
     enum glint_status status;
     int code;
 

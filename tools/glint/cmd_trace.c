@@ -14,7 +14,7 @@
 #include "options/tool.h"
 
 static const char help[] =
-    "glint trace LENS --ghost K --angle DEG --wavelength NM --grid N [--csv]\n"
+    "glint trace LENS --ghost K --angle DEG --wavelength NM --grid N\n"
     "            [--pupil] [--model MODEL] [--coating C] [--zoom Z] [--focus "
     "M]\n"
     "\n"
@@ -41,8 +41,7 @@ static const char help[] =
     "the\n"
     "                   angles of the ghost; rel_radius is that of the "
     "limiting\n"
-    "                   barrels, 0 without any\n" ZOOM_HELP COATING_HELP
-    "  --csv            the format above (the only one)\n";
+    "                   barrels, 0 without any\n" ZOOM_HELP COATING_HELP;
 
 struct options {
     const char *model;
@@ -63,7 +62,6 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         {"grid", required_argument, NULL, 'n'},
         {"model", required_argument, NULL, 'm'},
         {"pupil", no_argument, NULL, 'p'},
-        {"csv", no_argument, NULL, 'c'},
         {"coating", required_argument, NULL, 'C'},
         ZOOM_OPTIONS('z', 'F'),
         TOOL_COMMON_OPTIONS};
@@ -91,7 +89,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
             o->model = optarg;
         else if (c == 'p')
             o->pupil = true;
-        else if (c != 'c')
+        else
             code = c == 'C' ? coating_parse_option(tool, &o->coating, optarg)
                             : tool_option(tool, c, optarg);
         if (code >= 0)

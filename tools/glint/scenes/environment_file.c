@@ -304,21 +304,19 @@ static const char bake_help[] =
     "3 x 2 faces of a cube. Negative and non-finite pixels are clamped and "
     "counted.\n"
     "A text file NAME.environment (tools/examples/scenes/README.md) names the\n"
-    "picture and has the same options; options of the command line override "
-    "it.\n"
+    "picture, turns and scales its light, and has the same options, which "
+    "those "
+    "of\n"
+    "the command line override.\n"
     "\n"
     "  -o, --output OUT\n"
     "  --size N            texels along a side: 16 to 1024, a power of two\n"
     "                      (default 256)\n"
-    "  --lights N          number of lights, 0 to 16 (default 16)\n"
-    "  --turn DEG          rotate about the vertical, to the right\n"
-    "  --scale X           multiply all light by X\n";
+    "  --lights N          number of lights, 0 to 16 (default 16)\n";
 
-/* Values of the command line; -1, or has_... false: not given */
+/* Values of the command line; -1: not given */
 struct line {
     int side_log2, lights;
-    bool has_turn, has_scale;
-    double turn, scale;
 };
 
 static void override_text_options(void *ctx,
@@ -330,10 +328,6 @@ static void override_text_options(void *ctx,
         o->side_log2 = l->side_log2;
     if (l->lights >= 0)
         o->max_lights = l->lights;
-    if (l->has_turn)
-        o->turn_deg = l->turn;
-    if (l->has_scale)
-        o->scale = l->scale;
 }
 
 static int parse_environment_option(struct tool *tool, void *line, int c,
@@ -354,14 +348,6 @@ static int parse_environment_option(struct tool *tool, void *line, int c,
         ok = tool_parse_integer(optarg, 0, GLINT_ENVIRONMENT_MAX_LIGHTS,
                                 &l->lights);
         break;
-    case 't':
-        ok = l->has_turn = tool_parse_number(optarg, &l->turn) &&
-                           l->turn >= -360 && l->turn <= 360;
-        break;
-    case 'x':
-        ok = l->has_scale = tool_parse_number(optarg, &l->scale) &&
-                            l->scale >= 1e-6 && l->scale <= 1e6;
-        break;
     default:
         return tool_option(tool, c, optarg);
     }
@@ -374,8 +360,6 @@ int cmd_bake_environment(struct tool *tool, int argc, char **argv)
         BAKE_LINE_OPTIONS,
         {"size", required_argument, NULL, 's'},
         {"lights", required_argument, NULL, 'n'},
-        {"turn", required_argument, NULL, 't'},
-        {"scale", required_argument, NULL, 'x'},
         TOOL_COMMON_OPTIONS};
     struct line line = {.side_log2 = -1, .lights = -1};
     struct environment_file file;
