@@ -176,7 +176,6 @@ struct glint_engine_drawing {
     double apart_px;   /* merge distance, pixels: lights whose images are closer
                           are merged */
     int tile_log2;     /* log2 of the side of tiles, 3 .. 6 */
-    int dither;        /* not 0: ordered dither in pictures of 8 bits */
     unsigned parts;    /* bits of enum glint_engine_part: the components to
                           draw */
     int only_ghost;    /* index of the only ghost drawn; -1: all ghosts */

@@ -372,7 +372,6 @@ static enum glint_status fit_panel(struct glint_fbdev *fb,
         .image_width = image->width,
         .image_height = image->height,
         .fit = fb->options.fit,
-        .dither = fb->options.dither,
     };
 
     if (fb->panel.mem && fb->panel.cfg.image_width == image->width &&

@@ -386,12 +386,11 @@ static void pack_bytes(const struct glint_row_pack *p, uint8_t *dst,
         pack_threes(dst, byte[0], byte[1], byte[2], n);
 }
 
-/* Returns (CODE * MOST + THRESHOLD) / 255 without a division: exact for sums
- * below 65535; the max sum is 255 * 255 + 254. */
-static inline uint16_t scale_code(uint8_t code, uint16_t most,
-                                  uint8_t threshold)
+/* Returns (CODE * MOST + 127) / 255 without a division: exact for sums below
+ * 65535. */
+static inline uint16_t scale_code(uint8_t code, uint16_t most)
 {
-    const uint16_t sum = (uint16_t)(code * most + threshold);
+    const uint16_t sum = (uint16_t)(code * most + 127);
 
     return (uint16_t)((uint16_t)(sum + 1 + (sum >> 8)) >> 8);
 }
@@ -403,7 +402,7 @@ static inline uint16_t shift_bits(uint16_t bits, int offset)
 
 static void pack_halves(const struct glint_row_pack *p, uint16_t *restrict dst,
                         const uint8_t *r, const uint8_t *g, const uint8_t *b,
-                        const uint8_t *threshold, int n)
+                        int n)
 {
     const struct glint_pixel_layout *const l = &p->layout;
     const uint16_t max_r = (uint16_t)((1 << l->red.length) - 1),
@@ -414,11 +413,9 @@ static void pack_halves(const struct glint_row_pack *p, uint16_t *restrict dst,
     const uint16_t opaque = (uint16_t)p->opaque;
 
     for (int i = 0; i < n; i++)
-        dst[i] =
-            (uint16_t)(opaque |
-                       shift_bits(scale_code(r[i], max_r, threshold[i]), to_r) |
-                       shift_bits(scale_code(g[i], max_g, threshold[i]), to_g) |
-                       shift_bits(scale_code(b[i], max_b, threshold[i]), to_b));
+        dst[i] = (uint16_t)(opaque | shift_bits(scale_code(r[i], max_r), to_r) |
+                            shift_bits(scale_code(g[i], max_g), to_g) |
+                            shift_bits(scale_code(b[i], max_b), to_b));
 }
 
 static void pack_tables(const struct glint_row_pack *p, uint8_t *dst,
@@ -438,15 +435,14 @@ static void pack_tables(const struct glint_row_pack *p, uint8_t *dst,
 }
 
 void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
-                          const uint8_t *const channel[3], int y, int n)
+                          const uint8_t *const channel[3], int n)
 {
     switch (pack->way) {
     case GLINT_PACK_BYTES:
         pack_bytes(pack, dst, channel, n);
         return;
     case GLINT_PACK_HALVES:
-        pack_halves(pack, dst, channel[0], channel[1], channel[2],
-                    pack->threshold[pack->dither ? y & 7 : 0], n);
+        pack_halves(pack, dst, channel[0], channel[1], channel[2], n);
         return;
     case GLINT_PACK_TABLES:
         pack_tables(pack, dst, channel, n);
@@ -477,27 +473,6 @@ static void place_bytes(struct glint_row_pack *p, uint8_t *mem, int width)
     memset(p->rest, (int)(p->opaque >> 8 * free_byte & 255), (size_t)width);
 }
 
-/* Returns the threshold of pixel X, Y (0 .. 7): (2 i + 1) * 255 / 128 for an i
- * of 0 .. 63; the mean over all pixels is 127. */
-static int compute_threshold(int x, int y)
-{
-    int bits = 0;
-
-    for (int i = 0; i < 3; i++)
-        bits = bits << 2 | (((x ^ y) >> i & 1) << 1) | (y >> i & 1);
-    return (2 * bits + 1) * 255 / 128;
-}
-
-static void place_thresholds(struct glint_row_pack *p, uint8_t *mem, int width)
-{
-    for (int y = 0; y < 8; y++) {
-        p->threshold[y] = mem + (ptrdiff_t)y * width;
-        for (int x = 0; x < width; x++)
-            p->threshold[y][x] =
-                (uint8_t)(p->dither ? compute_threshold(x & 7, y) : 127);
-    }
-}
-
 static void fill_tables(struct glint_row_pack *p, void *mem)
 {
     const struct glint_pixel_layout *const l = &p->layout;
@@ -515,20 +490,18 @@ static void fill_tables(struct glint_row_pack *p, void *mem)
 
 size_t glint_row_pack_bytes(int width)
 {
-    const size_t thresholds = 8 * (size_t)width;
-    const size_t tables = 3 * 256 * sizeof(uint32_t);
+    const size_t rest = (size_t)width, tables = 3 * 256 * sizeof(uint32_t);
 
-    return thresholds > tables ? thresholds : tables;
+    return rest > tables ? rest : tables;
 }
 
 void glint_row_pack_init(struct glint_row_pack *pack,
-                         const struct glint_pixel_layout *layout, bool dither,
-                         void *mem, int width)
+                         const struct glint_pixel_layout *layout, void *mem,
+                         int width)
 {
     *pack = (struct glint_row_pack){
         .layout = *layout,
         .way = choose_way(layout),
-        .dither = dither,
         .opaque =
             (uint32_t)compute_mask(&layout->transparency, 8 * layout->bytes),
     };
@@ -537,7 +510,6 @@ void glint_row_pack_init(struct glint_row_pack *pack,
         place_bytes(pack, mem, width);
         return;
     case GLINT_PACK_HALVES:
-        place_thresholds(pack, mem, width);
         return;
     case GLINT_PACK_TABLES:
         fill_tables(pack, mem);
@@ -629,8 +601,8 @@ static enum glint_status allocate_memory(struct glint_panel *p,
     p->scaled = mem + line;
     p->from_x = (uint16_t *)(void *)(mem + 2 * line);
     glint_row_rgb_init(&p->rgb, mem + 2 * line + map, widest);
-    glint_row_pack_init(&p->pack, &p->cfg.layout, p->cfg.dither,
-                        mem + 2 * line + map + rgb, widest);
+    glint_row_pack_init(&p->pack, &p->cfg.layout, mem + 2 * line + map + rgb,
+                        widest);
     return GLINT_OK;
 }
 
@@ -684,7 +656,7 @@ void glint_panel_clear(struct glint_panel *panel, uint8_t *mem,
                                     panel->scaled};
 
     memset(panel->scaled, 0, (size_t)width);
-    glint_row_pack_write(&panel->pack, panel->line, black, 0, width);
+    glint_row_pack_write(&panel->pack, panel->line, black, width);
     for (int y = 0; y < panel->cfg.height; y++)
         memcpy(mem + y * stride, panel->line, bytes);
 }
@@ -715,16 +687,15 @@ static void spread_4(uint32_t *restrict to, const uint32_t *restrict from,
         to[i] = from[from_x[i]];
 }
 
-/* Returns row Y of the picture scaled and packed for the panel. TO_Y is the
- * row's number on the panel, for dithering. */
+/* Returns row Y of the picture scaled and packed for the panel. */
 static const uint8_t *make_row(struct glint_panel *p,
-                               const struct glint_image *image, int y, int to_y)
+                               const struct glint_image *image, int y)
 {
     const int from = p->seen.x & ~1, cut = p->seen.x - from;
     const int n = p->seen.width + cut, bytes = p->cfg.layout.bytes;
 
     glint_row_rgb_read(&p->rgb, image, from, y, n);
-    glint_row_pack_write(&p->pack, p->line, p->rgb.channel, to_y, n);
+    glint_row_pack_write(&p->pack, p->line, p->rgb.channel, n);
     if (!p->from_x)
         return p->line + cut * bytes;
     if (bytes == 2)
@@ -751,8 +722,8 @@ void glint_panel_draw(struct glint_panel *panel,
         const int from_y =
             panel->seen.y + find_nearest(y, panel->seen.height, to->height);
 
-        if (!row || from_y != made || panel->pack.dither)
-            row = make_row(panel, image, from_y, y);
+        if (!row || from_y != made)
+            row = make_row(panel, image, from_y);
         made = from_y;
         memcpy(mem + (to->y + y) * stride + to->x * bytes, row,
                (size_t)to->width * (size_t)bytes);

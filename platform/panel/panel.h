@@ -23,10 +23,7 @@
  *
  * A channel of n bits gets code c as (c (2^n - 1) + 127) / 255: the nearest
  * value, and for 16-bit pixels the inverse of glint_row_rgb_read().
- * Transparency is written as opaque; unused bits are zero. With dithering one
- * of 64 thresholds, by the position of the pixel modulo 8 x 8, the same in all
- * channels, replaces the 127, so that smooth gradients show grain in place of
- * bands.
+ * Transparency is written as opaque; unused bits are zero.
  *
  * glint_row_rgb reads part of a row as R', G', B' bytes from a picture of any
  * format but GLINT_LINEAR_Q20: R' = Y' ky + Cr k and so on, in integers.
@@ -67,13 +64,10 @@ struct glint_row_pack {
 
     /* Private. */
     enum glint_pack_way way;
-    bool dither;
     int channel[4]; /* BYTES: index of the channel in each byte of a pixel; 3:
                        no colour */
     uint8_t *rest;  /* BYTES: a row of values for the byte that holds no
                        colour */
-    uint8_t *threshold[8]; /* HALVES: thresholds of a row of pixels, for each
-                              row modulo 8 */
     uint32_t *table[3]; /* TABLES: bits of the pixel's word for each code of a
                            colour */
     uint32_t opaque;
@@ -87,7 +81,6 @@ struct glint_panel_config {
     struct glint_pixel_layout layout;
     int image_width, image_height;
     enum glint_panel_fit fit;
-    bool dither; /* true: pixels of 16 bits are dithered */
 };
 
 struct glint_panel {
@@ -140,13 +133,12 @@ size_t glint_row_pack_bytes(int width);
  * MEM has glint_row_pack_bytes(width) bytes, must be aligned as by malloc and
  * outlive PACK. DITHER affects 16-bit pixels only. */
 void glint_row_pack_init(struct glint_row_pack *pack,
-                         const struct glint_pixel_layout *layout, bool dither,
-                         void *mem, int width);
+                         const struct glint_pixel_layout *layout, void *mem,
+                         int width);
 
-/* Packs N pixels of CHANNEL (R', G', B') into DST, aligned to 4 bytes. Y is
- * their row, for dithering. */
+/* Packs N pixels of CHANNEL (R', G', B') into DST, aligned to 4 bytes. */
 void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
-                          const uint8_t *const channel[3], int y, int n);
+                          const uint8_t *const channel[3], int n);
 
 /* Prepares PANEL for CFG and allocates all memory. Returns GLINT_E_UNSUPPORTED
  * if the layout is not valid or a size is out of range, or GLINT_E_MEMORY. On

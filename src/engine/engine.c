@@ -204,7 +204,6 @@ static enum glint_status open_frame(struct glint_engine *e,
     f->cfg.sets = c->sets;
     f->cfg.reuse = d->is_fresh ? NULL : &glint_reuse;
     f->cfg.tile_log2 = d->tile_log2;
-    f->cfg.dither = d->dither != 0;
     f->dials = f->asked = d->dials;
     e->paint.parts = d->parts;
     e->paint.keep_points = d->keep_points != 0;

@@ -479,8 +479,7 @@ void glint_scene_draw(struct glint_scene *scene,
     struct draw d = {.scene = scene, .pass = make_pass(scene)};
 
     glint_scene_spread(scene);
-    glint_resolve_init(scene->resolve, image, scene->cfg.dither,
-                       scene->cfg.sets);
+    glint_resolve_init(scene->resolve, image, 0, scene->cfg.sets);
     d.tiles = (struct glint_tiles){.region = scene->bins.region,
                                    .tile_log2 = scene->cfg.tile_log2,
                                    .width = scene->cfg.width,

@@ -49,7 +49,6 @@ static struct glint_scene_config make_random_config(struct shuffle *shuffle)
     c.edge_samples = samples[random_number(4)];
     c.half_shading = random_number(2);
     c.shadow_points = points[random_number(3)];
-    c.dither = random_number(2);
     c.focal_q16 = (int64_t)(1 + random_number(400)) << 16;
     c.max_refs = 200000;
     c.parts = (struct glint_scene_parts){

@@ -59,7 +59,6 @@ function options() {
     if (draw() < 0.15) o.dust = `${within(0, 0.03).toFixed(4)},${whole(1, 9)}`;
     if (draw() < 0.15) o["front-dust"] = `${within(0, 0.03).toFixed(4)},${whole(1, 9)}`;
     if (draw() < 0.15) o.only = one(["ghosts", "starburst"]);
-    if (draw() < 0.1) o.dither = "yes";
     if (draw() < 0.1) o.wavelengths = one(["3", "7", "650,532,450"]);
     if (draw() < 0.1) o.balance = "yes";
     if (draw() < 0.15) o.threshold = `${within(-2, 0).toFixed(2)},-2`;

@@ -46,7 +46,6 @@ int make_frame_from_settings(const struct tool *tool,
         frame->dials.max_lights = o->max_lights;
     frame->asked = frame->dials;
     frame->cfg.tile_log2 = 3 + o->tile;
-    frame->cfg.dither = o->dither;
     if (o->budget > 0 && frame->lens) {
         glint_budget_init(&frame->budget, o->budget);
         frame->dials = glint_budget_dials(&frame->budget, &frame->dials);

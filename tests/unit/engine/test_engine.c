@@ -436,7 +436,7 @@ TEST(shorter_config_of_older_programs_gets_defaults)
  * and used, and the missing option is unknown and has its default. */
 TEST(shorter_options_of_older_programs_are_respected)
 {
-    const size_t bytes = offsetof(struct glint_options, dither);
+    const size_t bytes = offsetof(struct glint_options, tile);
     struct glint_engine_config cfg;
     struct glint_options o, *const older = malloc(bytes);
     struct glint_error error;
@@ -446,8 +446,8 @@ TEST(shorter_options_of_older_programs_are_respected)
     glint_options_defaults_sized(&o, bytes);
     assert_int_equal(((unsigned char *)&o)[bytes], 0x55);
     assert_ok(glint_options_set(&o, "strength", 0.25, &error));
-    assert_ok(glint_options_set_text(&o, "tile", "16", &error));
-    assert_int_equal(glint_options_set(&o, "dither", 1, &error),
+    assert_ok(glint_options_set(&o, "whole", 3, &error));
+    assert_int_equal(glint_options_set(&o, "tile", 1, &error),
                      GLINT_E_ARGUMENT);
     memcpy(older, &o, bytes);
     assert_int_equal(glint_options_quality(older).dials.fineness,
@@ -455,8 +455,8 @@ TEST(shorter_options_of_older_programs_are_respected)
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     glint_engine_configure(&cfg, older);
     assert_true(cfg.light.strength == 0.25);
-    assert_int_equal(cfg.drawing.tile_log2, 4);
-    assert_int_equal(cfg.drawing.dither, 0);
+    assert_int_equal(cfg.drawing.dials.snap_codes_q8, 3 << 8);
+    assert_int_equal(cfg.drawing.tile_log2, 6);
     free(older);
 }
 

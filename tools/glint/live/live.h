@@ -38,7 +38,6 @@ struct live_output {
     enum live_output_kind kind;
     const char *path; /* device or file; NULL: the default */
     enum glint_panel_fit fit;
-    bool dither;             /* dither on panels with 16 bits per pixel */
     struct glint_sink *sink; /* open sink; NULL if closed */
     union {
         struct glint_sink sink; /* first member of every variant */

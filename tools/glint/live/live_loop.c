@@ -505,7 +505,6 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
                ? EXIT_OK
                : tool_usage(tool, "-o: '%s' is not an output", o->output);
     l->output.fit = o->fit;
-    l->output.dither = o->drawing.line.settings.options.dither;
     live_log_init(&l->log, tool, o->report,
                   l->output.kind == LIVE_OUTPUT_Y4M &&
                       strcmp(l->output.path, "-") == 0);

@@ -35,8 +35,7 @@ enum glint_status live_output_open(struct live_output *o,
                                    const struct glint_image *image, int fps_num,
                                    int fps_den, struct glint_error *error)
 {
-    const struct glint_fbdev_options panel = {
-        .fit = o->fit, .dither = o->dither, .console = true};
+    const struct glint_fbdev_options panel = {.fit = o->fit, .console = true};
     enum glint_status status = GLINT_OK;
 
     switch (o->kind) {

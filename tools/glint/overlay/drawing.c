@@ -195,7 +195,6 @@ static int allocate_scene(struct drawing *d, int width, int height)
     if (!dials.shadow_points)
         dials.shadow_points = d->line.is_still ? STILL_POINTS : VIDEO_POINTS;
     dials.tile_log2 = 3 + o->tile;
-    dials.dither = o->dither;
     return over_scene_allocate(&d->files.scene, &dials);
 }
 

@@ -87,9 +87,9 @@ static enum glint_status open_output_video(struct frames *f,
         return GLINT_E_MEMORY;
     }
     glint_image_place(&f->frame, planes);
-    glint_composite_init(
-        &f->composite, &f->frame, tool_enabled_instruction_sets(f->tool),
-        f->c->line.settings.options.dither, f->tables, glint_composite_bytes());
+    glint_composite_init(&f->composite, &f->frame,
+                         tool_enabled_instruction_sets(f->tool), 0, f->tables,
+                         glint_composite_bytes());
     return glint_y4m_writer_open(&f->writer, r->output, &f->header, error);
 }
 

@@ -40,7 +40,6 @@ static void set_frame_config(struct glint_scene_config *cfg,
         cfg->ward_samples = dials->ward_samples;
     if (dials->has_highlights)
         cfg->highlights = dials->highlights;
-    cfg->dither = dials->dither;
     if (dials->tile_log2)
         cfg->tile_log2 = dials->tile_log2;
 }

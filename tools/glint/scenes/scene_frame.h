@@ -26,7 +26,6 @@ struct scene_dials {
     int highlights; /* if has_highlights: max number of highlights, 0 .. 8, in
                        place of the scene's */
     int tile_log2;
-    bool dither;
     /* whether to reject a scene whose first picture needs more than SCENE_TESTS
      * intersection tests; set if the user did not choose shadow_points */
     bool is_bounded;
