@@ -51,10 +51,8 @@ struct glint_dials {
      * one of the three wavelengths, and merged with ghosts of near-by lights,
      * see dimmest of struct glint_flare_frame. */
     double dim_codes;
-    double star_cull; /* factor on cull_codes for stars: their ends are smooth
-                         and faint, unlike edges of ghosts */
-    double still_px;  /* static tolerance, pixels: a light of a video that moved
-                         less reuses its rays; 0: rays are always traced */
+    double still_px; /* static tolerance, pixels: a light of a video that moved
+                        less reuses its rays; 0: rays are always traced */
     int dust_log2; /* log2 of the cells per side of the finest table of dust and
                       masks in use, 3 .. GLINT_SHADE_MOST_LOG2; lower values
                       blur the specks and preserve the light */

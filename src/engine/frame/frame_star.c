@@ -9,6 +9,12 @@
 #include "engine/setup/dirt.h"
 #include "engine/frame/frame_parts.h"
 
+/* Factor on cull_codes for stars, whose ends are smooth and faint, unlike edges
+ * of ghosts. Half or an eighth as much comes no nearer to all of their light;
+ * four times as much costs 0.2 dB and saves 2 of 9 million instructions (a lamp
+ * of 12 stops, 1920x1080). */
+#define STAR_CULL 2
+
 /* Lights farther from the picture's top left corner than this, in pixels
  * across or down, are not drawn. */
 static const double most_px = 1 << 16;
@@ -309,8 +315,7 @@ enum glint_status glint_frame_star_set(struct glint_frame *f,
         qsort(s->light, (size_t)n_lights, sizeof *s->light, by_power);
     set_lights_within_budget(
         f, n_lights,
-        f->dials.star_cull *
-            glint_frame_codes_light(f, image, f->dials.cull_codes));
+        STAR_CULL * glint_frame_codes_light(f, image, f->dials.cull_codes));
     s->n_lights = n_lights;
     s->is_set = true;
     return GLINT_OK;

@@ -9,12 +9,6 @@
 /* max number of lights; 128 cost less than three times as much as 64 */
 enum { MAX_LIGHTS = 128 };
 
-/* Stars end at a quarter of a code by default: as near to all of their light as
- * one half or an eighth as much, and four times as much costs 0.2 dB and saves
- * 2 of 9 million instructions (tests/figures/cost/stars.md: a lamp of 12
- * stops). */
-#define STAR_CULL 2
-
 /* Levels along the front that glint sweep measures over five lenses at
  * 1280x720, the coarsest first. Coarser models are not on it: they save nothing
  * and cost 6 dB. Finer models cost next to nothing but bytes and time to bake,
@@ -121,7 +115,6 @@ struct glint_quality glint_quality_at(double quality)
                   .cull_codes = l.cull,
                   .dim_codes = l.dim,
                   .still_px = l.still,
-                  .star_cull = STAR_CULL,
                   .dust_log2 = GLINT_SHADE_MOST_LOG2,
                   .area_points = l.points},
         .quantum = l.quantum,
@@ -171,7 +164,6 @@ struct glint_dials glint_dials_coarser(struct glint_dials a,
         .cull_codes = fmax(a.cull_codes, b.cull_codes),
         .dim_codes = fmax(a.dim_codes, b.dim_codes),
         .still_px = fmax(a.still_px, b.still_px),
-        .star_cull = fmax(a.star_cull, b.star_cull),
         .dust_log2 = min_int(a.dust_log2, b.dust_log2),
         .area_points = fmin(a.area_points, b.area_points)};
 }

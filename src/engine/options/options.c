@@ -409,8 +409,6 @@ struct glint_quality glint_options_quality(const struct glint_options *options)
         q.dials.dispersion_q8 = (int)lrint(o->dispersion * 256);
     if (GLINT_OPTION_GIVEN(o, cull))
         q.dials.cull_codes = o->cull;
-    if (GLINT_OPTION_GIVEN(o, star_cull))
-        q.dials.star_cull = o->star_cull;
     if (GLINT_OPTION_GIVEN(o, dim))
         q.dials.dim_codes = o->dim;
     if (GLINT_OPTION_GIVEN(o, still))

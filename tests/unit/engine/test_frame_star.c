@@ -242,19 +242,19 @@ TEST(camera_noise_does_not_make_stars_flicker)
     }
 }
 
-/* Checks that a higher star_cull covers fewer pixels. */
-TEST(higher_star_cull_covers_fewer_pixels)
+/* Checks that a higher cull_codes covers fewer pixels. */
+TEST(higher_cull_codes_cover_fewer_pixels)
 {
-    const double cull = frame.dials.star_cull;
+    const double cull = frame.dials.cull_codes;
     double last = HUGE_VAL;
 
-    for (frame.dials.star_cull = 0.5; frame.dials.star_cull < 300;
-         frame.dials.star_cull *= 8) {
+    for (frame.dials.cull_codes = 1 / 32.; frame.dials.cull_codes < 16;
+         frame.dials.cull_codes *= 8) {
         star_power_at_level(1e4, 0, 1);
-        print_message("%g times: %.0f pixels\n", frame.dials.star_cull,
+        print_message("%g codes: %.0f pixels\n", frame.dials.cull_codes,
                       frame.star.pixels);
         assert_true(frame.star.pixels > 0 && frame.star.pixels < 0.9 * last);
         last = frame.star.pixels;
     }
-    frame.dials.star_cull = cull;
+    frame.dials.cull_codes = cull;
 }
