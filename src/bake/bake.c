@@ -41,11 +41,11 @@ struct bake_run {
 
 /* --------------------------------------------------------------------- jobs */
 
-/* Allocates the visibility of GHOST, followed by that of the same ghost at
- * the first N neighbouring zoom positions. The caller frees it. Returns NULL
- * if there is no memory. */
-static struct glint_visible *allocate_visible(const struct bake_run *run,
-                                              int ghost, int n)
+/* Allocates the visibility tables of GHOST at this zoom position and at the
+ * first N neighbouring ones. The caller frees them. Returns NULL if there is no
+ * memory. */
+static struct glint_visible *allocate_visibility(const struct bake_run *run,
+                                                 int ghost, int n)
 {
     struct glint_visible *const v = calloc((size_t)n + 1, sizeof *v);
 
@@ -77,12 +77,11 @@ static enum glint_status quantise_ghost(struct bake_run *run, int ghost)
     return status;
 }
 
-/* Progress, as a fraction of the bake, when all ghosts are fitted, and when
- * they are quantised. */
+/* progress of the bake after fitting and after quantising, 0 .. 1 */
 #define FITTED    0.96
 #define QUANTISED 0.97
 
-static void report_effort(struct bake_run *run)
+static void report_bake_progress(struct bake_run *run)
 {
     const struct glint_bake_options *o = &run->options;
 
@@ -90,15 +89,16 @@ static void report_effort(struct bake_run *run)
         o->progress(o->progress_ctx, FITTED * glint_effort_done(&run->effort));
 }
 
-/* Context of report_fit(): a ghost that one worker fits. */
+/* context of report_fit() for one ghost */
 struct fit_report {
     struct bake_run *run;
-    bool tells;  /* reports progress */
-    double work; /* of the last call */
+    bool shows_progress; /* true: this worker reports progress */
+    double work;         /* work reported by the last call, in zone fits */
 };
 
-/* Counts the work of a fit. Returns GLINT_E_UNSUPPORTED, without a message, if
- * the caller of the bake does not allow it. */
+/* Records the WORK done so far for a ghost, zone fits, and the fraction SHARE
+ * of its angles that are done. Returns GLINT_E_UNSUPPORTED, without an error
+ * text, if the caller's allow() denies more work. */
 static enum glint_status report_fit(void *ctx, double work, double share)
 {
     struct fit_report *const r = ctx;
@@ -106,9 +106,9 @@ static enum glint_status report_fit(void *ctx, double work, double share)
     const int more = (int)(work - r->work);
 
     r->work = work;
-    if (r->tells) {
+    if (r->shows_progress) {
         glint_effort_spend(&r->run->effort, work, share);
-        report_effort(r->run);
+        report_bake_progress(r->run);
     }
     return !o->allow || o->allow(o->allow_ctx, more) ? GLINT_OK
                                                      : GLINT_E_UNSUPPORTED;
@@ -123,7 +123,8 @@ static enum glint_status report_fit(void *ctx, double work, double share)
  * smaller, as dividing the band reduces energy errors cheaply. */
 #define SKEW_ENERGY 0.7
 
-static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
+static enum glint_status fit_ghost(struct bake_run *run, int ghost,
+                                   bool shows_progress)
 {
     const bool round = glint_prescription_is_round(run->lens);
     const double film = run->lens->film_width_mm;
@@ -133,8 +134,8 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
         .faint_sensor_mm = 0.07 * t * film / 1920,
         .edge_mm = 0.04 * t * film / 1920,
         .stop = 4.5e-4 * t,
-        /* a sixteenth of STOP; less for lenses that open wider than
-         * GLINT_WIDE, as the model also serves all narrower stops */
+        /* 1/16 of stop; smaller for lenses faster than GLINT_WIDE, as the model
+         * is also used for all smaller stops */
         .stop_least = 2.7e-5 * t * fmin(1, run->lens->f_number / GLINT_WIDE),
         .barrel = 4e-4 * t,
         .escape = 1e-3 * t,
@@ -150,8 +151,8 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
         glint_fit_told_fn *, void *, struct glint_fitted_ghost *) =
         round ? glint_fit_ghost : glint_skew_fit;
     struct glint_visible *const visible =
-        allocate_visible(run, ghost, run->options.n_beside);
-    struct fit_report report = {run, tells, 0};
+        allocate_visibility(run, ghost, run->options.n_beside);
+    struct fit_report report = {run, shows_progress, 0};
     const enum glint_status status =
         visible ? fit(visible, run->options.max_deg, &tolerance, report_fit,
                       &report, &run->fitted[ghost])
@@ -162,7 +163,7 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
 }
 
 /* Fits one ghost; worker 0 reports progress. */
-static void fit_job(void *ctx, int ghost, int worker)
+static void run_fit_job(void *ctx, int ghost, int worker)
 {
     struct bake_run *run = ctx;
 
@@ -176,25 +177,25 @@ static void fit_job(void *ctx, int ghost, int worker)
         glint_effort_begin(&run->effort, ghost);
     run->status[ghost] = run->options.ghosts && !run->options.ghosts[ghost]
                              ? GLINT_OK
-                             : fit_auto(run, ghost, worker == 0);
+                             : fit_ghost(run, ghost, worker == 0);
     if (worker != 0)
         return;
     glint_effort_end(&run->effort);
-    report_effort(run);
+    report_bake_progress(run);
 }
 
-static void quantise_job(void *ctx, int ghost, int worker)
+static void run_quantise_job(void *ctx, int ghost, int worker)
 {
     struct bake_run *run = ctx;
     (void)worker;
     run->status[ghost] = quantise_ghost(run, ghost);
 }
 
-static void measure_job(void *ctx, int ghost, int worker)
+static void run_measure_job(void *ctx, int ghost, int worker)
 {
     struct bake_run *run = ctx;
     const struct glint_lens lens = glint_draft_lens(&run->draft);
-    struct glint_visible *const visible = allocate_visible(run, ghost, 0);
+    struct glint_visible *const visible = allocate_visibility(run, ghost, 0);
 
     (void)worker;
     run->status[ghost] = GLINT_E_MEMORY;
@@ -213,17 +214,16 @@ static void measure_job(void *ctx, int ghost, int worker)
     free(visible);
 }
 
-/* A loop over all ghosts with one short job per ghost, and the progress at
- * its begin and end, 0 .. 1. */
+/* A loop that runs one short job per ghost. */
 struct round {
     struct bake_run *run;
     glint_job_fn *job;
     double from, to;
-    int most; /* largest index of a job that worker 0 has finished */
+    int most; /* largest ghost index that worker 0 has finished */
 };
 
-/* Runs a job of the loop. Worker 0 reports progress. */
-static void run_round_job(void *ctx, int job, int worker)
+/* Runs JOB for one ghost. Worker 0 reports progress. */
+static void run_ghost_job(void *ctx, int job, int worker)
 {
     struct round *r = ctx;
     const struct glint_bake_options *o = &r->run->options;
@@ -236,7 +236,7 @@ static void run_round_job(void *ctx, int job, int worker)
     o->progress(o->progress_ctx, r->from + (r->to - r->from) * job / n);
 }
 
-static enum glint_status find_first_error(const struct bake_run *run)
+static enum glint_status get_first_ghost_error(const struct bake_run *run)
 {
     for (int i = 0; i < run->setup.n_ghosts; i++)
         if (run->status[i] != GLINT_OK)
@@ -244,16 +244,17 @@ static enum glint_status find_first_error(const struct bake_run *run)
     return GLINT_OK;
 }
 
-static enum glint_status run_for_ghosts(struct bake_run *run, glint_job_fn *job,
-                                        double from, double to)
+static enum glint_status run_jobs_for_ghosts(struct bake_run *run,
+                                             glint_job_fn *job, double from,
+                                             double to)
 {
     struct round round = {run, job, from, to, 0};
 
-    glint_workers_run(run->options.workers, run->setup.n_ghosts, run_round_job,
+    glint_workers_run(run->options.workers, run->setup.n_ghosts, run_ghost_job,
                       &round);
     if (run->options.progress)
         run->options.progress(run->options.progress_ctx, to);
-    return find_first_error(run);
+    return get_first_ghost_error(run);
 }
 
 static enum glint_effort_kind
@@ -279,16 +280,16 @@ static enum glint_status fit_ghosts(struct bake_run *run)
                         o->tolerance, &head, &typical);
         glint_effort_expect(&run->effort, head, typical);
     }
-    report_effort(run);
-    glint_workers_run(o->workers, run->setup.n_ghosts, fit_job, run);
+    report_bake_progress(run);
+    glint_workers_run(o->workers, run->setup.n_ghosts, run_fit_job, run);
     if (o->progress)
         o->progress(o->progress_ctx, FITTED);
-    return find_first_error(run);
+    return get_first_ghost_error(run);
 }
 
 /* ----------------------------------------------------------------- pipeline */
 
-static int count_parts(const struct glint_fitted_ghost *ghost)
+static int count_ghost_parts(const struct glint_fitted_ghost *ghost)
 {
     int n = 1;
 
@@ -297,16 +298,16 @@ static int count_parts(const struct glint_fitted_ghost *ghost)
     return n;
 }
 
-/* Converts the second and further parts of each ghost into separate ghosts,
- * appended after all others. */
-static enum glint_status separate_parts(struct bake_run *run)
+/* Splits ghosts whose pupil consists of several parts: each further part
+ * becomes a ghost of its own after all others. */
+static enum glint_status split_ghosts_into_parts(struct bake_run *run)
 {
     struct glint_setup *s = &run->setup;
     const int n = s->n_ghosts;
     enum glint_status status = GLINT_OK;
 
     for (int ghost = 0; ghost < n; ghost++) {
-        const int n_parts = count_parts(&run->fitted[ghost]);
+        const int n_parts = count_ghost_parts(&run->fitted[ghost]);
 
         for (int part = 1; part < n_parts && status == GLINT_OK; part++) {
             if (s->n_ghosts == GLINT_MAX_GHOSTS) {
@@ -325,7 +326,7 @@ static enum glint_status separate_parts(struct bake_run *run)
     return status;
 }
 
-static enum glint_status allocate_arrays(struct bake_run *run)
+static enum glint_status allocate_ghost_arrays(struct bake_run *run)
 {
     const size_t n = GLINT_MAX_GHOSTS;
 
@@ -341,7 +342,7 @@ static enum glint_status allocate_arrays(struct bake_run *run)
                : GLINT_E_MEMORY;
 }
 
-static void free_arrays(struct bake_run *run)
+static void free_ghost_arrays(struct bake_run *run)
 {
     for (int g = 0; g < run->setup.n_ghosts && run->fitted && run->quantised;
          g++) {
@@ -359,8 +360,8 @@ static void free_arrays(struct bake_run *run)
     free(run->draft.data);
 }
 
-/* Checks that the run time accepts the model; otherwise the bake fails. */
-static enum glint_status check_draft(const struct bake_run *run)
+/* Checks that glint_lens_open() accepts the finished model. */
+static enum glint_status check_model_opens(const struct bake_run *run)
 {
     struct glint_lens lens;
     const char *reason;
@@ -373,10 +374,10 @@ static enum glint_status check_draft(const struct bake_run *run)
     return GLINT_E_LENS;
 }
 
-static enum glint_status bake_run(struct bake_run *run)
+static enum glint_status bake_model(struct bake_run *run)
 {
     struct glint_model_header header;
-    enum glint_status status = allocate_arrays(run);
+    enum glint_status status = allocate_ghost_arrays(run);
 
     if (status == GLINT_OK)
         status = glint_model_header_of(run->lens, &run->options, &run->setup,
@@ -389,9 +390,9 @@ static enum glint_status bake_run(struct bake_run *run)
     if (status == GLINT_OK)
         status = fit_ghosts(run);
     if (status == GLINT_OK)
-        status = separate_parts(run);
+        status = split_ghosts_into_parts(run);
     if (status == GLINT_OK)
-        status = run_for_ghosts(run, quantise_job, FITTED, QUANTISED);
+        status = run_jobs_for_ghosts(run, run_quantise_job, FITTED, QUANTISED);
     if (status == GLINT_OK)
         status = glint_draft_write(&run->draft, &run->setup, &header,
                                    run->fitted, run->quantised);
@@ -399,14 +400,15 @@ static enum glint_status bake_run(struct bake_run *run)
         return status;
     for (int g = 1; g < run->setup.n_ghosts; g++)
         run->first[g] = run->first[g - 1] + run->fitted[g - 1].n_systems;
-    status = run_for_ghosts(run, measure_job, QUANTISED, 1);
+    status = run_jobs_for_ghosts(run, run_measure_job, QUANTISED, 1);
     if (status != GLINT_OK)
         return status;
     glint_blob_seal(run->draft.data, run->draft.bytes);
-    return check_draft(run);
+    return check_model_opens(run);
 }
 
-static void sum_report(const struct bake_run *run, struct glint_bake_report *r)
+static void sum_bake_report(const struct bake_run *run,
+                            struct glint_bake_report *r)
 {
     *r = (struct glint_bake_report){0, 0, 0};
     for (int g = 0; g < run->setup.n_ghosts; g++) {
@@ -417,10 +419,10 @@ static void sum_report(const struct bake_run *run, struct glint_bake_report *r)
     }
 }
 
-/* Initialises the neighbouring zoom positions, which must be positions of
- * the same lens. */
-static enum glint_status set_up_beside(struct bake_run *run,
-                                       const double rgb_nm[3])
+/* Initialises the neighbouring zoom positions. Rejects positions of another
+ * lens. */
+static enum glint_status init_neighbour_setups(struct bake_run *run,
+                                               const double rgb_nm[3])
 {
     const struct glint_bake_options *const o = &run->options;
 
@@ -464,21 +466,21 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
     if (status == GLINT_OK)
         status = glint_setup_init(&run->setup, lens, 0, 0, rgb_nm, 3, error);
     if (status == GLINT_OK)
-        status = set_up_beside(run, rgb_nm);
+        status = init_neighbour_setups(run, rgb_nm);
     if (status == GLINT_OK) {
-        status = bake_run(run);
+        status = bake_model(run);
         if (status == GLINT_E_LENS && !error->text[0])
             snprintf(error->text, sizeof error->text,
                      "%s: cannot prove that the integers of the model do not "
                      "overflow",
                      lens->name);
         if (status == GLINT_OK) {
-            sum_report(run, report);
+            sum_bake_report(run, report);
             *model = run->draft.data;
             *bytes = run->draft.bytes;
             run->draft.data = NULL;
         }
-        free_arrays(run);
+        free_ghost_arrays(run);
     }
     free(run);
     return status;

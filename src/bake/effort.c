@@ -3,18 +3,18 @@
 
 #include <math.h>
 
-/* Work in units of zone fits, per enum glint_effort_kind: finding the
- * brightness before ghosts are fitted; finding the angles of a ghost; a
- * typical ghost. */
-static const double heads[] = {32, 32, 90};
-static const double looks[] = {1.5, 1.5, 25};
-static const double typicals[] = {4, 25, 110};
-/* Weight of the typical work in the mean work of ghosts, in ghosts. */
+/* Estimated work in zone fits, per enum glint_effort_kind: head_work: finding
+ * the brightness before the first ghost; angle_work: finding the visible angles
+ * of a ghost; typical_work: one ghost. */
+static const double head_work[] = {32, 32, 90};
+static const double angle_work[] = {1.5, 1.5, 25};
+static const double typical_work[] = {4, 25, 110};
+/* weight of the typical work in the mean work per ghost, in ghosts */
 #define TRUST 3.0
 /* Max work of a ghost, as a multiple of the typical work. */
 #define MOST 10.0
-/* Weight of the mean of other ghosts when the work of the current ghost is
- * extrapolated, as a fraction of its angles. */
+/* Blends the extrapolated work of the current ghost with the mean of other
+ * ghosts: weight of that mean, as a fraction of the ghost's angles. */
 #define BLUR 0.1
 
 void glint_effort_init(struct glint_effort *e, int n_ghosts, int n_workers,
@@ -22,9 +22,9 @@ void glint_effort_init(struct glint_effort *e, int n_ghosts, int n_workers,
 {
     *e = (struct glint_effort){.n_ghosts = n_ghosts,
                                .n_workers = n_workers,
-                               .head = heads[kind],
-                               .look = looks[kind],
-                               .typical = typicals[kind],
+                               .head = head_work[kind],
+                               .look = angle_work[kind],
+                               .typical = typical_work[kind],
                                .ghost = -1};
 }
 
@@ -57,9 +57,9 @@ void glint_effort_end(struct glint_effort *e)
     e->share = 1;
 }
 
-/* Estimates the remaining time in fits of worker 0, assuming that all
+/* Estimates the remaining time of worker 0 in zone fits. Assumes that all
  * workers do equal amounts of work. */
-static double estimate_rest(const struct glint_effort *e)
+static double estimate_remaining_work(const struct glint_effort *e)
 {
     const int rest = e->n_ghosts - 1 - e->ghost;
     const int beside = (int)fmin(e->n_workers - 1, rest);
@@ -71,7 +71,7 @@ static double estimate_rest(const struct glint_effort *e)
         own = fmax(0, (e->work + BLUR * mean) / (e->share + BLUR) - e->work);
         all = (known + e->work + own) / (TRUST + e->n_ended + 1);
     }
-    /* The ghosts of the other workers are assumed to be half done. */
+    /* The other workers' current ghosts count as half done. */
     others = (rest - 0.5 * beside) * all;
     if (e->expected > 0)
         others =
@@ -84,5 +84,5 @@ double glint_effort_done(const struct glint_effort *e)
 {
     const double spent = e->head / e->n_workers + e->ended + e->work;
 
-    return spent / (spent + estimate_rest(e));
+    return spent / (spent + estimate_remaining_work(e));
 }

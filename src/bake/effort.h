@@ -22,21 +22,23 @@
 
 struct glint_effort {
     int n_ghosts, n_workers;
-    double head;     /* work before the first ghost is fitted */
-    double look;     /* work of finding the angles of a ghost */
-    double typical;  /* assumed work of a ghost while none is finished */
-    double expected; /* work of all ghosts, from glint_effort_expect(); 0:
-                        unknown */
-    int ghost; /* largest index of a ghost that worker 0 has begun; -1: none */
+    double head; /* work before the first ghost is fitted, zone fits */
+    double look; /* work of finding the visible angles of one ghost */
+    /* assumed work per ghost until the first one is finished */
+    double typical;
+    /* work of all ghosts as set by glint_effort_expect(); 0: unknown */
+    double expected;
+    /* largest index of the ghosts that worker 0 has begun; -1: none */
+    int ghost;
     int n_ended;  /* number of ghosts that worker 0 finished */
     double ended; /* work of the finished ghosts */
     double work;  /* work of the current ghost of worker 0 */
-    double share; /* fraction of the current ghost's angles that are done, 0
-                     .. 1 */
+    /* fraction of the current ghost's angles that are done, 0 .. 1 */
+    double share;
 };
 
-/* Classes of lenses by bake time. Ghosts are slow to bake if the lens opens
- * wider than GLINT_WIDE or has surfaces that are not spheres. */
+/* Classes of lenses by bake time. Fast lenses (f-number below GLINT_WIDE) and
+ * lenses with non-spherical surfaces take longer per ghost. */
 enum glint_effort_kind {
     GLINT_EFFORT_NARROW,
     GLINT_EFFORT_WIDE,
@@ -54,8 +56,8 @@ void glint_effort_expect(struct glint_effort *effort, double head,
 
 void glint_effort_begin(struct glint_effort *effort, int ghost);
 
-/* Reports that the current ghost has cost WORK fits so far, for the fraction
- * SHARE of its angles. */
+/* Records that the current ghost has cost WORK zone fits so far, for the
+ * fraction SHARE of its angles. */
 void glint_effort_spend(struct glint_effort *effort, double work, double share);
 
 void glint_effort_end(struct glint_effort *effort);

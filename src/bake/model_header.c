@@ -13,14 +13,17 @@
 #include "glint/model.h"
 
 enum {
-    /* Revision of the baker, part of the key. It is raised when a lens would
-     * bake to a different model, so that cached models are baked again. */
+    /* revision of the baker, part of the cache key; raised when a lens would
+     * bake to a different model, so that cached models are baked again */
     REVISION = 13,
-    WIDE_REVISION = 17, /* for lenses that open wider than GLINT_WIDE */
-    SHAPED_REVISION =
-        1,             /* added for lenses with surfaces that are not spheres */
-    SKEW_REVISION = 2, /* for lenses that are not round */
-    FAR_REVISION = 3   /* for round lenses with lights beyond GLINT_FAR */
+    /* instead of REVISION for lenses faster than GLINT_WIDE */
+    WIDE_REVISION = 17,
+    SHAPED_REVISION = 1, /* for non-spherical surfaces, added to the key */
+    /* for lenses that are not rotationally symmetric, added to the key */
+    SKEW_REVISION = 2,
+    /* for round lenses with lights beyond GLINT_FAR degrees, added to the
+     * key */
+    FAR_REVISION = 3
 };
 
 void glint_bake_defaults(struct glint_bake_options *options)
@@ -62,7 +65,7 @@ double glint_bake_field_mm(const struct glint_prescription *lens,
 }
 
 /* Adds the bytes of VALUE to the hash KEY, by FNV-1a. */
-static void add_to_key(uint64_t *key, double value)
+static void add_value_to_key(uint64_t *key, double value)
 {
     unsigned char byte[sizeof value];
 
@@ -76,51 +79,51 @@ static void add_to_key(uint64_t *key, double value)
 static void add_coating_to_key(uint64_t *key,
                                const struct glint_coating *coating)
 {
-    add_to_key(key, coating->nm);
-    add_to_key(key, coating->film[0].index);
+    add_value_to_key(key, coating->nm);
+    add_value_to_key(key, coating->film[0].index);
     if (coating->n_films == 0 ||
         (coating->n_films == 1 && coating->film[0].quarters == 1.0))
         return;
-    add_to_key(key, coating->n_films);
+    add_value_to_key(key, coating->n_films);
     for (int k = 0; k < coating->n_films; k++) {
-        add_to_key(key, coating->film[k].index);
-        add_to_key(key, coating->film[k].quarters);
+        add_value_to_key(key, coating->film[k].index);
+        add_value_to_key(key, coating->film[k].quarters);
     }
 }
 
 static void add_shape_to_key(uint64_t *key, const struct glint_shape *s)
 {
-    add_to_key(key, SHAPED_REVISION);
-    add_to_key(key, s->conic);
+    add_value_to_key(key, SHAPED_REVISION);
+    add_value_to_key(key, s->conic);
     for (int k = 0; k < GLINT_SHAPE_TERMS; k++)
-        add_to_key(key, s->term[k]);
-    add_to_key(key, s->bend);
-    add_to_key(key, s->across_mm);
+        add_value_to_key(key, s->term[k]);
+    add_value_to_key(key, s->bend);
+    add_value_to_key(key, s->across_mm);
     for (int k = 0; k < 2; k++) {
-        add_to_key(key, s->decentre_mm[k]);
-        add_to_key(key, s->tilt_deg[k]);
+        add_value_to_key(key, s->decentre_mm[k]);
+        add_value_to_key(key, s->tilt_deg[k]);
     }
-    add_to_key(key, s->pivot_mm);
+    add_value_to_key(key, s->pivot_mm);
 }
 
 static void add_lens_to_key(uint64_t *key,
                             const struct glint_prescription *lens)
 {
-    add_to_key(key, lens->f_number);
-    add_to_key(key, lens->film_width_mm);
-    add_to_key(key, lens->film_height_mm);
-    add_to_key(key, lens->stop_after);
-    add_to_key(key, lens->stop_thickness_mm);
+    add_value_to_key(key, lens->f_number);
+    add_value_to_key(key, lens->film_width_mm);
+    add_value_to_key(key, lens->film_height_mm);
+    add_value_to_key(key, lens->stop_after);
+    add_value_to_key(key, lens->stop_thickness_mm);
     for (int k = 0; k < lens->n_surfaces; k++) {
         const struct glint_surface *s = &lens->surface[k];
 
-        add_to_key(key, s->radius_mm);
-        add_to_key(key, s->thickness_mm);
-        add_to_key(key, s->semi_mm);
-        add_to_key(key, s->nd);
-        add_to_key(key, s->vd);
+        add_value_to_key(key, s->radius_mm);
+        add_value_to_key(key, s->thickness_mm);
+        add_value_to_key(key, s->semi_mm);
+        add_value_to_key(key, s->nd);
+        add_value_to_key(key, s->vd);
         for (int i = 0; i < 6 && s->sellmeier[0] > 0; i++)
-            add_to_key(key, s->sellmeier[i]);
+            add_value_to_key(key, s->sellmeier[i]);
         add_coating_to_key(key, &s->coating);
         if (glint_surface_is_shaped(s))
             add_shape_to_key(key, &s->shape);
@@ -132,38 +135,39 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
 {
     uint64_t key = UINT64_C(0xcbf29ce484222325);
 
-    add_to_key(&key, GLINT_MODEL_VERSION);
-    add_to_key(&key, lens->f_number < GLINT_WIDE ? WIDE_REVISION : REVISION);
-    add_to_key(&key, GLINT_BASIS_AUTO);
-    add_to_key(&key, options->band_nm[0]);
-    add_to_key(&key, options->band_nm[1]);
-    add_to_key(&key, options->max_deg);
-    add_to_key(&key, glint_bake_field_mm(lens, options));
-    add_to_key(&key, options->tolerance);
+    add_value_to_key(&key, GLINT_MODEL_VERSION);
+    add_value_to_key(&key,
+                     lens->f_number < GLINT_WIDE ? WIDE_REVISION : REVISION);
+    add_value_to_key(&key, GLINT_BASIS_AUTO);
+    add_value_to_key(&key, options->band_nm[0]);
+    add_value_to_key(&key, options->band_nm[1]);
+    add_value_to_key(&key, options->max_deg);
+    add_value_to_key(&key, glint_bake_field_mm(lens, options));
+    add_value_to_key(&key, options->tolerance);
     for (int g = 0; options->ghosts && g < glint_ghost_list(lens, NULL, 0); g++)
-        add_to_key(&key, options->ghosts[g]);
+        add_value_to_key(&key, options->ghosts[g]);
     add_lens_to_key(&key, lens);
     for (int k = 0; k < options->n_beside; k++)
         add_lens_to_key(&key, &options->beside[k]);
     if (!glint_prescription_is_round(lens))
-        add_to_key(&key, SKEW_REVISION);
+        add_value_to_key(&key, SKEW_REVISION);
     else if (options->max_deg > GLINT_FAR)
-        add_to_key(&key, FAR_REVISION);
+        add_value_to_key(&key, FAR_REVISION);
     for (const char *c = lens->name; *c; c++)
-        add_to_key(&key, (unsigned char)*c);
+        add_value_to_key(&key, (unsigned char)*c);
     return key;
 }
 
 enum {
     FLUX_NODES = 9,
-    BLADES = 8 /* number of blades of the stop through which the flux of wide
-                  stops is measured */
+    /* number of stop blades for measuring the flux of fast lenses */
+    BLADES = 8
 };
 
-/* Fits FLUX at the nodes W of the band by a polynomial in w, divides it by
- * SCALE and writes its coefficients to COEF. */
-static void fit_flux(const double *w, const double *flux, double scale,
-                     struct glint_real *coef)
+/* Fits a polynomial in the wavelength coordinate w to FLUX at the nodes W and
+ * writes its coefficients, divided by SCALE, to COEF. */
+static void fit_flux_polynomial(const double *w, const double *flux,
+                                double scale, struct glint_real *coef)
 {
     static const double zero[FLUX_NODES];
     double one[FLUX_NODES];
@@ -188,16 +192,17 @@ static void fit_flux(const double *w, const double *flux, double scale,
         coef[poly.power[i][3]] = glint_real_of(poly.coef[i]);
 }
 
-/* Returns the flux of the direct image at NM through a stop of AREA times
- * the full area, divided by AREA; below 0 if there is no memory. The barrels
- * of a fast lens cut the rim of its widest stop, which a stop with blades
- * reaches only with its corners. So lenses that open wider than GLINT_WIDE
- * are measured through a stop with blades, and the flux is divided by the
- * blades' fraction of the circle, by which the run time multiplies it. A
- * circular stop would be 10 % too bright at f/1.4 (merte-biotar) and 2.6 %
- * at f/2 (tronnier-double-gauss). */
-static double measure_flux(const struct glint_setup *whole, double area,
-                           double nm)
+/* Returns the flux of the direct image at NM through a stop with the fraction
+ * AREA of the full area, divided by AREA; below 0 if there is no memory.
+ *
+ * Lenses faster than GLINT_WIDE: barrels vignette the rim of the full stop,
+ * which a bladed stop reaches only with its corners. Their flux is measured
+ * through a bladed stop and divided by the area of the blades' opening /
+ * circle, as the run time multiplies by that ratio. A circular stop would be
+ * 10 % too bright at f/1.4 (merte-biotar) and 2.6 % at f/2
+ * (tronnier-double-gauss). */
+static double measure_direct_flux(const struct glint_setup *whole, double area,
+                                  double nm)
 {
     struct glint_setup setup = *whole;
 
@@ -207,15 +212,15 @@ static double measure_flux(const struct glint_setup *whole, double area,
     return glint_direct_flux(&setup, nm) / area / glint_iris_share(&setup);
 }
 
-/* Sets flux / stop area of the direct image, for the full stop and for
- * narrower ones. Energy and pupil aberration are even functions of the
- * position on the pupil, so the flux is smooth in the square of the stop's
- * radius. It is measured at three squared radii: 1, 1/2 and 1/8. */
-static enum glint_status set_flux(const struct glint_bake_options *options,
-                                  const struct glint_setup *whole,
-                                  struct glint_model_header *h)
+/* Sets the flux of the direct image per stop area, for the full stop and for
+ * smaller ones. Energy and pupil aberration are even functions of the position
+ * on the pupil, so the flux is smooth in the square of the stop's radius. It is
+ * measured at three squared radii: 1, 1/2 and 1/8. */
+static enum glint_status
+set_direct_flux(const struct glint_bake_options *options,
+                const struct glint_setup *whole, struct glint_model_header *h)
 {
-    /* closed fractions of the stop's area */
+    /* fractions by which the stop's area is reduced */
     static const double closed[2] = {0.5, 0.875};
     const double *band = options->band_nm;
     const double lo = 1 / (band[1] * band[1]), hi = 1 / (band[0] * band[0]);
@@ -227,8 +232,9 @@ static enum glint_status set_flux(const struct glint_bake_options *options,
 
         w[i] = 2.0 * i / (FLUX_NODES - 1) - 1;
         for (int k = 0; k < 3; k++) {
-            flux[k][i] = measure_flux(whole, k ? 1 - closed[k - 1] : 1,
-                                      1 / sqrt(0.5 * (lo + hi) + w[i] * half));
+            flux[k][i] =
+                measure_direct_flux(whole, k ? 1 - closed[k - 1] : 1,
+                                    1 / sqrt(0.5 * (lo + hi) + w[i] * half));
             if (flux[k][i] < 0)
                 return GLINT_E_MEMORY;
         }
@@ -237,9 +243,9 @@ static enum glint_status set_flux(const struct glint_bake_options *options,
         more[1][i] = (off[1] - off[0]) / (closed[1] - closed[0]);
         more[0][i] = off[0] - closed[0] * more[1][i];
     }
-    fit_flux(w, flux[0], flux[0][0], h->direct_flux);
+    fit_flux_polynomial(w, flux[0], flux[0][0], h->direct_flux);
     for (int k = 0; k < 2; k++)
-        fit_flux(w, more[k], flux[0][0], h->stopped_flux[k]);
+        fit_flux_polynomial(w, more[k], flux[0][0], h->stopped_flux[k]);
     return GLINT_OK;
 }
 
@@ -276,5 +282,5 @@ glint_model_header_of(const struct glint_prescription *lens,
             0x1p30 * sin(options->max_deg * 0.017453292519943295)),
         .n_surfaces = (uint32_t)lens->n_surfaces};
     snprintf(h->name, sizeof h->name, "%s", lens->name);
-    return set_flux(options, setup, h);
+    return set_direct_flux(options, setup, h);
 }

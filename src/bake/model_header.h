@@ -11,18 +11,19 @@
 #include "glint/model.h"
 #include "glint/setup.h"
 
-/* Returns GLINT_E_ARGUMENT if an option is out of range; ERROR states which
- * option. */
+/* Checks OPTIONS. Returns GLINT_E_ARGUMENT if one is out of range; ERROR names
+ * it. */
 enum glint_status glint_bake_check(const struct glint_bake_options *options,
                                    struct glint_error *error);
 
-/* Returns the radius on the sensor within which the model must be accurate,
- * mm: options.field_mm, or if that is 0, 1.1 times the distance to the
- * film's corners. */
+/* Returns the radius of the image circle within which the model must be
+ * accurate, mm: options.field_mm, or if that is 0, 1.1 times the distance from
+ * the axis to the film's corners. */
 double glint_bake_field_mm(const struct glint_prescription *lens,
                            const struct glint_bake_options *options);
 
-/* Fills HEADER except for ghosts and systems. May return GLINT_E_MEMORY. */
+/* Fills all of HEADER except the tables of ghosts and systems. May return
+ * GLINT_E_MEMORY. */
 enum glint_status
 glint_model_header_of(const struct glint_prescription *lens,
                       const struct glint_bake_options *options,

@@ -20,7 +20,8 @@
 
 enum {
     ANGLES = 86, /* max number of angles */
-    /* if fewer chief rays get through, the next smaller step is tried */
+    /* min number of unblocked chief rays; with fewer the next smaller angle
+     * step is tried */
     LEAST = 8,
     HALVINGS = 50,
     D_LINE_NM = 588
@@ -76,8 +77,8 @@ static int trace_chief_rays(const struct glint_path *path,
     return n;
 }
 
-/* Fits P to the N chief rays at multiples of STEP_DEG with the distances
- * RHO. */
+/* Fits the mapping P from position to field angle to N chief rays. RHO[k]:
+ * distance from the axis, in focal lengths, of the ray at (k + 1) STEP_DEG. */
 static void fit_projection(struct glint_projection *p, const double *rho, int n,
                            double step_deg)
 {
@@ -120,7 +121,8 @@ enum glint_status glint_projection_of(struct glint_projection *projection,
                                       struct glint_error *error)
 {
     struct glint_projection *const p = projection;
-    /* degrees between chief rays; the smaller steps are for narrow fields */
+    /* degrees between chief rays; the smaller steps are for small fields of
+     * view */
     static const double steps[] = {1, 0.25, 0.05};
     double rho[ANGLES], step = 0;
     struct glint_optics optics;

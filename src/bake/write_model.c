@@ -11,9 +11,10 @@ STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
-static uint32_t append_terms(struct glint_draft *d,
-                             const struct glint_fitted_output *o,
-                             const struct glint_quantised_output *q, bool skew)
+static uint32_t append_output_terms(struct glint_draft *d,
+                                    const struct glint_fitted_output *o,
+                                    const struct glint_quantised_output *q,
+                                    bool skew)
 {
     uint16_t power[GLINT_MAX_MODEL_TERMS];
 
@@ -31,10 +32,12 @@ static uint32_t append_terms(struct glint_draft *d,
     return glint_draft_put(d, power, (size_t)o->n_terms * sizeof *power);
 }
 
-/* Appends the coefficients: 32-bit, then 16-bit ones. */
-static uint32_t append_coefficients(struct glint_draft *d,
-                                    const struct glint_fitted_output *o,
-                                    const struct glint_quantised_output *q)
+/* Appends the coefficients of an output, the 32-bit ones before the 16-bit
+ * ones. */
+static uint32_t
+append_output_coefficients(struct glint_draft *d,
+                           const struct glint_fitted_output *o,
+                           const struct glint_quantised_output *q)
 {
     const int n_wide = o->n_terms - q->n_narrow;
     int32_t wide[GLINT_MAX_MODEL_TERMS];
@@ -58,8 +61,8 @@ static struct glint_model_output
 append_output(struct glint_draft *d, const struct glint_fitted_output *o,
               const struct glint_quantised_output *q, bool skew)
 {
-    const uint32_t term_at = append_terms(d, o, q, skew);
-    const uint32_t coef_at = append_coefficients(d, o, q);
+    const uint32_t term_at = append_output_terms(d, o, q, skew);
+    const uint32_t coef_at = append_output_coefficients(d, o, q);
 
     return (struct glint_model_output){
         .kind = (uint8_t)o->kind,
@@ -75,9 +78,9 @@ append_output(struct glint_draft *d, const struct glint_fitted_output *o,
         .rounding_q8 = q->rounding_q8};
 }
 
-static uint32_t append_outputs(struct glint_draft *d,
-                               const struct glint_fitted_system *f,
-                               const struct glint_quantised_system *q)
+static uint32_t append_system_outputs(struct glint_draft *d,
+                                      const struct glint_fitted_system *f,
+                                      const struct glint_quantised_system *q)
 {
     struct glint_model_output out[GLINT_OUT_KINDS];
 
@@ -86,15 +89,16 @@ static uint32_t append_outputs(struct glint_draft *d,
     return glint_draft_put(d, out, (size_t)f->n_outputs * sizeof *out);
 }
 
-static int32_t convert_to_q30(double x)
+static int32_t round_to_q30(double x)
 {
     return (int32_t)lrint(x * 0x1p30);
 }
 
-/* Appends the box of a system, without terms that are 0 in all sides. */
-static uint32_t append_box(struct glint_draft *d,
-                           const struct glint_quantised_system *q,
-                           uint8_t *terms)
+/* Appends the polynomials of a system's box. Terms whose coefficient is 0 in
+ * all sides are omitted; bit k of TERMS: term k is present. */
+static uint32_t append_system_box(struct glint_draft *d,
+                                  const struct glint_quantised_system *q,
+                                  uint8_t *terms)
 {
     int32_t packed[GLINT_LENS_SIDES * GLINT_BOX_TERMS];
     size_t n = 0;
@@ -114,17 +118,16 @@ static void write_system(struct glint_draft *d, uint32_t where,
                          const struct glint_quantised_system *q)
 {
     /* The order of these calls determines the layout of the file. */
-    const int32_t range_q30[2] = {convert_to_q30(f->y_lo),
-                                  convert_to_q30(f->y_hi)};
+    const int32_t range_q30[2] = {round_to_q30(f->y_lo), round_to_q30(f->y_hi)};
     const uint32_t across_at =
         f->skew ? glint_draft_put(d, range_q30, sizeof range_q30)
                 : (uint32_t)d->bytes;
     uint8_t box_terms;
-    const uint32_t box_at = append_box(d, q, &box_terms);
-    const uint32_t output_at = append_outputs(d, f, q);
+    const uint32_t box_at = append_system_box(d, q, &box_terms);
+    const uint32_t output_at = append_system_outputs(d, f, q);
     const struct glint_model_system system = {
-        .sine_lo_q30 = convert_to_q30(f->sine_lo),
-        .sine_hi_q30 = convert_to_q30(f->sine_hi),
+        .sine_lo_q30 = round_to_q30(f->sine_lo),
+        .sine_hi_q30 = round_to_q30(f->sine_hi),
         .wave_lo_q24 = (int32_t)lrint(f->wave_lo * 0x1p24),
         .wave_hi_q24 = (int32_t)lrint(f->wave_hi * 0x1p24),
         .across_at = across_at,
@@ -183,7 +186,7 @@ struct glint_lens glint_draft_lens(const struct glint_draft *draft)
                                NULL};
 }
 
-/* Rounds an error up to a code that glint_model_error_q20() decodes. */
+/* Encodes error X, rounded up, as glint_model_error_q20() decodes it. */
 static uint16_t encode_error(double x)
 {
     double mantissa = ceil(x * 0x1p20);

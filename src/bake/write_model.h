@@ -11,16 +11,16 @@
 #include "bake/table/draft.h"
 #include "glint/setup.h"
 
-/* Writes header, ghosts, and systems from FITTED and QUANTISED [n_ghosts].
- * Sets errors to 0; does not set size and checksum. May return
- * GLINT_E_MEMORY. */
+/* Writes the header, the ghosts and their systems from FITTED and QUANTISED,
+ * both [n_ghosts]. The errors are set to 0; size and checksum are not set. May
+ * return GLINT_E_MEMORY. */
 enum glint_status
 glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
                   const struct glint_model_header *header,
                   const struct glint_fitted_ghost *fitted,
                   struct glint_quantised_system *const *quantised);
 
-/* Returns a view of the draft as a lens, without validation. */
+/* Returns a lens that points into DRAFT, without validating it. */
 struct glint_lens glint_draft_lens(const struct glint_draft *draft);
 
 /* Writes MEASURED as the errors of system SYSTEM. */

@@ -11,8 +11,8 @@
 #include "glint/bake.h"
 #include "glint/model.h"
 
-/* Appends the bit mask of the ghosts in MODEL. Returns its offset in the
- * file, or 0 if MODEL has all ghosts. */
+/* Appends a bit mask: which ghosts of the zoom MODEL contains. Returns its
+ * offset in the file, or 0 if MODEL contains all. */
 static uint32_t append_ghost_mask(struct glint_draft *d,
                                   const struct glint_bake_model *model)
 {
@@ -31,9 +31,9 @@ static uint32_t append_ghost_mask(struct glint_draft *d,
     return at;
 }
 
-/* Appends the models and writes their list at LIST_AT. */
-static void append_models(struct glint_draft *d, uint32_t list_at,
-                          const struct glint_bake_model *model, int n)
+/* Appends all models to the file and writes their table at offset LIST_AT. */
+static void append_zoom_models(struct glint_draft *d, uint32_t list_at,
+                               const struct glint_bake_model *model, int n)
 {
     for (int k = 0; k < n; k++) {
         struct glint_zoom_model entry = {.along_q30 = model[k].along_q30,
@@ -47,9 +47,10 @@ static void append_models(struct glint_draft *d, uint32_t list_at,
     }
 }
 
-/* Checks that the run time accepts the file. */
-static enum glint_status check_zoom(const unsigned char *data, size_t bytes,
-                                    struct glint_error *error)
+/* Checks that glint_zoom_open() accepts the finished file. */
+static enum glint_status check_zoom_opens(const unsigned char *data,
+                                          size_t bytes,
+                                          struct glint_error *error)
 {
     struct glint_zoom_lens *const zoom = malloc(sizeof *zoom);
     enum glint_status status = GLINT_E_MEMORY;
@@ -85,10 +86,10 @@ enum glint_status glint_bake_zoom(const struct glint_bake_model *model, int n,
     glint_draft_put(&draft, NULL, sizeof header);
     header.model_at = glint_draft_put(
         &draft, NULL, (size_t)n * sizeof(struct glint_zoom_model));
-    append_models(&draft, header.model_at, model, n);
+    append_zoom_models(&draft, header.model_at, model, n);
     if (!glint_draft_finish(&draft, &header, sizeof header, true, &data, bytes))
         return GLINT_E_MEMORY;
-    status = check_zoom(data, *bytes, error);
+    status = check_zoom_opens(data, *bytes, error);
     if (status == GLINT_OK)
         *zoom = data;
     else

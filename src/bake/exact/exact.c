@@ -18,16 +18,18 @@
 
 #include "bake/trace/cells.h"
 
-enum { BAND = 32 }; /* pixel rows of a job; the last job may have fewer */
-/* Max product of ghosts, lamps and wavelengths: more would take years. */
+/* height of a band of pixels, rows; the last band may be lower */
+enum { BAND = 32 };
+/* Max number of ghosts times lamps times wavelengths; more would take years. */
 enum { MAX_BUNDLES = 1 << 24 };
 
-/* One ghost, lamp and wavelength. */
+/* A bundle of rays: one ghost, lamp and wavelength. */
 struct bundle {
     const struct glint_lamp *lamp;
     int ghost, wavelength;
     bool seen;
-    struct glint_cells cells; /* without nodes and path */
+    /* the grid of rays; its nodes and path are not set */
+    struct glint_cells cells;
 };
 
 struct picture {
@@ -36,13 +38,15 @@ struct picture {
     int n_bundles;
     struct glint_cells cells; /* cells of the bundle being drawn */
     struct glint_path *path;
-    /* [n + 1][2]: min and max y of a row of nodes, pixels. */
+    /* [n + 1][2]: min and max y of each row of nodes, pixels */
     double *row_y;
-    double *difference; /* [height][3][width + 2] */
-    double weight[3];   /* flux of half a cell at energy 1, per channel */
+    /* [height][3][width + 2]: differences along each row of pixels */
+    double *difference;
+    /* flux of half a cell whose rays have energy 1, per colour channel */
+    double weight[3];
 };
 
-static double *difference_row(const struct picture *p, int y, int channel)
+static double *get_difference_row(const struct picture *p, int y, int channel)
 {
     const size_t stride = (size_t)p->cfg->view.width + 2;
 
@@ -51,10 +55,11 @@ static double *difference_row(const struct picture *p, int y, int channel)
 
 /* ------------------------------------------------------------------ deposit */
 
-/* Adds one edge within one pixel row to its differences. AMOUNT is light times
- * signed height, X0 .. X1 (X0 <= X1) its range; pixels to its right get all of
- * it. */
-static void deposit_run(double *row, double x0, double x1, double amount)
+/* Adds one polygon edge, clipped to one pixel row, to the differences of that
+ * row. AMOUNT: light per area times signed height of the edge. X0 <= X1: the x
+ * range of the edge, pixels. Every pixel to the right of X1 gets all of
+ * AMOUNT. */
+static void add_edge_to_row(double *row, double x0, double x1, double amount)
 {
     const int first = (int)x0;
     const int last = (int)ceil(x1) - 1;
@@ -73,8 +78,8 @@ static void deposit_run(double *row, double x0, double x1, double amount)
         const double b = i == last ? x1 : i + 1;
         const double slope = amount / (x1 - x0);
         const double come = slope * (a - x0), go = slope * (b - x0);
-        /* All pixels get the height reached before them; within the pixel the
-         * trapezium to the right of the edge is added. */
+        /* A pixel gets the height that the edge has gained before the pixel,
+         * plus the trapezium to the right of the edge within the pixel. */
         const double area = come + (go - come) * (i + 1 - 0.5 * (a + b));
 
         row[i] += area - before;
@@ -89,9 +94,9 @@ struct band {
     double width;
 };
 
-static void deposit_edge(const struct picture *p, const struct band *band,
-                         const double a[2], const double b[2],
-                         const double *light)
+static void add_polygon_edge(const struct picture *p, const struct band *band,
+                             const double a[2], const double b[2],
+                             const double *light)
 {
     const double sign = a[1] < b[1] ? 1 : -1;
     const double *low = sign > 0 ? a : b, *high = sign > 0 ? b : a;
@@ -108,16 +113,16 @@ static void deposit_edge(const struct picture *p, const struct band *band,
         next = fmin(band->width, fmax(0, next));
         for (int c = 0; c < 3; c++)
             if (light[c] != 0)
-                deposit_run(difference_row(p, y, c), fmin(x, next),
-                            fmax(x, next), sign * light[c] * (y1 - y0));
+                add_edge_to_row(get_difference_row(p, y, c), fmin(x, next),
+                                fmax(x, next), sign * light[c] * (y1 - y0));
         x = next;
     }
 }
 
-/* Clips a polygon to the inner side of a horizontal or vertical line, where
- * coordinate AXIS times SIGN is at most LIMIT. Returns the new number of
- * corners. */
-static int trim(double (*p)[2], int n, int axis, double sign, double limit)
+/* Clips polygon P[N] to the half plane where SIGN times coordinate AXIS (0: x,
+ * 1: y) is at most LIMIT. Returns the new number of corners. */
+static int clip_polygon_to_line(double (*p)[2], int n, int axis, double sign,
+                                double limit)
 {
     double kept[GLINT_MAX_PIECE + 8][2];
     int m = 0;
@@ -141,7 +146,7 @@ static int trim(double (*p)[2], int n, int axis, double sign, double limit)
     return m;
 }
 
-static double signed_area(double (*p)[2], int n)
+static double compute_signed_area(double (*p)[2], int n)
 {
     double sum = 0;
 
@@ -154,24 +159,24 @@ static double signed_area(double (*p)[2], int n)
     return 0.5 * sum;
 }
 
-/* Adds the flux of a piece without area in the picture, as at the fold of a
- * caustic, to the pixel in which it lies. */
-static void deposit_point(const struct picture *p, const struct band *band,
-                          const double at[2], const double *flux)
+/* Adds FLUX to the pixel at AT: for pieces that cover no area of the picture,
+ * as at the fold of a caustic. */
+static void add_flux_to_pixel(const struct picture *p, const struct band *band,
+                              const double at[2], const double *flux)
 {
     if (at[0] < 0 || at[0] >= band->width || at[1] < band->y0 ||
         at[1] >= band->y1)
         return;
     for (int c = 0; c < 3; c++) {
-        double *row = difference_row(p, (int)at[1], c);
+        double *row = get_difference_row(p, (int)at[1], c);
 
         row[(int)at[0]] += flux[c];
         row[(int)at[0] + 1] -= flux[c];
     }
 }
 
-static void deposit_piece(const struct picture *p, const struct band *band,
-                          struct glint_piece *piece)
+static void draw_cell_piece(const struct picture *p, const struct band *band,
+                            struct glint_piece *piece)
 {
     double polygon[GLINT_MAX_PIECE + 8][2];
     double light[3], area;
@@ -189,34 +194,35 @@ static void deposit_piece(const struct picture *p, const struct band *band,
     if (high[1] <= band->y0 || low[1] >= band->y1 || high[0] <= 0 ||
         low[0] >= band->width)
         return;
-    area = signed_area(polygon, n);
+    area = compute_signed_area(polygon, n);
     for (int c = 0; c < 3; c++)
         light[c] = p->weight[c] * piece->share * piece->energy;
     if (fabs(area) < 1e-12) {
-        deposit_point(p, band, polygon[0], light);
+        add_flux_to_pixel(p, band, polygon[0], light);
         return;
     }
-    /* Each side of the polygon adds its height to all pixels on its right: with
-     * one sign if it runs down the picture, with the other if it runs up. */
+    /* Each edge of the polygon adds its height to all pixels on its right, with
+     * opposite signs for edges that run down and up the picture. */
     for (int c = 0; c < 3; c++)
         light[c] /= -area;
     if (low[1] < band->y0)
-        n = trim(polygon, n, 1, -1, -band->y0);
+        n = clip_polygon_to_line(polygon, n, 1, -1, -band->y0);
     if (high[1] > band->y1)
-        n = trim(polygon, n, 1, 1, band->y1);
+        n = clip_polygon_to_line(polygon, n, 1, 1, band->y1);
     if (low[0] < 0)
-        n = trim(polygon, n, 0, -1, 0);
+        n = clip_polygon_to_line(polygon, n, 0, -1, 0);
     if (high[0] > band->width)
-        n = trim(polygon, n, 0, 1, band->width);
+        n = clip_polygon_to_line(polygon, n, 0, 1, band->width);
     for (int i = 0; i < n; i++)
-        deposit_edge(p, band, polygon[i], polygon[i + 1 < n ? i + 1 : 0],
-                     light);
+        add_polygon_edge(p, band, polygon[i], polygon[i + 1 < n ? i + 1 : 0],
+                         light);
 }
 
 /* --------------------------------------------------------------------- jobs */
 
-/* Converts the positions of one row of nodes to pixels. */
-static void place_row(struct picture *p, int row)
+/* Converts the positions of one row of nodes from mm on the sensor to
+ * pixels. */
+static void convert_row_to_pixels(struct picture *p, int row)
 {
     const struct glint_view *view = &p->cfg->view;
     const double scale = view->width / view->sensor_width_mm;
@@ -236,20 +242,20 @@ static void place_row(struct picture *p, int row)
     }
 }
 
-/* Traces one row of rays. With a round lens the mirror image of the row is set,
- * too. */
-static void trace_job(void *ctx, int job, int worker)
+/* Traces row JOB of the rays. Round lenses: also sets the mirror image of the
+ * row. */
+static void trace_ray_row(void *ctx, int job, int worker)
 {
     struct picture *p = ctx;
 
     (void)worker;
     glint_cells_trace(&p->cells, job);
-    place_row(p, job);
+    convert_row_to_pixels(p, job);
     if (p->path->round && job != p->cells.n - job)
-        place_row(p, p->cells.n - job);
+        convert_row_to_pixels(p, p->cells.n - job);
 }
 
-static void band_job(void *ctx, int job, int worker)
+static void draw_pixel_band(void *ctx, int job, int worker)
 {
     struct picture *p = ctx;
     const int height = p->cfg->view.height, n = p->cells.n;
@@ -270,15 +276,15 @@ static void band_job(void *ctx, int job, int worker)
                 continue;
             glint_cells_clip(&p->cells, k / 2, j, k & 1, &piece);
             if (piece.n)
-                deposit_piece(p, &band, &piece);
+                draw_cell_piece(p, &band, &piece);
         }
     }
 }
 
 /* ------------------------------------------------------------------ picture */
 
-static void path_of(const struct picture *p, const struct bundle *b,
-                    struct glint_path *path)
+static void init_bundle_path(const struct picture *p, const struct bundle *b,
+                             struct glint_path *path)
 {
     const struct glint_setup *s = p->cfg->setup;
 
@@ -286,26 +292,27 @@ static void path_of(const struct picture *p, const struct bundle *b,
                        s->wavelength_nm[b->wavelength], b->lamp->phi_deg);
 }
 
-static void find_job(void *ctx, int job, int worker)
+static void init_bundle_cells(void *ctx, int job, int worker)
 {
     struct picture *p = ctx;
     struct bundle *b = &p->bundle[job];
     struct glint_path path;
 
     (void)worker;
-    path_of(p, b, &path);
+    init_bundle_path(p, b, &path);
     b->seen =
         glint_cells_init(&b->cells, p->cfg->setup, &path, b->lamp->theta_deg,
                          b->lamp->phi_deg, p->cfg->grid);
 }
 
-static enum glint_status list_bundles(struct picture *p)
+static enum glint_status list_ray_bundles(struct picture *p)
 {
     const struct glint_exact_config *c = p->cfg;
     const int ghosts = c->setup->n_ghosts, waves = c->setup->n_wavelengths;
     const uint64_t n = (uint64_t)c->n_lamps * (uint64_t)(ghosts * waves);
     const size_t most =
-        /* The address space of 32 bits holds fewer. */
+        /* fits into half of the address space, also if addresses have 32
+         * bits */
         SIZE_MAX / 2 / sizeof *p->bundle;
     const int all = n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 
@@ -323,17 +330,18 @@ static enum glint_status list_bundles(struct picture *p)
                                 .ghost = ghost,
                                 .wavelength = k % waves};
     }
-    glint_workers_run(c->workers, p->n_bundles, find_job, p);
+    glint_workers_run(c->workers, p->n_bundles, init_bundle_cells, p);
     return GLINT_OK;
 }
 
-static enum glint_status draw_bundle(struct picture *p, const struct bundle *b)
+static enum glint_status draw_ray_bundle(struct picture *p,
+                                         const struct bundle *b)
 {
     const struct glint_exact_config *c = p->cfg;
     const struct glint_setup *s = c->setup;
     double flux;
 
-    path_of(p, b, p->path);
+    init_bundle_path(p, b, p->path);
     p->cells = b->cells;
     p->cells.path = p->path;
     p->cells.node = malloc(glint_cells_bytes(&p->cells));
@@ -345,21 +353,22 @@ static enum glint_status draw_bundle(struct picture *p, const struct bundle *b)
         p->weight[k] =
             flux * s->rgb[b->wavelength][k] * b->lamp->rgb[k] *
             (c->tints ? glint_tint_factor(&c->tints[b->ghost], k) : 1);
-    glint_workers_run(c->workers, glint_cells_rows(&p->cells), trace_job, p);
-    glint_workers_run(c->workers, (c->view.height + BAND - 1) / BAND, band_job,
+    glint_workers_run(c->workers, glint_cells_rows(&p->cells), trace_ray_row,
                       p);
+    glint_workers_run(c->workers, (c->view.height + BAND - 1) / BAND,
+                      draw_pixel_band, p);
     free(p->cells.node);
     return GLINT_OK;
 }
 
-static enum glint_status draw_all(struct picture *p)
+static enum glint_status draw_all_bundles(struct picture *p)
 {
     const struct glint_exact_config *c = p->cfg;
-    enum glint_status status = list_bundles(p);
+    enum glint_status status = list_ray_bundles(p);
 
     for (int k = 0; k < p->n_bundles && status == GLINT_OK; k++) {
         if (p->bundle[k].seen)
-            status = draw_bundle(p, &p->bundle[k]);
+            status = draw_ray_bundle(p, &p->bundle[k]);
         if (c->progress)
             c->progress(c->progress_ctx, (k + 1.0) / p->n_bundles);
     }
@@ -367,14 +376,14 @@ static enum glint_status draw_all(struct picture *p)
     return status;
 }
 
-/* Sums up the differences along the rows. */
-static void integrate(const struct picture *p, double *rgb)
+/* Sets RGB to the running sums of the differences along each row. */
+static void integrate_differences(const struct picture *p, double *rgb)
 {
     const int width = p->cfg->view.width;
 
     for (int y = 0; y < p->cfg->view.height; y++)
         for (int c = 0; c < 3; c++) {
-            const double *row = difference_row(p, y, c);
+            const double *row = get_difference_row(p, y, c);
             double sum = 0;
 
             for (int x = 0; x < width; x++) {
@@ -397,9 +406,9 @@ enum glint_status glint_exact_render(const struct glint_exact_config *cfg,
     p.row_y = malloc(((size_t)cfg->grid + 1) * 2 * sizeof *p.row_y);
     p.difference = calloc(height * 3 * (width + 2), sizeof *p.difference);
     if (p.path && p.row_y && p.difference)
-        status = draw_all(&p);
+        status = draw_all_bundles(&p);
     if (status == GLINT_OK)
-        integrate(&p, rgb);
+        integrate_differences(&p, rgb);
     free(p.path);
     free(p.row_y);
     free(p.difference);

@@ -8,16 +8,16 @@
 #include "engine/setup/degrees.h"
 #include "lens/grid.h"
 
-/* cells a side of the sampling that decides on barrels and grid, and of the one
- * that tells how bright a ghost is */
+/* cells per side of two grids: SAMPLING chooses barrels and grid size, LOOKS
+ * measures the brightness of a ghost */
 enum { SAMPLING = 24, LOOKS = 16 };
-/* If fewer rays than FEW_INSIDE get through, sampling tells too little to
- * choose the grid, which then gets CELLS_A_RADIUS cells per stop radius. */
+/* With fewer than FEW_INSIDE visible rays the sampling cannot choose the grid
+ * size; the grid then gets CELLS_A_RADIUS cells per stop radius. */
 enum { FEW_INSIDE = 6, CELLS_A_RADIUS = 4 };
-/* rays that are traced at a time */
+/* number of rays traced per call */
 enum { SOME = 8 };
-/* Channels of a node: place in pixels and stop radii in the light's frame,
- * barrels as of a vertex, energy in the field's unit. */
+/* Channels of a node: position in pixels and in stop radii, both in the light's
+ * frame; barrels as in struct glint_vertex; energy / energy_unit. */
 enum { X, Y, STOP_X, STOP_Y, BARREL_0, BARREL_1, ENERGY, CHANNELS };
 enum { MOST_SIDE = GLINT_MAX_CELLS + 1 };
 
@@ -33,9 +33,9 @@ void glint_ray_direction(const struct ray_field_config *cfg, const double at[2],
                        : sqrt(fmax(0, 1 - at[0] * at[0] - at[1] * at[1]));
 }
 
-static void init_path(const struct ray_field_config *cfg,
-                      const struct ray_field *field, double nm,
-                      struct glint_path *path)
+static void init_field_path(const struct ray_field_config *cfg,
+                            const struct ray_field *field, double nm,
+                            struct glint_path *path)
 {
     const struct glint_setup *s = cfg->setup;
 
@@ -45,21 +45,23 @@ static void init_path(const struct ray_field_config *cfg,
 
 /* --------------------------------------------------------------------- look */
 
-/* Returns the curvature of the stop's sides / that of a circle. */
-static double curvature_of(const struct ray_field_config *cfg)
+/* Returns the curvature of the stop's edges, relative to a circular stop: 0
+ * (straight blades) .. 1. */
+static double compute_stop_curvature(const struct ray_field_config *cfg)
 {
     return cfg->setup->n_blades == 0 ? 1 : cfg->setup->iris.roundness;
 }
 
-/* Returns the cells a side by the rule of lens/grid.h, but not so few that they
- * could step over the stop. If a rim next to total reflection comes through,
- * too, the pupil is the whole front, of which the opening may be a hundredth.
- */
-static int cells_of(const struct ray_field_config *cfg,
-                    const struct ray_sight *s, bool folds, int *least_cells)
+/* Returns the number of cells per side: the rule of lens/grid.h, but at least
+ * so many that their rays cannot miss the opening of the stop. Near total
+ * reflection the pupil may be the whole front element, of which the opening can
+ * be 1 %. LEAST_CELLS receives that minimum. */
+static int choose_cell_count(const struct ray_field_config *cfg,
+                             const struct ray_sight *s, bool folds,
+                             int *least_cells)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
-    const double round = curvature_of(cfg) * s->round_mm;
+    const double round = compute_stop_curvature(cfg) * s->round_mm;
     const double outline = fmax(s->outline_mm, round);
     const double bend = fmax(s->bend_mm, 0.1 * outline);
     const double finer = cfg->max_cells / 64.0;
@@ -77,10 +79,11 @@ static int cells_of(const struct ray_field_config *cfg,
         fmin(GLINT_MAX_CELLS, fmax(fmax(GLINT_LEAST_CELLS, least), n))));
 }
 
-/* Chooses the barrels that cut. The one that makes up most of the outline comes
- * first, as the maximum over the others may have kinks. */
-static void choose_cuts(struct ray_field *field,
-                        struct glint_sampling *sampling)
+/* Lists the barrels that block rays, the one that forms most of the outline
+ * first. It is stored on its own, as the maximum over several barrels may have
+ * kinks. */
+static void list_cutting_barrels(struct ray_field *field,
+                                 struct glint_sampling *sampling)
 {
     for (field->n_cuts = 0; field->n_cuts < RAY_FIELD_CUTS; field->n_cuts++) {
         int most = 0;
@@ -95,9 +98,9 @@ static void choose_cuts(struct ray_field *field,
     }
 }
 
-/* Adds what SAMPLING of another direction found to ALL. */
-static void add_sampling(struct glint_sampling *all,
-                         const struct glint_sampling *more)
+/* Merges the sampling MORE of another direction into ALL. */
+static void merge_sampling(struct glint_sampling *all,
+                           const struct glint_sampling *more)
 {
     for (int k = 0; k < more->n_cuts; k++) {
         int i = 0;
@@ -122,19 +125,21 @@ static void add_sampling(struct glint_sampling *all,
     all->folds |= more->folds;
 }
 
-/* Sets AT to corner K, 0 .. 3, of the directions of PATCH; returns false if
- * there is no such corner. */
-static bool corner_of(const struct ray_field_config *cfg,
-                      const struct ray_patch *patch, int k, double at[2])
+/* Sets AT to the middle of side K (0 .. 3) of PATCH. Returns false if the patch
+ * has no extent in that direction. */
+static bool get_patch_side_middle(const struct ray_field_config *cfg,
+                                  const struct ray_patch *patch, int k,
+                                  double at[2])
 {
     at[0] = patch->middle[0] + (k == 0 ? -1 : k == 1) * patch->half[0];
     at[1] = patch->middle[1] + (k == 2 ? -1 : k == 3) * patch->half[1];
     return k < (cfg->round ? 2 : 4) && patch->half[k / 2] > 0;
 }
 
-/* Grows the pupil by a pixel on each side: a pixel whose centre lies just
- * outside the ghost still gets the light on its inner half. */
-static void add_rim(const struct ray_field_config *cfg, struct glint_pupil *p)
+/* Enlarges the pupil such that the ghost grows by one pixel on each side:
+ * pixels whose centre lies just outside the ghost still receive light. */
+static void enlarge_pupil_by_pixel(const struct ray_field_config *cfg,
+                                   struct glint_pupil *p)
 {
     double *s = p->sensor_mm;
     const double pixel = cfg->view.sensor_width_mm / cfg->view.width;
@@ -161,18 +166,19 @@ static void add_rim(const struct ray_field_config *cfg, struct glint_pupil *p)
     s[1] += across;
 }
 
-/* A coarse grid of rays over the pupil. */
-struct looks {
+/* a coarse grid of rays over the pupil, at one wavelength */
+struct coarse_grid {
     int rows;
     double cell_mm2;
     struct glint_ray ray[LOOKS + 1][LOOKS + 1];
     bool traced[LOOKS + 1][LOOKS + 1], inside[LOOKS + 1][LOOKS + 1];
-    double barrel[LOOKS + 1][LOOKS + 1][2]; /* as of a vertex */
+    /* barrel values as in struct glint_vertex */
+    double barrel[LOOKS + 1][LOOKS + 1][2];
 };
 
-/* Returns (1 + r^2) / 2 at the barrel of event K. */
-static double barrel_value(const struct glint_path *path, int k,
-                           double (*hits)[2])
+/* Returns (1 + r^2) / 2 for relative radius r at the barrel of event K. */
+static double compute_barrel_value(const struct glint_path *path, int k,
+                                   double (*hits)[2])
 {
     const double semi = path->event[k].semi_mm;
     const double x = hits[k][0] / semi, y = hits[k][1] / semi;
@@ -180,23 +186,24 @@ static double barrel_value(const struct glint_path *path, int k,
     return 0.5 * (1 + x * x + y * y);
 }
 
-/* Sets VALUE to those of the first barrel that cuts and the largest of the
- * others; 0: there is none. */
-static void barrel_values(const struct ray_field *field,
-                          const struct glint_path *path, double (*hits)[2],
-                          double value[2])
+/* Sets VALUE[0] to the value of the first barrel in the list and VALUE[1] to
+ * the max of the others; 0: no such barrel. */
+static void compute_barrel_values(const struct ray_field *field,
+                                  const struct glint_path *path,
+                                  double (*hits)[2], double value[2])
 {
     value[0] = value[1] = 0;
     for (int k = 0; k < field->n_cuts; k++) {
         double *into = &value[k > 0];
 
-        *into = fmax(*into, barrel_value(path, field->cut_event[k], hits));
+        *into =
+            fmax(*into, compute_barrel_value(path, field->cut_event[k], hits));
     }
 }
 
-static void look_through(const struct ray_field_config *cfg,
-                         const struct ray_field *field, double nm,
-                         struct looks *looks)
+static void trace_coarse_grid(const struct ray_field_config *cfg,
+                              const struct ray_field *field, double nm,
+                              struct coarse_grid *coarse_grid)
 {
     const struct glint_pupil *p = &field->pupil;
     const double stop_mm = cfg->setup->optics.stop_radius_mm;
@@ -204,38 +211,39 @@ static void look_through(const struct ray_field_config *cfg,
     struct glint_path path;
     double d[3];
 
-    init_path(cfg, field, nm, &path);
+    init_field_path(cfg, field, nm, &path);
     glint_ray_direction(cfg, field->patch->middle, d);
-    looks->rows = p->mirrored ? LOOKS / 2 + 1 : LOOKS + 1;
-    looks->cell_mm2 = (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm) /
-                      (LOOKS * (looks->rows - 1));
-    for (int j = 0; j < looks->rows; j++) {
+    coarse_grid->rows = p->mirrored ? LOOKS / 2 + 1 : LOOKS + 1;
+    coarse_grid->cell_mm2 = (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm) /
+                            (LOOKS * (coarse_grid->rows - 1));
+    for (int j = 0; j < coarse_grid->rows; j++) {
         enum glint_ray_status status[LOOKS + 1];
         const struct glint_row row = {LOOKS + 1,
                                       p->x0_mm,
                                       (p->x1_mm - p->x0_mm) / LOOKS,
                                       p->y0_mm + (p->y1_mm - p->y0_mm) * j /
-                                                     (looks->rows - 1),
+                                                     (coarse_grid->rows - 1),
                                       {d[0], d[1], d[2]}};
 
-        glint_trace_row(&path, &row, looks->ray[j], status, hits);
+        glint_trace_row(&path, &row, coarse_grid->ray[j], status, hits);
         for (int i = 0; i <= LOOKS; i++) {
-            const struct glint_ray *r = &looks->ray[j][i];
+            const struct glint_ray *r = &coarse_grid->ray[j][i];
 
-            looks->traced[j][i] = status[i] == GLINT_RAY_OK;
-            if (looks->traced[j][i])
-                barrel_values(field, &path, hits + i * path.n_events,
-                              looks->barrel[j][i]);
-            looks->inside[j][i] = looks->traced[j][i] && r->rel_radius <= 1 &&
-                                  hypot(r->stop_x_mm, r->stop_y_mm) <= stop_mm;
+            coarse_grid->traced[j][i] = status[i] == GLINT_RAY_OK;
+            if (coarse_grid->traced[j][i])
+                compute_barrel_values(field, &path, hits + i * path.n_events,
+                                      coarse_grid->barrel[j][i]);
+            coarse_grid->inside[j][i] =
+                coarse_grid->traced[j][i] && r->rel_radius <= 1 &&
+                hypot(r->stop_x_mm, r->stop_y_mm) <= stop_mm;
         }
     }
 }
 
-/* Adds cell (I, J) to FLUX: its flux, and to SIGHT: how bright it is where it
- * lands. */
-static void add_look(const struct looks *l, int i, int j, double *flux,
-                     struct ray_sight *sight)
+/* Adds the flux of cell (I, J) to FLUX. Raises the max flux per cell and the
+ * max flux per mm^2 on the sensor in SIGHT. */
+static void add_cell_flux(const struct coarse_grid *l, int i, int j,
+                          double *flux, struct ray_sight *sight)
 {
     const struct glint_ray *a = &l->ray[j][i], *b = a + 1;
     const struct glint_ray *c = &l->ray[j + 1][i], *d = c + 1;
@@ -264,15 +272,18 @@ static void add_look(const struct looks *l, int i, int j, double *flux,
         fmax(sight->density, energy * l->cell_mm2 / fmax(area, 1e-12));
 }
 
-/* Sums of squares and second differences along the lines of a grid. */
-struct bowls {
+/* Sums along the lines of a grid: squared steps in the stop, stop radii^2, and
+ * second differences of the two barrel values. */
+struct difference_sums {
     int n_steps, n_bends;
     double step2, bend[2];
 };
 
-/* Adds the step from (I, J) by (DI, DJ) and how the barrels bend there. */
-static void add_bowl(const struct looks *l, int i, int j, int di, int dj,
-                     double stop_mm, struct bowls *b)
+/* Adds the step in the stop from ray (I, J) to (I + DI, J + DJ), and the second
+ * difference of the barrel values at ray (I, J). */
+static void add_second_differences(const struct coarse_grid *l, int i, int j,
+                                   int di, int dj, double stop_mm,
+                                   struct difference_sums *b)
 {
     const struct glint_ray *here = &l->ray[j][i], *next;
 
@@ -294,20 +305,20 @@ static void add_bowl(const struct looks *l, int i, int j, int di, int dj,
     b->n_bends++;
 }
 
-/* Sets the sags of SIGHT: if a cell bends by D across and E down, they are
- * (D + E) / 12. */
-static void set_sags(struct ray_sight *sight, double stop_mm,
-                     const struct looks *l)
+/* Sets the sags of SIGHT for one cell per side: (D + E) / 12 with the second
+ * differences D along rows and E along columns. */
+static void compute_sags(struct ray_sight *sight, double stop_mm,
+                         const struct coarse_grid *l)
 {
     const double by = LOOKS;
 
     sight->sag[0] = sight->sag[1] = sight->sag[2] = 0;
     for (int way = 0; way < 2; way++) {
-        struct bowls b = {0, 0, 0, {0, 0}};
+        struct difference_sums b = {0, 0, 0, {0, 0}};
 
         for (int j = 0; j < l->rows; j++)
             for (int i = 0; i <= LOOKS; i++)
-                add_bowl(l, i, j, !way, way, stop_mm, &b);
+                add_second_differences(l, i, j, !way, way, stop_mm, &b);
         for (int k = 0; k < 2 && b.n_bends; k++)
             sight->sag[k] += b.bend[k] / b.n_bends * by * by / 12;
         if (b.n_steps)
@@ -315,12 +326,14 @@ static void set_sags(struct ray_sight *sight, double stop_mm,
     }
 }
 
-/* Sets how bright FIELD is and how far its wavelengths are apart. */
-static void measure(const struct ray_field_config *cfg, struct ray_field *field)
+/* Measures flux, brightness, sags and the distance between wavelengths of
+ * FIELD. */
+static void measure_brightness(const struct ray_field_config *cfg,
+                               struct ray_field *field)
 {
     struct ray_sight *const sight = &field->sight;
     const double both = field->pupil.mirrored ? 2 : 1;
-    struct looks look[3];
+    struct coarse_grid look[3];
     double most = field->pupil.energy, squares = 0;
     int n = 0;
 
@@ -328,10 +341,10 @@ static void measure(const struct ray_field_config *cfg, struct ray_field *field)
     for (int w = 0; w < 3; w++) {
         double flux = 0;
 
-        look_through(cfg, field, cfg->wave_nm[w], &look[w]);
+        trace_coarse_grid(cfg, field, cfg->wave_nm[w], &look[w]);
         for (int j = 0; j + 1 < look[w].rows; j++)
             for (int i = 0; i < LOOKS; i++)
-                add_look(&look[w], i, j, &flux, sight);
+                add_cell_flux(&look[w], i, j, &flux, sight);
         for (int j = 0; j < look[w].rows; j++)
             for (int i = 0; i <= LOOKS; i++)
                 if (look[w].inside[j][i])
@@ -351,9 +364,9 @@ static void measure(const struct ray_field_config *cfg, struct ray_field *field)
                 n++;
             }
     field->apart_mm = n ? sqrt(squares / n) : HUGE_VAL;
-    set_sags(sight, cfg->setup->optics.stop_radius_mm, &look[1]);
+    compute_sags(sight, cfg->setup->optics.stop_radius_mm, &look[1]);
     field->energy_unit = 1.5 * most;
-    if (field->flux == 0) { /* the opening lies between the rays */
+    if (field->flux == 0) { /* the stop's opening lies between the rays */
         field->flux = field->pupil.energy *
                       (field->pupil.x1_mm - field->pupil.x0_mm) *
                       glint_pupil_height(&field->pupil);
@@ -361,9 +374,10 @@ static void measure(const struct ray_field_config *cfg, struct ray_field *field)
     }
 }
 
-/* Finds the part of the pupil that all directions and wavelengths need. */
-static bool find_pupil(const struct ray_field_config *cfg,
-                       struct ray_field *field, struct glint_path *path)
+/* Finds the region of the pupil that covers all directions of the patch and all
+ * wavelengths. Returns false if no light passes. */
+static bool find_common_pupil(const struct ray_field_config *cfg,
+                              struct ray_field *field, struct glint_path *path)
 {
     const struct ray_patch *patch = field->patch;
     const double stop_mm = cfg->setup->optics.stop_radius_mm;
@@ -374,9 +388,9 @@ static bool find_pupil(const struct ray_field_config *cfg,
         const double nm = cfg->wave_nm[k == 1 ? 0 : k == 2 ? 2 : 1];
 
         memcpy(at, patch->middle, sizeof at);
-        if (k > 2 && !corner_of(cfg, patch, k - 3, at))
+        if (k > 2 && !get_patch_side_middle(cfg, patch, k - 3, at))
             continue;
-        init_path(cfg, field, nm, path);
+        init_field_path(cfg, field, nm, path);
         glint_ray_direction(cfg, at, d);
         if (found)
             glint_pupil_extend(&field->pupil, path, d, stop_mm);
@@ -397,27 +411,27 @@ void glint_ray_field_look(const struct ray_field_config *cfg,
     double at[2], d[3];
 
     field->is_looked = true;
-    field->is_open = find_pupil(cfg, field, &path);
+    field->is_open = find_common_pupil(cfg, field, &path);
     if (!field->is_open)
         return;
-    init_path(cfg, field, cfg->wave_nm[1], &path);
+    init_field_path(cfg, field, cfg->wave_nm[1], &path);
     glint_ray_direction(cfg, patch->middle, d);
     glint_sampling_run(&sampling, &path, &field->pupil, d, stop_mm, SAMPLING);
     for (int k = 0; k < 4; k++)
-        if (corner_of(cfg, patch, k, at)) {
+        if (get_patch_side_middle(cfg, patch, k, at)) {
             glint_ray_direction(cfg, at, d);
             glint_sampling_run(&more, &path, &field->pupil, d, stop_mm,
                                SAMPLING);
-            add_sampling(&sampling, &more);
+            merge_sampling(&sampling, &more);
         }
-    choose_cuts(field, &sampling);
+    list_cutting_barrels(field, &sampling);
     field->folds = sampling.folds;
     field->sight = (struct ray_sight){.bend_mm = sampling.bend_mm,
                                       .outline_mm = sampling.outline_mm,
                                       .round_mm = sampling.round_mm,
                                       .step = sampling.step,
                                       .n_inside = sampling.n_inside};
-    measure(cfg, field);
+    measure_brightness(cfg, field);
 }
 
 void glint_ray_field_fit(const struct ray_field_config *cfg,
@@ -425,17 +439,18 @@ void glint_ray_field_fit(const struct ray_field_config *cfg,
 {
     const struct ray_sight *const s = &field->sight;
     const double pixel = cfg->view.sensor_width_mm / cfg->view.width;
-    const double curvature = curvature_of(cfg);
+    const double curvature = compute_stop_curvature(cfg);
     double n;
 
-    field->n_cells = cells_of(cfg, s, field->folds, &field->least_cells);
+    field->n_cells =
+        choose_cell_count(cfg, s, field->folds, &field->least_cells);
     n = field->n_cells;
     for (int k = 0; k < 3; k++)
         field->sag[k] = fmin(
             fmax((k == 2 ? curvature : 1) * s->sag[k] / (n * n), 0), MOST_SAG);
     field->peak_mm2 = (field->folds ? 8 : 1) *
                       fmin(s->density, s->cell_flux / (pixel * pixel));
-    add_rim(cfg, &field->pupil);
+    enlarge_pupil_by_pixel(cfg, &field->pupil);
 }
 
 void glint_ray_field_coarsen(const struct ray_field_config *cfg,
@@ -454,7 +469,7 @@ void glint_ray_field_coarsen(const struct ray_field_config *cfg,
 
 /* ------------------------------------------------------------------ samples */
 
-static void add_sample(struct ray_field *f, double nm, double x, double y)
+static void add_ray_sample(struct ray_field *f, double nm, double x, double y)
 {
     f->sample[f->n_samples++] =
         (struct ray_sample){nm,
@@ -477,51 +492,53 @@ void glint_ray_field_choose(struct ray_field *f, const struct ray_patch *range,
         f->node_nm[i] = n == f->n_nodes
                             ? nm[i]
                             : 1 / sqrt(lo + (hi - lo) * i / (f->n_nodes - 1));
-        add_sample(f, f->node_nm[i], 0, 0);
+        add_ray_sample(f, f->node_nm[i], 0, 0);
     }
     if (wide == 0)
         return;
-    add_sample(f, f->node_nm[f->n_nodes / 2], -1, 0);
-    add_sample(f, f->node_nm[f->n_nodes / 2], 1, 0);
+    add_ray_sample(f, f->node_nm[f->n_nodes / 2], -1, 0);
+    add_ray_sample(f, f->node_nm[f->n_nodes / 2], 1, 0);
     if (wide > 1) {
-        add_sample(f, f->node_nm[f->n_nodes / 2], 0, -1);
-        add_sample(f, f->node_nm[f->n_nodes / 2], 0, 1);
-        add_sample(f, f->node_nm[f->n_nodes / 2], 1, 1);
+        add_ray_sample(f, f->node_nm[f->n_nodes / 2], 0, -1);
+        add_ray_sample(f, f->node_nm[f->n_nodes / 2], 0, 1);
+        add_ray_sample(f, f->node_nm[f->n_nodes / 2], 1, 1);
     }
     for (int k = 0; k < 2 && f->n_nodes > 2; k++) {
         const double end = f->node_nm[k ? f->n_nodes - 1 : 0];
 
-        add_sample(f, end, 1, 0);
+        add_ray_sample(f, end, 1, 0);
         if (wide > 1)
-            add_sample(f, end, 0, 1);
+            add_ray_sample(f, end, 0, 1);
     }
 }
 
-static int rows_of(const struct ray_field *f)
+static int count_traced_rows(const struct ray_field *f)
 {
     return f->pupil.mirrored ? f->n_cells / 2 + 1 : f->n_cells + 1;
 }
 
-static size_t nodes_of(const struct ray_field *f)
+static size_t count_traced_nodes(const struct ray_field *f)
 {
-    return (size_t)rows_of(f) * (size_t)(f->n_cells + 1);
+    return (size_t)count_traced_rows(f) * (size_t)(f->n_cells + 1);
 }
 
 size_t glint_ray_field_bytes(const struct ray_field_config *cfg,
                              const struct ray_field *field)
 {
     (void)cfg;
-    return nodes_of(field) *
+    return count_traced_nodes(field) *
            ((size_t)field->n_samples * CHANNELS * sizeof(float) + 1);
 }
 
 /* -------------------------------------------------------------------- trace */
 
-/* Fills NODE from a ray. Geometry never saturates: returns whether the channels
- * can hold it. */
-static bool fill(const struct ray_field_config *cfg,
-                 const struct ray_field *field, const struct glint_path *path,
-                 const struct glint_ray *ray, double (*hits)[2], float *node)
+/* Sets the channels of NODE from RAY. Returns false if a value exceeds the
+ * range of a vertex; positions must not be clamped. */
+static bool set_node_channels(const struct ray_field_config *cfg,
+                              const struct ray_field *field,
+                              const struct glint_path *path,
+                              const struct glint_ray *ray, double (*hits)[2],
+                              float *node)
 {
     const double scale = cfg->view.width / cfg->view.sensor_width_mm;
     const double stop_mm = cfg->setup->optics.stop_radius_mm;
@@ -533,7 +550,7 @@ static bool fill(const struct ray_field_config *cfg,
                               0,
                               ray->energy / field->energy_unit};
 
-    barrel_values(field, path, hits, value + BARREL_0);
+    compute_barrel_values(field, path, hits, value + BARREL_0);
     for (int k = 0; k < CHANNELS; k++)
         node[k] = (float)value[k];
     return fabs(value[X]) < 0x1p19 && fabs(value[Y]) < 0x1p19 &&
@@ -541,10 +558,10 @@ static bool fill(const struct ray_field_config *cfg,
            value[BARREL_0] < 0x1p13 && value[BARREL_1] < 0x1p13;
 }
 
-static void trace_row(const struct ray_field_config *cfg,
-                      const struct ray_field *field,
-                      const struct glint_path *path, const double d[3], int j,
-                      float *node, unsigned char *lost)
+static void trace_node_row(const struct ray_field_config *cfg,
+                           const struct ray_field *field,
+                           const struct glint_path *path, const double d[3],
+                           int j, float *node, unsigned char *lost)
 {
     const struct glint_pupil *p = &field->pupil;
     const int n = field->n_cells;
@@ -568,8 +585,9 @@ static void trace_row(const struct ray_field_config *cfg,
             glint_trace_row(path, &rays, ray, status, hits);
         }
         if (status[k] != GLINT_RAY_OK ||
-            !fill(cfg, field, path, &ray[k], hits + k * path->n_events,
-                  node + (size_t)i * CHANNELS)) {
+            !set_node_channels(cfg, field, path, &ray[k],
+                               hits + k * path->n_events,
+                               node + (size_t)i * CHANNELS)) {
             lost[i] = 1;
             memset(node + (size_t)i * CHANNELS, 0, CHANNELS * sizeof *node);
         }
@@ -579,7 +597,8 @@ static void trace_row(const struct ray_field_config *cfg,
 void glint_ray_field_trace(const struct ray_field_config *cfg,
                            const struct ray_field *field, void *mem)
 {
-    const size_t nodes = nodes_of(field), wide = (size_t)field->n_cells + 1;
+    const size_t nodes = count_traced_nodes(field),
+                 wide = (size_t)field->n_cells + 1;
     float *node = mem;
     unsigned char *lost =
         (unsigned char *)(node + (size_t)field->n_samples * nodes * CHANNELS);
@@ -590,27 +609,28 @@ void glint_ray_field_trace(const struct ray_field_config *cfg,
         double d[3];
 
         if (s == 0 || field->sample[s].nm != field->sample[s - 1].nm)
-            init_path(cfg, field, field->sample[s].nm, &path);
+            init_field_path(cfg, field, field->sample[s].nm, &path);
         glint_ray_direction(cfg, field->sample[s].at, d);
-        for (int j = 0; j < rows_of(field); j++)
-            trace_row(cfg, field, &path, d, j,
-                      node + ((size_t)s * nodes + (size_t)j * wide) * CHANNELS,
-                      lost + (size_t)j * wide);
+        for (int j = 0; j < count_traced_rows(field); j++)
+            trace_node_row(cfg, field, &path, d, j,
+                           node + ((size_t)s * nodes + (size_t)j * wide) *
+                                      CHANNELS,
+                           lost + (size_t)j * wide);
     }
 }
 
 /* -------------------------------------------------------------------- place */
 
-/* Returns the weight at X of node K of three, at A, B and C. */
-static double share_of(double x, const double at[3], int k)
+/* Returns Lagrange's weight at X of node K of the three nodes AT. */
+static double compute_lagrange_weight(double x, const double at[3], int k)
 {
     const double a = at[(k + 1) % 3], b = at[(k + 2) % 3];
 
     return (x - a) * (x - b) / ((at[k] - a) * (at[k] - b));
 }
 
-/* Adds the weights at NM of the nodes of wavelengths, times BY. */
-static void add_waves(struct ray_place *p, double nm, double by)
+/* Adds BY times the interpolation weights of the traced wavelengths at NM. */
+static void add_wavelength_weights(struct ray_place *p, double nm, double by)
 {
     const struct ray_field *f = p->field;
     const int n = f->n_nodes;
@@ -632,13 +652,14 @@ static void add_waves(struct ray_place *p, double nm, double by)
     for (int k = 0; k < 3; k++)
         at[k] = 1 / (f->node_nm[first + k] * f->node_nm[first + k]);
     for (int k = 0; k < 3; k++)
-        p->weight[first + k] += (float)(by * share_of(1 / (nm * nm), at, k));
+        p->weight[first + k] +=
+            (float)(by * compute_lagrange_weight(1 / (nm * nm), at, k));
 }
 
-/* Adds what directions differ by at the ends of the wavelengths from what they
- * differ by in the middle. */
-static void add_ends(struct ray_place *p, const double t[2], double nm,
-                     int first, bool both)
+/* Corrects the weights at both ends of the band: there the positions vary with
+ * direction T by another amount than at the middle wavelength. */
+static void add_band_end_weights(struct ray_place *p, const double t[2],
+                                 double nm, int first, bool both)
 {
     const struct ray_field *f = p->field;
     const int mid = f->n_nodes / 2, last = f->n_nodes - 1;
@@ -648,7 +669,7 @@ static void add_ends(struct ray_place *p, const double t[2], double nm,
     for (int k = 0; k < 3; k++)
         at[k] = 1 / (node[k] * node[k]);
     for (int k = 0; k < 2; k++) {
-        const double w = share_of(1 / (nm * nm), at, 2 * k);
+        const double w = compute_lagrange_weight(1 / (nm * nm), at, 2 * k);
 
         for (int axis = 0; axis < (both ? 2 : 1); axis++) {
             const float by = (float)(w * t[axis]);
@@ -677,7 +698,7 @@ void glint_ray_place_set(struct ray_place *p, const struct ray_field *f,
     for (int k = 0; k < 2; k++)
         if (range->half[k] > 0)
             t[k] = (at[k] - range->middle[k]) / range->half[k];
-    add_waves(p, nm, 1);
+    add_wavelength_weights(p, nm, 1);
     if (f->n_samples == n)
         return;
     {
@@ -693,14 +714,14 @@ void glint_ray_place_set(struct ray_place *p, const struct ray_field *f,
         p->weight[mid] -= (float)sum;
     }
     if (n > 2)
-        add_ends(p, t, nm, n + (both ? 5 : 2), both);
+        add_band_end_weights(p, t, nm, n + (both ? 5 : 2), both);
 }
 
-/* Sets ROW to the weighted sum of row J of all samples. */
-static void blend(const struct ray_place *p, int j, float *row)
+/* Sets ROW to the weighted sum of row J over all samples. */
+static void interpolate_node_row(const struct ray_place *p, int j, float *row)
 {
     const struct ray_field *f = p->field;
-    const size_t nodes = nodes_of(f);
+    const size_t nodes = count_traced_nodes(f);
     const int n = (f->n_cells + 1) * CHANNELS;
     const float *from = (const float *)p->mem + (size_t)j * (size_t)n;
 
@@ -727,11 +748,12 @@ void glint_ray_place_row(const struct ray_field_config *cfg,
     const float nearer = 65536 * (1 - (float)f->sag[2]);
     const unsigned char *lost =
         (const unsigned char *)((const float *)p->mem +
-                                (size_t)f->n_samples * nodes_of(f) * CHANNELS) +
+                                (size_t)f->n_samples * count_traced_nodes(f) *
+                                    CHANNELS) +
         (size_t)from * (size_t)(n + 1);
     float value[MOST_SIDE * CHANNELS];
 
-    blend(p, from, value);
+    interpolate_node_row(p, from, value);
     for (int i = 0; i <= n; i++) {
         const float *v = value + (size_t)i * CHANNELS;
         const float y = mirror ? -v[Y] : v[Y];

@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * The exact rays of one ghost for all directions and wavelengths near by.
+ * Traces exact rays of one ghost for a few directions and wavelengths and
+ * interpolates between them.
  *
  *   in   a ghost, a small range of directions, wavelengths
- *   out  vertices of its grid for any direction and wavelength in them
+ *   out  vertices of the ghost's grid for any direction and wavelength in these
+ *        ranges
  *
- * One grid of pupil points is traced from a few directions and at a few
- * wavelengths; every vertex is a polynomial of the second degree in between.
- * So the points of an area lamp, lamps near each other and wavelengths share
- * rays. In the light's frame the rays of a round lens depend on the angle off
- * the axis alone: lamps at one angle share them at any azimuth.
+ * The rays start at the same grid of pupil points for all traced directions and
+ * wavelengths; each vertex is interpolated by polynomials of second degree. So
+ * the points of an area lamp, neighbouring lamps and all wavelengths use the
+ * same rays. In a round lens, rays in the light's frame depend on the angle off
+ * the axis only, so lamps at the same angle use the same rays at any azimuth.
  *
- * A direction is a pair of coordinates: of a round lens the angle in degrees
- * and 0, of others the components x and y of the direction in the frame of the
+ * A direction is given by two coordinates. Round lenses: the angle in degrees,
+ * and 0. Others: the x and y components of the direction, in the frame of the
  * field's azimuth. */
 #ifndef GLINT_BAKE_EXACT_RAY_FIELD_H
 #define GLINT_BAKE_EXACT_RAY_FIELD_H
@@ -31,119 +33,132 @@ enum {
     RAY_FIELD_SAMPLES = RAY_FIELD_NODES + 5 + 4
 };
 
-/* A range of directions: its middle and half its size. Of a round lens only
- * the first component is used. */
+/* A range of light directions: middle and half size in both coordinates. Round
+ * lenses use the first coordinate only. */
 struct ray_patch {
-    double phi_deg; /* azimuth of the frame; of a round lens 0 */
+    double phi_deg; /* azimuth of the direction frame; 0 for round lenses */
     double middle[2], half[2];
 };
 
 struct ray_field_config {
     const struct glint_setup *setup;
     struct glint_view view;
-    bool round;    /* the lens is round */
-    int max_cells; /* fineness of the grids, 1 .. 1024 */
+    bool round;    /* true: the lens is rotationally symmetric */
+    int max_cells; /* max number of cells per side of a grid, 1 .. 1024 */
     bool uniform;  /* true: all ghosts get max_cells cells per side */
-    /* nm: the ends of the wavelengths and one near the middle. */
+    /* nm: both ends of the band and a wavelength near its middle */
     double wave_nm[3];
 };
 
-/* One wavelength or direction that was traced. */
+/* A wavelength and a direction for which the grid of rays is traced. */
 struct ray_sample {
     double nm, at[2];
 };
 
-/* What the rays of a field tell, whatever the size of the picture. */
+/* Measurements of the rays of one ghost that do not depend on the size of the
+ * picture. */
 struct ray_sight {
-    /* From struct glint_sampling, mm. */
+    /* see struct glint_sampling; bends in mm */
     double bend_mm, outline_mm, round_mm, step;
     int n_inside;
-    /* Largest flux of a cell of a coarse grid, mm^2, and largest flux per mm^2
-     * of the sensor, for irradiance 1; HUGE_VAL: not known. */
+    /* max flux of a cell of a coarse grid, mm^2, and max flux per mm^2 of the
+     * sensor, both at irradiance 1; HUGE_VAL: unknown */
     double cell_flux, density;
-    double
-        sag[3]; /* as of a field with one cell per side; of a circular stop */
+    /* see sag of struct ray_field, for one cell per side and a circular stop */
+    double sag[3];
 };
 
 struct ray_field {
     int ghost;
     const struct ray_patch *patch;
-    /* Directions between which rays are interpolated, all within PATCH: set by
+    /* Directions between which rays are interpolated, all within patch; set by
      * glint_ray_field_choose(). */
     struct ray_patch range;
-    /* Set by glint_ray_field_look(): */
-    bool is_looked, is_open; /* is_open: light of the ghost gets through */
+    /* set by glint_ray_field_look(); is_open: some light of the ghost reaches
+     * the sensor */
+    bool is_looked, is_open;
     struct ray_sight sight;
-    struct glint_pupil pupil; /* without a rim until glint_ray_field_fit() */
-    int n_cells;              /* cells per side */
-    int least_cells;          /* fewest that do not step over the opening */
+    /* visible region of the pupil; glint_ray_field_fit() adds a margin */
+    struct glint_pupil pupil;
+    int n_cells; /* cells per side */
+    /* min number of cells per side whose rays cannot miss the opening of the
+     * stop */
+    int least_cells;
     bool folds;
-    int n_cuts, cut_event[RAY_FIELD_CUTS]; /* as chosen by the sampling */
-    double
-        energy_unit; /* ray energy that energy 65536 of a vertex stands for */
-    double flux;     /* mm^2 of pupil times energy that get through */
-    double peak_mm2; /* bound of the flux per mm^2 of a pixel of the sensor for
-                        irradiance 1; HUGE_VAL: not known */
-    /* Mean height by which straight lines between the rays of a cell lie above
-     * (1 + r^2) / 2 of two barrels and of a round stop, which is bent. */
+    /* barrels that block rays: their number and their indices among the path's
+     * events */
+    int n_cuts, cut_event[RAY_FIELD_CUTS];
+    double energy_unit; /* ray energy that a vertex stores as 65536 */
+    /* flux that reaches the sensor: mm^2 of pupil times ray energy */
+    double flux;
+    /* upper bound of the flux per mm^2 on a pixel of the sensor, at irradiance
+     * 1; HUGE_VAL: unknown */
+    double peak_mm2;
+    /* Interpolation error: mean height by which linear interpolation in a cell
+     * exceeds (1 + r^2) / 2 of two barrels (0, 1) and of a curved stop (2), r:
+     * relative radius. */
     double sag[3];
-    double apart_mm; /* RMS distance on the sensor between the outermost
-                        wavelengths */
+    /* RMS distance on the sensor between rays of the first and the last
+     * wavelength, mm */
+    double apart_mm;
     int n_nodes, n_samples;
     double node_nm[RAY_FIELD_NODES];
     struct ray_sample sample[RAY_FIELD_SAMPLES];
 };
 
-/* Looks at FIELD, whose ghost and patch are set: finds the part of the pupil,
- * the barrels that cut, and how bright the ghost is. Does not depend on the
- * view and the fineness of CFG. */
+/* Measures a ghost: finds the region of its pupil, the barrels that block its
+ * rays, and its brightness. Ghost and patch of FIELD must be set. The result
+ * does not depend on the view and on max_cells of CFG. */
 void glint_ray_field_look(const struct ray_field_config *cfg,
                           struct ray_field *field);
 
-/* Sets the grid of FIELD, which was looked at and is open, for the view of CFG,
- * and adds a rim of a pixel to its pupil. With max_cells 64 light is off by
- * 0.01 px (RMS), outlines by 0.1 px; with n times as many cells, by n^2 times
- * less. */
+/* Chooses the number of cells of FIELD for the view of CFG and enlarges its
+ * pupil by one pixel. FIELD must be open after glint_ray_field_look(). With
+ * max_cells = 64, positions are off by 0.01 px (RMS) and outlines by 0.1 px; n
+ * times as many cells per side reduce both by n^2. */
 void glint_ray_field_fit(const struct ray_field_config *cfg,
                          struct ray_field *field);
 
-/* Makes the grid BY times as fine, BY at most 1, for a faint ghost. */
+/* Multiplies the number of cells per side by BY, at most 1; for faint
+ * ghosts. */
 void glint_ray_field_coarsen(const struct ray_field_config *cfg,
                              struct ray_field *field, double by);
 
-/* Chooses the samples for the directions RANGE, which lie within the patch of
- * FIELD, and for the wavelengths NM[N], which rise. */
+/* Chooses the directions and wavelengths to trace. RANGE: all directions
+ * needed, within the patch of FIELD; NM[N]: all wavelengths needed,
+ * ascending. */
 void glint_ray_field_choose(struct ray_field *field,
                             const struct ray_patch *range, const double *nm,
                             int n);
 
-/* Returns the bytes that glint_ray_field_trace() fills. */
+/* Returns the size in bytes of the memory for glint_ray_field_trace(). */
 size_t glint_ray_field_bytes(const struct ray_field_config *cfg,
                              const struct ray_field *field);
 
-/* Traces all samples into MEM. */
+/* Traces the rays of all samples into MEM. */
 void glint_ray_field_trace(const struct ray_field_config *cfg,
                            const struct ray_field *field, void *mem);
 
-/* One direction and wavelength of a traced field. */
+/* Interpolation weights for one direction and wavelength in a traced field. */
 struct ray_place {
     const struct ray_field *field;
     const void *mem;
     float weight[RAY_FIELD_SAMPLES];
-    double cosine, sine; /* from the frame to the picture */
+    double cosine, sine; /* rotation from the direction frame to the picture */
 };
 
-/* Sets PLACE to direction AT and wavelength NM in FIELD, turned by PHI_DEG. */
+/* Sets PLACE to the weights for direction AT and wavelength NM of FIELD, whose
+ * traced rays are in MEM. The ghost is rotated by PHI_DEG. */
 void glint_ray_place_set(struct ray_place *place, const struct ray_field *field,
                          const void *mem, const double at[2], double nm,
                          double phi_deg);
 
-/* Sets ROW to row J of the vertices. */
+/* Interpolates row J of the grid and writes its vertices to ROW. */
 void glint_ray_place_row(const struct ray_field_config *cfg,
                          const struct ray_place *place, int j,
                          struct glint_vertex *row);
 
-/* Sets FROM to the direction at AT. */
+/* Sets DIRECTION to the unit vector of the coordinates AT. */
 void glint_ray_direction(const struct ray_field_config *cfg, const double at[2],
                          double direction[3]);
 
