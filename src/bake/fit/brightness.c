@@ -8,12 +8,12 @@
 #include "glint/model.h"
 #include "glint/trace.h"
 
-/* Cells of the grid over the pupil, of which round lenses need only the
- * upper half. Lenses that are not round use ACROSS rows. */
+/* Cells of the grid over the pupil: ACROSS x DOWN over its upper half for round
+ * lenses, else ACROSS x ACROSS over all of it. */
 enum { ACROSS = 24, DOWN = 12, CELLS = ACROSS * DOWN, WAVES = 3 };
 
-/* Light of one cell of the pupil grid on the sensor. In round lenses it also
- * stands for its mirror image at -y. */
+/* The light of one cell of the pupil grid where it hits the sensor. Round
+ * lenses: each patch counts twice, at y and at -y. */
 struct patch {
     double irradiance, area_mm2, x_mm, y_mm;
 };
@@ -22,27 +22,28 @@ struct task {
     struct glint_brightness *out;
     const struct glint_setup *setup;
     double field_mm;
-    /* Round lenses use the first wavelength, the middle of the band. Others
-     * use the mean energy of all, as their coatings may transmit ten times
-     * as much light at one wavelength as at another. */
+    /* Round lenses use nm[0], the middle of the band. Others use the mean
+     * energy of all wavelengths, as their coatings may transmit ten times as
+     * much light at one wavelength as at another. */
     double nm[WAVES];
-    double half_mm[2]; /* half the width and height of the picture */
+    double half_mm[2]; /* half width and half height of the picture, mm */
     double pixel_mm;   /* width of a pixel if the picture is 1920 pixels wide */
-    /* Azimuths that are sampled in lenses that are not round, and turns from
-     * one to the next. They cover a quarter turn, both ends included, if the
-     * lens has two planes of symmetry; else a full turn. */
+    /* Azimuths that are traced if the lens is not round, and the step between
+     * them in turns. They cover 0 .. 90 degrees if the lens has two planes of
+     * symmetry, else 360 degrees. */
     int n_azimuths;
     double turns;
     enum glint_status status[GLINT_BRIGHTNESS_ANGLES];
 };
 
-static bool passes_lens(const struct task *t, const struct glint_ray *ray)
+static bool is_ray_transmitted(const struct task *t,
+                               const struct glint_ray *ray)
 {
     return ray->rel_radius <= 1 && hypot(ray->stop_x_mm, ray->stop_y_mm) <=
                                        t->setup->optics.stop_radius_mm;
 }
 
-static int compare_brightness(const void *a, const void *b)
+static int compare_irradiance(const void *a, const void *b)
 {
     const double x = ((const struct patch *)a)->irradiance;
     const double y = ((const struct patch *)b)->irradiance;
@@ -52,15 +53,16 @@ static int compare_brightness(const void *a, const void *b)
 
 /* ------------------------------------------------------------------- round */
 
-static bool is_seen(const struct task *t, const struct glint_ray *ray)
+static bool is_ray_in_field(const struct task *t, const struct glint_ray *ray)
 {
-    return passes_lens(t, ray) &&
+    return is_ray_transmitted(t, ray) &&
            hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= t->field_mm;
 }
 
-static struct patch make_patch(const struct glint_ray *a,
-                               const struct glint_ray *b,
-                               const struct glint_ray *c, double pupil_mm2)
+static struct patch compute_light_patch(const struct glint_ray *a,
+                                        const struct glint_ray *b,
+                                        const struct glint_ray *c,
+                                        double pupil_mm2)
 {
     const double area = fabs(
         (b->sensor_x_mm - a->sensor_x_mm) * (c->sensor_y_mm - a->sensor_y_mm) -
@@ -70,9 +72,10 @@ static struct patch make_patch(const struct glint_ray *a,
                           a->sensor_x_mm, a->sensor_y_mm};
 }
 
-/* Adds the patches of one ghost. Returns their number. */
-static int add_ghost(const struct task *t, int ghost, double sine,
-                     struct patch *patch)
+/* Appends the patches of one ghost to PATCH, for light at the angle with sine
+ * SINE. Returns their number. */
+static int add_ghost_patches(const struct task *t, int ghost, double sine,
+                             struct patch *patch)
 {
     struct glint_row row = {.n = ACROSS + 1,
                             .direction = {sine, 0, sqrt(1 - sine * sine)}};
@@ -101,15 +104,18 @@ static int add_ghost(const struct task *t, int ghost, double sine,
         for (int i = 0; i < ACROSS && j > 0; i++)
             if (status[~j & 1][i] == GLINT_RAY_OK &&
                 status[~j & 1][i + 1] == GLINT_RAY_OK &&
-                status[j & 1][i] == GLINT_RAY_OK && is_seen(t, &below[i]))
-                patch[n++] = make_patch(&below[i], &below[i + 1], &here[i],
-                                        row.step_mm * dy);
+                status[j & 1][i] == GLINT_RAY_OK &&
+                is_ray_in_field(t, &below[i]))
+                patch[n++] = compute_light_patch(&below[i], &below[i + 1],
+                                                 &here[i], row.step_mm * dy);
     }
     return n;
 }
 
-/* Returns whether (X, Y) lies inside the picture for light from azimuth PHI. */
-static bool in_picture(const struct task *t, double x, double y, double phi)
+/* Returns whether the sensor position (X, Y), mm, lies inside the picture if
+ * the light comes from azimuth PHI, radians. */
+static bool is_point_in_picture(const struct task *t, double x, double y,
+                                double phi)
 {
     const double c = cos(phi), s = sin(phi);
 
@@ -117,28 +123,30 @@ static bool in_picture(const struct task *t, double x, double y, double phi)
            fabs(s * x + c * y) <= t->half_mm[1];
 }
 
-/* Returns the irradiance that 1/1000 of the picture's area exceeds; HUGE_VAL
- * if a smaller area has light. PATCH is sorted by descending irradiance. */
-static double find_level(const struct task *t, const struct patch *patch, int n,
-                         double phi)
+/* Returns the irradiance that is exceeded on 1/1000 of the picture's area;
+ * HUGE_VAL if less than 1/1000 of the area has light. PATCH must be sorted by
+ * descending irradiance. */
+static double find_brightness_level(const struct task *t,
+                                    const struct patch *patch, int n,
+                                    double phi)
 {
     double left = 0.001 * 4 * t->half_mm[0] * t->half_mm[1];
 
     for (int k = 0; k < n; k++) {
         const struct patch *p = &patch[k];
 
-        left -= p->area_mm2 * (in_picture(t, p->x_mm, p->y_mm, phi) +
-                               in_picture(t, p->x_mm, -p->y_mm, phi));
+        left -= p->area_mm2 * (is_point_in_picture(t, p->x_mm, p->y_mm, phi) +
+                               is_point_in_picture(t, p->x_mm, -p->y_mm, phi));
         if (left <= 0)
             return p->irradiance;
     }
     return HUGE_VAL;
 }
 
-/* Finds the level for one angle: the min over all azimuths. The brightest
- * ghosts may lie outside the picture, whose exposure then depends on other
+/* Finds the brightness level at one angle: the min over all azimuths. The
+ * brightest ghosts may lie outside the picture, which is then exposed for other
  * ghosts. */
-static void angle_job(void *ctx, int job, int worker)
+static void find_round_level_at_angle(void *ctx, int job, int worker)
 {
     enum { AZIMUTHS = 7 }; /* number of azimuths from 0 to 90 degrees */
     struct task *t = ctx;
@@ -152,11 +160,12 @@ static void angle_job(void *ctx, int job, int worker)
     if (!patch)
         return;
     for (int k = 0; k < ghosts; k++)
-        n += add_ghost(t, k, t->out->sine[job], patch + n);
-    qsort(patch, (size_t)n, sizeof *patch, compare_brightness);
+        n += add_ghost_patches(t, k, t->out->sine[job], patch + n);
+    qsort(patch, (size_t)n, sizeof *patch, compare_irradiance);
     for (int k = 0; k < AZIMUTHS; k++)
-        level = fmin(level, find_level(t, patch, n,
-                                       0.5 * GLINT_PI * k / (AZIMUTHS - 1)));
+        level =
+            fmin(level, find_brightness_level(
+                            t, patch, n, 0.5 * GLINT_PI * k / (AZIMUTHS - 1)));
     t->out->level[job] = level < HUGE_VAL ? level
                          : n              ? patch[n - 1].irradiance
                                           : 0;
@@ -165,27 +174,30 @@ static void angle_job(void *ctx, int job, int worker)
 
 /* --------------------------------------------------------------- not round */
 
-/* Lenses that are not round: their picture does not simply rotate with the
- * azimuth of the light, so several azimuths are traced. Light is spread over
- * at least a pixel, so that a thin streak does not count as bright. */
-static bool is_in_picture(const struct task *t, const struct glint_ray *ray)
+/* Lenses that are not round: the picture does not simply rotate with the
+ * azimuth of the light, so several azimuths are traced. Light is spread over at
+ * least a pixel, so that thin streaks do not count as bright. */
+static bool is_ray_in_picture(const struct task *t, const struct glint_ray *ray)
 {
-    return passes_lens(t, ray) && fabs(ray->sensor_x_mm) <= t->half_mm[0] &&
+    return is_ray_transmitted(t, ray) &&
+           fabs(ray->sensor_x_mm) <= t->half_mm[0] &&
            fabs(ray->sensor_y_mm) <= t->half_mm[1];
 }
 
-/* Returns the patch of light between ray A and its neighbours B and C. Its
- * area is that of their ellipse of inertia, blurred by a pixel. */
-static struct patch make_skew_patch(const struct task *t,
-                                    const struct glint_ray *a,
-                                    const struct glint_ray *b,
-                                    const struct glint_ray *c, double pupil_mm2)
+/* Returns the patch of light between ray A and its neighbours B and C. Its area
+ * is that of the inertia ellipse of the three sensor positions, blurred by a
+ * pixel. */
+static struct patch compute_skew_patch(const struct task *t,
+                                       const struct glint_ray *a,
+                                       const struct glint_ray *b,
+                                       const struct glint_ray *c,
+                                       double pupil_mm2)
 {
     const double bx = b->sensor_x_mm - a->sensor_x_mm;
     const double by = b->sensor_y_mm - a->sensor_y_mm;
     const double cx = c->sensor_x_mm - a->sensor_x_mm;
     const double cy = c->sensor_y_mm - a->sensor_y_mm;
-    /* a pixel, divided among the cells of the grid */
+    /* area of a pixel / number of grid cells */
     const double blur = t->pixel_mm * t->pixel_mm / (ACROSS * ACROSS);
     const double xx = bx * bx + cx * cx + blur, yy = by * by + cy * cy + blur;
     const double xy = bx * by + cx * cy;
@@ -195,14 +207,16 @@ static struct patch make_skew_patch(const struct task *t,
                           .area_mm2 = area};
 }
 
-/* Rays of a grid row; energies are means over all wavelengths. */
+/* One row of rays of the pupil grid. Energies are means over all
+ * wavelengths. */
 struct rays {
     struct glint_ray at[ACROSS + 1];
     enum glint_ray_status status[ACROSS + 1];
 };
 
-static void trace_row(const struct glint_path path[WAVES],
-                      const struct glint_row *row, struct rays *rays)
+static void trace_mean_energy_row(const struct glint_path path[WAVES],
+                                  const struct glint_row *row,
+                                  struct rays *rays)
 {
     struct rays other = {.at = {{0}}};
 
@@ -217,10 +231,11 @@ static void trace_row(const struct glint_path path[WAVES],
         rays->at[i].energy /= WAVES;
 }
 
-/* Adds the patches of one ghost for light from DIRECTION. Returns their
- * number. */
-static int add_skew_ghost(const struct task *t, int ghost,
-                          const double direction[3], struct patch *patch)
+/* Appends the patches of one ghost to PATCH, for light from DIRECTION. Returns
+ * their number. */
+static int add_skew_ghost_patches(const struct task *t, int ghost,
+                                  const double direction[3],
+                                  struct patch *patch)
 {
     struct glint_row row = {
         .n = ACROSS + 1,
@@ -248,35 +263,37 @@ static int add_skew_ghost(const struct task *t, int ghost,
                                                             &rays[j & 1];
 
         row.y_mm = p.y0_mm + j * dy;
-        trace_row(path, &row, &rays[j & 1]);
+        trace_mean_energy_row(path, &row, &rays[j & 1]);
         for (int i = 0; i < ACROSS && j > 0; i++)
             if (below->status[i] == GLINT_RAY_OK &&
                 below->status[i + 1] == GLINT_RAY_OK &&
                 here->status[i] == GLINT_RAY_OK &&
-                is_in_picture(t, &below->at[i]))
+                is_ray_in_picture(t, &below->at[i]))
                 patch[n++] =
-                    make_skew_patch(t, &below->at[i], &below->at[i + 1],
-                                    &here->at[i], row.step_mm * dy);
+                    compute_skew_patch(t, &below->at[i], &below->at[i + 1],
+                                       &here->at[i], row.step_mm * dy);
     }
     return n;
 }
 
-/* Returns the irradiance that 1/1000 of the picture's area exceeds; the min
- * irradiance if a smaller area has light. */
-static double find_skew_level(const struct task *t, struct patch *patch, int n)
+/* Sorts PATCH by irradiance. Returns the irradiance that is exceeded on 1/1000
+ * of the picture's area, or the min irradiance if less of the area has
+ * light. */
+static double find_skew_brightness_level(const struct task *t,
+                                         struct patch *patch, int n)
 {
     double left = 0.001 * 4 * t->half_mm[0] * t->half_mm[1];
     int k = 0;
 
-    qsort(patch, (size_t)n, sizeof *patch, compare_brightness);
+    qsort(patch, (size_t)n, sizeof *patch, compare_irradiance);
     while (k + 1 < n && (left -= patch[k].area_mm2) > 0)
         k++;
     return patch[k].irradiance;
 }
 
-/* Finds the level for one angle: the min over all azimuths with light;
- * HUGE_VAL if no azimuth has light. */
-static void skew_angle_job(void *ctx, int job, int worker)
+/* Finds the brightness level at one angle: the min over all azimuths with
+ * light; HUGE_VAL if no azimuth has light. */
+static void find_skew_level_at_angle(void *ctx, int job, int worker)
 {
     struct task *t = ctx;
     const int ghosts = t->setup->n_ghosts;
@@ -296,9 +313,9 @@ static void skew_angle_job(void *ctx, int job, int worker)
         int n = 0;
 
         for (int k = 0; k < ghosts; k++)
-            n += add_skew_ghost(t, k, direction, patch + n);
+            n += add_skew_ghost_patches(t, k, direction, patch + n);
         if (n > 0)
-            level = fmin(level, find_skew_level(t, patch, n));
+            level = fmin(level, find_skew_brightness_level(t, patch, n));
     }
     t->out->level[job] = level;
     free(patch);
@@ -327,7 +344,7 @@ uint32_t glint_skew_mirrors(const struct glint_prescription *lens)
     for (int k = 0; k < lens->n_surfaces; k++) {
         const struct glint_shape *const a = &lens->surface[k].shape;
 
-        /* A tilt about the y axis breaks the symmetry in x. */
+        /* A tilt about the y axis breaks the symmetry in x, and vice versa. */
         if (a->decentre_mm[0] != 0.0 || a->tilt_deg[1] != 0.0)
             mirrors &= ~(uint32_t)GLINT_MIRRORS_X;
         if (a->decentre_mm[1] != 0.0 || a->tilt_deg[0] != 0.0)
@@ -359,7 +376,7 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
 
     t.pixel_mm = 2 * t.half_mm[0] / 1920;
     for (int k = 0; k < WAVES && !round; k++) {
-        /* the middle wavelength first, then both outer ones */
+        /* the middle wavelength first, then the two others */
         const double node = (k + 1) % WAVES - 1.0;
         const double lo = pow(band_nm[1], -2), hi = pow(band_nm[0], -2);
 
@@ -367,7 +384,9 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
     }
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
         brightness->level[k] = round ? 0 : HUGE_VAL;
-    glint_workers_run(workers, n, round ? angle_job : skew_angle_job, &t);
+    glint_workers_run(
+        workers, n,
+        round ? find_round_level_at_angle : find_skew_level_at_angle, &t);
     for (int k = 0; k < n; k++)
         if (t.status[k] != GLINT_OK)
             return t.status[k];

@@ -21,60 +21,63 @@ enum { GLINT_BRIGHTNESS_ANGLES = 11 };
 
 struct glint_brightness {
     double sine[GLINT_BRIGHTNESS_ANGLES];
-    /* Energy times pupil area per sensor area. Without light: 0 for round
-     * lenses, HUGE_VAL for others. */
+    /* energy times pupil area / sensor area, by angle. Angles without light: 0
+     * for round lenses, HUGE_VAL for others. */
     double level[GLINT_BRIGHTNESS_ANGLES];
 };
 
-/* Sets the angles. Returns the number of angles that lights up to MAX_DEG
- * need. */
+/* Fills the table's angles. Returns how many of them are needed for lights up
+ * to MAX_DEG off the axis. */
 int glint_brightness_angles(struct glint_brightness *brightness,
                             double max_deg);
 
-/* Returns the planes of symmetry of a lens: bits GLINT_MIRRORS_X,
+/* Returns the planes of symmetry of a lens as bits GLINT_MIRRORS_X,
  * GLINT_MIRRORS_Y. */
 uint32_t glint_skew_mirrors(const struct glint_prescription *lens);
 
-/* Finds the levels for the angles that lights up to MAX_DEG need. The result
- * does not depend on WORKERS. May return GLINT_E_MEMORY. */
+/* Finds the brightness levels at all angles needed for lights up to MAX_DEG off
+ * the axis. The result does not depend on WORKERS. May return
+ * GLINT_E_MEMORY. */
 enum glint_status glint_brightness_find(struct glint_brightness *brightness,
                                         const struct glint_setup *setup,
                                         double field_mm, double max_deg,
                                         const double band_nm[2],
                                         struct glint_workers *workers);
 
-/* Returns the min of the levels at the two tabulated angles around SINE. */
+/* Returns the smaller of the levels at the two tabulated angles around SINE. */
 double glint_brightness_at(const struct glint_brightness *brightness,
                            double sine);
 
-/* Max number of times that a zone's box may be halved: usually; in lenses
- * with surfaces that are not spheres; at the axis for fine tolerances. */
+/* Max number of times that a zone's box may be halved: spherical surfaces;
+ * other surfaces; zones at the axis with a fine tolerance. */
 enum { GLINT_PART_DEPTH = 4, GLINT_SHAPED_DEPTH = 6, GLINT_MAX_AXIS_DEPTH = 8 };
 
-/* Tolerances of a fit, root mean square; single rays may be off by five
- * times as much. Positions in the stop and at barrels determine the outline
- * of a ghost: EDGE_MM is the tolerance of the outline on the sensor. It
- * implies the tolerances of these positions, which are then clamped: at the
- * stop to STOP_LEAST .. STOP stop radii, at a barrel to 0.06 BARREL ..
- * BARREL semi-diameters. The lower limits are needed because the outline of
- * a large ghost may lie outside the picture, but moves in when the stop
- * closes.
+/* Tolerances of a fit (RMS; a single ray may be off by five times as much).
  *
- * The values hold for ghosts at the level above. In sRGB an error in a ghost
- * of v times that level is v^0.42 times as visible, so edges and energy of
- * fainter ghosts have larger tolerances, up to EASE times. */
+ * edge_mm: tolerance of a ghost's outline on the sensor. The outline follows
+ * from positions in the stop and at barrels, so their tolerances are derived
+ * from edge_mm and clamped: stop to stop_least .. stop stop radii, barrels to
+ * 0.06 barrel .. barrel semi-diameters. The lower limits are needed because the
+ * outline of a large ghost may lie outside the picture, but moves in when the
+ * stop closes.
+ *
+ * All values hold for ghosts at the brightness level of this file. In sRGB an
+ * error in a ghost of v times that level is v^0.42 times as visible, so edges
+ * and energy of fainter ghosts have larger tolerances, up to ease times. */
 struct glint_tolerance {
     double sensor_mm, edge_mm, stop, stop_least, barrel, energy;
     double faint_sensor_mm; /* mm; upper limit of sensor_mm of faint ghosts */
-    double escape; /* largest excess of the relative radius with which a ray may
-                      pass a barrel that is not fitted */
+    /* max excess of the relative radius with which a ray may pass a barrel that
+     * has no polynomial */
+    double escape;
     double ease;
     double pixel_mm; /* width of a pixel if the picture is 1920 pixels wide */
-    /* Factor for zones at the axis, where light folds into rings: on their
-     * min width and on the tolerance of positions. */
+    /* factor on min width and position tolerance of zones at the axis, where
+     * light folds into rings */
     double axis;
-    int axis_depth; /* number of times that boxes of zones at the axis may be
-                       halved, GLINT_PART_DEPTH .. GLINT_MAX_AXIS_DEPTH */
+    /* max number of halvings of boxes of zones at the axis,
+     * GLINT_PART_DEPTH .. GLINT_MAX_AXIS_DEPTH */
+    int axis_depth;
     const struct glint_brightness *brightness;
 };
 

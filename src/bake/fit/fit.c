@@ -8,23 +8,24 @@
 #include "engine/setup/degrees.h"
 #include "bake/fit/next.h"
 
-/* Min fraction of its box that a ghost must fill. A lower fill would waste
- * cells of the ray grids. */
+/* Min fraction of a zone's box that visible light must fill; emptier boxes
+ * would waste cells of the ray grids. */
 #define LEAST_FILL 0.33
-/* Degrees: a wider zone with more than two barrels is halved, as a vertex
- * stores the radii at two barrels only. */
+/* Max width, degrees, of a zone with more than two barrels, as a vertex stores
+ * the radii at two barrels only. Wider zones are halved. */
 #define CROWD_DEG 1.5
-/* Degrees: zones narrower than this may fill less than LEAST_FILL of their
+/* Zones narrower than this, degrees, may fill less than LEAST_FILL of their
  * boxes. */
 #define FILL_DEG 0.6
-/* A part is cropped again only if the last crop left a smaller fraction of
- * it. */
+/* A part of a box is cropped again if the last crop left less than this
+ * fraction of it. */
 #define WORTH_CROP 0.8
 
 enum {
-    /* max number of times that a band is halved; follows from LEAST_BAND */
+    /* max number of times that a zone's band is halved; follows from
+     * LEAST_BAND */
     BAND_DEPTH = 2,
-    CROPS = 2 /* max number of times that a part is cropped */
+    CROPS = 2 /* max number of times that a part of a box is cropped */
 };
 
 struct fitter {
@@ -40,19 +41,20 @@ struct fitter {
     struct glint_visible beside_band[GLINT_MAX_BESIDE];
     struct glint_visible beside_part[GLINT_MAX_BESIDE];
     struct glint_visible_profile band_profile;
-    /* range of angles and band for which band_profile holds */
+    /* angles and band to which band_profile applies: lo, hi, w0, w1 */
     double profiled[4];
-    int n_parts;             /* number of fitted parts of the current zone */
+    /* number of fitted parts of the current zone's box */
+    int n_parts;
     glint_fit_told_fn *told; /* NULL: no progress reports */
     void *told_ctx;
     double work, share; /* arguments of glint_fit_told_fn */
-    double sines;       /* sum of the widths of all ranges, sines */
+    double sines;       /* total width of all visible ranges, in sines */
 };
 
 /* ------------------------------------------------------------------- zones */
 
-static enum glint_status set_box(struct glint_fitted_system *system,
-                                 const struct glint_zone *zone)
+static enum glint_status copy_zone_box(struct glint_fitted_system *system,
+                                       const struct glint_zone *zone)
 {
     const size_t bytes = GLINT_BOX_TERMS * sizeof(double);
 
@@ -65,21 +67,21 @@ static enum glint_status set_box(struct glint_fitted_system *system,
     return GLINT_OK;
 }
 
-static bool is_whole_band(double w0, double w1)
+static bool is_full_band(double w0, double w1)
 {
     return w0 <= -1 && w1 >= 1;
 }
 
-/* Returns the profile (boxes by angle) for the band of P. */
+/* Returns the visible boxes by angle for the band of P. */
 static const struct glint_visible_profile *
-find_profile(struct fitter *f, const struct glint_zone_piece *p)
+find_band_profile(struct fitter *f, const struct glint_zone_piece *p)
 {
     const double range[2] = {p->lo, p->hi};
     const double key[4] = {p->lo, p->hi, p->w0, p->w1};
 
-    if (is_whole_band(p->w0, p->w1))
+    if (is_full_band(p->w0, p->w1))
         return &f->profile;
-    /* NOLINTNEXTLINE: 0 and -0 may differ, which recomputes a profile. */
+    /* NOLINTNEXTLINE: -0 differs from 0 here, which recomputes a profile */
     if (memcmp(key, f->profiled, sizeof key) != 0) {
         glint_visible_narrow(&f->in_band, f->visible, p->w0, p->w1);
         glint_visible_profile_find(&f->in_band, range, &f->band_profile);
@@ -88,44 +90,44 @@ find_profile(struct fitter *f, const struct glint_zone_piece *p)
     return &f->band_profile;
 }
 
-/* Cuts ZONE to the part of P. Returns the visibility of the ghost in the
- * part's band. */
-static const struct glint_visible *cut_zone(struct fitter *f,
-                                            const struct glint_zone_piece *p,
-                                            struct glint_zone *zone)
+/* Cuts the box and band of ZONE to the part of P. Returns the visibility of the
+ * ghost in the part's band. */
+static const struct glint_visible *
+cut_zone_to_part(struct fitter *f, const struct glint_zone_piece *p,
+                 struct glint_zone *zone)
 {
     const struct glint_zone_part *part = &p->part;
     const struct glint_visible *band =
-        is_whole_band(p->w0, p->w1) ? f->visible : &f->in_band;
+        is_full_band(p->w0, p->w1) ? f->visible : &f->in_band;
 
     glint_zone_cut(zone, part);
-    if (is_whole_band(part->w0, part->w1))
+    if (is_full_band(part->w0, part->w1))
         return band;
     glint_visible_narrow(&f->in_part, band, part->w0, part->w1);
     return &f->in_part;
 }
 
 /* Cuts ZONE to the part of P. If P is thorough, first crops the part to its
- * visible region: where a ghost is visible in red at one place and in blue
- * at another, much of the box is dark. Returns the visibility of the ghost
- * in the part's band. */
-static const struct glint_visible *
-set_part(struct fitter *f, struct glint_zone_piece *p, struct glint_zone *zone)
+ * visible region, as much of the box is dark if red and blue light enter at
+ * different places. Returns the visibility of the ghost in the part's band. */
+static const struct glint_visible *crop_zone_to_part(struct fitter *f,
+                                                     struct glint_zone_piece *p,
+                                                     struct glint_zone *zone)
 {
     const struct glint_zone uncropped = *zone;
-    const struct glint_visible *band = cut_zone(f, p, zone);
+    const struct glint_visible *band = cut_zone_to_part(f, p, zone);
     double rest = p->thorough ? 0 : 1;
 
     for (int round = 0; round < CROPS && rest < WORTH_CROP; round++) {
         rest = glint_zone_crop(zone, band, &p->part);
         *zone = uncropped;
-        band = cut_zone(f, p, zone);
+        band = cut_zone_to_part(f, p, zone);
     }
     return band;
 }
 
-/* Traces rays of ZONE in BAND and fits its outputs. A part through which no
- * light passes gets no outputs. */
+/* Traces rays of ZONE within BAND and fits its outputs. Adds no outputs if no
+ * light passes the part. */
 static enum glint_status
 fit_zone(struct fitter *f, const struct glint_zone_piece *p,
          const struct glint_zone *zone, const struct glint_visible *band,
@@ -142,10 +144,10 @@ fit_zone(struct fitter *f, const struct glint_zone_piece *p,
 
     glint_zone_trace(zone, band, &buffers->rays, &buffers->energies);
     a->errors.worst = 0;
-    if ((p->depth > 0 || !is_whole_band(p->w0, p->w1)) &&
+    if ((p->depth > 0 || !is_full_band(p->w0, p->w1)) &&
         glint_zone_rays_dark(&buffers->rays))
         return GLINT_OK;
-    status = set_box(system, zone);
+    status = copy_zone_box(system, zone);
     a->aim = glint_zone_aim_of(f->tolerance, zone, &buffers->rays);
     task.hopeless = glint_next_hopeless(&f->rules, p, &a->aim);
     task.settled = glint_next_settled(&f->rules, p, &a->aim);
@@ -155,13 +157,15 @@ fit_zone(struct fitter *f, const struct glint_zone_piece *p,
     return status;
 }
 
-/* Fits P, unless its box is filled too little or is cut by too many barrels,
- * so that it must be halved. May crop the part of P. */
-static enum glint_status try_zone(struct fitter *f, struct glint_zone_piece *p,
-                                  struct glint_fitted_system *system,
-                                  struct glint_attempt *a)
+/* Fits P. Sets an infinite error instead, so that P is halved, if visible light
+ * fills too little of the box or too many barrels block rays. May crop the part
+ * of P. */
+static enum glint_status try_zone_fit(struct fitter *f,
+                                      struct glint_zone_piece *p,
+                                      struct glint_fitted_system *system,
+                                      struct glint_attempt *a)
 {
-    const struct glint_visible_profile *profile = find_profile(f, p);
+    const struct glint_visible_profile *profile = find_band_profile(f, p);
     const struct glint_visible *band;
     struct glint_zone zone;
 
@@ -180,7 +184,7 @@ static enum glint_status try_zone(struct fitter *f, struct glint_zone_piece *p,
     if (!p->thorough && zone.fill < LEAST_FILL &&
         glint_next_degrees(p->lo, p->hi) > FILL_DEG)
         return GLINT_OK;
-    band = set_part(f, p, &zone);
+    band = crop_zone_to_part(f, p, &zone);
     system->wave_lo = band->wave_lo;
     system->wave_hi = band->wave_hi;
     glint_zone_choose_barrels(&zone, band, f->tolerance->escape, &f->sampling,
@@ -191,12 +195,13 @@ static enum glint_status try_zone(struct fitter *f, struct glint_zone_piece *p,
     return fit_zone(f, p, &zone, band, system, a);
 }
 
-static const struct glint_zone_part whole_part = {-1, 1, 1, -1, 1, 0};
+static const struct glint_zone_part full_part = {-1, 1, 1, -1, 1, 0};
 
-/* Pushes the halves of P onto the stack and returns the new number of
- * entries. Parts are halved along v first, which separates centre and rim. */
-static int push_halves(struct glint_zone_piece *stack, int n,
-                       struct glint_zone_piece p, enum glint_next how)
+/* Pushes both halves of P onto STACK and returns the new number of entries.
+ * HOW: halve the angles, the band or the box. Boxes are halved along v first,
+ * which separates the pupil's centre from its rim. */
+static int push_zone_halves(struct glint_zone_piece *stack, int n,
+                            struct glint_zone_piece p, enum glint_next how)
 {
     const double angle = 0.5 * (p.lo + p.hi);
     struct glint_zone_piece a = p, b = p;
@@ -205,7 +210,7 @@ static int push_halves(struct glint_zone_piece *stack, int n,
         a.hi = b.lo = angle;
     } else if (how == GLINT_BANDS) {
         a.w1 = b.w0 = 0.5 * (p.w0 + p.w1);
-        a.part = b.part = whole_part;
+        a.part = b.part = full_part;
     } else {
         a.depth = b.depth = p.depth + 1;
         glint_zone_part_halve(&p.part, p.depth % 2 == 0, &a.part, &b.part);
@@ -215,27 +220,29 @@ static int push_halves(struct glint_zone_piece *stack, int n,
     return n + 2;
 }
 
-/* Counts the fit of P. KEPT: the fit is accepted, so the zone is done. Returns
- * the status of told(). */
-static enum glint_status count_fit(struct fitter *f,
-                                   const struct glint_zone_piece *p, bool kept)
+/* Adds the fit of P to the work done. ACCEPTED: the fit is accepted, so the
+ * zone is done. Returns the status of told(). */
+static enum glint_status count_zone_fit(struct fitter *f,
+                                        const struct glint_zone_piece *p,
+                                        bool accepted)
 {
     f->work += p->thorough ? 2 : 1;
-    if (kept)
+    if (accepted)
         f->share += (p->hi - p->lo) / f->sines * 0.5 * (p->w1 - p->w0) /
                     (double)(1 << p->depth);
     return f->told ? f->told(f->told_ctx, f->work, f->share) : GLINT_OK;
 }
 
-/* Fits the zones of a range of angles, depth first from the lowest angle up;
- * upper halves wait on a stack. */
-static enum glint_status fit_range(struct fitter *f, const double range[2])
+/* Fits all zones in a range of angles, sines, from the lowest angle up. The
+ * upper halves of halved zones wait on a stack. */
+static enum glint_status fit_angle_range(struct fitter *f,
+                                         const double range[2])
 {
-    /* Fewer than 20 halvings shrink a zone to half of LEAST_DEG, or at the
-     * axis to a tenth of that. */
+    /* Zones shrink to half of LEAST_DEG in less than 20 halvings; at the axis
+     * to a tenth of that. */
     enum { DEEP = 24 + BAND_DEPTH + GLINT_MAX_AXIS_DEPTH };
     struct glint_zone_piece stack[DEEP] = {
-        {range[0], range[1], HUGE_VAL, -1, 1, false, whole_part, 0}};
+        {range[0], range[1], HUGE_VAL, -1, 1, false, full_part, 0}};
     enum glint_status status = GLINT_OK;
     int n = 1;
 
@@ -248,11 +255,11 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
         struct glint_attempt attempt;
         enum glint_next next = GLINT_KEEP;
 
-        status = try_zone(f, &p, &system, &attempt);
+        status = try_zone_fit(f, &p, &system, &attempt);
         if (status == GLINT_OK) {
             next =
                 n + 2 > DEEP ? GLINT_KEEP : glint_next(&f->rules, &p, &attempt);
-            status = count_fit(f, &p, next == GLINT_KEEP);
+            status = count_zone_fit(f, &p, next == GLINT_KEEP);
         }
         if (p.depth == 0 && p.w0 <= -1)
             f->n_parts = 0;
@@ -268,7 +275,7 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
         if (next == GLINT_THOROUGH) {
             stack[n++] = p;
         } else if (next != GLINT_KEEP) {
-            n = push_halves(stack, n, p, next);
+            n = push_zone_halves(stack, n, p, next);
         }
     }
     return status;
@@ -306,7 +313,7 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
         for (int k = 0; k < n; k++)
             f->sines += range[k][1] - range[k][0];
         for (int k = 0; k < n && status == GLINT_OK; k++)
-            status = fit_range(f, range[k]);
+            status = fit_angle_range(f, range[k]);
     }
     free(f->buffers.scratch);
     free(f);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A fitted ghost in double precision, before it is quantised. Its structure is
- * that of glint/model.h.
+ * A fitted ghost in double precision, before it is quantised. Same structure
+ * as in glint/model.h.
  */
 #ifndef GLINT_BAKE_FIT_FITTED_H
 #define GLINT_BAKE_FIT_FITTED_H
@@ -10,32 +10,36 @@
 #include "glint/model.h"
 #include "glint/status.h"
 
-/* One output (a polynomial). It owns COEF[n_terms]. */
+/* One output of a system: a polynomial. It owns coef, [n_terms]. */
 struct glint_fitted_output {
     enum glint_channel kind;
     int n_terms; /* 1 .. GLINT_MAX_MODEL_TERMS */
     uint8_t power[GLINT_MAX_MODEL_TERMS][GLINT_VARIABLES];
     double *coef;
-    double grain; /* max harmless rounding error of a coefficient; 0: no
-                     rounding */
-    int event;   /* index of the barrel's event on the path; only for barrels */
-    int roots;   /* number of times that the polynomial is squared to give the
-                    energy */
-    double most; /* largest value of the energy's polynomial where light passes;
-                    0: unknown */
-    bool met;    /* true: the fit meets its tolerance */
+    /* max rounding error of a coefficient that is harmless; 0: no rounding
+     * allowed */
+    double grain;
+    int event; /* barrels only: index of the barrel among the path's events */
+    /* energy only: number of times that the polynomial is squared */
+    int roots;
+    /* energy only: max of the polynomial over rays that reach the sensor; 0:
+     * unknown */
+    double most;
+    bool met; /* true: the fit meets its tolerance */
 };
 
 struct glint_fitted_system {
-    /* Index of the ghost, and of the part of its pupil, from 0. */
+    /* index of the ghost, and of the part of its pupil, from 0 */
     int ghost, part;
     int annulus; /* ring of the pupil, as in struct glint_model_system */
     double sine_lo, sine_hi;
-    bool skew; /* true: a system for directions in two dimensions: x components
-                  sine_lo .. sine_hi, y components y_lo .. y_hi */
+    /* true: directions have two components, x in sine_lo .. sine_hi and y in
+     * y_lo .. y_hi */
+    bool skew;
     double y_lo, y_hi;
-    double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
-    double *box;             /* mm, in the layout of the model file; owned */
+    double wave_lo, wave_hi; /* range of 1 / wavelength^2, um^-2 */
+    /* polynomials of the box, mm, ordered as in the model file; owned */
+    double *box;
     int n_outputs;
     struct glint_fitted_output output[GLINT_OUT_KINDS]; /* sorted by kind */
     bool met;
@@ -47,12 +51,12 @@ struct glint_fitted_ghost {
     struct glint_fitted_system *system;
 };
 
-/* Moves the systems of part PART to OUT, which must be empty. May return
- * GLINT_E_MEMORY. */
+/* Moves all systems of part PART of GHOST to OUT, which must be empty. May
+ * return GLINT_E_MEMORY. */
 enum glint_status glint_fitted_part(struct glint_fitted_ghost *ghost, int part,
                                     struct glint_fitted_ghost *out);
 
-/* Appends SYSTEM; GHOST then owns it. May return GLINT_E_MEMORY. */
+/* Appends SYSTEM to GHOST, which then owns it. May return GLINT_E_MEMORY. */
 enum glint_status glint_fitted_append(struct glint_fitted_ghost *ghost,
                                       const struct glint_fitted_system *system);
 

@@ -18,10 +18,10 @@ static double sum_magnitudes(const double *value, int n)
     return sum;
 }
 
-enum { LEAST_EXPONENT = -80 }; /* min binary exponent of a model */
+enum { LEAST_EXPONENT = -80 }; /* min binary exponent in a model */
 
-/* Returns the exponent at which the sum of N rounded values stays below
- * GLINT_COEF_LIMIT. SUM is the sum of their magnitudes before rounding. */
+/* Returns the smallest exponent with which N rounded values sum to less than
+ * GLINT_COEF_LIMIT. SUM: sum of the magnitudes before rounding. */
 static int choose_exponent(double sum, int n)
 {
     int exponent;
@@ -33,7 +33,7 @@ static int choose_exponent(double sum, int n)
     return exponent;
 }
 
-static bool all_finite(const double *value, int n)
+static bool are_all_finite(const double *value, int n)
 {
     for (int i = 0; i < n; i++)
         if (!isfinite(value[i]))
@@ -54,43 +54,43 @@ static enum glint_status round_to_integers(const double *value, int n,
 
 /* ---------------------------------------------------------------- intervals */
 
-/* Interval of a number computed at run time, and the max distance between
- * its rounded and its true value, in its unit. Double precision is
- * sufficient: values stay below 2^31, and errors are rounded up at the end. */
+/* Interval of a number computed at run time, and its max rounding error, both
+ * in the number's unit. Doubles are precise enough: values stay below 2^31, and
+ * errors are rounded up at the end. */
 struct range {
     double lo, hi, error;
 };
 
-static double max_magnitude(struct range r)
+static double max_range_magnitude(struct range r)
 {
     return fmax(fabs(r.lo), fabs(r.hi)) + r.error;
 }
 
 struct proof {
-    double bound; /* largest magnitude of all intermediate results so far */
+    double bound; /* max magnitude of all intermediate results so far */
 };
 
-static struct range record_bound(struct proof *p, struct range r)
+static struct range record_max_magnitude(struct proof *p, struct range r)
 {
-    p->bound = fmax(p->bound, max_magnitude(r));
+    p->bound = fmax(p->bound, max_range_magnitude(r));
     return r;
 }
 
 static struct range add_ranges(struct proof *p, struct range a, struct range b)
 {
-    return record_bound(
+    return record_max_magnitude(
         p, (struct range){a.lo + b.lo, a.hi + b.hi, a.error + b.error});
 }
 
-/* Returns the interval of q_mul(a, x, 30). X is a variable within -1 .. 1,
- * its error is in units of 2^-30. */
-static struct range multiply_range(struct proof *p, struct range a,
-                                   struct range x)
+/* Returns the interval of q_mul(a, x, 30) for a variable X within -1 .. 1,
+ * whose error is in units of 2^-30. */
+static struct range multiply_range_by_variable(struct proof *p, struct range a,
+                                               struct range x)
 {
     const double c[4] = {a.lo * x.lo, a.lo * x.hi, a.hi * x.lo, a.hi * x.hi};
     const double most_x = fmax(fabs(x.lo), fabs(x.hi));
 
-    return record_bound(
+    return record_max_magnitude(
         p, (struct range){fmin(fmin(c[0], c[1]), fmin(c[2], c[3])),
                           fmax(fmax(c[0], c[1]), fmax(c[2], c[3])),
                           a.error * (most_x + x.error * 0x1p-30) +
@@ -98,9 +98,9 @@ static struct range multiply_range(struct proof *p, struct range a,
                               0.5});
 }
 
-/* Returns the interval of X^N as computed at run time. X is a variable with
- * an error of its own. */
-static struct range power_range(struct range x, int n)
+/* Returns the interval of X^N as computed at run time, including the error of
+ * X. */
+static struct range compute_power_range(struct range x, int n)
 {
     struct range r = {n % 2 ? x.lo : fmax(0, x.lo), 1,
                       n * x.error + (n > 1 ? 0.5 * n : 0)};
@@ -112,49 +112,52 @@ static struct range power_range(struct range x, int n)
 
 static const struct range unit_range = {-1, 1, 0};
 
-/* Returns the interval of COEF, including the error of rounding it to an
- * integer, or to a multiple of 2^SHIFT. */
-static struct range coefficient_range(int32_t coef, int shift)
+/* Returns the interval of coefficient COEF, including its rounding to an
+ * integer or to a multiple of 2^SHIFT. */
+static struct range compute_coefficient_range(int32_t coef, int shift)
 {
     return (struct range){coef, coef, 0.5 + (shift ? ldexp(0.5, shift) : 0)};
 }
 
-/* Bounds the substitution of angle and wavelength. TABLE receives the
- * intervals of the coefficients of u and v. */
-static void prove_table(struct proof *p, const struct glint_fitted_output *o,
-                        const struct glint_quantised_output *q,
-                        struct range table[][GLINT_MAX_POWER + 1])
+/* Computes the intervals of substituting angle and wavelength into all terms.
+ * TABLE[v power][u power] receives the intervals of the remaining
+ * coefficients. */
+static void bound_term_table(struct proof *p,
+                             const struct glint_fitted_output *o,
+                             const struct glint_quantised_output *q,
+                             struct range table[][GLINT_MAX_POWER + 1])
 {
     for (int i = 0; i < o->n_terms; i++) {
         const int k = q->order[i];
         const int shift = i < o->n_terms - q->n_narrow ? 0 : q->shift;
-        struct range value =
-            record_bound(p, coefficient_range(q->coef[k], shift));
+        struct range value = record_max_magnitude(
+            p, compute_coefficient_range(q->coef[k], shift));
         struct range *to = &table[o->power[k][1]][o->power[k][0]];
 
         for (int x = 2; x < GLINT_VARIABLES; x++)
             if (o->power[k][x])
-                value = multiply_range(p, value,
-                                       power_range(unit_range, o->power[k][x]));
+                value = multiply_range_by_variable(
+                    p, value, compute_power_range(unit_range, o->power[k][x]));
         *to = add_ranges(p, *to, value);
     }
 }
 
-/* Returns the interval of the sum over odd or even powers of v of the terms
- * of TABLE with power A of u. */
-static struct range row_range(struct proof *p,
-                              struct range table[][GLINT_MAX_POWER + 1], int a,
-                              bool odd)
+/* Returns the interval of the sum over odd or even powers of v of all terms in
+ * TABLE with power A of u. */
+static struct range compute_row_range(struct proof *p,
+                                      struct range table[][GLINT_MAX_POWER + 1],
+                                      int a, bool odd)
 {
     const struct range v2 = {0, 1, 0.5};
     struct range sum = {0, 0, 0};
 
     for (int b = GLINT_MAX_POWER - 1 + odd; b >= 0; b -= 2)
-        sum = add_ranges(p, multiply_range(p, sum, v2), table[b][a]);
-    return odd ? multiply_range(p, sum, unit_range) : sum;
+        sum =
+            add_ranges(p, multiply_range_by_variable(p, sum, v2), table[b][a]);
+    return odd ? multiply_range_by_variable(p, sum, unit_range) : sum;
 }
 
-static void prove_output(struct proof *p, const struct glint_fitted_output *o,
+static void bound_output(struct proof *p, const struct glint_fitted_output *o,
                          const struct glint_quantised_output *q, bool skew,
                          struct range *result)
 {
@@ -163,19 +166,20 @@ static void prove_output(struct proof *p, const struct glint_fitted_output *o,
     const bool odd =
         o->kind == GLINT_OUT_SENSOR_Y || o->kind == GLINT_OUT_STOP_Y;
 
-    prove_table(p, o, q, table);
+    bound_term_table(p, o, q, table);
     for (int a = GLINT_MAX_POWER; a >= 0; a--) {
-        struct range sum = row_range(p, table, a, odd && !skew);
+        struct range sum = compute_row_range(p, table, a, odd && !skew);
 
         if (skew)
-            sum = add_ranges(p, sum, row_range(p, table, a, true));
-        *result = add_ranges(p, multiply_range(p, *result, unit_range), sum);
+            sum = add_ranges(p, sum, compute_row_range(p, table, a, true));
+        *result = add_ranges(
+            p, multiply_range_by_variable(p, *result, unit_range), sum);
     }
 }
 
 /* Returns the interval of the energy that the run time computes from its
- * polynomial. */
-static struct range energy_range(struct range x, int head, int roots)
+ * polynomial X, scaled by 2^HEAD and squared ROOTS times. */
+static struct range compute_energy_range(struct range x, int head, int roots)
 {
     if (head || roots)
         x = (struct range){0, fmin(fmax(0, ldexp(x.hi, head)), 0x1p29),
@@ -186,18 +190,18 @@ static struct range energy_range(struct range x, int head, int roots)
     return x;
 }
 
-static void prove_bounds(const struct glint_fitted_system *s,
-                         const struct glint_fitted_output *o,
-                         struct glint_quantised_output *out)
+static void prove_no_overflow(const struct glint_fitted_system *s,
+                              const struct glint_fitted_output *o,
+                              struct glint_quantised_output *out)
 {
     struct proof p = {0};
     struct range result = {0, 0, 0};
 
-    prove_output(&p, o, out, s->skew, &result);
+    bound_output(&p, o, out, s->skew, &result);
     while (out->head > 0 &&
-           energy_range(result, out->head, o->roots).error >= 0x1p22)
+           compute_energy_range(result, out->head, o->roots).error >= 0x1p22)
         out->head--; /* A larger scale would only enlarge rounding errors. */
-    result = energy_range(result, out->head, o->roots);
+    result = compute_energy_range(result, out->head, o->roots);
     out->proven = p.bound < 0x1p30 && result.error < 0x1p23;
     out->bound = out->proven ? (uint32_t)ceil(p.bound) : 0;
     out->rounding_q8 = out->proven ? (uint32_t)ceil(256 * result.error) : 0;
@@ -205,10 +209,10 @@ static void prove_bounds(const struct glint_fitted_system *s,
 
 /* ------------------------------------------------------------------- narrow */
 
-/* Moves coefficients for which 16 bits are sufficient to the end of the
+/* Moves coefficients for which 16 bits are precise enough to the end of the
  * order. */
-static void choose_narrow(const struct glint_fitted_output *o,
-                          struct glint_quantised_output *out)
+static void choose_16_bit_terms(const struct glint_fitted_output *o,
+                                struct glint_quantised_output *out)
 {
     const double steps = ldexp(o->grain, -out->exponent);
     int n_wide = 0, end = o->n_terms;
@@ -231,10 +235,10 @@ static void choose_narrow(const struct glint_fitted_output *o,
 
 /* ------------------------------------------------------------------ systems */
 
-/* Returns 1 or -1, the offset in the list of outputs from KIND to the other
- * coordinate of its pair, or 0 if KIND is not a coordinate of a pair. Both
- * coordinates have the same exponent so that they can be rotated together. */
-static int offset_to_pair(enum glint_channel kind)
+/* Returns the offset in the list of outputs from KIND to the other coordinate
+ * of the position: 1 or -1; 0 if KIND is not a position. x and y share one
+ * exponent so that they can be rotated. */
+static int find_paired_output_offset(enum glint_channel kind)
 {
     return kind == GLINT_OUT_SENSOR_X || kind == GLINT_OUT_STOP_X   ? 1
            : kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y ? -1
@@ -248,12 +252,12 @@ static int choose_output_exponent(const struct glint_fitted_system *s, int k)
     return choose_exponent(sum_magnitudes(o->coef, o->n_terms), o->n_terms);
 }
 
-/* Returns the number of bits by which the energy's polynomial can be scaled
- * up such that, where light passes, it stays below half of the largest
- * allowed integer. If the energy is the fourth power of the polynomial, the
- * limit holds for the energy, and one bit of the root is four bits of the
- * energy. */
-static int choose_head(const struct glint_fitted_output *o, int exponent)
+/* Returns the number of bits by which the energy's polynomial can be scaled up
+ * while it stays below half of the max integer for all rays that reach the
+ * sensor. If the energy is the fourth power of the polynomial, the limit holds
+ * for the energy, and one bit of the polynomial is four bits of the energy. */
+static int choose_energy_scale(const struct glint_fitted_output *o,
+                               int exponent)
 {
     const double most = o->roots ? 0x1.ap28 : 0x1p28;
     int head = 0;
@@ -269,7 +273,7 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
                                          struct glint_quantised_output *out)
 {
     const struct glint_fitted_output *o = &s->output[k];
-    const int pair = offset_to_pair(o->kind);
+    const int pair = find_paired_output_offset(o->kind);
     enum glint_status status;
 
     out->exponent = choose_output_exponent(s, k);
@@ -278,13 +282,13 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
 
         out->exponent = out->exponent > other ? out->exponent : other;
     }
-    out->head = choose_head(o, out->exponent);
+    out->head = choose_energy_scale(o, out->exponent);
     status = round_to_integers(o->coef, o->n_terms, out->exponent, &out->coef);
     for (int i = 0; i < o->n_terms; i++)
         out->order[i] = (uint8_t)i;
     if (status == GLINT_OK) {
-        choose_narrow(o, out);
-        prove_bounds(s, o, out);
+        choose_16_bit_terms(o, out);
+        prove_no_overflow(s, o, out);
         status = out->proven ? GLINT_OK : GLINT_E_LENS;
     }
     return status;
@@ -295,18 +299,18 @@ static int count_box_terms(const struct glint_fitted_system *s)
     return (s->skew ? GLINT_LENS_SIDES : 3) * GLINT_BOX_TERMS;
 }
 
-/* Returns whether every output has terms and all coefficients are finite. */
-static bool is_sound(const struct glint_fitted_system *s)
+/* Returns whether each output has terms and all coefficients are finite. */
+static bool is_system_finite(const struct glint_fitted_system *s)
 {
     const int n_box = count_box_terms(s);
 
     for (int k = 0; k < s->n_outputs; k++) {
         const struct glint_fitted_output *o = &s->output[k];
 
-        if (o->n_terms < 1 || !all_finite(o->coef, o->n_terms))
+        if (o->n_terms < 1 || !are_all_finite(o->coef, o->n_terms))
             return false;
     }
-    return all_finite(s->box, n_box);
+    return are_all_finite(s->box, n_box);
 }
 
 enum glint_status glint_quantise(const struct glint_fitted_system *system,
@@ -317,7 +321,7 @@ enum glint_status glint_quantise(const struct glint_fitted_system *system,
 
     *out = (struct glint_quantised_system){.box_exponent = 0};
     out->n_box = count_box_terms(system);
-    if (!is_sound(system))
+    if (!is_system_finite(system))
         return GLINT_E_LENS;
     for (int k = 0; k < out->n_box; k += GLINT_BOX_TERMS)
         most = fmax(most, sum_magnitudes(system->box + k, GLINT_BOX_TERMS));

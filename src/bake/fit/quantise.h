@@ -1,35 +1,36 @@
 /* SPDX-License-Identifier: MIT
  *
- * Converts the doubles of a fit into the integers of a model and proves that
- * these cannot overflow at run time.
+ * Rounds the doubles of a fitted system to the integers of a model and proves
+ * that these cannot overflow at run time.
  *
  *   in   a fitted system
- *   out  integer coefficients and exponents; for each output a proven bound on
- *        every intermediate result of src/lens/transfer*.c and on the rounding
- *        error of its value
+ *   out  integer coefficients and exponents; for each output proven upper
+ *        bounds of all intermediate results of src/lens/transfer*.c and of the
+ *        rounding error
  *
- * Method: interval arithmetic over the whole domain, operation by operation in
- * the order of the run time: angle and wavelength into the coefficients, v into
- * the row, Horner's rule along u. Interpolated coefficients lie between those
- * of two knots, so the interval covers both.
+ * Method: interval arithmetic over the whole domain, with the run time's
+ * operations in their order: angle and wavelength are substituted into the
+ * coefficients, then v, then Horner's rule is applied along u. A coefficient
+ * interpolated between two knots lies between both values, so the interval of
+ * both covers it.
  */
 #ifndef GLINT_BAKE_FIT_QUANTISE_H
 #define GLINT_BAKE_FIT_QUANTISE_H
 
 #include "bake/fit/fitted.h"
 
-/* Limit of the sum of the coefficients' magnitudes. */
+/* limit of the sum of the magnitudes of an output's coefficients */
 #define GLINT_COEF_LIMIT (INT64_C(1) << 29)
 
-/* One output. The last N_NARROW coefficients in ORDER are multiples of
- * 2^SHIFT; divided by it, they fit 16 bits. */
+/* One output. The last n_narrow coefficients in the order are multiples of
+ * 2^shift and fit 16 bits after division by it. */
 struct glint_quantised_output {
     int32_t exponent;
     int32_t *coef; /* [sets][n_terms]; owned */
     int n_narrow, shift;
     int head; /* as in struct glint_model_output; energy only */
-    uint8_t order[GLINT_MAX_MODEL_TERMS]; /* indices of the terms in the order
-                                             of the file */
+    /* indices of the terms in file order */
+    uint8_t order[GLINT_MAX_MODEL_TERMS];
     uint32_t bound, rounding_q8;
     bool proven;
 };
@@ -41,9 +42,9 @@ struct glint_quantised_system {
     int n_box;
 };
 
-/* Quantises SYSTEM. Returns GLINT_E_LENS if a number is not finite or the
- * proof fails; may return GLINT_E_MEMORY. The caller must call
- * glint_quantised_finish() on OUT even after an error. */
+/* Quantises SYSTEM. Returns GLINT_E_LENS if a value is not finite or the proof
+ * fails, or GLINT_E_MEMORY. The caller must call glint_quantised_finish() on
+ * OUT even after an error. */
 enum glint_status glint_quantise(const struct glint_fitted_system *system,
                                  struct glint_quantised_system *out);
 

@@ -5,11 +5,11 @@
 #include "bake/regress/regress.h"
 #include "engine/setup/degrees.h"
 
-/* A box is full enough if the visible light fills this fraction of it. A
- * fuller box would need higher powers of s, which the polynomials defined on
- * the box would have to compensate. */
+/* A box is accepted if visible light fills this fraction of it. A tighter box
+ * would need higher powers of s, which the polynomials on the box would have to
+ * compensate. */
 #define ENOUGH_FILL 0.6
-/* A higher degree in s is chosen only if rays then fill the box this many
+/* A higher degree in s is chosen only if light then fills the box this many
  * times as well. */
 #define FULLER 1.6
 
@@ -42,19 +42,19 @@ double glint_zone_side(const struct glint_zone *zone,
                (side[GLINT_BOX_POWERS] + s * side[GLINT_BOX_POWERS + 1]);
 }
 
-/* The visible boxes that a zone's box must contain, at the zone's
- * coordinates s and w. */
-enum { ROOM = GLINT_PROFILE * GLINT_VISIBLE_WAVES };
+/* the visible boxes that a zone's box must contain, at zone coordinates s and
+ * w */
+enum { MAX_BOXES = GLINT_PROFILE * GLINT_VISIBLE_WAVES };
 
 struct seen {
     int n, n_angles;
-    double s[ROOM], w[ROOM];
-    double middle[ROOM], half_x[ROOM], half_y[ROOM];
+    double s[MAX_BOXES], w[MAX_BOXES];
+    double middle[MAX_BOXES], half_x[MAX_BOXES], half_y[MAX_BOXES];
     double narrowest;
 };
 
-static void add_box(struct seen *seen, double s, double w,
-                    const struct glint_pupil *box)
+static void append_visible_box(struct seen *seen, double s, double w,
+                               const struct glint_pupil *box)
 {
     const int i = seen->n++;
 
@@ -66,10 +66,11 @@ static void add_box(struct seen *seen, double s, double w,
     seen->narrowest = fmin(seen->narrowest, seen->half_x[i]);
 }
 
-/* Collects the visible boxes of the zone, and of one more angle at each end,
- * so that the ends of the zone are covered. */
-static void gather_boxes(const struct glint_visible_profile *p, double lo,
-                         double hi, bool by_colour, struct seen *seen)
+/* Collects the visible boxes of all angles in the zone and of one more angle at
+ * each end, so that the zone's ends are covered. */
+static void collect_visible_boxes(const struct glint_visible_profile *p,
+                                  double lo, double hi, bool by_colour,
+                                  struct seen *seen)
 {
     int first = 0, last = p->n - 1;
 
@@ -81,25 +82,28 @@ static void gather_boxes(const struct glint_visible_profile *p, double lo,
     seen->n_angles = last - first + 1;
     seen->narrowest = HUGE_VAL;
     for (int k = first; k <= last && !by_colour; k++)
-        add_box(seen, (2 * p->sine[k] - lo - hi) / (hi - lo), 0, &p->box[k]);
+        append_visible_box(seen, (2 * p->sine[k] - lo - hi) / (hi - lo), 0,
+                           &p->box[k]);
     for (int k = 0; k < p->n_samples && by_colour; k++) {
         const struct glint_box_sample *g = &p->sample[k];
 
         if (g->sine >= p->sine[first] && g->sine <= p->sine[last])
-            add_box(seen, (2 * g->sine - lo - hi) / (hi - lo), g->w, &g->box);
+            append_visible_box(seen, (2 * g->sine - lo - hi) / (hi - lo), g->w,
+                               &g->box);
     }
 }
 
-/* Fits the polynomial SIDE to VALUE within TOLERANCE, or as well as
- * possible: powers of s up to DEGREE and, if BY_COLOUR is set, w and s w. */
-static void fit_side(const struct seen *seen, const double *value, int degree,
-                     bool by_colour, double tolerance,
-                     double side[GLINT_BOX_TERMS])
+/* Fits the box polynomial SIDE to VALUE within TOLERANCE, or as well as
+ * possible. Terms: powers of s up to DEGREE; BY_COLOUR: also w and s w. */
+static void fit_box_side(const struct seen *seen, const double *value,
+                         int degree, bool by_colour, double tolerance,
+                         double side[GLINT_BOX_TERMS])
 {
-    static const double zero[ROOM];
-    double scratch[GLINT_REGRESS_DOUBLES(ROOM, GLINT_BOX_TERMS, GLINT_BOX_TERMS,
+    static const double zero[MAX_BOXES];
+    double scratch[GLINT_REGRESS_DOUBLES(MAX_BOXES, GLINT_BOX_TERMS,
+                                         GLINT_BOX_TERMS,
                                          3 * (2 * GLINT_BOX_POWERS - 1))];
-    double weight[ROOM];
+    double weight[MAX_BOXES];
     const struct glint_regress_samples samples = {
         seen->n, {zero, zero, seen->s, seen->w}, weight};
     const int total = degree < 2 ? 2 : degree;
@@ -122,10 +126,9 @@ static void fit_side(const struct seen *seen, const double *value, int degree,
                              : fit.power[k][2]] = fit.coef[k];
 }
 
-/* Returns the constant that must be added to the polynomial HALF to make it
- * 0 or more everywhere in the zone, sampled; negative if it is positive
- * everywhere. */
-static double compute_missing_height(const double half[GLINT_BOX_TERMS])
+/* Returns minus the min of the polynomial HALF (a half size, mm) over the zone,
+ * sampled: adding it makes HALF 0 or more everywhere. */
+static double compute_height_deficit(const double half[GLINT_BOX_TERMS])
 {
     double lowest = HUGE_VAL;
 
@@ -135,8 +138,10 @@ static double compute_missing_height(const double half[GLINT_BOX_TERMS])
     return -lowest;
 }
 
-/* Widens the box until it contains all visible boxes, with a margin of 1 %. */
-static void widen_box(struct glint_zone *z, const struct seen *seen)
+/* Enlarges the box of Z until it contains all visible boxes, with a margin of
+ * 1 %. */
+static void enlarge_box_to_visible(struct glint_zone *z,
+                                   const struct seen *seen)
 {
     double more_x = 0, more_y = 0;
 
@@ -152,13 +157,13 @@ static void widen_box(struct glint_zone *z, const struct seen *seen)
     z->half_x[0] += more_x;
     z->half_y[0] += more_y;
     z->half_x[0] +=
-        fmax(0.01 * z->half_x[0], 1.1 * compute_missing_height(z->half_x));
+        fmax(0.01 * z->half_x[0], 1.1 * compute_height_deficit(z->half_x));
     z->half_y[0] +=
-        fmax(0.01 * z->half_y[0], 1.1 * compute_missing_height(z->half_y));
+        fmax(0.01 * z->half_y[0], 1.1 * compute_height_deficit(z->half_y));
 }
 
-static double compute_mean_fill(const struct glint_zone *z,
-                                const struct seen *seen)
+static double compute_box_fill(const struct glint_zone *z,
+                               const struct seen *seen)
 {
     double sum = 0;
 
@@ -169,17 +174,17 @@ static double compute_mean_fill(const struct glint_zone *z,
     return sum / seen->n;
 }
 
-static void set_box(struct glint_zone *z, const struct seen *seen, int degree,
-                    bool by_colour)
+static void fit_zone_box(struct glint_zone *z, const struct seen *seen,
+                         int degree, bool by_colour)
 {
     const double tolerance = 0.02 * seen->narrowest;
     const int tame = degree < 2 ? degree : 2;
 
-    fit_side(seen, seen->middle, degree, by_colour, tolerance, z->middle);
-    fit_side(seen, seen->half_x, tame, by_colour, tolerance, z->half_x);
-    fit_side(seen, seen->half_y, tame, by_colour, tolerance, z->half_y);
-    widen_box(z, seen);
-    z->fill = compute_mean_fill(z, seen);
+    fit_box_side(seen, seen->middle, degree, by_colour, tolerance, z->middle);
+    fit_box_side(seen, seen->half_x, tame, by_colour, tolerance, z->half_x);
+    fit_box_side(seen, seen->half_y, tame, by_colour, tolerance, z->half_y);
+    enlarge_box_to_visible(z, seen);
+    z->fill = compute_box_fill(z, seen);
 }
 
 void glint_zone_init(struct glint_zone *zone,
@@ -189,21 +194,23 @@ void glint_zone_init(struct glint_zone *zone,
     struct seen seen;
     int most;
 
-    gather_boxes(profile, lo, hi, by_colour, &seen);
+    collect_visible_boxes(profile, lo, hi, by_colour, &seen);
     most = seen.n_angles > 12 ? GLINT_BOX_POWERS - 1 : (seen.n_angles - 1) / 2;
     *zone = (struct glint_zone){.fill = 0};
     for (int degree = most < 1 ? most : 1;
          degree <= most && zone->fill < ENOUGH_FILL; degree++) {
         struct glint_zone z = {.lo = lo, .hi = hi};
 
-        set_box(&z, &seen, degree, by_colour);
+        fit_zone_box(&z, &seen, degree, by_colour);
         if (z.fill > FULLER * zone->fill)
             *zone = z;
     }
 }
 
-/* Substitutes w by W0 + (1 + w) / 2 * (W1 - W0) in the polynomial SIDE. */
-static void narrow_side(double side[GLINT_BOX_TERMS], double w0, double w1)
+/* Substitutes w in the box polynomial SIDE such that -1 .. 1 becomes
+ * W0 .. W1. */
+static void narrow_band_of_side(double side[GLINT_BOX_TERMS], double w0,
+                                double w1)
 {
     double *of_w = side + GLINT_BOX_POWERS;
 
@@ -225,8 +232,8 @@ void glint_zone_part_halve(const struct glint_zone_part *part, bool along_v,
     const int k = part->annulus;
 
     *first = *second = *part;
-    if (along_v) { /* The part spans k .. k + 1 in units of 1 / (k + 1) of its
-                      outer height. */
+    /* the part spans k .. k + 1 in units of 1 / (k + 1) of its outer height */
+    if (along_v) {
         first->top *= (2 * k + 1) / (2 * k + 2.0);
         first->annulus = 2 * k;
         second->annulus = 2 * k + 1;
@@ -242,16 +249,16 @@ void glint_zone_cut(struct glint_zone *zone, const struct glint_zone_part *part)
         zone->half_x[k] *= 0.5 * (part->u1 - part->u0);
         zone->half_y[k] *= part->top;
     }
-    narrow_side(zone->middle, part->w0, part->w1);
-    narrow_side(zone->half_x, part->w0, part->w1);
-    narrow_side(zone->half_y, part->w0, part->w1);
+    narrow_band_of_side(zone->middle, part->w0, part->w1);
+    narrow_band_of_side(zone->half_x, part->w0, part->w1);
+    narrow_band_of_side(zone->half_y, part->w0, part->w1);
     zone->annulus = part->annulus;
 }
 
 /* Sets X to point K of a low-discrepancy sequence in four dimensions, each
- * -1 .. 1: the fractional parts of 1/2 + (K + 1) / g^i for i = 1 .. 4,
- * scaled to -1 .. 1, where g is the root of x^5 = x + 1. */
-static void scatter_in_four(int k, double x[GLINT_VARIABLES])
+ * -1 .. 1: the fractional parts of 1/2 + (K + 1) / g^i for i = 1 .. 4, scaled,
+ * where g is the root of x^5 = x + 1. */
+static void compute_4d_sequence_point(int k, double x[GLINT_VARIABLES])
 {
     const double root = 1.16730397826141868426;
     double step = 1;
@@ -270,7 +277,7 @@ void glint_zone_scatter(const struct glint_zone *zone, int k,
     double step = 1;
 
     if (!zone->skew) {
-        scatter_in_four(k, x);
+        compute_4d_sequence_point(k, x);
         x[GLINT_V] = fabs(x[GLINT_V]);
         return;
     }
@@ -280,8 +287,9 @@ void glint_zone_scatter(const struct glint_zone *zone, int k,
     }
 }
 
-static void compute_direction(const struct glint_zone *z,
-                              const double x[GLINT_VARIABLES], double d[3])
+static void compute_light_direction(const struct glint_zone *z,
+                                    const double x[GLINT_VARIABLES],
+                                    double d[3])
 {
     d[0] = 0.5 * (z->lo + z->hi) + 0.5 * x[GLINT_S] * (z->hi - z->lo);
     d[1] = z->skew ? 0.5 * (z->y_lo + z->y_hi) +
@@ -305,7 +313,7 @@ void glint_zone_batch_add(struct glint_zone_batch *batch,
     from->y_mm = batch->x[batch->n][1] * glint_zone_side(zone, zone->half_y, x);
     if (zone->skew)
         from->y_mm += glint_zone_side(zone, zone->middle_y, x);
-    compute_direction(zone, x, from->direction);
+    compute_light_direction(zone, x, from->direction);
     batch->n++;
 }
 
@@ -317,8 +325,8 @@ void glint_zone_batch_trace(struct glint_zone_batch *batch)
                      batch->status, batch->hits);
 }
 
-/* Shrinks the interval *FROM .. *TO to the sub-interval LOW .. HIGH, given
- * in relative coordinates -1 .. 1. */
+/* Shrinks the interval *FROM .. *TO to its part LOW .. HIGH, in relative
+ * coordinates -1 .. 1. */
 static void shrink_interval(double low, double high, double *from, double *to)
 {
     const double middle = 0.5 * (*from + *to), half = 0.5 * (*to - *from);
@@ -327,16 +335,16 @@ static void shrink_interval(double low, double high, double *from, double *to)
     *to = middle + fmin(1, high) * half;
 }
 
-/* Bounding box of the visible rays in u, v, s and w. */
+/* bounding box of visible rays in u, v, s and w */
 struct sighting {
     double low[GLINT_VARIABLES], high[GLINT_VARIABLES];
 };
 
-/* Traces the rays of batch T at wavelength number WAVE through the ghost and
- * through the same ghost at neighbouring zoom positions, and extends SEEN by
- * the visible ones. */
-static void trace_members(const struct glint_visible *visible, int wave,
-                          struct glint_zone_batch *t, struct sighting *seen)
+/* Traces the rays of batch T, at wavelength index WAVE, at this and all
+ * neighbouring zoom positions, and extends SEEN by the visible ones. */
+static void trace_at_zoom_positions(const struct glint_visible *visible,
+                                    int wave, struct glint_zone_batch *t,
+                                    struct sighting *seen)
 {
     for (int m = 0; m <= visible->n_beside; m++) {
         const struct glint_visible *const h = glint_visible_member(visible, m);
@@ -358,9 +366,8 @@ double glint_zone_crop(const struct glint_zone *zone,
                        struct glint_zone_part *part)
 {
     enum { ANGLES = 5, COLUMNS = GLINT_ZONE_BATCH, ROWS = 12 };
-    /* Rays through surfaces that are not spheres are slow to trace, and the
-     * colours of such lenses rarely separate, so fewer wavelengths are
-     * traced. */
+    /* Fewer wavelengths for non-spherical surfaces, through which rays are slow
+     * to trace; the colours of such lenses rarely separate. */
     const int stride = visible->shaped ? (GLINT_VISIBLE_WAVES - 1) / 2 : 1;
     const double margin = 3.0 / COLUMNS;
     const struct glint_zone_part before = *part;
@@ -380,7 +387,7 @@ double glint_zone_crop(const struct glint_zone *zone,
 
             glint_zone_batch_add(&t, zone, x);
         }
-        trace_members(visible, wave, &t, &seen);
+        trace_at_zoom_positions(visible, wave, &t, &seen);
     }
     if (seen.high[0] < seen.low[0])
         return 0;

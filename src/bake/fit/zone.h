@@ -28,63 +28,64 @@
 #include "glint/trace.h"
 
 struct glint_zone {
-    double lo, hi;                  /* range of the sine of the angle */
-    double middle[GLINT_BOX_TERMS]; /* centre of the box along u, mm; terms as
-                                       in a model */
+    double lo, hi; /* range of light angles, sines */
+    /* polynomial of the box's centre along u, mm; terms as in a model */
+    double middle[GLINT_BOX_TERMS];
     double half_x[GLINT_BOX_TERMS], half_y[GLINT_BOX_TERMS];
     bool skew;
-    double y_lo, y_hi; /* range of the y component of directions, only if SKEW;
-                          lo .. hi is then the range of x */
-    double middle_y[GLINT_BOX_TERMS]; /* centre of the box along v, mm; only if
-                                         SKEW */
-    double fill; /* mean fraction of the box that visible boxes cover */
+    /* skew zones only: range of the y components of directions; lo .. hi is
+     * then the range of x components */
+    double y_lo, y_hi;
+    /* skew zones only: polynomial of the box's centre along v, mm */
+    double middle_y[GLINT_BOX_TERMS];
+    double fill; /* mean fraction of the box that visible light fills */
     int annulus; /* ring of the pupil, as in struct glint_model_system */
 };
 
-/* A part of a zone's box and band: u from U0 to U1, |v| up to TOP, w from W0
- * to W1. */
+/* A part of a zone's box and band: u in u0 .. u1 and |v| up to top (-1 .. 1,
+ * 0 .. 1), w in w0 .. w1. */
 struct glint_zone_part {
     double u0, u1, top, w0, w1;
     int annulus;
 };
 
-/* Evaluates the polynomial SIDE (centre or half size of a box) at S and W. */
+/* Evaluates SIDE, a box polynomial of a round lens (centre or half size, mm),
+ * at S and W. */
 double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w);
 
-/* Evaluates the polynomial SIDE of ZONE, skew or not, at X. */
+/* Evaluates SIDE, a box polynomial of ZONE (centre or half size, mm), at X. */
 double glint_zone_side(const struct glint_zone *zone,
                        const double side[GLINT_BOX_TERMS],
                        const double x[GLINT_VARIABLES]);
 
-/* Sets the box for the angles LO .. HI from PROFILE. BY_COLOUR: the box
- * depends on the wavelength and has more terms; else one box contains all
- * wavelengths. */
+/* Fits a box to the visible boxes of PROFILE at the angles LO .. HI, sines.
+ * BY_COLOUR: the box depends on the wavelength; else it contains the light of
+ * all wavelengths. */
 void glint_zone_init(struct glint_zone *zone,
                      const struct glint_visible_profile *profile, double lo,
                      double hi, bool by_colour);
 
-/* Returns the inner edge |v| of a ring-shaped box, as a fraction of its half
- * height. */
+/* Returns the inner edge |v| of ring ANNULUS of the pupil / its outer edge. */
 double glint_zone_rim(int annulus);
 
-/* Halves PART along v (inner and outer half) or along u. */
+/* Halves PART along v, into an inner and an outer half, or along u. */
 void glint_zone_part_halve(const struct glint_zone_part *part, bool along_v,
                            struct glint_zone_part *first,
                            struct glint_zone_part *second);
 
-/* Cuts the box of ZONE to PART. */
+/* Cuts box and band of ZONE to PART. */
 void glint_zone_cut(struct glint_zone *zone,
                     const struct glint_zone_part *part);
 
 /* Crops PART to its visible region, with a margin. ZONE must have been cut to
- * PART and VISIBLE narrowed to its band. Returns the fraction of PART that is
- * left, 0 .. 1. */
+ * PART, and VISIBLE narrowed to its band. Returns the fraction of PART that
+ * remains, 0 .. 1. */
 double glint_zone_crop(const struct glint_zone *zone,
                        const struct glint_visible *visible,
                        struct glint_zone_part *part);
 
-/* Returns node K of N on -1 .. 1. Nodes are denser towards both ends, which
- * are included. */
+/* Returns node K of N nodes on -1 .. 1, both ends included. Nodes are denser
+ * towards the ends. */
 double glint_zone_node(int k, int n);
 
 /* A batch of rays of a zone that share a path and are traced together.
@@ -103,28 +104,29 @@ struct glint_zone_batch {
     struct glint_launch from[GLINT_ZONE_BATCH];
     struct glint_ray ray[GLINT_ZONE_BATCH];
     enum glint_ray_status status[GLINT_ZONE_BATCH];
-    double hits[GLINT_ZONE_BATCH * (GLINT_MAX_EVENTS + 1)]
-               [2]; /* mm; -1: the ray does not reach the event */
+    /* positions at the events of the path, mm; -1, -1: the ray does not reach
+     * the event */
+    double hits[GLINT_ZONE_BATCH * (GLINT_MAX_EVENTS + 1)][2];
 };
 
-/* Adds the ray at coordinates X of the zone. The w of X must be that of the
- * path. v is 0 .. 1, from the centre or inner edge of the box to its rim; in
- * a skew zone -1 .. 1. */
+/* Adds the ray at zone coordinates X to BATCH. Its w must be the wavelength of
+ * the path. v: 0 (centre or inner edge of the box) .. 1 (rim); in skew zones
+ * -1 .. 1. */
 void glint_zone_batch_add(struct glint_zone_batch *batch,
                           const struct glint_zone *zone,
                           const double x[GLINT_VARIABLES]);
 
 void glint_zone_batch_trace(struct glint_zone_batch *batch);
 
-/* Returns the positions of ray K at the events of the path, [n_events]. */
+/* Returns the positions of ray K at the events of the path, mm, [n_events]. */
 static inline double (*glint_zone_batch_hits(struct glint_zone_batch *batch,
                                              int k))[2]
 {
     return batch->hits + k * batch->path->n_events;
 }
 
-/* Sets X to point K of a low-discrepancy sequence that fills ZONE, in five
- * dimensions if ZONE is skew, else in four with v >= 0. */
+/* Sets X to point K of a low-discrepancy sequence that fills ZONE: four
+ * dimensions with v >= 0; five if ZONE is skew. */
 void glint_zone_scatter(const struct glint_zone *zone, int k,
                         double x[GLINT_VARIABLES]);
 

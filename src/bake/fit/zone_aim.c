@@ -3,31 +3,31 @@
 
 #include <math.h>
 
-/* Light of a ray below which the weight of its errors does not decrease any
- * further. */
+/* Min relative brightness of a ray for weighting its error. */
 #define LEAST_LIGHT 1e-3
-/* Min factor on the position tolerances of skew zones brighter than white. A
- * shift of their outlines is more visible by the same factor. */
+/* Skew zones brighter than white: min factor on position tolerances, as shifts
+ * of their outlines are more visible by the same factor. */
 #define CLIPPED 0.4
-/* Min factor on the position tolerance across a streak that is thinner than
- * a pixel: where such a streak crosses from one row of pixels to the next,
- * all of its light moves. */
+/* Min factor on the position tolerance across a streak thinner than a pixel:
+ * where such a streak crosses from one pixel row to the next, all of its light
+ * moves. */
 #define THIN 0.1
 
-/* Summary of the rays of one angle and wavelength: numbers of visible and of
- * all rays, and the area that they hit. */
-struct sight {
+/* Summary of the rays at one angle and wavelength: their sensor area, and the
+ * numbers of visible and of all rays. */
+struct ray_summary {
     int n, n_all;
-    double low[2], high[2]; /* corners of the bounding box on the sensor of
-                               visible rays, mm */
-    double energy;          /* mean energy of the visible rays */
-    double spread;          /* mean RAY_SPREAD of the visible rays */
+    /* corners of the bounding box of visible rays on the sensor, mm */
+    double low[2], high[2];
+    double energy; /* mean energy of the visible rays */
+    double spread; /* mean RAY_SPREAD of the visible rays */
 };
 
-static struct sight summarise_rays(const struct glint_zone_rays *r, int first)
+static struct ray_summary
+summarise_rays_at_angle(const struct glint_zone_rays *r, int first)
 {
-    struct sight s = {.low = {HUGE_VAL, HUGE_VAL},
-                      .high = {-HUGE_VAL, -HUGE_VAL}};
+    struct ray_summary s = {.low = {HUGE_VAL, HUGE_VAL},
+                            .high = {-HUGE_VAL, -HUGE_VAL}};
 
     for (int i = first; i < r->n && glint_zone_rays_alike(r, i, first);
          i++, s.n_all++) {
@@ -46,9 +46,10 @@ static struct sight summarise_rays(const struct glint_zone_rays *r, int first)
     return s;
 }
 
-/* Returns the sine of the angle between light and axis at the coordinates X. */
-static double compute_sine(const struct glint_zone *zone,
-                           const double x[GLINT_VARIABLES])
+/* Returns the sine of the angle between light and lens axis at zone coordinates
+ * X. */
+static double compute_light_sine(const struct glint_zone *zone,
+                                 const double x[GLINT_VARIABLES])
 {
     const double along =
         0.5 * (zone->lo + zone->hi) + 0.5 * x[GLINT_S] * (zone->hi - zone->lo);
@@ -59,42 +60,43 @@ static double compute_sine(const struct glint_zone *zone,
                                   0.5 * x[GLINT_P] * (zone->y_hi - zone->y_lo));
 }
 
-/* Estimates the area on the sensor that the rays of V cover, mm^2. */
-static double area_on_sensor(const struct glint_zone *zone,
-                             const struct sight *v, double blur_mm)
+/* Estimates the area on the sensor that the visible rays of V cover, mm^2. */
+static double estimate_sensor_area(const struct glint_zone *zone,
+                                   const struct ray_summary *v, double blur_mm)
 {
-    /* round lenses: the ghost extends symmetrically to -y */
+    /* round lenses: the rays' mirror images lie at -y */
     const double y = zone->skew ? 0.5 * (v->high[1] - v->low[1] + blur_mm)
                                 : fmax(fabs(v->low[1]), fabs(v->high[1]));
 
     return fmax(1e-9, (v->high[0] - v->low[0] + blur_mm) * 1.6 * y);
 }
 
-/* Returns the brightness of the ghost in the zone relative to the level of
- * struct glint_brightness: the max over angles and wavelengths; for skew
- * zones, which have few rays per direction, the mean. In skew zones light
- * spreads over at least a pixel. */
-static double compute_share(const struct glint_tolerance *tolerance,
+/* Returns the brightness of the ghost relative to the level of struct
+ * glint_brightness: the max over angles and wavelengths, or the mean for skew
+ * zones, which have few rays per direction. In skew zones light spreads over at
+ * least a pixel. THIN receives the factors on tolerances along x and y. */
+static double
+compute_relative_brightness(const struct glint_tolerance *tolerance,
                             const struct glint_zone *zone,
                             const struct glint_zone_rays *r, double thin[2])
 {
-    /* with at most this many visible rays the area is not defined */
+    /* with at most this many visible rays the area is undefined */
     enum { FEW = 4 };
     const double blur = zone->skew ? tolerance->pixel_mm : 0;
     double most = 0, light = 0, area = 0, covered = 0, on_screen[2] = {0},
            n = 0;
 
     for (int i = 0, next; i < r->n; i = next) {
-        const struct sight v = summarise_rays(r, i);
+        const struct ray_summary v = summarise_rays_at_angle(r, i);
         const double x[GLINT_VARIABLES] = {0, 0, r->x[GLINT_S][i],
                                            r->x[GLINT_W][i], r->x[GLINT_P][i]};
         const double pupil = 4 * (1 - glint_zone_rim(zone->annulus)) *
                              glint_zone_side(zone, zone->half_x, x) *
                              glint_zone_side(zone, zone->half_y, x) * v.n /
                              v.n_all;
-        const double level =
-            glint_brightness_at(tolerance->brightness, compute_sine(zone, x));
-        const double on = area_on_sensor(zone, &v, blur);
+        const double level = glint_brightness_at(tolerance->brightness,
+                                                 compute_light_sine(zone, x));
+        const double on = estimate_sensor_area(zone, &v, blur);
 
         next = i + v.n_all;
         if (v.n < FEW)
@@ -139,8 +141,9 @@ double glint_zone_aim_stretch(const struct glint_zone_rays *rays,
     return change2 > 0 ? sqrt(moved2 / change2) : 0;
 }
 
-static double clamp_outline(const struct glint_zone_aim *aim, double least,
-                            double most, double stretch_mm)
+static double clamp_outline_tolerance(const struct glint_zone_aim *aim,
+                                      double least, double most,
+                                      double stretch_mm)
 {
     return fmax(least, fmin(most, aim->edge_mm / fmax(1e-12, stretch_mm)));
 }
@@ -148,7 +151,7 @@ static double clamp_outline(const struct glint_zone_aim *aim, double least,
 double glint_zone_aim_outline(const struct glint_zone_aim *aim, double least,
                               double most, double stretch_mm)
 {
-    return clamp_outline(aim, least * most, most, stretch_mm);
+    return clamp_outline_tolerance(aim, least * most, most, stretch_mm);
 }
 
 struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
@@ -157,7 +160,7 @@ struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
 {
     const struct glint_tolerance *t = tolerance;
     double thin[2];
-    const double share = compute_share(t, zone, rays, thin);
+    const double share = compute_relative_brightness(t, zone, rays, thin);
     const double faint = pow(fmax(share, 1e-9), -0.42);
     const double shows = fmax(1, faint);
     const double ease = fmin(t->ease, shows);
@@ -173,10 +176,10 @@ struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
         .thin = {thin[0], thin[1]}};
 
     aim.hidden = shows * t->sensor_mm / aim.sensor_mm;
-    aim.stop =
-        clamp_outline(&aim, t->stop_least, t->stop,
-                      glint_zone_aim_stretch(rays, rays->at[RAY_STOP_X],
-                                             rays->at[RAY_STOP_Y], -HUGE_VAL));
+    aim.stop = clamp_outline_tolerance(
+        &aim, t->stop_least, t->stop,
+        glint_zone_aim_stretch(rays, rays->at[RAY_STOP_X], rays->at[RAY_STOP_Y],
+                               -HUGE_VAL));
     return aim;
 }
 
@@ -204,9 +207,9 @@ double glint_zone_aim_off(const struct glint_zone_rays *r,
 
 /* ------------------------------------------------------------------- light */
 
-/* Returns the ray of the previous row (same angle and wavelength) that is
- * nearest to ray I, or -1 if there is no such row. */
-static int find_ray_before(const struct glint_zone_rays *r, int i)
+/* Returns the nearest ray to ray I in the previous row of the same angle and
+ * wavelength; -1: no such row. */
+static int find_ray_in_previous_row(const struct glint_zone_rays *r, int i)
 {
     int row = i, near = -1;
 
@@ -222,42 +225,44 @@ static int find_ray_before(const struct glint_zone_rays *r, int i)
     return near;
 }
 
-/* Returns the area in the plane of channels C and D of the parallelogram
- * that rays A and B span at ray I. */
-static double compute_area(const double *c, const double *d, int i, int a,
-                           int b)
+/* Returns the area, in the plane of channels C and D, of the parallelogram that
+ * rays A and B span at ray I. */
+static double compute_parallelogram_area(const double *c, const double *d,
+                                         int i, int a, int b)
 {
     return fabs((c[a] - c[i]) * (d[b] - d[i]) - (d[a] - d[i]) * (c[b] - c[i]));
 }
 
-/* Returns the light at ray I of a round lens, from the distances on the
- * sensor to its neighbours A and B. */
-static double compute_light(const struct glint_zone *zone,
-                            const struct glint_zone_rays *r, int i, int a,
-                            int b)
+/* Returns the irradiance at ray I of a round lens, from the sensor positions of
+ * its neighbours A and B. */
+static double compute_round_irradiance(const struct glint_zone *zone,
+                                       const struct glint_zone_rays *r, int i,
+                                       int a, int b)
 {
     double x[GLINT_VARIABLES], pupil;
 
     glint_zone_rays_x(r, i, x);
     pupil = glint_zone_side(zone, zone->half_x, x) *
             glint_zone_side(zone, zone->half_y, x) *
-            compute_area(r->x[GLINT_U], r->x[GLINT_V], i, a, b);
+            compute_parallelogram_area(r->x[GLINT_U], r->x[GLINT_V], i, a, b);
 
     return r->at[RAY_ENERGY][i] * pupil /
-           fmax(1e-12, compute_area(r->at[RAY_SENSOR_X], r->at[RAY_SENSOR_Y], i,
-                                    a, b));
+           fmax(1e-12, compute_parallelogram_area(
+                           r->at[RAY_SENSOR_X], r->at[RAY_SENSOR_Y], i, a, b));
 }
 
-/* Returns the light at ray I of a skew zone, see glint_zone_aim_light(). */
-static double compute_skew_light(const struct glint_tolerance *tolerance,
-                                 const struct glint_zone *zone,
-                                 const struct glint_zone_aim *aim,
-                                 const struct glint_zone_rays *r, int i)
+/* Returns the relative brightness at ray I of a skew zone, see
+ * glint_zone_aim_light(). */
+static double compute_skew_brightness(const struct glint_tolerance *tolerance,
+                                      const struct glint_zone *zone,
+                                      const struct glint_zone_aim *aim,
+                                      const struct glint_zone_rays *r, int i)
 {
     double x[GLINT_VARIABLES], level, pupil;
 
     glint_zone_rays_x(r, i, x);
-    level = glint_brightness_at(tolerance->brightness, compute_sine(zone, x)) *
+    level = glint_brightness_at(tolerance->brightness,
+                                compute_light_sine(zone, x)) *
             aim->share;
     pupil = glint_zone_side(zone, zone->half_x, x) *
             glint_zone_side(zone, zone->half_y, x);
@@ -272,9 +277,9 @@ void glint_zone_aim_light(const struct glint_tolerance *tolerance,
                           const struct glint_zone_rays *rays, double *light)
 {
     for (int i = 0; i < rays->n && zone->skew; i++)
-        light[i] = compute_skew_light(tolerance, zone, aim, rays, i);
+        light[i] = compute_skew_brightness(tolerance, zone, aim, rays, i);
     for (int i = 0; i < rays->n && !zone->skew; i++) {
-        const int before = find_ray_before(rays, i);
+        const int before = find_ray_in_previous_row(rays, i);
         const int beside =
             i + 1 < rays->n && glint_zone_rays_alike(rays, i, i + 1) &&
                     rays->x[GLINT_V][i] == rays->x[GLINT_V][i + 1]
@@ -283,14 +288,15 @@ void glint_zone_aim_light(const struct glint_tolerance *tolerance,
         double x[GLINT_VARIABLES], level;
 
         glint_zone_rays_x(rays, i, x);
-        level =
-            glint_brightness_at(tolerance->brightness, compute_sine(zone, x)) *
-            aim->share;
+        level = glint_brightness_at(tolerance->brightness,
+                                    compute_light_sine(zone, x)) *
+                aim->share;
         light[i] = 1;
         if (before >= 0 && beside != before && beside >= 0 &&
             glint_zone_rays_alike(rays, i, beside))
-            light[i] = fmin(1, fmax(LEAST_LIGHT, compute_light(zone, rays, i,
-                                                               beside, before) /
-                                                     fmax(level, 1e-30)));
+            light[i] =
+                fmin(1, fmax(LEAST_LIGHT, compute_round_irradiance(
+                                              zone, rays, i, beside, before) /
+                                              fmax(level, 1e-30)));
     }
 }

@@ -11,33 +11,33 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
 /* Max error of a single ray / RMS tolerance. */
 #define PEAK 5.0
-/* Ratio of max to min energy above which a root of the energy is fitted. */
+/* min ratio of max to min energy at which a root of the energy is fitted */
 #define WIDE_ENERGY 60
 
-/* Lenses that open wide: outline errors are visible at the rim of a ghost
- * only, position errors everywhere. A box is divided because of outline
- * errors only if they are this many times as large. */
+/* Fast lenses: outline errors are visible at the rim of a ghost only, position
+ * errors everywhere. A box is divided for outline errors only if they are this
+ * many times as large. */
 #define RIM 4.0
-/* Min tolerance of a barrel, as a fraction of its max. LEAST_FAR holds for
- * lights beyond GLINT_FAR: where light grazes a hemispherical surface, the
- * whole ghost lies within 0.003 of its rim. */
+/* Min tolerance of a barrel / max tolerance. LEAST_FAR: for lights beyond
+ * GLINT_FAR, where light grazes a hemispherical surface and the whole ghost
+ * lies within 0.003 of its rim. */
 #define LEAST     0.06
 #define LEAST_FAR 5e-4
-/* For lights beyond GLINT_FAR: ratio of leaking to visible rays that counts
- * as an outline error of one tolerance. */
+/* For lights beyond GLINT_FAR: leaking rays / visible rays that count as an
+ * outline error of one tolerance. */
 #define LEAK 0.02
-/* If a first fit missed its tolerance, the second fit is discarded if its
- * error exceeds the first error times this factor. */
+/* The second fit is discarded if its error is above one tolerance and above
+ * this many times the first fit's error. */
 #define HARM 1.5
 
 /* ----------------------------------------------------------------- degrees */
 
 enum {
     FEW_TERMS = 64,
-    /* max number of terms of each position output in thorough fits */
+    /* max number of terms of a position output in thorough fits */
     MANY_TERMS = 96,
-    PATIENCE = 36 /* number of terms after which a fit whose error is far too
-                     large stops */
+    /* number of terms after which a fit with far too large an error stops */
+    PATIENCE = 36
 };
 
 static const struct glint_degrees position_degrees = {
@@ -51,15 +51,15 @@ static const struct glint_degrees energy_degrees = {.most = {6, 4, 4, 8},
                                                     .total = 10,
                                                     .terms = FEW_TERMS};
 
-/* Terms for thorough fits of energies that vary a lot over the pupil, and of
- * all energies in lenses that open wide, where films make the energy
+/* Terms for thorough fits of energies that vary strongly over the pupil, and
+ * for all thorough energy fits of fast lenses, where films make the energy
  * oscillate with angle and wavelength. */
 static const struct glint_degrees steep_degrees = {.most = {8, 6, 4, 8},
                                                    .weight = {1, 1, 1, 1},
                                                    .total = 12,
                                                    .terms = MANY_TERMS};
 
-/* Terms for skew zones. Powers of s, p and w are below GLINT_LENS_POWERS and
+/* Terms for skew zones; powers of s, p and w are below GLINT_LENS_POWERS and
  * GLINT_LENS_WAVE_POWERS. */
 static const struct glint_degrees skew_degrees = {
     .most = {GLINT_MAX_POWER, 8, 5, 4, 5},
@@ -72,10 +72,11 @@ static const struct glint_degrees skew_energy_degrees = {
     .total = 10,
     .terms = MANY_TERMS};
 
-/* Returns the allowed terms for output KIND in TASK. STEEP: the energy
- * varies a lot over the pupil. */
-static struct glint_degrees choose_degrees(const struct glint_zone_task *task,
-                                           enum glint_channel kind, bool steep)
+/* Returns the allowed terms for output KIND. STEEP: the energy varies strongly
+ * over the pupil. */
+static struct glint_degrees
+choose_allowed_terms(const struct glint_zone_task *task,
+                     enum glint_channel kind, bool steep)
 {
     const bool energy = kind == GLINT_OUT_ENERGY, wide = task->visible->wide;
     const bool skew = task->zone->skew;
@@ -105,45 +106,45 @@ struct fit {
     struct glint_zone_errors *errors;
 };
 
-static bool is_wide(const struct fit *f)
+static bool is_fast_lens(const struct fit *f)
 {
     return f->task->visible->wide;
 }
 
-/* Returns a factor on the weight of a ray whose relative radius is EXCESS.
- * In lenses that open wide it decreases with EXCESS: positions diverge
- * towards total reflection, and the invisible errors there would dominate
- * the fit. */
-static double weight_far_out(const struct fit *f, double excess)
+/* Returns a factor on the weight of a blocked ray whose max relative radius is
+ * EXCESS. For fast lenses it decreases with EXCESS: positions diverge towards
+ * total reflection, and these invisible errors would dominate the fit. */
+static double compute_far_ray_factor(const struct fit *f, double excess)
 {
-    return !is_wide(f) ? 1 : 1 / (1 + 10 * fmax(0, excess * excess - 1.25));
+    return !is_fast_lens(f) ? 1
+                            : 1 / (1 + 10 * fmax(0, excess * excess - 1.25));
 }
 
-/* Returns the weight of a ray of relative radius EXCESS: 1 up to slightly
- * outside the edge, as grid cells straddle it; nearly 0 far outside, where
- * the polynomials only have to keep the ray invisible. */
-static double weight_past_edge(const struct fit *f, double excess)
+/* Returns the weight of a ray whose max relative radius is EXCESS: 1 up to
+ * slightly outside the edge, as grid cells straddle it; nearly 0 far outside,
+ * where the polynomials only have to keep the ray invisible. */
+static double compute_edge_weight(const struct fit *f, double excess)
 {
     const double past = (excess - 1.02) / 0.05;
 
-    return past <= 0
-               ? 1
-               : fmax(0.002 * weight_far_out(f, excess), exp(-past * past));
+    return past <= 0 ? 1
+                     : fmax(0.002 * compute_far_ray_factor(f, excess),
+                            exp(-past * past));
 }
 
-/* Returns a factor on the weight of the position of a ray FIELDS field radii
- * from the sensor's centre. A ray outside the field only has to stay
- * outside: its error may be a fifth of its distance from the field. */
-static double weight_past_field(const struct fit *f, double fields)
+/* Returns a factor on the weight of a ray's position, FIELDS field radii from
+ * the sensor's centre. Rays outside the field only have to stay outside: their
+ * error may be 1/5 of their distance from the field. */
+static double compute_field_weight(const struct fit *f, double fields)
 {
     const double out_mm = (fields - 1.01) * f->task->visible->field_mm;
 
     return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->aim->sensor_mm);
 }
 
-/* Sets the weights by light of all rays; in round lenses with spherical
- * surfaces these are 1. */
-static void find_light(struct fit *f)
+/* Sets the brightness weights of all rays; 1 for round lenses with spherical
+ * surfaces. */
+static void set_brightness_weights(struct fit *f)
 {
     if (glint_zone_by_light(f->task->zone, f->task->visible))
         glint_zone_aim_light(f->task->tolerance, f->task->zone, f->aim,
@@ -153,25 +154,27 @@ static void find_light(struct fit *f)
             f->buffers->light[i] = 1;
 }
 
-static void set_weights(struct fit *f)
+static void set_ray_weights(struct fit *f)
 {
     const struct glint_zone_rays *r = &f->buffers->rays;
 
-    find_light(f);
+    set_brightness_weights(f);
     for (int i = 0; i < r->n; i++) {
-        f->buffers->weight[i] = weight_past_edge(f, r->at[RAY_EXCESS][i]);
+        f->buffers->weight[i] = compute_edge_weight(f, r->at[RAY_EXCESS][i]);
         f->buffers->sensor_weight[i] =
             f->buffers->weight[i] * f->buffers->light[i] *
-            weight_past_field(f, r->at[RAY_FIELD][i]);
+            compute_field_weight(f, r->at[RAY_FIELD][i]);
         if (r->at[RAY_FIELD][i] > 1.05)
             f->buffers->weight[i] *= 0.1;
     }
 }
 
 /* Returns whether the polynomials transmit ray I although the lens clearly
- * blocks it, at its own zoom position and at all neighbouring ones. */
-static bool ray_leaks(const struct glint_zone_rays *r, int i,
-                      const struct glint_fitted_system *system, double field_mm)
+ * blocks it at this and all neighbouring zoom positions. FIELD_MM: radius of
+ * the field. */
+static bool is_leaking_ray(const struct glint_zone_rays *r, int i,
+                           const struct glint_fitted_system *system,
+                           double field_mm)
 {
     double x[GLINT_VARIABLES], at[GLINT_OUT_KINDS] = {0};
     bool passes = r->at[RAY_EXCESS][i] > 1.05;
@@ -189,25 +192,26 @@ static bool ray_leaks(const struct glint_zone_rays *r, int i,
            hypot(at[GLINT_OUT_SENSOR_X], at[GLINT_OUT_SENSOR_Y]) < field_mm;
 }
 
-/* Increases the weights of rays that leak, so that the next fit excludes
- * them. Returns whether there are such rays. */
-static bool weight_leaks(struct fit *f,
-                         const struct glint_fitted_system *system)
+/* Increases the weights of leaking rays, so that the next fit blocks them.
+ * Returns whether any ray leaks. */
+static bool raise_leak_weights(struct fit *f,
+                               const struct glint_fitted_system *system)
 {
     bool any = false;
 
     for (int i = 0; i < f->buffers->rays.n; i++)
-        if (ray_leaks(&f->buffers->rays, i, system,
-                      f->task->visible->field_mm)) {
-            f->buffers->weight[i] = fmax(
-                f->buffers->weight[i],
-                0.1 * weight_far_out(f, f->buffers->rays.at[RAY_EXCESS][i]));
+        if (is_leaking_ray(&f->buffers->rays, i, system,
+                           f->task->visible->field_mm)) {
+            f->buffers->weight[i] =
+                fmax(f->buffers->weight[i],
+                     0.1 * compute_far_ray_factor(
+                               f, f->buffers->rays.at[RAY_EXCESS][i]));
             any = true;
         }
     return any;
 }
 
-/* Returns the number of leaking rays / visible rays. */
+/* Returns the number of leaking rays / number of visible rays. */
 static double compute_leak_ratio(const struct fit *f,
                                  const struct glint_fitted_system *system)
 {
@@ -215,7 +219,7 @@ static double compute_leak_ratio(const struct fit *f,
     int n = 0, n_seen = 0;
 
     for (int i = 0; i < r->n; i++) {
-        n += ray_leaks(r, i, system, f->task->visible->field_mm);
+        n += is_leaking_ray(r, i, system, f->task->visible->field_mm);
         n_seen += glint_zone_rays_seen(r, i);
     }
     return n / fmax(1, n_seen);
@@ -233,8 +237,9 @@ static enum glint_status append_output(struct glint_fitted_system *system,
         return GLINT_E_MEMORY;
     o->kind = kind;
     o->n_terms = poly->n;
-    o->grain = rms / 6; /* the errors of a few dozen coefficients then add up to
-                           less than a third of the tolerance */
+    /* errors of a few dozen coefficients then add up to less than 1/3 of the
+     * tolerance */
+    o->grain = rms / 6;
     o->met = met;
     memcpy(o->power, poly->power, (size_t)poly->n * sizeof *o->power);
     memcpy(o->coef, poly->coef, (size_t)poly->n * sizeof *o->coef);
@@ -242,11 +247,11 @@ static enum glint_status append_output(struct glint_fitted_system *system,
     return GLINT_OK;
 }
 
-/* Fits the values in the buffers for the rays R, weighted by channel_weight.
- * Returns the residual in tolerances. */
-static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
-                       enum glint_channel kind, double rms,
-                       struct glint_poly *poly)
+/* Fits a polynomial to buffers->value for the rays R, weighted by
+ * channel_weight. RMS: tolerance. Returns the residual in tolerances. */
+static double fit_polynomial(struct fit *f, const struct glint_zone_rays *r,
+                             enum glint_channel kind, double rms,
+                             struct glint_poly *poly)
 {
     const struct glint_regress_samples samples = {
         r->n,
@@ -254,41 +259,42 @@ static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
         f->buffers->channel_weight};
     const bool steep = f->task->thorough && kind == GLINT_OUT_ENERGY &&
                        glint_zone_rays_spread(&f->buffers->rays) > GLINT_STEEP;
-    const struct glint_degrees degrees = choose_degrees(f->task, kind, steep);
+    const struct glint_degrees degrees =
+        choose_allowed_terms(f->task, kind, steep);
 
     return glint_regress_fit(f->buffers->scratch, &samples, f->buffers->value,
                              &degrees, rms, PEAK * rms, poly);
 }
 
-/* Fits one output and appends it to SYSTEM. Raises *WORST to its residual. */
-static enum glint_status fit_output(struct fit *f,
-                                    const struct glint_zone_rays *r,
-                                    enum glint_channel kind, double rms,
-                                    struct glint_fitted_system *system,
-                                    double *worst)
+/* Fits output KIND and appends it to SYSTEM. Raises *WORST to its residual, in
+ * tolerances. */
+static enum glint_status
+fit_and_append_output(struct fit *f, const struct glint_zone_rays *r,
+                      enum glint_channel kind, double rms,
+                      struct glint_fitted_system *system, double *worst)
 {
     struct glint_poly poly;
-    const double left = fit_poly(f, r, kind, rms, &poly);
+    const double left = fit_polynomial(f, r, kind, rms, &poly);
 
     *worst = fmax(*worst, left);
     return append_output(system, kind, &poly, rms, left <= 1);
 }
 
-/* Returns a factor on the weight of the position of ray I. A stop of radius
- * RHO transmits only rays within RHO, and its smaller ghost makes smaller
- * errors visible. For lenses that open wide the factor accounts for stops
- * down to an eighth of the full radius. */
-static double weight_inside(const struct fit *f, int i)
+/* Returns a factor on the weight of the position of ray I. A stop of radius rho
+ * transmits only rays within rho; its ghost is smaller, so smaller errors are
+ * visible. For fast lenses the factor accounts for stops down to 1/8 of the
+ * full radius. */
+static double compute_stop_weight(const struct fit *f, int i)
 {
     const struct glint_zone_rays *r = &f->buffers->rays;
     const double rho = hypot(r->at[RAY_STOP_X][i], r->at[RAY_STOP_Y][i]);
 
-    return is_wide(f) ? 1 / fmax(0.125, fmin(1, rho)) : 1;
+    return is_fast_lens(f) ? 1 / fmax(0.125, fmin(1, rho)) : 1;
 }
 
-static enum glint_status fit_channel(struct fit *f, int channel, double rms,
-                                     struct glint_fitted_system *system,
-                                     double *worst)
+static enum glint_status
+fit_position_channel(struct fit *f, int channel, double rms,
+                     struct glint_fitted_system *system, double *worst)
 {
     const size_t bytes = (size_t)f->buffers->rays.n * sizeof *f->buffers->value;
 
@@ -297,14 +303,14 @@ static enum glint_status fit_channel(struct fit *f, int channel, double rms,
         f->buffers->channel_weight[i] =
             (channel <= RAY_SENSOR_Y ? f->buffers->sensor_weight
                                      : f->buffers->weight)[i] *
-            weight_inside(f, i);
-    return fit_output(f, &f->buffers->rays, (enum glint_channel)channel, rms,
-                      system, worst);
+            compute_stop_weight(f, i);
+    return fit_and_append_output(
+        f, &f->buffers->rays, (enum glint_channel)channel, rms, system, worst);
 }
 
-/* Extends the range *LEAST .. *MOST by the energies of visible rays. */
-static void find_energy_range(const struct glint_zone_rays *r, double *least,
-                              double *most)
+/* Extends the range *LEAST .. *MOST by the energies of all visible rays. */
+static void extend_energy_range(const struct glint_zone_rays *r, double *least,
+                                double *most)
 {
     for (int i = 0; i < r->n; i++)
         if (glint_zone_rays_seen(r, i)) {
@@ -313,19 +319,19 @@ static void find_energy_range(const struct glint_zone_rays *r, double *least,
         }
 }
 
-/* Returns whether the energy varies with the wavelength but hardly over the
- * pupil, in coatings of several films. */
+/* Returns whether the energy of a ghost, reflected by coatings of several
+ * films, hardly varies over the pupil. */
 static bool is_smooth_over_pupil(const struct fit *f,
                                  const struct glint_zone_rays *r)
 {
     return f->task->stacks && glint_zone_rays_spread(r) <= GLINT_STEEP;
 }
 
-/* Returns the min energy by which energy errors are divided to make them
- * relative. Two coatings of several films transmit almost no light at some
- * wavelengths; the min is then half of the band's mean. */
-static double min_energy(const struct fit *f, const struct glint_zone_rays *r,
-                         double most)
+/* Returns the min divisor of relative energy errors. If two coatings of several
+ * films reflect almost no light at some wavelengths, it is half of the band's
+ * mean energy. */
+static double compute_min_energy(const struct fit *f,
+                                 const struct glint_zone_rays *r, double most)
 {
     double sum = 0, n = 1e-9;
 
@@ -335,13 +341,13 @@ static double min_energy(const struct fit *f, const struct glint_zone_rays *r,
     return fmax(0.005 * most, is_smooth_over_pupil(f, r) ? 0.5 * sum / n : 0);
 }
 
-/* Sets VALUE to the energy, or to its fourth root, and CHANNEL_WEIGHT such
- * that errors count relative to the energy, or to min_energy() if that is
- * larger. Returns the largest weight. */
+/* Sets buffers->value to the energies, or to their fourth roots, and
+ * channel_weight such that errors are relative to the energy or to
+ * compute_min_energy(), whichever is larger. Returns the max weight. */
 static double set_energy_values(struct fit *f, const struct glint_zone_rays *r,
                                 double most, bool root)
 {
-    const double least = min_energy(f, r, most);
+    const double least = compute_min_energy(f, r, most);
     double largest = 0;
 
     for (int i = 0; i < r->n; i++) {
@@ -349,20 +355,20 @@ static double set_energy_values(struct fit *f, const struct glint_zone_rays *r,
         const double energy = r->at[RAY_ENERGY][i];
         const double share = fmax(energy, least);
 
-        /* the relative error of the root is a quarter of that of the energy */
+        /* relative error of the fourth root: a quarter of that of the energy */
         f->buffers->value[i] = root ? sqrt(sqrt(energy)) : energy;
         f->buffers->channel_weight[i] =
-            fmax(weight_past_edge(f, out), 0.001) /
+            fmax(compute_edge_weight(f, out), 0.001) /
             (root ? 0.25 * sqrt(sqrt(share)) : share);
         largest = fmax(largest, f->buffers->channel_weight[i]);
     }
     return largest;
 }
 
-/* Fits the energy or its fourth root. Towards total reflection the energy
- * grows a thousandfold, while its root is as smooth as a position. If a
- * coating reflects nothing at some wavelength, the root has a cusp there,
- * but the energy itself is smooth. */
+/* Fits the energy or its fourth root. Towards total reflection the energy grows
+ * a thousandfold, while its fourth root is as smooth as a position. If a
+ * coating reflects nothing at some wavelength, the root has a cusp there, while
+ * the energy is smooth. */
 static enum glint_status
 fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
 {
@@ -373,17 +379,17 @@ fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
     struct glint_poly poly, other;
     bool root;
 
-    find_energy_range(r, &least, &most);
-    find_energy_range(&f->buffers->rays, &least, &most);
+    extend_energy_range(r, &least, &most);
+    extend_energy_range(&f->buffers->rays, &least, &most);
     root = f->task->thorough && !is_smooth_over_pupil(f, r) &&
            most > WIDE_ENERGY * least;
     grain = f->aim->energy / set_energy_values(f, r, most, root);
-    left = fit_poly(f, r, GLINT_OUT_ENERGY, f->aim->energy, &poly);
+    left = fit_polynomial(f, r, GLINT_OUT_ENERGY, f->aim->energy, &poly);
     if (root && left > 1) {
         const double other_grain =
             f->aim->energy / set_energy_values(f, r, most, false);
         const double other_left =
-            fit_poly(f, r, GLINT_OUT_ENERGY, f->aim->energy, &other);
+            fit_polynomial(f, r, GLINT_OUT_ENERGY, f->aim->energy, &other);
 
         if (other_left < left) {
             root = false;
@@ -399,10 +405,11 @@ fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
                          fmin(grain, f->aim->energy), left <= 1);
 }
 
-/* Fits a barrel; rays near its rim have most weight. */
-static enum glint_status fit_barrel(struct fit *f, int barrel,
-                                    struct glint_fitted_system *system,
-                                    double *worst)
+/* Fits the relative radius at barrel number BARREL, (1 + r^2) / 2. Rays near
+ * its rim have most weight. */
+static enum glint_status fit_barrel_radius(struct fit *f, int barrel,
+                                           struct glint_fitted_system *system,
+                                           double *worst)
 {
     const struct glint_zone_rays *r = &f->buffers->rays;
     double stretch;
@@ -417,31 +424,32 @@ static enum glint_status fit_barrel(struct fit *f, int barrel,
     }
     stretch = glint_zone_aim_stretch(r, f->buffers->value, NULL, 0.8);
     system->output[system->n_outputs].event = r->barrel[barrel];
-    return fit_output(f, r, (enum glint_channel)(GLINT_OUT_BARREL_0 + barrel),
-                      glint_zone_aim_outline(
-                          f->aim, f->task->visible->far ? LEAST_FAR : LEAST,
-                          f->task->barrel, stretch),
-                      system, worst);
+    return fit_and_append_output(
+        f, r, (enum glint_channel)(GLINT_OUT_BARREL_0 + barrel),
+        glint_zone_aim_outline(f->aim,
+                               f->task->visible->far ? LEAST_FAR : LEAST,
+                               f->task->barrel, stretch),
+        system, worst);
 }
 
-static void drop_outputs(struct glint_fitted_system *system)
+static void free_outputs(struct glint_fitted_system *system)
 {
     while (system->n_outputs > 0)
         free(system->output[--system->n_outputs].coef);
 }
 
-static void combine_errors(struct fit *f, double energy)
+static void combine_output_errors(struct fit *f, double energy)
 {
     struct glint_zone_errors *const e = f->errors;
 
-    e->shows = fmax(e->places, e->outlines / (is_wide(f) ? RIM : 1));
-    e->dims = is_wide(f) ? fmax(e->shows, energy) : e->shows;
+    e->shows = fmax(e->places, e->outlines / (is_fast_lens(f) ? RIM : 1));
+    e->dims = is_fast_lens(f) ? fmax(e->shows, energy) : e->shows;
     e->worst = fmax(fmax(e->places, e->outlines), energy);
 }
 
-/* Returns whether the errors of the remaining outputs can no longer change
- * how the zone is processed next. */
-static bool is_decided(const struct fit *f)
+/* Returns whether the errors of the remaining outputs cannot change the next
+ * step for the zone. */
+static bool is_next_step_decided(const struct fit *f)
 {
     const struct glint_zone_task *t = f->task;
     const struct glint_zone_errors *e = f->errors;
@@ -453,17 +461,17 @@ static bool is_decided(const struct fit *f)
            (t->settled > 0 && left > t->settled);
 }
 
-/* Returns the tolerance for a position channel, on the sensor or in the
- * stop. */
-static double position_tolerance(const struct fit *f, int channel)
+/* Returns the tolerance of a position channel: mm on the sensor, or stop
+ * radii. */
+static double get_position_tolerance(const struct fit *f, int channel)
 {
     return channel <= RAY_SENSOR_Y
                ? f->aim->sensor_mm * f->aim->thin[channel - RAY_SENSOR_X]
                : f->aim->stop;
 }
 
-static enum glint_status fit_outputs(struct fit *f,
-                                     struct glint_fitted_system *system)
+static enum glint_status fit_all_outputs(struct fit *f,
+                                         struct glint_fitted_system *system)
 {
     struct glint_zone_errors *const e = f->errors;
     enum glint_status status = GLINT_OK;
@@ -473,41 +481,43 @@ static enum glint_status fit_outputs(struct fit *f,
     for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++) {
         const bool sensor = c <= RAY_SENSOR_Y;
 
-        status = fit_channel(f, c, position_tolerance(f, c), system,
-                             sensor ? &e->places : &e->outlines);
-        combine_errors(f, 0);
-        if (is_decided(f))
+        status =
+            fit_position_channel(f, c, get_position_tolerance(f, c), system,
+                                 sensor ? &e->places : &e->outlines);
+        combine_output_errors(f, 0);
+        if (is_next_step_decided(f))
             return status;
     }
     if (status == GLINT_OK)
         status = fit_energy(f, system, &energy);
     e->energy = energy;
-    combine_errors(f, energy);
-    for (int b = 0;
-         b < f->buffers->rays.n_barrels && status == GLINT_OK && !is_decided(f);
+    combine_output_errors(f, energy);
+    for (int b = 0; b < f->buffers->rays.n_barrels && status == GLINT_OK &&
+                    !is_next_step_decided(f);
          b++) {
-        status = fit_barrel(f, b, system, &e->outlines);
-        combine_errors(f, energy);
+        status = fit_barrel_radius(f, b, system, &e->outlines);
+        combine_output_errors(f, energy);
     }
     return status;
 }
 
 /* ------------------------------------------------------------------ checks */
 
-/* Max RMS error, in tolerances, of rays that were not used in the fit. */
+/* max RMS error, in tolerances, of rays that were not fitted */
 #define CHECK_RMS 1.6
 
-/* Measures the errors of rays between the fitted rays, in units of CHECK_RMS
- * tolerances, and raises the position errors on sensor and stop to these. A
- * fit can be good at every node and bad between them. */
-static void check_zone(struct fit *f, const struct glint_fitted_system *system)
+/* Measures the position errors of rays between the fitted ones, in units of
+ * CHECK_RMS tolerances, and raises the errors of the fit to these: a fit can be
+ * good at every node and bad in between. */
+static void check_between_rays(struct fit *f,
+                               const struct glint_fitted_system *system)
 {
     struct glint_zone_errors *const e = f->errors;
     const bool shaped = f->task->visible->shaped;
     const bool by_light = glint_zone_by_light(f->task->zone, f->task->visible);
 
     glint_zone_check(f->task->zone, f->task->visible, &f->buffers->rays);
-    find_light(f);
+    set_brightness_weights(f);
     for (int k = 0; k < 4 && k < system->n_outputs; k++) {
         const bool sensor = k <= RAY_SENSOR_Y;
         double *const error = sensor ? &e->places : &e->outlines;
@@ -515,34 +525,34 @@ static void check_zone(struct fit *f, const struct glint_fitted_system *system)
             glint_zone_aim_off(&f->buffers->rays, &system->output[k],
                                sensor && by_light ? f->buffers->light : NULL,
                                shaped ? 3 : 1) /
-            position_tolerance(f, k);
+            get_position_tolerance(f, k);
 
         *error = fmax(*error, left / CHECK_RMS);
     }
-    combine_errors(f, e->worst);
+    combine_output_errors(f, e->worst);
 }
 
 /* --------------------------------------------------------------------- all */
 
-/* Fits SYSTEM again with the new weights. In lenses that open wide, restores
- * the previous fit if leaks cannot be removed without larger visible errors. */
-static enum glint_status fit_again(struct fit *f,
-                                   struct glint_fitted_system *system)
+/* Fits SYSTEM again with the new weights. Fast lenses: restores the first fit
+ * if removing leaks would cause larger visible errors. */
+static enum glint_status refit_without_leaks(struct fit *f,
+                                             struct glint_fitted_system *system)
 {
     const struct glint_zone_errors errors = *f->errors;
     struct glint_fitted_system leaky = *system;
     enum glint_status status;
 
     system->n_outputs = 0;
-    status = fit_outputs(f, system);
-    if (is_wide(f) &&
+    status = fit_all_outputs(f, system);
+    if (is_fast_lens(f) &&
         fmax(f->errors->places, f->errors->outlines) >
             fmax(1, HARM * fmax(errors.places, errors.outlines))) {
-        drop_outputs(system);
+        free_outputs(system);
         *system = leaky;
         *f->errors = errors;
     } else {
-        drop_outputs(&leaky);
+        free_outputs(&leaky);
     }
     return status;
 }
@@ -556,16 +566,17 @@ enum glint_status glint_zone_fit(const struct glint_zone_task *task,
     struct fit f = {task, aim, buffers, errors};
     enum glint_status status;
 
-    set_weights(&f);
-    status = fit_outputs(&f, system);
-    if (status != GLINT_OK || is_decided(&f))
+    set_ray_weights(&f);
+    status = fit_all_outputs(&f, system);
+    if (status != GLINT_OK || is_next_step_decided(&f))
         return status;
-    if ((task->thorough || errors->worst <= 1) && weight_leaks(&f, system))
-        status = fit_again(&f, system);
+    if ((task->thorough || errors->worst <= 1) &&
+        raise_leak_weights(&f, system))
+        status = refit_without_leaks(&f, system);
     if (status == GLINT_OK && task->visible->far)
         errors->outlines =
             fmax(errors->outlines, compute_leak_ratio(&f, system) / LEAK);
     if (status == GLINT_OK)
-        check_zone(&f, system);
+        check_between_rays(&f, system);
     return status;
 }

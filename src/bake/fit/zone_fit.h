@@ -23,46 +23,49 @@ struct glint_zone_task {
     const struct glint_tolerance *tolerance;
     /* visibility of the ghost in the band that is fitted */
     const struct glint_visible *visible;
-    double barrel;   /* tolerance at barrels, as in struct glint_tolerance */
-    bool thorough;   /* true: allow a root of the energy, and more terms */
-    bool stacks;     /* true: coatings of several films reflect the ghost */
-    double hopeless; /* tolerances: the fit stops when its error will stay
-                        above; 0: never */
-    /* Tolerances: if an output has a larger error, the remaining outputs are
-     * skipped, as the zone will be fitted again in any case. In a thorough
-     * fit only errors of positions and barrels count, in a skew zone only as
-     * far as they are visible. 0: never skip. */
+    /* max tolerance at barrels, as in struct glint_tolerance */
+    double barrel;
+    bool thorough; /* true: allow a root of the energy, and more terms */
+    bool stacks;   /* true: coatings of several films reflect the ghost */
+    /* error in tolerances; a fit stops once its error is sure to stay above; 0:
+     * never */
+    double hopeless;
+    /* Error in tolerances. Once an output exceeds it, the remaining outputs are
+     * skipped, as the zone will be fitted again in any case. Skew zones compare
+     * positions and outlines, thorough fits dims of struct glint_zone_errors.
+     * 0: never skip. */
     double settled;
 };
 
-/* Memory of a fit. The number of moments follows from twice the degrees of a
- * skew zone's position outputs: 18, 16, 10, 8 and 10. */
+/* Size of the memory for one fit, in doubles. The number of moments follows
+ * from twice the degrees of a skew zone's positions: 18, 16, 10, 8 and 10. */
 #define GLINT_ZONE_SCRATCH                                  \
     GLINT_REGRESS_DOUBLES(GLINT_ZONE_RAYS, GLINT_MAX_TERMS, \
                           GLINT_MAX_CANDIDATES, 19 * 17 * 11 * 9 * 11)
 
-/* Memory for fits of zones, used by one fit at a time. */
+/* Memory for fitting one zone; used by one fit at a time. */
 struct glint_zone_buffers {
     double *scratch; /* GLINT_ZONE_SCRATCH doubles */
-    /* rays to fit; overwritten */
+    /* rays that are fitted; each fit overwrites them */
     struct glint_zone_rays rays, energies;
     double weight[GLINT_ZONE_RAYS], sensor_weight[GLINT_ZONE_RAYS];
     double light[GLINT_ZONE_RAYS]; /* see glint_zone_aim_light() */
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
 };
 
-/* Largest errors of a fit, in tolerances. */
+/* max errors of a fit, in tolerances */
 struct glint_zone_errors {
     double places;   /* positions on the sensor */
-    double outlines; /* positions in the stop, and barrels */
-    double shows;    /* positions and outlines, as far as they are visible */
-    double dims;     /* max of SHOWS and, in lenses that open wide, the energy;
-                        decides whether a box is divided */
-    double worst;    /* max over positions, outlines and energy */
-    double energy;   /* energy */
+    double outlines; /* outlines: positions in the stop and at barrels */
+    double shows;    /* visible part of the errors of positions and outlines */
+    /* shows or, for fast lenses, also the energy; decides whether a box is
+     * divided */
+    double dims;
+    double worst;  /* max over positions, outlines and energy */
+    double energy; /* energy */
 };
 
-/* Fits the outputs of SYSTEM, which must have no outputs yet. Skips some
+/* Fits all outputs of SYSTEM, which must have none yet. Skips the remaining
  * outputs if errors exceed TASK->hopeless or TASK->settled. May return
  * GLINT_E_MEMORY. */
 enum glint_status glint_zone_fit(const struct glint_zone_task *task,

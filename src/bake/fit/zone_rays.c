@@ -5,26 +5,26 @@
 
 #include "engine/setup/degrees.h"
 
-/* Returns the largest relative radius of RAY over all surfaces and the stop. */
-static double compute_excess(const struct glint_visible *h,
-                             const struct glint_ray *ray)
+/* Returns the max relative radius of RAY over all surfaces and the stop. */
+static double compute_max_radius(const struct glint_visible *h,
+                                 const struct glint_ray *ray)
 {
     return fmax(ray->rel_radius, hypot(ray->stop_x_mm, ray->stop_y_mm) /
                                      h->setup->optics.stop_radius_mm);
 }
 
 /* Returns the distance of RAY from the sensor's centre, in field radii. */
-static double compute_field(const struct glint_visible *h,
-                            const struct glint_ray *ray)
+static double compute_field_radius(const struct glint_visible *h,
+                                   const struct glint_ray *ray)
 {
     return hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm;
 }
 
-static void add_ray(const struct glint_visible *h,
-                    const struct glint_path *path,
-                    const double x[GLINT_VARIABLES],
-                    const struct glint_ray *ray, double (*hits)[2],
-                    struct glint_zone_rays *rays)
+static void append_zone_ray(const struct glint_visible *h,
+                            const struct glint_path *path,
+                            const double x[GLINT_VARIABLES],
+                            const struct glint_ray *ray, double (*hits)[2],
+                            struct glint_zone_rays *rays)
 {
     const double stop = h->setup->optics.stop_radius_mm;
     const int i = rays->n++;
@@ -36,9 +36,9 @@ static void add_ray(const struct glint_visible *h,
     rays->at[RAY_STOP_X][i] = ray->stop_x_mm / stop;
     rays->at[RAY_STOP_Y][i] = ray->stop_y_mm / stop;
     rays->at[RAY_ENERGY][i] = ray->energy;
-    rays->at[RAY_EXCESS][i] = compute_excess(h, ray);
+    rays->at[RAY_EXCESS][i] = compute_max_radius(h, ray);
     rays->at[RAY_SPREAD][i] = 0;
-    rays->at[RAY_FIELD][i] = compute_field(h, ray);
+    rays->at[RAY_FIELD][i] = compute_field_radius(h, ray);
     for (int k = 0; k < rays->n_barrels; k++) {
         const int e = rays->barrel[k];
 
@@ -47,24 +47,25 @@ static void add_ray(const struct glint_visible *h,
     }
 }
 
-/* For each ray of a batch, EXCESS and FIELD (enum in zone_rays.h) at the
- * neighbouring zoom position where the larger of both is smallest. */
+/* RAY_EXCESS and RAY_FIELD of each ray of a batch at the neighbouring zoom
+ * position where the larger of both is smallest. */
 struct beside {
     double excess[GLINT_ZONE_BATCH], field[GLINT_ZONE_BATCH];
 };
 
-/* Returns whether (EXCESS, FIELD) is nearer to the visible region than ray I
+/* Returns whether (EXCESS, FIELD) is nearer to the visible region than entry I
  * of B. */
-static bool is_nearer(const struct beside *b, int i, double excess,
-                      double field)
+static bool is_nearer_to_visible(const struct beside *b, int i, double excess,
+                                 double field)
 {
     return fmax(excess, field) < fmax(b->excess[i], b->field[i]);
 }
 
-/* Traces the rays of T at wavelength number WAVE at the neighbouring zoom
- * positions. */
-static void trace_beside(const struct glint_visible *visible, int wave,
-                         struct glint_zone_batch *t, struct beside *b)
+/* Traces the rays of T, at wavelength index WAVE, at all neighbouring zoom
+ * positions and records the values nearest to the visible region in B. */
+static void trace_neighbour_positions(const struct glint_visible *visible,
+                                      int wave, struct glint_zone_batch *t,
+                                      struct beside *b)
 {
     for (int i = 0; i < t->n; i++)
         b->excess[i] = b->field[i] = HUGE_VAL;
@@ -78,9 +79,9 @@ static void trace_beside(const struct glint_visible *visible, int wave,
 
             if (t->status[i] != GLINT_RAY_OK)
                 continue;
-            excess = compute_excess(h, &t->ray[i]);
-            field = compute_field(h, &t->ray[i]);
-            if (is_nearer(b, i, excess, field)) {
+            excess = compute_max_radius(h, &t->ray[i]);
+            field = compute_field_radius(h, &t->ray[i]);
+            if (is_nearer_to_visible(b, i, excess, field)) {
                 b->excess[i] = excess;
                 b->field[i] = field;
             }
@@ -88,46 +89,48 @@ static void trace_beside(const struct glint_visible *visible, int wave,
     }
 }
 
-/* Replaces EXCESS and FIELD of the last of RAYS by those of ray I of B if
- * the latter are nearer to the visible region. */
-static void update_beside(const struct beside *b, int i,
-                          struct glint_zone_rays *rays)
+/* Replaces RAY_EXCESS and RAY_FIELD of the last of RAYS by entry I of B if that
+ * is nearer to the visible region. */
+static void replace_by_nearer_position(const struct beside *b, int i,
+                                       struct glint_zone_rays *rays)
 {
     double *const excess = &rays->at[RAY_EXCESS][rays->n - 1];
     double *const field = &rays->at[RAY_FIELD][rays->n - 1];
 
-    if (is_nearer(b, i, *excess, *field))
+    if (is_nearer_to_visible(b, i, *excess, *field))
         return;
     *excess = b->excess[i];
     *field = b->field[i];
 }
 
-/* Numbers of angles, and of cells across and down. Each variable has more
- * nodes than powers; otherwise a fit could be exact at the nodes and wrong
- * between them. */
+/* Number of angles, and of grid cells across and down the pupil. Each variable
+ * has more nodes than powers; otherwise a fit could be exact at all nodes and
+ * wrong in between. */
 enum { SINES = 9, ACROSS = 24, DOWN = 12 };
 
-/* Returns the fractional part of N times R. */
-static double fraction_of_turn(int n, double r)
+/* Returns the fractional part of N * R. */
+static double compute_product_fraction(int n, double r)
 {
     return fmod(n * r, 1);
 }
 
-/* Traces rays at one angle and wavelength. In lenses that open wide each
- * angle and wavelength gets a shifted grid; otherwise polynomials could
- * oscillate between the rays. In the finest grid only every third ray far
- * outside the visible region is stored. */
-static void trace_plane(const struct glint_zone *zone,
-                        const struct glint_visible *visible, int sine, int wave,
-                        int stride, struct glint_zone_rays *rays)
+/* Traces a grid of rays at one angle and wavelength. Fast lenses: each angle
+ * and wavelength gets a shifted grid, as polynomials could oscillate between
+ * rays. In the finest grid only every third ray far outside the visible region
+ * is stored. */
+static void trace_pupil_grid(const struct glint_zone *zone,
+                             const struct glint_visible *visible, int sine,
+                             int wave, int stride, struct glint_zone_rays *rays)
 {
     const int full = rays->n + GLINT_ZONE_RAYS / (4 * SINES);
-    /* Multiples of 1 / g and 1 / g^2, where g is the root of x^3 = x + 1,
-     * fill a square evenly. */
+    /* Multiples of 1 / g and 1 / g^2 fill a square evenly, where g is the root
+     * of x^3 = x + 1. */
     const int plane = sine * 4 + wave;
     const double move = visible->wide ? stride : 0;
-    const double right = move * fraction_of_turn(plane, 0.75487766624669276);
-    const double up = move * fraction_of_turn(plane, 0.56984029099805327);
+    const double right =
+        move * compute_product_fraction(plane, 0.75487766624669276);
+    const double up =
+        move * compute_product_fraction(plane, 0.56984029099805327);
     struct glint_zone_batch t;
     struct beside beside;
 
@@ -144,15 +147,15 @@ static void trace_plane(const struct glint_zone *zone,
 
             glint_zone_batch_add(&t, zone, x);
         }
-        trace_beside(visible, wave, &t, &beside);
+        trace_neighbour_positions(visible, wave, &t, &beside);
         t.path = &visible->path[wave];
         glint_zone_batch_trace(&t);
         for (int i = 0; i < t.n && rays->n < full; i++) {
             if (t.status[i] != GLINT_RAY_OK)
                 continue;
-            add_ray(visible, t.path, t.x[i], &t.ray[i],
-                    glint_zone_batch_hits(&t, i), rays);
-            update_beside(&beside, i, rays);
+            append_zone_ray(visible, t.path, t.x[i], &t.ray[i],
+                            glint_zone_batch_hits(&t, i), rays);
+            replace_by_nearer_position(&beside, i, rays);
             if (stride == 1 && (i + j) % 3 &&
                 fmax(rays->at[RAY_EXCESS][rays->n - 1],
                      rays->at[RAY_FIELD][rays->n - 1]) > 1.1)
@@ -161,7 +164,7 @@ static void trace_plane(const struct glint_zone *zone,
     }
 }
 
-static int count_visible(const struct glint_zone_rays *rays)
+static int count_visible_rays(const struct glint_zone_rays *rays)
 {
     int n = 0;
 
@@ -170,35 +173,34 @@ static int count_visible(const struct glint_zone_rays *rays)
     return n;
 }
 
-/* Traces rays for positions. Positions vary slowly with w, so four
- * wavelengths per angle, different ones at consecutive angles, are
- * sufficient. Starts with a coarse grid and repeats with a fine one if few
- * rays pass. */
-static void trace_positions(const struct glint_zone *zone,
-                            const struct glint_visible *visible,
-                            struct glint_zone_rays *rays)
+/* Traces rays for fitting positions. Positions vary slowly with the wavelength,
+ * so four wavelengths per angle are enough, different ones at consecutive
+ * angles. Uses a coarse grid, and a fine one if few rays pass. */
+static void trace_rays_for_positions(const struct glint_zone *zone,
+                                     const struct glint_visible *visible,
+                                     struct glint_zone_rays *rays)
 {
     static const int shift[] = {0, 3, 5, 8};
 
     for (int stride = 2; stride > 0; stride--) {
         rays->n = 0;
         for (int k = 0; k < 4 * SINES; k++)
-            trace_plane(zone, visible, k / 4,
-                        (k / 4 + shift[k % 4]) % GLINT_VISIBLE_WAVES, stride,
-                        rays);
-        if (count_visible(rays) > 500)
+            trace_pupil_grid(zone, visible, k / 4,
+                             (k / 4 + shift[k % 4]) % GLINT_VISIBLE_WAVES,
+                             stride, rays);
+        if (count_visible_rays(rays) > 500)
             break;
     }
 }
 
-/* Distance in u or v between a ray and its neighbours. */
+/* distance in u or v between a ray and its neighbours */
 #define ASIDE 0.01
 
-/* Adds the ray at X to batch T; if THREE, between its neighbours in v and in
- * u. */
-static void add_position(struct glint_zone_batch *t,
-                         const struct glint_zone *zone,
-                         double x[GLINT_VARIABLES], bool three)
+/* Adds the ray at X to batch T. THREE: also adds a neighbour in v before it and
+ * a neighbour in u after it. */
+static void add_ray_with_neighbours(struct glint_zone_batch *t,
+                                    const struct glint_zone *zone,
+                                    double x[GLINT_VARIABLES], bool three)
 {
     const double v = x[1];
 
@@ -214,11 +216,11 @@ static void add_position(struct glint_zone_batch *t,
     }
 }
 
-/* Adds the middle ray of each group of three in T, with RAY_SPREAD from its
- * two neighbours. */
-static void add_middles(const struct glint_visible *visible,
-                        struct glint_zone_batch *t,
-                        struct glint_zone_rays *rays)
+/* Adds the middle ray of each group of three in T to RAYS, with RAY_SPREAD
+ * computed from its two neighbours. */
+static void append_middle_rays(const struct glint_visible *visible,
+                               struct glint_zone_batch *t,
+                               struct glint_zone_rays *rays)
 {
     for (int i = 1; i < t->n; i += 3) {
         const struct glint_ray *const a = &t->ray[i - 1], *const b = &t->ray[i];
@@ -226,8 +228,8 @@ static void add_middles(const struct glint_visible *visible,
 
         if (t->status[i] != GLINT_RAY_OK)
             continue;
-        add_ray(visible, t->path, t->x[i], b, glint_zone_batch_hits(t, i),
-                rays);
+        append_zone_ray(visible, t->path, t->x[i], b,
+                        glint_zone_batch_hits(t, i), rays);
         if (t->status[i - 1] == GLINT_RAY_OK &&
             t->status[i + 1] == GLINT_RAY_OK)
             rays->at[RAY_SPREAD][rays->n - 1] =
@@ -239,12 +241,12 @@ static void add_middles(const struct glint_visible *visible,
     }
 }
 
-/* Traces the rays of a skew zone, for both positions and energies: a few
- * rays at each of many directions and wavelengths. Directions fill the zone
- * up to its borders. */
-static void trace_scattered(const struct glint_zone *zone,
-                            const struct glint_visible *visible,
-                            struct glint_zone_rays *rays)
+/* Traces the rays of a skew zone for fitting positions and energies: a few rays
+ * for each of many directions and wavelengths. Directions fill the zone up to
+ * its borders. */
+static void trace_scattered_rays(const struct glint_zone *zone,
+                                 const struct glint_visible *visible,
+                                 struct glint_zone_rays *rays)
 {
     enum { PLANES = 132, RAYS = 24, AT_ONCE = RAYS / 3 };
     struct glint_zone_batch t;
@@ -262,10 +264,10 @@ static void trace_scattered(const struct glint_zone *zone,
             for (int i = 0; i < GLINT_VARIABLES; i++)
                 x[i] = sin(0.5 * GLINT_PI * (i < GLINT_S ? x[i] : plane[i]));
             x[GLINT_W] = glint_zone_node(wave, GLINT_VISIBLE_WAVES);
-            add_position(&t, zone, x, true);
+            add_ray_with_neighbours(&t, zone, x, true);
         }
         glint_zone_batch_trace(&t);
-        add_middles(visible, &t, rays);
+        append_middle_rays(visible, &t, rays);
     }
 }
 
@@ -295,23 +297,23 @@ double glint_zone_rays_spread(const struct glint_zone_rays *rays)
     return spread;
 }
 
-/* Traces rays for energies. Energies hardly vary over the pupil, but films
- * make them oscillate with the wavelength. STEEP: energies vary over the
- * pupil, as towards total reflection; then the grid is finer, with five
+/* Traces rays for fitting energies, which hardly vary over the pupil, but
+ * oscillate with the wavelength because of films. STEEP: energies vary over the
+ * pupil, as towards total reflection; the grid is then finer, with five
  * wavelengths per angle. */
-static void trace_energies(const struct glint_zone *zone,
-                           const struct glint_visible *visible, bool steep,
-                           struct glint_zone_rays *rays)
+static void trace_rays_for_energies(const struct glint_zone *zone,
+                                    const struct glint_visible *visible,
+                                    bool steep, struct glint_zone_rays *rays)
 {
     static const int shift[] = {0, 2, 4, 6, 9};
 
     rays->n = 0;
     for (int k = 0; k < SINES * GLINT_VISIBLE_WAVES && !steep; k++)
-        trace_plane(zone, visible, k / GLINT_VISIBLE_WAVES,
-                    k % GLINT_VISIBLE_WAVES, 4, rays);
+        trace_pupil_grid(zone, visible, k / GLINT_VISIBLE_WAVES,
+                         k % GLINT_VISIBLE_WAVES, 4, rays);
     for (int k = 0; k < 5 * SINES && steep; k++)
-        trace_plane(zone, visible, k / 5,
-                    (k / 5 + shift[k % 5]) % GLINT_VISIBLE_WAVES, 2, rays);
+        trace_pupil_grid(zone, visible, k / 5,
+                         (k / 5 + shift[k % 5]) % GLINT_VISIBLE_WAVES, 2, rays);
 }
 
 void glint_zone_trace(const struct glint_zone *zone,
@@ -322,19 +324,19 @@ void glint_zone_trace(const struct glint_zone *zone,
     energies->n_barrels = energies->n = 0;
     rays->scattered = energies->scattered = zone->skew;
     if (zone->skew) {
-        trace_scattered(zone, visible, rays);
+        trace_scattered_rays(zone, visible, rays);
         return;
     }
-    trace_positions(zone, visible, rays);
-    trace_energies(zone, visible, glint_zone_rays_spread(rays) > GLINT_STEEP,
-                   energies);
+    trace_rays_for_positions(zone, visible, rays);
+    trace_rays_for_energies(
+        zone, visible, glint_zone_rays_spread(rays) > GLINT_STEEP, energies);
 }
 
-/* Adds the rays of T in groups of N consecutive rays. Skips groups with a
- * ray that misses a surface. */
-static void add_groups(const struct glint_visible *visible,
-                       struct glint_zone_batch *t, int n,
-                       struct glint_zone_rays *rays)
+/* Adds the rays of T to RAYS in groups of N consecutive ones. Skips groups with
+ * a ray that is not traced to the sensor. */
+static void append_ray_groups(const struct glint_visible *visible,
+                              struct glint_zone_batch *t, int n,
+                              struct glint_zone_rays *rays)
 {
     for (int i = 0; i < t->n; i += n) {
         bool all = true;
@@ -342,8 +344,8 @@ static void add_groups(const struct glint_visible *visible,
         for (int k = 0; k < n; k++)
             all &= t->status[i + k] == GLINT_RAY_OK;
         for (int k = i; k < i + n && all; k++)
-            add_ray(visible, t->path, t->x[k], &t->ray[k],
-                    glint_zone_batch_hits(t, k), rays);
+            append_zone_ray(visible, t->path, t->x[k], &t->ray[k],
+                            glint_zone_batch_hits(t, k), rays);
     }
 }
 
@@ -370,63 +372,64 @@ void glint_zone_check(const struct glint_zone *zone,
             x[GLINT_S] = bundle[GLINT_S];
             x[GLINT_W] = bundle[GLINT_W];
             x[GLINT_P] = bundle[GLINT_P];
-            add_position(&t, zone, x, group == 3);
+            add_ray_with_neighbours(&t, zone, x, group == 3);
         }
         glint_zone_batch_trace(&t);
         if (zone->skew)
-            add_middles(visible, &t, rays);
+            append_middle_rays(visible, &t, rays);
         else
-            add_groups(visible, &t, group, rays);
+            append_ray_groups(visible, &t, group, rays);
     }
 }
 
 /* ------------------------------------------------------------------ barrels */
 
-/* Chooses the barrels that are fitted in a zone, such that no ray that
- * passes them is far outside any other barrel. */
+/* Chooses the barrels that get polynomials in a zone, such that no ray that
+ * passes all of them is far outside any other barrel. */
 
-/* Min range of the relative radii at a barrel. If rays differ by less, the
- * distance outside the barrel is scaled as if they differed by this much.
- * Where light grazes a hemispherical surface of a fisheye, the whole ghost
- * lies within 0.003 of the rim. */
+/* Min range of the relative radii at a barrel. If the radii span less,
+ * distances outside the barrel are scaled up as if they spanned this much.
+ * Where light grazes a hemispherical surface of a fisheye, the whole ghost lies
+ * within 0.003 of the rim. */
 #define LEAST_RANGE 0.1
 
-/* Relative radius that stands for missing a surface. */
+/* relative radius that marks a missed surface */
 #define MISS 1.3
 
-/* Samples of a zone: relative radius of each ray at each event. */
+/* relative radius of each sample ray at each event */
 struct sampling {
     int n, n_events;
-    bool lost[GLINT_SAMPLING_RAYS]; /* true: the ray misses a surface, so that
-                                       its position in the stop is unknown */
+    /* true: the ray misses a surface, so its position in the stop is unknown */
+    bool lost[GLINT_SAMPLING_RAYS];
     double (*radius)[GLINT_MAX_EVENTS + 1];
     /* range of the relative radii of rays inside the stop and the field */
     double low[GLINT_MAX_EVENTS + 1], high[GLINT_MAX_EVENTS + 1];
-    /* factor on the distance outside each barrel */
+    /* factor on distances outside each barrel */
     double factor[GLINT_MAX_EVENTS + 1];
 };
 
-/* Returns whether HIT marks an event that the ray does not reach. */
-static bool is_unreached(const double hit[2])
+/* Returns whether HIT is the mark of an event that the ray does not reach. */
+static bool is_event_unreached(const double hit[2])
 {
     return hit[0] == -1 && hit[1] == -1;
 }
 
-/* If a ray misses a surface, sets its relative radius at the first event
+/* If the ray misses a surface, sets its relative radius at the first event
  * without a hit to MISS and returns MISS; else returns 0. */
-static double mark_missed(double *radius, double (*hits)[2], int n_events)
+static double mark_missed_surface(double *radius, double (*hits)[2],
+                                  int n_events)
 {
     int k = 0;
 
-    while (k < n_events && !is_unreached(hits[k]))
+    while (k < n_events && !is_event_unreached(hits[k]))
         k++;
     if (k < n_events)
         radius[k] = MISS;
     return k < n_events ? MISS : 0;
 }
 
-/* Extends the ranges of S by the relative radii RADIUS. */
-static void extend_range(struct sampling *s, const double *radius)
+/* Extends the radius ranges of S by the relative radii RADIUS of one ray. */
+static void extend_radius_ranges(struct sampling *s, const double *radius)
 {
     for (int k = 0; k < s->n_events; k++) {
         s->low[k] = fmin(s->low[k], radius[k]);
@@ -434,14 +437,13 @@ static void extend_range(struct sampling *s, const double *radius)
     }
 }
 
-/* Stores the relative radius of a ray at every event. Returns whether the
- * ray is needed: it is inside the stop and the field, and at least one
- * barrel blocks it. */
-static bool sample_ray(const struct glint_visible *h,
-                       const struct glint_path *path,
-                       enum glint_ray_status status,
-                       const struct glint_ray *ray, double (*hits)[2],
-                       struct sampling *sampling)
+/* Stores the relative radius of a ray at every event. Returns whether the ray
+ * is useful: inside the stop and the field, and outside at least one barrel. */
+static bool sample_barrel_radii(const struct glint_visible *h,
+                                const struct glint_path *path,
+                                enum glint_ray_status status,
+                                const struct glint_ray *ray, double (*hits)[2],
+                                struct sampling *sampling)
 {
     double *const radius = sampling->radius[sampling->n];
     const double stop = h->setup->optics.stop_radius_mm;
@@ -451,30 +453,31 @@ static bool sample_ray(const struct glint_visible *h,
         const struct glint_event *e = &path->event[k];
         const double r = hypot(hits[k][0], hits[k][1]);
 
-        radius[k] =
-            e->kind == GLINT_STOP || is_unreached(hits[k]) ? 0 : r / e->semi_mm;
+        radius[k] = e->kind == GLINT_STOP || is_event_unreached(hits[k])
+                        ? 0
+                        : r / e->semi_mm;
         most = fmax(most, radius[k]);
     }
     sampling->lost[sampling->n] = status != GLINT_RAY_OK;
     if (status == GLINT_RAY_MISSED && h->far)
-        most = fmax(most, mark_missed(radius, hits, path->n_events));
+        most = fmax(most, mark_missed_surface(radius, hits, path->n_events));
     if (status != GLINT_RAY_OK)
         return most > 1;
     if (hypot(ray->stop_x_mm, ray->stop_y_mm) >= 1.02 * stop ||
         hypot(ray->sensor_x_mm, ray->sensor_y_mm) >= h->field_mm)
         return false;
-    extend_range(sampling, radius);
+    extend_radius_ranges(sampling, radius);
     return most > 1;
 }
 
-/* Samples rays at scattered angles, as a barrel may cut in a narrow range of
- * angles only. */
-static void sample_rays(const struct glint_zone *z,
-                        const struct glint_visible *visible,
-                        struct sampling *sampling)
+/* Samples rays at scattered angles, as a barrel may block rays in a narrow
+ * range of angles only. */
+static void sample_zone_rays(const struct glint_zone *z,
+                             const struct glint_visible *visible,
+                             struct sampling *sampling)
 {
-    /* Fewer rays: skew zones are numerous, and rays through surfaces that
-     * are not spheres are slow to trace. */
+    /* fewer rays for skew zones, which are numerous, and for non-spherical
+     * surfaces, through which rays are slow to trace */
     const int n = GLINT_SAMPLING_RAYS / (z->skew ? 2 : visible->shaped ? 3 : 1);
     struct glint_zone_batch t;
 
@@ -500,8 +503,9 @@ static void sample_rays(const struct glint_zone *z,
         }
         glint_zone_batch_trace(&t);
         for (int i = 0; i < GLINT_ZONE_BATCH; i++)
-            sampling->n += sample_ray(h, t.path, t.status[i], &t.ray[i],
-                                      glint_zone_batch_hits(&t, i), sampling);
+            sampling->n +=
+                sample_barrel_radii(h, t.path, t.status[i], &t.ray[i],
+                                    glint_zone_batch_hits(&t, i), sampling);
     }
     for (int k = 0; k < sampling->n_events; k++) {
         const double range = sampling->high[k] - sampling->low[k];
@@ -512,10 +516,11 @@ static void sample_rays(const struct glint_zone *z,
     }
 }
 
-/* Returns how far ray RAY escapes the barrels: its max relative radius - 1,
- * weighted and at most 0.3; 0 if one of the N CHOSEN barrels blocks it. */
-static double compute_escape(const struct sampling *s, int ray,
-                             const int *chosen, int n)
+/* Returns how far ray RAY lies outside the barrels although it passes the N
+ * barrels CHOSEN: its max relative radius - 1, weighted, at most 0.3; 0 if a
+ * chosen barrel blocks it. */
+static double compute_barrel_escape(const struct sampling *s, int ray,
+                                    const int *chosen, int n)
 {
     const double *r = s->radius[ray];
     double most = 0;
@@ -528,17 +533,18 @@ static double compute_escape(const struct sampling *s, int ray,
     return fmin(most, 0.3);
 }
 
-/* Returns the sum of compute_escape() of all rays past N CHOSEN barrels. *MOST
- * receives the largest. */
-static double sum_escapes(const struct sampling *s, bool lost,
-                          const int *chosen, int n, double *most)
+/* Returns the sum of compute_barrel_escape() over all rays, for N barrels
+ * CHOSEN; *MOST receives the max. LOST: also counts rays that miss a surface.
+ */
+static double sum_barrel_escapes(const struct sampling *s, bool lost,
+                                 const int *chosen, int n, double *most)
 {
     double sum = 0;
 
     *most = 0;
     for (int i = 0; i < s->n; i++) {
         const double e =
-            !lost && s->lost[i] ? 0 : compute_escape(s, i, chosen, n);
+            !lost && s->lost[i] ? 0 : compute_barrel_escape(s, i, chosen, n);
 
         sum += e;
         *most = fmax(*most, e);
@@ -546,15 +552,15 @@ static double sum_escapes(const struct sampling *s, bool lost,
     return sum;
 }
 
-/* Adds barrels, each time the one that blocks most, until compute_escape() is
- * at most SHOWS for all rays, or, if LOST is false, for all rays that do not
- * miss a surface. */
+/* Adds barrels to RAYS, each time the one that blocks most, until
+ * compute_barrel_escape() is at most SHOWS for all rays; without LOST, for all
+ * rays that hit every surface. */
 static void choose_barrels(const struct sampling *s, bool lost, double shows,
                            struct glint_zone_rays *rays)
 {
     double most;
 
-    sum_escapes(s, lost, rays->barrel, rays->n_barrels, &most);
+    sum_barrel_escapes(s, lost, rays->barrel, rays->n_barrels, &most);
     while (most > shows && rays->n_barrels < GLINT_MAX_BARRELS) {
         const int n = rays->n_barrels;
         double least = HUGE_VAL;
@@ -564,7 +570,7 @@ static void choose_barrels(const struct sampling *s, bool lost, double shows,
             double sum;
 
             rays->barrel[n] = k;
-            sum = sum_escapes(s, lost, rays->barrel, n + 1, &most);
+            sum = sum_barrel_escapes(s, lost, rays->barrel, n + 1, &most);
             if (sum < least) {
                 least = sum;
                 best = k;
@@ -572,7 +578,7 @@ static void choose_barrels(const struct sampling *s, bool lost, double shows,
         }
         rays->barrel[n] = best;
         rays->n_barrels++;
-        sum_escapes(s, lost, rays->barrel, n + 1, &most);
+        sum_barrel_escapes(s, lost, rays->barrel, n + 1, &most);
     }
     rays->missed_cut = most;
 }
@@ -584,7 +590,7 @@ void glint_zone_choose_barrels(const struct glint_zone *zone,
 {
     struct sampling s = {.radius = *sampling};
 
-    sample_rays(zone, visible, &s);
+    sample_zone_rays(zone, visible, &s);
     rays->n_barrels = 0;
     if (visible->far)
         choose_barrels(&s, false, shows, rays);

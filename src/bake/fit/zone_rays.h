@@ -3,8 +3,8 @@
  * Traces the rays to which the polynomials of a zone are fitted.
  *
  *   in   a zone, the paths of a ghost at a few wavelengths
- *   out  rays in the zone's coordinates: positions on the sensor and in the
- *        stop, energy, and relative radii at the barrels that cut the ghost
+ *   out  rays in zone coordinates: positions on the sensor and in the stop,
+ *        energy, and relative radii at the barrels that block rays
  */
 #ifndef GLINT_BAKE_FIT_ZONE_RAYS_H
 #define GLINT_BAKE_FIT_ZONE_RAYS_H
@@ -13,36 +13,36 @@
 
 enum { GLINT_ZONE_RAYS = 36 * 120, GLINT_MAX_BARRELS = 4 };
 
-/* Channels of a ray. */
+/* channels of a ray */
 enum {
     RAY_SENSOR_X, /* mm */
     RAY_SENSOR_Y,
     RAY_STOP_X, /* stop radii */
     RAY_STOP_Y,
     RAY_ENERGY,
-    /* EXCESS: largest relative radius over all surfaces and the stop. FIELD:
-     * distance from the sensor's centre in field radii. With neighbouring
-     * zoom positions, the values at the position where the larger of both is
-     * smallest. */
+    /* RAY_EXCESS: max relative radius over all surfaces and the stop.
+     * RAY_FIELD: distance from the sensor's centre in field radii. With
+     * neighbouring zoom positions: values of the position at which the larger
+     * of both is smallest. */
     RAY_EXCESS,
     RAY_FIELD,
-    RAY_SPREAD, /* skew zones only: d area on the sensor / d area in (u, v),
-                   mm^2; 0: unknown */
+    /* skew zones only: area on the sensor / area in (u, v), mm^2; 0: unknown */
+    RAY_SPREAD,
     RAY_CHANNELS
 };
 
 struct glint_zone_rays {
     int n;
-    bool scattered; /* false: rays lie in rows of constant v */
+    bool scattered; /* false: the rays form rows of constant v */
     double x[GLINT_VARIABLES][GLINT_ZONE_RAYS];
     double at[RAY_CHANNELS][GLINT_ZONE_RAYS];
-    /* Barrels that cut in the zone, and the relative radius of each ray at
-     * them. */
+    /* barrels that block rays in this zone, and the relative radius of each ray
+     * at each of them */
     int n_barrels;
-    int barrel[GLINT_MAX_BARRELS]; /* indices of events of the path */
+    int barrel[GLINT_MAX_BARRELS]; /* indices among the path's events */
     double radius[GLINT_MAX_BARRELS][GLINT_ZONE_RAYS];
-    /* largest relative distance by which a ray lies outside a barrel that is
-     * not listed, but inside all listed ones */
+    /* max relative distance by which a ray lies outside a barrel that is not
+     * listed although it passes all listed barrels */
     double missed_cut;
 };
 
@@ -69,36 +69,35 @@ static inline bool glint_zone_rays_alike(const struct glint_zone_rays *r, int i,
            r->x[GLINT_P][i] == r->x[GLINT_P][j];
 }
 
-/* Returns whether all rays are invisible. */
+/* Returns whether no ray is visible. */
 bool glint_zone_rays_dark(const struct glint_zone_rays *rays);
 
-/* Returns the largest ratio of max to min energy among visible rays of one
- * angle and wavelength. Films do not affect it. Above GLINT_STEEP the energy
- * varies a lot over the pupil. */
+/* Returns the max over all angles and wavelengths of the ratio max / min energy
+ * among visible rays. Films do not affect it. Above GLINT_STEEP the energy
+ * varies strongly over the pupil. */
 double glint_zone_rays_spread(const struct glint_zone_rays *rays);
 #define GLINT_STEEP 8
 
-/* Memory for the samples by which barrels are chosen. */
+/* radii of sample rays at all events, for choosing barrels */
 enum { GLINT_SAMPLING_RAYS = 6000 };
 typedef double glint_zone_sampling[GLINT_SAMPLING_RAYS][GLINT_MAX_EVENTS + 1];
 
-/* Chooses the barrels of RAYS such that no ray is farther than SHOWS, a
- * relative radius, outside any other barrel. */
+/* Chooses the barrels of RAYS such that every ray that passes them is at most
+ * SHOWS (relative radius) outside any other barrel. */
 void glint_zone_choose_barrels(const struct glint_zone *zone,
                                const struct glint_visible *visible,
                                double shows, glint_zone_sampling *sampling,
                                struct glint_zone_rays *rays);
 
-/* Traces RAYS for positions and barrels, and ENERGIES at fewer points of the
- * pupil but more wavelengths. For a skew zone RAYS are also used for
- * energies. */
+/* Traces RAYS for positions and barrels, and ENERGIES at fewer pupil points but
+ * more wavelengths. For skew zones RAYS serve for energies, too. */
 void glint_zone_trace(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays,
                       struct glint_zone_rays *energies);
 
-/* Returns whether errors of rays in ZONE are weighted by the local
- * brightness, whose computation needs neighbouring rays. */
+/* Returns whether errors of rays in ZONE are weighted by the local brightness,
+ * which is computed from neighbouring rays. */
 static inline bool glint_zone_by_light(const struct glint_zone *zone,
                                        const struct glint_visible *visible)
 {
@@ -106,10 +105,10 @@ static inline bool glint_zone_by_light(const struct glint_zone *zone,
 }
 
 /* Sets RAYS to scattered rays of the zone, at angles and wavelengths between
- * the fitted ones, without barrels and without neighbouring zoom positions.
- * Deterministic. If errors are weighted by brightness, rays come in groups
- * of three: the ray itself, a neighbour in v and a neighbour in u; in a skew
- * zone only the middle one is stored. */
+ * the fitted ones, without barrels and neighbouring zoom positions.
+ * Deterministic. If errors are weighted by brightness, rays come in groups of
+ * three: a neighbour in v, the ray itself, and a neighbour in u; for skew zones
+ * only the middle one is stored. */
 void glint_zone_check(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays);
