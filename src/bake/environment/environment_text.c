@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses the text that describes an environment map, line by line.
+ * Parses the text of an environment map, line by line: its picture, its size,
+ * and how lights are extracted.
  */
 #include <string.h>
 
@@ -15,7 +16,7 @@ static const struct glint_text_line lines[] = {{"source", false},
 
 enum { N_LINES = sizeof lines / sizeof *lines };
 
-static bool read_source(struct glint_text *text, char *source)
+static bool read_source_name(struct glint_text *text, char *source)
 {
     const struct glint_word word = glint_text_rest(text);
 
@@ -27,8 +28,8 @@ static bool read_source(struct glint_text *text, char *source)
     return true;
 }
 
-static bool read_lights(struct glint_text *text,
-                        struct glint_environment_options *o)
+static bool read_lights_line(struct glint_text *text,
+                             struct glint_environment_options *o)
 {
     struct glint_clause clause[] = {
         {"radius", 1, .1, 20, .value = &o->light_deg},
@@ -43,8 +44,8 @@ static bool read_lights(struct glint_text *text,
     return glint_clauses_read(text, "lights", clause);
 }
 
-static bool read_size(struct glint_text *text,
-                      struct glint_environment_options *o)
+static bool read_map_size(struct glint_text *text,
+                          struct glint_environment_options *o)
 {
     static const char *const sizes[] = {"16",  "32",  "64",   "128",
                                         "256", "512", "1024", NULL};
@@ -55,16 +56,17 @@ static bool read_size(struct glint_text *text,
     return i >= 0;
 }
 
-static bool read_line(struct glint_text *text, int which,
-                      struct glint_environment_options *o, char *source)
+static bool read_environment_line(struct glint_text *text, int which,
+                                  struct glint_environment_options *o,
+                                  char *source)
 {
     switch (which) {
     case 0:
-        return read_source(text, source);
+        return read_source_name(text, source);
     case 1:
-        return read_size(text, o);
+        return read_map_size(text, o);
     case 2:
-        return read_lights(text, o);
+        return read_lights_line(text, o);
     case 3:
         return glint_numbers_read(text, "turn", 1, -360, 360, &o->turn_deg);
     default:
@@ -89,7 +91,7 @@ glint_environment_parse(struct glint_environment_options *options,
         int i;
 
         good = glint_line_begin(&text, lines, N_LINES, first, &i) &&
-               (i < 0 || (read_line(&text, i, options, source) &&
+               (i < 0 || (read_environment_line(&text, i, options, source) &&
                           glint_line_ends(&text, lines[i].word)));
     }
     if (good && !source[0])

@@ -2,8 +2,8 @@
  *
  * Blurs environment light on the sphere.
  *
- * Texels are grouped in square blocks, each enclosed in a cone of directions. A
- * block is skipped if its cone lies farther than four sigma from the direction
+ * Texels are grouped in square blocks, each enclosed in a cone of directions.
+ * A block is skipped if its cone is farther than four sigma from the direction
  * whose blur is computed.
  */
 #include "bake/environment/sphere.h"
@@ -16,22 +16,25 @@
 
 enum { BLOCKS = 32 }; /* max number of blocks per side */
 
-#define REACH 4.0 /* sigmas; the Gaussian's weight beyond is 3e-4 */
+/* radius of the Gaussian in sigmas; its weight beyond that is 3e-4 */
+#define REACH 4.0
 
 struct block {
-    /* axis and half angle of a cone that encloses its texels */
+    /* axis and half angle, radians, of a cone that encloses the block's
+     * texels */
     double toward[3], angle;
-    double nearest; /* cosine of the largest angle between the axis and a
-                       direction that the block contributes to */
+    /* cosine of the max angle between the axis and any direction to which the
+     * block contributes */
+    double nearest;
 };
 
-static double compute_dot(const double a[3], const double b[3])
+static double compute_dot_product(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void compute_cone(const struct glint_sphere *s, int i, int j, int side,
-                         struct block *b)
+static void compute_block_cone(const struct glint_sphere *s, int i, int j,
+                               int side, struct block *b)
 {
     double length, cosine = 1;
 
@@ -41,30 +44,30 @@ static void compute_cone(const struct glint_sphere *s, int i, int j, int side,
             for (int k = 0; k < 3; k++)
                 b->toward[k] +=
                     s->texel[glint_sphere_index(s->side, x, y)].toward[k];
-    length = sqrt(compute_dot(b->toward, b->toward));
+    length = sqrt(compute_dot_product(b->toward, b->toward));
     for (int k = 0; k < 3; k++)
         b->toward[k] /= length;
     for (int y = j * side; y < (j + 1) * side; y++)
         for (int x = i * side; x < (i + 1) * side; x++)
             cosine =
                 fmin(cosine,
-                     compute_dot(
+                     compute_dot_product(
                          b->toward,
                          s->texel[glint_sphere_index(s->side, x, y)].toward));
     b->angle = acos(cosine);
 }
 
-/* Adds the light of block (I, J), SIDE texels wide, to the blur in direction
- * TOWARD. */
-static void add_block(const struct glint_sphere *s, int i, int j, int side,
-                      const double toward[3], double sigma, double nearest,
-                      double sum[4])
+/* Adds the light of block (I, J), SIDE texels wide, to SUM: the blurred light
+ * in direction TOWARD (RGB) and its total weight. */
+static void add_block_light(const struct glint_sphere *s, int i, int j,
+                            int side, const double toward[3], double sigma,
+                            double nearest, double sum[4])
 {
     for (int y = j * side; y < (j + 1) * side; y++)
         for (int x = i * side; x < (i + 1) * side; x++) {
             const struct glint_sphere_texel *t =
                 &s->texel[glint_sphere_index(s->side, x, y)];
-            const double cosine = compute_dot(toward, t->toward);
+            const double cosine = compute_dot_product(toward, t->toward);
             double weight;
 
             if (cosine < nearest)
@@ -88,7 +91,7 @@ bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
     if (!block)
         return false;
     for (int k = 0; k < blocks * blocks; k++) {
-        compute_cone(from, k % blocks, k / blocks, side, &block[k]);
+        compute_block_cone(from, k % blocks, k / blocks, side, &block[k]);
         block[k].nearest = reach + block[k].angle < GLINT_PI
                                ? cos(reach + block[k].angle)
                                : -2;
@@ -98,9 +101,10 @@ bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
 
         glint_sphere_middle(n, i, toward);
         for (int k = 0; k < blocks * blocks; k++)
-            if (compute_dot(toward, block[k].toward) >= block[k].nearest)
-                add_block(from, k % blocks, k / blocks, side, toward, sigma,
-                          cos(reach), sum);
+            if (compute_dot_product(toward, block[k].toward) >=
+                block[k].nearest)
+                add_block_light(from, k % blocks, k / blocks, side, toward,
+                                sigma, cos(reach), sum);
         for (int c = 0; c < 3; c++)
             light[i][c] = sum[3] > 0 ? sum[c] / sum[3] : 0;
     }
@@ -120,7 +124,7 @@ void glint_sphere_irradiance(const struct glint_sphere *from, int side_log2,
         glint_sphere_middle(n, i, normal);
         for (size_t k = 0; k < texels; k++) {
             const struct glint_sphere_texel *t = &from->texel[k];
-            const double cosine = compute_dot(normal, t->toward);
+            const double cosine = compute_dot_product(normal, t->toward);
 
             for (int c = 0; c < 3 && cosine > 0; c++)
                 sum[c] += t->weight * cosine * t->light[c];

@@ -3,9 +3,9 @@
  * Resamples a panorama to an octahedron map.
  *
  * Each pixel is subdivided into points at most half a texel apart. Each point
- * adds its light to the texel that it lies in, so that texels average the area
- * they cover and energy is preserved. A texel without points, which occurs if
- * the picture is coarser than the map, gets the light of the pixel at its
+ * adds its light to the texel in which it lies, so a texel averages the area
+ * that it covers, and energy is preserved. Texels without points, which occur
+ * if the picture is coarser than the map, get the light of the pixel at their
  * centre.
  */
 #include "bake/environment/sphere.h"
@@ -20,11 +20,11 @@ struct panorama {
     const struct glint_float_image *picture;
     enum shape shape;
     double turn[2]; /* cosine and sine of the rotation about y */
-    /* factor on all light; largest finite sample of the picture */
+    /* factor on all light; max finite sample of the picture */
     double scale, largest;
 };
 
-static enum shape detect_shape(const struct glint_float_image *picture)
+static enum shape detect_panorama_shape(const struct glint_float_image *picture)
 {
     if (picture->width == 2 * picture->height)
         return LATITUDES;
@@ -33,8 +33,8 @@ static enum shape detect_shape(const struct glint_float_image *picture)
                : NO_SHAPE;
 }
 
-/* Rotates X about the y axis, to the right. */
-static void rotate_about_y(const double by[2], double x[3])
+/* Rotates X to the right about the y axis. BY: cosine and sine of the angle. */
+static void rotate_vector_about_y(const double by[2], double x[3])
 {
     const double across = by[0] * x[0] + by[1] * x[2];
 
@@ -42,10 +42,10 @@ static void rotate_about_y(const double by[2], double x[3])
     x[0] = across;
 }
 
-/* Sets TOWARD to the direction of pixel coordinates (X, Y). Returns the
- * solid angle of a pixel there. */
-static double compute_direction(const struct panorama *p, double x, double y,
-                                double toward[3])
+/* Sets TOWARD to the direction of picture coordinates (X, Y), pixels. Returns
+ * the solid angle of a pixel there, sr. */
+static double compute_pixel_direction(const struct panorama *p, double x,
+                                      double y, double toward[3])
 {
     const int w = p->picture->width, h = p->picture->height, face = h / 2;
     double size;
@@ -59,9 +59,9 @@ static double compute_direction(const struct panorama *p, double x, double y,
         toward[2] = cos(up) * cos(east);
         size = 2 * GLINT_PI / w * GLINT_PI / h * cos(up);
     } else {
-        /* Faces of the cube as seen from its centre, with y up; the -y and
-         * +y faces are oriented so that their edges meet the +z face, the
-         * usual layout of cube files. */
+        /* The faces of the cube are seen from its centre, with y up. The -y and
+         * +y faces are oriented such that their edges meet the +z face, as is
+         * usual in cube files. */
         const int axis = (int)fmin(x / face, 2), sign = y < face ? 1 : -1;
         const double a = 2 * (x / face - axis) - 1;
         const double b = 2 * (y / face - (sign < 0)) - 1;
@@ -73,13 +73,14 @@ static double compute_direction(const struct panorama *p, double x, double y,
             toward[k] = at[axis][k] / length;
         size = 4. / face / face / (length * length * length);
     }
-    rotate_about_y(p->turn, toward);
+    rotate_vector_about_y(p->turn, toward);
     return size;
 }
 
-/* Sets LIGHT to the colour of pixel I, clamped to finite values of 0 or
- * more. */
-static void read_pixel(const struct panorama *p, size_t i, double light[3])
+/* Sets LIGHT to the colour of pixel I; negative and NaN samples become 0,
+ * infinite ones the max finite sample. */
+static void read_pixel_light(const struct panorama *p, size_t i,
+                             double light[3])
 {
     for (int c = 0; c < 3; c++) {
         const double x = (double)p->picture->rgb[3 * i + (size_t)c];
@@ -91,8 +92,8 @@ static void read_pixel(const struct panorama *p, size_t i, double light[3])
     }
 }
 
-static void count_invalid(struct panorama *p,
-                          struct glint_environment_report *report)
+static void count_invalid_pixels(struct panorama *p,
+                                 struct glint_environment_report *report)
 {
     const float *rgb = p->picture->rgb;
     const size_t n = (size_t)p->picture->width * (size_t)p->picture->height;
@@ -116,12 +117,13 @@ static void resample_pixel(const struct panorama *p, int x, int y, int points,
 {
     double light[3], toward[3], u, v;
 
-    read_pixel(p, (size_t)y * (size_t)p->picture->width + (size_t)x, light);
+    read_pixel_light(p, (size_t)y * (size_t)p->picture->width + (size_t)x,
+                     light);
     for (int i = 0; i < points * points; i++) {
         const int across = i % points, down = i / points;
         const double size =
-            compute_direction(p, x + (across + .5) / points,
-                              y + (down + .5) / points, toward) /
+            compute_pixel_direction(p, x + (across + .5) / points,
+                                    y + (down + .5) / points, toward) /
             (points * points);
         struct glint_sphere_texel *t;
 
@@ -135,15 +137,16 @@ static void resample_pixel(const struct panorama *p, int x, int y, int points,
     }
 }
 
-/* Sets texel T, which contains no point, to the pixel at its centre. */
-static void fill_texel(const struct panorama *p, struct glint_sphere_texel *t)
+/* Sets texel T, in which no point lies, to the pixel at its centre. */
+static void fill_empty_texel(const struct panorama *p,
+                             struct glint_sphere_texel *t)
 {
     const double back[2] = {p->turn[0], -p->turn[1]};
     const int w = p->picture->width, h = p->picture->height, face = h / 2;
     double d[3] = {t->toward[0], t->toward[1], t->toward[2]};
     double x, y;
 
-    rotate_about_y(back, d);
+    rotate_vector_about_y(back, d);
     if (p->shape == LATITUDES) {
         x = w * (.5 + atan2(d[0], d[2]) / (2 * GLINT_PI));
         y = h * (.5 - asin(fmin(fmax(d[1], -1), 1)) / GLINT_PI);
@@ -159,10 +162,10 @@ static void fill_texel(const struct panorama *p, struct glint_sphere_texel *t)
         x = face * (axis + .5 + .5 * a / fabs(d[axis]));
         y = face * ((sign < 0) + .5 + .5 * b / fabs(d[axis]));
     }
-    read_pixel(p,
-               (size_t)fmin(fmax(y, 0), h - 1) * (size_t)w +
-                   (size_t)fmin(fmax(x, 0), w - 1),
-               t->light);
+    read_pixel_light(p,
+                     (size_t)fmin(fmax(y, 0), h - 1) * (size_t)w +
+                         (size_t)fmin(fmax(x, 0), w - 1),
+                     t->light);
 }
 
 bool glint_sphere_project(struct glint_sphere *sphere,
@@ -172,10 +175,10 @@ bool glint_sphere_project(struct glint_sphere *sphere,
 {
     const double angle = options->turn_deg * GLINT_PI / 180;
     struct panorama p = {.picture = picture,
-                         .shape = detect_shape(picture),
+                         .shape = detect_panorama_shape(picture),
                          .turn = {cos(angle), sin(angle)},
                          .scale = options->scale};
-    /* on the octahedron map, the smallest texels are 2 / side radians wide */
+    /* the smallest texels of an octahedron map are 2 / side radians wide */
     const int across =
         p.shape == CUBE ? 4 * picture->height / 2 : picture->width;
     const int points = (int)ceil(2 * GLINT_PI * sphere->side / (double)across);
@@ -186,7 +189,7 @@ bool glint_sphere_project(struct glint_sphere *sphere,
         return false;
     report->width = picture->width;
     report->height = picture->height;
-    count_invalid(&p, report);
+    count_invalid_pixels(&p, report);
     for (int y = 0; y < picture->height; y++)
         for (int x = 0; x < picture->width; x++)
             resample_pixel(&p, x, y, points, sphere);
@@ -198,7 +201,7 @@ bool glint_sphere_project(struct glint_sphere *sphere,
             for (int c = 0; c < 3; c++)
                 t->light[c] /= t->weight;
         } else {
-            fill_texel(&p, t);
+            fill_empty_texel(&p, t);
             t->weight = glint_sphere_middle(sphere->side, (int)i, unused) /
                         (side * side);
         }

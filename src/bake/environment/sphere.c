@@ -17,7 +17,7 @@ double glint_sphere_toward(double u, double v, double toward[3])
     for (int k = 0; k < 3; k++)
         toward[k] /= length;
     /* d solid angle = dp dq / length^3: the area factor of a face, sqrt(3),
-     * cancels its distance from the centre, 1 / sqrt(3) */
+     * cancels the face's distance from the centre, 1 / sqrt(3) */
     return 4 / (length * length * length);
 }
 

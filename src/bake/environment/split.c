@@ -2,10 +2,11 @@
  *
  * Extracts bright lights from an environment map.
  *
- * A threshold is halved repeatedly, down to a multiple of the mean luminance
- * below it. At each threshold, connected texels above it form a spot. A spot is
- * a light as long as it is small enough; the lowest threshold at which it is
- * determines its extent. Lights that merge at a lower threshold stay separate.
+ * A luminance threshold is halved repeatedly, until it is only a given
+ * multiple of the mean luminance below it. At each threshold, connected texels
+ * above it form a spot. A spot is a light as long as it is small enough; the
+ * lowest such threshold determines the light's extent. Lights that merge at a
+ * lower threshold stay separate.
  */
 #include "bake/environment/sphere.h"
 
@@ -15,40 +16,42 @@
 
 #include "glint/view.h"
 
-/* Min luminance x solid angle of a light, as a fraction of the sphere's total.
- */
+/* Min luminance x solid angle of a light, as a fraction of the sphere's
+ * total. */
 #define LEAST_SHARE .002
 
 enum {
     MAX_SPOTS = 4096,
-    RING = 2, /* width in texels of the ring around a light; its mean replaces
-                 the light */
+    /* width in texels of the ring around a light whose mean replaces the
+     * light */
+    RING = 2,
     NOBODY = -1
 };
 
 struct spot {
-    /* luminance x sr; 0: merged into another spot, or extracted */
+    /* luminance x sr; 0: merged into another spot, or already extracted */
     double light;
 };
 
 struct split {
     struct glint_sphere *sphere;
-    double limit; /* squared rms radius of a light, radians */
-    double all;   /* luminance x sr of the sphere */
-    int *owner;   /* [texels]: index of the spot, or NOBODY */
+    double limit; /* max squared RMS radius of a light, radians^2 */
+    double all;   /* total luminance x sr of the sphere */
+    /* [texels]: index of the spot that contains the texel, or NOBODY */
+    int *owner;
     int *seen;  /* [texels]: number of the last round that visited the texel */
-    int *queue; /* [texels]: texels of the current flood fill */
+    int *queue; /* [texels]: indices of the texels of the current flood fill */
     struct spot spot[MAX_SPOTS];
     int n_spots;
 };
 
-static double get_luminance(const struct split *s, int i)
+static double get_texel_luminance(const struct split *s, int i)
 {
     return glint_luminance(s->sphere->texel[i].light);
 }
 
 /* Sets NEAR to the indices of the eight neighbours of texel I. */
-static void find_neighbours(const struct split *s, int i, int near[8])
+static void find_texel_neighbours(const struct split *s, int i, int near[8])
 {
     const int side = s->sphere->side, x = i % side, y = i / side;
     int n = 0;
@@ -59,19 +62,21 @@ static void find_neighbours(const struct split *s, int i, int near[8])
                 near[n++] = (int)glint_sphere_index(side, x + u, y + v);
 }
 
-/* Flood fill: sets the queue to the connected texels around I whose
- * luminance is THRESHOLD or above. Returns their number. */
-static int flood_fill(struct split *s, int i, double threshold, int round)
+/* Flood fill: sets the queue to the texels connected with texel I whose
+ * luminance is at least THRESHOLD. ROUND marks visited texels. Returns their
+ * number. */
+static int flood_fill_texels(struct split *s, int i, double threshold,
+                             int round)
 {
     int n = 0, near[8];
 
     s->queue[n++] = i;
     s->seen[i] = round;
     for (int at = 0; at < n; at++) {
-        find_neighbours(s, s->queue[at], near);
+        find_texel_neighbours(s, s->queue[at], near);
         for (int k = 0; k < 8; k++)
             if (s->seen[near[k]] != round &&
-                get_luminance(s, near[k]) >= threshold) {
+                get_texel_luminance(s, near[k]) >= threshold) {
                 s->seen[near[k]] = round;
                 s->queue[n++] = near[k];
             }
@@ -79,9 +84,9 @@ static int flood_fill(struct split *s, int i, double threshold, int round)
     return n;
 }
 
-/* Returns luminance x sr of the N texels of the queue and sets *SQUARE to
- * the square of their rms radius, radians^2. */
-static double measure_spot(const struct split *s, int n, double *square)
+/* Returns luminance x sr of the N texels in the queue. Sets *SQUARE to the
+ * square of their RMS radius, radians^2. */
+static double measure_queued_spot(const struct split *s, int n, double *square)
 {
     double middle[3] = {0, 0, 0}, sum = 0, length, cosine;
 
@@ -95,17 +100,18 @@ static double measure_spot(const struct split *s, int n, double *square)
     }
     length = sqrt(middle[0] * middle[0] + middle[1] * middle[1] +
                   middle[2] * middle[2]);
-    /* mean cosine of the angle from the centroid */
+    /* mean cosine of the angle between the texels and their centroid */
     cosine = sum > 0 ? length / sum : 0;
     *square = 2 * (1 - cosine);
     return sum;
 }
 
-/* Records the N texels of the queue as one spot if they are a light. */
-static void add_spot(struct split *s, int n)
+/* Records the N texels in the queue as a spot if they are bright and small
+ * enough for a light. */
+static void add_spot_if_light(struct split *s, int n)
 {
     double square;
-    const double light = measure_spot(s, n, &square);
+    const double light = measure_queued_spot(s, n, &square);
 
     if (square > s->limit || light < LEAST_SHARE * s->all ||
         s->n_spots == MAX_SPOTS)
@@ -120,41 +126,43 @@ static void add_spot(struct split *s, int n)
     s->spot[s->n_spots++].light = light;
 }
 
-/* Returns the mean luminance of texels below THRESHOLD. */
-static double compute_mean_below(const struct split *s, int n, double threshold)
+/* Returns the mean luminance of all texels below THRESHOLD. */
+static double compute_mean_luminance_below(const struct split *s, int n,
+                                           double threshold)
 {
     double sum = 0, weight = 0;
 
     for (int i = 0; i < n; i++)
-        if (get_luminance(s, i) < threshold) {
-            sum += s->sphere->texel[i].weight * get_luminance(s, i);
+        if (get_texel_luminance(s, i) < threshold) {
+            sum += s->sphere->texel[i].weight * get_texel_luminance(s, i);
             weight += s->sphere->texel[i].weight;
         }
     return weight > 0 ? sum / weight : 0;
 }
 
-static void find_spots(struct split *s, int n, double above)
+static void find_bright_spots(struct split *s, int n, double above)
 {
     double threshold = 0;
 
     for (int i = 0; i < n; i++) {
-        threshold = fmax(threshold, get_luminance(s, i));
-        s->all += s->sphere->texel[i].weight * get_luminance(s, i);
+        threshold = fmax(threshold, get_texel_luminance(s, i));
+        s->all += s->sphere->texel[i].weight * get_texel_luminance(s, i);
     }
     for (int round = 1; round < 64; round++) {
         threshold /= 2;
-        if (!(threshold > above * compute_mean_below(s, n, threshold)))
+        if (!(threshold >
+              above * compute_mean_luminance_below(s, n, threshold)))
             return;
         for (int i = 0; i < n; i++)
-            if (s->seen[i] != round && get_luminance(s, i) >= threshold)
-                add_spot(s, flood_fill(s, i, threshold, round));
+            if (s->seen[i] != round && get_texel_luminance(s, i) >= threshold)
+                add_spot_if_light(s, flood_fill_texels(s, i, threshold, round));
     }
 }
 
 /* Sets MEAN to the mean light of the ring around spot K, without texels of
- * other lights; black if other lights surround the spot. ROUND is a new
- * number for marks in SEEN. */
-static void compute_surrounding_mean(struct split *s, int k, int n, int round,
+ * other lights; 0 if other lights surround the spot. ROUND: an unused number
+ * for marking visited texels. */
+static void compute_mean_around_spot(struct split *s, int k, int n, int round,
                                      double mean[3])
 {
     double weight = 0;
@@ -172,7 +180,7 @@ static void compute_surrounding_mean(struct split *s, int k, int n, int round,
         for (; begin < end; begin++) {
             int near[8];
 
-            find_neighbours(s, s->queue[begin], near);
+            find_texel_neighbours(s, s->queue[begin], near);
             for (int j = 0; j < 8; j++)
                 if (s->seen[near[j]] != round) {
                     s->seen[near[j]] = round;
@@ -194,9 +202,10 @@ static void compute_surrounding_mean(struct split *s, int k, int n, int round,
         mean[c] = weight > 0 ? mean[c] / weight : 0;
 }
 
-/* Moves the light of spot K in excess of MEAN from the map to LIGHT. */
-static void move_light(struct split *s, int k, int n, const double mean[3],
-                       struct glint_split_light *light)
+/* Moves the part of spot K that exceeds MEAN from the map to LIGHT. */
+static void move_spot_to_light(struct split *s, int k, int n,
+                               const double mean[3],
+                               struct glint_split_light *light)
 {
     double middle[3] = {0, 0, 0}, sum = 0, length, square;
 
@@ -221,16 +230,17 @@ static void move_light(struct split *s, int k, int n, const double mean[3],
                   middle[2] * middle[2]);
     for (int j = 0; j < 3; j++)
         light->toward[j] = middle[j] / length;
-    /* Subtract the squared radius of a single texel, 1/6 of its area. */
+    /* the squared RMS radius of a single texel is 1/6 of its area */
     square = 2 * (1 - fmin(length / sum, 1)) -
              4 * GLINT_PI / (6. * s->sphere->side * s->sphere->side);
     light->radius = sqrt(2 * fmax(square, 0));
 }
 
-/* Extracts the strongest spots, at most MOST. Returns their number. */
-static int extract_strongest(struct split *s, int n, int most,
-                             struct glint_split_light *lights,
-                             struct glint_environment_report *report)
+/* Extracts the strongest spots as LIGHTS, at most MOST. Returns their
+ * number. */
+static int extract_strongest_spots(struct split *s, int n, int most,
+                                   struct glint_split_light *lights,
+                                   struct glint_environment_report *report)
 {
     int taken = 0;
 
@@ -246,8 +256,8 @@ static int extract_strongest(struct split *s, int n, int most,
                 best = k;
         if (best == NOBODY)
             break;
-        compute_surrounding_mean(s, best, n, 64 + taken, mean);
-        move_light(s, best, n, mean, &lights[taken]);
+        compute_mean_around_spot(s, best, n, 64 + taken, mean);
+        move_spot_to_light(s, best, n, mean, &lights[taken]);
         s->spot[best].light = 0;
         report->light_share +=
             glint_luminance(lights[taken++].irradiance) / s->all;
@@ -275,9 +285,9 @@ int glint_sphere_split(struct glint_sphere *sphere,
         memset(s->owner, 0xff, n * sizeof *s->owner);
         memset(s->seen, 0, n * sizeof *s->seen);
         if (options->max_lights > 0)
-            find_spots(s, (int)n, options->light_above);
-        taken =
-            extract_strongest(s, (int)n, options->max_lights, lights, report);
+            find_bright_spots(s, (int)n, options->light_above);
+        taken = extract_strongest_spots(s, (int)n, options->max_lights, lights,
+                                        report);
     }
     free(words);
     free(s);

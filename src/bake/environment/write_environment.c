@@ -31,7 +31,7 @@ void glint_environment_put_9e5(const double (*light)[3], size_t n, double unit,
     }
 }
 
-#define UNITS_9E5 (511 * 0x1p19) /* largest value of a 9E5 code */
+#define UNITS_9E5 (511 * 0x1p19) /* max value that a 9E5 code can store */
 
 struct writer {
     const struct glint_environment_options *options;
@@ -55,7 +55,7 @@ void glint_environment_defaults(struct glint_environment_options *options)
         .scale = 1};
 }
 
-static bool is_in_range(const struct glint_environment_options *o)
+static bool are_options_in_range(const struct glint_environment_options *o)
 {
     return o->side_log2 >= GLINT_ENVIRONMENT_LEAST_LOG2 &&
            o->side_log2 <= GLINT_ENVIRONMENT_MOST_LOG2 &&
@@ -66,7 +66,7 @@ static bool is_in_range(const struct glint_environment_options *o)
            o->scale >= 1e-6 && o->scale <= 1e6;
 }
 
-static size_t count_texels(const struct writer *w, int level)
+static size_t count_level_texels(const struct writer *w, int level)
 {
     return (size_t)1 << (2 * glint_environment_side_log2(
                                  (uint32_t)w->options->levels,
@@ -76,8 +76,8 @@ static size_t count_texels(const struct writer *w, int level)
 
 /* ------------------------------------------------------------------- light */
 
-static void measure_light(const struct glint_sphere *s, double *mean,
-                          double *largest)
+static void measure_sphere_luminance(const struct glint_sphere *s, double *mean,
+                                     double *largest)
 {
     double weight = 0, sum = 0;
 
@@ -92,11 +92,11 @@ static void measure_light(const struct glint_sphere *s, double *mean,
     *mean = sum / weight;
 }
 
-/* Resamples the picture to twice the side of level 0 and extracts the
+/* Resamples the picture to twice the side of level 0 and extracts its
  * lights. */
-static bool prepare_sphere(struct writer *w,
-                           const struct glint_float_image *picture,
-                           struct glint_error *error)
+static bool project_picture_to_sphere(struct writer *w,
+                                      const struct glint_float_image *picture,
+                                      struct glint_error *error)
 {
     double unused;
 
@@ -104,27 +104,28 @@ static bool prepare_sphere(struct writer *w,
         return false;
     if (!glint_sphere_project(&w->sphere, picture, w->options, w->report)) {
         snprintf(error->text, sizeof error->text,
-                 "an environment is twice as wide as high, or 3 x 2 faces of a "
-                 "cube, not %dx%d",
+                 "an environment must be twice as wide as high, or 3 x 2 "
+                 "faces of a cube, not %dx%d",
                  picture->width, picture->height);
         return false;
     }
-    measure_light(&w->sphere, &w->report->mean, &w->report->largest);
+    measure_sphere_luminance(&w->sphere, &w->report->mean, &w->report->largest);
     if (w->report->largest > 0 &&
         (w->report->largest < 1e-30 || w->report->largest > 1e30)) {
         snprintf(error->text, sizeof error->text,
-                 "the brightest pixel of the environment is %.3g",
+                 "the brightest pixel of the environment is %.3g; it must be "
+                 "1e-30 to 1e30",
                  w->report->largest);
         return false;
     }
     w->n_lights =
         glint_sphere_split(&w->sphere, w->options, w->light, w->report);
-    measure_light(&w->sphere, &unused, &w->report->residual_largest);
+    measure_sphere_luminance(&w->sphere, &unused, &w->report->residual_largest);
     return w->n_lights >= 0;
 }
 
 /* Sets level K to 2 x 2 averages of level K - 1, or of the sphere if K is 0. */
-static void average_level(struct writer *w, int k)
+static void average_mipmap_level(struct writer *w, int k)
 {
     const int side = 1 << (w->options->side_log2 - k);
 
@@ -143,9 +144,9 @@ static void average_level(struct writer *w, int k)
             }
 }
 
-/* Computes level K, blurred by a Gaussian. From level 4 on, blurs averages
- * of sphere texels about sigma / 8 wide, which is faster. */
-static bool blur_level(struct writer *w, int k)
+/* Sets level K to the map blurred by a Gaussian. From level 4 on, the input is
+ * averaged to texels about sigma / 8 wide, which is faster. */
+static bool blur_gaussian_level(struct writer *w, int k)
 {
     const double texel =
         sqrt(4 * GLINT_PI) / (double)(1 << w->options->side_log2);
@@ -173,15 +174,15 @@ static bool blur_level(struct writer *w, int k)
     return good;
 }
 
-static bool make_levels(struct writer *w)
+static bool compute_all_levels(struct writer *w)
 {
     for (int k = 0; k <= w->options->side_log2; k++) {
-        w->level[k] = malloc(count_texels(w, k) * sizeof *w->level[k]);
+        w->level[k] = malloc(count_level_texels(w, k) * sizeof *w->level[k]);
         if (!w->level[k])
             return false;
         if (w->options->levels == GLINT_ENVIRONMENT_MIP)
-            average_level(w, k);
-        else if (!blur_level(w, k))
+            average_mipmap_level(w, k);
+        else if (!blur_gaussian_level(w, k))
             return false;
     }
     return true;
@@ -189,7 +190,7 @@ static bool make_levels(struct writer *w)
 
 /* ----------------------------------------------------------------- writing */
 
-static double find_largest(double (*light)[3], size_t n)
+static double find_max_channel(double (*light)[3], size_t n)
 {
     double most = 0;
 
@@ -199,10 +200,10 @@ static double find_largest(double (*light)[3], size_t n)
     return most;
 }
 
-static bool write_level(struct writer *w, int k,
-                        struct glint_environment_level *level)
+static bool write_mipmap_level(struct writer *w, int k,
+                               struct glint_environment_level *level)
 {
-    const size_t n = count_texels(w, k);
+    const size_t n = count_level_texels(w, k);
     const double unit = ldexp(1, w->header.unit_log2);
     uint32_t *code = malloc(n * sizeof *code);
 
@@ -218,7 +219,7 @@ static bool write_level(struct writer *w, int k,
     return true;
 }
 
-static bool write_irradiance(struct writer *w)
+static bool write_irradiance_map(struct writer *w)
 {
     enum { N = 1 << (2 * GLINT_ENVIRONMENT_IRRADIANCE_LOG2) };
     double(*light)[3] = malloc(N * sizeof *light);
@@ -243,7 +244,7 @@ static bool write_irradiance(struct writer *w)
     return good;
 }
 
-static void write_lights(struct writer *w)
+static void write_environment_lights(struct writer *w)
 {
     w->header.n_lights = (uint32_t)w->n_lights;
     w->header.light_at = (uint32_t)w->draft.bytes;
@@ -260,30 +261,32 @@ static void write_lights(struct writer *w)
     }
 }
 
-static bool write_tables(struct writer *w)
+static bool write_environment_tables(struct writer *w)
 {
     struct glint_environment_level level[GLINT_ENVIRONMENT_MAX_LEVELS];
     const int n = w->options->side_log2 + 1;
     double most = 0;
 
     for (int k = 0; k < n; k++)
-        most = fmax(most, find_largest(w->level[k], count_texels(w, k)));
-    /* The largest code is 1/512 less than 2^28 units, and so is the
-     * brightest texel. */
+        most =
+            fmax(most, find_max_channel(w->level[k], count_level_texels(w, k)));
+    /* The max code is 1/512 less than 2^28 units, and so is the brightest
+     * texel. */
     w->header.unit_log2 = most > 0 ? (int)floor(log2(most / UNITS_9E5)) + 1 : 0;
     for (int k = 0; k < n; k++)
-        if (!write_level(w, k, &level[k]))
+        if (!write_mipmap_level(w, k, &level[k]))
             return false;
     w->header.n_levels = (uint32_t)n;
     w->header.level_at =
         glint_draft_put(&w->draft, level, (size_t)n * sizeof *level);
-    if (!write_irradiance(w))
+    if (!write_irradiance_map(w))
         return false;
-    write_lights(w);
+    write_environment_lights(w);
     return true;
 }
 
-static void set_header(struct writer *w, const char *name, uint64_t key)
+static void set_environment_header(struct writer *w, const char *name,
+                                   uint64_t key)
 {
     static const struct glint_blob_kind kind = {
         .magic = GLINT_ENVIRONMENT_MAGIC, .version = GLINT_ENVIRONMENT_VERSION};
@@ -307,12 +310,12 @@ glint_environment_bake(const struct glint_float_image *picture,
 
     *report = (struct glint_environment_report){0};
     error->text[0] = '\0';
-    if (!is_in_range(options))
+    if (!are_options_in_range(options))
         return GLINT_E_ARGUMENT;
     glint_draft_put(&w.draft, NULL, sizeof w.header);
-    good = prepare_sphere(&w, picture, error) && make_levels(&w) &&
-           write_tables(&w);
-    set_header(&w, name, key);
+    good = project_picture_to_sphere(&w, picture, error) &&
+           compute_all_levels(&w) && write_environment_tables(&w);
+    set_environment_header(&w, name, key);
     for (int k = 0; k < GLINT_ENVIRONMENT_MAX_LEVELS; k++)
         free(w.level[k]);
     glint_sphere_close(&w.sphere);

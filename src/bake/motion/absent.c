@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Replaces recording.c in builds without jansson: reading a recording fails.
+ * Replaces recording.c in builds without jansson: glint_recording_read()
+ * reports that recordings cannot be read.
  */
 #include <stdio.h>
 

@@ -16,10 +16,10 @@ struct recorded_pose {
     float residual;
 };
 
-/* A food (a static landmark) from its first frame on. */
+/* A food (a static landmark), from the frame in which it appears. */
 struct recorded_food {
     uint32_t frame, slot;
-    double at[3]; /* final estimate of its position */
+    double at[3]; /* final estimate of the food's position */
 };
 
 struct glint_motion_baker {
@@ -30,21 +30,22 @@ struct glint_motion_baker {
     uint32_t n_frames, pose_room;
     struct recorded_pose *pose; /* [n_frames] */
     uint32_t n_events, event_room;
-    struct recorded_food *event;            /* [n_events] */
-    uint32_t lives[GLINT_MOTION_MAX_FOODS]; /* index of the event of the food in
-                                               each slot */
+    struct recorded_food *event; /* [n_events] */
+    /* index in event of the food that is now in each slot */
+    uint32_t lives[GLINT_MOTION_MAX_FOODS];
     size_t n_bytes, byte_room;
     uint8_t *intensity; /* [n_frames][n_foods][n_intensities] */
-    long long number;   /* number of the last frame in the recording */
-    /* the body's own odometry: sum of all motions rv, tv */
+    long long number;   /* number in the recording of the last frame */
+    /* pose by the body's own odometry: sum of all its motions rv, tv */
     struct glint_rigid sensed;
     struct glint_motion_report report;
 };
 
 enum {
     USUAL_UNIT_LOG2 = 24,
-    REACH_LOG2 = 29, /* log2 of the largest coordinate of any point, in steps */
-    /* a motion up to this many bits smaller keeps the usual unit */
+    REACH_LOG2 = 29, /* log2 of the max coordinate of any point, in steps */
+    /* a motion that is smaller by up to this many bits also uses
+     * USUAL_UNIT_LOG2 */
     ROOMY_LOG2 = 3
 };
 
@@ -53,7 +54,7 @@ struct writer {
     const struct glint_motion_report *report;
     struct glint_draft draft;
     struct glint_motion_header header;
-    double scale; /* steps per unit of length */
+    double scale; /* number of steps per unit of length */
     uint8_t block[GLINT_MOTION_BLOCK];
     size_t used;
     uint32_t number; /* index of the block that is being filled */
@@ -61,7 +62,7 @@ struct writer {
 
 /* ------------------------------------------------------------------ blocks */
 
-static void end_block(struct writer *w)
+static void finish_motion_block(struct writer *w)
 {
     uint32_t end[2] = {w->number, 0};
 
@@ -76,29 +77,30 @@ static void end_block(struct writer *w)
     w->number++;
 }
 
-static void append_record(struct writer *w, const void *record, size_t bytes)
+static void append_block_record(struct writer *w, const void *record,
+                                size_t bytes)
 {
     if (w->used + bytes > GLINT_MOTION_ROOM)
-        end_block(w);
+        finish_motion_block(w);
     memcpy(w->block + w->used, record, bytes);
     w->used += bytes;
 }
 
 /* ------------------------------------------------------------------- tables */
 
-static void convert_position(const struct writer *w, const double from[3],
-                             int32_t to[3])
+static void convert_position_to_steps(const struct writer *w,
+                                      const double from[3], int32_t to[3])
 {
     for (int k = 0; k < 3; k++)
         to[k] = (int32_t)lrint(from[k] * w->scale);
 }
 
-static uint32_t convert_length(const struct writer *w, double length)
+static uint32_t convert_length_to_steps(const struct writer *w, double length)
 {
     return (uint32_t)fmin(ceil(length * w->scale), UINT32_MAX);
 }
 
-static void append_sensors(struct writer *w)
+static void append_sensor_table(struct writer *w)
 {
     const struct glint_motion_body *body = &w->baker->body;
 
@@ -111,12 +113,12 @@ static void append_sensors(struct writer *w)
 
         for (int k = 0; k < 3; k++)
             s.axis_q30[k] = (int32_t)lrint(0x1p30 * axis[k]);
-        append_record(w, &s, sizeof s);
+        append_block_record(w, &s, sizeof s);
     }
-    end_block(w);
+    finish_motion_block(w);
 }
 
-static void append_events(struct writer *w)
+static void append_event_table(struct writer *w)
 {
     w->header.event_block = w->number;
     for (uint32_t i = 0; i < w->baker->n_events; i++) {
@@ -124,13 +126,13 @@ static void append_events(struct writer *w)
         struct glint_motion_event e = {.frame = from->frame,
                                        .slot = from->slot};
 
-        convert_position(w, from->at, e.at);
-        append_record(w, &e, sizeof e);
+        convert_position_to_steps(w, from->at, e.at);
+        append_block_record(w, &e, sizeof e);
     }
-    end_block(w);
+    finish_motion_block(w);
 }
 
-static void append_index(struct writer *w)
+static void append_index_table(struct writer *w)
 {
     const struct glint_motion_baker *b = w->baker;
     const uint32_t each =
@@ -143,32 +145,32 @@ static void append_index(struct writer *w)
 
         for (uint32_t i = first; i < b->n_frames && i < first + each; i++)
             most = fmax(most, (double)b->pose[i].residual);
-        index.residual = convert_length(w, most);
+        index.residual = convert_length_to_steps(w, most);
         for (;
              index.event < b->n_events && b->event[index.event].frame <= first;
              index.event++)
             index.food[b->event[index.event].slot] = index.event;
-        append_record(w, &index, sizeof index);
+        append_block_record(w, &index, sizeof index);
     }
-    end_block(w);
+    finish_motion_block(w);
 }
 
-static void append_poses(struct writer *w)
+static void append_pose_table(struct writer *w)
 {
     w->header.pose_block = w->number;
     for (uint32_t i = 0; i < w->baker->n_frames; i++) {
         const struct recorded_pose *from = &w->baker->pose[i];
         struct glint_motion_pose p;
 
-        convert_position(w, from->at, p.at);
+        convert_position_to_steps(w, from->at, p.at);
         for (int k = 0; k < 4; k++)
             p.turn_q14[k] = (int16_t)lrint(0x1p14 * (double)from->turn[k]);
-        append_record(w, &p, sizeof p);
+        append_block_record(w, &p, sizeof p);
     }
-    end_block(w);
+    finish_motion_block(w);
 }
 
-static void append_intensities(struct writer *w)
+static void append_intensity_table(struct writer *w)
 {
     const size_t each =
         (size_t)w->baker->n_foods * (size_t)w->baker->n_intensities;
@@ -176,11 +178,12 @@ static void append_intensities(struct writer *w)
     w->header.intensities = (uint32_t)each;
     w->header.intensity_block = w->number;
     for (uint32_t i = 0; each && i < w->baker->n_frames; i++)
-        append_record(w, w->baker->intensity + i * each, each);
-    end_block(w);
+        append_block_record(w, w->baker->intensity + i * each, each);
+    finish_motion_block(w);
 }
 
-static void extend_box(const double at[3], double low[3], double high[3])
+static void extend_bounding_box(const double at[3], double low[3],
+                                double high[3])
 {
     for (int k = 0; k < 3; k++) {
         low[k] = fmin(low[k], at[k]);
@@ -188,22 +191,23 @@ static void extend_box(const double at[3], double low[3], double high[3])
     }
 }
 
-/* Sets LOW and HIGH to the bounding box of the body's points and foods. */
-static void compute_box(const struct glint_motion_baker *baker, double low[3],
-                        double high[3])
+/* Sets LOW and HIGH to the bounding box of all positions of the body and the
+ * foods. */
+static void compute_bounding_box(const struct glint_motion_baker *baker,
+                                 double low[3], double high[3])
 {
     for (int k = 0; k < 3; k++)
         low[k] = high[k] = 0;
     for (uint32_t i = 0; i < baker->n_frames; i++)
-        extend_box(baker->pose[i].at, low, high);
+        extend_bounding_box(baker->pose[i].at, low, high);
     for (uint32_t i = 0; i < baker->n_events; i++)
-        extend_box(baker->event[i].at, low, high);
+        extend_bounding_box(baker->event[i].at, low, high);
 }
 
 /* ------------------------------------------------------------------- header */
 
-static void set_scale(struct writer *w, const double low[3],
-                      const double high[3])
+static void choose_step_size(struct writer *w, const double low[3],
+                             const double high[3])
 {
     double reach = w->baker->body.size;
     int log2 = USUAL_UNIT_LOG2;
@@ -219,7 +223,7 @@ static void set_scale(struct writer *w, const double low[3],
     w->scale = ldexp(1, log2);
 }
 
-static void set_header(struct writer *w, const char *name, uint64_t key)
+static void set_motion_header(struct writer *w, const char *name, uint64_t key)
 {
     static const struct glint_blob_kind kind = {
         .magic = GLINT_MOTION_MAGIC, .version = GLINT_MOTION_VERSION};
@@ -229,8 +233,8 @@ static void set_header(struct writer *w, const char *name, uint64_t key)
     double low[3], high[3];
 
     glint_draft_begin(h, &kind, 0, key, name, "motion");
-    compute_box(b, low, high);
-    set_scale(w, low, high);
+    compute_bounding_box(b, low, high);
+    choose_step_size(w, low, high);
     h->n_frames = b->n_frames;
     h->n_foods = (uint32_t)b->n_foods;
     h->n_sensors = (uint32_t)b->body.n_sensors;
@@ -241,30 +245,30 @@ static void set_header(struct writer *w, const char *name, uint64_t key)
         half < GLINT_PI / 2
             ? (int32_t)lrint(0x1p24 * fmin(fmax(tan(half), 0x1p-12), 64))
             : 1 << 30;
-    convert_position(w, low, h->low);
-    convert_position(w, high, h->high);
+    convert_position_to_steps(w, low, h->low);
+    convert_position_to_steps(w, high, h->high);
     h->residual_frame = (uint32_t)w->report->residual_frame;
-    h->residual = convert_length(w, w->report->residual);
+    h->residual = convert_length_to_steps(w, w->report->residual);
 }
 
-/* Writes the file. BAKER must be complete. Returns false if there is no
- * memory. */
-static bool write_motion(const struct glint_motion_baker *baker,
-                         const struct glint_motion_report *report,
-                         const char *name, uint64_t key, unsigned char **data,
-                         size_t *bytes)
+/* Writes the baked motion. BAKER must have all frames. Returns false if there
+ * is no memory. */
+static bool write_motion_file(const struct glint_motion_baker *baker,
+                              const struct glint_motion_report *report,
+                              const char *name, uint64_t key,
+                              unsigned char **data, size_t *bytes)
 {
     struct writer w = {.baker = baker, .report = report};
     uint32_t sum;
 
-    set_header(&w, name, key);
-    append_record(&w, &w.header, sizeof w.header);
-    end_block(&w);
-    append_sensors(&w);
-    append_events(&w);
-    append_index(&w);
-    append_poses(&w);
-    append_intensities(&w);
+    set_motion_header(&w, name, key);
+    append_block_record(&w, &w.header, sizeof w.header);
+    finish_motion_block(&w);
+    append_sensor_table(&w);
+    append_event_table(&w);
+    append_index_table(&w);
+    append_pose_table(&w);
+    append_intensity_table(&w);
     w.header.bytes = (uint32_t)w.draft.bytes;
     glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);
     sum = w.draft.out_of_memory ? 0 : glint_motion_sum(w.draft.data, 0);
@@ -273,8 +277,8 @@ static bool write_motion(const struct glint_motion_baker *baker,
                               bytes);
 }
 
-/* BAD_RESIDUAL: residual from which a frame counts as bad, as a fraction of
- * the motion's span. REACH: max magnitude of coordinates. */
+/* BAD_RESIDUAL: min residual of a bad frame, as a fraction of the motion's
+ * span. REACH: max magnitude of a coordinate. */
 #define BAD_RESIDUAL 1e-3
 #define REACH        1e6
 
@@ -300,7 +304,8 @@ void glint_motion_baker_close(struct glint_motion_baker *baker)
     free(baker);
 }
 
-static enum glint_status set_error(struct glint_error *error, const char *cause)
+static enum glint_status set_error_text(struct glint_error *error,
+                                        const char *cause)
 {
     snprintf(error->text, sizeof error->text, "%s", cause);
     return GLINT_E_LENS;
@@ -311,15 +316,18 @@ enum glint_status glint_motion_baker_body(struct glint_motion_baker *baker,
                                           struct glint_error *error)
 {
     if (!(body->size >= 0 && body->size <= REACH))
-        return set_error(error, "the size of the body is not within 0 .. 1e6");
+        return set_error_text(error,
+                              "the size of the body is not within 0 .. 1e6");
     if (!(body->angle_deg >= 0.01 && body->angle_deg <= 360))
-        return set_error(error, "the angle of view is not within 0.01 .. 360 "
-                                "degrees");
+        return set_error_text(error,
+                              "the angle of view is not within 0.01 .. 360 "
+                              "degrees");
     if (body->n_sensors > GLINT_MOTION_MAX_SENSORS)
-        return set_error(error, "more than 32 sensors");
+        return set_error_text(error, "more than 32 sensors");
     for (int i = 0; i < body->n_sensors; i++)
         if (!isfinite(body->theta[i]) || !isfinite(body->phi[i]))
-            return set_error(error, "the direction of a sensor is not finite");
+            return set_error_text(error,
+                                  "the direction of a sensor is not finite");
     baker->body = *body;
     baker->has_body = true;
     return GLINT_OK;
@@ -327,8 +335,8 @@ enum glint_status glint_motion_baker_body(struct glint_motion_baker *baker,
 
 /* ------------------------------------------------------------------- frames */
 
-/* Ensures that *MEM has capacity for N items of BYTES each. Returns false if
- * there is no memory. */
+/* Grows the array *MEM such that it has capacity for N items of BYTES each.
+ * Returns false if there is no memory. */
 static bool grow_array(void **mem, size_t *room, size_t n, size_t bytes)
 {
     size_t more = *room;
@@ -346,7 +354,7 @@ static bool grow_array(void **mem, size_t *room, size_t n, size_t bytes)
     return true;
 }
 
-static bool reserve_frame(struct glint_motion_baker *b, int n_foods)
+static bool reserve_frame_memory(struct glint_motion_baker *b, int n_foods)
 {
     void *pose = b->pose, *event = b->event, *intensity = b->intensity;
     size_t poses = b->pose_room, events = b->event_room;
@@ -365,8 +373,8 @@ static bool reserve_frame(struct glint_motion_baker *b, int n_foods)
     return good;
 }
 
-static const char *check_frame(const struct glint_motion_baker *b,
-                               const struct glint_motion_sight *s)
+static const char *check_frame_values(const struct glint_motion_baker *b,
+                                      const struct glint_motion_sight *s)
 {
     if (b->n_frames == GLINT_MOTION_MAX_FRAMES)
         return "more than 67108864 frames";
@@ -388,8 +396,8 @@ static const char *check_frame(const struct glint_motion_baker *b,
     return NULL;
 }
 
-/* Adds the motion that the body itself measured in this frame to its
- * odometry. */
+/* Adds the motion that the body itself measured in this frame to its odometry,
+ * and records the odometry's distance from POSE. */
 static void add_odometry(struct glint_motion_baker *b,
                          const struct glint_motion_sight *s,
                          const struct glint_rigid *pose)
@@ -407,8 +415,8 @@ static void add_odometry(struct glint_motion_baker *b,
     glint_rigid_take(r, s->tv, moved);
     memcpy(r->at, moved, sizeof moved);
     for (int i = 0; i < 3; i++) {
-        /* Rodrigues' formula gives column i of the rotation: axis i of the
-         * new body in the axes of the old one. */
+        /* Rodrigues' formula gives column i of the rotation: axis i of the body
+         * after the motion, in its axes before the motion. */
         double to[3];
 
         for (int k = 0; k < 3; k++) {
@@ -441,7 +449,7 @@ static void store_intensities(struct glint_motion_baker *b,
         }
 }
 
-/* Stores a frame whose pose was found. */
+/* Stores a frame whose pose was located. */
 static void store_frame(struct glint_motion_baker *b,
                         const struct glint_motion_sight *s, const bool *is_new,
                         const struct glint_located *located)
@@ -460,8 +468,7 @@ static void store_frame(struct glint_motion_baker *b,
                 .frame = b->n_frames, .slot = (uint32_t)i};
             b->report.n_resets += b->n_frames > 0;
         }
-        /* the estimate of the last frame in the food's life is the most
-         * accurate */
+        /* The estimate in the last frame of a food is the most accurate one. */
         memcpy(b->event[b->lives[i]].at, b->localiser.place[i],
                sizeof b->event->at);
     }
@@ -477,7 +484,7 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
     struct glint_motion_baker *b = baker;
     bool is_new[GLINT_MOTION_MAX_FOODS];
     struct glint_located located;
-    const char *wrong = check_frame(b, sight);
+    const char *wrong = check_frame_values(b, sight);
 
     if (!wrong && b->n_frames && sight->number >= 0 && b->number >= 0 &&
         sight->number != b->number + 1) {
@@ -489,16 +496,16 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
         return GLINT_E_LENS;
     }
     if (wrong)
-        return set_error(error, wrong);
+        return set_error_text(error, wrong);
     for (int i = 0; i < sight->n_foods; i++)
         is_new[i] = b->n_frames == 0 || sight->is_new[i];
     b->n_intensities = sight->n_intensities;
-    if (!reserve_frame(b, sight->n_foods))
+    if (!reserve_frame_memory(b, sight->n_foods))
         return GLINT_E_MEMORY;
     wrong = glint_localise(&b->localiser, sight->n_foods, sight->food, is_new,
                            &located);
     if (wrong)
-        return set_error(error, wrong);
+        return set_error_text(error, wrong);
     b->n_foods = sight->n_foods;
     b->number = sight->number;
     if (b->n_frames)
@@ -509,25 +516,26 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
 
 /* ------------------------------------------------------------------- finish */
 
-static double compute_distance(const double a[3], const double b[3])
+static double compute_point_distance(const double a[3], const double b[3])
 {
     return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
                 (a[2] - b[2]) * (a[2] - b[2]));
 }
 
-static void sum_report(const struct glint_motion_baker *b,
-                       struct glint_motion_report *r)
+static void sum_motion_report(const struct glint_motion_baker *b,
+                              struct glint_motion_report *r)
 {
     double low[3], high[3], squares = 0;
 
-    compute_box(b, low, high);
+    compute_bounding_box(b, low, high);
     *r = b->report;
     r->n_frames = (long)b->n_frames;
-    r->span = compute_distance(low, high);
+    r->span = compute_point_distance(low, high);
     for (uint32_t i = 0; i < b->n_frames; i++) {
         const double residual = (double)b->pose[i].residual;
 
-        r->path += i ? compute_distance(b->pose[i].at, b->pose[i - 1].at) : 0;
+        r->path +=
+            i ? compute_point_distance(b->pose[i].at, b->pose[i - 1].at) : 0;
         squares += residual * residual;
         r->bad_frames += residual > BAD_RESIDUAL * r->span;
         if (residual > r->residual) {
@@ -548,18 +556,19 @@ enum glint_status glint_motion_baker_finish(struct glint_motion_baker *baker,
 
     error->text[0] = '\0';
     if (!b->has_body)
-        return set_error(
-            error, "there is no structure: size, sensors, angle of view; a "
-                   "lens file of another program goes to glint import");
+        return set_error_text(
+            error, "there is no structure: size, sensors, angle of view; "
+                   "read lens files of other programs by glint import");
     if (!b->n_frames)
-        return set_error(error, "there are no frames");
+        return set_error_text(error, "the recording has no frames");
     if (b->n_intensities > 1 && b->n_intensities != b->body.n_sensors) {
         snprintf(error->text, sizeof error->text,
                  "foods have %d intensities, but there are %d sensors",
                  b->n_intensities, b->body.n_sensors);
         return GLINT_E_LENS;
     }
-    sum_report(b, report);
-    return write_motion(b, report, name, key, data, bytes) ? GLINT_OK
-                                                           : GLINT_E_MEMORY;
+    sum_motion_report(b, report);
+    return write_motion_file(b, report, name, key, data, bytes)
+               ? GLINT_OK
+               : GLINT_E_MEMORY;
 }

@@ -13,10 +13,11 @@ void glint_localiser_init(struct glint_localiser *localiser, bool average)
 
 /* ------------------------------------------------------------------- rigid */
 
-/* Fits the pose to all foods that are not new, except food BUT. */
-static bool fit_all(const struct glint_localiser *l, int n,
-                    const double (*seen)[3], const bool *is_new, int but,
-                    struct glint_rigid *pose)
+/* Fits the pose to all known foods (not new in this frame), except food BUT.
+ * Returns false if there are too few or they lie on a line. */
+static bool fit_pose_to_known_foods(const struct glint_localiser *l, int n,
+                                    const double (*seen)[3], const bool *is_new,
+                                    int but, struct glint_rigid *pose)
 {
     double from[MOST][3], to[MOST][3];
     int m = 0;
@@ -32,10 +33,10 @@ static bool fit_all(const struct glint_localiser *l, int n,
                            pose);
 }
 
-/* Moves the position of each food towards the position that the pose of all
- * other foods gives. */
-static void update_places(struct glint_localiser *l, int n,
-                          const double (*seen)[3], const bool *is_new)
+/* Moves the position of each known food towards the position that follows from
+ * the pose fitted to all other foods. */
+static void update_food_positions(struct glint_localiser *l, int n,
+                                  const double (*seen)[3], const bool *is_new)
 {
     double said[MOST][3];
     bool is_said[MOST];
@@ -43,7 +44,8 @@ static void update_places(struct glint_localiser *l, int n,
     for (int i = 0; i < n; i++) {
         struct glint_rigid pose;
 
-        is_said[i] = !is_new[i] && fit_all(l, n, seen, is_new, i, &pose);
+        is_said[i] =
+            !is_new[i] && fit_pose_to_known_foods(l, n, seen, is_new, i, &pose);
         if (is_said[i])
             glint_rigid_take(&pose, seen[i], said[i]);
     }
@@ -62,12 +64,12 @@ static const char *locate_body(struct glint_localiser *l, int n,
                                const double (*seen)[3], const bool *is_new,
                                struct glint_located *located)
 {
-    if (!fit_all(l, n, seen, is_new, -1, &located->pose))
+    if (!fit_pose_to_known_foods(l, n, seen, is_new, -1, &located->pose))
         return located->n_known < 3
                    ? "fewer than three foods have known positions"
                    : "the foods with known positions lie on a line";
     if (l->average)
-        update_places(l, n, seen, is_new);
+        update_food_positions(l, n, seen, is_new);
     for (int i = 0; i < n; i++)
         if (is_new[i]) {
             glint_rigid_take(&located->pose, seen[i], l->place[i]);
@@ -76,9 +78,9 @@ static const char *locate_body(struct glint_localiser *l, int n,
     return NULL;
 }
 
-static void begin_localiser(struct glint_localiser *l, int n,
-                            const double (*seen)[3],
-                            struct glint_located *located)
+static void start_at_first_frame(struct glint_localiser *l, int n,
+                                 const double (*seen)[3],
+                                 struct glint_located *located)
 {
     located->pose = (struct glint_rigid){
         {0, 0, 0}, {1, 0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -90,11 +92,11 @@ static void begin_localiser(struct glint_localiser *l, int n,
     l->has_begun = true;
 }
 
-/* Sets the residual: max distance, over foods that are not new, between the
- * position seen in this frame and the position known before it. */
-static void set_residual(int n, const double (*places)[3],
-                         const double (*seen)[3], const bool *is_new,
-                         struct glint_located *located)
+/* Sets the residual of the frame: max distance of any known food between its
+ * position in this frame and its position known before. */
+static void compute_frame_residual(int n, const double (*places)[3],
+                                   const double (*seen)[3], const bool *is_new,
+                                   struct glint_located *located)
 {
     for (int i = 0; i < n; i++) {
         double at[3], square = 0;
@@ -119,7 +121,7 @@ const char *glint_localise(struct glint_localiser *localiser, int n,
     located->n_known = 0;
     located->residual = 0;
     if (!l->has_begun) {
-        begin_localiser(l, n, seen, located);
+        start_at_first_frame(l, n, seen, located);
         return NULL;
     }
     memcpy(before, l->place, sizeof before);
@@ -127,6 +129,7 @@ const char *glint_localise(struct glint_localiser *localiser, int n,
         located->n_known += !is_new[i];
     wrong = locate_body(l, n, seen, is_new, located);
     if (!wrong)
-        set_residual(n, (const double(*)[3])before, seen, is_new, located);
+        compute_frame_residual(n, (const double(*)[3])before, seen, is_new,
+                               located);
     return wrong;
 }

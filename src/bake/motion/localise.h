@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Reconstructs the pose of a body in each frame from the positions of static
- * landmarks (foods), which are given in the body's axes.
+ * landmarks (foods), which are measured in the body's axes.
  *
  *     glint_localiser_init(&localiser, true);
  *     glint_localise(&localiser, n, seen, is_new, &located);        each frame
@@ -19,25 +19,27 @@
 #include "glint/scene/motion.h"
 
 struct glint_localiser {
-    bool average; /* true: average positions over the life of each food */
+    /* true: the position of a food is averaged over all its frames */
+    bool average;
     double place[GLINT_MOTION_MAX_FOODS][3];
-    double age[GLINT_MOTION_MAX_FOODS]; /* number of frames averaged for each
-                                           food */
-    bool has_begun;                     /* private */
+    /* number of frames over which each food's position is averaged */
+    double age[GLINT_MOTION_MAX_FOODS];
+    bool has_begun; /* private */
 };
 
 struct glint_located {
     struct glint_rigid pose;
-    int n_known;     /* number of foods that the pose is fitted to */
-    double residual; /* max distance of one of these foods from its expected
-                        position */
+    int n_known; /* number of foods to which the pose is fitted */
+    /* max distance of these foods from their expected positions */
+    double residual;
 };
 
 void glint_localiser_init(struct glint_localiser *localiser, bool average);
 
-/* Processes the next frame: positions SEEN of N foods, in the body's axes;
- * foods marked NEW were not seen before. N must be the same for all frames.
- * Returns NULL, or the error as static text; there is no pose then. */
+/* Locates the body in the next frame from the positions SEEN of N foods, in the
+ * body's axes; IS_NEW marks foods that occur for the first time. N must be the
+ * same for all frames. Returns NULL, or an error text; the pose is then not
+ * set. */
 const char *glint_localise(struct glint_localiser *localiser, int n,
                            const double (*seen)[3], const bool *is_new,
                            struct glint_located *located);

@@ -6,9 +6,9 @@
 
 enum { MOST_SWEEPS = 30 };
 
-/* Jacobi rotation: rotates rows and columns P and Q of A such that A[P][Q]
- * becomes 0, and V with them. */
-static void rotate_pair(double a[4][4], double v[4][4], int p, int q)
+/* One Jacobi rotation: rotates rows and columns P and Q of A such that A[P][Q]
+ * becomes 0; rotates the columns of V with them. */
+static void apply_jacobi_rotation(double a[4][4], double v[4][4], int p, int q)
 {
     const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
     const double t =
@@ -32,8 +32,8 @@ static void rotate_pair(double a[4][4], double v[4][4], int p, int q)
 }
 
 /* Sets VECTOR to the eigenvector of the largest eigenvalue of the symmetric
- * matrix A, by Jacobi's method. */
-static void find_eigenvector(double a[4][4], double vector[4])
+ * matrix A (overwritten), by Jacobi's method. */
+static void find_largest_eigenvector(double a[4][4], double vector[4])
 {
     double v[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     int best = 0;
@@ -51,7 +51,7 @@ static void find_eigenvector(double a[4][4], double vector[4])
         for (int p = 0; p < 3; p++)
             for (int q = p + 1; q < 4; q++)
                 if (a[p][q] * a[p][q] > 1e-40 * all)
-                    rotate_pair(a, v, p, q);
+                    apply_jacobi_rotation(a, v, p, q);
     }
     for (int k = 1; k < 4; k++)
         best = a[k][k] > a[best][best] ? k : best;
@@ -59,8 +59,8 @@ static void find_eigenvector(double a[4][4], double vector[4])
         vector[k] = v[k][best];
 }
 
-/* Sets ROW of R to the matrix of its quaternion. */
-static void set_matrix(struct glint_rigid *r)
+/* Sets row of R to the rotation matrix of its quaternion turn. */
+static void set_rotation_matrix(struct glint_rigid *r)
 {
     const double w = r->turn[0], x = r->turn[1], y = r->turn[2], z = r->turn[3];
     const double row[3][3] = {
@@ -71,9 +71,9 @@ static void set_matrix(struct glint_rigid *r)
     memcpy(r->row, row, sizeof row);
 }
 
-/* Sets R to the rotation that maximises the trace of S rotated, where S is
- * the sum of products of source vectors (rows) and target vectors (columns). */
-static void set_rotation(const double s[3][3], struct glint_rigid *r)
+/* Sets R to the rotation that maximises the trace of S after rotation. S: sum
+ * of products of source vectors (rows) and target vectors (columns). */
+static void find_best_rotation(const double s[3][3], struct glint_rigid *r)
 {
     double n[4][4] = {
         {s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[2][0] - s[0][2],
@@ -86,19 +86,19 @@ static void set_rotation(const double s[3][3], struct glint_rigid *r)
     for (int i = 1; i < 4; i++)
         for (int k = 0; k < i; k++)
             n[i][k] = n[k][i];
-    find_eigenvector(n, r->turn);
+    find_largest_eigenvector(n, r->turn);
     for (int k = 0; k < 4; k++)
         length += r->turn[k] * r->turn[k];
     length = r->turn[0] < 0 ? -sqrt(length) : sqrt(length);
     for (int k = 0; k < 4; k++)
         r->turn[k] /= length;
-    set_matrix(r);
+    set_rotation_matrix(r);
 }
 
 /* Returns whether points with the covariance C lie on a line: the sum of the
- * principal 2 x 2 minors of C is far below its upper bound, a third of the
+ * principal 2 x 2 minors of C is then far below its upper bound, 1/3 of the
  * squared trace. */
-static bool is_line(const double c[3][3])
+static bool are_points_on_line(const double c[3][3])
 {
     const double trace = c[0][0] + c[1][1] + c[2][2];
     const double area = c[0][0] * c[1][1] - c[0][1] * c[1][0] +
@@ -124,9 +124,9 @@ bool glint_rigid_fit(int n, const double (*from)[3], const double (*to)[3],
                 s[j][k] += (from[i][j] - a[j]) * (to[i][k] - b[k]);
                 c[j][k] += (from[i][j] - a[j]) * (from[i][k] - a[k]);
             }
-    if (n < 3 || is_line((const double(*)[3])c))
+    if (n < 3 || are_points_on_line((const double(*)[3])c))
         return false;
-    set_rotation((const double(*)[3])s, r);
+    find_best_rotation((const double(*)[3])s, r);
     for (int k = 0; k < 3; k++)
         r->at[k] = 0;
     glint_rigid_take(r, a, moved);
@@ -142,7 +142,7 @@ void glint_rigid_nearest(const double row[3][3], struct glint_rigid *rigid)
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++)
             s[j][k] = row[k][j];
-    set_rotation((const double(*)[3])s, rigid);
+    find_best_rotation((const double(*)[3])s, rigid);
 }
 
 void glint_rigid_take(const struct glint_rigid *rigid, const double point[3],

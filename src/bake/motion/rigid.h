@@ -7,28 +7,28 @@
 
 #include <stdbool.h>
 
-/* A rigid motion: moves point p of the body to at + R p, where R is the
- * rotation TURN. */
+/* A rigid motion, which moves point p of the body to at + R p, where R is the
+ * rotation turn. */
 struct glint_rigid {
     double at[3];
     double turn[4];   /* unit quaternion w, x, y, z; w is not negative */
-    double row[3][3]; /* matrix of the same rotation */
+    double row[3][3]; /* matrix of the rotation turn */
 };
 
-/* Min squared area that points span, as a fraction of its upper bound. */
+/* Min squared area that points must span / its upper bound. */
 #define GLINT_RIGID_LEAST 0x1p-20
 
-/* Finds the motion that moves N points FROM to TO with the smallest sum of
- * squared errors [Horn87]. Returns false if N < 3 or the points lie on a
- * line: the squared area that they span is below GLINT_RIGID_LEAST of its
+/* Finds the motion that moves N points from FROM to TO with the smallest sum of
+ * squared errors [Horn87]. Returns false if N < 3 or if the points lie on a
+ * line: the squared area that they span is below GLINT_RIGID_LEAST of its upper
  * bound. */
 bool glint_rigid_fit(int n, const double (*from)[3], const double (*to)[3],
                      struct glint_rigid *rigid);
 
-/* Sets the rotation of RIGID to the one nearest to the matrix ROW. */
+/* Sets the rotation of RIGID to the rotation nearest to the matrix ROW. */
 void glint_rigid_nearest(const double row[3][3], struct glint_rigid *rigid);
 
-/* Sets TO to the image of POINT under RIGID. */
+/* Sets TO to POINT moved by RIGID. */
 void glint_rigid_take(const struct glint_rigid *rigid, const double point[3],
                       double to[3]);
 

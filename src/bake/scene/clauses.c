@@ -7,13 +7,14 @@
 /* ------------------------------------------------------------ mistyped words
  */
 
-/* max letters of compared words; bytes of a hint */
+/* max letters of a compared word; size of a hint in bytes */
 enum { NEAR_CHARS = 32, NEAR_BYTES = 64 };
 
-/* Search for the known word nearest to a mistyped one. */
+/* State of the search for the known word that is most similar to a mistyped
+ * one. */
 struct near {
     struct glint_word word;
-    const char *best; /* nearest candidate so far, or NULL */
+    const char *best; /* most similar candidate so far, or NULL */
     int distance;
 };
 
@@ -52,12 +53,12 @@ static int compute_edit_distance(const struct glint_word *word,
     return row[m];
 }
 
-static struct near begin_search(const struct glint_word *word)
+static struct near begin_word_search(const struct glint_word *word)
 {
     return (struct near){*word, NULL, NEAR_CHARS};
 }
 
-static void offer_candidate(struct near *near, const char *candidate)
+static void compare_candidate(struct near *near, const char *candidate)
 {
     const int d = compute_edit_distance(&near->word, candidate);
     const int most = (int)strlen(candidate) / 3;
@@ -68,9 +69,10 @@ static void offer_candidate(struct near *near, const char *candidate)
     }
 }
 
-/* Writes "; did you mean 'BEST'?" to TEXT. Writes nothing if no candidate is
- * similar: at most a third of its letters differ. */
-static const char *write_hint(const struct near *near, char text[NEAR_BYTES])
+/* Writes "; did you mean 'BEST'?" to TEXT, or "" if no candidate is similar,
+ * that is, differs in at most 1/3 of its letters. */
+static const char *write_spelling_hint(const struct near *near,
+                                       char text[NEAR_BYTES])
 {
     text[0] = '\0';
     if (near->best)
@@ -81,9 +83,9 @@ static const char *write_hint(const struct near *near, char text[NEAR_BYTES])
 /* ------------------------------------------------------------------- clauses
  */
 
-/* Writes the words of CLAUSE as a list: "at, radius and material". */
-static void list_words(const struct glint_clause *clause, char *text,
-                       size_t bytes)
+/* Writes the keywords of CLAUSE as a list: "at, radius and material". */
+static void list_clause_words(const struct glint_clause *clause, char *text,
+                              size_t bytes)
 {
     size_t used = 0;
 
@@ -95,18 +97,18 @@ static void list_words(const struct glint_clause *clause, char *text,
                                  clause[i].word);
 }
 
-static bool reject_word(struct glint_text *text, const char *line,
-                        const struct glint_clause *clause,
-                        const struct glint_word *word)
+static bool reject_unknown_word(struct glint_text *text, const char *line,
+                                const struct glint_clause *clause,
+                                const struct glint_word *word)
 {
-    struct near near = begin_search(word);
+    struct near near = begin_word_search(word);
     char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES], words[120];
 
     glint_word_quote(word, quote);
     for (int i = 0; clause[i].word; i++)
-        offer_candidate(&near, clause[i].word);
-    write_hint(&near, mean);
-    list_words(clause, words, sizeof words);
+        compare_candidate(&near, clause[i].word);
+    write_spelling_hint(&near, mean);
+    list_clause_words(clause, words, sizeof words);
     return glint_text_fail(text, word->place, "%s accepts %s, not '%s'%s", line,
                            words, quote, mean);
 }
@@ -128,8 +130,9 @@ bool glint_numbers_read(struct glint_text *text, const char *what, int n,
     return true;
 }
 
-static bool read_clause(struct glint_text *text, struct glint_clause *clause,
-                        const struct glint_word *word)
+static bool read_clause_values(struct glint_text *text,
+                               struct glint_clause *clause,
+                               const struct glint_word *word)
 {
     if (clause->place.line)
         return glint_text_fail(text, word->place, "a second '%s'",
@@ -157,8 +160,8 @@ bool glint_clauses_read(struct glint_text *text, const char *line,
         while (c->word && !glint_word_is(&word, c->word))
             c++;
         if (!c->word)
-            return reject_word(text, line, clause, &word);
-        if (!read_clause(text, c, &word))
+            return reject_unknown_word(text, line, clause, &word);
+        if (!read_clause_values(text, c, &word))
             return false;
     }
     for (const struct glint_clause *c = clause; c->word; c++)
@@ -177,18 +180,18 @@ bool glint_line_begin(struct glint_text *text,
 {
     const struct glint_word word = glint_text_next_word(text);
     char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES];
-    struct near near = begin_search(&word);
+    struct near near = begin_word_search(&word);
     int i = 0;
 
     *index = -1;
     if (!word.length)
         return true;
     while (i < n && !glint_word_is(&word, lines[i].word))
-        offer_candidate(&near, lines[i++].word);
+        compare_candidate(&near, lines[i++].word);
     if (i == n)
         return glint_text_fail(text, word.place, "unknown word '%s'%s",
                                glint_word_quote(&word, quote),
-                               write_hint(&near, mean));
+                               write_spelling_hint(&near, mean));
     if (first[i] && !lines[i].many)
         return glint_text_fail(text, word.place,
                                "a second %s; the first is on line %d",
@@ -202,21 +205,21 @@ bool glint_name_find(struct glint_text *text, const struct glint_word *word,
                      const char *what, const char *names, size_t stride, int n,
                      int *index)
 {
-    struct near near = begin_search(word);
+    struct near near = begin_word_search(word);
     char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES];
 
     for (*index = 0; *index < n; ++*index, names += stride) {
         if (glint_word_is(word, names))
             return true;
-        offer_candidate(&near, names);
+        compare_candidate(&near, names);
     }
     return glint_text_fail(
         text, word->place, "no %s '%s' is defined above this line%s", what,
-        glint_word_quote(word, quote), write_hint(&near, mean));
+        glint_word_quote(word, quote), write_spelling_hint(&near, mean));
 }
 
 int glint_choice_read(struct glint_text *text, const char *line,
-                      const char *list_words, const char *const *names)
+                      const char *list, const char *const *names)
 {
     const struct glint_word word = glint_text_next_word(text);
     char quote[GLINT_QUOTE_BYTES];
@@ -224,7 +227,7 @@ int glint_choice_read(struct glint_text *text, const char *line,
     for (int i = 0; names[i]; i++)
         if (glint_word_is(&word, names[i]))
             return i;
-    glint_text_fail(text, word.place, "%s accepts %s%s%s%s", line, list_words,
+    glint_text_fail(text, word.place, "%s accepts %s%s%s%s", line, list,
                     word.length ? ", not '" : "",
                     word.length ? glint_word_quote(&word, quote) : "",
                     word.length ? "'" : "");

@@ -54,8 +54,8 @@ glint_description_parse(struct glint_description *scene, const char *text,
     if (good && !scene->n_objects)
         good =
             glint_text_fail(&d.text, glint_text_end(&d.text),
-                            "there is no object: sphere, triangle, plane, mesh "
-                            "or motion");
+                            "the scene has no object; add a sphere, triangle, "
+                            "plane, mesh or motion");
     if (good)
         return GLINT_OK;
     glint_description_free(scene);

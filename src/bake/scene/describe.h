@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Internal header of the scene parser. Each function parses one type of line
- * after its keyword; it sets an error and returns false if the line is invalid.
+ * Internal header of the parser of scene texts. Each function parses one type
+ * of line, from its second word on; if the line is invalid, it sets an error
+ * and returns false.
  */
 #ifndef GLINT_BAKE_SCENE_DESCRIBE_H
 #define GLINT_BAKE_SCENE_DESCRIBE_H
@@ -14,44 +15,45 @@ struct glint_describer {
     struct glint_description *scene;
     const struct glint_description_files *files;
     struct glint_error *error;
-    enum glint_status status; /* status of a failure outside the text, such as
-                                 missing memory */
-    int room; /* number of triangles that memory is allocated for */
-    /* Position of the camera's line. It is evaluated after all lines, as it
-     * depends on the handedness. */
+    /* status of a failure outside the text, such as lack of memory */
+    enum glint_status status;
+    int room; /* number of triangles for which memory is allocated */
+    /* Position of the line "camera". It is evaluated after all other lines, as
+     * it depends on the line "hand". */
     struct glint_text_place camera;
     struct glint_text_place background; /* position of the line "background" */
     double toward[3], up[3], orbit[3], distance, yaw_deg, pitch_deg;
     bool has_orbit;
-    /* position of the word "sensor" of the camera */
+    /* position of the word "sensor" in the line "camera" */
     struct glint_text_place sensor;
-    /* position of the first lamp that moves with a motion */
+    /* position of the first lamp that is attached to a motion, and the motion's
+     * name */
     struct glint_text_place rides;
     char rides_on[GLINT_DESCRIPTION_NAME_BYTES];
 };
 
-/* describe_motion.c: parses the motion; glint_describe_sensors() checks it
- * after all lines were parsed. */
+/* describe_motion.c: parses the line "motion"; glint_describe_sensors() checks
+ * its sensors after all lines were parsed */
 bool glint_describe_motion(struct glint_describer *d);
 bool glint_describe_sensors(struct glint_describer *d);
 
-/* describe_things.c: appends an object of KIND. Returns NULL if there are
- * too many objects or the name is taken; the error refers to PLACE. */
+/* describe_things.c: appends an object of KIND. Returns NULL if there are too
+ * many objects or the name is already used; the error then refers to PLACE. */
 struct glint_described_object *
 glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
                      const char *name, struct glint_text_place place);
 
-/* describe_view.c: parse the lines hand, camera, background, shadow, flare. */
+/* describe_view.c: parse the lines "hand", "camera", "background", "shadow" and
+ * "flare" */
 bool glint_describe_hand(struct glint_describer *d);
 bool glint_describe_camera(struct glint_describer *d);
 bool glint_describe_background(struct glint_describer *d);
 bool glint_describe_shadow(struct glint_describer *d);
 bool glint_describe_flare(struct glint_describer *d);
-/* Computes position and direction of the camera, after all lines were
- * parsed. */
+/* Computes position and axes of the camera after all lines were parsed. */
 bool glint_describe_axes(struct glint_describer *d);
 
-/* describe_looks.c: parse the lines light, texture, material. */
+/* describe_looks.c: parse the lines "light", "texture" and "material" */
 bool glint_describe_light(struct glint_describer *d);
 bool glint_describe_texture(struct glint_describer *d);
 bool glint_describe_material(struct glint_describer *d);
@@ -59,34 +61,35 @@ bool glint_describe_material(struct glint_describer *d);
 bool glint_describe_find(struct glint_describer *d,
                          const struct glint_word *word, int *index);
 
-/* Rejects object O, the last one defined, if its material is translucent and
- * its surface cannot be mapped to a texture map. PLACE is the position of
- * its material. Warns if the mapping is stretched. */
+/* Checks object O, the last one defined, if its material is translucent:
+ * rejects it if its texture coordinates cannot map the surface to a texture;
+ * warns if the mapping is stretched. PLACE: position of the material's name. */
 bool glint_describe_skin(struct glint_describer *d,
                          const struct glint_described_object *o,
                          struct glint_text_place place);
 
-/* describe_around.c: parses an environment; glint_describe_around() adds its
- * lights after all lines were parsed. */
+/* describe_around.c: parses the line "environment"; glint_describe_around()
+ * adds the lights of environments after all lines were parsed */
 bool glint_describe_environment(struct glint_describer *d);
 bool glint_describe_around(struct glint_describer *d);
 
-/* describe_things.c: parse the lines sphere, triangle, plane, mesh. */
+/* describe_things.c: parse the lines "sphere", "triangle", "plane" and
+ * "mesh" */
 bool glint_describe_sphere(struct glint_describer *d);
 bool glint_describe_triangle(struct glint_describer *d);
 bool glint_describe_plane(struct glint_describer *d);
 bool glint_describe_mesh(struct glint_describer *d);
 
-/* describer.c: normalises X. Returns false if X is 0. */
+/* describer.c: scales vector X to length 1. Returns false if X is 0. */
 bool glint_describe_unit(double x[3]);
 
-/* Copies WORD, a file name, to NAME. */
+/* Copies the file name WORD to NAME. */
 #define GLINT_FILE_BYTES (GLINT_LINE_BYTES + 1)
 void glint_describe_file(const struct glint_word *word,
                          char name[GLINT_FILE_BYTES]);
 
-/* Sets the error of a failed file access from STATUS and the error text of
- * FILES. Returns false. */
+/* Sets the error for a file that could not be read: the error text that FILES
+ * set, or else that of STATUS. Returns false. */
 bool glint_describe_refuse(struct glint_describer *d,
                            struct glint_text_place place,
                            enum glint_status status);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses lines on environment light. Bright lights of an environment become
- * suns of the scene.
+ * Parses the line "environment". The bright lights extracted from an
+ * environment become suns of the scene.
  */
 #include "bake/scene/describe.h"
 
@@ -13,11 +13,12 @@
 #include "glint/scene/environment.h"
 #include "glint/view.h"
 
-/* angular radius of point lights, degrees */
+/* min angular radius of an environment's light, degrees */
 #define LEAST_DEG 0.01
 
 /* Sets NAME to the base name of FILE without its extension. */
-static void set_name(const char *file, char name[GLINT_DESCRIPTION_NAME_BYTES])
+static void set_environment_name(const char *file,
+                                 char name[GLINT_DESCRIPTION_NAME_BYTES])
 {
     const char *const folder = strrchr(file, '/');
     const char *const from = folder ? folder + 1 : file;
@@ -31,8 +32,8 @@ static void set_name(const char *file, char name[GLINT_DESCRIPTION_NAME_BYTES])
     name[n] = '\0';
 }
 
-/* Appends an environment from FILE; PLACE is the position of its name.
- * Returns NULL if there are too many environments or the name is taken. */
+/* Appends an environment named after FILE. Returns NULL if there are too many
+ * environments or the name is already used; the error then refers to PLACE. */
 static struct glint_described_environment *
 append_environment(struct glint_describer *d, const char *file,
                    struct glint_text_place place)
@@ -46,13 +47,13 @@ append_environment(struct glint_describer *d, const char *file,
         return NULL;
     }
     e = &s->environment[s->n_environments];
-    set_name(file, e->name);
+    set_environment_name(file, e->name);
     for (int i = 0; i < s->n_environments; i++)
         if (strcmp(s->environment[i].name, e->name) == 0) {
             glint_text_fail(
                 &d->text, place,
-                "a second environment '%s'; files are identified by their "
-                "names",
+                "environment '%s' is already defined; rename one of both "
+                "files",
                 e->name);
             return NULL;
         }
@@ -76,13 +77,13 @@ bool glint_describe_environment(struct glint_describer *d)
 
     if (!word.length)
         return glint_text_fail(&d->text, word.place,
-                               "the environment's file is missing");
+                               "the environment's file name is missing");
     if (!glint_clauses_read(&d->text, "environment", clause))
         return false;
     glint_describe_file(&word, name);
     if (!d->files->environment)
         return glint_text_fail(&d->text, word.place,
-                               "environments cannot be read here");
+                               "this program does not read environments");
     e = append_environment(d, name, word.place);
     if (!e)
         return false;
@@ -97,11 +98,11 @@ bool glint_describe_environment(struct glint_describer *d)
            glint_text_fail(&d->text, word.place, "%s", reason);
 }
 
-/* Converts FROM, a light of an environment, to the sun TO. The z axis of the
+/* Converts light FROM of an environment to the sun TO. The z axis of an
  * environment points away from the viewer. */
-static void set_sun(const struct glint_description *s,
-                    const struct glint_environment_light *from, int number,
-                    struct glint_described_light *to)
+static void convert_light_to_sun(const struct glint_description *s,
+                                 const struct glint_environment_light *from,
+                                 int number, struct glint_described_light *to)
 {
     const double angle = s->environment[0].turn_deg * GLINT_PI / 180;
     const double x = from->toward_q30[0], z = from->toward_q30[2];
@@ -123,7 +124,7 @@ static void set_sun(const struct glint_description *s,
 
 bool glint_describe_around(struct glint_describer *d)
 {
-    /* replaces missing lights of environments with fewer lights */
+    /* used for environments with fewer lights than others of the scene */
     static const struct glint_environment_light dark = {
         .toward_q30 = {0, 1 << 30, 0}};
     struct glint_description *s = d->scene;
@@ -135,17 +136,20 @@ bool glint_describe_around(struct glint_describer *d)
                glint_text_fail(
                    &d->text, d->background,
                    "'background environment' needs a line 'environment FILE'");
-    /* Ends with the first environment in E. */
+    /* E is set to the first environment at last. */
     for (int k = s->n_environments; k--;) {
         if (glint_environment_open(&e, s->environment[k].data,
                                    s->environment[k].bytes,
+                                   /* does not occur: the file was checked when
+                                    * its line was parsed */
                                    &reason) != GLINT_OK)
-            return false; /* cannot happen: the file was checked before */
+            return false;
         if ((int)e.header->n_lights > s->n_environment_lights)
             s->n_environment_lights = (int)e.header->n_lights;
     }
     for (int i = 0; i < s->n_environment_lights; i++)
-        set_sun(s, i < (int)e.header->n_lights ? &e.light[i] : &dark, i,
-                &s->light[s->n_lights++]);
+        convert_light_to_sun(s,
+                             i < (int)e.header->n_lights ? &e.light[i] : &dark,
+                             i, &s->light[s->n_lights++]);
     return true;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses lines on lights, textures and materials: brushed metal, translucent
+ * Parses the lines "light", "texture" and "material": Ward metal, translucent
  * media, Phong.
  */
 #include "bake/scene/describe.h"
@@ -14,14 +14,14 @@
 #include "glint/scene/translucent.h"
 #include "glint/view.h"
 
-/* Tolerance for rounding in sums of colours and weights that must not exceed
- * 1. */
+/* tolerance for rounding in sums of colours or weights, which are at most 1 */
 #define SLACK 1e-9
 
 /* ------------------------------------------------------------------- metal */
 
-static bool read_norm(struct glint_describer *d, const struct glint_word *word,
-                      struct glint_described_material *m)
+static bool read_ward_norm(struct glint_describer *d,
+                           const struct glint_word *word,
+                           struct glint_described_material *m)
 {
     char quote[GLINT_QUOTE_BYTES];
 
@@ -33,9 +33,10 @@ static bool read_norm(struct glint_describer *d, const struct glint_word *word,
                            glint_word_quote(word, quote));
 }
 
-/* Raises the smaller alpha to 1/10 of the other, with a warning. */
-static void limit_ratio(struct glint_describer *d,
-                        struct glint_described_material *m)
+/* Raises the smaller of both Ward alphas to 1/10 of the larger, with a
+ * warning. */
+static void limit_alpha_ratio(struct glint_describer *d,
+                              struct glint_described_material *m)
 {
     const int smaller = m->alpha[0] > m->alpha[1];
     const double least = m->alpha[1 - smaller] / GLINT_DESCRIPTION_MAX_RATIO;
@@ -51,22 +52,22 @@ static void limit_ratio(struct glint_describer *d,
     m->alpha[smaller] = least;
 }
 
-/* Parses the norm of a Ward lobe and limits the ratio of its alphas. */
-static bool read_lobe(struct glint_describer *d,
-                      struct glint_described_material *m,
-                      const struct glint_word *norm)
+/* Parses the norm of a Ward lobe and limits the ratio of both alphas. */
+static bool read_ward_lobe(struct glint_describer *d,
+                           struct glint_described_material *m,
+                           const struct glint_word *norm)
 {
-    if (norm->length && !read_norm(d, norm, m))
+    if (norm->length && !read_ward_norm(d, norm, m))
         return false;
-    limit_ratio(d, m);
+    limit_alpha_ratio(d, m);
     return true;
 }
 
-/* Parses a material's line from 'ward' on. TEXTURE receives the name of its
- * texture, if any. */
-static bool read_metal(struct glint_describer *d,
-                       struct glint_described_material *m,
-                       struct glint_word *texture)
+/* Parses a Ward material from the word "ward" on. TEXTURE receives the name of
+ * its texture, if any. */
+static bool read_ward_material(struct glint_describer *d,
+                               struct glint_described_material *m,
+                               struct glint_word *texture)
 {
     struct glint_word norm = {0};
     struct glint_clause clause[] = {
@@ -91,20 +92,21 @@ static bool read_metal(struct glint_describer *d,
                 "'diffuse' and 'specular' sum to %.6g; above 1 the surface "
                 "would reflect more light than it receives",
                 m->colour[c] + m->metal[c]);
-    return read_lobe(d, m, &norm);
+    return read_ward_lobe(d, m, &norm);
 }
 
-/* Thresholds of the warning about stretch: ratio of a texel's size to the
- * mean size, and fraction of the surface where it is exceeded. */
+/* Limits for the warning about stretched texels: texel size / mean texel size,
+ * and the fraction of the surface where this ratio is exceeded. */
 #define MOST_STRETCH   1.5
 #define STRETCHED_AREA .02
 
 /* -------------------------------------------------------------------
  * translucent medium */
 
-/* Reads the file of a translucent medium, whose name is WORD. */
-static bool read_file(struct glint_describer *d, const struct glint_word *word,
-                      struct glint_described_material *m)
+/* Reads the file WORD of a translucent medium. */
+static bool read_translucent_file(struct glint_describer *d,
+                                  const struct glint_word *word,
+                                  struct glint_described_material *m)
 {
     struct glint_description *s = d->scene;
     struct glint_described_stone *stone = &s->stone[s->n_stones];
@@ -118,8 +120,9 @@ static bool read_file(struct glint_describer *d, const struct glint_word *word,
                                "more than %d translucent materials",
                                GLINT_DESCRIPTION_MAX_STONES);
     if (!d->files->stone)
-        return glint_text_fail(&d->text, word->place,
-                               "translucent materials cannot be read here");
+        return glint_text_fail(
+            &d->text, word->place,
+            "this program does not read translucent materials");
     glint_describe_file(word, name);
     status = d->files->stone(d->files->ctx, name, &stone->data, &stone->bytes,
                              d->error);
@@ -131,9 +134,9 @@ static bool read_file(struct glint_describer *d, const struct glint_word *word,
            glint_text_fail(&d->text, word->place, "%s", reason);
 }
 
-static bool read_fresnel(struct glint_describer *d,
-                         const struct glint_word *word,
-                         struct glint_described_material *m)
+static bool read_fresnel_switch(struct glint_describer *d,
+                                const struct glint_word *word,
+                                struct glint_described_material *m)
 {
     char quote[GLINT_QUOTE_BYTES];
 
@@ -144,10 +147,10 @@ static bool read_fresnel(struct glint_describer *d,
                            glint_word_quote(word, quote));
 }
 
-/* Parses a material's line from 'translucent' on. */
-static bool read_stone(struct glint_describer *d,
-                       struct glint_described_material *m,
-                       struct glint_word *texture)
+/* Parses a translucent material from the word "translucent" on. */
+static bool read_translucent_material(struct glint_describer *d,
+                                      struct glint_described_material *m,
+                                      struct glint_word *texture)
 {
     struct glint_word coat = {0}, norm = {0}, fresnel = {0}, file;
     struct glint_clause clause[] = {{"coat", .name = &coat},
@@ -166,10 +169,10 @@ static bool read_stone(struct glint_describer *d,
     if (!file.length)
         return glint_text_fail(
             &d->text, file.place,
-            "the file of the translucent material is missing");
+            "the translucent material's file name is missing");
     if (!glint_clauses_read(&d->text, "material", clause) ||
-        (fresnel.length && !read_fresnel(d, &fresnel, m)) ||
-        !read_file(d, &file, m))
+        (fresnel.length && !read_fresnel_switch(d, &fresnel, m)) ||
+        !read_translucent_file(d, &file, m))
         return false;
     m->is_metal = coat.length > 0;
     if (m->is_metal && !glint_word_is(&coat, "ward"))
@@ -184,16 +187,16 @@ static bool read_stone(struct glint_describer *d,
         if (!clause[i].place.line && m->is_metal)
             return glint_text_fail(&d->text, coat.place, "a coat needs '%s'",
                                    clause[i].word);
-    return !m->is_metal || read_lobe(d, m, &norm);
+    return !m->is_metal || read_ward_lobe(d, m, &norm);
 }
 
 /* ------------------------------------------------------------------ objects */
 
-/* Sets SHORTEST and LONGEST to the min and max length on triangle T of a
- * unit step in (u, v). Returns the area of the triangle; 0 if its area in
- * (u, v) is 0. */
-static double compute_stretch(const struct glint_described_triangle *t,
-                              double *shortest, double *longest)
+/* Sets SHORTEST and LONGEST to the min and max length on triangle T of a unit
+ * vector of the texture plane (u, v). Returns the triangle's area; 0 if its
+ * area in (u, v) is 0. */
+static double compute_texel_stretch(const struct glint_described_triangle *t,
+                                    double *shortest, double *longest)
 {
     const double du[2] = {t->uv[1][0] - t->uv[0][0], t->uv[2][0] - t->uv[0][0]};
     const double dv[2] = {t->uv[1][1] - t->uv[0][1], t->uv[2][1] - t->uv[0][1]};
@@ -219,9 +222,10 @@ static double compute_stretch(const struct glint_described_triangle *t,
     return *longest * *shortest * fabs(det) / 2;
 }
 
-/* Warns if the texel size varies too much over the mesh. */
-static void check_stretch(struct glint_describer *d,
-                          const struct glint_described_object *o, int material)
+/* Warns if the size of texels varies too much over a mesh. */
+static void check_mesh_stretch(struct glint_describer *d,
+                               const struct glint_described_object *o,
+                               int material)
 {
     const struct glint_description *s = d->scene;
     const struct glint_described_triangle *t = s->triangle + o->first_triangle;
@@ -234,7 +238,7 @@ static void check_stretch(struct glint_describer *d,
 
             if (t[i].material != material)
                 continue;
-            of = compute_stretch(&t[i], &shortest, &longest);
+            of = compute_texel_stretch(&t[i], &shortest, &longest);
             here = fmax(longest / mean, mean / fmax(shortest, 1e-30));
             if (!pass && of > 0) {
                 area += of;
@@ -253,11 +257,12 @@ static void check_stretch(struct glint_describer *d,
                  o->name, worst, 100 * stretched / area);
 }
 
-/* Checks triangle T of a translucent object. FIRST is the translucent medium
- * of earlier triangles, or -1. */
-static bool check_triangle(struct glint_describer *d,
-                           const struct glint_described_triangle *t,
-                           struct glint_text_place place, int *first)
+/* Checks triangle T of a translucent object. FIRST: translucent material of
+ * earlier triangles, or -1. */
+static bool check_translucent_triangle(struct glint_describer *d,
+                                       const struct glint_described_triangle *t,
+                                       struct glint_text_place place,
+                                       int *first)
 {
     const struct glint_described_material *m = &d->scene->material[t->material];
 
@@ -299,11 +304,11 @@ bool glint_describe_skin(struct glint_describer *d,
             &s->triangle[o->first_triangle + i];
 
         if (s->material[t->material].is_stone &&
-            !check_triangle(d, t, place, &first))
+            !check_translucent_triangle(d, t, place, &first))
             return false;
     }
     if (first >= 0)
-        check_stretch(d, o, first);
+        check_mesh_stretch(d, o, first);
     return true;
 }
 
@@ -311,13 +316,13 @@ bool glint_describe_skin(struct glint_describer *d,
 
 #define MAX_LIGHT 1e9
 #define REACH     GLINT_DESCRIPTION_REACH
-/* Angular radius of the sun, degrees. */
+/* default angular radius of a sun, degrees */
 #define SUN_DEG 0.267
 
-/* Warns of a sun whose COLOUR seems to be its irradiance instead of its
+/* Warns if the colour of SUN seems to be its irradiance instead of its
  * radiance: its light would be below one 8-bit code. */
-static void check_sun(struct glint_describer *d,
-                      const struct glint_described_light *sun)
+static void check_sun_radiance(struct glint_describer *d,
+                               const struct glint_described_light *sun)
 {
     const double sine = sin(sun->radius_deg * GLINT_PI / 180);
     const double most =
@@ -332,8 +337,8 @@ static void check_sun(struct glint_describer *d,
             most, white, most / white);
 }
 
-static bool read_sun(struct glint_describer *d,
-                     struct glint_described_light *light)
+static bool read_sun_light(struct glint_describer *d,
+                           struct glint_described_light *light)
 {
     struct glint_clause clause[] = {
         {"direction", 3, -REACH, REACH, .value = light->at, .required = true},
@@ -345,13 +350,13 @@ static bool read_sun(struct glint_describer *d,
     light->radius_deg = SUN_DEG;
     if (!glint_clauses_read(&d->text, "light sun", clause))
         return false;
-    check_sun(d, light);
+    check_sun_radiance(d, light);
     return glint_describe_unit(light->at) ||
            glint_text_fail(&d->text, clause[0].place,
                            "the direction to the sun must not be 0 0 0");
 }
 
-/* Attaches LIGHT to the motion with the file name WORD. */
+/* Attaches LIGHT to the motion named WORD. */
 static bool attach_to_motion(struct glint_describer *d,
                              const struct glint_described_light *light,
                              const struct glint_word *word,
@@ -369,8 +374,8 @@ static bool attach_to_motion(struct glint_describer *d,
     return true;
 }
 
-static bool read_lamp(struct glint_describer *d,
-                      struct glint_described_light *light)
+static bool read_lamp_light(struct glint_describer *d,
+                            struct glint_described_light *light)
 {
     struct glint_word on = {0};
     struct glint_clause clause[] = {
@@ -386,10 +391,11 @@ static bool read_lamp(struct glint_describer *d,
             attach_to_motion(d, light, &on, clause[3].place));
 }
 
-/* Sets the name of LIGHT to its kind, followed by a number from the second
- * light on. */
-static void name_light(struct glint_description *s,
-                       struct glint_described_light *light, const char *kind)
+/* Names LIGHT by its kind, plus a number from the second light of this kind on:
+ * "sun", "lamp", "lamp2". */
+static void set_light_name(struct glint_description *s,
+                           struct glint_described_light *light,
+                           const char *kind)
 {
     int n = 1;
 
@@ -416,15 +422,16 @@ bool glint_describe_light(struct glint_describer *d)
                                  glint_word_quote(&word, quote))
                            : glint_text_fail(&d->text, word.place,
                                              "a light must be a sun or a lamp");
-    good =
-        glint_word_is(&word, "sun") ? read_sun(d, light) : read_lamp(d, light);
-    name_light(s, light, light->kind == GLINT_DESCRIBED_SUN ? "sun" : "lamp");
+    good = glint_word_is(&word, "sun") ? read_sun_light(d, light)
+                                       : read_lamp_light(d, light);
+    set_light_name(s, light,
+                   light->kind == GLINT_DESCRIBED_SUN ? "sun" : "lamp");
     s->n_lights++;
     return good;
 }
 
-/* Returns the number of texels of all textures. */
-static int64_t count_texels(const struct glint_description *s)
+/* Returns the number of texels in all textures of the scene. */
+static int64_t count_scene_texels(const struct glint_description *s)
 {
     int64_t n = 0;
 
@@ -454,7 +461,7 @@ bool glint_describe_texture(struct glint_describer *d)
     word = glint_text_next_word(&d->text);
     if (!word.length)
         return glint_text_fail(&d->text, word.place,
-                               "the texture's file is missing");
+                               "the texture's file name is missing");
     if (!glint_line_ends(&d->text, "texture"))
         return false;
     glint_describe_file(&word, name);
@@ -466,7 +473,7 @@ bool glint_describe_texture(struct glint_describer *d)
     if (d->status != GLINT_OK)
         return glint_describe_refuse(d, word.place, d->status);
     d->status = GLINT_E_LENS;
-    if (count_texels(s) > GLINT_DESCRIPTION_MAX_TEXELS)
+    if (count_scene_texels(s) > GLINT_DESCRIPTION_MAX_TEXELS)
         return glint_text_fail(&d->text, word.place,
                                "more than %d texels in all textures",
                                GLINT_DESCRIPTION_MAX_TEXELS);
@@ -475,8 +482,8 @@ bool glint_describe_texture(struct glint_describer *d)
 
 /* ---------------------------------------------------------------- material */
 
-static bool find_texture(struct glint_describer *d,
-                         const struct glint_word *word, int *index)
+static bool find_texture_index(struct glint_describer *d,
+                               const struct glint_word *word, int *index)
 {
     const struct glint_description *s = d->scene;
 
@@ -493,10 +500,11 @@ bool glint_describe_find(struct glint_describer *d,
                            sizeof *s->material, s->n_materials, index);
 }
 
-/* Checks that the reflected fractions of a material sum to at most 1. */
-static bool check_shares(struct glint_describer *d,
-                         const struct glint_described_material *m,
-                         const struct glint_clause *clause)
+/* Checks that the fractions of light that a material reflects sum to at most
+ * 1. */
+static bool check_reflected_fractions(struct glint_describer *d,
+                                      const struct glint_described_material *m,
+                                      const struct glint_clause *clause)
 {
     const double sum = m->ambient + m->diffuse + m->specular;
 
@@ -523,11 +531,11 @@ static bool check_shares(struct glint_describer *d,
     return true;
 }
 
-/* Parses a material's line from 'phong' on. TEXTURE receives the name of its
- * texture, if any. */
-static bool read_phong(struct glint_describer *d,
-                       struct glint_described_material *m,
-                       struct glint_word *texture)
+/* Parses a Phong material from the word "phong" on. TEXTURE receives the name
+ * of its texture, if any. */
+static bool read_phong_material(struct glint_describer *d,
+                                struct glint_described_material *m,
+                                struct glint_word *texture)
 {
     double phong[3] = {0};
     struct glint_clause clause[] = {
@@ -545,7 +553,7 @@ static bool read_phong(struct glint_describer *d,
     m->ambient = phong[0];
     m->diffuse = phong[1];
     m->specular = phong[2];
-    return check_shares(d, m, clause);
+    return check_reflected_fractions(d, m, clause);
 }
 
 bool glint_describe_material(struct glint_describer *d)
@@ -569,10 +577,11 @@ bool glint_describe_material(struct glint_describer *d)
             return glint_text_fail(&d->text, place,
                                    "a material of this name is already "
                                    "defined");
-    if (!(glint_word_is(&kind, "ward")          ? read_metal
-          : glint_word_is(&kind, "translucent") ? read_stone
-                                                : read_phong)(d, m, &texture) ||
-        (texture.length && !find_texture(d, &texture, &m->texture)))
+    if (!(glint_word_is(&kind, "ward") ? read_ward_material
+          : glint_word_is(&kind, "translucent")
+              ? read_translucent_material
+              : read_phong_material)(d, m, &texture) ||
+        (texture.length && !find_texture_index(d, &texture, &m->texture)))
         return false;
     s->n_materials++;
     return true;

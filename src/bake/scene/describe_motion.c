@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses the line on a recorded motion. Body, sensors and foods become spheres
- * of the scene, which the run time moves; shells, lines and box only get
- * materials.
+ * Parses the line "motion". Body, sensors and foods of the recorded motion
+ * become spheres of the scene, which the run time moves; shells, lines and box
+ * only get materials.
  */
 #include "bake/scene/describe.h"
 
@@ -15,10 +15,11 @@
 #define REACH GLINT_DESCRIPTION_REACH
 #define LEAST GLINT_DESCRIPTION_LEAST
 
-enum { NAME_BYTES = 19 /* leaves space for "-sensor32" */ };
+/* max bytes of a motion's name; leaves space for the suffix "-sensor32" */
+enum { NAME_BYTES = 19 };
 
-/* Default materials, used if the text defines no material of that name. */
-static const struct glint_described_material looks[] = {
+/* default materials, used unless the text defines materials of these names */
+static const struct glint_described_material default_materials[] = {
     {.name = "body",
      .ambient = .3,
      .diffuse = .55,
@@ -44,11 +45,11 @@ static const struct glint_described_material looks[] = {
     {.name = "lines", .ambient = 1, .power = 1, .colour = {1, .95, .3}},
     {.name = "box", .ambient = 1, .power = 1, .colour = {.45, .5, .55}}};
 
-/* Sets INDEX to the scene's material with the name of LOOK; adds LOOK if
- * there is none. */
-static bool set_material(struct glint_describer *d,
-                         const struct glint_described_material *look,
-                         struct glint_text_place place, int *index)
+/* Sets INDEX to the index of the scene's material with the name of LOOK.
+ * Appends LOOK if there is none. */
+static bool find_or_add_material(struct glint_describer *d,
+                                 const struct glint_described_material *look,
+                                 struct glint_text_place place, int *index)
 {
     struct glint_description *s = d->scene;
 
@@ -65,13 +66,13 @@ static bool set_material(struct glint_describer *d,
     return true;
 }
 
-/* Appends a sphere of RADIUS at AT. Its name is the motion's name, followed
- * by KIND and NUMBER unless KIND is NULL. If it is the first of its kind,
- * sets FIRST to its index. */
-static bool append_sphere(struct glint_describer *d, const char *kind,
-                          int number, const double at[3], double radius,
-                          int material, struct glint_text_place place,
-                          int *first)
+/* Appends a sphere of RADIUS at AT. Its name is the motion's name, plus KIND
+ * and NUMBER unless KIND is NULL. Sets FIRST to its index if NUMBER is at most
+ * 1. */
+static bool append_motion_sphere(struct glint_describer *d, const char *kind,
+                                 int number, const double at[3], double radius,
+                                 int material, struct glint_text_place place,
+                                 int *first)
 {
     const char *const name = d->scene->motion.name;
     char full[GLINT_DESCRIPTION_NAME_BYTES];
@@ -92,10 +93,10 @@ static bool append_sphere(struct glint_describer *d, const char *kind,
     return true;
 }
 
-/* Appends body, sensors and foods at their positions in frame 0. */
-static bool append_objects(struct glint_describer *d,
-                           struct glint_motion *motion,
-                           struct glint_text_place place)
+/* Appends spheres for body, sensors and foods at their positions in frame 0. */
+static bool append_motion_objects(struct glint_describer *d,
+                                  struct glint_motion *motion,
+                                  struct glint_text_place place)
 {
     struct glint_described_motion *m = &d->scene->motion;
     const struct glint_motion_header *h = &motion->header;
@@ -105,33 +106,38 @@ static bool append_objects(struct glint_describer *d,
     int material[3];
 
     for (int i = 0; i < 3; i++)
-        if (!set_material(d, &looks[i], place, &material[i]))
+        if (!find_or_add_material(d, &default_materials[i], place,
+                                  &material[i]))
             return false;
-    if (!set_material(d, &looks[3], place, &m->shell_material) ||
-        !set_material(d, &looks[4], place, &m->line_material) ||
-        !set_material(d, &looks[5], place, &m->box_material))
+    if (!find_or_add_material(d, &default_materials[3], place,
+                              &m->shell_material) ||
+        !find_or_add_material(d, &default_materials[4], place,
+                              &m->line_material) ||
+        !find_or_add_material(d, &default_materials[5], place,
+                              &m->box_material))
         return false;
-    if (m->size > 0 && !append_sphere(d, NULL, 0, middle, m->size, material[0],
-                                      place, &m->body))
+    if (m->size > 0 && !append_motion_sphere(d, NULL, 0, middle, m->size,
+                                             material[0], place, &m->body))
         return false;
     for (uint32_t i = 0; m->sensors > 0 && i < h->n_sensors; i++) {
         double at[3];
 
         for (int k = 0; k < 3; k++)
             at[k] = m->size * ldexp(motion->sensor[i].axis_q30[k], -30);
-        if (!append_sphere(d, "sensor", (int)i + 1, at, m->sensors, material[1],
-                           place, &m->sensor))
+        if (!append_motion_sphere(d, "sensor", (int)i + 1, at, m->sensors,
+                                  material[1], place, &m->sensor))
             return false;
     }
+    /* does not occur: the file was checked when it was opened */
     if (glint_motion_frame(motion, 0, &frame) != GLINT_OK)
-        return false; /* cannot fail: the file was checked when it was opened */
+        return false;
     for (uint32_t i = 0; m->foods > 0 && i < h->n_foods; i++) {
         double at[3];
 
         for (int k = 0; k < 3; k++)
             at[k] = step * frame.food[i][k];
-        if (!append_sphere(d, "food", (int)i + 1, at, m->foods, material[2],
-                           place, &m->food))
+        if (!append_motion_sphere(d, "food", (int)i + 1, at, m->foods,
+                                  material[2], place, &m->food))
             return false;
     }
     for (int k = 0; k < 3; k++)
@@ -140,9 +146,9 @@ static bool append_objects(struct glint_describer *d,
     return true;
 }
 
-/* Reads the motion file and checks its header. */
-static bool open_motion(struct glint_describer *d,
-                        const struct glint_word *file, bool has_size)
+/* Reads the motion file FILE and appends its objects to the scene. */
+static bool read_motion_file(struct glint_describer *d,
+                             const struct glint_word *file, bool has_size)
 {
     struct glint_described_motion *m = &d->scene->motion;
     struct glint_motion motion;
@@ -153,7 +159,7 @@ static bool open_motion(struct glint_describer *d,
     glint_describe_file(file, name);
     if (!d->files->motion)
         return glint_text_fail(&d->text, file->place,
-                               "motions cannot be read here");
+                               "this program does not read motions");
     status =
         d->files->motion(d->files->ctx, name, &m->data, &m->bytes, d->error);
     if (status != GLINT_OK)
@@ -162,16 +168,16 @@ static bool open_motion(struct glint_describer *d,
         return glint_text_fail(&d->text, file->place, "%s", reason);
     if (!has_size)
         m->size = ldexp(motion.header.size, -motion.header.unit_log2);
-    if (m->size > REACH || !append_objects(d, &motion, file->place))
+    if (m->size > REACH || !append_motion_objects(d, &motion, file->place))
         return m->size <= REACH ||
                glint_text_fail(&d->text, file->place, "the body is too large");
     return true;
 }
 
-static bool check_detect(struct glint_describer *d,
-                         const struct glint_clause *detect,
-                         const struct glint_clause *angle,
-                         const struct glint_clause *both)
+static bool check_detect_clauses(struct glint_describer *d,
+                                 const struct glint_clause *detect,
+                                 const struct glint_clause *angle,
+                                 const struct glint_clause *both)
 {
     d->scene->motion.both = both->place.line > 0;
     if (detect->place.line && (angle->place.line > 0) == (both->place.line > 0))
@@ -207,9 +213,9 @@ bool glint_describe_motion(struct glint_describer *d)
     file = glint_text_next_word(&d->text);
     if (!file.length)
         return glint_text_fail(&d->text, file.place,
-                               "the motion's file is missing");
+                               "the motion's file name is missing");
     if (!glint_clauses_read(&d->text, "motion", clause) ||
-        !check_detect(d, &clause[6], &clause[7], &clause[8]))
+        !check_detect_clauses(d, &clause[6], &clause[7], &clause[8]))
         return false;
     if (clause[3].place.line && !clause[2].place.line)
         return glint_text_fail(&d->text, clause[3].place,
@@ -219,7 +225,7 @@ bool glint_describe_motion(struct glint_describer *d)
                                "'box' is a factor on the width of 'lines', but "
                                "'lines' is missing");
     m->box *= m->lines;
-    return open_motion(d, &file, clause[0].place.line > 0);
+    return read_motion_file(d, &file, clause[0].place.line > 0);
 }
 
 bool glint_describe_sensors(struct glint_describer *d)
@@ -235,7 +241,7 @@ bool glint_describe_sensors(struct glint_describer *d)
     if (d->sensor.line && m->camera >= n)
         return glint_text_fail(
             &d->text, d->sensor,
-            m->data ? "the motion has %d sensors"
+            m->data ? "no such sensor: the motion has %d"
                     : "the scene has no motion, and so no sensors",
             n);
     if (d->rides.line && strcmp(d->rides_on, m->name) != 0)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses lines on objects: shape, position and material.
+ * Parses the lines of objects, "sphere", "triangle", "plane" and "mesh":
+ * shape, position and material.
  */
 #include "bake/scene/describe.h"
 
@@ -14,7 +15,7 @@
 
 #define REACH GLINT_DESCRIPTION_REACH
 #define LEAST GLINT_DESCRIPTION_LEAST
-/* Max number of repetitions of a texture across a triangle. */
+/* max number of times that a texture may repeat across a triangle */
 #define REPEATS 250.0
 #define NO_AXIS "the axis of a rotation must not be 0 0 0"
 
@@ -49,11 +50,11 @@ glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
     return o;
 }
 
-/* Starts an object of KIND by parsing its name. Returns NULL if the name is
- * invalid. */
+/* Parses the name of an object and appends the object. Returns NULL if the name
+ * is invalid. */
 static struct glint_described_object *
-begin_object(struct glint_describer *d, enum glint_described_kind kind,
-             const char *what)
+begin_named_object(struct glint_describer *d, enum glint_described_kind kind,
+                   const char *what)
 {
     struct glint_text at = d->text;
     const struct glint_text_place place = glint_text_next_word(&at).place;
@@ -64,8 +65,9 @@ begin_object(struct glint_describer *d, enum glint_described_kind kind,
                : NULL;
 }
 
-/* Returns whether the texture coordinates of T span more than REPEATS. */
-static bool repeats_too_often(const struct glint_described_triangle *t)
+/* Returns whether the texture repeats more than REPEATS times across T. */
+static bool
+is_texture_repeated_too_often(const struct glint_described_triangle *t)
 {
     for (int i = 0; t->has_uv && i < 2; i++) {
         const double low = fmin(t->uv[0][i], fmin(t->uv[1][i], t->uv[2][i]));
@@ -77,9 +79,10 @@ static bool repeats_too_often(const struct glint_described_triangle *t)
     return false;
 }
 
-/* Sets TURN to the quaternion of a rotation about AXIS by ANGLE, degrees.
+/* Sets TURN to the unit quaternion of a rotation by ANGLE_DEG about AXIS.
  * Returns false if AXIS is 0. */
-static bool set_turn(double turn[4], double axis[3], double angle_deg)
+static bool set_rotation_quaternion(double turn[4], double axis[3],
+                                    double angle_deg)
 {
     const double half = angle_deg * GLINT_PI / 360;
 
@@ -94,7 +97,7 @@ static bool set_turn(double turn[4], double axis[3], double angle_deg)
 bool glint_describe_sphere(struct glint_describer *d)
 {
     struct glint_described_object *o =
-        begin_object(d, GLINT_DESCRIBED_SPHERE, "sphere");
+        begin_named_object(d, GLINT_DESCRIBED_SPHERE, "sphere");
     double turn[4] = {0, 1, 0, 0};
     struct glint_word material;
     struct glint_clause clause[] = {
@@ -108,15 +111,15 @@ bool glint_describe_sphere(struct glint_describer *d)
     return o && glint_clauses_read(&d->text, "sphere", clause) &&
            glint_describe_find(d, &material, &o->material) &&
            glint_describe_skin(d, o, clause[2].place) &&
-           (set_turn(o->turn, turn, turn[3]) ||
+           (set_rotation_quaternion(o->turn, turn, turn[3]) ||
             glint_text_fail(&d->text, clause[3].place, NO_AXIS));
 }
 
-/* Allocates N more triangles. Returns NULL if there are too many, or no
- * memory. */
+/* Appends N triangles to the scene and returns the first one. Returns NULL if
+ * there are too many triangles or if there is no memory. */
 static struct glint_described_triangle *
-allocate_triangles(struct glint_describer *d, int n,
-                   struct glint_text_place place)
+append_triangles(struct glint_describer *d, int n,
+                 struct glint_text_place place)
 {
     struct glint_description *s = d->scene;
 
@@ -144,7 +147,7 @@ allocate_triangles(struct glint_describer *d, int n,
 bool glint_describe_triangle(struct glint_describer *d)
 {
     struct glint_described_object *o =
-        begin_object(d, GLINT_DESCRIBED_TRIANGLE, "triangle");
+        begin_named_object(d, GLINT_DESCRIBED_TRIANGLE, "triangle");
     struct glint_described_triangle t = {.has_uv = false}, *to;
     struct glint_word material;
     struct glint_clause clause[] = {
@@ -164,11 +167,11 @@ bool glint_describe_triangle(struct glint_describer *d)
     if (d->scene->material[t.material].texture >= 0 && !t.has_uv)
         return glint_text_fail(&d->text, clause[1].place,
                                "a material with a texture needs 'uv'");
-    if (repeats_too_often(&t))
+    if (is_texture_repeated_too_often(&t))
         return glint_text_fail(
             &d->text, clause[0].place,
             "a texture may repeat at most %g times over a triangle", REPEATS);
-    to = allocate_triangles(d, 1, clause[1].place);
+    to = append_triangles(d, 1, clause[1].place);
     if (!to)
         return false;
     *to = t;
@@ -179,7 +182,7 @@ bool glint_describe_triangle(struct glint_describer *d)
 bool glint_describe_plane(struct glint_describer *d)
 {
     struct glint_described_object *o =
-        begin_object(d, GLINT_DESCRIBED_PLANE, "plane");
+        begin_named_object(d, GLINT_DESCRIBED_PLANE, "plane");
     struct glint_word material;
     struct glint_clause clause[] = {
         {"at", 3, -REACH, REACH, .value = o ? o->at : NULL, .required = true},
@@ -206,12 +209,12 @@ bool glint_describe_plane(struct glint_describer *d)
 
 /* -------------------------------------------------------------------- mesh */
 
-/* Sets OF to the scene's materials that MESH names; names that are not
- * defined get the material of the object. */
-static bool find_materials(struct glint_describer *d,
-                           const struct glint_described_object *o,
-                           const struct glint_mesh *mesh, const char *file,
-                           struct glint_text_place place, int *of)
+/* Sets OF[n_names] to the indices of the scene's materials that MESH names.
+ * Unknown names get the material of object O; without one they are errors. */
+static bool find_mesh_materials(struct glint_describer *d,
+                                const struct glint_described_object *o,
+                                const struct glint_mesh *mesh, const char *file,
+                                struct glint_text_place place, int *of)
 {
     const struct glint_description *s = d->scene;
 
@@ -230,15 +233,15 @@ static bool find_materials(struct glint_describer *d,
     return true;
 }
 
-/* Appends the triangles of MESH to the scene, scaled by SCALE. */
-static bool append_mesh(struct glint_describer *d,
-                        struct glint_described_object *o,
-                        const struct glint_mesh *mesh, const int *of,
-                        double scale, struct glint_text_place place)
+/* Appends the triangles of MESH, scaled by SCALE, to the scene as object O. */
+static bool append_mesh_triangles(struct glint_describer *d,
+                                  struct glint_described_object *o,
+                                  const struct glint_mesh *mesh, const int *of,
+                                  double scale, struct glint_text_place place)
 {
     const struct glint_description *s = d->scene;
     struct glint_described_triangle *to =
-        allocate_triangles(d, mesh->n_triangles, place);
+        append_triangles(d, mesh->n_triangles, place);
 
     if (!to)
         return false;
@@ -258,7 +261,7 @@ static bool append_mesh(struct glint_describer *d,
                                    "material %s has a texture, but faces of "
                                    "the mesh have no texture coordinates (vt)",
                                    s->material[t->material].name);
-        if (repeats_too_often(t))
+        if (is_texture_repeated_too_often(t))
             return glint_text_fail(
                 &d->text, place,
                 "a texture may repeat at most %g times over a triangle, but "
@@ -280,9 +283,9 @@ static bool append_mesh(struct glint_describer *d,
     return true;
 }
 
-static bool read_mesh(struct glint_describer *d,
-                      struct glint_described_object *o,
-                      const struct glint_word *word, double scale)
+static bool read_mesh_file(struct glint_describer *d,
+                           struct glint_described_object *o,
+                           const struct glint_word *word, double scale)
 {
     struct glint_mesh *mesh = malloc(sizeof *mesh);
     char name[GLINT_FILE_BYTES];
@@ -302,8 +305,8 @@ static bool read_mesh(struct glint_describer *d,
             glint_mesh_read(mesh, (const char *)data, bytes, name, d->error);
         d->status = status == GLINT_OK ? d->status : status;
         good = status == GLINT_OK &&
-               find_materials(d, o, mesh, name, word->place, of) &&
-               append_mesh(d, o, mesh, of, scale, word->place) &&
+               find_mesh_materials(d, o, mesh, name, word->place, of) &&
+               append_mesh_triangles(d, o, mesh, of, scale, word->place) &&
                glint_describe_skin(d, o, word->place);
         if (status == GLINT_OK)
             free(mesh->triangle);
@@ -316,7 +319,7 @@ static bool read_mesh(struct glint_describer *d,
 bool glint_describe_mesh(struct glint_describer *d)
 {
     struct glint_described_object *o =
-        begin_object(d, GLINT_DESCRIBED_MESH, "mesh");
+        begin_named_object(d, GLINT_DESCRIBED_MESH, "mesh");
     struct glint_word material, file;
     double scale = 1, turn[4] = {0, 1, 0, 0};
     struct glint_clause clause[] = {
@@ -331,12 +334,12 @@ bool glint_describe_mesh(struct glint_describer *d)
     file = glint_text_next_word(&d->text);
     if (!file.length)
         return glint_text_fail(&d->text, file.place,
-                               "the mesh's file is missing");
+                               "the mesh's file name is missing");
     if (!glint_clauses_read(&d->text, "mesh", clause) ||
         (clause[2].place.line &&
          !glint_describe_find(d, &material, &o->material)))
         return false;
-    if (!set_turn(o->turn, turn, turn[3]))
+    if (!set_rotation_quaternion(o->turn, turn, turn[3]))
         return glint_text_fail(&d->text, clause[3].place, NO_AXIS);
-    return read_mesh(d, o, &file, scale);
+    return read_mesh_file(d, o, &file, scale);
 }

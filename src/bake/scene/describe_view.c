@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses lines on handedness, camera, background, shadow and flare.
+ * Parses the lines "hand", "camera", "background", "shadow" and "flare".
  */
 #include "bake/scene/describe.h"
 
@@ -10,26 +10,29 @@
 #include "glint/view.h"
 
 #define REACH     GLINT_DESCRIPTION_REACH
-#define MAX_LIGHT 32768.0 /* max light of a background */
-/* Min sine of the angle between viewing direction and up vector; below, the
- * right vector is undefined. */
+#define MAX_LIGHT 32768.0 /* max radiance of the background colour */
+/* Min sine of the angle between viewing direction and up vector; at smaller
+ * angles the right vector is undefined. */
 #define LEAST_RIGHT 1e-6
 
-static double compute_dot(const double a[3], const double b[3])
+static double compute_dot_product(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void compute_cross(const double a[3], const double b[3], double c[3])
+static void compute_cross_product(const double a[3], const double b[3],
+                                  double c[3])
 {
     c[0] = a[1] * b[2] - a[2] * b[1];
     c[1] = a[2] * b[0] - a[0] * b[2];
     c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Parses one of the WORDS that LINE accepts and sets INDEX to its index. */
-static bool read_word(struct glint_describer *d, const char *line,
-                      const char *list, const char *const *words, int *index)
+/* Parses one word and sets INDEX to its index in WORDS. LIST describes the
+ * words in the error text about LINE. */
+static bool read_listed_word(struct glint_describer *d, const char *line,
+                             const char *list, const char *const *words,
+                             int *index)
 {
     const struct glint_word word = glint_text_next_word(&d->text);
     char quote[GLINT_QUOTE_BYTES];
@@ -49,7 +52,7 @@ bool glint_describe_hand(struct glint_describer *d)
     static const char *const words[] = {"right", "left", NULL};
     int index;
 
-    if (!read_word(d, "hand", "right or left", words, &index))
+    if (!read_listed_word(d, "hand", "right or left", words, &index))
         return false;
     d->scene->left_handed = index == 1;
     return glint_line_ends(&d->text, "hand");
@@ -63,8 +66,8 @@ bool glint_describe_background(struct glint_describer *d)
     int index;
 
     d->background = glint_text_next_word(&at).place;
-    if (!read_word(d, "background", "camera, colour R G B or environment",
-                   words, &index))
+    if (!read_listed_word(d, "background",
+                          "camera, colour R G B or environment", words, &index))
         return false;
     d->scene->background = (enum glint_described_background)index;
     return (index != GLINT_BEHIND_COLOUR ||
@@ -78,7 +81,7 @@ bool glint_describe_shadow(struct glint_describer *d)
     static const char *const words[] = {"off", "on", NULL};
     int index;
 
-    if (!read_word(d, "shadow", "on or off", words, &index))
+    if (!read_listed_word(d, "shadow", "on or off", words, &index))
         return false;
     d->scene->has_shadows = index == 1;
     return glint_line_ends(&d->text, "shadow");
@@ -92,7 +95,8 @@ bool glint_describe_flare(struct glint_describer *d)
     struct glint_clause clause[] = {{"highlights", 1, 0, 8, .value = &n}, {0}};
     int index;
 
-    if (!read_word(d, "flare", "off or lights [highlights N]", words, &index))
+    if (!read_listed_word(d, "flare", "off or lights [highlights N]", words,
+                          &index))
         return false;
     if (index == 0)
         return glint_line_ends(&d->text, "flare off");
@@ -106,9 +110,9 @@ bool glint_describe_flare(struct glint_describer *d)
                            "'highlights' must be a whole number");
 }
 
-/* Parses the first words of a camera, its field of view. Returns false on
- * errors. Sets ALL if no further words may follow. */
-static bool read_field(struct glint_describer *d, bool *all)
+/* Parses the first words of the line "camera": its field of view. Sets ALL if
+ * no other words may follow. Returns false on errors. */
+static bool read_field_of_view(struct glint_describer *d, bool *all)
 {
     struct glint_described_camera *c = &d->scene->camera;
     struct glint_text at = d->text;
@@ -156,7 +160,7 @@ bool glint_describe_camera(struct glint_describer *d)
     bool all;
 
     d->camera = glint_text_next_word(&at).place;
-    if (!read_field(d, &all))
+    if (!read_field_of_view(d, &all))
         return false;
     if (all)
         return true;
@@ -182,13 +186,13 @@ bool glint_describe_camera(struct glint_describer *d)
                            "camera needs 'at X Y Z toward X Y Z', or 'orbit'");
 }
 
-/* Sets position and direction of a camera that orbits a point. */
-static void set_orbit(struct glint_describer *d)
+/* Sets position and viewing direction of a camera that orbits a point. */
+static void set_orbit_camera(struct glint_describer *d)
 {
     struct glint_described_camera *c = &d->scene->camera;
     const double yaw = d->yaw_deg * GLINT_PI / 180;
     const double pitch = d->pitch_deg * GLINT_PI / 180;
-    /* with yaw 0 the camera looks along the axis that points into the
+    /* with yaw 0 the camera looks along the z direction that points into the
      * picture */
     const double from[3] = {cos(pitch) * sin(yaw), sin(pitch),
                             (d->scene->left_handed ? -1 : 1) * cos(pitch) *
@@ -207,11 +211,11 @@ bool glint_describe_axes(struct glint_describer *d)
 
     if (c->field == GLINT_DESCRIBED_CORNERS || !d->camera.line ||
         d->sensor.line) {
-        /* A camera with GLINT_DESCRIBED_CORNERS looks along +z; a scene
-         * without a camera line looks into the picture. */
+        /* A camera with GLINT_DESCRIBED_CORNERS looks along +z; without a line
+         * "camera" it looks into the picture. */
         c->forward[2] = c->field == GLINT_DESCRIBED_CORNERS ? 1 : hand;
     } else if (d->has_orbit) {
-        set_orbit(d);
+        set_orbit_camera(d);
     } else {
         for (int i = 0; i < 3; i++)
             c->forward[i] = d->toward[i] - c->at[i];
@@ -221,13 +225,13 @@ bool glint_describe_axes(struct glint_describer *d)
             &d->text, d->camera,
             "the camera's position equals the point that it looks at");
     if (!glint_describe_unit(d->up))
-        return glint_text_fail(&d->text, d->camera, "'up' has no direction");
-    compute_cross(c->forward, d->up, c->right);
-    if (!(compute_dot(c->right, c->right) > LEAST_RIGHT * LEAST_RIGHT))
+        return glint_text_fail(&d->text, d->camera, "'up' must not be 0 0 0");
+    compute_cross_product(c->forward, d->up, c->right);
+    if (!(compute_dot_product(c->right, c->right) > LEAST_RIGHT * LEAST_RIGHT))
         return glint_text_fail(&d->text, d->camera,
                                "the camera's direction is parallel to 'up'");
     glint_describe_unit(c->right);
-    compute_cross(c->right, c->forward, c->up);
+    compute_cross_product(c->right, c->forward, c->up);
     glint_describe_unit(c->up);
     if (d->scene->left_handed)
         for (int i = 0; i < 3; i++)

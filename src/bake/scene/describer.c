@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shared by the parsers of scene lines: unit vectors, file names, and errors of
- * files.
+ * Functions shared by the parsers of scene lines: unit vectors, file names,
+ * and errors of files.
  */
 #include <math.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 bool glint_describe_unit(double x[3])
 {
     const double largest =
-        /* scales X, as squares of small numbers would underflow */
+        /* scales X first, as the squares of small numbers would underflow */
         fmax(fabs(x[0]), fmax(fabs(x[1]), fabs(x[2])));
     double length;
 

@@ -6,23 +6,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Limits of a grid: max cells per triangle; max list entries per triangle, and
- * if that is more, of a mesh's share of those of all meshes. Cells are enlarged
- * until both hold, so that N triangles cost O(N) even if they coincide. */
+/* Limits of a mesh's grid: max number of cells per triangle; max number of list
+ * entries per triangle, but at least FEW_REFS / number of objects. Cells are
+ * enlarged until both hold, so that N triangles cost O(N) even if they
+ * coincide. */
 #define CELLS_EACH 2
 #define REFS_EACH  64
 #define FEW_REFS   (1 << 22)
-/* Max number of triangles per cell, on average; a mesh with more is
- * rejected, as a ray tests all triangles of a cell. Ordinary meshes have a
- * few. */
+/* Max number of triangles per cell, on average. A mesh with more is rejected,
+ * as a ray tests all triangles of a cell; ordinary meshes have a few. */
 #define MOST_IN_CELL 4096
 
-/* A vertex as stored in the file; members that the mesh does not use are 0. */
+/* A vertex as stored in the file. Members that the mesh does not use are 0. */
 struct corner {
     int32_t place[3], uv_q16[2], normal_q30[3];
 };
 
-/* State while the triangles of an object are converted to a mesh. */
+/* state of converting the triangles of an object to a mesh */
 struct mesher {
     const struct glint_description *scene;
     const struct glint_described_object *object;
@@ -30,14 +30,15 @@ struct mesher {
     bool has_uv, has_normals;
     struct corner *corner;
     struct glint_scene_triangle *triangle;
-    uint32_t *slot; /* [n_slots]: hash table of vertices by content: index + 1;
-                       0: free */
+    /* [n_slots]: hash table of vertices by content; entry: index + 1, 0:
+     * free */
+    uint32_t *slot;
     uint32_t n_slots, n_corners, n_triangles;
 };
 
 /* ----------------------------------------------------------------- corners */
 
-static uint32_t compute_hash(const struct corner *c)
+static uint32_t compute_vertex_hash(const struct corner *c)
 {
     const unsigned char *byte = (const unsigned char *)c;
     uint32_t h = 2166136261u;
@@ -47,10 +48,10 @@ static uint32_t compute_hash(const struct corner *c)
     return h ^ h >> 15;
 }
 
-/* Returns the index of the vertex equal to C; adds C if there is none. */
-static uint32_t add_vertex(struct mesher *m, const struct corner *c)
+/* Returns the index of the vertex that equals C. Appends C if there is none. */
+static uint32_t find_or_add_vertex(struct mesher *m, const struct corner *c)
 {
-    uint32_t at = compute_hash(c) & (m->n_slots - 1);
+    uint32_t at = compute_vertex_hash(c) & (m->n_slots - 1);
 
     while (m->slot[at]) {
         if (memcmp(&m->corner[m->slot[at] - 1], c, sizeof *c) == 0)
@@ -62,10 +63,10 @@ static uint32_t add_vertex(struct mesher *m, const struct corner *c)
     return m->n_corners - 1;
 }
 
-/* Sets N to the unit normal of the triangle's plane. Leaves N unchanged if
- * the triangle has no area, which rounding can cause. */
-static void compute_normal(const struct glint_described_triangle *t,
-                           double n[3])
+/* Sets N to the unit normal of triangle T. Leaves N unchanged if T has no area,
+ * which rounding can cause. */
+static void compute_face_normal(const struct glint_described_triangle *t,
+                                double n[3])
 {
     double a[3], b[3], across[3], length;
 
@@ -82,8 +83,8 @@ static void compute_normal(const struct glint_described_triangle *t,
         n[i] = across[i] / length;
 }
 
-/* Returns whether the triangle with corners C has an area. */
-static bool has_area(const struct corner c[3])
+/* Returns whether the triangle with corners C has a non-zero area. */
+static bool has_triangle_area(const struct corner c[3])
 {
     int64_t a[3], b[3];
 
@@ -95,15 +96,15 @@ static bool has_area(const struct corner c[3])
            a[0] * b[1] != a[1] * b[0];
 }
 
-/* Sets C to the vertices of T. Subtracts integers from large texture
- * coordinates, as textures repeat. In the file, v points down. */
-static void set_corners(const struct mesher *m,
-                        const struct glint_described_triangle *t,
-                        struct corner c[3])
+/* Converts the corners of T to vertices C. Subtracts an integer from large
+ * texture coordinates, as textures repeat. v points down in the file. */
+static void convert_triangle_corners(const struct mesher *m,
+                                     const struct glint_described_triangle *t,
+                                     struct corner c[3])
 {
     double face[3] = {0, 1, 0};
 
-    compute_normal(t, face);
+    compute_face_normal(t, face);
     memset(c, 0, 3 * sizeof *c);
     for (int k = 0; k < 3; k++) {
         glint_steps_place(m->steps, t->place[k], c[k].place);
@@ -120,32 +121,33 @@ static void set_corners(const struct mesher *m,
     }
 }
 
-static void add_triangle(struct mesher *m,
-                         const struct glint_described_triangle *t,
-                         struct glint_scene_bake_report *report)
+static void convert_triangle(struct mesher *m,
+                             const struct glint_described_triangle *t,
+                             struct glint_scene_bake_report *report)
 {
     struct glint_scene_triangle *to = &m->triangle[m->n_triangles];
     struct corner c[3];
-    /* Vertices are clockwise seen from outside; a mirrored axis reverses
+    /* Vertices are clockwise as seen from outside; mirroring an axis reverses
      * their order. */
     const int second = m->steps->hand > 0 ? 1 : 2;
 
-    set_corners(m, t, c);
-    if (!has_area(c)) {
+    convert_triangle_corners(m, t, c);
+    if (!has_triangle_area(c)) {
         report->flat++;
         return;
     }
-    to->vertex[0] = add_vertex(m, &c[0]);
-    to->vertex[1] = add_vertex(m, &c[second]);
-    to->vertex[2] = add_vertex(m, &c[3 - second]);
+    to->vertex[0] = find_or_add_vertex(m, &c[0]);
+    to->vertex[1] = find_or_add_vertex(m, &c[second]);
+    to->vertex[2] = find_or_add_vertex(m, &c[3 - second]);
     to->material = t->material == m->object->material ? GLINT_SCENE_NONE
                                                       : (uint32_t)t->material;
     m->n_triangles++;
 }
 
-/* Converts the triangles of the object. Returns false if there is no memory. */
-static bool add_triangles(struct mesher *m,
-                          struct glint_scene_bake_report *report)
+/* Converts all triangles of the object to vertices and indices. Returns false
+ * if there is no memory. */
+static bool convert_all_triangles(struct mesher *m,
+                                  struct glint_scene_bake_report *report)
 {
     const struct glint_described_triangle *t =
         m->scene->triangle + m->object->first_triangle;
@@ -166,16 +168,17 @@ static bool add_triangles(struct mesher *m,
     if (!m->corner || !m->triangle || !m->slot)
         return false;
     for (uint32_t i = 0; i < n; i++)
-        add_triangle(m, &t[i], report);
+        convert_triangle(m, &t[i], report);
     return true;
 }
 
 /* -------------------------------------------------------------------- ball */
 
-/* Sets LOW and HIGH to the bounding box of all vertices, and the bounding
- * sphere of MESH. */
-static void set_bounds(const struct mesher *m, struct glint_scene_mesh *mesh,
-                       int32_t low[3], int32_t high[3])
+/* Sets LOW and HIGH to the bounding box of all vertices, and centre and radius
+ * of MESH to their bounding sphere. */
+static void compute_mesh_bounds(const struct mesher *m,
+                                struct glint_scene_mesh *mesh, int32_t low[3],
+                                int32_t high[3])
 {
     double radius = 0;
 
@@ -204,12 +207,12 @@ static void set_bounds(const struct mesher *m, struct glint_scene_mesh *mesh,
 
 /* -------------------------------------------------------------------- grid */
 
-/* Sets FROM .. TO to the range of cells along each axis that triangle T
- * touches, with the margin. */
-static void find_cells(const struct mesher *m,
-                       const struct glint_scene_mesh *mesh,
-                       const struct glint_scene_triangle *t, int32_t from[3],
-                       int32_t to[3])
+/* Sets FROM and TO to the first and last cell along each axis that triangle T
+ * touches, with GLINT_SCENE_MARGIN around T. */
+static void find_touched_cells(const struct mesher *m,
+                               const struct glint_scene_mesh *mesh,
+                               const struct glint_scene_triangle *t,
+                               int32_t from[3], int32_t to[3])
 {
     for (int i = 0; i < 3; i++) {
         const int32_t last = (int32_t)mesh->cells[i] - 1;
@@ -230,10 +233,11 @@ static void find_cells(const struct mesher *m,
     }
 }
 
-/* Sets the cells of MESH for the box from LOW to HIGH. Returns their number;
- * 0 if there are too many along an axis. */
-static uint64_t set_cells(struct glint_scene_mesh *mesh, const int32_t low[3],
-                          const int32_t high[3])
+/* Divides the box LOW .. HIGH into cells of 2^cell_log2 steps. Returns their
+ * number; 0 if there are too many along an axis. */
+static uint64_t divide_box_into_cells(struct glint_scene_mesh *mesh,
+                                      const int32_t low[3],
+                                      const int32_t high[3])
 {
     uint64_t n = 1;
 
@@ -246,9 +250,9 @@ static uint64_t set_cells(struct glint_scene_mesh *mesh, const int32_t low[3],
     return n;
 }
 
-/* Returns the number of list entries of all cells of MESH. */
-static uint64_t count_refs(const struct mesher *m,
-                           const struct glint_scene_mesh *mesh)
+/* Returns the total number of list entries in all cells of MESH. */
+static uint64_t count_cell_entries(const struct mesher *m,
+                                   const struct glint_scene_mesh *mesh)
 {
     uint64_t sum = 0;
 
@@ -256,7 +260,7 @@ static uint64_t count_refs(const struct mesher *m,
         int32_t from[3], to[3];
         uint64_t n = 1;
 
-        find_cells(m, mesh, &m->triangle[k], from, to);
+        find_touched_cells(m, mesh, &m->triangle[k], from, to);
         for (int i = 0; i < 3; i++)
             n *= (uint64_t)(to[i] - from[i] + 1);
         sum += n;
@@ -264,13 +268,13 @@ static uint64_t count_refs(const struct mesher *m,
     return sum;
 }
 
-/* Chooses the smallest cells of MESH for the box from LOW to HIGH whose
- * number and list entries are within the limits. Returns the number of
- * cells; sets REFS to the number of list entries. */
-static uint64_t choose_cells(const struct mesher *m,
-                             struct glint_scene_mesh *mesh,
-                             const int32_t low[3], const int32_t high[3],
-                             uint64_t *refs)
+/* Divides the box LOW .. HIGH into the smallest cells within the limits of
+ * CELLS_EACH and REFS_EACH. Returns their number and sets REFS to the number of
+ * list entries. */
+static uint64_t choose_cell_size(const struct mesher *m,
+                                 struct glint_scene_mesh *mesh,
+                                 const int32_t low[3], const int32_t high[3],
+                                 uint64_t *refs)
 {
     const uint64_t most = CELLS_EACH * (uint64_t)mesh->n_triangles + 1;
     const uint64_t few = FEW_REFS / (uint64_t)m->scene->n_objects;
@@ -278,24 +282,24 @@ static uint64_t choose_cells(const struct mesher *m,
 
     most_refs = most_refs < few ? few : most_refs;
     for (mesh->cell_log2 = 4;; mesh->cell_log2++) {
-        const uint64_t n = set_cells(mesh, low, high);
+        const uint64_t n = divide_box_into_cells(mesh, low, high);
 
-        *refs = n > 0 && n <= most ? count_refs(m, mesh) : UINT64_MAX;
+        *refs = n > 0 && n <= most ? count_cell_entries(m, mesh) : UINT64_MAX;
         if (*refs <= most_refs || mesh->cell_log2 == 28)
             return n;
     }
 }
 
-/* If REF is NULL, counts the triangles of each cell in START. Otherwise
- * writes each triangle to REF at the START of its cells and advances START. */
-static void list_triangles(const struct mesher *m,
-                           const struct glint_scene_mesh *mesh, uint32_t *start,
-                           uint32_t *ref)
+/* Lists the triangles of each cell. If REF is NULL, counts them in START[cell +
+ * 1]; else writes triangle indices to REF at START[cell], which advances. */
+static void list_cell_triangles(const struct mesher *m,
+                                const struct glint_scene_mesh *mesh,
+                                uint32_t *start, uint32_t *ref)
 {
     for (uint32_t i = 0; i < m->n_triangles; i++) {
         int32_t from[3], to[3];
 
-        find_cells(m, mesh, &m->triangle[i], from, to);
+        find_touched_cells(m, mesh, &m->triangle[i], from, to);
         for (int32_t z = from[2]; z <= to[2]; z++)
             for (int32_t y = from[1]; y <= to[1]; y++)
                 for (int32_t x = from[0]; x <= to[0]; x++) {
@@ -312,14 +316,15 @@ static void list_triangles(const struct mesher *m,
     }
 }
 
-static bool write_grid(struct glint_draft *draft, const struct mesher *m,
-                       struct glint_scene_mesh *mesh, const int32_t low[3],
-                       const int32_t high[3],
-                       struct glint_scene_bake_report *report,
-                       struct glint_error *error)
+static bool write_triangle_grid(struct glint_draft *draft,
+                                const struct mesher *m,
+                                struct glint_scene_mesh *mesh,
+                                const int32_t low[3], const int32_t high[3],
+                                struct glint_scene_bake_report *report,
+                                struct glint_error *error)
 {
     uint64_t sum;
-    const uint64_t n = choose_cells(m, mesh, low, high, &sum);
+    const uint64_t n = choose_cell_size(m, mesh, low, high, &sum);
     uint32_t *start, *ref;
 
     if (sum > MOST_IN_CELL * n) {
@@ -332,11 +337,11 @@ static bool write_grid(struct glint_draft *draft, const struct mesher *m,
     start = calloc((size_t)n + 1, sizeof *start);
     ref = malloc(((size_t)sum + 1) * sizeof *ref);
     if (start && ref) {
-        list_triangles(m, mesh, start, NULL);
+        list_cell_triangles(m, mesh, start, NULL);
         for (uint64_t i = 1; i <= n; i++)
             start[i] += start[i - 1];
         mesh->start_at = glint_draft_put(draft, start, ((size_t)n + 1) * 4);
-        list_triangles(m, mesh, start, ref);
+        list_cell_triangles(m, mesh, start, ref);
         mesh->ref_at = glint_draft_put(draft, ref, (size_t)sum * 4);
         report->cells += (int)n;
         report->refs += (int)sum;
@@ -348,9 +353,11 @@ static bool write_grid(struct glint_draft *draft, const struct mesher *m,
 
 /* ------------------------------------------------------------------ tables */
 
-/* Appends N numbers of each vertex, at OFFSET in struct corner. */
-static uint32_t append_corners(struct glint_draft *draft,
-                               const struct mesher *m, size_t offset, size_t n)
+/* Appends N numbers per vertex: those at OFFSET in struct corner. Returns their
+ * offset in the file. */
+static uint32_t append_vertex_numbers(struct glint_draft *draft,
+                                      const struct mesher *m, size_t offset,
+                                      size_t n)
 {
     const uint32_t at = (uint32_t)draft->bytes;
 
@@ -370,24 +377,24 @@ bool glint_grid_write(struct glint_draft *draft,
 {
     struct mesher m = {.scene = scene, .object = object, .steps = steps};
     int32_t low[3], high[3];
-    bool good = add_triangles(&m, report);
+    bool good = convert_all_triangles(&m, report);
 
     *mesh = (struct glint_scene_mesh){0};
     if (good) {
         mesh->n_vertices = m.n_corners;
         mesh->n_triangles = m.n_triangles;
-        set_bounds(&m, mesh, low, high);
+        compute_mesh_bounds(&m, mesh, low, high);
         mesh->vertex_at =
-            append_corners(draft, &m, offsetof(struct corner, place), 3);
+            append_vertex_numbers(draft, &m, offsetof(struct corner, place), 3);
         if (m.has_uv)
-            mesh->uv_at =
-                append_corners(draft, &m, offsetof(struct corner, uv_q16), 2);
+            mesh->uv_at = append_vertex_numbers(
+                draft, &m, offsetof(struct corner, uv_q16), 2);
         if (m.has_normals)
-            mesh->normal_at = append_corners(
+            mesh->normal_at = append_vertex_numbers(
                 draft, &m, offsetof(struct corner, normal_q30), 3);
         mesh->triangle_at = glint_draft_put(draft, m.triangle,
                                             m.n_triangles * sizeof *m.triangle);
-        good = write_grid(draft, &m, mesh, low, high, report, error);
+        good = write_triangle_grid(draft, &m, mesh, low, high, report, error);
         report->vertices += (int)m.n_corners;
         report->triangles += (int)m.n_triangles;
     }

@@ -7,14 +7,15 @@
 
 #include "bake/table/text.h"
 
-/* A growing list of items of WIDTH numbers each. */
+/* A growing array of items, each of WIDTH numbers: positions, texture
+ * coordinates or normals. */
 struct list {
     double *at;
     int n, room, width;
 };
 
-/* A corner of a face: indices of position, texture coordinates and normal,
- * from 0; -1: absent. */
+/* A corner of a face: indices of position, texture coordinates and normal, from
+ * 0; -1: absent. */
 struct corner {
     int place, uv, normal;
 };
@@ -23,13 +24,14 @@ struct reader {
     struct glint_text text;
     struct list place, uv, normal;
     struct glint_mesh *mesh;
-    int room;     /* number of triangles that memory is allocated for */
+    int room;     /* number of triangles for which memory is allocated */
     int material; /* index of the current material's name; -1: none */
     bool out_of_memory;
 };
 
-/* Appends an item to LIST and returns it; NULL if there is no memory. */
-static double *append_item(struct reader *r, struct list *list)
+/* Appends an item to LIST and returns its numbers; NULL if there is no
+ * memory. */
+static double *append_list_item(struct reader *r, struct list *list)
 {
     if (list->n == list->room) {
         const int room = list->room ? 2 * list->room : 256;
@@ -46,9 +48,9 @@ static double *append_item(struct reader *r, struct list *list)
     return list->at + (ptrdiff_t)list->n++ * list->width;
 }
 
-/* Returns the next word. Continues on the next line if the current line ends
- * in a backslash. */
-static struct glint_word next_word(struct reader *r)
+/* Returns the next word of the line. A backslash at its end continues the
+ * line. */
+static struct glint_word read_next_word(struct reader *r)
 {
     struct glint_word word = glint_text_next_word(&r->text);
 
@@ -58,16 +60,16 @@ static struct glint_word next_word(struct reader *r)
     return word;
 }
 
-/* Parses an item of LIST with at least LEAST numbers; missing numbers become
- * 0. Skips further numbers, such as weights and colours. */
-static bool read_item(struct reader *r, struct list *list, int least,
-                      const char *what)
+/* Parses an item of LIST: at least LEAST numbers; missing ones become 0.
+ * Further numbers, such as weights and colours, are skipped. */
+static bool read_vertex_item(struct reader *r, struct list *list, int least,
+                             const char *what)
 {
-    double *item = append_item(r, list);
+    double *item = append_list_item(r, list);
     char quote[GLINT_QUOTE_BYTES];
 
     for (int i = 0; item && i < list->width; i++) {
-        const struct glint_word word = next_word(r);
+        const struct glint_word word = read_next_word(r);
 
         item[i] = 0.0;
         if (!word.length && i >= least)
@@ -82,15 +84,16 @@ static bool read_item(struct reader *r, struct list *list, int least,
         if (!(fabs(item[i]) <=
               GLINT_DESCRIPTION_REACH * GLINT_DESCRIPTION_REACH))
             return glint_text_fail(&r->text, word.place,
-                                   "numbers of a mesh are at most 1e12");
+                                   "numbers of a mesh must be at most 1e12");
     }
     return item != NULL;
 }
 
-/* Parses the digits of WORD from *AT up to a slash as an index into LIST.
- * The index is -1 if there are none. */
-static bool read_index(struct reader *r, const struct glint_word *word, int *at,
-                       const struct list *list, const char *what, int *index)
+/* Parses the index that starts at character *AT of WORD and ends at a slash or
+ * the end of WORD. Sets INDEX to the index in LIST, from 0; -1: absent. */
+static bool read_corner_index(struct reader *r, const struct glint_word *word,
+                              int *at, const struct list *list,
+                              const char *what, int *index)
 {
     const bool negative = *at < word->length && word->start[*at] == '-';
     const int start = *at + negative;
@@ -124,32 +127,37 @@ static bool read_index(struct reader *r, const struct glint_word *word, int *at,
     return true;
 }
 
-static bool read_corner(struct reader *r, const struct glint_word *word,
-                        struct corner *corner)
+static bool read_face_corner(struct reader *r, const struct glint_word *word,
+                             struct corner *corner)
 {
     int at = 0;
 
     *corner = (struct corner){-1, -1, -1};
-    if (!read_index(r, word, &at, &r->place, "corner", &corner->place))
+    if (!read_corner_index(r, word, &at, &r->place, "vertex", &corner->place))
         return false;
     if (corner->place < 0)
-        return glint_text_fail(&r->text, word->place, "corner has no place");
+        return glint_text_fail(&r->text, word->place,
+                               "a corner needs a vertex index (V)");
     if (at < word->length) {
         at++; /* skips the slash */
-        if (!read_index(r, word, &at, &r->uv, "texture place", &corner->uv))
+        if (!read_corner_index(r, word, &at, &r->uv, "texture coordinate",
+                               &corner->uv))
             return false;
     }
     if (at < word->length) {
         at++;
-        if (!read_index(r, word, &at, &r->normal, "normal", &corner->normal))
+        if (!read_corner_index(r, word, &at, &r->normal, "normal",
+                               &corner->normal))
             return false;
     }
     return at == word->length ||
-           glint_text_fail(&r->text, word->place, "corner has more than V/T/N");
+           glint_text_fail(&r->text, word->place,
+                           "a corner has at most three indices, V/T/N");
 }
 
-static bool append_triangle(struct reader *r, const struct corner *const c[3],
-                            struct glint_text_place place)
+static bool append_mesh_triangle(struct reader *r,
+                                 const struct corner *const c[3],
+                                 struct glint_text_place place)
 {
     struct glint_mesh *mesh = r->mesh;
     struct glint_described_triangle *t;
@@ -188,19 +196,19 @@ static bool append_triangle(struct reader *r, const struct corner *const c[3],
     return true;
 }
 
-static bool read_face(struct reader *r, struct glint_text_place place)
+static bool read_face_line(struct reader *r, struct glint_text_place place)
 {
     struct corner first = {-1, -1, -1}, last = first, now;
     int n = 0;
 
     for (;; n++) {
-        const struct glint_word word = next_word(r);
+        const struct glint_word word = read_next_word(r);
         const struct corner *const c[3] = {&first, &last, &now};
 
         if (!word.length)
             break;
-        if (!read_corner(r, &word, &now) ||
-            (n >= 2 && !append_triangle(r, c, word.place)))
+        if (!read_face_corner(r, &word, &now) ||
+            (n >= 2 && !append_mesh_triangle(r, c, word.place)))
             return false;
         if (n == 0)
             first = now;
@@ -211,7 +219,7 @@ static bool read_face(struct reader *r, struct glint_text_place place)
                          "a face needs 3 or more corners; this face has %d", n);
 }
 
-static bool read_name(struct reader *r)
+static bool read_material_name(struct reader *r)
 {
     struct glint_mesh *mesh = r->mesh;
     const struct glint_word word = glint_text_rest(&r->text);
@@ -237,20 +245,20 @@ static bool read_name(struct reader *r)
     return true;
 }
 
-static bool read_line(struct reader *r)
+static bool read_obj_line(struct reader *r)
 {
     const struct glint_word word = glint_text_next_word(&r->text);
 
     if (glint_word_is(&word, "v"))
-        return read_item(r, &r->place, 3, "v");
+        return read_vertex_item(r, &r->place, 3, "v");
     if (glint_word_is(&word, "vt"))
-        return read_item(r, &r->uv, 1, "vt");
+        return read_vertex_item(r, &r->uv, 1, "vt");
     if (glint_word_is(&word, "vn"))
-        return read_item(r, &r->normal, 3, "vn");
+        return read_vertex_item(r, &r->normal, 3, "vn");
     if (glint_word_is(&word, "f"))
-        return read_face(r, word.place);
+        return read_face_line(r, word.place);
     if (glint_word_is(&word, "usemtl"))
-        return read_name(r);
+        return read_material_name(r);
     return true;
 }
 
@@ -273,7 +281,7 @@ enum glint_status glint_mesh_read(struct glint_mesh *mesh, const char *text,
                                "a mesh has more than %d bytes",
                                GLINT_DESCRIPTION_MAX_MESH_BYTES);
     while (good && glint_text_next_line(&r.text))
-        good = read_line(&r);
+        good = read_obj_line(&r);
     if (good && !mesh->n_triangles)
         good = glint_text_fail(&r.text, glint_text_end(&r.text),
                                "there is no face");

@@ -9,7 +9,7 @@
 #include "glint/scene/translucent.h"
 #include "glint/view.h"
 
-/* Max fraction of texels whose centre lies inside two triangles; a mesh with
+/* Max fraction of texels whose centre lies inside two triangles. A mesh with
  * more is rejected. */
 #define MOST_SHARED .02
 
@@ -28,29 +28,30 @@ int glint_skin_material(const struct glint_description *scene,
     return -1;
 }
 
-/* State while the texels of a mesh are assigned to triangles. */
+/* State of assigning the texels of an object's map to triangles of its mesh. */
 struct painter {
     const struct glint_draft *draft;
     const struct glint_scene_mesh *mesh;
     int side;
-    uint32_t own; /* material of the object, for triangles without their own */
-    uint32_t material; /* material whose triangles are drawn */
-    /* [side][side]: index of the triangle, or GLINT_SCENE_NONE */
+    /* material of the object, used by triangles without their own */
+    uint32_t own;
+    uint32_t material; /* translucent material; only its triangles are drawn */
+    /* [side][side]: index of the texel's triangle, or GLINT_SCENE_NONE */
     uint32_t *texel;
-    uint8_t *inside; /* [side][side]: 1: the texel's centre is strictly inside
-                        its triangle */
+    /* [side][side]: 1: the texel's centre is strictly inside its triangle */
+    uint8_t *inside;
     int shared, painted;
 };
 
-static const void *get_table(const struct painter *p, uint32_t at)
+static const void *get_draft_table(const struct painter *p, uint32_t at)
 {
     return p->draft->data + at;
 }
 
-static const struct glint_scene_triangle *get_triangle(const struct painter *p,
-                                                       uint32_t i)
+static const struct glint_scene_triangle *
+get_mesh_triangle(const struct painter *p, uint32_t i)
 {
-    return (const struct glint_scene_triangle *)get_table(
+    return (const struct glint_scene_triangle *)get_draft_table(
                p, p->mesh->triangle_at) +
            i;
 }
@@ -58,14 +59,15 @@ static const struct glint_scene_triangle *get_triangle(const struct painter *p,
 /* ----------------------------------------------------------------- painting */
 
 /* Returns twice the signed area of the triangle A, B, (U, V). */
-static int64_t compute_edge(const int32_t *a, const int32_t *b, int64_t u,
-                            int64_t v)
+static int64_t compute_double_area(const int32_t *a, const int32_t *b,
+                                   int64_t u, int64_t v)
 {
     return (a[0] - u) * (b[1] - v) - (a[1] - v) * (b[0] - u);
 }
 
-static void paint_texel(struct painter *p, uint32_t triangle,
-                        const int32_t *const uv[3], int64_t all, int x, int y)
+static void assign_texel_to_triangle(struct painter *p, uint32_t triangle,
+                                     const int32_t *const uv[3], int64_t all,
+                                     int x, int y)
 {
     const int64_t u = (2 * x + 1) * (INT64_C(32768) / p->side);
     const int64_t v = (2 * y + 1) * (INT64_C(32768) / p->side);
@@ -73,7 +75,7 @@ static void paint_texel(struct painter *p, uint32_t triangle,
     int holds = 1, inside = 1;
 
     for (int k = 0; k < 3; k++) {
-        int64_t e = compute_edge(uv[(k + 1) % 3], uv[(k + 2) % 3], u, v);
+        int64_t e = compute_double_area(uv[(k + 1) % 3], uv[(k + 2) % 3], u, v);
 
         e = all < 0 ? -e : e;
         holds &= e >= 0;
@@ -90,17 +92,17 @@ static void paint_texel(struct painter *p, uint32_t triangle,
     }
 }
 
-static int find_texel(const struct painter *p, int32_t uv_q16)
+static int find_texel_coordinate(const struct painter *p, int32_t uv_q16)
 {
     const double x = floor(uv_q16 * (p->side / 65536.));
 
     return (int)fmin(fmax(x, 0), p->side - 1);
 }
 
-static void paint_triangle(struct painter *p, uint32_t triangle)
+static void assign_triangle_texels(struct painter *p, uint32_t triangle)
 {
-    const struct glint_scene_triangle *t = get_triangle(p, triangle);
-    const int32_t *uv_q16 = get_table(p, p->mesh->uv_at), *uv[3];
+    const struct glint_scene_triangle *t = get_mesh_triangle(p, triangle);
+    const int32_t *uv_q16 = get_draft_table(p, p->mesh->uv_at), *uv[3];
     int lo[2], hi[2];
     int64_t all;
 
@@ -110,27 +112,27 @@ static void paint_triangle(struct painter *p, uint32_t triangle)
     for (int k = 0; k < 3; k++)
         uv[k] = uv_q16 + 2 * (size_t)t->vertex[k];
     for (int i = 0; i < 2; i++) {
-        lo[i] = hi[i] = find_texel(p, uv[0][i]);
+        lo[i] = hi[i] = find_texel_coordinate(p, uv[0][i]);
         for (int k = 1; k < 3; k++) {
-            const int at = find_texel(p, uv[k][i]);
+            const int at = find_texel_coordinate(p, uv[k][i]);
 
             lo[i] = at < lo[i] ? at : lo[i];
             hi[i] = at > hi[i] ? at : hi[i];
         }
     }
-    all = compute_edge(uv[0], uv[1], uv[2][0], uv[2][1]);
+    all = compute_double_area(uv[0], uv[1], uv[2][0], uv[2][1]);
     for (int y = lo[1]; all && y <= hi[1]; y++)
         for (int x = lo[0]; x <= hi[0]; x++)
-            paint_texel(p, triangle, uv, all, x, y);
+            assign_texel_to_triangle(p, triangle, uv, all, x, y);
 }
 
 /* ------------------------------------------------------------------- gutters
  */
 
-/* If texel (X, Y) has no triangle, assigns it the triangle of a neighbour in
+/* Assigns texel (X, Y), if it has no triangle, the triangle of a neighbour in
  * BEFORE. */
-static void spread_texel(struct painter *p, const uint32_t *before, int x,
-                         int y)
+static void assign_neighbour_triangle(struct painter *p, const uint32_t *before,
+                                      int x, int y)
 {
     uint32_t *to = &p->texel[(ptrdiff_t)y * p->side + x];
 
@@ -142,10 +144,10 @@ static void spread_texel(struct painter *p, const uint32_t *before, int x,
     }
 }
 
-/* Assigns the texels within RINGS texels of the charts' edges to the nearest
- * triangle, so that convolution kernels carry light from one chart to the
- * next. Returns false if there is no memory. */
-static bool dilate_charts(struct painter *p, int rings)
+/* Extends the charts of the map by RINGS texels: assigns these texels to the
+ * nearest triangle, so that convolution kernels carry light from one chart to
+ * the next. Returns false if there is no memory. */
+static bool dilate_texture_charts(struct painter *p, int rings)
 {
     const size_t bytes = (size_t)p->side * (size_t)p->side * sizeof *p->texel;
     uint32_t *before = malloc(bytes);
@@ -154,7 +156,7 @@ static bool dilate_charts(struct painter *p, int rings)
         memcpy(before, p->texel, bytes);
         for (int y = 0; y < p->side; y++)
             for (int x = 0; x < p->side; x++)
-                spread_texel(p, before, x, y);
+                assign_neighbour_triangle(p, before, x, y);
     }
     free(before);
     return before != NULL;
@@ -163,7 +165,7 @@ static bool dilate_charts(struct painter *p, int rings)
 /* -------------------------------------------------------------------- closed
  */
 
-/* An edge between two vertex positions, the smaller position first. */
+/* An edge as a pair of vertex positions, the smaller one first. */
 struct edge {
     int32_t place[2][3];
 };
@@ -178,11 +180,11 @@ static int compare_edges(const void *a, const void *b)
     return 0;
 }
 
-static void set_edge(const struct painter *p,
-                     const struct glint_scene_triangle *t, int k,
-                     struct edge *e)
+static void set_triangle_edge(const struct painter *p,
+                              const struct glint_scene_triangle *t, int k,
+                              struct edge *e)
 {
-    const int32_t *vertex = get_table(p, p->mesh->vertex_at);
+    const int32_t *vertex = get_draft_table(p, p->mesh->vertex_at);
     const int32_t *a = vertex + 3 * (size_t)t->vertex[k];
     const int32_t *b = vertex + 3 * (size_t)t->vertex[(k + 1) % 3];
     int first = 0;
@@ -193,9 +195,9 @@ static void set_edge(const struct painter *p,
     memcpy(e->place[1 - first], b, sizeof e->place[0]);
 }
 
-/* Sets CLOSED to 1 if every edge belongs to two triangles, else to 0.
- * Returns false if there is no memory. */
-static bool check_closed(const struct painter *p, uint32_t *closed)
+/* Sets CLOSED to 1 if the mesh is closed, that is, each edge belongs to exactly
+ * two triangles; else to 0. Returns false if there is no memory. */
+static bool check_mesh_closed(const struct painter *p, uint32_t *closed)
 {
     const size_t n = 3 * (size_t)p->mesh->n_triangles;
     struct edge *edge = malloc((n ? n : 1) * sizeof *edge);
@@ -205,7 +207,8 @@ static bool check_closed(const struct painter *p, uint32_t *closed)
         return false;
     for (uint32_t i = 0; i < p->mesh->n_triangles; i++)
         for (int k = 0; k < 3; k++)
-            set_edge(p, get_triangle(p, i), k, &edge[3 * i + (uint32_t)k]);
+            set_triangle_edge(p, get_mesh_triangle(p, i), k,
+                              &edge[3 * i + (uint32_t)k]);
     qsort(edge, n, sizeof *edge, compare_edges);
     for (size_t i = 0, same; is && i < n; i += same) {
         for (same = 1;
@@ -221,8 +224,8 @@ static bool check_closed(const struct painter *p, uint32_t *closed)
 /* --------------------------------------------------------------------- whole
  */
 
-static bool check_painted(const struct painter *p, const char *name,
-                          struct glint_error *error)
+static bool check_texel_coverage(const struct painter *p, const char *name,
+                                 struct glint_error *error)
 {
     if (p->painted == 0)
         snprintf(error->text, sizeof error->text,
@@ -236,8 +239,9 @@ static bool check_painted(const struct painter *p, const char *name,
     return error->text[0] == '\0';
 }
 
-static bool paint_mesh(struct painter *p, const char *name, int kernel,
-                       struct glint_scene_skin *skin, struct glint_error *error)
+static bool assign_mesh_texels(struct painter *p, const char *name, int kernel,
+                               struct glint_scene_skin *skin,
+                               struct glint_error *error)
 {
     const size_t n = (size_t)p->side * (size_t)p->side;
 
@@ -247,15 +251,16 @@ static bool paint_mesh(struct painter *p, const char *name, int kernel,
         return false;
     memset(p->texel, 0xff, n * sizeof *p->texel);
     for (uint32_t i = 0; i < p->mesh->n_triangles; i++)
-        paint_triangle(p, i);
-    return check_painted(p, name, error) && dilate_charts(p, kernel / 2 + 2) &&
-           check_closed(p, &skin->closed);
+        assign_triangle_texels(p, i);
+    return check_texel_coverage(p, name, error) &&
+           dilate_texture_charts(p, kernel / 2 + 2) &&
+           check_mesh_closed(p, &skin->closed);
 }
 
-/* Writes cosine and sine of the angles of columns and rows of a sphere's
- * map. */
-static void write_sphere(struct glint_draft *draft, int side,
-                         struct glint_scene_skin *skin)
+/* Writes cosine and sine of longitude and latitude for the columns and rows of
+ * a sphere's map. */
+static void write_sphere_map(struct glint_draft *draft, int side,
+                             struct glint_scene_skin *skin)
 {
     int32_t turn_q30[3 << GLINT_TRANSLUCENT_MOST_LOG2][2];
 
@@ -293,10 +298,11 @@ bool glint_skin_write(struct glint_draft *draft,
         return false;
     p.side = 1 << t.header->side_log2;
     if (!mesh) {
-        write_sphere(draft, p.side, skin);
+        write_sphere_map(draft, p.side, skin);
         return true;
     }
-    good = paint_mesh(&p, object->name, (int)t.header->kernel, skin, error);
+    good = assign_mesh_texels(&p, object->name, (int)t.header->kernel, skin,
+                              error);
     if (good)
         skin->texel_at = glint_draft_put(
             draft, p.texel, (size_t)p.side * (size_t)p.side * sizeof *p.texel);

@@ -5,37 +5,37 @@
 
 #include "glint/scene/model.h"
 
-/* log2 of (coordinate range of the run time / extent of the scene). The
- * remaining range is reserved for moved objects, and for planes, which end
- * at the range: with PLANE_SHARE_LOG2 a plane ends less than a pixel below
- * its horizon. */
+/* log2 of (coordinate range of the run time / extent of the scene). The rest of
+ * the range is reserved for moved objects and for planes, which end at its
+ * limits: with PLANE_SHARE_LOG2 a plane ends less than a pixel below its
+ * horizon. */
 #define SHARE_LOG2       2
 #define PLANE_SHARE_LOG2 6
 
-static double max_magnitude(const double x[3])
+static double compute_max_coordinate(const double x[3])
 {
     return fmax(fabs(x[0]), fmax(fabs(x[1]), fabs(x[2])));
 }
 
-static double compute_length(const double x[3])
+static double compute_vector_length(const double x[3])
 {
     return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
-/* Returns the max distance of any point of object O from the object's
+/* Returns the max distance of the points of object O from the object's
  * origin. */
-static double compute_reach(const struct glint_description *scene,
-                            const struct glint_described_object *o)
+static double compute_object_reach(const struct glint_description *scene,
+                                   const struct glint_described_object *o)
 {
     double reach = o->radius;
 
-    /* Twice the distance, as a sphere around the centre of the bounding box
-     * reaches beyond its corners, and its centre differs from the origin. */
+    /* twice the distance, as a sphere around the centre of the bounding box
+     * extends beyond its corners, and its centre differs from the origin */
     for (int i = 0; i < o->n_triangles; i++)
         for (int k = 0; k < 3; k++)
             reach =
                 fmax(reach,
-                     2 * compute_length(
+                     2 * compute_vector_length(
                              scene->triangle[o->first_triangle + i].place[k]));
     return reach;
 }
@@ -46,14 +46,16 @@ struct glint_steps glint_steps_of(const struct glint_description *scene,
     struct glint_steps steps = {.hand = scene->left_handed ? 1 : -1};
     int exponent, share_log2 = SHARE_LOG2;
 
-    *reach = max_magnitude(scene->camera.at);
+    *reach = compute_max_coordinate(scene->camera.at);
     for (int i = 0; i < scene->n_lights; i++)
         if (scene->light[i].kind == GLINT_DESCRIBED_LAMP)
-            *reach = fmax(*reach, fmax(max_magnitude(scene->light[i].at),
-                                       scene->light[i].radius));
+            *reach =
+                fmax(*reach, fmax(compute_max_coordinate(scene->light[i].at),
+                                  scene->light[i].radius));
     for (int i = 0; i < scene->n_objects; i++) {
-        *reach = fmax(*reach, max_magnitude(scene->object[i].at) +
-                                  compute_reach(scene, &scene->object[i]));
+        *reach =
+            fmax(*reach, compute_max_coordinate(scene->object[i].at) +
+                             compute_object_reach(scene, &scene->object[i]));
         if (scene->object[i].kind == GLINT_DESCRIBED_PLANE)
             share_log2 = PLANE_SHARE_LOG2;
     }
@@ -87,7 +89,7 @@ void glint_steps_unit(const struct glint_steps *steps, const double x[3],
 void glint_steps_turn(const struct glint_steps *steps, const double turn[4],
                       int32_t to_q30[4])
 {
-    /* mirroring an axis reverses the rotation about both other axes */
+    /* mirroring one axis reverses the rotations about both other axes */
     for (int i = 0; i < 4; i++)
         to_q30[i] = (int32_t)lrint(turn[i] * 0x1p30 *
                                    (i == 1 || i == 2 ? steps->hand : 1));
@@ -103,8 +105,8 @@ void glint_turn_after(const double a[4], const double b[4], double turn[4])
 
 void glint_described_upright(const double normal[3], double turn[4])
 {
-    /* (1 + y.n, y x n) is the quaternion (cos, sin) of half the angle, times
-     * a length that is divided out */
+    /* (1 + y.n, y x n) is the quaternion (cos, sin) of half the angle between y
+     * and the normal n, times a length that is divided out */
     const double w = 1 + normal[1];
     const double size =
         sqrt(w * w + normal[0] * normal[0] + normal[2] * normal[2]);

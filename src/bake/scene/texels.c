@@ -20,16 +20,16 @@ static uint8_t encode_srgb(double light)
     return (uint8_t)lrint(255 * fmin(fmax(x, 0.0), 1.0));
 }
 
-/* Returns the share of texel K in the mean of the texels FROM .. TO, RATIO of
- * them. */
-static double compute_share(int k, double from, double to, double ratio)
+/* Returns the weight of texel K in the mean of the range FROM .. TO, which is
+ * RATIO texels long. */
+static double compute_texel_weight(int k, double from, double to, double ratio)
 {
     return (fmin(k + 1, to) - fmax(k, from)) / ratio;
 }
 
-/* Sets each of N texels of DST to the mean of the texels of SRC that it
+/* Sets each of N texels of DST to the mean of the SRC_N texels of SRC that it
  * covers. */
-static void resize_row(double *dst, int n, const double *src, int src_n)
+static void resize_texel_row(double *dst, int n, const double *src, int src_n)
 {
     const double ratio = (double)src_n / n;
 
@@ -38,7 +38,7 @@ static void resize_row(double *dst, int n, const double *src, int src_n)
         double sum[3] = {0, 0, 0};
 
         for (int k = (int)from; k < src_n && k < to; k++) {
-            const double share = compute_share(k, from, to, ratio);
+            const double share = compute_texel_weight(k, from, to, ratio);
 
             for (int c = 0; c < 3; c++)
                 sum[c] += share * src[3 * k + c];
@@ -48,19 +48,20 @@ static void resize_row(double *dst, int n, const double *src, int src_n)
     }
 }
 
-/* Buffers of a resize: rows of three doubles a texel, as the whole picture
- * would take 24 bytes a texel. */
+/* Buffers of resize_picture(), one row each with three doubles per texel: a
+ * whole picture would need 24 bytes per texel. */
 struct rows {
-    double table[256]; /* light of each code */
-    double *light;     /* a row of the source */
-    double *across;    /* row HELD of the source at the width of the result */
-    double *sum;       /* a row of the result */
-    int held;          /* -1: none */
+    double table[256]; /* linear light of each 8-bit code */
+    double *light;     /* a row of the source, linear light */
+    double *across;    /* source row HELD, resized to the width of the result */
+    /* the weighted sum of source rows for one row of the result */
+    double *sum;
+    int held; /* row of the source in across; -1: none */
 };
 
-/* Sets rows->across to row Y of the source, of SRC_WIDTH texels. */
-static void hold_row(struct rows *rows, int y, int width, const uint8_t *src,
-                     int src_width)
+/* Sets rows->across to row Y of the source, resized from SRC_WIDTH to WIDTH. */
+static void load_source_row(struct rows *rows, int y, int width,
+                            const uint8_t *src, int src_width)
 {
     const size_t n = 3 * (size_t)src_width;
 
@@ -68,13 +69,14 @@ static void hold_row(struct rows *rows, int y, int width, const uint8_t *src,
         return;
     for (size_t i = 0; i < n; i++)
         rows->light[i] = rows->table[src[(size_t)y * n + i]];
-    resize_row(rows->across, width, rows->light, src_width);
+    resize_texel_row(rows->across, width, rows->light, src_width);
     rows->held = y;
 }
 
-/* As glint_texels_resize(), in the buffers ROWS. */
-static void resize(struct rows *rows, uint8_t *dst, int width, int height,
-                   const uint8_t *src, int src_width, int src_height)
+/* Resizes as glint_texels_resize() does, using the buffers ROWS. */
+static void resize_picture(struct rows *rows, uint8_t *dst, int width,
+                           int height, const uint8_t *src, int src_width,
+                           int src_height)
 {
     const double ratio = (double)src_height / height;
     const size_t n = 3 * (size_t)width;
@@ -85,9 +87,9 @@ static void resize(struct rows *rows, uint8_t *dst, int width, int height,
         for (size_t i = 0; i < n; i++)
             rows->sum[i] = 0;
         for (int k = (int)from; k < src_height && k < to; k++) {
-            const double share = compute_share(k, from, to, ratio);
+            const double share = compute_texel_weight(k, from, to, ratio);
 
-            hold_row(rows, k, width, src, src_width);
+            load_source_row(rows, k, width, src, src_width);
             for (size_t i = 0; i < n; i++)
                 rows->sum[i] += share * rows->across[i];
         }
@@ -110,15 +112,15 @@ enum glint_status glint_texels_resize(uint8_t *dst, int width, int height,
     for (int code = 0; code < 256; code++)
         rows.table[code] = decode_srgb((uint8_t)code);
     if (good)
-        resize(&rows, dst, width, height, src, src_width, src_height);
+        resize_picture(&rows, dst, width, height, src, src_width, src_height);
     free(rows.light);
     free(rows.across);
     free(rows.sum);
     return good ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-/* Returns the power of two with the smallest ratio to SIDE, at most MOST. */
-static int find_nearest_power(int side, int most)
+/* Returns the power of two, at most MOST, with the smallest ratio to SIDE. */
+static int find_nearest_power_of_two(int side, int most)
 {
     int power = 1;
 
@@ -129,8 +131,8 @@ static int find_nearest_power(int side, int most)
 
 enum glint_status glint_texels_fit(struct glint_image *image, int most)
 {
-    const int width = find_nearest_power(image->width, most);
-    const int height = find_nearest_power(image->height, most);
+    const int width = find_nearest_power_of_two(image->width, most);
+    const int height = find_nearest_power_of_two(image->height, most);
     enum glint_status status;
     uint8_t *mem;
 

@@ -23,7 +23,7 @@ struct writer {
     struct glint_scene_header header;
     struct glint_scene_bake_report *report;
     struct glint_error *error;
-    /* one for each object with triangles; owned */
+    /* meshes of all objects with triangles; owned */
     struct glint_scene_mesh *mesh;
 };
 
@@ -52,7 +52,7 @@ convert_light(const struct writer *w, const struct glint_described_light *light)
     return l;
 }
 
-static void write_lights(struct writer *w)
+static void write_scene_lights(struct writer *w)
 {
     w->header.n_lights = (uint32_t)w->scene->n_lights;
     w->header.light_at = (uint32_t)w->draft.bytes;
@@ -75,9 +75,10 @@ static int compute_log2(int power)
     return n;
 }
 
-/* Writes all mipmap levels of IMAGE, each averaged from level 0. Returns
- * false if there is no memory. */
-static bool write_levels(struct writer *w, const struct glint_image *image)
+/* Writes all mipmap levels of IMAGE, each averaged from level 0. Returns false
+ * if there is no memory. */
+static bool write_mipmap_levels(struct writer *w,
+                                const struct glint_image *image)
 {
     int width = image->width, height = image->height;
     size_t bytes = 0;
@@ -116,7 +117,7 @@ static bool write_textures(struct writer *w)
         t[i] = (struct glint_scene_texture){
             (uint32_t)compute_log2(image->width),
             (uint32_t)compute_log2(image->height), (uint32_t)w->draft.bytes};
-        if (!write_levels(w, image))
+        if (!write_mipmap_levels(w, image))
             return false;
     }
     w->header.n_textures = (uint32_t)n;
@@ -131,9 +132,9 @@ static int32_t convert_to_q15(double x)
     return (int32_t)lrint(x * ONE_Q15);
 }
 
-/* Decreases the largest of WEIGHT_Q15[N] until their sum is at most 1, which
- * rounding may have exceeded. */
-static void limit_sum(int32_t *const weight_q15[], int n)
+/* Decreases the largest of N weights so that their sum, which rounding may have
+ * raised above 1, is at most 1. */
+static void limit_weight_sum(int32_t *const weight_q15[], int n)
 {
     int32_t sum = 0;
     int most = 0;
@@ -167,13 +168,13 @@ convert_material(const struct glint_described_material *from)
     int32_t *const next[] = {&m.reflect_q15, &m.pass_q15};
 
     memcpy(m.name, from->name, sizeof m.name);
-    limit_sum(phong, 3);
-    limit_sum(next, 2);
+    limit_weight_sum(phong, 3);
+    limit_weight_sum(next, 2);
     return m;
 }
 
 static struct glint_scene_ward
-convert_ward(const struct glint_described_material *from)
+convert_ward_lobe(const struct glint_described_material *from)
 {
     struct glint_scene_ward w = {.norm = from->norm == GLINT_DESCRIBED_1992
                                              ? GLINT_WARD_1992
@@ -188,7 +189,7 @@ convert_ward(const struct glint_described_material *from)
 
 static void write_materials(struct writer *w)
 {
-    /* material of objects that only catch shadows */
+    /* material of objects that only show shadows */
     const struct glint_scene_material none = {.name = "none",
                                               .power_q8 = 256,
                                               .index_q16 = 1 << 16,
@@ -214,7 +215,7 @@ static void write_materials(struct writer *w)
     for (int i = 0; i < n; i++)
         if (w->scene->material[i].is_metal) {
             const struct glint_scene_ward ward =
-                convert_ward(&w->scene->material[i]);
+                convert_ward_lobe(&w->scene->material[i]);
 
             glint_draft_put(&w->draft, &ward, sizeof ward);
         }
@@ -239,10 +240,10 @@ static bool write_meshes(struct writer *w)
     return good;
 }
 
-/* Sets O to the object FROM; MESH is the index of its mesh, if it has one. */
-static bool set_object(const struct writer *w,
-                       const struct glint_described_object *from, uint32_t mesh,
-                       struct glint_scene_object *o)
+/* Converts object FROM to O. MESH: index of its mesh, if it has triangles. */
+static bool convert_object(const struct writer *w,
+                           const struct glint_described_object *from,
+                           uint32_t mesh, struct glint_scene_object *o)
 {
     double upright[4], turn[4];
 
@@ -271,8 +272,8 @@ static bool set_object(const struct writer *w,
     default:
         o->kind = GLINT_OBJECT_MESH;
         o->mesh = mesh;
-        if (from->material < 0) /* the object has no material of its own: uses
-                                   that of its first triangle */
+        /* an object without a material uses that of its first triangle */
+        if (from->material < 0)
             o->material =
                 (uint32_t)w->scene->triangle[from->first_triangle].material;
     }
@@ -289,7 +290,7 @@ static bool write_objects(struct writer *w)
     for (int i = 0; i < w->scene->n_objects; i++) {
         struct glint_scene_object o = {.kind = 0};
 
-        if (!set_object(w, &w->scene->object[i], mesh, &o))
+        if (!convert_object(w, &w->scene->object[i], mesh, &o))
             return false;
         mesh += w->scene->object[i].n_triangles > 0;
         glint_draft_put(&w->draft, &o, sizeof o);
@@ -300,8 +301,9 @@ static bool write_objects(struct writer *w)
 /* -------------------------------------------------------------------
  * translucent media */
 
-/* Writes translucent media, and the maps of objects made of them. */
-static bool write_stones(struct writer *w)
+/* Writes all translucent media, and the texture maps of objects made of
+ * them. */
+static bool write_translucent_media(struct writer *w)
 {
     const struct glint_description *s = w->scene;
     struct glint_scene_stone stone[GLINT_DESCRIPTION_MAX_STONES];
@@ -365,7 +367,8 @@ static struct glint_scene_camera convert_camera(const struct writer *w)
             (int32_t)lrint(0x1p24 * tan(from->fov_deg * GLINT_PI / 360));
     } else if (from->field == GLINT_DESCRIBED_CORNERS) {
         c.kind = GLINT_CAMERA_CORNERS;
-        /* GLINT_DESCRIBED_CORNERS: half of 16 x 9 units at a distance of 10 */
+        /* GLINT_DESCRIBED_CORNERS: half of 16 x 9 units at a distance of 10
+         * units */
         c.tan_x_q24 = (int32_t)lrint(0x1p24 * .8);
         c.tan_y_q24 = (int32_t)lrint(0x1p24 * .45);
     }
@@ -395,33 +398,33 @@ static void write_environments(struct writer *w)
         glint_draft_put(&w->draft, to, (size_t)n * sizeof *to);
 }
 
-static uint32_t convert_index(int object)
+static uint32_t convert_object_index(int object)
 {
     return object < 0 ? GLINT_SCENE_NONE : (uint32_t)object;
 }
 
-static int32_t convert_length(const struct writer *w, double length)
+static int32_t convert_length_to_steps(const struct writer *w, double length)
 {
     return length > 0 ? (int32_t)fmax(1, rint(length * w->steps.scale)) : 0;
 }
 
-static void set_motion(struct writer *w)
+static void write_motion(struct writer *w)
 {
     const struct glint_described_motion *from = &w->scene->motion;
     struct glint_scene_motion m = {
-        .body = convert_index(from->body),
-        .sensor = convert_index(from->sensor),
-        .food = convert_index(from->food),
+        .body = convert_object_index(from->body),
+        .sensor = convert_object_index(from->sensor),
+        .food = convert_object_index(from->food),
         .size = (int32_t)lrint(from->size * w->steps.scale),
-        .shell = convert_length(w, from->shells * from->foods),
-        .line = convert_length(w, from->lines),
-        .box = convert_length(w, from->box),
+        .shell = convert_length_to_steps(w, from->shells * from->foods),
+        .line = convert_length_to_steps(w, from->lines),
+        .box = convert_length_to_steps(w, from->box),
         .shell_material = (uint32_t)from->shell_material,
         .line_material = (uint32_t)from->line_material,
         .box_material = (uint32_t)from->box_material,
         .detect = from->both ? GLINT_DETECT_BOTH : GLINT_DETECT_ANGLE,
         .least = (uint32_t)lrint(255 * from->least),
-        .camera = convert_index(from->camera),
+        .camera = convert_object_index(from->camera),
         .riders = from->riders,
         .bytes = (uint32_t)from->bytes};
 
@@ -434,7 +437,7 @@ static void set_motion(struct writer *w)
     glint_draft_put(&w->draft, from->data, from->bytes);
 }
 
-static void set_header(struct writer *w, const char *name, uint64_t key)
+static void set_scene_header(struct writer *w, const char *name, uint64_t key)
 {
     static const struct glint_blob_kind kind = {.magic = GLINT_SCENE_MAGIC,
                                                 .version = GLINT_SCENE_VERSION};
@@ -473,16 +476,16 @@ enum glint_status glint_scene_bake(const struct glint_description *scene,
     w.steps = glint_steps_of(scene, &report->reach);
     report->step = 1 / w.steps.scale;
     glint_draft_put(&w.draft, NULL, sizeof w.header);
-    write_lights(&w);
+    write_scene_lights(&w);
     w.mesh = malloc(((size_t)scene->n_objects + 1) * sizeof *w.mesh);
     good = write_textures(&w);
     write_materials(&w);
     good = good && w.mesh && write_meshes(&w) && write_objects(&w) &&
-           write_stones(&w);
+           write_translucent_media(&w);
     free(w.mesh);
     write_environments(&w);
-    set_motion(&w);
-    set_header(&w, name, key);
+    write_motion(&w);
+    set_scene_header(&w, name, key);
     if (glint_draft_finish(&w.draft, &w.header, sizeof w.header, good, data,
                            bytes))
         return GLINT_OK;

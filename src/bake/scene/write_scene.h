@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Internal header of the writer of baked scenes: steps.c, grid.c, skin.c.
+ * Internal header of the writer of baked scenes, shared by steps.c, grid.c and
+ * skin.c.
  */
 #ifndef GLINT_BAKE_SCENE_WRITE_SCENE_H
 #define GLINT_BAKE_SCENE_WRITE_SCENE_H
@@ -10,17 +11,17 @@
 #include "glint/scene/description.h"
 #include "glint/scene/model.h"
 
-/* Conversion from doubles in the description's axes to integers of a baked
- * scene, whose axes are left-handed: positions in steps, unit vectors in
- * _q30. Right-handed scenes change the sign of z. */
+/* Conversion from the description's coordinates (doubles) to those of a baked
+ * scene (integers, left-handed axes): positions in steps, unit vectors in _q30.
+ * In right-handed scenes z changes its sign. */
 struct glint_steps {
     int unit_log2;
     double scale; /* 2^unit_log2 */
-    double hand;  /* factor of z: 1; -1 in right-handed scenes */
+    double hand;  /* factor on z: 1, or -1 in right-handed scenes */
 };
 
-/* Chooses the step size of SCENE. Sets REACH to the max distance of any
- * point from the origin, along an axis. */
+/* Chooses the step size for SCENE. Sets REACH to the max coordinate of any
+ * point, in units of the description. */
 struct glint_steps glint_steps_of(const struct glint_description *scene,
                                   double *reach);
 
@@ -36,14 +37,14 @@ void glint_steps_unit(const struct glint_steps *steps, const double x[3],
 void glint_steps_turn(const struct glint_steps *steps, const double turn[4],
                       int32_t to_q30[4]);
 
-/* Sets TURN to the product of quaternions A B: rotation B, then A. */
+/* Sets TURN to the quaternion product A B: rotation B followed by A. */
 void glint_turn_after(const double a[4], const double b[4], double turn[4]);
 
 /* Converts the triangles of OBJECT to a mesh: vertices in steps, each stored
  * once, and a uniform grid whose cells list the triangles that touch them.
- * Appends the tables to DRAFT, sets MESH to their offsets and adds to
- * REPORT. Needs O(N) time and memory for N triangles. Returns false if there
- * is no memory, or, with ERROR set, if too many triangles coincide. */
+ * Appends the tables to DRAFT, sets MESH to their offsets and adds to REPORT.
+ * Needs O(N) time and memory for N triangles. Returns false if there is no
+ * memory, or, with ERROR set, if too many triangles coincide. */
 bool glint_grid_write(struct glint_draft *draft,
                       const struct glint_description *scene,
                       const struct glint_described_object *object,
@@ -56,10 +57,10 @@ bool glint_grid_write(struct glint_draft *draft,
 int glint_skin_material(const struct glint_description *scene,
                         const struct glint_described_object *object);
 
-/* Writes the table of SKIN, the surface point of each texel, for OBJECT with
- * material MATERIAL. MESH is its mesh in DRAFT, or NULL for a sphere.
- * Returns false if there is no memory, or, with ERROR set, if too many
- * points share a texel or no point has a texel. */
+/* Writes the texture map of a translucent object, SKIN: the surface point of
+ * each texel. MESH: the object's mesh in DRAFT; NULL: a sphere. Returns false
+ * if there is no memory, or, with ERROR set, if too many surface points share a
+ * texel or none has one. */
 bool glint_skin_write(struct glint_draft *draft,
                       const struct glint_description *scene,
                       const struct glint_described_object *object,

@@ -89,15 +89,16 @@ static void bake_must_fail(const char *text, const char *why)
 
 TEST(rejects_invalid_recordings)
 {
-    bake_must_fail("", "run.json:1:1: the text ends within the recording");
+    bake_must_fail("", "run.json:1:1: the file ends within the recording");
     bake_must_fail("[]", "run.json:1:1: '{' is expected here");
     bake_must_fail("{" BODY ", \"frames\": [" FRAME "]}", "invalid token");
     bake_must_fail("{\"frames\": [" FRAME "]}", "there is no structure");
-    bake_must_fail("{" BODY_0 ", \"frames\": []}", "there are no frames");
-    bake_must_fail("{" BODY_0 "}", "there are no frames");
+    bake_must_fail("{" BODY_0 ", \"frames\": []}",
+                   "the recording has no frames");
+    bake_must_fail("{" BODY_0 "}", "the recording has no frames");
     bake_must_fail("{" BODY_0 ", \"frames\": 3}", "'[' is expected");
     bake_must_fail(RUN("{}"), "frame 0: there is no array 'foods'");
-    bake_must_fail(RUN("3"), "frame 0: it is not a JSON object");
+    bake_must_fail(RUN("3"), "frame 0: the frame is not a JSON object");
     bake_must_fail(RUN(FRAME ",\n {\"foods\": 5}"), "run.json:2:2: frame 1: ");
     bake_must_fail(RUN(FRAME ", {\"foods\": " FOODS("NaN") "}"),
                    "invalid token");
@@ -128,7 +129,7 @@ TEST(rejects_invalid_recordings)
                    "']' closes what '{' opened");
     bake_must_fail("{" BODY_0 ", \"frames\": [" FRAME
                    ", {\"foods\": [{\"x\": 1",
-                   "the text ends within frame 1");
+                   "the file ends within frame 1");
     bake_must_fail("{" BODY_0 ", " BODY_0 "}", "a second 'structure'");
     bake_must_fail(RUN(FRAME) " {", "text follows the end of the recording");
     bake_must_fail("{\"structure\": {\"size\": -1, \"angleofview\": 60}}",

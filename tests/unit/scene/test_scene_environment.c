@@ -385,8 +385,9 @@ TEST(rejects_ambiguous_environment_names)
         parse_scene_text("environment a/9e5.hdr\nenvironment 9e5\n",
                          &description, &error),
         GLINT_E_LENS);
-    assert_string_equal(error.text, "x.scene:2:13: a second environment '9e5'; "
-                                    "files are identified by their names");
+    assert_string_equal(error.text,
+                        "x.scene:2:13: environment '9e5' is already "
+                        "defined; rename one of both files");
     for (int i = 0; i < 17; i++)
         sprintf(text + strlen(text), "environment sky%d\n", i);
     assert_int_equal(parse_scene_text(text, &description, &error),
