@@ -247,9 +247,8 @@ const struct glint_glass *glint_glass_find(const char *name, size_t bytes)
     return NULL;
 }
 
-/* Returns the edit distance between A[N] and the zero-terminated B, both
- * without '-'. */
-static int compute_edit_distance(const char *a, size_t n, const char *b)
+/* Returns the edit distance between A[N] and B, ignoring '-' in both. */
+static int compute_name_distance(const char *a, size_t n, const char *b)
 {
     enum { LONGEST = 24 };
     int row[LONGEST + 1], m = 0, corner, above;
@@ -283,7 +282,7 @@ const struct glint_glass *glint_glass_near(const char *name, size_t bytes)
     int least = bytes > 4 ? 3 : 2;
 
     for (int k = 0; k < N_GLASSES && bytes <= 24; k++) {
-        const int apart = compute_edit_distance(name, bytes, catalogue[k].name);
+        const int apart = compute_name_distance(name, bytes, catalogue[k].name);
 
         if (apart < least) {
             least = apart;

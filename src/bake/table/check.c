@@ -8,29 +8,27 @@
 #include "bake/table/elements.h"
 #include "engine/setup/degrees.h"
 
-/* max relative error of a stated focal length */
+/* max relative error of a focal length that the table states */
 #define STATED_TOLERANCE 1e-3
-/* height at which neighbouring elements are compared, as a fraction of the
- * smaller semi-diameter */
+/* height at which neighbouring spheres are compared / smaller semi-diameter */
 #define CLEAR_SHARE 0.9
-#define CONTACT_MM  1e-6 /* mm: overlap that rounding may cause */
+#define CONTACT_MM  1e-6 /* max overlap that rounding may cause, mm */
 #define MIN_STOP_MM 1e-6
-/* relative error of the stop radius that rounding may cause */
+/* max relative error of the stop radius that rounding may cause */
 #define STOP_SLACK 1e-9
 
-/* Numbers of heights, and of directions about the axis, at which neighbours
- * are compared if one of them is not a sphere. */
+/* number of heights and of azimuths at which neighbouring elements are compared
+ * if one of them is not a sphere */
 enum { HEIGHTS = 12, TURNS = 8 };
-/* Max sum of the aspheric terms at the rim, in semi-diameters. */
+/* max sum of a surface's aspheric terms at its rim, in semi-diameters */
 #define MOST_TERMS 4.0
-/* The squeeze of an anamorphic lens lies between 1 / MOST_SQUEEZE and
- * MOST_SQUEEZE. */
+/* max ratio of the focal lengths in x and y of an anamorphic lens */
 #define MOST_SQUEEZE 16.0
 
-/* Returns the sag of element E at (X, Y) from the axis of the lens. A tilt
- * counts only by its change of the sag. */
-static double compute_sag_mm(const struct glint_prescription *lens, int e,
-                             double x, double y)
+/* Returns the sag of element E at (X, Y) from the lens axis, mm. A tilt counts
+ * only as far as it changes the sag. */
+static double compute_element_sag_mm(const struct glint_prescription *lens,
+                                     int e, double x, double y)
 {
     const int k = element_surface(lens, e);
     const double c = element_curvature(lens, e);
@@ -54,10 +52,10 @@ static bool is_shaped_element(const struct glint_prescription *lens, int e)
     return k >= 0 && glint_surface_is_shaped(&lens->surface[k]);
 }
 
-/* Returns the min gap between element E and the next element and sets AT to
- * its height. A stop in front of the lens may lie behind the front vertex,
- * with the glass reaching through its opening; then only its rim is
- * compared. */
+/* Returns the min gap between element E and the next one, mm, and sets AT to
+ * its distance from the axis. A stop in front of the lens may lie behind the
+ * front vertex, with the glass reaching through its opening; then only its rim
+ * is compared. */
 static double compute_min_gap_mm(const struct glint_prescription *lens, int e,
                                  double *at)
 {
@@ -72,8 +70,8 @@ static double compute_min_gap_mm(const struct glint_prescription *lens, int e,
     *at = height;
     if (!shaped)
         return element_gap_mm(lens, e) +
-               compute_sag_mm(lens, e + 1, height, 0) -
-               compute_sag_mm(lens, e, height, 0);
+               compute_element_sag_mm(lens, e + 1, height, 0) -
+               compute_element_sag_mm(lens, e, height, 0);
     for (int k = through ? (HEIGHTS - 1) * TURNS : 0; k < HEIGHTS * TURNS;
          k++) {
         const int ring = 1 + k / TURNS;
@@ -81,8 +79,8 @@ static double compute_min_gap_mm(const struct glint_prescription *lens, int e,
         const double x = h * glint_cos_deg(360.0 / TURNS * (k % TURNS));
         const double y = h * glint_sin_deg(360.0 / TURNS * (k % TURNS));
         const double gap = element_gap_mm(lens, e) +
-                           compute_sag_mm(lens, e + 1, x, y) -
-                           compute_sag_mm(lens, e, x, y);
+                           compute_element_sag_mm(lens, e + 1, x, y) -
+                           compute_element_sag_mm(lens, e, x, y);
 
         if (gap < least) {
             least = gap;
@@ -92,11 +90,11 @@ static double compute_min_gap_mm(const struct glint_prescription *lens, int e,
     return least;
 }
 
-/* Checks that surface S is defined up to its rim, and that its aspheric
- * terms are small; large terms indicate a misprint. */
-static bool check_surface(const struct glint_surface *s,
-                          const struct glint_text *text,
-                          struct glint_text_place place)
+/* Checks that surface S is defined up to its rim, and that its aspheric terms
+ * are small, as large terms indicate a misprint. */
+static bool check_surface_profile(const struct glint_surface *s,
+                                  const struct glint_text *text,
+                                  struct glint_text_place place)
 {
     const struct glint_shape *const a = &s->shape;
     const double radius = fabs(s->radius_mm), semi = s->semi_mm;
@@ -126,13 +124,13 @@ static bool check_surface(const struct glint_surface *s,
 }
 
 /* Checks that elements do not overlap. The distance between two spheres is
- * monotone from the axis to the rim, and vertices are in order, so one
- * height is sufficient. That height lies below the rim, as published
- * semi-diameters are often estimates: two surfaces of the Canon zoom meet at
- * 0.92 of their semi-diameter. Other surfaces are compared at many heights. */
-static bool check_rims(const struct glint_prescription *lens,
-                       const struct glint_text *text,
-                       const struct glint_places *places)
+ * monotone from the axis to the rim, and vertices are in order, so one height
+ * is sufficient. That height is below the rim, as published semi-diameters are
+ * often estimates: two surfaces of the Canon zoom touch at 0.92 of their
+ * semi-diameter. Other surfaces are compared at many heights. */
+static bool check_element_gaps(const struct glint_prescription *lens,
+                               const struct glint_text *text,
+                               const struct glint_places *places)
 {
     const int last = element_count(lens) - 1;
 
@@ -141,34 +139,36 @@ static bool check_rims(const struct glint_prescription *lens,
         const double gap = compute_min_gap_mm(lens, e, &height);
 
         if (!(gap >= -CONTACT_MM))
-            return glint_text_fail(text, places->thickness[e],
-                                   "overlaps the next element by %.4g mm at "
-                                   "%.4g mm from the axis",
-                                   -gap, height);
+            return glint_text_fail(
+                text, places->thickness[e],
+                "element overlaps the next one by %.4g mm at "
+                "%.4g mm from the axis",
+                -gap, height);
     }
     if (element_gap_mm(lens, last) <=
-        fmax(0.0, compute_sag_mm(lens, last, element_semi_mm(lens, last), 0)))
+        fmax(0.0, compute_element_sag_mm(lens, last,
+                                         element_semi_mm(lens, last), 0)))
         return glint_text_fail(text, places->thickness[last],
                                "the sensor must lie behind the last element");
     return true;
 }
 
-/* Checks that FOUND agrees with STATED. A table without this value (PLACE is
- * line 0) passes. */
-static bool check_stated(const struct glint_text *text,
-                         struct glint_text_place place, const char *name,
-                         double stated, double found)
+/* Checks that the computed value FOUND agrees with STATED, the table's value.
+ * Passes if the table states none (PLACE has line 0). */
+static bool check_stated_focal_length(const struct glint_text *text,
+                                      struct glint_text_place place,
+                                      const char *name, double stated,
+                                      double found)
 {
     return !place.line || fabs(found - stated) <= STATED_TOLERANCE * stated ||
            glint_text_fail(text, place, "%s is %.6g mm, not the stated %.6g mm",
                            name, found, stated);
 }
 
-/* Checks focal lengths and stop. Comparisons are written such that NaN
- * fails. */
-static bool check_optics(const struct glint_prescription *lens,
-                         const struct glint_text *text,
-                         const struct glint_places *places)
+/* Checks focal lengths and stop. Comparisons are written so that NaN fails. */
+static bool check_focus_and_stop(const struct glint_prescription *lens,
+                                 const struct glint_text *text,
+                                 const struct glint_places *places)
 {
     const struct glint_text_place end = glint_text_end(text);
     struct glint_optics optics;
@@ -184,8 +184,8 @@ static bool check_optics(const struct glint_prescription *lens,
     if (!(optics.squeeze <= MOST_SQUEEZE &&
           optics.squeeze * MOST_SQUEEZE >= 1.0))
         return glint_text_fail(text, end,
-                               "the focal length in x is %.6g mm, that in y "
-                               "%.6g mm",
+                               "focal lengths of %.6g mm in x and %.6g mm in y "
+                               "differ too much",
                                optics.focal_mm / optics.squeeze,
                                optics.focal_mm);
     if (!(optics.stop_radius_mm >= MIN_STOP_MM))
@@ -198,10 +198,11 @@ static bool check_optics(const struct glint_prescription *lens,
                                "semi-diameter is %.4g mm",
                                lens->f_number, optics.stop_radius_mm,
                                lens->stop_semi_mm);
-    return check_stated(text, places->focal, "focal-length",
-                        lens->check_focal_mm, optics.focal_mm) &&
-           check_stated(text, places->back_focal, "back-focal-length",
-                        lens->check_back_mm, optics.back_focal_mm);
+    return check_stated_focal_length(text, places->focal, "focal-length",
+                                     lens->check_focal_mm, optics.focal_mm) &&
+           check_stated_focal_length(text, places->back_focal,
+                                     "back-focal-length", lens->check_back_mm,
+                                     optics.back_focal_mm);
 }
 
 bool glint_prescription_check(const struct glint_prescription *lens,
@@ -209,12 +210,13 @@ bool glint_prescription_check(const struct glint_prescription *lens,
                               const struct glint_places *places)
 {
     for (int k = 0; k < lens->n_surfaces; k++)
-        if (!check_surface(&lens->surface[k], text, places->semi[k]))
+        if (!check_surface_profile(&lens->surface[k], text, places->semi[k]))
             return false;
     if (lens->surface[lens->n_surfaces - 1].vd > 0.0)
         return glint_text_fail(text, places->medium,
                                "the last medium must be air");
-    return check_rims(lens, text, places) && check_optics(lens, text, places);
+    return check_element_gaps(lens, text, places) &&
+           check_focus_and_stop(lens, text, places);
 }
 
 enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
@@ -238,8 +240,8 @@ enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
     glint_optics_of(lens, &optics);
     if (optics.focal_mm > 0.0 && optics.focal_mm <= GLINT_MAX_FOCAL_MM &&
         element_gap_mm(lens, last) >
-            fmax(0.0,
-                 compute_sag_mm(lens, last, element_semi_mm(lens, last), 0)) &&
+            fmax(0.0, compute_element_sag_mm(lens, last,
+                                             element_semi_mm(lens, last), 0)) &&
         optics.stop_radius_mm <= lens->stop_semi_mm * (1.0 + STOP_SLACK))
         return GLINT_OK;
     snprintf(

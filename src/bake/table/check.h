@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks whether a lens whose values are all in range is physically possible.
+ * Checks whether a lens table whose values are all in range is physically
+ * possible.
  *
  *   in   a completely parsed prescription, and the positions of its numbers
  *   out  true, or the first mistake as the error of the text
  *
- * Checks in this order: surfaces are defined up to their semi-diameters; the
+ * Order of the checks: surfaces are defined up to their semi-diameters; the
  * last medium is air; elements do not overlap and the sensor lies behind them;
  * the lens has a focus behind it, and its stop opens wide enough for the
  * f-number; stated focal lengths agree with the paraxial ones. A new f-number
@@ -21,22 +22,24 @@
 #include "bake/table/elements.h"
 #include "bake/table/text.h"
 
-/* Max focal length; a lens with a longer one counts as having no power. */
+/* Max focal length, mm; a lens with a longer one has no power. */
 #define GLINT_MAX_FOCAL_MM 1e6
 #define GLINT_MIN_F_NUMBER 0.5
 #define GLINT_MAX_F_NUMBER 1000.0
 
 /* Positions of the table's numbers in its text. */
 struct glint_places {
-    /* f-number, and semi-diameter of the stop. */
+    /* position of the f-number and of the stop's semi-diameter */
     struct glint_text_place f_number, stop;
-    struct glint_text_place focal, back_focal; /* line 0: not stated */
+    /* positions of stated focal lengths; line 0: not stated */
+    struct glint_text_place focal, back_focal;
     struct glint_text_place thickness[GLINT_MAX_ELEMENTS];
     struct glint_text_place semi[GLINT_MAX_SURFACES];
-    struct glint_text_place medium; /* medium behind the last surface */
+    /* position of the medium behind the last surface */
+    struct glint_text_place medium;
 };
 
-/* Returns whether LENS passes all checks; if not, sets the error of TEXT. */
+/* Returns whether LENS passes all checks; otherwise sets the error of TEXT. */
 bool glint_prescription_check(const struct glint_prescription *lens,
                               const struct glint_text *text,
                               const struct glint_places *places);

@@ -12,14 +12,13 @@ static const struct glint_text_range quarters_range = {"coating thickness",
 
 /* ------------------------------------------------------------------- names */
 
-/* Indices are those of magnesium fluoride (1.38), aluminium oxide (1.63 to
- * 1.69, evaporated) and zirconium oxide (2.1). The single layer of 1.38 and
- * the two quarter waves are textbook designs. The three layers of a quarter,
- * a half and a quarter wave follow Cox, Hass and Thelen, Triple-layer
- * antireflection coatings on glass for the visible and near infrared, JOSA
- * 52(9), 1962. The four layers use two materials; their thicknesses were
- * found by a search for the smallest reflectance from 420 to 680 nm on
- * glasses of 1.52 to 1.7. */
+/* Index of refraction of magnesium fluoride: 1.38; aluminium oxide, evaporated:
+ * 1.63 to 1.69; zirconium oxide: 2.1. The single layer of 1.38 and the two
+ * quarter waves are textbook designs. The three layers of a quarter, a half and
+ * a quarter wave follow Cox, Hass and Thelen, Triple-layer antireflection
+ * coatings on glass for the visible and near infrared, JOSA 52(9), 1962. The
+ * four layers use two materials; a search chose their thicknesses for the
+ * smallest reflectance from 420 to 680 nm on glasses of 1.52 to 1.7. */
 static const struct {
     const char *name;
     struct glint_coating coating;
@@ -50,9 +49,9 @@ void glint_coating_single(struct glint_coating *coating, double nm)
 
 /* ----------------------------------------------------------------- reading */
 
-/* Cuts WORD at the first SIGN. Returns the rest behind it; its length is 0
- * if there is no sign, and negative if nothing follows the sign. */
-static struct glint_word split_word(struct glint_word *word, char sign)
+/* Cuts WORD at the first SIGN. Returns the text after the sign; its length is 0
+ * if there is no sign, and -1 if no text follows. */
+static struct glint_word split_word_at_sign(struct glint_word *word, char sign)
 {
     const char *found = word->length > 0
                             ? memchr(word->start, sign, (size_t)word->length)
@@ -74,21 +73,22 @@ static struct glint_word split_word(struct glint_word *word, char sign)
     return rest;
 }
 
-/* Reads WORD as a number in RANGE. A word of length -1 is reported as
- * missing. */
-static bool read_value(const struct glint_text *text, struct glint_word word,
-                       const struct glint_text_range *range, double *value)
+/* Reads WORD as a number in RANGE. Reports words of length -1 as missing. */
+static bool read_number_word(const struct glint_text *text,
+                             struct glint_word word,
+                             const struct glint_text_range *range,
+                             double *value)
 {
     if (word.length < 0)
         word.length = 0;
     return glint_text_value_of(text, &word, range, value);
 }
 
-/* Reads "none", a name or a wavelength. TAKES receives the max number of
- * words that may follow. */
-static bool read_kind(const struct glint_text *text,
-                      const struct glint_word *word,
-                      struct glint_coating *coating, int *takes)
+/* Reads the first word of a coating: "none", a name or a wavelength. TAKES
+ * receives the max number of words that may follow. */
+static bool read_coating_kind(const struct glint_text *text,
+                              const struct glint_word *word,
+                              struct glint_coating *coating, int *takes)
 {
     char quote[GLINT_QUOTE_BYTES];
     double nm;
@@ -109,94 +109,99 @@ static bool read_kind(const struct glint_text *text,
             "'%s' is not a coating; known are none, %s, %s, %s and wavelengths",
             glint_word_quote(word, quote), named[0].name, named[1].name,
             named[2].name);
-    if (!read_value(text, *word, &nm_range, &nm))
+    if (!read_number_word(text, *word, &nm_range, &nm))
         return false;
     glint_coating_single(coating, nm);
     *takes = GLINT_MAX_FILMS;
     return true;
 }
 
-/* Reads word number AT after the first word of COATING. */
-static bool read_more(const struct glint_text *text, struct glint_word word,
-                      bool is_named, int at, struct glint_coating *coating)
+/* Reads word number AT after the first word of COATING: a wavelength after a
+ * name, else INDEX[:QUARTERS] of a film. */
+static bool read_coating_word(const struct glint_text *text,
+                              struct glint_word word, bool is_named, int at,
+                              struct glint_coating *coating)
 {
     struct glint_film *film = &coating->film[at];
     struct glint_word quarters;
 
     if (is_named)
-        return read_value(text, word, &nm_range, &coating->nm);
-    quarters = split_word(&word, ':');
+        return read_number_word(text, word, &nm_range, &coating->nm);
+    quarters = split_word_at_sign(&word, ':');
     film->quarters = 1;
     coating->n_films = at + 1;
-    return read_value(text, word, &index_range, &film->index) &&
+    return read_number_word(text, word, &index_range, &film->index) &&
            (quarters.length == 0 ||
-            read_value(text, quarters, &quarters_range, &film->quarters));
+            read_number_word(text, quarters, &quarters_range, &film->quarters));
 }
 
-/* Source of the words of a coating: the rest of a line, or a single word
- * divided by slashes. */
-struct parts {
+/* Source of the words of one coating: the rest of a line, or one word whose
+ * values are separated by slashes. */
+struct word_source {
     struct glint_text *text;
     bool in_word;
-    struct glint_word rest; /* unread rest of the single word */
+    struct glint_word rest; /* unread rest of that word */
 };
 
-static struct glint_word next_part(struct parts *parts)
+static struct glint_word read_next_coating_word(struct word_source *word_source)
 {
-    struct glint_word part = parts->rest;
+    struct glint_word part = word_source->rest;
 
-    if (!parts->in_word)
-        return glint_text_next_word(parts->text);
-    parts->rest = split_word(&part, '/');
-    if (part.length == 0 && parts->rest.length)
-        part.length = -1; /* nothing between two slashes */
+    if (!word_source->in_word)
+        return glint_text_next_word(word_source->text);
+    word_source->rest = split_word_at_sign(&part, '/');
+    if (part.length == 0 && word_source->rest.length)
+        part.length = -1; /* no text between two slashes */
     return part;
 }
 
-static bool read_parts(struct parts *parts, struct glint_coating *coating)
+static bool read_coating_words(struct word_source *word_source,
+                               struct glint_coating *coating)
 {
-    struct glint_word part = next_part(parts);
+    struct glint_word part = read_next_coating_word(word_source);
     int takes;
 
-    if (!read_kind(parts->text, &part, coating, &takes))
+    if (!read_coating_kind(word_source->text, &part, coating, &takes))
         return false;
     for (int at = 0; at < takes; at++) {
-        part = next_part(parts);
+        part = read_next_coating_word(word_source);
         if (!part.length)
             return true;
-        if (!read_more(parts->text, part, takes == 1, at, coating))
+        if (!read_coating_word(word_source->text, part, takes == 1, at,
+                               coating))
             return false;
     }
     if (takes < GLINT_MAX_FILMS)
         return true;
-    part = next_part(parts);
+    part = read_next_coating_word(word_source);
     return !part.length ||
-           glint_text_fail(parts->text, part.place, "more than %d films",
+           glint_text_fail(word_source->text, part.place, "more than %d films",
                            GLINT_MAX_FILMS);
 }
 
 bool glint_coating_read(struct glint_text *text, struct glint_coating *coating)
 {
-    struct parts parts = {.text = text};
+    struct word_source word_source = {.text = text};
 
-    return read_parts(&parts, coating);
+    return read_coating_words(&word_source, coating);
 }
 
-static bool read_word(struct glint_text *text, struct glint_word word,
-                      struct glint_coating *coating)
+static bool read_coating_from_word(struct glint_text *text,
+                                   struct glint_word word,
+                                   struct glint_coating *coating)
 {
-    struct parts parts = {text, true, word};
+    struct word_source word_source = {text, true, word};
     char quote[GLINT_QUOTE_BYTES];
 
-    if (!read_parts(&parts, coating))
+    if (!read_coating_words(&word_source, coating))
         return false;
-    if (parts.rest.length < 0)
-        return glint_text_fail(text, parts.rest.place,
+    if (word_source.rest.length < 0)
+        return glint_text_fail(text, word_source.rest.place,
                                "a value is missing after the slash");
-    return !parts.rest.length ||
-           glint_text_fail(text, parts.rest.place,
+    return !word_source.rest.length ||
+           glint_text_fail(text, word_source.rest.place,
                            "'%s' is one value too many for the coating",
-                           glint_word_quote(&parts.rest, quote));
+                           glint_word_quote(&word_source.rest, quote));
 }
 
 bool glint_coatings_read(struct glint_text *text,
@@ -210,7 +215,7 @@ bool glint_coatings_read(struct glint_text *text,
         if (*n == GLINT_MAX_COATINGS)
             return glint_text_fail(text, word.place, "more than %d coatings",
                                    GLINT_MAX_COATINGS);
-        if (!read_word(text, word, &coatings[*n]))
+        if (!read_coating_from_word(text, word, &coatings[*n]))
             return false;
         ++*n;
         word = glint_text_next_word(text);
@@ -255,7 +260,7 @@ glint_coatings_parse(struct glint_coating coatings[GLINT_MAX_COATINGS], int *n,
 
 int glint_coatings_mixed(struct glint_coating coatings[GLINT_MAX_COATINGS])
 {
-    /* 1080: a half wave in the middle of the band, which reflects green */
+    /* 1080: a half wave at the middle of the band, which reflects green */
     static const double nm[] = {450, 620, 1080, 520, 680, 490, 560};
     enum { N = sizeof nm / sizeof *nm };
 

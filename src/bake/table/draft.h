@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A baked file while it is being written: a growing block of memory, to which
+ * A baked file under construction: a growing block of memory, to which
  * sections are appended.
  */
 #ifndef GLINT_BAKE_TABLE_DRAFT_H
@@ -12,32 +12,32 @@
 
 #include "base/blob.h"
 
-/* Owns DATA, allocated with malloc(). Initialised with zeros. */
+/* Owns data, which is allocated with malloc(). Initialise it with zeros. */
 struct glint_draft {
     unsigned char *data;
     size_t bytes, room;
     bool out_of_memory; /* true: further writes have no effect */
 };
 
-/* Appends BYTES from DATA (zeros if DATA is NULL), padded to a multiple of
- * 4. Returns their offset. */
+/* Appends BYTES from DATA, or zeros if DATA is NULL, padded to a multiple of 4
+ * bytes. Returns their offset in the file. */
 uint32_t glint_draft_put(struct glint_draft *draft, const void *data,
                          size_t bytes);
 
-/* Overwrites BYTES at offset WHERE. */
+/* Overwrites BYTES at offset WHERE of the file. */
 void glint_draft_amend(struct glint_draft *draft, uint32_t where,
                        const void *data, size_t bytes);
 
-/* Sets the fields that the HEADER of every baked file begins with, except
- * size and checksum. The name consists of the first 63 characters of NAME
- * that are a-z, A-Z, 0-9, '-' or '_'; if there are none, of INSTEAD. */
+/* Sets the members with which every file header begins, except size and
+ * checksum. The name is made of the first 63 characters of NAME, or if there
+ * are none, of INSTEAD, that are a-z, A-Z, 0-9, '-' or '_'. */
 void glint_draft_begin(void *header, const struct glint_blob_kind *kind,
                        uint32_t variant, uint64_t key, const char *name,
                        const char *instead);
 
-/* Writes HEADER to the beginning of the file, sets its size and checksum,
- * and moves the file to *DATA[*BYTES]. If GOOD is false or there is no
- * memory, frees DRAFT and returns false. */
+/* Writes HEADER to the beginning of the file, sets its size and checksum, and
+ * moves the file to *DATA[*BYTES]. Frees DRAFT and returns false if GOOD is
+ * false or if there was no memory. */
 bool glint_draft_finish(struct glint_draft *draft, const void *header,
                         size_t header_bytes, bool good, unsigned char **data,
                         size_t *bytes);

@@ -27,7 +27,7 @@ static inline int surface_element(const struct glint_prescription *lens, int k)
     return k + (k >= lens->stop_after);
 }
 
-/* Returns the gap from element E to the next one or the sensor. */
+/* Returns the gap from element E to the next element or the sensor, mm. */
 static inline double element_gap_mm(const struct glint_prescription *lens,
                                     int e)
 {
@@ -44,7 +44,7 @@ static inline double element_semi_mm(const struct glint_prescription *lens,
     return k < 0 ? lens->stop_semi_mm : lens->surface[k].semi_mm;
 }
 
-/* Returns 1 / radius of element E; 0 for a plane and the stop. */
+/* Returns the curvature of element E, 1 / mm; 0 for a plane and the stop. */
 static inline double element_curvature(const struct glint_prescription *lens,
                                        int e)
 {
@@ -55,7 +55,7 @@ static inline double element_curvature(const struct glint_prescription *lens,
                : 1.0 / lens->surface[k].radius_mm;
 }
 
-/* Returns the address of the gap behind element E. */
+/* Returns a pointer to the gap behind element E, mm. */
 static inline double *glint_gap_of(struct glint_prescription *lens, int e)
 {
     const int k = element_surface(lens, e);
@@ -63,12 +63,12 @@ static inline double *glint_gap_of(struct glint_prescription *lens, int e)
     return k < 0 ? &lens->stop_thickness_mm : &lens->surface[k].thickness_mm;
 }
 
-/* Returns the distance behind the last surface of the paraxial image of the
- * axis point OBJECT_MM before the front vertex. */
+/* Returns the distance of the paraxial image behind the last surface, mm, for a
+ * point on the axis OBJECT_MM in front of the lens. */
 double glint_image_mm(const struct glint_prescription *lens, double object_mm);
 
-/* Checks that elements do not collide and that the stop is large enough for
- * the f-number. Returns GLINT_E_ARGUMENT if not; ERROR states the place. */
+/* Checks that elements do not overlap and that the stop is large enough for the
+ * f-number. Returns GLINT_E_ARGUMENT if not; ERROR names the element. */
 enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
                                           struct glint_error *error);
 

@@ -1,30 +1,30 @@
 /* SPDX-License-Identifier: MIT
  *
- * Focuses a lens at a distance: finds the displacement of the focusing group,
- * or of the whole lens.
+ * Focuses a lens at a distance: finds how far the focusing group, or the whole
+ * lens, must move.
  *
- * As the group moves by d towards the light, the distance of the image from the
- * sensor changes. The lens is focused at the smallest d at which this distance
- * changes its sign.
+ * As the group moves by d towards the light, the distance of the image from
+ * the sensor changes. The lens is focused at the smallest d at which this
+ * distance changes its sign.
  */
 #include <math.h>
 #include <stdio.h>
 
 #include "bake/table/elements.h"
 
-/* Step of the search for d, as a fraction of the focal length. */
+/* step of the search for d, as a fraction of the focal length */
 #define STEP 2e-3
 enum { STEPS = 2000, HALVINGS = 60 };
 
-/* The lens to focus, the distance of the object from the sensor, and the
- * distance of the sensor behind the paraxial focus at infinity. */
+/* Input of the search: the lens; the distance of the object from the sensor;
+ * the distance of the sensor behind the paraxial focus at infinity. */
 struct search {
     const struct glint_prescription *lens;
     double object_mm, defocus_mm;
 };
 
-/* Moves the focusing group, or the whole lens, by D towards the light. */
-static void move_group(struct glint_prescription *lens, double d)
+/* Moves the focusing group, or the whole lens, by D mm towards the light. */
+static void move_focusing_group(struct glint_prescription *lens, double d)
 {
     const int n = lens->n_focus, last = element_count(lens) - 1;
     const int first = surface_element(lens, lens->focus_first);
@@ -38,15 +38,15 @@ static void move_group(struct glint_prescription *lens, double d)
     *glint_gap_of(lens, first + n - 1) += d;
 }
 
-/* Returns the distance of the image behind the sensor after a displacement
- * by D; NaN if elements of the lens would collide. */
+/* Returns the distance of the image behind the sensor, mm, after moving the
+ * group by D; NaN if elements would overlap. */
 static double compute_defocus(const struct search *s, double d)
 {
     struct glint_prescription lens = *s->lens;
     struct glint_error error;
     struct glint_optics optics;
 
-    move_group(&lens, d);
+    move_focusing_group(&lens, d);
     if (glint_prescription_fits(&lens, &error) != GLINT_OK)
         return (double)NAN;
     glint_optics_of(&lens, &optics);
@@ -56,8 +56,10 @@ static double compute_defocus(const struct search *s, double d)
            s->defocus_mm - element_gap_mm(&lens, element_count(&lens) - 1);
 }
 
-/* Finds D, whose sign is that of SIDE. Returns false if there is none. */
-static bool find_displacement(const struct search *s, double side, double *d)
+/* Finds the smallest displacement D, with the sign of SIDE, that focuses the
+ * lens. Returns false if there is none. */
+static bool find_focus_displacement(const struct search *s, double side,
+                                    double *d)
 {
     struct glint_optics optics;
     double at = compute_defocus(s, 0.0), step;
@@ -87,8 +89,8 @@ static bool find_displacement(const struct search *s, double side, double *d)
     return false;
 }
 
-static bool solve_displacement(const struct glint_prescription *lens,
-                               double metres, double *d)
+static bool solve_focus_displacement(const struct glint_prescription *lens,
+                                     double metres, double *d)
 {
     struct glint_optics optics;
     struct search s = {lens, 1000.0 * metres, 0.0};
@@ -96,19 +98,20 @@ static bool solve_displacement(const struct glint_prescription *lens,
     glint_optics_of(lens, &optics);
     s.defocus_mm =
         element_gap_mm(lens, element_count(lens) - 1) - optics.back_focal_mm;
-    return find_displacement(&s, 1.0, d) ||
-           (lens->n_focus && find_displacement(&s, -1.0, d));
+    return find_focus_displacement(&s, 1.0, d) ||
+           (lens->n_focus && find_focus_displacement(&s, -1.0, d));
 }
 
-/* Returns the nearest distance at which the lens can focus, metres. */
-static double find_nearest_distance(const struct glint_prescription *lens)
+/* Returns the nearest distance from the sensor at which the lens can focus,
+ * metres. */
+static double find_nearest_focus_distance(const struct glint_prescription *lens)
 {
     double low = 0.0, high = 1e6, d;
 
     for (int k = 0; k < HALVINGS; k++) {
         const double middle = low > 0.0 ? sqrt(low * high) : 1e-3;
 
-        if (solve_displacement(lens, middle, &d))
+        if (solve_focus_displacement(lens, middle, &d))
             high = middle;
         else
             low = middle;
@@ -128,13 +131,13 @@ enum glint_status glint_prescription_focus(struct glint_prescription *lens,
                  metres);
         return GLINT_E_ARGUMENT;
     }
-    if (!solve_displacement(lens, metres, &d)) {
+    if (!solve_focus_displacement(lens, metres, &d)) {
         snprintf(error->text, sizeof error->text,
                  "%s cannot focus at %g m, only down to %.3g m from the sensor",
-                 lens->name, metres, find_nearest_distance(lens));
+                 lens->name, metres, find_nearest_focus_distance(lens));
         return GLINT_E_ARGUMENT;
     }
-    move_group(lens, d);
+    move_focusing_group(lens, d);
     lens->focus_m = metres;
     lens->check_focal_mm = lens->check_back_mm = 0;
     return GLINT_OK;

@@ -6,9 +6,10 @@
 
 #include "engine/setup/degrees.h"
 
-/* Height, in semi-diameters, up to which a profile follows the table. */
+/* Height in semi-diameters up to which a profile follows the table. */
 #define GLASS_ENDS 1.1
-/* Beyond END2 the curvature fades over this fraction of END2. */
+/* Beyond the squared height end2 the curvature fades to 0 over this fraction of
+ * end2. */
 #define FADES 0.25
 
 /* Factor on the squares of sampled slopes, as slopes between samples may be
@@ -44,8 +45,8 @@ bool glint_prescription_is_round(const struct glint_prescription *lens)
 
 /* --------------------------------------------------------------------- sag */
 
-/* Sets AT to the value of the table's profile at the height whose square is
- * H2, and to its first and second derivative by H2. */
+/* Sets AT to the value of the table's profile at squared height H2, and to its
+ * first and second derivative by H2. */
 static void evaluate_table_profile(const struct glint_form *f, double h2,
                                    double at[3])
 {
@@ -64,7 +65,8 @@ static void evaluate_table_profile(const struct glint_form *f, double h2,
             h2 * (4.0 * p[1] + h2 * p[2]);
 }
 
-/* Returns the profile at H2. SLOPE receives its derivative by H2. */
+/* Returns the profile at squared height H2, continued smoothly beyond end2.
+ * SLOPE receives its derivative by H2. */
 static double evaluate_profile(const struct glint_form *f, double h2,
                                double *slope)
 {
@@ -111,16 +113,16 @@ double glint_form_sag(const struct glint_form *f, double x, double y,
 
 /* -------------------------------------------------------------------- rays */
 
-/* A ray in the frame of the form. */
+/* a ray in the form's own frame */
 struct line {
     const double *at, *direction;
 };
 
-/* Returns z - sag at parameter T of the ray. RATE receives its derivative by
- * T. */
-static double compute_height_above(const struct glint_form *f,
-                                   const struct line *line, double t,
-                                   double *rate, double slope[2])
+/* Returns z - sag of the point at parameter T of the ray. RATE receives its
+ * derivative by T. */
+static double compute_height_above_form(const struct glint_form *f,
+                                        const struct line *line, double t,
+                                        double *rate, double slope[2])
 {
     const double *const d = line->direction;
     const double sag = glint_form_sag(f, line->at[0] + t * d[0],
@@ -131,13 +133,13 @@ static double compute_height_above(const struct glint_form *f,
 }
 
 /* Sets BRACKET to two parameters of the ray, the nearer first, between which
- * it crosses the form. Returns false if there is no crossing near the
- * barrel. */
-static bool bracket_root(const struct glint_form *f, const struct line *line,
-                         double bracket[2])
+ * the ray crosses the form. Returns false if it does not cross the form near
+ * the barrel. */
+static bool bracket_ray_intersection(const struct glint_form *f,
+                                     const struct line *line, double bracket[2])
 {
     double slope[2] = {0, 0}, rate,
-           g = compute_height_above(f, line, 0.0, &rate, slope);
+           g = compute_height_above_form(f, line, 0.0, &rate, slope);
     const double first = g, side = line->direction[2] < 0.0 ? -g : g;
     const double reach =
         8.0 * (f->semi_mm + fabs(line->at[0]) + fabs(line->at[1]));
@@ -149,7 +151,7 @@ static bool bracket_root(const struct glint_form *f, const struct line *line,
     for (int k = 0; k < MOST_STEPS && fabs(bracket[1]) < reach; k++) {
         bracket[0] = bracket[1];
         bracket[1] += step;
-        g = compute_height_above(f, line, bracket[1], &rate, slope);
+        g = compute_height_above_form(f, line, bracket[1], &rate, slope);
         if (!isfinite(g))
             return false;
         if ((g < 0.0) != (first < 0.0) || g == 0.0)
@@ -159,24 +161,25 @@ static bool bracket_root(const struct glint_form *f, const struct line *line,
     return false;
 }
 
-/* Returns the parameter between LOW and HIGH at which the ray meets the
- * form. */
-static double refine_root(const struct glint_form *f, const struct line *line,
-                          double low, double high)
+/* Returns the parameter, LOW .. HIGH, at which the ray crosses the form. */
+static double refine_ray_intersection(const struct glint_form *f,
+                                      const struct line *line, double low,
+                                      double high)
 {
     double slope[2] = {0, 0}, rate;
-    const bool rises = compute_height_above(f, line, low, &rate, slope) < 0.0;
+    const bool rises =
+        compute_height_above_form(f, line, low, &rate, slope) < 0.0;
     double t = 0.5 * (low + high);
 
     for (int k = 0; k < MOST_HALVINGS; k++) {
-        const double g = compute_height_above(f, line, t, &rate, slope);
+        const double g = compute_height_above_form(f, line, t, &rate, slope);
         double next = t - g / rate;
 
         if ((g < 0.0) == rises)
             low = t;
         else
             high = t;
-        /* replaces a step that leaves the bracket, or is NaN, by a bisection */
+        /* bisects instead if the step is NaN or leaves the bracket */
         if (!((next > low && next < high) || (next < low && next > high)))
             next = g == 0.0 ? t : 0.5 * (low + high);
         if (fabs(next - t) <= 2e-16 * (fabs(t) + 0.01 * f->semi_mm))
@@ -195,10 +198,10 @@ bool glint_form_meet(const struct glint_form *f, double at[3],
 
     normal[0] = normal[1] = 0.0;
     normal[2] = *cosine = 1.0;
-    if (!bracket_root(f, &line, bracket))
+    if (!bracket_ray_intersection(f, &line, bracket))
         return false;
-    t = refine_root(f, &line, bracket[0], bracket[1]);
-    compute_height_above(f, &line, t, &rate, slope);
+    t = refine_ray_intersection(f, &line, bracket[0], bracket[1]);
+    compute_height_above_form(f, &line, t, &rate, slope);
     for (int k = 0; k < 2; k++)
         at[k] += t * direction[k];
     at[2] = t * direction[2];
@@ -248,8 +251,9 @@ void glint_form_leave(const struct glint_form *f, double at[3],
     }
 }
 
-/* Returns the squared height at which the profile ends. */
-static double compute_end(const struct glint_form *f)
+/* Returns the squared height beyond which the profile no longer follows the
+ * table. */
+static double compute_profile_end(const struct glint_form *f)
 {
     const double c = f->curvature, a = (1.0 + f->conic) * c * c;
     const double semi2 = f->semi_mm * f->semi_mm;
@@ -259,10 +263,12 @@ static double compute_end(const struct glint_form *f)
     return a * end2 < 0.5 * (1.0 + a * semi2) ? end2 : 0.5 * (1.0 / a + semi2);
 }
 
-/* Sets the transform to the surface's frame: shift, tilts about x and then y
- * at the pivot, and the rotation of the light's plane to x-z. */
-static void set_transform(struct glint_form *f, const struct glint_shape *s,
-                          double phi_deg)
+/* Sets the transform from the light's frame to the surface's own: rotation of
+ * the light's plane to x-z, shift, and tilts about x and then y at the
+ * pivot. */
+static void set_light_to_form_transform(struct glint_form *f,
+                                        const struct glint_shape *s,
+                                        double phi_deg)
 {
     const double cx = glint_cos_deg(s->tilt_deg[0]);
     const double sx = glint_sin_deg(s->tilt_deg[0]);
@@ -287,8 +293,9 @@ static void set_transform(struct glint_form *f, const struct glint_shape *s,
     f->shift[2] += s->pivot_mm;
 }
 
-/* Sets the members that glint_beam_meet_form() needs. */
-static void set_level(struct glint_form *f, const struct glint_shape *s)
+/* Sets the members that glint_beam_meet_form() needs: level, along, round,
+ * n_terms and steepest2. */
+static void set_beam_members(struct glint_form *f, const struct glint_shape *s)
 {
     const double *const along = f->turn[f->bend == GLINT_BEND_Y];
 
@@ -321,10 +328,10 @@ void glint_form_init(struct glint_form *form, const struct glint_surface *s,
         .across = shape->across_mm != 0.0 ? 1.0 / shape->across_mm : 0.0,
         .semi_mm = s->semi_mm};
     memcpy(form->term, shape->term, sizeof form->term);
-    form->end2 = compute_end(form);
+    form->end2 = compute_profile_end(form);
     evaluate_table_profile(form, form->end2, form->end_at);
-    set_transform(form, shape, phi_deg);
-    set_level(form, shape);
+    set_light_to_form_transform(form, shape, phi_deg);
+    set_beam_members(form, shape);
 }
 
 bool glint_surface_point(const struct glint_surface *s, double phi_deg,

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Ray intersections with surfaces that are not centred spheres: conics, even
+ * Intersects rays with surfaces that are not centred spheres: conics, even
  * aspheres, cylinders and torics, shifted and tilted.
  *
- *   in   a surface of a table, the azimuth of the light
+ *   in   a surface of a lens table, the azimuth of the light
  *   out  a form: constants, and the transform to the surface's own frame
  *
  * A ray meets a form where z - sag changes its sign. Growing steps from the
- * vertex plane bracket the crossing; Newton's method, with bisection where it
- * would leave the bracket, finds it to the last bits. Of several intersections
- * the nearest is found, unless two lie within one step, as where a ray grazes a
- * ripple. Limits: rays that cross the vertex plane of a cylinder or toric
- * farther from the axis than its circles reach miss it.
+ * vertex plane bracket the intersection; Newton's method, with bisection where
+ * it would leave the bracket, finds it to the last bits. Of several
+ * intersections the nearest is found, unless two lie within one step, as where
+ * a ray grazes a ripple. Limit: rays that cross the vertex plane of a cylinder
+ * or toric farther from its axis than its radius miss it.
  */
 #ifndef GLINT_BAKE_TABLE_FORM_H
 #define GLINT_BAKE_TABLE_FORM_H
@@ -20,12 +20,13 @@
 
 #include "glint/prescription.h"
 
-/* Initialises FORM from surface S, for light in the plane at PHI_DEG. */
+/* Initialises FORM from surface S, for light whose plane has the azimuth
+ * PHI_DEG. */
 void glint_form_init(struct glint_form *form, const struct glint_surface *s,
                      double phi_deg);
 
-/* Returns the sag at (X, Y) in the form's own frame; NAN outside the form.
- * SLOPE receives its derivatives by x and y. */
+/* Returns the sag at (X, Y) in the form's own frame, mm; NAN where the form is
+ * undefined. SLOPE receives its derivatives by x and y. */
 double glint_form_sag(const struct glint_form *form, double x, double y,
                       double slope[2]);
 
@@ -34,15 +35,15 @@ double glint_form_sag(const struct glint_form *form, double x, double y,
 void glint_form_enter(const struct glint_form *form, double at[3],
                       double direction[3]);
 
-/* Transforms the ray back to the light's frame. */
+/* Transforms the ray at AT along DIRECTION back to the light's frame. */
 void glint_form_leave(const struct glint_form *form, double at[3],
                       double direction[3]);
 
-/* Moves AT along the unit vector DIRECTION to the form. Both are in the
- * form's own frame, AT in its vertex plane. NORMAL receives the unit normal,
- * with positive z, and COSINE the cosine between NORMAL and DIRECTION, with
- * the sign of the z of DIRECTION. Returns false if the ray misses; NORMAL
- * and COSINE may then be those of the axis. */
+/* Moves AT along the unit vector DIRECTION to the form. Both are in the form's
+ * own frame, AT in its vertex plane. NORMAL receives the unit normal, with
+ * positive z, and COSINE the cosine between NORMAL and DIRECTION, with the sign
+ * of DIRECTION's z. Returns false if the ray misses the form; NORMAL and COSINE
+ * may then be those on the axis. */
 bool glint_form_meet(const struct glint_form *form, double at[3],
                      const double direction[3], double normal[3],
                      double *cosine);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * First-order optics: computes focal lengths, pupil and stop of a lens at the d
- * line.
+ * Computes focal lengths, pupil and stop of a lens at the d line by
+ * first-order optics.
  *
  * Paraxial rays (y, n u) pass all elements in turn: a surface reduces n u by y
  * times its power, a gap increases y by n u times the reduced gap. A lens
@@ -12,15 +12,15 @@
 
 #include <stddef.h>
 
-/* A ray at one element: height, and slope times index of refraction. */
+/* a ray at one element: height, and slope times index of refraction */
 struct paraxial_ray {
     double y_mm, nu;
 };
 
-/* Returns the curvature of element E in PLANE (enum glint_bend), ignoring
- * tilts and shifts. */
-static double compute_curvature(const struct glint_prescription *lens, int e,
-                                int plane)
+/* Returns the curvature of element E in PLANE (enum glint_bend), 1 / mm,
+ * ignoring tilts and shifts. */
+static double compute_curvature_in_plane(const struct glint_prescription *lens,
+                                         int e, int plane)
 {
     const int k = element_surface(lens, e);
     const struct glint_shape *const s = &lens->surface[k < 0 ? 0 : k].shape;
@@ -30,15 +30,16 @@ static double compute_curvature(const struct glint_prescription *lens, int e,
     return s->across_mm != 0.0 ? 1.0 / s->across_mm : 0.0;
 }
 
-/* Traces RAY in PLANE from the vertex plane of the front surface through
- * element LAST. */
-static void trace_through(struct paraxial_ray *ray,
-                          const struct glint_prescription *lens, int last,
-                          int plane)
+/* Traces RAY in PLANE from the front surface's vertex plane through element
+ * LAST. */
+static void trace_paraxial_ray(struct paraxial_ray *ray,
+                               const struct glint_prescription *lens, int last,
+                               int plane)
 {
     double n = 1.0;
 
-    /* a stop in front of the first surface is reached backwards through air */
+    /* Rays run backwards through air to a stop in front of the first
+     * surface. */
     if (lens->stop_after == 0)
         ray->y_mm -= ray->nu * element_gap_mm(lens, 0);
     for (int e = 0; e <= last; e++) {
@@ -48,7 +49,7 @@ static void trace_through(struct paraxial_ray *ray,
             ray->y_mm += ray->nu / n * element_gap_mm(lens, e - 1);
         if (k >= 0) {
             ray->nu -= ray->y_mm * (lens->surface[k].nd - n) *
-                       compute_curvature(lens, e, plane);
+                       compute_curvature_in_plane(lens, e, plane);
             n = lens->surface[k].nd;
         }
     }
@@ -58,20 +59,21 @@ double glint_image_mm(const struct glint_prescription *lens, double object_mm)
 {
     struct paraxial_ray ray = {object_mm, 1.0};
 
-    trace_through(&ray, lens, surface_element(lens, lens->n_surfaces - 1),
-                  GLINT_BEND_Y);
+    trace_paraxial_ray(&ray, lens, surface_element(lens, lens->n_surfaces - 1),
+                       GLINT_BEND_Y);
     return -ray.y_mm / ray.nu;
 }
 
-/* Returns the distance from the axis at which light through the centre of
- * the entrance pupil hits the sensor / the tangent of the light's angle. */
-static double compute_scale(const struct glint_prescription *lens,
-                            const struct glint_optics *optics)
+/* Returns the distance from the axis, mm, at which light through the centre of
+ * the entrance pupil hits the sensor, divided by the tangent of its angle. */
+static double compute_sensor_scale(const struct glint_prescription *lens,
+                                   const struct glint_optics *optics)
 {
     struct paraxial_ray chief = {-optics->entrance_z_mm, 1.0};
 
-    trace_through(&chief, lens, surface_element(lens, lens->n_surfaces - 1),
-                  GLINT_BEND_Y);
+    trace_paraxial_ray(&chief, lens,
+                       surface_element(lens, lens->n_surfaces - 1),
+                       GLINT_BEND_Y);
     return chief.y_mm +
            chief.nu * element_gap_mm(lens, element_count(lens) - 1);
 }
@@ -82,12 +84,13 @@ void glint_optics_of(const struct glint_prescription *lens,
     struct paraxial_ray marginal = {1.0, 0.0}, to_stop = {1.0, 0.0};
     struct paraxial_ray slanted = {0.0, 1.0}, flat = {1.0, 0.0};
 
-    trace_through(&marginal, lens, surface_element(lens, lens->n_surfaces - 1),
-                  GLINT_BEND_Y);
-    trace_through(&to_stop, lens, lens->stop_after, GLINT_BEND_Y);
-    trace_through(&slanted, lens, lens->stop_after, GLINT_BEND_Y);
-    trace_through(&flat, lens, surface_element(lens, lens->n_surfaces - 1),
-                  GLINT_BEND_X);
+    trace_paraxial_ray(&marginal, lens,
+                       surface_element(lens, lens->n_surfaces - 1),
+                       GLINT_BEND_Y);
+    trace_paraxial_ray(&to_stop, lens, lens->stop_after, GLINT_BEND_Y);
+    trace_paraxial_ray(&slanted, lens, lens->stop_after, GLINT_BEND_Y);
+    trace_paraxial_ray(&flat, lens, surface_element(lens, lens->n_surfaces - 1),
+                       GLINT_BEND_X);
 
     optics->squeeze = flat.nu / marginal.nu;
     optics->focal_mm = -1.0 / marginal.nu;
@@ -96,13 +99,12 @@ void glint_optics_of(const struct glint_prescription *lens,
     optics->stop_radius_mm = optics->entrance_radius_mm * to_stop.y_mm;
     if (optics->stop_radius_mm < 0.0)
         optics->stop_radius_mm = -optics->stop_radius_mm;
-    /* A ray of height h and slope u crosses the axis at -h / u, and the stop
-     * at the height h to_stop.y + u slanted.y, which is 0 at the stop's
-     * centre. */
+    /* A ray of height h and slope u crosses the axis at -h / u, and the stop at
+     * height h to_stop.y + u slanted.y, which is 0 for the chief ray. */
     optics->entrance_z_mm = slanted.y_mm / to_stop.y_mm;
     optics->length_mm = 0.0;
     for (int e = lens->stop_after == 0; e < element_count(lens); e++)
         optics->length_mm += element_gap_mm(lens, e);
-    optics->scale_mm =
-        lens->focus_m > 0.0 ? compute_scale(lens, optics) : optics->focal_mm;
+    optics->scale_mm = lens->focus_m > 0.0 ? compute_sensor_scale(lens, optics)
+                                           : optics->focal_mm;
 }

@@ -3,8 +3,8 @@
  * Parses the text of a lens table into a struct glint_prescription, or reports
  * the first mistake and its position. lenses/README.md describes the format.
  *
- * The parser stores values that are in range, one word at a time. After the
- * last line, check.h checks the lens as a whole.
+ * The parser reads values one word at a time and checks their ranges. After
+ * the last line, check.h checks the lens as a whole.
  */
 #include <math.h>
 #include <stdio.h>
@@ -25,7 +25,7 @@ static const struct glint_text_range term_range = {"aspheric term", -1e18,
 static const struct glint_text_range shift_range = {"decentre", -1e3, 1e3};
 static const struct glint_text_range tilt_range = {"tilt", -45, 45};
 
-/* Reads a radius; "flat" becomes 0. */
+/* Reads the next word as a radius, mm; "flat" becomes 0. */
 static bool read_radius(struct glint_text *text, double *radius_mm)
 {
     const struct glint_word word = glint_text_next_word(text);
@@ -43,8 +43,9 @@ static bool read_radius(struct glint_text *text, double *radius_mm)
                                fabs(*radius_mm));
 }
 
-/* Returns the index of the aspheric term that WORD names, 0 for A4, or -1. */
-static int find_term(const struct glint_word *word)
+/* Returns the index of the aspheric term WORD ("A4" .. "A20"), 0 for A4; -1 if
+ * WORD is not a term. */
+static int find_aspheric_term(const struct glint_word *word)
 {
     char name[8];
 
@@ -56,18 +57,20 @@ static int find_term(const struct glint_word *word)
     return -1;
 }
 
-static bool reject_repetition(struct glint_text *text,
-                              const struct glint_word *word)
+static bool reject_repeated_item(struct glint_text *text,
+                                 const struct glint_word *word)
 {
     char quote[GLINT_QUOTE_BYTES];
 
-    return glint_text_fail(text, word->place, "a second '%s' of this surface",
+    return glint_text_fail(text, word->place,
+                           "'%s' occurs twice for this surface",
                            glint_word_quote(word, quote));
 }
 
-/* Reads the axis, x or y, and, if CYLINDER is false, the radius across. */
-static bool read_bend(struct glint_text *text, struct glint_shape *shape,
-                      bool cylinder)
+/* Reads the axis of a cylinder or toric, x or y, and, unless CYLINDER, the
+ * radius across it. */
+static bool read_bend_axis(struct glint_text *text, struct glint_shape *shape,
+                           bool cylinder)
 {
     const struct glint_word word = glint_text_next_word(text);
 
@@ -78,25 +81,25 @@ static bool read_bend(struct glint_text *text, struct glint_shape *shape,
     return cylinder || read_radius(text, &shape->across_mm);
 }
 
-/* Reads the item of a shape that begins with WORD. */
+/* Reads the item of a line "shape" whose first word is WORD. */
 static bool read_shape_item(struct glint_text *text, struct glint_shape *shape,
                             const struct glint_word *word)
 {
     const bool cylinder = glint_word_is(word, "cylinder");
-    const int term = find_term(word);
+    const int term = find_aspheric_term(word);
     char quote[GLINT_QUOTE_BYTES];
 
     if (cylinder || glint_word_is(word, "toric"))
         return shape->bend != GLINT_BEND_ROUND
-                   ? reject_repetition(text, word)
-                   : read_bend(text, shape, cylinder);
+                   ? reject_repeated_item(text, word)
+                   : read_bend_axis(text, shape, cylinder);
     if (glint_word_is(word, "conic"))
         return shape->conic != 0.0
-                   ? reject_repetition(text, word)
+                   ? reject_repeated_item(text, word)
                    : glint_text_value(text, &conic_range, &shape->conic, NULL);
     if (term >= 0)
         return shape->term[term] != 0.0
-                   ? reject_repetition(text, word)
+                   ? reject_repeated_item(text, word)
                    : glint_text_value(text, &term_range, &shape->term[term],
                                       NULL);
     return glint_text_fail(
@@ -105,8 +108,8 @@ static bool read_shape_item(struct glint_text *text, struct glint_shape *shape,
         glint_word_quote(word, quote));
 }
 
-/* Reads the rest of a line "shape [conic K] [A4 V] .. [A20 V] [cylinder AXIS
- * | toric AXIS RADIUS]" into SHAPE; its other members do not change. Sets
+/* Reads the rest of a line "shape [conic K] [A4 V] .. [A20 V] [cylinder AXIS |
+ * toric AXIS RADIUS]" into SHAPE; members without an item do not change. Sets
  * the error of TEXT and returns false on mistakes, such as repeated items. */
 static bool read_shape_words(struct glint_text *text, struct glint_shape *shape)
 {
@@ -139,7 +142,7 @@ static bool read_group_words(struct glint_text *text, struct glint_shape *shape)
                                    "'%s' is neither decentre nor tilt",
                                    glint_word_quote(&word, quote));
         if (to[0] != 0.0 || to[1] != 0.0)
-            return reject_repetition(text, &word);
+            return reject_repeated_item(text, &word);
         if (!glint_text_value(text, range, &to[0], NULL) ||
             !glint_text_value(text, range, &to[1], NULL))
             return false;
@@ -150,9 +153,9 @@ static bool read_group_words(struct glint_text *text, struct glint_shape *shape)
 /* Min relative change of a zoom's focal length from column to column. */
 #define LEAST_ZOOM 1e-3
 
-/* Removes the text up to the first slash, and the slash, from REST. Returns
- * the text. */
-static struct glint_word cut_before_slash(struct glint_word *rest)
+/* Cuts REST after its first slash. Returns the text before that slash, or all
+ * of REST if it has none. */
+static struct glint_word cut_word_at_slash(struct glint_word *rest)
 {
     const char *slash = memchr(rest->start, '/', (size_t)rest->length);
     struct glint_word word = *rest;
@@ -173,12 +176,12 @@ static int count_slashes(const struct glint_word *word)
     return n;
 }
 
-/* Like read_columns(); also sets N to the count of numbers. */
-static bool read_counted_columns(struct glint_text *text,
-                                 const struct glint_text_range *range,
-                                 struct glint_zoom *zoom,
-                                 double column[GLINT_MAX_POSITIONS],
-                                 struct glint_text_place *place, int *n)
+/* Reads columns as read_zoom_columns() does. Sets N to the count of numbers. */
+static bool read_and_count_columns(struct glint_text *text,
+                                   const struct glint_text_range *range,
+                                   struct glint_zoom *zoom,
+                                   double column[GLINT_MAX_POSITIONS],
+                                   struct glint_text_place *place, int *n)
 {
     struct glint_word word = glint_text_next_word(text);
 
@@ -194,7 +197,7 @@ static bool read_counted_columns(struct glint_text *text,
             "%s has %d positions, but the lines above have %d", range->name, *n,
             zoom->n_positions);
     for (int k = 0; k < *n; k++) {
-        const struct glint_word one = cut_before_slash(&word);
+        const struct glint_word one = cut_word_at_slash(&word);
 
         if (!glint_text_value_of(text, &one, range, &column[k]))
             return false;
@@ -206,33 +209,33 @@ static bool read_counted_columns(struct glint_text *text,
     return true;
 }
 
-/* Reads a number in RANGE, or one per zoom position, separated by slashes,
- * into COLUMN; a single number holds for all positions. PLACE receives its
- * position in the text. Returns false, with the error set, if there is no
- * valid number or if the count differs from earlier ones. */
-static bool read_columns(struct glint_text *text,
-                         const struct glint_text_range *range,
-                         struct glint_zoom *zoom,
-                         double column[GLINT_MAX_POSITIONS],
-                         struct glint_text_place *place)
+/* Reads the next word into COLUMN: a number in RANGE, or one per zoom position,
+ * separated by slashes; a single number holds for all positions. PLACE receives
+ * the word's position. Returns false, with the error set, if a number is
+ * invalid or if their count differs from that of earlier lines. */
+static bool read_zoom_columns(struct glint_text *text,
+                              const struct glint_text_range *range,
+                              struct glint_zoom *zoom,
+                              double column[GLINT_MAX_POSITIONS],
+                              struct glint_text_place *place)
 {
     int n;
 
-    return read_counted_columns(text, range, zoom, column, place, &n);
+    return read_and_count_columns(text, range, zoom, column, place, &n);
 }
 
-/* Reads the gap behind ELEMENT like read_columns(). GAP_MM receives the
- * first number. */
-static bool read_gap(struct glint_text *text,
-                     const struct glint_text_range *range,
-                     struct glint_zoom *zoom, int element, double *gap_mm,
-                     struct glint_text_place *place)
+/* Reads the gap behind ELEMENT, one number or one per zoom position. GAP_MM
+ * receives the first number. */
+static bool read_gap_columns(struct glint_text *text,
+                             const struct glint_text_range *range,
+                             struct glint_zoom *zoom, int element,
+                             double *gap_mm, struct glint_text_place *place)
 {
     double column[GLINT_MAX_POSITIONS] = {0};
     const int k = zoom->n_moves;
     int n;
 
-    if (!read_counted_columns(text, range, zoom, column, place, &n))
+    if (!read_and_count_columns(text, range, zoom, column, place, &n))
         return false;
     *gap_mm = column[0];
     if (n == 1)
@@ -249,8 +252,9 @@ static bool read_gap(struct glint_text *text,
 
 /* ------------------------------------------------------------------- check */
 
-/* Sets LENS to the zoom position of column K. */
-static void set_position(struct glint_prescription *lens, int k)
+/* Sets gaps, f-number and stated focal lengths of LENS to those of zoom
+ * position K. */
+static void set_zoom_position(struct glint_prescription *lens, int k)
 {
     const struct glint_zoom *const z = &lens->zoom;
 
@@ -261,8 +265,8 @@ static void set_position(struct glint_prescription *lens, int k)
     lens->check_back_mm = z->check_back_mm[k];
 }
 
-/* Checks that focal lengths are monotone and sets the zoom parameter of each
- * column. */
+/* Checks that focal lengths rise or fall monotonically, and sets the zoom
+ * parameter of each position, 0 .. 1. */
 static bool set_zoom_parameters(struct glint_zoom *z,
                                 const struct glint_text *text,
                                 const struct glint_places *places)
@@ -285,11 +289,11 @@ static bool set_zoom_parameters(struct glint_zoom *z,
     return true;
 }
 
-/* Checks LENS at each zoom position and leaves it at the first. All lines
- * must have been read. Returns false, with the error set, if a check fails. */
-static bool check_columns(struct glint_prescription *lens,
-                          const struct glint_text *text,
-                          const struct glint_places *places)
+/* Checks LENS at each zoom position, after all lines were read, and leaves it
+ * at the first one. Returns false, with the error set, if a check fails. */
+static bool check_all_zoom_positions(struct glint_prescription *lens,
+                                     const struct glint_text *text,
+                                     const struct glint_places *places)
 {
     struct glint_zoom *const z = &lens->zoom;
 
@@ -301,7 +305,7 @@ static bool check_columns(struct glint_prescription *lens,
     for (int k = 0; k < (z->n_positions ? z->n_positions : 1); k++) {
         struct glint_optics optics;
 
-        set_position(lens, k);
+        set_zoom_position(lens, k);
         if (!glint_prescription_check(lens, text, places))
             return false;
         glint_optics_of(lens, &optics);
@@ -309,7 +313,7 @@ static bool check_columns(struct glint_prescription *lens,
         z->back_mm[k] = optics.back_focal_mm;
         z->last_gap_mm[k] = element_gap_mm(lens, element_count(lens) - 1);
     }
-    set_position(lens, 0);
+    set_zoom_position(lens, 0);
     return !z->n_positions || set_zoom_parameters(z, text, places);
 }
 
@@ -321,7 +325,7 @@ STATIC_ASSERT(sizeof(((struct glint_prescription *)0)->source) >
 
 struct medium {
     double nd, vd;
-    double sellmeier[6]; /* all 0 unless the glass is from the catalogue */
+    double sellmeier[6]; /* all 0 unless the glass is in the catalogue */
 };
 
 static const struct glint_text_range f_number_range = {
@@ -362,15 +366,17 @@ enum field {
 struct parser {
     struct glint_text text;
     struct glint_prescription lens;
-    struct glint_text_place word[N_FIELDS]; /* position of the last line of each
-                                               type; line 0: no such line */
+    /* position of the last line of each type; line 0: no such line */
+    struct glint_text_place word[N_FIELDS];
     struct glint_places places;
     struct glint_coating coating; /* default coating of surfaces */
     bool has_coating[GLINT_MAX_SURFACES];
     int n_elements;
-    bool in_group;   /* true: within a group, with the position in GROUP */
-    bool in_focus;   /* true: within the focusing group */
-    bool is_surface; /* true: the last element is a surface, not the stop */
+    /* true: the parser is within a group, whose position is in group */
+    bool in_group;
+    bool in_focus; /* true: the parser is within the focusing group */
+    /* true: the last element is a surface; false: it is the stop */
+    bool is_surface;
     struct glint_shape group;
     int n_glasses;
     struct {
@@ -381,14 +387,14 @@ struct parser {
 
 /* ------------------------------------------------------------ header lines */
 
-static bool is_lower(char c)
+static bool is_lower_case_letter(char c)
 {
     return c >= 'a' && c <= 'z';
 }
 
 static bool is_letter(char c)
 {
-    return is_lower(c) || (c >= 'A' && c <= 'Z');
+    return is_lower_case_letter(c) || (c >= 'A' && c <= 'Z');
 }
 
 static bool is_digit(char c)
@@ -396,7 +402,7 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-static bool read_name(struct parser *p)
+static bool read_lens_name(struct parser *p)
 {
     const struct glint_word word = glint_text_next_word(&p->text);
 
@@ -409,42 +415,44 @@ static bool read_name(struct parser *p)
     for (int i = 0; i < word.length; i++) {
         const char c = word.start[i];
 
-        if (!is_lower(c) && !is_digit(c) && (c != '-' || i == 0))
+        if (!is_lower_case_letter(c) && !is_digit(c) && (c != '-' || i == 0))
             return glint_text_fail(
                 &p->text, word.place,
-                "a name may have a-z, 0-9 and, not at its ends, -");
+                "a name must be a-z, 0-9 and -, and must not begin with -");
     }
     memcpy(p->lens.name, word.start, (size_t)word.length);
     return true;
 }
 
-static bool read_source(struct parser *p)
+static bool read_source_line(struct parser *p)
 {
     const struct glint_word rest = glint_text_rest(&p->text);
 
     if (!rest.length)
-        return glint_text_fail(&p->text, rest.place, "source is missing");
+        return glint_text_fail(&p->text, rest.place,
+                               "the text of 'source' is missing");
     memcpy(p->lens.source, rest.start, (size_t)rest.length);
     return true;
 }
 
-static bool read_character(struct parser *p)
+static bool read_character_line(struct parser *p)
 {
     const struct glint_word rest = glint_text_rest(&p->text);
 
     if (!rest.length)
-        return glint_text_fail(&p->text, rest.place, "character is missing");
+        return glint_text_fail(&p->text, rest.place,
+                               "the text of 'character' is missing");
     memcpy(p->lens.character, rest.start, (size_t)rest.length);
     return true;
 }
 
-static bool read_f_number(struct parser *p)
+static bool read_f_number_line(struct parser *p)
 {
-    return read_columns(&p->text, &f_number_range, &p->lens.zoom,
-                        p->lens.zoom.f_number, &p->places.f_number);
+    return read_zoom_columns(&p->text, &f_number_range, &p->lens.zoom,
+                             p->lens.zoom.f_number, &p->places.f_number);
 }
 
-static bool read_film(struct parser *p)
+static bool read_film_size(struct parser *p)
 {
     return glint_text_value(&p->text, &film_width_range, &p->lens.film_width_mm,
                             NULL) &&
@@ -452,32 +460,34 @@ static bool read_film(struct parser *p)
                             &p->lens.film_height_mm, NULL);
 }
 
-static bool read_focal(struct parser *p)
+static bool read_stated_focal_length(struct parser *p)
 {
-    return read_columns(&p->text, &stated_range, &p->lens.zoom,
-                        p->lens.zoom.check_focal_mm, &p->places.focal);
+    return read_zoom_columns(&p->text, &stated_range, &p->lens.zoom,
+                             p->lens.zoom.check_focal_mm, &p->places.focal);
 }
 
-static bool read_back_focal(struct parser *p)
+static bool read_stated_back_focal_length(struct parser *p)
 {
-    return read_columns(&p->text, &stated_range, &p->lens.zoom,
-                        p->lens.zoom.check_back_mm, &p->places.back_focal);
+    return read_zoom_columns(&p->text, &stated_range, &p->lens.zoom,
+                             p->lens.zoom.check_back_mm, &p->places.back_focal);
 }
 
-static bool read_coating(struct parser *p)
+static bool read_default_coating(struct parser *p)
 {
     return glint_coating_read(&p->text, &p->coating);
 }
 
-static bool read_mixed(struct parser *p)
+static bool read_mixed_coatings(struct parser *p)
 {
     return glint_coatings_read(&p->text, p->lens.mixed, &p->lens.n_mixed);
 }
 
 /* ------------------------------------------------------------------- glass */
 
-/* Returns the index of WORD in p->glass; -1 if the name is unknown. */
-static int find_glass(const struct parser *p, const struct glint_word *word)
+/* Returns the index of the glass WORD in p->glass; -1 if the table does not
+ * define it. */
+static int find_table_glass(const struct parser *p,
+                            const struct glint_word *word)
 {
     int i = p->n_glasses - 1;
 
@@ -500,13 +510,13 @@ static bool check_glass_name(struct parser *p, const struct glint_word *word)
                                "glass name must be a letter and at most %d "
                                "letters, digits and -",
                                GLASS_NAME_BYTES - 2);
-    if (glint_word_is(word, "air") || find_glass(p, word) >= 0)
+    if (glint_word_is(word, "air") || find_table_glass(p, word) >= 0)
         return glint_text_fail(&p->text, word->place,
                                "glass of this name is already defined");
     return true;
 }
 
-static bool read_glass(struct parser *p)
+static bool read_glass_definition(struct parser *p)
 {
     const struct glint_word word = glint_text_next_word(&p->text);
     const int n = p->n_glasses;
@@ -523,9 +533,10 @@ static bool read_glass(struct parser *p)
            glint_text_value(&p->text, &vd_range, &p->glass[n].medium.vd, NULL);
 }
 
-/* Sets MEDIUM to the catalogue glass with the name WORD. */
-static bool read_catalogue(struct parser *p, const struct glint_word *word,
-                           struct medium *medium)
+/* Sets MEDIUM to the glass WORD of the catalogue. */
+static bool read_catalogue_glass(struct parser *p,
+                                 const struct glint_word *word,
+                                 struct medium *medium)
 {
     const size_t bytes = (size_t)word->length;
     const struct glint_glass *glass = glint_glass_find(word->start, bytes);
@@ -548,7 +559,7 @@ static bool read_catalogue(struct parser *p, const struct glint_word *word,
     return true;
 }
 
-/* Reads "air", ND VD, or the name of a glass. */
+/* Reads a medium: "air", ND VD, or the name of a glass. */
 static bool read_medium(struct parser *p, struct medium *medium)
 {
     const struct glint_word word = glint_text_next_word(&p->text);
@@ -564,9 +575,9 @@ static bool read_medium(struct parser *p, struct medium *medium)
     if (!is_letter(word.start[0]))
         return glint_text_value_of(&p->text, &word, &nd_range, &medium->nd) &&
                glint_text_value(&p->text, &vd_range, &medium->vd, NULL);
-    glass = find_glass(p, &word);
+    glass = find_table_glass(p, &word);
     if (glass < 0)
-        return read_catalogue(p, &word, medium);
+        return read_catalogue_glass(p, &word, medium);
     *medium = p->glass[glass].medium;
     return true;
 }
@@ -574,20 +585,20 @@ static bool read_medium(struct parser *p, struct medium *medium)
 /* ---------------------------------------------------------------- elements */
 
 /* Reads thickness and semi-diameter of the next element. */
-static bool read_gap_and_semi(struct parser *p,
-                              const struct glint_text_range *gap,
-                              double *thickness_mm, double *semi_mm,
-                              struct glint_text_place *semi)
+static bool read_gap_and_semi_diameter(struct parser *p,
+                                       const struct glint_text_range *gap,
+                                       double *thickness_mm, double *semi_mm,
+                                       struct glint_text_place *semi)
 {
     const int e = p->n_elements++;
 
-    return read_gap(&p->text, gap, &p->lens.zoom, e, thickness_mm,
-                    &p->places.thickness[e]) &&
+    return read_gap_columns(&p->text, gap, &p->lens.zoom, e, thickness_mm,
+                            &p->places.thickness[e]) &&
            glint_text_value(&p->text, &semi_range, semi_mm, semi);
 }
 
-/* Reads the coating of surface K if the line states one. CEMENTED: there is
- * glass on both sides. */
+/* Reads the coating of surface K, if the line states one. CEMENTED: both sides
+ * are glass. */
 static bool read_surface_coating(struct parser *p, int k, bool cemented)
 {
     struct glint_surface *s = &p->lens.surface[k];
@@ -608,7 +619,7 @@ static bool read_surface_coating(struct parser *p, int k, bool cemented)
     return true;
 }
 
-static bool read_surface(struct parser *p)
+static bool read_surface_line(struct parser *p)
 {
     const int k = p->lens.n_surfaces;
     struct glint_surface *s = &p->lens.surface[k];
@@ -618,16 +629,17 @@ static bool read_surface(struct parser *p)
         return glint_text_fail(&p->text, p->word[SURFACE],
                                "more than %d surfaces", GLINT_MAX_SURFACES);
     if (!read_radius(&p->text, &s->radius_mm) ||
-        !read_gap_and_semi(p, &thickness_range, &s->thickness_mm, &s->semi_mm,
-                           &p->places.semi[k]))
+        !read_gap_and_semi_diameter(p, &thickness_range, &s->thickness_mm,
+                                    &s->semi_mm, &p->places.semi[k]))
         return false;
     if (!read_medium(p, &medium))
         return false;
     if (k > 0)
         before = (struct medium){.nd = s[-1].nd, .vd = s[-1].vd};
     if (before.nd == medium.nd && before.vd == medium.vd)
-        return glint_text_fail(&p->text, p->places.medium,
-                               "medium is the same on both sides");
+        return glint_text_fail(
+            &p->text, p->places.medium,
+            "both sides of the surface have the same medium");
     s->nd = medium.nd;
     s->vd = medium.vd;
     memcpy(s->sellmeier, medium.sellmeier, sizeof s->sellmeier);
@@ -638,8 +650,8 @@ static bool read_surface(struct parser *p)
     return read_surface_coating(p, k, before.vd > 0.0 && medium.vd > 0.0);
 }
 
-/* Reads the shape of the last surface. */
-static bool read_shape(struct parser *p)
+/* Reads the line "shape" of the last surface. */
+static bool read_shape_line(struct parser *p)
 {
     if (!p->is_surface)
         return glint_text_fail(&p->text, p->word[SHAPE],
@@ -648,26 +660,26 @@ static bool read_shape(struct parser *p)
                             &p->lens.surface[p->lens.n_surfaces - 1].shape);
 }
 
-static bool read_group(struct parser *p)
+static bool read_group_line(struct parser *p)
 {
     if (p->in_group || p->in_focus)
         return glint_text_fail(&p->text, p->word[GROUP],
-                               "the group above has no end");
+                               "the group above has no line 'end'");
     p->in_group = true;
     return read_group_words(&p->text, &p->group);
 }
 
-static bool read_focus(struct parser *p)
+static bool read_focus_line(struct parser *p)
 {
     if (p->in_group)
         return glint_text_fail(&p->text, p->word[FOCUS],
-                               "the group above has no end");
+                               "the group above has no line 'end'");
     p->in_focus = true;
     p->lens.focus_first = p->lens.n_surfaces;
     return true;
 }
 
-static bool read_end(struct parser *p)
+static bool read_end_line(struct parser *p)
 {
     if (!p->in_group && !p->in_focus)
         return glint_text_fail(&p->text, p->word[END],
@@ -677,14 +689,14 @@ static bool read_end(struct parser *p)
         p->lens.n_focus = p->lens.n_surfaces - p->lens.focus_first;
         return p->lens.n_focus > 0 ||
                glint_text_fail(&p->text, p->word[END],
-                               "no surface moves to focus");
+                               "the focusing group has no surface");
     }
     p->in_group = false;
     p->group = (struct glint_shape){.conic = 0};
     return true;
 }
 
-static bool read_stop(struct parser *p)
+static bool read_stop_line(struct parser *p)
 {
     struct glint_word word;
 
@@ -693,7 +705,7 @@ static bool read_stop(struct parser *p)
                                "the stop cannot be in a group; end it above");
     p->is_surface = false;
     p->lens.stop_after = p->lens.n_surfaces;
-    if (!read_gap_and_semi(
+    if (!read_gap_and_semi_diameter(
             p, p->lens.n_surfaces ? &thickness_range : &front_stop_range,
             &p->lens.stop_thickness_mm, &p->lens.stop_semi_mm,
             &p->places.stop) ||
@@ -710,25 +722,26 @@ static const struct {
     bool (*read)(struct parser *p);
     bool required, repeats;
 } fields[N_FIELDS] = {
-    [NAME] = {"name", read_name, true, false},
-    [SOURCE] = {"source", read_source, false, false},
-    [CHARACTER] = {"character", read_character, false, false},
-    [F_NUMBER] = {"f-number", read_f_number, true, false},
-    [FILM] = {"film", read_film, true, false},
-    [FOCAL] = {"focal-length", read_focal, false, false},
-    [BACK_FOCAL] = {"back-focal-length", read_back_focal, false, false},
-    [COATING] = {"coating", read_coating, false, false},
-    [MIXED] = {"mixed-coating", read_mixed, false, false},
-    [GLASS] = {"glass", read_glass, false, true},
-    [SURFACE] = {"surface", read_surface, true, true},
-    [SHAPE] = {"shape", read_shape, false, true},
-    [GROUP] = {"group", read_group, false, true},
-    [FOCUS] = {"focus", read_focus, false, false},
-    [END] = {"end", read_end, false, true},
-    [STOP] = {"stop", read_stop, true, false},
+    [NAME] = {"name", read_lens_name, true, false},
+    [SOURCE] = {"source", read_source_line, false, false},
+    [CHARACTER] = {"character", read_character_line, false, false},
+    [F_NUMBER] = {"f-number", read_f_number_line, true, false},
+    [FILM] = {"film", read_film_size, true, false},
+    [FOCAL] = {"focal-length", read_stated_focal_length, false, false},
+    [BACK_FOCAL] = {"back-focal-length", read_stated_back_focal_length, false,
+                    false},
+    [COATING] = {"coating", read_default_coating, false, false},
+    [MIXED] = {"mixed-coating", read_mixed_coatings, false, false},
+    [GLASS] = {"glass", read_glass_definition, false, true},
+    [SURFACE] = {"surface", read_surface_line, true, true},
+    [SHAPE] = {"shape", read_shape_line, false, true},
+    [GROUP] = {"group", read_group_line, false, true},
+    [FOCUS] = {"focus", read_focus_line, false, false},
+    [END] = {"end", read_end_line, false, true},
+    [STOP] = {"stop", read_stop_line, true, false},
 };
 
-static bool read_line(struct parser *p)
+static bool read_table_line(struct parser *p)
 {
     struct glint_word word = glint_text_next_word(&p->text);
     char quote[GLINT_QUOTE_BYTES];
@@ -755,18 +768,18 @@ static bool read_line(struct parser *p)
                            glint_word_quote(&word, quote), fields[f].word);
 }
 
-static bool read_lines(struct parser *p)
+static bool read_all_lines(struct parser *p)
 {
     while (glint_text_next_line(&p->text))
-        if (!read_line(p))
+        if (!read_table_line(p))
             return false;
     for (int f = 0; f < N_FIELDS; f++)
         if (fields[f].required && !p->word[f].line)
             return glint_text_fail(&p->text, glint_text_end(&p->text),
-                                   "there is no %s line", fields[f].word);
+                                   "the line '%s' is missing", fields[f].word);
     return (!p->in_group && !p->in_focus) ||
            glint_text_fail(&p->text, p->word[p->in_group ? GROUP : FOCUS],
-                           "the group has no end");
+                           "the group has no line 'end'");
 }
 
 /* ---------------------------------------------------------------- the lens */
@@ -788,7 +801,8 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
     memset(&p, 0, sizeof(p));
     glint_coating_single(&p.coating, 550);
     if (!glint_text_open(&p.text, text, bytes, file_name, error) ||
-        !read_lines(&p) || !check_columns(&p.lens, &p.text, &p.places))
+        !read_all_lines(&p) ||
+        !check_all_zoom_positions(&p.lens, &p.text, &p.places))
         return GLINT_E_LENS;
     set_default_coatings(&p);
     *lens = p.lens;

@@ -13,22 +13,22 @@
 
 STATIC_ASSERT(GLINT_TEXT_BYTES < INT_MAX);
 
-/* bytes of the file name in an error; leaves space for the cause */
+/* max bytes of the file name in an error text; leaves space for the cause */
 #define FILE_NAME_SHOWN 100
 
-static bool is_blank(char c)
+static bool is_blank_char(char c)
 {
     return c == ' ' || c == '\t';
 }
 
-static bool is_digit(char c)
+static bool is_digit_char(char c)
 {
     return c >= '0' && c <= '9';
 }
 
-/* Returns the length in bytes of the character at AT; 0 if it is a control
- * character or malformed UTF-8. */
-static int character_length(const char *at, const char *end)
+/* Returns the bytes of the character at AT; 0 if it is a control character or
+ * malformed UTF-8. */
+static int compute_character_bytes(const char *at, const char *end)
 {
     static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
     const unsigned char *byte = (const unsigned char *)at;
@@ -57,22 +57,22 @@ static int character_length(const char *at, const char *end)
     return length;
 }
 
-/* Returns the length in bytes of the line end at AT: 0 (none), 1 (LF) or 2
+/* Returns the bytes of the line end at AT: 0 (not a line end), 1 (LF) or 2
  * (CRLF). */
-static int line_end_length(const char *at, const char *end)
+static int compute_line_end_bytes(const char *at, const char *end)
 {
     if (at < end && *at == '\n')
         return 1;
     return end - at >= 2 && at[0] == '\r' && at[1] == '\n' ? 2 : 0;
 }
 
-static bool check_characters(struct glint_text *text)
+static bool check_text_characters(struct glint_text *text)
 {
     struct glint_text_place place = {1, 1};
 
     for (const char *at = text->next; at < text->end;) {
-        const int line_end = line_end_length(at, text->end);
-        const int length = character_length(at, text->end);
+        const int line_end = compute_line_end_bytes(at, text->end);
+        const int length = compute_character_bytes(at, text->end);
 
         if (line_end) {
             place.line++;
@@ -93,13 +93,14 @@ static bool check_characters(struct glint_text *text)
     return true;
 }
 
-/* Sets TEXT to the start of DATA[BYTES], behind the byte order mark, if any. */
-static void set_start(struct glint_text *text, const char *data, size_t bytes,
-                      const char *file_name, struct glint_error *error)
+/* Sets TEXT to the start of DATA[BYTES], after the byte order mark, if any. */
+static void set_text_start(struct glint_text *text, const char *data,
+                           size_t bytes, const char *file_name,
+                           struct glint_error *error)
 {
     static const char mark[] = {'\xef', '\xbb', '\xbf'};
 
-    if (!bytes) /* DATA may be NULL */
+    if (!bytes) /* DATA may be NULL if BYTES is 0 */
         data = "";
     if (bytes >= sizeof(mark) && memcmp(data, mark, sizeof(mark)) == 0) {
         data += sizeof(mark);
@@ -113,19 +114,19 @@ static void set_start(struct glint_text *text, const char *data, size_t bytes,
 bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
                      const char *file_name, struct glint_error *error)
 {
-    set_start(text, data, bytes, file_name, error);
+    set_text_start(text, data, bytes, file_name, error);
     if (bytes > GLINT_TEXT_BYTES)
         return glint_text_fail(text, (struct glint_text_place){1, 1},
                                "text is longer than %d bytes",
                                GLINT_TEXT_BYTES);
-    return check_characters(text);
+    return check_text_characters(text);
 }
 
 void glint_text_open_data(struct glint_text *text, const char *data,
                           size_t bytes, const char *file_name,
                           struct glint_error *error)
 {
-    set_start(text, data, bytes, file_name, error);
+    set_text_start(text, data, bytes, file_name, error);
 }
 
 bool glint_text_next_line(struct glint_text *text)
@@ -136,21 +137,21 @@ bool glint_text_next_line(struct glint_text *text)
         return false;
     text->line_number++;
     text->line = text->at = at;
-    while (at < text->end && !line_end_length(at, text->end) &&
-           !(*at == '#' && (at == text->line || is_blank(at[-1]))))
+    while (at < text->end && !compute_line_end_bytes(at, text->end) &&
+           !(*at == '#' && (at == text->line || is_blank_char(at[-1]))))
         at++;
     text->stop = at;
-    while (at < text->end && !line_end_length(at, text->end))
+    while (at < text->end && !compute_line_end_bytes(at, text->end))
         at++;
-    text->next = at + line_end_length(at, text->end);
+    text->next = at + compute_line_end_bytes(at, text->end);
     return true;
 }
 
-static struct glint_word start_word(struct glint_text *text)
+static struct glint_word skip_blanks_to_word(struct glint_text *text)
 {
     struct glint_word word = {NULL, 0, {0, 0}};
 
-    while (text->at < text->stop && is_blank(*text->at))
+    while (text->at < text->stop && is_blank_char(*text->at))
         text->at++;
     word.start = text->at;
     word.place.line = text->line_number;
@@ -160,9 +161,9 @@ static struct glint_word start_word(struct glint_text *text)
 
 struct glint_word glint_text_next_word(struct glint_text *text)
 {
-    struct glint_word word = start_word(text);
+    struct glint_word word = skip_blanks_to_word(text);
 
-    while (text->at < text->stop && !is_blank(*text->at))
+    while (text->at < text->stop && !is_blank_char(*text->at))
         text->at++;
     word.length = (int)(text->at - word.start);
     return word;
@@ -181,11 +182,11 @@ bool glint_text_may_follow(struct glint_text *text, const char *only,
 
 struct glint_word glint_text_rest(struct glint_text *text)
 {
-    struct glint_word word = start_word(text);
+    struct glint_word word = skip_blanks_to_word(text);
 
     text->at = text->stop;
     word.length = (int)(text->stop - word.start);
-    while (word.length > 0 && is_blank(word.start[word.length - 1]))
+    while (word.length > 0 && is_blank_char(word.start[word.length - 1]))
         word.length--;
     return word;
 }
@@ -225,7 +226,7 @@ bool glint_word_is(const struct glint_word *word, const char *string)
 const char *glint_word_quote(const struct glint_word *word,
                              char quote[GLINT_QUOTE_BYTES])
 {
-    /* leaves space for the dots and the terminating 0 */
+    /* leaves space for "..." and the terminating 0 */
     const int most = GLINT_QUOTE_BYTES - 4;
     const int n = word->length < most ? word->length : most;
 
@@ -238,19 +239,20 @@ const char *glint_word_quote(const struct glint_word *word,
     return quote;
 }
 
-/* A number while it is read: unread rest, and value so far. */
+/* A number while it is read: its unread characters, and its digits so far. */
 struct digits {
     const char *at, *end;
-    uint64_t value; /* value of the significant digits */
+    uint64_t value; /* value of the significant digits read so far */
     int significant, n;
 };
 
-/* Reads digits and counts them; only the first GLINT_NUMBER_DIGITS
- * significant ones enter the value. */
-static void read_digits(struct digits *digits)
+/* Reads a run of digits and counts them in n. Only the first
+ * GLINT_NUMBER_DIGITS significant ones enter the value. */
+static void read_digit_run(struct digits *digits)
 {
     digits->n = 0;
-    for (; digits->at < digits->end && is_digit(*digits->at); digits->at++) {
+    for (; digits->at < digits->end && is_digit_char(*digits->at);
+         digits->at++) {
         digits->n++;
         if (digits->significant || *digits->at != '0')
             digits->significant++;
@@ -259,8 +261,9 @@ static void read_digits(struct digits *digits)
     }
 }
 
-/* Skips the next character if it is C1 or C2. Returns whether it was. */
-static bool skip_char(struct digits *digits, char c1, char c2)
+/* Skips the next character if it is C1 or C2. Returns whether it was
+ * skipped. */
+static bool skip_either_char(struct digits *digits, char c1, char c2)
 {
     if (digits->at == digits->end || (*digits->at != c1 && *digits->at != c2))
         return false;
@@ -268,22 +271,22 @@ static bool skip_char(struct digits *digits, char c1, char c2)
     return true;
 }
 
-static bool read_sign(struct digits *digits)
+static bool read_number_sign(struct digits *digits)
 {
     const bool negative = digits->at < digits->end && *digits->at == '-';
 
-    skip_char(digits, '+', '-');
+    skip_either_char(digits, '+', '-');
     return negative;
 }
 
-/* Reads the power of ten after the e, clamped to +-1000. Returns false if
- * there is no number. */
+/* Reads the exponent of ten after the "e", clamped to +-1000. Returns false if
+ * there are no digits. */
 static bool read_exponent(struct digits *mantissa, int *exponent)
 {
     struct digits power = {mantissa->at, mantissa->end, 0, 0, 0};
-    const bool negative = read_sign(&power);
+    const bool negative = read_number_sign(&power);
 
-    read_digits(&power);
+    read_digit_run(&power);
     *exponent =
         power.value < 1000 && power.significant < 4 ? (int)power.value : 1000;
     if (negative)
@@ -292,8 +295,8 @@ static bool read_exponent(struct digits *mantissa, int *exponent)
     return power.n > 0;
 }
 
-/* Returns 10^n, 0 <= n <= 22, which is exact in a double. */
-static double power_of_ten(int n)
+/* Returns 10^N for N = 0 .. 22, which is exact in a double. */
+static double compute_power_of_ten(int n)
 {
     double power = 1.0;
 
@@ -302,23 +305,26 @@ static double power_of_ten(int n)
     return power;
 }
 
-/* Splits WORD into DIGITS and a power of ten, whose product is the number if
- * no digits were dropped. Returns false if WORD is not a number. */
-static bool split_number(const struct glint_word *word, struct digits *digits,
-                         bool *negative, int *exponent)
+/* Splits WORD into DIGITS and an exponent of ten. Their product is the number
+ * if it has at most GLINT_NUMBER_DIGITS digits. Returns false if WORD is not a
+ * number. */
+static bool split_decimal_number(const struct glint_word *word,
+                                 struct digits *digits, bool *negative,
+                                 int *exponent)
 {
     int whole;
 
     *digits = (struct digits){word->start, word->start + word->length, 0, 0, 0};
     *exponent = 0;
-    *negative = read_sign(digits);
-    read_digits(digits);
+    *negative = read_number_sign(digits);
+    read_digit_run(digits);
     whole = digits->n;
     digits->n = 0;
-    if (skip_char(digits, '.', '.'))
-        read_digits(digits);
+    if (skip_either_char(digits, '.', '.'))
+        read_digit_run(digits);
     if (whole + digits->n == 0 ||
-        (skip_char(digits, 'e', 'E') && !read_exponent(digits, exponent)) ||
+        (skip_either_char(digits, 'e', 'E') &&
+         !read_exponent(digits, exponent)) ||
         digits->at != digits->end)
         return false;
     *exponent -= digits->n;
@@ -327,8 +333,8 @@ static bool split_number(const struct glint_word *word, struct digits *digits,
     return true;
 }
 
-/* Returns the double nearest to the digits of WORD times 10^EXPONENT. The
- * text given to strtod() has no decimal point, so the locale has no effect. */
+/* Returns the double nearest to the digits of WORD times 10^EXPONENT. Passes
+ * strtod() no decimal point, so the locale has no effect. */
 static double find_nearest_double(const struct glint_word *word, int exponent)
 {
     char text[GLINT_LINE_BYTES + 16];
@@ -336,7 +342,7 @@ static double find_nearest_double(const struct glint_word *word, int exponent)
     int n = 0;
 
     for (; at < end && *at != 'e' && *at != 'E' && n < GLINT_LINE_BYTES; at++)
-        if (is_digit(*at))
+        if (is_digit_char(*at))
             text[n++] = *at;
     snprintf(text + n, sizeof text - (size_t)n, "e%d", exponent);
     return strtod(text, NULL);
@@ -349,20 +355,20 @@ const char *glint_word_number(const struct glint_word *word, double *value)
     int exponent, more;
     double magnitude;
 
-    if (!split_number(word, &digits, &negative, &exponent))
+    if (!split_decimal_number(word, &digits, &negative, &exponent))
         return "is not a number";
     more = digits.significant > GLINT_NUMBER_DIGITS
                ? digits.significant - GLINT_NUMBER_DIGITS
                : 0;
-    /* the range includes coefficients of h^20, such as 1e-25: 0.1 mm at h =
-     * 14 mm */
+    /* covers coefficients of h^20, such as 1e-25: 0.1 mm at h = 14 mm */
     if (exponent + more < -60 || exponent + more > 22)
         return "is too large or too small";
-    /* With at most 15 digits and 10^22 both operands are exact, so a single
-     * rounding gives the nearest double. */
+    /* With at most 15 digits and 10^22 both operands are exact, so rounding
+     * once gives the nearest double. */
     magnitude = more > 0 || exponent < -22 ? find_nearest_double(word, exponent)
-                : exponent < 0 ? (double)digits.value / power_of_ten(-exponent)
-                               : (double)digits.value * power_of_ten(exponent);
+                : exponent < 0
+                    ? (double)digits.value / compute_power_of_ten(-exponent)
+                    : (double)digits.value * compute_power_of_ten(exponent);
     *value = negative ? -magnitude : magnitude;
     return NULL;
 }
@@ -374,7 +380,7 @@ bool glint_word_number_about(const struct glint_word *word, double *value)
     int exponent;
     double magnitude;
 
-    if (!split_number(word, &digits, &negative, &exponent))
+    if (!split_decimal_number(word, &digits, &negative, &exponent))
         return false;
     if (digits.significant > GLINT_NUMBER_DIGITS)
         exponent += digits.significant - GLINT_NUMBER_DIGITS;

@@ -23,19 +23,19 @@
 
 #include "glint/status.h"
 
-#define GLINT_TEXT_BYTES 65536 /* max length of a text */
-#define GLINT_LINE_BYTES 200   /* max length of a line, without its end */
+#define GLINT_TEXT_BYTES 65536 /* max bytes of a text */
+#define GLINT_LINE_BYTES 200   /* max bytes of a line, without its line end */
 /* number of decimal digits that a double can always represent */
 #define GLINT_NUMBER_DIGITS 15
 
 struct glint_text_place {
-    /* both count from 1, columns in bytes; line 0: no position */
+    /* counted from 1, columns in bytes; line 0: no position */
     int line, column;
 };
 
 struct glint_word {
-    const char *start; /* not terminated */
-    int length;        /* bytes; 0: end of the line, whose position is PLACE */
+    const char *start; /* not terminated by 0 */
+    int length;        /* bytes; 0: end of the line, at the position place */
     struct glint_text_place place;
 };
 
@@ -43,7 +43,7 @@ struct glint_text {
     const char *file_name;
     struct glint_error *error;
     const char *next, *end; /* unread lines */
-    /* current line, and its unread words AT .. STOP */
+    /* current line; at .. stop: its unread part */
     const char *line, *at, *stop;
     int line_number;
 };
@@ -53,8 +53,8 @@ struct glint_text {
 bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
                      const char *file_name, struct glint_error *error);
 
-/* Opens DATA[BYTES], at most INT32_MAX bytes, without checks: lines of any
- * length with any bytes. For files that programs write. */
+/* Opens DATA[BYTES], at most INT32_MAX bytes, without checks: lines may have
+ * any length and any bytes. For files that programs write. */
 void glint_text_open_data(struct glint_text *text, const char *data,
                           size_t bytes, const char *file_name,
                           struct glint_error *error);
@@ -65,8 +65,8 @@ bool glint_text_next_line(struct glint_text *text);
 /* Returns the next word of the line. */
 struct glint_word glint_text_next_word(struct glint_text *text);
 
-/* Reads the next word of the line, if any, into WORD. Rejects a word other
- * than ONLY. */
+/* Reads the next word of the line into WORD; its length is 0 if there is none.
+ * Rejects words other than ONLY. */
 bool glint_text_may_follow(struct glint_text *text, const char *only,
                            struct glint_word *word);
 
@@ -76,19 +76,19 @@ struct glint_word glint_text_rest(struct glint_text *text);
 /* Returns the position of the end of the text. */
 struct glint_text_place glint_text_end(const struct glint_text *text);
 
-/* Writes "FILE:LINE:COLUMN: FORMAT ..." into the error. Returns false. */
+/* Sets the error to "FILE:LINE:COLUMN: FORMAT ...". Returns false. */
 bool glint_text_fail(const struct glint_text *text,
                      struct glint_text_place place, const char *format, ...);
 
-/* A quantity: its name and the range of its values. */
+/* A quantity: its name in error texts and the range of its values. */
 struct glint_text_range {
     const char *name;
     double min, max;
 };
 
-/* Reads WORD as a number of any magnitude; NAME is its name in errors. This
- * function and the next three set the error and return false if WORD is not
- * a number or out of range. */
+/* Reads WORD as a number of any magnitude. NAME names the number in error
+ * texts. This function and the next three set the error and return false if
+ * WORD is not a number or out of range. */
 bool glint_text_number_of(const struct glint_text *text,
                           const struct glint_word *word, const char *name,
                           double *value);
@@ -110,18 +110,18 @@ bool glint_text_value(struct glint_text *text,
 
 bool glint_word_is(const struct glint_word *word, const char *string);
 
-/* Returns WORD as it appears in error messages: printable ASCII characters
- * only, truncated if it is long. */
+/* Returns WORD in the form for error texts: printable ASCII characters only,
+ * truncated if it is long. */
 #define GLINT_QUOTE_BYTES 32
 const char *glint_word_quote(const struct glint_word *word,
                              char quote[GLINT_QUOTE_BYTES]);
 
 /* Parses WORD as [+-] digits [. digits] [e [+-] digits]. Returns NULL, or an
- * error text to print after the word; VALUE is then unchanged. */
+ * error text that continues the quoted word; VALUE is then unchanged. */
 const char *glint_word_number(const struct glint_word *word, double *value);
 
-/* Parses WORD with any number of digits; the relative error of VALUE is at
- * most 4e-15. Returns false if WORD is not a number or too large for a
+/* Parses WORD as a number with any count of digits; the relative error of VALUE
+ * is at most 4e-15. Returns false if WORD is not a number or is too large for a
  * double. */
 bool glint_word_number_about(const struct glint_word *word, double *value);
 

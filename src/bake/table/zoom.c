@@ -4,16 +4,16 @@
 
 #include "bake/table/elements.h"
 
-/* Relative excess of a focal length beyond the zoom range that is accepted,
- * as lens barrels state rounded values. */
+/* Max relative excess of a requested focal length over the zoom range, as lens
+ * barrels state rounded values. */
 #define BEYOND 2e-3
 
 /* ---------------------------------------------------------------- cubic */
 
-/* Returns the slope at column K of a monotone cubic interpolation: 0 at an
- * extremum, else a weighted mean of the slopes on both sides. */
-static double compute_slope(const struct glint_zoom *z, const double *value,
-                            int k)
+/* Returns the slope of VALUE at position K for monotone cubic interpolation: 0
+ * at an extremum, else a weighted mean of the slopes on both sides. */
+static double compute_monotone_slope(const struct glint_zoom *z,
+                                     const double *value, int k)
 {
     const double *const x = z->along;
     const int last = z->n_positions - 1;
@@ -31,7 +31,7 @@ static double compute_slope(const struct glint_zoom *z, const double *value,
                    : 3.0 * (h0 + h1) /
                          ((2.0 * h1 + h0) / d0 + (h1 + 2.0 * h0) / d1);
     }
-    /* At an end: the slope of the parabola through three columns, limited so
+    /* At an end: slope of the parabola through three positions, limited such
      * that the curve does not overshoot. */
     h0 = k ? x[last] - x[last - 1] : x[1] - x[0];
     h1 = k ? x[last - 1] - x[last - 2] : x[2] - x[1];
@@ -43,9 +43,10 @@ static double compute_slope(const struct glint_zoom *z, const double *value,
     return d0 * d1 <= 0.0 && fabs(slope) > 3.0 * fabs(d0) ? 3.0 * d0 : slope;
 }
 
-/* Interpolates VALUE, given per column, at ALONG. */
-static double interpolate_column(const struct glint_zoom *z,
-                                 const double *value, double along)
+/* Interpolates VALUE, one number per zoom position, at the zoom parameter
+ * ALONG. */
+static double interpolate_zoom_column(const struct glint_zoom *z,
+                                      const double *value, double along)
 {
     int k = 0;
     double h, t, a, b;
@@ -54,11 +55,11 @@ static double interpolate_column(const struct glint_zoom *z,
         k++;
     h = z->along[k + 1] - z->along[k];
     t = (along - z->along[k]) / h;
-    /* at a column, the table's value is returned exactly */
+    /* returns the table's value exactly at a position */
     if (t <= 0.0 || t >= 1.0)
         return value[t <= 0.0 ? k : k + 1];
-    a = h * compute_slope(z, value, k);
-    b = h * compute_slope(z, value, k + 1);
+    a = h * compute_monotone_slope(z, value, k);
+    b = h * compute_monotone_slope(z, value, k + 1);
     return value[k] +
            t * (a + t * (3.0 * (value[k + 1] - value[k]) - 2.0 * a - b +
                          t * (a + b - 2.0 * (value[k + 1] - value[k]))));
@@ -66,8 +67,8 @@ static double interpolate_column(const struct glint_zoom *z,
 
 /* ----------------------------------------------------------------- zoom */
 
-/* Sets gaps and f-number for the zoom parameter ALONG. */
-static void set_zoom(struct glint_prescription *lens, double along)
+/* Sets gaps and f-number of LENS for the zoom parameter ALONG, 0 .. 1. */
+static void set_zoom_gaps(struct glint_prescription *lens, double along)
 {
     const struct glint_zoom *const z = &lens->zoom;
     const int last = element_count(lens) - 1;
@@ -81,18 +82,20 @@ static void set_zoom(struct glint_prescription *lens, double along)
     }
     for (int m = 0; m < z->n_moves; m++)
         *glint_gap_of(lens, z->move[m]) =
-            interpolate_column(z, z->gap_mm[m], along);
-    *glint_gap_of(lens, last) = interpolate_column(z, z->last_gap_mm, along);
-    lens->f_number = interpolate_column(z, z->f_number, along);
+            interpolate_zoom_column(z, z->gap_mm[m], along);
+    *glint_gap_of(lens, last) =
+        interpolate_zoom_column(z, z->last_gap_mm, along);
+    lens->f_number = interpolate_zoom_column(z, z->f_number, along);
     if (column)
         return;
     glint_optics_of(lens, &optics);
     *glint_gap_of(lens, last) =
-        optics.back_focal_mm + interpolate_column(z, defocus, along);
+        optics.back_focal_mm + interpolate_zoom_column(z, defocus, along);
 }
 
-static enum glint_status fail_no_zoom(const struct glint_prescription *lens,
-                                      struct glint_error *error)
+static enum glint_status
+report_missing_zoom(const struct glint_prescription *lens,
+                    struct glint_error *error)
 {
     snprintf(error->text, sizeof error->text,
              "%s does not zoom: its table has one position", lens->name);
@@ -107,13 +110,13 @@ enum glint_status glint_prescription_zoom(struct glint_prescription *lens,
     enum glint_status status;
 
     if (!lens->zoom.n_positions)
-        return fail_no_zoom(lens, error);
+        return report_missing_zoom(lens, error);
     if (!(along >= 0.0 && along <= 1.0)) {
         snprintf(error->text, sizeof error->text, "zoom must be 0 to 1, not %g",
                  along);
         return GLINT_E_ARGUMENT;
     }
-    set_zoom(&moved, along);
+    set_zoom_gaps(&moved, along);
     moved.zoom_along = along;
     moved.check_focal_mm = moved.check_back_mm = 0;
     status = glint_prescription_fits(&moved, error);
@@ -122,11 +125,12 @@ enum glint_status glint_prescription_zoom(struct glint_prescription *lens,
     return status;
 }
 
-static double compute_focal(struct glint_prescription *lens, double along)
+static double compute_focal_length_at(struct glint_prescription *lens,
+                                      double along)
 {
     struct glint_optics optics;
 
-    set_zoom(lens, along);
+    set_zoom_gaps(lens, along);
     glint_optics_of(lens, &optics);
     return optics.focal_mm;
 }
@@ -144,7 +148,7 @@ glint_prescription_zoom_to(const struct glint_prescription *lens,
     bool rises;
 
     if (!z->n_positions)
-        return fail_no_zoom(lens, error);
+        return report_missing_zoom(lens, error);
     rises = z->focal_mm[last] > z->focal_mm[0];
     for (int end = 0; end < 2; end++) {
         const double f = z->focal_mm[end ? last : 0];
@@ -169,7 +173,7 @@ glint_prescription_zoom_to(const struct glint_prescription *lens,
     for (int k = 0; k < HALVINGS; k++) {
         const double middle = 0.5 * (low + high);
 
-        if ((compute_focal(&moved, middle) < focal_mm) == rises)
+        if ((compute_focal_length_at(&moved, middle) < focal_mm) == rises)
             low = middle;
         else
             high = middle;

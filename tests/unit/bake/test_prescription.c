@@ -255,26 +255,26 @@ static const struct {
     const char *line, *error;
 } mistakes[] = {
     /* mistakes in names and words */
-    {1, "", "x.lens:11:1: there is no name line"},
+    {1, "", "x.lens:11:1: the line 'name' is missing"},
     {1, "name", "x.lens:1:5: name is missing"},
     {1, "name Tiny",
-     "x.lens:1:6: a name may have a-z, 0-9 and, not at its ends, -"},
+     "x.lens:1:6: a name must be a-z, 0-9 and -, and must not begin with -"},
     {1, "name -a",
-     "x.lens:1:6: a name may have a-z, 0-9 and, not at its ends, -"},
+     "x.lens:1:6: a name must be a-z, 0-9 and -, and must not begin with -"},
     {1, "name ../a",
-     "x.lens:1:6: a name may have a-z, 0-9 and, not at its ends, -"},
+     "x.lens:1:6: a name must be a-z, 0-9 and -, and must not begin with -"},
     {1, "name a b", "x.lens:1:8: 'b' is one value too many for name"},
     {1,
      "name aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",
      "x.lens:1:6: name is longer than 63 bytes"},
-    {2, "source   # none", "x.lens:2:10: source is missing"},
+    {2, "source   # none", "x.lens:2:10: the text of 'source' is missing"},
     {2, "fnumber 8", "x.lens:2:1: unknown word 'fnumber'"},
     {2, "  Surface 1", "x.lens:2:3: unknown word 'Surface'"},
     {2, "\xc3\xa9tude", "x.lens:2:1: unknown word '??tude'"},
     {2, "an-endless-word-of-forty-letters-or-more",
      "x.lens:2:1: unknown word 'an-endless-word-of-forty-let...'"},
     /* mistakes in f-number and film */
-    {3, "", "x.lens:11:1: there is no f-number line"},
+    {3, "", "x.lens:11:1: the line 'f-number' is missing"},
     {3, "f-number", "x.lens:3:9: f-number is missing"},
     {3, "f-number f8", "x.lens:3:10: f-number 'f8' is not a number"},
     {3, "f-number 0", "x.lens:3:10: f-number must be 0.5 .. 1000, not 0"},
@@ -285,7 +285,7 @@ static const struct {
     {3, "f-number 1.5",
      "x.lens:3:10: f/1.5 needs a stop of 11.42 mm radius, but its "
      "semi-diameter is 8 mm"},
-    {4, "", "x.lens:11:1: there is no film line"},
+    {4, "", "x.lens:11:1: the line 'film' is missing"},
     {4, "film 36", "x.lens:4:8: film height is missing"},
     {4, "film 0 24", "x.lens:4:6: film width must be 0.1 .. 1000, not 0"},
     {4, "film 36 x24", "x.lens:4:9: film height 'x24' is not a number"},
@@ -347,8 +347,7 @@ static const struct {
     {6, "surface 50 6 12 1.5", "x.lens:6:20: Abbe number is missing"},
     {6, "surface 50 6 12 1 60", "x.lens:6:17: index must be 1.01 .. 4, not 1"},
     {6, "surface 50 6 12 air",
-     "x.lens:6:17: medium is the same on both "
-     "sides"},
+     "x.lens:6:17: both sides of the surface have the same medium"},
     {6, "surface 50 6 12 N-BK7 1.5",
      "x.lens:6:23: unexpected '1.5'; expected coating"},
     {6, "surface 50 6 12 N-BK7 coating",
@@ -382,7 +381,7 @@ static const struct {
      "x.lens:10:19: the last medium must be "
      "air"},
     /* mistakes in the stop */
-    {8, "", "x.lens:11:1: there is no stop line"},
+    {8, "", "x.lens:11:1: the line 'stop' is missing"},
     {8, "stop 5 8\nstop 5 8",
      "x.lens:9:1: a second stop; the first is on line 8"},
     {8, "stop 5", "x.lens:8:7: semi-diameter is missing"},
@@ -390,13 +389,15 @@ static const struct {
     {8, "stop 5 8 9", "x.lens:8:10: unexpected '9'; expected circle"},
     /* mistakes that are detected only in the complete lens */
     {6, "surface 50 2.3 12 N-BK7",
-     "x.lens:6:12: overlaps the next element by 0.06066 mm at 10.8 mm from "
+     "x.lens:6:12: element overlaps the next one by 0.06066 mm at 10.8 mm from "
      "the axis"},
     {7, "surface -50 0 12 air\nsurface -40 3 12 1.6 40\nsurface -50 3 12 air",
-     "x.lens:7:13: overlaps the next element by 0.3053 mm at 10.8 mm from the "
+     "x.lens:7:13: element overlaps the next one by 0.3053 mm at 10.8 mm from "
+     "the "
      "axis"},
     {8, "surface 20 0.5 9 1.7 30\nsurface 15 1 9 air\nstop 5 8",
-     "x.lens:9:12: overlaps the next element by 0.841 mm at 7.2 mm from the "
+     "x.lens:9:12: element overlaps the next one by 0.841 mm at 7.2 mm from "
+     "the "
      "axis"},
     {10, "surface 80 0 10 air",
      "x.lens:10:12: the sensor must lie behind the "
@@ -442,9 +443,9 @@ TEST(rejects_invalid_bytes)
     char text[4096], line[300];
     size_t bytes;
 
-    expect_parse_error(NULL, 0, "x.lens:1:1: there is no name line");
-    expect_parse_error("\n\n", 2, "x.lens:3:1: there is no name line");
-    bytes = compose_table_with_line(text, 0, NULL, "\n");
+    expect_parse_error(NULL, 0, "x.lens:1:1: the line 'name' is missing");
+    expect_parse_error("\n\n", 2, "x.lens:3:1: the line 'name' is missing");
+    rejects_invalid_bytes = compose_table_with_line(text, 0, NULL, "\n");
     text[5] = 0;
     expect_parse_error(text, bytes,
                        "x.lens:1:6: byte 0x00 is not text (UTF-8)");

@@ -433,7 +433,7 @@ TEST(rejects_wrong_shape_lines)
          "t.lens:6:7: 'A5' is unknown; expected conic, A4, A6 .. A20, cylinder "
          "or toric"},
         {"surface 20 9 9 1.5 60\nshape conic -1\nshape conic -2",
-         "t.lens:7:7: a second 'conic' of this surface"},
+         "t.lens:7:7: 'conic' occurs twice for this surface"},
         {"surface 20 9 9 1.5 60\nshape A4", "t.lens:6:9: aspheric term is "
                                             "missing"},
         {"surface 20 9 9 1.5 60\nshape A4 1e-2\nsurface flat 9 9 air\n",
@@ -446,14 +446,14 @@ TEST(rejects_wrong_shape_lines)
         {"surface 20 9 9 1.5 60\nshape cylinder z",
          "t.lens:6:16: the plane of the profile must be x or y"},
         {"surface 20 9 9 1.5 60\nshape cylinder x toric x 9",
-         "t.lens:6:18: a second 'toric' of this surface"},
+         "t.lens:6:18: 'toric' occurs twice for this surface"},
         {"group", "t.lens:5:6: decentre or tilt is missing"},
         {"group tilt 50 0", "t.lens:5:12: tilt must be -45 .. 45, not 50"},
         {"group tilt 5 0\ngroup tilt 5 0",
-         "t.lens:6:1: the group above has no end"},
+         "t.lens:6:1: the group above has no line 'end'"},
         {"end", "t.lens:5:1: there is no group to end"},
         {"group tilt 1 0\nsurface 20 9 9 1.5 60\nsurface flat 9 9 air",
-         "t.lens:5:1: the group has no end"}};
+         "t.lens:5:1: the group has no line 'end'"}};
 
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct glint_error error = {""};
@@ -534,7 +534,8 @@ TEST(stop_around_the_glass_gives_the_same_rays)
     assert_int_equal(
         glint_prescription_parse(&lens, table, strlen(table), "t.lens", &error),
         GLINT_E_LENS);
-    assert_non_null(strstr(error.text, "t.lens:4:6: overlaps the next"));
+    assert_non_null(
+        strstr(error.text, "t.lens:4:6: element overlaps the next"));
     snprintf(table, sizeof table, text, "-101 3");
     assert_int_equal(
         glint_prescription_parse(&lens, table, strlen(table), "t.lens", &error),

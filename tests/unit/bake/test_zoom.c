@@ -253,9 +253,9 @@ TEST(rejects_wrong_columns)
                             "end it above");
     check_table_is_rejected("f-number 10\nfocus\ngroup tilt 1 0\n" FRONT
                             "4/6" BACK,
-                            "t.lens:5:1: the group above has no end");
+                            "t.lens:5:1: the group above has no line 'end'");
     check_table_is_rejected("f-number 10\nfocus\nend\n" FRONT "4/6" BACK,
-                            "no surface moves");
+                            "the focusing group has no surface");
 }
 
 /* Checks that the result of a zoom does not depend on the previous position,
