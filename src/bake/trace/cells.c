@@ -8,11 +8,10 @@
 #include "engine/setup/degrees.h"
 #include "engine/setup/dirt.h"
 
-/* Cells per side of the grid of rays that finds the barrels that cut the
- * ghost. */
+/* cells per side of the grid of rays that finds the barrels that block rays */
 enum { SAMPLING = 96 };
 
-static void find_cuts(struct glint_cells *c)
+static void find_cutting_barrels(struct glint_cells *c)
 {
     struct glint_sampling sampling;
 
@@ -41,7 +40,7 @@ bool glint_cells_init(struct glint_cells *cells,
     if (!glint_pupil_find(&cells->pupil, path, theta_deg,
                           setup->optics.stop_radius_mm, NULL))
         return false;
-    find_cuts(cells);
+    find_cutting_barrels(cells);
     cells->stride = NODE_CUT + 2 * cells->n_cuts;
     return true;
 }
@@ -52,7 +51,7 @@ size_t glint_cells_bytes(const struct glint_cells *cells)
            (size_t)cells->stride * sizeof *cells->node;
 }
 
-static double *get_node(const struct glint_cells *c, int i, int j)
+static double *get_ray_node(const struct glint_cells *c, int i, int j)
 {
     return c->node +
            ((size_t)j * (size_t)(c->n + 1) + (size_t)i) * (size_t)c->stride;
@@ -71,15 +70,16 @@ double glint_cells_area(const struct glint_cells *cells)
            (glint_pupil_height(p) / cells->n);
 }
 
-static double compute_inner_radius(const struct glint_setup *s)
+static double compute_stop_inradius(const struct glint_setup *s)
 {
     return s->n_blades ? cos(GLINT_PI / s->n_blades) : 1;
 }
 
-/* Sets NODE from a ray. MIRROR is -1 for its mirror image on the other side
- * of the light's plane, else 1. */
-static void fill_node(const struct glint_cells *c, const struct glint_ray *ray,
-                      double (*hits)[2], double mirror, double *node)
+/* Sets NODE from RAY and its HITS. MIRROR: 1, or -1 for the ray's mirror image
+ * on the other side of the light's plane. */
+static void set_ray_node(const struct glint_cells *c,
+                         const struct glint_ray *ray, double (*hits)[2],
+                         double mirror, double *node)
 {
     const double stop_mm = c->setup->optics.stop_radius_mm;
     const double sensor_y = mirror * ray->sensor_y_mm;
@@ -94,7 +94,7 @@ static void fill_node(const struct glint_cells *c, const struct glint_ray *ray,
         (ray->stop_x_mm * c->sin_phi + stop_y * c->cos_phi) / stop_mm;
     node[NODE_ENERGY] = ray->energy;
     clear = hypot(node[NODE_STOP_X], node[NODE_STOP_Y]) <
-            compute_inner_radius(c->setup);
+            compute_stop_inradius(c->setup);
     for (int k = 0; k < c->n_cuts; k++) {
         const int e = c->cut_event[k];
         const double semi = c->path->event[e].semi_mm;
@@ -124,9 +124,9 @@ void glint_cells_trace(const struct glint_cells *cells, int row)
                              {d[0], d[1], d[2]}};
 
     for (int i = 0; i <= n; i++) {
-        double *node = get_node(cells, i, row);
+        double *node = get_ray_node(cells, i, row);
         double *mirrored =
-            get_node(cells, i, cells->path->round ? n - row : row);
+            get_ray_node(cells, i, cells->path->round ? n - row : row);
         const int k = i % SOME;
         double(*h)[2] = hits + k * cells->path->n_events;
 
@@ -138,15 +138,15 @@ void glint_cells_trace(const struct glint_cells *cells, int row)
         node[NODE_STATE] = mirrored[NODE_STATE] = 0;
         if (status[k] != GLINT_RAY_OK)
             continue;
-        fill_node(cells, &ray[k], h, 1, node);
+        set_ray_node(cells, &ray[k], h, 1, node);
         if (mirrored != node)
-            fill_node(cells, &ray[k], h, -1, mirrored);
+            set_ray_node(cells, &ray[k], h, -1, mirrored);
     }
 }
 
 /* --------------------------------------------------------------------- clip */
 
-/* A triangle and the polygon that remains after clipping, in barycentric
+/* A triangle and the polygon that remains of it after clipping, in barycentric
  * coordinates of its second and third corner. */
 struct shape {
     const double *corner[3];
@@ -154,8 +154,8 @@ struct shape {
     double uv[GLINT_MAX_PIECE][2];
 };
 
-static double interpolate_channel(const struct shape *s, int index,
-                                  const double uv[2])
+static double interpolate_node_channel(const struct shape *s, int index,
+                                       const double uv[2])
 {
     const double a = s->corner[0][index];
 
@@ -163,21 +163,20 @@ static double interpolate_channel(const struct shape *s, int index,
            (s->corner[2][index] - a) * uv[1];
 }
 
-/* A clip boundary in channels FIRST and FIRST + 1: a half plane n . c <=
- * limit, or a disc |scale c + middle| <= 1. */
+/* A clip boundary in the channels c = (first, first + 1): the half plane n . c
+ * <= limit, or the disc |scale c + middle| <= 1. */
 struct cut {
     int first;
     bool disc;
     double normal[2], limit, scale, middle[2];
 };
 
-/* Sets AT to the position in the unit disc of CUT for barycentric
- * coordinates UV. */
-static void map_to_disc(const struct shape *s, const struct cut *cut,
-                        const double uv[2], double at[2])
+/* Sets AT to the point UV (barycentric) in the unit disc of CUT. */
+static void map_point_to_cut_disc(const struct shape *s, const struct cut *cut,
+                                  const double uv[2], double at[2])
 {
     for (int k = 0; k < 2; k++)
-        at[k] = cut->scale * interpolate_channel(s, cut->first + k, uv) +
+        at[k] = cut->scale * interpolate_node_channel(s, cut->first + k, uv) +
                 cut->middle[k];
 }
 
@@ -187,26 +186,26 @@ static double compute_cut_value(const struct shape *s, const struct cut *cut,
     double at[2];
 
     if (cut->disc) {
-        map_to_disc(s, cut, uv, at);
+        map_point_to_cut_disc(s, cut, uv, at);
         return 1 - (at[0] * at[0] + at[1] * at[1]);
     }
     return cut->limit -
-           cut->normal[0] * interpolate_channel(s, cut->first, uv) -
-           cut->normal[1] * interpolate_channel(s, cut->first + 1, uv);
+           cut->normal[0] * interpolate_node_channel(s, cut->first, uv) -
+           cut->normal[1] * interpolate_node_channel(s, cut->first + 1, uv);
 }
 
-/* Returns the fraction of the way from A to B at which CUT is crossed. FA
- * and FB are their compute_cut_value(), of different signs. */
-static double find_crossing(const struct shape *s, const struct cut *cut,
-                            const double a[2], const double b[2], double fa,
-                            double fb)
+/* Returns the fraction of the way from A to B at which CUT is crossed. FA and
+ * FB: compute_cut_value() at A and B, of different signs. */
+static double find_cut_crossing(const struct shape *s, const struct cut *cut,
+                                const double a[2], const double b[2], double fa,
+                                double fb)
 {
     double from[2], to[2], dx, dy, qa, qb, root, t;
 
     if (!cut->disc)
         return fa / (fa - fb);
-    map_to_disc(s, cut, a, from);
-    map_to_disc(s, cut, b, to);
+    map_point_to_cut_disc(s, cut, a, from);
+    map_point_to_cut_disc(s, cut, b, to);
     dx = to[0] - from[0];
     dy = to[1] - from[1];
     qa = dx * dx + dy * dy;
@@ -216,7 +215,7 @@ static double find_crossing(const struct shape *s, const struct cut *cut,
     return fmin(1, fmax(0, t));
 }
 
-static void clip_by_cut(struct shape *s, const struct cut *cut)
+static void clip_polygon_by_cut(struct shape *s, const struct cut *cut)
 {
     double kept[GLINT_MAX_PIECE][2];
     double value[GLINT_MAX_PIECE];
@@ -238,7 +237,8 @@ static void clip_by_cut(struct shape *s, const struct cut *cut)
             kept[n++][1] = a[1];
         }
         if ((value[i] >= 0) != (value[j] >= 0)) {
-            const double t = find_crossing(s, cut, a, b, value[i], value[j]);
+            const double t =
+                find_cut_crossing(s, cut, a, b, value[i], value[j]);
 
             kept[n][0] = a[0] + t * (b[0] - a[0]);
             kept[n++][1] = a[1] + t * (b[1] - a[1]);
@@ -251,22 +251,23 @@ static void clip_by_cut(struct shape *s, const struct cut *cut)
     }
 }
 
-static void clip_by_all_cuts(const struct glint_cells *c, struct shape *s)
+static void clip_polygon_by_all_cuts(const struct glint_cells *c,
+                                     struct shape *s)
 {
     struct glint_iris_sides sides;
 
     glint_iris_sides(&sides, c->setup);
     for (int k = 0; k < c->n_cuts && s->n; k++)
-        clip_by_cut(
+        clip_polygon_by_cut(
             s,
             &(struct cut){.first = NODE_CUT + 2 * k, .disc = true, .scale = 1});
     if (sides.n == 0)
-        clip_by_cut(
+        clip_polygon_by_cut(
             s, &(struct cut){.first = NODE_STOP_X, .disc = true, .scale = 1});
     for (int side = 0; side < sides.n && s->n; side++) {
         const double *n = sides.normal[side];
 
-        clip_by_cut(
+        clip_polygon_by_cut(
             s, &(struct cut){.first = NODE_STOP_X,
                              .disc = sides.arcs,
                              .normal = {n[0], n[1]},
@@ -288,16 +289,17 @@ static double compute_polygon_area(const double (*p)[2], int n)
     return 0.5 * sum;
 }
 
-/* Sets CORNER to the corners of triangle HALF of a cell. Returns false if a
- * corner's ray is invalid. Diagonals are mirrored about the light's plane,
- * so that the picture of a symmetric light is symmetric. */
-static bool pick_corners(const struct glint_cells *c, int i, int j, int half,
-                         const double **corner)
+/* Sets CORNER to the nodes of triangle HALF of cell (I, J). Returns false if
+ * the ray of a corner is invalid. The cells' diagonals are mirrored about the
+ * light's plane, so that the picture of a symmetric light is symmetric. */
+static bool get_triangle_corners(const struct glint_cells *c, int i, int j,
+                                 int half, const double **corner)
 {
     static const int order[2][2][3] = {{{0, 1, 2}, {0, 2, 3}},
                                        {{3, 2, 1}, {3, 1, 0}}};
-    const double *q[4] = {get_node(c, i, j), get_node(c, i + 1, j),
-                          get_node(c, i + 1, j + 1), get_node(c, i, j + 1)};
+    const double *q[4] = {get_ray_node(c, i, j), get_ray_node(c, i + 1, j),
+                          get_ray_node(c, i + 1, j + 1),
+                          get_ray_node(c, i, j + 1)};
     const int *pick = order[2 * j >= c->n][half];
 
     for (int k = 0; k < 3; k++) {
@@ -316,27 +318,27 @@ void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
     double middle[2] = {0, 0};
 
     piece->n = 0;
-    if (!pick_corners(cells, i, j, half, s.corner))
+    if (!get_triangle_corners(cells, i, j, half, s.corner))
         return;
     if (s.corner[0][NODE_STATE] != 2 || s.corner[1][NODE_STATE] != 2 ||
         s.corner[2][NODE_STATE] != 2)
-        clip_by_all_cuts(cells, &s);
+        clip_polygon_by_all_cuts(cells, &s);
     if (s.n < 3)
         return;
     piece->n = s.n;
     for (int k = 0; k < s.n; k++) {
-        piece->xy[k][0] = interpolate_channel(&s, NODE_X, s.uv[k]);
-        piece->xy[k][1] = interpolate_channel(&s, NODE_Y, s.uv[k]);
+        piece->xy[k][0] = interpolate_node_channel(&s, NODE_X, s.uv[k]);
+        piece->xy[k][1] = interpolate_node_channel(&s, NODE_Y, s.uv[k]);
         middle[0] += s.uv[k][0] / s.n;
         middle[1] += s.uv[k][1] / s.n;
     }
     piece->share =
         fabs(2 * compute_polygon_area((const double(*)[2])s.uv, s.n));
     piece->energy =
-        interpolate_channel(&s, NODE_ENERGY, middle) *
+        interpolate_node_channel(&s, NODE_ENERGY, middle) *
         glint_dirt_through(cells->setup,
-                           interpolate_channel(&s, NODE_STOP_X, middle),
-                           interpolate_channel(&s, NODE_STOP_Y, middle));
+                           interpolate_node_channel(&s, NODE_STOP_X, middle),
+                           interpolate_node_channel(&s, NODE_STOP_Y, middle));
 }
 
 bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
@@ -345,7 +347,7 @@ bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
     bool above = true, below = true;
 
     for (int k = 0; k < 4; k++) {
-        const double *node = get_node(cells, i + (k & 1), j + (k >> 1));
+        const double *node = get_ray_node(cells, i + (k & 1), j + (k >> 1));
 
         above &= node[NODE_STATE] == 0 || node[NODE_Y] <= low;
         below &= node[NODE_STATE] == 0 || node[NODE_Y] >= high;

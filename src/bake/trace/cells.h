@@ -2,9 +2,9 @@
  *
  * A dense grid of exact rays over a ghost's pupil, clipped exactly.
  *
- *   in   a path, a light in the x-z plane, the visible part of the pupil
- *   out  triangles of the grid, clipped by the stop and by the circle of every
- *        barrel that limits this path
+ *   in   a path, a light in the x-z plane, the visible region of the pupil
+ *   out  triangles of the grid, clipped by the stop and by the circle of each
+ *        barrel that blocks rays of this path
  *
  * All channels are interpolated linearly between rays. In each triangle a
  * curved edge becomes a chord, so errors decrease with the square of the cell
@@ -18,12 +18,15 @@
 
 enum { GLINT_MAX_CUTS = 48, GLINT_MAX_PIECE = 192 };
 
-/* Channels of a node. From NODE_CUT on: x and y at each barrel that may cut,
- * in semi-diameters. */
+/* Channels of a node. From NODE_CUT on: x and y at each barrel that may block
+ * rays, in semi-diameters. */
 enum {
-    NODE_STATE, /* 0: invalid ray; 1: traced; 2: traced and inside every cut */
-    NODE_X, /* position on the sensor: mm in the camera's frame; users of the
-               cells may map it to other units */
+    /* 0: invalid ray; 1: traced; 2: traced, and inside the stop and all
+     * barrels */
+    NODE_STATE,
+    /* position on the sensor, mm in the camera's frame; callers may convert it
+     * to other units */
+    NODE_X,
     NODE_Y,
     NODE_STOP_X, /* stop radii, in the camera's frame */
     NODE_STOP_Y,
@@ -45,44 +48,47 @@ struct glint_cells {
     double *node; /* [n + 1][n + 1][stride] */
 };
 
-/* Sets all members except NODE for a light at THETA, PHI, and finds the
- * barrels that cut. Returns false if no light passes. */
+/* Sets all members except node, for a light at angle THETA_DEG and azimuth
+ * PHI_DEG and for N cells per side; lists the barrels that block rays. Returns
+ * false if no light passes. */
 bool glint_cells_init(struct glint_cells *cells,
                       const struct glint_setup *setup,
                       const struct glint_path *path, double theta_deg,
                       double phi_deg, int n);
 
-/* Returns the size of NODE in bytes. */
+/* Returns the size of the member node in bytes. */
 size_t glint_cells_bytes(const struct glint_cells *cells);
 
 /* Returns the number of rows of nodes that must be traced. */
 int glint_cells_rows(const struct glint_cells *cells);
 
-/* Traces row ROW of the nodes; for a round lens also mirrors it to row n -
- * ROW. */
+/* Traces row ROW of the nodes. Round lenses: also sets its mirror image, row n
+ * - ROW. */
 void glint_cells_trace(const struct glint_cells *cells, int row);
 
-/* The visible part of a triangle: a convex polygon in NODE_X and NODE_Y. */
+/* The visible part of a triangle: a convex polygon in the channels NODE_X and
+ * NODE_Y. */
 struct glint_piece {
     int n; /* number of corners; 0: nothing is visible */
     double xy[GLINT_MAX_PIECE][2];
-    double share;  /* fraction of the triangle's pupil area, 0 .. 1 */
+    double share;  /* pupil area / the triangle's pupil area, 0 .. 1 */
     double energy; /* mean energy over the piece */
 };
 
-/* Clips triangle HALF (0 or 1) of cell (I, J) and sets PIECE. */
+/* Clips triangle HALF (0 or 1) of cell (I, J) and sets PIECE to its visible
+ * part. */
 void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
                       struct glint_piece *piece);
 
-/* Returns whether the range of NODE_Y in cell (I, J) overlaps LOW .. HIGH. */
+/* Returns whether cell (I, J) overlaps the range LOW .. HIGH of NODE_Y. */
 bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
                        double low, double high);
 
 /* Returns the area of a cell on the pupil, mm^2. */
 double glint_cells_area(const struct glint_cells *cells);
 
-/* Returns the flux of the direct image at angle 0 for irradiance 1, mm^2; -1
- * if there is no memory. */
+/* Returns the flux of the direct image of a light on the axis at irradiance 1,
+ * mm^2; -1 if there is no memory. */
 double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm);
 
 #endif

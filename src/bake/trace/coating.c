@@ -7,19 +7,20 @@ int glint_coating_at(const struct glint_coating *coating, double wavelength_nm,
                      struct glint_film_at film[GLINT_MAX_FILMS])
 {
     for (int k = 0; k < coating->n_films; k++)
-        /* 4 pi n d / wavelength, where n d is a number of quarters of NM */
+        /* phase 4 pi n d / wavelength; n d: number of quarters of nm */
         film[k] = (struct glint_film_at){coating->film[k].index,
                                          GLINT_PI * coating->film[k].quarters *
                                              coating->nm / wavelength_nm};
     return coating->n_films;
 }
 
-/* Characteristic matrix (m11, i m12; i m21, m22) for one polarisation. */
+/* Characteristic matrix (m11, i m12; i m21, m22) of films for one
+ * polarisation. */
 struct matrix {
     double m11, m12, m21, m22;
 };
 
-/* Multiplies M from the right by the matrix of a film (C, i S / F; i SIGN S
+/* Multiplies M from the right by the matrix of one film, (C, i S / F; i SIGN S
  * F, C). */
 static void multiply_by_film(struct matrix *m, double c, double s, double f,
                              double sign)
@@ -33,9 +34,10 @@ static void multiply_by_film(struct matrix *m, double c, double s, double f,
     m->m22 = old.m22 * c - old.m21 * upper;
 }
 
-/* Returns the reflectance of the stack M between media of admittances A and
- * B. */
-static double compute_reflectance(const struct matrix *m, double a, double b)
+/* Returns the reflectance of films with matrix M between media of admittances A
+ * and B. */
+static double compute_film_stack_reflectance(const struct matrix *m, double a,
+                                             double b)
 {
     const double minus = a * m->m11 - b * m->m22,
                  plus = a * m->m11 + b * m->m22;
@@ -51,15 +53,15 @@ void glint_stack_reflectance_sp(double n1, double c1, double n2, double c2,
                                 double *s, double *p)
 {
     struct matrix s_all = {1, 0, 0, 1}, p_all = s_all;
-    const bool turned = n1 > n2; /* light meets the last film first */
+    const bool turned = n1 > n2; /* true: light hits the last film first */
 
     for (int k = 0; k < n; k++) {
         const struct glint_film_at *const f = &film[turned ? n - 1 - k : k];
-        const double nf = f->n, inside = film_inside(n1, c1, nf);
+        const double nf = f->n, inside = compute_film_cosine2(n1, c1, nf);
         const double size = sqrt(fabs(inside)), half = 0.5 * f->phase * size;
         const double sign = inside < 0.0 ? -1.0 : 1.0;
-        /* clamped: sinh(30) in each of 8 layers does not overflow, and
-         * hardly any light passes */
+        /* clamped: sinh(30) in each of 8 layers does not overflow, and hardly
+         * any light passes */
         const double sine = inside < 0.0 ? sinh(fmin(half, 30.0)) : sin(half);
         const double cosine = inside < 0.0 ? cosh(fmin(half, 30.0)) : cos(half);
 
@@ -69,13 +71,14 @@ void glint_stack_reflectance_sp(double n1, double c1, double n2, double c2,
         multiply_by_film(&s_all, cosine, sine, nf * size, sign);
         multiply_by_film(&p_all, cosine, sign * sine, nf / size, sign);
     }
-    *s = compute_reflectance(&s_all, n1 * c1, n2 * c2);
-    *p = compute_reflectance(&p_all, n1 / c1, n2 / c2);
+    *s = compute_film_stack_reflectance(&s_all, n1 * c1, n2 * c2);
+    *p = compute_film_stack_reflectance(&p_all, n1 / c1, n2 / c2);
 }
 
 /* Returns the cosine of the refracted ray for incidence at COS_FROM; 0 if no
  * light is transmitted. */
-static double refract_cosine(double n_from, double n_to, double cos_from)
+static double compute_refracted_cosine(double n_from, double n_to,
+                                       double cos_from)
 {
     const double ratio = n_from / n_to;
     const double cos2 = 1.0 - ratio * ratio * (1.0 - cos_from * cos_from);
@@ -86,26 +89,28 @@ static double refract_cosine(double n_from, double n_to, double cos_from)
 double glint_reflectance(double n_from, double n_to, double cos_from,
                          const struct glint_film_at *film, int n_films)
 {
-    const double c2 = refract_cosine(n_from, n_to, cos_from);
+    const double c2 = compute_refracted_cosine(n_from, n_to, cos_from);
 
     if (!(c2 > 0.0))
         return 1.0; /* grazing incidence, or total reflection */
     if (n_films > 1)
-        return stack_reflectance(n_from, cos_from, n_to, c2, film, n_films);
+        return compute_stack_reflectance(n_from, cos_from, n_to, c2, film,
+                                         n_films);
     if (n_films == 1) {
-        const double inside = film_inside(n_from, cos_from, film->n);
+        const double inside = compute_film_cosine2(n_from, cos_from, film->n);
 
-        return film_reflectance(n_from, cos_from, n_to, c2, film->n, inside,
-                                film_sine2(inside, film->phase));
+        return compute_film_reflectance(
+            n_from, cos_from, n_to, c2, film->n, inside,
+            compute_film_sine2(inside, film->phase));
     }
-    return bare_reflectance(n_from, cos_from, n_to, c2);
+    return compute_bare_reflectance(n_from, cos_from, n_to, c2);
 }
 
 void glint_reflectance_sp(double n_from, double n_to, double cos_from,
                           const struct glint_film_at *film, int n_films,
                           double *s, double *p)
 {
-    const double c2 = refract_cosine(n_from, n_to, cos_from);
+    const double c2 = compute_refracted_cosine(n_from, n_to, cos_from);
 
     *s = *p = 1.0;
     if (c2 > 0.0)

@@ -24,28 +24,30 @@
 
 #include "glint/trace.h"
 
-/* Returns the mean of s / s_all and p / p_all, at most 1, with one division. */
-static inline double mean_ratio(double s, double s_all, double p, double p_all)
+/* Returns the mean of the ratios s / s_all and p / p_all, at most 1, with one
+ * division. */
+static inline double compute_mean_ratio(double s, double s_all, double p,
+                                        double p_all)
 {
     const double mean = 0.5 * (s * p_all + p * s_all) / (s_all * p_all);
 
     return mean < 1.0 ? mean : 1.0;
 }
 
-/* Returns the reflectance of a bare boundary for the cosines C1 of incidence
- * and C2 of refraction, both > 0. */
-static inline double bare_reflectance(double n1, double c1, double n2,
-                                      double c2)
+/* Returns the reflectance of a bare boundary between media of indices N1 and N2
+ * at the cosines C1 of incidence and C2 of refraction, both > 0. */
+static inline double compute_bare_reflectance(double n1, double c1, double n2,
+                                              double c2)
 {
     const double s = n1 * c1 - n2 * c2, s_all = n1 * c1 + n2 * c2;
     const double p = n1 * c2 - n2 * c1, p_all = n1 * c2 + n2 * c1;
 
-    return mean_ratio(s * s, s_all * s_all, p * p, p_all * p_all);
+    return compute_mean_ratio(s * s, s_all * s_all, p * p, p_all * p_all);
 }
 
-/* Returns the squared cosine inside a film of index NF, negative beyond the
- * critical angle. Replaces values near 0 by 1e-60. */
-static inline double film_inside(double n1, double c1, double nf)
+/* Returns the squared cosine of the ray inside a film of index NF, which is
+ * negative beyond the critical angle. Replaces values near 0 by 1e-60. */
+static inline double compute_film_cosine2(double n1, double c1, double nf)
 {
     const double ratio = n1 / nf;
     const double inside = 1.0 - ratio * ratio * (1.0 - c1 * c1);
@@ -53,9 +55,9 @@ static inline double film_inside(double n1, double c1, double nf)
     return fabs(inside) > 1e-60 ? inside : 1e-60;
 }
 
-/* Returns sin^2 D for PHASE = 4 pi nf d / wavelength, or sinh^2 |D| if INSIDE
- * is negative. */
-static inline double film_sine2(double inside, double phase)
+/* Returns sin^2 D for PHASE = 4 pi nf d / wavelength, or sinh^2 |D| if INSIDE,
+ * the squared cosine, is negative. D: half the phase inside the film. */
+static inline double compute_film_sine2(double inside, double phase)
 {
     const double half = 0.5 * phase * sqrt(fabs(inside)); /* |D| */
     /* clamped: sinh(100) does not overflow, and no light passes such a film */
@@ -64,12 +66,12 @@ static inline double film_sine2(double inside, double phase)
     return root * root;
 }
 
-/* Returns the reflectance of a boundary with a film of index NF. INSIDE is
- * film_inside(), SIN2 film_sine2(); the other arguments are as for
- * bare_reflectance(). */
-static inline double film_reflectance(double n1, double c1, double n2,
-                                      double c2, double nf, double inside,
-                                      double sin2)
+/* Returns the reflectance of a boundary with a film of index NF. INSIDE: the
+ * squared cosine inside the film; SIN2: sin^2 of half its phase; other
+ * arguments as for a bare boundary. */
+static inline double compute_film_reflectance(double n1, double c1, double n2,
+                                              double c2, double nf,
+                                              double inside, double sin2)
 {
     const double size = fabs(inside), sign = inside < 0.0 ? -1.0 : 1.0;
     const double cos2 = 1.0 - sign * sin2;
@@ -88,24 +90,24 @@ static inline double film_reflectance(double n1, double c1, double n2,
     const double plus_p = (a_p + b_p) * (a_p + b_p) * f2_p * size * cos2 +
                           (ab_p + g_p) * (ab_p + g_p) * sin2;
 
-    return mean_ratio(minus_s, plus_s, minus_p, plus_p);
+    return compute_mean_ratio(minus_s, plus_s, minus_p, plus_p);
 }
 
-/* Sets S and P to the reflectance of FILM[N] per polarisation, from the
- * product of characteristic matrices. FILM[0] is next to the medium of lower
- * index. The matrix of a film is (cos D, i sin D / f; i f sin D, cos D),
- * where D is half the phase of the film and f its admittance. Off-diagonal
- * elements stay imaginary, and in a film with total reflection both f and D
- * are imaginary, so real numbers are sufficient. [Macleod, Thin-Film Optical
- * Filters, ch. 2] */
+/* Sets S and P to the reflectance of FILM[N] per polarisation: the product of
+ * the films' characteristic matrices. FILM[0] is next to the medium of lower
+ * index. The matrix of a film is (cos D, i sin D / f; i f sin D, cos D), where
+ * D is half the film's phase and f its admittance. Off-diagonal elements stay
+ * imaginary, and in a film with total reflection both f and D are imaginary, so
+ * real numbers are sufficient. [Macleod, Thin-Film Optical Filters, ch. 2] */
 void glint_stack_reflectance_sp(double n1, double c1, double n2, double c2,
                                 const struct glint_film_at *film, int n,
                                 double *s, double *p);
 
-/* Returns the mean of both polarisations of glint_stack_reflectance_sp(). */
-static inline double stack_reflectance(double n1, double c1, double n2,
-                                       double c2,
-                                       const struct glint_film_at *film, int n)
+/* Returns the reflectance of FILM[N], the mean of both polarisations. */
+static inline double compute_stack_reflectance(double n1, double c1, double n2,
+                                               double c2,
+                                               const struct glint_film_at *film,
+                                               int n)
 {
     double s, p;
 

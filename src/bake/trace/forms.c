@@ -4,7 +4,7 @@
  *
  * For round forms and cylinders on the axis, Newton's method starts at the
  * vertex plane, for all lanes at once, where it is certain to find the nearest
- * intersection: where the ray is steeper than the profile anywhere on its glass
+ * intersection: if the ray is steeper than the profile anywhere on the glass,
  * and stays over the glass, z - sag is monotone along the ray. All other rays
  * are intersected one by one (bake/table/form.h).
  */
@@ -15,14 +15,13 @@
 #include "bake/table/form.h"
 
 enum { MOST_STEPS = 10 };
-/* Max relative length of the last step of Newton's method; its square is the
- * error. */
+/* Max relative length of the last Newton step; its square is the error. */
 #define LAST_STEP 1e-7
-/* Max number of terms of a short profile, up to A14. */
+/* number of terms of a short profile, up to A14 */
 #define SHORT 6
 
-static void set_ray(struct beam *b, int k, const double at[3],
-                    const double way[3])
+static void set_beam_ray(struct beam *b, int k, const double at[3],
+                         const double way[3])
 {
     b->x[k] = at[0];
     b->y[k] = at[1];
@@ -32,14 +31,15 @@ static void set_ray(struct beam *b, int k, const double at[3],
     b->n[k] = way[2];
 }
 
-/* Squared heights along rays: at parameter T of ray K, q0 + 2 q1 T + q2 T^2. */
+/* Squared heights along rays: q0 + 2 q1 T + q2 T^2 at parameter T of a ray. */
 struct heights {
     double q0[LANES], q1[LANES], q2[LANES];
 };
 
-static WHOLLY_INLINE void set_heights(const struct beam *b, int n,
-                                      const struct glint_form *f,
-                                      struct heights *h)
+static WHOLLY_INLINE void compute_height_polynomials(const struct beam *b,
+                                                     int n,
+                                                     const struct glint_form *f,
+                                                     struct heights *h)
 {
     const double ax = f->along[0], ay = f->along[1], round = f->round;
 
@@ -55,12 +55,13 @@ static WHOLLY_INLINE void set_heights(const struct beam *b, int n,
     }
 }
 
-/* Sets SAG to the table's profile of F at the squared heights Q, and SLOPE
- * to its derivative by Q. TERMS, a constant, must be at least the number of
- * terms of F; the sums of a ray then stay in registers. */
-static WHOLLY_INLINE void evaluate_profiles_n(const struct glint_form *f, int n,
-                                              int terms, const double *q,
-                                              double *sag, double *slope)
+/* Sets SAG to the table's profile of F at the squared heights Q, and SLOPE to
+ * its derivative by Q. TERMS: a constant, at least the number of terms of F, so
+ * that a ray's sums stay in registers. */
+static WHOLLY_INLINE void evaluate_profiles_of_terms(const struct glint_form *f,
+                                                     int n, int terms,
+                                                     const double *q,
+                                                     double *sag, double *slope)
 {
     const double c = f->curvature, a = (1.0 + f->conic) * c * c;
 
@@ -84,19 +85,20 @@ static WHOLLY_INLINE void evaluate_profiles(const struct glint_form *f, int n,
                                             double *slope)
 {
     if (f->n_terms <= SHORT)
-        evaluate_profiles_n(f, n, SHORT, q, sag, slope);
+        evaluate_profiles_of_terms(f, n, SHORT, q, sag, slope);
     else
-        evaluate_profiles_n(f, n, GLINT_SHAPE_TERMS, q, sag, slope);
+        evaluate_profiles_of_terms(f, n, GLINT_SHAPE_TERMS, q, sag, slope);
 }
 
-static WHOLLY_INLINE void compute_heights(const struct heights *h, int n,
-                                          const double *t, double *q)
+static WHOLLY_INLINE void evaluate_squared_heights(const struct heights *h,
+                                                   int n, const double *t,
+                                                   double *q)
 {
     for (int k = 0; k < n; k++)
         q[k] = h->q0[k] + t[k] * (2.0 * h->q1[k] + t[k] * h->q2[k]);
 }
 
-static WHOLLY_INLINE double find_min(int n, const double *x)
+static WHOLLY_INLINE double find_min_value(int n, const double *x)
 {
     double least = x[0];
 
@@ -105,19 +107,20 @@ static WHOLLY_INLINE double find_min(int n, const double *x)
     return least;
 }
 
-/* Sets T to the parameters where rays meet the form. SURE becomes 1 where
- * the result is certain, else 0. */
-static WHOLLY_INLINE void find_intersections(const struct beam *b, int n,
-                                             const struct glint_form *f,
-                                             const struct heights *h, double *t,
-                                             double *sure)
+/* Sets T to the parameters at which rays meet the form. SURE: 1 where the
+ * result is certain, else 0. */
+static WHOLLY_INLINE void find_form_intersections(const struct beam *b, int n,
+                                                  const struct glint_form *f,
+                                                  const struct heights *h,
+                                                  double *t, double *sure)
 {
     double q[LANES], sag[LANES], slope[LANES], done[LANES] = {0};
 
     for (int k = 0; k < n; k++)
         t[k] = 0.0;
-    for (int step = 0; step < MOST_STEPS && find_min(n, done) < 1.0; step++) {
-        compute_heights(h, n, t, q);
+    for (int step = 0; step < MOST_STEPS && find_min_value(n, done) < 1.0;
+         step++) {
+        evaluate_squared_heights(h, n, t, q);
         evaluate_profiles(f, n, q, sag, slope);
         for (int k = 0; k < n; k++) {
             const double rate =
@@ -131,7 +134,7 @@ static WHOLLY_INLINE void find_intersections(const struct beam *b, int n,
                           : done[k];
         }
     }
-    compute_heights(h, n, t, q);
+    evaluate_squared_heights(h, n, t, q);
     for (int k = 0; k < n; k++) {
         const double aside2 = b->l[k] * b->l[k] + b->m[k] * b->m[k];
         const double over = h->q0[k] > q[k] ? h->q0[k] : q[k];
@@ -141,9 +144,9 @@ static WHOLLY_INLINE void find_intersections(const struct beam *b, int n,
     }
 }
 
-/* Moves ray K to FORM and into its frame. */
-static void meet_form_alone(struct beam *b, int k,
-                            const struct glint_form *form)
+/* Transforms ray K to the frame of FORM and moves it to FORM. */
+static void move_ray_to_form(struct beam *b, int k,
+                             const struct glint_form *form)
 {
     double at[3] = {b->x[k], b->y[k], b->z[k]};
     double way[3] = {b->l[k], b->m[k], b->n[k]};
@@ -152,22 +155,24 @@ static void meet_form_alone(struct beam *b, int k,
 
     glint_form_enter(form, at, way);
     met = glint_form_meet(form, at, way, normal, &b->cosine[k]);
-    b->status[k] = judge(b->status[k], met, GLINT_RAY_MISSED);
-    set_ray(b, k, at, way);
+    b->status[k] = update_ray_status(b->status[k], met, GLINT_RAY_MISSED);
+    set_beam_ray(b, k, at, way);
     for (int i = 0; i < 3; i++)
         b->normal[i][k] = normal[i];
 }
 
-/* Moves ray K from its position in BEFORE to FORM, via the form's frame. */
-static void meet_and_leave(struct beam *b, int k, const struct beam *before,
-                           const struct glint_form *form)
+/* Moves ray K from its position in BEFORE to FORM; the result is in the light's
+ * frame. */
+static void intersect_form_in_light_frame(struct beam *b, int k,
+                                          const struct beam *before,
+                                          const struct glint_form *form)
 {
     double normal[3];
     double at[3] = {before->x[k], before->y[k], before->z[k]};
     double way[3] = {before->l[k], before->m[k], before->n[k]};
 
-    set_ray(b, k, at, way);
-    meet_form_alone(b, k, form);
+    set_beam_ray(b, k, at, way);
+    move_ray_to_form(b, k, form);
     for (int i = 0; i < 3; i++) {
         normal[i] = 0.0;
         for (int j = 0; j < 3; j++)
@@ -176,16 +181,17 @@ static void meet_and_leave(struct beam *b, int k, const struct beam *before,
     at[0] = b->x[k], at[1] = b->y[k], at[2] = b->z[k];
     way[0] = b->l[k], way[1] = b->m[k], way[2] = b->n[k];
     glint_form_leave(form, at, way);
-    set_ray(b, k, at, way);
+    set_beam_ray(b, k, at, way);
     for (int i = 0; i < 3; i++)
         b->normal[i][k] = normal[i];
 }
 
-/* Moves rays by T to the form and sets their normals; SLOPE is the
- * derivative of the profile by the squared height. */
-static WHOLLY_INLINE void move_rays(struct beam *b, int n,
-                                    const struct glint_form *f, const double *t,
-                                    const double *slope)
+/* Moves rays by T to the form and sets their normals. SLOPE: derivative of the
+ * profile by the squared height. */
+static WHOLLY_INLINE void move_rays_to_form(struct beam *b, int n,
+                                            const struct glint_form *f,
+                                            const double *t,
+                                            const double *slope)
 {
     const double ax = f->along[0], ay = f->along[1];
 
@@ -207,21 +213,21 @@ static WHOLLY_INLINE void move_rays(struct beam *b, int n,
     }
 }
 
-static WHOLLY_INLINE void meet_level(struct beam *b, int n,
-                                     const struct glint_form *form)
+static WHOLLY_INLINE void move_rays_to_level_form(struct beam *b, int n,
+                                                  const struct glint_form *form)
 {
     double t[LANES], q[LANES], sag[LANES], slope[LANES], sure[LANES];
     struct heights heights;
     const struct beam before = *b;
 
-    set_heights(b, n, form, &heights);
-    find_intersections(b, n, form, &heights, t, sure);
-    compute_heights(&heights, n, t, q);
+    compute_height_polynomials(b, n, form, &heights);
+    find_form_intersections(b, n, form, &heights, t, sure);
+    evaluate_squared_heights(&heights, n, t, q);
     evaluate_profiles(form, n, q, sag, slope);
-    move_rays(b, n, form, t, slope);
+    move_rays_to_form(b, n, form, t, slope);
     for (int k = 0; k < n; k++)
         if (!(sure[k] > 0.0 || b->status[k] > GLINT_RAY_OK))
-            meet_and_leave(b, k, &before, form);
+            intersect_form_in_light_frame(b, k, &before, form);
 }
 
 WIDE_VECTORS
@@ -229,11 +235,11 @@ void glint_beam_meet_form(struct beam *b, int n, const struct glint_form *form)
 {
     if (!form->level)
         for (int k = 0; k < n; k++)
-            meet_form_alone(b, k, form);
+            move_ray_to_form(b, k, form);
     else if (n == LANES)
-        meet_level(b, LANES, form);
+        move_rays_to_level_form(b, LANES, form);
     else
-        meet_level(b, 1, form);
+        move_rays_to_level_form(b, 1, form);
 }
 
 void glint_beam_leave_form(struct beam *b, int n, const struct glint_form *form)
@@ -244,33 +250,36 @@ void glint_beam_leave_form(struct beam *b, int n, const struct glint_form *form)
         double at[3] = {b->x[k], b->y[k], b->z[k]};
         double way[3] = {b->l[k], b->m[k], b->n[k]};
         glint_form_leave(form, at, way);
-        set_ray(b, k, at, way);
+        set_beam_ray(b, k, at, way);
     }
 }
 
-/* Refracts or reflects ray K at a form: direction = S direction + PART
- * normal. */
-static WHOLLY_INLINE void deflect_at_form(struct beam *b, int k, double s,
-                                          double part, double way)
+/* Refracts or reflects ray K at a form: direction = S * direction + PART *
+ * normal. Marks it as missed unless the z direction keeps its sign (WAY = 1) or
+ * changes it (WAY = -1). */
+static WHOLLY_INLINE void deflect_ray_at_form(struct beam *b, int k, double s,
+                                              double part, double way)
 {
     const double before = b->n[k];
 
     b->l[k] = s * b->l[k] + part * b->normal[0][k];
     b->m[k] = s * b->m[k] + part * b->normal[1][k];
     b->n[k] = s * before + part * b->normal[2][k];
-    b->status[k] =
-        judge(b->status[k], way * before * b->n[k] > 0.0, GLINT_RAY_MISSED);
+    b->status[k] = update_ray_status(b->status[k], way * before * b->n[k] > 0.0,
+                                     GLINT_RAY_MISSED);
 }
 
-static WHOLLY_INLINE void cross_form(struct beam *b, int n, bool reflects,
-                                     double ratio, const double *out)
+static WHOLLY_INLINE void refract_or_reflect_at_form(struct beam *b, int n,
+                                                     bool reflects,
+                                                     double ratio,
+                                                     const double *out)
 {
     for (int k = 0; k < n && reflects; k++)
-        deflect_at_form(b, k, 1.0, -2.0 * b->cosine[k], -1.0);
+        deflect_ray_at_form(b, k, 1.0, -2.0 * b->cosine[k], -1.0);
     for (int k = 0; k < n && !reflects; k++) {
-        b->status[k] =
-            judge(b->status[k], out[k] > 0.0, GLINT_RAY_TOTAL_REFLECTION);
-        deflect_at_form(
+        b->status[k] = update_ray_status(b->status[k], out[k] > 0.0,
+                                         GLINT_RAY_TOTAL_REFLECTION);
+        deflect_ray_at_form(
             b, k, ratio,
             (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k], 1.0);
     }
@@ -281,7 +290,7 @@ void glint_beam_cross_form(struct beam *b, int n, bool reflects, double ratio,
                            const double *out)
 {
     if (n == LANES)
-        cross_form(b, LANES, reflects, ratio, out);
+        refract_or_reflect_at_form(b, LANES, reflects, ratio, out);
     else
-        cross_form(b, 1, reflects, ratio, out);
+        refract_or_reflect_at_form(b, 1, reflects, ratio, out);
 }

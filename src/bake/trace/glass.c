@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Index of refraction of a glass at any wavelength: Sellmeier's formula for
- * catalogue glasses, else from nd and Vd.
+ * Computes the index of refraction of a glass at any wavelength: by
+ * Sellmeier's formula for catalogue glasses, else from nd and Vd.
  *
- * The latter uses the two-term Cauchy formula n = A + B / wavelength^2 through
- * the index at the d line and the dispersion n_F - n_C = (nd - 1) / Vd. It is
- * exact for these values; a real glass refracts violet light slightly more.
+ * For nd and Vd the two-term Cauchy formula n = A + B / wavelength^2 passes
+ * through the index at the d line and the dispersion n_F - n_C = (nd - 1) /
+ * Vd. It is exact for these values; a real glass refracts violet light
+ * slightly more.
  */
 #include "bake/table/catalogue.h"
 #include "glint/trace.h"

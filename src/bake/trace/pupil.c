@@ -2,14 +2,14 @@
  *
  * Finds the region of the entrance pupil through which a ghost's visible rays
  * pass. A grid over the front element keeps the cells that may contain a
- * visible ray, judged by the bounding box of their corners' stop positions and
- * relative radii, with a margin for curvature between corners. Finer grids then
- * cover the kept cells until the region no longer shrinks. If no cell is kept,
- * a spot is searched for in the light's plane.
+ * visible ray, judged by the bounding box of the corners' stop positions and
+ * relative radii, with a margin for curvature between corners. Finer grids
+ * then cover these cells until the region no longer shrinks. If no cell is
+ * found, a spot is searched for in the light's plane.
  *
- * Limits: a visible region smaller than a 64th of the front element, around
- * which rays bend by more than the margin, can be missed if it is elongated or
- * lies off that plane.
+ * Limit: a visible region smaller than 1/64 of the front element, around which
+ * rays bend by more than the margin, can be missed if it is elongated or lies
+ * off that plane.
  */
 #include "glint/trace.h"
 
@@ -22,46 +22,48 @@
 
 enum { ACROSS = 64, DOWN = 32, ROUNDS = 8, TURNS = 16 };
 
-/* Cells of later rounds; they cover a smaller region, so a coarser grid
- * suffices. */
+/* numbers of cells in later rounds, which cover a smaller region */
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
 
-/* Fraction of its size by which a pupil is enlarged on each side to contain
- * those of wavelengths and directions near by. */
+/* Fraction of its size by which a pupil is enlarged on each side, so that it
+ * contains the pupils of nearby wavelengths and directions. */
 #define EXTEND 0.125
 
 struct search {
-    struct glint_openings openings; /* its path is PLACES */
-    struct glint_path places;       /* the path, without energies */
+    /* openings that rays must pass; its path is the member places */
+    struct glint_openings openings;
+    struct glint_path places; /* the path without energies */
     const struct glint_path *path;
-    int across, down; /* number of cells of this round */
+    int across, down; /* numbers of cells in this round */
     struct glint_ray ray[DOWN + 1][ACROSS + 1];
     enum glint_ray_status status[DOWN + 1][ACROSS + 1];
-    struct glint_pupil grid;         /* region that the grid covers */
-    bool kept[DOWN + 1][ACROSS + 1]; /* true: corner of a kept cell */
+    /* region that the grid of this round covers */
+    struct glint_pupil grid;
+    /* true: corner of a cell that may contain a visible ray */
+    bool kept[DOWN + 1][ACROSS + 1];
 };
 
-static double column_x(const struct search *s, const struct glint_pupil *p,
-                       int i)
+static double compute_column_x(const struct search *s,
+                               const struct glint_pupil *p, int i)
 {
     return p->x0_mm + (p->x1_mm - p->x0_mm) * i / s->across;
 }
 
-static double row_y(const struct search *s, const struct glint_pupil *p,
-                    double j)
+static double compute_row_y(const struct search *s, const struct glint_pupil *p,
+                            double j)
 {
     return p->y0_mm + (p->y1_mm - p->y0_mm) * j / s->down;
 }
 
 /* Traces row J of the grid over P along PATH. */
-static void sample_row(struct search *s, const struct glint_pupil *p,
-                       const struct glint_path *path, int j)
+static void trace_grid_row(struct search *s, const struct glint_pupil *p,
+                           const struct glint_path *path, int j)
 {
     const double *d = s->openings.direction;
     const struct glint_row row = {s->across + 1,
                                   p->x0_mm,
                                   (p->x1_mm - p->x0_mm) / s->across,
-                                  row_y(s, p, j),
+                                  compute_row_y(s, p, j),
                                   {d[0], d[1], d[2]}};
 
     glint_trace_row(path, &row, s->ray[j], s->status[j], NULL);
@@ -69,11 +71,11 @@ static void sample_row(struct search *s, const struct glint_pupil *p,
 
 struct bounds {
     int n;
-    /* Min and max of stop x and y, relative radius, sensor x and y. */
+    /* min and max of: stop x, stop y, relative radius, sensor x, sensor y */
     double low[5], high[5];
 };
 
-static void bounds_add(struct bounds *b, const struct glint_ray *ray)
+static void add_ray_to_bounds(struct bounds *b, const struct glint_ray *ray)
 {
     const double v[5] = {ray->stop_x_mm, ray->stop_y_mm, ray->rel_radius,
                          ray->sensor_x_mm, ray->sensor_y_mm};
@@ -85,14 +87,14 @@ static void bounds_add(struct bounds *b, const struct glint_ray *ray)
     b->n++;
 }
 
-static double from_zero(double low, double high)
+static double compute_distance_to_zero(double low, double high)
 {
     return low > 0 ? low : high < 0 ? -high : 0;
 }
 
-/* Returns whether a cell may contain a ray that is not blocked. A cell with
- * invalid corners is judged by the others, with twice the margin. */
-static bool may_pass(const struct search *s, const struct bounds *b)
+/* Returns whether a cell may contain an unblocked ray. A cell with invalid
+ * corners is judged by its other corners, with twice the margin. */
+static bool may_cell_pass_light(const struct search *s, const struct bounds *b)
 {
     const double more = b->n == 4 ? 0.5 : 1;
     double low[5], high[5];
@@ -106,16 +108,19 @@ static bool may_pass(const struct search *s, const struct bounds *b)
         high[k] = b->high[k] + grow;
     }
     return low[2] <= 1 &&
-           hypot(from_zero(low[0], high[0]), from_zero(low[1], high[1])) <=
+           hypot(compute_distance_to_zero(low[0], high[0]),
+                 compute_distance_to_zero(low[1], high[1])) <=
                s->openings.stop_mm &&
-           hypot(from_zero(low[3], high[3]), from_zero(low[4], high[4])) <=
+           hypot(compute_distance_to_zero(low[3], high[3]),
+                 compute_distance_to_zero(low[4], high[4])) <=
                s->openings.field_mm;
 }
 
-/* Adds the position of a kept cell to BOX, and the positions of its rays on
- * the sensor to FOUND. */
-static void keep_cell(struct search *s, int i, int j, const struct bounds *cell,
-                      struct bounds *box, struct glint_pupil *found)
+/* Marks cell (I, J), extends BOX by it, and extends FOUND by the sensor
+ * positions of its rays. */
+static void mark_visible_cell(struct search *s, int i, int j,
+                              const struct bounds *cell, struct bounds *box,
+                              struct glint_pupil *found)
 {
     const int at[4] = {i, i + 1, j, j + 1};
     double *sensor = found->sensor_mm;
@@ -137,16 +142,16 @@ static void keep_cell(struct search *s, int i, int j, const struct bounds *cell,
         s->kept[j + (k >> 1)][i + (k & 1)] = true;
 }
 
-/* Extends the sensor range of P by its mirror image. */
-static void mirror_sensor(struct glint_pupil *p)
+/* Extends the sensor range of P by its mirror image about y = 0. */
+static void mirror_sensor_range(struct glint_pupil *p)
 {
     p->sensor_mm[3] = fmax(fabs(p->sensor_mm[2]), fabs(p->sensor_mm[3]));
     p->sensor_mm[2] = -p->sensor_mm[3];
 }
 
-/* Shrinks P to the cells that may contain an unblocked ray; returns whether
+/* Shrinks P to the cells that may contain an unblocked ray. Returns whether
  * there are any. */
-static bool shrink_to_cells(struct search *s, struct glint_pupil *p)
+static bool shrink_to_visible_cells(struct search *s, struct glint_pupil *p)
 {
     struct glint_pupil found = *p;
     struct bounds box = {.n = 0};
@@ -154,35 +159,36 @@ static bool shrink_to_cells(struct search *s, struct glint_pupil *p)
     s->grid = *p;
     memset(s->kept, 0, sizeof s->kept);
     for (int j = 0; j <= s->down; j++)
-        sample_row(s, p, &s->places, j);
+        trace_grid_row(s, p, &s->places, j);
     for (int j = 0; j < s->down; j++)
         for (int i = 0; i < s->across; i++) {
             struct bounds cell = {.n = 0};
 
             for (int k = 0; k < 4; k++)
                 if (s->status[j + (k >> 1)][i + (k & 1)] == GLINT_RAY_OK)
-                    bounds_add(&cell, &s->ray[j + (k >> 1)][i + (k & 1)]);
-            if (may_pass(s, &cell))
-                keep_cell(s, i, j, &cell, &box, &found);
+                    add_ray_to_bounds(&cell,
+                                      &s->ray[j + (k >> 1)][i + (k & 1)]);
+            if (may_cell_pass_light(s, &cell))
+                mark_visible_cell(s, i, j, &cell, &box, &found);
         }
     if (box.n == 0)
         return false;
-    found.x0_mm = column_x(s, p, (int)box.low[0]);
-    found.x1_mm = column_x(s, p, (int)box.high[0]);
-    found.y1_mm = row_y(s, p, box.high[2]);
+    found.x0_mm = compute_column_x(s, p, (int)box.low[0]);
+    found.x1_mm = compute_column_x(s, p, (int)box.high[0]);
+    found.y1_mm = compute_row_y(s, p, box.high[2]);
     if (s->path->round)
-        mirror_sensor(&found);
+        mirror_sensor_range(&found);
     else
-        found.y0_mm = row_y(s, p, box.low[2]);
+        found.y0_mm = compute_row_y(s, p, box.low[2]);
     *p = found;
     return true;
 }
 
-/* Returns by how much rays may enter the vertex plane outside the front
- * element's rim: a slanted ray crosses this plane up to the sag at the rim
- * times its tangent away from where it meets the curved surface. */
-static double grow_by_sag(const struct glint_path *path,
-                          const struct glint_event *front)
+/* Returns how far from the vertex plane the front element's rim lies, mm: a
+ * slanted ray crosses that plane up to this depth times its tangent outside the
+ * rim. */
+static double compute_front_rim_depth(const struct glint_path *path,
+                                      const struct glint_event *front)
 {
     const double h = front->semi_mm, c = front->curvature;
     double slope[2], most = 0;
@@ -197,10 +203,10 @@ static double grow_by_sag(const struct glint_path *path,
     return most;
 }
 
-/* Returns the max displacement of the front element's rim by its decentre
- * and tilt. */
-static double off_axis(const struct glint_path *path,
-                       const struct glint_event *front)
+/* Returns the max displacement of the front element's rim by its decentre and
+ * tilt, mm. */
+static double compute_front_displacement(const struct glint_path *path,
+                                         const struct glint_event *front)
 {
     const struct glint_form *f = &path->form[front->surface];
 
@@ -209,12 +215,13 @@ static double off_axis(const struct glint_path *path,
                : 0;
 }
 
-static struct glint_pupil whole_front(const struct glint_path *path,
-                                      const struct glint_event *front,
-                                      const double direction[3])
+static struct glint_pupil compute_front_box(const struct glint_path *path,
+                                            const struct glint_event *front,
+                                            const double direction[3])
 {
-    const double off = off_axis(path, front), h = front->semi_mm + off;
-    const double deep = fabs(grow_by_sag(path, front)) + off;
+    const double off = compute_front_displacement(path, front),
+                 h = front->semi_mm + off;
+    const double deep = fabs(compute_front_rim_depth(path, front)) + off;
     const double x = h + deep * fabs(direction[0] / direction[2]);
     const double y = h + deep * fabs(direction[1] / direction[2]);
 
@@ -225,7 +232,7 @@ static struct glint_pupil whole_front(const struct glint_path *path,
                                 .mirrored = path->round};
 }
 
-/* Returns the max energy at the kept corners of the last grid. */
+/* Returns the max energy at the marked corners of the last grid. */
 static double find_max_energy(struct search *s)
 {
     double most = 0;
@@ -233,7 +240,7 @@ static double find_max_energy(struct search *s)
     for (int j = 0; j <= s->down; j++) {
         if (!memchr(s->kept[j], 1, sizeof s->kept[j]))
             continue;
-        sample_row(s, &s->grid, s->path, j);
+        trace_grid_row(s, &s->grid, s->path, j);
         for (int i = 0; i <= s->across; i++)
             if (s->kept[j][i] && s->status[j][i] == GLINT_RAY_OK)
                 most = fmax(most, s->ray[j][i].energy);
@@ -241,15 +248,16 @@ static double find_max_energy(struct search *s)
     return most;
 }
 
-static double compute_area(const struct glint_pupil *p)
+static double compute_box_area(const struct glint_pupil *p)
 {
     return (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm);
 }
 
-/* Returns BOX enlarged by PART of its size on each side, and by a fraction of
+/* Returns BOX enlarged on each side by PART of its size and by a fraction of
  * the front element, as boxes may be very thin. */
-static struct glint_pupil grow_box(const struct glint_pupil *box, double part,
-                                   const struct glint_pupil *front)
+static struct glint_pupil enlarge_box(const struct glint_pupil *box,
+                                      double part,
+                                      const struct glint_pupil *front)
 {
     const double more =
         part * (box->x1_mm - box->x0_mm) + 0.01 * (front->x1_mm - front->x0_mm);
@@ -265,33 +273,33 @@ static struct glint_pupil grow_box(const struct glint_pupil *box, double part,
         .mirrored = front->mirrored};
 }
 
-/* Shrinks P by several grids, the first of ACROSS x DOWN cells; returns
+/* Shrinks P by several grids, the first one with ACROSS x DOWN cells. Returns
  * whether any ray passes. */
-static bool shrink_in_rounds(struct search *s, struct glint_pupil *p,
-                             int across, int down)
+static bool shrink_pupil_in_rounds(struct search *s, struct glint_pupil *p,
+                                   int across, int down)
 {
     bool found = true;
 
     for (int round = 0; round < ROUNDS && found; round++) {
-        const double before = compute_area(p);
+        const double before = compute_box_area(p);
 
         s->across = round ? NEXT_ACROSS : across;
         s->down = round ? NEXT_DOWN : down;
-        found = shrink_to_cells(s, p);
-        if (round > 0 && compute_area(p) > 0.8 * before)
+        found = shrink_to_visible_cells(s, p);
+        if (round > 0 && compute_box_area(p) > 0.8 * before)
             break;
     }
-    /* Only positions decide which cells are kept; energies of the last grid
-     * alone are needed. */
+    /* Only positions decide which cells are marked, so energies are traced for
+     * the last grid only. */
     if (found)
         p->energy = find_max_energy(s);
     return found;
 }
 
-/* Finds a visible spot smaller than a cell of the first grid, in the light's
- * plane through the middle of the front element. */
-static bool find_spot(struct search *s, const struct glint_pupil *front,
-                      struct glint_pupil *p)
+/* Finds a visible spot that is smaller than a cell of the first grid, in the
+ * light's plane through the middle of the front element. */
+static bool find_visible_spot(struct search *s, const struct glint_pupil *front,
+                              struct glint_pupil *p)
 {
     double x[2];
 
@@ -303,23 +311,25 @@ static bool find_spot(struct search *s, const struct glint_pupil *front,
                               .y1_mm = x[1] - x[0],
                               .mirrored = front->mirrored};
     glint_spot_grow(&s->openings, p);
-    return shrink_in_rounds(s, p, NEXT_ACROSS, NEXT_DOWN);
+    return shrink_pupil_in_rounds(s, p, NEXT_ACROSS, NEXT_DOWN);
 }
 
-/* Finds the visible region within P, or else a spot of FRONT. */
-static bool find_pupil(struct search *s, const struct glint_pupil *front,
-                       struct glint_pupil *p, bool near)
+/* Finds the visible region within P, or else a spot on FRONT. NEAR: P is an
+ * estimate of the region, so coarse grids suffice. */
+static bool find_visible_region(struct search *s,
+                                const struct glint_pupil *front,
+                                struct glint_pupil *p, bool near)
 {
     struct glint_pupil wider;
 
-    if (!shrink_in_rounds(s, p, near ? NEXT_ACROSS : ACROSS,
-                          near ? NEXT_DOWN : DOWN))
-        return find_spot(s, front, p);
-    /* Where rays bend more than the margin allows for, some enter outside
-     * the kept cells. */
+    if (!shrink_pupil_in_rounds(s, p, near ? NEXT_ACROSS : ACROSS,
+                                near ? NEXT_DOWN : DOWN))
+        return find_visible_spot(s, front, p);
+    /* Where rays bend by more than the margin, some visible ones enter outside
+     * the marked cells. */
     wider = *p;
     if (glint_spot_grow(&s->openings, &wider) &&
-        shrink_in_rounds(s, &wider, NEXT_ACROSS, NEXT_DOWN))
+        shrink_pupil_in_rounds(s, &wider, NEXT_ACROSS, NEXT_DOWN))
         *p = wider;
     return true;
 }
@@ -344,11 +354,11 @@ bool glint_pupil_find_within(struct glint_pupil *pupil,
                                     field_mm, near);
 }
 
-/* Prepares S for PATH, and sets FRONT to its whole front element; returns false
+/* Prepares S for PATH and sets WHOLE to the whole front element. Returns false
  * if PATH has no surface. */
-static bool start_search(struct search *s, const struct glint_path *path,
-                         const double direction[3], double stop_mm,
-                         double field_mm, struct glint_pupil *whole)
+static bool begin_pupil_search(struct search *s, const struct glint_path *path,
+                               const double direction[3], double stop_mm,
+                               double field_mm, struct glint_pupil *whole)
 {
     const struct glint_event *front = NULL;
 
@@ -365,7 +375,7 @@ static bool start_search(struct search *s, const struct glint_path *path,
     s->path = path;
     s->places = *path;
     s->places.places_only = true;
-    *whole = whole_front(path, front, direction);
+    *whole = compute_front_box(path, front, direction);
     return true;
 }
 
@@ -374,23 +384,24 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
                               const double direction[3], double stop_radius_mm,
                               double field_mm, const struct glint_pupil *near)
 {
-    struct search s; /* 150 KB: the offline half has the stack for it */
+    struct search s; /* 150 KB: the offline half has a large stack */
     struct glint_pupil whole, p;
     bool found;
 
-    if (!start_search(&s, path, direction, stop_radius_mm, field_mm, &whole))
+    if (!begin_pupil_search(&s, path, direction, stop_radius_mm, field_mm,
+                            &whole))
         return false;
-    p = near ? grow_box(near, 0.5, &whole) : whole;
-    found = find_pupil(&s, &whole, &p, near);
+    p = near ? enlarge_box(near, 0.5, &whole) : whole;
+    found = find_visible_region(&s, &whole, &p, near);
     if (found)
         *pupil = p;
     return found;
 }
 
-/* Returns whether A reaches a side of B that is not a side of FRONT. */
-static bool reaches_side(const struct glint_pupil *a,
-                         const struct glint_pupil *b,
-                         const struct glint_pupil *front)
+/* Returns whether A touches a side of B that is not a side of FRONT. */
+static bool is_box_side_reached(const struct glint_pupil *a,
+                                const struct glint_pupil *b,
+                                const struct glint_pupil *front)
 {
     return (a->x0_mm <= b->x0_mm && b->x0_mm > front->x0_mm) ||
            (a->x1_mm >= b->x1_mm && b->x1_mm < front->x1_mm) ||
@@ -398,7 +409,7 @@ static bool reaches_side(const struct glint_pupil *a,
            (a->y1_mm >= b->y1_mm && b->y1_mm < front->y1_mm);
 }
 
-static void unite(struct glint_pupil *all, const struct glint_pupil *p)
+static void unite_pupils(struct glint_pupil *all, const struct glint_pupil *p)
 {
     all->x0_mm = fmin(all->x0_mm, p->x0_mm);
     all->x1_mm = fmax(all->x1_mm, p->x1_mm);
@@ -419,19 +430,21 @@ bool glint_pupil_extend(struct glint_pupil *pupil,
     struct search s;
     struct glint_pupil whole, grown, p;
 
-    if (!start_search(&s, path, direction, stop_radius_mm, HUGE_VAL, &whole))
+    if (!begin_pupil_search(&s, path, direction, stop_radius_mm, HUGE_VAL,
+                            &whole))
         return false;
-    grown = p = grow_box(pupil, EXTEND, &whole);
+    grown = p = enlarge_box(pupil, EXTEND, &whole);
     s.across = NEXT_ACROSS;
     s.down = NEXT_DOWN;
-    if (shrink_to_cells(&s, &p) && !reaches_side(&p, &grown, &whole)) {
+    if (shrink_to_visible_cells(&s, &p) &&
+        !is_box_side_reached(&p, &grown, &whole)) {
         p.energy = pupil->energy;
-        unite(pupil, &p);
+        unite_pupils(pupil, &p);
         return true;
     }
-    p = grow_box(pupil, 0.5, &whole);
-    if (!find_pupil(&s, &whole, &p, true))
+    p = enlarge_box(pupil, 0.5, &whole);
+    if (!find_visible_region(&s, &whole, &p, true))
         return false;
-    unite(pupil, &p);
+    unite_pupils(pupil, &p);
     return true;
 }

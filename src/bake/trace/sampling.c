@@ -4,14 +4,14 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* number of rays that are traced at a time */
+/* number of rays traced per call */
 enum { SOME = 8 };
 
-/* Weight of a pair of rays that proves a cut; rays that only suggest a cut
- * have weight 1. */
+/* Weight of a pair of rays that proves that a barrel blocks rays; pairs that
+ * only suggest it have weight 1. */
 enum { SHOWN = 1000 };
 
-/* A sampled ray. */
+/* one ray of the sparse grid */
 struct probe {
     bool traced, inside;
     double x_mm, y_mm; /* position on the sensor */
@@ -20,10 +20,10 @@ struct probe {
     double r2[GLINT_MAX_EVENTS + 1];
 };
 
-/* Sets P from RAY, which was traced, and its HITS. */
-static void set_probe(struct probe *p, const struct glint_path *path,
-                      const struct glint_ray *ray, double (*hits)[2],
-                      double stop_radius_mm)
+/* Sets P from the traced RAY and its HITS. */
+static void set_ray_probe(struct probe *p, const struct glint_path *path,
+                          const struct glint_ray *ray, double (*hits)[2],
+                          double stop_radius_mm)
 {
     const double sx = ray->stop_x_mm / stop_radius_mm;
     const double sy = ray->stop_y_mm / stop_radius_mm;
@@ -43,11 +43,11 @@ static void set_probe(struct probe *p, const struct glint_path *path,
     }
 }
 
-/* Sets ROW to the SIDE + 1 rays that start at Y on PUPIL. */
-static void probe_row(struct probe *row, const struct glint_path *path,
-                      const struct glint_pupil *pupil, double y,
-                      const double direction[3], double stop_radius_mm,
-                      int side)
+/* Sets ROW to the SIDE + 1 rays that start at height Y on PUPIL, mm. */
+static void trace_probe_row(struct probe *row, const struct glint_path *path,
+                            const struct glint_pupil *pupil, double y,
+                            const double direction[3], double stop_radius_mm,
+                            int side)
 {
     double hits[SOME * (GLINT_MAX_EVENTS + 1)][2];
     struct glint_launch from[SOME];
@@ -67,16 +67,17 @@ static void probe_row(struct probe *row, const struct glint_path *path,
         for (int k = 0; k < n; k++) {
             row[first + k].traced = false;
             if (status[k] == GLINT_RAY_OK)
-                set_probe(&row[first + k], path, &ray[k],
-                          hits + k * path->n_events, stop_radius_mm);
+                set_ray_probe(&row[first + k], path, &ray[k],
+                              hits + k * path->n_events, stop_radius_mm);
         }
     }
 }
 
-/* Adds weight to a barrel that alone blocks a ray, with a margin for the
- * gaps between rays. If several barrels block a ray that passes the stop, as
- * beyond a fold, the tightest one gets the weight. */
-static void mark_alone(const struct probe *p, int n, int *weight)
+/* Adds weight to a barrel that alone blocks ray P, with a margin for the gaps
+ * between rays. If several barrels block a ray that passes the stop, as beyond
+ * a fold, the tightest one gets the weight. */
+static void weigh_single_blocking_barrel(const struct probe *p, int n,
+                                         int *weight)
 {
     const double margin = 1.1;
     double worst = p->traced ? p->stop_r2 : 0, second = 0;
@@ -98,17 +99,19 @@ static void mark_alone(const struct probe *p, int n, int *weight)
         weight[at]++;
 }
 
-/* Returns the fraction of the way from IN (below 1) to OUT at which 1 is
- * reached; 2 if it is not reached. */
-static double compute_crossing(double in, double out)
+/* Returns the fraction of the way from IN (below 1) to OUT at which the value
+ * is 1; 2 if OUT is at most 1. */
+static double compute_rim_crossing(double in, double out)
 {
     return out > 1 ? (1 - in) / (out - in) : 2;
 }
 
-/* Adds weight to the barrel whose rim is crossed first between a visible and
- * a blocked ray, and a small weight to barrels crossed soon after. */
-static void mark_between(const struct probe *a, const struct probe *b, int n,
-                         int *weight)
+/* Adds weight to the barrel whose rim is crossed first on the way from a
+ * visible to a blocked ray, and a small weight to barrels crossed soon
+ * after. */
+static void weigh_first_crossed_barrel(const struct probe *a,
+                                       const struct probe *b, int n,
+                                       int *weight)
 {
     const struct probe *in = a, *out = b;
     double first;
@@ -119,11 +122,11 @@ static void mark_between(const struct probe *a, const struct probe *b, int n,
         in = b;
         out = a;
     }
-    first = compute_crossing(in->stop_r2, out->stop_r2);
+    first = compute_rim_crossing(in->stop_r2, out->stop_r2);
     for (int k = 0; k < n; k++)
-        first = fmin(first, compute_crossing(in->r2[k], out->r2[k]));
+        first = fmin(first, compute_rim_crossing(in->r2[k], out->r2[k]));
     for (int k = 0; k < n; k++) {
-        const double at = compute_crossing(in->r2[k], out->r2[k]);
+        const double at = compute_rim_crossing(in->r2[k], out->r2[k]);
 
         if (at <= first)
             weight[k] += SHOWN;
@@ -134,8 +137,8 @@ static void mark_between(const struct probe *a, const struct probe *b, int n,
 
 /* -------------------------------------------------------------------- bend */
 
-/* Sums of the squared first and second differences of a quantity along the
- * lines of the grid. */
+/* sums of squared first and second differences of a quantity along grid
+ * lines */
 struct change {
     double first, second;
 };
@@ -145,37 +148,40 @@ struct bend {
     struct change sensor; /* mm */
     struct change stop;
     struct change barrel[GLINT_MAX_EVENTS + 1]; /* differences of r^2 / 2 */
-    int up, down; /* numbers of cells of either orientation */
+    /* numbers of cells whose image is mirrored and not mirrored */
+    int up, down;
     int n_steps;
-    double thick; /* sum of rays per stop radius */
+    double thick; /* sum over neighbouring rays of rays per stop radius */
 };
 
-static void add_change(struct change *change, double a, double b, double c)
+static void add_differences(struct change *change, double a, double b, double c)
 {
     change->first += 0.25 * (c - a) * (c - a);
     change->second += (a - 2 * b + c) * (a - 2 * b + c);
 }
 
-/* Adds the differences at ray B, whose neighbours are A and C. */
-static void add_bend(struct bend *bend, const struct probe *a,
-                     const struct probe *b, const struct probe *c, int n_events)
+/* Adds the differences at ray B, whose neighbours on a grid line are A and
+ * C. */
+static void add_ray_differences(struct bend *bend, const struct probe *a,
+                                const struct probe *b, const struct probe *c,
+                                int n_events)
 {
     if (!b->traced || !b->inside || !a->traced || !c->traced)
         return;
-    add_change(&bend->sensor, a->x_mm, b->x_mm, c->x_mm);
-    add_change(&bend->sensor, a->y_mm, b->y_mm, c->y_mm);
-    add_change(&bend->stop, a->stop_x, b->stop_x, c->stop_x);
-    add_change(&bend->stop, a->stop_y, b->stop_y, c->stop_y);
+    add_differences(&bend->sensor, a->x_mm, b->x_mm, c->x_mm);
+    add_differences(&bend->sensor, a->y_mm, b->y_mm, c->y_mm);
+    add_differences(&bend->stop, a->stop_x, b->stop_x, c->stop_x);
+    add_differences(&bend->stop, a->stop_y, b->stop_y, c->stop_y);
     for (int k = 0; k < n_events; k++)
-        add_change(&bend->barrel[k], 0.5 * a->r2[k], 0.5 * b->r2[k],
-                   0.5 * c->r2[k]);
+        add_differences(&bend->barrel[k], 0.5 * a->r2[k], 0.5 * b->r2[k],
+                        0.5 * c->r2[k]);
     bend->n++;
 }
 
-/* Returns the RMS second difference of CUT over one step of the grid,
- * converted to mm on the sensor. */
-static double convert_to_sensor_mm(const struct bend *bend,
-                                   const struct change *cut)
+/* Returns the RMS second difference of CUT per grid step, converted to mm on
+ * the sensor. */
+static double convert_bend_to_sensor_mm(const struct bend *bend,
+                                        const struct change *cut)
 {
     return cut->first > 0
                ? sqrt(cut->second / bend->n * bend->sensor.first / cut->first)
@@ -185,20 +191,20 @@ static double convert_to_sensor_mm(const struct bend *bend,
 static double compute_outline_bend_mm(const struct bend *bend,
                                       const int *weight, int n_events)
 {
-    double most = convert_to_sensor_mm(bend, &bend->stop);
+    double most = convert_bend_to_sensor_mm(bend, &bend->stop);
 
     for (int k = 0; k < n_events; k++)
         if (weight[k] >= SHOWN)
-            most = fmax(most, convert_to_sensor_mm(bend, &bend->barrel[k]));
+            most =
+                fmax(most, convert_bend_to_sensor_mm(bend, &bend->barrel[k]));
     return most;
 }
 
-/* Adds the step from A to B in the stop if the opening may lie between them,
- * that is, if it is no farther away than the length of the step. Averages
- * rays per radius instead of radii per ray, as more light passes where rays
- * are dense. */
-static void add_step(struct bend *bend, const struct probe *a,
-                     const struct probe *b)
+/* Adds the distance between A and B in the stop if the opening may lie between
+ * both, that is, at most this distance away. Averages rays per radius instead
+ * of radii per ray, as more light passes where rays are dense. */
+static void add_stop_step(struct bend *bend, const struct probe *a,
+                          const struct probe *b)
 {
     double step;
 
@@ -211,10 +217,10 @@ static void add_step(struct bend *bend, const struct probe *a,
     bend->thick += 1 / step;
 }
 
-/* Adds the orientation of the cell with corner A, B next to it and C below
- * it. */
-static void add_turn(struct bend *bend, const struct probe *a,
-                     const struct probe *b, const struct probe *c)
+/* Counts the orientation of the cell with the corners A, B next to it and C
+ * below it. */
+static void count_cell_orientation(struct bend *bend, const struct probe *a,
+                                   const struct probe *b, const struct probe *c)
 {
     double turn;
 
@@ -230,31 +236,32 @@ static void add_turn(struct bend *bend, const struct probe *a,
 /* ---------------------------------------------------------------- sampling */
 
 struct rows {
-    struct probe row[3][GLINT_MAX_SAMPLING + 1]; /* the last three rows of the
-                                                    grid, used cyclically */
+    /* the last three rows of the grid, in a ring buffer */
+    struct probe row[3][GLINT_MAX_SAMPLING + 1];
 };
 
-static void process_ray(const struct rows *r, int i, int j, int n_events,
-                        int *weight, struct bend *bend)
+static void process_grid_ray(const struct rows *r, int i, int j, int n_events,
+                             int *weight, struct bend *bend)
 {
     const struct probe *here = &r->row[j % 3][i];
     const struct probe *above = &r->row[(j + 2) % 3][i];
 
-    mark_alone(here, n_events, weight);
+    weigh_single_blocking_barrel(here, n_events, weight);
     if (i > 0) {
-        mark_between(here - 1, here, n_events, weight);
-        add_step(bend, here - 1, here);
+        weigh_first_crossed_barrel(here - 1, here, n_events, weight);
+        add_stop_step(bend, here - 1, here);
     }
     if (j > 0) {
-        mark_between(above, here, n_events, weight);
-        add_step(bend, above, here);
+        weigh_first_crossed_barrel(above, here, n_events, weight);
+        add_stop_step(bend, above, here);
     }
     if (i > 1)
-        add_bend(bend, here - 2, here - 1, here, n_events);
+        add_ray_differences(bend, here - 2, here - 1, here, n_events);
     if (j > 1)
-        add_bend(bend, &r->row[(j + 1) % 3][i], above, here, n_events);
+        add_ray_differences(bend, &r->row[(j + 1) % 3][i], above, here,
+                            n_events);
     if (i > 0 && j > 0)
-        add_turn(bend, above - 1, above, here - 1);
+        count_cell_orientation(bend, above - 1, above, here - 1);
 }
 
 void glint_sampling_run(struct glint_sampling *sampling,
@@ -269,12 +276,13 @@ void glint_sampling_run(struct glint_sampling *sampling,
 
     places.places_only = true;
     for (int j = 0; j <= (path->round ? side / 2 : side); j++) {
-        probe_row(r.row[j % 3], &places, p,
-                  path->round ? p->y1_mm * 2 * j / side
-                              : p->y0_mm + (p->y1_mm - p->y0_mm) * j / side,
-                  direction, stop_radius_mm, side);
+        trace_probe_row(r.row[j % 3], &places, p,
+                        path->round
+                            ? p->y1_mm * 2 * j / side
+                            : p->y0_mm + (p->y1_mm - p->y0_mm) * j / side,
+                        direction, stop_radius_mm, side);
         for (int i = 0; i <= side; i++)
-            process_ray(&r, i, j, path->n_events, weight, &bend);
+            process_grid_ray(&r, i, j, path->n_events, weight, &bend);
     }
     sampling->bend_mm = sampling->outline_mm = sampling->round_mm = 0;
     sampling->n_inside = bend.n;
@@ -284,9 +292,9 @@ void glint_sampling_run(struct glint_sampling *sampling,
         sampling->outline_mm =
             compute_outline_bend_mm(&bend, weight, path->n_events) * side *
             side;
-        /* At the stop's outline the first difference of r^2 / 2 equals that
-         * of the stop position s, and its second difference is the square of
-         * the derivative of s. */
+        /* At the stop's outline the first difference of r^2 / 2 equals that of
+         * the stop position s; its second difference is the square of the
+         * derivative of s. */
         sampling->round_mm =
             sqrt(bend.stop.first * bend.sensor.first) / bend.n * side * side;
     }

@@ -4,46 +4,48 @@
 #include <math.h>
 
 enum {
-    LINE = 64,   /* number of cells of a stretch of the line */
-    LINES = 4,   /* number of stretches that the line is divided into */
-    CLOSER = 6,  /* number of times that a stretch is searched, each time a
-                    narrower one */
-    BORDER = 64, /* number of cells along a border, parallel to the rows */
-    SHORT = 32,  /* number of cells along a border across the rows */
-    GROWTHS = 12 /* max number of times that a side is moved outwards */
+    LINE = 64, /* number of cells of a segment of the search line */
+    LINES = 4, /* number of segments of the search line */
+    /* number of times that a segment is searched, each time a narrower one */
+    CLOSER = 6,
+    /* number of cells along a border of a box that is parallel to the rows */
+    BORDER = 64,
+    SHORT = 32, /* number of cells along a border across the rows */
+    /* max number of times that a side of a box is moved outwards */
+    GROWTHS = 12
 };
 
-/* Margin of signed quantities between two rays, as a fraction of their
- * difference. */
+/* Margin around signed quantities of two neighbouring rays, as a fraction of
+ * their difference. */
 #define BENDS 0.5
-/* If one of two rays is invalid, rays between them may pass if the two are
- * at least this far apart, in semi-diameters, at the last event that both
+/* If one of two rays is invalid, rays between them may pass if both are at
+ * least this far apart, in semi-diameters, at the last event that both
  * reached. */
 #define APART 0.25
-/* Fraction of a box by which a side is moved outwards at a time. A tip that
- * extends less than this beyond the box is found. */
+/* Fraction of its size by which a box grows on one side per step. Tips that
+ * extend less than this beyond the box are found. */
 #define STEP 0.125
 
-/* Neighbouring rays in the light's plane. */
+/* a segment of neighbouring rays in the light's plane */
 struct line {
     double x0_mm, step_mm;
     struct glint_ray ray[LINE + 1];
     enum glint_ray_status status[LINE + 1];
-    /* 200 KB, of which two are in use; see GLINT_BAKE_STACK_BYTES */
+    /* 200 KB, twice on the stack; see GLINT_BAKE_STACK_BYTES */
     double hits[(LINE + 1) * (GLINT_MAX_EVENTS + 1)][2];
 };
 
-/* Returns whether RAY passes stop, barrels and field. */
-static bool ray_passes(const struct glint_openings *o,
-                       const struct glint_ray *ray)
+/* Returns whether RAY passes the stop and all barrels and hits the field. */
+static bool is_ray_unblocked(const struct glint_openings *o,
+                             const struct glint_ray *ray)
 {
     return ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <= o->stop_mm &&
            hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= o->field_mm;
 }
 
-static void trace_line(const struct glint_openings *o, double x0_mm,
-                       double x1_mm, struct line *line)
+static void trace_line_segment(const struct glint_openings *o, double x0_mm,
+                               double x1_mm, struct line *line)
 {
     const double *d = o->direction;
     const struct glint_row row = {
@@ -56,9 +58,9 @@ static void trace_line(const struct glint_openings *o, double x0_mm,
     glint_trace_row(o->path, &row, line->ray, line->status, line->hits);
 }
 
-/* Returns the distance from 0 of the interval that A and B span, extended by
- * the margin BENDS. */
-static double distance_to_zero(double a, double b)
+/* Returns the distance from 0 to the interval between A and B, extended by the
+ * margin BENDS. */
+static double compute_distance_to_zero(double a, double b)
 {
     const double more = BENDS * fabs(a - b);
     const double low = fmin(a, b) - more, high = fmax(a, b) + more;
@@ -67,7 +69,7 @@ static double distance_to_zero(double a, double b)
 }
 
 /* Returns the number of events that ray I of LINE reached. */
-static int count_reached(const struct line *line, int i, int n_events)
+static int count_reached_events(const struct line *line, int i, int n_events)
 {
     int n = 0;
 
@@ -76,15 +78,15 @@ static int count_reached(const struct line *line, int i, int n_events)
     return n;
 }
 
-/* Returns whether a ray between rays I and I + 1 may pass. An invalid ray
+/* Returns whether any ray between rays I and I + 1 may pass. An invalid ray
  * often lies next to a spot from which light fans out. */
-static bool may_pass(const struct glint_openings *o, const struct line *line,
-                     int i)
+static bool may_ray_pass_between(const struct glint_openings *o,
+                                 const struct line *line, int i)
 {
     const struct glint_ray *a = &line->ray[i], *b = &line->ray[i + 1];
     const int all = o->path->n_events;
-    const int n =
-        (int)fmin(count_reached(line, i, all), count_reached(line, i + 1, all));
+    const int n = (int)fmin(count_reached_events(line, i, all),
+                            count_reached_events(line, i + 1, all));
     double apart = 0;
 
     for (int k = 0; k < n; k++) {
@@ -93,27 +95,28 @@ static bool may_pass(const struct glint_openings *o, const struct line *line,
         const double *q = line->hits[(i + 1) * all + k];
         const double semi = e->kind == GLINT_STOP ? o->stop_mm : e->semi_mm;
 
-        if (hypot(distance_to_zero(p[0], q[0]), distance_to_zero(p[1], q[1])) >
-            semi)
+        if (hypot(compute_distance_to_zero(p[0], q[0]),
+                  compute_distance_to_zero(p[1], q[1])) > semi)
             return false;
         apart = fabs(p[0] - q[0]) / semi;
     }
     if (line->status[i] != GLINT_RAY_OK || line->status[i + 1] != GLINT_RAY_OK)
         return apart > APART;
-    return hypot(distance_to_zero(a->sensor_x_mm, b->sensor_x_mm),
-                 distance_to_zero(a->sensor_y_mm, b->sensor_y_mm)) <=
+    return hypot(compute_distance_to_zero(a->sensor_x_mm, b->sensor_x_mm),
+                 compute_distance_to_zero(a->sensor_y_mm, b->sensor_y_mm)) <=
            o->field_mm;
 }
 
-/* Extends X_MM by the rays of LINE that pass, and their neighbours. Returns
- * whether there are any. */
-static bool find_visible(const struct glint_openings *o,
-                         const struct line *line, double x_mm[2])
+/* Sets X_MM to the range of rays of LINE that pass, and their neighbours.
+ * Returns whether any ray passes. */
+static bool find_passing_range(const struct glint_openings *o,
+                               const struct line *line, double x_mm[2])
 {
     bool seen = false;
 
     for (int i = 0; i <= LINE; i++) {
-        if (line->status[i] != GLINT_RAY_OK || !ray_passes(o, &line->ray[i]))
+        if (line->status[i] != GLINT_RAY_OK ||
+            !is_ray_unblocked(o, &line->ray[i]))
             continue;
         x_mm[0] = seen ? x_mm[0] : line->x0_mm + (i - 1) * line->step_mm;
         x_mm[1] = line->x0_mm + (i + 1) * line->step_mm;
@@ -122,20 +125,20 @@ static bool find_visible(const struct glint_openings *o,
     return seen;
 }
 
-/* Shrinks X_MM, a stretch in which rays may pass, to the rays that do.
- * Returns whether there are any. */
-static bool refine_stretch(const struct glint_openings *o, double x_mm[2])
+/* Shrinks the range X_MM, in which rays may pass, to the rays that do. Returns
+ * whether any ray passes. */
+static bool refine_passing_range(const struct glint_openings *o, double x_mm[2])
 {
     struct line line;
 
     for (int round = 0; round < CLOSER; round++) {
         int first = LINE, last = -1;
 
-        trace_line(o, x_mm[0], x_mm[1], &line);
-        if (find_visible(o, &line, x_mm))
+        trace_line_segment(o, x_mm[0], x_mm[1], &line);
+        if (find_passing_range(o, &line, x_mm))
             return true;
         for (int i = 0; i < LINE; i++)
-            if (may_pass(o, &line, i)) {
+            if (may_ray_pass_between(o, &line, i)) {
                 first = i < first ? i : first;
                 last = i;
             }
@@ -147,15 +150,15 @@ static bool refine_stretch(const struct glint_openings *o, double x_mm[2])
     return false;
 }
 
-/* Searches each run of cells of LINE in which rays may pass. If the range in
- * which they do is wider than *X_MM, it replaces *X_MM. */
-static void refine_runs(const struct glint_openings *o, const struct line *line,
-                        double x_mm[2])
+/* Searches each run of cells of LINE in which rays may pass. Sets X_MM to the
+ * widest range of rays that pass, if it is wider than X_MM. */
+static void refine_passing_runs(const struct glint_openings *o,
+                                const struct line *line, double x_mm[2])
 {
     int first = -1;
 
     for (int i = 0; i <= LINE; i++) {
-        const bool may = i < LINE && may_pass(o, line, i);
+        const bool may = i < LINE && may_ray_pass_between(o, line, i);
 
         if (may && first < 0)
             first = i;
@@ -163,7 +166,8 @@ static void refine_runs(const struct glint_openings *o, const struct line *line,
             double run[2] = {line->x0_mm + first * line->step_mm,
                              line->x0_mm + i * line->step_mm};
 
-            if (refine_stretch(o, run) && run[1] - run[0] > x_mm[1] - x_mm[0]) {
+            if (refine_passing_range(o, run) &&
+                run[1] - run[0] > x_mm[1] - x_mm[0]) {
                 x_mm[0] = run[0];
                 x_mm[1] = run[1];
             }
@@ -180,17 +184,17 @@ bool glint_spot_find(const struct glint_openings *o,
 
     x_mm[0] = x_mm[1] = 0;
     for (int k = 0; k < LINES; k++) {
-        trace_line(o, front->x0_mm + k * length,
-                   front->x0_mm + (k + 1) * length, &line);
-        refine_runs(o, &line, x_mm);
+        trace_line_segment(o, front->x0_mm + k * length,
+                           front->x0_mm + (k + 1) * length, &line);
+        refine_passing_runs(o, &line, x_mm);
     }
     return x_mm[1] > x_mm[0];
 }
 
-/* Returns whether one of N + 1 rays that start between (X0, Y0) and (X1, Y1)
+/* Returns whether any of N + 1 rays that start between (X0, Y0) and (X1, Y1)
  * passes. */
-static bool passes_on_segment(const struct glint_openings *o, double x0,
-                              double y0, double x1, double y1, int n)
+static bool passes_any_ray_on_segment(const struct glint_openings *o, double x0,
+                                      double y0, double x1, double y1, int n)
 {
     struct glint_launch from[BORDER + 1] = {{0, 0, {0, 0, 0}}};
     struct glint_ray ray[BORDER + 1];
@@ -204,7 +208,7 @@ static bool passes_on_segment(const struct glint_openings *o, double x0,
             {o->direction[0], o->direction[1], o->direction[2]}};
     glint_trace_many(o->path, n + 1, from, ray, status, NULL);
     for (int i = 0; i <= n && !any; i++)
-        any = status[i] == GLINT_RAY_OK && ray_passes(o, &ray[i]);
+        any = status[i] == GLINT_RAY_OK && is_ray_unblocked(o, &ray[i]);
     return any;
 }
 
@@ -216,13 +220,14 @@ bool glint_spot_grow(const struct glint_openings *o, struct glint_pupil *p)
         const double x0 = p->x0_mm, x1 = p->x1_mm, y0 = p->y0_mm, y1 = p->y1_mm;
         const double wide = STEP * (x1 - x0), high = STEP * (y1 - y0);
 
-        if (passes_on_segment(o, x0, y0, x0, y1, SHORT))
+        if (passes_any_ray_on_segment(o, x0, y0, x0, y1, SHORT))
             p->x0_mm -= wide;
-        if (passes_on_segment(o, x1, y0, x1, y1, SHORT))
+        if (passes_any_ray_on_segment(o, x1, y0, x1, y1, SHORT))
             p->x1_mm += wide;
-        if (passes_on_segment(o, x0, y1, x1, y1, BORDER))
+        if (passes_any_ray_on_segment(o, x0, y1, x1, y1, BORDER))
             p->y1_mm += high;
-        if (!p->mirrored && passes_on_segment(o, x0, y0, x1, y0, BORDER))
+        if (!p->mirrored &&
+            passes_any_ray_on_segment(o, x0, y0, x1, y0, BORDER))
             p->y0_mm -= high;
         if (p->x0_mm == x0 && p->x1_mm == x1 && p->y0_mm == y0 &&
             p->y1_mm == y1)

@@ -6,9 +6,9 @@
  *   out  the range in this plane where rays pass, however small
  *
  * Example: a lens of 180 degrees has a front of 80 mm, and ghosts that enter
- * through a spot of 1/20 mm; no grid over the front has a ray in it. But
+ * through a spot of 1/20 mm; no ray of a grid over the front hits it. But
  * between a ray that passes a barrel far on one side of its axis and a ray far
- * on the other side, there is one that passes through its centre. So pairs of
+ * on the other side, there is one through the barrel's centre. So pairs of
  * neighbouring rays are refined where this may be true for the stop and all
  * barrels, until a ray passes. Limits: misses spots off the light's plane, and
  * spots within 1/256 of the front from another one.
@@ -18,21 +18,21 @@
 
 #include "glint/trace.h"
 
-/* Limits that a ray must pass: the barrels of PATH, and the stop and the
- * field with these radii. */
+/* limits that a ray must pass: the barrels of path, and the radii of the stop
+ * and of the field */
 struct glint_openings {
     const struct glint_path *path; /* energies are not used */
     double direction[3];
     double stop_mm, field_mm;
 };
 
-/* Sets X_MM to the widest range of the line across FRONT in which rays pass,
- * with a margin. Returns false if no ray passes. */
+/* Sets X_MM to the widest range, with a margin, of the line across FRONT in
+ * which rays pass. Returns false if no ray passes. */
 bool glint_spot_find(const struct glint_openings *o,
                      const struct glint_pupil *front, double x_mm[2]);
 
-/* Moves those sides of P outwards beyond which rays pass, until none does.
- * Returns whether a side was moved. */
+/* Moves each side of P outwards until no ray passes on it. Returns whether a
+ * side was moved. */
 bool glint_spot_grow(const struct glint_openings *o, struct glint_pupil *p);
 
 #endif

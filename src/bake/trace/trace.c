@@ -37,8 +37,8 @@ struct route {
 };
 
 /* Sets the indices of refraction in front of and behind surface K. */
-static void find_indices(const struct route *route, int k, double *front,
-                         double *behind)
+static void find_refractive_indices(const struct route *route, int k,
+                                    double *front, double *behind)
 {
     const struct glint_surface *s = &route->lens->surface[k];
 
@@ -46,11 +46,11 @@ static void find_indices(const struct route *route, int k, double *front,
     *behind = glint_surface_index(s, route->wavelength_nm);
 }
 
-/* Returns the difference in z from the last event to element E, its
- * neighbour. */
-static double compute_step_mm(const struct route *route, int e)
+/* Returns the signed distance in z from the last event to element E, its
+ * neighbour, mm. */
+static double compute_event_distance_mm(const struct route *route, int e)
 {
-    /* a ray starts at the vertex plane of the first surface */
+    /* rays start at the vertex plane of the first surface */
     if (route->at < 0)
         return route->lens->stop_after == 0 ? -element_gap_mm(route->lens, 0)
                                             : 0.0;
@@ -58,9 +58,10 @@ static double compute_step_mm(const struct route *route, int e)
                          : -element_gap_mm(route->lens, e);
 }
 
-/* Appends an event at element E. FORWARD: the ray runs towards the sensor. */
-static void append_event(struct route *route, int e, enum glint_event_kind kind,
-                         bool forward)
+/* Appends an event of KIND at element E. FORWARD: the ray runs towards the
+ * sensor. */
+static void append_path_event(struct route *route, int e,
+                              enum glint_event_kind kind, bool forward)
 {
     const int k = element_surface(route->lens, e);
     struct glint_event *event = &route->path->event[route->path->n_events++];
@@ -69,14 +70,14 @@ static void append_event(struct route *route, int e, enum glint_event_kind kind,
     event->kind = k < 0 ? GLINT_STOP : kind;
     event->surface = k;
     event->curvature = element_curvature(route->lens, e);
-    event->advance_mm = compute_step_mm(route, e);
+    event->advance_mm = compute_event_distance_mm(route, e);
     event->semi_mm = element_semi_mm(route->lens, e);
     event->n_from = event->n_to = 1.0;
     route->at = e;
     if (k < 0)
         return;
-    find_indices(route, k, forward ? &event->n_from : &event->n_to,
-                 forward ? &event->n_to : &event->n_from);
+    find_refractive_indices(route, k, forward ? &event->n_from : &event->n_to,
+                            forward ? &event->n_to : &event->n_from);
     event->n_films =
         glint_coating_at(&route->lens->surface[k].coating, route->wavelength_nm,
                          route->path->film[k]);
@@ -86,9 +87,11 @@ static void append_event(struct route *route, int e, enum glint_event_kind kind,
                         route->phi_deg);
 }
 
-/* Sets the matrix from sensor to picture coordinates for light at PHI_DEG. */
-static void set_widening(struct glint_path *path,
-                         const struct glint_prescription *lens, double phi_deg)
+/* Sets the matrix from sensor to picture coordinates of an anamorphic lens, for
+ * light whose plane has the azimuth PHI_DEG. */
+static void set_anamorphic_matrix(struct glint_path *path,
+                                  const struct glint_prescription *lens,
+                                  double phi_deg)
 {
     const double c = glint_cos_deg(phi_deg), s = glint_sin_deg(phi_deg);
     struct glint_optics optics;
@@ -118,29 +121,29 @@ void glint_path_init_at(struct glint_path *path,
 
     path->n_events = 0;
     path->places_only = false;
-    set_widening(path, lens, phi_deg);
+    set_anamorphic_matrix(path, lens, phi_deg);
     if (ghost && ghost->i >= 0) {
         const int near = surface_element(lens, ghost->i);
         const int far = surface_element(lens, ghost->j);
 
         for (; e < far; e++)
-            append_event(&route, e, GLINT_REFRACT, true);
-        append_event(&route, far, GLINT_REFLECT, true);
+            append_path_event(&route, e, GLINT_REFRACT, true);
+        append_path_event(&route, far, GLINT_REFLECT, true);
         for (e = far - 1; e > near; e--)
-            append_event(&route, e, GLINT_REFRACT, false);
-        append_event(&route, near, GLINT_REFLECT, false);
+            append_path_event(&route, e, GLINT_REFRACT, false);
+        append_path_event(&route, near, GLINT_REFLECT, false);
         e = near + 1;
     }
     for (; e < n; e++)
-        append_event(&route, e, GLINT_REFRACT, true);
+        append_path_event(&route, e, GLINT_REFRACT, true);
     path->to_sensor_mm = element_gap_mm(lens, n - 1);
 }
 
 /* -------------------------------------------------------------------- rays */
 
-/* Moves rays along straight lines to the plane ADVANCE away. */
-static WHOLLY_INLINE void move_to_plane(struct beam *b, int n,
-                                        double advance_mm)
+/* Moves N rays along straight lines to the plane ADVANCE_MM away. */
+static WHOLLY_INLINE void move_rays_to_plane(struct beam *b, int n,
+                                             double advance_mm)
 {
     for (int k = 0; k < n; k++) {
         const double s = (advance_mm - b->z[k]) / b->n[k];
@@ -151,10 +154,10 @@ static WHOLLY_INLINE void move_to_plane(struct beam *b, int n,
     }
 }
 
-/* Moves rays from the vertex plane to a sphere of curvature C, whose normal
- * there is (-c x, -c y, 1 - c z). Comparisons are written such that NaN
+/* Moves N rays from the vertex plane to a sphere of curvature C, whose normal
+ * at a point is (-c x, -c y, 1 - c z). Comparisons are written so that NaN
  * counts as a miss. */
-static WHOLLY_INLINE void meet_sphere(struct beam *b, int n, double c)
+static WHOLLY_INLINE void move_rays_to_sphere(struct beam *b, int n, double c)
 {
     for (int k = 0; k < n; k++) {
         const double x = b->x[k], y = b->y[k];
@@ -169,29 +172,31 @@ static WHOLLY_INLINE void meet_sphere(struct beam *b, int n, double c)
         b->x[k] = x + t * b->l[k];
         b->y[k] = y + t * b->m[k];
         b->z[k] = t * b->n[k];
-        b->status[k] =
-            judge(b->status[k], (square > 0.0) & (1.0 - c * b->z[k] > 0.0),
-                  GLINT_RAY_MISSED);
+        b->status[k] = update_ray_status(
+            b->status[k], (square > 0.0) & (1.0 - c * b->z[k] > 0.0),
+            GLINT_RAY_MISSED);
     }
 }
 
-/* Sets the direction of ray K to S direction + PART normal. Marks the ray as
- * invalid if the sign of its z direction is not that of before, times WAY
- * (1: refraction, -1: reflection). */
-static WHOLLY_INLINE void deflect_beam(struct beam *b, int k, double c,
-                                       double s, double part, double way)
+/* Sets the direction of ray K to S * direction + PART * normal. Marks the ray
+ * as missed unless the z direction keeps its sign (WAY = 1: refraction) or
+ * changes it (WAY = -1: reflection). */
+static WHOLLY_INLINE void deflect_ray_at_sphere(struct beam *b, int k, double c,
+                                                double s, double part,
+                                                double way)
 {
     const double before = b->n[k];
 
     b->l[k] = s * b->l[k] - part * c * b->x[k];
     b->m[k] = s * b->m[k] - part * c * b->y[k];
     b->n[k] = s * before + part * (1.0 - c * b->z[k]);
-    b->status[k] =
-        judge(b->status[k], way * before * b->n[k] > 0.0, GLINT_RAY_MISSED);
+    b->status[k] = update_ray_status(b->status[k], way * before * b->n[k] > 0.0,
+                                     GLINT_RAY_MISSED);
 }
 
-/* Sets PART to the reflectance of E, coated with FILM, for rays that are
- * refracted to the cosine OUT; 1 where OUT is 0. */
+/* Sets PART to the reflectances of N rays at the surface of event E, coated
+ * with FILM. OUT: cosines of the refracted rays; where they are 0, PART is
+ * 1. */
 static WHOLLY_INLINE void compute_reflectances(const struct beam *b, int n,
                                                const struct glint_event *e,
                                                const struct glint_film_at *film,
@@ -202,26 +207,26 @@ static WHOLLY_INLINE void compute_reflectances(const struct beam *b, int n,
     double inside[LANES], sine2[LANES];
 
     for (int k = 0; k < n && bare; k++)
-        part[k] = bare_reflectance(n1, fabs(b->cosine[k]), n2, out[k]);
+        part[k] = compute_bare_reflectance(n1, fabs(b->cosine[k]), n2, out[k]);
     for (int k = 0; k < n && single; k++)
-        inside[k] = film_inside(n1, fabs(b->cosine[k]), film->n);
+        inside[k] = compute_film_cosine2(n1, fabs(b->cosine[k]), film->n);
     for (int k = 0; k < n && single; k++)
-        sine2[k] = film_sine2(inside[k], film->phase);
+        sine2[k] = compute_film_sine2(inside[k], film->phase);
     for (int k = 0; k < n && single; k++)
-        part[k] = film_reflectance(n1, fabs(b->cosine[k]), n2, out[k], film->n,
-                                   inside[k], sine2[k]);
+        part[k] = compute_film_reflectance(n1, fabs(b->cosine[k]), n2, out[k],
+                                           film->n, inside[k], sine2[k]);
     for (int k = 0; k < n && !bare && !single; k++)
-        part[k] = stack_reflectance(n1, fabs(b->cosine[k]), n2, out[k], film,
-                                    e->n_films);
+        part[k] = compute_stack_reflectance(n1, fabs(b->cosine[k]), n2, out[k],
+                                            film, e->n_films);
     for (int k = 0; k < n; k++)
         part[k] = out[k] > 0.0 ? part[k] : 1.0;
 }
 
-/* Refracts or reflects rays at the surface of E. */
-static WHOLLY_INLINE void cross_surface(struct beam *b, int n,
-                                        const struct glint_event *e,
-                                        const struct glint_film_at *film,
-                                        bool energies)
+/* Refracts or reflects N rays at the surface of event E. ENERGIES: also updates
+ * their energies. */
+static WHOLLY_INLINE void
+refract_or_reflect_rays(struct beam *b, int n, const struct glint_event *e,
+                        const struct glint_film_at *film, bool energies)
 {
     const double ratio = e->n_from / e->n_to, c = e->curvature;
     const bool reflects = e->kind == GLINT_REFLECT;
@@ -242,17 +247,17 @@ static WHOLLY_INLINE void cross_surface(struct beam *b, int n,
         return;
     }
     for (int k = 0; k < n && reflects; k++)
-        deflect_beam(b, k, c, 1.0, -2.0 * b->cosine[k], -1.0);
+        deflect_ray_at_sphere(b, k, c, 1.0, -2.0 * b->cosine[k], -1.0);
     for (int k = 0; k < n && !reflects; k++) {
-        b->status[k] =
-            judge(b->status[k], out[k] > 0.0, GLINT_RAY_TOTAL_REFLECTION);
-        deflect_beam(b, k, c, ratio,
-                     (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k],
-                     1.0);
+        b->status[k] = update_ray_status(b->status[k], out[k] > 0.0,
+                                         GLINT_RAY_TOTAL_REFLECTION);
+        deflect_ray_at_sphere(
+            b, k, c, ratio,
+            (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k], 1.0);
     }
 }
 
-static WHOLLY_INLINE void update_rel_radius(struct beam *b, int n,
+static WHOLLY_INLINE void update_max_radius(struct beam *b, int n,
                                             double semi_mm)
 {
     const double semi2 = semi_mm * semi_mm;
@@ -266,7 +271,7 @@ static WHOLLY_INLINE void update_rel_radius(struct beam *b, int n,
     }
 }
 
-static WHOLLY_INLINE bool are_all_invalid(const struct beam *b, int n)
+static WHOLLY_INLINE bool are_all_rays_invalid(const struct beam *b, int n)
 {
     double least = b->status[0];
 
@@ -275,8 +280,8 @@ static WHOLLY_INLINE bool are_all_invalid(const struct beam *b, int n)
     return least > GLINT_RAY_OK;
 }
 
-static WHOLLY_INLINE void start_ray(struct beam *b, int k,
-                                    const struct glint_launch *from)
+static WHOLLY_INLINE void start_beam_ray(struct beam *b, int k,
+                                         const struct glint_launch *from)
 {
     b->x[k] = from->x_mm;
     b->y[k] = from->y_mm;
@@ -285,13 +290,14 @@ static WHOLLY_INLINE void start_ray(struct beam *b, int k,
     b->m[k] = from->direction[1];
     b->n[k] = from->direction[2];
     b->energy[k] = b->semi2[k] = 1.0;
-    b->status[k] = judge(GLINT_RAY_OK, b->n[k] > 0.0, GLINT_RAY_MISSED);
+    b->status[k] =
+        update_ray_status(GLINT_RAY_OK, b->n[k] > 0.0, GLINT_RAY_MISSED);
 }
 
 /* Sets HIT to the position of ray K in the surface's own frame. */
-static WHOLLY_INLINE void record_hit(const struct beam *b, int k,
-                                     const struct glint_form *form,
-                                     double hit[2])
+static WHOLLY_INLINE void record_ray_hit(const struct beam *b, int k,
+                                         const struct glint_form *form,
+                                         double hit[2])
 {
     hit[0] = b->x[k];
     hit[1] = b->y[k];
@@ -299,14 +305,13 @@ static WHOLLY_INLINE void record_hit(const struct beam *b, int k,
         hit[i] = form->turn[i][0] * b->x[k] + form->turn[i][1] * b->y[k];
 }
 
-/* Traces rays through one event. For the first ASKED lanes, HITS[k *
- * n_events] receives the position of lane K. */
-static WHOLLY_INLINE void trace_event(struct beam *b, int n, int asked,
-                                      const struct glint_path *path,
-                                      const struct glint_event *e,
-                                      bool energies, double (*hits)[2])
+/* Traces N rays through event E. For the first ASKED rays, HITS[k * n_events]
+ * receives the position of ray k. */
+static WHOLLY_INLINE void trace_rays_through_event(
+    struct beam *b, int n, int asked, const struct glint_path *path,
+    const struct glint_event *e, bool energies, double (*hits)[2])
 {
-    move_to_plane(b, n, e->advance_mm);
+    move_rays_to_plane(b, n, e->advance_mm);
     if (e->kind == GLINT_STOP)
         for (int k = 0; k < n; k++) {
             b->stop_x[k] = b->x[k];
@@ -315,21 +320,23 @@ static WHOLLY_INLINE void trace_event(struct beam *b, int n, int asked,
     else if (e->shaped)
         glint_beam_meet_form(b, n, &path->form[e->surface]);
     else
-        meet_sphere(b, n, e->curvature);
+        move_rays_to_sphere(b, n, e->curvature);
     for (int k = 0; k < asked && hits; k++)
         if (!(b->status[k] > GLINT_RAY_OK))
-            record_hit(b, k, e->shaped ? &path->form[e->surface] : NULL,
-                       hits[k * path->n_events]);
+            record_ray_hit(b, k, e->shaped ? &path->form[e->surface] : NULL,
+                           hits[k * path->n_events]);
     if (e->kind == GLINT_STOP)
         return;
-    update_rel_radius(b, n, e->semi_mm);
-    cross_surface(b, n, e, path->film[e->surface], energies);
+    update_max_radius(b, n, e->semi_mm);
+    refract_or_reflect_rays(b, n, e, path->film[e->surface], energies);
     if (e->shaped)
         glint_beam_leave_form(b, n, &path->form[e->surface]);
 }
 
-/* Converts positions on the sensor to the picture of an anamorphic lens. */
-static void widen_picture(struct beam *b, int n, const double widen_by[2][2])
+/* Converts positions on the sensor to those in the picture of an anamorphic
+ * lens. */
+static void apply_anamorphic_matrix(struct beam *b, int n,
+                                    const double widen_by[2][2])
 {
     for (int k = 0; k < n; k++) {
         const double x = b->x[k], y = b->y[k];
@@ -339,8 +346,8 @@ static void widen_picture(struct beam *b, int n, const double widen_by[2][2])
     }
 }
 
-static inline enum glint_ray_status finish_ray(const struct beam *b, int k,
-                                               struct glint_ray *ray)
+static inline enum glint_ray_status read_traced_ray(const struct beam *b, int k,
+                                                    struct glint_ray *ray)
 {
     if (b->status[k] > GLINT_RAY_OK)
         return (enum glint_ray_status)b->status[k];
@@ -352,25 +359,25 @@ static inline enum glint_ray_status finish_ray(const struct beam *b, int k,
     return GLINT_RAY_OK;
 }
 
-/* Traces LANES lanes; only the first N are valid rays, the others repeat the
- * first one. */
+/* Traces LANES lanes; the first N are the rays FROM, the others repeat the
+ * first ray. */
 static WHOLLY_INLINE void
-trace_lanes(const struct glint_path *path, int lanes, int n, bool energies,
-            const struct glint_launch *from, struct glint_ray *ray,
-            enum glint_ray_status *status, double (*hits)[2])
+trace_ray_lanes(const struct glint_path *path, int lanes, int n, bool energies,
+                const struct glint_launch *from, struct glint_ray *ray,
+                enum glint_ray_status *status, double (*hits)[2])
 {
     struct beam b;
 
     for (int k = 0; k < lanes; k++)
-        start_ray(&b, k, &from[k < n ? k : 0]);
-    for (int i = 0; i < path->n_events && !are_all_invalid(&b, lanes); i++)
-        trace_event(&b, lanes, n, path, &path->event[i], energies,
-                    hits ? hits + i : NULL);
-    move_to_plane(&b, lanes, path->to_sensor_mm);
+        start_beam_ray(&b, k, &from[k < n ? k : 0]);
+    for (int i = 0; i < path->n_events && !are_all_rays_invalid(&b, lanes); i++)
+        trace_rays_through_event(&b, lanes, n, path, &path->event[i], energies,
+                                 hits ? hits + i : NULL);
+    move_rays_to_plane(&b, lanes, path->to_sensor_mm);
     if (!path->round)
-        widen_picture(&b, n, path->widen);
+        apply_anamorphic_matrix(&b, n, path->widen);
     for (int k = 0; k < n; k++)
-        status[k] = finish_ray(&b, k, &ray[k]);
+        status[k] = read_traced_ray(&b, k, &ray[k]);
 }
 
 WIDE_VECTORS
@@ -383,11 +390,11 @@ void glint_trace_many(const struct glint_path *path, int n,
         double(*h)[2] = hits ? hits + at * path->n_events : NULL;
 
         if (path->places_only)
-            trace_lanes(path, LANES, now, false, from + at, ray + at,
-                        status + at, h);
+            trace_ray_lanes(path, LANES, now, false, from + at, ray + at,
+                            status + at, h);
         else
-            trace_lanes(path, LANES, now, true, from + at, ray + at,
-                        status + at, h);
+            trace_ray_lanes(path, LANES, now, true, from + at, ray + at,
+                            status + at, h);
     }
 }
 
@@ -418,6 +425,6 @@ enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
         px_mm, py_mm, {direction[0], direction[1], direction[2]}};
     enum glint_ray_status status;
 
-    trace_lanes(path, 1, 1, !path->places_only, &from, ray, &status, hits);
+    trace_ray_lanes(path, 1, 1, !path->places_only, &from, ray, &status, hits);
     return status;
 }
