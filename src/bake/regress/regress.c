@@ -7,15 +7,16 @@
 
 #include "base/compiler.h"
 
-/* Number of columns that are multiplied by the same column at once. */
+/* number of dot products with the same column that are computed together */
 enum { VECTORS = 4 };
 
-/* number of partial sums of a dot product */
+/* number of partial sums per dot product */
 enum { LANES = 4 };
 
-/* Returns the dot product of A and B. Four partial sums shorten the chain of
- * dependent additions. */
-static WIDE_VECTORS double compute_dot(const double *a, const double *b, int n)
+/* Returns the dot product of A[N] and B[N]. Four partial sums shorten the chain
+ * of dependent additions. */
+static WIDE_VECTORS double compute_dot_product(const double *a, const double *b,
+                                               int n)
 {
     double s[LANES] = {0, 0, 0, 0};
     int i = 0;
@@ -28,11 +29,12 @@ static WIDE_VECTORS double compute_dot(const double *a, const double *b, int n)
     return (s[0] + s[1]) + (s[2] + s[3]);
 }
 
-/* Sets SUM to the dot products of A with four columns, bit-identical to
- * compute_dot(). Loads A only once, and the four sums are independent. */
-static WIDE_VECTORS void compute_dots(const double *a,
-                                      const double *const b[VECTORS], int n,
-                                      double sum[VECTORS])
+/* Sets SUM to the dot products of A with four columns B, bit-identical to
+ * compute_dot_product(). A is loaded only once, and the four sums are
+ * independent. */
+static WIDE_VECTORS void
+compute_four_dot_products(const double *a, const double *const b[VECTORS],
+                          int n, double sum[VECTORS])
 {
     const double *const b0 = b[0], *const b1 = b[1], *const b2 = b[2],
                         *const b3 = b[3];
@@ -60,9 +62,9 @@ static WIDE_VECTORS void compute_dots(const double *a,
     sum[3] = (s3[0] + s3[1]) + (s3[2] + s3[3]);
 }
 
-/* Subtracts K times B from A. */
-static WIDE_VECTORS void subtract_scaled(double *restrict a, double k,
-                                         const double *restrict b, int n)
+/* Subtracts K times B from A, both [N]. */
+static WIDE_VECTORS void subtract_scaled_vector(double *restrict a, double k,
+                                                const double *restrict b, int n)
 {
     int i = 0;
 
@@ -73,10 +75,10 @@ static WIDE_VECTORS void subtract_scaled(double *restrict a, double k,
         a[i] -= k * b[i];
 }
 
-/* Multiplies A elementwise by X, POWER times. */
-static WIDE_VECTORS void multiply_by_power(double *restrict a,
-                                           const double *restrict x, int power,
-                                           int n)
+/* Multiplies A[N] elementwise by X, POWER times. */
+static WIDE_VECTORS void multiply_by_variable_power(double *restrict a,
+                                                    const double *restrict x,
+                                                    int power, int n)
 {
     for (int p = 0; p < power; p++) {
         int i = 0;
@@ -89,7 +91,7 @@ static WIDE_VECTORS void multiply_by_power(double *restrict a,
     }
 }
 
-/* Returns the largest magnitude of A. */
+/* Returns the max magnitude in A[N]. */
 static WIDE_VECTORS double find_max_magnitude(const double *a, int n)
 {
     double most[LANES] = {0, 0, 0, 0};
@@ -103,27 +105,28 @@ static WIDE_VECTORS double find_max_magnitude(const double *a, int n)
     return fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
 }
 
-/* A column whose remaining length is below this fraction of its original
- * length is a combination of others. */
+/* A column counts as a combination of chosen columns if its remaining length is
+ * below this fraction of its original length. */
 #define DEPENDENT 1e-9
-/* A squared length that differences have reduced below this fraction of its
- * first value has lost half of its digits. */
+/* A squared length has lost half of its digits if subtractions have reduced it
+ * below this fraction of its first value. */
 #define DOUBTFUL 1e-8
-/* A candidate term. WAS2, LEFT2 and PULL are updated from its fraction along
- * each chosen direction. These fractions follow from products of terms, as
- * in a Cholesky factorisation. A candidate is orthogonalised only when it is
- * chosen itself, or when LEFT2 has become too inaccurate. */
+/* A candidate term and its column of values. was2, left2 and pull are updated
+ * from the column's components along all chosen directions, which follow from
+ * products of terms as in a Cholesky factorisation. The column itself is
+ * orthogonalised only when it is chosen, or when left2 has become too
+ * inaccurate. */
 struct column {
     uint8_t power[GLINT_VARIABLES];
     bool dead, chosen;
-    int place;     /* index of the term among moments */
-    double length; /* Euclidean length of AT */
-    /* dot product of AT with each chosen direction */
+    int place;     /* index of the term in the table of moments */
+    double length; /* Euclidean length of at */
+    /* components of at along each chosen direction */
     double on[GLINT_MAX_TERMS];
-    /* squared length of AT after subtraction of chosen directions: of those
-     * that were chosen when it was last orthogonalised, and of all */
+    /* squared length of at minus its components along chosen directions: those
+     * chosen when it was last orthogonalised (was2), and all (left2) */
     double was2, left2;
-    double pull;      /* dot product of AT with the residual */
+    double pull;      /* dot product of at with the residual */
     const double *at; /* [n]: values of the term times the weights */
 };
 
@@ -136,29 +139,30 @@ struct search {
     const struct glint_regress_samples *s;
     const struct glint_degrees *degrees;
     int n_chosen, n_columns;
-    int chosen[GLINT_MAX_TERMS]; /* columns, in the order of choice */
+    /* indices of the chosen columns, in the order of choice */
+    int chosen[GLINT_MAX_TERMS];
     struct column column[GLINT_MAX_CANDIDATES];
-    /* Products of two terms; NAN: not computed yet. A product depends only
-     * on the sums of both terms' powers, which many pairs share. */
+    /* Dot products of two terms; NAN: not computed yet. A product depends only
+     * on the sums of both terms' powers, which many pairs have in common. */
     double *moment;
     double *residual;  /* [n] */
     double *direction; /* [terms][n]: orthonormal directions */
     double *values;    /* [n_columns][n] */
 };
 
-/* Returns direction RANK, which may be the next direction to be chosen. */
-static double *get_direction(const struct search *s, int rank)
+/* Returns the direction with index RANK; n_chosen is the next one to be set. */
+static double *get_chosen_direction(const struct search *s, int rank)
 {
     return s->direction + (size_t)rank * (size_t)s->s->n;
 }
 
-/* Returns the number of rays in the block that begins at ray I of N. */
-static int count_block(int n, int i)
+/* Returns the number of rays in the block that begins at ray I, of N rays. */
+static int count_block_rays(int n, int i)
 {
     return n - i < BLOCK ? n - i : BLOCK;
 }
 
-static bool is_allowed(const struct glint_degrees *d, const uint8_t *power)
+static bool is_term_allowed(const struct glint_degrees *d, const uint8_t *power)
 {
     int total = 0;
 
@@ -176,9 +180,10 @@ static double *get_moment(const struct search *s, const struct column *a,
     return &s->moment[a->place + b->place];
 }
 
-/* Computes the missing products of CHOSEN and N columns, at most VECTORS. */
-static void find_moments(const struct search *s, const struct column *chosen,
-                         struct column *const column[], int n)
+/* Computes the missing dot products of CHOSEN with N columns, N <= VECTORS. */
+static void compute_missing_moments(const struct search *s,
+                                    const struct column *chosen,
+                                    struct column *const column[], int n)
 {
     const struct column *missing[VECTORS];
     const double *at[VECTORS];
@@ -192,103 +197,109 @@ static void find_moments(const struct search *s, const struct column *chosen,
         return;
     for (int k = 0; k < VECTORS; k++)
         at[k] = missing[k < n_missing ? k : 0]->at;
-    compute_dots(chosen->at, at, s->s->n, product);
+    compute_four_dot_products(chosen->at, at, s->s->n, product);
     for (int k = 0; k < n_missing; k++)
         *get_moment(s, chosen, missing[k]) = product[k];
 }
 
-/* Updates N columns, at most VECTORS, with their fractions along the chosen
- * direction of rank RANK. */
-static void update_fractions(const struct search *s,
-                             struct column *const column[], int n, int rank)
+/* Updates N columns, N <= VECTORS, by their components along the chosen
+ * direction with index RANK. */
+static void update_column_components(const struct search *s,
+                                     struct column *const column[], int n,
+                                     int rank)
 {
     const struct column *chosen = &s->column[s->chosen[rank]];
 
-    find_moments(s, chosen, column, n);
+    compute_missing_moments(s, chosen, column, n);
     for (int k = 0; k < n; k++) {
-        const double share = (*get_moment(s, chosen, column[k]) -
-                              compute_dot(chosen->on, column[k]->on, rank)) /
-                             chosen->on[rank];
+        const double share =
+            (*get_moment(s, chosen, column[k]) -
+             compute_dot_product(chosen->on, column[k]->on, rank)) /
+            chosen->on[rank];
 
         column[k]->on[rank] = share;
         column[k]->left2 -= share * share;
     }
 }
 
-/* Adds to SUM the dot products of A with all chosen directions, over M rays
+/* Adds the dot products of A with all chosen directions to SUM, over the M rays
  * from ray FIRST on. */
-static void add_products(const struct search *s, const double *a, int first,
-                         int m, double sum[GLINT_MAX_TERMS])
+static void add_direction_products(const struct search *s, const double *a,
+                                   int first, int m,
+                                   double sum[GLINT_MAX_TERMS])
 {
     for (int k = 0; k < s->n_chosen; k += VECTORS) {
         const double *at[VECTORS];
         double product[VECTORS];
 
         for (int j = 0; j < VECTORS; j++)
-            at[j] = get_direction(s, k + j < s->n_chosen ? k + j : k) + first;
-        compute_dots(a + first, at, m, product);
+            at[j] = get_chosen_direction(s, k + j < s->n_chosen ? k + j : k) +
+                    first;
+        compute_four_dot_products(a + first, at, m, product);
         for (int j = 0; j < VECTORS && k + j < s->n_chosen; j++)
             sum[k + j] += product[j];
     }
 }
 
-/* Subtracts SHARE times each chosen direction from A, for M rays from ray
- * FIRST on. */
-static void subtract_terms(const struct search *s, double *a, int first, int m,
-                           const double share[GLINT_MAX_TERMS])
+/* Subtracts each chosen direction times its SHARE from A, for the M rays from
+ * ray FIRST on. */
+static void subtract_chosen_directions(const struct search *s, double *a,
+                                       int first, int m,
+                                       const double share[GLINT_MAX_TERMS])
 {
     for (int k = 0; k < s->n_chosen; k++)
-        subtract_scaled(a + first, share[k], get_direction(s, k) + first, m);
+        subtract_scaled_vector(a + first, share[k],
+                               get_chosen_direction(s, k) + first, m);
 }
 
-/* Sets the next direction to the component of COLUMN that is orthogonal to
- * all chosen ones, not normalised. Orthogonalises twice, because of
+/* Sets the next direction to the part of COLUMN that is orthogonal to all
+ * chosen directions, not normalised. Orthogonalises twice because of
  * rounding. */
-static void make_orthogonal(const struct search *s, struct column *column)
+static void orthogonalise_column(const struct search *s, struct column *column)
 {
     const int n = s->s->n;
-    double *const q = get_direction(s, s->n_chosen);
+    double *const q = get_chosen_direction(s, s->n_chosen);
     double again[GLINT_MAX_TERMS] = {0};
 
     memcpy(q, column->at, (size_t)n * sizeof *q);
     for (int i = 0; i < n; i += BLOCK) {
-        subtract_terms(s, q, i, count_block(n, i), column->on);
-        add_products(s, q, i, count_block(n, i), again);
+        subtract_chosen_directions(s, q, i, count_block_rays(n, i), column->on);
+        add_direction_products(s, q, i, count_block_rays(n, i), again);
     }
     for (int i = 0; i < n; i += BLOCK)
-        subtract_terms(s, q, i, count_block(n, i), again);
+        subtract_chosen_directions(s, q, i, count_block_rays(n, i), again);
     for (int k = 0; k < s->n_chosen; k++)
         column->on[k] += again[k];
-    column->was2 = column->left2 = compute_dot(q, q, n);
-    column->pull = compute_dot(q, s->residual, n);
+    column->was2 = column->left2 = compute_dot_product(q, q, n);
+    column->pull = compute_dot_product(q, s->residual, n);
 }
 
-/* Sets the values AT[n] of COLUMN from those of PARENT, whose term divides
- * the term of COLUMN; if PARENT is NULL, from the weights. */
-static void set_values(const struct search *s, struct column *column,
-                       const struct column *parent, double *at)
+/* Computes the values AT[n] of COLUMN from those of PARENT, whose term divides
+ * COLUMN's term; if PARENT is NULL, from the weights. */
+static void compute_column_values(const struct search *s, struct column *column,
+                                  const struct column *parent, double *at)
 {
     const struct glint_regress_samples *v = s->s;
     const double *const from = parent ? parent->at : v->weight;
 
     for (int i = 0; i < v->n; i += BLOCK) {
-        const int n = count_block(v->n, i);
+        const int n = count_block_rays(v->n, i);
 
         memcpy(at + i, from + i, (size_t)n * sizeof *at);
         for (int k = 0; k < GLINT_VARIABLES; k++)
             if (column->power[k])
-                multiply_by_power(
+                multiply_by_variable_power(
                     at + i, v->x[k] + i,
                     column->power[k] - (parent ? parent->power[k] : 0), n);
     }
     column->at = at;
-    column->was2 = column->left2 = compute_dot(at, at, v->n);
+    column->was2 = column->left2 = compute_dot_product(at, at, v->n);
     column->length = sqrt(column->left2);
-    column->pull = compute_dot(at, s->residual, v->n);
+    column->pull = compute_dot_product(at, s->residual, v->n);
 }
 
-/* Returns the index of the term POWER among moments. The index of a product
- * of two terms is the sum of their indices. */
+/* Returns the index in the table of moments of the term with the powers POWER.
+ * The index of a product of two terms is the sum of their indices. */
 static int compute_moment_index(const struct glint_degrees *d,
                                 const uint8_t *power)
 {
@@ -299,32 +310,34 @@ static int compute_moment_index(const struct glint_degrees *d,
     return place;
 }
 
-/* Adds the term POWER as a candidate, without fractions. Returns it, or NULL
- * if the term is not allowed or exists already. */
-static struct column *add_candidate(struct search *s, const uint8_t *power,
-                                    const struct column *parent)
+/* Adds the term POWER as a candidate, without its components along chosen
+ * directions. Returns it, or NULL if the term is not allowed or exists
+ * already. */
+static struct column *add_candidate_term(struct search *s, const uint8_t *power,
+                                         const struct column *parent)
 {
     struct column *column = &s->column[s->n_columns];
 
-    if (s->n_columns == GLINT_MAX_CANDIDATES || !is_allowed(s->degrees, power))
+    if (s->n_columns == GLINT_MAX_CANDIDATES ||
+        !is_term_allowed(s->degrees, power))
         return NULL;
     for (int i = 0; i < s->n_columns; i++)
         if (memcmp(s->column[i].power, power, GLINT_VARIABLES) == 0)
             return NULL;
     *column = (struct column){.place = compute_moment_index(s->degrees, power)};
     memcpy(column->power, power, GLINT_VARIABLES);
-    set_values(s, column, parent,
-               s->values + (size_t)s->n_columns * (size_t)s->s->n);
+    compute_column_values(s, column, parent,
+                          s->values + (size_t)s->n_columns * (size_t)s->s->n);
     s->n_columns++;
     return column;
 }
 
 /* Adds the neighbours of COLUMN's term as candidates: one power more in one
- * variable, or two more in a variable of fixed parity. With LEAPS, two
- * powers more of variable 0 are neighbours, too, and of variable 1 if its
- * parity is free: near the axis ghosts are symmetric, so the odd power in
- * between explains nothing and would never be chosen. */
-static void add_neighbours(struct search *s, const struct column *column)
+ * variable, or two more in a variable of fixed parity. With leaps also two
+ * powers more in variable 0, and in variable 1 if its parity is free: near the
+ * axis ghosts are symmetric, so the odd power in between would reduce nothing
+ * and would never be chosen. */
+static void add_neighbour_terms(struct search *s, const struct column *column)
 {
     struct column *added[NEIGHBOURS];
     const int leaps = 1 + (s->degrees->parity < 0);
@@ -338,16 +351,17 @@ static void add_neighbours(struct search *s, const struct column *column)
         memcpy(power, column->power, sizeof power);
         power[v] = (uint8_t)(power[v] + (k >= GLINT_VARIABLES ? 2 : 1) +
                              (v == 1 && s->degrees->parity >= 0));
-        added[n] = add_candidate(s, power, column);
+        added[n] = add_candidate_term(s, power, column);
         n += added[n] != NULL;
     }
     for (int rank = 0; n > 0 && rank < s->n_chosen; rank++)
         for (int k = 0; k < n; k += VECTORS)
-            update_fractions(s, added + k, n - k < VECTORS ? n - k : VECTORS,
-                             rank);
+            update_column_components(s, added + k,
+                                     n - k < VECTORS ? n - k : VECTORS, rank);
 }
 
-/* Returns the index of the candidate that reduces the residual most, or -1. */
+/* Returns the index of the candidate that reduces the residual most; -1:
+ * none. */
 static int find_best_candidate(struct search *s)
 {
     double most = 0;
@@ -360,7 +374,7 @@ static int find_best_candidate(struct search *s)
         if (c->dead || c->chosen)
             continue;
         if (!(c->left2 > DOUBTFUL * c->was2))
-            make_orthogonal(s, c);
+            orthogonalise_column(s, c);
         c->dead = !(c->left2 > dependent * dependent);
         if (!c->dead && c->pull * c->pull / c->left2 > most) {
             most = c->pull * c->pull / c->left2;
@@ -370,55 +384,55 @@ static int find_best_candidate(struct search *s)
     return best;
 }
 
-static void choose_column(struct search *s, int index)
+static void choose_candidate(struct search *s, int index)
 {
     struct column *c = &s->column[index];
     const int n = s->s->n, rank = s->n_chosen;
     struct column *group[VECTORS];
     int grouped = 0;
-    double *const q = get_direction(s, rank);
+    double *const q = get_chosen_direction(s, rank);
     double share;
 
-    make_orthogonal(s, c);
+    orthogonalise_column(s, c);
     c->on[rank] = sqrt(c->left2);
     for (int i = 0; i < n; i++)
         q[i] /= c->on[rank];
     c->chosen = true;
     s->chosen[s->n_chosen++] = index;
     share = c->pull / c->on[rank];
-    subtract_scaled(s->residual, share, q, n);
+    subtract_scaled_vector(s->residual, share, q, n);
     for (int i = 0; i < s->n_columns; i++) {
         if (!s->column[i].dead && !s->column[i].chosen)
             group[grouped++] = &s->column[i];
         if (grouped == VECTORS || (grouped > 0 && i + 1 == s->n_columns)) {
-            update_fractions(s, group, grouped, rank);
+            update_column_components(s, group, grouped, rank);
             for (int k = 0; k < grouped; k++)
                 group[k]->pull -= share * group[k]->on[rank];
             grouped = 0;
         }
     }
-    add_neighbours(s, c);
+    add_neighbour_terms(s, c);
 }
 
-static bool is_hopeless(const struct search *s, double left)
+static bool is_fit_hopeless(const struct search *s, double left)
 {
     const struct glint_degrees *d = s->degrees;
 
     return d->hopeless > 0 && left > d->hopeless && s->n_chosen >= d->patience;
 }
 
-/* Returns the residual in units of its limits: the larger of RMS / limit and
- * peak / limit. */
-static double compute_excess(const struct search *s, double rms, double peak)
+/* Returns the residual in units of its limits: max of RMS residual / RMS and
+ * max residual / PEAK. */
+static double compute_residual_excess(const struct search *s, double rms,
+                                      double peak)
 {
-    const double sum2 = compute_dot(s->residual, s->residual, s->s->n);
+    const double sum2 = compute_dot_product(s->residual, s->residual, s->s->n);
 
     return fmax(sqrt(sum2 / s->s->n) / rms,
                 find_max_magnitude(s->residual, s->s->n) / peak);
 }
 
-/* Computes the coefficients of the terms from the fractions along the
- * orthogonal directions, by back substitution. */
+/* Computes the coefficients of all chosen terms by back substitution. */
 static void solve_coefficients(const struct search *s, const double *y,
                                struct glint_poly *poly)
 {
@@ -428,7 +442,7 @@ static void solve_coefficients(const struct search *s, const double *y,
         double share = 0;
 
         for (int i = 0; i < s->s->n; i++)
-            share += get_direction(s, k)[i] * s->s->weight[i] * y[i];
+            share += get_chosen_direction(s, k)[i] * s->s->weight[i] * y[i];
         for (int m = k + 1; m < s->n_chosen; m++)
             share -= s->column[s->chosen[m]].on[k] * poly->coef[m];
         poly->coef[k] = share / q->on[k];
@@ -457,18 +471,19 @@ double glint_regress_fit(double *scratch,
         s.moment[i] = (double)NAN;
     for (int i = 0; i < samples->n; i++)
         s.residual[i] = samples->weight[i] * y[i];
-    add_candidate(&s, first, NULL);
-    while ((left = compute_excess(&s, rms, peak)) > 1 &&
+    add_candidate_term(&s, first, NULL);
+    while ((left = compute_residual_excess(&s, rms, peak)) > 1 &&
            s.n_chosen < degrees->terms) {
-        const int best = is_hopeless(&s, left) ? -1 : find_best_candidate(&s);
+        const int best =
+            is_fit_hopeless(&s, left) ? -1 : find_best_candidate(&s);
 
         if (best < 0)
             break;
-        choose_column(&s, best);
+        choose_candidate(&s, best);
     }
+    /* a polynomial has at least one term, however large its tolerance */
     if (s.n_chosen == 0 && s.n_columns > 0 && s.column[0].length > 0)
-        choose_column(&s, 0); /* a polynomial has at least one term, however
-                                 large its tolerance */
+        choose_candidate(&s, 0);
     solve_coefficients(&s, y, poly);
     return left;
 }

@@ -5,12 +5,12 @@
  *   in   samples of the variables (each within -1 .. 1), a value and a weight
  *   out  few monomials that fit the value within a tolerance
  *
- * Method: greedy growth. Candidates are the neighbours of the chosen terms,
- * with one power more in one variable [Zheng17]. The candidate that reduces the
- * weighted residual most is chosen. All columns are kept orthogonal to the
+ * Method: greedy growth. Candidates are the neighbours of the chosen terms, with
+ * one power more in one variable [Zheng17]. The candidate that reduces the
+ * weighted residual most is chosen. Columns are orthogonalised against all
  * chosen ones, so the basis grows together with its QR factors. A candidate
- * that is nearly a combination of chosen terms has no length left and is
- * skipped, which makes the factorisation rank revealing.
+ * that is nearly a combination of chosen terms has a remaining length near 0
+ * and is skipped, which makes the factorisation rank revealing.
  */
 #ifndef GLINT_BAKE_REGRESS_REGRESS_H
 #define GLINT_BAKE_REGRESS_REGRESS_H
@@ -21,7 +21,7 @@
 
 enum { GLINT_VARIABLES = 5, GLINT_MAX_TERMS = 120, GLINT_MAX_CANDIDATES = 280 };
 
-/* Indices of the variables of ghosts (glint/model.h) in polynomials. */
+/* indices of a ghost's variables (glint/model.h) in polynomials */
 enum { GLINT_U, GLINT_V, GLINT_S, GLINT_W, GLINT_P };
 
 struct glint_poly {
@@ -30,41 +30,41 @@ struct glint_poly {
     double coef[GLINT_MAX_TERMS];
 };
 
-/* The terms that may be chosen. */
+/* the terms that may be chosen */
 struct glint_degrees {
     uint8_t most[GLINT_VARIABLES]; /* max power of each variable */
-    /* factor on each power in the weighted sum */
+    /* factor on the power of each variable in the weighted sum */
     uint8_t weight[GLINT_VARIABLES];
     int total;  /* max weighted sum of powers */
     int parity; /* parity of variable 1: 0 even, 1 odd, -1 any */
     int terms;  /* max number of terms, 1 .. GLINT_MAX_TERMS */
-    /* After PATIENCE terms the fit stops if its error exceeds HOPELESS times
-     * its limit; 0: it never stops early. */
+    /* After patience terms the fit stops if its error exceeds its limit by more
+     * than the factor hopeless; 0: it never stops early. */
     double hopeless;
     int patience;
-    /* true: terms with two powers more of variable 0 are neighbours, too,
-     * and of variable 1 if it may have any parity */
+    /* true: a term's neighbours also have two powers more of variable 0, and of
+     * variable 1 if its parity is free */
     bool leaps;
 };
 
 struct glint_regress_samples {
     int n;
-    const double *x[GLINT_VARIABLES]; /* NULL for variables that no term
-                                         contains */
+    /* NULL for variables that occur in no term */
+    const double *x[GLINT_VARIABLES];
     const double *weight;
 };
 
 /* Number of doubles in the scratch memory of a fit to N samples with at most
- * TERMS terms, chosen from CANDIDATES. MOMENTS is the product of 2 MOST + 1
- * over the variables. */
+ * TERMS terms out of CANDIDATES. MOMENTS: product of 2 most + 1 over all
+ * variables. */
 #define GLINT_REGRESS_DOUBLES(n, terms, candidates, moments) \
     ((size_t)(moments) + (size_t)(n) * (1 + (terms) + (candidates)))
 
-/* Fits Y. Stops when the weighted residual is at most RMS (root mean square)
- * and PEAK (max magnitude), or when no term reduces it any more. The result
- * has at least one term, unless all weights are 0. Returns the larger of RMS
- * residual / RMS and max residual / PEAK: the fit met its tolerance if this
- * is at most 1. */
+/* Fits POLY to Y. Stops when the weighted residual is at most RMS (root mean
+ * square) and PEAK (max magnitude), or when no other term reduces it. The
+ * result has at least one term, unless all weights are 0. Returns the max of
+ * RMS residual / RMS and max residual / PEAK, which is at most 1 if the fit met
+ * its tolerance. */
 double glint_regress_fit(double *scratch,
                          const struct glint_regress_samples *samples,
                          const double *y, const struct glint_degrees *degrees,

@@ -9,29 +9,30 @@ static const int waves[GLINT_PATCH_WAVES] = {GLINT_VISIBLE_WAVES / 2, 0,
                                              GLINT_VISIBLE_WAVES - 1};
 
 /* Returns the value in LO .. HI that is nearest to 0. */
-static double clamp_zero(double lo, double hi)
+static double clamp_zero_to_range(double lo, double hi)
 {
     return fmax(lo, fmin(hi, 0));
 }
 
 double glint_directions_nearest(const struct glint_directions *patch)
 {
-    return hypot(clamp_zero(patch->x0, patch->x1),
-                 clamp_zero(patch->y0, patch->y1));
+    return hypot(clamp_zero_to_range(patch->x0, patch->x1),
+                 clamp_zero_to_range(patch->y0, patch->y1));
 }
 
 /* ------------------------------------------------------------------- boxes */
 
-/* Range of columns and rows of a grid that contain unblocked rays. */
+/* range of columns and rows of a grid that contain unblocked rays */
 struct extent {
     int i0, i1, j0, j1;
 };
 
-/* Traces a grid of rays over BOX and sets E to the extent of the unblocked
- * ones. Returns whether there are any. */
-static bool trace_grid(const struct glint_visible *h,
-                       const struct glint_path *path, const double direction[3],
-                       const struct glint_pupil *box, struct extent *e)
+/* Traces a grid of rays over BOX and sets E to the range of the unblocked ones.
+ * Returns whether there are any. */
+static bool trace_ray_grid(const struct glint_visible *h,
+                           const struct glint_path *path,
+                           const double direction[3],
+                           const struct glint_pupil *box, struct extent *e)
 {
     struct glint_row row = {ACROSS + 1,
                             box->x0_mm,
@@ -57,16 +58,17 @@ static bool trace_grid(const struct glint_visible *h,
     return e->i1 >= 0;
 }
 
-static double compute_area(const struct glint_pupil *p)
+static double compute_box_area(const struct glint_pupil *p)
 {
     return (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm);
 }
 
-/* Shrinks BOX repeatedly to the unblocked rays, with a margin of one cell.
- * Returns whether there are any. */
-static bool shrink_box(const struct glint_visible *h,
-                       const struct glint_path *path, const double direction[3],
-                       struct glint_pupil *box)
+/* Shrinks BOX in several rounds to its unblocked rays, with a margin of one
+ * cell. Returns whether there are any. */
+static bool shrink_box_to_visible(const struct glint_visible *h,
+                                  const struct glint_path *path,
+                                  const double direction[3],
+                                  struct glint_pupil *box)
 {
     for (int round = 0; round < ROUNDS; round++) {
         const struct glint_pupil old = *box;
@@ -74,23 +76,26 @@ static bool shrink_box(const struct glint_visible *h,
         const double dy = (old.y1_mm - old.y0_mm) / ACROSS;
         struct extent e;
 
-        if (!trace_grid(h, path, direction, box, &e))
+        if (!trace_ray_grid(h, path, direction, box, &e))
             return round > 0;
         box->x0_mm = old.x0_mm + dx * fmax(0, e.i0 - 1);
         box->x1_mm = old.x0_mm + dx * fmin(ACROSS, e.i1 + 1);
         box->y0_mm = old.y0_mm + dy * fmax(0, e.j0 - 1);
         box->y1_mm = old.y0_mm + dy * fmin(ACROSS, e.j1 + 1);
-        if (compute_area(box) > 0.8 * compute_area(&old))
+        if (compute_box_area(box) > 0.8 * compute_box_area(&old))
             break;
     }
     return true;
 }
 
-/* Finds the box by growing NEAR, the box at another direction or wavelength,
- * on each side where light still passes. */
-static bool grow_box(const struct glint_visible *h,
-                     const struct glint_path *path, const double direction[3],
-                     const struct glint_pupil *near, struct glint_pupil *box)
+/* Finds the box of unblocked rays by enlarging NEAR, the box at another
+ * direction or wavelength, on each side where light still passes. Returns false
+ * if it is not found. */
+static bool grow_box_to_visible(const struct glint_visible *h,
+                                const struct glint_path *path,
+                                const double direction[3],
+                                const struct glint_pupil *near,
+                                struct glint_pupil *box)
 {
     *box = *near;
     for (int round = 0; round < GROWS; round++) {
@@ -100,10 +105,10 @@ static bool grow_box(const struct glint_visible *h,
 
         if (round == 0)
             e = (struct extent){0, ACROSS, 0, ACROSS};
-        else if (!trace_grid(h, path, direction, box, &e))
+        else if (!trace_ray_grid(h, path, direction, box, &e))
             return false;
         if (e.i0 > 0 && e.i1 < ACROSS && e.j0 > 0 && e.j1 < ACROSS)
-            return shrink_box(h, path, direction, box);
+            return shrink_box_to_visible(h, path, direction, box);
         box->x0_mm -= e.i0 == 0 ? x : 0;
         box->x1_mm += e.i1 == ACROSS ? x : 0;
         box->y0_mm -= e.j0 == 0 ? y : 0;
@@ -112,44 +117,44 @@ static bool grow_box(const struct glint_visible *h,
     return false;
 }
 
-static bool find_box(const struct glint_visible *h,
-                     const struct glint_path *path, const double direction[3],
-                     struct glint_pupil *box)
+static bool find_visible_box(const struct glint_visible *h,
+                             const struct glint_path *path,
+                             const double direction[3], struct glint_pupil *box)
 {
     return glint_pupil_find_towards(box, path, direction,
                                     h->setup->optics.stop_radius_mm,
                                     h->field_mm, NULL) &&
-           shrink_box(h, path, direction, box);
+           shrink_box_to_visible(h, path, direction, box);
 }
 
-/* A direction of a patch, and its indices in s and p. */
+/* a direction of a patch, and its indices along s and p */
 struct place {
     int i, j;
     double direction[3];
 };
 
-/* Returns the coordinate of index K along a side of a patch, -1 .. 1. */
-static double compute_coordinate(int k)
+/* Returns the coordinate -1 .. 1 of direction K along a side of a patch. */
+static double compute_patch_coordinate(int k)
 {
     return 2.0 * k / (GLINT_PATCH_SIDE - 1) - 1;
 }
 
 /* Maps X from LO .. HI to -1 .. 1. */
-static double map_to_unit(double x, double lo, double hi)
+static double map_to_unit_range(double x, double lo, double hi)
 {
     return (2 * x - lo - hi) / (hi - lo);
 }
 
-/* Sets BOX to the box of ZONE for light along DIRECTION at wavelength number
- * K. */
-static void evaluate_box(const struct glint_zone *zone,
-                         const double direction[3], int k,
-                         struct glint_pupil *box)
+/* Sets BOX to the box of ZONE for light along DIRECTION at wavelength K (index
+ * in waves). */
+static void evaluate_zone_box(const struct glint_zone *zone,
+                              const double direction[3], int k,
+                              struct glint_pupil *box)
 {
     const double x[GLINT_VARIABLES] = {
-        [GLINT_S] = map_to_unit(direction[0], zone->lo, zone->hi),
+        [GLINT_S] = map_to_unit_range(direction[0], zone->lo, zone->hi),
         [GLINT_W] = glint_zone_node(waves[k], GLINT_VISIBLE_WAVES),
-        [GLINT_P] = map_to_unit(direction[1], zone->y_lo, zone->y_hi)};
+        [GLINT_P] = map_to_unit_range(direction[1], zone->y_lo, zone->y_hi)};
     const double half_x = glint_zone_side(zone, zone->half_x, x);
     const double half_y = glint_zone_side(zone, zone->half_y, x);
 
@@ -159,43 +164,46 @@ static void evaluate_box(const struct glint_zone *zone,
     box->y1_mm = box->y0_mm + 2 * half_y;
 }
 
-/* Finds the box at direction AT and wavelength number K. Except at corners,
- * searches near the last box found first, then everywhere. */
-static bool find_box_at(const struct glint_visible *h, const struct place *at,
-                        int k, const struct glint_zone *within,
-                        const struct glint_sights *seen,
-                        struct glint_pupil *box)
+/* Finds the box of unblocked rays for direction AT and wavelength K. Searches
+ * near the box found last, except for corners of the patch, then in the whole
+ * pupil. WITHIN: see glint_sights_find(). */
+static bool find_box_at_direction(const struct glint_visible *h,
+                                  const struct place *at, int k,
+                                  const struct glint_zone *within,
+                                  const struct glint_sights *seen,
+                                  struct glint_pupil *box)
 {
     const int last = GLINT_PATCH_SIDE - 1;
     const bool corner = at->i % last == 0 && at->j % last == 0 && k == 0;
     const struct glint_path *path = &h->position_path[waves[k]];
 
     if (within) {
-        evaluate_box(within, at->direction, k, box);
-        return shrink_box(h, path, at->direction, box);
+        evaluate_zone_box(within, at->direction, k, box);
+        return shrink_box_to_visible(h, path, at->direction, box);
     }
     return (!corner && seen->n > 0 &&
-            grow_box(h, path, at->direction, &seen->at[seen->n - 1].box,
-                     box)) ||
-           find_box(h, path, at->direction, box);
+            grow_box_to_visible(h, path, at->direction,
+                                &seen->at[seen->n - 1].box, box)) ||
+           find_visible_box(h, path, at->direction, box);
 }
 
-/* Adds the boxes of one direction. Every other direction uses the middle
+/* Adds the boxes for one direction. Every second direction uses the middle
  * wavelength only. */
-static void add_direction(const struct glint_visible *h, const struct place *at,
-                          const struct glint_zone *within,
-                          struct glint_sights *sights)
+static void add_direction_boxes(const struct glint_visible *h,
+                                const struct place *at,
+                                const struct glint_zone *within,
+                                struct glint_sights *sights)
 {
     const int n = (at->i + at->j) % 2 ? 1 : GLINT_PATCH_WAVES;
 
     for (int k = 0; k < n; k++) {
         struct glint_sight *to = &sights->at[sights->n];
 
-        if (!find_box_at(h, at, k, within, sights, &to->box))
+        if (!find_box_at_direction(h, at, k, within, sights, &to->box))
             continue;
         to->x[GLINT_U] = to->x[GLINT_V] = 0;
-        to->x[GLINT_S] = compute_coordinate(at->i);
-        to->x[GLINT_P] = compute_coordinate(at->j);
+        to->x[GLINT_S] = compute_patch_coordinate(at->i);
+        to->x[GLINT_P] = compute_patch_coordinate(at->j);
         to->x[GLINT_W] = glint_zone_node(waves[k], GLINT_VISIBLE_WAVES);
         sights->n++;
     }
@@ -209,15 +217,15 @@ void glint_sights_find(const struct glint_visible *visible,
     sights->n = 0;
     for (int k = 0; k < GLINT_PATCH_SIDE * GLINT_PATCH_SIDE; k++) {
         const int i = k % GLINT_PATCH_SIDE, j = k / GLINT_PATCH_SIDE;
-        const double s = 0.5 + 0.5 * compute_coordinate(i),
-                     p = 0.5 + 0.5 * compute_coordinate(j);
+        const double s = 0.5 + 0.5 * compute_patch_coordinate(i),
+                     p = 0.5 + 0.5 * compute_patch_coordinate(j);
         const double x = patch->x0 + s * (patch->x1 - patch->x0);
         const double y = patch->y0 + p * (patch->y1 - patch->y0);
         const struct place at = {
             i, j, {x, y, sqrt(fmax(0, 1 - x * x - y * y))}};
 
         if (hypot(x, y) <= sine_hi)
-            add_direction(visible, &at, within, sights);
+            add_direction_boxes(visible, &at, within, sights);
     }
 }
 
@@ -225,16 +233,17 @@ void glint_sights_find(const struct glint_visible *visible,
 
 enum { MOST = GLINT_PATCH_SIDE * GLINT_PATCH_SIDE * GLINT_PATCH_WAVES };
 
-/* Values of one side of each box, at the coordinates s, w and p. */
+/* One component of each box (a middle or a half size) at its coordinates s, w
+ * and p. */
 struct sides {
     int n;
     double x[3][MOST], value[MOST];
 };
 
-/* Fits SIDE, a polynomial of DEGREE in s and p plus a term in w, to the
+/* Fits the box polynomial SIDE, of DEGREE in s and p plus a term in w, to the
  * values within TOLERANCE, or as well as possible. */
-static void fit_side(const struct sides *sides, int degree, double tolerance,
-                     double side[GLINT_BOX_TERMS])
+static void fit_box_side(const struct sides *sides, int degree,
+                         double tolerance, double side[GLINT_BOX_TERMS])
 {
     static const double zero[MOST];
     static const int place[3][3] = {{0, 3, 5}, {1, 4, 0}, {2, 0, 0}};
@@ -263,8 +272,9 @@ static void fit_side(const struct sides *sides, int degree, double tolerance,
             fit.coef[k];
 }
 
-/* Returns minus the min value of the half size HALF over ZONE, sampled. */
-static double compute_missing_size(const struct glint_zone *zone,
+/* Returns minus the min of the polynomial HALF, a half size, over ZONE,
+ * sampled. */
+static double compute_size_deficit(const struct glint_zone *zone,
                                    const double half[GLINT_BOX_TERMS])
 {
     double lowest = HUGE_VAL;
@@ -278,24 +288,24 @@ static double compute_missing_size(const struct glint_zone *zone,
     return -lowest;
 }
 
-static double half_size(const struct glint_pupil *box, bool y)
+static double compute_half_size(const struct glint_pupil *box, bool y)
 {
     return y ? 0.5 * (box->y1_mm - box->y0_mm)
              : 0.5 * (box->x1_mm - box->x0_mm);
 }
 
-static double compute_middle(const struct glint_pupil *box, bool y)
+static double compute_box_middle(const struct glint_pupil *box, bool y)
 {
     return y ? 0.5 * (box->y0_mm + box->y1_mm)
              : 0.5 * (box->x0_mm + box->x1_mm);
 }
 
-/* Sets MIDDLE and HALF of ZONE along x or y such that its box contains all
- * sights. */
-static void set_sides(const struct glint_sights *sights, int degree, bool y,
-                      const struct glint_zone *zone,
-                      double middle[GLINT_BOX_TERMS],
-                      double half[GLINT_BOX_TERMS])
+/* Sets the polynomials MIDDLE and HALF of ZONE, along x or y, such that its box
+ * contains all sights. */
+static void fit_box_sides(const struct glint_sights *sights, int degree, bool y,
+                          const struct glint_zone *zone,
+                          double middle[GLINT_BOX_TERMS],
+                          double half[GLINT_BOX_TERMS])
 {
     struct sides of = {.n = sights->n};
     double narrowest = HUGE_VAL, more = 0;
@@ -304,33 +314,34 @@ static void set_sides(const struct glint_sights *sights, int degree, bool y,
         of.x[0][i] = sights->at[i].x[GLINT_S];
         of.x[1][i] = sights->at[i].x[GLINT_W];
         of.x[2][i] = sights->at[i].x[GLINT_P];
-        narrowest = fmin(narrowest, half_size(&sights->at[i].box, y));
-        of.value[i] = compute_middle(&sights->at[i].box, y);
+        narrowest = fmin(narrowest, compute_half_size(&sights->at[i].box, y));
+        of.value[i] = compute_box_middle(&sights->at[i].box, y);
     }
-    fit_side(&of, degree, 0.02 * narrowest, middle);
+    fit_box_side(&of, degree, 0.02 * narrowest, middle);
     for (int i = 0; i < of.n; i++)
-        of.value[i] = half_size(&sights->at[i].box, y);
-    fit_side(&of, degree, 0.02 * narrowest, half);
+        of.value[i] = compute_half_size(&sights->at[i].box, y);
+    fit_box_side(&of, degree, 0.02 * narrowest, half);
     for (int i = 0; i < of.n; i++) {
         const double *x = sights->at[i].x;
-        const double off = fabs(compute_middle(&sights->at[i].box, y) -
+        const double off = fabs(compute_box_middle(&sights->at[i].box, y) -
                                 glint_zone_side(zone, middle, x));
 
         more = fmax(more, of.value[i] + off - glint_zone_side(zone, half, x));
     }
     half[0] += more;
-    half[0] += fmax(0.01 * half[0], 1.1 * compute_missing_size(zone, half));
+    half[0] += fmax(0.01 * half[0], 1.1 * compute_size_deficit(zone, half));
 }
 
-static double compute_fill(const struct glint_sights *sights,
-                           const struct glint_zone *zone)
+static double compute_box_fill(const struct glint_sights *sights,
+                               const struct glint_zone *zone)
 {
     double sum = 0;
 
     for (int i = 0; i < sights->n; i++) {
         const struct glint_sight *v = &sights->at[i];
 
-        sum += half_size(&v->box, false) * half_size(&v->box, true) /
+        sum += compute_half_size(&v->box, false) *
+               compute_half_size(&v->box, true) /
                (glint_zone_side(zone, zone->half_x, v->x) *
                 glint_zone_side(zone, zone->half_y, v->x));
     }
@@ -341,7 +352,7 @@ void glint_sights_zone(const struct glint_sights *sights,
                        const struct glint_directions *patch,
                        struct glint_zone *zone)
 {
-    /* as ENOUGH_FILL and FULLER in zone.c */
+    /* equal to ENOUGH_FILL and FULLER in zone.c */
     const double enough = 0.6, fuller = 1.6;
 
     *zone = (struct glint_zone){.fill = 0};
@@ -352,9 +363,9 @@ void glint_sights_zone(const struct glint_sights *sights,
                                .y_lo = patch->y0,
                                .y_hi = patch->y1};
 
-        set_sides(sights, degree, false, &z, z.middle, z.half_x);
-        set_sides(sights, degree, true, &z, z.middle_y, z.half_y);
-        z.fill = compute_fill(sights, &z);
+        fit_box_sides(sights, degree, false, &z, z.middle, z.half_x);
+        fit_box_sides(sights, degree, true, &z, z.middle_y, z.half_y);
+        z.fill = compute_box_fill(sights, &z);
         if (z.fill > fuller * zone->fill)
             *zone = z;
     }

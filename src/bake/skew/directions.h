@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds the part of the pupil through which a ghost is visible, for patches of
- * light directions. For lenses without rotational symmetry.
+ * Finds the region of the pupil through which a ghost is visible, for patches
+ * of light directions, in lenses without rotational symmetry.
  *
  *   in   a ghost, its paths in the lens's own frame, a patch of directions
  *   out  the pupil box of the visible rays at each sampled direction and
@@ -18,19 +18,19 @@ struct glint_directions {
     double x0, x1, y0, y1;
 };
 
-/* Returns the min sine of the angle between axis and directions of PATCH. */
+/* Returns the min sine of the angle between the lens axis and any direction of
+ * PATCH. */
 double glint_directions_nearest(const struct glint_directions *patch);
 
 enum {
-    GLINT_PATCH_SIDE = 4, /* number of directions along a side of a patch */
+    GLINT_PATCH_SIDE = 4, /* number of directions along each side of a patch */
     /* number of wavelengths: both ends and the middle of the band */
     GLINT_PATCH_WAVES = 3
 };
 
-/* The box of visible light at one direction and wavelength of a patch. */
+/* The box of visible rays at one direction and wavelength of a patch. */
 struct glint_sight {
-    double x[GLINT_VARIABLES]; /* coordinates in the zone; only s, w and p are
-                                  used */
+    double x[GLINT_VARIABLES]; /* zone coordinates; only s, w and p are used */
     struct glint_pupil box;
 };
 
@@ -40,15 +40,15 @@ struct glint_sights {
         at[GLINT_PATCH_SIDE * GLINT_PATCH_SIDE * GLINT_PATCH_WAVES];
 };
 
-/* Finds boxes of visible light from PATCH, at angles with a sine of at most
- * SINE_HI. Searches everywhere if WITHIN is NULL, else only in the box of
- * WITHIN, a zone of the same band that covers the patch. */
+/* Finds the boxes of visible light from the directions of PATCH whose angle has
+ * a sine of at most SINE_HI. Searches the whole pupil if WITHIN is NULL, else
+ * only the box of WITHIN, a zone of the same band that covers the patch. */
 void glint_sights_find(const struct glint_visible *visible,
                        const struct glint_directions *patch, double sine_hi,
                        const struct glint_zone *within,
                        struct glint_sights *sights);
 
-/* Sets ZONE to PATCH with a box that contains all SIGHTS, at least one. */
+/* Fits ZONE to PATCH, with a box that contains all SIGHTS (at least one). */
 void glint_sights_zone(const struct glint_sights *sights,
                        const struct glint_directions *patch,
                        struct glint_zone *zone);

@@ -5,9 +5,9 @@
 
 /* ------------------------------------------------------------------- halves */
 
-/* Substitutes s, p or w in SIDE by AT + x / 2. */
-static void substitute_variable(double side[GLINT_BOX_TERMS], int variable,
-                                double at)
+/* Substitutes VARIABLE (s, p or w) in the box polynomial SIDE by AT + x / 2. */
+static void substitute_variable_in_side(double side[GLINT_BOX_TERMS],
+                                        int variable, double at)
 {
     double *const c = side;
 
@@ -33,10 +33,10 @@ static void substitute_variable(double side[GLINT_BOX_TERMS], int variable,
     }
 }
 
-/* Cuts a box to LOW .. HIGH of its width or height, where -1 .. 1 is the
- * whole. */
-static void cut_box(double middle[GLINT_BOX_TERMS],
-                    double half[GLINT_BOX_TERMS], double low, double high)
+/* Cuts a box to the part LOW .. HIGH of its width or height, in relative
+ * coordinates -1 .. 1. */
+static void cut_box_side(double middle[GLINT_BOX_TERMS],
+                         double half[GLINT_BOX_TERMS], double low, double high)
 {
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {
         middle[k] += 0.5 * (low + high) * half[k];
@@ -44,8 +44,9 @@ static void cut_box(double middle[GLINT_BOX_TERMS],
     }
 }
 
-/* Reduces P to one half in VARIABLE; SIDE is -1 or 1. */
-static void reduce_to_half(struct glint_skew_piece *p, int variable, int side)
+/* Reduces P to its lower (SIDE -1) or upper half (SIDE 1) in VARIABLE. */
+static void reduce_piece_to_half(struct glint_skew_piece *p, int variable,
+                                 int side)
 {
     struct glint_zone *const z = &p->zone;
     double *const all[] = {z->middle, z->half_x, z->half_y, z->middle_y};
@@ -57,14 +58,14 @@ static void reduce_to_half(struct glint_skew_piece *p, int variable, int side)
     if (variable == GLINT_U || variable == GLINT_V) {
         p->parts++;
         if (variable == GLINT_U)
-            cut_box(z->middle, z->half_x, fmin(0, side), fmax(0, side));
+            cut_box_side(z->middle, z->half_x, fmin(0, side), fmax(0, side));
         else
-            cut_box(z->middle_y, z->half_y, fmin(0, side), fmax(0, side));
+            cut_box_side(z->middle_y, z->half_y, fmin(0, side), fmax(0, side));
         return;
     }
     *ends[variable][side < 0] = 0.5 * (*ends[variable][0] + *ends[variable][1]);
     for (int k = 0; k < GLINT_LENS_SIDES; k++)
-        substitute_variable(all[k], variable, 0.5 * side);
+        substitute_variable_in_side(all[k], variable, 0.5 * side);
 }
 
 void glint_piece_halve(const struct glint_skew_piece *p, int variable,
@@ -72,8 +73,8 @@ void glint_piece_halve(const struct glint_skew_piece *p, int variable,
                        struct glint_skew_piece *second)
 {
     *first = *second = *p;
-    reduce_to_half(first, variable, -1);
-    reduce_to_half(second, variable, 1);
+    reduce_piece_to_half(first, variable, -1);
+    reduce_piece_to_half(second, variable, 1);
 }
 
 /* --------------------------------------------------------------------- crop */
@@ -111,15 +112,15 @@ void glint_piece_crop(struct glint_skew_piece *p,
     }
     if (low[0] > high[0])
         return;
-    cut_box(p->zone.middle, p->zone.half_x, fmax(-1, low[0] - margin[0]),
-            fmin(1, high[0] + margin[0]));
-    cut_box(p->zone.middle_y, p->zone.half_y, fmax(-1, low[1] - margin[1]),
-            fmin(1, high[1] + margin[1]));
+    cut_box_side(p->zone.middle, p->zone.half_x, fmax(-1, low[0] - margin[0]),
+                 fmin(1, high[0] + margin[0]));
+    cut_box_side(p->zone.middle_y, p->zone.half_y, fmax(-1, low[1] - margin[1]),
+                 fmin(1, high[1] + margin[1]));
 }
 
 /* ------------------------------------------------------------------- choice */
 
-static int compute_degree(const uint8_t power[GLINT_VARIABLES])
+static int compute_term_degree(const uint8_t power[GLINT_VARIABLES])
 {
     int sum = 0;
 
@@ -128,17 +129,18 @@ static int compute_degree(const uint8_t power[GLINT_VARIABLES])
     return sum;
 }
 
-static void add_shares(const struct glint_fitted_output *o,
-                       double share[GLINT_VARIABLES])
+static void add_high_power_shares(const struct glint_fitted_output *o,
+                                  double share[GLINT_VARIABLES])
 {
     int most = 0;
 
     for (int k = 0; k < o->n_terms; k++)
-        most = compute_degree(o->power[k]) > most ? compute_degree(o->power[k])
-                                                  : most;
+        most = compute_term_degree(o->power[k]) > most
+                   ? compute_term_degree(o->power[k])
+                   : most;
     for (int k = 0; k < o->n_terms; k++)
         for (int i = 0; i < GLINT_VARIABLES; i++)
-            if (2 * compute_degree(o->power[k]) > most && o->grain > 0)
+            if (2 * compute_term_degree(o->power[k]) > most && o->grain > 0)
                 share[i] += fabs(o->coef[k]) / o->grain *
                             (1 - pow(0.5, o->power[k][i]));
 }
@@ -156,7 +158,7 @@ void glint_piece_shares(const struct glint_fitted_system *system,
     for (int k = 0; k < system->n_outputs; k++)
         if (system->output[k].kind != GLINT_OUT_ENERGY &&
             (all || !system->output[k].met))
-            add_shares(&system->output[k], share);
+            add_high_power_shares(&system->output[k], share);
 }
 
 int glint_piece_number(const struct glint_fitted_ghost *ghost,

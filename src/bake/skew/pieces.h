@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * A piece of the light of one ghost of a lens that is not round: a patch of
+ * A piece of the light of one ghost in a lens that is not round: a patch of
  * directions, a band of wavelengths, a part of the pupil box.
  *
  *   in   a piece, and the polynomials that were fitted to it
- *   out  the variable in which to halve it, and its halves
+ *   out  the variable in which to halve the piece, and its halves
  *
  * Where rays fold, polynomials in u and v need many terms; half of a box needs
  * far fewer. Where boxes move, halving directions helps. The choice depends on
- * high powers: halving reduces the error most in the variable whose high powers
- * hold most of the polynomial.
+ * high powers: halving reduces the error most in the variable whose high
+ * powers contribute most to the polynomial.
  */
 #ifndef GLINT_BAKE_SKEW_PIECES_H
 #define GLINT_BAKE_SKEW_PIECES_H
@@ -18,33 +18,34 @@
 #include "bake/fit/zone.h"
 
 struct glint_skew_piece {
-    /* its patch; its box if KNOWN is set or it is a part of a box */
+    /* the piece's patch of directions; its box is set if known is true or if
+     * parts > 0 */
     struct glint_zone zone;
-    double w0, w1; /* its band, in w, -1 .. 1 */
-    double before; /* error, in tolerances, of the piece that was halved to give
-                      this one */
-    int depth;     /* number of halvings that led to it */
-    int parts;     /* number of halvings of the box among them */
-    bool known;    /* true: the box contains all light of the patch */
+    double w0, w1; /* the piece's band, in w, -1 .. 1 */
+    double before; /* error, in tolerances, of the piece whose half this is */
+    int depth;     /* number of halvings that led to this piece */
+    int parts;     /* number of these halvings that divided the box */
+    bool known;    /* true: the box contains all light from the patch */
 };
 
-/* Halves P in VARIABLE. */
+/* Halves P in VARIABLE (GLINT_U .. GLINT_P). */
 void glint_piece_halve(const struct glint_skew_piece *p, int variable,
                        struct glint_skew_piece *first,
                        struct glint_skew_piece *second);
 
-/* Crops the box of P, a part of a box, to its visible region, with a margin. */
+/* Crops the box of P, which is a part of a box, to its visible region, with a
+ * margin. */
 void glint_piece_crop(struct glint_skew_piece *p,
                       const struct glint_visible *visible);
 
-/* Sets SHARE to the fraction of the high powers of SYSTEM's polynomials that
- * halving each variable would remove. If some polynomials miss their
- * tolerance, only these count. */
+/* Sets SHARE to how much of the high powers of SYSTEM's polynomials halving
+ * each variable would remove. If any polynomial misses its tolerance, only
+ * those that do count. */
 void glint_piece_shares(const struct glint_fitted_system *system,
                         double share[GLINT_VARIABLES]);
 
-/* Returns the smallest part number that no system of GHOST uses whose
- * directions and wavelengths overlap those of SYSTEM. */
+/* Returns the smallest part number that no system of GHOST uses for directions
+ * and wavelengths that overlap those of SYSTEM. */
 int glint_piece_number(const struct glint_fitted_ghost *ghost,
                        const struct glint_fitted_system *system);
 

@@ -11,50 +11,50 @@
 #include "bake/skew/pieces.h"
 #include "engine/setup/degrees.h"
 
-/* Max side of a patch, as a difference of sines. */
+/* max side of a patch, as a difference of sines */
 #define MOST_SIDE 0.22
-/* Patches with smaller sides are not halved. */
+/* patches with smaller sides are not halved */
 #define LEAST_SIDE 0.04
-/* Patches with smaller sides are accepted if halving did not help and the
- * error is bearable. */
+/* Patches with smaller sides are accepted if halving did not help and their
+ * error is at most attempt.bearable. */
 #define STUCK_SIDE 0.12
-/* If a half still has more than this fraction of the whole patch's error,
- * halving did not help. */
+/* Halving a patch did not help if a half still has more than this fraction of
+ * the patch's error. */
 #define STUCK 0.75
-/* Min fraction of a box that a ghost must fill, in patches wider than
+/* Min fraction of a box that visible light must fill, in patches wider than
  * FILL_SIDE. */
 #define LEAST_FILL 0.25
 #define FILL_SIDE  0.05
-/* Error, in tolerances, above which the fit of a patch is abandoned. */
+/* Min error, in tolerances, at which the fit of a patch is abandoned. */
 #define HOPELESS 10.0
-/* Min width in w, of 0 .. 2, of a band that is halved. */
+/* Min width in w (0 .. 2) of a band that is halved. */
 #define LEAST_BAND 0.6
-/* Fill from which halves are searched only inside the box of the whole
- * patch, as its grids then miss no light. */
+/* Min fill of a patch's box at which its halves are searched only inside this
+ * box, as its grids then miss no light. */
 #define SOLID 0.08
-/* Error, in tolerances, above which a box is divided into parts (see
- * next.c); up to MOST_HIDDEN times as large for ghosts so faint that errors
- * are hidden. */
+/* Min error, in tolerances, at which a box is divided into parts (see next.c);
+ * for ghosts so faint that errors are hidden, up to MOST_HIDDEN times as
+ * much. */
 #define PART_LEFT   5.0
 #define MOST_HIDDEN 3.0
-/* Fraction of the bearable error up to which a part is accepted. */
+/* A part of a box is accepted up to this fraction of attempt.bearable. */
 #define PART_KEPT 0.4
-/* Error, in units of the bearable error, above which a box is divided at
+/* Min error, in units of attempt.bearable, at which a box is divided at
  * once. */
 #define PART_HOPELESS 20.0
-/* Max number of halvings of a box. */
+/* max number of halvings of a box */
 #define MOST_PARTS 5
-/* Divides the box rather than directions if that removes this many times as
- * much of the error: the run time draws all parts, but only one patch. */
+/* The box is divided instead of the directions if that removes this many times
+ * as much of the error: the run time draws all parts, but only one patch. */
 #define RATHER 1.5
-/* Ease of ghosts up to which every means to reduce errors is tried, and from
- * which any bearable error is accepted. */
+/* Limits of the ease of a ghost: below NOT_FAINT errors are reduced by all
+ * means; above FAINT any error up to attempt.bearable is accepted. */
 #define NOT_FAINT 1.5
 #define FAINT     6.0
-/* Constants of the estimate of work, measured with anamorphic-schneider
- * baked to 4 and to 8 degrees: SEEN_DEG: angle beyond which few ghosts have
- * light; HEAD: fits per ghost and direction; then fits per ghost, surface and
- * area of directions (in sines). */
+/* Constants of the work estimate, measured with anamorphic-schneider baked to 4
+ * and to 8 degrees. SEEN_DEG: angle beyond which few ghosts have light. HEAD:
+ * fits per ghost and direction. PER_AREA: fits per ghost, surface and area of
+ * directions (in sines). */
 #define SEEN_DEG 25.0
 #define HEAD     0.16
 #define PER_AREA 175.0
@@ -72,16 +72,18 @@ struct fitter {
     struct glint_sights sights;
     glint_fit_told_fn *told;
     void *told_ctx;
-    /* arguments of told(), and the area of all patches */
+    /* arguments of told(): work in fits, fraction done; total area of all
+     * patches */
     double work, share, area;
 };
 
-/* The result of an attempt to fit a patch. */
+/* result of an attempt to fit a patch */
 struct attempt {
     /* errors.worst is HUGE_VAL if nothing was fitted */
     struct glint_zone_errors errors;
-    double bearable; /* error above which the box is divided */
-    double kept;     /* error up to which the patch is accepted at once */
+    double bearable; /* min error, in tolerances, at which the box is divided */
+    /* max error, in tolerances, with which the patch is accepted at once */
+    double kept;
     bool dark;
 };
 
@@ -92,7 +94,7 @@ void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
     const uint32_t mirrors = glint_skew_mirrors(lens);
     const int quarters = (mirrors & GLINT_MIRRORS_X ? 1 : 2) *
                          (mirrors & GLINT_MIRRORS_Y ? 1 : 2);
-    /* beyond SEEN_DEG few ghosts have light */
+    /* few ghosts have light beyond SEEN_DEG */
     const double side = glint_sin_deg(fmin(max_deg, SEEN_DEG));
 
     /* brightness is measured at up to 30 directions */
@@ -101,36 +103,37 @@ void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
                        pow(tolerance, -0.7);
 }
 
-static struct glint_directions get_patch(const struct glint_skew_piece *p)
+static struct glint_directions get_piece_patch(const struct glint_skew_piece *p)
 {
     const struct glint_zone *const z = &p->zone;
 
     return (struct glint_directions){z->lo, z->hi, z->y_lo, z->y_hi};
 }
 
-static double patch_width(const struct glint_skew_piece *p)
+static double compute_patch_width(const struct glint_skew_piece *p)
 {
     return p->zone.hi - p->zone.lo;
 }
 
-static double patch_height(const struct glint_skew_piece *p)
+static double compute_patch_height(const struct glint_skew_piece *p)
 {
     return p->zone.y_hi - p->zone.y_lo;
 }
 
-static double larger_side(const struct glint_skew_piece *p)
+static double compute_larger_side(const struct glint_skew_piece *p)
 {
-    return fmax(patch_width(p), patch_height(p));
+    return fmax(compute_patch_width(p), compute_patch_height(p));
 }
 
-static double compute_area(const struct glint_skew_piece *p)
+static double compute_piece_area(const struct glint_skew_piece *p)
 {
-    return ldexp(patch_width(p) * patch_height(p) * 0.5 * (p->w1 - p->w0),
+    return ldexp(compute_patch_width(p) * compute_patch_height(p) * 0.5 *
+                     (p->w1 - p->w0),
                  -p->parts);
 }
 
-static enum glint_status set_box(struct glint_fitted_system *system,
-                                 const struct glint_zone *zone)
+static enum glint_status copy_zone_box(struct glint_fitted_system *system,
+                                       const struct glint_zone *zone)
 {
     const double *const side[GLINT_LENS_SIDES] = {zone->middle, zone->half_x,
                                                   zone->half_y, zone->middle_y};
@@ -145,19 +148,20 @@ static enum glint_status set_box(struct glint_fitted_system *system,
     return GLINT_OK;
 }
 
-static bool may_halve(const struct glint_skew_piece *p)
+static bool can_halve_patch(const struct glint_skew_piece *p)
 {
-    return larger_side(p) > LEAST_SIDE && p->depth < DEEP - 2;
+    return compute_larger_side(p) > LEAST_SIDE && p->depth < DEEP - 2;
 }
 
-static bool may_part(const struct glint_skew_piece *p)
+static bool can_divide_box(const struct glint_skew_piece *p)
 {
     return p->parts < MOST_PARTS && p->depth < DEEP - 2;
 }
 
-/* Sets the acceptable errors of A. */
-static void set_limits(const struct glint_skew_piece *p,
-                       const struct glint_zone_aim *aim, struct attempt *a)
+/* Sets the limits of the error of A: bearable and kept. */
+static void set_error_limits(const struct glint_skew_piece *p,
+                             const struct glint_zone_aim *aim,
+                             struct attempt *a)
 {
     const double faint =
         fmin(1, fmax(0, (aim->ease - NOT_FAINT) / (FAINT - NOT_FAINT)));
@@ -167,14 +171,15 @@ static void set_limits(const struct glint_skew_piece *p,
         p->parts > 0 ? PART_KEPT * a->bearable : 1 + faint * (a->bearable - 1);
 }
 
-/* Fits the zone of P in BAND. */
-static enum glint_status fit_zone(struct fitter *f,
-                                  const struct glint_skew_piece *p,
-                                  const struct glint_visible *band,
-                                  struct glint_fitted_system *system,
-                                  struct attempt *a)
+/* Fits the zone of P within BAND. */
+static enum glint_status fit_piece_zone(struct fitter *f,
+                                        const struct glint_skew_piece *p,
+                                        const struct glint_visible *band,
+                                        struct glint_fitted_system *system,
+                                        struct attempt *a)
 {
-    const bool settled = may_halve(p) && larger_side(p) > STUCK_SIDE;
+    const bool settled =
+        can_halve_patch(p) && compute_larger_side(p) > STUCK_SIDE;
     struct glint_zone_buffers *const b = &f->buffers;
     struct glint_zone_task task = {.zone = &p->zone,
                                    .tolerance = f->tolerance,
@@ -188,28 +193,29 @@ static enum glint_status fit_zone(struct fitter *f,
     glint_zone_choose_barrels(&p->zone, band, f->tolerance->escape,
                               &f->sampling, &b->rays);
     glint_zone_trace(&p->zone, band, &b->rays, &b->energies);
-    /* if only a sliver at the rim of the patch is visible, its halves are
-     * fitted */
+    /* If only a sliver at the rim of the patch is visible, its halves are
+     * fitted instead. */
     if (glint_zone_rays_dark(&b->rays))
         return GLINT_OK;
-    status = set_box(system, &p->zone);
+    status = copy_zone_box(system, &p->zone);
     aim = glint_zone_aim_of(f->tolerance, &p->zone, &b->rays);
-    set_limits(p, &aim, a);
+    set_error_limits(p, &aim, a);
     task.settled = settled ? a->kept : 0;
-    task.hopeless = may_halve(p)  ? fmax(HOPELESS, a->kept)
-                    : may_part(p) ? PART_HOPELESS * a->bearable
-                                  : 0;
+    task.hopeless = can_halve_patch(p)  ? fmax(HOPELESS, a->kept)
+                    : can_divide_box(p) ? PART_HOPELESS * a->bearable
+                                        : 0;
     if (status == GLINT_OK)
         status = glint_zone_fit(&task, &aim, b, system, &a->errors);
     system->met = a->errors.worst <= 1;
     return status;
 }
 
-/* Sets the box of P. Returns whether P is worth a fit. */
-static bool find_box(struct fitter *f, struct glint_skew_piece *p,
-                     const struct glint_visible *band, struct attempt *a)
+/* Sets the box of P. Returns whether P should be fitted: it has light, and
+ * visible light fills enough of its box. */
+static bool find_piece_box(struct fitter *f, struct glint_skew_piece *p,
+                           const struct glint_visible *band, struct attempt *a)
 {
-    const struct glint_directions patch = get_patch(p);
+    const struct glint_directions patch = get_piece_patch(p);
     const struct glint_zone within = p->zone;
 
     if (p->parts > 0) {
@@ -222,12 +228,13 @@ static bool find_box(struct fitter *f, struct glint_skew_piece *p,
     if (a->dark)
         return false;
     glint_sights_zone(&f->sights, &patch, &p->zone);
-    return p->zone.fill >= LEAST_FILL || larger_side(p) <= FILL_SIDE;
+    return p->zone.fill >= LEAST_FILL || compute_larger_side(p) <= FILL_SIDE;
 }
 
-static enum glint_status try_piece(struct fitter *f, struct glint_skew_piece *p,
-                                   struct glint_fitted_system *system,
-                                   struct attempt *a)
+static enum glint_status try_piece_fit(struct fitter *f,
+                                       struct glint_skew_piece *p,
+                                       struct glint_fitted_system *system,
+                                       struct attempt *a)
 {
     const struct glint_visible *band = f->visible;
 
@@ -245,7 +252,8 @@ static enum glint_status try_piece(struct fitter *f, struct glint_skew_piece *p,
                                            .wave_hi = band->wave_hi};
     *a = (struct attempt){.errors = {.places = HUGE_VAL, .worst = HUGE_VAL},
                           .bearable = PART_LEFT};
-    return find_box(f, p, band, a) ? fit_zone(f, p, band, system, a) : GLINT_OK;
+    return find_piece_box(f, p, band, a) ? fit_piece_zone(f, p, band, system, a)
+                                         : GLINT_OK;
 }
 
 /* -------------------------------------------------------------------- halves
@@ -253,8 +261,8 @@ static enum glint_status try_piece(struct fitter *f, struct glint_skew_piece *p,
 
 enum { KEEP = -1 };
 
-/* Returns the change of the box by its terms FIRST and SQUARE, relative to
- * its half sizes. */
+/* Returns how much the box moves and grows over the terms FIRST and SQUARE of
+ * its polynomials, relative to its half sizes. */
 static double compute_box_motion(const struct glint_zone *z, int first,
                                  int square)
 {
@@ -266,38 +274,41 @@ static double compute_box_motion(const struct glint_zone *z, int first,
                fmax(1e-9, z->half_y[0]);
 }
 
-/* Returns the direction component in which to halve P. SHARE states how much
- * of the error each variable would remove. */
-static int choose_component(const struct glint_skew_piece *p,
-                            const double share[GLINT_VARIABLES])
+/* Returns the direction component, GLINT_S or GLINT_P, in which to halve P.
+ * SHARE: fraction of the error that halving each variable would remove. */
+static int choose_direction_component(const struct glint_skew_piece *p,
+                                      const double share[GLINT_VARIABLES])
 {
     const double times = 2;
 
-    if (patch_width(p) > 3 * patch_height(p) ||
-        patch_height(p) > 3 * patch_width(p))
-        return patch_height(p) > patch_width(p) ? GLINT_P : GLINT_S;
+    if (compute_patch_width(p) > 3 * compute_patch_height(p) ||
+        compute_patch_height(p) > 3 * compute_patch_width(p))
+        return compute_patch_height(p) > compute_patch_width(p) ? GLINT_P
+                                                                : GLINT_S;
     if (share[GLINT_S] > times * share[GLINT_P] ||
         share[GLINT_P] > times * share[GLINT_S])
         return share[GLINT_P] > share[GLINT_S] ? GLINT_P : GLINT_S;
-    return patch_height(p) > patch_width(p) ||
-                   (patch_height(p) == patch_width(p) && p->depth % 2)
+    return compute_patch_height(p) > compute_patch_width(p) ||
+                   (compute_patch_height(p) == compute_patch_width(p) &&
+                    p->depth % 2)
                ? GLINT_P
                : GLINT_S;
 }
 
-/* Returns the max of the errors of positions and outlines, in tolerances. */
-static double placing_error(const struct attempt *a)
+/* Returns the max error of positions and outlines, in tolerances. */
+static double compute_placing_error(const struct attempt *a)
 {
     return fmax(a->errors.places, a->errors.outlines);
 }
 
-/* Returns the variable in which to halve P after attempt A, or KEEP. */
-static int choose_variable(const struct glint_skew_piece *p,
-                           const struct attempt *a,
-                           const struct glint_fitted_system *system)
+/* Returns the variable in which to halve P after attempt A; KEEP: none. */
+static int choose_halving_variable(const struct glint_skew_piece *p,
+                                   const struct attempt *a,
+                                   const struct glint_fitted_system *system)
 {
-    const bool parts =
-        may_part(p) && placing_error(a) > a->bearable && system->n_outputs > 0;
+    const bool parts = can_divide_box(p) &&
+                       compute_placing_error(a) > a->bearable &&
+                       system->n_outputs > 0;
     double share[GLINT_VARIABLES];
     int along, across;
 
@@ -307,35 +318,35 @@ static int choose_variable(const struct glint_skew_piece *p,
         share[GLINT_S] = compute_box_motion(&p->zone, 1, 2);
         share[GLINT_P] = compute_box_motion(&p->zone, 3, 5);
     }
-    along = choose_component(p, share);
-    if (parts && (!may_halve(p) || share[across] > RATHER * share[along]))
+    along = choose_direction_component(p, share);
+    if (parts && (!can_halve_patch(p) || share[across] > RATHER * share[along]))
         return across;
-    return may_halve(p) ? along : KEEP;
+    return can_halve_patch(p) ? along : KEEP;
 }
 
 static int choose_next_step(const struct glint_skew_piece *p,
                             const struct attempt *a,
                             const struct glint_fitted_system *system)
 {
-    const double left = placing_error(a);
+    const double left = compute_placing_error(a);
     const bool helped = left <= STUCK * p->before;
 
     if (a->dark || (p->parts > 0 && system->n_outputs == 0))
         return KEEP;
-    /* Coatings make energies oscillate with the wavelength. Dividing the
-     * band helps with a fifth of the terms; smaller patches do not help. */
+    /* Coatings make energies oscillate with the wavelength. Dividing the band
+     * reduces this error, with 1/5 of the terms; smaller patches do not. */
     if (left <= a->kept)
         return a->errors.energy > 1 && p->parts == 0 &&
                        p->w1 - p->w0 > LEAST_BAND
                    ? GLINT_W
                    : KEEP;
-    if (!helped && larger_side(p) < STUCK_SIDE &&
+    if (!helped && compute_larger_side(p) < STUCK_SIDE &&
         left <= fmin(HOPELESS, a->bearable))
         return KEEP;
-    return choose_variable(p, a, system);
+    return choose_halving_variable(p, a, system);
 }
 
-/* Fits PATCH; halves it as often as necessary. */
+/* Fits PATCH and halves it as often as necessary. */
 static enum glint_status fit_patch(struct fitter *f,
                                    const struct glint_directions *patch)
 {
@@ -351,17 +362,17 @@ static enum glint_status fit_patch(struct fitter *f,
 
     for (int n = 1; n > 0 && status == GLINT_OK;) {
         struct glint_skew_piece p = stack[--n];
-        const struct glint_directions at = get_patch(&p);
+        const struct glint_directions at = get_piece_patch(&p);
         struct glint_fitted_system system = {.ghost = f->visible->ghost};
         struct attempt a = {.dark = true};
         int next = KEEP;
 
         if (glint_directions_nearest(&at) < f->sine_hi)
-            status = try_piece(f, &p, &system, &a);
+            status = try_piece_fit(f, &p, &system, &a);
         if (status == GLINT_OK)
             next = choose_next_step(&p, &a, &system);
         f->work++;
-        f->share += next == KEEP ? compute_area(&p) / f->area : 0;
+        f->share += next == KEEP ? compute_piece_area(&p) / f->area : 0;
         if (f->told && status == GLINT_OK)
             status = f->told(f->told_ctx, f->work, f->share);
         if (status == GLINT_OK && next == KEEP && system.n_outputs > 0) {
@@ -370,7 +381,7 @@ static enum glint_status fit_patch(struct fitter *f,
         } else {
             glint_fitted_drop(&system);
         }
-        p.before = placing_error(&a);
+        p.before = compute_placing_error(&a);
         p.known = next != GLINT_W && p.zone.fill > SOLID;
         if (next != KEEP) {
             glint_piece_halve(&p, next, &stack[n + 1], &stack[n]);
@@ -380,8 +391,8 @@ static enum glint_status fit_patch(struct fitter *f,
     return status;
 }
 
-/* Fits all patches, starting with squares of the max side. */
-static enum glint_status fit_patches(struct fitter *f, uint32_t mirrors)
+/* Fits all patches of directions, starting with squares of the max side. */
+static enum glint_status fit_all_patches(struct fitter *f, uint32_t mirrors)
 {
     const int half = (int)ceil(f->sine_hi / MOST_SIDE);
     const double side = f->sine_hi / half;
@@ -421,7 +432,7 @@ enum glint_status glint_skew_fit(const struct glint_visible *visible,
     f->buffers.scratch =
         malloc(GLINT_ZONE_SCRATCH * sizeof *f->buffers.scratch);
     if (f->buffers.scratch)
-        status = fit_patches(f, glint_skew_mirrors(visible->setup->lens));
+        status = fit_all_patches(f, glint_skew_mirrors(visible->setup->lens));
     free(f->buffers.scratch);
     free(f);
     return status;

@@ -1,28 +1,29 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fits all systems of one ghost of a lens that is not round.
+ * Fits all systems of one ghost in a lens that is not round.
  *
  *   in   a ghost, tolerances
  *   out  systems, each for a patch of directions and a band of wavelengths
  *
  * Method: the x and y components of directions, in the lens's own frame, are
- * divided into squares. A square through which no light passes is dropped. A
- * square whose polynomials are not accurate enough is halved along the
- * component with which boxes move more.
+ * divided into squares. A square from which no light passes is dropped. A
+ * square whose polynomials are not accurate enough is halved, in the component
+ * over which boxes move more.
  */
 #ifndef GLINT_BAKE_SKEW_SKEW_FIT_H
 #define GLINT_BAKE_SKEW_SKEW_FIT_H
 
 #include "bake/fit/fit.h"
 
-/* Estimates the work of a bake, in fits, from the area of directions and the
- * number of surfaces: HEAD before the first ghost, TYPICAL per ghost.
- * Limits: ghosts whose light folds cost ten times as much as others. */
+/* Estimates the work of a bake, in zone fits, from the area of directions and
+ * the number of surfaces: HEAD before the first ghost, TYPICAL per ghost.
+ * Limit: ghosts whose light folds cost ten times as much as others. */
 void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
                      double max_deg, double tolerance, double *head,
                      double *typical);
 
-/* Like glint_fit_ghost(), for a lens that is not round. */
+/* Fits a ghost of a lens that is not round; arguments as in
+ * glint_fit_ghost(). */
 enum glint_status glint_skew_fit(const struct glint_visible *visible,
                                  double max_deg,
                                  const struct glint_tolerance *tolerance,

@@ -10,7 +10,7 @@
 const int glint_visible_colour[GLINT_VISIBLE_COLOURS] = {
     GLINT_VISIBLE_WAVES / 2, 0, GLINT_VISIBLE_WAVES - 1};
 
-static double compute_wave(const struct glint_visible *visible, double w)
+static double compute_wave_number(const struct glint_visible *visible, double w)
 {
     return 0.5 * (visible->wave_lo + visible->wave_hi) +
            0.5 * w * (visible->wave_hi - visible->wave_lo);
@@ -21,10 +21,10 @@ void glint_visible_path(const struct glint_visible *visible, double w,
 {
     glint_path_init(path, visible->setup->lens,
                     &visible->setup->ghost[visible->ghost],
-                    1e3 / sqrt(compute_wave(visible, w)));
+                    1e3 / sqrt(compute_wave_number(visible, w)));
 }
 
-static void set_paths(struct glint_visible *visible)
+static void init_band_paths(struct glint_visible *visible)
 {
     for (int k = 0; k < GLINT_VISIBLE_WAVES; k++) {
         glint_visible_path(visible,
@@ -51,7 +51,7 @@ void glint_visible_init(struct glint_visible *visible,
     visible->wave_lo = 1e6 / (band_nm[1] * band_nm[1]);
     visible->wave_hi = 1e6 / (band_nm[0] * band_nm[0]);
     visible->n_beside = 0;
-    set_paths(visible);
+    init_band_paths(visible);
 }
 
 void glint_visible_reach(struct glint_visible *visible, double max_deg)
@@ -71,9 +71,9 @@ void glint_visible_narrow(struct glint_visible *visible,
     visible->wide = whole->wide;
     visible->far = whole->far;
     visible->shaped = whole->shaped;
-    visible->wave_lo = compute_wave(whole, w0);
-    visible->wave_hi = compute_wave(whole, w1);
-    set_paths(visible);
+    visible->wave_lo = compute_wave_number(whole, w0);
+    visible->wave_hi = compute_wave_number(whole, w1);
+    init_band_paths(visible);
     visible->n_beside = whole->n_beside;
     for (int k = 0; k < whole->n_beside; k++)
         glint_visible_narrow(&visible->beside[k], &whole->beside[k], w0, w1);
@@ -99,15 +99,15 @@ void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b)
 
 enum { ACROSS = 64 /* number of columns of the finest grid */ };
 
-/* Range of columns and rows of a grid that contain unblocked rays. */
+/* range of columns and rows of a grid that contain unblocked rays */
 struct extent {
     int i0, i1, j1;
 };
 
-static bool sample_box(const struct glint_visible *h,
-                       const struct glint_path *path, double sine, int across,
-                       int down, const struct glint_pupil *box,
-                       struct extent *extent)
+static bool trace_box_grid(const struct glint_visible *h,
+                           const struct glint_path *path, double sine,
+                           int across, int down, const struct glint_pupil *box,
+                           struct extent *extent)
 {
     struct glint_row row = {across + 1,
                             box->x0_mm,
@@ -132,17 +132,17 @@ static bool sample_box(const struct glint_visible *h,
     return extent->i1 >= 0;
 }
 
-/* Shrinks BOX to the unblocked rays of a grid, with a margin of one cell.
- * Returns false if all rays are blocked. */
-static bool shrink_box(const struct glint_visible *h,
-                       const struct glint_path *path, double sine, int across,
-                       int down, struct glint_pupil *box)
+/* Shrinks BOX to the unblocked rays of a grid over it, with a margin of one
+ * cell. Returns false if all rays are blocked. */
+static bool shrink_box_to_visible(const struct glint_visible *h,
+                                  const struct glint_path *path, double sine,
+                                  int across, int down, struct glint_pupil *box)
 {
     const double dx = (box->x1_mm - box->x0_mm) / across;
     const double dy = box->y1_mm / down, x0 = box->x0_mm;
     struct extent e;
 
-    if (!sample_box(h, path, sine, across, down, box, &e))
+    if (!trace_box_grid(h, path, sine, across, down, box, &e))
         return false;
     box->x0_mm = x0 + fmax(e.i0 - 1, 0) * dx;
     box->x1_mm = x0 + fmin(e.i1 + 1, across) * dx;
@@ -150,10 +150,11 @@ static bool shrink_box(const struct glint_visible *h,
     return true;
 }
 
-/* Grows BOX on each side where light still passes, until no light does. */
-static bool grow_box(const struct glint_visible *h,
-                     const struct glint_path *path, double sine,
-                     struct glint_pupil *box)
+/* Enlarges BOX on each side where light still passes, until no light does.
+ * Returns false if this takes too many rounds or no light passes. */
+static bool grow_box_to_visible(const struct glint_visible *h,
+                                const struct glint_path *path, double sine,
+                                struct glint_pupil *box)
 {
     enum { COARSE = 16, DOWN = 8, ROUNDS = 8 };
 
@@ -161,7 +162,7 @@ static bool grow_box(const struct glint_visible *h,
         const double more = 0.5 * (box->x1_mm - box->x0_mm);
         struct extent e;
 
-        if (!sample_box(h, path, sine, COARSE, DOWN, box, &e))
+        if (!trace_box_grid(h, path, sine, COARSE, DOWN, box, &e))
             return false;
         if (e.i0 > 0 && e.i1 < COARSE && e.j1 < DOWN)
             return true;
@@ -172,11 +173,11 @@ static bool grow_box(const struct glint_visible *h,
     return false;
 }
 
-/* Moves the sides of BOX beyond which rays pass, which happens at tips of
- * crescents thinner than the cells of its grid. */
-static void grow_tips(const struct glint_visible *h,
-                      const struct glint_path *path, double sine,
-                      struct glint_pupil *box)
+/* Moves sides of BOX outwards where rays pass outside it, as at tips of
+ * crescents that are thinner than the cells of its grid. */
+static void grow_box_at_tips(const struct glint_visible *h,
+                             const struct glint_path *path, double sine,
+                             struct glint_pupil *box)
 {
     const struct glint_openings openings = {
         .path = path,
@@ -189,31 +190,31 @@ static void grow_tips(const struct glint_visible *h,
     glint_spot_grow(&openings, box);
 }
 
-/* Shrinks BOX, which contains all unblocked rays, to their bounding box.
- * Returns false if there are none. */
+/* Shrinks BOX, which must contain all unblocked rays, to their bounding box.
+ * Returns false if all rays are blocked. */
 static bool find_tight_box(const struct glint_visible *h,
                            const struct glint_path *path, double sine,
                            struct glint_pupil *box)
 {
-    bool found = shrink_box(h, path, sine, 24, 12, box) ||
-                 shrink_box(h, path, sine, ACROSS, 32, box);
+    bool found = shrink_box_to_visible(h, path, sine, 24, 12, box) ||
+                 shrink_box_to_visible(h, path, sine, ACROSS, 32, box);
 
     for (int round = 0; round < 5 && found; round++) {
         const double before = (box->x1_mm - box->x0_mm) * box->y1_mm;
 
-        if (!shrink_box(h, path, sine, 24, 12, box) ||
+        if (!shrink_box_to_visible(h, path, sine, 24, 12, box) ||
             (box->x1_mm - box->x0_mm) * box->y1_mm > 0.8 * before)
             break;
     }
     if (found && h->far)
-        grow_tips(h, path, sine, box);
+        grow_box_at_tips(h, path, sine, box);
     return found;
 }
 
-/* Returns the ratio by which RAY exceeds the stop, a barrel or the field; 1
- * or less: the ray is visible. */
-static double compute_miss(const struct glint_visible *h,
-                           const struct glint_ray *ray)
+/* Returns the max ratio of RAY's distance to the radius of the stop, a barrel
+ * or the field; at most 1 for visible rays. */
+static double compute_miss_ratio(const struct glint_visible *h,
+                                 const struct glint_ray *ray)
 {
     const double stop =
         hypot(ray->stop_x_mm, ray->stop_y_mm) / h->setup->optics.stop_radius_mm;
@@ -223,11 +224,12 @@ static double compute_miss(const struct glint_visible *h,
     return fmax(ray->rel_radius, fmax(stop, field));
 }
 
-/* Shrinks BOX to 1.5 cells around the ray of a grid with the smallest miss.
- * Returns this miss; HUGE_VAL if all rays are invalid. */
-static double approach_ray(const struct glint_visible *h,
-                           const struct glint_path *path, double sine,
-                           struct glint_pupil *box)
+/* Shrinks BOX to 1.5 cells around the ray of its grid with the smallest
+ * compute_miss_ratio(). Returns this value; HUGE_VAL if all rays are invalid.
+ */
+static double shrink_box_to_nearest_ray(const struct glint_visible *h,
+                                        const struct glint_path *path,
+                                        double sine, struct glint_pupil *box)
 {
     enum { DOWN = 32 };
     const double dx = (box->x1_mm - box->x0_mm) / ACROSS;
@@ -242,9 +244,10 @@ static double approach_ray(const struct glint_visible *h,
         row.y_mm = dy * j;
         glint_trace_row(path, &row, ray, status, NULL);
         for (int i = 0; i <= ACROSS; i++) {
-            if (status[i] != GLINT_RAY_OK || compute_miss(h, &ray[i]) >= least)
+            if (status[i] != GLINT_RAY_OK ||
+                compute_miss_ratio(h, &ray[i]) >= least)
                 continue;
-            least = compute_miss(h, &ray[i]);
+            least = compute_miss_ratio(h, &ray[i]);
             box->x0_mm = x0 + (i - 1.5) * dx;
             box->x1_mm = x0 + (i + 1.5) * dx;
             box->y1_mm = (j + 1.5) * dy;
@@ -253,10 +256,10 @@ static double approach_ray(const struct glint_visible *h,
     return least;
 }
 
-/* Finds a part of the pupil that the grid over BOX misses. If the field is
- * much smaller than the front, so is the part of the pupil through which it
- * is visible. */
-static bool search_hidden_part(const struct glint_visible *h,
+/* Finds visible rays that the grid over BOX misses: if the field is much
+ * smaller than the front element, so is the visible region of the pupil. Sets
+ * BOX to contain them. Returns false if there are none. */
+static bool find_missed_region(const struct glint_visible *h,
                                const struct glint_path *path, double sine,
                                struct glint_pupil *box)
 {
@@ -265,8 +268,8 @@ static bool search_hidden_part(const struct glint_visible *h,
     if (h->field_mm > 0.1 * h->setup->lens->surface[0].semi_mm)
         return false;
     for (int round = 0; round < ROUNDS; round++)
-        if (approach_ray(h, path, sine, box) <= 1)
-            return grow_box(h, path, sine, box);
+        if (shrink_box_to_nearest_ray(h, path, sine, box) <= 1)
+            return grow_box_to_visible(h, path, sine, box);
     return false;
 }
 
@@ -275,10 +278,11 @@ static double convert_to_degrees(double sine)
     return asin(sine) * (180 / GLINT_PI);
 }
 
-/* Finds the box at SINE in the whole pupil. Returns false if there is none. */
-static bool find_box(const struct glint_visible *h,
-                     const struct glint_path *path, double sine,
-                     struct glint_pupil *box)
+/* Finds the box of unblocked rays at the angle with sine SINE, in the whole
+ * pupil. Returns false if all rays are blocked. */
+static bool find_visible_box(const struct glint_visible *h,
+                             const struct glint_path *path, double sine,
+                             struct glint_pupil *box)
 {
     struct glint_pupil spot;
 
@@ -290,12 +294,12 @@ static bool find_box(const struct glint_visible *h,
     if (find_tight_box(h, path, sine, box))
         return true;
     *box = spot;
-    return search_hidden_part(h, path, sine, box) &&
+    return find_missed_region(h, path, sine, box) &&
            find_tight_box(h, path, sine, box);
 }
 
-/* Returns NEAR with a margin of 20 % on each side. */
-static struct glint_pupil add_margin(const struct glint_pupil *near)
+/* Returns NEAR enlarged by 20 % on each side. */
+static struct glint_pupil add_box_margin(const struct glint_pupil *near)
 {
     const double more = 0.2 * (near->x1_mm - near->x0_mm);
     struct glint_pupil box = *near;
@@ -306,29 +310,30 @@ static struct glint_pupil add_margin(const struct glint_pupil *near)
     return box;
 }
 
-/* Finds the box at SINE. Searches around NEAR first. */
+/* Finds the box of unblocked rays at SINE. Searches around NEAR first. */
 static bool find_box_near(const struct glint_visible *h,
                           const struct glint_path *path, double sine,
                           const struct glint_pupil *near,
                           struct glint_pupil *box)
 {
-    *box = add_margin(near);
-    return (grow_box(h, path, sine, box) &&
+    *box = add_box_margin(near);
+    return (grow_box_to_visible(h, path, sine, box) &&
             find_tight_box(h, path, sine, box)) ||
-           find_box(h, path, sine, box);
+           find_visible_box(h, path, sine, box);
 }
 
 /* ------------------------------------------------------------------ profile */
 
 enum {
-    AFRESH = 4, /* number of angles after which boxes are searched in the whole
-                   pupil again */
-    AFRESH_SHAPED = 12 /* the same for lenses with surfaces that are not
-                          spheres, whose rays are slow to trace */
+    /* number of angles after which the whole pupil is searched again */
+    AFRESH = 4,
+    /* the same for non-spherical surfaces, through which rays are slow to
+     * trace */
+    AFRESH_SHAPED = 12
 };
 
-/* Extrapolates the box of the next angle: BOX, moved by RATIO times its
- * displacement from BEFORE. */
+/* Extrapolates to the box of the next angle: BOX, moved by RATIO times its
+ * displacement from the box BEFORE. */
 static struct glint_pupil extrapolate_box(const struct glint_pupil *before,
                                           const struct glint_pupil *box,
                                           double ratio)
@@ -342,20 +347,21 @@ static struct glint_pupil extrapolate_box(const struct glint_pupil *before,
     return p;
 }
 
-/* The boxes of visible light, by angle and wavelength. */
+/* boxes of visible light, by angle and wavelength index */
 struct box_samples {
     bool seen[GLINT_PROFILE][GLINT_VISIBLE_WAVES];
     struct glint_pupil box[GLINT_PROFILE][GLINT_VISIBLE_WAVES];
 };
 
-/* Finds the boxes of one wavelength at the angles marked in WANTED. */
+/* Finds the boxes at wavelength index WAVE for the angles that WANTED marks. */
 static void find_boxes_of_wave(const struct glint_visible *h,
                                const double *sine, const bool *wanted, int wave,
                                struct box_samples *g)
 {
     const struct glint_path *path = &h->position_path[wave];
     struct glint_pupil box = {.y1_mm = 0}, before = box;
-    int have = 0; /* number of consecutive angles with a box */
+    /* number of consecutive angles, up to the last one, that have a box */
+    int have = 0;
 
     for (int k = 0; k < GLINT_PROFILE; k++) {
         const double *s = sine + k;
@@ -371,9 +377,9 @@ static void find_boxes_of_wave(const struct glint_visible *h,
                                    (s[0] - s[-1]) / (s[-1] - s[-2]));
         before = box;
         now = have ? find_box_near(h, path, *s, &near, &box)
-                   : find_box(h, path, *s, &box);
+                   : find_visible_box(h, path, *s, &box);
         if (have && k % (h->shaped ? AFRESH_SHAPED : AFRESH) == 0 &&
-            find_box(h, path, *s, &near)) {
+            find_visible_box(h, path, *s, &near)) {
             if (now)
                 glint_visible_join(&near, &box);
             box = near;
@@ -385,8 +391,8 @@ static void find_boxes_of_wave(const struct glint_visible *h,
     }
 }
 
-static void add_angle(struct glint_visible_profile *p, double sine,
-                      const struct box_samples *g, int k)
+static void add_profile_angle(struct glint_visible_profile *p, double sine,
+                              const struct box_samples *g, int k)
 {
     const int first = p->n_samples;
 
@@ -405,11 +411,11 @@ static void add_angle(struct glint_visible_profile *p, double sine,
 }
 
 /* Finds the boxes of one ghost at the angles SINE. ALONE: there are no
- * neighbouring zoom positions, so the ghost is visible at every angle at
- * some wavelength, and all wavelengths are tried where the first three find
- * nothing. With neighbouring positions it may be invisible. */
-static void find_boxes(const struct glint_visible *h, bool alone,
-                       const double *sine, struct box_samples *g)
+ * neighbouring zoom positions, so the ghost is visible at each angle at some
+ * wavelength; if the first three wavelengths have no light, all others are
+ * tried. With neighbouring positions the ghost may be invisible. */
+static void find_boxes_at_angles(const struct glint_visible *h, bool alone,
+                                 const double *sine, struct box_samples *g)
 {
     bool wanted[GLINT_PROFILE];
 
@@ -418,8 +424,8 @@ static void find_boxes(const struct glint_visible *h, bool alone,
         wanted[k] = true;
     for (int i = 0; i < 3; i++)
         find_boxes_of_wave(h, sine, wanted, glint_visible_colour[i], g);
-    /* Where light passes at only some of the three wavelengths, boxes of
-     * further wavelengths may lie between them. */
+    /* Where light passes at only one or two of the three wavelengths,
+     * wavelengths in between may have other boxes. */
     for (int k = 0; k < GLINT_PROFILE; k++) {
         const int n = g->seen[k][glint_visible_colour[0]] +
                       g->seen[k][glint_visible_colour[1]] +
@@ -432,8 +438,8 @@ static void find_boxes(const struct glint_visible *h, bool alone,
             find_boxes_of_wave(h, sine, wanted, wave, g);
 }
 
-/* Extends the boxes A to contain B. */
-static void join_boxes(struct box_samples *a, const struct box_samples *b)
+/* Extends each box of A to contain that of B. */
+static void join_box_samples(struct box_samples *a, const struct box_samples *b)
 {
     for (int k = 0; k < GLINT_PROFILE; k++)
         for (int wave = 0; wave < GLINT_VISIBLE_WAVES; wave++) {
@@ -457,14 +463,14 @@ void glint_visible_profile_find(const struct glint_visible *visible,
 
         sine[k] = range[0] + t * (range[1] - range[0]);
     }
-    find_boxes(visible, visible->n_beside == 0, sine, &g);
+    find_boxes_at_angles(visible, visible->n_beside == 0, sine, &g);
     for (int k = 0; k < visible->n_beside; k++) {
-        find_boxes(&visible->beside[k], false, sine, &other);
-        join_boxes(&g, &other);
+        find_boxes_at_angles(&visible->beside[k], false, sine, &other);
+        join_box_samples(&g, &other);
     }
     profile->n = profile->n_samples = 0;
     for (int k = 0; k < GLINT_PROFILE; k++)
-        add_angle(profile, sine[k], &g, k);
+        add_profile_angle(profile, sine[k], &g, k);
 }
 
 /* ------------------------------------------------------------------- ranges */
@@ -472,57 +478,58 @@ void glint_visible_profile_find(const struct glint_visible *visible,
 enum {
     SCAN_DEG = 1,
     BISECTIONS = 8,
-    /* max number of scan steps by which each end of a range of angles is
-     * extended, where light passes only at the ends of the band */
+    /* max number of scan steps by which an end of a range of angles is
+     * extended, because light passes only at the ends of the band */
     FARTHER = 4
 };
 
 /* Returns whether light passes at one of the first N wavelengths of
- * glint_visible_colour. Sets BOX to its box. */
-static bool find_first_box(const struct glint_visible *h, double sine, int n,
-                           struct glint_pupil *box)
+ * glint_visible_colour. Sets BOX to the box at that wavelength. */
+static bool find_box_at_any_colour(const struct glint_visible *h, double sine,
+                                   int n, struct glint_pupil *box)
 {
     for (int k = 0; k < n; k++)
-        if (find_box(h, &h->position_path[glint_visible_colour[k]], sine, box))
+        if (find_visible_box(h, &h->position_path[glint_visible_colour[k]],
+                             sine, box))
             return true;
     return false;
 }
 
-static bool light_passes(const struct glint_visible *h, double sine, int n)
+static bool is_light_visible(const struct glint_visible *h, double sine, int n)
 {
     struct glint_pupil box;
 
-    return find_first_box(h, sine, n, &box);
+    return find_box_at_any_colour(h, sine, n, &box);
 }
 
-/* Returns whether light in the middle of the band passes, and sets BOX. For
- * lenses with surfaces that are not spheres, whose rays are slow to trace,
- * first searches around BOX, the box of the previous step, if INSIDE is set. */
-static bool still_passes(const struct glint_visible *h, double sine,
-                         bool inside, struct glint_pupil *box)
+/* Returns whether light at the middle of the band passes, and sets BOX. For
+ * non-spherical surfaces, through which rays are slow to trace, searches around
+ * BOX, the box at the previous angle, first if INSIDE is set. */
+static bool is_middle_light_visible(const struct glint_visible *h, double sine,
+                                    bool inside, struct glint_pupil *box)
 {
     if (h->shaped && inside) {
-        struct glint_pupil near = add_margin(box);
+        struct glint_pupil near = add_box_margin(box);
 
-        if (shrink_box(h, &h->position_path[glint_visible_colour[0]], sine, 24,
-                       12, &near)) {
+        if (shrink_box_to_visible(h, &h->position_path[glint_visible_colour[0]],
+                                  sine, 24, 12, &near)) {
             *box = near;
             return true;
         }
     }
-    return find_first_box(h, sine, 1, box);
+    return find_box_at_any_colour(h, sine, 1, box);
 }
 
-/* Returns the last sine, from WITH towards WITHOUT, at which light of any of
- * the three wavelengths passes. In the middle of the band light passes at
+/* Returns the last sine, on the way from WITH to WITHOUT, at which light of any
+ * of the three wavelengths passes. Light at the middle of the band passes at
  * WITH, but not at WITHOUT. */
-static double find_range_edge(const struct glint_visible *h, double with,
-                              double without)
+static double find_range_end(const struct glint_visible *h, double with,
+                             double without)
 {
     for (int k = 0; k < FARTHER && without > 0 && without < 1; k++) {
         const double next = without + (without - with);
 
-        if (!light_passes(h, without, 3))
+        if (!is_light_visible(h, without, 3))
             break;
         with = without;
         without = fmin(1, fmax(0, next));
@@ -530,7 +537,7 @@ static double find_range_edge(const struct glint_visible *h, double with,
     for (int k = 0; k < BISECTIONS; k++) {
         const double middle = 0.5 * (with + without);
 
-        if (light_passes(h, middle, 3))
+        if (is_light_visible(h, middle, 3))
             with = middle;
         else
             without = middle;
@@ -538,9 +545,9 @@ static double find_range_edge(const struct glint_visible *h, double with,
     return with;
 }
 
-/* Ends range N - 1 of N at HI. Drops an empty range and merges a range that
- * begins before the previous one ends. Returns the new number of ranges. */
-static int end_range(double (*range)[2], int n, double hi)
+/* Ends the last of N ranges at HI. Drops it if it is empty and merges it with
+ * the previous range if both overlap. Returns the new number of ranges. */
+static int end_angle_range(double (*range)[2], int n, double hi)
 {
     double *last = range[n - 1];
 
@@ -553,8 +560,8 @@ static int end_range(double (*range)[2], int n, double hi)
     return n - 1;
 }
 
-static int find_ranges(const struct glint_visible *visible, double max_deg,
-                       double (*range)[2])
+static int find_angle_ranges(const struct glint_visible *visible,
+                             double max_deg, double (*range)[2])
 {
     const int steps = (int)ceil(max_deg / SCAN_DEG);
     struct glint_pupil box;
@@ -564,18 +571,19 @@ static int find_ranges(const struct glint_visible *visible, double max_deg,
 
     for (int k = 0; k <= steps; k++) {
         const double sine = glint_sin_deg(fmin(k * SCAN_DEG, max_deg));
-        const bool now = still_passes(visible, sine, inside, &box);
+        const bool now = is_middle_light_visible(visible, sine, inside, &box);
 
         if (now && !inside && n == GLINT_MAX_RANGES)
             break;
         if (now && !inside)
-            range[n++][0] = k ? find_range_edge(visible, sine, before) : 0;
+            range[n++][0] = k ? find_range_end(visible, sine, before) : 0;
         if (!now && inside)
-            n = end_range(range, n, find_range_edge(visible, before, sine));
+            n = end_angle_range(range, n,
+                                find_range_end(visible, before, sine));
         inside = now;
         before = sine;
     }
-    return inside ? end_range(range, n, before) : n;
+    return inside ? end_angle_range(range, n, before) : n;
 }
 
 int glint_visible_add_range(double (*range)[2], int n, const double more[2])
@@ -608,11 +616,12 @@ int glint_visible_add_range(double (*range)[2], int n, const double more[2])
 int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
                          double (*range)[2])
 {
-    int n = find_ranges(visible, max_deg, range);
+    int n = find_angle_ranges(visible, max_deg, range);
 
     for (int k = 0; k < visible->n_beside; k++) {
         double other[GLINT_MAX_RANGES][2];
-        const int n_other = find_ranges(&visible->beside[k], max_deg, other);
+        const int n_other =
+            find_angle_ranges(&visible->beside[k], max_deg, other);
 
         for (int i = 0; i < n_other; i++)
             n = glint_visible_add_range(range, n, other[i]);

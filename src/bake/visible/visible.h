@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds where a ghost is visible: at which angles of the light, and through
- * which part of the pupil.
+ * Finds at which angles of the light a ghost is visible, and through which
+ * region of the pupil.
  *
  *   in   a ghost of a lens, the band of wavelengths, the field
  *   out  ranges of angles, and boxes on the pupil at many angles of a range
  *
- * A ghost may appear, vanish and appear again. Limits: misses a range that is
- * narrower than the step of the scan, or has no light in the middle of the
- * band. Misses a visible part smaller than 1/30 of its box (unless the field is
- * so small that the search closes in on it), and a part that exists for less
- * than four angles and is separate from the one that is followed. With
+ * A ghost may appear, vanish and appear again. Limits: misses a range of
+ * angles that is narrower than the step of the scan, or has no light in the
+ * middle of the band. Misses a visible region smaller than 1/30 of its box
+ * (unless the field is so small that the search closes in on it), and one that
+ * exists for less than four angles and is separate from the tracked one. With
  * neighbouring zoom positions, misses angles at which light passes only at
  * wavelengths other than the middle and the ends of the band.
  */
@@ -24,50 +24,52 @@ enum {
     GLINT_VISIBLE_WAVES = 11,
     GLINT_VISIBLE_COLOURS = 3,
     GLINT_MAX_RANGES = 8,
-    /* number of angles per range at which boxes are determined */
+    /* number of angles per range at which boxes are found */
     GLINT_PROFILE = 49,
     GLINT_MAX_BESIDE = 2
 };
 
-/* Indices of the wavelengths in the middle and at the ends of the band. */
+/* indices of the wavelengths in the middle and at both ends of the band */
 extern const int glint_visible_colour[GLINT_VISIBLE_COLOURS];
 
-/* F-number for which fits were tuned. Lenses that open wider use additional
- * sampling and weights. */
+/* F-number below which lenses are fast: their fits use additional sampling and
+ * weights. Fits were tuned for slower lenses. */
 #define GLINT_WIDE 10
 
 /* Degrees. Rays of lights farther off the axis pass near the equators of
- * surfaces, as in lenses that open wide. */
+ * surfaces, as in fast lenses. */
 #define GLINT_FAR 60
 
-/* A ghost, and the data common to all its ranges of angles. */
+/* a ghost, and the data common to all its ranges of angles */
 struct glint_visible {
     const struct glint_setup *setup;
     int ghost;
-    double field_mm; /* radius of the field around the sensor's centre */
-    bool wide; /* true: the lens opens wider than GLINT_WIDE. Its rays pass near
-                  singularities, and much narrower stops use the same model */
-    bool far;  /* true: the lens is round and lights beyond GLINT_FAR are
-                  requested; WIDE is then set, too */
-    /* true: the lens is round, opens wider than GLINT_WIDE and has surfaces
-     * that are not spheres, whose powers grow steeply. Zones that cannot be
-     * fitted are accepted where errors are invisible, instead of being
-     * halved without end. */
+    double field_mm; /* radius of the field around the sensor's centre, mm */
+    /* true: the lens is faster than GLINT_WIDE. Its rays pass near
+     * singularities, and the model is also used for much smaller stops. */
+    bool wide;
+    /* true: the lens is round, and lights beyond GLINT_FAR are requested; wide
+     * is then true, too */
+    bool far;
+    /* true: the lens is round, faster than GLINT_WIDE, and has non-spherical
+     * surfaces, whose powers grow steeply. Zones that cannot be fitted are
+     * accepted where their errors are invisible, instead of being halved
+     * endlessly. */
     bool shaped;
     double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
     /* paths at GLINT_VISIBLE_WAVES wavelengths from wave_lo to wave_hi */
     struct glint_path path[GLINT_VISIBLE_WAVES];
-    /* the same paths, which compute positions only */
+    /* the same paths, for tracing positions without energies */
     struct glint_path position_path[GLINT_VISIBLE_WAVES];
-    /* The same ghost at neighbouring zoom positions. Light that is visible
-     * or cut there counts here as well, so that models of several positions
-     * can be interpolated. */
+    /* The same ghost at neighbouring zoom positions. Rays that are visible or
+     * blocked there count here, too, so that models of several positions can be
+     * interpolated. */
     int n_beside;
-    struct glint_visible *beside; /* [n_beside]; their own n_beside is 0 */
+    struct glint_visible *beside; /* [n_beside]; their n_beside is 0 */
 };
 
-/* Returns the ghost itself for K = 0, the ghost at neighbouring zoom
- * position K - 1 for larger K. */
+/* Returns the ghost itself for K = 0, else the ghost at neighbouring zoom
+ * position K - 1. */
 static inline const struct glint_visible *
 glint_visible_member(const struct glint_visible *visible, int k)
 {
@@ -78,38 +80,37 @@ void glint_visible_init(struct glint_visible *visible,
                         const struct glint_setup *setup, int ghost,
                         double field_mm, const double band_nm[2]);
 
-/* Sets the max angle of lights, MAX_DEG. */
+/* Sets the max angle of lights off the axis. */
 void glint_visible_reach(struct glint_visible *visible, double max_deg);
 
-/* Sets VISIBLE to WHOLE with its band narrowed to W0 .. W1, of -1 .. 1.
+/* Sets VISIBLE to WHOLE with the band narrowed to W0 .. W1, in w, -1 .. 1.
  * VISIBLE->beside must have memory for WHOLE->n_beside entries. */
 void glint_visible_narrow(struct glint_visible *visible,
                           const struct glint_visible *whole, double w0,
                           double w1);
 
-/* Sets PATH for the wavelength at W, -1 .. 1 over the band. */
+/* Sets PATH to the ghost's path at the wavelength W, -1 .. 1 over the band. */
 void glint_visible_path(const struct glint_visible *visible, double w,
                         struct glint_path *path);
 
-/* Finds the ranges of sines, up to MAX_DEG, at which light passes. Returns
- * their number. */
+/* Finds the ranges of angles, as sines, up to MAX_DEG at which light passes.
+ * Returns their number. */
 int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
                          double (*range)[2]);
 
 /* Inserts the range MORE into N disjoint ascending ranges and merges it with
- * ranges that it touches. Drops MORE if the result would have more than
+ * ranges that overlap or touch it. Drops MORE if there would be more than
  * GLINT_MAX_RANGES ranges. Returns the new number of ranges. */
 int glint_visible_add_range(double (*range)[2], int n, const double more[2]);
 
-/* The box of visible light at one angle and wavelength. */
+/* the box of visible light at one angle and wavelength */
 struct glint_box_sample {
-    double sine, w; /* w: -1 .. 1 over the band */
+    double sine, w; /* position in the band, -1 .. 1, is w */
     struct glint_pupil box;
 };
 
-/* Boxes over a range of angles: for each angle, the box that contains the
- * visible light of the whole band, and the boxes at single wavelengths, by
- * ascending angle. */
+/* Boxes over a range of angles, ascending: for each angle the box that contains
+ * the visible light of the whole band, and the boxes at single wavelengths. */
 struct glint_visible_profile {
     int n, n_samples;
     double sine[GLINT_PROFILE];
@@ -121,11 +122,11 @@ void glint_visible_profile_find(const struct glint_visible *visible,
                                 const double range[2],
                                 struct glint_visible_profile *profile);
 
-/* Returns whether RAY passes the stop, the barrels and the field. */
+/* Returns whether RAY passes the stop and all barrels and hits the field. */
 bool glint_visible_passes(const struct glint_visible *visible,
                           const struct glint_ray *ray);
 
-/* Extends A to contain B. */
+/* Extends box A to contain box B. */
 void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b);
 
 #endif
