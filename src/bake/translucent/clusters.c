@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
  * Fits the rows of a scattering matrix by a few kernels, one per cluster of
- * texels, times factors per texel where light enters and leaves.
+ * texels, times factors per texel for light that enters and leaves.
  *
  * Alternating least squares updates kernels, in factors and out factors in
- * turn; then each texel is assigned to the kernel with the smallest residual of
- * its row. Initial clusters follow the fraction of material 0 around a texel,
- * or, for measured rows, the amount of light that a row scatters. Random
- * initial clusters would separate the rim from the interior.
+ * turn; then each texel is assigned to the kernel with the smallest residual
+ * of its row. Initial clusters follow the fraction of material 0 around a
+ * texel, or, for measured rows, the amount of light that a row scatters.
+ * Random initial clusters would separate the rim from the interior.
  */
 #include "bake/translucent/rows.h"
 
@@ -17,35 +17,39 @@
 
 enum {
     ROUNDS = 8, /* errors decrease by less than 1 % in further rounds */
-    ABOUT = 2   /* radius, in texels, of the neighbourhood in which fractions of
-                   materials are averaged */
+    /* radius in texels of the neighbourhood over which the fractions of
+     * materials are averaged */
+    ABOUT = 2
 };
 
 struct clusters {
     const struct glint_scatter_rows *rows;
     struct glint_scatter_fit *fit;
-    double *above, *below; /* numerators and denominators of least squares, per
-                              texel or per entry of a kernel */
+    /* numerators and denominators of least squares, one per texel or per kernel
+     * entry */
+    double *above, *below;
 };
 
-/* Data of one line of the row of texel X: entries U_FROM .. U_TO - 1. */
+/* One line of the row of texel X: entries u_from .. u_to - 1. */
 struct span {
     int x, c, u_from, u_to;
     const float *data;
-    double *kernel, *in; /* in factors of the texels that the entries lead to, 3
-                            doubles apart */
+    /* in: in factors of the texels to which the entries lead, 3 doubles
+     * apart */
+    double *kernel, *in;
 };
 
-static double *get_kernel(const struct glint_scatter_fit *fit, int j, int c)
+static double *get_cluster_kernel(const struct glint_scatter_fit *fit, int j,
+                                  int c)
 {
     return fit->h +
            (size_t)(j * 3 + c) * (size_t)glint_scatter_kernel2(fit->kernel);
 }
 
-/* Returns the span of line V of the row of texel X, for kernel J. */
-static struct span make_span(const struct clusters *p,
-                             const struct glint_scatter_inside *in, int x,
-                             int c, int j, int v)
+/* Returns line V of the row of texel X, with kernel J. */
+static struct span get_row_line(const struct clusters *p,
+                                const struct glint_scatter_inside *in, int x,
+                                int c, int j, int v)
 {
     const int n = p->fit->kernel, side = p->fit->side;
 
@@ -55,24 +59,24 @@ static struct span make_span(const struct clusters *p,
         .u_from = in->u_from,
         .u_to = in->u_to,
         .data = glint_scatter_row(p->rows, x, c) + v * n,
-        .kernel = get_kernel(p->fit, j, c) + v * n,
+        .kernel = get_cluster_kernel(p->fit, j, c) + v * n,
         /* only entries inside the square are accessed */
         .in =
             p->fit->in + c + 3 * (x + (v - n / 2) * side + in->u_from - n / 2),
     };
 }
 
-/* Sets PRODUCT to the sum over a row of data * kernel * in, and SQUARE to
- * the sum of (kernel * in)^2. */
-static void compute_sums(const struct clusters *p, int x, int c, int j,
-                         double *product, double *square)
+/* Sets PRODUCT to the sum over the row of texel X of data * kernel * in, and
+ * SQUARE to the sum of (kernel * in)^2. */
+static void compute_row_sums(const struct clusters *p, int x, int c, int j,
+                             double *product, double *square)
 {
     const struct glint_scatter_inside in =
         glint_scatter_inside(p->fit->side, p->fit->kernel, x);
 
     *product = *square = 0;
     for (int v = in.v_from; v < in.v_to; v++) {
-        const struct span s = make_span(p, &in, x, c, j, v);
+        const struct span s = get_row_line(p, &in, x, c, j, v);
 
         for (int u = s.u_from; u < s.u_to; u++) {
             const double b = s.kernel[u] * s.in[3 * (u - s.u_from)];
@@ -83,26 +87,26 @@ static void compute_sums(const struct clusters *p, int x, int c, int j,
     }
 }
 
-static double safe_ratio(double above, double below)
+static double divide_or_zero(double above, double below)
 {
     return below > 0 ? above / below : 0;
 }
 
-static void fit_leaving_light(const struct clusters *p)
+static void fit_out_factors(const struct clusters *p)
 {
     for (int x = 0; x < p->fit->side * p->fit->side; x++)
         for (int c = 0; c < 3; c++) {
             double product, square;
 
-            compute_sums(p, x, c, p->fit->cluster[x], &product, &square);
-            p->fit->out[3 * x + c] = safe_ratio(product, square);
+            compute_row_sums(p, x, c, p->fit->cluster[x], &product, &square);
+            p->fit->out[3 * x + c] = divide_or_zero(product, square);
         }
 }
 
-/* Sets N scales to their least-squares solutions: kernel entries or, if
- * IN_SCALES, in factors. */
-static void fit_scales(const struct clusters *p, bool in_scales, double *scale,
-                       size_t n)
+/* Sets SCALE[N] to its least-squares solution: in factors if IN_SCALES, else
+ * kernel entries. */
+static void fit_least_squares_scales(const struct clusters *p, bool in_scales,
+                                     double *scale, size_t n)
 {
     const int side = p->fit->side;
 
@@ -115,7 +119,7 @@ static void fit_scales(const struct clusters *p, bool in_scales, double *scale,
 
         for (int v = in.v_from; v < in.v_to; v++) {
             const struct span s =
-                make_span(p, &in, x, c, p->fit->cluster[x], v);
+                get_row_line(p, &in, x, c, p->fit->cluster[x], v);
 
             for (int u = s.u_from; u < s.u_to; u++) {
                 const double *lit = s.in + 3 * (ptrdiff_t)(u - s.u_from);
@@ -129,24 +133,24 @@ static void fit_scales(const struct clusters *p, bool in_scales, double *scale,
         }
     }
     for (size_t i = 0; i < n; i++)
-        scale[i] = safe_ratio(p->above[i], p->below[i]);
+        scale[i] = divide_or_zero(p->above[i], p->below[i]);
 }
 
-static void fit_entering_light(const struct clusters *p)
+static void fit_in_factors(const struct clusters *p)
 {
-    fit_scales(p, true, p->fit->in,
-               3 * (size_t)p->fit->side * (size_t)p->fit->side);
+    fit_least_squares_scales(p, true, p->fit->in,
+                             3 * (size_t)p->fit->side * (size_t)p->fit->side);
 }
 
-static void fit_kernels(const struct clusters *p)
+static void fit_cluster_kernels(const struct clusters *p)
 {
-    fit_scales(p, false, p->fit->h,
-               3 * (size_t)p->fit->kernels *
-                   (size_t)glint_scatter_kernel2(p->fit->kernel));
+    fit_least_squares_scales(p, false, p->fit->h,
+                             3 * (size_t)p->fit->kernels *
+                                 (size_t)glint_scatter_kernel2(p->fit->kernel));
 }
 
 /* Assigns each texel to the kernel that explains most of its row. */
-static void assign_kernels(const struct clusters *p)
+static void assign_texels_to_kernels(const struct clusters *p)
 {
     for (int x = 0; x < p->fit->side * p->fit->side; x++) {
         double best = -1;
@@ -158,8 +162,8 @@ static void assign_kernels(const struct clusters *p)
             for (int c = 0; c < 3; c++) {
                 double product, square;
 
-                compute_sums(p, x, c, j, &product, &square);
-                explained += safe_ratio(product * product, square);
+                compute_row_sums(p, x, c, j, &product, &square);
+                explained += divide_or_zero(product * product, square);
             }
             if (explained > best) {
                 best = explained;
@@ -170,9 +174,10 @@ static void assign_kernels(const struct clusters *p)
     }
 }
 
-/* Returns the value by which texels are initially sorted into clusters, 0 ..
- * 1. */
-static double initial_position(const struct clusters *p, int x, double most)
+/* Returns the value, 0 .. 1, by which texel X is initially assigned to a
+ * cluster. MOST: max sum of a texel's albedos. */
+static double compute_initial_position(const struct clusters *p, int x,
+                                       double most)
 {
     const int side = p->fit->side, window = 2 * ABOUT + 1;
     const double *a = p->fit->albedo + 3 * (size_t)x;
@@ -203,7 +208,7 @@ static void set_initial_clusters(const struct clusters *p)
         most = fmax(most, a[0] + a[1] + a[2]);
     }
     for (int x = 0; x < texels; x++) {
-        const int j = (int)(initial_position(p, x, most) * k);
+        const int j = (int)(compute_initial_position(p, x, most) * k);
 
         p->fit->cluster[x] = (uint8_t)(j < k ? j : k - 1);
         for (int c = 0; c < 3; c++) {
@@ -213,8 +218,8 @@ static void set_initial_clusters(const struct clusters *p)
     }
 }
 
-/* Normalises the sum of each kernel to 1, so that out factors are near the
- * albedo, and in factors near 1. */
+/* Scales each kernel to the sum 1, so that out factors are near the albedo and
+ * in factors near 1. */
 static void normalise_kernels(const struct clusters *p)
 {
     const int texels = p->fit->side * p->fit->side;
@@ -228,7 +233,7 @@ static void normalise_kernels(const struct clusters *p)
         for (int x = 0; x < texels && mean > 0; x++)
             p->fit->in[3 * x + c] /= mean;
         for (int j = 0; j < p->fit->kernels; j++) {
-            double *h = get_kernel(p->fit, j, c), sum = 0;
+            double *h = get_cluster_kernel(p->fit, j, c), sum = 0;
 
             for (int d = 0; d < k2; d++)
                 sum += h[d];
@@ -242,18 +247,18 @@ static enum glint_status fit_clusters(struct clusters *p,
                                       const struct glint_watch *watch)
 {
     set_initial_clusters(p);
-    fit_kernels(p);
+    fit_cluster_kernels(p);
     for (int i = 0; i < ROUNDS; i++) {
         if (glint_watch_ends(watch, (double)i / ROUNDS))
             return GLINT_E_CLOSED;
         if (i > 0)
-            assign_kernels(p);
-        fit_leaving_light(p);
-        fit_entering_light(p);
-        fit_kernels(p);
+            assign_texels_to_kernels(p);
+        fit_out_factors(p);
+        fit_in_factors(p);
+        fit_cluster_kernels(p);
     }
     normalise_kernels(p);
-    fit_leaving_light(p);
+    fit_out_factors(p);
     return GLINT_OK;
 }
 

@@ -3,10 +3,10 @@
  * Fits the rows of a scattering matrix by sums of a few kernels of low rank,
  * times weights per texel.
  *
- * The singular value decomposition of the complete rows gives initial kernels.
+ * A singular value decomposition of the complete rows gives initial kernels.
  * Weights and kernels are then updated in turn by least squares. Kernels are
- * truncated to their rank in each round, so that the weights compensate for the
- * truncation.
+ * truncated to their rank in each round, so that the weights compensate for
+ * the truncation.
  */
 #include "bake/translucent/rows.h"
 
@@ -22,39 +22,44 @@ struct factors {
     const struct glint_scatter_rows *rows;
     struct glint_scatter_fit *fit;
     int c;
-    double *h, *f, *column, *row; /* arrays of channel C for kernel 0; those of
-                                     other kernels follow at distances of 3 */
-    int *whole;                   /* texels whose rows lie inside the square */
-    /* normal equations, one system per entry of a kernel */
+    /* arrays of channel c for kernel 0; those of other kernels follow at
+     * distances of 3 */
+    double *h, *f, *column, *row;
+    /* indices of the texels whose rows lie completely inside the square */
+    int *complete;
+    /* normal equations, one system per entry of a kernel: matrices, right
+     * sides */
     double *gram, *side;
 };
 
-static double *get_term(double *all, int j, size_t n)
+static double *get_channel_array(double *all, int j, size_t n)
 {
     return all + (size_t)j * 3 * n;
 }
 
-static double *get_kernel(const struct factors *p, int j)
+static double *get_factor_kernel(const struct factors *p, int j)
 {
-    return get_term(p->h, j, (size_t)glint_scatter_kernel2(p->fit->kernel));
+    return get_channel_array(p->h, j,
+                             (size_t)glint_scatter_kernel2(p->fit->kernel));
 }
 
-static double *get_weights(const struct factors *p, int j)
+static double *get_texel_weights(const struct factors *p, int j)
 {
-    return get_term(p->f, j, (size_t)p->fit->side * (size_t)p->fit->side);
+    return get_channel_array(p->f, j,
+                             (size_t)p->fit->side * (size_t)p->fit->side);
 }
 
 static void read_complete_row(const void *ctx, int i, double *to)
 {
     const struct factors *p = ctx;
-    const float *row = glint_scatter_row(p->rows, p->whole[i], p->c);
+    const float *row = glint_scatter_row(p->rows, p->complete[i], p->c);
 
     for (int d = 0; d < glint_scatter_kernel2(p->fit->kernel); d++)
         to[d] = (double)row[d];
 }
 
 /* Sets initial kernels from the complete rows, or from all rows if none is
- * complete. */
+ * complete. Returns false if there is no memory. */
 static bool set_initial_kernels(struct factors *p)
 {
     const int side = p->fit->side, n = p->fit->kernel, k2 = n * n;
@@ -67,24 +72,25 @@ static bool set_initial_kernels(struct factors *p)
                 glint_scatter_inside(side, n, x);
 
             if (some || (in.u_to - in.u_from) * (in.v_to - in.v_from) == k2)
-                p->whole[a.rows++] = x;
+                p->complete[a.rows++] = x;
         }
     if (!glint_terms_of(&a, p->fit->kernels, &terms))
         return false;
     for (int j = 0; j < terms.n; j++)
-        memcpy(get_kernel(p, j), terms.right + (size_t)j * (size_t)k2,
+        memcpy(get_factor_kernel(p, j), terms.right + (size_t)j * (size_t)k2,
                (size_t)k2 * sizeof *terms.right);
     glint_terms_close(&terms);
     return true;
 }
 
-/* Truncates kernel J to its rank. */
+/* Truncates kernel J to its rank, as a sum of products of a column and a
+ * row. */
 static void truncate_kernel(const struct factors *p, int j)
 {
     const int n = p->fit->kernel, rank = p->fit->rank;
-    double *h = get_kernel(p, j), *a = p->gram, *turn = p->gram + n * n;
-    double *column = get_term(p->column, j, (size_t)rank * (size_t)n);
-    double *row = get_term(p->row, j, (size_t)rank * (size_t)n);
+    double *h = get_factor_kernel(p, j), *a = p->gram, *turn = p->gram + n * n;
+    double *column = get_channel_array(p->column, j, (size_t)rank * (size_t)n);
+    double *row = get_channel_array(p->row, j, (size_t)rank * (size_t)n);
 
     for (int u = 0; u < n; u++)
         for (int v = 0; v < n; v++) {
@@ -100,7 +106,7 @@ static void truncate_kernel(const struct factors *p, int j)
 
         for (int v = 0; v < n; v++)
             length += a[q * n + v] * a[q * n + v];
-        /* distributes the length equally over both factors */
+        /* distributes the length equally over column and row */
         root = sqrt(sqrt(length));
         for (int v = 0; v < n && root > 0; v++) {
             column[q * n + v] = a[q * n + v] / root;
@@ -112,10 +118,10 @@ static void truncate_kernel(const struct factors *p, int j)
     }
 }
 
-/* Sets GRAM[kernels][kernels] and SUMS to the normal equations for the
+/* Sets GRAM[kernels][kernels] and SUMS[kernels] to the normal equations for the
  * weights of texel X. */
-static void set_equations(const struct factors *p, int x, double *gram,
-                          double *sums)
+static void set_weight_equations(const struct factors *p, int x, double *gram,
+                                 double *sums)
 {
     const int n = p->fit->kernel, k = p->fit->kernels;
     const struct glint_scatter_inside in =
@@ -126,12 +132,12 @@ static void set_equations(const struct factors *p, int x, double *gram,
     memset(sums, 0, (size_t)k * sizeof *sums);
     for (int j = 0; j < k; j++)
         for (int v = in.v_from; v < in.v_to; v++) {
-            const double *h = get_kernel(p, j) + v * n;
+            const double *h = get_factor_kernel(p, j) + v * n;
 
             for (int u = in.u_from; u < in.u_to; u++)
                 sums[j] += h[u] * (double)data[v * n + u];
             for (int i = 0; i <= j; i++) {
-                const double *other = get_kernel(p, i) + v * n;
+                const double *other = get_factor_kernel(p, i) + v * n;
 
                 for (int u = in.u_from; u < in.u_to; u++)
                     gram[j * k + i] += h[u] * other[u];
@@ -139,31 +145,31 @@ static void set_equations(const struct factors *p, int x, double *gram,
         }
 }
 
-static void mirror_triangle(double *a, int n)
+static void mirror_lower_triangle(double *a, int n)
 {
     for (int i = 0; i < n; i++)
         for (int k = 0; k < i; k++)
             a[k * n + i] = a[i * n + k];
 }
 
-/* Fits the weights of all texels by least squares for the current kernels. */
-static void fit_weights(const struct factors *p)
+/* Fits the weights of all texels by least squares, for the current kernels. */
+static void fit_texel_weights(const struct factors *p)
 {
     double gram[GLINT_SCATTER_MAX_TERMS * GLINT_SCATTER_MAX_TERMS];
     double sums[GLINT_SCATTER_MAX_TERMS];
     const int k = p->fit->kernels;
 
     for (int x = 0; x < p->fit->side * p->fit->side; x++) {
-        set_equations(p, x, gram, sums);
-        mirror_triangle(gram, k);
+        set_weight_equations(p, x, gram, sums);
+        mirror_lower_triangle(gram, k);
         glint_solve(gram, k, sums);
         for (int j = 0; j < k; j++)
-            get_weights(p, j)[x] = sums[j];
+            get_texel_weights(p, j)[x] = sums[j];
     }
 }
 
-/* Adds the row of X to the normal equations of all kernel entries. */
-static void add_entries(const struct factors *p, int x)
+/* Adds the row of texel X to the normal equations of all kernel entries. */
+static void add_row_to_equations(const struct factors *p, int x)
 {
     const int n = p->fit->kernel, k = p->fit->kernels;
     const struct glint_scatter_inside in =
@@ -172,7 +178,7 @@ static void add_entries(const struct factors *p, int x)
     double f[GLINT_SCATTER_MAX_TERMS];
 
     for (int j = 0; j < k; j++)
-        f[j] = get_weights(p, j)[x];
+        f[j] = get_texel_weights(p, j)[x];
     for (int v = in.v_from; v < in.v_to; v++)
         for (int d = v * n + in.u_from; d < v * n + in.u_to; d++) {
             double *gram = p->gram + (size_t)d * (size_t)(k * k);
@@ -185,27 +191,27 @@ static void add_entries(const struct factors *p, int x)
         }
 }
 
-/* Fits the kernels by least squares for the current weights. */
-static void fit_kernels(const struct factors *p)
+/* Fits all kernels by least squares, for the current weights. */
+static void fit_factor_kernels(const struct factors *p)
 {
     const int k2 = glint_scatter_kernel2(p->fit->kernel), k = p->fit->kernels;
 
     memset(p->gram, 0, (size_t)(k2 * k * k) * sizeof *p->gram);
     memset(p->side, 0, (size_t)(k2 * k) * sizeof *p->side);
     for (int x = 0; x < p->fit->side * p->fit->side; x++)
-        add_entries(p, x);
+        add_row_to_equations(p, x);
     for (int d = 0; d < k2; d++) {
         double *gram = p->gram + (size_t)d * (size_t)(k * k);
 
-        mirror_triangle(gram, k);
+        mirror_lower_triangle(gram, k);
         glint_solve(gram, k, p->side + d * k);
         for (int j = 0; j < k; j++)
-            get_kernel(p, j)[d] = p->side[d * k + j];
+            get_factor_kernel(p, j)[d] = p->side[d * k + j];
     }
 }
 
-static enum glint_status fit_factors(struct factors *p,
-                                     const struct glint_watch *watch)
+static enum glint_status fit_all_channels(struct factors *p,
+                                          const struct glint_watch *watch)
 {
     const size_t texels = (size_t)p->fit->side * (size_t)p->fit->side;
     const size_t k2 = (size_t)glint_scatter_kernel2(p->fit->kernel);
@@ -222,10 +228,10 @@ static enum glint_status fit_factors(struct factors *p,
             if (glint_watch_ends(watch, (p->c + (i + 1.0) / (ROUNDS + 1)) / 3))
                 return GLINT_E_CLOSED;
             if (i > 0)
-                fit_kernels(p);
+                fit_factor_kernels(p);
             for (int j = 0; j < p->fit->kernels; j++)
                 truncate_kernel(p, j);
-            fit_weights(p);
+            fit_texel_weights(p);
         }
     }
     return GLINT_OK;
@@ -246,13 +252,13 @@ enum glint_status glint_scatter_factors(const struct glint_scatter_rows *rows,
     fit->f = calloc(3 * k * texels, sizeof *fit->f);
     fit->column = calloc(3 * k * line, sizeof *fit->column);
     fit->row = calloc(3 * k * line, sizeof *fit->row);
-    p.whole = malloc(texels * sizeof *p.whole);
-    /* truncate_kernel() stores two kernels there */
+    p.complete = malloc(texels * sizeof *p.complete);
+    /* truncate_kernel() stores two kernels there, too */
     p.gram = malloc(k2 * (k * k + k + 2) * sizeof *p.gram);
     p.side = p.gram + k2 * (k * k + 2);
-    if (fit->h && fit->f && fit->column && fit->row && p.whole && p.gram)
-        status = fit_factors(&p, watch);
-    free(p.whole);
+    if (fit->h && fit->f && fit->column && fit->row && p.complete && p.gram)
+        status = fit_all_channels(&p, watch);
+    free(p.complete);
     free(p.gram);
     return status;
 }

@@ -21,17 +21,17 @@ void glint_scatter_fit_close(struct glint_scatter_fit *fit)
     memset(fit, 0, sizeof *fit);
 }
 
-/* Returns kernel J of channel C, [kernel * kernel]. */
-static const double *get_kernel(const struct glint_scatter_fit *fit, int j,
-                                int c)
+/* Returns kernel J of channel C, [kernel][kernel]. */
+static const double *get_fit_kernel(const struct glint_scatter_fit *fit, int j,
+                                    int c)
 {
     return fit->h +
            (size_t)(j * 3 + c) * (size_t)glint_scatter_kernel2(fit->kernel);
 }
 
-/* Returns the factor of kernel J for light that leaves texel X. */
-static double get_weight(const struct glint_scatter_fit *fit, int j, int c,
-                         int x)
+/* Returns the factor of kernel J for light that leaves texel X in channel C. */
+static double get_leaving_factor(const struct glint_scatter_fit *fit, int j,
+                                 int c, int x)
 {
     if (fit->model == GLINT_SCATTER_FACTORED && fit->f)
         return fit->f[(size_t)(j * 3 + c) * (size_t)(fit->side * fit->side) +
@@ -50,14 +50,15 @@ double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
     if (to < 0)
         return 0;
     for (int j = 0; j < fit->kernels; j++)
-        sum += get_weight(fit, j, c, to) * get_kernel(fit, j, c)[d];
+        sum += get_leaving_factor(fit, j, c, to) * get_fit_kernel(fit, j, c)[d];
     return fit->in ? sum * fit->in[3 * x + c] : sum;
 }
 
-/* Returns the light that texel X receives from channel C of LIGHT through
- * kernel H, whose offsets lead to X. */
-static double gather_light(const struct glint_scatter_fit *fit, int x,
-                           const double *h, const double *light, int c)
+/* Returns the light of channel C that texel X receives from LIGHT through
+ * kernel H, whose offsets lead to the source. */
+static double gather_light_by_kernel(const struct glint_scatter_fit *fit, int x,
+                                     const double *h, const double *light,
+                                     int c)
 {
     const int side = fit->side, n = fit->kernel, half = n / 2;
     const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
@@ -82,18 +83,19 @@ void glint_scatter_light(const struct glint_scatter_fit *fit,
             double sum = 0;
 
             for (int j = 0; j < fit->kernels; j++) {
-                const double weight = get_weight(fit, j, c, x);
+                const double weight = get_leaving_factor(fit, j, c, x);
 
                 if (weight != 0)
-                    sum += weight * gather_light(fit, x, get_kernel(fit, j, c),
-                                                 irradiance, c);
+                    sum += weight * gather_light_by_kernel(
+                                        fit, x, get_fit_kernel(fit, j, c),
+                                        irradiance, c);
             }
             radiosity[3 * x + c] = sum;
         }
 }
 
-/* Sets a test illumination: a ramp crossed by the edge of a shadow, and
- * three lamps, small and large. */
+/* Sets IRRADIANCE to a test illumination of SIDE x SIDE texels: a ramp, the
+ * edge of a shadow across it, and three lamps, small and large. */
 void glint_scatter_test_light(int side, double *irradiance)
 {
     static const double lamp[3][4] = {/* position x, y; radius; light */
@@ -135,8 +137,9 @@ void glint_scatter_defaults(struct glint_scatter_options *options,
     };
 }
 
-/* Sets ALBEDO to the sums of the rows. */
-static void set_albedo(const struct glint_scatter_rows *rows, double *albedo)
+/* Sets ALBEDO to the sums of the rows, per texel and channel. */
+static void compute_row_albedo(const struct glint_scatter_rows *rows,
+                               double *albedo)
 {
     const int k2 = glint_scatter_kernel2(rows->kernel);
 
@@ -151,7 +154,8 @@ static void set_albedo(const struct glint_scatter_rows *rows, double *albedo)
         }
 }
 
-/* Returns the light that leaves texel X under uniform illumination 1. */
+/* Returns the light that leaves texel X in channel C under uniform irradiance
+ * 1. */
 static double compute_uniform_response(const struct glint_scatter_fit *fit,
                                        int x, int c)
 {
@@ -171,8 +175,8 @@ static double compute_uniform_response(const struct glint_scatter_fit *fit,
     return sum;
 }
 
-/* Scales the light that leaves each texel so that under uniform illumination
- * it equals the albedo of the data. */
+/* Scales the light that leaves each texel such that under uniform irradiance it
+ * equals the albedo of the data. */
 static void scale_to_albedo(struct glint_scatter_fit *fit)
 {
     const int texels = fit->side * fit->side;
@@ -192,7 +196,7 @@ static void scale_to_albedo(struct glint_scatter_fit *fit)
         }
 }
 
-static void reverse_order(double *a, int n)
+static void reverse_array(double *a, int n)
 {
     for (int i = 0; i < n / 2; i++) {
         const double x = a[i];
@@ -202,23 +206,24 @@ static void reverse_order(double *a, int n)
     }
 }
 
-/* Mirrors the kernels: offsets to the source of light become offsets to its
+/* Mirrors all kernels: offsets to the source of light become offsets to its
  * destination. */
 static void mirror_kernels(struct glint_scatter_fit *fit)
 {
     const int n = fit->kernel;
 
     for (int i = 0; i < 3 * fit->kernels; i++)
-        reverse_order(fit->h + (size_t)i * (size_t)(n * n), n * n);
+        reverse_array(fit->h + (size_t)i * (size_t)(n * n), n * n);
     for (int i = 0; fit->row && i < 3 * fit->kernels * fit->rank; i++) {
-        reverse_order(fit->column + (size_t)i * (size_t)n, n);
-        reverse_order(fit->row + (size_t)i * (size_t)n, n);
+        reverse_array(fit->column + (size_t)i * (size_t)n, n);
+        reverse_array(fit->row + (size_t)i * (size_t)n, n);
     }
 }
 
-/* Returns the sum of the entries of kernel H inside the square, for texel X. */
-static double sum_inside(const struct glint_scatter_fit *fit, int x,
-                         const double *h)
+/* Returns the sum of the entries of kernel H around texel X that lie inside the
+ * square. */
+static double sum_kernel_inside(const struct glint_scatter_fit *fit, int x,
+                                const double *h)
 {
     const int n = fit->kernel;
     const struct glint_scatter_inside in =
@@ -231,11 +236,11 @@ static double sum_inside(const struct glint_scatter_fit *fit, int x,
     return sum;
 }
 
-/* Sets H to the mean of the rows of channel C, weighted by OUT, normalised
- * to the sum 1. SQUARE is scratch. */
-static void set_mean_kernel(const struct glint_scatter_rows *rows,
-                            const struct glint_scatter_fit *fit, int c,
-                            double *h, double *square)
+/* Sets H to the mean of all rows of channel C, weighted by the out factors and
+ * scaled to the sum 1. SQUARE: scratch of the same size. */
+static void compute_mean_kernel(const struct glint_scatter_rows *rows,
+                                const struct glint_scatter_fit *fit, int c,
+                                double *h, double *square)
 {
     const int side = fit->side, n = fit->kernel, k2 = n * n;
     double sum = 0;
@@ -261,11 +266,11 @@ static void set_mean_kernel(const struct glint_scatter_rows *rows,
         h[d] /= sum;
 }
 
-/* Fits one kernel h and the albedo. Rows at the rim are only partly inside
- * the square; their complete sums follow from h, and h from these sums, so
- * both are iterated. */
-static enum glint_status fit_albedo(const struct glint_scatter_rows *rows,
-                                    struct glint_scatter_fit *fit)
+/* Fits one kernel and an albedo per texel. Rows at the rim are only partly
+ * inside the square; their complete sums follow from the kernel, and the kernel
+ * from these sums, so both are iterated. */
+static enum glint_status fit_albedo_model(const struct glint_scatter_rows *rows,
+                                          struct glint_scatter_fit *fit)
 {
     const int n = 3 * fit->side * fit->side;
     const size_t k2 = (size_t)glint_scatter_kernel2(fit->kernel);
@@ -280,10 +285,10 @@ static enum glint_status fit_albedo(const struct glint_scatter_rows *rows,
     memcpy(fit->out, fit->albedo, (size_t)n * sizeof *fit->out);
     for (int i = 0; i < RIM_ROUNDS; i++) {
         for (int c = 0; c < 3; c++)
-            set_mean_kernel(rows, fit, c, fit->h + (size_t)c * k2, square);
+            compute_mean_kernel(rows, fit, c, fit->h + (size_t)c * k2, square);
         for (int x = 0; x < n; x++) {
             const double share =
-                sum_inside(fit, x / 3, fit->h + (size_t)(x % 3) * k2);
+                sum_kernel_inside(fit, x / 3, fit->h + (size_t)(x % 3) * k2);
 
             fit->out[x] = share > 0 ? fit->albedo[x] / share : 0;
         }
@@ -298,9 +303,9 @@ static double compute_psnr_db(double square, double peak)
                                   : NO_ERROR_DB;
 }
 
-/* Measures the errors of entries and of row sums. */
-static void measure_entries(const struct glint_scatter_rows *rows,
-                            struct glint_scatter_fit *fit)
+/* Measures the errors of entries and of row sums of the fit. */
+static void measure_entry_errors(const struct glint_scatter_rows *rows,
+                                 struct glint_scatter_fit *fit)
 {
     const int k2 = glint_scatter_kernel2(fit->kernel);
     double square = 0, peak = 0;
@@ -325,8 +330,9 @@ static void measure_entries(const struct glint_scatter_rows *rows,
     fit->error.entry_db = compute_psnr_db(square, peak);
 }
 
-static enum glint_status measure_errors(const struct glint_scatter_rows *rows,
-                                        struct glint_scatter_fit *fit)
+static enum glint_status
+measure_fit_errors(const struct glint_scatter_rows *rows,
+                   struct glint_scatter_fit *fit)
 {
     const int n = 3 * fit->side * fit->side;
     double *light = malloc(3 * (size_t)n * sizeof *light);
@@ -336,7 +342,7 @@ static enum glint_status measure_errors(const struct glint_scatter_rows *rows,
         return GLINT_E_MEMORY;
     want = light + n;
     got = want + n;
-    measure_entries(rows, fit);
+    measure_entry_errors(rows, fit);
     glint_scatter_test_light(fit->side, light);
     glint_scatter_light_rows(rows, light, want);
     glint_scatter_light(fit, light, got);
@@ -349,7 +355,7 @@ static enum glint_status measure_errors(const struct glint_scatter_rows *rows,
     return GLINT_OK;
 }
 
-static bool in_range(const struct glint_scatter_options *o)
+static bool are_options_in_range(const struct glint_scatter_options *o)
 {
     return o->kernels >= 1 && o->kernels <= GLINT_SCATTER_MAX_TERMS &&
            o->rank >= 1 && o->rank <= GLINT_SCATTER_MAX_RANK &&
@@ -358,9 +364,9 @@ static bool in_range(const struct glint_scatter_options *o)
             (o->model == GLINT_SCATTER_ALBEDO && o->kernels == 1));
 }
 
-static enum glint_status fit_model(const struct glint_scatter_rows *rows,
-                                   const struct glint_watch *watch,
-                                   struct glint_scatter_fit *fit)
+static enum glint_status fit_chosen_model(const struct glint_scatter_rows *rows,
+                                          const struct glint_watch *watch,
+                                          struct glint_scatter_fit *fit)
 {
     switch (fit->model) {
     case GLINT_SCATTER_CLUSTERED:
@@ -369,7 +375,7 @@ static enum glint_status fit_model(const struct glint_scatter_rows *rows,
         return glint_scatter_factors(rows, watch, fit);
     case GLINT_SCATTER_ALBEDO:
     default:
-        return fit_albedo(rows, fit);
+        return fit_albedo_model(rows, fit);
     }
 }
 
@@ -382,7 +388,7 @@ enum glint_status glint_scatter_fit(struct glint_scatter_rows *rows,
     enum glint_status status;
 
     memset(fit, 0, sizeof *fit);
-    if (!in_range(options))
+    if (!are_options_in_range(options))
         return GLINT_E_ARGUMENT;
     fit->model = options->model;
     fit->side = rows->side;
@@ -395,14 +401,14 @@ enum glint_status glint_scatter_fit(struct glint_scatter_rows *rows,
         /* Fits the transposed rows, as errors are visible where light
          * leaves. */
         glint_scatter_turn(rows);
-        set_albedo(rows, fit->albedo);
-        status = fit_model(rows, watch, fit);
+        compute_row_albedo(rows, fit->albedo);
+        status = fit_chosen_model(rows, watch, fit);
         glint_scatter_turn(rows);
     }
     if (status == GLINT_OK) {
         mirror_kernels(fit);
         scale_to_albedo(fit);
-        status = measure_errors(rows, fit);
+        status = measure_fit_errors(rows, fit);
     }
     if (status != GLINT_OK)
         glint_scatter_fit_close(fit);

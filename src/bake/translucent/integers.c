@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Scatters light with the integer code of the run time, for comparison with
- * fits in doubles.
+ * Scatters light with the run time's integer code, for comparison with fits in
+ * doubles.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -11,8 +11,10 @@
 
 enum { CHANNELS = 3, FULL = 32767 };
 
-/* Sets the light of S. Returns the integer that stands for irradiance 1. */
-static double set_light(const struct glint_spread *s, const double *irradiance)
+/* Sets the light of S to IRRADIANCE as integers. Returns the integer that
+ * represents irradiance 1. */
+static double set_integer_light(const struct glint_spread *s,
+                                const double *irradiance)
 {
     const size_t n = (size_t)s->width * (size_t)s->height;
     double most = 0;
@@ -55,7 +57,7 @@ enum glint_status glint_stone_light(const struct glint_translucent *stone,
         s.map[c] = s.light[c] + n;
     }
     {
-        const double one = set_light(&s, irradiance);
+        const double one = set_integer_light(&s, irradiance);
 
         for (int c = 0; c < CHANNELS; c++)
             for (int x = 0; x < side; x += GLINT_STRIP)

@@ -9,20 +9,21 @@
 #include "glint/scene/translucent_bake.h"
 
 enum {
-    SPARE = 8, /* number of additional vectors, which accelerate the convergence
-                  of the last wanted one */
+    /* number of additional vectors, which accelerate the convergence of the
+     * last requested one */
+    SPARE = 8,
     ROUNDS = 300,
     SWEEPS = 60
 };
 
-/* cosine below which columns count as orthogonal */
+/* cosine below which two columns are orthogonal */
 #define SAME 1e-15
-/* ratio to the previous length below which vectors count as 0 */
+/* length after / length before orthogonalisation below which a vector is 0 */
 #define NOTHING 1e-13
-/* relative change of the sum of eigenvalues at which iteration stops */
+/* relative change of the sum of eigenvalues at which the iteration stops */
 #define STILL 1e-15
 
-static double compute_dot(const double *a, const double *b, int n)
+static double compute_dot_product(const double *a, const double *b, int n)
 {
     double sum = 0;
 
@@ -52,14 +53,15 @@ static void swap_rows(double *a, double *b, int n)
     }
 }
 
-/* Jacobi rotation: makes columns I and K orthogonal. Returns false if they
- * were orthogonal already. */
-static bool orthogonalise_columns(double *a, int rows, int i, int k,
-                                  double *turn, int m)
+/* One Jacobi rotation: makes columns I and K of A orthogonal; rotates TURN with
+ * them. Returns false if they were orthogonal already. */
+static bool orthogonalise_column_pair(double *a, int rows, int i, int k,
+                                      double *turn, int m)
 {
     double *x = a + (size_t)i * (size_t)rows, *y = a + (size_t)k * (size_t)rows;
-    const double xx = compute_dot(x, x, rows), yy = compute_dot(y, y, rows);
-    const double xy = compute_dot(x, y, rows);
+    const double xx = compute_dot_product(x, x, rows),
+                 yy = compute_dot_product(y, y, rows);
+    const double xy = compute_dot_product(x, y, rows);
     double ratio, t, cosine;
 
     if (yy > xx) {
@@ -88,7 +90,7 @@ void glint_jacobi(double *a, int rows, int n, double *turn, int m)
         turned = false;
         for (int i = 0; i < n; i++)
             for (int k = i + 1; k < n; k++)
-                turned |= orthogonalise_columns(a, rows, i, k, turn, m);
+                turned |= orthogonalise_column_pair(a, rows, i, k, turn, m);
     }
 }
 
@@ -98,7 +100,7 @@ void glint_solve(double *a, int n, double *b)
 
     for (int i = 0; i < n; i++)
         most = fmax(most, a[i * n + i]);
-    /* factorises A = L D L', with D on the diagonal */
+    /* factorises A = L D L', D on the diagonal */
     for (int i = 0; i < n; i++) {
         double *row = a + (size_t)i * (size_t)n;
 
@@ -111,7 +113,7 @@ void glint_solve(double *a, int n, double *b)
                 row[k] = other[k] > 0 ? row[k] / other[k] : 0;
         }
         row[i] = row[i] > NOTHING * most ? row[i] : 0;
-        b[i] -= compute_dot(row, b, i);
+        b[i] -= compute_dot_product(row, b, i);
     }
     for (int i = n - 1; i >= 0; i--) {
         b[i] = a[i * n + i] > 0 ? b[i] / a[i * n + i] : 0;
@@ -122,31 +124,32 @@ void glint_solve(double *a, int n, double *b)
     }
 }
 
-/* Orthonormalises N rows of V; rows that depend on earlier rows become 0. */
-static void orthonormalise_columns(double *v, int n, int m)
+/* Orthonormalises the N rows V[n][m]. Rows that depend on earlier rows become
+ * 0. */
+static void orthonormalise_rows(double *v, int n, int m)
 {
     for (int i = 0; i < n; i++) {
         double *x = v + (size_t)i * (size_t)m;
-        const double before = sqrt(compute_dot(x, x, m));
+        const double before = sqrt(compute_dot_product(x, x, m));
         double length;
 
         for (int twice = 0; twice < 2; twice++)
             for (int k = 0; k < i; k++) {
                 const double *y = v + (size_t)k * (size_t)m;
-                const double share = compute_dot(x, y, m);
+                const double share = compute_dot_product(x, y, m);
 
                 for (int j = 0; j < m; j++)
                     x[j] -= share * y[j];
             }
-        length = sqrt(compute_dot(x, x, m));
+        length = sqrt(compute_dot_product(x, x, m));
         for (int j = 0; j < m; j++)
             x[j] = length > NOTHING * before ? x[j] / length : 0;
     }
 }
 
-/* Sets TO[n][m] to V[n][m] times the symmetric G[m][m]. */
-static void multiply_symmetric(const double *g, const double *v, int n, int m,
-                               double *to)
+/* Sets TO[n][m] to V[n][m] times the symmetric matrix G[m][m]. */
+static void multiply_by_symmetric_matrix(const double *g, const double *v,
+                                         int n, int m, double *to)
 {
     memset(to, 0, (size_t)n * (size_t)m * sizeof *to);
     for (int j = 0; j < m; j++)
@@ -160,10 +163,10 @@ static void multiply_symmetric(const double *g, const double *v, int n, int m,
         }
 }
 
-/* Sets V[n][m] to a basis of the eigenspace of the N largest eigenvalues of
- * G, by subspace iteration. Only the first WANTED vectors need to converge. */
-static void find_subspace(const double *g, int m, double *v, int n, int wanted,
-                          double *scratch)
+/* Sets V[n][m] to a basis of the eigenspace of the N largest eigenvalues of G,
+ * by subspace iteration. Only the first WANTED vectors must converge. */
+static void find_leading_subspace(const double *g, int m, double *v, int n,
+                                  int wanted, double *scratch)
 {
     uint32_t seed = 1;
     double before = -1;
@@ -172,24 +175,25 @@ static void find_subspace(const double *g, int m, double *v, int n, int wanted,
         seed = seed * UINT32_C(1664525) + UINT32_C(1013904223);
         v[i] = (double)seed / 2147483648.0 - 1;
     }
-    orthonormalise_columns(v, n, m);
+    orthonormalise_rows(v, n, m);
     for (int round = 0; round < ROUNDS; round++) {
         double sum = 0;
 
-        multiply_symmetric(g, v, n, m, scratch);
+        multiply_by_symmetric_matrix(g, v, n, m, scratch);
         for (int i = 0; i < wanted; i++)
-            sum += compute_dot(v + (size_t)i * (size_t)m,
-                               scratch + (size_t)i * (size_t)m, m);
+            sum += compute_dot_product(v + (size_t)i * (size_t)m,
+                                       scratch + (size_t)i * (size_t)m, m);
         memcpy(v, scratch, (size_t)n * (size_t)m * sizeof *v);
-        orthonormalise_columns(v, n, m);
+        orthonormalise_rows(v, n, m);
         if (fabs(sum - before) <= STILL * sum)
             return;
         before = sum;
     }
 }
 
-/* Sets G to the dot products of all pairs of columns. ROW is scratch. */
-static void compute_gram(const struct glint_tall *a, double *g, double *row)
+/* Sets G to the dot products of all pairs of columns of A. ROW is scratch. */
+static void compute_gram_matrix(const struct glint_tall *a, double *g,
+                                double *row)
 {
     const int m = a->columns;
 
@@ -210,16 +214,17 @@ static void compute_gram(const struct glint_tall *a, double *g, double *row)
             g[j * m + k] = g[k * m + j];
 }
 
-/* Writes the N leading terms of Y[][rows], whose rows must be orthogonal,
- * and of V[][columns] to TERMS. */
-static void set_terms(const double *y, const double *v,
-                      const struct glint_tall *a, struct glint_terms *terms)
+/* Sets TERMS to its N leading terms from Y[][rows], whose rows must be
+ * orthogonal, and V[][columns]. */
+static void set_leading_terms(const double *y, const double *v,
+                              const struct glint_tall *a,
+                              struct glint_terms *terms)
 {
     for (int i = 0; i < terms->n; i++) {
         const double *from = y + (size_t)i * (size_t)a->rows;
         double *left = terms->left + (size_t)i * (size_t)a->rows;
 
-        terms->value[i] = sqrt(compute_dot(from, from, a->rows));
+        terms->value[i] = sqrt(compute_dot_product(from, from, a->rows));
         for (int x = 0; x < a->rows; x++)
             left[x] = terms->value[i] > 0 ? from[x] / terms->value[i] : 0;
         memcpy(terms->right + (size_t)i * (size_t)a->columns,
@@ -247,16 +252,17 @@ bool glint_terms_of(const struct glint_tall *a, int n,
     good = g && v && y && terms->value && terms->left && terms->right;
     if (good) {
         row = g + columns * columns;
-        compute_gram(a, g, row);
-        find_subspace(g, m, v, wide, wanted, v + (size_t)wide * columns);
+        compute_gram_matrix(a, g, row);
+        find_leading_subspace(g, m, v, wide, wanted,
+                              v + (size_t)wide * columns);
         for (int x = 0; x < a->rows; x++) {
             a->row(a->ctx, x, row);
             for (int i = 0; i < wide; i++)
                 y[(size_t)i * rows + (size_t)x] =
-                    compute_dot(row, v + (size_t)i * columns, m);
+                    compute_dot_product(row, v + (size_t)i * columns, m);
         }
         glint_jacobi(y, a->rows, wide, v, m);
-        set_terms(y, v, a, terms);
+        set_leading_terms(y, v, a, terms);
     } else {
         glint_terms_close(terms);
     }
@@ -279,24 +285,24 @@ void glint_terms_close(struct glint_terms *terms)
 
 enum { MOST = GLINT_SCATTER_MAX_KERNEL, FEW_SWEEPS = 30 };
 
-/* Correlation of the light on neighbouring texels. From .5 to .99 the PSNR
- * under lamps differs by less than .3 dB; at 0 it is 1 to 10 dB lower. */
+/* Correlation of light on neighbouring texels. Values of .5 to .99 change the
+ * PSNR under lamps by less than .3 dB; 0 lowers it by 1 to 10 dB. */
 static const double correlation = 0.8;
 
-/* State of a singular value decomposition. Transposed: A[i] and V[i] are
- * columns. V is initially the unit matrix; A = K V holds at all times. */
+/* State of a singular value decomposition of the kernel K. a[i] and v[i] are
+ * columns: v is initially the unit matrix; A = K V holds at all times. */
 struct work {
     int n;
     double a[MOST][MOST], v[MOST][MOST];
 };
 
-/* Jacobi rotation: makes columns I and J orthogonal. Returns 0 if they were
+/* One Jacobi rotation: makes columns I and J orthogonal. Returns 0 if they were
  * orthogonal already, else 1. */
-static int separate_columns(struct work *w, int i, int j)
+static int orthogonalise_work_columns(struct work *w, int i, int j)
 {
-    const double p = compute_dot(w->a[i], w->a[i], w->n);
-    const double q = compute_dot(w->a[j], w->a[j], w->n);
-    const double r = compute_dot(w->a[i], w->a[j], w->n);
+    const double p = compute_dot_product(w->a[i], w->a[i], w->n);
+    const double q = compute_dot_product(w->a[j], w->a[j], w->n);
+    const double r = compute_dot_product(w->a[i], w->a[j], w->n);
     double zeta, tangent, cosine;
 
     if (!(fabs(r) > 1e-15 * sqrt(p * q)))
@@ -309,7 +315,7 @@ static int separate_columns(struct work *w, int i, int j)
     return 1;
 }
 
-/* Multiplies every STEP-th number of X[N] by L', where L L' = C is the
+/* Multiplies the N numbers at X, STEP apart, by L', where L L' is the
  * correlation matrix of light, which decreases by the same factor per texel. */
 static void weigh_by_correlation(double *x, int n, int step)
 {
@@ -322,7 +328,7 @@ static void weigh_by_correlation(double *x, int n, int step)
     }
 }
 
-/* Inverts weigh_by_correlation(). */
+/* Inverts weigh_by_correlation() for STEP = 1. */
 static void unweigh_by_correlation(double *x, int n)
 {
     const double own = sqrt(1 - correlation * correlation);
@@ -350,7 +356,7 @@ static void decompose_kernel(struct work *w, const double *kernel)
         any = 0;
         for (int i = 0; i < w->n; i++)
             for (int j = i + 1; j < w->n; j++)
-                any |= separate_columns(w, i, j);
+                any |= orthogonalise_work_columns(w, i, j);
     }
 }
 
@@ -364,7 +370,7 @@ void glint_separate(const double *kernel, int n, int rank,
     decompose_kernel(&w, kernel);
     to->all = 0;
     for (int i = 0; i < n; i++) {
-        square[i] = compute_dot(w.a[i], w.a[i], n);
+        square[i] = compute_dot_product(w.a[i], w.a[i], n);
         to->all += square[i];
     }
     to->lost = to->all;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Linear algebra for fits of scattering matrices, in double precision: leading
+ * Linear algebra in double precision for fits of scattering matrices: leading
  * terms of the singular value decomposition of a tall matrix, the complete
- * decomposition of a small one, small symmetric systems.
+ * decomposition of a small one, and small symmetric systems.
  *
- * Method: subspace iteration on the Gram matrix of the columns finds the space.
- * The rows projected on it are decomposed by one-sided Jacobi rotations, which
- * avoid the loss of digits by squaring [Golub13].
+ * Method: subspace iteration on the Gram matrix of the columns finds the space
+ * of the leading terms. The rows projected on it are decomposed by one-sided
+ * Jacobi rotations, which avoid the loss of digits by squaring [Golub13].
  */
 #ifndef GLINT_BAKE_TRANSLUCENT_LINEAR_H
 #define GLINT_BAKE_TRANSLUCENT_LINEAR_H
@@ -15,7 +15,7 @@
 
 #include "glint/status.h"
 
-/* A tall matrix whose rows are computed one at a time. */
+/* a tall matrix whose rows are computed one at a time */
 struct glint_tall {
     int rows, columns;
     /* sets TO[columns] to row I */
@@ -23,45 +23,44 @@ struct glint_tall {
     const void *ctx;
 };
 
-/* Leading terms of a matrix A = sum over j of value[j] left_j right_j'. */
+/* The leading terms of a matrix A = sum over j of value[j] left_j right_j'. */
 struct glint_terms {
-    int n; /* number of terms, sorted by descending value; the vectors of a
-              value 0 are 0 */
+    /* number of terms, by descending value; the vectors of a value 0 are 0 */
+    int n;
     double *value; /* [n] */
     double *left;  /* [n][rows] unit vectors */
     double *right; /* [n][columns] unit vectors */
 };
 
-/* Sets TERMS, at most N and at most as many as A has columns; the caller
- * closes them with glint_terms_close(). Returns false if there is no memory.
- * Needs 8 columns^2 + 8 rows (N + 8) bytes. */
+/* Computes the leading terms of A: at most N and at most as many as A has
+ * columns. The caller frees TERMS by glint_terms_close(). Returns false if
+ * there is no memory. Needs 8 columns^2 + 8 rows (N + 8) bytes. */
 bool glint_terms_of(const struct glint_tall *a, int n,
                     struct glint_terms *terms);
 void glint_terms_close(struct glint_terms *terms);
 
-/* Rotates N columns of A, [n][rows], until they are orthogonal, and sorts
- * them by descending length. Applies the same rotations to TURN[n][m] unless
- * it is NULL. */
+/* Rotates the N columns A[n][rows] until they are orthogonal and sorts them by
+ * descending length. Applies the same rotations to TURN[n][m] unless it is
+ * NULL. */
 void glint_jacobi(double *a, int rows, int n, double *turn, int m);
 
-/* Solves the symmetric system A[n][n] X = B[n]; X overwrites B. Components
- * that A does not determine become 0. Overwrites A. */
+/* Solves the symmetric system A[n][n] X = B[n]; X overwrites B. Components that
+ * A does not determine become 0. Overwrites A. */
 void glint_solve(double *a, int n, double *b);
 
-/* A kernel as a sum of products of a column and a row that minimises the
- * error of the scattered light. Light on a surface varies slowly, so errors
- * of neighbouring entries add up: rows and columns are weighted by the
- * correlation of light, and the products are the terms with the largest
- * singular values of the weighted kernel. */
+/* A kernel as a sum of products of a column and a row, with the min error of
+ * the scattered light. Light on a surface varies slowly, so errors of
+ * neighbouring entries add up: rows and columns are weighted by the correlation
+ * of light, and the products are the terms with the largest singular values of
+ * the weighted kernel. */
 struct glint_separated {
-    double *column, *row; /* [rank][n]; product r is column[r][v] row[r][u] */
-    /* sums of squares of all weighted entries, and of the residual */
+    double *column, *row; /* [rank][n]; product r is column[r][v] * row[r][u] */
+    /* sums of squares of all weighted entries, and of their residuals */
     double all, lost;
 };
 
-/* Sets TO to RANK products for KERNEL[N][N], N at most
- * GLINT_SCATTER_MAX_KERNEL. If RANK exceeds N, the additional products are
- * 0. */
+/* Separates KERNEL[N][N], N at most GLINT_SCATTER_MAX_KERNEL, into RANK
+ * products. If RANK exceeds N, the products beyond N are 0. */
 void glint_separate(const double *kernel, int n, int rank,
                     struct glint_separated *to);
 

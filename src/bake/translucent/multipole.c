@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Diffusion in a homogeneous translucent slab: modes, and closed form
- * (multipole).
+ * Computes diffusion in a homogeneous translucent slab, by modes and in closed
+ * form (multipole).
  */
 #include <math.h>
 #include <stdlib.h>
@@ -11,19 +11,22 @@
 #define PI 3.14159265358979323846
 
 enum {
-    FINE = 16,  /* subdivisions of a texel per axis, for the centre of a row and
-                   its neighbours */
-    COARSE = 4, /* subdivisions for other entries */
-    IMAGES = 8, /* image sources on either side of the slab; more are used in
-                   thin slabs, up to MORE */
+    /* subdivisions of a texel per axis, for the centre of a row and its
+     * neighbours */
+    FINE = 16,
+    COARSE = 4, /* subdivisions of a texel per axis for all other entries */
+    /* number of image sources on either side of the slab; thin slabs have more,
+     * up to MORE */
+    IMAGES = 8,
     MORE = 32,
-    LATTICE = 256 /* nodes per side of the grid that represents an infinite
-                     grid; at least four kernels wide */
+    /* nodes per side of the grid that represents an infinite one; it is at
+     * least four kernels wide */
+    LATTICE = 256
 };
 
-/* Returns the ratio A of fluence and flux at a face with internal reflection
- * [Jensen01]. */
-static double compute_face_ratio(double index)
+/* Returns the ratio A of fluence to flux at a face of a medium with index of
+ * refraction INDEX, due to internal reflection [Jensen01]. */
+static double compute_fluence_flux_ratio(double index)
 {
     const double back =
         -1.440 / (index * index) + 0.710 / index + 0.668 + 0.0636 * index;
@@ -47,7 +50,7 @@ void glint_slab_of(const struct glint_stone *stone, double share, int c,
         .scatter = scatter,
         .absorb = absorb,
         .diffusion = 1 / (3 * all),
-        .beyond = 2 * compute_face_ratio(stone->index) / (3 * all),
+        .beyond = 2 * compute_fluence_flux_ratio(stone->index) / (3 * all),
         .depth = fmin(1 / all, stone->slab_mm),
         .albedo = scatter / all,
     };
@@ -71,47 +74,50 @@ double glint_slab_exit(const struct glint_slab *slab, int n)
     return slab->diffusion * k * cos(k * slab->beyond);
 }
 
-/* Returns the solid angle / 4 pi of the rectangle from (0, 0) to (U, V),
- * seen from height Z above (0, 0). */
-static double compute_solid_angle(double u, double v, double z)
+/* Returns the solid angle / 4 pi of the rectangle from (0, 0) to (U, V), seen
+ * from height Z above (0, 0). */
+static double compute_rectangle_solid_angle(double u, double v, double z)
 {
     return atan2(u * v, z * sqrt(u * u + v * v + z * z)) / (4 * PI);
 }
 
-/* Returns the flux through a square of side STEP around (U, V) from a source
- * at depth Z, which may be negative. Attenuation is that at the square's
- * centre. */
-static double compute_flux(double u, double v, double z, double step,
-                           double loss)
+/* Returns the flux through a square of side STEP around (U, V) from a source at
+ * depth Z, which may be negative. LOSS: attenuation, 1 / mm, applied at the
+ * square's centre. */
+static double compute_source_flux(double u, double v, double z, double step,
+                                  double loss)
 {
     const double h = step / 2, depth = fabs(z);
     const double far = loss * sqrt(u * u + v * v + z * z);
-    const double angle = compute_solid_angle(u + h, v + h, depth) -
-                         compute_solid_angle(u - h, v + h, depth) -
-                         compute_solid_angle(u + h, v - h, depth) +
-                         compute_solid_angle(u - h, v - h, depth);
+    const double angle = compute_rectangle_solid_angle(u + h, v + h, depth) -
+                         compute_rectangle_solid_angle(u - h, v + h, depth) -
+                         compute_rectangle_solid_angle(u + h, v - h, depth) +
+                         compute_rectangle_solid_angle(u - h, v - h, depth);
 
     return (z < 0 ? -1 : 1) * angle * (1 + far) * exp(-far);
 }
 
-/* Returns the flux through that square from all sources and their images. */
-static double sum_images(const struct glint_slab *s, int pairs, double u,
-                         double v, double step)
+/* Returns the flux through a square of side STEP around (U, V) from all sources
+ * and their images, in PAIRS pairs on either side. */
+static double sum_image_fluxes(const struct glint_slab *s, int pairs, double u,
+                               double v, double step)
 {
     const double loss = sqrt(s->absorb / s->diffusion);
     const double period = 2 * (s->slab + 2 * s->beyond);
     double sum = 0;
 
     for (int i = -pairs; i <= pairs; i++)
-        sum += compute_flux(u, v, i * period + s->depth, step, loss) -
-               compute_flux(u, v, i * period - s->depth - 2 * s->beyond, step,
-                            loss);
+        sum += compute_source_flux(u, v, i * period + s->depth, step, loss) -
+               compute_source_flux(u, v, i * period - s->depth - 2 * s->beyond,
+                                   step, loss);
     return s->albedo * sum;
 }
 
-/* Returns the entry at offset (X, Y) texels, averaged over both texels. The
- * distribution of offsets between points of two texels is a tent function. */
-static double average_entry(const struct glint_slab *s, int pairs, int x, int y)
+/* Returns the row entry at offset (X, Y) texels, averaged over source and
+ * target texel. Offsets between points of two texels have a tent
+ * distribution. */
+static double compute_average_entry(const struct glint_slab *s, int pairs,
+                                    int x, int y)
 {
     const int parts = x <= 1 && y <= 1 ? FINE : COARSE;
     const double step = s->texel / parts;
@@ -120,8 +126,8 @@ static double average_entry(const struct glint_slab *s, int pairs, int x, int y)
     for (int i = 1 - parts; i < parts; i++)
         for (int j = 1 - parts; j < parts; j++)
             sum += (parts - abs(i)) * (parts - abs(j)) *
-                   sum_images(s, pairs, x * s->texel + i * step,
-                              y * s->texel + j * step, step);
+                   sum_image_fluxes(s, pairs, x * s->texel + i * step,
+                                    y * s->texel + j * step, step);
     return sum / (parts * parts);
 }
 
@@ -133,7 +139,7 @@ void glint_slab_closed(const struct glint_slab *slab, int kernel, double *entry)
 
     for (int y = 0; y <= half; y++)
         for (int x = 0; x <= y; x++) {
-            const double e = average_entry(slab, pairs, x, y);
+            const double e = compute_average_entry(slab, pairs, x, y);
 
             for (int i = 0; i < 8; i++) {
                 const int u = i & 4 ? y : x, v = i & 4 ? x : y;
@@ -144,12 +150,11 @@ void glint_slab_closed(const struct glint_slab *slab, int kernel, double *entry)
         }
 }
 
-/* Adds mode N of a lattice of SIZE nodes per side to ENTRY. WAVE[SIZE] is 4
- * sin^2(q / 2), COSINE[half + 1][SIZE] is cos(q u); ACROSS[half + 1] is
- * scratch. */
-static void add_mode(const struct glint_slab *s, int kernel, int size, int n,
-                     const double *wave, const double *cosine, double *across,
-                     double *entry)
+/* Adds mode N of a lattice of SIZE x SIZE nodes to ENTRY. WAVE[SIZE]: 4 sin^2(q
+ * / 2); COSINE[half + 1][SIZE]: cos(q u); ACROSS[half + 1] is scratch. */
+static void add_lattice_mode(const struct glint_slab *s, int kernel, int size,
+                             int n, const double *wave, const double *cosine,
+                             double *across, double *entry)
 {
     const int half = kernel / 2;
     const double k = glint_slab_wave(s, n), area = s->texel * s->texel;
@@ -192,7 +197,7 @@ bool glint_slab_lattice(const struct glint_slab *slab, int kernel,
     for (int i = 0; i < kernel * kernel; i++)
         entry[i] = 0;
     for (int n = 1; n <= GLINT_SLAB_MODES; n++)
-        add_mode(slab, kernel, size, n, wave, cosine, across, entry);
+        add_lattice_mode(slab, kernel, size, n, wave, cosine, across, entry);
     free(wave);
     return true;
 }

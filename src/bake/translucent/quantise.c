@@ -3,8 +3,8 @@
  * Converts a fit in doubles to a baked translucent medium: codes, filter taps,
  * shifts and gains.
  *
- * For a plane with the largest factor F, f = F code, and rows r and columns k
- * of one of its ranks, the run time computes
+ * For a plane with the max factor F, f = F code, and row r and column k of one
+ * of its ranks, the run time computes
  *
  *     light -> row taps / 2^shift -> column taps -> code -> gain
  *
@@ -33,18 +33,19 @@ struct writer {
     struct glint_translucent_header header;
     int rank, texels;
     double *column, *row; /* [kernels][3][rank][kernel] */
-    double *largest;      /* [3][kernels]: largest factor of each plane */
-    double in[CHANNELS];  /* max of the in factors if clustered, else 1 */
+    double *largest;      /* [3][kernels]: max factor of each plane */
+    /* max of the in factors of the clustered model; else 1 */
+    double in[CHANNELS];
 };
 
 /* ----------------------------------------------------------------- kernels */
 
-static size_t kernel_index(int p, int c)
+static size_t compute_kernel_index(int p, int c)
 {
     return (size_t)p * CHANNELS + (size_t)c;
 }
 
-/* Sets rows and columns of all kernels. */
+/* Sets rows and columns of all kernels. Returns false if there is no memory. */
 static bool separate_kernels(struct writer *w)
 {
     const struct glint_scatter_fit *fit = w->fit;
@@ -77,21 +78,22 @@ static bool separate_kernels(struct writer *w)
 /* ------------------------------------------------------------------- codes */
 
 /* Returns the factor of texel X in plane P, channel C. */
-static double get_factor(const struct writer *w, int p, int c, int x)
+static double get_texel_factor(const struct writer *w, int p, int c, int x)
 {
     const struct glint_scatter_fit *fit = w->fit;
 
     if (fit->model == GLINT_SCATTER_FACTORED)
-        return fit->f[kernel_index(p, c) * (size_t)w->texels + (size_t)x];
+        return fit
+            ->f[compute_kernel_index(p, c) * (size_t)w->texels + (size_t)x];
     if (fit->cluster && fit->cluster[x] != p)
         return 0;
     return fit->out[CHANNELS * (size_t)x + (size_t)c];
 }
 
-/* Appends N codes of BITS bits without sign; VALUE[i] = MOST becomes the
- * largest code. */
-static bool append_codes(struct writer *w, const double *value, int n,
-                         double most, int bits)
+/* Appends N unsigned codes of BITS bits; the value MOST becomes the max code.
+ * Returns false if there is no memory. */
+static bool append_unsigned_codes(struct writer *w, const double *value, int n,
+                                  double most, int bits)
 {
     const double full = most > 0 ? (double)((1L << bits) - 1) / most : 0;
     uint8_t *code = malloc((size_t)n);
@@ -104,9 +106,9 @@ static bool append_codes(struct writer *w, const double *value, int n,
     return code != NULL;
 }
 
-/* Writes the factors of channel C. With clusters each texel has the factor
- * of its cluster. */
-static bool append_factors(struct writer *w, int c, double *value)
+/* Appends the factors of channel C as codes. With clusters each texel has only
+ * the factor of its cluster. */
+static bool append_factor_codes(struct writer *w, int c, double *value)
 {
     const bool is_factored = w->fit->model == GLINT_SCATTER_FACTORED;
     const int bits = GLINT_TRANSLUCENT_CODE_BITS - is_factored;
@@ -114,11 +116,12 @@ static bool append_factors(struct writer *w, int c, double *value)
 
     for (int p = 0; p < w->fit->kernels; p++) {
         for (int x = 0; x < w->texels; x++) {
-            value[x] = get_factor(w, p, c, x);
+            value[x] = get_texel_factor(w, p, c, x);
             most[p] = fmax(most[p], fabs(value[x]));
         }
         w->largest[c * w->fit->kernels + p] = most[p];
-        if (is_factored && !append_codes(w, value, w->texels, most[p], bits))
+        if (is_factored &&
+            !append_unsigned_codes(w, value, w->texels, most[p], bits))
             return false;
     }
     if (is_factored)
@@ -126,12 +129,12 @@ static bool append_factors(struct writer *w, int c, double *value)
     for (int x = 0; x < w->texels; x++) {
         const int p = w->fit->cluster ? w->fit->cluster[x] : 0;
 
-        value[x] = most[p] > 0 ? get_factor(w, p, c, x) / most[p] : 0;
+        value[x] = most[p] > 0 ? get_texel_factor(w, p, c, x) / most[p] : 0;
     }
-    return append_codes(w, value, w->texels, 1, bits);
+    return append_unsigned_codes(w, value, w->texels, 1, bits);
 }
 
-static bool append_in_factors(struct writer *w, int c, double *value)
+static bool append_in_factor_codes(struct writer *w, int c, double *value)
 {
     double most = 0;
 
@@ -141,21 +144,22 @@ static bool append_in_factors(struct writer *w, int c, double *value)
     }
     w->in[c] = most * ldexp(1, GLINT_TRANSLUCENT_CODE_BITS) /
                ((1 << GLINT_TRANSLUCENT_CODE_BITS) - 1);
-    return append_codes(w, value, w->texels, most, GLINT_TRANSLUCENT_CODE_BITS);
+    return append_unsigned_codes(w, value, w->texels, most,
+                                 GLINT_TRANSLUCENT_CODE_BITS);
 }
 
-static bool write_codes(struct writer *w)
+static bool write_all_codes(struct writer *w)
 {
     double *value = malloc((size_t)w->texels * sizeof *value);
     bool good = value != NULL;
 
     w->header.code_at = (uint32_t)w->draft.bytes;
     for (int c = 0; good && c < CHANNELS; c++)
-        good = append_factors(w, c, value);
+        good = append_factor_codes(w, c, value);
     for (int c = 0; good && c < CHANNELS; c++) {
         w->in[c] = 1;
         if (w->fit->model == GLINT_SCATTER_CLUSTERED)
-            good = append_in_factors(w, c, value);
+            good = append_in_factor_codes(w, c, value);
     }
     free(value);
     if (w->fit->model == GLINT_SCATTER_CLUSTERED)
@@ -175,7 +179,7 @@ static double find_max_magnitude(const double *x, int n)
     return most;
 }
 
-static double sum_magnitudes(const double *x, int n)
+static double sum_tap_magnitudes(const double *x, int n)
 {
     double all = 0;
 
@@ -184,10 +188,10 @@ static double sum_magnitudes(const double *x, int n)
     return all;
 }
 
-/* Returns the largest factor for N taps, with max magnitude MOST and sum of
+/* Returns the max scale for N taps, with max magnitude MOST and sum of
  * magnitudes ALL, such that the rounded taps sum to at most
- * GLINT_TRANSLUCENT_MOST_TAPS. Returns 0 if all taps are 0. */
-static double choose_scale(double most, double all, int n)
+ * GLINT_TRANSLUCENT_MOST_TAPS; 0 if all taps are 0. */
+static double choose_tap_scale(double most, double all, int n)
 {
     const double tap = (1 << (GLINT_TRANSLUCENT_TAP_BITS - 1)) - 1;
 
@@ -196,8 +200,10 @@ static double choose_scale(double most, double all, int n)
                     : 0;
 }
 
-/* Rounds TAP[N] times SCALE. Returns the sum of their magnitudes. */
-static long round_taps(const double *tap, int n, double scale, int16_t *to)
+/* Rounds TAP[N] times SCALE to integers. Returns the sum of their
+ * magnitudes. */
+static long round_filter_taps(const double *tap, int n, double scale,
+                              int16_t *to)
 {
     long all = 0;
 
@@ -208,8 +214,10 @@ static long round_taps(const double *tap, int n, double scale, int16_t *to)
     return all;
 }
 
-/* Sets the taps TO[kernels][rank][2][kernel] and the shifts of channel C. */
-static bool set_taps(struct writer *w, int c, int16_t *to, uint32_t *shift)
+/* Sets the taps TO[kernels][rank][2][kernel] and the shifts of channel C.
+ * Returns false if the material would emit more light than it receives. */
+static bool set_channel_taps(struct writer *w, int c, int16_t *to,
+                             uint32_t *shift)
 {
     const struct glint_scatter_fit *fit = w->fit;
     const int k = fit->kernel, n = fit->kernels * w->rank;
@@ -218,30 +226,33 @@ static bool set_taps(struct writer *w, int c, int16_t *to, uint32_t *shift)
     double most = 0, all = 0, scale;
 
     for (int i = 0; i < n; i++) {
-        const size_t at = (kernel_index(i / w->rank, c) * (size_t)w->rank +
-                           (size_t)(i % w->rank)) *
-                          (size_t)k;
+        const size_t at =
+            (compute_kernel_index(i / w->rank, c) * (size_t)w->rank +
+             (size_t)(i % w->rank)) *
+            (size_t)k;
         const double *row = w->row + at;
         double *column = w->column + at;
         const double factor = w->largest[c * fit->kernels + i / w->rank] *
                               ldexp(1, bits) / (double)((1L << bits) - 1);
-        const double rows =
-            choose_scale(find_max_magnitude(row, k), sum_magnitudes(row, k), k);
-        const long taps = round_taps(row, k, rows, to + 2 * (ptrdiff_t)i * k);
+        const double rows = choose_tap_scale(find_max_magnitude(row, k),
+                                             sum_tap_magnitudes(row, k), k);
+        const long taps =
+            round_filter_taps(row, k, rows, to + 2 * (ptrdiff_t)i * k);
 
         while (1L << shift[i] < taps)
             shift[i]++;
         for (int j = 0; j < k; j++)
             column[j] *= rows > 0 ? factor * ldexp(1, (int)shift[i]) / rows : 0;
         most = fmax(most, find_max_magnitude(column, k));
-        all += sum_magnitudes(column, k);
+        all += sum_tap_magnitudes(column, k);
     }
-    scale = choose_scale(most, all, n * k);
+    scale = choose_tap_scale(most, all, n * k);
     for (int i = 0; i < n; i++)
-        round_taps(w->column + (kernel_index(i / w->rank, c) * (size_t)w->rank +
-                                (size_t)(i % w->rank)) *
-                                   (size_t)k,
-                   k, scale, to + (2 * (ptrdiff_t)i + 1) * k);
+        round_filter_taps(w->column + (compute_kernel_index(i / w->rank, c) *
+                                           (size_t)w->rank +
+                                       (size_t)(i % w->rank)) *
+                                          (size_t)k,
+                          k, scale, to + (2 * (ptrdiff_t)i + 1) * k);
     if (scale > 0)
         w->header.gain[c] = glint_real_of(w->in[c] / scale);
     w->report->tap_bits = (int)fmin(
@@ -249,7 +260,7 @@ static bool set_taps(struct writer *w, int c, int16_t *to, uint32_t *shift)
     return scale == 0 || w->in[c] < scale;
 }
 
-static bool write_taps(struct writer *w)
+static bool write_filter_taps(struct writer *w)
 {
     const size_t n = (size_t)w->fit->kernels * (size_t)w->rank;
     const size_t k = 2 * (size_t)w->fit->kernel;
@@ -258,7 +269,8 @@ static bool write_taps(struct writer *w)
     bool good = tap && shift;
 
     for (int c = 0; good && c < CHANNELS; c++)
-        if (!set_taps(w, c, tap + (size_t)c * n * k, shift + (size_t)c * n)) {
+        if (!set_channel_taps(w, c, tap + (size_t)c * n * k,
+                              shift + (size_t)c * n)) {
             snprintf(w->error->text, sizeof w->error->text,
                      "the material would emit more light than it receives");
             good = false;
@@ -276,9 +288,9 @@ static bool write_taps(struct writer *w)
 
 /* ----------------------------------------------------------------- surface */
 
-/* Returns the fraction of unpolarised light that a surface of INDEX
+/* Returns the fraction of unpolarised light at COSINE that a surface of INDEX
  * transmits (Fresnel). */
-static double compute_transmittance(double index, double cosine)
+static double compute_fresnel_transmittance(double index, double cosine)
 {
     const double g = sqrt(index * index - 1 + cosine * cosine);
     const double across = (cosine - g) / (cosine + g);
@@ -290,7 +302,7 @@ static double compute_transmittance(double index, double cosine)
     return 1 - (across * across + along * along) / 2;
 }
 
-static void write_surface(struct writer *w)
+static void write_surface_table(struct writer *w)
 {
     enum { N = GLINT_TRANSLUCENT_COSINES, FINE = 4096 };
     uint16_t table_q15[N + 1];
@@ -298,11 +310,12 @@ static void write_surface(struct writer *w)
 
     for (int i = 0; i <= N; i++)
         table_q15[i] =
-            (uint16_t)lrint(0x1p15 * compute_transmittance(w->text->stone.index,
-                                                           (double)i / N));
+            (uint16_t)lrint(0x1p15 * compute_fresnel_transmittance(
+                                         w->text->stone.index, (double)i / N));
     for (int i = 0; i < FINE; i++)
         mean += 2 * (i + .5) / FINE *
-                compute_transmittance(w->text->stone.index, (i + .5) / FINE) /
+                compute_fresnel_transmittance(w->text->stone.index,
+                                              (i + .5) / FINE) /
                 FINE;
     w->header.transmit_at =
         glint_draft_put(&w->draft, table_q15, sizeof table_q15);
@@ -311,8 +324,8 @@ static void write_surface(struct writer *w)
 
 /* ------------------------------------------------------------------- whole */
 
-static bool is_in_range(const struct glint_scatter_fit *fit,
-                        const struct glint_stone_text *text)
+static bool is_fit_in_range(const struct glint_scatter_fit *fit,
+                            const struct glint_stone_text *text)
 {
     return text->stone.texel_mm >= .001 && text->stone.texel_mm <= 1000 &&
            text->stone.index >= 1 && text->stone.index <= 3 &&
@@ -321,7 +334,8 @@ static bool is_in_range(const struct glint_scatter_fit *fit,
            fit->kernels <= GLINT_TRANSLUCENT_MOST_PLANES;
 }
 
-static bool set_header(struct writer *w, const char *name, uint64_t key)
+static bool set_translucent_header(struct writer *w, const char *name,
+                                   uint64_t key)
 {
     static const struct glint_blob_kind kind = {
         .magic = GLINT_TRANSLUCENT_MAGIC, .version = GLINT_TRANSLUCENT_VERSION};
@@ -372,13 +386,13 @@ enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
 
     *report = (struct glint_stone_report){0, 16};
     error->text[0] = '\0';
-    if (!is_in_range(fit, text))
+    if (!is_fit_in_range(fit, text))
         return GLINT_E_ARGUMENT;
     w.largest = malloc(CHANNELS * (size_t)fit->kernels * sizeof *w.largest);
     glint_draft_put(&w.draft, NULL, sizeof w.header);
-    good = w.largest && set_header(&w, name, key) && separate_kernels(&w) &&
-           write_codes(&w) && write_taps(&w);
-    write_surface(&w);
+    good = w.largest && set_translucent_header(&w, name, key) &&
+           separate_kernels(&w) && write_all_codes(&w) && write_filter_taps(&w);
+    write_surface_table(&w);
     free(w.column);
     free(w.row);
     free(w.largest);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows of a scattering matrix: allocation, import of measured rows, scattering
- * of light.
+ * Rows of a scattering matrix: allocation, import of measured rows, and
+ * scattering of light.
  */
 #include "bake/translucent/rows.h"
 
@@ -114,9 +114,10 @@ struct glint_watch glint_watch_of(struct glint_watch_part *part)
 }
 
 /* Sets the row of texel X from its tile of PICTURE. Returns the number of
- * invalid values that were replaced by 0. */
-static long long read_row(const struct glint_float_image *picture,
-                          const struct glint_scatter_rows *rows, int x)
+ * invalid values, which are replaced by 0. */
+static long long read_row_from_picture(const struct glint_float_image *picture,
+                                       const struct glint_scatter_rows *rows,
+                                       int x)
 {
     const int n = rows->kernel, i = x % rows->side, j = x / rows->side;
     const struct glint_scatter_inside in =
@@ -166,7 +167,7 @@ enum glint_status glint_scatter_read(const struct glint_float_image *picture,
         return GLINT_E_MEMORY;
     }
     for (int x = 0; x < side * side; x++)
-        *held += read_row(picture, rows, x);
+        *held += read_row_from_picture(picture, rows, x);
     return GLINT_OK;
 }
 

@@ -3,12 +3,12 @@
  * Computes the rows of the scattering matrix of a heterogeneous translucent
  * slab, whose texels have different materials.
  *
- * Diffusion modes on a lattice of texels describe the exchange of light between
- * materials. Eight modes and whole texels cannot resolve offsets below two or
- * three texels. There the difference between the closed form and the same modes
- * in a homogeneous medium is added, averaged over the materials of both texels.
- * An entry is the mean of both directions, which are equal in a real
- * translucent medium (reciprocity).
+ * Diffusion modes on a lattice of texels describe the exchange of light
+ * between materials. Eight modes and whole texels cannot resolve offsets below
+ * two or three texels. There the difference between the closed form and the
+ * same modes in a homogeneous medium is added, averaged over the materials of
+ * both texels. An entry is the mean of both directions, which are equal in a
+ * real translucent medium (reciprocity).
  */
 #include "bake/translucent/slab.h"
 
@@ -29,31 +29,34 @@
  * SMALL times the largest are dropped. */
 #define SMALL 1e-11
 
-/* A symmetric positive definite matrix of SIDE x SIDE blocks of SIDE x SIDE
- * entries. Diagonal blocks are tridiagonal, the blocks next to them
- * diagonal: a grid of nodes coupled to four neighbours. */
+/* A symmetric positive definite matrix of side x side blocks of side x side
+ * entries: a grid of nodes, each coupled to four neighbours. Diagonal blocks
+ * are tridiagonal; the blocks next to them are diagonal. */
 struct blocks {
-    int side;            /* nodes per block, and number of blocks */
-    const double *own;   /* [side][side]: diagonal, block by block */
-    const double *right; /* coupling of a node with the next one, >= 0 */
-    const double *down;  /* coupling of a node with the same node of the next
-                            block, >= 0 */
+    int side;          /* number of nodes per block, and number of blocks */
+    const double *own; /* [side][side]: the diagonal, block by block */
+    /* coupling of a node with the next node of its block, >= 0 */
+    const double *right;
+    /* coupling of a node with the same node of the next block, >= 0 */
+    const double *down;
 };
 
-/* Receives block (J, L), L = J .. J + reach, of the inverse: [side][side]. */
+/* Receives block (J, L) of the inverse, L = J .. J + reach: [side][side]. */
 typedef void blocks_fn(void *ctx, int j, int l, const double *block);
 
 struct inverse {
     const struct blocks *b;
     int reach;
-    double *eliminated; /* [side] S_j^-1, each [side][side] */
+    double *eliminated; /* S_j^-1 of all blocks, [side][side][side] */
     double *t, *scratch;
-    double **ring; /* [reach + 1] blocks G(j, j + i) of the current row j */
+    /* the blocks G(j, j + i) of the current row j, i = 0 .. reach */
+    double **ring;
     /* [side]: range of the non-negligible entries of each row of T */
     int *from, *to;
 };
 
-/* Replaces the upper half of A by U of its Cholesky factorisation A = U' U. */
+/* Replaces the upper half of A[N][N] by U of its Cholesky factorisation A = U'
+ * U. */
 static void factorise_cholesky(double *a, int n)
 {
     for (int k = 0; k < n; k++) {
@@ -71,8 +74,8 @@ static void factorise_cholesky(double *a, int n)
     }
 }
 
-/* Replaces A, symmetric and positive definite, by its inverse. TO is scratch
- * of the same size. */
+/* Replaces A[N][N], symmetric and positive definite, by its inverse. TO is
+ * scratch of the same size. */
 static void invert_matrix(double *a, double *to, int n)
 {
     factorise_cholesky(a, n);
@@ -105,24 +108,24 @@ static void invert_matrix(double *a, double *to, int n)
             a[k * n + i] = a[i * n + k];
 }
 
-static double *get_eliminated(const struct inverse *v, int j)
+static double *get_eliminated_block(const struct inverse *v, int j)
 {
     const size_t n = (size_t)v->b->side;
 
     return v->eliminated + (size_t)j * n * n;
 }
 
-/* Computes S_j^-1 from the block above. */
+/* Computes S_j^-1 for block J from that of block J - 1. */
 static void eliminate_block(struct inverse *v, int j)
 {
     const struct blocks *b = v->b;
     const int n = b->side;
     const double *own = b->own + j * n, *right = b->right + j * n;
-    double *s = get_eliminated(v, j);
+    double *s = get_eliminated_block(v, j);
 
     memset(s, 0, (size_t)n * (size_t)n * sizeof *s);
     if (j > 0) {
-        const double *above = get_eliminated(v, j - 1),
+        const double *above = get_eliminated_block(v, j - 1),
                      *e = b->down + (j - 1) * n;
 
         for (int i = 0; i < n; i++)
@@ -137,11 +140,12 @@ static void eliminate_block(struct inverse *v, int j)
     invert_matrix(s, v->scratch, n);
 }
 
-/* Computes T of row J, and the ranges of its non-negligible entries. */
-static void set_transfer(struct inverse *v, int j)
+/* Computes T of block row J, and the range of non-negligible entries of each
+ * row of T. */
+static void compute_transfer_block(struct inverse *v, int j)
 {
     const int n = v->b->side;
-    const double *s = get_eliminated(v, j), *e = v->b->down + j * n;
+    const double *s = get_eliminated_block(v, j), *e = v->b->down + j * n;
     double most = 0;
 
     for (int i = 0; i < n * n; i++) {
@@ -160,8 +164,9 @@ static void set_transfer(struct inverse *v, int j)
     }
 }
 
-/* Adds T G to TO. */
-static void multiply_add(const struct inverse *v, const double *g, double *to)
+/* Adds the product T G to TO. */
+static void add_transfer_product(const struct inverse *v, const double *g,
+                                 double *to)
 {
     const int n = v->b->side;
 
@@ -178,23 +183,23 @@ static void multiply_add(const struct inverse *v, const double *g, double *to)
     }
 }
 
-/* Sets TO to G(j, j); BELOW is G(j, j + 1), or NULL for the last row. */
+/* Sets TO to G(j, j). BELOW: G(j, j + 1), or NULL for the last block row. */
 static void compute_diagonal_block(const struct inverse *v, int j,
                                    const double *below, double *to)
 {
     const int n = v->b->side;
 
-    memcpy(to, get_eliminated(v, j), (size_t)n * (size_t)n * sizeof *to);
+    memcpy(to, get_eliminated_block(v, j), (size_t)n * (size_t)n * sizeof *to);
     if (!below)
         return;
     /* G(j + 1, j) is the transpose of BELOW */
     for (int i = 0; i < n; i++)
         for (int k = 0; k < n; k++)
             v->scratch[i * n + k] = below[k * n + i];
-    multiply_add(v, v->scratch, to);
+    add_transfer_product(v, v->scratch, to);
 }
 
-/* Computes the blocks of row J from those of row J + 1. */
+/* Computes the blocks of block row J from those of row J + 1. */
 static void compute_row_blocks(struct inverse *v, int j)
 {
     const int below = v->b->side - 1 - j;
@@ -202,12 +207,12 @@ static void compute_row_blocks(struct inverse *v, int j)
     const size_t block = (size_t)v->b->side * (size_t)v->b->side;
     double *free_block = v->ring[v->reach];
 
-    set_transfer(v, j);
+    compute_transfer_block(v, j);
     for (int i = 0; i < kept; i++) {
         double *to = v->scratch;
 
         memset(to, 0, block * sizeof *to);
-        multiply_add(v, v->ring[i], to);
+        add_transfer_product(v, v->ring[i], to);
         v->scratch = v->ring[i];
         v->ring[i] = to;
     }
@@ -216,13 +221,13 @@ static void compute_row_blocks(struct inverse *v, int j)
     compute_diagonal_block(v, j, kept ? v->ring[1] : NULL, free_block);
 }
 
-static enum glint_status compute_blocks(struct inverse *v, int reach,
-                                        const struct glint_watch *watch,
-                                        blocks_fn *add_block, void *ctx)
+static enum glint_status compute_inverse_blocks(struct inverse *v, int reach,
+                                                const struct glint_watch *watch,
+                                                blocks_fn *add_block, void *ctx)
 {
     const int n = v->b->side;
-    /* Fraction of the time until all blocks are eliminated: a row of REACH +
-     * 1 blocks costs half of REACH + 1 eliminations, as measured. */
+    /* Fraction of the time until all blocks are eliminated: a row of reach + 1
+     * blocks costs as much as (reach + 1) / 2 eliminations, as measured. */
     const double first = 2.0 / (reach + 2.0);
 
     for (int j = 0; j < n; j++) {
@@ -242,9 +247,9 @@ static enum glint_status compute_blocks(struct inverse *v, int reach,
     return GLINT_OK;
 }
 
-/* Calls TAKE for all blocks of the inverse of BLOCKS that are at most REACH
- * from the diagonal. Needs about side^3 doubles. May return GLINT_E_MEMORY
- * or GLINT_E_CLOSED. */
+/* Calls ADD_BLOCK for each block of the inverse of BLOCKS that is at most REACH
+ * from the diagonal. Needs about side^3 doubles. May return GLINT_E_MEMORY or
+ * GLINT_E_CLOSED. */
 static enum glint_status compute_inverse(const struct blocks *blocks, int reach,
                                          const struct glint_watch *watch,
                                          blocks_fn *add_block, void *ctx)
@@ -264,7 +269,7 @@ static enum glint_status compute_inverse(const struct blocks *blocks, int reach,
         v.scratch = v.t + block;
         for (size_t i = 0; i < in_ring; i++)
             v.ring[i] = v.scratch + (i + 1) * block;
-        status = compute_blocks(&v, reach, watch, add_block, ctx);
+        status = compute_inverse_blocks(&v, reach, watch, add_block, ctx);
     }
     free(memory);
     free(v.ring);
@@ -276,8 +281,8 @@ static enum glint_status compute_inverse(const struct blocks *blocks, int reach,
 
 enum { OCTAVES = 4 };
 
-/* Returns a pseudo-random number, 0 .. 1, for a lattice point. */
-static double hash_point(uint32_t seed, int x, int y)
+/* Returns a pseudo-random number, 0 .. 1, for the lattice point (X, Y). */
+static double hash_lattice_point(uint32_t seed, int x, int y)
 {
     uint32_t h = seed * UINT32_C(0x9e3779b1) ^
                  (uint32_t)x * UINT32_C(0x85ebca6b) ^
@@ -293,34 +298,34 @@ static double interpolate_smoothly(double t)
     return t * t * (3 - 2 * t);
 }
 
-/* Returns periodic value noise, 0 .. 1, of CELLS x CELLS cells at (U, V), 0
- * .. 1. */
-static double compute_noise(uint32_t seed, int cells, double u, double v)
+/* Returns value noise, 0 .. 1, at (U, V), each 0 .. 1, which repeats with
+ * period 1; CELLS x CELLS cells. */
+static double compute_value_noise(uint32_t seed, int cells, double u, double v)
 {
     const int x = (int)floor(u * cells), y = (int)floor(v * cells);
     const int right = (x + 1) % cells, below = (y + 1) % cells;
     const double s = interpolate_smoothly(u * cells - x),
                  t = interpolate_smoothly(v * cells - y);
-    const double top =
-        (1 - s) * hash_point(seed, x, y) + s * hash_point(seed, right, y);
-    const double bottom = (1 - s) * hash_point(seed, x, below) +
-                          s * hash_point(seed, right, below);
+    const double top = (1 - s) * hash_lattice_point(seed, x, y) +
+                       s * hash_lattice_point(seed, right, y);
+    const double bottom = (1 - s) * hash_lattice_point(seed, x, below) +
+                          s * hash_lattice_point(seed, right, below);
 
     return (1 - t) * top + t * bottom;
 }
 
 /* Returns the intensity of a vein pattern at (U, V): veins lie where a wave,
- * distorted by noise, is near 0. The pattern is periodic, since its edges
- * meet on a sphere: the wave has a whole number of half periods along both
- * axes. */
-static double compute_vein(uint32_t seed, double u, double v)
+ * distorted by noise, is near 0. The pattern is periodic, as its edges meet on
+ * a sphere: the wave has an integer number of half periods along both axes. */
+static double compute_vein_intensity(uint32_t seed, double u, double v)
 {
     enum { CELLS = 3, ALONG_U = 3, ALONG_V = 2 };
     double bent = 0, wave;
 
     for (int i = 0; i < OCTAVES; i++)
-        bent += ldexp(compute_noise(seed + (uint32_t)i, CELLS << i, u, v) - 0.5,
-                      -i);
+        bent += ldexp(
+            compute_value_noise(seed + (uint32_t)i, CELLS << i, u, v) - 0.5,
+            -i);
     wave = fabs(sin((ALONG_U * u + ALONG_V * v) * 3.14159265358979 + 5 * bent));
     return wave >= 0.4 ? 1 : interpolate_smoothly(fmax(0, (wave - 0.1) / 0.3));
 }
@@ -340,8 +345,8 @@ void glint_stone_shares(const struct glint_stone *stone, double *share)
                     0;
                 break;
             case GLINT_STONE_VEINS:
-                *to = compute_vein(stone->seed, (x + 0.5) / side,
-                                   (y + 0.5) / side);
+                *to = compute_vein_intensity(stone->seed, (x + 0.5) / side,
+                                             (y + 0.5) / side);
                 break;
             case GLINT_STONE_MASK:
                 *to = stone->mask[y * side + x];
@@ -354,24 +359,28 @@ void glint_stone_shares(const struct glint_stone *stone, double *share)
 }
 
 enum {
-    MARGIN = 8, /* texels of lattice added at each side, which repeat the texels
-                   at the rim */
-    LEVELS = 8  /* number of steps in the mix of both materials at which the
-                   closed form is computed */
+    /* texels added on each side of the lattice; they repeat the texels at the
+     * rim */
+    MARGIN = 8,
+    /* number of steps in the mix of both materials for which the closed form is
+     * computed */
+    LEVELS = 8
 };
 
 struct compute {
     const struct glint_stone *stone;
     struct glint_scatter_rows *rows;
-    int wide; /* texels of the lattice along each side */
+    int wide; /* texels of the lattice per side */
     int channel;
-    double *share;              /* [wide][wide]: fraction of material 0 */
-    double *diffusion, *absorb; /* [wide][wide] of the current channel */
-    /* matrix, sources and exit factors of the current mode */
+    double *share; /* [wide][wide]: fraction of material 0 */
+    /* [wide][wide]: values of the current channel */
+    double *diffusion, *absorb;
+    /* matrix, source and exit factor of each texel for the current mode */
     double *own, *right, *down, *source, *exit;
-    double *closed[LEVELS + 1]; /* [kernel * kernel]: closed form minus modes,
-                                   per mix; NULL: not computed yet */
-    double beyond;              /* z_b of the slab, mm */
+    /* [kernel * kernel] per mix: closed form minus modes; NULL: not computed
+     * yet */
+    double *closed[LEVELS + 1];
+    double beyond; /* z_b of the slab, mm */
 };
 
 void glint_stone_defaults(struct glint_stone *stone)
@@ -390,9 +399,9 @@ void glint_stone_defaults(struct glint_stone *stone)
     };
 }
 
-/* Returns an error text with the valid range of the first parameter that is
- * out of range; NULL if there is none. */
-static const char *find_invalid(const struct glint_stone *s)
+/* Returns an error text with the valid range of the first parameter that is out
+ * of range; NULL: all are valid. */
+static const char *find_invalid_parameter(const struct glint_stone *s)
 {
     if (!(s->side >= 1 && s->side <= GLINT_SCATTER_MAX_SIDE))
         return "size must be 1 to 256 texels";
@@ -404,7 +413,7 @@ static const char *find_invalid(const struct glint_stone *s)
     if (!(s->slab_mm >= 0.1 && s->slab_mm <= 1000))
         return "thickness of the slab must be 0.1 to 1000 mm";
     if (!(s->index >= 1 && s->index <= 3))
-        return "index is 1 to 3";
+        return "index must be 1 to 3";
     if (s->pattern == GLINT_STONE_CHESS &&
         !(s->fields >= 1 && s->fields <= s->side))
         return "chess needs 1 or more fields per side, at most one per texel";
@@ -423,7 +432,7 @@ static const char *find_invalid(const struct glint_stone *s)
     for (int i = 0; s->pattern == GLINT_STONE_MASK && i < s->side * s->side;
          i++)
         if (!(s->mask[i] >= 0 && s->mask[i] <= 1))
-            return "a mask is 0 to 1";
+            return "values of a mask must be 0 to 1";
     return NULL;
 }
 
@@ -433,7 +442,7 @@ static int clamp_index(int x, int most)
 }
 
 /* Sets diffusion and absorption of each texel for channel C. */
-static void set_channel(struct compute *p, int c)
+static void set_channel_diffusion(struct compute *p, int c)
 {
     const int n = p->wide * p->wide;
     struct glint_slab slab;
@@ -449,14 +458,14 @@ static void set_channel(struct compute *p, int c)
     p->beyond = sum / n;
 }
 
-static double harmonic_mean(double a, double b)
+static double compute_harmonic_mean(double a, double b)
 {
     return 2 * a * b / (a + b);
 }
 
 /* Sets the matrix of mode N, the source of each texel, and the light that
  * leaves each texel per unit of the mode. */
-static void set_mode(struct compute *p, int n)
+static void set_mode_matrix(struct compute *p, int n)
 {
     const int w = p->wide;
     const double area = p->stone->texel_mm * p->stone->texel_mm;
@@ -471,17 +480,17 @@ static void set_mode(struct compute *p, int n)
         k = glint_slab_wave(&slab, n);
         p->source[i] = glint_slab_source(&slab, n) * area;
         p->exit[i] = glint_slab_exit(&slab, n);
-        p->right[i] = i % w < w - 1 ? harmonic_mean(d[0], d[1]) : 0;
-        p->down[i] = i / w < w - 1 ? harmonic_mean(d[0], d[w]) : 0;
+        p->right[i] = i % w < w - 1 ? compute_harmonic_mean(d[0], d[1]) : 0;
+        p->down[i] = i / w < w - 1 ? compute_harmonic_mean(d[0], d[w]) : 0;
         p->own[i] = (d[0] * k * k + p->absorb[i]) * area + p->right[i] +
                     p->down[i] + (i % w > 0 ? p->right[i - 1] : 0) +
                     (i / w > 0 ? p->down[i - w] : 0);
     }
 }
 
-/* Adds a block of the inverse of a mode's matrix to the rows, in both
+/* Adds block (J, L) of the inverse of a mode's matrix to the rows, in both
  * directions of each pair of texels. */
-static void add_block(void *ctx, int j, int l, const double *block)
+static void add_block_to_rows(void *ctx, int j, int l, const double *block)
 {
     const struct compute *p = ctx;
     const int w = p->wide, side = p->rows->side, n = p->rows->kernel;
@@ -510,8 +519,9 @@ static void add_block(void *ctx, int j, int l, const double *block)
     }
 }
 
-/* Computes the closed form minus the modes for mix LEVEL, once per channel. */
-static bool set_closed(struct compute *p, int level)
+/* Computes closed form minus modes for the mix LEVEL / LEVELS, unless the
+ * channel has it already. Returns false if there is no memory. */
+static bool compute_closed_correction(struct compute *p, int level)
 {
     const int k2 = glint_scatter_kernel2(p->rows->kernel);
     struct glint_slab slab;
@@ -532,7 +542,7 @@ static bool set_closed(struct compute *p, int level)
     return true;
 }
 
-static void free_closed(struct compute *p)
+static void free_closed_corrections(struct compute *p)
 {
     for (int i = 0; i <= LEVELS; i++) {
         free(p->closed[i]);
@@ -540,8 +550,9 @@ static void free_closed(struct compute *p)
     }
 }
 
-/* Returns the correction of entry D for the mix of texel X. */
-static double compute_correction(const struct compute *p, int x, int d)
+/* Returns the correction of entry D by the closed form, for the mix of texel
+ * X. */
+static double compute_entry_correction(const struct compute *p, int x, int d)
 {
     const double at = p->rows->share[x] * LEVELS;
     const int level = clamp_index((int)at, LEVELS - 1);
@@ -552,9 +563,9 @@ static double compute_correction(const struct compute *p, int x, int d)
            (high && t > 0 ? t * high[d] : 0);
 }
 
-/* Adds the correction by the closed form to the channel and clamps negative
- * entries to 0. */
-static bool add_closed(struct compute *p)
+/* Adds the correction by the closed form to all rows of the channel and clamps
+ * negative entries to 0. Returns false if there is no memory. */
+static bool add_closed_corrections(struct compute *p)
 {
     const int side = p->rows->side, n = p->rows->kernel;
 
@@ -562,8 +573,8 @@ static bool add_closed(struct compute *p)
         const double at = p->rows->share[x] * LEVELS;
         const int level = clamp_index((int)at, LEVELS - 1);
 
-        if ((at < level + 1 && !set_closed(p, level)) ||
-            (at > level && !set_closed(p, level + 1)))
+        if ((at < level + 1 && !compute_closed_correction(p, level)) ||
+            (at > level && !compute_closed_correction(p, level + 1)))
             return false;
     }
     for (int x = 0; x < side * side; x++) {
@@ -574,19 +585,20 @@ static bool add_closed(struct compute *p)
 
             if (to >= 0)
                 row[d] = (float)fmax(
-                    0, (double)row[d] + 0.5 * (compute_correction(p, x, d) +
-                                               compute_correction(p, to, d)));
+                    0, (double)row[d] +
+                           0.5 * (compute_entry_correction(p, x, d) +
+                                  compute_entry_correction(p, to, d)));
         }
     }
     return true;
 }
 
-/* Scales rows whose sum exceeds 1, and the entries that lead to their
- * texels, by the same factors. */
-static void limit_rows(const struct compute *p)
+/* Scales each row whose sum exceeds 1, and the entries that lead to its texel,
+ * by the same factor. */
+static void limit_row_sums(const struct compute *p)
 {
     const int side = p->rows->side, n = p->rows->kernel;
-    /* large enough: the lattice has at least as many texels */
+    /* large enough, as the lattice has at least as many texels */
     double *scale = p->own;
 
     for (int x = 0; x < side * side; x++) {
@@ -609,15 +621,15 @@ static void limit_rows(const struct compute *p)
     }
 }
 
-static enum glint_status compute_channel(struct compute *p, int c,
-                                         const struct glint_watch *watch)
+static enum glint_status compute_channel_rows(struct compute *p, int c,
+                                              const struct glint_watch *watch)
 {
     const struct blocks blocks = {p->wide, p->own, p->right, p->down};
     double all = 0, done = 0;
 
-    set_channel(p, c);
-    /* Higher modes spread less far and cost less: proportional to 1 /
-     * sqrt(n), as measured. */
+    set_channel_diffusion(p, c);
+    /* The cost of mode n is proportional to 1 / sqrt(n), as measured: higher
+     * modes spread less far. */
     for (int n = 1; n <= GLINT_SLAB_MODES; n++)
         all += 3.0 * sqrt(1.0 / n);
     for (int n = 1; n <= GLINT_SLAB_MODES; n++) {
@@ -626,22 +638,22 @@ static enum glint_status compute_channel(struct compute *p, int c,
         const struct glint_watch mode = glint_watch_of(&part);
         enum glint_status status;
 
-        set_mode(p, n);
-        status =
-            compute_inverse(&blocks, p->rows->kernel / 2, &mode, add_block, p);
+        set_mode_matrix(p, n);
+        status = compute_inverse(&blocks, p->rows->kernel / 2, &mode,
+                                 add_block_to_rows, p);
         if (status != GLINT_OK)
             return status;
         done += sqrt(1.0 / n);
     }
-    if (!add_closed(p))
+    if (!add_closed_corrections(p))
         return GLINT_E_MEMORY;
-    free_closed(p);
-    limit_rows(p);
+    free_closed_corrections(p);
+    limit_row_sums(p);
     return GLINT_OK;
 }
 
-static enum glint_status compute_rows(struct compute *p,
-                                      const struct glint_watch *watch)
+static enum glint_status compute_all_rows(struct compute *p,
+                                          const struct glint_watch *watch)
 {
     const size_t n = (size_t)p->wide * (size_t)p->wide;
     double *memory = malloc(8 * n * sizeof *memory);
@@ -661,8 +673,8 @@ static enum glint_status compute_rows(struct compute *p,
                             p->rows->side +
                         clamp_index(i % p->wide - MARGIN, p->rows->side - 1)];
     for (int c = 0; c < 3 && status == GLINT_OK; c++)
-        status = compute_channel(p, c, watch);
-    free_closed(p);
+        status = compute_channel_rows(p, c, watch);
+    free_closed_corrections(p);
     free(memory);
     return status;
 }
@@ -674,7 +686,7 @@ enum glint_status glint_scatter_compute(const struct glint_stone *stone,
 {
     struct compute p = {
         .stone = stone, .rows = rows, .wide = stone->side + 2 * MARGIN};
-    const char *cause = find_invalid(stone);
+    const char *cause = find_invalid_parameter(stone);
     enum glint_status status = GLINT_E_MEMORY;
 
     *rows = (struct glint_scatter_rows){0};
@@ -683,7 +695,7 @@ enum glint_status glint_scatter_compute(const struct glint_stone *stone,
         return GLINT_E_ARGUMENT;
     }
     if (glint_scatter_open(rows, stone->side, stone->kernel, true))
-        status = compute_rows(&p, watch);
+        status = compute_all_rows(&p, watch);
     if (status != GLINT_OK) {
         glint_scatter_close(rows);
         snprintf(error->text, sizeof error->text, "%s",

@@ -14,7 +14,7 @@ struct reader {
     struct glint_stone_text *to;
     char name[MOST_STONES][32];
     int n_stones;
-    bool is_turned; /* true: the pattern names its second medium first */
+    bool is_turned; /* true: the line "pattern" names the second medium first */
     struct glint_text_place pattern;
 };
 
@@ -47,7 +47,7 @@ static bool read_number(struct reader *r, const char *what, double min,
     return glint_numbers_read(&r->text, what, 1, min, max, value);
 }
 
-static bool read_size(struct reader *r)
+static bool read_size_line(struct reader *r)
 {
     struct glint_text at = r->text;
     const struct glint_text_place place = glint_text_next_word(&at).place;
@@ -59,7 +59,7 @@ static bool read_size(struct reader *r)
                             "size must be 32, 64, 128 or 256, not %d", *side));
 }
 
-static bool read_kernel(struct reader *r)
+static bool read_kernel_line(struct reader *r)
 {
     struct glint_text at = r->text;
     const struct glint_text_place place = glint_text_next_word(&at).place;
@@ -71,9 +71,9 @@ static bool read_kernel(struct reader *r)
                             "kernel must be an odd number, not %d", *kernel));
 }
 
-/* Sets INDEX to the index of the medium with the name WORD. */
-static bool find_stone(struct reader *r, const struct glint_word *word,
-                       int *index)
+/* Sets INDEX to the index of the medium named WORD. */
+static bool find_medium(struct reader *r, const struct glint_word *word,
+                        int *index)
 {
     if (!word->length)
         return glint_text_fail(&r->text, word->place,
@@ -82,7 +82,7 @@ static bool find_stone(struct reader *r, const struct glint_word *word,
                            sizeof r->name[0], r->n_stones, index);
 }
 
-static bool read_stone(struct reader *r)
+static bool read_medium_line(struct reader *r)
 {
     struct glint_text at = r->text;
     const struct glint_word word = glint_text_next_word(&at);
@@ -108,9 +108,9 @@ static bool read_stone(struct reader *r)
     return true;
 }
 
-static bool read_file(struct reader *r, const char *what,
-                      const struct glint_word *word,
-                      char file[GLINT_STONE_FILE_BYTES])
+static bool read_file_name(struct reader *r, const char *what,
+                           const struct glint_word *word,
+                           char file[GLINT_STONE_FILE_BYTES])
 {
     if (!word->length)
         return glint_text_fail(&r->text, word->place,
@@ -120,15 +120,15 @@ static bool read_file(struct reader *r, const char *what,
     return true;
 }
 
-/* Reads the names of two media at the end of a pattern's line. */
-static bool read_pair(struct reader *r)
+/* Reads the names of two media at the end of the line "pattern". */
+static bool read_medium_pair(struct reader *r)
 {
     int index[2] = {0, 0};
 
     for (int i = 0; i < 2; i++) {
         const struct glint_word word = glint_text_next_word(&r->text);
 
-        if (!find_stone(r, &word, &index[i]))
+        if (!find_medium(r, &word, &index[i]))
             return false;
         if (i && index[0] == index[1])
             return glint_text_fail(&r->text, word.place,
@@ -138,7 +138,7 @@ static bool read_pair(struct reader *r)
     return true;
 }
 
-static bool read_pattern(struct reader *r)
+static bool read_pattern_line(struct reader *r)
 {
     struct glint_stone *s = &r->to->stone;
     const struct glint_word word = glint_text_next_word(&r->text);
@@ -148,20 +148,22 @@ static bool read_pattern(struct reader *r)
     r->pattern = word.place;
     if (glint_word_is(&word, "chess")) {
         s->pattern = GLINT_STONE_CHESS;
-        return read_integer(r, "chess", 1, 256, &s->fields) && read_pair(r);
+        return read_integer(r, "chess", 1, 256, &s->fields) &&
+               read_medium_pair(r);
     }
     if (glint_word_is(&word, "veins")) {
         s->pattern = GLINT_STONE_VEINS;
         if (!read_integer(r, "veins", 0, 1 << 30, &seed))
             return false;
         s->seed = (uint32_t)seed;
-        return read_pair(r);
+        return read_medium_pair(r);
     }
     if (glint_word_is(&word, "image")) {
         const struct glint_word file = glint_text_next_word(&r->text);
 
         s->pattern = GLINT_STONE_MASK;
-        return read_file(r, "mask", &file, r->to->mask) && read_pair(r);
+        return read_file_name(r, "mask", &file, r->to->mask) &&
+               read_medium_pair(r);
     }
     return glint_text_fail(
         &r->text, word.place,
@@ -171,7 +173,7 @@ static bool read_pattern(struct reader *r)
         word.length ? "'" : "");
 }
 
-static bool read_model(struct reader *r)
+static bool read_model_line(struct reader *r)
 {
     static const char *const names[] = {"clustered", "factored", "albedo",
                                         NULL};
@@ -187,26 +189,26 @@ static bool read_model(struct reader *r)
     return true;
 }
 
-static bool read_texel(struct reader *r)
+static bool read_texel_line(struct reader *r)
 {
     return read_number(r, "texel", .01, 100, &r->to->stone.texel_mm);
 }
 
-static bool read_slab(struct reader *r)
+static bool read_slab_line(struct reader *r)
 {
     return read_number(r, "slab", .1, 1000, &r->to->stone.slab_mm);
 }
 
-static bool read_index(struct reader *r)
+static bool read_index_line(struct reader *r)
 {
     return read_number(r, "index", 1, 3, &r->to->stone.index);
 }
 
-static bool read_data(struct reader *r)
+static bool read_data_line(struct reader *r)
 {
     const struct glint_word word = glint_text_rest(&r->text);
 
-    return read_file(r, "rows", &word, r->to->rows);
+    return read_file_name(r, "rows", &word, r->to->rows);
 }
 
 static const struct glint_text_line lines[] = {
@@ -217,11 +219,12 @@ static const struct glint_text_line lines[] = {
 enum { N_LINES = sizeof lines / sizeof *lines };
 
 static bool (*const read[N_LINES])(struct reader *) = {
-    read_size,  read_texel,   read_kernel, read_slab, read_index,
-    read_stone, read_pattern, read_data,   read_model};
+    read_size_line,    read_texel_line, read_kernel_line,
+    read_slab_line,    read_index_line, read_medium_line,
+    read_pattern_line, read_data_line,  read_model_line};
 
-/* Checks that the lines are consistent with each other. */
-static bool check_lines(struct reader *r)
+/* Checks that the lines do not contradict each other and none is missing. */
+static bool check_line_consistency(struct reader *r)
 {
     struct glint_stone_text *t = r->to;
 
@@ -264,7 +267,7 @@ enum glint_status glint_stone_parse(struct glint_stone_text *text,
             glint_line_begin(&r.text, lines, N_LINES, first, &i) &&
             (i < 0 || (read[i](&r) && glint_line_ends(&r.text, lines[i].word)));
     }
-    good = good && check_lines(&r);
+    good = good && check_line_consistency(&r);
     if (good && r.is_turned) {
         const struct glint_stone_material m = text->stone.material[0];
 
