@@ -40,8 +40,8 @@ enum {
                            sums */
 };
 
-/* Returns X / 2^S, rounded, for any S of 0 or more. */
-static int64_t shift_right(int64_t x, int s)
+/* Returns X / 2^S, rounded, for any S >= 0. */
+static int64_t shift_right_rounded(int64_t x, int s)
 {
     return s > 62 ? 0 : q_shift(x, s);
 }
@@ -51,23 +51,27 @@ static uint8_t max_u8(uint8_t a, uint8_t b)
     return a > b ? a : b;
 }
 
-/* Returns A (1 - PART) + B PART, rounded, in the unit 2^E. The units of A
- * and B are 2^EA and 2^EB, at most 2^E. */
+/* Returns A (1 - PART) + B PART, rounded, in units of 2^E. The units of A and B
+ * are 2^EA and 2^EB, at most 2^E. */
 static int32_t mix_coefficient(int32_t a, int32_t ea, int32_t b, int32_t eb,
                                int32_t e, int32_t part_q30)
 {
-    return (int32_t)(shift_right((int64_t)a * (TRANSFER_ONE_Q30 - part_q30),
-                                 30 + e - ea) +
-                     shift_right((int64_t)b * part_q30, 30 + e - eb));
+    return (
+        int32_t)(shift_right_rounded((int64_t)a * (TRANSFER_ONE_Q30 - part_q30),
+                                     30 + e - ea) +
+                 shift_right_rounded((int64_t)b * part_q30, 30 + e - eb));
 }
 
-/* Returns (B - A) / SIZE, where the units of B, A and SIZE are 2^EB, 2^EA
- * and 2^ES. Sets *FAR if the magnitude of the quotient exceeds MOST_MOVE. */
-static int32_t compute_move_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
-                                int64_t size, int32_t es, int *far)
+/* Returns (B - A) / SIZE, where the units of B, A and SIZE are 2^EB, 2^EA and
+ * 2^ES. Sets *FAR and returns 0 if the quotient exceeds MOST_MOVE in
+ * magnitude. */
+static int32_t compute_box_move_q24(int64_t b, int32_t eb, int64_t a,
+                                    int32_t ea, int64_t size, int32_t es,
+                                    int *far)
 {
     const int32_t e = ea > eb ? ea : eb;
-    const int64_t off = shift_right(b, e - eb) - shift_right(a, e - ea);
+    const int64_t off =
+        shift_right_rounded(b, e - eb) - shift_right_rounded(a, e - ea);
     int64_t q;
 
     if (size <= 0 || es - e > 30 || e - es > 30) {
@@ -81,10 +85,10 @@ static int32_t compute_move_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
     return *far ? 0 : (int32_t)q;
 }
 
-/* Sets the moves between the two boxes: BOX, in units of 2^EXPONENT, and the
- * box of the transfer. */
-static void set_moves(struct glint_zoom_mix *blend, const int32_t box[3],
-                      int32_t exponent)
+/* Sets the moves of BLEND from BOX, this position's box in units of 2^EXPONENT,
+ * to the box of the transfer, which is the other position's. */
+static void set_box_moves(struct glint_zoom_mix *blend, const int32_t box[3],
+                          int32_t exponent)
 {
     const struct glint_transfer *const t = blend->to;
     const int32_t *const of[2] = {box, t->box};
@@ -94,30 +98,31 @@ static void set_moves(struct glint_zoom_mix *blend, const int32_t box[3],
     for (int k = 0; k < 2; k++) {
         struct glint_blend_move *const m = &blend->move[k];
 
-        m->along_q24 = compute_move_q24(of[1][0], e[1], of[0][0], e[0],
-                                        of[k][1], e[k], &far);
-        m->wider_q24 = compute_move_q24(of[1][1], e[1], of[0][1], e[0],
-                                        of[k][1], e[k], &far);
-        m->higher_q24 = compute_move_q24(of[1][2], e[1], of[0][2], e[0],
-                                         of[k][2], e[k], &far);
+        m->along_q24 = compute_box_move_q24(of[1][0], e[1], of[0][0], e[0],
+                                            of[k][1], e[k], &far);
+        m->wider_q24 = compute_box_move_q24(of[1][1], e[1], of[0][1], e[0],
+                                            of[k][1], e[k], &far);
+        m->higher_q24 = compute_box_move_q24(of[1][2], e[1], of[0][2], e[0],
+                                             of[k][2], e[k], &far);
     }
     for (int k = 0; k < 2 && far; k++)
         blend->move[k] = (struct glint_blend_move){0, 0, 0};
     blend->far = far;
 }
 
-/* Returns whether each component of M is at most half a half width or half
+/* Returns whether each component of M is at most half of a half width or half
  * height of the box. */
-static int is_small(const struct glint_blend_move *m)
+static int is_move_small(const struct glint_blend_move *m)
 {
     return q_magnitude(m->along_q24) <= NEAR_Q24 &&
            q_magnitude(m->wider_q24) <= NEAR_Q24 &&
            q_magnitude(m->higher_q24) <= NEAR_Q24;
 }
 
-/* Records the position at which rays pass the stop, if O is a stop output. */
-static void record_stop(struct glint_blend_stop *stop,
-                        const struct glint_blend_output *o)
+/* Records where rays pass the stop if O is an output for the position in the
+ * stop. */
+static void record_stop_position(struct glint_blend_stop *stop,
+                                 const struct glint_blend_output *o)
 {
     if (o->kind == GLINT_OUT_STOP_X) {
         stop->middle = o->row[0][0];
@@ -129,7 +134,7 @@ static void record_stop(struct glint_blend_stop *stop,
     }
 }
 
-static struct glint_blend_stop make_stop(struct glint_transfer *t)
+static struct glint_blend_stop get_stop_position(struct glint_transfer *t)
 {
     struct glint_blend_stop stop = {0, 0, 0, 0, 0};
 
@@ -137,7 +142,7 @@ static struct glint_blend_stop make_stop(struct glint_transfer *t)
         const struct glint_blend_output o = glint_blend_of(t, kind);
 
         if (transfer_has(t, kind))
-            record_stop(&stop, &o);
+            record_stop_position(&stop, &o);
     }
     return stop;
 }
@@ -150,20 +155,22 @@ int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
         (exponent > t->box_exponent ? exponent : t->box_exponent) +
         (blend->part_q30 < 0 ? BEYOND : 0);
 
-    set_moves(blend, box, exponent);
-    blend->stop[0] = make_stop(t);
+    set_box_moves(blend, box, exponent);
+    blend->stop[0] = get_stop_position(t);
     for (int k = 0; k < 3; k++)
         t->box[k] = mix_coefficient(box[k], exponent, t->box[k],
                                     t->box_exponent, e, blend->part_q30);
     t->box_exponent = e;
-    return blend->part_q30 >= 0 || (!blend->far && is_small(&blend->move[1]) &&
-                                    t->box[1] > 0 && t->box[2] > 0);
+    return blend->part_q30 >= 0 ||
+           (!blend->far && is_move_small(&blend->move[1]) && t->box[1] > 0 &&
+            t->box[2] > 0);
 }
 
-/* Returns the first-order change of the coefficient of u^A v^B when points of
- * the box move by M. */
-static int64_t compute_change(int32_t (*row)[GLINT_TABLE_WIDTH], int a, int b,
-                              const struct glint_blend_move *m)
+/* Returns the first-order change of the coefficient of u^A v^B in ROW if points
+ * of the box move by M. */
+static int64_t compute_coefficient_change(int32_t (*row)[GLINT_TABLE_WIDTH],
+                                          int a, int b,
+                                          const struct glint_blend_move *m)
 {
     int64_t sum = (int64_t)row[b][a] *
                   ((int64_t)a * m->wider_q24 + (int64_t)b * m->higher_q24);
@@ -173,13 +180,15 @@ static int64_t compute_change(int32_t (*row)[GLINT_TABLE_WIDTH], int a, int b,
     return q_shift(sum, 24);
 }
 
-/* Sets TO, in the unit 2^E, to the changes of the coefficients of output KIND
+/* Sets TO, in units of 2^E, to the changes of the coefficients of output KIND
  * of the transfer (unit 2^EXPONENT) and of O that make both refer to the same
  * point of the pupil. Returns whether the sums of the changes are small enough
  * for the transfer. */
-static int find_changes(const struct glint_zoom_mix *blend, int kind,
-                        int32_t exponent, const struct glint_blend_output *o,
-                        int32_t e, int32_t (*to)[GLINT_TABLE_WIDTH])
+static int compute_coefficient_changes(const struct glint_zoom_mix *blend,
+                                       int kind, int32_t exponent,
+                                       const struct glint_blend_output *o,
+                                       int32_t e,
+                                       int32_t (*to)[GLINT_TABLE_WIDTH])
 {
     int32_t(*const ours)[GLINT_TABLE_WIDTH] = blend->to->table[kind];
     const int64_t part = blend->part_q30 >> 15;
@@ -189,12 +198,14 @@ static int find_changes(const struct glint_zoom_mix *blend, int kind,
     for (int b = 0; b <= blend->to->degree_v[kind]; b++)
         for (int a = 0; a <= blend->to->degree_u[kind]; a++) {
             const int64_t x =
-                shift_right(compute_change(ours, a, b, &blend->move[0]) *
-                                both_q15,
-                            15 + e - exponent) -
-                shift_right(compute_change(o->row, a, b, &blend->move[1]) *
-                                both_q15,
-                            15 + e - o->exponent);
+                shift_right_rounded(
+                    compute_coefficient_change(ours, a, b, &blend->move[0]) *
+                        both_q15,
+                    15 + e - exponent) -
+                shift_right_rounded(
+                    compute_coefficient_change(o->row, a, b, &blend->move[1]) *
+                        both_q15,
+                    15 + e - o->exponent);
             const int64_t size = (int64_t)q_magnitude(x);
 
             all += size + (int64_t)q_magnitude(mix_coefficient(
@@ -207,11 +218,12 @@ static int find_changes(const struct glint_zoom_mix *blend, int kind,
 
 /* Mixes O into output KIND of the transfer, whose unit is 2^EXPONENT. Returns
  * the exponent of the mixed output's unit. */
-static int32_t mix_output(const struct glint_zoom_mix *blend, int kind,
-                          int32_t exponent, const struct glint_blend_output *o)
+static int32_t mix_polynomial(const struct glint_zoom_mix *blend, int kind,
+                              int32_t exponent,
+                              const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
-    /* one bit for the moves, or BEYOND bits for extrapolation */
+    /* one bit for the moves; BEYOND bits for extrapolation */
     const int32_t e = (exponent > o->exponent ? exponent : o->exponent) +
                       (blend->part_q30 < 0 ? BEYOND : 1);
     int32_t more[ROWS][GLINT_TABLE_WIDTH];
@@ -219,7 +231,7 @@ static int32_t mix_output(const struct glint_zoom_mix *blend, int kind,
 
     t->degree_u[kind] = max_u8(t->degree_u[kind], o->degree_u);
     t->degree_v[kind] = max_u8(t->degree_v[kind], o->degree_v);
-    moves = find_changes(blend, kind, exponent, o, e, more);
+    moves = compute_coefficient_changes(blend, kind, exponent, o, e, more);
     for (int b = 0; b <= t->degree_v[kind]; b++)
         for (int a = 0; a <= t->degree_u[kind]; a++)
             t->table[kind][b][a] =
@@ -231,8 +243,8 @@ static int32_t mix_output(const struct glint_zoom_mix *blend, int kind,
 
 /* ------------------------------------------------------------------ energy */
 
-/* Returns the exponent of the unit of the energy polynomial, before its
- * roots are taken. */
+/* Returns the exponent of the unit of the energy polynomial, before it is
+ * squared. */
 static int32_t compute_energy_exponent(const struct glint_transfer *t)
 {
     int32_t e = t->exponent[GLINT_OUT_ENERGY];
@@ -242,14 +254,14 @@ static int32_t compute_energy_exponent(const struct glint_transfer *t)
     return e + t->head;
 }
 
-/* The head of an energy is a scale with which all values fit; a coarser unit
- * leaves more room for it. */
-static void mix_energy(const struct glint_zoom_mix *blend,
-                       const struct glint_blend_output *o)
+/* The head of an energy is the max scale at which all values fit; a coarser
+ * unit allows a larger head. */
+static void mix_energy_output(const struct glint_zoom_mix *blend,
+                              const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
     const int32_t before = compute_energy_exponent(t);
-    const int32_t now = mix_output(blend, GLINT_OUT_ENERGY, before, o);
+    const int32_t now = mix_polynomial(blend, GLINT_OUT_ENERGY, before, o);
     int head = t->head + now - before, other = o->head + now - o->exponent;
     int32_t e;
 
@@ -263,7 +275,7 @@ static void mix_energy(const struct glint_zoom_mix *blend,
     t->exponent[GLINT_OUT_ENERGY] = e;
 }
 
-/* Multiplies output KIND by the fraction SHARE. */
+/* Multiplies output KIND by the fraction SHARE_Q30. */
 static void scale_output(struct glint_transfer *t, int kind, int32_t share_q30)
 {
     for (int b = 0; b < ROWS; b++)
@@ -280,8 +292,8 @@ void glint_blend_fade(struct glint_transfer *t, int32_t share_q30)
 
 /* ----------------------------------------------------------------- barrels */
 
-/* Opens barrel KIND by the fraction SHARE: interpolates towards a barrel
- * that cuts nothing. A barrel whose unit is so fine that sums would reach
+/* Opens barrel KIND by the fraction SHARE_Q30: interpolates towards a barrel
+ * that blocks nothing. A barrel whose unit is so fine that sums would reach
  * 2^30 stays unchanged; no lens has one. */
 static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
 {
@@ -292,41 +304,41 @@ static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
     share_q30 = share_q30 > LATE_Q30 ? 4 * (share_q30 - LATE_Q30) : 0;
     scale_output(t, kind, TRANSFER_ONE_Q30 - share_q30);
     t->table[kind][0][0] +=
-        (int32_t)shift_right((int64_t)OPEN_Q16 * share_q30, up);
+        (int32_t)shift_right_rounded((int64_t)OPEN_Q16 * share_q30, up);
 }
 
-/* Like compute_move_q24(), but SIZE may be negative. */
-static int32_t compute_signed_move_q24(int64_t b, int32_t eb, int64_t a,
-                                       int32_t ea, int64_t size, int32_t es,
-                                       int *far)
+/* Returns compute_box_move_q24(), also for negative SIZE. */
+static int32_t compute_signed_box_move_q24(int64_t b, int32_t eb, int64_t a,
+                                           int32_t ea, int64_t size, int32_t es,
+                                           int *far)
 {
-    return size < 0 ? compute_move_q24(-b, eb, -a, ea, -size, es, far)
-                    : compute_move_q24(b, eb, a, ea, size, es, far);
+    return size < 0 ? compute_box_move_q24(-b, eb, -a, ea, -size, es, far)
+                    : compute_box_move_q24(b, eb, a, ea, size, es, far);
 }
 
-/* Sets M to the move from the MIXED box to the box OF a position that
+/* Sets M to the move from the MIXED box to the box OF one position that
  * preserves positions in the stop. Returns whether M is small enough for
  * first-order terms. */
-static int find_in_stop(const struct glint_blend_stop *of,
-                        const struct glint_blend_stop *mixed,
-                        struct glint_blend_move *m)
+static int find_move_in_stop(const struct glint_blend_stop *of,
+                             const struct glint_blend_stop *mixed,
+                             struct glint_blend_move *m)
 {
     int far = 0;
 
-    m->along_q24 = compute_signed_move_q24(mixed->middle, mixed->x_exponent,
-                                           of->middle, of->x_exponent,
-                                           of->across, of->x_exponent, &far);
-    m->wider_q24 = compute_signed_move_q24(mixed->across, mixed->x_exponent,
-                                           of->across, of->x_exponent,
-                                           of->across, of->x_exponent, &far);
-    m->higher_q24 =
-        compute_signed_move_q24(mixed->up, mixed->y_exponent, of->up,
-                                of->y_exponent, of->up, of->y_exponent, &far);
-    return !far && is_small(m);
+    m->along_q24 = compute_signed_box_move_q24(
+        mixed->middle, mixed->x_exponent, of->middle, of->x_exponent,
+        of->across, of->x_exponent, &far);
+    m->wider_q24 = compute_signed_box_move_q24(
+        mixed->across, mixed->x_exponent, of->across, of->x_exponent,
+        of->across, of->x_exponent, &far);
+    m->higher_q24 = compute_signed_box_move_q24(mixed->up, mixed->y_exponent,
+                                                of->up, of->y_exponent, of->up,
+                                                of->y_exponent, &far);
+    return !far && is_move_small(m);
 }
 
-/* Returns the max value of a barrel's polynomial at the rim of the stop or
- * the rim of the box, whichever is nearer. */
+/* Returns the max value of a barrel's polynomial at the rim of the stop or of
+ * the box, whichever is nearer. */
 static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
                                    const struct glint_blend_stop *stop)
 {
@@ -336,12 +348,12 @@ static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
 
     for (int k = 0; k < 3; k++) {
         int far = 0;
-        const int32_t u_q24 = compute_signed_move_q24(
+        const int32_t u_q24 = compute_signed_box_move_q24(
             place[k][0], -30, stop->middle, stop->x_exponent, stop->across,
             stop->x_exponent, &far);
         const int32_t v_q24 =
-            compute_signed_move_q24(place[k][1], -30, 0, stop->y_exponent,
-                                    stop->up, stop->y_exponent, &far);
+            compute_signed_box_move_q24(place[k][1], -30, 0, stop->y_exponent,
+                                        stop->up, stop->y_exponent, &far);
         const int32_t value_q16 = glint_blend_value_q16(
             barrel, q_clamp_sat(u_q24, -(1 << 24), 1 << 24),
             q_clamp_sat(v_q24 < 0 ? -(int64_t)v_q24 : v_q24, 0, 1 << 24));
@@ -351,24 +363,27 @@ static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
     return most;
 }
 
-/* Moves barrel KIND of the position SIDE to its location in the stop, if the
- * barrel then cuts less and sums stay small enough for the transfer. */
-static void keep_in_stop(const struct glint_zoom_mix *blend, int side, int kind)
+/* Moves barrel KIND, which position SIDE has, such that it keeps its place in
+ * the stop, if it then blocks less and sums stay small enough for the
+ * transfer. */
+static void keep_barrel_in_stop(const struct glint_zoom_mix *blend, int side,
+                                int kind)
 {
     struct glint_transfer *const t = blend->to;
-    const struct glint_blend_stop stop = make_stop(t);
+    const struct glint_blend_stop stop = get_stop_position(t);
     int32_t moved_row[ROWS][GLINT_TABLE_WIDTH];
     const struct glint_blend_output own = glint_blend_of(t, kind);
     struct glint_blend_output kept = own;
     struct glint_blend_move m;
     int64_t all = 0;
 
-    if (!find_in_stop(&blend->stop[side], &stop, &m))
+    if (!find_move_in_stop(&blend->stop[side], &stop, &m))
         return;
     kept.row = moved_row;
     for (int b = 0; b <= own.degree_v; b++)
         for (int a = 0; a <= own.degree_u; a++) {
-            const int64_t x = own.row[b][a] + compute_change(own.row, a, b, &m);
+            const int64_t x =
+                own.row[b][a] + compute_coefficient_change(own.row, a, b, &m);
 
             all += (int64_t)q_magnitude(x);
             kept.row[b][a] = all < TRANSFER_ONE_Q30 ? (int32_t)x : 0;
@@ -381,22 +396,22 @@ static void keep_in_stop(const struct glint_zoom_mix *blend, int side, int kind)
             own.row[b][a] = kept.row[b][a];
 }
 
-/* Adds the barrel O, which exists at one position only, opened in proportion
- * to the zoom's distance from that position. */
-static void add_barrel(struct glint_zoom_mix *blend,
-                       const struct glint_blend_output *o)
+/* Adds barrel O, which only the other position has, opened in proportion to the
+ * zoom's distance from that position. */
+static void add_unmatched_barrel(struct glint_zoom_mix *blend,
+                                 const struct glint_blend_output *o)
 {
     const int added = glint_blend_put(blend->to, o);
 
     if (added < 0)
         return;
     blend->taken |= UINT32_C(1) << added;
-    keep_in_stop(blend, 1, BARREL + added);
+    keep_barrel_in_stop(blend, 1, BARREL + added);
     open_barrel(blend->to, BARREL + added, TRANSFER_ONE_Q30 - blend->part_q30);
 }
 
-static void mix_barrel(struct glint_zoom_mix *blend,
-                       const struct glint_blend_output *o)
+static void mix_barrel_output(struct glint_zoom_mix *blend,
+                              const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
     const uint32_t partners = blend->partners[blend->n_mixed++];
@@ -404,9 +419,9 @@ static void mix_barrel(struct glint_zoom_mix *blend,
     for (int k = 0; k < GLINT_BLEND_BARRELS; k++)
         if (partners >> k & 1)
             t->exponent[BARREL + k] =
-                mix_output(blend, BARREL + k, t->exponent[BARREL + k], o);
+                mix_polynomial(blend, BARREL + k, t->exponent[BARREL + k], o);
     if (!partners && blend->part_q30 > 0)
-        add_barrel(blend, o);
+        add_unmatched_barrel(blend, o);
 }
 
 /* -------------------------------------------------------------------- both */
@@ -416,14 +431,14 @@ void glint_blend_output(struct glint_zoom_mix *blend,
 {
     struct glint_transfer *const t = blend->to;
 
-    record_stop(&blend->stop[1], o);
+    record_stop_position(&blend->stop[1], o);
     if (o->kind >= BARREL)
-        mix_barrel(blend, o);
+        mix_barrel_output(blend, o);
     else if (o->kind == GLINT_OUT_ENERGY)
-        mix_energy(blend, o);
+        mix_energy_output(blend, o);
     else if (transfer_has(t, o->kind))
         t->exponent[o->kind] =
-            mix_output(blend, o->kind, t->exponent[o->kind], o);
+            mix_polynomial(blend, o->kind, t->exponent[o->kind], o);
 }
 
 void glint_blend_end(const struct glint_zoom_mix *blend)
@@ -433,7 +448,7 @@ void glint_blend_end(const struct glint_zoom_mix *blend)
     for (int kind = BARREL; kind < GLINT_OUT_KINDS; kind++)
         if (transfer_has(blend->to, kind) &&
             !(blend->taken >> (kind - BARREL) & 1)) {
-            keep_in_stop(blend, 0, kind);
+            keep_barrel_in_stop(blend, 0, kind);
             open_barrel(blend->to, kind, blend->part_q30);
         }
 }

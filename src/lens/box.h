@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The pupil box of a system: its middle or a half size as a polynomial of angle
- * and wavelength. Used when drawing, and when a model is checked.
+ * The pupil box of a system: each middle and half size is a polynomial of
+ * angle and wavelength. Used for drawing and for checking a model.
  */
 #ifndef GLINT_LENS_BOX_H
 #define GLINT_LENS_BOX_H
@@ -9,9 +9,9 @@
 #include "base/q.h"
 #include "glint/model.h"
 
-/* Unpacks the polynomial of one component of a box, of which the model
- * stores only the terms whose bits are set in TERMS. Returns a pointer to
- * the packed terms of the next component. */
+/* Unpacks one polynomial of a box, of which the model stores only the terms
+ * whose bits are set in TERMS. Returns a pointer to the next packed
+ * polynomial. */
 static inline const int32_t *box_unpack(const int32_t *packed, uint32_t terms,
                                         int32_t side[GLINT_BOX_TERMS])
 {
@@ -20,8 +20,8 @@ static inline const int32_t *box_unpack(const int32_t *packed, uint32_t terms,
     return packed;
 }
 
-/* Returns the value of P at angle S_Q30 and wavelength W_Q30, each within
- * +-2^30. */
+/* Returns the value of the box polynomial P at angle S_Q30 and wavelength
+ * W_Q30, both within +-2^30. */
 static inline int32_t box_side(const int32_t p[GLINT_BOX_TERMS], int32_t s_q30,
                                int32_t w_q30)
 {
@@ -33,8 +33,8 @@ static inline int32_t box_side(const int32_t p[GLINT_BOX_TERMS], int32_t s_q30,
     return sum + q_mul(q_mul(of_w[1], s_q30, 30) + of_w[0], w_q30, 30);
 }
 
-/* Returns the value of P, in the lens basis, at direction (S_Q30, Y_Q30) and
- * wavelength W_Q30. */
+/* Returns the value of the box polynomial P of the lens basis at direction
+ * (S_Q30, Y_Q30) and wavelength W_Q30. */
 static inline int32_t box_lens_side(const int32_t p[GLINT_BOX_TERMS],
                                     int32_t s_q30, int32_t y_q30, int32_t w_q30)
 {

@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * Number of cells per side of a ray grid, for models and exact rays.
+ * Chooses the number of cells per side of a ray grid, for models and exact
+ * rays.
  *
  * At a fineness of 64, straight lines between rays deviate by at most 0.01
  * pixel from curves along which light piles up (folds), and by at most 0.1
- * pixel from cut outlines, where it does not. A curve that bends by B over the
- * grid deviates by B / (8 n^2) from its straight lines, so n is the root of B /
- * (8 * 0.01), times fineness / 64.
+ * pixel from the outlines of the stop and the barrels. A curve that bends by B
+ * over the grid deviates by B / (8 n^2) from its straight lines, so n is the
+ * square root of B / (8 * 0.01), times fineness / 64.
  */
 #ifndef GLINT_LENS_GRID_H
 #define GLINT_LENS_GRID_H
 
 #include "glint/bundle.h"
 
-/* Returns the max number of cells per side; it is doubled if FOLDS is set,
- * that is if the ghost's light folds over itself. */
+/* Returns the max number of cells per side. It is doubled if FOLDS is set: the
+ * ghost's light folds over itself. */
 static inline int glint_grid_most(int fineness, int folds)
 {
     return (folds ? 4 : 2) * fineness;

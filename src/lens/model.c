@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks a model file once, so that drawing need not check anything.
+ * Checks a model file once, so that drawing needs no checks.
  *
- *    in   bytes that may hold anything
- *    out  a lens that points into them, or the text of an error
+ *    in   bytes with any contents
+ *    out  a lens that points into them, or an error text
  *
- * Size, checksum and name are those of any baked file (base/blob.h). The
- * transfer relies on this:
+ * Size, checksum and name are checked as in any baked file (base/blob.h).
+ * transfer.c relies on these properties:
  *   - every table lies inside the file;
- *   - variables are within +-2^30, and so are their powers, and q_mul by them
- *     never increases a magnitude. With the sum of |coefficient| of an output
- *     below 2^30 no product, row or Horner step leaves that range, whatever
- *     the order of additions;
+ *   - variables and their powers are within +-2^30, so q_mul by them never
+ *     increases a magnitude. As the sum of |coefficient| of an output is below
+ *     2^30, no product, row or Horner step exceeds 2^30, whatever the order of
+ *     additions;
  *   - in the auto basis powers of u and v index a table, and powers of v are
  *     all odd or all even.
  *
- * Vertices are shifted by exponents; the limits here keep sums of exponents
- * small.
+ * Vertices are shifted by exponents; the limits in this file keep sums of
+ * exponents small.
  */
 #include "glint/model.h"
 
@@ -32,8 +32,8 @@ STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
-/* The header begins like the header of every baked file; its variant is the
- * basis. */
+/* The header begins like the header of every baked file, whose variant is the
+ * basis here. */
 GLINT_BLOB_HEADER(struct glint_model_header, basis);
 
 enum {
@@ -47,12 +47,13 @@ enum {
     MIN_EXPONENT = -80,
     MAX_EXPONENT = 40,
     NEEDED_KINDS = GLINT_OUT_ENERGY + 1,
-    /* log2 of the number of intervals of angle at whose ends a box is
-     * checked not to have a negative size */
+    /* log2 of the number of intervals of angle at whose ends the sizes of a box
+     * are checked not to be negative */
     BOX_NODES_LOG2 = 5,
-    MAX_SHARED = 8 /* max total size of all tables that systems refer to, in
-                      file sizes; without a limit, systems that share large
-                      tables would need quadratic time */
+    /* max total size of all tables that systems refer to, in file sizes;
+     * without a limit, checking systems that share large tables would need
+     * quadratic time */
+    MAX_SHARED = 8
 };
 
 static const char outside[] = "a table lies outside the file";
@@ -85,7 +86,7 @@ static const char *const fault_text[GLINT_BLOB_FAULTS] = {
     [GLINT_BLOB_NAME_ENDLESS] = "the name does not end",
     [GLINT_BLOB_NAME_EMPTY] = "the name is empty"};
 
-static int is_normal(const struct glint_real *x)
+static int is_real_normalised(const struct glint_real *x)
 {
     const int32_t m = x->mantissa;
 
@@ -94,7 +95,7 @@ static int is_normal(const struct glint_real *x)
            (m == 0 || m >= LIMIT || (m <= -LIMIT && m != INT32_MIN));
 }
 
-static const char *check_reals(const struct glint_model_header *h)
+static const char *check_header_reals(const struct glint_model_header *h)
 {
     const struct glint_real *const positive[] = {&h->entrance_radius_mm,
                                                  &h->stop_radius_mm,
@@ -104,25 +105,26 @@ static const char *check_reals(const struct glint_model_header *h)
                                                  &h->field_mm,
                                                  &h->front_mm};
 
-    if (!is_normal(&h->focal_mm) || !is_normal(&h->back_focal_mm))
+    if (!is_real_normalised(&h->focal_mm) ||
+        !is_real_normalised(&h->back_focal_mm))
         return "a number of the header is not normalised";
     if (h->focal_mm.mantissa == 0)
         return "the focal length is 0";
     for (size_t k = 0; k < sizeof positive / sizeof *positive; k++) {
-        if (!is_normal(positive[k]))
+        if (!is_real_normalised(positive[k]))
             return "a number of the header is not normalised";
         if (positive[k]->mantissa <= 0)
             return "a length or the f-number is not above 0";
     }
     for (int k = 0; k < GLINT_FLUX_TERMS; k++)
-        if (!is_normal(&h->direct_flux[k]) ||
-            !is_normal(&h->stopped_flux[0][k]) ||
-            !is_normal(&h->stopped_flux[1][k]))
+        if (!is_real_normalised(&h->direct_flux[k]) ||
+            !is_real_normalised(&h->stopped_flux[0][k]) ||
+            !is_real_normalised(&h->stopped_flux[1][k]))
             return "the flux of the direct image is not normalised";
     return NULL;
 }
 
-static const char *check_header(struct check *c)
+static const char *check_model_header(struct check *c)
 {
     const struct glint_model_header *h = c->header;
     const char *reason = fault_text[glint_blob_check_name(&c->blob)];
@@ -130,7 +132,7 @@ static const char *check_header(struct check *c)
     if (h->basis != GLINT_BASIS_AUTO && !glint_basis_is_lens(h->basis))
         return "the basis is unknown";
     if (!reason)
-        reason = check_reals(h);
+        reason = check_header_reals(h);
     if (reason)
         return reason;
     if (h->wave_lo_q24 <= 0 || h->wave_lo_q24 >= h->wave_hi_q24)
@@ -160,9 +162,9 @@ static int64_t sum_magnitudes(const int32_t *x, uint32_t n)
     return sum;
 }
 
-/* Checks the range of the y component of directions. */
-static const char *check_across(struct check *c,
-                                const struct glint_model_system *s)
+/* Checks the range of the y components of a system's directions. */
+static const char *check_direction_range(struct check *c,
+                                         const struct glint_model_system *s)
 {
     const int32_t *y_q30 =
         glint_blob_section(&c->blob, s->across_at, 2, sizeof *y_q30);
@@ -176,7 +178,7 @@ static const char *check_across(struct check *c,
 
 /* Returns whether the polynomial P of a half size is negative at any of a
  * series of angles, at either end of the band. */
-static int shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
+static int has_negative_size(const int32_t p[GLINT_BOX_TERMS])
 {
     const int32_t half = 1 << (BOX_NODES_LOG2 - 1);
 
@@ -189,9 +191,9 @@ static int shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
     return 0;
 }
 
-/* Like shrinks_below_0(), for a box of the lens basis, at a grid of
- * directions. */
-static int lens_shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
+/* Returns whether the polynomial P of a half size in the lens basis is negative
+ * at any of a grid of directions, at either end of the band. */
+static int has_negative_lens_size(const int32_t p[GLINT_BOX_TERMS])
 {
     const int32_t half = 1 << (BOX_NODES_LOG2 - 2), step = LIMIT / half;
 
@@ -203,8 +205,8 @@ static int lens_shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
     return 0;
 }
 
-static const char *check_box(struct check *c,
-                             const struct glint_model_system *s)
+static const char *check_system_box(struct check *c,
+                                    const struct glint_model_system *s)
 {
     const uint64_t terms = bits_set(s->box_terms);
     const int lens = glint_basis_is_lens(c->header->basis);
@@ -221,18 +223,18 @@ static const char *check_box(struct check *c,
     for (int k = 0; k < sides; k++) {
         box = box_unpack(box, s->box_terms, side);
         if (sum_magnitudes(side, GLINT_BOX_TERMS) >= LIMIT)
-            return "a box reaches too far";
+            return "the terms of a box are too large";
         if ((k == 1 || k == 2) &&
-            (lens ? lens_shrinks_below_0(side) : shrinks_below_0(side)))
-            return "a box has a size below 0";
+            (lens ? has_negative_lens_size(side) : has_negative_size(side)))
+            return "a box has a negative size";
     }
     return NULL;
 }
 
 /* ------------------------------------------------------------------ outputs */
 
-static const char *check_power(const struct glint_model_output *o,
-                               uint16_t power)
+static const char *check_auto_power(const struct glint_model_output *o,
+                                    uint16_t power)
 {
     const int u = power & 15, v = power >> 4 & 15;
     const int odd =
@@ -254,8 +256,8 @@ static const char *check_lens_power(uint16_t power)
     return power >> 8 < most ? NULL : "a power of w is too high";
 }
 
-static const char *check_terms(struct check *c,
-                               const struct glint_model_output *o)
+static const char *check_output_terms(struct check *c,
+                                      const struct glint_model_output *o)
 {
     const uint16_t *power;
 
@@ -266,11 +268,11 @@ static const char *check_terms(struct check *c,
     for (uint32_t k = 0; k < o->n_terms; k++) {
         const char *reason = glint_basis_is_lens(c->header->basis)
                                  ? check_lens_power(power[k])
-                                 : check_power(o, power[k]);
+                                 : check_auto_power(o, power[k]);
 
         if (reason)
             return reason;
-        /* An output has at most 120 terms, few enough to compare all pairs. */
+        /* an output has at most 120 terms, few enough to compare all pairs */
         for (uint32_t m = 0; m < k; m++)
             if (power[m] == power[k])
                 return "an output has a term twice";
@@ -278,10 +280,10 @@ static const char *check_terms(struct check *c,
     return NULL;
 }
 
-/* Checks coefficients stored in two sizes: see n_narrow in struct
- * glint_model_output. */
-static const char *check_narrow(struct check *c,
-                                const struct glint_model_output *o)
+/* Checks the coefficients of an output, which are stored in two sizes: see
+ * n_narrow in struct glint_model_output. */
+static const char *check_output_coefficients(struct check *c,
+                                             const struct glint_model_output *o)
 {
     static const char too_large[] =
         "the coefficients of an output are too large";
@@ -292,7 +294,7 @@ static const char *check_narrow(struct check *c,
     int64_t sum;
 
     if (n_narrow > o->n_terms || shift > MAX_SHIFT)
-        return "an output has no such narrow coefficients";
+        return "an output's 16-bit coefficients are out of range";
     wide = glint_blob_section(&c->blob, o->coef_at, n_wide + (n_narrow + 1) / 2,
                               sizeof *wide);
     if (!wide)
@@ -311,19 +313,19 @@ static const char *check_output(struct check *c,
 
     if ((o->roots || o->head) && (o->kind != GLINT_OUT_ENERGY ||
                                   o->roots > MAX_ROOTS || o->head > MAX_HEAD))
-        return "an output has no such roots or head";
+        return "an output's roots or head are out of range";
     if (o->n_terms < 1 || o->n_terms > GLINT_MAX_MODEL_TERMS)
         return "an output has no terms or too many";
     if (o->exponent < MIN_EXPONENT || o->exponent > MAX_EXPONENT)
         return "the exponent of an output is out of range";
     if (o->bound >= LIMIT)
         return "the bound of an output is too large";
-    reason = check_terms(c, o);
-    return reason ? reason : check_narrow(c, o);
+    reason = check_output_terms(c, o);
+    return reason ? reason : check_output_coefficients(c, o);
 }
 
-static const char *check_outputs(struct check *c,
-                                 const struct glint_model_system *s)
+static const char *check_system_outputs(struct check *c,
+                                        const struct glint_model_system *s)
 {
     const struct glint_model_output *o;
 
@@ -336,16 +338,16 @@ static const char *check_outputs(struct check *c,
         const char *reason;
 
         if (k < NEEDED_KINDS && o[k].kind != k)
-            return "a system lacks an output, or its kinds do not rise";
+            return "a system lacks an output, or outputs are unsorted";
         if (o[k].kind >= GLINT_OUT_KINDS || (k && o[k].kind <= o[k - 1].kind))
-            return "an output's kind is unknown, or kinds do not rise";
+            return "an output's kind is unknown, or outputs are unsorted";
         reason = check_output(c, &o[k]);
         if (reason)
             return reason;
     }
     return o[GLINT_OUT_SENSOR_X].exponent != o[GLINT_OUT_SENSOR_Y].exponent ||
                    o[GLINT_OUT_STOP_X].exponent != o[GLINT_OUT_STOP_Y].exponent
-               ? "x and y of an output differ in exponent"
+               ? "x and y of a position have different exponents"
                : NULL;
 }
 
@@ -363,11 +365,11 @@ static const char *check_system(struct check *check,
         return "a system's annulus is out of range";
     if (s->wave_lo_q24 <= 0 || s->wave_lo_q24 > s->wave_hi_q24)
         return "a system's band is out of range";
-    reason = lens ? check_across(check, s) : NULL;
+    reason = lens ? check_direction_range(check, s) : NULL;
     if (!reason)
-        reason = check_box(check, s);
+        reason = check_system_box(check, s);
     if (!reason)
-        reason = check_outputs(check, s);
+        reason = check_system_outputs(check, s);
     if (!reason && check->blob.referred / MAX_SHARED > check->blob.bytes)
         reason = "systems share too many tables";
     return reason;
@@ -375,19 +377,19 @@ static const char *check_system(struct check *check,
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* Checks that NEXT may follow LAST among the systems of one ghost. */
-static const char *check_order(const struct glint_model_system *last,
-                               const struct glint_model_system *next)
+/* Checks that system NEXT may follow LAST in the list of one ghost. */
+static const char *check_system_order(const struct glint_model_system *last,
+                                      const struct glint_model_system *next)
 {
     return next->sine_lo_q30 < last->sine_hi_q30 &&
                    next->wave_lo_q24 < last->wave_hi_q24
-               ? "a ghost's systems overlap, or do not rise"
+               ? "a ghost's systems overlap or are unsorted"
                : NULL;
 }
 
-/* Checks the ghosts. Their lists of systems must rise from ghost to ghost,
- * so that one pass shows that no two ghosts share a system. */
-static const char *check_ghosts(const struct check *c)
+/* Checks all ghosts. Their lists of systems must ascend from ghost to ghost, so
+ * that one pass shows that no two ghosts share a system. */
+static const char *check_ghost_lists(const struct check *c)
 {
     const struct glint_model_header *h = c->header;
     uint32_t next = 0;
@@ -405,13 +407,14 @@ static const char *check_ghosts(const struct check *c)
             g->n_systems > h->n_systems - g->first_system)
             return "a ghost's systems are out of range";
         if (g->first_system < next)
-            return "two ghosts share a system, or their lists do not rise";
+            return "two ghosts share a system, or systems are unsorted";
         next = g->first_system + g->n_systems;
-        /* In the lens basis, ranges of two components have no order; where
-         * two systems overlap, the first is used. */
+        /* In the lens basis, directions of two components have no order; where
+         * two systems overlap, the first one is used. */
         for (uint32_t m = g->first_system + 1;
              m < next && !glint_basis_is_lens(h->basis); m++) {
-            const char *reason = check_order(&c->system[m - 1], &c->system[m]);
+            const char *reason =
+                check_system_order(&c->system[m - 1], &c->system[m]);
 
             if (reason)
                 return reason;
@@ -422,15 +425,15 @@ static const char *check_ghosts(const struct check *c)
 
 /* ------------------------------------------------------------------ opening */
 
-/* Returns the text of the first error in the header or in anything that it
- * points to, or NULL. */
-static const char *check_contents(struct check *c)
+/* Returns the text of the first error in the header or in any table to which it
+ * points, or NULL. */
+static const char *check_model_contents(struct check *c)
 {
-    const char *reason = check_header(c);
+    const char *reason = check_model_header(c);
 
     for (uint32_t k = 0; !reason && k < c->header->n_systems; k++)
         reason = check_system(c, &c->system[k]);
-    return reason ? reason : check_ghosts(c);
+    return reason ? reason : check_ghost_lists(c);
 }
 
 enum glint_status glint_lens_open(struct glint_lens *lens, const void *data,
@@ -444,7 +447,7 @@ enum glint_status glint_lens_open(struct glint_lens *lens, const void *data,
         fault_text[glint_blob_open(&c.blob, &model, data, bytes)];
 
     if (!wrong)
-        wrong = check_contents(&c);
+        wrong = check_model_contents(&c);
     if (wrong) {
         *reason = wrong;
         return GLINT_E_LENS;

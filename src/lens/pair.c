@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds corresponding barrels of two positions of a zoom.
+ * Finds corresponding barrels of two zoom positions.
  *
- *    in   the barrels of a bundle at both positions, as polynomials
- *    out  for each barrel of the other position, the barrels of this position
- *         that it is mixed with
+ *   in   the barrels of a bundle at both positions, as polynomials
+ *   out  for each barrel of the other position, the barrels of this position
+ *        with which it is mixed
  *
- * Barrels have no names in a model. Two barrels are alike if their polynomials
- * have nearly the same values, compared either relative to the box of each
- * position, which follows the visible rays, or at equal points of the pupil, as
- * boxes may change faster than barrels move. The pair that differs least is
- * matched first. A barrel without a partner cuts no ray, at the position that
- * lacks it, that the most similar barrel there does not cut; so it is paired
- * with a copy of that barrel.
+ * Barrels have no names in a model. Two barrels correspond if their
+ * polynomials have nearly the same values, compared either relative to the box
+ * of each position, which follows the visible rays, or at equal points of the
+ * pupil, as boxes may change faster than barrels move. The pair that differs
+ * least is matched first. A barrel without a partner blocks no ray, at the
+ * position that lacks it, that the most similar barrel there does not block,
+ * too; so it is paired with a copy of that barrel.
  */
 #include "base/q.h"
 #include "lens/blend.h"
@@ -58,11 +58,11 @@ static int64_t min_i64(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* Finds the overlap of both boxes in the pupil: FIRST to LAST along u and 0 to
- * HIGH along v, in the box of this position. Returns 0 if there is no
+/* Finds the overlap of both boxes in the pupil: FIRST .. LAST along u and
+ * 0 .. HIGH along v, in units of this position's box. Returns 0 if they do not
  * overlap. */
-static int find_common(const struct glint_zoom_mix *blend, int64_t *first,
-                       int64_t *last, int64_t *high)
+static int find_box_overlap(const struct glint_zoom_mix *blend, int64_t *first,
+                            int64_t *last, int64_t *high)
 {
     const struct glint_blend_move *const to = &blend->move[0];
     const int64_t one = 1 << 24, half = one + to->wider_q24;
@@ -73,16 +73,16 @@ static int find_common(const struct glint_zoom_mix *blend, int64_t *first,
     return !blend->far && *first < *last;
 }
 
-/* Sets VALUES of barrel O at the sample points. SIDE: 0 for a barrel of this
- * position, 1 for the other position. */
-static void set_values(const struct glint_zoom_mix *blend, int side,
-                       const struct glint_blend_output *o,
-                       int32_t (*values)[GLINT_BLEND_PLACES])
+/* Sets VALUES to the values of barrel O at all sample points. SIDE: 0 for a
+ * barrel of this position, 1 for one of the other position. */
+static void set_barrel_values(const struct glint_zoom_mix *blend, int side,
+                              const struct glint_blend_output *o,
+                              int32_t (*values)[GLINT_BLEND_PLACES])
 {
     const struct glint_blend_move *const back = &blend->move[1];
     const int64_t one = 1 << 24;
     int64_t first, last, high;
-    const int any = find_common(blend, &first, &last, &high);
+    const int any = find_box_overlap(blend, &first, &last, &high);
 
     for (int k = 0; k < GLINT_BLEND_PLACES; k++) {
         int64_t u = first + (last - first) * (k % ACROSS) / (ACROSS - 1);
@@ -103,13 +103,14 @@ static void set_values(const struct glint_zoom_mix *blend, int side,
 }
 
 /* Returns the max difference between the values of two barrels, compared in
- * their boxes or at points of the pupil, whichever is less. */
-static int64_t compute_difference_q16(const struct glint_zoom_mix *blend,
-                                      int ours, int theirs)
+ * their boxes or at points of the pupil, whichever is smaller. */
+static int64_t compute_barrel_difference_q16(const struct glint_zoom_mix *blend,
+                                             int ours, int theirs)
 {
     int64_t first, last, high, least = LIKE_Q16;
 
-    for (int way = 0; way <= find_common(blend, &first, &last, &high); way++) {
+    for (int way = 0; way <= find_box_overlap(blend, &first, &last, &high);
+         way++) {
         int64_t most = 0;
 
         for (int k = 0; k < GLINT_BLEND_PLACES; k++) {
@@ -128,20 +129,20 @@ void glint_blend_look(struct glint_zoom_mix *blend,
                       const struct glint_blend_output *o)
 {
     if (o->kind >= BARREL)
-        set_values(blend, 1, o, blend->barrel_q16[1][blend->n_others++]);
+        set_barrel_values(blend, 1, o, blend->barrel_q16[1][blend->n_others++]);
 }
 
-/* Finds the two barrels that differ least, one of OURS and one of THEIRS,
- * which are bit masks. Returns whether the two are alike. */
-static int find_pair(const struct glint_zoom_mix *blend, uint32_t ours,
-                     uint32_t theirs, int pair[2])
+/* Finds the two barrels that differ least, one of OURS and one of THEIRS (bit
+ * masks). Returns whether they differ little enough to correspond. */
+static int find_most_similar_pair(const struct glint_zoom_mix *blend,
+                                  uint32_t ours, uint32_t theirs, int pair[2])
 {
     int64_t least = LIKE_Q16;
 
     for (int i = 0; ours >> i; i++)
         for (int k = 0; theirs >> k; k++) {
             const int64_t off = ours >> i & theirs >> k & 1
-                                    ? compute_difference_q16(blend, i, k)
+                                    ? compute_barrel_difference_q16(blend, i, k)
                                     : LIKE_Q16;
 
             if (off < least) {
@@ -153,7 +154,7 @@ static int find_pair(const struct glint_zoom_mix *blend, uint32_t ours,
     return least < LIKE_Q16;
 }
 
-static void record_pair(struct glint_zoom_mix *blend, const int pair[2])
+static void record_barrel_pair(struct glint_zoom_mix *blend, const int pair[2])
 {
     blend->partners[pair[1]] |= UINT32_C(1) << pair[0];
     blend->taken |= UINT32_C(1) << pair[0];
@@ -161,23 +162,24 @@ static void record_pair(struct glint_zoom_mix *blend, const int pair[2])
 
 /* Finds partners for the unmatched barrels OURS and THEIRS (bit masks) among
  * all barrels. OWN: mask of all barrels of this position. */
-static void pair_unmatched(struct glint_zoom_mix *blend, uint32_t own,
-                           uint32_t ours, uint32_t theirs)
+static void pair_unmatched_barrels(struct glint_zoom_mix *blend, uint32_t own,
+                                   uint32_t ours, uint32_t theirs)
 {
     const uint32_t all = (UINT32_C(1) << blend->n_others) - 1;
     int pair[2];
 
     for (int i = 0; ours >> i; i++)
-        if (find_pair(blend, ours & UINT32_C(1) << i, all, pair))
-            record_pair(blend, pair);
+        if (find_most_similar_pair(blend, ours & UINT32_C(1) << i, all, pair))
+            record_barrel_pair(blend, pair);
     for (int k = 0; theirs >> k; k++)
-        if (find_pair(blend, own, theirs & UINT32_C(1) << k, pair)) {
+        if (find_most_similar_pair(blend, own, theirs & UINT32_C(1) << k,
+                                   pair)) {
             const struct glint_blend_output copy =
                 glint_blend_of(blend->to, BARREL + pair[0]);
 
             pair[0] = glint_blend_put(blend->to, &copy);
             if (pair[0] >= 0)
-                record_pair(blend, pair);
+                record_barrel_pair(blend, pair);
         }
 }
 
@@ -192,15 +194,15 @@ void glint_blend_pair(struct glint_zoom_mix *blend)
             glint_blend_of(blend->to, BARREL + k);
 
         if (ours >> k & 1)
-            set_values(blend, 0, &o, blend->barrel_q16[0][k]);
+            set_barrel_values(blend, 0, &o, blend->barrel_q16[0][k]);
     }
-    while (find_pair(blend, ours, theirs, pair)) {
-        record_pair(blend, pair);
+    while (find_most_similar_pair(blend, ours, theirs, pair)) {
+        record_barrel_pair(blend, pair);
         ours &= ~(UINT32_C(1) << pair[0]);
         theirs &= ~(UINT32_C(1) << pair[1]);
     }
     if (blend->part_q30 > 0)
-        pair_unmatched(blend, own, ours, theirs);
+        pair_unmatched_barrels(blend, own, ours, theirs);
 }
 
 int glint_blend_put(struct glint_transfer *t,

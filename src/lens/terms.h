@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Declarations that two modules share: transfer.c, which substitutes angle and
- * wavelength into polynomials, and transfer_rays.c, which evaluates rays.
+ * Declarations shared by transfer.c, which substitutes angle and wavelength
+ * into polynomials, and transfer_rays.c, which evaluates rays.
  */
 #ifndef GLINT_LENS_TERMS_H
 #define GLINT_LENS_TERMS_H
@@ -13,7 +13,7 @@ enum { TRANSFER_MAX_EXPONENT = 15 }; /* max power of any variable */
 
 #define TRANSFER_ONE_Q30 (INT32_C(1) << 30)
 
-/* Sets POWER to the powers 0 .. N of X. */
+/* Sets POWER_Q30[N + 1] to the powers 0 .. N of X_Q30. */
 static inline void transfer_powers(int32_t x_q30, int n, int32_t *power_q30)
 {
     power_q30[0] = TRANSFER_ONE_Q30;
@@ -21,17 +21,16 @@ static inline void transfer_powers(int32_t x_q30, int n, int32_t *power_q30)
         power_q30[k] = q_mul(power_q30[k - 1], x_q30, 30);
 }
 
-/* Returns the system of GHOST for this angle and wavelength, or NULL if no
- * light gets through the lens. */
+/* Returns the system of GHOST for this angle and wavelength; NULL if no light
+ * of the ghost passes the lens. */
 const struct glint_model_system *
 glint_transfer_system(const struct glint_lens *lens, int ghost,
                       int32_t sine_q30, int32_t wave_q24);
 
-/* Mixes the transfer of GHOST of LENS into TRANSFER, which is set to the
- * same ghost, angle and wavelength at another zoom position: the result is
- * PART of LENS and 1 - PART of TRANSFER. GHOST must have a system there.
- * Returns 0, and does nothing, if the two energies have different
- * representations. */
+/* Mixes GHOST of LENS into TRANSFER, which must be set to the same ghost, angle
+ * and wavelength at another zoom position. The result is PART_Q30 of LENS and 1
+ * - PART_Q30 of TRANSFER. Returns 0 and does nothing if GHOST has no system
+ * there or the two energies have different representations. */
 int glint_transfer_mix(struct glint_transfer *transfer,
                        const struct glint_lens *lens, int ghost,
                        int32_t sine_q30, int32_t wave_q24, int32_t part_q30);

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
  * Substitutes angle and wavelength into the polynomials of a bundle. The
- * results are polynomials of the position in its box, which transfer_rays.c
- * evaluates.
+ * results are polynomials of the position in the bundle's box, which
+ * transfer_rays.c evaluates.
  *
- *    in   a model, a ghost, the sine of the light's angle, a wavelength
- *    out  struct glint_transfer: tables of coefficients of u^a v^b, a box
+ *   in   a model, a ghost, the sine of the light's angle, a wavelength
+ *   out  struct glint_transfer: tables of coefficients of u^a v^b, and a box
  *
  * Formats: variables are _q30 and within +-2^30. Coefficients and all
  * intermediate values of an output are integers in that output's own unit,
- * below 2^30, as baking has proven (bound in struct glint_model_output). So
- * each product of a variable and a coefficient is below 2^60, and is rounded to
- * the output's unit by a shift of 30.
+ * below 2^30, as the bake has proven (bound in struct glint_model_output). So
+ * each product of a variable and a coefficient is below 2^60, and is rounded
+ * to the output's unit by a shift of 30.
  */
 #include "glint/transfer.h"
 
@@ -22,13 +22,14 @@
 #include "lens/box.h"
 #include "lens/terms.h"
 
-static const void *get_table(const struct glint_lens *lens, uint32_t offset)
+static const void *get_model_table(const struct glint_lens *lens,
+                                   uint32_t offset)
 {
     return (const unsigned char *)lens->header + offset;
 }
 
-/* Maps X from LO .. HI to -1 .. 1, clamped; _q30. */
-static int32_t normalise_q30(int32_t x, int32_t lo, int32_t hi)
+/* Maps X from LO .. HI to -1 .. 1, _q30, clamped. */
+static int32_t normalise_in_range_q30(int32_t x, int32_t lo, int32_t hi)
 {
     const int64_t span = (int64_t)hi - lo;
 
@@ -40,32 +41,33 @@ static int32_t normalise_q30(int32_t x, int32_t lo, int32_t hi)
                              span);
 }
 
-/* Returns whether WAVE belongs to the band of system S. The upper end of a band
- * belongs to the next band. */
-static int is_in_band(const struct glint_model_system *s,
-                      const struct glint_model_header *h, int32_t wave_q24)
+/* Returns whether WAVE_Q24 belongs to the band of system S. The upper end of a
+ * band belongs to the next band, if there is one. */
+static int is_wave_in_band(const struct glint_model_system *s,
+                           const struct glint_model_header *h, int32_t wave_q24)
 {
     return wave_q24 >= s->wave_lo_q24 &&
            (wave_q24 < s->wave_hi_q24 ||
             (wave_q24 == s->wave_hi_q24 && wave_q24 == h->wave_hi_q24));
 }
 
-/* Returns whether Y, the y component of a light's direction, is in the range of
- * system S; true if S has no such range. */
-static int is_in_across(const struct glint_lens *lens,
-                        const struct glint_model_system *s, int32_t y_q30)
+/* Returns whether Y_Q30, the y component of a light's direction, is within the
+ * range of system S. In the auto basis systems have no such range. */
+static int is_direction_in_range(const struct glint_lens *lens,
+                                 const struct glint_model_system *s,
+                                 int32_t y_q30)
 {
     const int32_t *range_q30;
 
     if (!glint_basis_is_lens(lens->header->basis))
         return 1; /* in this case across_at has not been validated */
-    range_q30 = get_table(lens, s->across_at);
+    range_q30 = get_model_table(lens, s->across_at);
     return y_q30 >= range_q30[0] && y_q30 <= range_q30[1];
 }
 
 static const struct glint_model_system *
-find_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
-            int32_t y_q30, int32_t wave_q24)
+find_ghost_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
+                  int32_t y_q30, int32_t wave_q24)
 {
     const struct glint_model_ghost *g = &lens->ghost[ghost];
     const struct glint_model_header *h = lens->header;
@@ -77,7 +79,8 @@ find_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
         const struct glint_model_system *s = &lens->system[g->first_system + k];
 
         if (sine_q30 < s->sine_lo_q30 || sine_q30 > s->sine_hi_q30 ||
-            !is_in_band(s, h, wave_q24) || !is_in_across(lens, s, y_q30))
+            !is_wave_in_band(s, h, wave_q24) ||
+            !is_direction_in_range(lens, s, y_q30))
             continue;
         return s;
     }
@@ -88,39 +91,46 @@ const struct glint_model_system *
 glint_transfer_system(const struct glint_lens *lens, int ghost,
                       int32_t sine_q30, int32_t wave_q24)
 {
-    return find_system(lens, ghost, sine_q30, 0, wave_q24);
+    return find_ghost_system(lens, ghost, sine_q30, 0, wave_q24);
 }
 
 /* Angle and wavelength of a bundle, relative to the ranges of its system, as
- * powers. */
+ * powers 0, 1, 2 ... */
 struct setting {
     int32_t s_q30[TRANSFER_MAX_EXPONENT + 1], w_q30[TRANSFER_MAX_EXPONENT + 1];
-    int lens;                         /* 1: the model uses the lens basis */
-    int32_t p_q30[GLINT_LENS_POWERS]; /* set in the lens basis only */
+    int lens; /* 1: the model uses the lens basis */
+    /* powers of the y component; lens basis only */
+    int32_t p_q30[GLINT_LENS_POWERS];
 };
 
-static void set_setting(struct setting *set, const struct glint_lens *lens,
-                        const struct glint_model_system *s, int32_t sine_q30,
-                        int32_t y_q30, int32_t wave_q24)
+static void set_substituted_powers(struct setting *set,
+                                   const struct glint_lens *lens,
+                                   const struct glint_model_system *s,
+                                   int32_t sine_q30, int32_t y_q30,
+                                   int32_t wave_q24)
 {
     set->lens = glint_basis_is_lens(lens->header->basis);
-    transfer_powers(normalise_q30(sine_q30, s->sine_lo_q30, s->sine_hi_q30),
-                    TRANSFER_MAX_EXPONENT, set->s_q30);
-    transfer_powers(normalise_q30(wave_q24, s->wave_lo_q24, s->wave_hi_q24),
-                    TRANSFER_MAX_EXPONENT, set->w_q30);
+    transfer_powers(
+        normalise_in_range_q30(sine_q30, s->sine_lo_q30, s->sine_hi_q30),
+        TRANSFER_MAX_EXPONENT, set->s_q30);
+    transfer_powers(
+        normalise_in_range_q30(wave_q24, s->wave_lo_q24, s->wave_hi_q24),
+        TRANSFER_MAX_EXPONENT, set->w_q30);
     if (set->lens) {
-        const int32_t *range_q30 = get_table(lens, s->across_at);
+        const int32_t *range_q30 = get_model_table(lens, s->across_at);
 
-        transfer_powers(normalise_q30(y_q30, range_q30[0], range_q30[1]),
-                        GLINT_LENS_POWERS - 1, set->p_q30);
+        transfer_powers(
+            normalise_in_range_q30(y_q30, range_q30[0], range_q30[1]),
+            GLINT_LENS_POWERS - 1, set->p_q30);
     }
 }
 
-static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
-                    const struct setting *set)
+static void evaluate_transfer_box(struct glint_transfer *t,
+                                  const struct glint_lens *lens,
+                                  const struct setting *set)
 {
     const struct glint_model_system *s = t->system;
-    const int32_t *box = get_table(lens, s->box_at);
+    const int32_t *box = get_model_table(lens, s->box_at);
     int32_t side[GLINT_BOX_TERMS];
 
     t->box_exponent = s->box_exponent;
@@ -131,16 +141,16 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
                                               set->p_q30[1], set->w_q30[1])
                               : box_side(side, set->s_q30[1], set->w_q30[1]);
     }
-    /* The check of a model tests a grid of positions; between them a half
-     * size may be negative and is clamped to 0. */
+    /* The check of a model tests half sizes on a grid of angles; between these
+     * a half size may be negative, so it is clamped to 0. */
     for (int k = 1; k < 3; k++)
         t->box[k] = t->box[k] < 0 ? 0 : t->box[k];
 }
 
-/* Returns the coefficient VALUE of a term, multiplied by the powers of angle
- * and wavelength in POWER. */
-static WHOLLY_INLINE int32_t substitute_term(const struct setting *set,
-                                             int32_t value, uint16_t power)
+/* Returns coefficient VALUE of a term, multiplied by the powers of angle and
+ * wavelength that POWER encodes. Auto basis. */
+static WHOLLY_INLINE int32_t substitute_auto_term(const struct setting *set,
+                                                  int32_t value, uint16_t power)
 {
     const int c = power >> 8 & 15, d = power >> 12;
 
@@ -149,15 +159,16 @@ static WHOLLY_INLINE int32_t substitute_term(const struct setting *set,
     return d ? q_mul(value, set->w_q30[d], 30) : value;
 }
 
-/* The check of a model limits powers of u and v to GLINT_MAX_POWER, and
- * codes of the lens basis to the values that these assertions assume. */
+/* The check of a model limits powers of u and v to GLINT_MAX_POWER, and the
+ * codes of the lens basis to values within these limits. */
 STATIC_ASSERT(GLINT_MAX_POWER < GLINT_TABLE_WIDTH);
 STATIC_ASSERT(GLINT_LENS_POWERS <= TRANSFER_MAX_EXPONENT + 1);
 STATIC_ASSERT(GLINT_LENS_WAVE_POWERS <= TRANSFER_MAX_EXPONENT + 1);
 
-/* Like substitute_term(), in the lens basis. */
-static int32_t substitute_lens(const struct setting *set, int32_t value,
-                               uint16_t power)
+/* Returns coefficient VALUE of a term, multiplied by the powers of direction
+ * and wavelength that POWER encodes. Lens basis. */
+static int32_t substitute_lens_term(const struct setting *set, int32_t value,
+                                    uint16_t power)
 {
     const unsigned code = power >> 8, of_s = code % GLINT_LENS_POWERS;
     const unsigned of_p = code / GLINT_LENS_POWERS % GLINT_LENS_POWERS;
@@ -170,14 +181,14 @@ static int32_t substitute_lens(const struct setting *set, int32_t value,
     return of_w ? q_mul(value, set->w_q30[of_w], 30) : value;
 }
 
-/* A polynomial of u and v while its terms are added. */
+/* a polynomial of u and v, to which terms are added */
 struct table {
     int32_t (*row)[GLINT_TABLE_WIDTH];
     int degree_u, degree_v;
 };
 
-static WHOLLY_INLINE void add_term(struct table *t, uint16_t power,
-                                   int32_t value)
+static WHOLLY_INLINE void add_table_term(struct table *t, uint16_t power,
+                                         int32_t value)
 {
     const int a = power & 15, b = power >> 4 & 15;
 
@@ -186,47 +197,53 @@ static WHOLLY_INLINE void add_term(struct table *t, uint16_t power,
     t->degree_v = b > t->degree_v ? b : t->degree_v;
 }
 
-/* Sets TABLE to output O, in the auto basis or the lens basis. */
-static void fill_table(struct table *table, const struct glint_lens *lens,
-                       const struct glint_model_output *o,
-                       const struct setting *set)
+/* Sets TABLE to output O with angle and wavelength substituted, in either
+ * basis. */
+static void fill_output_table(struct table *table,
+                              const struct glint_lens *lens,
+                              const struct glint_model_output *o,
+                              const struct setting *set)
 {
     const uint32_t n = o->n_terms, n_wide = n - o->n_narrow;
-    const int32_t *coef = get_table(lens, o->coef_at);
+    const int32_t *coef = get_model_table(lens, o->coef_at);
     const int32_t by = INT32_C(1) << o->narrow_shift;
     const int16_t *narrow = (const int16_t *)(const void *)(coef + n_wide);
-    const uint16_t *power = get_table(lens, o->term_at);
+    const uint16_t *power = get_model_table(lens, o->term_at);
 
     table->degree_u = table->degree_v = 0;
     for (int b = 0; b <= GLINT_MAX_POWER; b++)
         for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
             table->row[b][a] = 0;
     for (uint32_t k = 0; k < n && set->lens; k++)
-        add_term(table, power[k],
-                 substitute_lens(set,
-                                 k < n_wide ? coef[k] : narrow[k - n_wide] * by,
-                                 power[k]));
+        add_table_term(
+            table, power[k],
+            substitute_lens_term(
+                set, k < n_wide ? coef[k] : narrow[k - n_wide] * by, power[k]));
     for (uint32_t k = 0; k < n_wide && !set->lens; k++)
-        add_term(table, power[k], substitute_term(set, coef[k], power[k]));
+        add_table_term(table, power[k],
+                       substitute_auto_term(set, coef[k], power[k]));
     for (uint32_t k = n_wide; k < n && !set->lens; k++)
-        add_term(table, power[k],
-                 substitute_term(set, narrow[k - n_wide] * by, power[k]));
+        add_table_term(
+            table, power[k],
+            substitute_auto_term(set, narrow[k - n_wide] * by, power[k]));
 }
 
-static void set_table(struct glint_transfer *t, const struct glint_lens *lens,
-                      const struct glint_model_output *o,
-                      const struct setting *set)
+static void set_transfer_table(struct glint_transfer *t,
+                               const struct glint_lens *lens,
+                               const struct glint_model_output *o,
+                               const struct setting *set)
 {
     struct table table = {t->table[o->kind], 0, 0};
 
-    fill_table(&table, lens, o, set);
+    fill_output_table(&table, lens, o, set);
     t->degree_u[o->kind] = (uint8_t)table.degree_u;
     t->degree_v[o->kind] = (uint8_t)table.degree_v;
 }
 
-static void set_output(struct glint_transfer *t, const struct glint_lens *lens,
-                       const struct glint_model_output *o,
-                       const struct setting *set)
+static void set_transfer_output(struct glint_transfer *t,
+                                const struct glint_lens *lens,
+                                const struct glint_model_output *o,
+                                const struct setting *set)
 {
     t->outputs |= UINT32_C(1) << o->kind;
     t->exponent[o->kind] = o->exponent;
@@ -237,10 +254,10 @@ static void set_output(struct glint_transfer *t, const struct glint_lens *lens,
         for (int k = 0; k < o->roots; k++)
             t->exponent[o->kind] = 2 * t->exponent[o->kind] + 29;
     }
-    set_table(t, lens, o, set);
+    set_transfer_table(t, lens, o, set);
 }
 
-static void clear_outputs(struct glint_transfer *t)
+static void clear_transfer_outputs(struct glint_transfer *t)
 {
     t->outputs = 0;
     t->head = t->roots = t->energy_up = 0;
@@ -254,17 +271,18 @@ static void clear_outputs(struct glint_transfer *t)
     }
 }
 
-/* The direction of a light as the systems use it. X is the sine of its
- * angle; in the lens basis, the x component of the direction. */
+/* The direction of a light in the form that systems use. x: the sine of the
+ * light's angle; in the lens basis, the direction's x component. */
 struct toward {
     int32_t x_q30, y_q30;
-    int mirror_x, mirror_y; /* 1: the light lies on the opposite side of the
-                               plane of symmetry */
+    /* 1: the light is on the other side of the plane of symmetry, so the
+     * mirrored system is used */
+    int mirror_x, mirror_y;
 };
 
-static struct toward compute_toward(const struct glint_lens *lens,
-                                    int32_t sine_q30,
-                                    struct glint_azimuth azimuth)
+static struct toward compute_system_direction(const struct glint_lens *lens,
+                                              int32_t sine_q30,
+                                              struct glint_azimuth azimuth)
 {
     const uint32_t basis = lens->header->basis;
     struct toward d = {sine_q30, 0, 0, 0};
@@ -295,7 +313,7 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
                            int32_t sine_q30, struct glint_azimuth azimuth,
                            int32_t wave_q24)
 {
-    const struct toward d = compute_toward(lens, sine_q30, azimuth);
+    const struct toward d = compute_system_direction(lens, sine_q30, azimuth);
     const struct glint_model_system *system;
     const struct glint_model_output *output;
     struct setting set;
@@ -304,35 +322,35 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
                      */
         return lens->zoom->transfer(transfer, lens->zoom, ghost, sine_q30,
                                     wave_q24);
-    system = find_system(lens, ghost, d.x_q30, d.y_q30, wave_q24);
+    system = find_ghost_system(lens, ghost, d.x_q30, d.y_q30, wave_q24);
     if (!system)
         return 0;
-    clear_outputs(transfer);
+    clear_transfer_outputs(transfer);
     transfer->system = system;
     transfer->annulus = (uint8_t)system->annulus;
-    set_setting(&set, lens, system, d.x_q30, d.y_q30, wave_q24);
+    set_substituted_powers(&set, lens, system, d.x_q30, d.y_q30, wave_q24);
     transfer->whole = (uint8_t)set.lens;
     transfer->window = glint_box_whole(transfer);
-    /* Mirroring in x equals mirroring in y followed by a half turn. */
+    /* mirroring in x equals mirroring in y followed by a half turn */
     transfer->sign = (int8_t)(d.mirror_x ? -1 : 1);
     transfer->side = (uint8_t)(d.mirror_x != d.mirror_y);
-    set_box(transfer, lens, &set);
-    output = get_table(lens, system->output_at);
+    evaluate_transfer_box(transfer, lens, &set);
+    output = get_model_table(lens, system->output_at);
     for (uint32_t k = 0; k < system->n_outputs; k++)
-        set_output(transfer, lens, &output[k], &set);
+        set_transfer_output(transfer, lens, &output[k], &set);
     return 1;
 }
 
-/* Returns output O of the other position of a mix, and writes its
+/* Returns output O of the other zoom position of a mix, and writes its
  * coefficients to ROW. */
-static struct glint_blend_output make_output(const struct glint_lens *lens,
-                                             const struct glint_model_output *o,
-                                             const struct setting *set,
-                                             int32_t (*row)[GLINT_TABLE_WIDTH])
+static struct glint_blend_output
+make_blend_output(const struct glint_lens *lens,
+                  const struct glint_model_output *o, const struct setting *set,
+                  int32_t (*row)[GLINT_TABLE_WIDTH])
 {
     struct table table = {row, 0, 0};
 
-    fill_table(&table, lens, o, set);
+    fill_output_table(&table, lens, o, set);
     return (struct glint_blend_output){.kind = o->kind,
                                        .head = o->head,
                                        .exponent = o->exponent,
@@ -355,25 +373,25 @@ int glint_transfer_mix(struct glint_transfer *transfer,
 
     if (!system)
         return 0;
-    o = get_table(lens, system->output_at);
+    o = get_model_table(lens, system->output_at);
     if (o[GLINT_OUT_ENERGY].roots != transfer->roots)
         return 0;
-    set_setting(&set, lens, system, sine_q30, 0, wave_q24);
+    set_substituted_powers(&set, lens, system, sine_q30, 0, wave_q24);
     transfer->system = system;
-    set_box(transfer, lens, &set);
+    evaluate_transfer_box(transfer, lens, &set);
     if (!glint_blend_box(&blend, box, box_exponent))
         return 0;
     for (uint32_t k = 0; k < system->n_outputs; k++)
         if (o[k].kind >= GLINT_OUT_BARREL_0) {
             const struct glint_blend_output of =
-                make_output(lens, &o[k], &set, transfer->of_u);
+                make_blend_output(lens, &o[k], &set, transfer->of_u);
 
             glint_blend_look(&blend, &of);
         }
     glint_blend_pair(&blend);
     for (uint32_t k = 0; k < system->n_outputs; k++) {
         const struct glint_blend_output of =
-            make_output(lens, &o[k], &set, transfer->of_u);
+            make_blend_output(lens, &o[k], &set, transfer->of_u);
 
         glint_blend_output(&blend, &of);
     }

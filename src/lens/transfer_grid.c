@@ -2,7 +2,8 @@
  *
  * Converts grids of rays to vertices in the picture: values of the polynomials
  * become pixels, stop radii and energies in fixed formats, rotated by the
- * azimuth of the light. Rays whose values do not fit are invalid.
+ * azimuth of the light. Rays whose values exceed these formats are marked
+ * invalid.
  */
 #include "glint/transfer.h"
 
@@ -20,38 +21,39 @@ STATIC_ASSERT((int)RAYS == (int)GLINT_TURNED);
 
 /* ---------------------------------------------------------------- vertices */
 
-/* Rays that are computed together, before they become vertices. */
+/* rays that are computed together, before they become vertices */
 struct block {
-    /* x and y of the rays, then x and y of the mirrored rays */
+    /* x and y of the rays, then x and y of their mirror images */
     int32_t sensor_q8[4][RAYS], stop_q16[4][RAYS];
     int32_t barrel_q16[2][RAYS];
     int32_t energy_q16[RAYS];
-    int32_t lost[2][RAYS]; /* [0]: rays, [1]: mirrored rays; all bits set if the
-                              ray is invalid */
+    /* [0]: rays, [1]: their mirror images; all bits are set if the ray is
+     * invalid */
+    int32_t lost[2][RAYS];
 };
 
-/* Sets SCALED to X / 2^SHIFT, rounded. A ray whose value reaches LIMIT in
- * magnitude is marked invalid in LOST. */
-static void scale_rays(const int32_t *x, int shift, int32_t limit,
-                       int32_t *scaled, int32_t *lost)
+/* Sets SCALED to X / 2^SHIFT, rounded. Marks rays whose value reaches LIMIT in
+ * magnitude as invalid in LOST. */
+static void scale_ray_values(const int32_t *x, int shift, int32_t limit,
+                             int32_t *scaled, int32_t *lost)
 {
     if (shift < 1 || shift > 30 || limit < LIMIT_Q16) {
         for (int i = 0; i < RAYS; i++)
             scaled[i] = q_scaled(x[i], shift, limit, &lost[i]);
         return;
     }
-    /* The sum is below 2^30 + 61 + 2^29 and does not overflow. */
+    /* the sum is below 2^30 + 61 + 2^29, so it does not overflow */
     for (int i = 0; i < RAYS; i++)
         scaled[i] = (x[i] + (INT32_C(1) << (shift - 1))) >> shift;
 }
 
-static void set_radius(const struct glint_transfer *t, const int32_t *rays,
-                       struct block *b)
+static void set_radius_barrel(const struct glint_transfer *t,
+                              const int32_t *rays, struct block *b)
 {
     int32_t r_q16[RAYS];
 
-    scale_rays(rays, -(t->exponent[GLINT_OUT_RADIUS] + 16), 1 << 23, r_q16,
-               b->lost[0]);
+    scale_ray_values(rays, -(t->exponent[GLINT_OUT_RADIUS] + 16), 1 << 23,
+                     r_q16, b->lost[0]);
     for (int i = 0; i < RAYS; i++)
         b->barrel_q16[0][i] =
             (int32_t)(((INT64_C(1) << 16) +
@@ -59,22 +61,22 @@ static void set_radius(const struct glint_transfer *t, const int32_t *rays,
                       2);
 }
 
-static void set_barrels(const struct glint_transfer *t,
-                        const int32_t (*rays)[RAYS], struct block *b)
+static void set_barrel_values(const struct glint_transfer *t,
+                              const int32_t (*rays)[RAYS], struct block *b)
 {
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < RAYS; i++)
             b->barrel_q16[k][i] = 0;
     if (transfer_has(t, GLINT_OUT_RADIUS))
-        set_radius(t, rays[GLINT_OUT_RADIUS], b);
+        set_radius_barrel(t, rays[GLINT_OUT_RADIUS], b);
     for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++) {
         int32_t *to = b->barrel_q16[kind > GLINT_OUT_BARREL_0];
         int32_t more[RAYS];
 
         if (!transfer_has(t, kind))
             continue;
-        scale_rays(rays[kind], -(t->exponent[kind] + 16), LIMIT_Q16, more,
-                   b->lost[0]);
+        scale_ray_values(rays[kind], -(t->exponent[kind] + 16), LIMIT_Q16, more,
+                         b->lost[0]);
         for (int i = 0; i < RAYS; i++) {
             b->lost[0][i] |= more[i] >> 31;
             to[i] = more[i] > to[i] ? more[i] : to[i];
@@ -82,8 +84,9 @@ static void set_barrels(const struct glint_transfer *t,
     }
 }
 
-/* Converts energies from _q29, times 2^UP, to _q16, clamped to 0 .. 1. */
-static void set_energies(const int32_t *energy, int up, int32_t *energy_q16)
+/* Converts energies from _q29 times 2^UP to _q16, clamped to 0 .. 1. */
+static void convert_ray_energies(const int32_t *energy, int up,
+                                 int32_t *energy_q16)
 {
     const int raise = up > 13 ? up - 13 : 0, lower = up < 13 ? 13 - up : 0;
     const int32_t half = lower ? INT32_C(1) << (lower - 1) : 0;
@@ -96,16 +99,16 @@ static void set_energies(const int32_t *energy, int up, int32_t *energy_q16)
     }
 }
 
-/* Rotations of sensor and stop positions by the azimuth of the light, with
- * the shifts to the formats of a vertex. The sensor's rotation includes the
- * factor from mm to pixels. */
+/* Rotations of positions on the sensor and in the stop by the azimuth of the
+ * light, including the shifts to the formats of a vertex. The rotation on the
+ * sensor includes the scale from mm to pixels. */
 struct turns {
     struct glint_turn sensor, stop;
 };
 
-static struct glint_turn make_turn(const struct glint_place *p,
-                                   struct glint_real size, int exponent,
-                                   int frac, int32_t limit)
+static struct glint_turn make_rotation(const struct glint_place *p,
+                                       struct glint_real size, int exponent,
+                                       int frac, int32_t limit)
 {
     return (struct glint_turn){
         (int32_t)q_shift((int64_t)p->cos_q30 * size.mantissa, 30),
@@ -113,46 +116,48 @@ static struct glint_turn make_turn(const struct glint_place *p,
         -(exponent + size.exponent + frac), limit};
 }
 
-static struct turns make_turns(const struct glint_transfer *t,
-                               const struct glint_place *p)
+static struct turns make_rotations(const struct glint_transfer *t,
+                                   const struct glint_place *p)
 {
     const struct glint_real one = {TRANSFER_ONE_Q30, -30};
     const struct glint_real stop = p->stop_scale.mantissa ? p->stop_scale : one;
 
     return (struct turns){
-        make_turn(p, p->pixels_per_mm, t->exponent[GLINT_OUT_SENSOR_X], 8,
-                  GLINT_VERTEX_LIMIT_Q8 / 2),
-        make_turn(p, stop, t->exponent[GLINT_OUT_STOP_X], 16, LIMIT_Q16)};
+        make_rotation(p, p->pixels_per_mm, t->exponent[GLINT_OUT_SENSOR_X], 8,
+                      GLINT_VERTEX_LIMIT_Q8 / 2),
+        make_rotation(p, stop, t->exponent[GLINT_OUT_STOP_X], 16, LIMIT_Q16)};
 }
 
-static void rotate_rays(const struct glint_turn *turn, unsigned sets,
-                        const int32_t *x, const int32_t *y,
-                        int32_t (*out)[RAYS], int32_t (*lost)[RAYS])
+static void rotate_ray_positions(const struct glint_turn *turn, unsigned sets,
+                                 const int32_t *x, const int32_t *y,
+                                 int32_t (*out)[RAYS], int32_t (*lost)[RAYS])
 {
     const int usual = turn->shift >= 1 && turn->shift <= 62;
 
     glint_turn_of(usual ? sets : 0)(turn, x, y, out, lost);
 }
 
-static void set_block(const struct glint_transfer *t, const struct turns *turns,
-                      const int32_t (*rays)[RAYS], struct block *b)
+static void convert_ray_block(const struct glint_transfer *t,
+                              const struct turns *turns,
+                              const int32_t (*rays)[RAYS], struct block *b)
 {
     for (int i = 0; i < RAYS; i++)
         b->lost[0][i] = 0;
-    set_barrels(t, rays, b);
+    set_barrel_values(t, rays, b);
     for (int i = 0; i < RAYS; i++)
         b->lost[1][i] = b->lost[0][i];
-    set_energies(rays[GLINT_OUT_ENERGY], t->energy_up, b->energy_q16);
-    rotate_rays(&turns->sensor, t->sets, rays[GLINT_OUT_SENSOR_X],
-                rays[GLINT_OUT_SENSOR_Y], b->sensor_q8, b->lost);
-    rotate_rays(&turns->stop, t->sets, rays[GLINT_OUT_STOP_X],
-                rays[GLINT_OUT_STOP_Y], b->stop_q16, b->lost);
+    convert_ray_energies(rays[GLINT_OUT_ENERGY], t->energy_up, b->energy_q16);
+    rotate_ray_positions(&turns->sensor, t->sets, rays[GLINT_OUT_SENSOR_X],
+                         rays[GLINT_OUT_SENSOR_Y], b->sensor_q8, b->lost);
+    rotate_ray_positions(&turns->stop, t->sets, rays[GLINT_OUT_STOP_X],
+                         rays[GLINT_OUT_STOP_Y], b->stop_q16, b->lost);
 }
 
-/* Writes the first N rays of B as vertices: the rays themselves if SIDE is
- * 0, the mirrored rays if it is 1. */
-static void write_block(const struct block *b, const struct glint_place *p,
-                        int side, int n, struct glint_vertex *v)
+/* Writes the first N rays of B as vertices: the rays themselves if SIDE is 0,
+ * their mirror images if it is 1. */
+static void write_block_vertices(const struct block *b,
+                                 const struct glint_place *p, int side, int n,
+                                 struct glint_vertex *v)
 {
     for (int i = 0; i < n; i++)
         v[i] = (struct glint_vertex){
@@ -166,10 +171,10 @@ static void write_block(const struct block *b, const struct glint_place *p,
 
 /* --------------------------------------------------------------------- rows */
 
-/* Returns the coordinate of node K of a row of N_CELLS cells that spans
- * MIDDLE +- HALF. */
-static int32_t compute_node_q30(int32_t middle_q30, int32_t half_q30, int k,
-                                int n_cells)
+/* Returns the coordinate of node K in a row of N_CELLS cells that spans
+ * MIDDLE_Q30 +- HALF_Q30. */
+static int32_t compute_node_position_q30(int32_t middle_q30, int32_t half_q30,
+                                         int k, int n_cells)
 {
     return middle_q30 +
            (int32_t)q_divide((int64_t)(2 * k - n_cells) * half_q30, n_cells);
@@ -194,16 +199,16 @@ int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n)
         (rim + 1) * n);
 }
 
-/* Returns whether row J is the middle row of an annular box; this row has no
+/* Returns whether row J is the middle row of an annular box, which has no
  * rays. */
-static int is_hidden(const struct glint_transfer *t, int n_cells, int j)
+static int is_row_hidden(const struct glint_transfer *t, int n_cells, int j)
 {
     return t->annulus && 2 * j == n_cells;
 }
 
-/* Returns the coordinate v of row J. */
-static int32_t compute_row_q30(const struct glint_transfer *t, int n_cells,
-                               int j)
+/* Returns the coordinate v of row J of the grid. */
+static int32_t compute_row_v_q30(const struct glint_transfer *t, int n_cells,
+                                 int j)
 {
     /* index of the last row below the middle */
     const int last = n_cells / 2 - 1;
@@ -211,28 +216,28 @@ static int32_t compute_row_q30(const struct glint_transfer *t, int n_cells,
     if (t->whole)
         return glint_transfer_v(t, j, n_cells);
     if (!t->annulus)
-        return compute_node_q30(0, t->window.v_to_q30, j, n_cells);
+        return compute_node_position_q30(0, t->window.v_to_q30, j, n_cells);
     return j <= last ? -glint_transfer_v(t, last - j, last)
                      : glint_transfer_v(t, last - (n_cells - j), last);
 }
 
-/* Fills ROW with row J of the grid and MIRRORED with row N_CELLS - J, the
- * mirror image of row J. Either may be NULL; MIRRORED must be NULL if rows
- * have no mirror image. */
-static void set_row_pair(struct glint_transfer *t,
-                         const struct glint_place *place, int n_cells, int j,
-                         struct glint_vertex *row,
-                         struct glint_vertex *mirrored)
+/* Sets ROW to row J of the grid and MIRRORED to its mirror image, row N_CELLS -
+ * J. Either may be NULL; MIRRORED must be NULL if rows have no mirror
+ * images. */
+static void compute_row_pair(struct glint_transfer *t,
+                             const struct glint_place *place, int n_cells,
+                             int j, struct glint_vertex *row,
+                             struct glint_vertex *mirrored)
 {
-    const struct turns turns = make_turns(t, place);
-    const int32_t v_q30 = compute_row_q30(t, n_cells, j);
+    const struct turns turns = make_rotations(t, place);
+    const int32_t v_q30 = compute_row_v_q30(t, n_cells, j);
 
     if (t->n_nodes != n_cells + 1) {
         t->n_nodes = n_cells + 1;
         for (int i = 0; i < n_cells + RAYS; i++)
-            t->node_q30[i] =
-                compute_node_q30(t->window.u_middle_q30, t->window.u_half_q30,
-                                 i < n_cells ? i : n_cells, n_cells);
+            t->node_q30[i] = compute_node_position_q30(
+                t->window.u_middle_q30, t->window.u_half_q30,
+                i < n_cells ? i : n_cells, n_cells);
     }
     for (int first = 0; first <= n_cells; first += RAYS) {
         const int n = n_cells + 1 - first < RAYS ? n_cells + 1 - first : RAYS;
@@ -240,11 +245,11 @@ static void set_row_pair(struct glint_transfer *t,
         struct block b;
 
         glint_transfer_rays(t, v_q30, t->node_q30 + first, first == 0, rays);
-        set_block(t, &turns, (const int32_t(*)[RAYS])rays, &b);
+        convert_ray_block(t, &turns, (const int32_t(*)[RAYS])rays, &b);
         if (row)
-            write_block(&b, place, t->side, n, row + first);
+            write_block_vertices(&b, place, t->side, n, row + first);
         if (mirrored)
-            write_block(&b, place, 1, n, mirrored + first);
+            write_block_vertices(&b, place, 1, n, mirrored + first);
     }
 }
 
@@ -258,12 +263,12 @@ void glint_transfer_row(struct glint_transfer *transfer,
                         const struct glint_place *place, int n_cells, int j,
                         struct glint_vertex *row)
 {
-    if (is_hidden(transfer, n_cells, j))
+    if (is_row_hidden(transfer, n_cells, j))
         invalidate_row(row, n_cells);
     else if (transfer->whole || 2 * j <= n_cells)
-        set_row_pair(transfer, place, n_cells, j, row, NULL);
+        compute_row_pair(transfer, place, n_cells, j, row, NULL);
     else
-        set_row_pair(transfer, place, n_cells, n_cells - j, NULL, row);
+        compute_row_pair(transfer, place, n_cells, n_cells - j, NULL, row);
 }
 
 void glint_transfer_rows(struct glint_transfer *transfer,
@@ -271,14 +276,14 @@ void glint_transfer_rows(struct glint_transfer *transfer,
                          struct glint_vertex *row,
                          struct glint_vertex *mirrored)
 {
-    if (is_hidden(transfer, n_cells, j)) {
+    if (is_row_hidden(transfer, n_cells, j)) {
         invalidate_row(row, n_cells);
         invalidate_row(mirrored, n_cells);
     } else if (transfer->whole) {
-        set_row_pair(transfer, place, n_cells, j, row, NULL);
-        set_row_pair(transfer, place, n_cells, n_cells - j, mirrored, NULL);
+        compute_row_pair(transfer, place, n_cells, j, row, NULL);
+        compute_row_pair(transfer, place, n_cells, n_cells - j, mirrored, NULL);
     } else {
-        set_row_pair(transfer, place, n_cells, j, row, mirrored);
+        compute_row_pair(transfer, place, n_cells, j, row, mirrored);
     }
 }
 
@@ -294,11 +299,11 @@ void glint_transfer_grid(struct glint_transfer *transfer,
         struct glint_vertex *mirrored =
             vertices + (ptrdiff_t)(n_cells - j) * nodes;
 
-        if (is_hidden(transfer, n_cells, j))
+        if (is_row_hidden(transfer, n_cells, j))
             invalidate_row(row, n_cells);
         else if (alone)
-            set_row_pair(transfer, place, n_cells, j, row, NULL);
+            compute_row_pair(transfer, place, n_cells, j, row, NULL);
         else if (2 * j <= n_cells)
-            set_row_pair(transfer, place, n_cells, j, row, mirrored);
+            compute_row_pair(transfer, place, n_cells, j, row, mirrored);
     }
 }

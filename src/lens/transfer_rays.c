@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Evaluates the polynomials of a bundle, into which transfer.c has substituted
- * angle and wavelength: along rows of a grid of rays by Horner's rule
- * (kernels/rays), eight rays at once. Formats are those of transfer.c. */
+ * angle and wavelength, along rows of a grid of rays: by Horner's rule
+ * (kernels/rays), eight rays at once. Formats as in transfer.c.
+ */
 #include "glint/transfer.h"
 
 #include "base/q.h"
@@ -11,18 +12,18 @@
 
 enum { RAYS = GLINT_RAYS };
 
-/* Returns whether all terms of KIND have odd powers of v. Otherwise all are
- * even, except in the lens basis, where both occur. */
-static int is_odd(int kind)
+/* Returns whether all terms of KIND have odd powers of v, rather than even
+ * ones. In the lens basis terms have both. */
+static int is_odd_in_v(int kind)
 {
     return kind & 1 && kind < GLINT_OUT_ENERGY;
 }
 
-/* Sets OF_U to the polynomial in u, along the row of rays at V, of those
- * terms of KIND whose powers of v are odd (if ODD is set) or even. */
-static void set_parity(const struct glint_transfer *t,
-                       const struct glint_horner *k, int kind, int odd,
-                       int32_t v_q30, int32_t v2_q30, int32_t *of_u)
+/* Sets OF_U to the polynomial in u, along the row of rays at V_Q30, of the
+ * terms of KIND with odd powers of v (ODD = 1) or even ones (ODD = 0). */
+static void sum_powers_of_v(const struct glint_transfer *t,
+                            const struct glint_horner *k, int kind, int odd,
+                            int32_t v_q30, int32_t v2_q30, int32_t *of_u)
 {
     k->across(of_u, t->table[kind][odd], 2 * GLINT_TABLE_WIDTH,
               (t->degree_v[kind] - odd) / 2, v2_q30,
@@ -31,40 +32,41 @@ static void set_parity(const struct glint_transfer *t,
         of_u[a] = q_mul(of_u[a], v_q30, 30);
 }
 
-/* Sets OF_U to the polynomial in u of output KIND along the row of rays at V.
- */
-static void set_row(const struct glint_transfer *t,
-                    const struct glint_horner *k, int kind, int32_t v_q30,
-                    int32_t v2_q30, int32_t *of_u)
+/* Sets OF_U to the polynomial in u of output KIND, along the row of rays at
+ * V_Q30. */
+static void set_row_polynomial(const struct glint_transfer *t,
+                               const struct glint_horner *k, int kind,
+                               int32_t v_q30, int32_t v2_q30, int32_t *of_u)
 {
     int32_t odd[GLINT_TABLE_WIDTH];
 
     if (!t->whole) {
-        set_parity(t, k, kind, is_odd(kind), v_q30, v2_q30, of_u);
+        sum_powers_of_v(t, k, kind, is_odd_in_v(kind), v_q30, v2_q30, of_u);
         return;
     }
-    set_parity(t, k, kind, 0, v_q30, v2_q30, of_u);
+    sum_powers_of_v(t, k, kind, 0, v_q30, v2_q30, of_u);
     if (t->degree_v[kind] == 0)
         return;
-    set_parity(t, k, kind, 1, v_q30, v2_q30, odd);
+    sum_powers_of_v(t, k, kind, 1, v_q30, v2_q30, odd);
     for (int a = 0; a <= t->degree_u[kind]; a++)
         of_u[a] += odd[a];
 }
 
-/* Sets the polynomials in u of all outputs along the row of rays at V. */
-static void set_rows(const struct glint_transfer *t,
-                     const struct glint_horner *k, int32_t v_q30,
-                     int32_t (*of_u)[GLINT_TABLE_WIDTH])
+/* Sets the polynomials in u of all outputs, along the row of rays at V_Q30. */
+static void set_row_polynomials(const struct glint_transfer *t,
+                                const struct glint_horner *k, int32_t v_q30,
+                                int32_t (*of_u)[GLINT_TABLE_WIDTH])
 {
     const int32_t v2_q30 = q_mul(v_q30, v_q30, 30);
 
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (transfer_has(t, kind))
-            set_row(t, k, kind, v_q30, v2_q30, of_u[kind]);
+            set_row_polynomial(t, k, kind, v_q30, v2_q30, of_u[kind]);
 }
 
-/* Converts N values of the energy polynomial to energies, in place. */
-static void convert_energies(const struct glint_transfer *t, int32_t *e, int n)
+/* Converts N values E of the energy polynomial to energies, in place. */
+static void convert_energy_values(const struct glint_transfer *t, int32_t *e,
+                                  int n)
 {
     const int32_t most = (INT32_C(1) << 29) >> t->head;
 
@@ -75,17 +77,17 @@ static void convert_energies(const struct glint_transfer *t, int32_t *e, int n)
             e[i] = q_mul(e[i], e[i], 29);
 }
 
-/* Computes the outputs of the rays at U from the polynomials of their row,
- * per kind. */
-static void evaluate_rays(const struct glint_transfer *t,
-                          const struct glint_horner *k, const int32_t *u_q30,
-                          int32_t (*out)[RAYS])
+/* Computes all outputs of the rays at U_Q30 from the polynomials of their
+ * row. */
+static void evaluate_row_rays(const struct glint_transfer *t,
+                              const struct glint_horner *k,
+                              const int32_t *u_q30, int32_t (*out)[RAYS])
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (transfer_has(t, kind))
             k->along(out[kind], t->of_u[kind], t->degree_u[kind], u_q30, RAYS);
     if (transfer_has(t, GLINT_OUT_ENERGY))
-        convert_energies(t, out[GLINT_OUT_ENERGY], RAYS);
+        convert_energy_values(t, out[GLINT_OUT_ENERGY], RAYS);
 }
 
 void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
@@ -101,10 +103,10 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
         out->at[kind] = 0;
         if (!transfer_has(t, kind))
             continue;
-        set_row(t, k, kind, v_q30, v2_q30, of_u);
+        set_row_polynomial(t, k, kind, v_q30, v2_q30, of_u);
         k->along(&out->at[kind], of_u, t->degree_u[kind], &u_q30, 1);
     }
-    convert_energies(t, &out->at[GLINT_OUT_ENERGY], 1);
+    convert_energy_values(t, &out->at[GLINT_OUT_ENERGY], 1);
 }
 
 void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
@@ -114,6 +116,6 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
     const struct glint_horner *k = glint_horner_of(transfer->sets);
 
     if (is_new)
-        set_rows(transfer, k, v_q30, transfer->of_u);
-    evaluate_rays(transfer, k, u_q30, out);
+        set_row_polynomials(transfer, k, v_q30, transfer->of_u);
+    evaluate_row_rays(transfer, k, u_q30, out);
 }

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Combines the models of several zoom positions to one lens.
+ * Combines the models of several zoom positions into one lens.
  *
- *    in   models of one lens, with the same surfaces, film and band
- *    out  a header interpolated between the headers of two positions, a list of
- *         the ghosts of all models, and interpolated bundles
+ *   in   models of one lens, with the same surfaces, film and band
+ *   out  a header interpolated between those of two positions, a list of the
+ *        ghosts of all models, and interpolated bundles
  *
- * Ghosts of all models are the same pairs of surfaces in the same order. A
- * ghost whose pupil is divided has further parts; the list has as many as the
- * model with the most. Where both neighbouring models divide the pupil of a
- * ghost alike at an angle, the two are mixed; otherwise the nearer model is
- * drawn. Where one model has no light, the other is extrapolated using a third
- * model farther away, or faded.
+ * All models contain the same pairs of surfaces as ghosts, in the same order.
+ * A ghost whose pupil is divided has further parts; the list has as many as
+ * the model with the most. Where both neighbouring models divide the pupil of
+ * a ghost in the same way at an angle, the two are mixed; otherwise the nearer
+ * model is drawn. Where one model has no light, the other one is extrapolated
+ * using a third model farther away, or faded.
  */
 #include "glint/model.h"
 
@@ -29,14 +29,15 @@ static const char *const fault_text[GLINT_BLOB_FAULTS] =
 
 /* ------------------------------------------------------------------- ghosts */
 
-static int count_whole(const struct glint_lens *lens)
+static int count_ghosts_without_parts(const struct glint_lens *lens)
 {
     return (int)(lens->header->n_ghosts - lens->header->n_parts);
 }
 
-/* Returns the number of further parts of ghost G in model LENS. *NEXT is the
- * index of the first part that has not been counted; it is advanced. */
-static int count_parts(const struct glint_lens *lens, int g, uint32_t *next)
+/* Returns the number of further parts of ghost G in model LENS. Advances *NEXT,
+ * the index of the first part that has not been counted, past them. */
+static int count_ghost_parts(const struct glint_lens *lens, int g,
+                             uint32_t *next)
 {
     const struct glint_model_ghost *const of = &lens->ghost[g];
     int n = 0;
@@ -49,11 +50,11 @@ static int count_parts(const struct glint_lens *lens, int g, uint32_t *next)
     return n;
 }
 
-/* Lists the ghosts of all models and their parts. Returns the text of an
- * error, or NULL. */
-static const char *list_ghosts(struct glint_zoom_lens *z)
+/* Lists the ghosts of all models and their parts. Returns an error text, or
+ * NULL. */
+static const char *list_all_ghosts(struct glint_zoom_lens *z)
 {
-    const int n = count_whole(&z->model[0]);
+    const int n = count_ghosts_without_parts(&z->model[0]);
     uint32_t next[GLINT_MAX_ZOOM_MODELS];
     int end = n;
 
@@ -69,7 +70,7 @@ static const char *list_ghosts(struct glint_zoom_lens *z)
         z->whole[g] = (int16_t)g;
         z->number[g] = 0;
         for (int k = 0; k < z->n_models; k++) {
-            const int parts = count_parts(&z->model[k], g, &next[k]);
+            const int parts = count_ghost_parts(&z->model[k], g, &next[k]);
 
             most = parts > most ? parts : most;
         }
@@ -89,23 +90,23 @@ static const char *list_ghosts(struct glint_zoom_lens *z)
     return NULL;
 }
 
-static int has_ghost(const struct glint_zoom_lens *z, int k, int g)
+static int has_model_ghost(const struct glint_zoom_lens *z, int k, int g)
 {
     return !z->has[k] || (z->has[k][g / 32] >> g % 32 & 1);
 }
 
-/* Finds, for each ghost, the nearest models with this ghost on both sides of
- * the zoom position. END receives the first and the last model in use. */
-static void find_sides(struct glint_zoom_lens *z, int end[2])
+/* Finds the nearest models on both sides of the zoom position that contain each
+ * ghost. END receives the first and the last of these models. */
+static void find_side_models(struct glint_zoom_lens *z, int end[2])
 {
     end[0] = z->below;
     end[1] = z->below + 1;
-    for (int g = 0; g < count_whole(&z->model[0]); g++) {
+    for (int g = 0; g < count_ghosts_without_parts(&z->model[0]); g++) {
         int below = z->below, above = z->below + 1;
 
-        while (!has_ghost(z, below, g))
+        while (!has_model_ghost(z, below, g))
             below--;
-        while (!has_ghost(z, above, g))
+        while (!has_model_ghost(z, above, g))
             above++;
         z->side[0][g] = (uint8_t)below;
         z->side[1][g] = (uint8_t)above;
@@ -114,35 +115,36 @@ static void find_sides(struct glint_zoom_lens *z, int end[2])
     }
 }
 
-/* Sets the indices in the model of SIDE of the parts of ghost G: PARTS parts
- * from AT on. */
-static void set_places(struct glint_zoom_lens *z, int side, int g, uint32_t at,
-                       int parts)
+/* Sets the indices of ghost G and its parts in the model on SIDE, which has
+ * PARTS parts from index AT on. */
+static void set_side_indices(struct glint_zoom_lens *z, int side, int g,
+                             uint32_t at, int parts)
 {
     z->place[side][g] = (int16_t)g;
     for (int e = z->part_from[g]; e < z->part_from[g + 1]; e++)
         z->place[side][e] = (int16_t)(z->number[e] <= parts ? (int)at++ : -1);
 }
 
-/* Sets the indices in model K of all ghosts and parts that have K as a side. */
-static void find_places(struct glint_zoom_lens *z, int k)
+/* Sets the indices in model K of all ghosts and parts for which K is the model
+ * on either side. */
+static void find_model_indices(struct glint_zoom_lens *z, int k)
 {
     const struct glint_lens *const m = &z->model[k];
-    uint32_t next = (uint32_t)count_whole(m);
+    uint32_t next = (uint32_t)count_ghosts_without_parts(m);
 
-    for (int g = 0; g < count_whole(m); g++) {
+    for (int g = 0; g < count_ghosts_without_parts(m); g++) {
         const uint32_t at = next;
-        const int parts = count_parts(m, g, &next);
+        const int parts = count_ghost_parts(m, g, &next);
 
         for (int side = 0; side < 2; side++)
             if (z->side[side][g] == k)
-                set_places(z, side, g, at, parts);
+                set_side_indices(z, side, g, at, parts);
     }
 }
 
 /* ------------------------------------------------------------------- header */
 
-/* Returns A (1 - PART) + B PART. */
+/* Returns A (1 - PART_Q30) + B PART_Q30. */
 static struct glint_real interpolate_real(struct glint_real a,
                                           struct glint_real b, int32_t part_q30)
 {
@@ -161,10 +163,10 @@ static struct glint_real interpolate_real(struct glint_real a,
     return real_of(x + y, e - 30);
 }
 
-/* Returns the position of the zoom between model FROM (0) and model TO (1);
- * below 0 if the zoom is on the far side of FROM. */
-static int32_t compute_way_q30(const struct glint_zoom_lens *z, int from,
-                               int to)
+/* Returns the zoom position relative to model FROM (0) and model TO (1); below
+ * 0 if FROM lies between the position and TO. */
+static int32_t compute_zoom_position_q30(const struct glint_zoom_lens *z,
+                                         int from, int to)
 {
     const int64_t at_q30 = z->along_q30[from];
 
@@ -172,12 +174,12 @@ static int32_t compute_way_q30(const struct glint_zoom_lens *z, int from,
                              z->along_q30[to] - at_q30);
 }
 
-static void set_header(struct glint_zoom_lens *z)
+static void interpolate_header(struct glint_zoom_lens *z)
 {
     const struct glint_model_header *const a = z->model[z->below].header;
     const struct glint_model_header *const b = z->model[z->below + 1].header;
     struct glint_model_header *const h = &z->header;
-    const int32_t part = compute_way_q30(z, z->below, z->below + 1);
+    const int32_t part = compute_zoom_position_q30(z, z->below, z->below + 1);
 
     h->focal_mm = interpolate_real(a->focal_mm, b->focal_mm, part);
     h->back_focal_mm =
@@ -196,29 +198,30 @@ static void set_header(struct glint_zoom_lens *z)
     }
 }
 
-static int is_equal(struct glint_real a, struct glint_real b)
+static int are_reals_equal(struct glint_real a, struct glint_real b)
 {
     return a.mantissa == b.mantissa && a.exponent == b.exponent;
 }
 
-/* Returns the reason why B is not another position of the zoom A, or NULL if
- * it is one. */
-static const char *check_pair(const struct glint_lens *a,
-                              const struct glint_lens *b)
+/* Returns why B is not another position of the zoom lens A; NULL if it is
+ * one. */
+static const char *check_zoom_positions(const struct glint_lens *a,
+                                        const struct glint_lens *b)
 {
     const struct glint_model_header *const h = a->header, *const g = b->header;
 
     if (h->basis != GLINT_BASIS_AUTO || g->basis != GLINT_BASIS_AUTO)
-        return "a zoom's models have another basis than auto";
-    if (h->n_surfaces != g->n_surfaces || count_whole(a) != count_whole(b))
+        return "a zoom's models must have the basis auto";
+    if (h->n_surfaces != g->n_surfaces ||
+        count_ghosts_without_parts(a) != count_ghosts_without_parts(b))
         return "a zoom's models are of different lenses";
-    if (!is_equal(h->film_width_mm, g->film_width_mm) ||
-        !is_equal(h->film_height_mm, g->film_height_mm) ||
-        !is_equal(h->field_mm, g->field_mm) ||
+    if (!are_reals_equal(h->film_width_mm, g->film_width_mm) ||
+        !are_reals_equal(h->film_height_mm, g->film_height_mm) ||
+        !are_reals_equal(h->field_mm, g->field_mm) ||
         h->wave_lo_q24 != g->wave_lo_q24 || h->wave_hi_q24 != g->wave_hi_q24 ||
         h->sine_hi_q30 != g->sine_hi_q30)
         return "a zoom's models differ in film, field, band or largest angle";
-    for (int k = 0; k < count_whole(a); k++)
+    for (int k = 0; k < count_ghosts_without_parts(a); k++)
         if (a->ghost[k].i != b->ghost[k].i || a->ghost[k].j != b->ghost[k].j)
             return "a zoom's models have different ghosts";
     return NULL;
@@ -226,47 +229,49 @@ static const char *check_pair(const struct glint_lens *a,
 
 /* ---------------------------------------------------------------- transfers */
 
-/* Returns the model on SIDE of the ghost or part E. */
-static const struct glint_lens *get_model(const struct glint_zoom_lens *z,
-                                          int e, int side)
+/* Returns the model on SIDE that draws ghost or part E. */
+static const struct glint_lens *get_side_model(const struct glint_zoom_lens *z,
+                                               int e, int side)
 {
     return &z->model[z->side[side][z->whole[e]]];
 }
 
-/* Returns the position of the zoom between the two models of GHOST, 0 .. 1. */
-static int32_t compute_part_q30(const struct glint_zoom_lens *z, int ghost)
+/* Returns the zoom position between the two models that draw GHOST, 0 .. 1. */
+static int32_t compute_mix_fraction_q30(const struct glint_zoom_lens *z,
+                                        int ghost)
 {
     const int g = z->whole[ghost];
 
-    return compute_way_q30(z, z->side[0][g], z->side[1][g]);
+    return compute_zoom_position_q30(z, z->side[0][g], z->side[1][g]);
 }
 
-/* Returns the annulus member of the system of entry E on SIDE at this angle
- * and wavelength, or -1 if no light gets through there. */
-static int find_annulus(const struct glint_zoom_lens *z, int e, int side,
-                        int32_t sine_q30, int32_t wave_q24)
+/* Returns the annulus of the system of ghost or part E on SIDE at this angle
+ * and wavelength; -1 if no light passes there. */
+static int find_system_annulus(const struct glint_zoom_lens *z, int e, int side,
+                               int32_t sine_q30, int32_t wave_q24)
 {
     const int at = z->place[side][e];
     const struct glint_model_system *const s =
         at < 0 ? NULL
-               : glint_transfer_system(get_model(z, e, side), at, sine_q30,
+               : glint_transfer_system(get_side_model(z, e, side), at, sine_q30,
                                        wave_q24);
 
     return s ? s->annulus : -1;
 }
 
-/* Returns whether both sides divide the pupil of ghost G alike. Sets
- * LIT[side] to whether light gets through any part on that side. */
-static int is_alike(const struct glint_zoom_lens *z, int g, int32_t sine_q30,
-                    int32_t wave_q24, int lit[2])
+/* Returns whether both sides divide the pupil of ghost G in the same way. Sets
+ * LIT[side] to whether light passes any part on that side. */
+static int is_pupil_divided_alike(const struct glint_zoom_lens *z, int g,
+                                  int32_t sine_q30, int32_t wave_q24,
+                                  int lit[2])
 {
     int alike = 1;
 
     lit[0] = lit[1] = 0;
     for (int q = z->part_from[g] - 1; q < z->part_from[g + 1]; q++) {
         const int e = q < z->part_from[g] ? g : q;
-        const int a = find_annulus(z, e, 0, sine_q30, wave_q24);
-        const int b = find_annulus(z, e, 1, sine_q30, wave_q24);
+        const int a = find_system_annulus(z, e, 0, sine_q30, wave_q24);
+        const int b = find_system_annulus(z, e, 1, sine_q30, wave_q24);
 
         lit[0] |= a >= 0;
         lit[1] |= b >= 0;
@@ -275,92 +280,96 @@ static int is_alike(const struct glint_zoom_lens *z, int g, int32_t sine_q30,
     return alike;
 }
 
-/* Sets TRANSFER to entry E of the model on SIDE, without mixing. Returns
- * whether light gets through. */
-static int set_from_side(struct glint_transfer *transfer,
-                         const struct glint_zoom_lens *z, int e, int side,
-                         int32_t sine_q30, int32_t wave_q24)
+/* Sets TRANSFER to ghost or part E of the model on SIDE, without mixing.
+ * Returns whether light passes. */
+static int set_transfer_from_side(struct glint_transfer *transfer,
+                                  const struct glint_zoom_lens *z, int e,
+                                  int side, int32_t sine_q30, int32_t wave_q24)
 {
     return z->place[side][e] >= 0 &&
-           glint_transfer_init(transfer, get_model(z, e, side),
+           glint_transfer_init(transfer, get_side_model(z, e, side),
                                z->place[side][e], sine_q30, wave_q24);
 }
 
-/* Returns the nearest model beyond SIDE that has ghost G and is at least as
- * far from SIDE as the two sides are from each other, so that extrapolation
- * at most doubles a distance; -1 if there is none. */
-static int find_beyond(const struct glint_zoom_lens *z, int g, int side)
+/* Returns the nearest model behind SIDE that contains ghost G and is at least
+ * as far from SIDE as both sides are from each other, so that extrapolation at
+ * most doubles a distance; -1: none. */
+static int find_model_behind_side(const struct glint_zoom_lens *z, int g,
+                                  int side)
 {
     const int from = z->side[side][g], step = side ? 1 : -1;
     const int64_t gap =
         (int64_t)z->along_q30[z->side[1][g]] - z->along_q30[z->side[0][g]];
 
     for (int k = from + step; k >= 0 && k < z->n_models; k += step)
-        if (has_ghost(z, k, g) &&
+        if (has_model_ghost(z, k, g) &&
             step * ((int64_t)z->along_q30[k] - z->along_q30[from]) >= gap)
             return k;
     return -1;
 }
 
-/* Sets TRANSFER to ghost G, extrapolated from SIDE and a model beyond it.
- * The ghost must have light on SIDE only, and no further parts there.
+/* Sets TRANSFER to ghost G, extrapolated from the model on SIDE and one behind
+ * it. The ghost must have light on SIDE only, and no further parts there.
  * Returns whether this is possible. */
 static int extrapolate_ghost(struct glint_transfer *transfer,
                              const struct glint_zoom_lens *z, int g, int side,
                              int32_t sine_q30, int32_t wave_q24)
 {
-    const int beyond = find_beyond(z, g, side);
+    const int beyond = find_model_behind_side(z, g, side);
     const struct glint_model_system *there;
 
     for (int q = z->part_from[g]; q < z->part_from[g + 1]; q++)
-        if (find_annulus(z, q, side, sine_q30, wave_q24) >= 0)
+        if (find_system_annulus(z, q, side, sine_q30, wave_q24) >= 0)
             return 0;
     if (beyond < 0)
         return 0;
     there = glint_transfer_system(&z->model[beyond], g, sine_q30, wave_q24);
     if (!there || there->annulus != 0 ||
-        find_annulus(z, g, side, sine_q30, wave_q24) != 0)
+        find_system_annulus(z, g, side, sine_q30, wave_q24) != 0)
         return 0;
-    return set_from_side(transfer, z, g, side, sine_q30, wave_q24) &&
-           glint_transfer_mix(transfer, &z->model[beyond], g, sine_q30,
-                              wave_q24,
-                              compute_way_q30(z, z->side[side][g], beyond));
+    return set_transfer_from_side(transfer, z, g, side, sine_q30, wave_q24) &&
+           glint_transfer_mix(
+               transfer, &z->model[beyond], g, sine_q30, wave_q24,
+               compute_zoom_position_q30(z, z->side[side][g], beyond));
 }
 
-static int transfer_between(struct glint_transfer *transfer,
-                            const struct glint_zoom_lens *zoom, int ghost,
-                            int32_t sine_q30, int32_t wave_q24)
+static int interpolate_transfer(struct glint_transfer *transfer,
+                                const struct glint_zoom_lens *zoom, int ghost,
+                                int32_t sine_q30, int32_t wave_q24)
 {
     const struct glint_zoom_lens *const z = zoom;
-    const int32_t part_q30 = compute_part_q30(z, ghost);
+    const int32_t part_q30 = compute_mix_fraction_q30(z, ghost);
     const int nearer = part_q30 >= TRANSFER_ONE_Q30 / 2;
     int lit[2];
     int alike;
 
     if (part_q30 <= 0 || part_q30 >= TRANSFER_ONE_Q30)
-        return set_from_side(transfer, z, ghost, part_q30 > 0, sine_q30,
-                             wave_q24);
-    alike = is_alike(z, z->whole[ghost], sine_q30, wave_q24, lit);
+        return set_transfer_from_side(transfer, z, ghost, part_q30 > 0,
+                                      sine_q30, wave_q24);
+    alike = is_pupil_divided_alike(z, z->whole[ghost], sine_q30, wave_q24, lit);
     if (!lit[0] || !lit[1]) {
         const int side = lit[1];
 
-        if (lit[side] && ghost < count_whole(&z->model[0]) &&
+        if (lit[side] && ghost < count_ghosts_without_parts(&z->model[0]) &&
             extrapolate_ghost(transfer, z, ghost, side, sine_q30, wave_q24))
             return 1;
-        if (!set_from_side(transfer, z, ghost, side, sine_q30, wave_q24))
+        if (!set_transfer_from_side(transfer, z, ghost, side, sine_q30,
+                                    wave_q24))
             return 0;
         glint_blend_fade(transfer,
                          side ? part_q30 : TRANSFER_ONE_Q30 - part_q30);
         return 1;
     }
     if (!alike)
-        return set_from_side(transfer, z, ghost, nearer, sine_q30, wave_q24);
-    if (!set_from_side(transfer, z, ghost, 0, sine_q30, wave_q24))
+        return set_transfer_from_side(transfer, z, ghost, nearer, sine_q30,
+                                      wave_q24);
+    if (!set_transfer_from_side(transfer, z, ghost, 0, sine_q30, wave_q24))
         return 0;
-    return glint_transfer_mix(transfer, get_model(z, ghost, 1),
+    return glint_transfer_mix(transfer, get_side_model(z, ghost, 1),
                               z->place[1][ghost], sine_q30, wave_q24,
                               part_q30) ||
-           !nearer || set_from_side(transfer, z, ghost, 1, sine_q30, wave_q24);
+           !nearer ||
+           set_transfer_from_side(transfer, z, ghost, 1, sine_q30, wave_q24);
 }
 
 /* ------------------------------------------------------------------ opening */
@@ -377,10 +386,10 @@ void glint_zoom_set(struct glint_zoom_lens *zoom, int32_t along_q30)
         k++;
     z->now_q30 = along_q30;
     z->below = k;
-    find_sides(z, end);
+    find_side_models(z, end);
     for (int m = end[0]; m <= end[1]; m++)
-        find_places(z, m);
-    set_header(z);
+        find_model_indices(z, m);
+    interpolate_header(z);
 }
 
 enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
@@ -393,40 +402,44 @@ enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
 
     if (n < 2 || n > GLINT_MAX_ZOOM_MODELS || along_q30[0] != 0 ||
         along_q30[n - 1] != TRANSFER_ONE_Q30)
-        wrong = "a zoom's positions do not go from end to end";
+        wrong = "a zoom's positions must begin at 0 and end at 1";
     for (int k = 0; k < n && !wrong; k++) {
         z->model[k] = model[k];
         z->along_q30[k] = along_q30[k];
         z->has[k] = NULL;
         if (k && along_q30[k] <= along_q30[k - 1])
-            wrong = "a zoom's positions do not rise";
+            wrong = "a zoom's positions must ascend";
         else if (k)
-            wrong = check_pair(&model[0], &model[k]);
+            wrong = check_zoom_positions(&model[0], &model[k]);
     }
     z->n_models = n;
     if (!wrong)
-        wrong = list_ghosts(z);
+        wrong = list_all_ghosts(z);
     if (wrong) {
         *reason = wrong;
         return GLINT_E_LENS;
     }
     z->header = *model[0].header;
-    z->header.n_ghosts = (uint32_t)z->part_from[count_whole(&model[0])];
-    z->header.n_parts = z->header.n_ghosts - (uint32_t)count_whole(&model[0]);
+    z->header.n_ghosts =
+        (uint32_t)z->part_from[count_ghosts_without_parts(&model[0])];
+    z->header.n_parts =
+        z->header.n_ghosts - (uint32_t)count_ghosts_without_parts(&model[0]);
     z->header.n_systems = 0;
-    z->transfer = transfer_between;
+    z->transfer = interpolate_transfer;
     z->lens = (struct glint_lens){&z->header, z->ghost, NULL, z};
     glint_zoom_set(z, 0);
     return GLINT_OK;
 }
 
-/* Records, for each model M of the file, which ghosts it has. */
-static enum glint_status set_lacks(struct glint_zoom_lens *zoom,
-                                   struct glint_blob *blob,
-                                   const struct glint_zoom_model *m,
-                                   const char **reason)
+/* Records which ghosts each model of the file contains. M: the file's table of
+ * models. */
+static enum glint_status record_missing_ghosts(struct glint_zoom_lens *zoom,
+                                               struct glint_blob *blob,
+                                               const struct glint_zoom_model *m,
+                                               const char **reason)
 {
-    const uint32_t words = ((uint32_t)count_whole(&zoom->model[0]) + 31) / 32;
+    const uint32_t words =
+        ((uint32_t)count_ghosts_without_parts(&zoom->model[0]) + 31) / 32;
 
     for (int k = 0; k < zoom->n_models; k++) {
         const int end = k == 0 || k == zoom->n_models - 1;
@@ -479,5 +492,5 @@ enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
     if (glint_zoom_join(zoom, zoom->model, zoom->along_q30, (int)h->n_models,
                         reason) != GLINT_OK)
         return GLINT_E_LENS;
-    return set_lacks(zoom, &blob, m, reason);
+    return record_missing_ghosts(zoom, &blob, m, reason);
 }

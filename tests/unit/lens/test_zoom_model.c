@@ -281,10 +281,10 @@ TEST(rejects_invalid_zooms)
                      GLINT_E_LENS);
     file[bytes / 2] ^= 1;
     m[1].along_q30 = 1 << 30;
-    expect_open_error("do not rise");
+    expect_open_error("must ascend");
     m[1] = kept;
     m[0].along_q30 = 1;
-    expect_open_error("from end to end");
+    expect_open_error("must begin at 0");
     m[0].along_q30 = 0;
     m[1].at = (uint32_t)bytes;
     expect_open_error("outside");
