@@ -113,9 +113,9 @@ static uint32_t append_system_box(struct glint_draft *d,
     return glint_draft_put(d, packed, n * sizeof *packed);
 }
 
-static void write_system(struct glint_draft *d, uint32_t where,
-                         const struct glint_fitted_system *f,
-                         const struct glint_quantised_system *q)
+static void write_model_system(struct glint_draft *d, uint32_t where,
+                               const struct glint_fitted_system *f,
+                               const struct glint_quantised_system *q)
 {
     /* The order of these calls determines the layout of the file. */
     const int32_t range_q30[2] = {round_to_q30(f->y_lo), round_to_q30(f->y_hi)};
@@ -169,10 +169,10 @@ glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
     n = 0;
     for (int k = 0; k < setup->n_ghosts; k++)
         for (int m = 0; m < fitted[k].n_systems; m++, n++)
-            write_system(draft,
-                         h.system_at +
-                             n * (uint32_t)sizeof(struct glint_model_system),
-                         &fitted[k].system[m], &quantised[k][m]);
+            write_model_system(
+                draft,
+                h.system_at + n * (uint32_t)sizeof(struct glint_model_system),
+                &fitted[k].system[m], &quantised[k][m]);
     glint_draft_amend(draft, 0, &h, sizeof h);
     return draft->out_of_memory ? GLINT_E_MEMORY : GLINT_OK;
 }
@@ -187,7 +187,7 @@ struct glint_lens glint_draft_lens(const struct glint_draft *draft)
 }
 
 /* Encodes error X, rounded up, as glint_model_error_q20() decodes it. */
-static uint16_t encode_error(double x)
+static uint16_t encode_rounded_error(double x)
 {
     double mantissa = ceil(x * 0x1p20);
     int shift = 0;
@@ -207,9 +207,9 @@ void glint_draft_note(struct glint_draft *draft, int system,
     for (uint32_t k = 0; k < s->n_outputs; k++, o++) {
         const struct glint_errors *e = &measured->of[o->kind];
 
-        o->rms = encode_error(e->rms);
-        o->p50 = encode_error(e->p50);
-        o->p99 = encode_error(e->p99);
-        o->max = encode_error(e->max);
+        o->rms = encode_rounded_error(e->rms);
+        o->p50 = encode_rounded_error(e->p50);
+        o->p99 = encode_rounded_error(e->p99);
+        o->max = encode_rounded_error(e->max);
     }
 }

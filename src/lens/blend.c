@@ -276,7 +276,8 @@ static void mix_energy_output(const struct glint_zoom_mix *blend,
 }
 
 /* Multiplies output KIND by the fraction SHARE_Q30. */
-static void scale_output(struct glint_transfer *t, int kind, int32_t share_q30)
+static void scale_output_table(struct glint_transfer *t, int kind,
+                               int32_t share_q30)
 {
     for (int b = 0; b < ROWS; b++)
         for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
@@ -287,7 +288,7 @@ void glint_blend_fade(struct glint_transfer *t, int32_t share_q30)
 {
     for (int k = 0; k < t->roots; k++)
         share_q30 = (int32_t)q_root((uint64_t)share_q30 << 30);
-    scale_output(t, GLINT_OUT_ENERGY, share_q30);
+    scale_output_table(t, GLINT_OUT_ENERGY, share_q30);
 }
 
 /* ----------------------------------------------------------------- barrels */
@@ -295,14 +296,15 @@ void glint_blend_fade(struct glint_transfer *t, int32_t share_q30)
 /* Opens barrel KIND by the fraction SHARE_Q30: interpolates towards a barrel
  * that blocks nothing. A barrel whose unit is so fine that sums would reach
  * 2^30 stays unchanged; no lens has one. */
-static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
+static void widen_barrel_opening(struct glint_transfer *t, int kind,
+                                 int32_t share_q30)
 {
     const int up = 46 + t->exponent[kind];
 
     if (up < LEAST_UP)
         return;
     share_q30 = share_q30 > LATE_Q30 ? 4 * (share_q30 - LATE_Q30) : 0;
-    scale_output(t, kind, TRANSFER_ONE_Q30 - share_q30);
+    scale_output_table(t, kind, TRANSFER_ONE_Q30 - share_q30);
     t->table[kind][0][0] +=
         (int32_t)shift_right_rounded((int64_t)OPEN_Q16 * share_q30, up);
 }
@@ -407,7 +409,8 @@ static void add_unmatched_barrel(struct glint_zoom_mix *blend,
         return;
     blend->taken |= UINT32_C(1) << added;
     keep_barrel_in_stop(blend, 1, BARREL + added);
-    open_barrel(blend->to, BARREL + added, TRANSFER_ONE_Q30 - blend->part_q30);
+    widen_barrel_opening(blend->to, BARREL + added,
+                         TRANSFER_ONE_Q30 - blend->part_q30);
 }
 
 static void mix_barrel_output(struct glint_zoom_mix *blend,
@@ -449,6 +452,6 @@ void glint_blend_end(const struct glint_zoom_mix *blend)
         if (transfer_has(blend->to, kind) &&
             !(blend->taken >> (kind - BARREL) & 1)) {
             keep_barrel_in_stop(blend, 0, kind);
-            open_barrel(blend->to, kind, blend->part_q30);
+            widen_barrel_opening(blend->to, kind, blend->part_q30);
         }
 }

@@ -306,8 +306,8 @@ static const char *check_output_coefficients(struct check *c,
     return sum < LIMIT ? NULL : too_large;
 }
 
-static const char *check_output(struct check *c,
-                                const struct glint_model_output *o)
+static const char *check_system_output(struct check *c,
+                                       const struct glint_model_output *o)
 {
     const char *reason;
 
@@ -341,7 +341,7 @@ static const char *check_system_outputs(struct check *c,
             return "a system lacks an output, or outputs are unsorted";
         if (o[k].kind >= GLINT_OUT_KINDS || (k && o[k].kind <= o[k - 1].kind))
             return "an output's kind is unknown, or outputs are unsorted";
-        reason = check_output(c, &o[k]);
+        reason = check_system_output(c, &o[k]);
         if (reason)
             return reason;
     }
@@ -351,8 +351,8 @@ static const char *check_system_outputs(struct check *c,
                : NULL;
 }
 
-static const char *check_system(struct check *check,
-                                const struct glint_model_system *s)
+static const char *check_ghost_system(struct check *check,
+                                      const struct glint_model_system *s)
 {
     const int lens = glint_basis_is_lens(check->header->basis);
     const char *reason;
@@ -432,7 +432,7 @@ static const char *check_model_contents(struct check *c)
     const char *reason = check_model_header(c);
 
     for (uint32_t k = 0; !reason && k < c->header->n_systems; k++)
-        reason = check_system(c, &c->system[k]);
+        reason = check_ghost_system(c, &c->system[k]);
     return reason ? reason : check_ghost_lists(c);
 }
 

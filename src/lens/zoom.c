@@ -311,9 +311,10 @@ static int find_model_behind_side(const struct glint_zoom_lens *z, int g,
 /* Sets TRANSFER to ghost G, extrapolated from the model on SIDE and one behind
  * it. The ghost must have light on SIDE only, and no further parts there.
  * Returns whether this is possible. */
-static int extrapolate_ghost(struct glint_transfer *transfer,
-                             const struct glint_zoom_lens *z, int g, int side,
-                             int32_t sine_q30, int32_t wave_q24)
+static int extrapolate_ghost_transfer(struct glint_transfer *transfer,
+                                      const struct glint_zoom_lens *z, int g,
+                                      int side, int32_t sine_q30,
+                                      int32_t wave_q24)
 {
     const int beyond = find_model_behind_side(z, g, side);
     const struct glint_model_system *there;
@@ -351,7 +352,8 @@ static int interpolate_transfer(struct glint_transfer *transfer,
         const int side = lit[1];
 
         if (lit[side] && ghost < count_ghosts_without_parts(&z->model[0]) &&
-            extrapolate_ghost(transfer, z, ghost, side, sine_q30, wave_q24))
+            extrapolate_ghost_transfer(transfer, z, ghost, side, sine_q30,
+                                       wave_q24))
             return 1;
         if (!set_transfer_from_side(transfer, z, ghost, side, sine_q30,
                                     wave_q24))

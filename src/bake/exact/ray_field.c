@@ -307,8 +307,8 @@ static void add_second_differences(const struct coarse_grid *l, int i, int j,
 
 /* Sets the sags of SIGHT for one cell per side: (D + E) / 12 with the second
  * differences D along rows and E along columns. */
-static void compute_sags(struct ray_sight *sight, double stop_mm,
-                         const struct coarse_grid *l)
+static void compute_barrel_sags(struct ray_sight *sight, double stop_mm,
+                                const struct coarse_grid *l)
 {
     const double by = LOOKS;
 
@@ -364,7 +364,7 @@ static void measure_brightness(const struct ray_field_config *cfg,
                 n++;
             }
     field->apart_mm = n ? sqrt(squares / n) : HUGE_VAL;
-    compute_sags(sight, cfg->setup->optics.stop_radius_mm, &look[1]);
+    compute_barrel_sags(sight, cfg->setup->optics.stop_radius_mm, &look[1]);
     field->energy_unit = 1.5 * most;
     if (field->flux == 0) { /* the stop's opening lies between the rays */
         field->flux = field->pupil.energy *

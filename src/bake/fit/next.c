@@ -86,7 +86,7 @@ static double max_unhelped_error(const struct glint_next_rules *f,
  * halving did not help. It is larger for fast lenses: where their rays fold in
  * the stop, halving angles does not help but dividing the box does, and each
  * narrower zone would need as many parts. */
-static double stuck_width_deg(const struct glint_next_rules *f)
+static double compute_stuck_width_deg(const struct glint_next_rules *f)
 {
     return f->visible->shaped || f->visible->far ? SHAPED_STUCK * STUCK_DEG
            : f->visible->wide                    ? WIDE_STUCK * STUCK_DEG
@@ -113,7 +113,7 @@ double glint_next_hopeless(const struct glint_next_rules *f,
         return p->depth < max_box_halvings(f, p)
                    ? HOPELESS * max_undivided_error(aim)
                    : 0;
-    return glint_next_degrees(p->lo, p->hi) > 2 * stuck_width_deg(f)
+    return glint_next_degrees(p->lo, p->hi) > 2 * compute_stuck_width_deg(f)
                ? fmax(HALVES_ANYWAY, max_accepted_error(f, aim))
                : 0;
 }
@@ -142,17 +142,19 @@ double glint_next_settled(const struct glint_next_rules *f,
 
     if (p->thorough)
         return p->depth < max_box_halvings(f, p) ? max_undivided_error(aim) : 0;
-    if (width >= least * stuck_width_deg(f) && max_unhelped_error(f, aim) > 0)
+    if (width >= least * compute_stuck_width_deg(f) &&
+        max_unhelped_error(f, aim) > 0)
         return fmax(max_unhelped_error(f, aim), kept);
     /* The lower half is the narrower one in degrees. If even that is wider than
-     * stuck_width_deg(), glint_next() halves it whether halving helped or
-     * not. */
+     * compute_stuck_width_deg(), glint_next() halves it whether halving helped
+     * or not. */
     if (glint_next_degrees(p->lo, 0.5 * (p->lo + p->hi)) >=
-            stuck_width_deg(f) ||
+            compute_stuck_width_deg(f) ||
         width < least * LEAST_DEG)
         return kept;
-    return width < least * stuck_width_deg(f) ? fmax(kept, STUCK * p->before)
-                                              : 0;
+    return width < least * compute_stuck_width_deg(f)
+               ? fmax(kept, STUCK * p->before)
+               : 0;
 }
 
 enum glint_next glint_next(const struct glint_next_rules *f,
@@ -168,9 +170,10 @@ enum glint_next glint_next(const struct glint_next_rules *f,
     const bool swings = glint_next_stacks(f->visible) && p->depth == 0 &&
                         left > 1 && left < HUGE_VAL && a->errors.shows <= 1 &&
                         p->w1 - p->w0 > LEAST_BAND;
-    const bool stuck = width < least * LEAST_DEG ||
-                       (!helped && (width < least * stuck_width_deg(f) ||
-                                    left <= max_unhelped_error(f, &a->aim)));
+    const bool stuck =
+        width < least * LEAST_DEG ||
+        (!helped && (width < least * compute_stuck_width_deg(f) ||
+                     left <= max_unhelped_error(f, &a->aim)));
 
     if (swings)
         return GLINT_BANDS;

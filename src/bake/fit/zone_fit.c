@@ -225,10 +225,10 @@ static double compute_leak_ratio(const struct fit *f,
     return n / fmax(1, n_seen);
 }
 
-static enum glint_status append_output(struct glint_fitted_system *system,
-                                       enum glint_channel kind,
-                                       const struct glint_poly *poly,
-                                       double rms, bool met)
+static enum glint_status
+append_fitted_output(struct glint_fitted_system *system,
+                     enum glint_channel kind, const struct glint_poly *poly,
+                     double rms, bool met)
 {
     struct glint_fitted_output *o = &system->output[system->n_outputs];
 
@@ -277,7 +277,7 @@ fit_and_append_output(struct fit *f, const struct glint_zone_rays *r,
     const double left = fit_polynomial(f, r, kind, rms, &poly);
 
     *worst = fmax(*worst, left);
-    return append_output(system, kind, &poly, rms, left <= 1);
+    return append_fitted_output(system, kind, &poly, rms, left <= 1);
 }
 
 /* Returns a factor on the weight of the position of ray I. A stop of radius rho
@@ -321,8 +321,8 @@ static void extend_energy_range(const struct glint_zone_rays *r, double *least,
 
 /* Returns whether the energy of a ghost, reflected by coatings of several
  * films, hardly varies over the pupil. */
-static bool is_smooth_over_pupil(const struct fit *f,
-                                 const struct glint_zone_rays *r)
+static bool is_energy_smooth_over_pupil(const struct fit *f,
+                                        const struct glint_zone_rays *r)
 {
     return f->task->stacks && glint_zone_rays_spread(r) <= GLINT_STEEP;
 }
@@ -338,7 +338,8 @@ static double compute_min_energy(const struct fit *f,
     for (int i = 0; i < r->n && f->task->stacks; i++)
         if (glint_zone_rays_seen(r, i))
             sum += r->at[RAY_ENERGY][i], n++;
-    return fmax(0.005 * most, is_smooth_over_pupil(f, r) ? 0.5 * sum / n : 0);
+    return fmax(0.005 * most,
+                is_energy_smooth_over_pupil(f, r) ? 0.5 * sum / n : 0);
 }
 
 /* Sets buffers->value to the energies, or to their fourth roots, and
@@ -381,7 +382,7 @@ fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
 
     extend_energy_range(r, &least, &most);
     extend_energy_range(&f->buffers->rays, &least, &most);
-    root = f->task->thorough && !is_smooth_over_pupil(f, r) &&
+    root = f->task->thorough && !is_energy_smooth_over_pupil(f, r) &&
            most > WIDE_ENERGY * least;
     grain = f->aim->energy / set_energy_values(f, r, most, root);
     left = fit_polynomial(f, r, GLINT_OUT_ENERGY, f->aim->energy, &poly);
@@ -401,8 +402,8 @@ fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
     o->roots = root ? 2 : 0;
     o->most = least > most ? 0 : root ? sqrt(sqrt(most)) : most;
     *worst = fmax(*worst, left);
-    return append_output(system, GLINT_OUT_ENERGY, &poly,
-                         fmin(grain, f->aim->energy), left <= 1);
+    return append_fitted_output(system, GLINT_OUT_ENERGY, &poly,
+                                fmin(grain, f->aim->energy), left <= 1);
 }
 
 /* Fits the relative radius at barrel number BARREL, (1 + r^2) / 2. Rays near

@@ -555,8 +555,8 @@ static double sum_barrel_escapes(const struct sampling *s, bool lost,
 /* Adds barrels to RAYS, each time the one that blocks most, until
  * compute_barrel_escape() is at most SHOWS for all rays; without LOST, for all
  * rays that hit every surface. */
-static void choose_barrels(const struct sampling *s, bool lost, double shows,
-                           struct glint_zone_rays *rays)
+static void choose_fitted_barrels(const struct sampling *s, bool lost,
+                                  double shows, struct glint_zone_rays *rays)
 {
     double most;
 
@@ -593,6 +593,6 @@ void glint_zone_choose_barrels(const struct glint_zone *zone,
     sample_zone_rays(zone, visible, &s);
     rays->n_barrels = 0;
     if (visible->far)
-        choose_barrels(&s, false, shows, rays);
-    choose_barrels(&s, true, shows, rays);
+        choose_fitted_barrels(&s, false, shows, rays);
+    choose_fitted_barrels(&s, true, shows, rays);
 }

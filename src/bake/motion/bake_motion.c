@@ -337,7 +337,7 @@ enum glint_status glint_motion_baker_body(struct glint_motion_baker *baker,
 
 /* Grows the array *MEM such that it has capacity for N items of BYTES each.
  * Returns false if there is no memory. */
-static bool grow_array(void **mem, size_t *room, size_t n, size_t bytes)
+static bool grow_memory_array(void **mem, size_t *room, size_t n, size_t bytes)
 {
     size_t more = *room;
     void *grown;
@@ -360,10 +360,12 @@ static bool reserve_frame_memory(struct glint_motion_baker *b, int n_foods)
     size_t poses = b->pose_room, events = b->event_room;
     const size_t each = (size_t)n_foods * (size_t)b->n_intensities;
     bool good =
-        grow_array(&pose, &poses, (size_t)b->n_frames + 1, sizeof *b->pose) &&
-        grow_array(&event, &events, (size_t)b->n_events + (size_t)n_foods,
-                   sizeof *b->event) &&
-        grow_array(&intensity, &b->byte_room, b->n_bytes + each, 1);
+        grow_memory_array(&pose, &poses, (size_t)b->n_frames + 1,
+                          sizeof *b->pose) &&
+        grow_memory_array(&event, &events,
+                          (size_t)b->n_events + (size_t)n_foods,
+                          sizeof *b->event) &&
+        grow_memory_array(&intensity, &b->byte_room, b->n_bytes + each, 1);
 
     b->pose = pose;
     b->event = event;
@@ -398,9 +400,9 @@ static const char *check_frame_values(const struct glint_motion_baker *b,
 
 /* Adds the motion that the body itself measured in this frame to its odometry,
  * and records the odometry's distance from POSE. */
-static void add_odometry(struct glint_motion_baker *b,
-                         const struct glint_motion_sight *s,
-                         const struct glint_rigid *pose)
+static void add_body_odometry(struct glint_motion_baker *b,
+                              const struct glint_motion_sight *s,
+                              const struct glint_rigid *pose)
 {
     struct glint_rigid *r = &b->sensed;
     double moved[3], row[3][3] = {{0}}, axis[3] = {0, 0, 0}, off = 0;
@@ -436,8 +438,8 @@ static void add_odometry(struct glint_motion_baker *b,
     b->report.senses_most = fmax(b->report.senses_most, sqrt(off));
 }
 
-static void store_intensities(struct glint_motion_baker *b,
-                              const struct glint_motion_sight *s)
+static void store_food_intensities(struct glint_motion_baker *b,
+                                   const struct glint_motion_sight *s)
 {
     for (int i = 0; i < s->n_foods; i++)
         for (int k = 0; k < b->n_intensities; k++) {
@@ -450,9 +452,10 @@ static void store_intensities(struct glint_motion_baker *b,
 }
 
 /* Stores a frame whose pose was located. */
-static void store_frame(struct glint_motion_baker *b,
-                        const struct glint_motion_sight *s, const bool *is_new,
-                        const struct glint_located *located)
+static void store_located_frame(struct glint_motion_baker *b,
+                                const struct glint_motion_sight *s,
+                                const bool *is_new,
+                                const struct glint_located *located)
 {
     struct recorded_pose *p = &b->pose[b->n_frames];
 
@@ -472,7 +475,7 @@ static void store_frame(struct glint_motion_baker *b,
         memcpy(b->event[b->lives[i]].at, b->localiser.place[i],
                sizeof b->event->at);
     }
-    store_intensities(b, s);
+    store_food_intensities(b, s);
     b->n_frames++;
 }
 
@@ -509,8 +512,8 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
     b->n_foods = sight->n_foods;
     b->number = sight->number;
     if (b->n_frames)
-        add_odometry(b, sight, &located.pose);
-    store_frame(b, sight, is_new, &located);
+        add_body_odometry(b, sight, &located.pose);
+    store_located_frame(b, sight, is_new, &located);
     return GLINT_OK;
 }
 

@@ -174,8 +174,8 @@ static bool is_term_allowed(const struct glint_degrees *d, const uint8_t *power)
     return total <= d->total && (d->parity < 0 || power[1] % 2 == d->parity);
 }
 
-static double *get_moment(const struct search *s, const struct column *a,
-                          const struct column *b)
+static double *get_term_moment(const struct search *s, const struct column *a,
+                               const struct column *b)
 {
     return &s->moment[a->place + b->place];
 }
@@ -191,7 +191,7 @@ static void compute_missing_moments(const struct search *s,
     int n_missing = 0;
 
     for (int k = 0; k < n; k++)
-        if (isnan(*get_moment(s, chosen, column[k])))
+        if (isnan(*get_term_moment(s, chosen, column[k])))
             missing[n_missing++] = column[k];
     if (n_missing == 0)
         return;
@@ -199,7 +199,7 @@ static void compute_missing_moments(const struct search *s,
         at[k] = missing[k < n_missing ? k : 0]->at;
     compute_four_dot_products(chosen->at, at, s->s->n, product);
     for (int k = 0; k < n_missing; k++)
-        *get_moment(s, chosen, missing[k]) = product[k];
+        *get_term_moment(s, chosen, missing[k]) = product[k];
 }
 
 /* Updates N columns, N <= VECTORS, by their components along the chosen
@@ -213,7 +213,7 @@ static void update_column_components(const struct search *s,
     compute_missing_moments(s, chosen, column, n);
     for (int k = 0; k < n; k++) {
         const double share =
-            (*get_moment(s, chosen, column[k]) -
+            (*get_term_moment(s, chosen, column[k]) -
              compute_dot_product(chosen->on, column[k]->on, rank)) /
             chosen->on[rank];
 

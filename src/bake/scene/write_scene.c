@@ -66,7 +66,7 @@ static void write_scene_lights(struct writer *w)
 
 /* ---------------------------------------------------------------- textures */
 
-static int compute_log2(int power)
+static int compute_log2_of_power(int power)
 {
     int n = 0;
 
@@ -115,8 +115,9 @@ static bool write_textures(struct writer *w)
         const struct glint_image *image = &w->scene->texture[i].image;
 
         t[i] = (struct glint_scene_texture){
-            (uint32_t)compute_log2(image->width),
-            (uint32_t)compute_log2(image->height), (uint32_t)w->draft.bytes};
+            (uint32_t)compute_log2_of_power(image->width),
+            (uint32_t)compute_log2_of_power(image->height),
+            (uint32_t)w->draft.bytes};
         if (!write_mipmap_levels(w, image))
             return false;
     }

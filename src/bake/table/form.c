@@ -67,8 +67,8 @@ static void evaluate_table_profile(const struct glint_form *f, double h2,
 
 /* Returns the profile at squared height H2, continued smoothly beyond end2.
  * SLOPE receives its derivative by H2. */
-static double evaluate_profile(const struct glint_form *f, double h2,
-                               double *slope)
+static double evaluate_continued_profile(const struct glint_form *f, double h2,
+                                         double *slope)
 {
     const double beyond = h2 - f->end2;
     double at[3], fade;
@@ -94,13 +94,13 @@ double glint_form_sag(const struct glint_form *f, double x, double y,
     double by_h2, q, free, root;
 
     if (f->bend == GLINT_BEND_ROUND) {
-        q = evaluate_profile(f, x * x + y * y, &by_h2);
+        q = evaluate_continued_profile(f, x * x + y * y, &by_h2);
         slope[0] = 2.0 * x * by_h2;
         slope[1] = 2.0 * y * by_h2;
         return q;
     }
     /* solves (R - z)^2 + aside^2 = (R - q)^2 without dividing by 1 / R */
-    q = evaluate_profile(f, along * along, &by_h2);
+    q = evaluate_continued_profile(f, along * along, &by_h2);
     free = 1.0 - f->across * q;
     root = free * free - f->across * f->across * aside * aside;
     if (!(free > 0.0 && root > 0.0))

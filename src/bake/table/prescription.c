@@ -26,7 +26,7 @@ static const struct glint_text_range shift_range = {"decentre", -1e3, 1e3};
 static const struct glint_text_range tilt_range = {"tilt", -45, 45};
 
 /* Reads the next word as a radius, mm; "flat" becomes 0. */
-static bool read_radius(struct glint_text *text, double *radius_mm)
+static bool read_surface_radius(struct glint_text *text, double *radius_mm)
 {
     const struct glint_word word = glint_text_next_word(text);
 
@@ -78,7 +78,7 @@ static bool read_bend_axis(struct glint_text *text, struct glint_shape *shape,
         return glint_text_fail(text, word.place,
                                "the plane of the profile must be x or y");
     shape->bend = glint_word_is(&word, "x") ? GLINT_BEND_X : GLINT_BEND_Y;
-    return cylinder || read_radius(text, &shape->across_mm);
+    return cylinder || read_surface_radius(text, &shape->across_mm);
 }
 
 /* Reads the item of a line "shape" whose first word is WORD. */
@@ -560,7 +560,7 @@ static bool read_catalogue_glass(struct parser *p,
 }
 
 /* Reads a medium: "air", ND VD, or the name of a glass. */
-static bool read_medium(struct parser *p, struct medium *medium)
+static bool read_lens_medium(struct parser *p, struct medium *medium)
 {
     const struct glint_word word = glint_text_next_word(&p->text);
     int glass;
@@ -628,11 +628,11 @@ static bool read_surface_line(struct parser *p)
     if (k == GLINT_MAX_SURFACES)
         return glint_text_fail(&p->text, p->word[SURFACE],
                                "more than %d surfaces", GLINT_MAX_SURFACES);
-    if (!read_radius(&p->text, &s->radius_mm) ||
+    if (!read_surface_radius(&p->text, &s->radius_mm) ||
         !read_gap_and_semi_diameter(p, &thickness_range, &s->thickness_mm,
                                     &s->semi_mm, &p->places.semi[k]))
         return false;
-    if (!read_medium(p, &medium))
+    if (!read_lens_medium(p, &medium))
         return false;
     if (k > 0)
         before = (struct medium){.nd = s[-1].nd, .vd = s[-1].vd};

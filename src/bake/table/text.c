@@ -281,7 +281,7 @@ static bool read_number_sign(struct digits *digits)
 
 /* Reads the exponent of ten after the "e", clamped to +-1000. Returns false if
  * there are no digits. */
-static bool read_exponent(struct digits *mantissa, int *exponent)
+static bool read_decimal_exponent(struct digits *mantissa, int *exponent)
 {
     struct digits power = {mantissa->at, mantissa->end, 0, 0, 0};
     const bool negative = read_number_sign(&power);
@@ -324,7 +324,7 @@ static bool split_decimal_number(const struct glint_word *word,
         read_digit_run(digits);
     if (whole + digits->n == 0 ||
         (skip_either_char(digits, 'e', 'E') &&
-         !read_exponent(digits, exponent)) ||
+         !read_decimal_exponent(digits, exponent)) ||
         digits->at != digits->end)
         return false;
     *exponent -= digits->n;

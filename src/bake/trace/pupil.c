@@ -94,7 +94,7 @@ static double compute_distance_to_zero(double low, double high)
 
 /* Returns whether a cell may contain an unblocked ray. A cell with invalid
  * corners is judged by its other corners, with twice the margin. */
-static bool may_cell_pass_light(const struct search *s, const struct bounds *b)
+static bool can_cell_pass_light(const struct search *s, const struct bounds *b)
 {
     const double more = b->n == 4 ? 0.5 : 1;
     double low[5], high[5];
@@ -168,7 +168,7 @@ static bool shrink_to_visible_cells(struct search *s, struct glint_pupil *p)
                 if (s->status[j + (k >> 1)][i + (k & 1)] == GLINT_RAY_OK)
                     add_ray_to_bounds(&cell,
                                       &s->ray[j + (k >> 1)][i + (k & 1)]);
-            if (may_cell_pass_light(s, &cell))
+            if (can_cell_pass_light(s, &cell))
                 mark_visible_cell(s, i, j, &cell, &box, &found);
         }
     if (box.n == 0)
@@ -255,9 +255,9 @@ static double compute_box_area(const struct glint_pupil *p)
 
 /* Returns BOX enlarged on each side by PART of its size and by a fraction of
  * the front element, as boxes may be very thin. */
-static struct glint_pupil enlarge_box(const struct glint_pupil *box,
-                                      double part,
-                                      const struct glint_pupil *front)
+static struct glint_pupil enlarge_pupil_box(const struct glint_pupil *box,
+                                            double part,
+                                            const struct glint_pupil *front)
 {
     const double more =
         part * (box->x1_mm - box->x0_mm) + 0.01 * (front->x1_mm - front->x0_mm);
@@ -391,7 +391,7 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
     if (!begin_pupil_search(&s, path, direction, stop_radius_mm, field_mm,
                             &whole))
         return false;
-    p = near ? enlarge_box(near, 0.5, &whole) : whole;
+    p = near ? enlarge_pupil_box(near, 0.5, &whole) : whole;
     found = find_visible_region(&s, &whole, &p, near);
     if (found)
         *pupil = p;
@@ -433,7 +433,7 @@ bool glint_pupil_extend(struct glint_pupil *pupil,
     if (!begin_pupil_search(&s, path, direction, stop_radius_mm, HUGE_VAL,
                             &whole))
         return false;
-    grown = p = enlarge_box(pupil, EXTEND, &whole);
+    grown = p = enlarge_pupil_box(pupil, EXTEND, &whole);
     s.across = NEXT_ACROSS;
     s.down = NEXT_DOWN;
     if (shrink_to_visible_cells(&s, &p) &&
@@ -442,7 +442,7 @@ bool glint_pupil_extend(struct glint_pupil *pupil,
         unite_pupils(pupil, &p);
         return true;
     }
-    p = enlarge_box(pupil, 0.5, &whole);
+    p = enlarge_pupil_box(pupil, 0.5, &whole);
     if (!find_visible_region(&s, &whole, &p, true))
         return false;
     unite_pupils(pupil, &p);

@@ -80,7 +80,7 @@ static int count_reached_events(const struct line *line, int i, int n_events)
 
 /* Returns whether any ray between rays I and I + 1 may pass. An invalid ray
  * often lies next to a spot from which light fans out. */
-static bool may_ray_pass_between(const struct glint_openings *o,
+static bool can_ray_pass_between(const struct glint_openings *o,
                                  const struct line *line, int i)
 {
     const struct glint_ray *a = &line->ray[i], *b = &line->ray[i + 1];
@@ -138,7 +138,7 @@ static bool refine_passing_range(const struct glint_openings *o, double x_mm[2])
         if (find_passing_range(o, &line, x_mm))
             return true;
         for (int i = 0; i < LINE; i++)
-            if (may_ray_pass_between(o, &line, i)) {
+            if (can_ray_pass_between(o, &line, i)) {
                 first = i < first ? i : first;
                 last = i;
             }
@@ -158,7 +158,7 @@ static void refine_passing_runs(const struct glint_openings *o,
     int first = -1;
 
     for (int i = 0; i <= LINE; i++) {
-        const bool may = i < LINE && may_ray_pass_between(o, line, i);
+        const bool may = i < LINE && can_ray_pass_between(o, line, i);
 
         if (may && first < 0)
             first = i;
@@ -193,8 +193,9 @@ bool glint_spot_find(const struct glint_openings *o,
 
 /* Returns whether any of N + 1 rays that start between (X0, Y0) and (X1, Y1)
  * passes. */
-static bool passes_any_ray_on_segment(const struct glint_openings *o, double x0,
-                                      double y0, double x1, double y1, int n)
+static bool has_passing_ray_on_segment(const struct glint_openings *o,
+                                       double x0, double y0, double x1,
+                                       double y1, int n)
 {
     struct glint_launch from[BORDER + 1] = {{0, 0, {0, 0, 0}}};
     struct glint_ray ray[BORDER + 1];
@@ -220,14 +221,14 @@ bool glint_spot_grow(const struct glint_openings *o, struct glint_pupil *p)
         const double x0 = p->x0_mm, x1 = p->x1_mm, y0 = p->y0_mm, y1 = p->y1_mm;
         const double wide = STEP * (x1 - x0), high = STEP * (y1 - y0);
 
-        if (passes_any_ray_on_segment(o, x0, y0, x0, y1, SHORT))
+        if (has_passing_ray_on_segment(o, x0, y0, x0, y1, SHORT))
             p->x0_mm -= wide;
-        if (passes_any_ray_on_segment(o, x1, y0, x1, y1, SHORT))
+        if (has_passing_ray_on_segment(o, x1, y0, x1, y1, SHORT))
             p->x1_mm += wide;
-        if (passes_any_ray_on_segment(o, x0, y1, x1, y1, BORDER))
+        if (has_passing_ray_on_segment(o, x0, y1, x1, y1, BORDER))
             p->y1_mm += high;
         if (!p->mirrored &&
-            passes_any_ray_on_segment(o, x0, y0, x1, y0, BORDER))
+            has_passing_ray_on_segment(o, x0, y0, x1, y0, BORDER))
             p->y0_mm -= high;
         if (p->x0_mm == x0 && p->x1_mm == x1 && p->y0_mm == y0 &&
             p->y1_mm == y1)

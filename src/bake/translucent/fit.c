@@ -177,7 +177,7 @@ static double compute_uniform_response(const struct glint_scatter_fit *fit,
 
 /* Scales the light that leaves each texel such that under uniform irradiance it
  * equals the albedo of the data. */
-static void scale_to_albedo(struct glint_scatter_fit *fit)
+static void scale_fit_to_albedo(struct glint_scatter_fit *fit)
 {
     const int texels = fit->side * fit->side;
 
@@ -407,7 +407,7 @@ enum glint_status glint_scatter_fit(struct glint_scatter_rows *rows,
     }
     if (status == GLINT_OK) {
         mirror_kernels(fit);
-        scale_to_albedo(fit);
+        scale_fit_to_albedo(fit);
         status = measure_fit_errors(rows, fit);
     }
     if (status != GLINT_OK)

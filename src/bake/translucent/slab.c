@@ -76,7 +76,7 @@ static void factorise_cholesky(double *a, int n)
 
 /* Replaces A[N][N], symmetric and positive definite, by its inverse. TO is
  * scratch of the same size. */
-static void invert_matrix(double *a, double *to, int n)
+static void invert_definite_matrix(double *a, double *to, int n)
 {
     factorise_cholesky(a, n);
     /* from the top, the rows of TO become those of U'^-1 */
@@ -137,7 +137,7 @@ static void eliminate_block(struct inverse *v, int j)
         if (i < n - 1)
             s[i * n + i + 1] -= right[i];
     }
-    invert_matrix(s, v->scratch, n);
+    invert_definite_matrix(s, v->scratch, n);
 }
 
 /* Computes T of block row J, and the range of non-negligible entries of each
@@ -250,9 +250,10 @@ static enum glint_status compute_inverse_blocks(struct inverse *v, int reach,
 /* Calls ADD_BLOCK for each block of the inverse of BLOCKS that is at most REACH
  * from the diagonal. Needs about side^3 doubles. May return GLINT_E_MEMORY or
  * GLINT_E_CLOSED. */
-static enum glint_status compute_inverse(const struct blocks *blocks, int reach,
-                                         const struct glint_watch *watch,
-                                         blocks_fn *add_block, void *ctx)
+static enum glint_status compute_inverse_band(const struct blocks *blocks,
+                                              int reach,
+                                              const struct glint_watch *watch,
+                                              blocks_fn *add_block, void *ctx)
 {
     const size_t n = (size_t)blocks->side, block = n * n;
     struct inverse v = {.b = blocks, .reach = reach > 0 ? reach : 1};
@@ -293,7 +294,7 @@ static double hash_lattice_point(uint32_t seed, int x, int y)
     return (h ^ h >> 15) / 4294967295.0;
 }
 
-static double interpolate_smoothly(double t)
+static double interpolate_by_smoothstep(double t)
 {
     return t * t * (3 - 2 * t);
 }
@@ -304,8 +305,8 @@ static double compute_value_noise(uint32_t seed, int cells, double u, double v)
 {
     const int x = (int)floor(u * cells), y = (int)floor(v * cells);
     const int right = (x + 1) % cells, below = (y + 1) % cells;
-    const double s = interpolate_smoothly(u * cells - x),
-                 t = interpolate_smoothly(v * cells - y);
+    const double s = interpolate_by_smoothstep(u * cells - x),
+                 t = interpolate_by_smoothstep(v * cells - y);
     const double top = (1 - s) * hash_lattice_point(seed, x, y) +
                        s * hash_lattice_point(seed, right, y);
     const double bottom = (1 - s) * hash_lattice_point(seed, x, below) +
@@ -327,7 +328,8 @@ static double compute_vein_intensity(uint32_t seed, double u, double v)
             compute_value_noise(seed + (uint32_t)i, CELLS << i, u, v) - 0.5,
             -i);
     wave = fabs(sin((ALONG_U * u + ALONG_V * v) * 3.14159265358979 + 5 * bent));
-    return wave >= 0.4 ? 1 : interpolate_smoothly(fmax(0, (wave - 0.1) / 0.3));
+    return wave >= 0.4 ? 1
+                       : interpolate_by_smoothstep(fmax(0, (wave - 0.1) / 0.3));
 }
 
 void glint_stone_shares(const struct glint_stone *stone, double *share)
@@ -639,8 +641,8 @@ static enum glint_status compute_channel_rows(struct compute *p, int c,
         enum glint_status status;
 
         set_mode_matrix(p, n);
-        status = compute_inverse(&blocks, p->rows->kernel / 2, &mode,
-                                 add_block_to_rows, p);
+        status = compute_inverse_band(&blocks, p->rows->kernel / 2, &mode,
+                                      add_block_to_rows, p);
         if (status != GLINT_OK)
             return status;
         done += sqrt(1.0 / n);

@@ -192,9 +192,9 @@ static void grow_box_at_tips(const struct glint_visible *h,
 
 /* Shrinks BOX, which must contain all unblocked rays, to their bounding box.
  * Returns false if all rays are blocked. */
-static bool find_tight_box(const struct glint_visible *h,
-                           const struct glint_path *path, double sine,
-                           struct glint_pupil *box)
+static bool find_tight_visible_box(const struct glint_visible *h,
+                                   const struct glint_path *path, double sine,
+                                   struct glint_pupil *box)
 {
     bool found = shrink_box_to_visible(h, path, sine, 24, 12, box) ||
                  shrink_box_to_visible(h, path, sine, ACROSS, 32, box);
@@ -291,15 +291,15 @@ static bool find_visible_box(const struct glint_visible *h,
                                  NULL))
         return false;
     spot = *box;
-    if (find_tight_box(h, path, sine, box))
+    if (find_tight_visible_box(h, path, sine, box))
         return true;
     *box = spot;
     return find_missed_region(h, path, sine, box) &&
-           find_tight_box(h, path, sine, box);
+           find_tight_visible_box(h, path, sine, box);
 }
 
 /* Returns NEAR enlarged by 20 % on each side. */
-static struct glint_pupil add_box_margin(const struct glint_pupil *near)
+static struct glint_pupil enlarge_box_by_margin(const struct glint_pupil *near)
 {
     const double more = 0.2 * (near->x1_mm - near->x0_mm);
     struct glint_pupil box = *near;
@@ -316,9 +316,9 @@ static bool find_box_near(const struct glint_visible *h,
                           const struct glint_pupil *near,
                           struct glint_pupil *box)
 {
-    *box = add_box_margin(near);
+    *box = enlarge_box_by_margin(near);
     return (grow_box_to_visible(h, path, sine, box) &&
-            find_tight_box(h, path, sine, box)) ||
+            find_tight_visible_box(h, path, sine, box)) ||
            find_visible_box(h, path, sine, box);
 }
 
@@ -509,7 +509,7 @@ static bool is_middle_light_visible(const struct glint_visible *h, double sine,
                                     bool inside, struct glint_pupil *box)
 {
     if (h->shaped && inside) {
-        struct glint_pupil near = add_box_margin(box);
+        struct glint_pupil near = enlarge_box_by_margin(box);
 
         if (shrink_box_to_visible(h, &h->position_path[glint_visible_colour[0]],
                                   sine, 24, 12, &near)) {
