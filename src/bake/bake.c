@@ -18,15 +18,17 @@
 #include "bake/trace/cells.h"
 #include "bake/write_model.h"
 
-/* State of one bake. */
+/* the state of one bake */
 struct bake_run {
     const struct glint_prescription *lens;
     struct glint_bake_options options;
     struct glint_setup setup;
     struct glint_setup beside[GLINT_MAX_BESIDE];
     struct glint_brightness brightness;
-    struct glint_fitted_ghost *fitted;         /* [n_ghosts] */
-    struct glint_quantised_system **quantised; /* [n_ghosts][n_systems] */
+    /* fits of each ghost, [n_ghosts] */
+    struct glint_fitted_ghost *fitted;
+    /* integer polynomials, [n_ghosts][n_systems] */
+    struct glint_quantised_system **quantised;
     /* [n_ghosts]: result of the current step of each ghost */
     enum glint_status *status;
     struct glint_draft draft;
@@ -35,7 +37,7 @@ struct bake_run {
     int *intruders; /* [n_ghosts]: number of blocked rays that the model
                        transmits, see struct glint_bake_report */
     int *rays;
-    struct glint_effort effort; /* written by worker 0 only */
+    struct glint_effort effort; /* progress estimate; only worker 0 writes it */
     struct glint_error *error;
 };
 
@@ -162,7 +164,7 @@ static enum glint_status fit_ghost(struct bake_run *run, int ghost,
     return status;
 }
 
-/* Fits one ghost; worker 0 reports progress. */
+/* Fits ghost GHOST as a job of WORKER; worker 0 reports progress. */
 static void run_fit_job(void *ctx, int ghost, int worker)
 {
     struct bake_run *run = ctx;

@@ -11,7 +11,7 @@ static const double angle_work[] = {1.5, 1.5, 25};
 static const double typical_work[] = {4, 25, 110};
 /* weight of the typical work in the mean work per ghost, in ghosts */
 #define TRUST 3.0
-/* Max work of a ghost, as a multiple of the typical work. */
+/* max work of a ghost / typical work */
 #define MOST 10.0
 /* Blends the extrapolated work of the current ghost with the mean of other
  * ghosts: weight of that mean, as a fraction of the ghost's angles. */

@@ -30,9 +30,9 @@ struct glint_effort {
     double expected;
     /* largest index of the ghosts that worker 0 has begun; -1: none */
     int ghost;
-    int n_ended;  /* number of ghosts that worker 0 finished */
-    double ended; /* work of the finished ghosts */
-    double work;  /* work of the current ghost of worker 0 */
+    int n_ended;  /* number of ghosts that worker 0 has finished */
+    double ended; /* work of the finished ghosts, zone fits */
+    double work;  /* work so far of worker 0's current ghost, zone fits */
     /* fraction of the current ghost's angles that are done, 0 .. 1 */
     double share;
 };

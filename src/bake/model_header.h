@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Checks the options of a bake and computes the header of a model: the data of
- * the lens apart from its ghosts. Defaults and key are declared in
+ * the lens except its ghosts. Defaults and key are declared in
  * glint/bake.h.
  */
 #ifndef GLINT_BAKE_MODEL_HEADER_H

@@ -19,7 +19,7 @@
 #include "engine/setup/degrees.h"
 
 enum {
-    ANGLES = 86, /* max number of angles */
+    ANGLES = 86, /* max number of angles at which chief rays are traced */
     /* min number of unblocked chief rays; with fewer the next smaller angle
      * step is tried */
     LEAST = 8,
@@ -27,8 +27,8 @@ enum {
     D_LINE_NM = 588
 };
 
-/* Sets *MM to the distance from the axis at which the chief ray at THETA_DEG
- * hits the sensor. Returns false if the ray is blocked. */
+/* Sets *MM to the distance from the axis, mm, at which the chief ray of light
+ * at THETA_DEG hits the sensor. Returns false if the ray is blocked. */
 static bool trace_chief_ray(const struct glint_path *path, double stop_mm,
                             double theta_deg, double *mm)
 {

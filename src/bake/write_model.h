@@ -23,7 +23,7 @@ glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
 /* Returns a lens that points into DRAFT, without validating it. */
 struct glint_lens glint_draft_lens(const struct glint_draft *draft);
 
-/* Writes MEASURED as the errors of system SYSTEM. */
+/* Writes MEASURED to the draft as the errors of system number SYSTEM. */
 void glint_draft_note(struct glint_draft *draft, int system,
                       const struct glint_measured *measured);
 

@@ -15,8 +15,8 @@
  *
  * Barrels are mixed with the partners that pair.c finds. A barrel without a
  * partner keeps its position in the stop, as boxes may change faster than the
- * visible rays, and widens towards the position that lacks it, until it cuts
- * nothing.
+ * visible rays, and widens towards the position that lacks it, until it
+ * blocks nothing.
  */
 #include "lens/blend.h"
 
@@ -29,8 +29,9 @@ enum {
     BARREL = GLINT_OUT_BARREL_0,
     OPEN_Q16 = 1 << 15, /* value of a barrel's polynomial at its middle, where
                            all light passes */
-    LEAST_UP = 16, /* min exponent above 2^-46 of a barrel's unit: OPEN_Q16 is
-                      below 2^30 units */
+    /* Min exponent above 2^-46 of a barrel's unit: OPEN_Q16 is then below 2^30
+     * units. */
+    LEAST_UP = 16,
     MOST_HEAD = 28,
     NEAR_Q24 = 1 << 23, /* max move for first-order terms: half a half width */
     LATE_Q30 = 3 << 28, /* fraction of the distance between both positions after

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Polynomials of a bundle between two positions of a zoom. */
+ * Interpolates the polynomials of a bundle between two zoom positions. */
 #ifndef GLINT_LENS_BLEND_H
 #define GLINT_LENS_BLEND_H
 

@@ -98,7 +98,7 @@ glint_transfer_system(const struct glint_lens *lens, int ghost,
  * powers 0, 1, 2 ... */
 struct setting {
     int32_t s_q30[TRANSFER_MAX_EXPONENT + 1], w_q30[TRANSFER_MAX_EXPONENT + 1];
-    int lens; /* 1: the model uses the lens basis */
+    int lens; /* 1: the model uses the lens basis; 0: the auto basis */
     /* powers of the y component; lens basis only */
     int32_t p_q30[GLINT_LENS_POWERS];
 };
@@ -318,8 +318,7 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
     const struct glint_model_output *output;
     struct setting set;
 
-    if (lens->zoom) /* Models of a zoom are of lenses with rotational symmetry.
-                     */
+    if (lens->zoom) /* models of zoom lenses have rotational symmetry */
         return lens->zoom->transfer(transfer, lens->zoom, ghost, sine_q30,
                                     wave_q24);
     system = find_ghost_system(lens, ghost, d.x_q30, d.y_q30, wave_q24);

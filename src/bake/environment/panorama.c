@@ -19,7 +19,7 @@ enum shape { LATITUDES, CUBE, NO_SHAPE };
 struct panorama {
     const struct glint_float_image *picture;
     enum shape shape;
-    double turn[2]; /* cosine and sine of the rotation about y */
+    double turn[2]; /* rotation about y: cosine and sine of its angle */
     /* factor on all light; max finite sample of the picture */
     double scale, largest;
 };

@@ -12,8 +12,8 @@
 #include "glint/scene/environment_bake.h"
 
 struct glint_sphere_texel {
-    double light[3];  /* mean radiance */
-    double weight;    /* solid angle, sr */
+    double light[3];  /* mean radiance of the texel, per channel */
+    double weight;    /* solid angle of the texel, sr */
     double toward[3]; /* unit vector to the texel's centre */
 };
 
@@ -21,7 +21,7 @@ struct glint_sphere_texel {
  * frees it. */
 struct glint_sphere {
     int side;
-    struct glint_sphere_texel *texel; /* [side][side] */
+    struct glint_sphere_texel *texel; /* texels of the map, [side][side] */
 };
 
 /* Sets TOWARD to the direction of point (U, V) of the octahedron map, 0 .. 1
@@ -65,7 +65,7 @@ bool glint_sphere_project(struct glint_sphere *sphere,
 /* A light extracted from the map, as a disc. */
 struct glint_split_light {
     double toward[3];
-    double radius; /* radians */
+    double radius; /* angular radius of the disc, radians */
     /* irradiance of a surface that faces the light, per channel */
     double irradiance[3];
 };

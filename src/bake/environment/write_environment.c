@@ -124,7 +124,8 @@ static bool project_picture_to_sphere(struct writer *w,
     return w->n_lights >= 0;
 }
 
-/* Sets level K to 2 x 2 averages of level K - 1, or of the sphere if K is 0. */
+/* Sets mipmap level K to 2 x 2 averages of level K - 1, or of the sphere if K
+ * is 0. */
 static void average_mipmap_level(struct writer *w, int k)
 {
     const int side = 1 << (w->options->side_log2 - k);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws the exact picture, the reference by which all others are judged.
+ * Draws the exact picture, the reference for measuring all others.
  *
  *   in   every visible piece of every cell (cells.h) as a polygon with a flux
  *   out  linear light per pixel, by the exact area that polygons cover
@@ -8,7 +8,8 @@
  * Method: the signed area to the right of each polygon edge goes into a
  * difference buffer; at the end one running sum along each row gives the
  * picture. Work is split into rows of rays and bands of pixels; every pixel
- * receives its contributions in one order, so threads change nothing. */
+ * receives its contributions in a fixed order, so the result does not depend on
+ * the number of threads. */
 #include "glint/exact.h"
 #include "glint/trace.h"
 
@@ -73,7 +74,7 @@ static void add_edge_to_row(double *row, double x0, double x1, double amount)
         return;
     }
     for (int i = first; i <= last; i++) {
-        /* Area to the right of the edge in pixel i. */
+        /* area to the right of the edge within pixel i */
         const double a = i == first ? x0 : i;
         const double b = i == last ? x1 : i + 1;
         const double slope = amount / (x1 - x0);

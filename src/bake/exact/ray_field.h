@@ -29,7 +29,8 @@
 
 enum {
     RAY_FIELD_CUTS = 8,
-    RAY_FIELD_NODES = 7, /* wavelengths traced, if there are more than these */
+    /* max number of wavelengths for which rays are traced */
+    RAY_FIELD_NODES = 7,
     RAY_FIELD_SAMPLES = RAY_FIELD_NODES + 5 + 4
 };
 
@@ -80,7 +81,7 @@ struct ray_field {
     struct ray_sight sight;
     /* visible region of the pupil; glint_ray_field_fit() adds a margin */
     struct glint_pupil pupil;
-    int n_cells; /* cells per side */
+    int n_cells; /* number of grid cells per side */
     /* min number of cells per side whose rays cannot miss the opening of the
      * stop */
     int least_cells;

@@ -27,7 +27,7 @@ struct task {
      * much light at one wavelength as at another. */
     double nm[WAVES];
     double half_mm[2]; /* half width and half height of the picture, mm */
-    double pixel_mm;   /* width of a pixel if the picture is 1920 pixels wide */
+    double pixel_mm;   /* width of a pixel in a picture of 1920 pixels, mm */
     /* Azimuths that are traced if the lens is not round, and the step between
      * them in turns. They cover 0 .. 90 degrees if the lens has two planes of
      * symmetry, else 360 degrees. */
@@ -148,7 +148,7 @@ static double find_brightness_level(const struct task *t,
  * ghosts. */
 static void find_round_level_at_angle(void *ctx, int job, int worker)
 {
-    enum { AZIMUTHS = 7 }; /* number of azimuths from 0 to 90 degrees */
+    enum { AZIMUTHS = 7 }; /* number of azimuths, 0 .. 90 degrees */
     struct task *t = ctx;
     const int ghosts = t->setup->n_ghosts;
     struct patch *patch = malloc(((size_t)ghosts * CELLS + 1) * sizeof *patch);

@@ -66,12 +66,12 @@ enum { GLINT_PART_DEPTH = 4, GLINT_SHAPED_DEPTH = 6, GLINT_MAX_AXIS_DEPTH = 8 };
  * and energy of fainter ghosts have larger tolerances, up to ease times. */
 struct glint_tolerance {
     double sensor_mm, edge_mm, stop, stop_least, barrel, energy;
-    double faint_sensor_mm; /* mm; upper limit of sensor_mm of faint ghosts */
+    double faint_sensor_mm; /* upper limit of sensor_mm for faint ghosts, mm */
     /* max excess of the relative radius with which a ray may pass a barrel that
      * has no polynomial */
     double escape;
     double ease;
-    double pixel_mm; /* width of a pixel if the picture is 1920 pixels wide */
+    double pixel_mm; /* width of a pixel in a picture of 1920 pixels, mm */
     /* factor on min width and position tolerance of zones at the axis, where
      * light folds into rings */
     double axis;

@@ -31,7 +31,7 @@ enum {
 struct fitter {
     const struct glint_visible *visible;
     const struct glint_tolerance *tolerance;
-    /* rules for dividing zones, from VISIBLE and TOLERANCE */
+    /* rules for dividing zones, from visible and tolerance */
     struct glint_next_rules rules;
     struct glint_fitted_ghost *out;
     struct glint_zone_buffers buffers;
@@ -47,7 +47,7 @@ struct fitter {
     int n_parts;
     glint_fit_told_fn *told; /* NULL: no progress reports */
     void *told_ctx;
-    double work, share; /* arguments of glint_fit_told_fn */
+    double work, share; /* arguments of the next call of told() */
     double sines;       /* total width of all visible ranges, in sines */
 };
 
@@ -299,7 +299,7 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
     f->rules = (struct glint_next_rules){visible, tolerance};
     f->in_band.beside = f->beside_band;
     f->in_part.beside = f->beside_part;
-    /* no band_profile exists yet */
+    /* no band_profile has been computed */
     f->profiled[0] = HUGE_VAL;
     f->out = out;
     f->told = told;

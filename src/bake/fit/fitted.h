@@ -13,7 +13,7 @@
 /* One output of a system: a polynomial. It owns coef, [n_terms]. */
 struct glint_fitted_output {
     enum glint_channel kind;
-    int n_terms; /* 1 .. GLINT_MAX_MODEL_TERMS */
+    int n_terms; /* number of terms, 1 .. GLINT_MAX_MODEL_TERMS */
     uint8_t power[GLINT_MAX_MODEL_TERMS][GLINT_VARIABLES];
     double *coef;
     /* max rounding error of a coefficient that is harmless; 0: no rounding
@@ -31,7 +31,8 @@ struct glint_fitted_output {
 struct glint_fitted_system {
     /* index of the ghost, and of the part of its pupil, from 0 */
     int ghost, part;
-    int annulus; /* ring of the pupil, as in struct glint_model_system */
+    /* index of the ring of the pupil, as in struct glint_model_system */
+    int annulus;
     double sine_lo, sine_hi;
     /* true: directions have two components, x in sine_lo .. sine_hi and y in
      * y_lo .. y_hi */
@@ -41,11 +42,13 @@ struct glint_fitted_system {
     /* polynomials of the box, mm, ordered as in the model file; owned */
     double *box;
     int n_outputs;
-    struct glint_fitted_output output[GLINT_OUT_KINDS]; /* sorted by kind */
+    /* outputs, sorted by kind */
+    struct glint_fitted_output output[GLINT_OUT_KINDS];
     bool met;
 };
 
-/* All systems of one ghost, in the order of the model file. Owns SYSTEM. */
+/* All systems of one ghost, in the order of the model file. Owns the array
+ * system. */
 struct glint_fitted_ghost {
     int n_systems;
     struct glint_fitted_system *system;

@@ -30,7 +30,7 @@ struct glint_zone_piece {
     int depth;
 };
 
-/* The result of an attempt to fit a zone. */
+/* result of an attempt to fit a zone */
 struct glint_attempt {
     struct glint_zone_aim aim;
     /* in tolerances; at most 1 if the fit is good; worst is HUGE_VAL if nothing

@@ -8,7 +8,7 @@
 
 /* ------------------------------------------------------------------ scaling */
 
-/* Returns the sum of the magnitudes of N values. */
+/* Returns the sum of the magnitudes of VALUE[N]. */
 static double sum_magnitudes(const double *value, int n)
 {
     double sum = 0;
@@ -200,7 +200,7 @@ static void prove_no_overflow(const struct glint_fitted_system *s,
     bound_output(&p, o, out, s->skew, &result);
     while (out->head > 0 &&
            compute_energy_range(result, out->head, o->roots).error >= 0x1p22)
-        out->head--; /* A larger scale would only enlarge rounding errors. */
+        out->head--; /* a larger scale would only enlarge rounding errors */
     result = compute_energy_range(result, out->head, o->roots);
     out->proven = p.bound < 0x1p30 && result.error < 0x1p23;
     out->bound = out->proven ? (uint32_t)ceil(p.bound) : 0;

@@ -26,9 +26,10 @@
  * 2^shift and fit 16 bits after division by it. */
 struct glint_quantised_output {
     int32_t exponent;
-    int32_t *coef; /* [sets][n_terms]; owned */
+    int32_t *coef; /* integer coefficients, [sets][n_terms]; owned */
     int n_narrow, shift;
-    int head; /* as in struct glint_model_output; energy only */
+    /* scale of the energy, as in struct glint_model_output; energy only */
+    int head;
     /* indices of the terms in file order */
     uint8_t order[GLINT_MAX_MODEL_TERMS];
     uint32_t bound, rounding_q8;

@@ -39,7 +39,8 @@ struct glint_zone {
     /* skew zones only: polynomial of the box's centre along v, mm */
     double middle_y[GLINT_BOX_TERMS];
     double fill; /* mean fraction of the box that visible light fills */
-    int annulus; /* ring of the pupil, as in struct glint_model_system */
+    /* index of the ring of the pupil, as in struct glint_model_system */
+    int annulus;
 };
 
 /* A part of a zone's box and band: u in u0 .. u1 and |v| up to top (-1 .. 1,
@@ -99,7 +100,7 @@ enum { GLINT_ZONE_BATCH = 32 };
 struct glint_zone_batch {
     const struct glint_path *path;
     int n;
-    /* coordinates in the zone */
+    /* zone coordinates of each ray */
     double x[GLINT_ZONE_BATCH][GLINT_VARIABLES];
     struct glint_launch from[GLINT_ZONE_BATCH];
     struct glint_ray ray[GLINT_ZONE_BATCH];

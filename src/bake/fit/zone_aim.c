@@ -19,7 +19,7 @@ struct ray_summary {
     int n, n_all;
     /* corners of the bounding box of visible rays on the sensor, mm */
     double low[2], high[2];
-    double energy; /* mean energy of the visible rays */
+    double energy; /* mean energy of the visible rays, 0 .. 1 */
     double spread; /* mean RAY_SPREAD of the visible rays */
 };
 

@@ -16,10 +16,10 @@
 struct glint_zone_aim {
     /* tolerances of positions and of outlines on the sensor, mm */
     double sensor_mm, edge_mm;
-    double thin[2]; /* factors on sensor_mm along x and y */
+    double thin[2]; /* factors on the tolerance sensor_mm along x and y */
     double stop;    /* tolerance of positions in the stop, stop radii */
     double energy;  /* relative tolerance of the energy */
-    double ease;    /* tolerance / tolerance for a bright ghost */
+    double ease;    /* tolerance / tolerance for a bright ghost, at least 1 */
     double share;   /* brightness / brightness of a bright ghost */
     /* min position error that is visible, in units of sensor_mm */
     double hidden;

@@ -9,7 +9,7 @@
 
 STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
-/* Max error of a single ray / RMS tolerance. */
+/* max error of a single ray / RMS tolerance */
 #define PEAK 5.0
 /* min ratio of max to min energy at which a root of the energy is fitted */
 #define WIDE_ENERGY 60
@@ -98,7 +98,7 @@ choose_allowed_terms(const struct glint_zone_task *task,
 
 /* --------------------------------------------------------------------- fits */
 
-/* State of one fit: task, tolerances, memory, and the errors so far. */
+/* state of one fit: task, tolerances, memory, and errors so far */
 struct fit {
     const struct glint_zone_task *task;
     const struct glint_zone_aim *aim;

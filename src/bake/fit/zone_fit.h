@@ -45,24 +45,25 @@ struct glint_zone_task {
 
 /* Memory for fitting one zone; used by one fit at a time. */
 struct glint_zone_buffers {
-    double *scratch; /* GLINT_ZONE_SCRATCH doubles */
+    double *scratch; /* scratch memory, GLINT_ZONE_SCRATCH doubles */
     /* rays that are fitted; each fit overwrites them */
     struct glint_zone_rays rays, energies;
     double weight[GLINT_ZONE_RAYS], sensor_weight[GLINT_ZONE_RAYS];
-    double light[GLINT_ZONE_RAYS]; /* see glint_zone_aim_light() */
+    /* brightness weights, see glint_zone_aim_light() */
+    double light[GLINT_ZONE_RAYS];
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
 };
 
 /* max errors of a fit, in tolerances */
 struct glint_zone_errors {
-    double places;   /* positions on the sensor */
+    double places;   /* errors of positions on the sensor */
     double outlines; /* outlines: positions in the stop and at barrels */
     double shows;    /* visible part of the errors of positions and outlines */
     /* shows or, for fast lenses, also the energy; decides whether a box is
      * divided */
     double dims;
     double worst;  /* max over positions, outlines and energy */
-    double energy; /* energy */
+    double energy; /* error of the energy */
 };
 
 /* Fits all outputs of SYSTEM, which must have none yet. Skips the remaining

@@ -28,14 +28,15 @@ struct glint_motion_baker {
     struct glint_localiser localiser;
     int n_foods, n_intensities;
     uint32_t n_frames, pose_room;
-    struct recorded_pose *pose; /* [n_frames] */
+    struct recorded_pose *pose; /* pose of the body per frame, [n_frames] */
     uint32_t n_events, event_room;
-    struct recorded_food *event; /* [n_events] */
+    struct recorded_food *event; /* first frames of foods, [n_events] */
     /* index in event of the food that is now in each slot */
     uint32_t lives[GLINT_MOTION_MAX_FOODS];
     size_t n_bytes, byte_room;
-    uint8_t *intensity; /* [n_frames][n_foods][n_intensities] */
-    long long number;   /* number in the recording of the last frame */
+    /* intensity codes, [n_frames][n_foods][n_intensities] */
+    uint8_t *intensity;
+    long long number; /* number in the recording of the last frame */
     /* pose by the body's own odometry: sum of all its motions rv, tv */
     struct glint_rigid sensed;
     struct glint_motion_report report;

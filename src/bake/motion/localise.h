@@ -24,7 +24,7 @@ struct glint_localiser {
     double place[GLINT_MOTION_MAX_FOODS][3];
     /* number of frames over which each food's position is averaged */
     double age[GLINT_MOTION_MAX_FOODS];
-    bool has_begun; /* private */
+    bool has_begun; /* private: true after the first frame */
 };
 
 struct glint_located {

@@ -146,8 +146,8 @@ struct search {
      * on the sums of both terms' powers, which many pairs have in common. */
     double *moment;
     double *residual;  /* [n] */
-    double *direction; /* [terms][n]: orthonormal directions */
-    double *values;    /* [n_columns][n] */
+    double *direction; /* orthonormal directions, [terms][n] */
+    double *values;    /* values of all columns, [n_columns][n] */
 };
 
 /* Returns the direction with index RANK; n_chosen is the next one to be set. */

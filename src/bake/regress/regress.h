@@ -5,8 +5,8 @@
  *   in   samples of the variables (each within -1 .. 1), a value and a weight
  *   out  few monomials that fit the value within a tolerance
  *
- * Method: greedy growth. Candidates are the neighbours of the chosen terms, with
- * one power more in one variable [Zheng17]. The candidate that reduces the
+ * Method: greedy growth. Candidates are the neighbours of the chosen terms,
+ * with one power more in one variable [Zheng17]. The candidate that reduces the
  * weighted residual most is chosen. Columns are orthogonalised against all
  * chosen ones, so the basis grows together with its QR factors. A candidate
  * that is nearly a combination of chosen terms has a remaining length near 0

@@ -38,7 +38,8 @@ static int compute_edit_distance(const struct glint_word *word,
     for (int k = 0; k <= m; k++)
         row[k] = k;
     for (int i = 1; i <= word->length; i++) {
-        int corner = row[0]; /* entry of the previous row and previous column */
+        /* entry of the previous row and column of the distance table */
+        int corner = row[0];
 
         row[0] = i;
         for (int k = 1; k <= m; k++) {

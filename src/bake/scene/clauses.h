@@ -19,7 +19,8 @@ struct glint_clause {
     /* count of numbers after the keyword; 0: a name or nothing follows */
     int n;
     double min, max; /* allowed range of the numbers */
-    double *value;   /* [n]; unchanged if the clause is missing */
+    /* receives the numbers, [n]; unchanged if the clause is missing */
+    double *value;
     /* receives the name after the keyword; NULL: no name follows */
     struct glint_word *name;
     bool required;

@@ -162,7 +162,7 @@ static bool read_translucent_material(struct glint_describer *d,
                                     {0}};
     char quote[GLINT_QUOTE_BYTES];
 
-    (void)texture; /* a translucent medium has its own texture */
+    (void)texture; /* a translucent medium contains its own texture */
     m->is_stone = m->fresnel = true;
     glint_text_next_word(&d->text); /* skips the word "translucent" */
     file = glint_text_next_word(&d->text);

@@ -139,7 +139,7 @@ static bool read_face_corner(struct reader *r, const struct glint_word *word,
         return glint_text_fail(&r->text, word->place,
                                "a corner needs a vertex index (V)");
     if (at < word->length) {
-        at++; /* skips the slash */
+        at++; /* skips the slash between two indices */
         if (!read_corner_index(r, word, &at, &r->uv, "texture coordinate",
                                &corner->uv))
             return false;

@@ -16,7 +16,7 @@
  * In right-handed scenes z changes its sign. */
 struct glint_steps {
     int unit_log2;
-    double scale; /* 2^unit_log2 */
+    double scale; /* steps per unit of the description, 2^unit_log2 */
     double hand;  /* factor on z: 1, or -1 in right-handed scenes */
 };
 
@@ -25,15 +25,15 @@ struct glint_steps {
 struct glint_steps glint_steps_of(const struct glint_description *scene,
                                   double *reach);
 
-/* Converts position AT to steps. */
+/* Converts position AT from units of the description to steps TO. */
 void glint_steps_place(const struct glint_steps *steps, const double at[3],
                        int32_t to[3]);
 
-/* Converts unit vector X to _q30. */
+/* Converts unit vector X to the baked scene's axes, _q30. */
 void glint_steps_unit(const struct glint_steps *steps, const double x[3],
                       int32_t to_q30[3]);
 
-/* Converts unit quaternion TURN to _q30. */
+/* Converts unit quaternion TURN to the baked scene's axes, _q30. */
 void glint_steps_turn(const struct glint_steps *steps, const double turn[4],
                       int32_t to_q30[4]);
 
@@ -53,7 +53,7 @@ bool glint_grid_write(struct glint_draft *draft,
                       struct glint_scene_bake_report *report,
                       struct glint_error *error);
 
-/* Returns the index of the translucent material of OBJECT, or -1. */
+/* Returns the index of the translucent material of OBJECT; -1: none. */
 int glint_skin_material(const struct glint_description *scene,
                         const struct glint_described_object *object);
 

@@ -139,7 +139,7 @@ static double compute_patch_coordinate(int k)
     return 2.0 * k / (GLINT_PATCH_SIDE - 1) - 1;
 }
 
-/* Maps X from LO .. HI to -1 .. 1. */
+/* Maps X linearly from LO .. HI to -1 .. 1. */
 static double map_to_unit_range(double x, double lo, double hi)
 {
     return (2 * x - lo - hi) / (hi - lo);

@@ -79,7 +79,7 @@ struct fitter {
 
 /* result of an attempt to fit a patch */
 struct attempt {
-    /* errors.worst is HUGE_VAL if nothing was fitted */
+    /* errors of the fit; worst is HUGE_VAL if nothing was fitted */
     struct glint_zone_errors errors;
     double bearable; /* min error, in tolerances, at which the box is divided */
     /* max error, in tolerances, with which the patch is accepted at once */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * catalogue.h - glasses of the makers' catalogues, for tables. */
+ * Glasses of the manufacturers' catalogues, for lens tables. */
 #ifndef GLINT_BAKE_TABLE_CATALOGUE_H
 #define GLINT_BAKE_TABLE_CATALOGUE_H
 

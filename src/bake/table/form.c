@@ -210,7 +210,7 @@ bool glint_form_meet(const struct glint_form *f, double at[3],
     normal[1] = -slope[1] / size;
     normal[2] = 1.0 / size;
     if (!(rate * direction[2] > 0.0))
-        return false; /* the ray comes from the wrong side */
+        return false; /* the ray comes from behind the surface */
     *cosine = rate / size;
     return true;
 }
@@ -259,7 +259,7 @@ static double compute_profile_end(const struct glint_form *f)
     const double semi2 = f->semi_mm * f->semi_mm;
     const double end2 = GLASS_ENDS * GLASS_ENDS * semi2;
 
-    /* a conic is vertical at its equator, so it ends before */
+    /* a conic is vertical at its equator, so the profile must end before */
     return a * end2 < 0.5 * (1.0 + a * semi2) ? end2 : 0.5 * (1.0 / a + semi2);
 }
 

@@ -150,7 +150,8 @@ static bool read_group_words(struct glint_text *text, struct glint_shape *shape)
     return true;
 }
 
-/* Min relative change of a zoom's focal length from column to column. */
+/* Min relative change of a zoom lens's focal length from position to
+ * position. */
 #define LEAST_ZOOM 1e-3
 
 /* Cuts REST after its first slash. Returns the text before that slash, or all
@@ -369,7 +370,8 @@ struct parser {
     /* position of the last line of each type; line 0: no such line */
     struct glint_text_place word[N_FIELDS];
     struct glint_places places;
-    struct glint_coating coating; /* default coating of surfaces */
+    /* coating of surfaces whose line states none */
+    struct glint_coating coating;
     bool has_coating[GLINT_MAX_SURFACES];
     int n_elements;
     /* true: the parser is within a group, whose position is in group */

@@ -42,7 +42,7 @@ struct glint_word {
 struct glint_text {
     const char *file_name;
     struct glint_error *error;
-    const char *next, *end; /* unread lines */
+    const char *next, *end; /* unread lines of the text */
     /* current line; at .. stop: its unread part */
     const char *line, *at, *stop;
     int line_number;

@@ -23,7 +23,7 @@ enum { LANES = 8 };
 struct beam {
     /* position, mm, relative to the vertex of the event's surface */
     double x[LANES], y[LANES], z[LANES];
-    double l[LANES], m[LANES], n[LANES]; /* direction, unit length */
+    double l[LANES], m[LANES], n[LANES]; /* direction, a unit vector */
     double cosine[LANES];    /* cosine between ray and normal at the surface */
     double normal[3][LANES]; /* unit normal; non-spherical surfaces only */
     double energy[LANES];
@@ -31,7 +31,8 @@ struct beam {
      * semi-diameter was largest so far */
     double height2[LANES], semi2[LANES];
     double stop_x[LANES], stop_y[LANES];
-    double status[LANES]; /* enum glint_ray_status as a double */
+    /* status of each ray, enum glint_ray_status as a double */
+    double status[LANES];
 };
 
 /* Returns the new status of a ray: SO_FAR if the ray is invalid already; else

@@ -28,7 +28,7 @@ enum {
      * to other units */
     NODE_X,
     NODE_Y,
-    NODE_STOP_X, /* stop radii, in the camera's frame */
+    NODE_STOP_X, /* position in the stop, stop radii, in the camera's frame */
     NODE_STOP_Y,
     NODE_ENERGY,
     NODE_CUT
@@ -44,8 +44,8 @@ struct glint_cells {
     int n; /* number of cells per side, even */
     int n_cuts;
     int cut_event[GLINT_MAX_CUTS];
-    int stride;   /* doubles per node */
-    double *node; /* [n + 1][n + 1][stride] */
+    int stride;   /* number of doubles per node */
+    double *node; /* channels of all nodes, [n + 1][n + 1][stride] */
 };
 
 /* Sets all members except node, for a light at angle THETA_DEG and azimuth

@@ -14,7 +14,7 @@ enum { SHOWN = 1000 };
 /* one ray of the sparse grid */
 struct probe {
     bool traced, inside;
-    double x_mm, y_mm; /* position on the sensor */
+    double x_mm, y_mm; /* position on the sensor, mm */
     double stop_x, stop_y, stop_r2;
     /* squared relative radius at each event */
     double r2[GLINT_MAX_EVENTS + 1];
@@ -147,7 +147,8 @@ struct bend {
     int n;
     struct change sensor; /* mm */
     struct change stop;
-    struct change barrel[GLINT_MAX_EVENTS + 1]; /* differences of r^2 / 2 */
+    /* differences of r^2 / 2 at each barrel, r: relative radius */
+    struct change barrel[GLINT_MAX_EVENTS + 1];
     /* numbers of cells whose image is mirrored and not mirrored */
     int up, down;
     int n_steps;

@@ -68,7 +68,8 @@ static double compute_distance_to_zero(double a, double b)
     return low > 0 ? low : high < 0 ? -high : 0;
 }
 
-/* Returns the number of events that ray I of LINE reached. */
+/* Returns the number of events, from the first on, that ray I of LINE
+ * reached. */
 static int count_reached_events(const struct line *line, int i, int n_events)
 {
     int n = 0;

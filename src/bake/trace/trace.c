@@ -28,7 +28,7 @@
 
 /* ------------------------------------------------------------------- paths */
 
-/* A path under construction. */
+/* a path while its events are appended */
 struct route {
     const struct glint_prescription *lens;
     struct glint_path *path;

@@ -98,10 +98,9 @@ void glint_scatter_light(const struct glint_scatter_fit *fit,
  * edge of a shadow across it, and three lamps, small and large. */
 void glint_scatter_test_light(int side, double *irradiance)
 {
-    static const double lamp[3][4] = {/* position x, y; radius; light */
-                                      {0.3, 0.35, 0.03, 4},
-                                      {0.7, 0.25, 0.12, 1.5},
-                                      {0.55, 0.75, 0.008, 8}};
+    /* position x, y and radius, fractions of the side; light */
+    static const double lamp[3][4] = {
+        {0.3, 0.35, 0.03, 4}, {0.7, 0.25, 0.12, 1.5}, {0.55, 0.75, 0.008, 8}};
     static const double colour[3][3] = {
         {1, 0.8, 0.6}, {0.7, 0.9, 1}, {1, 1, 1}};
 

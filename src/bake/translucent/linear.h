@@ -28,8 +28,8 @@ struct glint_terms {
     /* number of terms, by descending value; the vectors of a value 0 are 0 */
     int n;
     double *value; /* [n] */
-    double *left;  /* [n][rows] unit vectors */
-    double *right; /* [n][columns] unit vectors */
+    double *left;  /* left vectors, [n][rows], unit length */
+    double *right; /* right vectors, [n][columns], unit length */
 };
 
 /* Computes the leading terms of A: at most N and at most as many as A has

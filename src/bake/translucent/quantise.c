@@ -32,8 +32,9 @@ struct writer {
     struct glint_draft draft;
     struct glint_translucent_header header;
     int rank, texels;
-    double *column, *row; /* [kernels][3][rank][kernel] */
-    double *largest;      /* [3][kernels]: max factor of each plane */
+    /* columns and rows of all kernels, [kernels][3][rank][kernel] */
+    double *column, *row;
+    double *largest; /* [3][kernels]: max factor of each plane */
     /* max of the in factors of the clustered model; else 1 */
     double in[CHANNELS];
 };

@@ -20,7 +20,7 @@
 
 enum { GLINT_SLAB_MODES = 8 };
 
-/* One channel of a homogeneous translucent medium. */
+/* one colour channel of a homogeneous translucent medium */
 struct glint_slab {
     double texel, slab;     /* size of a texel, thickness of the slab, mm */
     double scatter, absorb; /* 1/mm */

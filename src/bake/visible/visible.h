@@ -56,7 +56,7 @@ struct glint_visible {
      * accepted where their errors are invisible, instead of being halved
      * endlessly. */
     bool shaped;
-    double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
+    double wave_lo, wave_hi; /* ends of the band, 1 / wavelength^2, um^-2 */
     /* paths at GLINT_VISIBLE_WAVES wavelengths from wave_lo to wave_hi */
     struct glint_path path[GLINT_VISIBLE_WAVES];
     /* the same paths, for tracing positions without energies */
