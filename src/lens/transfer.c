@@ -96,14 +96,14 @@ glint_transfer_system(const struct glint_lens *lens, int ghost,
 
 /* Angle and wavelength of a bundle, relative to the ranges of its system, as
  * powers 0, 1, 2 ... */
-struct setting {
+struct substituted_powers {
     int32_t s_q30[TRANSFER_MAX_EXPONENT + 1], w_q30[TRANSFER_MAX_EXPONENT + 1];
     int lens; /* 1: the model uses the lens basis; 0: the auto basis */
     /* powers of the y component; lens basis only */
     int32_t p_q30[GLINT_LENS_POWERS];
 };
 
-static void set_substituted_powers(struct setting *set,
+static void set_substituted_powers(struct substituted_powers *set,
                                    const struct glint_lens *lens,
                                    const struct glint_model_system *s,
                                    int32_t sine_q30, int32_t y_q30,
@@ -127,7 +127,7 @@ static void set_substituted_powers(struct setting *set,
 
 static void evaluate_transfer_box(struct glint_transfer *t,
                                   const struct glint_lens *lens,
-                                  const struct setting *set)
+                                  const struct substituted_powers *set)
 {
     const struct glint_model_system *s = t->system;
     const int32_t *box = get_model_table(lens, s->box_at);
@@ -149,8 +149,8 @@ static void evaluate_transfer_box(struct glint_transfer *t,
 
 /* Returns coefficient VALUE of a term, multiplied by the powers of angle and
  * wavelength that POWER encodes. Auto basis. */
-static WHOLLY_INLINE int32_t substitute_auto_term(const struct setting *set,
-                                                  int32_t value, uint16_t power)
+static WHOLLY_INLINE int32_t substitute_auto_term(
+    const struct substituted_powers *set, int32_t value, uint16_t power)
 {
     const int c = power >> 8 & 15, d = power >> 12;
 
@@ -167,8 +167,8 @@ STATIC_ASSERT(GLINT_LENS_WAVE_POWERS <= TRANSFER_MAX_EXPONENT + 1);
 
 /* Returns coefficient VALUE of a term, multiplied by the powers of direction
  * and wavelength that POWER encodes. Lens basis. */
-static int32_t substitute_lens_term(const struct setting *set, int32_t value,
-                                    uint16_t power)
+static int32_t substitute_lens_term(const struct substituted_powers *set,
+                                    int32_t value, uint16_t power)
 {
     const unsigned code = power >> 8, of_s = code % GLINT_LENS_POWERS;
     const unsigned of_p = code / GLINT_LENS_POWERS % GLINT_LENS_POWERS;
@@ -202,7 +202,7 @@ static WHOLLY_INLINE void add_table_term(struct table *t, uint16_t power,
 static void fill_output_table(struct table *table,
                               const struct glint_lens *lens,
                               const struct glint_model_output *o,
-                              const struct setting *set)
+                              const struct substituted_powers *set)
 {
     const uint32_t n = o->n_terms, n_wide = n - o->n_narrow;
     const int32_t *coef = get_model_table(lens, o->coef_at);
@@ -231,7 +231,7 @@ static void fill_output_table(struct table *table,
 static void set_transfer_table(struct glint_transfer *t,
                                const struct glint_lens *lens,
                                const struct glint_model_output *o,
-                               const struct setting *set)
+                               const struct substituted_powers *set)
 {
     struct table table = {t->table[o->kind], 0, 0};
 
@@ -243,7 +243,7 @@ static void set_transfer_table(struct glint_transfer *t,
 static void set_transfer_output(struct glint_transfer *t,
                                 const struct glint_lens *lens,
                                 const struct glint_model_output *o,
-                                const struct setting *set)
+                                const struct substituted_powers *set)
 {
     t->outputs |= UINT32_C(1) << o->kind;
     t->exponent[o->kind] = o->exponent;
@@ -273,19 +273,19 @@ static void clear_transfer_outputs(struct glint_transfer *t)
 
 /* The direction of a light in the form that systems use. x: the sine of the
  * light's angle; in the lens basis, the direction's x component. */
-struct toward {
+struct system_direction {
     int32_t x_q30, y_q30;
     /* 1: the light is on the other side of the plane of symmetry, so the
      * mirrored system is used */
     int mirror_x, mirror_y;
 };
 
-static struct toward compute_system_direction(const struct glint_lens *lens,
-                                              int32_t sine_q30,
-                                              struct glint_azimuth azimuth)
+static struct system_direction
+compute_system_direction(const struct glint_lens *lens, int32_t sine_q30,
+                         struct glint_azimuth azimuth)
 {
     const uint32_t basis = lens->header->basis;
-    struct toward d = {sine_q30, 0, 0, 0};
+    struct system_direction d = {sine_q30, 0, 0, 0};
 
     if (!glint_basis_is_lens(basis))
         return d;
@@ -313,10 +313,11 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
                            int32_t sine_q30, struct glint_azimuth azimuth,
                            int32_t wave_q24)
 {
-    const struct toward d = compute_system_direction(lens, sine_q30, azimuth);
+    const struct system_direction d =
+        compute_system_direction(lens, sine_q30, azimuth);
     const struct glint_model_system *system;
     const struct glint_model_output *output;
-    struct setting set;
+    struct substituted_powers set;
 
     if (lens->zoom) /* models of zoom lenses have rotational symmetry */
         return lens->zoom->transfer(transfer, lens->zoom, ghost, sine_q30,
@@ -342,10 +343,9 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
 
 /* Returns output O of the other zoom position of a mix, and writes its
  * coefficients to ROW. */
-static struct glint_blend_output
-make_blend_output(const struct glint_lens *lens,
-                  const struct glint_model_output *o, const struct setting *set,
-                  int32_t (*row)[GLINT_TABLE_WIDTH])
+static struct glint_blend_output make_blend_output(
+    const struct glint_lens *lens, const struct glint_model_output *o,
+    const struct substituted_powers *set, int32_t (*row)[GLINT_TABLE_WIDTH])
 {
     struct table table = {row, 0, 0};
 
@@ -368,7 +368,7 @@ int glint_transfer_mix(struct glint_transfer *transfer,
     struct glint_zoom_mix blend = {.to = transfer, .part_q30 = part_q30};
     int32_t box[3] = {transfer->box[0], transfer->box[1], transfer->box[2]};
     const int32_t box_exponent = transfer->box_exponent;
-    struct setting set;
+    struct substituted_powers set;
 
     if (!system)
         return 0;

@@ -29,17 +29,17 @@ struct block {
     int32_t energy_q16[RAYS];
     /* [0]: rays, [1]: their mirror images; all bits are set if the ray is
      * invalid */
-    int32_t lost[2][RAYS];
+    int32_t invalid[2][RAYS];
 };
 
 /* Sets SCALED to X / 2^SHIFT, rounded. Marks rays whose value reaches LIMIT in
- * magnitude as invalid in LOST. */
+ * magnitude as invalid in INVALID. */
 static void scale_ray_values(const int32_t *x, int shift, int32_t limit,
-                             int32_t *scaled, int32_t *lost)
+                             int32_t *scaled, int32_t *invalid)
 {
     if (shift < 1 || shift > 30 || limit < LIMIT_Q16) {
         for (int i = 0; i < RAYS; i++)
-            scaled[i] = q_scaled(x[i], shift, limit, &lost[i]);
+            scaled[i] = q_scaled(x[i], shift, limit, &invalid[i]);
         return;
     }
     /* the sum is below 2^30 + 61 + 2^29, so it does not overflow */
@@ -53,7 +53,7 @@ static void set_radius_barrel(const struct glint_transfer *t,
     int32_t r_q16[RAYS];
 
     scale_ray_values(rays, -(t->exponent[GLINT_OUT_RADIUS] + 16), 1 << 23,
-                     r_q16, b->lost[0]);
+                     r_q16, b->invalid[0]);
     for (int i = 0; i < RAYS; i++)
         b->barrel_q16[0][i] =
             (int32_t)(((INT64_C(1) << 16) +
@@ -76,9 +76,9 @@ static void set_barrel_values(const struct glint_transfer *t,
         if (!transfer_has(t, kind))
             continue;
         scale_ray_values(rays[kind], -(t->exponent[kind] + 16), LIMIT_Q16, more,
-                         b->lost[0]);
+                         b->invalid[0]);
         for (int i = 0; i < RAYS; i++) {
-            b->lost[0][i] |= more[i] >> 31;
+            b->invalid[0][i] |= more[i] >> 31;
             to[i] = more[i] > to[i] ? more[i] : to[i];
         }
     }
@@ -102,7 +102,7 @@ static void convert_ray_energies(const int32_t *energy, int up,
 /* Rotations of positions on the sensor and in the stop by the azimuth of the
  * light, including the shifts to the formats of a vertex. The rotation on the
  * sensor includes the scale from mm to pixels. */
-struct turns {
+struct rotations {
     struct glint_turn sensor, stop;
 };
 
@@ -116,13 +116,13 @@ static struct glint_turn make_rotation(const struct glint_place *p,
         -(exponent + size.exponent + frac), limit};
 }
 
-static struct turns make_rotations(const struct glint_transfer *t,
-                                   const struct glint_place *p)
+static struct rotations make_rotations(const struct glint_transfer *t,
+                                       const struct glint_place *p)
 {
     const struct glint_real one = {TRANSFER_ONE_Q30, -30};
     const struct glint_real stop = p->stop_scale.mantissa ? p->stop_scale : one;
 
-    return (struct turns){
+    return (struct rotations){
         make_rotation(p, p->pixels_per_mm, t->exponent[GLINT_OUT_SENSOR_X], 8,
                       GLINT_VERTEX_LIMIT_Q8 / 2),
         make_rotation(p, stop, t->exponent[GLINT_OUT_STOP_X], 16, LIMIT_Q16)};
@@ -130,27 +130,27 @@ static struct turns make_rotations(const struct glint_transfer *t,
 
 static void rotate_ray_positions(const struct glint_turn *turn, unsigned sets,
                                  const int32_t *x, const int32_t *y,
-                                 int32_t (*out)[RAYS], int32_t (*lost)[RAYS])
+                                 int32_t (*out)[RAYS], int32_t (*invalid)[RAYS])
 {
     const int usual = turn->shift >= 1 && turn->shift <= 62;
 
-    glint_turn_of(usual ? sets : 0)(turn, x, y, out, lost);
+    glint_turn_of(usual ? sets : 0)(turn, x, y, out, invalid);
 }
 
 static void convert_ray_block(const struct glint_transfer *t,
-                              const struct turns *turns,
+                              const struct rotations *rotations,
                               const int32_t (*rays)[RAYS], struct block *b)
 {
     for (int i = 0; i < RAYS; i++)
-        b->lost[0][i] = 0;
+        b->invalid[0][i] = 0;
     set_barrel_values(t, rays, b);
     for (int i = 0; i < RAYS; i++)
-        b->lost[1][i] = b->lost[0][i];
+        b->invalid[1][i] = b->invalid[0][i];
     convert_ray_energies(rays[GLINT_OUT_ENERGY], t->energy_up, b->energy_q16);
-    rotate_ray_positions(&turns->sensor, t->sets, rays[GLINT_OUT_SENSOR_X],
-                         rays[GLINT_OUT_SENSOR_Y], b->sensor_q8, b->lost);
-    rotate_ray_positions(&turns->stop, t->sets, rays[GLINT_OUT_STOP_X],
-                         rays[GLINT_OUT_STOP_Y], b->stop_q16, b->lost);
+    rotate_ray_positions(&rotations->sensor, t->sets, rays[GLINT_OUT_SENSOR_X],
+                         rays[GLINT_OUT_SENSOR_Y], b->sensor_q8, b->invalid);
+    rotate_ray_positions(&rotations->stop, t->sets, rays[GLINT_OUT_STOP_X],
+                         rays[GLINT_OUT_STOP_Y], b->stop_q16, b->invalid);
 }
 
 /* Writes the first N rays of B as vertices: the rays themselves if SIDE is 0,
@@ -166,7 +166,7 @@ static void write_block_vertices(const struct block *b,
             .stop_x_q16 = b->stop_q16[2 * side][i],
             .stop_y_q16 = b->stop_q16[2 * side + 1][i],
             .barrel_q16 = {b->barrel_q16[0][i], b->barrel_q16[1][i]},
-            .energy_q16 = b->energy_q16[i] | b->lost[side][i]};
+            .energy_q16 = b->energy_q16[i] | b->invalid[side][i]};
 }
 
 /* --------------------------------------------------------------------- rows */
@@ -229,7 +229,7 @@ static void compute_row_pair(struct glint_transfer *t,
                              int j, struct glint_vertex *row,
                              struct glint_vertex *mirrored)
 {
-    const struct turns turns = make_rotations(t, place);
+    const struct rotations rotations = make_rotations(t, place);
     const int32_t v_q30 = compute_row_v_q30(t, n_cells, j);
 
     if (t->n_nodes != n_cells + 1) {
@@ -245,7 +245,7 @@ static void compute_row_pair(struct glint_transfer *t,
         struct block b;
 
         glint_transfer_rays(t, v_q30, t->node_q30 + first, first == 0, rays);
-        convert_ray_block(t, &turns, (const int32_t(*)[RAYS])rays, &b);
+        convert_ray_block(t, &rotations, (const int32_t(*)[RAYS])rays, &b);
         if (row)
             write_block_vertices(&b, place, t->side, n, row + first);
         if (mirrored)

@@ -561,7 +561,7 @@ static bool set_node_channels(const struct ray_field_config *cfg,
 static void trace_node_row(const struct ray_field_config *cfg,
                            const struct ray_field *field,
                            const struct glint_path *path, const double d[3],
-                           int j, float *node, unsigned char *lost)
+                           int j, float *node, unsigned char *invalid)
 {
     const struct glint_pupil *p = &field->pupil;
     const int n = field->n_cells;
@@ -588,7 +588,7 @@ static void trace_node_row(const struct ray_field_config *cfg,
             !set_node_channels(cfg, field, path, &ray[k],
                                hits + k * path->n_events,
                                node + (size_t)i * CHANNELS)) {
-            lost[i] = 1;
+            invalid[i] = 1;
             memset(node + (size_t)i * CHANNELS, 0, CHANNELS * sizeof *node);
         }
     }
@@ -600,11 +600,11 @@ void glint_ray_field_trace(const struct ray_field_config *cfg,
     const size_t nodes = count_traced_nodes(field),
                  wide = (size_t)field->n_cells + 1;
     float *node = mem;
-    unsigned char *lost =
+    unsigned char *invalid =
         (unsigned char *)(node + (size_t)field->n_samples * nodes * CHANNELS);
     struct glint_path path;
 
-    memset(lost, 0, nodes);
+    memset(invalid, 0, nodes);
     for (int s = 0; s < field->n_samples; s++) {
         double d[3];
 
@@ -615,7 +615,7 @@ void glint_ray_field_trace(const struct ray_field_config *cfg,
             trace_node_row(cfg, field, &path, d, j,
                            node + ((size_t)s * nodes + (size_t)j * wide) *
                                       CHANNELS,
-                           lost + (size_t)j * wide);
+                           invalid + (size_t)j * wide);
     }
 }
 
@@ -746,7 +746,7 @@ void glint_ray_place_row(const struct ray_field_config *cfg,
     const float half_w = 0.5f * (float)cfg->view.width;
     const float half_h = 0.5f * (float)cfg->view.height;
     const float nearer = 65536 * (1 - (float)f->sag[2]);
-    const unsigned char *lost =
+    const unsigned char *invalid =
         (const unsigned char *)((const float *)p->mem +
                                 (size_t)f->n_samples * count_traced_nodes(f) *
                                     CHANNELS) +
@@ -761,7 +761,7 @@ void glint_ray_place_row(const struct ray_field_config *cfg,
         const float energy = v[ENERGY] < 1 ? v[ENERGY] : 1;
 
         row[i].energy_q16 = -1;
-        if (lost[i])
+        if (invalid[i])
             continue;
         row[i].x_q8 = (int32_t)lrintf(256 * (half_w + (v[X] * c - y * s)));
         row[i].y_q8 = (int32_t)lrintf(256 * (half_h - (v[X] * s + y * c)));

@@ -400,7 +400,7 @@ void glint_zone_check(const struct glint_zone *zone,
 struct sampling {
     int n, n_events;
     /* true: the ray misses a surface, so its position in the stop is unknown */
-    bool lost[GLINT_SAMPLING_RAYS];
+    bool missed[GLINT_SAMPLING_RAYS];
     double (*radius)[GLINT_MAX_EVENTS + 1];
     /* range of the relative radii of rays inside the stop and the field */
     double low[GLINT_MAX_EVENTS + 1], high[GLINT_MAX_EVENTS + 1];
@@ -458,7 +458,7 @@ static bool sample_barrel_radii(const struct glint_visible *h,
                         : r / e->semi_mm;
         most = fmax(most, radius[k]);
     }
-    sampling->lost[sampling->n] = status != GLINT_RAY_OK;
+    sampling->missed[sampling->n] = status != GLINT_RAY_OK;
     if (status == GLINT_RAY_MISSED && h->far)
         most = fmax(most, mark_missed_surface(radius, hits, path->n_events));
     if (status != GLINT_RAY_OK)
@@ -534,17 +534,18 @@ static double compute_barrel_escape(const struct sampling *s, int ray,
 }
 
 /* Returns the sum of compute_barrel_escape() over all rays, for N barrels
- * CHOSEN; *MOST receives the max. LOST: also counts rays that miss a surface.
+ * CHOSEN; *MOST receives the max. MISSED: also counts rays that miss a surface.
  */
-static double sum_barrel_escapes(const struct sampling *s, bool lost,
+static double sum_barrel_escapes(const struct sampling *s, bool missed,
                                  const int *chosen, int n, double *most)
 {
     double sum = 0;
 
     *most = 0;
     for (int i = 0; i < s->n; i++) {
-        const double e =
-            !lost && s->lost[i] ? 0 : compute_barrel_escape(s, i, chosen, n);
+        const double e = !missed && s->missed[i]
+                             ? 0
+                             : compute_barrel_escape(s, i, chosen, n);
 
         sum += e;
         *most = fmax(*most, e);
@@ -553,14 +554,14 @@ static double sum_barrel_escapes(const struct sampling *s, bool lost,
 }
 
 /* Adds barrels to RAYS, each time the one that blocks most, until
- * compute_barrel_escape() is at most SHOWS for all rays; without LOST, for all
- * rays that hit every surface. */
-static void choose_fitted_barrels(const struct sampling *s, bool lost,
+ * compute_barrel_escape() is at most SHOWS for all rays; without MISSED, for
+ * all rays that hit every surface. */
+static void choose_fitted_barrels(const struct sampling *s, bool missed,
                                   double shows, struct glint_zone_rays *rays)
 {
     double most;
 
-    sum_barrel_escapes(s, lost, rays->barrel, rays->n_barrels, &most);
+    sum_barrel_escapes(s, missed, rays->barrel, rays->n_barrels, &most);
     while (most > shows && rays->n_barrels < GLINT_MAX_BARRELS) {
         const int n = rays->n_barrels;
         double least = HUGE_VAL;
@@ -570,7 +571,7 @@ static void choose_fitted_barrels(const struct sampling *s, bool lost,
             double sum;
 
             rays->barrel[n] = k;
-            sum = sum_barrel_escapes(s, lost, rays->barrel, n + 1, &most);
+            sum = sum_barrel_escapes(s, missed, rays->barrel, n + 1, &most);
             if (sum < least) {
                 least = sum;
                 best = k;
@@ -578,7 +579,7 @@ static void choose_fitted_barrels(const struct sampling *s, bool lost,
         }
         rays->barrel[n] = best;
         rays->n_barrels++;
-        sum_barrel_escapes(s, lost, rays->barrel, n + 1, &most);
+        sum_barrel_escapes(s, missed, rays->barrel, n + 1, &most);
     }
     rays->missed_cut = most;
 }

@@ -27,13 +27,13 @@ struct glint_motion_baker {
     bool has_body;
     struct glint_localiser localiser;
     int n_foods, n_intensities;
-    uint32_t n_frames, pose_room;
+    uint32_t n_frames, pose_capacity;
     struct recorded_pose *pose; /* pose of the body per frame, [n_frames] */
-    uint32_t n_events, event_room;
+    uint32_t n_events, event_capacity;
     struct recorded_food *event; /* first frames of foods, [n_events] */
     /* index in event of the food that is now in each slot */
     uint32_t lives[GLINT_MOTION_MAX_FOODS];
-    size_t n_bytes, byte_room;
+    size_t n_bytes, byte_capacity;
     /* intensity codes, [n_frames][n_foods][n_intensities] */
     uint8_t *intensity;
     long long number; /* number in the recording of the last frame */
@@ -338,12 +338,13 @@ enum glint_status glint_motion_baker_body(struct glint_motion_baker *baker,
 
 /* Grows the array *MEM such that it has capacity for N items of BYTES each.
  * Returns false if there is no memory. */
-static bool grow_memory_array(void **mem, size_t *room, size_t n, size_t bytes)
+static bool grow_memory_array(void **mem, size_t *capacity, size_t n,
+                              size_t bytes)
 {
-    size_t more = *room;
+    size_t more = *capacity;
     void *grown;
 
-    if (n <= *room)
+    if (n <= *capacity)
         return true;
     while (more < n)
         more = more < 256 ? 256 : more + more / 4;
@@ -351,14 +352,14 @@ static bool grow_memory_array(void **mem, size_t *room, size_t n, size_t bytes)
     if (!grown)
         return false;
     *mem = grown;
-    *room = more;
+    *capacity = more;
     return true;
 }
 
 static bool reserve_frame_memory(struct glint_motion_baker *b, int n_foods)
 {
     void *pose = b->pose, *event = b->event, *intensity = b->intensity;
-    size_t poses = b->pose_room, events = b->event_room;
+    size_t poses = b->pose_capacity, events = b->event_capacity;
     const size_t each = (size_t)n_foods * (size_t)b->n_intensities;
     bool good =
         grow_memory_array(&pose, &poses, (size_t)b->n_frames + 1,
@@ -366,13 +367,13 @@ static bool reserve_frame_memory(struct glint_motion_baker *b, int n_foods)
         grow_memory_array(&event, &events,
                           (size_t)b->n_events + (size_t)n_foods,
                           sizeof *b->event) &&
-        grow_memory_array(&intensity, &b->byte_room, b->n_bytes + each, 1);
+        grow_memory_array(&intensity, &b->byte_capacity, b->n_bytes + each, 1);
 
     b->pose = pose;
     b->event = event;
     b->intensity = intensity;
-    b->pose_room = (uint32_t)poses;
-    b->event_room = (uint32_t)events;
+    b->pose_capacity = (uint32_t)poses;
+    b->event_capacity = (uint32_t)events;
     return good;
 }
 

@@ -41,7 +41,7 @@ struct recording {
     /* true: consumed characters are appended to text */
     bool is_kept;
     char *text; /* the text of the current piece; owned */
-    size_t bytes, room;
+    size_t bytes, capacity;
 };
 
 /* --------------------------------------------------------------------- bytes
@@ -93,16 +93,16 @@ static bool append_piece_char(struct recording *r, char c)
     if (r->bytes == MOST_BYTES)
         return set_error_at_byte(
             r, "a frame or the structure is longer than 1 MiB");
-    if (r->bytes == r->room) {
-        const size_t room = r->room ? 2 * r->room : 4096;
-        char *const text = realloc(r->text, room);
+    if (r->bytes == r->capacity) {
+        const size_t capacity = r->capacity ? 2 * r->capacity : 4096;
+        char *const text = realloc(r->text, capacity);
 
         if (!text) {
             r->status = GLINT_E_MEMORY;
             return false;
         }
         r->text = text;
-        r->room = room;
+        r->capacity = capacity;
     }
     r->text[r->bytes++] = c;
     return true;

@@ -17,7 +17,7 @@ struct glint_describer {
     struct glint_error *error;
     /* status of a failure outside the text, such as lack of memory */
     enum glint_status status;
-    int room; /* number of triangles for which memory is allocated */
+    int capacity; /* number of triangles for which memory is allocated */
     /* Position of the line "camera". It is evaluated after all other lines, as
      * it depends on the line "hand". */
     struct glint_text_place camera;

@@ -128,17 +128,17 @@ append_triangles(struct glint_describer *d, int n,
                         GLINT_DESCRIPTION_MAX_TRIANGLES);
         return NULL;
     }
-    if (s->n_triangles + n > d->room) {
-        const int room = 2 * (s->n_triangles + n);
+    if (s->n_triangles + n > d->capacity) {
+        const int capacity = 2 * (s->n_triangles + n);
         struct glint_described_triangle *t =
-            realloc(s->triangle, (size_t)room * sizeof *t);
+            realloc(s->triangle, (size_t)capacity * sizeof *t);
 
         if (!t) {
             d->status = GLINT_E_MEMORY;
             return NULL;
         }
         s->triangle = t;
-        d->room = room;
+        d->capacity = capacity;
     }
     s->n_triangles += n;
     return s->triangle + s->n_triangles - n;

@@ -11,7 +11,7 @@
  * coordinates or normals. */
 struct list {
     double *at;
-    int n, room, width;
+    int n, capacity, width;
 };
 
 /* A corner of a face: indices of position, texture coordinates and normal, from
@@ -24,7 +24,7 @@ struct reader {
     struct glint_text text;
     struct list place, uv, normal;
     struct glint_mesh *mesh;
-    int room;     /* number of triangles for which memory is allocated */
+    int capacity; /* number of triangles for which memory is allocated */
     int material; /* index of the current material's name; -1: none */
     bool out_of_memory;
 };
@@ -33,17 +33,17 @@ struct reader {
  * memory. */
 static double *append_list_item(struct reader *r, struct list *list)
 {
-    if (list->n == list->room) {
-        const int room = list->room ? 2 * list->room : 256;
-        double *at =
-            realloc(list->at, (size_t)room * (size_t)list->width * sizeof *at);
+    if (list->n == list->capacity) {
+        const int capacity = list->capacity ? 2 * list->capacity : 256;
+        double *at = realloc(list->at, (size_t)capacity * (size_t)list->width *
+                                           sizeof *at);
 
         if (!at) {
             r->out_of_memory = true;
             return NULL;
         }
         list->at = at;
-        list->room = room;
+        list->capacity = capacity;
     }
     return list->at + (ptrdiff_t)list->n++ * list->width;
 }
@@ -165,16 +165,16 @@ static bool append_mesh_triangle(struct reader *r,
     if (mesh->n_triangles == GLINT_DESCRIPTION_MAX_TRIANGLES)
         return glint_text_fail(&r->text, place, "more than %d triangles",
                                GLINT_DESCRIPTION_MAX_TRIANGLES);
-    if (mesh->n_triangles == r->room) {
-        const int room = r->room ? 2 * r->room : 64;
+    if (mesh->n_triangles == r->capacity) {
+        const int capacity = r->capacity ? 2 * r->capacity : 64;
 
-        t = realloc(mesh->triangle, (size_t)room * sizeof *t);
+        t = realloc(mesh->triangle, (size_t)capacity * sizeof *t);
         if (!t) {
             r->out_of_memory = true;
             return false;
         }
         mesh->triangle = t;
-        r->room = room;
+        r->capacity = capacity;
     }
     t = &mesh->triangle[mesh->n_triangles++];
     *t = (struct glint_described_triangle){

@@ -56,7 +56,7 @@ struct rows {
     double *across;    /* source row HELD, resized to the width of the result */
     /* the weighted sum of source rows for one row of the result */
     double *sum;
-    int held; /* row of the source in across; -1: none */
+    int held_row; /* row of the source in across; -1: none */
 };
 
 /* Sets rows->across to row Y of the source, resized from SRC_WIDTH to WIDTH. */
@@ -65,12 +65,12 @@ static void load_source_row(struct rows *rows, int y, int width,
 {
     const size_t n = 3 * (size_t)src_width;
 
-    if (rows->held == y)
+    if (rows->held_row == y)
         return;
     for (size_t i = 0; i < n; i++)
         rows->light[i] = rows->table[src[(size_t)y * n + i]];
     resize_texel_row(rows->across, width, rows->light, src_width);
-    rows->held = y;
+    rows->held_row = y;
 }
 
 /* Resizes as glint_texels_resize() does, using the buffers ROWS. */
@@ -102,7 +102,7 @@ enum glint_status glint_texels_resize(uint8_t *dst, int width, int height,
                                       const uint8_t *src, int src_width,
                                       int src_height)
 {
-    struct rows rows = {.held = -1};
+    struct rows rows = {.held_row = -1};
     bool good;
 
     rows.light = malloc(3 * (size_t)src_width * sizeof *rows.light);

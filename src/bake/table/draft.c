@@ -12,16 +12,16 @@ uint32_t glint_draft_put(struct glint_draft *d, const void *data, size_t bytes)
         d->out_of_memory = true;
         return 0;
     }
-    if (where + padded > d->room) {
-        const size_t room = 2 * (where + padded);
-        unsigned char *more = realloc(d->data, room);
+    if (where + padded > d->capacity) {
+        const size_t capacity = 2 * (where + padded);
+        unsigned char *more = realloc(d->data, capacity);
 
         if (!more) {
             d->out_of_memory = true;
             return 0;
         }
         d->data = more;
-        d->room = room;
+        d->capacity = capacity;
     }
     memset(d->data + where, 0, padded);
     if (data)

@@ -15,7 +15,7 @@
 /* Owns data, which is allocated with malloc(). Initialise it with zeros. */
 struct glint_draft {
     unsigned char *data;
-    size_t bytes, room;
+    size_t bytes, capacity;
     bool out_of_memory; /* true: further writes have no effect */
 };
 
