@@ -91,7 +91,7 @@ static void report_bake_progress(struct bake_run *run)
         o->progress(o->progress_ctx, FITTED * glint_effort_done(&run->effort));
 }
 
-/* context of report_fit() for one ghost */
+/* context of report_fit_work() for one ghost */
 struct fit_report {
     struct bake_run *run;
     bool shows_progress; /* true: this worker reports progress */
@@ -101,7 +101,7 @@ struct fit_report {
 /* Records the WORK done so far for a ghost, zone fits, and the fraction SHARE
  * of its angles that are done. Returns GLINT_E_UNSUPPORTED, without an error
  * text, if the caller's allow() denies more work. */
-static enum glint_status report_fit(void *ctx, double work, double share)
+static enum glint_status report_fit_work(void *ctx, double work, double share)
 {
     struct fit_report *const r = ctx;
     const struct glint_bake_options *const o = &r->run->options;
@@ -156,8 +156,8 @@ static enum glint_status fit_ghost(struct bake_run *run, int ghost,
         allocate_visibility(run, ghost, run->options.n_beside);
     struct fit_report report = {run, shows_progress, 0};
     const enum glint_status status =
-        visible ? fit(visible, run->options.max_deg, &tolerance, report_fit,
-                      &report, &run->fitted[ghost])
+        visible ? fit(visible, run->options.max_deg, &tolerance,
+                      report_fit_work, &report, &run->fitted[ghost])
                 : GLINT_E_MEMORY;
 
     free(visible);

@@ -58,8 +58,8 @@ append_output_coefficients(struct glint_draft *d,
 }
 
 static struct glint_model_output
-append_output(struct glint_draft *d, const struct glint_fitted_output *o,
-              const struct glint_quantised_output *q, bool skew)
+append_model_output(struct glint_draft *d, const struct glint_fitted_output *o,
+                    const struct glint_quantised_output *q, bool skew)
 {
     const uint32_t term_at = append_output_terms(d, o, q, skew);
     const uint32_t coef_at = append_output_coefficients(d, o, q);
@@ -85,7 +85,7 @@ static uint32_t append_system_outputs(struct glint_draft *d,
     struct glint_model_output out[GLINT_OUT_KINDS];
 
     for (int k = 0; k < f->n_outputs; k++)
-        out[k] = append_output(d, &f->output[k], &q->output[k], f->skew);
+        out[k] = append_model_output(d, &f->output[k], &q->output[k], f->skew);
     return glint_draft_put(d, out, (size_t)f->n_outputs * sizeof *out);
 }
 

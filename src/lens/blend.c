@@ -142,7 +142,7 @@ static struct glint_blend_stop get_stop_position(struct glint_transfer *t)
     for (int kind = GLINT_OUT_STOP_X; kind <= GLINT_OUT_STOP_Y; kind++) {
         const struct glint_blend_output o = glint_blend_of(t, kind);
 
-        if (transfer_has(t, kind))
+        if (has_transfer_output(t, kind))
             record_stop_position(&stop, &o);
     }
     return stop;
@@ -440,7 +440,7 @@ void glint_blend_output(struct glint_zoom_mix *blend,
         mix_barrel_output(blend, o);
     else if (o->kind == GLINT_OUT_ENERGY)
         mix_energy_output(blend, o);
-    else if (transfer_has(t, o->kind))
+    else if (has_transfer_output(t, o->kind))
         t->exponent[o->kind] =
             mix_polynomial(blend, o->kind, t->exponent[o->kind], o);
 }
@@ -450,7 +450,7 @@ void glint_blend_end(const struct glint_zoom_mix *blend)
     if (blend->part_q30 < 0)
         return;
     for (int kind = BARREL; kind < GLINT_OUT_KINDS; kind++)
-        if (transfer_has(blend->to, kind) &&
+        if (has_transfer_output(blend->to, kind) &&
             !(blend->taken >> (kind - BARREL) & 1)) {
             keep_barrel_in_stop(blend, 0, kind);
             widen_barrel_opening(blend->to, kind, blend->part_q30);

@@ -185,7 +185,8 @@ static int has_negative_size(const int32_t p[GLINT_BOX_TERMS])
     for (int32_t k = -half; k <= half; k++) {
         const int32_t s_q30 = k * (LIMIT / half);
 
-        if (box_side(p, s_q30, -LIMIT) < 0 || box_side(p, s_q30, LIMIT) < 0)
+        if (evaluate_box_polynomial(p, s_q30, -LIMIT) < 0 ||
+            evaluate_box_polynomial(p, s_q30, LIMIT) < 0)
             return 1;
     }
     return 0;
@@ -199,8 +200,9 @@ static int has_negative_lens_size(const int32_t p[GLINT_BOX_TERMS])
 
     for (int32_t k = -half; k <= half; k++)
         for (int32_t m = -half; m <= half; m++)
-            if (box_lens_side(p, k * step, m * step, -LIMIT) < 0 ||
-                box_lens_side(p, k * step, m * step, LIMIT) < 0)
+            if (evaluate_lens_box_polynomial(p, k * step, m * step, -LIMIT) <
+                    0 ||
+                evaluate_lens_box_polynomial(p, k * step, m * step, LIMIT) < 0)
                 return 1;
     return 0;
 }
@@ -221,7 +223,7 @@ static const char *check_system_box(struct check *c,
     if (!box)
         return outside;
     for (int k = 0; k < sides; k++) {
-        box = box_unpack(box, s->box_terms, side);
+        box = unpack_box_polynomial(box, s->box_terms, side);
         if (sum_magnitudes(side, GLINT_BOX_TERMS) >= LIMIT)
             return "the terms of a box are too large";
         if ((k == 1 || k == 2) &&

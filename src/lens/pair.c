@@ -210,7 +210,7 @@ int glint_blend_put(struct glint_transfer *t,
 {
     int kind = BARREL;
 
-    while (kind < GLINT_OUT_KINDS && transfer_has(t, kind))
+    while (kind < GLINT_OUT_KINDS && has_transfer_output(t, kind))
         kind++;
     if (kind == GLINT_OUT_KINDS)
         return -1;

@@ -14,7 +14,7 @@ enum { TRANSFER_MAX_EXPONENT = 15 }; /* max power of any variable */
 #define TRANSFER_ONE_Q30 (INT32_C(1) << 30)
 
 /* Sets POWER_Q30[N + 1] to the powers 0 .. N of X_Q30. */
-static inline void transfer_powers(int32_t x_q30, int n, int32_t *power_q30)
+static inline void compute_powers_q30(int32_t x_q30, int n, int32_t *power_q30)
 {
     power_q30[0] = TRANSFER_ONE_Q30;
     for (int k = 1; k <= n; k++)
@@ -35,7 +35,7 @@ int glint_transfer_mix(struct glint_transfer *transfer,
                        const struct glint_lens *lens, int ghost,
                        int32_t sine_q30, int32_t wave_q24, int32_t part_q30);
 
-static inline int transfer_has(const struct glint_transfer *t, int kind)
+static inline int has_transfer_output(const struct glint_transfer *t, int kind)
 {
     return (t->outputs >> kind & 1) != 0;
 }

@@ -110,16 +110,16 @@ static void set_substituted_powers(struct substituted_powers *set,
                                    int32_t wave_q24)
 {
     set->lens = glint_basis_is_lens(lens->header->basis);
-    transfer_powers(
+    compute_powers_q30(
         normalise_in_range_q30(sine_q30, s->sine_lo_q30, s->sine_hi_q30),
         TRANSFER_MAX_EXPONENT, set->s_q30);
-    transfer_powers(
+    compute_powers_q30(
         normalise_in_range_q30(wave_q24, s->wave_lo_q24, s->wave_hi_q24),
         TRANSFER_MAX_EXPONENT, set->w_q30);
     if (set->lens) {
         const int32_t *range_q30 = get_model_table(lens, s->across_at);
 
-        transfer_powers(
+        compute_powers_q30(
             normalise_in_range_q30(y_q30, range_q30[0], range_q30[1]),
             GLINT_LENS_POWERS - 1, set->p_q30);
     }
@@ -136,10 +136,12 @@ static void evaluate_transfer_box(struct glint_transfer *t,
     t->box_exponent = s->box_exponent;
     t->box[3] = 0;
     for (int k = 0; k < (set->lens ? GLINT_LENS_SIDES : 3); k++) {
-        box = box_unpack(box, s->box_terms, side);
-        t->box[k] = set->lens ? box_lens_side(side, set->s_q30[1],
-                                              set->p_q30[1], set->w_q30[1])
-                              : box_side(side, set->s_q30[1], set->w_q30[1]);
+        box = unpack_box_polynomial(box, s->box_terms, side);
+        t->box[k] =
+            set->lens
+                ? evaluate_lens_box_polynomial(side, set->s_q30[1],
+                                               set->p_q30[1], set->w_q30[1])
+                : evaluate_box_polynomial(side, set->s_q30[1], set->w_q30[1]);
     }
     /* The check of a model tests half sizes on a grid of angles; between these
      * a half size may be negative, so it is clamped to 0. */

@@ -67,13 +67,13 @@ static void set_barrel_values(const struct glint_transfer *t,
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < RAYS; i++)
             b->barrel_q16[k][i] = 0;
-    if (transfer_has(t, GLINT_OUT_RADIUS))
+    if (has_transfer_output(t, GLINT_OUT_RADIUS))
         set_radius_barrel(t, rays[GLINT_OUT_RADIUS], b);
     for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++) {
         int32_t *to = b->barrel_q16[kind > GLINT_OUT_BARREL_0];
         int32_t more[RAYS];
 
-        if (!transfer_has(t, kind))
+        if (!has_transfer_output(t, kind))
             continue;
         scale_ray_values(rays[kind], -(t->exponent[kind] + 16), LIMIT_Q16, more,
                          b->invalid[0]);

@@ -60,7 +60,7 @@ static void set_row_polynomials(const struct glint_transfer *t,
     const int32_t v2_q30 = q_mul(v_q30, v_q30, 30);
 
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
-        if (transfer_has(t, kind))
+        if (has_transfer_output(t, kind))
             set_row_polynomial(t, k, kind, v_q30, v2_q30, of_u[kind]);
 }
 
@@ -84,9 +84,9 @@ static void evaluate_row_rays(const struct glint_transfer *t,
                               const int32_t *u_q30, int32_t (*out)[RAYS])
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
-        if (transfer_has(t, kind))
+        if (has_transfer_output(t, kind))
             k->along(out[kind], t->of_u[kind], t->degree_u[kind], u_q30, RAYS);
-    if (transfer_has(t, GLINT_OUT_ENERGY))
+    if (has_transfer_output(t, GLINT_OUT_ENERGY))
         convert_energy_values(t, out[GLINT_OUT_ENERGY], RAYS);
 }
 
@@ -101,7 +101,7 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
         int32_t of_u[GLINT_TABLE_WIDTH];
 
         out->at[kind] = 0;
-        if (!transfer_has(t, kind))
+        if (!has_transfer_output(t, kind))
             continue;
         set_row_polynomial(t, k, kind, v_q30, v2_q30, of_u);
         k->along(&out->at[kind], of_u, t->degree_u[kind], &u_q30, 1);

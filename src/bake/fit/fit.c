@@ -128,10 +128,12 @@ static const struct glint_visible *crop_zone_to_part(struct fitter *f,
 
 /* Traces rays of ZONE within BAND and fits its outputs. Adds no outputs if no
  * light passes the part. */
-static enum glint_status
-fit_zone(struct fitter *f, const struct glint_zone_piece *p,
-         const struct glint_zone *zone, const struct glint_visible *band,
-         struct glint_fitted_system *system, struct glint_attempt *a)
+static enum glint_status fit_zone_outputs(struct fitter *f,
+                                          const struct glint_zone_piece *p,
+                                          const struct glint_zone *zone,
+                                          const struct glint_visible *band,
+                                          struct glint_fitted_system *system,
+                                          struct glint_attempt *a)
 {
     struct glint_zone_buffers *buffers = &f->buffers;
     struct glint_zone_task task = {.zone = zone,
@@ -192,7 +194,7 @@ static enum glint_status try_zone_fit(struct fitter *f,
     if (!p->thorough && f->buffers.rays.n_barrels > 2 && !f->visible->shaped &&
         glint_next_degrees(p->lo, p->hi) > CROWD_DEG)
         return GLINT_OK;
-    return fit_zone(f, p, &zone, band, system, a);
+    return fit_zone_outputs(f, p, &zone, band, system, a);
 }
 
 static const struct glint_zone_part full_part = {-1, 1, 1, -1, 1, 0};

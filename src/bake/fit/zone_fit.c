@@ -370,8 +370,9 @@ static double set_energy_values(struct fit *f, const struct glint_zone_rays *r,
  * a thousandfold, while its fourth root is as smooth as a position. If a
  * coating reflects nothing at some wavelength, the root has a cusp there, while
  * the energy is smooth. */
-static enum glint_status
-fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
+static enum glint_status fit_energy_output(struct fit *f,
+                                           struct glint_fitted_system *system,
+                                           double *worst)
 {
     const struct glint_zone_rays *r =
         f->buffers->energies.n ? &f->buffers->energies : &f->buffers->rays;
@@ -490,7 +491,7 @@ static enum glint_status fit_all_outputs(struct fit *f,
             return status;
     }
     if (status == GLINT_OK)
-        status = fit_energy(f, system, &energy);
+        status = fit_energy_output(f, system, &energy);
     e->energy = energy;
     combine_output_errors(f, energy);
     for (int b = 0; b < f->buffers->rays.n_barrels && status == GLINT_OK &&

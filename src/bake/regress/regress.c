@@ -384,7 +384,7 @@ static int find_best_candidate(struct search *s)
     return best;
 }
 
-static void choose_candidate(struct search *s, int index)
+static void add_chosen_candidate(struct search *s, int index)
 {
     struct column *c = &s->column[index];
     const int n = s->s->n, rank = s->n_chosen;
@@ -479,11 +479,11 @@ double glint_regress_fit(double *scratch,
 
         if (best < 0)
             break;
-        choose_candidate(&s, best);
+        add_chosen_candidate(&s, best);
     }
     /* a polynomial has at least one term, however large its tolerance */
     if (s.n_chosen == 0 && s.n_columns > 0 && s.column[0].length > 0)
-        choose_candidate(&s, 0);
+        add_chosen_candidate(&s, 0);
     solve_coefficients(&s, y, poly);
     return left;
 }

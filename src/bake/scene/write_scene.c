@@ -30,7 +30,8 @@ struct writer {
 /* ------------------------------------------------------------------ lights */
 
 static struct glint_scene_light
-convert_light(const struct writer *w, const struct glint_described_light *light)
+convert_scene_light(const struct writer *w,
+                    const struct glint_described_light *light)
 {
     struct glint_scene_light l = {.kind = GLINT_LIGHT_LAMP};
     double scale = 1;
@@ -58,7 +59,7 @@ static void write_scene_lights(struct writer *w)
     w->header.light_at = (uint32_t)w->draft.bytes;
     for (int i = 0; i < w->scene->n_lights; i++) {
         const struct glint_scene_light l =
-            convert_light(w, &w->scene->light[i]);
+            convert_scene_light(w, &w->scene->light[i]);
 
         glint_draft_put(&w->draft, &l, sizeof l);
     }

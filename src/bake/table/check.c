@@ -30,8 +30,8 @@ enum { HEIGHTS = 12, TURNS = 8 };
 static double compute_element_sag_mm(const struct glint_prescription *lens,
                                      int e, double x, double y)
 {
-    const int k = element_surface(lens, e);
-    const double c = element_curvature(lens, e);
+    const int k = get_element_surface(lens, e);
+    const double c = get_element_curvature(lens, e);
     const double ch = c * hypot(x, y);
     double slope[2] = {0, 0}, at[3];
     struct glint_form form;
@@ -47,7 +47,7 @@ static double compute_element_sag_mm(const struct glint_prescription *lens,
 
 static bool is_shaped_element(const struct glint_prescription *lens, int e)
 {
-    const int k = element_surface(lens, e);
+    const int k = get_element_surface(lens, e);
 
     return k >= 0 && glint_surface_is_shaped(&lens->surface[k]);
 }
@@ -59,17 +59,17 @@ static bool is_shaped_element(const struct glint_prescription *lens, int e)
 static double compute_min_gap_mm(const struct glint_prescription *lens, int e,
                                  double *at)
 {
-    const bool through = e == 0 && element_gap_mm(lens, e) < 0.0;
+    const bool through = e == 0 && get_element_gap_mm(lens, e) < 0.0;
     const double height =
         (through ? 1.0 : CLEAR_SHARE) *
-        fmin(element_semi_mm(lens, e), element_semi_mm(lens, e + 1));
+        fmin(get_element_semi_mm(lens, e), get_element_semi_mm(lens, e + 1));
     const bool shaped =
         is_shaped_element(lens, e) || is_shaped_element(lens, e + 1);
     double least = HUGE_VAL;
 
     *at = height;
     if (!shaped)
-        return element_gap_mm(lens, e) +
+        return get_element_gap_mm(lens, e) +
                compute_element_sag_mm(lens, e + 1, height, 0) -
                compute_element_sag_mm(lens, e, height, 0);
     for (int k = through ? (HEIGHTS - 1) * TURNS : 0; k < HEIGHTS * TURNS;
@@ -78,7 +78,7 @@ static double compute_min_gap_mm(const struct glint_prescription *lens, int e,
         const double h = height * ring / HEIGHTS;
         const double x = h * glint_cos_deg(360.0 / TURNS * (k % TURNS));
         const double y = h * glint_sin_deg(360.0 / TURNS * (k % TURNS));
-        const double gap = element_gap_mm(lens, e) +
+        const double gap = get_element_gap_mm(lens, e) +
                            compute_element_sag_mm(lens, e + 1, x, y) -
                            compute_element_sag_mm(lens, e, x, y);
 
@@ -132,7 +132,7 @@ static bool check_element_gaps(const struct glint_prescription *lens,
                                const struct glint_text *text,
                                const struct glint_places *places)
 {
-    const int last = element_count(lens) - 1;
+    const int last = count_elements(lens) - 1;
 
     for (int e = 0; e < last; e++) {
         double height;
@@ -145,9 +145,9 @@ static bool check_element_gaps(const struct glint_prescription *lens,
                 "%.4g mm from the axis",
                 -gap, height);
     }
-    if (element_gap_mm(lens, last) <=
+    if (get_element_gap_mm(lens, last) <=
         fmax(0.0, compute_element_sag_mm(lens, last,
-                                         element_semi_mm(lens, last), 0)))
+                                         get_element_semi_mm(lens, last), 0)))
         return glint_text_fail(text, places->thickness[last],
                                "the sensor must lie behind the last element");
     return true;
@@ -222,26 +222,26 @@ bool glint_prescription_check(const struct glint_prescription *lens,
 enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
                                           struct glint_error *error)
 {
-    const int last = element_count(lens) - 1;
+    const int last = count_elements(lens) - 1;
     struct glint_optics optics;
     double height;
 
     for (int e = 0; e < last; e++) {
         const double gap = compute_min_gap_mm(lens, e, &height);
 
-        if (gap >= -CONTACT_MM &&
-            (element_gap_mm(lens, e) >= 0.0 || (e == 0 && !lens->stop_after)))
+        if (gap >= -CONTACT_MM && (get_element_gap_mm(lens, e) >= 0.0 ||
+                                   (e == 0 && !lens->stop_after)))
             continue;
         snprintf(error->text, sizeof error->text,
                  "%s: element %d would overlap the next by %.4g mm", lens->name,
-                 e + 1, -fmin(gap, element_gap_mm(lens, e)));
+                 e + 1, -fmin(gap, get_element_gap_mm(lens, e)));
         return GLINT_E_ARGUMENT;
     }
     glint_optics_of(lens, &optics);
     if (optics.focal_mm > 0.0 && optics.focal_mm <= GLINT_MAX_FOCAL_MM &&
-        element_gap_mm(lens, last) >
-            fmax(0.0, compute_element_sag_mm(lens, last,
-                                             element_semi_mm(lens, last), 0)) &&
+        get_element_gap_mm(lens, last) >
+            fmax(0.0, compute_element_sag_mm(
+                          lens, last, get_element_semi_mm(lens, last), 0)) &&
         optics.stop_radius_mm <= lens->stop_semi_mm * (1.0 + STOP_SLACK))
         return GLINT_OK;
     snprintf(

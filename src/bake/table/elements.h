@@ -10,45 +10,47 @@
 
 #define GLINT_MAX_ELEMENTS (GLINT_MAX_SURFACES + 1)
 
-static inline int element_count(const struct glint_prescription *lens)
+static inline int count_elements(const struct glint_prescription *lens)
 {
     return lens->n_surfaces + 1;
 }
 
 /* Returns the index of the surface that is element E; -1 for the stop. */
-static inline int element_surface(const struct glint_prescription *lens, int e)
+static inline int get_element_surface(const struct glint_prescription *lens,
+                                      int e)
 {
     return e == lens->stop_after ? -1 : e - (e > lens->stop_after);
 }
 
 /* Returns the index of the element that is surface K. */
-static inline int surface_element(const struct glint_prescription *lens, int k)
+static inline int get_surface_element(const struct glint_prescription *lens,
+                                      int k)
 {
     return k + (k >= lens->stop_after);
 }
 
 /* Returns the gap from element E to the next element or the sensor, mm. */
-static inline double element_gap_mm(const struct glint_prescription *lens,
-                                    int e)
+static inline double get_element_gap_mm(const struct glint_prescription *lens,
+                                        int e)
 {
-    const int k = element_surface(lens, e);
+    const int k = get_element_surface(lens, e);
 
     return k < 0 ? lens->stop_thickness_mm : lens->surface[k].thickness_mm;
 }
 
-static inline double element_semi_mm(const struct glint_prescription *lens,
-                                     int e)
+static inline double get_element_semi_mm(const struct glint_prescription *lens,
+                                         int e)
 {
-    const int k = element_surface(lens, e);
+    const int k = get_element_surface(lens, e);
 
     return k < 0 ? lens->stop_semi_mm : lens->surface[k].semi_mm;
 }
 
 /* Returns the curvature of element E, 1 / mm; 0 for a plane and the stop. */
-static inline double element_curvature(const struct glint_prescription *lens,
-                                       int e)
+static inline double
+get_element_curvature(const struct glint_prescription *lens, int e)
 {
-    const int k = element_surface(lens, e);
+    const int k = get_element_surface(lens, e);
 
     return k < 0 || lens->surface[k].radius_mm == 0.0
                ? 0.0
@@ -58,7 +60,7 @@ static inline double element_curvature(const struct glint_prescription *lens,
 /* Returns a pointer to the gap behind element E, mm. */
 static inline double *glint_gap_of(struct glint_prescription *lens, int e)
 {
-    const int k = element_surface(lens, e);
+    const int k = get_element_surface(lens, e);
 
     return k < 0 ? &lens->stop_thickness_mm : &lens->surface[k].thickness_mm;
 }

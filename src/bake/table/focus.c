@@ -26,8 +26,8 @@ struct search {
 /* Moves the focusing group, or the whole lens, by D mm towards the light. */
 static void move_focusing_group(struct glint_prescription *lens, double d)
 {
-    const int n = lens->n_focus, last = element_count(lens) - 1;
-    const int first = surface_element(lens, lens->focus_first);
+    const int n = lens->n_focus, last = count_elements(lens) - 1;
+    const int first = get_surface_element(lens, lens->focus_first);
 
     if (!n) {
         *glint_gap_of(lens, last) += d;
@@ -53,7 +53,7 @@ static double compute_defocus(const struct search *s, double d)
     if (!(s->object_mm > optics.length_mm))
         return (double)NAN;
     return glint_image_mm(&lens, s->object_mm - optics.length_mm) +
-           s->defocus_mm - element_gap_mm(&lens, element_count(&lens) - 1);
+           s->defocus_mm - get_element_gap_mm(&lens, count_elements(&lens) - 1);
 }
 
 /* Finds the smallest displacement D, with the sign of SIDE, that focuses the
@@ -96,8 +96,8 @@ static bool solve_focus_displacement(const struct glint_prescription *lens,
     struct search s = {lens, 1000.0 * metres, 0.0};
 
     glint_optics_of(lens, &optics);
-    s.defocus_mm =
-        element_gap_mm(lens, element_count(lens) - 1) - optics.back_focal_mm;
+    s.defocus_mm = get_element_gap_mm(lens, count_elements(lens) - 1) -
+                   optics.back_focal_mm;
     return find_focus_displacement(&s, 1.0, d) ||
            (lens->n_focus && find_focus_displacement(&s, -1.0, d));
 }

@@ -22,11 +22,11 @@ struct paraxial_ray {
 static double compute_curvature_in_plane(const struct glint_prescription *lens,
                                          int e, int plane)
 {
-    const int k = element_surface(lens, e);
+    const int k = get_element_surface(lens, e);
     const struct glint_shape *const s = &lens->surface[k < 0 ? 0 : k].shape;
 
     if (k < 0 || s->bend == GLINT_BEND_ROUND || s->bend == plane)
-        return element_curvature(lens, e);
+        return get_element_curvature(lens, e);
     return s->across_mm != 0.0 ? 1.0 / s->across_mm : 0.0;
 }
 
@@ -41,12 +41,12 @@ static void trace_paraxial_ray(struct paraxial_ray *ray,
     /* Rays run backwards through air to a stop in front of the first
      * surface. */
     if (lens->stop_after == 0)
-        ray->y_mm -= ray->nu * element_gap_mm(lens, 0);
+        ray->y_mm -= ray->nu * get_element_gap_mm(lens, 0);
     for (int e = 0; e <= last; e++) {
-        const int k = element_surface(lens, e);
+        const int k = get_element_surface(lens, e);
 
         if (e > 0)
-            ray->y_mm += ray->nu / n * element_gap_mm(lens, e - 1);
+            ray->y_mm += ray->nu / n * get_element_gap_mm(lens, e - 1);
         if (k >= 0) {
             ray->nu -= ray->y_mm * (lens->surface[k].nd - n) *
                        compute_curvature_in_plane(lens, e, plane);
@@ -59,7 +59,8 @@ double glint_image_mm(const struct glint_prescription *lens, double object_mm)
 {
     struct paraxial_ray ray = {object_mm, 1.0};
 
-    trace_paraxial_ray(&ray, lens, surface_element(lens, lens->n_surfaces - 1),
+    trace_paraxial_ray(&ray, lens,
+                       get_surface_element(lens, lens->n_surfaces - 1),
                        GLINT_BEND_Y);
     return -ray.y_mm / ray.nu;
 }
@@ -72,10 +73,10 @@ static double compute_sensor_scale(const struct glint_prescription *lens,
     struct paraxial_ray chief = {-optics->entrance_z_mm, 1.0};
 
     trace_paraxial_ray(&chief, lens,
-                       surface_element(lens, lens->n_surfaces - 1),
+                       get_surface_element(lens, lens->n_surfaces - 1),
                        GLINT_BEND_Y);
     return chief.y_mm +
-           chief.nu * element_gap_mm(lens, element_count(lens) - 1);
+           chief.nu * get_element_gap_mm(lens, count_elements(lens) - 1);
 }
 
 void glint_optics_of(const struct glint_prescription *lens,
@@ -85,11 +86,12 @@ void glint_optics_of(const struct glint_prescription *lens,
     struct paraxial_ray slanted = {0.0, 1.0}, flat = {1.0, 0.0};
 
     trace_paraxial_ray(&marginal, lens,
-                       surface_element(lens, lens->n_surfaces - 1),
+                       get_surface_element(lens, lens->n_surfaces - 1),
                        GLINT_BEND_Y);
     trace_paraxial_ray(&to_stop, lens, lens->stop_after, GLINT_BEND_Y);
     trace_paraxial_ray(&slanted, lens, lens->stop_after, GLINT_BEND_Y);
-    trace_paraxial_ray(&flat, lens, surface_element(lens, lens->n_surfaces - 1),
+    trace_paraxial_ray(&flat, lens,
+                       get_surface_element(lens, lens->n_surfaces - 1),
                        GLINT_BEND_X);
 
     optics->squeeze = flat.nu / marginal.nu;
@@ -103,8 +105,8 @@ void glint_optics_of(const struct glint_prescription *lens,
      * height h to_stop.y + u slanted.y, which is 0 for the chief ray. */
     optics->entrance_z_mm = slanted.y_mm / to_stop.y_mm;
     optics->length_mm = 0.0;
-    for (int e = lens->stop_after == 0; e < element_count(lens); e++)
-        optics->length_mm += element_gap_mm(lens, e);
+    for (int e = lens->stop_after == 0; e < count_elements(lens); e++)
+        optics->length_mm += get_element_gap_mm(lens, e);
     optics->scale_mm = lens->focus_m > 0.0 ? compute_sensor_scale(lens, optics)
                                            : optics->focal_mm;
 }

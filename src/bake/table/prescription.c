@@ -312,7 +312,7 @@ static bool check_all_zoom_positions(struct glint_prescription *lens,
         glint_optics_of(lens, &optics);
         z->focal_mm[k] = optics.focal_mm;
         z->back_mm[k] = optics.back_focal_mm;
-        z->last_gap_mm[k] = element_gap_mm(lens, element_count(lens) - 1);
+        z->last_gap_mm[k] = get_element_gap_mm(lens, count_elements(lens) - 1);
     }
     set_zoom_position(lens, 0);
     return !z->n_positions || set_zoom_parameters(z, text, places);

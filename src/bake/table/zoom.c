@@ -71,7 +71,7 @@ static double interpolate_zoom_column(const struct glint_zoom *z,
 static void set_zoom_gaps(struct glint_prescription *lens, double along)
 {
     const struct glint_zoom *const z = &lens->zoom;
-    const int last = element_count(lens) - 1;
+    const int last = count_elements(lens) - 1;
     double defocus[GLINT_MAX_POSITIONS] = {0};
     struct glint_optics optics;
     bool column = false;

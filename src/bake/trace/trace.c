@@ -52,10 +52,11 @@ static double compute_event_distance_mm(const struct route *route, int e)
 {
     /* rays start at the vertex plane of the first surface */
     if (route->at < 0)
-        return route->lens->stop_after == 0 ? -element_gap_mm(route->lens, 0)
-                                            : 0.0;
-    return e > route->at ? element_gap_mm(route->lens, route->at)
-                         : -element_gap_mm(route->lens, e);
+        return route->lens->stop_after == 0
+                   ? -get_element_gap_mm(route->lens, 0)
+                   : 0.0;
+    return e > route->at ? get_element_gap_mm(route->lens, route->at)
+                         : -get_element_gap_mm(route->lens, e);
 }
 
 /* Appends an event of KIND at element E. FORWARD: the ray runs towards the
@@ -63,15 +64,15 @@ static double compute_event_distance_mm(const struct route *route, int e)
 static void append_path_event(struct route *route, int e,
                               enum glint_event_kind kind, bool forward)
 {
-    const int k = element_surface(route->lens, e);
+    const int k = get_element_surface(route->lens, e);
     struct glint_event *event = &route->path->event[route->path->n_events++];
 
     memset(event, 0, sizeof(*event));
     event->kind = k < 0 ? GLINT_STOP : kind;
     event->surface = k;
-    event->curvature = element_curvature(route->lens, e);
+    event->curvature = get_element_curvature(route->lens, e);
     event->advance_mm = compute_event_distance_mm(route, e);
-    event->semi_mm = element_semi_mm(route->lens, e);
+    event->semi_mm = get_element_semi_mm(route->lens, e);
     event->n_from = event->n_to = 1.0;
     route->at = e;
     if (k < 0)
@@ -116,15 +117,15 @@ void glint_path_init_at(struct glint_path *path,
                         double phi_deg)
 {
     struct route route = {lens, path, wavelength_nm, phi_deg, -1};
-    const int n = element_count(lens);
+    const int n = count_elements(lens);
     int e = 0;
 
     path->n_events = 0;
     path->places_only = false;
     set_anamorphic_matrix(path, lens, phi_deg);
     if (ghost && ghost->i >= 0) {
-        const int near = surface_element(lens, ghost->i);
-        const int far = surface_element(lens, ghost->j);
+        const int near = get_surface_element(lens, ghost->i);
+        const int far = get_surface_element(lens, ghost->j);
 
         for (; e < far; e++)
             append_path_event(&route, e, GLINT_REFRACT, true);
@@ -136,7 +137,7 @@ void glint_path_init_at(struct glint_path *path,
     }
     for (; e < n; e++)
         append_path_event(&route, e, GLINT_REFRACT, true);
-    path->to_sensor_mm = element_gap_mm(lens, n - 1);
+    path->to_sensor_mm = get_element_gap_mm(lens, n - 1);
 }
 
 /* -------------------------------------------------------------------- rays */
