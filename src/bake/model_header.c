@@ -209,7 +209,8 @@ static double measure_direct_flux(const struct glint_setup *whole, double area,
     setup.optics.stop_radius_mm *= sqrt(area);
     if (whole->lens->f_number < GLINT_WIDE)
         setup.n_blades = BLADES;
-    return glint_direct_flux(&setup, nm) / area / glint_iris_share(&setup);
+    return glint_direct_flux(&setup, nm) / area /
+           glint_iris_area_fraction(&setup);
 }
 
 /* Sets the flux of the direct image per stop area, for the full stop and for

@@ -21,7 +21,7 @@ static int choose_max_tracks(int max)
 }
 
 /* Returns BYTES rounded up to the alignment that the init functions require. */
-static size_t round_up_to_64(size_t bytes)
+static size_t round_bytes_up_to_64(size_t bytes)
 {
     return (bytes + 63) & ~(size_t)63;
 }
@@ -29,25 +29,26 @@ static size_t round_up_to_64(size_t bytes)
 /* Allocates one block of memory and initialises the finder, tracker, profile
  * and arrays in it. */
 static enum glint_status
-allocate_all(struct glint_lamp_detector *f,
-             const struct glint_lamp_finder_config *lights,
-             const struct glint_lamp_tracker_config *tracks)
+allocate_detector_memory(struct glint_lamp_detector *f,
+                         const struct glint_lamp_finder_config *lights,
+                         const struct glint_lamp_tracker_config *tracks)
 {
-    const size_t lights_bytes = round_up_to_64(glint_lamp_finder_bytes(lights));
+    const size_t lights_bytes =
+        round_bytes_up_to_64(glint_lamp_finder_bytes(lights));
     const size_t tracks_bytes =
-        round_up_to_64(glint_lamp_tracker_bytes(tracks));
-    const size_t profile_bytes = round_up_to_64(glint_profile_bytes());
+        round_bytes_up_to_64(glint_lamp_tracker_bytes(tracks));
+    const size_t profile_bytes = round_bytes_up_to_64(glint_profile_bytes());
     const size_t spot_bytes =
-        round_up_to_64(GLINT_LAMP_DETECTOR_MAX * sizeof *f->spot);
+        round_bytes_up_to_64(GLINT_LAMP_DETECTOR_MAX * sizeof *f->spot);
     enum glint_status status;
     uint8_t *at;
 
     if (lights_bytes == 0 || tracks_bytes == 0)
         return GLINT_E_ARGUMENT;
-    at = glint_block_take(lights_bytes + tracks_bytes + profile_bytes +
-                              spot_bytes +
-                              (size_t)f->max_tracks * sizeof *f->track,
-                          &f->mem);
+    at = glint_block_allocate_aligned(
+        lights_bytes + tracks_bytes + profile_bytes + spot_bytes +
+            (size_t)f->max_tracks * sizeof *f->track,
+        &f->mem);
     if (!at)
         return GLINT_E_MEMORY;
     status = glint_lamp_finder_init(&f->lights, lights, at, lights_bytes);
@@ -78,7 +79,7 @@ glint_lamp_detector_open(struct glint_lamp_detector *detector,
     glint_lamp_tracker_defaults(&tracks, cfg->width, cfg->height);
     tracks.max_tracks = detector->max_tracks;
     tracks.max_shown = detector->max;
-    status = allocate_all(detector, &lights, &tracks);
+    status = allocate_detector_memory(detector, &lights, &tracks);
     if (status != GLINT_OK)
         glint_lamp_detector_close(detector);
     return status;
@@ -102,7 +103,7 @@ void glint_lamp_detector_close(struct glint_lamp_detector *detector)
     detector->mem = NULL;
 }
 
-void glint_lamp_detector_restart(struct glint_lamp_detector *detector)
+void glint_lamp_detector_restart_tracking(struct glint_lamp_detector *detector)
 {
     glint_lamp_tracker_restart(detector->tracks);
 }
@@ -116,15 +117,15 @@ static int32_t max_i32(int32_t a, int32_t b)
  * lamp's core hides its true size if that is smaller than this; without a
  * minimum the lamp would be drawn as a point, whose ghosts have
  * unrealistically sharp outlines. */
-static int32_t min_axis_q8(const struct glint_spot *spot)
+static int32_t compute_min_axis_q8(const struct glint_spot *spot)
 {
     return spot->size_q8 / 6;
 }
 
-static struct glint_lamp_track make_still_track(const struct glint_spot *spot,
-                                                uint32_t id)
+static struct glint_lamp_track
+make_track_of_still_picture(const struct glint_spot *spot, uint32_t id)
 {
-    const int32_t least_q8 = min_axis_q8(spot);
+    const int32_t least_q8 = compute_min_axis_q8(spot);
     const bool is_round = spot->axis_q8[0] <= least_q8;
 
     return (struct glint_lamp_track){
@@ -146,7 +147,8 @@ static struct glint_lamp_track make_still_track(const struct glint_spot *spot,
 /* Sets the power of a spot as if each clipped pixel had the light
  * 2^headroom. If the headroom is above 8 stops, the unit of power is
  * 2^(headroom - 8), as tracks hold powers up to 2^42. */
-static void set_power(struct glint_lamp_detector *f, struct glint_spot *spot)
+static void set_spot_power(struct glint_lamp_detector *f,
+                           struct glint_spot *spot)
 {
     const double each = 65536 * (exp2(f->headroom_ev) - 1);
 
@@ -158,8 +160,8 @@ static void set_power(struct glint_lamp_detector *f, struct glint_spot *spot)
 /* Finds spots, and measures the profiles of the strongest ones, at most
  * max_tracks. Measuring the profiles of a thousand spots, as in a city at
  * night, would cost several times as much as finding them. */
-static int find_spots(struct glint_lamp_detector *f,
-                      const struct glint_image *image, int max)
+static int find_and_measure_spots(struct glint_lamp_detector *f,
+                                  const struct glint_image *image, int max)
 {
     const int n = glint_lamp_finder_find(f->lights, image, f->spot, max);
 
@@ -168,13 +170,14 @@ static int find_spots(struct glint_lamp_detector *f,
     f->n_spots = n;
     f->scale = 1;
     for (int i = 0; i < n && f->headroom_ev >= 0; i++)
-        set_power(f, &f->spot[i]);
+        set_spot_power(f, &f->spot[i]);
     return n;
 }
 
 /* Moves the MAX of N spots that have the most power to the front, the
  * strongest first; equal ones keep their order. */
-static void choose_strongest(struct glint_spot *spot, int n, int max)
+static void move_strongest_spots_to_front(struct glint_spot *spot, int n,
+                                          int max)
 {
     for (int i = 0; i < max; i++) {
         int best = i;
@@ -192,42 +195,44 @@ static void choose_strongest(struct glint_spot *spot, int n, int max)
 /* Finds the lamps of IMAGE without regard to earlier pictures; returns their
  * number. Of up to MEASURED spots, if max is lower, those of the most power are
  * chosen: a flat window has more clipped light than a lamp that is brighter. */
-static int find_still_lamps(struct glint_lamp_detector *f,
-                            const struct glint_image *image)
+static int find_lamps_in_still_picture(struct glint_lamp_detector *f,
+                                       const struct glint_image *image)
 {
-    const int n = find_spots(f, image, max_i32(f->max, MEASURED));
+    const int n = find_and_measure_spots(f, image, max_i32(f->max, MEASURED));
     int n_lights = 0;
 
     while (n_lights < n && !f->spot[n_lights].faint)
         n_lights++;
     if (n_lights > f->max) {
-        choose_strongest(f->spot, n_lights, f->max);
+        move_strongest_spots_to_front(f->spot, n_lights, f->max);
         n_lights = f->max;
     }
     for (int i = 0; i < n_lights; i++)
-        f->track[i] = make_still_track(&f->spot[i], (uint32_t)i + 1);
+        f->track[i] = make_track_of_still_picture(&f->spot[i], (uint32_t)i + 1);
     return n_lights;
 }
 
-static double compute_power(const struct glint_lamp_detector *f,
-                            const struct glint_lamp_track *track)
+static double compute_track_power(const struct glint_lamp_detector *f,
+                                  const struct glint_lamp_track *track)
 {
     return track->level_q15 / 32768.0 * (double)track->power_q16 / 65536 *
            f->scale;
 }
 
-static void set_extent(struct glint_lamp *lamp,
-                       const struct glint_lamp_track *track, double tangent)
+static void set_lamp_extent(struct glint_lamp *lamp,
+                            const struct glint_lamp_track *track,
+                            double tangent)
 {
     for (int k = 0; k < 2; k++)
         lamp->axis[k] = track->axis_q8[k] / 256.0 * tangent;
     lamp->turn_deg = atan2(-track->sin_q15, track->cos_q15) * 180 / GLINT_PI;
 }
 
-int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
-                              const struct glint_image *image,
-                              int32_t elapsed_us, const struct glint_view *view,
-                              double focal_mm, struct glint_lamp *lamps)
+int glint_lamp_detector_find_lamps(struct glint_lamp_detector *detector,
+                                   const struct glint_image *image,
+                                   int32_t elapsed_us,
+                                   const struct glint_view *view,
+                                   double focal_mm, struct glint_lamp *lamps)
 {
     struct glint_lamp_detector *f = detector;
 
@@ -236,19 +241,20 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
 
         glint_lamp_finder_keep_white(
             f->lights, glint_lamp_tracker_white_q15(f->tracks, elapsed_us));
-        n = find_spots(f, image, GLINT_LAMP_DETECTOR_MAX);
+        n = find_and_measure_spots(f, image, GLINT_LAMP_DETECTOR_MAX);
         f->n_tracks = glint_lamp_tracker_step(f->tracks, f->spot, n, elapsed_us,
                                               f->track, f->max_tracks);
     } else {
-        f->n_tracks = find_still_lamps(f, image);
+        f->n_tracks = find_lamps_in_still_picture(f, image);
     }
     for (int i = 0; i < f->n_tracks; i++) {
         const struct glint_lamp_track *track = &f->track[i];
 
         glint_view_to_angles(view, focal_mm, track->x_q8 / 256.0,
                              track->y_q8 / 256.0, &lamps[i]);
-        set_extent(&lamps[i], track, glint_view_pixel_tangent(view, focal_mm));
-        lamps[i].power = compute_power(f, track);
+        set_lamp_extent(&lamps[i], track,
+                        glint_view_pixel_tangent(view, focal_mm));
+        lamps[i].power = compute_track_power(f, track);
         for (int c = 0; c < 3; c++)
             lamps[i].rgb[c] = track->rgb_q15[c] / 32768.0;
     }
@@ -257,7 +263,7 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
 
 /* Returns whether a spot is about as compact as a disc, whose area is 2 pi
  * times its squared RMS radius: its area must be at least 60 % of that. */
-static int is_disc(const struct glint_spot *spot)
+static int is_spot_disc_shaped(const struct glint_spot *spot)
 {
     const double r = spot->size_q8 / 256.0;
 
@@ -271,15 +277,15 @@ glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector, int i)
         const struct glint_spot *spot = &detector->spot[k];
 
         if (spot->faint && spot->flux_q16 >= (int64_t)spot->area << 15 &&
-            is_disc(spot) && i-- == 0)
+            is_spot_disc_shaped(spot) && i-- == 0)
             return spot;
     }
     return NULL;
 }
 
-double glint_lamp_excess(const struct glint_lamp *lamp,
-                         const struct glint_lamp_track *track, double level,
-                         double share, double white)
+double glint_lamp_compute_excess_light(const struct glint_lamp *lamp,
+                                       const struct glint_lamp_track *track,
+                                       double level, double share, double white)
 {
     const double shown =
         (double)track->flux_q16 / 65536 * level / share * white;

@@ -55,18 +55,20 @@ void glint_lamp_detector_close(struct glint_lamp_detector *detector);
  * GLINT_LAMP_DETECTOR_MAX, and returns their number. Lamps fade in and out
  * as described in glint/lamp_tracker.h, so the number may exceed max for a
  * while. */
-int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
-                              const struct glint_image *image,
-                              int32_t elapsed_us, const struct glint_view *view,
-                              double focal_mm, struct glint_lamp *lamps);
+int glint_lamp_detector_find_lamps(struct glint_lamp_detector *detector,
+                                   const struct glint_image *image,
+                                   int32_t elapsed_us,
+                                   const struct glint_view *view,
+                                   double focal_mm, struct glint_lamp *lamps);
 
 /* Returns the light of LAMP in excess of what the picture shows, in white x
  * pixels. TRACK is the lamp's track, LEVEL its fade level 0 .. 1, SHARE the
  * visible fraction of the lamp, WHITE the linear light of the picture's
  * white. */
-double glint_lamp_excess(const struct glint_lamp *lamp,
-                         const struct glint_lamp_track *track, double level,
-                         double share, double white);
+double glint_lamp_compute_excess_light(const struct glint_lamp *lamp,
+                                       const struct glint_lamp_track *track,
+                                       double level, double share,
+                                       double white);
 
 /* Returns the Ith strongest spot of the last frame that was rejected as a
  * lamp although its mean light is within a stop of white and it is about as
@@ -76,6 +78,6 @@ glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector, int i);
 
 /* Declares that the next frame is unrelated to the last one, as after a cut
  * to another camera. */
-void glint_lamp_detector_restart(struct glint_lamp_detector *detector);
+void glint_lamp_detector_restart_tracking(struct glint_lamp_detector *detector);
 
 #endif

@@ -38,7 +38,7 @@ void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
 
 /* Returns whether the reserved members of C are 0: a program of a newer library
  * may set members there that this one does not know. */
-static bool are_reserved_unset(const struct glint_engine_config *c)
+static bool are_reserved_members_zero(const struct glint_engine_config *c)
 {
     static const uint64_t zero[16];
 #define UNSET(group) \
@@ -49,7 +49,7 @@ static bool are_reserved_unset(const struct glint_engine_config *c)
 }
 
 /* Returns a text that states what is out of range in C, or NULL. */
-static const char *check_config(const struct glint_engine_config *c)
+static const char *check_engine_config(const struct glint_engine_config *c)
 {
     const struct glint_engine_light *l = &c->light;
     const struct glint_engine_search *s = &c->search;
@@ -87,18 +87,18 @@ static const char *check_config(const struct glint_engine_config *c)
 /* ------------------------------------------------------------------- making */
 
 /* Returns whether IRIS has more than straight, clean blades. */
-static bool has_iris(const struct glint_iris *iris)
+static bool has_nondefault_iris(const struct glint_iris *iris)
 {
     return iris->roundness != 0 || iris->softness != 0 || iris->dust != 0 ||
            iris->mask;
 }
 
-static enum glint_status set_iris(struct glint_setup *setup,
-                                  const struct glint_engine_camera *camera,
-                                  struct glint_dirt **dirt,
-                                  struct glint_error *error)
+static enum glint_status
+set_setup_iris(struct glint_setup *setup,
+               const struct glint_engine_camera *camera,
+               struct glint_dirt **dirt, struct glint_error *error)
 {
-    if (!has_iris(&camera->iris))
+    if (!has_nondefault_iris(&camera->iris))
         return GLINT_OK;
     if (camera->stops)
         return camera->stops->set_iris(setup, &camera->iris, dirt, error);
@@ -134,7 +134,7 @@ enum glint_status glint_engine_setup(struct glint_setup *setup,
     if (status == GLINT_OK && model && camera->f_number != 0)
         status = glint_setup_stop_down(setup, model, camera->f_number, error);
     if (status == GLINT_OK)
-        status = set_iris(setup, camera, dirt, error);
+        status = set_setup_iris(setup, camera, dirt, error);
     if (status != GLINT_OK) {
         glint_dirt_free(*dirt);
         *dirt = NULL;
@@ -150,9 +150,10 @@ enum glint_status glint_engine_setup(struct glint_setup *setup,
 }
 
 /* Makes the dirt on the front element, unless the caller of C has some. */
-static enum glint_status make_front(struct glint_engine_optics *o,
-                                    const struct glint_engine_camera *camera,
-                                    struct glint_error *error)
+static enum glint_status
+make_front_dirt(struct glint_engine_optics *o,
+                const struct glint_engine_camera *camera,
+                struct glint_error *error)
 {
     const struct glint_front *const dirt = &camera->front_dirt;
     enum glint_status status = GLINT_OK;
@@ -169,7 +170,7 @@ static enum glint_status make_front(struct glint_engine_optics *o,
     return status;
 }
 
-static struct glint_view make_view(const struct glint_engine_config *c)
+static struct glint_view make_camera_view(const struct glint_engine_config *c)
 {
     const struct glint_engine_camera *camera = &c->camera;
     double mm[2] = {camera->sensor_width_mm, camera->sensor_height_mm};
@@ -185,13 +186,13 @@ static struct glint_view make_view(const struct glint_engine_config *c)
     return view;
 }
 
-static enum glint_status open_frame(struct glint_engine *e,
-                                    const struct glint_engine_config *c)
+static enum glint_status init_drawing_frame(struct glint_engine *e,
+                                            const struct glint_engine_config *c)
 {
     const struct glint_engine_drawing *d = &c->drawing;
     struct glint_frame *f = &e->paint.frame;
 
-    glint_frame_init(f, e->optics.setup, make_view(c), c->workers);
+    glint_frame_init(f, e->optics.setup, make_camera_view(c), c->workers);
     f->lens = c->model;
     f->trace = c->camera.rays;
     f->progress = d->progress;
@@ -211,12 +212,12 @@ static enum glint_status open_frame(struct glint_engine *e,
     if (d->budget_ms <= 0 || !c->clock || !f->lens)
         return GLINT_OK;
     glint_budget_init(&f->budget, d->budget_ms);
-    f->dials = glint_budget_dials(&f->budget, &f->dials);
-    return glint_frame_calibrate(f);
+    f->dials = glint_budget_current_dials(&f->budget, &f->dials);
+    return glint_frame_calibrate_budget(f);
 }
 
-static enum glint_status open_detector(struct glint_engine *e,
-                                       const struct glint_engine_config *c)
+static enum glint_status open_lamp_detector(struct glint_engine *e,
+                                            const struct glint_engine_config *c)
 {
     struct glint_lamp_detector *const d = &e->find.detector;
 
@@ -241,40 +242,41 @@ reserve_drawing_memory(struct glint_engine *e,
     size_t bytes = c->arena_bytes;
 
     if (bytes && !c->arena_has_all)
-        status = glint_frame_reserve(f, c->arena, bytes, e->most_lamps, drawn);
+        status = glint_frame_reserve_memory(f, c->arena, bytes, e->most_lamps,
+                                            drawn);
     if (status == GLINT_OK && (bytes || !c->arena_has_all))
-        status = glint_frame_star_hold(f, drawn);
+        status = glint_frame_star_allocate(f, drawn);
     if (status == GLINT_OK && (bytes || !c->arena_has_all))
-        status = glint_frame_veil_hold(f);
+        status = glint_frame_veil_allocate(f);
     if (status != GLINT_OK || !bytes || !c->arena_has_all)
         return status;
-    if (glint_frame_star_bytes(f) >= bytes)
+    if (glint_frame_star_count_bytes(f) >= bytes)
         return GLINT_E_MEMORY;
-    return glint_frame_reserve(f, NULL, bytes - glint_frame_star_bytes(f),
-                               e->most_lamps, drawn);
+    return glint_frame_reserve_memory(
+        f, NULL, bytes - glint_frame_star_count_bytes(f), e->most_lamps, drawn);
 }
 
 /* Writes why an engine could not be made; with too little memory, the minimum
  * that it needs. */
-static void describe_failure(struct glint_engine *e,
-                             const struct glint_engine_config *c,
-                             enum glint_status status,
-                             struct glint_error *error)
+static void describe_creation_failure(struct glint_engine *e,
+                                      const struct glint_engine_config *c,
+                                      enum glint_status status,
+                                      struct glint_error *error)
 {
     struct glint_frame *const f = &e->paint.frame;
     const size_t mib = (size_t)1 << 20;
 
     snprintf(error->text, sizeof error->text, "%s", glint_status_text(status));
     if (status == GLINT_E_MEMORY && c->arena_bytes)
-        snprintf(
-            error->text, sizeof error->text,
-            "pictures of %dx%d with this lens need at least %zu MiB", c->width,
-            c->height,
-            (glint_frame_star_bytes(f) + glint_frame_least_bytes(f) + mib - 1) /
-                mib);
+        snprintf(error->text, sizeof error->text,
+                 "pictures of %dx%d with this lens need at least %zu MiB",
+                 c->width, c->height,
+                 (glint_frame_star_count_bytes(f) +
+                  glint_frame_compute_min_bytes(f) + mib - 1) /
+                     mib);
 }
 
-static enum glint_status make_optics(struct glint_engine *e,
+static enum glint_status init_engine(struct glint_engine *e,
                                      const struct glint_engine_config *c,
                                      struct glint_error *error)
 {
@@ -287,7 +289,7 @@ static enum glint_status make_optics(struct glint_engine *e,
         status =
             glint_engine_setup(&o->own, c->model, &o->camera, &o->dirt, error);
     if (status == GLINT_OK)
-        status = make_front(o, &c->camera, error);
+        status = make_front_dirt(o, &c->camera, error);
     if (status == GLINT_OK &&
         c->drawing.only_ghost >= o->setup->n_ghosts - o->setup->n_parts) {
         snprintf(error->text, sizeof error->text, "the lens has %d ghosts",
@@ -309,21 +311,21 @@ static enum glint_status make_optics(struct glint_engine *e,
     if (!e->paint.lamp || !e->expose.before || !e->expose.part)
         status = GLINT_E_MEMORY;
     if (status == GLINT_OK)
-        status = open_frame(e, c);
+        status = init_drawing_frame(e, c);
     /* By hand the response is only for glint_engine_exposed(). Without a model
      * it is measured when a video needs it. */
     if (status == GLINT_OK && e->paint.frame.lens &&
         (!c->light.by_hand || c->cache))
-        status = glint_response_obtain(&e->paint.frame, c->arena_bytes,
-                                       c->cache, &e->expose.response);
+        status = glint_response_measure_cached(&e->paint.frame, c->arena_bytes,
+                                               c->cache, &e->expose.response);
     if (status == GLINT_OK)
-        status = open_detector(e, c);
-    glint_engine_choose(e, e->paint.parts, c->light.starburst,
-                        c->light.gain > 0);
+        status = open_lamp_detector(e, c);
+    glint_engine_select_parts(e, e->paint.parts, c->light.starburst,
+                              c->light.gain > 0);
     if (status == GLINT_OK)
         status = reserve_drawing_memory(e, c);
     if (status != GLINT_OK)
-        describe_failure(e, c, status, error);
+        describe_creation_failure(e, c, status, error);
     return status;
 }
 
@@ -338,7 +340,7 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
 
     *engine = NULL;
     if (cfg->size < FIRST_SIZE || cfg->size > sizeof whole ||
-        !are_reserved_unset(cfg)) {
+        !are_reserved_members_zero(cfg)) {
         snprintf(error->text, sizeof error->text,
                  "the program needs another version of the library, or its "
                  "configuration is not of glint_engine_defaults()");
@@ -346,7 +348,7 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
     }
     glint_engine_defaults(&whole, cfg->width, cfg->height);
     memcpy(&whole, cfg, cfg->size);
-    wrong = check_config(&whole);
+    wrong = check_engine_config(&whole);
     if (wrong) {
         snprintf(error->text, sizeof error->text, "%s", wrong);
         return GLINT_E_ARGUMENT;
@@ -356,7 +358,7 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
         snprintf(error->text, sizeof error->text, "no memory");
         return GLINT_E_MEMORY;
     }
-    status = make_optics(e, &whole, error);
+    status = init_engine(e, &whole, error);
     if (status == GLINT_OK)
         *engine = e;
     else
@@ -405,7 +407,7 @@ void glint_engine_set_dials(struct glint_engine *engine,
 
     f->dials = f->asked = dials;
     if (f->budget.ms > 0)
-        f->dials = glint_budget_dials(&f->budget, &dials);
+        f->dials = glint_budget_current_dials(&f->budget, &dials);
 }
 
 struct glint_dials glint_engine_dials(const struct glint_engine *engine)
@@ -431,15 +433,15 @@ void glint_engine_update_stop(struct glint_engine *engine)
     if (f->trace) /* forgets the rays of the former setup */
         f->trace->finish(f);
     glint_setup_stop(engine->optics.setup, &f->cfg.stop);
-    glint_frame_retune(f);
+    glint_frame_apply_config(f);
 }
 
 /* Exchanges the stop of ENGINE, which OTHER, CAMERA and DIRT make, with
  * these. */
-static void exchange_stop(struct glint_engine *engine,
-                          struct glint_setup *other,
-                          struct glint_engine_camera *camera,
-                          struct glint_dirt **dirt)
+static void swap_engine_stop(struct glint_engine *engine,
+                             struct glint_setup *other,
+                             struct glint_engine_camera *camera,
+                             struct glint_dirt **dirt)
 {
     struct glint_engine_optics *const o = &engine->optics;
     const struct glint_setup own = o->own;
@@ -455,9 +457,10 @@ static void exchange_stop(struct glint_engine *engine,
     glint_engine_update_stop(engine);
 }
 
-enum glint_status glint_engine_reshape(struct glint_engine *engine,
-                                       const struct glint_engine_camera *camera,
-                                       bool measure, struct glint_error *error)
+enum glint_status
+glint_engine_change_stop(struct glint_engine *engine,
+                         const struct glint_engine_camera *camera, bool measure,
+                         struct glint_error *error)
 {
     struct glint_frame *const f = &engine->paint.frame;
     struct glint_response response = engine->expose.response;
@@ -474,7 +477,7 @@ enum glint_status glint_engine_reshape(struct glint_engine *engine,
                  "change it");
     if (status != GLINT_OK)
         return status;
-    exchange_stop(engine, &setup, &other, &dirt);
+    swap_engine_stop(engine, &setup, &other, &dirt);
     if (measure && engine->expose.light.by_hand)
         response.n = 0; /* of another stop */
     else if (measure)
@@ -483,7 +486,7 @@ enum glint_status glint_engine_reshape(struct glint_engine *engine,
     if (status == GLINT_OK) {
         engine->expose.response = response;
     } else {
-        exchange_stop(engine, &setup, &other, &dirt);
+        swap_engine_stop(engine, &setup, &other, &dirt);
         snprintf(error->text, sizeof error->text, "%s",
                  glint_status_text(status));
     }
@@ -497,5 +500,5 @@ enum glint_status glint_engine_stop(struct glint_engine *engine,
     struct glint_engine_camera camera = engine->optics.camera;
 
     camera.f_number = f_number;
-    return glint_engine_reshape(engine, &camera, true, error);
+    return glint_engine_change_stop(engine, &camera, true, error);
 }

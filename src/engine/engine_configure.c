@@ -8,7 +8,7 @@
 /* Max lamps of a search: most pictures have many barely visible ones. */
 enum { FOUND = 16 };
 
-static unsigned select_passes(int only)
+static unsigned select_flare_parts(int only)
 {
     switch (only) {
     case GLINT_ONLY_GHOSTS:
@@ -23,7 +23,7 @@ static unsigned select_passes(int only)
 }
 
 /* Returns the factor on the star: off with a single ghost, unless given. */
-static double find_starburst_level(const struct glint_options *o)
+static double choose_starburst_factor(const struct glint_options *o)
 {
     if (GLINT_OPTION_GIVEN(o, starburst))
         return o->starburst;
@@ -32,7 +32,8 @@ static double find_starburst_level(const struct glint_options *o)
     return GLINT_OPTION_GIVEN(o, ghost) ? 0 : o->starburst;
 }
 
-static struct glint_engine_drawing make_drawing(const struct glint_options *o)
+static struct glint_engine_drawing
+make_drawing_config(const struct glint_options *o)
 {
     const bool has_grid = GLINT_OPTION_GIVEN(o, grid) ||
                           GLINT_OPTION_GIVEN(o, quality) ||
@@ -45,7 +46,8 @@ static struct glint_engine_drawing make_drawing(const struct glint_options *o)
             has_grid && !GLINT_OPTION_GIVEN(o, work) ? 0 : 1000 * o->work,
         .apart_px = o->apart,
         .tile_log2 = 3 + o->tile,
-        .parts = select_passes(o->only),
+        .dither = o->dither,
+        .parts = select_flare_parts(o->only),
         .only_ghost = GLINT_OPTION_GIVEN(o, ghost) ? o->ghost : -1,
         .keep_points = o->area_samples != 0,
         .keep_lights = o->max_lights != 0};
@@ -74,8 +76,8 @@ void glint_engine_configure_stop(struct glint_engine_camera *camera,
         glint_option_dust(o->dust, &iris->dust, &iris->dust_seed);
 }
 
-static void set_camera(struct glint_engine_camera *camera,
-                       const struct glint_options *o)
+static void set_camera_config(struct glint_engine_camera *camera,
+                              const struct glint_options *o)
 {
     struct glint_front *const front = &camera->front_dirt;
     double mm[2] = {0, 0};
@@ -95,7 +97,7 @@ static void set_camera(struct glint_engine_camera *camera,
 void glint_engine_configure(struct glint_engine_config *cfg,
                             const struct glint_options *options)
 {
-    const struct glint_options whole = glint_options_whole(options);
+    const struct glint_options whole = glint_options_complete(options);
     const struct glint_options *const o = &whole;
     const int found = o->max_lights ? o->max_lights : FOUND;
 
@@ -104,7 +106,7 @@ void glint_engine_configure(struct glint_engine_config *cfg,
                                     .exposure_ev = o->exposure,
                                     .gain = o->gain,
                                     .by_hand = GLINT_OPTION_GIVEN(o, exposure),
-                                    .starburst = find_starburst_level(o),
+                                    .starburst = choose_starburst_factor(o),
                                     .veil = o->veil,
                                     .haze = o->haze};
     glint_option_threshold(o->threshold, cfg->search.threshold_ev);
@@ -112,8 +114,8 @@ void glint_engine_configure(struct glint_engine_config *cfg,
         GLINT_OPTION_GIVEN(o, headroom) ? o->headroom : -1;
     cfg->search.max_found =
         found < GLINT_ENGINE_MAX_LAMPS ? found : GLINT_ENGINE_MAX_LAMPS;
-    cfg->drawing = make_drawing(o);
-    set_camera(&cfg->camera, o);
+    cfg->drawing = make_drawing_config(o);
+    set_camera_config(&cfg->camera, o);
     cfg->arena_bytes = (size_t)o->memory << 20;
     cfg->arena_has_all = 1;
 }

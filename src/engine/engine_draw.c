@@ -15,7 +15,7 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     enum glint_status status = GLINT_OK;
     double scale;
 
-    if (!glint_engine_fits(engine, image, n))
+    if (!glint_engine_can_draw(engine, image, n))
         return GLINT_E_ARGUMENT;
     if (!engine->expose.is_done)
         status = glint_engine_expose(engine, lamps, n, image, 1);
@@ -24,8 +24,9 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     engine->expose.is_done = false;
     scale = engine->expose.last.scale;
     f->known = lamps;
-    status = glint_frame_draw(f, glint_engine_plain(engine, lamps, n),
-                              scale > 0 ? n : 0, scale, image, report);
+    status =
+        glint_frame_draw(f, glint_engine_copy_ghost_lamps(engine, lamps, n),
+                         scale > 0 ? n : 0, scale, image, report);
     f->known = NULL;
     f->progress = NULL;
     report->lights = n;
@@ -34,10 +35,10 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
 }
 
 /* Draws what is chosen as it is planned for pictures of 8 bits. */
-static enum glint_status draw_as_for_codes(struct glint_frame *f,
-                                           const struct glint_lamp *lamps,
-                                           int n, double scale, float *rgb,
-                                           struct glint_engine_report *report)
+static enum glint_status draw_with_8bit_plan(struct glint_frame *f,
+                                             const struct glint_lamp *lamps,
+                                             int n, double scale, float *rgb,
+                                             struct glint_engine_report *report)
 {
     const size_t samples = 3 * (size_t)f->view.width * (size_t)f->view.height;
     struct glint_image layer =
@@ -58,14 +59,14 @@ static enum glint_status draw_as_for_codes(struct glint_frame *f,
 }
 
 /* Draws the veil that was set for the last picture. */
-static enum glint_status draw_veil(struct glint_frame *f, float *rgb)
+static enum glint_status draw_prepared_veil(struct glint_frame *f, float *rgb)
 {
     const size_t samples = 3 * (size_t)f->view.width * (size_t)f->view.height;
     int32_t *const linear_q20 = malloc(samples * sizeof *linear_q20);
 
     if (!linear_q20)
         return GLINT_E_MEMORY;
-    glint_frame_veil_add(f, 1, linear_q20, rgb);
+    glint_frame_veil_add_to_rgb(f, 1, linear_q20, rgb);
     free(linear_q20);
     return GLINT_OK;
 }
@@ -83,25 +84,25 @@ enum glint_status glint_engine_draw_layer(struct glint_engine *engine,
 
     if (n < 0 || n > engine->most_lamps)
         return GLINT_E_ARGUMENT;
-    plain = glint_engine_plain(engine, lamps, n);
+    plain = glint_engine_copy_ghost_lamps(engine, lamps, n);
     memset(rgb, 0,
            3 * (size_t)f->view.width * (size_t)f->view.height * sizeof *rgb);
     *report = (struct glint_engine_report){.lights = n, .scale = scale};
     if (parts == GLINT_ENGINE_VEIL && f->veil.is_set)
-        return draw_veil(f, rgb);
+        return draw_prepared_veil(f, rgb);
     if ((drawn & GLINT_ENGINE_ALL) == 0)
         return GLINT_OK;
-    glint_engine_choose(engine, drawn | (parts & GLINT_ENGINE_CORES), star,
-                        engine->expose.light.gain > 0);
+    glint_engine_select_parts(engine, drawn | (parts & GLINT_ENGINE_CORES),
+                              star, engine->expose.light.gain > 0);
     f->known = lamps;
     if (parts & GLINT_ENGINE_CODES || n == 0)
-        status = draw_as_for_codes(f, plain, n, scale, rgb, report);
+        status = draw_with_8bit_plan(f, plain, n, scale, rgb, report);
     else if (drawn & (GLINT_ENGINE_GHOSTS | GLINT_ENGINE_VEIL) || star > 0)
-        status = glint_frame_draw_alone(f, plain, n, scale, rgb, report);
+        status = glint_frame_draw_flare_alone(f, plain, n, scale, rgb, report);
     f->known = NULL;
     f->progress = NULL;
-    glint_engine_choose(engine, engine->paint.parts, star,
-                        engine->expose.light.gain > 0);
+    glint_engine_select_parts(engine, engine->paint.parts, star,
+                              engine->expose.light.gain > 0);
     report->lights = n;
     report->scale = scale;
     return status;
@@ -116,10 +117,10 @@ enum glint_status glint_engine_draw_at(struct glint_engine *engine,
     struct glint_frame *const f = &engine->paint.frame;
     enum glint_status status;
 
-    if (!glint_engine_fits(engine, image, 0))
+    if (!glint_engine_can_draw(engine, image, 0))
         return GLINT_E_ARGUMENT;
-    glint_engine_choose(engine, engine->paint.parts,
-                        engine->expose.light.starburst, true);
+    glint_engine_select_parts(engine, engine->paint.parts,
+                              engine->expose.light.starburst, true);
     status = glint_frame_draw(f, lamps, n, scale, image, report);
     f->progress = NULL;
     report->scale = scale;
@@ -134,17 +135,17 @@ enum glint_status glint_engine_render(struct glint_engine *engine,
     struct glint_frame *const f = &engine->paint.frame;
     enum glint_status status;
 
-    glint_engine_choose(engine,
-                        parts & (engine->paint.parts | GLINT_ENGINE_CORES),
-                        engine->expose.light.starburst, true);
+    glint_engine_select_parts(
+        engine, parts & (engine->paint.parts | GLINT_ENGINE_CORES),
+        engine->expose.light.starburst, true);
     f->veil.alone_gain = 0;
     if (parts & GLINT_ENGINE_CODES) {
         memset(rgb, 0,
                3 * (size_t)f->view.width * (size_t)f->view.height *
                    sizeof *rgb);
-        status = draw_as_for_codes(f, lamps, n, gain, rgb, report);
+        status = draw_with_8bit_plan(f, lamps, n, gain, rgb, report);
     } else
-        status = glint_frame_draw_alone(f, lamps, n, gain, rgb, report);
+        status = glint_frame_draw_flare_alone(f, lamps, n, gain, rgb, report);
     f->progress = NULL;
     report->scale = gain;
     return status;
@@ -161,8 +162,9 @@ enum glint_status glint_engine_measure(struct glint_engine *engine,
     for (int i = 0; i < n && plain; i++)
         plain[i] = lamps[i].lamp;
     if (plain)
-        status = glint_response_draw(&engine->paint.frame, plain, n,
-                                     GLINT_RESPONSE_FINE, NULL, light, NULL);
+        status = glint_response_draw_and_measure(&engine->paint.frame, plain, n,
+                                                 GLINT_RESPONSE_FINE, NULL,
+                                                 light, NULL);
     free(plain);
     return status;
 }

@@ -18,8 +18,8 @@ int glint_engine_has_veil(const struct glint_engine *engine)
     return glint_frame_has_veil(&engine->paint.frame);
 }
 
-bool glint_engine_fits(const struct glint_engine *engine,
-                       const struct glint_image *image, int n)
+bool glint_engine_can_draw(const struct glint_engine *engine,
+                           const struct glint_image *image, int n)
 {
     const struct glint_view *const view = &engine->paint.frame.view;
 
@@ -29,8 +29,8 @@ bool glint_engine_fits(const struct glint_engine *engine,
 
 /* Returns the factor on the ghosts of the lamp ID, which is lamp I of the
  * picture or, if only some of its lamps are drawn, another one. */
-static double find_part(const struct glint_engine_exposing *x, uint32_t id,
-                        int i)
+static double find_ghost_factor(const struct glint_engine_exposing *x,
+                                uint32_t id, int i)
 {
     if (i < x->n_before && x->before[i].id == id)
         return x->part[i];
@@ -41,20 +41,20 @@ static double find_part(const struct glint_engine_exposing *x, uint32_t id,
 }
 
 const struct glint_lamp *
-glint_engine_plain(struct glint_engine *engine,
-                   const struct glint_engine_lamp *lamps, int n)
+glint_engine_copy_ghost_lamps(struct glint_engine *engine,
+                              const struct glint_engine_lamp *lamps, int n)
 {
     const struct glint_engine_exposing *const x = &engine->expose;
 
     for (int i = 0; i < n; i++) {
         engine->paint.lamp[i] = lamps[i].lamp;
-        engine->paint.lamp[i].power *= find_part(x, lamps[i].id, i);
+        engine->paint.lamp[i].power *= find_ghost_factor(x, lamps[i].id, i);
     }
     return engine->paint.lamp;
 }
 
-void glint_engine_choose(struct glint_engine *engine, unsigned parts,
-                         double star, bool veil)
+void glint_engine_select_parts(struct glint_engine *engine, unsigned parts,
+                               double star, bool veil)
 {
     const struct glint_engine_light *const light = &engine->expose.light;
     struct glint_frame *const f = &engine->paint.frame;
@@ -70,9 +70,9 @@ void glint_engine_choose(struct glint_engine *engine, unsigned parts,
 
 /* Exposes a still picture, for which there is time, by drawing its flare
  * small. */
-static enum glint_status expose_as_drawn(struct glint_engine *e, int n,
-                                         const struct glint_image *image,
-                                         double white)
+static enum glint_status
+expose_by_drawing_flare(struct glint_engine *e, int n,
+                        const struct glint_image *image, double white)
 {
     struct glint_engine_exposing *const x = &e->expose;
     struct glint_ground *ground = NULL;
@@ -84,7 +84,7 @@ static enum glint_status expose_as_drawn(struct glint_engine *e, int n,
         ground = malloc(sizeof *ground);
         if (!ground)
             return GLINT_E_MEMORY;
-        glint_ground_take(ground, image);
+        glint_ground_sample_picture(ground, image);
     }
     status = glint_strength_expose_still(&x->strength, &e->paint.frame,
                                          e->paint.lamp, n, ground, white);
@@ -96,12 +96,12 @@ static enum glint_status expose_as_drawn(struct glint_engine *e, int n,
  * shows, ignoring occlusion. In a video it is smoothed over a third of a
  * second, as the estimate for a clipped lamp may jump in a single picture.
  */
-static double excess_found(const struct glint_engine_exposing *x,
-                           const struct glint_engine_lamp *lamp, double white,
-                           int32_t elapsed_us)
+static double compute_smoothed_excess(const struct glint_engine_exposing *x,
+                                      const struct glint_engine_lamp *lamp,
+                                      double white, int32_t elapsed_us)
 {
-    const double excess = glint_lamp_excess(&lamp->lamp, &lamp->track,
-                                            lamp->level, lamp->share, white);
+    const double excess = glint_lamp_compute_excess_light(
+        &lamp->lamp, &lamp->track, lamp->level, lamp->share, white);
     const double k = 1 - exp(-3e-6 * elapsed_us);
 
     for (int j = 0; j < x->n_before && elapsed_us > 0; j++)
@@ -110,15 +110,16 @@ static double excess_found(const struct glint_engine_exposing *x,
     return excess;
 }
 
-static void set_excess(struct glint_engine_exposing *x,
-                       struct glint_engine_lamp *lamps, int n, double white,
-                       int32_t elapsed_us)
+static void set_lamp_excess(struct glint_engine_exposing *x,
+                            struct glint_engine_lamp *lamps, int n,
+                            double white, int32_t elapsed_us)
 {
     for (int i = 0; i < n; i++)
-        lamps[i].excess = lamps[i].is_found
-                              ? excess_found(x, &lamps[i], white, elapsed_us)
-                              : lamps[i].lamp.power /
-                                    fmax(lamps[i].share, GLINT_ENGINE_HIDDEN);
+        lamps[i].excess =
+            lamps[i].is_found
+                ? compute_smoothed_excess(x, &lamps[i], white, elapsed_us)
+                : lamps[i].lamp.power /
+                      fmax(lamps[i].share, GLINT_ENGINE_HIDDEN);
     for (int i = 0; i < n; i++) {
         x->before[i] =
             (struct glint_engine_before){lamps[i].id, lamps[i].excess};
@@ -146,27 +147,30 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
     const struct glint_response any = {.n = 1};
     enum glint_status status = GLINT_OK;
 
-    if (!glint_engine_fits(engine, image, n))
+    if (!glint_engine_can_draw(engine, image, n))
         return GLINT_E_ARGUMENT;
     if (!x->light.by_hand && x->response.n == 0 && n > 0 && !is_drawn)
         status = glint_response_measure(f, 0, &x->response);
     if (status != GLINT_OK)
         return status;
-    set_excess(x, lamps, n, white, is_new ? 0 : elapsed_us);
-    glint_strength_expose(&x->strength, x->response.n ? &x->response : &any,
-                          &all, is_new ? 0 : elapsed_us);
-    glint_engine_plain(engine, lamps, n);
+    set_lamp_excess(x, lamps, n, white, is_new ? 0 : elapsed_us);
+    glint_strength_expose_frame(&x->strength,
+                                x->response.n ? &x->response : &any, &all,
+                                is_new ? 0 : elapsed_us);
+    glint_engine_copy_ghost_lamps(engine, lamps, n);
     if (is_drawn)
-        status = expose_as_drawn(engine, n, image, white);
+        status = expose_by_drawing_flare(engine, n, image, white);
     if (status != GLINT_OK)
         return status;
-    glint_engine_choose(engine, engine->paint.parts,
-                        glint_strength_star(&x->strength, x->light.starburst),
-                        x->light.gain > 0);
+    glint_engine_select_parts(
+        engine, engine->paint.parts,
+        glint_strength_compute_star_factor(&x->strength, x->light.starburst),
+        x->light.gain > 0);
     f->veil.alone_gain = 1;
     if (f->budget.ms <= 0)
-        glint_frame_set_still(f, elapsed_us == 0, !engine->paint.keep_points,
-                              !engine->paint.keep_lights);
+        glint_frame_set_area_sampling(f, elapsed_us == 0,
+                                      !engine->paint.keep_points,
+                                      !engine->paint.keep_lights);
     x->last = (struct glint_engine_exposure){.scale = x->strength.scale,
                                              .light = x->strength.light,
                                              .is_drawn = x->strength.is_drawn,
@@ -174,5 +178,5 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
     x->is_done = true;
     find->elapsed_us = 0;
     find->is_searched = find->is_cut = false;
-    return glint_frame_veil_look(f, image, white);
+    return glint_frame_veil_read_picture(f, image, white);
 }

@@ -24,7 +24,7 @@ void glint_engine_mark_cut(struct glint_engine *engine)
 void glint_engine_forget_lamps(struct glint_engine *engine)
 {
     if (engine->find.detector.max > 0)
-        glint_lamp_detector_restart(&engine->find.detector);
+        glint_lamp_detector_restart_tracking(&engine->find.detector);
 }
 
 int glint_engine_find(struct glint_engine *engine,
@@ -38,7 +38,7 @@ int glint_engine_find(struct glint_engine *engine,
     glint_engine_elapsed(engine, elapsed_us);
     if (d->max == 0)
         return 0;
-    n = glint_lamp_detector_frame(
+    n = glint_lamp_detector_find_lamps(
         d, image, elapsed_us, &engine->paint.frame.view,
         engine->optics.setup->optics.focal_mm, find->found);
     find->is_searched = true;

@@ -18,5 +18,5 @@ enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades,
     camera.blade_rotation_deg = rotation_deg;
     camera.iris = *iris;
     camera.stops = &glint_engine_all_stops;
-    return glint_engine_reshape(engine, &camera, false, error);
+    return glint_engine_change_stop(engine, &camera, false, error);
 }

@@ -91,25 +91,26 @@ void glint_engine_configure_stop(struct glint_engine_camera *camera,
 /* Sets another stop of ENGINE, for which it makes its own setup. If MEASURE
  * is set, measures the brightness of flares again. On failure the stop is
  * unchanged. */
-enum glint_status glint_engine_reshape(struct glint_engine *engine,
-                                       const struct glint_engine_camera *camera,
-                                       bool measure, struct glint_error *error);
+enum glint_status
+glint_engine_change_stop(struct glint_engine *engine,
+                         const struct glint_engine_camera *camera, bool measure,
+                         struct glint_error *error);
 
 /* Enables PARTS of the flare as far as the options permit them, with
  * starbursts of brightness STAR, and a veil if VEIL is set; disables all
  * other parts. */
-void glint_engine_choose(struct glint_engine *engine, unsigned parts,
-                         double star, bool veil);
+void glint_engine_select_parts(struct glint_engine *engine, unsigned parts,
+                               double star, bool veil);
 
 /* Returns whether ENGINE can draw N lamps on IMAGE: the number and the
  * format and size of IMAGE are in range. */
-bool glint_engine_fits(const struct glint_engine *engine,
-                       const struct glint_image *image, int n);
+bool glint_engine_can_draw(const struct glint_engine *engine,
+                           const struct glint_image *image, int n);
 
 /* Copies N LAMPS to the array from which they are drawn, and returns that
  * array. The powers are those of their ghosts. */
 const struct glint_lamp *
-glint_engine_plain(struct glint_engine *engine,
-                   const struct glint_engine_lamp *lamps, int n);
+glint_engine_copy_ghost_lamps(struct glint_engine *engine,
+                              const struct glint_engine_lamp *lamps, int n);
 
 #endif

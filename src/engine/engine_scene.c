@@ -12,15 +12,17 @@
 
 /* Leaves of LAMP the fraction SEEN of its light; notes in HIDDEN whether that
  * is none. */
-static void leave(struct glint_engine_lamp *lamp, double seen, int *hidden)
+static void attenuate_lamp(struct glint_engine_lamp *lamp, double seen,
+                           int *hidden)
 {
     lamp->share = fmax(seen, GLINT_ENGINE_HIDDEN);
     lamp->lamp.power *= lamp->share;
     *hidden += seen <= 0;
 }
 
-static int hide(const struct glint_engine *e, const struct glint_scene *scene,
-                struct glint_engine_lamp *lamps, int n)
+static int occlude_lamps(const struct glint_engine *e,
+                         const struct glint_scene *scene,
+                         struct glint_engine_lamp *lamps, int n)
 {
     const struct glint_view *const view = &e->paint.frame.view;
     const double focal_mm = e->optics.setup->optics.focal_mm;
@@ -38,15 +40,15 @@ static int hide(const struct glint_engine *e, const struct glint_scene *scene,
             continue;
         cover = glint_scene_cover(scene, (int32_t)(256 * x), (int32_t)(256 * y),
                                   (int32_t)(256 * fmin(radius, 1 << 14)));
-        leave(&lamps[i], 1 - cover / 256.0, &hidden);
+        attenuate_lamp(&lamps[i], 1 - cover / 256.0, &hidden);
     }
     return hidden;
 }
 
 /* Sets LAMP to FROM; returns false if that has no light. */
-static bool set_lamp(const struct glint_engine *e,
-                     const struct glint_scene_lamp *from,
-                     struct glint_lamp *lamp)
+static bool convert_scene_lamp(const struct glint_engine *e,
+                               const struct glint_scene_lamp *from,
+                               struct glint_lamp *lamp)
 {
     static const double weight[3] = {0.2126, 0.7152, 0.0722};
     const struct glint_view *const view = &e->paint.frame.view;
@@ -77,16 +79,16 @@ int glint_engine_add_scene(const struct glint_engine *engine,
     const int n_lights = glint_scene_lights(scene, light);
     const int before = n;
 
-    *hidden = hide(engine, scene, lamps, n);
+    *hidden = occlude_lamps(engine, scene, lamps, n);
     for (int i = 0; i < n_lights; i++) {
         struct glint_lamp lamp;
 
-        if (!set_lamp(engine, &light[i], &lamp))
+        if (!convert_scene_lamp(engine, &light[i], &lamp))
             continue;
         lamps[n] =
             glint_engine_lamp_of(&lamp, SCENE_IDS + (uint32_t)(n - before));
         lamps[n].seen_px = -1;
-        leave(&lamps[n++], light[i].share / 16.0, hidden);
+        attenuate_lamp(&lamps[n++], light[i].share / 16.0, hidden);
     }
     return n;
 }

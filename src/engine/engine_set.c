@@ -35,7 +35,7 @@ static enum glint_status apply_option(struct glint_engine *engine,
     case GLINT_OPTION_OF_stop:
     case GLINT_OPTION_OF_dust:
         glint_engine_configure_stop(&camera, o);
-        return glint_engine_reshape(engine, &camera, false, error);
+        return glint_engine_change_stop(engine, &camera, false, error);
     default:
         snprintf(error->text, sizeof error->text,
                  "%s is fixed when the engine is made", option->name);
@@ -46,9 +46,10 @@ static enum glint_status apply_option(struct glint_engine *engine,
 }
 
 /* Sets NAME to TEXT, or to VALUE if it is NULL. */
-static enum glint_status set_option(struct glint_engine *engine,
-                                    const char *name, const char *text,
-                                    double value, struct glint_error *error)
+static enum glint_status set_engine_option(struct glint_engine *engine,
+                                           const char *name, const char *text,
+                                           double value,
+                                           struct glint_error *error)
 {
     const struct glint_option *const option = glint_option_named(name);
     struct glint_options o;
@@ -71,12 +72,12 @@ enum glint_status glint_engine_set(struct glint_engine *engine,
                                    const char *name, double value,
                                    struct glint_error *error)
 {
-    return set_option(engine, name, NULL, value, error);
+    return set_engine_option(engine, name, NULL, value, error);
 }
 
 enum glint_status glint_engine_set_text(struct glint_engine *engine,
                                         const char *name, const char *text,
                                         struct glint_error *error)
 {
-    return set_option(engine, name, text ? text : "", 0, error);
+    return set_engine_option(engine, name, text ? text : "", 0, error);
 }

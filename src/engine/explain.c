@@ -10,7 +10,7 @@
 #include "engine/frame/frame_parts.h"
 
 /* Returns the cost of N items of KIND, instructions. */
-static double compute_work(enum glint_cost_kind kind, double n)
+static double compute_item_cost(enum glint_cost_kind kind, double n)
 {
     return 1e3 * glint_cost_weight[kind].counted * n;
 }
@@ -18,7 +18,7 @@ static double compute_work(enum glint_cost_kind kind, double n)
 /* Returns the cost of P in instructions, and sets STAGE to the cost of each
  * kind of item. Lit pixels and pieces of cells are not counted, as they do
  * not belong to a single ghost, light or wave. */
-static double compute_part_work(const struct glint_explain_part *p,
+static double compute_part_cost(const struct glint_explain_part *p,
                                 double *stage)
 {
     const double count[GLINT_COST_PARTS] = {
@@ -30,7 +30,7 @@ static double compute_part_work(const struct glint_explain_part *p,
     double work = 0;
 
     for (int k = 0; k < GLINT_COST_PARTS; k++)
-        work += stage[k] = compute_work((enum glint_cost_kind)k, count[k]);
+        work += stage[k] = compute_item_cost((enum glint_cost_kind)k, count[k]);
     return work;
 }
 
@@ -50,8 +50,8 @@ int glint_explain_bundles(const struct glint_explain_part *p)
 
 /* ---------------------------------------------------------------- accounts */
 
-static void add_account(struct glint_explain_part *p,
-                        const struct glint_account *a)
+static void add_bundle_account(struct glint_explain_part *p,
+                               const struct glint_account *a)
 {
     p->probed += a->probed;
     if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* The ghost is drawn with
@@ -72,7 +72,7 @@ static void add_account(struct glint_explain_part *p,
 
 /* Returns the index in e->wave of the part that includes wave WAVE: its wave
  * set, or the wave itself if there are no sets. */
-static int find_part(const struct glint_explain *e, int wave)
+static int find_wave_part(const struct glint_explain *e, int wave)
 {
     const struct glint_wave_sets *sets = e->frame->plan.rays.sets;
     int part = wave;
@@ -83,7 +83,7 @@ static int find_part(const struct glint_explain *e, int wave)
     return part;
 }
 
-static void collect_accounts(struct glint_explain *e)
+static void collect_bundle_accounts(struct glint_explain *e)
 {
     const int n_ghosts = (int)e->frame->lens->header->n_ghosts;
     const int n_waves = e->frame->plan.rays.n_waves;
@@ -95,11 +95,11 @@ static void collect_accounts(struct glint_explain *e)
 
                 glint_flare_account(e->frame->memory.flare, ghost, light, wave,
                                     &a);
-                add_account(&e->all, &a);
-                /* NOLINTNEXTLINE: set_numbers() has set all of them */
-                add_account(&e->ghost[e->ghost_of[ghost]], &a);
-                add_account(&e->light[light], &a);
-                add_account(&e->wave[find_part(e, wave)], &a);
+                add_bundle_account(&e->all, &a);
+                /* NOLINTNEXTLINE: set_ghost_numbers() has set all of them */
+                add_bundle_account(&e->ghost[e->ghost_of[ghost]], &a);
+                add_bundle_account(&e->light[light], &a);
+                add_bundle_account(&e->wave[find_wave_part(e, wave)], &a);
                 if (a.outcome == GLINT_OUTCOME_DRAWN ||
                     a.outcome == GLINT_OUTCOME_EMPTY)
                     e->barrels[a.barrels]++;
@@ -108,7 +108,8 @@ static void collect_accounts(struct glint_explain *e)
 
 /* ------------------------------------------------------------------- light */
 
-static void draw_part(struct glint_explain *e, int ghost, int light, int wave)
+static void draw_flare_part(struct glint_explain *e, int ghost, int light,
+                            int wave)
 {
     const struct glint_view *view = &e->frame->view;
     struct glint_image image = glint_image_over(e->linear_q20, GLINT_LINEAR_Q20,
@@ -123,13 +124,13 @@ static void draw_part(struct glint_explain *e, int ghost, int light, int wave)
 
 void glint_explain_draw(struct glint_explain *explain, int ghost)
 {
-    draw_part(explain, ghost, -1, -1);
+    draw_flare_part(explain, ghost, -1, -1);
 }
 
 /* Measures the light of PART, which must be the part drawn last: flux, max,
  * lit pixels and tiles. */
-static void measure_part(struct glint_explain *e,
-                         struct glint_explain_part *part)
+static void measure_part_light(struct glint_explain *e,
+                               struct glint_explain_part *part)
 {
     const struct glint_view *view = &e->frame->view;
     const size_t n = (size_t)view->width * (size_t)view->height;
@@ -148,36 +149,36 @@ static void measure_part(struct glint_explain *e,
     part->brightest = (double)most / 3 * 0x1p-20 * e->unit;
 }
 
-static void measure_parts(struct glint_explain *e)
+static void draw_and_measure_parts(struct glint_explain *e)
 {
     for (int i = 0; i < e->n_ghosts; i++)
         if (e->ghost[i].edges) {
-            draw_part(e, i, -1, -1);
-            measure_part(e, &e->ghost[i]);
+            draw_flare_part(e, i, -1, -1);
+            measure_part_light(e, &e->ghost[i]);
         }
     for (int i = 0; i < e->n_lights; i++)
         if (e->light[i].edges) {
-            draw_part(e, -1, i, -1);
-            measure_part(e, &e->light[i]);
+            draw_flare_part(e, -1, i, -1);
+            measure_part_light(e, &e->light[i]);
         }
     for (int i = 0; i < e->n_waves; i++)
         if (e->wave[i].edges) {
-            draw_part(e, -1, -1, i);
-            measure_part(e, &e->wave[i]);
+            draw_flare_part(e, -1, -1, i);
+            measure_part_light(e, &e->wave[i]);
         }
     if (e->n_lights) {
-        draw_part(e, -1, -1, -1);
-        measure_part(e, &e->all);
+        draw_flare_part(e, -1, -1, -1);
+        measure_part_light(e, &e->all);
     }
 }
 
-static void set_shares(const struct glint_explain *e,
-                       struct glint_explain_part *part, int n)
+static void set_part_shares(const struct glint_explain *e,
+                            struct glint_explain_part *part, int n)
 {
     double stage[GLINT_COST_KINDS];
 
     for (int i = 0; i < n; i++) {
-        part[i].work = compute_part_work(&part[i], stage);
+        part[i].work = compute_part_cost(&part[i], stage);
         part[i].share = e->all.flux > 0 ? part[i].flux / e->all.flux : 0;
         part[i].cost = e->all.work > 0 ? part[i].work / e->all.work : 0;
     }
@@ -185,16 +186,16 @@ static void set_shares(const struct glint_explain *e,
 
 /* ----------------------------------------------------------------- opening */
 
-static void set_numbers(struct glint_explain *e)
+static void set_ghost_numbers(struct glint_explain *e)
 {
     const struct glint_setup *s = e->frame->setup;
 
     e->n_ghosts = s->n_ghosts - s->n_parts;
     for (int k = 0; k < s->n_ghosts; k++)
-        e->ghost_of[k] = glint_frame_number(s, k);
+        e->ghost_of[k] = glint_frame_find_ghost_number(s, k);
 }
 
-static int count_tiles(const struct glint_frame *f)
+static int count_picture_tiles(const struct glint_frame *f)
 {
     const int side = 1 << f->cfg.tile_log2;
 
@@ -206,7 +207,7 @@ enum glint_status glint_explain_frame(struct glint_explain *e,
                                       struct glint_frame *frame, double unit)
 {
     const size_t n_all = (size_t)frame->setup->n_ghosts + 1;
-    const struct glint_cost_plan plan = glint_frame_plan(frame);
+    const struct glint_cost_plan plan = glint_frame_make_cost_plan(frame);
 
     *e = (struct glint_explain){
         .frame = frame,
@@ -223,7 +224,7 @@ enum glint_status glint_explain_frame(struct glint_explain *e,
                                          : frame->plan.rays.n_waves,
         .unit = unit,
         .tile_log2 = frame->cfg.tile_log2,
-        .n_tiles = count_tiles(frame)};
+        .n_tiles = count_picture_tiles(frame)};
     e->ghost_of = malloc(n_all * sizeof *e->ghost_of);
     e->ghost = calloc(n_all, sizeof *e->ghost);
     e->light = calloc((size_t)e->n_lights + 1, sizeof *e->light);
@@ -233,26 +234,26 @@ enum glint_status glint_explain_frame(struct glint_explain *e,
                sizeof *e->linear_q20);
     if (!e->ghost_of || !e->ghost || !e->light || !e->wave || !e->linear_q20)
         return GLINT_E_MEMORY;
-    set_numbers(e);
-    collect_accounts(e);
-    measure_parts(e);
-    e->stage[GLINT_COST_PARTS] =
-        compute_work(GLINT_COST_PARTS,
-                     glint_cost_of(&plan, &plan.dials).count[GLINT_COST_PARTS]);
-    e->stage[GLINT_COST_LIT] = compute_work(GLINT_COST_LIT, e->all.lit);
-    e->stage[GLINT_COST_STAR] = compute_work(
+    set_ghost_numbers(e);
+    collect_bundle_accounts(e);
+    draw_and_measure_parts(e);
+    e->stage[GLINT_COST_PARTS] = compute_item_cost(
+        GLINT_COST_PARTS,
+        glint_cost_of(&plan, &plan.dials).count[GLINT_COST_PARTS]);
+    e->stage[GLINT_COST_LIT] = compute_item_cost(GLINT_COST_LIT, e->all.lit);
+    e->stage[GLINT_COST_STAR] = compute_item_cost(
         GLINT_COST_STAR, frame->star.is_set ? frame->star.pixels : 0);
-    e->stage[GLINT_COST_VEIL] =
-        compute_work(GLINT_COST_VEIL,
-                     frame->veil.is_set ? glint_frame_veil_pixels(frame) : 0);
-    e->all.work = compute_part_work(&e->all, e->stage);
+    e->stage[GLINT_COST_VEIL] = compute_item_cost(
+        GLINT_COST_VEIL,
+        frame->veil.is_set ? glint_frame_veil_cost_in_pixels(frame) : 0);
+    e->all.work = compute_part_cost(&e->all, e->stage);
     for (int k = GLINT_COST_PARTS; k < GLINT_COST_KINDS; k++)
         e->all.work += e->stage[k];
     e->all.share = e->all.flux > 0;
     e->all.cost = 1;
-    set_shares(e, e->ghost, e->n_ghosts);
-    set_shares(e, e->light, e->n_lights);
-    set_shares(e, e->wave, e->n_waves);
+    set_part_shares(e, e->ghost, e->n_ghosts);
+    set_part_shares(e, e->light, e->n_lights);
+    set_part_shares(e, e->wave, e->n_waves);
     return GLINT_OK;
 }
 
@@ -287,7 +288,7 @@ enum glint_status glint_explain_at(struct glint_explain *explain,
     view.width = width;
     view.height = height;
     if (own && mem) {
-        glint_frame_like(own, &engine->paint.frame, view);
+        glint_frame_init_like(own, &engine->paint.frame, view);
         own->tints = engine->paint.frame.tints;
         own->dials = own->asked = engine->paint.frame.dials;
         own->dials.dispersion_q8 = 0;
@@ -295,8 +296,9 @@ enum glint_status glint_explain_at(struct glint_explain *explain,
         status = GLINT_OK;
     }
     if (status == GLINT_OK && own->lens)
-        status = glint_frame_draw(own, glint_engine_plain(engine, lamps, n), n,
-                                  scale, &codes, &report);
+        status = glint_frame_draw(
+            own, glint_engine_copy_ghost_lamps(engine, lamps, n), n, scale,
+            &codes, &report);
     free(mem);
     if (status == GLINT_OK && own->lights.n > 0)
         status = glint_explain_frame(explain, own, 1);
@@ -324,7 +326,8 @@ int glint_explain_listed(const struct glint_explain *explain, int tile)
 int glint_explain_is_beyond(const struct glint_explain *explain,
                             const struct glint_lamp *lamp)
 {
-    return explain->frame && glint_frame_is_beyond(explain->frame, lamp);
+    return explain->frame &&
+           glint_frame_is_lamp_outside_model(explain->frame, lamp);
 }
 
 /* ------------------------------------------------------------------- order */

@@ -5,14 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static size_t count_samples(const struct glint_float_image *image)
+static size_t count_rgb_samples(const struct glint_float_image *image)
 {
     return 3 * (size_t)image->width * (size_t)image->height;
 }
 
 /* Returns an integer that rises with the luminance of a pixel, also for
  * negative luminance. */
-static uint32_t encode_key(const float rgb[3])
+static uint32_t encode_luminance_key(const float rgb[3])
 {
     const float y = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
     uint32_t bits;
@@ -21,7 +21,7 @@ static uint32_t encode_key(const float rgb[3])
     return bits >> 31 ? ~bits : bits | UINT32_C(1) << 31;
 }
 
-static double decode_key(uint32_t key)
+static double decode_luminance_key(uint32_t key)
 {
     const uint32_t bits = key >> 31 ? key & INT32_MAX : ~key;
     float y;
@@ -33,9 +33,10 @@ static double decode_key(uint32_t key)
 /* Returns the luminance of the pixel of rank RANK, 0 .. pixels - 1, in the
  * order of rising luminance. A radix selection finds the bits of its key a
  * byte at a time, without allocating memory. */
-static double find_luminance(const struct glint_float_image *image, size_t rank)
+static double find_luminance_of_rank(const struct glint_float_image *image,
+                                     size_t rank)
 {
-    const size_t n = count_samples(image) / 3;
+    const size_t n = count_rgb_samples(image) / 3;
     uint32_t key = 0, known = 0;
 
     for (int shift = 24; shift >= 0; shift -= 8) {
@@ -43,7 +44,7 @@ static double find_luminance(const struct glint_float_image *image, size_t rank)
         uint32_t byte = 0;
 
         for (size_t i = 0; i < n; i++) {
-            const uint32_t k = encode_key(image->rgb + 3 * i);
+            const uint32_t k = encode_luminance_key(image->rgb + 3 * i);
 
             count[k >> shift & 255] += (k & known) == key;
         }
@@ -52,13 +53,14 @@ static double find_luminance(const struct glint_float_image *image, size_t rank)
         key |= byte << shift;
         known |= UINT32_C(255) << shift;
     }
-    return decode_key(key);
+    return decode_luminance_key(key);
 }
 
 double glint_measure_exposure(const struct glint_float_image *image)
 {
-    const size_t n = count_samples(image) / 3;
-    const double at = find_luminance(image, (size_t)((double)(n - 1) * 0.999));
+    const size_t n = count_rgb_samples(image) / 3;
+    const double at =
+        find_luminance_of_rank(image, (size_t)((double)(n - 1) * 0.999));
 
     return at > 0 ? 1 / at : 1;
 }
@@ -73,7 +75,7 @@ double glint_measure_code(double light)
 uint8_t *glint_measure_encode(const struct glint_float_image *image,
                               double exposure)
 {
-    const size_t n = count_samples(image);
+    const size_t n = count_rgb_samples(image);
     uint8_t *codes = calloc(n, 1);
 
     for (size_t i = 0; codes && i < n; i++)
@@ -82,29 +84,29 @@ uint8_t *glint_measure_encode(const struct glint_float_image *image,
     return codes;
 }
 
-static double compute_best_factor(const struct glint_float_image *a,
-                                  const struct glint_float_image *b)
+static double fit_brightness_factor(const struct glint_float_image *a,
+                                    const struct glint_float_image *b)
 {
     double ab = 0, bb = 0;
 
-    for (size_t i = 0; i < count_samples(a); i++) {
+    for (size_t i = 0; i < count_rgb_samples(a); i++) {
         ab += (double)a->rgb[i] * (double)b->rgb[i];
         bb += (double)b->rgb[i] * (double)b->rgb[i];
     }
     return bb > 0 ? ab / bb : 1;
 }
 
-static double sum_samples(const struct glint_float_image *image)
+static double sum_rgb_samples(const struct glint_float_image *image)
 {
     double s = 0;
 
-    for (size_t i = 0; i < count_samples(image); i++)
+    for (size_t i = 0; i < count_rgb_samples(image); i++)
         s += (double)image->rgb[i];
     return s;
 }
 
-static void measure_difference(const uint8_t *a, const uint8_t *b, size_t n,
-                               struct glint_measure *m)
+static void measure_code_difference(const uint8_t *a, const uint8_t *b,
+                                    size_t n, struct glint_measure *m)
 {
     size_t count[256] = {0}, seen = 0;
     double squares = 0;
@@ -169,18 +171,19 @@ static double compute_ssim(const uint8_t *a, const uint8_t *b, int width,
 void glint_measure_codes(const uint8_t *reference, const uint8_t *test,
                          int width, int height, struct glint_measure *result)
 {
-    measure_difference(reference, test, 3 * (size_t)width * (size_t)height,
-                       result);
+    measure_code_difference(reference, test, 3 * (size_t)width * (size_t)height,
+                            result);
     result->ssim = compute_ssim(reference, test, width, height);
 }
 
 /* Returns the PSNR in dB of 8-bit codes before rounding, which resolves
  * differences that rounding hides. */
-static double compute_fine_db(const struct glint_float_image *reference,
-                              const struct glint_float_image *test,
-                              const struct glint_measure *m)
+static double
+compute_unrounded_psnr_db(const struct glint_float_image *reference,
+                          const struct glint_float_image *test,
+                          const struct glint_measure *m)
 {
-    const size_t n = count_samples(reference);
+    const size_t n = count_rgb_samples(reference);
     double squares = 0;
 
     for (size_t i = 0; i < n; i++) {
@@ -197,19 +200,20 @@ bool glint_measure_at(const struct glint_float_image *reference,
                       const struct glint_float_image *test, bool fit,
                       double exposure, struct glint_measure *result)
 {
-    const double total = sum_samples(reference);
+    const double total = sum_rgb_samples(reference);
     uint8_t *a, *b;
 
     result->exposure = exposure;
-    result->factor = fit ? compute_best_factor(reference, test) : 1;
-    result->flux = total > 0 ? result->factor * sum_samples(test) / total : 1;
+    result->factor = fit ? fit_brightness_factor(reference, test) : 1;
+    result->flux =
+        total > 0 ? result->factor * sum_rgb_samples(test) / total : 1;
     a = glint_measure_encode(reference, result->exposure);
     b = glint_measure_encode(test, result->exposure * result->factor);
     if (a && b)
         glint_measure_codes(a, b, reference->width, reference->height, result);
     result->same_codes = a && b && result->psnr_db == 999;
     if (result->same_codes)
-        result->psnr_db = compute_fine_db(reference, test, result);
+        result->psnr_db = compute_unrounded_psnr_db(reference, test, result);
     free(a);
     free(b);
     return a && b;

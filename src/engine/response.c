@@ -8,7 +8,7 @@
 #include "glint/area.h"
 #include "engine/setup/spectrum.h"
 
-/* Max N of find_top(). */
+/* Max N of find_largest_values(). */
 enum { TOP_MAX = GLINT_RESPONSE_FINE / 5000 };
 
 static const double none_log2 = -100;
@@ -26,7 +26,7 @@ enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
 
 /* Inserts VALUE into the N largest values, sorted in descending order;
  * returns the smallest of them. */
-static float insert_value(float *top, int n, float value)
+static float insert_into_largest(float *top, int n, float value)
 {
     int i = n - 1;
 
@@ -37,31 +37,31 @@ static float insert_value(float *top, int n, float value)
 }
 
 /* Sets TOP to the N largest values of one channel of PIXELS. */
-static void find_top(const float *rgb, size_t pixels, int channel, float *top,
-                     int n)
+static void find_largest_values(const float *rgb, size_t pixels, int channel,
+                                float *top, int n)
 {
     float least = 0;
 
     memset(top, 0, (size_t)n * sizeof *top);
     for (size_t i = 0; i < pixels; i++)
         if (rgb[3 * i + (size_t)channel] > least)
-            least = insert_value(top, n, rgb[3 * i + (size_t)channel]);
+            least = insert_into_largest(top, n, rgb[3 * i + (size_t)channel]);
 }
 
 /* Returns 1 / PARTS of N, clamped to 1 .. TOP_MAX. */
-static int count_fraction(size_t n, int parts)
+static int count_brightest_pixels(size_t n, int parts)
 {
     return (int)fmin(fmax(floor((double)n / parts), 1), TOP_MAX);
 }
 
 /* Returns the mean of the brightest 1/1000 of the pixels of one channel. */
-static double compute_peak(const float *rgb, size_t n, int channel)
+static double compute_peak_light(const float *rgb, size_t n, int channel)
 {
     float top[TOP_MAX];
-    const int n_top = count_fraction(n, 1000);
+    const int n_top = count_brightest_pixels(n, 1000);
     double sum = 0;
 
-    find_top(rgb, n, channel, top, n_top);
+    find_largest_values(rgb, n, channel, top, n_top);
     for (int i = 0; i < n_top; i++)
         sum += (double)top[i];
     return sum / n_top;
@@ -76,13 +76,13 @@ void glint_response_around(const float *rgb, size_t n,
         for (size_t i = 0; i < n; i++)
             sum += (double)rgb[3 * i + (size_t)c];
         light->mean[c] = fmax(sum / (double)n, 0);
-        light->peak[c] = compute_peak(rgb, n, c);
+        light->peak[c] = compute_peak_light(rgb, n, c);
     }
 }
 
 /* ----------------------------------------------------------------- drawing */
 
-static struct glint_view make_proxy_view(struct glint_view view, int pixels)
+static struct glint_view make_small_view(struct glint_view view, int pixels)
 {
     const double by = sqrt(pixels / ((double)view.width * view.height));
 
@@ -102,13 +102,14 @@ struct proxy {
 
 /* Opens a small frame of about PIXELS pixels with all settings of LIKE that
  * affect brightness. */
-static enum glint_status open_proxy(const struct glint_frame *like, int pixels,
-                                    size_t bytes, struct proxy *p)
+static enum glint_status open_small_frame(const struct glint_frame *like,
+                                          int pixels, size_t bytes,
+                                          struct proxy *p)
 {
     size_t samples;
 
-    *p = (struct proxy){.view = make_proxy_view(like->view, pixels)};
-    glint_frame_like(&p->frame, like, p->view);
+    *p = (struct proxy){.view = make_small_view(like->view, pixels)};
+    glint_frame_init_like(&p->frame, like, p->view);
     p->frame.only_ghost = -1;
     p->frame.picture.uniform = false;
     p->frame.dials.fineness = like->lens ? GRID : EXACT_GRID;
@@ -118,12 +119,12 @@ static enum glint_status open_proxy(const struct glint_frame *like, int pixels,
     p->linear_q20 = malloc(samples * sizeof *p->linear_q20);
     if (!p->rgb || !p->linear_q20)
         return GLINT_E_MEMORY;
-    return bytes ? glint_frame_reserve(&p->frame, NULL, bytes, 1,
-                                       GLINT_AREA_SAMPLES)
+    return bytes ? glint_frame_reserve_memory(&p->frame, NULL, bytes, 1,
+                                              GLINT_AREA_SAMPLES)
                  : GLINT_OK;
 }
 
-static void close_proxy(struct proxy *p)
+static void close_small_frame(struct proxy *p)
 {
     glint_frame_finish(&p->frame);
     free(p->linear_q20);
@@ -132,10 +133,9 @@ static void close_proxy(struct proxy *p)
 
 /* Draws LAMPS with powers scaled by 2^BY, and sets LIGHT to the measured
  * light divided by 2^BY. */
-static enum glint_status draw_once(struct proxy *p,
-                                   const struct glint_lamp *lamps, int n,
-                                   double by,
-                                   struct glint_response_light *light)
+static enum glint_status
+draw_and_measure_lamps(struct proxy *p, const struct glint_lamp *lamps, int n,
+                       double by, struct glint_response_light *light)
 {
     const size_t pixels = (size_t)p->view.width * (size_t)p->view.height;
     struct glint_image layer = glint_image_over(p->linear_q20, GLINT_LINEAR_Q20,
@@ -155,17 +155,16 @@ static enum glint_status draw_once(struct proxy *p,
 /* Draws LAMPS, with powers scaled repeatedly, until the brightest pixels lie
  * in the range of AIM_LOG2 and AIM_SPAN. *PEAK_LOG2 is log2 of their light:
  * on entry an estimate, on return the measured value. */
-static enum glint_status draw_in_range(struct proxy *p,
-                                       const struct glint_lamp *lamps, int n,
-                                       double *peak_log2,
-                                       struct glint_response_light *light)
+static enum glint_status
+draw_at_measurable_scale(struct proxy *p, const struct glint_lamp *lamps, int n,
+                         double *peak_log2, struct glint_response_light *light)
 {
     enum glint_status status = GLINT_OK;
 
     for (int i = 0; i < 12 && status == GLINT_OK; i++) {
         const double by = AIM_LOG2 - *peak_log2;
 
-        status = draw_once(p, lamps, n, by, light);
+        status = draw_and_measure_lamps(p, lamps, n, by, light);
         const double peak = glint_largest_channel(light->peak);
         *peak_log2 = peak > 0 ? log2(peak) : *peak_log2 - 2 * AIM_SPAN;
         if (fabs(*peak_log2 + by - AIM_LOG2) <= AIM_SPAN)
@@ -176,7 +175,7 @@ static enum glint_status draw_in_range(struct proxy *p,
 
 /* --------------------------------------------------------------- measuring */
 
-static double compute_corner_deg(struct glint_view view, double focal_mm)
+static double compute_corner_angle_deg(struct glint_view view, double focal_mm)
 {
     const double half =
         0.5 * view.sensor_width_mm * hypot(1, (double)view.height / view.width);
@@ -186,8 +185,8 @@ static double compute_corner_deg(struct glint_view view, double focal_mm)
 
 /* Sets the angles to measure, degrees: denser near the axis, where ghosts
  * overlap, and none above END, the max angle of the model. */
-static void set_angles(struct glint_response *r, int n, double corner,
-                       double end)
+static void set_measured_angles(struct glint_response *r, int n, double corner,
+                                double end)
 {
     r->n = 0;
     for (int i = 0; i < n; i++) {
@@ -199,29 +198,30 @@ static void set_angles(struct glint_response *r, int n, double corner,
     }
 }
 
-static double compute_log2(double value)
+static double compute_clamped_log2(double value)
 {
     return value > 0 ? fmax(log2(value), none_log2) : none_log2;
 }
 
-static void convert_to_log2(struct glint_response_light *light)
+static void convert_light_to_log2(struct glint_response_light *light)
 {
     for (int c = 0; c < 3; c++) {
-        light->peak[c] = compute_log2(light->peak[c]);
-        light->mean[c] = compute_log2(light->mean[c]);
+        light->peak[c] = compute_clamped_log2(light->peak[c]);
+        light->mean[c] = compute_clamped_log2(light->mean[c]);
     }
 }
 
 /* Measures how much fainter the brightest part of the flare becomes if LAMP
  * is a disc rather than a point, for radii up to an eighth of the picture's
  * diagonal. */
-static enum glint_status measure_extents(struct proxy *p,
-                                         struct glint_response *r,
-                                         struct glint_lamp lamp)
+static enum glint_status measure_extent_softening(struct proxy *p,
+                                                  struct glint_response *r,
+                                                  struct glint_lamp lamp)
 {
     const double diagonal =
-        2 * tan(compute_corner_deg(p->view, p->frame.setup->optics.focal_mm) *
-                GLINT_PI / 180);
+        2 *
+        tan(compute_corner_angle_deg(p->view, p->frame.setup->optics.focal_mm) *
+            GLINT_PI / 180);
     double point_log2 = 0, peak_log2 = 0;
 
     for (int i = 0; i < GLINT_RESPONSE_EXTENTS; i++) {
@@ -231,7 +231,7 @@ static enum glint_status measure_extents(struct proxy *p,
         r->extent[i] =
             i ? diagonal / (1 << (GLINT_RESPONSE_EXTENTS + 2 - i)) : 0;
         glint_area_set_round(&lamp, r->extent[i]);
-        status = draw_in_range(p, &lamp, 1, &peak_log2, &light);
+        status = draw_at_measurable_scale(p, &lamp, 1, &peak_log2, &light);
         if (status != GLINT_OK)
             return status;
         if (i == 0)
@@ -241,8 +241,8 @@ static enum glint_status measure_extents(struct proxy *p,
     return GLINT_OK;
 }
 
-static enum glint_status measure_angles(struct proxy *p,
-                                        struct glint_response *r)
+static enum glint_status measure_light_at_angles(struct proxy *p,
+                                                 struct glint_response *r)
 {
     const double azimuth = /* direction from the middle of the picture to a
                               corner, degrees */
@@ -252,20 +252,22 @@ static enum glint_status measure_angles(struct proxy *p,
         .phi_deg = azimuth, .power = all, .rgb = {1, 1, 1}};
     double peak_log2 = 0;
 
-    set_angles(r, p->frame.lens ? GLINT_RESPONSE_ANGLES : EXACT_ANGLES,
-               compute_corner_deg(p->view, p->frame.setup->optics.focal_mm),
-               glint_frame_end_deg(&p->frame));
+    set_measured_angles(
+        r, p->frame.lens ? GLINT_RESPONSE_ANGLES : EXACT_ANGLES,
+        compute_corner_angle_deg(p->view, p->frame.setup->optics.focal_mm),
+        glint_frame_max_angle_deg(&p->frame));
     for (int i = 0; i < r->n; i++) {
         enum glint_status status;
 
         lamp.theta_deg = r->theta_deg[i];
-        status = draw_in_range(p, &lamp, 1, &peak_log2, &r->log2_of[i]);
+        status =
+            draw_at_measurable_scale(p, &lamp, 1, &peak_log2, &r->log2_of[i]);
         if (status != GLINT_OK)
             return status;
-        convert_to_log2(&r->log2_of[i]);
+        convert_light_to_log2(&r->log2_of[i]);
     }
     lamp.theta_deg = r->theta_deg[r->n / 2];
-    return measure_extents(p, r, lamp);
+    return measure_extent_softening(p, r, lamp);
 }
 
 enum glint_status glint_response_measure(const struct glint_frame *like,
@@ -275,22 +277,23 @@ enum glint_status glint_response_measure(const struct glint_frame *like,
     const double start = like->clock ? like->clock() : 0;
     struct proxy proxy;
     enum glint_status status =
-        open_proxy(like, GLINT_RESPONSE_COARSE, bytes, &proxy);
+        open_small_frame(like, GLINT_RESPONSE_COARSE, bytes, &proxy);
 
     if (status == GLINT_OK)
-        status = measure_angles(&proxy, response);
+        status = measure_light_at_angles(&proxy, response);
     response->ms = like->clock ? 1e3 * (like->clock() - start) : 0;
-    close_proxy(&proxy);
+    close_small_frame(&proxy);
     return status;
 }
 
-static double interpolate_log2(double a, double b, double part)
+static double interpolate_and_exp2(double a, double b, double part)
 {
     return exp2(a + part * (b - a));
 }
 
-void glint_response_at(const struct glint_response *r, double theta_deg,
-                       struct glint_response_light *light)
+void glint_response_interpolate_light(const struct glint_response *r,
+                                      double theta_deg,
+                                      struct glint_response_light *light)
 {
     const double *const theta = r->theta_deg;
     int i = 0;
@@ -304,15 +307,15 @@ void glint_response_at(const struct glint_response *r, double theta_deg,
     for (int c = 0; c < 3; c++) {
         const int j = r->n > 1 ? i + 1 : i;
 
-        light->peak[c] = interpolate_log2(r->log2_of[i].peak[c],
-                                          r->log2_of[j].peak[c], part);
-        light->mean[c] = interpolate_log2(r->log2_of[i].mean[c],
-                                          r->log2_of[j].mean[c], part);
+        light->peak[c] = interpolate_and_exp2(r->log2_of[i].peak[c],
+                                              r->log2_of[j].peak[c], part);
+        light->mean[c] = interpolate_and_exp2(r->log2_of[i].mean[c],
+                                              r->log2_of[j].mean[c], part);
     }
 }
 
-double glint_response_softening(const struct glint_response *r,
-                                const struct glint_lamp *lamp)
+double glint_response_compute_softening(const struct glint_response *r,
+                                        const struct glint_lamp *lamp)
 {
     const double extent = hypot(lamp->axis[0], lamp->axis[1]);
     int i = 0;
@@ -323,22 +326,23 @@ double glint_response_softening(const struct glint_response *r,
     if (!(r->extent[i + 1] > r->extent[i]))
         return 1; /* nothing was measured */
     part = (extent - r->extent[i]) / (r->extent[i + 1] - r->extent[i]);
-    return interpolate_log2(r->softened_log2[i], r->softened_log2[i + 1],
-                            fmin(part, 1));
+    return interpolate_and_exp2(r->softened_log2[i], r->softened_log2[i + 1],
+                                fmin(part, 1));
 }
 
 /* ---------------------------------------------------------- what was drawn */
 
 /* Sets the peak of LIGHT to the min value among the brightest 1/10000 of the
  * pixels drawn last. */
-static void set_peak(const struct proxy *p, struct glint_response_light *light)
+static void set_peak_from_brightest_pixels(const struct proxy *p,
+                                           struct glint_response_light *light)
 {
     const size_t pixels = (size_t)p->view.width * (size_t)p->view.height;
-    const int n = count_fraction(pixels, 10000);
+    const int n = count_brightest_pixels(pixels, 10000);
     float top[TOP_MAX];
 
     for (int c = 0; c < 3; c++) {
-        find_top(p->rgb, pixels, c, top, n);
+        find_largest_values(p->rgb, pixels, c, top, n);
         light->peak[c] = (double)top[n - 1];
     }
 }
@@ -353,10 +357,10 @@ static void report_finding(void *frame, double done)
         f->progress(f->progress_ctx, done);
 }
 
-enum glint_status
-glint_response_draw(struct glint_frame *frame, const struct glint_lamp *lamps,
-                    int n, int pixels, const struct glint_ground *ground,
-                    struct glint_response_light *light, struct glint_seen *seen)
+enum glint_status glint_response_draw_and_measure(
+    struct glint_frame *frame, const struct glint_lamp *lamps, int n,
+    int pixels, const struct glint_ground *ground,
+    struct glint_response_light *light, struct glint_seen *seen)
 {
     struct glint_lamp *small = malloc((size_t)(n ? n : 1) * sizeof *small);
     struct proxy p;
@@ -367,7 +371,7 @@ glint_response_draw(struct glint_frame *frame, const struct glint_lamp *lamps,
     if (!small)
         return GLINT_E_MEMORY;
     if (n) {
-        status = open_proxy(frame, pixels, 0, &p);
+        status = open_small_frame(frame, pixels, 0, &p);
         by = (double)p.view.width * p.view.height /
              ((double)frame->view.width * frame->view.height);
         memcpy(small, lamps, (size_t)n * sizeof *small);
@@ -378,14 +382,15 @@ glint_response_draw(struct glint_frame *frame, const struct glint_lamp *lamps,
         p.frame.progress = frame->progress ? report_finding : NULL;
         p.frame.progress_ctx = frame;
         if (status == GLINT_OK)
-            status = draw_in_range(&p, small, n, &peak_log2, light);
+            status = draw_at_measurable_scale(&p, small, n, &peak_log2, light);
         if (status == GLINT_OK)
-            set_peak(&p, light);
+            set_peak_from_brightest_pixels(&p, light);
         if (status == GLINT_OK && ground && seen)
-            glint_seen_on(seen, ground, p.rgb, p.view.width, p.view.height);
+            glint_seen_measure_visibility(seen, ground, p.rgb, p.view.width,
+                                          p.view.height);
         if (frame->trace)
             frame->trace->adopt(frame, &p.frame);
-        close_proxy(&p);
+        close_small_frame(&p);
     }
     free(small);
     return status;

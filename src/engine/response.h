@@ -4,7 +4,7 @@
  * angle of the lamp.
  *
  *     glint_response_measure(&frame, bytes, &response);         once
- *     glint_response_at(&response, theta_deg, &light);          each lamp
+ *     glint_response_interpolate_light(&response, theta_deg, &light); each lamp
  *
  * Draws small linear-light pictures of the flare of one white lamp, at angles
  * from the axis to the corner of the view, and measures them. Logarithms are
@@ -54,12 +54,10 @@ struct glint_response {
  * drawn by exact rays. The peak is the value that 1/10000 of the pixels reach;
  * smaller specks are ignored. Sets SEEN to the flare's visibility on GROUND,
  * unless both are NULL. Returns GLINT_E_MEMORY on failure. */
-enum glint_status glint_response_draw(struct glint_frame *frame,
-                                      const struct glint_lamp *lamps, int n,
-                                      int pixels,
-                                      const struct glint_ground *ground,
-                                      struct glint_response_light *light,
-                                      struct glint_seen *seen);
+enum glint_status glint_response_draw_and_measure(
+    struct glint_frame *frame, const struct glint_lamp *lamps, int n,
+    int pixels, const struct glint_ground *ground,
+    struct glint_response_light *light, struct glint_seen *seen);
 
 /* Measures RESPONSE for the lens, view and requested options of LIKE.
  * Allocates at most BYTES for drawing; 0: no limit. Returns GLINT_E_MEMORY
@@ -71,19 +69,20 @@ enum glint_status glint_response_measure(const struct glint_frame *like,
 /* Like glint_response_measure(), but reads results from CACHE if they are
  * stored there, and stores new ones. CACHE may be NULL. Responses of lenses
  * without a model are not cached. */
-enum glint_status glint_response_obtain(const struct glint_frame *like,
-                                        size_t bytes,
-                                        const struct glint_engine_cache *cache,
-                                        struct glint_response *response);
+enum glint_status
+glint_response_measure_cached(const struct glint_frame *like, size_t bytes,
+                              const struct glint_engine_cache *cache,
+                              struct glint_response *response);
 
 /* Returns the ratio of the peak of the flare of LAMP to the peak of a
  * point's flare: at most 1, as the extent of the lamp blurs its ghosts. */
-double glint_response_softening(const struct glint_response *response,
-                                const struct glint_lamp *lamp);
+double glint_response_compute_softening(const struct glint_response *response,
+                                        const struct glint_lamp *lamp);
 
 /* Sets LIGHT to the light of the flare of a point THETA_DEG off the axis.
  * Outside the view it is the light at the corner. */
-void glint_response_at(const struct glint_response *response, double theta_deg,
-                       struct glint_response_light *light);
+void glint_response_interpolate_light(const struct glint_response *response,
+                                      double theta_deg,
+                                      struct glint_response_light *light);
 
 #endif

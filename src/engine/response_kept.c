@@ -33,25 +33,25 @@ static const char magic[8] = "glintRS";
 /* ---------------------------------------------------------------------- key */
 
 /* Adds the bytes of WORD to KEY by the hash FNV-1a, the lowest byte first. */
-static void add_word(uint64_t *key, uint64_t word)
+static void hash_word(uint64_t *key, uint64_t word)
 {
     for (int shift = 0; shift < 64; shift += 8)
         *key = (*key ^ (word >> shift & 255)) * UINT64_C(0x100000001b3);
 }
 
-static void add_values(uint64_t *key, const double *value, size_t n)
+static void hash_values(uint64_t *key, const double *value, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         uint64_t word;
 
         memcpy(&word, &value[i], sizeof word);
-        add_word(key, word);
+        hash_word(key, word);
     }
 }
 
 /* Adds the stop and the wavelengths of a setup to KEY; all other members
  * follow from the model. */
-static void add_setup(uint64_t *key, const struct glint_setup *s)
+static void hash_setup(uint64_t *key, const struct glint_setup *s)
 {
     const size_t n = (size_t)s->n_wavelengths;
     const double stop[] = {s->n_blades, s->blade_rotation_deg, s->opening,
@@ -61,27 +61,28 @@ static void add_setup(uint64_t *key, const struct glint_setup *s)
                            own->dust_seed, s->clear};
     const struct glint_set_wave *w = s->set_wave;
 
-    add_values(key, stop, sizeof stop / sizeof *stop);
+    hash_values(key, stop, sizeof stop / sizeof *stop);
     if (own->roundness > 0 || s->dirt)
-        add_values(key, iris, sizeof iris / sizeof *iris);
-    add_values(key, s->wavelength_nm, n);
-    add_values(key, s->rgb[0], 3 * n);
-    add_values(key, s->unit_flux, n);
+        hash_values(key, iris, sizeof iris / sizeof *iris);
+    hash_values(key, s->wavelength_nm, n);
+    hash_values(key, s->rgb[0], 3 * n);
+    hash_values(key, s->unit_flux, n);
     for (int i = 0; i < s->n_sets; i++) {
         const double size = s->set_size[i];
 
-        add_values(key, &size, 1);
+        hash_values(key, &size, 1);
         for (int j = 0; j < s->set_size[i]; j++, w++) {
-            add_values(key, &w->nm, 1);
-            add_values(key, w->rgb, 3);
-            add_values(key, &w->unit_flux, 1);
+            hash_values(key, &w->nm, 1);
+            hash_values(key, w->rgb, 3);
+            hash_values(key, &w->unit_flux, 1);
         }
     }
 }
 
 /* Adds the quality parameters that glint_response_measure() does not set
  * itself to KEY. */
-static void add_parameters(uint64_t *key, const struct glint_frame *like)
+static void hash_quality_parameters(uint64_t *key,
+                                    const struct glint_frame *like)
 {
     const struct glint_dials *d = &like->asked;
     const double value[] = {
@@ -89,13 +90,13 @@ static void add_parameters(uint64_t *key, const struct glint_frame *like)
         d->max_lights,       d->flags,         d->cull_codes,
         d->area_points,      like->apart_px,   like->cfg.tile_log2};
 
-    add_values(key, value, sizeof value / sizeof *value);
+    hash_values(key, value, sizeof value / sizeof *value);
 }
 
 /* Returns the key of a scene. It contains the aspect ratio of the picture,
  * not its size, and BYTES, as too little memory makes grids coarser or
  * leaves parts of the flare out. */
-static uint64_t compute_key(const struct glint_frame *like, size_t bytes)
+static uint64_t compute_cache_key(const struct glint_frame *like, size_t bytes)
 {
     const struct glint_model_header *h = like->lens->header;
     const double shape[] = {(double)like->view.width / like->view.height,
@@ -105,12 +106,12 @@ static uint64_t compute_key(const struct glint_frame *like, size_t bytes)
     uint64_t key = UINT64_C(0xcbf29ce484222325);
 
     for (size_t i = 0; i < sizeof model / sizeof *model; i++)
-        add_word(&key, model[i]);
+        hash_word(&key, model[i]);
     for (const char *c = GLINT_VERSION; *c; c++)
-        add_word(&key, (unsigned char)*c);
-    add_values(&key, shape, sizeof shape / sizeof *shape);
-    add_setup(&key, like->setup);
-    add_parameters(&key, like);
+        hash_word(&key, (unsigned char)*c);
+    hash_values(&key, shape, sizeof shape / sizeof *shape);
+    hash_setup(&key, like->setup);
+    hash_quality_parameters(&key, like);
     return key;
 }
 
@@ -118,7 +119,7 @@ static uint64_t compute_key(const struct glint_frame *like, size_t bytes)
 
 /* Sets AT to pointers to the members of R in the order in which an entry
  * stores them. */
-static void list_values(struct glint_response *r, double *at[VALUES])
+static void list_response_values(struct glint_response *r, double *at[VALUES])
 {
     int n = 0;
 
@@ -135,13 +136,13 @@ static void list_values(struct glint_response *r, double *at[VALUES])
     }
 }
 
-static struct entry make_entry(struct glint_response *r, uint64_t key)
+static struct entry make_cache_entry(struct glint_response *r, uint64_t key)
 {
     struct entry e = {.key = key, .n = r->n};
     double *at[VALUES];
 
     memcpy(e.magic, magic, sizeof magic);
-    list_values(r, at);
+    list_response_values(r, at);
     for (int i = 0; i < VALUES; i++)
         e.value[i] = *at[i];
     e.crc32 = glint_model_crc32(e.value, sizeof e.value);
@@ -150,7 +151,7 @@ static struct entry make_entry(struct glint_response *r, uint64_t key)
 
 /* Returns whether all members of R are in the range that
  * glint_response_measure() returns. */
-static bool is_sound(const struct glint_response *r)
+static bool is_response_in_range(const struct glint_response *r)
 {
     if (r->n < 1 || r->n > GLINT_RESPONSE_ANGLES || r->theta_deg[0] != 0)
         return false;
@@ -166,8 +167,8 @@ static bool is_sound(const struct glint_response *r)
     return true;
 }
 
-static bool read_entry(const struct entry *e, uint64_t key,
-                       struct glint_response *r)
+static bool read_cache_entry(const struct entry *e, uint64_t key,
+                             struct glint_response *r)
 {
     double *at[VALUES];
 
@@ -175,24 +176,24 @@ static bool read_entry(const struct entry *e, uint64_t key,
         e->crc32 != glint_model_crc32(e->value, sizeof e->value))
         return false;
     *r = (struct glint_response){.n = e->n};
-    list_values(r, at);
+    list_response_values(r, at);
     for (int i = 0; i < VALUES; i++) {
         if (!(fabs(e->value[i]) <= 1000))
             return false;
         *at[i] = e->value[i];
     }
-    return is_sound(r);
+    return is_response_in_range(r);
 }
 
 /* ---------------------------------------------------------------------- both
  */
 
-enum glint_status glint_response_obtain(const struct glint_frame *like,
-                                        size_t bytes,
-                                        const struct glint_engine_cache *cache,
-                                        struct glint_response *response)
+enum glint_status
+glint_response_measure_cached(const struct glint_frame *like, size_t bytes,
+                              const struct glint_engine_cache *cache,
+                              struct glint_response *response)
 {
-    const uint64_t key = like->lens ? compute_key(like, bytes) : 0;
+    const uint64_t key = like->lens ? compute_cache_key(like, bytes) : 0;
     const char *const name = like->lens ? like->lens->header->name : "";
     enum glint_status status;
     struct entry e;
@@ -200,12 +201,12 @@ enum glint_status glint_response_obtain(const struct glint_frame *like,
     if (!like->lens)
         cache = NULL;
     if (cache && cache->read(cache->ctx, name, key, &e, sizeof e) &&
-        read_entry(&e, key, response))
+        read_cache_entry(&e, key, response))
         return GLINT_OK;
     *response = (struct glint_response){.n = 0};
     status = glint_response_measure(like, bytes, response);
     if (status == GLINT_OK && cache) {
-        e = make_entry(response, key);
+        e = make_cache_entry(response, key);
         cache->write(cache->ctx, name, key, &e, sizeof e);
     }
     return status;

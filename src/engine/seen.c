@@ -7,8 +7,8 @@
 /* Histogram bins: eight per stop, over 40 stops on either side of 1. */
 enum { STEPS = 8, OCTAVES = 40, BINS = 2 * OCTAVES * STEPS };
 
-void glint_ground_take(struct glint_ground *ground,
-                       const struct glint_image *image)
+void glint_ground_sample_picture(struct glint_ground *ground,
+                                 const struct glint_image *image)
 {
     glint_image_sample(image, GLINT_GROUND_COLUMNS, GLINT_GROUND_ROWS,
                        ground->rgb[0][0]);
@@ -28,7 +28,7 @@ struct slopes {
     double visible[256], white[256];
 };
 
-static void list_slopes(struct slopes *slope)
+static void compute_code_slopes(struct slopes *slope)
 {
     *slope = (struct slopes){{0}, {0}};
     for (int code = 0; code + GLINT_SEEN_CODES <= 255; code++)
@@ -40,8 +40,9 @@ static void list_slopes(struct slopes *slope)
 
 /* Returns the max over the channels of a pixel's added light divided by the
  * min visible light. */
-static double compute_visible(const float light[3], const uint8_t code[3],
-                              const struct slopes *slope)
+static double compute_pixel_visibility(const float light[3],
+                                       const uint8_t code[3],
+                                       const struct slopes *slope)
 {
     double most = 0;
 
@@ -53,8 +54,9 @@ static double compute_visible(const float light[3], const uint8_t code[3],
 /* Returns the min over the channels of a pixel's added light divided by the
  * light that makes the channel white; 0 if a channel is below
  * GLINT_SEEN_BRIGHT or from GLINT_SEEN_WHITE on. */
-static double compute_white(const float light[3], const uint8_t code[3],
-                            const struct slopes *slope)
+static double compute_pixel_white_ratio(const float light[3],
+                                        const uint8_t code[3],
+                                        const struct slopes *slope)
 {
     double least = HUGE_VAL;
 
@@ -66,7 +68,7 @@ static double compute_white(const float light[3], const uint8_t code[3],
     return least < HUGE_VAL ? least : 0;
 }
 
-static void count_value(int count[BINS], double x)
+static void add_to_histogram(int count[BINS], double x)
 {
     if (x > 0)
         count[(int)fmin(fmax((log2(x) + OCTAVES) * STEPS, 0), BINS - 1)]++;
@@ -74,7 +76,7 @@ static void count_value(int count[BINS], double x)
 
 /* Returns the max value that N of the counted pixels reach, or 0 if fewer
  * than N were counted. */
-static double find_reached(const int count[BINS], int n)
+static double find_value_reached_by_pixels(const int count[BINS], int n)
 {
     for (int bin = BINS - 1, sum = 0; bin >= 0; bin--) {
         sum += count[bin];
@@ -84,23 +86,29 @@ static double find_reached(const int count[BINS], int n)
     return 0;
 }
 
-void glint_seen_on(struct glint_seen *seen, const struct glint_ground *ground,
-                   const float *rgb, int width, int height)
+void glint_seen_measure_visibility(struct glint_seen *seen,
+                                   const struct glint_ground *ground,
+                                   const float *rgb, int width, int height)
 {
     int visible[BINS] = {0}, white[BINS] = {0};
     struct slopes slope;
 
-    list_slopes(&slope);
+    compute_code_slopes(&slope);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++, rgb += 3) {
             const uint8_t *const code =
                 ground->rgb[y * GLINT_GROUND_ROWS / height]
                            [x * GLINT_GROUND_COLUMNS / width];
 
-            count_value(visible, compute_visible(rgb, code, &slope));
-            count_value(white, compute_white(rgb, code, &slope));
+            add_to_histogram(visible,
+                             compute_pixel_visibility(rgb, code, &slope));
+            add_to_histogram(white,
+                             compute_pixel_white_ratio(rgb, code, &slope));
         }
-    seen->few = find_reached(visible, width * height / GLINT_SEEN_FEW + 1);
-    seen->many = find_reached(visible, width * height / GLINT_SEEN_MANY + 1);
-    seen->white = find_reached(white, width * height / GLINT_SEEN_DISC + 1);
+    seen->few = find_value_reached_by_pixels(
+        visible, width * height / GLINT_SEEN_FEW + 1);
+    seen->many = find_value_reached_by_pixels(
+        visible, width * height / GLINT_SEEN_MANY + 1);
+    seen->white = find_value_reached_by_pixels(
+        white, width * height / GLINT_SEEN_DISC + 1);
 }

@@ -48,12 +48,13 @@ struct glint_seen {
     double few, many, white;
 };
 
-void glint_ground_take(struct glint_ground *ground,
-                       const struct glint_image *image);
+void glint_ground_sample_picture(struct glint_ground *ground,
+                                 const struct glint_image *image);
 
 /* Sets SEEN for the flare RGB, [height][width][3], which covers all of
  * GROUND. */
-void glint_seen_on(struct glint_seen *seen, const struct glint_ground *ground,
-                   const float *rgb, int width, int height);
+void glint_seen_measure_visibility(struct glint_seen *seen,
+                                   const struct glint_ground *ground,
+                                   const float *rgb, int width, int height);
 
 #endif

@@ -52,23 +52,24 @@ void glint_strength_defaults(struct glint_strength *strength)
 /* --------------------------------------------------------------- one frame */
 
 /* Sets LIGHT to the light of lamp I's flare at full level, by channel. */
-static void compute_light(const struct glint_response *response,
-                          const struct glint_strength_lamps *lamps, int i,
-                          struct glint_response_light *light)
+static void compute_lamp_flare_light(const struct glint_response *response,
+                                     const struct glint_strength_lamps *lamps,
+                                     int i, struct glint_response_light *light)
 {
     const struct glint_lamp *l = &lamps->lamp[i].lamp;
     const double power = l->power / lamps->pixels / lamps->lamp[i].level;
-    const double softening = glint_response_softening(response, l);
+    const double softening = glint_response_compute_softening(response, l);
 
-    glint_response_at(response, l->theta_deg, light);
+    glint_response_interpolate_light(response, l->theta_deg, light);
     for (int c = 0; c < 3; c++) {
         light->peak[c] *= power * softening * l->rgb[c];
         light->mean[c] *= power * l->rgb[c];
     }
 }
 
-static void add_light(struct glint_response_light *sum,
-                      const struct glint_response_light *light, double level)
+static void add_lamp_light(struct glint_response_light *sum,
+                           const struct glint_response_light *light,
+                           double level)
 {
     for (int c = 0; c < 3; c++) {
         sum->peak[c] += pow(level * light->peak[c], norm);
@@ -82,16 +83,16 @@ static void compute_peaks(struct glint_response_light *sum)
         sum->peak[c] = pow(sum->peak[c], 1 / norm);
 }
 
-void glint_strength_light(const struct glint_response *response,
-                          const struct glint_strength_lamps *lamps,
-                          struct glint_response_light *light)
+void glint_strength_compute_light(const struct glint_response *response,
+                                  const struct glint_strength_lamps *lamps,
+                                  struct glint_response_light *light)
 {
     *light = (struct glint_response_light){{0}, {0}};
     for (int i = 0; i < lamps->n; i++) {
         struct glint_response_light one;
 
-        compute_light(response, lamps, i, &one);
-        add_light(light, &one, lamps->lamp[i].level);
+        compute_lamp_flare_light(response, lamps, i, &one);
+        add_lamp_light(light, &one, lamps->lamp[i].level);
     }
     compute_peaks(light);
 }
@@ -110,7 +111,7 @@ static double compute_strength_log2(const struct glint_strength *s)
 
 /* Returns the log2 of the factor, at strength 1, that exposes a flare of
  * brightness LIGHT without fogging the picture. */
-static double compute_target_log2(const struct glint_response_light *light)
+static double compute_exposure_log2(const struct glint_response_light *light)
 {
     const double peak = fmax(glint_largest_channel(light->peak), 1e-60);
     const double light_mean = fmax(glint_largest_channel(light->mean), 1e-60);
@@ -124,7 +125,7 @@ static double compute_target_log2(const struct glint_response_light *light)
 
 /* --------------------------------------------------------------- over time */
 
-static double limit_step(double towards, double elapsed_s)
+static double limit_exposure_step(double towards, double elapsed_s)
 {
     const double part = 1 - exp(-elapsed_s / settle_s);
     const double most = fmin(
@@ -136,7 +137,7 @@ static double limit_step(double towards, double elapsed_s)
 /* Returns the factor that limits TIMES, the ratio of a lamp's exposure to
  * its exposure alone: 1 up to TIMES 1; above, the product rises ever more
  * slowly to 1 + overshoot. */
-static double compute_limit(double times)
+static double compute_exposure_limit(double times)
 {
     return times <= 1 ? 1
                       : (1 + overshoot * tanh((times - 1) / overshoot)) / times;
@@ -144,11 +145,11 @@ static double compute_limit(double times)
 
 /* Lowers LIGHT, the light of a lamp's ghosts, towards the exposure that they
  * would get alone. Returns the factor. */
-static double limit_light(const struct glint_strength *s,
-                          struct glint_response_light *light)
+static double limit_lamp_light(const struct glint_strength *s,
+                               struct glint_response_light *light)
 {
-    const double times = exp2(s->factor_log2 - compute_target_log2(light));
-    const double by = compute_limit(times);
+    const double times = exp2(s->factor_log2 - compute_exposure_log2(light));
+    const double by = compute_exposure_limit(times);
 
     for (int c = 0; c < 3; c++) {
         light->peak[c] *= by;
@@ -157,20 +158,21 @@ static double limit_light(const struct glint_strength *s,
     return by;
 }
 
-static void follow_target(struct glint_strength *s, double target,
-                          int32_t elapsed_us)
+static void follow_exposure_target(struct glint_strength *s, double target,
+                                   int32_t elapsed_us)
 {
     if (elapsed_us > 0 && s->follows)
         s->factor_log2 +=
-            limit_step(target - s->factor_log2, 1e-6 * elapsed_us);
+            limit_exposure_step(target - s->factor_log2, 1e-6 * elapsed_us);
     else
         s->factor_log2 = target;
     s->follows = true;
 }
 
 /* Returns log2 of the factor at strength 1 for all lamps at full level. */
-static double find_target_log2(const struct glint_response *response,
-                               const struct glint_strength_lamps *lamps)
+static double
+compute_full_level_exposure_log2(const struct glint_response *response,
+                                 const struct glint_strength_lamps *lamps)
 {
     struct glint_strength_lamps full = *lamps;
     struct glint_response_light light = {{0}, {0}};
@@ -178,11 +180,11 @@ static double find_target_log2(const struct glint_response *response,
     for (int i = 0; i < full.n; i++) {
         struct glint_response_light one;
 
-        compute_light(response, &full, i, &one);
-        add_light(&light, &one, 1);
+        compute_lamp_flare_light(response, &full, i, &one);
+        add_lamp_light(&light, &one, 1);
     }
     compute_peaks(&light);
-    return compute_target_log2(&light);
+    return compute_exposure_log2(&light);
 }
 
 static void expose_lamps(struct glint_strength *s,
@@ -190,19 +192,20 @@ static void expose_lamps(struct glint_strength *s,
                          const struct glint_strength_lamps *lamps,
                          int32_t elapsed_us)
 {
-    follow_target(s, find_target_log2(response, lamps), elapsed_us);
+    follow_exposure_target(s, compute_full_level_exposure_log2(response, lamps),
+                           elapsed_us);
     for (int i = 0; i < lamps->n; i++) {
         struct glint_response_light one;
 
-        compute_light(response, lamps, i, &one);
-        lamps->part[i] = limit_light(s, &one);
-        add_light(&s->light, &one, lamps->lamp[i].level);
+        compute_lamp_flare_light(response, lamps, i, &one);
+        lamps->part[i] = limit_lamp_light(s, &one);
+        add_lamp_light(&s->light, &one, lamps->lamp[i].level);
     }
     compute_peaks(&s->light);
     s->scale = s->gain * exp2(compute_strength_log2(s) + s->factor_log2);
 }
 
-static void scale_light(struct glint_strength *s)
+static void scale_flare_light(struct glint_strength *s)
 {
     for (int c = 0; c < 3; c++) {
         s->light.peak[c] *= s->scale;
@@ -210,10 +213,10 @@ static void scale_light(struct glint_strength *s)
     }
 }
 
-void glint_strength_expose(struct glint_strength *strength,
-                           const struct glint_response *response,
-                           const struct glint_strength_lamps *lamps,
-                           int32_t elapsed_us)
+void glint_strength_expose_frame(struct glint_strength *strength,
+                                 const struct glint_response *response,
+                                 const struct glint_strength_lamps *lamps,
+                                 int32_t elapsed_us)
 {
     struct glint_strength *s = strength;
 
@@ -227,21 +230,22 @@ void glint_strength_expose(struct glint_strength *strength,
         return;
     }
     if (s->is_physical) {
-        glint_strength_light(response, lamps, &s->light);
+        glint_strength_compute_light(response, lamps, &s->light);
         s->scale = s->gain * exp2(s->exposure_ev);
     } else {
         expose_lamps(s, response, lamps, elapsed_us);
     }
-    scale_light(s);
+    scale_flare_light(s);
 }
 
 /* Returns the stops by which the flare DRAWN is raised until it is visible,
  * or lowered until it neither veils the picture nor turns bright ground
  * white, within the limits on its peak and its mean. BASE: log2 of its
  * factor at strength 0.5. */
-static double compute_lift_log2(double base,
-                                const struct glint_response_light *drawn,
-                                const struct glint_seen *seen)
+static double
+compute_visibility_lift_log2(double base,
+                             const struct glint_response_light *drawn,
+                             const struct glint_seen *seen)
 {
     const double peak = log2(fmax(glint_largest_channel(drawn->peak), 1e-60));
     const double mean = log2(fmax(glint_largest_channel(drawn->mean), 1e-60));
@@ -256,9 +260,9 @@ static double compute_lift_log2(double base,
     return fmax(fmin(fmin(few, white), room) - base, 0);
 }
 
-void glint_strength_correct(struct glint_strength *strength,
-                            const struct glint_response_light *drawn,
-                            const struct glint_seen *seen)
+void glint_strength_correct_exposure(struct glint_strength *strength,
+                                     const struct glint_response_light *drawn,
+                                     const struct glint_seen *seen)
 {
     struct glint_strength *s = strength;
 
@@ -266,12 +270,13 @@ void glint_strength_correct(struct glint_strength *strength,
         !(glint_largest_channel(drawn->peak) > 0))
         return;
     s->is_drawn = true;
-    s->factor_log2 = compute_target_log2(drawn);
+    s->factor_log2 = compute_exposure_log2(drawn);
     if (seen)
-        s->factor_log2 += compute_lift_log2(s->factor_log2 - 2, drawn, seen);
+        s->factor_log2 +=
+            compute_visibility_lift_log2(s->factor_log2 - 2, drawn, seen);
     s->scale = s->gain * exp2(compute_strength_log2(s) + s->factor_log2);
     s->light = *drawn;
-    scale_light(s);
+    scale_flare_light(s);
 }
 
 enum glint_status glint_strength_expose_still(struct glint_strength *strength,
@@ -287,8 +292,8 @@ enum glint_status glint_strength_expose_still(struct glint_strength *strength,
 
     if (strength->is_physical || !(strength->scale > 0))
         return GLINT_OK;
-    status = glint_response_draw(frame, lamps, n, GLINT_RESPONSE_FINE, ground,
-                                 &drawn, &seen);
+    status = glint_response_draw_and_measure(
+        frame, lamps, n, GLINT_RESPONSE_FINE, ground, &drawn, &seen);
     if (status != GLINT_OK)
         return status == GLINT_E_MEMORY ? status : GLINT_OK;
     seen.few /= white;
@@ -298,11 +303,12 @@ enum glint_status glint_strength_expose_still(struct glint_strength *strength,
         drawn.peak[c] /= white;
         drawn.mean[c] /= white;
     }
-    glint_strength_correct(strength, &drawn, ground ? &seen : NULL);
+    glint_strength_correct_exposure(strength, &drawn, ground ? &seen : NULL);
     return GLINT_OK;
 }
 
-double glint_strength_star(const struct glint_strength *s, double starburst)
+double glint_strength_compute_star_factor(const struct glint_strength *s,
+                                          double starburst)
 {
     const double by =
         s->is_physical ? exp2(s->exposure_ev) : 4 * s->asked * s->asked;

@@ -3,7 +3,7 @@
  * Chooses the factor on the light of lamps, so that a flare is visible and
  * plausible: the automatic exposure behind --strength.
  *
- *     glint_strength_expose(&strength, &response, &lit, elapsed_us);
+ *     glint_strength_expose_frame(&strength, &response, &lit, elapsed_us);
  *
  * From scene to code: a lamp of power P (white times pixels: the light that the
  * picture shows, and the estimated light beyond white) has a flare of
@@ -58,9 +58,9 @@
 struct glint_strength_lamps {
     /* [n]; powers include the fade levels but not scale */
     const struct glint_engine_lamp *lamp;
-    /* [n]; set by glint_strength_expose() to the factor on the ghosts of each
-     * lamp: below 1 for a lamp that would still be too bright. Starbursts do
-     * not depend on it. */
+    /* [n]; set by glint_strength_expose_frame() to the factor on the ghosts of
+     * each lamp: below 1 for a lamp that would still be too bright. Starbursts
+     * do not depend on it. */
     double *part;
     int n;
     double pixels; /* number of pixels of the picture, times the linear light of
@@ -91,24 +91,24 @@ void glint_strength_defaults(struct glint_strength *strength);
 /* Returns the factor on the brightness of a starburst, in addition to scale.
  * STARBURST: requested brightness / physical brightness. The product does
  * not depend on the exposure of ghosts. */
-double glint_strength_star(const struct glint_strength *strength,
-                           double starburst);
+double glint_strength_compute_star_factor(const struct glint_strength *strength,
+                                          double starburst);
 
 /* Sets the scale, the light and the parts of LAMPS, ELAPSED_US after the last
  * frame, or 0 if this frame is unrelated to the last one. */
-void glint_strength_expose(struct glint_strength *strength,
-                           const struct glint_response *response,
-                           const struct glint_strength_lamps *lamps,
-                           int32_t elapsed_us);
+void glint_strength_expose_frame(struct glint_strength *strength,
+                                 const struct glint_response *response,
+                                 const struct glint_strength_lamps *lamps,
+                                 int32_t elapsed_us);
 
 /* Corrects the exposure of a still picture: sets the scale and the light
  * from DRAWN, the light of the picture's flare drawn at reduced size and
  * scale 1, instead of from the response; and from SEEN, the visibility of
  * that flare on the picture, unless SEEN is NULL. Does nothing if the factor
  * was set by hand or there is no light. */
-void glint_strength_correct(struct glint_strength *strength,
-                            const struct glint_response_light *drawn,
-                            const struct glint_seen *seen);
+void glint_strength_correct_exposure(struct glint_strength *strength,
+                                     const struct glint_response_light *drawn,
+                                     const struct glint_seen *seen);
 
 /* Corrects the exposure of a still picture: draws the flare of N LAMPS with
  * the lens of FRAME at reduced size and scale 1, and measures it. WHITE:
@@ -122,8 +122,8 @@ enum glint_status glint_strength_expose_still(struct glint_strength *strength,
                                               double white);
 
 /* Sets LIGHT to the light of the flare of LAMPS by RESPONSE, at scale 1. */
-void glint_strength_light(const struct glint_response *response,
-                          const struct glint_strength_lamps *lamps,
-                          struct glint_response_light *light);
+void glint_strength_compute_light(const struct glint_response *response,
+                                  const struct glint_strength_lamps *lamps,
+                                  struct glint_response_light *light);
 
 #endif

@@ -157,7 +157,8 @@ static enum glint_status find_frame_exposure(struct glint_frame *frame,
     enum glint_status status = GLINT_E_MEMORY;
 
     if (flare.rgb)
-        status = glint_frame_draw_alone(frame, lamp, 1, 1, flare.rgb, &report);
+        status =
+            glint_frame_draw_flare_alone(frame, lamp, 1, 1, flare.rgb, &report);
     if (status == GLINT_OK)
         *exposure = glint_measure_exposure(&flare);
     free(flare.rgb);
@@ -227,7 +228,7 @@ static double count_lit_pixels(const struct stage *s)
 static void print_frame_costs(struct stage *s, const struct shape *shape,
                               FILE *file)
 {
-    const struct glint_cost_plan plan = glint_frame_plan(&s->frame);
+    const struct glint_cost_plan plan = glint_frame_make_cost_plan(&s->frame);
     const struct glint_cost planned = glint_cost_of(&plan, &plan.dials);
     double counted[GLINT_COST_KINDS];
 

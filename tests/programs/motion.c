@@ -59,7 +59,7 @@ static bool measure_code_errors(struct sweep *s, const struct glint_lamp *lamp,
                                 int dither, float *error)
 {
     s->test.frame.cfg.dither = dither;
-    glint_frame_retune(&s->test.frame);
+    glint_frame_apply_config(&s->test.frame);
     memset(s->codes, 0, sizeof s->codes);
     if (!stage_draw_codes(&s->test, lamp, 1, s->codes))
         return false;

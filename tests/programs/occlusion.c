@@ -126,8 +126,8 @@ static bool track_occluded_lamp(const struct scene *s, struct passing *p)
             WIDTH / 2.0 - s->radius - s->pole - 4 + s->speed * (i - 30);
 
         p->share[i] = draw_occluded_lamp(s, x, x + s->pole);
-        p->lamps[i] = glint_lamp_detector_frame(&detector, &image, FRAME_US,
-                                                &view, 50, lamp);
+        p->lamps[i] = glint_lamp_detector_find_lamps(&detector, &image,
+                                                     FRAME_US, &view, 50, lamp);
         p->power[i] = sum_lamp_powers(lamp, p->lamps[i]);
     }
     glint_lamp_detector_close(&detector);

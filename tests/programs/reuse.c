@@ -149,8 +149,8 @@ static bool open_model(const char *path)
     stage.frame.dials = glint_dials_at(1 << 14);
     stage.frame.dials.dispersion_q8 = 0;
     stage.frame.asked = stage.frame.dials;
-    glint_frame_like(&plain, &stage.frame, stage.view);
-    glint_frame_like(&reusing, &stage.frame, stage.view);
+    glint_frame_init_like(&plain, &stage.frame, stage.view);
+    glint_frame_init_like(&reusing, &stage.frame, stage.view);
     reusing.cfg.reuse = &glint_reuse;
     return true;
 }

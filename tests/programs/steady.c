@@ -48,9 +48,10 @@ static double sum_flare_light(struct steady *s)
     const struct drawing *const c = &s->drawing;
     struct glint_response_light light;
 
-    if (glint_response_draw(
+    if (glint_response_draw_and_measure(
             &c->run.engine->paint.frame,
-            glint_engine_plain(c->run.engine, c->run.lamp, c->run.n_lamps),
+            glint_engine_copy_ghost_lamps(c->run.engine, c->run.lamp,
+                                          c->run.n_lamps),
             c->run.n_lamps, GLINT_RESPONSE_COARSE, NULL, &light,
             NULL) != GLINT_OK)
         exit(EXIT_RUNTIME);
@@ -296,7 +297,8 @@ static void add_true_lamp_light(struct steady *s, const struct night *night,
                              at[0], at[1], &one);
         all[i] = glint_engine_lamp_of(&one, 1);
     }
-    glint_strength_light(&c->run.engine->expose.response, &lamps, &light);
+    glint_strength_compute_light(&c->run.engine->expose.response, &lamps,
+                                 &light);
     memmove(s->truth + 1, s->truth, WINDOW * sizeof *s->truth);
     s->truth[0] = glint_largest_channel(light.mean);
 }

@@ -48,8 +48,9 @@ int make_frame_from_settings(const struct tool *tool,
     frame->cfg.tile_log2 = 3 + o->tile;
     if (o->budget > 0 && frame->lens) {
         glint_budget_init(&frame->budget, o->budget);
-        frame->dials = glint_budget_dials(&frame->budget, &frame->dials);
-        if (glint_frame_calibrate(frame) != GLINT_OK)
+        frame->dials =
+            glint_budget_current_dials(&frame->budget, &frame->dials);
+        if (glint_frame_calibrate_budget(frame) != GLINT_OK)
             return tool_fail(tool, GLINT_E_MEMORY, NULL);
     }
     frame->star.share = make_starburst_from_settings(settings);

@@ -180,8 +180,8 @@ bool stage_open_model_file(struct stage *stage, const char *path, int width,
 bool stage_draw_linear(struct stage *stage, const struct glint_lamp *lamps,
                        int n, float *rgb)
 {
-    return glint_frame_draw_alone(&stage->frame, lamps, n, 1, rgb,
-                                  &stage->drawn) == GLINT_OK ||
+    return glint_frame_draw_flare_alone(&stage->frame, lamps, n, 1, rgb,
+                                        &stage->drawn) == GLINT_OK ||
            print_error_and_fail("no picture in linear light");
 }
 

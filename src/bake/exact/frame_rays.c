@@ -515,7 +515,7 @@ static void add_levels(struct traced *t)
 static bool is_wanted(const struct glint_frame *f, int ghost)
 {
     return (f->only_ghost < 0 ||
-            glint_frame_is_ghost(f->setup, ghost, f->only_ghost)) &&
+            glint_frame_is_part_of_ghost(f->setup, ghost, f->only_ghost)) &&
            (!f->tints || f->tints[ghost].gain.mantissa > 0);
 }
 
@@ -895,8 +895,8 @@ static enum glint_status set_scale(struct glint_frame *frame,
         together += all * box_flux(&t->field[i]) * t->set[0].n;
     }
     if (brightest > 0)
-        *scale = glint_frame_scale_of((int)ceil(log2(brightest)),
-                                      (int)ceil(log2(together)));
+        *scale = glint_frame_compute_scale((int)ceil(log2(brightest)),
+                                           (int)ceil(log2(together)));
     return GLINT_OK;
 }
 
@@ -984,7 +984,7 @@ static enum glint_status plan(struct glint_frame *f,
 {
     struct traced *const t = state_of(f);
     const double step =
-        glint_frame_codes_light(f, image, GLINT_FRAME_STEP_CODES);
+        glint_frame_convert_codes_to_light(f, image, GLINT_FRAME_STEP_CODES);
     enum glint_status status = look(f, lamps, n);
 
     if (status != GLINT_OK)
@@ -996,8 +996,9 @@ static enum glint_status plan(struct glint_frame *f,
         return GLINT_E_MEMORY;
     t->in_codes = is_in_codes(f, image);
     list_fields(f);
-    status = skip_faint(f, scale,
-                        glint_frame_codes_light(f, image, f->dials.cull_codes));
+    status = skip_faint(
+        f, scale,
+        glint_frame_convert_codes_to_light(f, image, f->dials.cull_codes));
     if (status != GLINT_OK)
         return status;
     for (int i = 0; i < t->n_fields; i++) {
@@ -1107,7 +1108,7 @@ static enum glint_status begin_flare(struct glint_frame *f, double scale)
     if (!f->memory.block || f->memory.bytes != bytes) {
         free(f->memory.mem);
         f->memory.bytes = 0;
-        f->memory.block = glint_block_take(bytes, &f->memory.mem);
+        f->memory.block = glint_block_allocate_aligned(bytes, &f->memory.mem);
         if (!f->memory.block)
             return GLINT_E_MEMORY;
         f->memory.bytes = bytes;
@@ -1223,7 +1224,7 @@ static enum glint_status draw_rows(struct glint_frame *f, double scale,
                 rows = fewer_rows(f, n, &s);
             continue;
         }
-        glint_frame_paint(f, image);
+        glint_frame_draw_passes(f, image);
         add_stats(stats, &s);
         y0 += n;
         if (f->progress)

@@ -256,7 +256,7 @@ static void clip_polygon_by_all_cuts(const struct glint_cells *c,
 {
     struct glint_iris_sides sides;
 
-    glint_iris_sides(&sides, c->setup);
+    glint_iris_compute_sides(&sides, c->setup);
     for (int k = 0; k < c->n_cuts && s->n; k++)
         clip_polygon_by_cut(
             s,

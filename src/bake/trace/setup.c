@@ -16,7 +16,7 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
                                    const double *wavelength_nm, int n,
                                    struct glint_error *error)
 {
-    const enum glint_status status = glint_setup_check(
+    const enum glint_status status = glint_setup_check_arguments(
         n_blades, blade_rotation_deg, wavelength_nm, n, error);
 
     if (status != GLINT_OK)
@@ -27,7 +27,8 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
     setup->optics.focal_mm = setup->optics.scale_mm;
     setup->n_ghosts = glint_ghost_list(lens, setup->ghost, GLINT_MAX_GHOSTS);
     setup->n_parts = 0;
-    glint_setup_common(setup, n_blades, blade_rotation_deg, wavelength_nm, n);
+    glint_setup_init_common(setup, n_blades, blade_rotation_deg, wavelength_nm,
+                            n);
     for (int i = 0; i < n; i++) {
         setup->direct_flux[i] = glint_direct_flux(setup, wavelength_nm[i]);
         if (setup->direct_flux[i] < 0) {
@@ -35,5 +36,5 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
             return GLINT_E_MEMORY;
         }
     }
-    return glint_setup_units(setup, lens->name, error);
+    return glint_setup_set_unit_flux(setup, lens->name, error);
 }

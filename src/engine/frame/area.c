@@ -5,20 +5,21 @@
 
 static const double degree = GLINT_PI / 180;
 
-static double find_max_power(const struct glint_lamp *lamp)
+static double compute_max_channel_power(const struct glint_lamp *lamp)
 {
     return lamp->power * fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
 }
 
 /* Returns the number of points of a lamp before thinning. A uniform ellipse has
  * semi-axes of twice its RMS semi-axes. */
-static double count_points(const struct glint_lamp *lamp,
-                           const struct glint_area_rule *rule)
+static double count_lamp_points(const struct glint_lamp *lamp,
+                                const struct glint_area_rule *rule)
 {
     const double spacing = GLINT_AREA_SPACING_PX / rule->pixels_per_tangent;
     const double area = 180 * degree * 4 * lamp->axis[0] * lamp->axis[1];
-    const double share =
-        rule->brightest > 0 ? find_max_power(lamp) / rule->brightest : 1;
+    const double share = rule->brightest > 0
+                             ? compute_max_channel_power(lamp) / rule->brightest
+                             : 1;
 
     return 1 + fmin(area / (spacing * spacing),
                     fmax(rule->most - 1, 0) * sqrt(fmin(share, 1)));
@@ -33,9 +34,10 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
     int n_wide = 0;
 
     for (int i = 0; i < n; i++)
-        rule.brightest = fmax(rule.brightest, find_max_power(&lamps[i]));
+        rule.brightest =
+            fmax(rule.brightest, compute_max_channel_power(&lamps[i]));
     for (int i = 0; i < n; i++) {
-        const double points = count_points(&lamps[i], &rule);
+        const double points = count_lamp_points(&lamps[i], &rule);
 
         more += points - 1;
         /* The number of points of each wide lamp is rounded up. */
@@ -66,7 +68,7 @@ static double set_sunflower_point(const struct glint_area *a, int i,
 /* Computes the centre and spread of the first N points, as few points are
  * off-centre and too close together. One point has no spread; from two to
  * four points the correction is blended in. */
-static void set_pattern(struct glint_area *a, int n)
+static void measure_point_pattern(struct glint_area *a, int n)
 {
     const double part = fmin((a->points - 1) / 3, 1);
     double square = 0, place[2];
@@ -94,11 +96,11 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     int n;
 
     *area = (struct glint_area){.lamp = *lamp, .points = 1};
-    area->points += rule->thinning * (count_points(lamp, rule) - 1);
+    area->points += rule->thinning * (count_lamp_points(lamp, rule) - 1);
     n = (int)ceil(area->points);
     if (n == 1)
         return 1;
-    set_pattern(area, n);
+    measure_point_pattern(area, n);
     area->u = t * cos(lamp->phi_deg * degree);
     area->v = t * sin(lamp->phi_deg * degree);
     area->stretch[0] = 2 * (a * c * c + b * s * s);

@@ -11,7 +11,7 @@
 /* Allocates BYTES and returns them aligned to 64. Sets *MEM to the block
  * that the caller frees. If memory is short or BYTES is 0, returns NULL and
  * sets *MEM to NULL. */
-static inline void *glint_block_take(size_t bytes, void **mem)
+static inline void *glint_block_allocate_aligned(size_t bytes, void **mem)
 {
     const uintptr_t last = 63;
 

@@ -41,7 +41,8 @@ double glint_budget_quality(const struct glint_budget *b)
     return (double)b->step / GLINT_BUDGET_STEPS;
 }
 
-void glint_budget_begin(struct glint_budget *b, const struct glint_dials *asked)
+void glint_budget_begin_frame(struct glint_budget *b,
+                              const struct glint_dials *asked)
 {
     b->asked = *asked;
     b->n_tries = 0;
@@ -75,8 +76,8 @@ static const double level_db[GLINT_QUALITY_LEVELS] = {39, 44, 49, 53.5, 54.5,
 
 /* Returns the dials at STEP and CUT. The cost model does not cover sets of
  * wavelengths, so a budget draws with three. */
-static struct glint_dials make_step_dials(int step, int cut,
-                                          const struct glint_dials *asked)
+static struct glint_dials make_dials_at_step(int step, int cut,
+                                             const struct glint_dials *asked)
 {
     struct glint_dials d =
         glint_quality_at((double)step / GLINT_BUDGET_STEPS).dials;
@@ -91,20 +92,20 @@ static struct glint_dials make_step_dials(int step, int cut,
     return d;
 }
 
-struct glint_dials glint_budget_dials(const struct glint_budget *b,
-                                      const struct glint_dials *asked)
+struct glint_dials glint_budget_current_dials(const struct glint_budget *b,
+                                              const struct glint_dials *asked)
 {
-    return make_step_dials(b->step, b->cut, asked);
+    return make_dials_at_step(b->step, b->cut, asked);
 }
 
-static double find_step_place(int step)
+static double convert_step_to_level(int step)
 {
     return glint_quality_place((double)step / GLINT_BUDGET_STEPS);
 }
 
-static double find_learned_octaves(const struct glint_budget *b, int step)
+static double interpolate_learned_error(const struct glint_budget *b, int step)
 {
-    const double at = find_step_place(step);
+    const double at = convert_step_to_level(step);
     const int below =
         at < GLINT_QUALITY_LEVELS - 1 ? (int)at : GLINT_QUALITY_LEVELS - 2;
 
@@ -113,26 +114,29 @@ static double find_learned_octaves(const struct glint_budget *b, int step)
 }
 
 /* Returns the predicted time of PLAN at quality STEP and CUT, ms. */
-static double predict_ms(const struct glint_budget *b,
-                         const struct glint_cost_plan *plan, int step, int cut)
+static double predict_frame_ms(const struct glint_budget *b,
+                               const struct glint_cost_plan *plan, int step,
+                               int cut)
 {
-    const struct glint_dials then = make_step_dials(step, cut, &b->asked);
+    const struct glint_dials then = make_dials_at_step(step, cut, &b->asked);
     const struct glint_cost cost = glint_cost_of(plan, &then);
 
-    return b->ms_per_minsn * glint_cost_minsn(&cost) *
-           exp2(find_learned_octaves(b, step) + (b->n_frames > 1 ? 0 : FIRST));
+    return b->ms_per_minsn * glint_cost_to_minsn(&cost) *
+           exp2(interpolate_learned_error(b, step) +
+                (b->n_frames > 1 ? 0 : FIRST));
 }
 
 /* Returns the best quality within the budget with CUT, or the coarsest. */
-static int find_best_step(const struct glint_budget *b,
-                          const struct glint_cost_plan *plan, int cut)
+static int find_best_affordable_step(const struct glint_budget *b,
+                                     const struct glint_cost_plan *plan,
+                                     int cut)
 {
     int low = 0, high = GLINT_BUDGET_STEPS;
 
     while (low < high) {
         const int middle = (low + high + 1) / 2;
 
-        if (predict_ms(b, plan, middle, cut) <= ROOM * b->ms)
+        if (predict_frame_ms(b, plan, middle, cut) <= ROOM * b->ms)
             low = middle;
         else
             high = middle - 1;
@@ -148,16 +152,17 @@ static double convert_db_to_mse(double db)
 
 /* Returns the estimated error of quality STEP with CUT. For a frame that
  * does not fit the budget it is above 1 and rises with the predicted time. */
-static double estimate_error(const struct glint_budget *b,
-                             const struct glint_cost_plan *plan, int step,
-                             int cut)
+static double estimate_picture_error(const struct glint_budget *b,
+                                     const struct glint_cost_plan *plan,
+                                     int step, int cut)
 {
-    const double at = find_step_place(step);
+    const double at = convert_step_to_level(step);
     const int below =
         at < GLINT_QUALITY_LEVELS - 1 ? (int)at : GLINT_QUALITY_LEVELS - 2;
     const double db = level_db[below] +
                       (at - below) * (level_db[below + 1] - level_db[below]);
-    const double over = step > 0 ? 0 : predict_ms(b, plan, 0, cut) / b->ms;
+    const double over =
+        step > 0 ? 0 : predict_frame_ms(b, plan, 0, cut) / b->ms;
 
     return convert_db_to_mse(db) + convert_db_to_mse(cuts[cut].loss) +
            (over > 1 ? over : 0);
@@ -165,7 +170,7 @@ static double estimate_error(const struct glint_budget *b,
 
 /* Returns whether CUT reduces anything in PLAN that the cut before it does not.
  * */
-static bool is_of_use(const struct glint_cost_plan *plan, int cut)
+static bool is_cut_useful(const struct glint_cost_plan *plan, int cut)
 {
     const struct cut *c = &cuts[cut];
 
@@ -190,11 +195,11 @@ static int choose_step_and_cut(struct glint_budget *b,
         n++;
     some.every = n;
     for (int cut = 0; cut < N_CUTS; cut++) {
-        const int here = cut == 0 || is_of_use(plan, cut)
-                             ? find_best_step(b, &some, cut)
+        const int here = cut == 0 || is_cut_useful(plan, cut)
+                             ? find_best_affordable_step(b, &some, cut)
                              : -1;
         const double error =
-            here < 0 ? HUGE_VAL : estimate_error(b, &some, here, cut);
+            here < 0 ? HUGE_VAL : estimate_picture_error(b, &some, here, cut);
 
         if (error < least) {
             least = error;
@@ -208,14 +213,15 @@ static int choose_step_and_cut(struct glint_budget *b,
 /* Returns STEP + 1 for a few frames in all if no level lies between STEP, which
  * leaves much of the budget, and STEP + 1, which is predicted to miss it by
  * little: the prediction may be too high. Else returns STEP. */
-static int try_next(struct glint_budget *b, const struct glint_cost_plan *plan,
-                    int step)
+static int try_next_quality_step(struct glint_budget *b,
+                                 const struct glint_cost_plan *plan, int step)
 {
-    const int is_gap = find_step_place(step + 1) - find_step_place(step) >= 1;
+    const int is_gap =
+        convert_step_to_level(step + 1) - convert_step_to_level(step) >= 1;
 
     if (step == GLINT_BUDGET_STEPS || !is_gap || b->n_trials == TRIALS ||
-        predict_ms(b, plan, step, b->cut) >= SPARE * b->ms ||
-        predict_ms(b, plan, step + 1, b->cut) > TRY * b->ms)
+        predict_frame_ms(b, plan, step, b->cut) >= SPARE * b->ms ||
+        predict_frame_ms(b, plan, step + 1, b->cut) > TRY * b->ms)
         return step;
     b->n_trials++;
     b->n_tries = MAX_TRIES; /* no more plans, as their prediction would reject
@@ -223,24 +229,24 @@ static int try_next(struct glint_budget *b, const struct glint_cost_plan *plan,
     return step + 1;
 }
 
-bool glint_budget_choose(struct glint_budget *b,
-                         const struct glint_cost_plan *plan,
-                         struct glint_dials *dials)
+bool glint_budget_choose_dials(struct glint_budget *b,
+                               const struct glint_cost_plan *plan,
+                               struct glint_dials *dials)
 {
     const int cut = b->cut;
     int step;
 
-    b->predicted_ms = predict_ms(b, plan, b->step, cut);
+    b->predicted_ms = predict_frame_ms(b, plan, b->step, cut);
     if (++b->n_tries >= MAX_TRIES ||
         (b->predicted_ms <= b->ms &&
          (b->predicted_ms >= SPARE * b->ms ||
           (b->step == GLINT_BUDGET_STEPS && cut == 0))))
         return false;
-    step = try_next(b, plan, choose_step_and_cut(b, plan));
+    step = try_next_quality_step(b, plan, choose_step_and_cut(b, plan));
     if (step == b->step && cut == b->cut)
         return false;
     b->step = step;
-    *dials = make_step_dials(step, b->cut, &b->asked);
+    *dials = make_dials_at_step(step, b->cut, &b->asked);
     return true;
 }
 
@@ -249,16 +255,16 @@ bool glint_budget_choose(struct glint_budget *b,
  * qualities are corrected, too, and all qualities the more, the larger the
  * error was, as when the machine has become slower. Corrections of other
  * qualities fade, so that one slow frame does not exclude a quality forever. */
-void glint_budget_note(struct glint_budget *b, double ms)
+void glint_budget_learn_from_frame(struct glint_budget *b, double ms)
 {
-    const double at = find_step_place(b->step);
+    const double at = convert_step_to_level(b->step);
     const double part = at - floor(at);
     const double both = part * part + (1 - part) * (1 - part);
     /* Errors are clamped, as a frame may have waited for other programs. */
     const double wrong =
         fmax(-MOST_WRONG, fmin(MOST_WRONG, log2(ms / b->predicted_ms)));
     const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));
-    const double here = find_learned_octaves(b, b->step);
+    const double here = interpolate_learned_error(b, b->step);
 
     for (int i = 0; i < GLINT_QUALITY_LEVELS && ms > 0 && b->n_frames > 1;
          i++) {

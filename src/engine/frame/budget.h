@@ -4,8 +4,8 @@
  * predicted, from its plan, to fit.
  *
  *     glint_budget_init(&frame.budget, 5.0);
- *     glint_frame_calibrate(&frame);              once, draws some frames
- *     glint_frame_draw(&frame, ...);              chooses, and learns */
+ *     glint_frame_calibrate_budget(&frame);              once, draws some
+ * frames glint_frame_draw(&frame, ...);              chooses, and learns */
 #ifndef GLINT_ENGINE_FRAME_BUDGET_H
 #define GLINT_ENGINE_FRAME_BUDGET_H
 
@@ -39,24 +39,24 @@ void glint_budget_init(struct glint_budget *budget, double ms);
 
 /* Begins a frame with the requested dials ASKED; only those that do not
  * depend on quality are used. */
-void glint_budget_begin(struct glint_budget *budget,
-                        const struct glint_dials *asked);
+void glint_budget_begin_frame(struct glint_budget *budget,
+                              const struct glint_dials *asked);
 
 /* Adjusts DIALS, with which PLAN was made, if the plan misses the budget or
  * leaves much of it unused. Returns whether it did; the frame must then be
  * planned again. */
-bool glint_budget_choose(struct glint_budget *budget,
-                         const struct glint_cost_plan *plan,
-                         struct glint_dials *dials);
+bool glint_budget_choose_dials(struct glint_budget *budget,
+                               const struct glint_cost_plan *plan,
+                               struct glint_dials *dials);
 
 /* Returns the dials of the present quality; those that do not depend on quality
  * are taken from ASKED. */
-struct glint_dials glint_budget_dials(const struct glint_budget *budget,
-                                      const struct glint_dials *asked);
+struct glint_dials glint_budget_current_dials(const struct glint_budget *budget,
+                                              const struct glint_dials *asked);
 
 /* Corrects the predictions by MS, the time of the whole frame in
  * milliseconds. */
-void glint_budget_note(struct glint_budget *budget, double ms);
+void glint_budget_learn_from_frame(struct glint_budget *budget, double ms);
 
 double glint_budget_quality(const struct glint_budget *budget);
 

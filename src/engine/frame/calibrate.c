@@ -5,13 +5,17 @@
 #include "engine/frame/frame_parts.h"
 
 /* Draws a few frames; sets *LEAST_MS to the time of the fastest, if lower. */
-static enum glint_status draw_some(struct glint_frame *frame,
-                                   const struct glint_image *image,
-                                   struct glint_engine_report *report,
-                                   double *least_ms)
+static enum glint_status time_test_frames(struct glint_frame *frame,
+                                          const struct glint_image *image,
+                                          struct glint_engine_report *report,
+                                          double *least_ms)
 {
-    const struct glint_lamp lamp = {
-        fmin(12, glint_frame_end_deg(frame)), 33, 1e6, {1, 1, 1}, {0, 0}, 0};
+    const struct glint_lamp lamp = {fmin(12, glint_frame_max_angle_deg(frame)),
+                                    33,
+                                    1e6,
+                                    {1, 1, 1},
+                                    {0, 0},
+                                    0};
     enum glint_status status = GLINT_OK;
 
     for (int i = 0; i < 4 && status == GLINT_OK; i++) {
@@ -23,7 +27,7 @@ static enum glint_status draw_some(struct glint_frame *frame,
     return status;
 }
 
-enum glint_status glint_frame_calibrate(struct glint_frame *frame)
+enum glint_status glint_frame_calibrate_budget(struct glint_frame *frame)
 {
     struct glint_image image = {.format = GLINT_YUYV,
                                 .width = frame->view.width,
@@ -36,18 +40,18 @@ enum glint_status glint_frame_calibrate(struct glint_frame *frame)
     struct glint_frame plain;
     enum glint_status status = GLINT_E_MEMORY;
 
-    glint_frame_like(&plain, frame, frame->view);
+    glint_frame_init_like(&plain, frame, frame->view);
     plain.only_ghost = -1;
     plain.dials.dispersion_q8 = 0;
     if (mem) {
         glint_image_place(&image, mem);
-        status = draw_some(&plain, &image, &report, &least_ms);
+        status = time_test_frames(&plain, &image, &report, &least_ms);
     }
     if (status == GLINT_OK && report.stats.bundles > 0) {
-        const struct glint_cost_plan plan = glint_frame_plan(&plain);
+        const struct glint_cost_plan plan = glint_frame_make_cost_plan(&plain);
         const struct glint_cost cost = glint_cost_of(&plan, &plan.dials);
 
-        b->calibrated_minsn = glint_cost_minsn(&cost);
+        b->calibrated_minsn = glint_cost_to_minsn(&cost);
         b->ms_per_minsn = least_ms / b->calibrated_minsn;
     }
     glint_frame_finish(&plain);

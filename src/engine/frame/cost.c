@@ -18,8 +18,8 @@ enum { MOST_LOG2 = 4, SAMPLES = 24 };
 /* By make cost-fit: least squares of the relative errors of random frames, each
  * of which callgrind counts the second time that it is drawn, so that none is
  * binned twice. tests/figures/cost/plans.md states how far they are off.
- * Planned: for the counts that glint_cost_of() expects; counted: for those that
- * were drawn.
+ * Planned: for the counts that glint_cost_of() expects; counted: for
+ * those that were drawn.
  */
 /* clang-format off */
 const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS] = {
@@ -37,7 +37,7 @@ const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS] = {
 };
 /* clang-format on */
 
-double glint_cost_minsn(const struct glint_cost *cost)
+double glint_cost_to_minsn(const struct glint_cost *cost)
 {
     double sum = 0;
 
@@ -52,7 +52,7 @@ enum { LESS_CELLS = 6 };
 
 /* Returns the number of cells per side that the plan would choose for grids
  * FINER times as fine; PLANNED is the number in the plan. */
-static double predict_cells(int planned, double finer)
+static double predict_cells_per_side(int planned, double finer)
 {
     const double free =
         planned > GLINT_LEAST_CELLS || finer <= 1 ? planned : LESS_CELLS;
@@ -77,15 +77,15 @@ struct bundle {
 };
 
 /* Returns the steps per octave, in codes, for a ghost OCTAVES below white. */
-static double count_steps_per_octave(int steps, double octaves)
+static double compute_steps_per_octave(int steps, double octaves)
 {
     return octaves > 0 ? steps * pow(7. / 8, octaves) : steps;
 }
 
 /* Returns the number of outlines that draw a soft edge
  * (edges/ghost_rings.c). */
-static double count_rings(const struct glint_cost_plan *p,
-                          const struct bundle *b)
+static double count_soft_edge_outlines(const struct glint_cost_plan *p,
+                                       const struct bundle *b)
 {
     const double octaves = fmax(0, -log2(b->light));
     const double soft =
@@ -102,9 +102,9 @@ static double count_rings(const struct glint_cost_plan *p,
 
 /* Returns the fraction of the bundle that is still drawn if ghosts below DIM
  * codes share rays; the plan was made with WAS codes. */
-static double estimate_drawn_share(const struct glint_cost_plan *p,
-                                   const struct glint_planned *b, double light,
-                                   double was, double dim)
+static double estimate_drawn_fraction(const struct glint_cost_plan *p,
+                                      const struct glint_planned *b,
+                                      double light, double was, double dim)
 {
     enum { WAVES = 3, MIDDLE = 1 };
     const double codes = p->code > 0 ? light / p->code : HUGE_VAL;
@@ -124,7 +124,7 @@ static double estimate_drawn_share(const struct glint_cost_plan *p,
  * products of powers: least squares over the bundles of 48 random frames of
  * four lenses (Poisson regression). Sums over a frame have a median error of
  * 15 percent. */
-static double estimate_edges(const struct bundle *b, double log_steps)
+static double estimate_edge_count(const struct bundle *b, double log_steps)
 {
     const double n = log(b->cells);
 
@@ -132,8 +132,8 @@ static double estimate_edges(const struct bundle *b, double log_steps)
                0.6 * log(b->view) + 0.15 * b->log_bright);
 }
 
-static double estimate_rows(const struct bundle *b, double log_steps,
-                            double height)
+static double estimate_edge_row_count(const struct bundle *b, double log_steps,
+                                      double height)
 {
     return exp(0.55 + 0.91 * log(b->cells) + 0.058 * log_steps +
                0.461 * log1p(b->area) - 0.183 * log(height) -
@@ -151,16 +151,16 @@ static struct bundle predict_bundle(const struct glint_cost_plan *p,
     const double light = glint_real_value(b->irradiance);
     const double finer = (double)then->fineness / p->dials.fineness;
     struct bundle to = {
-        .cells = predict_cells(b->n_cells, finer),
+        .cells = predict_cells_per_side(b->n_cells, finer),
         .light = light,
         .area = light > 0 ? larger * glint_real_value(b->flux) / light : 0,
         .inside = fmax(b->inside_q8, 1) / 255,
         .view = fmax(b->view_q8, 1) / 255,
         .log_bright = b->contrast_q4 == FOLD ? 4 : b->contrast_q4 / 16.};
 
-    to.rings = count_rings(p, &to);
-    to.share =
-        estimate_drawn_share(p, b, light, p->dials.dim_codes, then->dim_codes);
+    to.rings = count_soft_edge_outlines(p, &to);
+    to.share = estimate_drawn_fraction(p, b, light, p->dials.dim_codes,
+                                       then->dim_codes);
     return to;
 }
 
@@ -175,7 +175,8 @@ struct cells {
 };
 
 /* Returns the smallest visible step of light on top of LIGHT. */
-static double find_visible_step(const struct glint_cost_plan *p, double light)
+static double compute_visible_step(const struct glint_cost_plan *p,
+                                   double light)
 {
     return p->code > 0
                ? fmax(0.0094 * pow(2. / 3, fmax(0, -log2(light))), 0.0003) /
@@ -191,8 +192,9 @@ static int clamp_int(int x, int low, int high)
 /* Returns the mean over the stop of the parts of a cell, as LEVEL of the tables
  * is ROUGH there: at SAMPLES^2 places of it. CUT of the cells lie across its
  * outline. */
-static double mean_parts(const struct glint_shade *s, int level, double step,
-                         int most, double cut)
+static double compute_mean_parts_per_cell(const struct glint_shade *s,
+                                          int level, double step, int most,
+                                          double cut)
 {
     enum { CUT_LOG2 = 3, ALONE = 4 }; /* parts of cut cells share no edges */
     const int side = (1 << (s->log2 - level)) + 1;
@@ -223,8 +225,8 @@ static double mean_parts(const struct glint_shade *s, int level, double step,
 
 /* Returns the number of parts for the shade of PLAN, of whose tables those with
  * 2^LOG2_USED cells a side and fewer are used. */
-static double count_parts(const struct glint_cost_plan *plan,
-                          const struct cells *g, int log2_used)
+static double estimate_shaded_part_count(const struct glint_cost_plan *plan,
+                                         const struct cells *g, int log2_used)
 {
     const struct glint_shade *s = plan->shade;
     const int skipped =
@@ -241,8 +243,9 @@ static double count_parts(const struct glint_cost_plan *plan,
         return 0;
     most = clamp_int((int)floor(log2(px)), 0, most);
     return n2 * g->inside * g->view *
-           mean_parts(s, level, find_visible_step(plan, g->light), most,
-                      fmin(1, 4 / sqrt(n2 * g->inside)));
+           compute_mean_parts_per_cell(s, level,
+                                       compute_visible_step(plan, g->light),
+                                       most, fmin(1, 4 / sqrt(n2 * g->inside)));
 }
 
 static void add_bundle_cost(struct glint_cost *cost,
@@ -253,20 +256,22 @@ static void add_bundle_cost(struct glint_cost *cost,
     const double drawn = b->share * b->rings;
     const double log_steps = log1p(
         then->irradiance_steps
-            ? count_steps_per_octave(then->irradiance_steps, -log2(b->light))
+            ? compute_steps_per_octave(then->irradiance_steps, -log2(b->light))
             : MOST_STEPS);
-    const double edges = estimate_edges(b, log_steps);
+    const double edges = estimate_edge_count(b, log_steps);
 
     cost->count[GLINT_COST_BUNDLES] += b->share;
     cost->count[GLINT_COST_VERTICES] += drawn * (b->cells + 1) * (b->cells + 1);
     cost->count[GLINT_COST_EDGES] += drawn * edges;
-    cost->count[GLINT_COST_ROWS] += drawn * estimate_rows(b, log_steps, height);
+    cost->count[GLINT_COST_ROWS] +=
+        drawn * estimate_edge_row_count(b, log_steps, height);
     if (p->shade && p->shade->log2)
         cost->count[GLINT_COST_PARTS] +=
-            drawn * count_parts(p,
-                                &(struct cells){b->cells, b->light / b->rings,
-                                                b->area, b->inside, b->view},
-                                then->dust_log2);
+            drawn * estimate_shaded_part_count(
+                        p,
+                        &(struct cells){b->cells, b->light / b->rings, b->area,
+                                        b->inside, b->view},
+                        then->dust_log2);
 }
 
 /* Area covered by ghosts; each ghost counts once for all its wavelengths. */

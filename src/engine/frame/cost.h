@@ -44,6 +44,6 @@ struct glint_cost glint_cost_of(const struct glint_cost_plan *plan,
 /* Returns millions of instructions on a processor with 8 lanes of 32 bits.
  * The frame's time is this number times the time per million instructions on
  * this machine. Fitted to counts by callgrind. */
-double glint_cost_minsn(const struct glint_cost *cost);
+double glint_cost_to_minsn(const struct glint_cost *cost);
 
 #endif

@@ -30,8 +30,9 @@ void glint_frame_init(struct glint_frame *frame,
     glint_setup_stop(setup, &frame->cfg.stop);
 }
 
-void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
-                      struct glint_view view)
+void glint_frame_init_like(struct glint_frame *frame,
+                           const struct glint_frame *like,
+                           struct glint_view view)
 {
     glint_frame_init(frame, like->setup, view, like->cfg.workers);
     frame->lens = like->lens;
@@ -75,7 +76,7 @@ static int count_all_waves(const struct glint_setup *s)
     return n;
 }
 
-static void set_waves(struct glint_frame *f)
+static void set_frame_waves(struct glint_frame *f)
 {
     const struct glint_setup *s = f->setup;
     const struct glint_set_wave *w = s->set_wave;
@@ -86,14 +87,14 @@ static void set_waves(struct glint_frame *f)
                                  .apart_q8 = f->dials.dispersion_q8};
     for (int i = 0; i < s->n_sets; i++)
         f->lights.sets.size[i] = s->set_size[i];
-    if (glint_frame_has_sets(f))
+    if (glint_frame_has_wave_sets(f))
         for (int i = 0; i < count_all_waves(s); i++)
             f->lights.wave[i] =
-                glint_wave_of(w[i].nm, w[i].rgb, w[i].unit_flux);
+                glint_wave_from_nm(w[i].nm, w[i].rgb, w[i].unit_flux);
     else
         for (int i = 0; i < s->n_wavelengths; i++)
-            f->lights.wave[i] =
-                glint_wave_of(s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
+            f->lights.wave[i] = glint_wave_from_nm(s->wavelength_nm[i],
+                                                   s->rgb[i], s->unit_flux[i]);
 }
 
 /* Returns the chord of the angle that corresponds to PX pixels on the axis. */
@@ -104,16 +105,16 @@ static int32_t convert_px_to_chord_q30(const struct glint_frame *f, double px)
     return (int32_t)lrint(fmin(1, px / pixels) * 0x1p30);
 }
 
-bool glint_frame_is_beyond(const struct glint_frame *frame,
-                           const struct glint_lamp *lamp)
+bool glint_frame_is_lamp_outside_model(const struct glint_frame *frame,
+                                       const struct glint_lamp *lamp)
 {
-    const struct glint_light b = glint_light_of(lamp, 1);
+    const struct glint_light b = glint_light_from_lamp(lamp, 1);
 
-    return glint_light_is_beyond(frame->lens, &b);
+    return glint_light_is_outside_model(frame->lens, &b);
 }
 
 /* Does not use asin(), which adds 25 KB to glint-live. */
-double glint_frame_end_deg(const struct glint_frame *frame)
+double glint_frame_max_angle_deg(const struct glint_frame *frame)
 {
     const double degree = GLINT_PI / 180;
     double sine;
@@ -128,9 +129,9 @@ double glint_frame_end_deg(const struct glint_frame *frame)
  * angles. WITHIN is the number of lights before; returns the number after.
  * Other points are dropped here, as they must not merge with lights that are
  * drawn. */
-static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
-                      const struct glint_area_rule *rule, double scale,
-                      int within)
+static int add_lamp_lights(struct glint_frame *f, const struct glint_lamp *lamp,
+                           const struct glint_area_rule *rule, double scale,
+                           int within)
 {
     struct glint_area area;
     const int n = glint_area_plan(&area, lamp, rule);
@@ -139,16 +140,17 @@ static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
     for (int i = 0; i < n; i++) {
         const struct glint_lamp point = glint_area_point(&area, i);
 
-        f->lights.light[within] = glint_light_of(&point, scale);
+        f->lights.light[within] = glint_light_from_lamp(&point, scale);
         f->lights.light[within].apart_q30 = (int32_t)lrint(apart * 0x1p30);
-        within += !glint_light_is_beyond(f->lens, &f->lights.light[within]);
+        within +=
+            !glint_light_is_outside_model(f->lens, &f->lights.light[within]);
     }
     return within;
 }
 
 /* Returns the max number of lights for N lamps; a lamp of visible extent
  * becomes several points. */
-static int bound_light_count(const struct glint_frame *f, int n)
+static int compute_max_lights(const struct glint_frame *f, int n)
 {
     const int most = f->dials.max_lights;
 
@@ -158,24 +160,24 @@ static int bound_light_count(const struct glint_frame *f, int n)
 }
 
 /* Converts LAMPS to F's lights; merges those that are too near or too many. */
-static enum glint_status set_lights(struct glint_frame *f,
-                                    const struct glint_lamp *lamps, int n,
-                                    double scale)
+static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
+                                                 const struct glint_lamp *lamps,
+                                                 int n, double scale)
 {
-    const int room = bound_light_count(f, n);
+    const int room = compute_max_lights(f, n);
     int within = 0, total;
     const struct glint_area_rule rule =
         glint_area_rule_of(lamps, n, glint_frame_pixels_per_tangent(f),
                            f->dials.area_points, room, &total);
 
-    if (glint_frame_hold_lights(f, total) != GLINT_OK)
+    if (glint_frame_allocate_lights(f, total) != GLINT_OK)
         return GLINT_E_MEMORY;
     f->lights.n_beyond = 0;
     f->lights.gain_q14 = NULL;
     for (int i = 0; i < n; i++) {
         const int before = within;
 
-        within = add_lights(f, &lamps[i], &rule, scale, within);
+        within = add_lamp_lights(f, &lamps[i], &rule, scale, within);
         f->lights.n_beyond += within == before;
     }
     f->lights.n_more = within - (n - f->lights.n_beyond);
@@ -192,36 +194,36 @@ static enum glint_status set_lights(struct glint_frame *f,
 }
 
 /* Returns the settings of ray tracing for IMAGE; NULL: a linear picture. */
-static struct glint_flare_frame make_ray_frame(struct glint_frame *f,
-                                               const struct glint_image *image)
+static struct glint_flare_frame
+make_flare_frame(struct glint_frame *f, const struct glint_image *image)
 {
-    set_waves(f);
-    glint_frame_check_dim(f);
+    set_frame_waves(f);
+    glint_frame_clear_stale_dim_table(f);
     f->lights.sets.step = glint_real_of(
-        glint_frame_codes_light(f, image, GLINT_FRAME_STEP_CODES));
+        glint_frame_convert_codes_to_light(f, image, GLINT_FRAME_STEP_CODES));
     return (struct glint_flare_frame){
         .lens = f->lens,
         .wave = f->lights.wave,
-        .n_waves = glint_frame_has_sets(f) ? count_all_waves(f->setup)
-                                           : f->setup->n_wavelengths,
-        .sets = glint_frame_has_sets(f) ? &f->lights.sets : NULL,
+        .n_waves = glint_frame_has_wave_sets(f) ? count_all_waves(f->setup)
+                                                : f->setup->n_wavelengths,
+        .sets = glint_frame_has_wave_sets(f) ? &f->lights.sets : NULL,
         .pixels_per_mm = glint_real_of(f->view.width / f->view.sensor_width_mm),
         .fineness = f->dials.fineness,
         .uniform = f->picture.uniform,
         .only_ghost = f->only_ghost,
         .tints = f->tints,
         .faintest = glint_real_of(
-            glint_frame_codes_light(f, image, f->dials.cull_codes)),
+            glint_frame_convert_codes_to_light(f, image, f->dials.cull_codes)),
         .dim = f->dim.table.log2_q8 ? &f->dim.table : NULL,
         .dimmest = glint_real_of(
-            glint_frame_codes_light(f, image, f->dials.dim_codes)),
+            glint_frame_convert_codes_to_light(f, image, f->dials.dim_codes)),
         .snap_codes_q8 = f->dials.snap_codes_q8,
         .half = glint_dials_half(&f->dials) && f->picture.can_half ? &glint_half
                                                                    : NULL,
         .gain_q14 = f->lights.gain_q14};
 }
 
-void glint_frame_retune(struct glint_frame *f)
+void glint_frame_apply_config(struct glint_frame *f)
 {
     f->cfg.irradiance_steps = f->dials.irradiance_steps;
     if (f->memory.block)
@@ -231,12 +233,12 @@ void glint_frame_retune(struct glint_frame *f)
 
 /* Sets the flare's steps of irradiance and the shade of the stop from the
  * dials. */
-static void follow_dials(struct glint_frame *f)
+static void apply_dials_to_flare(struct glint_frame *f)
 {
     const bool is_other = f->cfg.irradiance_steps != f->dials.irradiance_steps;
 
-    if (glint_frame_shade(f) || is_other)
-        glint_frame_retune(f);
+    if (glint_frame_select_dust_tables(f) || is_other)
+        glint_frame_apply_config(f);
 }
 
 /* Plans the frame after allocating memory for the max number of bundles. */
@@ -245,8 +247,8 @@ static enum glint_status plan_frame(struct glint_frame *f,
 {
     enum glint_status status;
 
-    follow_dials(f);
-    status = glint_frame_make_room(f);
+    apply_dials_to_flare(f);
+    status = glint_frame_ensure_plan_capacity(f);
     if (status != GLINT_OK)
         return status;
     glint_flare_plan(f->memory.flare, rays, f->lights.light, f->lights.n);
@@ -257,45 +259,45 @@ static enum glint_status plan_frame(struct glint_frame *f,
 
 /* Returns whether dials changed, so that the frame must be planned again.
  */
-static bool choose_dials(struct glint_frame *f)
+static bool choose_budget_dials(struct glint_frame *f)
 {
-    const struct glint_cost_plan plan = glint_frame_plan(f);
+    const struct glint_cost_plan plan = glint_frame_make_cost_plan(f);
 
-    return glint_budget_choose(&f->budget, &plan, &f->dials);
+    return glint_budget_choose_dials(&f->budget, &plan, &f->dials);
 }
 
 static enum glint_status
-draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
-           double scale, const struct glint_image *image,
-           struct glint_flare_stats *stats, double times[5])
+draw_flare_by_model(struct glint_frame *f, const struct glint_lamp *lamps,
+                    int n_lamps, double scale, const struct glint_image *image,
+                    struct glint_flare_stats *stats, double times[5])
 {
     const struct glint_dials asked = f->dials;
     enum glint_status status;
 
     f->picture.can_half = is_in_codes(f, image);
-    f->picture.code_light = glint_frame_codes_light(f, image, 1);
+    f->picture.code_light = glint_frame_convert_codes_to_light(f, image, 1);
     f->plan.scale = scale;
     f->limits.is_held = f->limits.is_full = false;
     f->limits.tight = 0;
     f->plan.n_plans = f->plan.n_binned = 0;
     f->plan.n_looked = 0;
-    glint_budget_begin(&f->budget, &f->asked);
+    glint_budget_begin_frame(&f->budget, &f->asked);
     times[0] = now(f);
-    status = set_lights(f, lamps, n_lamps, scale);
-    if (status == GLINT_OK && f->budget.ms <= 0 && glint_frame_hold_looking(f))
-        status = set_lights(f, lamps, n_lamps, scale);
+    status = convert_lamps_to_lights(f, lamps, n_lamps, scale);
+    if (status == GLINT_OK && f->budget.ms <= 0 && glint_frame_limit_probing(f))
+        status = convert_lamps_to_lights(f, lamps, n_lamps, scale);
     if (status == GLINT_OK)
-        status =
-            glint_frame_still(f, convert_px_to_chord_q30(f, f->dials.still_px));
+        status = glint_frame_use_static_lights(
+            f, convert_px_to_chord_q30(f, f->dials.still_px));
     while (status == GLINT_OK) {
-        f->plan.rays = make_ray_frame(f, image);
+        f->plan.rays = make_flare_frame(f, image);
         status = plan_frame(f, &f->plan.rays);
         if (status != GLINT_OK)
             break;
-        if (f->budget.ms > 0 && choose_dials(f))
+        if (f->budget.ms > 0 && choose_budget_dials(f))
             continue;
-        if (f->budget.ms <= 0 && glint_frame_hold_work(f)) {
-            status = set_lights(f, lamps, n_lamps, scale);
+        if (f->budget.ms <= 0 && glint_frame_limit_work(f)) {
+            status = convert_lamps_to_lights(f, lamps, n_lamps, scale);
             continue;
         }
         times[1] = times[2] = now(f);
@@ -303,14 +305,15 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
         f->plan.n_binned++;
         if (glint_frame_fit_capacity(f, stats))
             break;
-        status = f->limits.reserved ? GLINT_OK : glint_frame_regrow(f);
+        status =
+            f->limits.reserved ? GLINT_OK : glint_frame_reallocate_flare(f);
     }
     if (f->limits.is_held)
         f->dials = asked;
     if (status != GLINT_OK)
         return status;
     times[3] = now(f);
-    glint_frame_paint(f, image);
+    glint_frame_draw_passes(f, image);
     times[4] = now(f);
     return GLINT_OK;
 }
@@ -324,7 +327,7 @@ merge_exact_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
 
     f->lights.given = lamps;
     f->lights.n_given = *n;
-    if (set_lights(f, lamps, *n, 1) != GLINT_OK)
+    if (convert_lamps_to_lights(f, lamps, *n, 1) != GLINT_OK)
         return NULL;
     if (f->lights.n == *n && f->lights.n_more == 0)
         return lamps;
@@ -334,70 +337,71 @@ merge_exact_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
         return NULL;
     f->lights.merged = merged;
     for (int i = 0; i < *n; i++)
-        merged[i] = glint_lamp_of(&f->lights.light[i]);
+        merged[i] = glint_lamp_from_light(&f->lights.light[i]);
     return merged;
 }
 
 static enum glint_status
-draw_exact(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
-           double scale, const struct glint_image *image,
-           struct glint_flare_stats *stats, double times[5])
+draw_flare_by_exact_rays(struct glint_frame *f, const struct glint_lamp *lamps,
+                         int n_lamps, double scale,
+                         const struct glint_image *image,
+                         struct glint_flare_stats *stats, double times[5])
 {
     const struct glint_lamp *merged = merge_exact_lamps(f, lamps, &n_lamps);
 
-    follow_dials(f);
+    apply_dials_to_flare(f);
     return merged
                ? f->trace->draw(f, merged, n_lamps, scale, image, stats, times)
                : GLINT_E_MEMORY;
 }
 
-static enum glint_status model_scale(struct glint_frame *frame,
-                                     const struct glint_lamp *lamps,
-                                     int n_lamps,
-                                     struct glint_frame_scale *scale)
+static enum glint_status predict_model_scale(struct glint_frame *frame,
+                                             const struct glint_lamp *lamps,
+                                             int n_lamps,
+                                             struct glint_frame_scale *scale)
 {
     struct glint_real brightest, together;
     struct glint_flare_frame rays;
     enum glint_status status;
 
     frame->limits.is_held = frame->picture.can_half = false;
-    status = set_lights(frame, lamps, n_lamps, 1);
-    rays = make_ray_frame(frame, NULL);
+    status = convert_lamps_to_lights(frame, lamps, n_lamps, 1);
+    rays = make_flare_frame(frame, NULL);
     if (status == GLINT_OK)
         status = plan_frame(frame, &rays);
     if (status != GLINT_OK)
         return status;
     glint_flare_light(frame->memory.flare, &brightest, &together);
     if (brightest.mantissa)
-        *scale = glint_frame_scale_of(brightest.exponent + 31,
-                                      together.exponent + 31);
+        *scale = glint_frame_compute_scale(brightest.exponent + 31,
+                                           together.exponent + 31);
     return GLINT_OK;
 }
 
-enum glint_status glint_frame_plan_scale(struct glint_frame *frame,
-                                         const struct glint_lamp *lamps,
-                                         int n_lamps,
-                                         struct glint_frame_scale *scale)
+enum glint_status glint_frame_predict_scale(struct glint_frame *frame,
+                                            const struct glint_lamp *lamps,
+                                            int n_lamps,
+                                            struct glint_frame_scale *scale)
 {
     *scale = (struct glint_frame_scale){0, 0};
     if (frame->lens)
-        return model_scale(frame, lamps, n_lamps, scale);
+        return predict_model_scale(frame, lamps, n_lamps, scale);
     lamps = merge_exact_lamps(frame, lamps, &n_lamps);
     return lamps ? frame->trace->scale(frame, lamps, n_lamps, scale)
                  : GLINT_E_MEMORY;
 }
 
 /* Returns the number of bundles of the drawn frame whose ghosts are known. */
-static int n_drawn(const struct glint_frame *f,
-                   const struct glint_engine_report *r)
+static int count_drawn_bundles(const struct glint_frame *f,
+                               const struct glint_engine_report *r)
 {
     return f->lens ? r->stats.bundles : f->trace->n_bundles(f);
 }
 
 /* Sets the members of REPORT on lights, plans and memory of the drawn frame.
  */
-static void fill_report(struct glint_frame *frame,
-                        struct glint_engine_report *report)
+static void fill_frame_report(struct glint_frame *frame,
+                              struct glint_engine_report *report)
 {
     report->beyond_lights = frame->lights.n_beyond;
     report->apart_lights =
@@ -414,10 +418,11 @@ static void fill_report(struct glint_frame *frame,
     report->tiles = glint_flare_tiles(frame->memory.flare);
     report->held_samples = glint_flare_held(frame->memory.flare);
     report->arena_bytes = frame->memory.bytes;
-    report->peak_bytes = glint_frame_bytes_used(frame, &report->stats);
-    report->need_bytes = glint_frame_bytes_needed(frame, &report->stats);
-    report->star_bytes = glint_frame_star_bytes(frame);
-    report->ghosts = glint_frame_count_ghosts(frame, n_drawn(frame, report));
+    report->peak_bytes = glint_frame_count_used_bytes(frame, &report->stats);
+    report->need_bytes = glint_frame_count_needed_bytes(frame, &report->stats);
+    report->star_bytes = glint_frame_star_count_bytes(frame);
+    report->ghosts =
+        glint_frame_count_ghosts(frame, count_drawn_bundles(frame, report));
 }
 
 enum glint_status glint_frame_draw(struct glint_frame *frame,
@@ -435,13 +440,13 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     /* without a veil the picture need not even be read */
     if (n_lamps == 0 && !glint_frame_has_veil(frame))
         return GLINT_OK;
-    if (glint_frame_hold_ghosts(frame) != GLINT_OK)
+    if (glint_frame_allocate_ghost_data(frame) != GLINT_OK)
         return GLINT_E_MEMORY;
-    status = glint_frame_star_set(frame, lamps, n_lamps, scale, image);
+    status = glint_frame_star_set_lamps(frame, lamps, n_lamps, scale, image);
     if (status == GLINT_OK)
-        status = glint_frame_veil_set(frame, lamps, n_lamps, image);
+        status = glint_frame_veil_set_light(frame, lamps, n_lamps, image);
     if (status == GLINT_OK)
-        status = (frame->lens ? draw_model : draw_exact)(
+        status = (frame->lens ? draw_flare_by_model : draw_flare_by_exact_rays)(
             frame, lamps, n_lamps, scale, image, &report->stats, times);
     if (status != GLINT_OK)
         return status;
@@ -459,14 +464,15 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         /* Frames that allocated memory or reused edges are not
          * representative. */
         if (frame->memory.bytes == bytes && !report->stats.reused)
-            glint_budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
+            glint_budget_learn_from_frame(&frame->budget,
+                                          1e3 * (times[4] - times[0]));
     }
-    fill_report(frame, report);
+    fill_frame_report(frame, report);
     return GLINT_OK;
 }
 
-void glint_frame_set_still(struct glint_frame *frame, bool is_still,
-                           bool more_points, bool more_lights)
+void glint_frame_set_area_sampling(struct glint_frame *frame, bool is_still,
+                                   bool more_points, bool more_lights)
 {
     const struct glint_dials *const asked = &frame->asked;
 

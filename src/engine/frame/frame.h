@@ -27,7 +27,7 @@
 #define GLINT_FRAME_STEP_CODES 2.0
 
 /* Default limits of a frame drawn by a model: bytes, and millions of
- * instructions by glint_cost_minsn(), about ten seconds on one processor.
+ * instructions by glint_cost_to_minsn(), about ten seconds on one processor.
  * Each further light raises both by 1 / GLINT_FRAME_PER_LIGHT. */
 #define GLINT_FRAME_MOST_BYTES ((size_t)384 << 20)
 #define GLINT_FRAME_MOST_MINSN 30000.0
@@ -45,8 +45,8 @@ struct glint_frame_scale {
 
 /* Returns the scales, given log2 of the brightest ghost's mean light and
  * log2 of the flux of all ghosts together. */
-struct glint_frame_scale glint_frame_scale_of(int brightest_log2,
-                                              int together_log2);
+struct glint_frame_scale glint_frame_compute_scale(int brightest_log2,
+                                                   int together_log2);
 
 /* A source of rays other than a model. */
 struct glint_frame_rays {
@@ -75,8 +75,8 @@ struct glint_frame_picture {
     bool for_codes; /* true: a linear picture is planned as if it were in codes
                      */
     bool can_half;  /* true: the last picture was in codes */
-    bool is_still;  /* true: glint_frame_set_still() raised the points */
-    bool uniform;   /* true: all ghosts get the same grid */
+    bool is_still; /* true: glint_frame_set_area_sampling() raised the points */
+    bool uniform;  /* true: all ghosts get the same grid */
     double code_light; /* light of one of its codes near black; 0: linear */
     int point_room; /* max number of lights from the points of area lamps; used
                        if it exceeds max_lights and there are at most max_lights
@@ -189,8 +189,9 @@ void glint_frame_init(struct glint_frame *frame,
                       struct glint_workers *workers);
 
 /* Initialises FRAME with the requested options of LIKE, without its budget. */
-void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
-                      struct glint_view view);
+void glint_frame_init_like(struct glint_frame *frame,
+                           const struct glint_frame *like,
+                           struct glint_view view);
 
 /* Reserves BYTES for all following frames of up to N_LAMPS lamps each,
  * merged to N_DRAWN: drawing then allocates nothing. If a frame does not
@@ -198,16 +199,17 @@ void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
  * and counted. MEM: the caller's BYTES, aligned to 64, or NULL to allocate
  * them. Returns GLINT_E_MEMORY if memory is short, or if BYTES are too few
  * for one light. */
-enum glint_status glint_frame_reserve(struct glint_frame *frame, void *mem,
-                                      size_t bytes, int n_lamps, int n_drawn);
+enum glint_status glint_frame_reserve_memory(struct glint_frame *frame,
+                                             void *mem, size_t bytes,
+                                             int n_lamps, int n_drawn);
 
-/* Returns the min BYTES that glint_frame_reserve() accepts for the number of
- * lights of its last call; nothing may be drawn afterwards. */
-size_t glint_frame_least_bytes(struct glint_frame *frame);
+/* Returns the min BYTES that glint_frame_reserve_memory() accepts for the
+ * number of lights of its last call; nothing may be drawn afterwards. */
+size_t glint_frame_compute_min_bytes(struct glint_frame *frame);
 
 /* Draws a lamp a few times to measure the time per instruction on this machine,
  * for the budget. GLINT_E_MEMORY. */
-enum glint_status glint_frame_calibrate(struct glint_frame *frame);
+enum glint_status glint_frame_calibrate_budget(struct glint_frame *frame);
 
 /* Adds the flare of LAMPS, times SCALE, to IMAGE. GLINT_E_MEMORY. */
 enum glint_status glint_frame_draw(struct glint_frame *frame,
@@ -217,35 +219,35 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
                                    struct glint_engine_report *report);
 
 /* Returns the last plan of FRAME, for glint_cost_of(). */
-struct glint_cost_plan glint_frame_plan(const struct glint_frame *frame);
+struct glint_cost_plan
+glint_frame_make_cost_plan(const struct glint_frame *frame);
 
 /* Returns whether LAMP lies outside the max angle of FRAME's model. */
-bool glint_frame_is_beyond(const struct glint_frame *frame,
-                           const struct glint_lamp *lamp);
+bool glint_frame_is_lamp_outside_model(const struct glint_frame *frame,
+                                       const struct glint_lamp *lamp);
 
 /* Returns the max angle off the axis of FRAME's model, degrees; 89 for exact
  * rays. */
-double glint_frame_end_deg(const struct glint_frame *frame);
+double glint_frame_max_angle_deg(const struct glint_frame *frame);
 
 /* Sets the sampling of area lamps in the next frame. IS_STILL: a still
  * picture gets more points per lamp (if MORE_POINTS) and a larger total (if
  * MORE_LIGHTS). The first frame that is not a still restores the numbers of
  * frame->asked. */
-void glint_frame_set_still(struct glint_frame *frame, bool is_still,
-                           bool more_points, bool more_lights);
+void glint_frame_set_area_sampling(struct glint_frame *frame, bool is_still,
+                                   bool more_points, bool more_lights);
 
 /* Applies changes of cfg since memory was allocated; allocates nothing. */
-void glint_frame_retune(struct glint_frame *frame);
+void glint_frame_apply_config(struct glint_frame *frame);
 
 /* Draws the flare of LAMPS alone, times GAIN, into RGB, [height][width][3],
  * linear light. Internally, light is scaled by a power of two that gives faint
  * light as many steps as the brightest pixel allows. If that pixel is two
  * octaves fainter than the limit, or clamped, the frame is drawn again with
  * another scale, at most four times in total. GLINT_E_MEMORY. */
-enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
-                                         const struct glint_lamp *lamps,
-                                         int n_lamps, double gain, float *rgb,
-                                         struct glint_engine_report *report);
+enum glint_status glint_frame_draw_flare_alone(
+    struct glint_frame *frame, const struct glint_lamp *lamps, int n_lamps,
+    double gain, float *rgb, struct glint_engine_report *report);
 
 void glint_frame_finish(struct glint_frame *frame);
 

@@ -6,7 +6,7 @@
 #include "engine/frame/frame_parts.h"
 
 /* Returns the largest magnitude of N values. */
-static uint32_t find_peak(const int32_t *linear_q20, size_t n)
+static uint32_t find_max_magnitude(const int32_t *linear_q20, size_t n)
 {
     uint32_t peak = 0;
 
@@ -22,7 +22,7 @@ static uint32_t find_peak(const int32_t *linear_q20, size_t n)
 /* Returns log2 of the factor by which a picture with PEAK should be drawn
  * brighter; 0 instead of 1, as one octave gains too little. Returns a value
  * below 0 if light was clamped, as its peak is then unknown. */
-static int choose_octaves(uint32_t peak, struct glint_frame_scale scale)
+static int choose_scale_octaves(uint32_t peak, struct glint_frame_scale scale)
 {
     const int room = scale.most - scale.likely;
     int up = 0;
@@ -35,10 +35,9 @@ static int choose_octaves(uint32_t peak, struct glint_frame_scale scale)
     return up > 1 ? up : 0;
 }
 
-enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
-                                         const struct glint_lamp *lamps,
-                                         int n_lamps, double gain, float *rgb,
-                                         struct glint_engine_report *report)
+enum glint_status glint_frame_draw_flare_alone(
+    struct glint_frame *frame, const struct glint_lamp *lamps, int n_lamps,
+    double gain, float *rgb, struct glint_engine_report *report)
 {
     const int width = frame->view.width, height = frame->view.height;
     const size_t n = 3 * (size_t)width * (size_t)height;
@@ -47,7 +46,7 @@ enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
     const struct glint_image layer =
         glint_image_over(linear_q20, GLINT_LINEAR_Q20, width, height);
     enum glint_status status =
-        linear_q20 ? glint_frame_plan_scale(frame, lamps, n_lamps, &scale)
+        linear_q20 ? glint_frame_predict_scale(frame, lamps, n_lamps, &scale)
                    : GLINT_E_MEMORY;
     const double share = frame->star.share;
     const double glare = frame->veil.glare, haze = frame->veil.haze;
@@ -61,7 +60,7 @@ enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
         memset(linear_q20, 0, n * sizeof *linear_q20);
         status = glint_frame_draw(frame, lamps, n_lamps, exp2(scale.likely),
                                   &layer, report);
-        up = choose_octaves(find_peak(linear_q20, n), scale);
+        up = choose_scale_octaves(find_max_magnitude(linear_q20, n), scale);
         scale.likely += i < 3 ? up : 0;
     }
     for (size_t i = 0; i < n && status == GLINT_OK; i++)
@@ -71,11 +70,11 @@ enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
     frame->veil.haze = haze;
     frame->veil.front = front;
     if (status == GLINT_OK && glint_frame_has_veil(frame))
-        status = glint_frame_veil_alone(frame, lamps, n_lamps, gain, linear_q20,
-                                        rgb);
+        status = glint_frame_veil_draw_alone(frame, lamps, n_lamps, gain,
+                                             linear_q20, rgb);
     if (status == GLINT_OK && share > 0)
-        status = glint_frame_star_alone(frame, lamps, n_lamps, gain, linear_q20,
-                                        rgb);
+        status = glint_frame_star_draw_alone(frame, lamps, n_lamps, gain,
+                                             linear_q20, rgb);
     free(linear_q20);
     return status;
 }

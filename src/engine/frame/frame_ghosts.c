@@ -4,27 +4,28 @@
 
 #include "engine/frame/frame_parts.h"
 
-bool glint_frame_is_ghost(const struct glint_setup *s, int ghost, int number)
+bool glint_frame_is_part_of_ghost(const struct glint_setup *s, int ghost,
+                                  int number)
 {
     return s->ghost[ghost].i == s->ghost[number].i &&
            s->ghost[ghost].j == s->ghost[number].j;
 }
 
-int glint_frame_number(const struct glint_setup *s, int ghost)
+int glint_frame_find_ghost_number(const struct glint_setup *s, int ghost)
 {
     int number = ghost;
 
     if (ghost >= s->n_ghosts - s->n_parts)
-        for (number = 0; !glint_frame_is_ghost(s, ghost, number);)
+        for (number = 0; !glint_frame_is_part_of_ghost(s, ghost, number);)
             number++;
     return number;
 }
 
 /* Records that GHOST is in the frame; returns whether it is the first of its
  * ghost's parts there. */
-static bool note_ghost(struct glint_frame *frame, int ghost)
+static bool mark_ghost_seen(struct glint_frame *frame, int ghost)
 {
-    const int number = glint_frame_number(frame->setup, ghost);
+    const int number = glint_frame_find_ghost_number(frame->setup, ghost);
 
     if (frame->lights.seen[number])
         return false;
@@ -38,13 +39,13 @@ int glint_frame_count_ghosts(struct glint_frame *frame, int n)
     memset(frame->lights.seen, 0,
            (size_t)frame->setup->n_ghosts * sizeof *frame->lights.seen);
     for (int i = 0; i < n; i++)
-        n_ghosts += note_ghost(
+        n_ghosts += mark_ghost_seen(
             frame, frame->lens ? glint_flare_ghost(frame->memory.flare, i)
                                : frame->trace->ghost(frame, i));
     return n_ghosts;
 }
 
-enum glint_status glint_frame_hold_dim(struct glint_frame *f)
+enum glint_status glint_frame_allocate_dim_table(struct glint_frame *f)
 {
     f->dim.table.method = &glint_dim_method;
     if (!f->dim.table.log2_q8)
@@ -55,7 +56,8 @@ enum glint_status glint_frame_hold_dim(struct glint_frame *f)
     return f->dim.table.log2_q8 ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-static bool is_same_wave(const struct glint_wave *a, const struct glint_wave *b)
+static bool are_waves_equal(const struct glint_wave *a,
+                            const struct glint_wave *b)
 {
     return a->wave_q24 == b->wave_q24 && a->rgb_q14[0] == b->rgb_q14[0] &&
            a->rgb_q14[1] == b->rgb_q14[1] && a->rgb_q14[2] == b->rgb_q14[2] &&
@@ -63,13 +65,13 @@ static bool is_same_wave(const struct glint_wave *a, const struct glint_wave *b)
            a->weight.exponent == b->weight.exponent;
 }
 
-void glint_frame_check_dim(struct glint_frame *f)
+void glint_frame_clear_stale_dim_table(struct glint_frame *f)
 {
     const double size = f->view.width / f->view.sensor_width_mm;
     bool same = f->dim.opening == f->setup->opening && f->dim.size == size;
 
     for (int i = 0; i < 3; i++)
-        same = same && is_same_wave(&f->dim.wave[i], &f->lights.wave[i]);
+        same = same && are_waves_equal(&f->dim.wave[i], &f->lights.wave[i]);
     if (same)
         return;
     memset(f->dim.table.done, 0, sizeof f->dim.table.done);
@@ -78,11 +80,11 @@ void glint_frame_check_dim(struct glint_frame *f)
     f->dim.size = size;
 }
 
-enum glint_status glint_frame_hold_ghosts(struct glint_frame *f)
+enum glint_status glint_frame_allocate_ghost_data(struct glint_frame *f)
 {
     if (!f->lights.seen)
         f->lights.seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->lights.seen);
     if (f->lights.seen && f->lens && f->dials.dim_codes > 0)
-        return glint_frame_hold_dim(f);
+        return glint_frame_allocate_dim_table(f);
     return f->lights.seen ? GLINT_OK : GLINT_E_MEMORY;
 }

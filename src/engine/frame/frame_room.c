@@ -24,12 +24,12 @@ enum { LEAST_FINENESS = 8 };
  * fraction of the bytes. */
 #define NO_GAIN 0.98
 
-bool glint_frame_has_sets(const struct glint_frame *f)
+bool glint_frame_has_wave_sets(const struct glint_frame *f)
 {
     return f->lens && f->setup->n_sets && f->dials.dispersion_q8 > 0;
 }
 
-enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
+enum glint_status glint_frame_allocate_lights(struct glint_frame *f, int n)
 {
     struct glint_light *light;
 
@@ -44,23 +44,23 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
 }
 
 /* Returns N clamped to the max number of bundles of a frame. */
-static int clamp_bundles(double n)
+static int clamp_bundle_count(double n)
 {
     return n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 }
 
 /* Returns the number of bundles of N_LIGHTS lights; with sets of
  * wavelengths, of the first set. */
-static int count_bundles(const struct glint_frame *f, int n_lights)
+static int count_first_set_bundles(const struct glint_frame *f, int n_lights)
 {
     const struct glint_setup *s = f->setup;
 
-    return clamp_bundles(
+    return clamp_bundle_count(
         (double)n_lights * s->n_ghosts *
-        (glint_frame_has_sets(f) ? s->set_size[0] : s->n_wavelengths));
+        (glint_frame_has_wave_sets(f) ? s->set_size[0] : s->n_wavelengths));
 }
 
-static size_t most_bytes(const struct glint_frame *f)
+static size_t compute_max_bytes(const struct glint_frame *f)
 {
     return (size_t)((double)f->limits.most_bytes * f->limits.share);
 }
@@ -72,7 +72,7 @@ make_needed_config(const struct glint_frame *f,
 {
     struct glint_flare_config needed = f->cfg;
 
-    needed.max_bundles = clamp_bundles(s->need_bundles);
+    needed.max_bundles = clamp_bundle_count(s->need_bundles);
     needed.max_vertices = s->need_vertices;
     needed.max_primitives = s->need_primitives;
     needed.max_refs = s->need_refs;
@@ -82,8 +82,9 @@ make_needed_config(const struct glint_frame *f,
 /* Returns the bytes of that configuration for one worker, with UNEVEN times
  * the primitives, so that they do not depend on the number of workers. Sets
  * FIXED to the bytes that do not shrink with coarser grids. */
-static double estimate_bytes(const struct glint_frame *f,
-                             const struct glint_flare_stats *s, double *fixed)
+static double estimate_flare_bytes(const struct glint_frame *f,
+                                   const struct glint_flare_stats *s,
+                                   double *fixed)
 {
     struct glint_flare_config needed = make_needed_config(f, s);
     double bytes;
@@ -98,7 +99,7 @@ static double estimate_bytes(const struct glint_frame *f,
 
 /* Returns the bytes for a number of primitives and their references, rounded
  * up generously. */
-static size_t compute_bytes(struct glint_frame *f, int primitives)
+static size_t set_primitive_capacity(struct glint_frame *f, int primitives)
 {
     f->cfg.max_primitives = primitives;
     f->cfg.max_refs = 2 * primitives;
@@ -107,22 +108,22 @@ static size_t compute_bytes(struct glint_frame *f, int primitives)
 
 /* Sets the capacities that BYTES have room for; returns false if there is none.
  */
-static bool fit_primitives(struct glint_frame *f, size_t bytes)
+static bool fit_capacity_to_bytes(struct glint_frame *f, size_t bytes)
 {
     int most = 0;
 
     for (int step = 1 << 24; step > 0; step /= 2) {
-        const size_t need = compute_bytes(f, most + step);
+        const size_t need = set_primitive_capacity(f, most + step);
 
         if (need != 0 && need <= bytes)
             most += step;
     }
-    return most > 0 && compute_bytes(f, most) <= bytes;
+    return most > 0 && set_primitive_capacity(f, most) <= bytes;
 }
 
 /* Returns the number of primitives for which reserved memory would need
- * capacity, in the proportions of compute_bytes(). */
-static double count_primitives(const struct glint_flare_stats *s)
+ * capacity, in the proportions of set_primitive_capacity(). */
+static double count_needed_primitives(const struct glint_flare_stats *s)
 {
     return fmax(s->need_primitives * UNEVEN, s->need_refs / 2.0);
 }
@@ -131,21 +132,22 @@ static double count_primitives(const struct glint_flare_stats *s)
  * the reserved memory. Returns whether it did. The result depends neither on
  * the number of workers nor on earlier frames. A block that is not reserved
  * grows to its limit, so that the grids fit next time. */
-static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
+static bool coarsen_grids_to_memory(struct glint_frame *f,
+                                    const struct glint_flare_stats *s)
 {
-    const double most =
-        f->limits.reserved ? f->limits.most_primitives : (double)most_bytes(f);
+    const double most = f->limits.reserved ? f->limits.most_primitives
+                                           : (double)compute_max_bytes(f);
     const int fineness = f->dials.fineness;
     double fixed = 0;
-    const double need =
-        f->limits.reserved ? count_primitives(s) : estimate_bytes(f, s, &fixed);
+    const double need = f->limits.reserved ? count_needed_primitives(s)
+                                           : estimate_flare_bytes(f, s, &fixed);
 
     if (most <= 0 || f->budget.ms > 0 || need <= most ||
         fineness <= LEAST_FINENESS ||
         (f->limits.tight > 0 && need > NO_GAIN * f->limits.tight))
         return false;
     if (f->limits.tight <= 0)
-        f->limits.tight_bytes = glint_frame_bytes_needed(f, s);
+        f->limits.tight_bytes = glint_frame_count_needed_bytes(f, s);
     f->limits.tight = need;
     f->dials.fineness = larger(
         LEAST_FINENESS,
@@ -153,7 +155,7 @@ static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
                 (int)(fineness * sqrt(fmax(0, (ROOM_SHARE * most - fixed) /
                                                   (need - fixed))))));
     if (!f->limits.reserved)
-        fit_primitives(f, (size_t)most);
+        fit_capacity_to_bytes(f, (size_t)most);
     return f->limits.is_held = true;
 }
 
@@ -161,11 +163,11 @@ bool glint_frame_fit_capacity(struct glint_frame *f,
                               const struct glint_flare_stats *s)
 {
     struct glint_flare_config *c = &f->cfg;
-    const int bundles = clamp_bundles(s->need_bundles);
+    const int bundles = clamp_bundle_count(s->need_bundles);
 
     if (f->limits.is_full)
         return true;
-    if (hold_room(f, s))
+    if (coarsen_grids_to_memory(f, s))
         return false;
     if (f->limits.reserved)
         return true;
@@ -182,13 +184,13 @@ bool glint_frame_fit_capacity(struct glint_frame *f,
     return false;
 }
 
-enum glint_status glint_frame_regrow(struct glint_frame *f)
+enum glint_status glint_frame_reallocate_flare(struct glint_frame *f)
 {
-    const size_t most = most_bytes(f);
+    const size_t most = compute_max_bytes(f);
     size_t bytes = glint_flare_bytes(&f->cfg);
 
     if (f->lens && !f->limits.reserved && most && bytes > most) {
-        if (!fit_primitives(f, most))
+        if (!fit_capacity_to_bytes(f, most))
             return GLINT_E_MEMORY;
         f->limits.is_full = true;
         bytes = glint_flare_bytes(&f->cfg);
@@ -198,7 +200,7 @@ enum glint_status glint_frame_regrow(struct glint_frame *f)
     if (!f->memory.block || f->memory.bytes != bytes) {
         free(f->memory.mem);
         f->memory.bytes = 0;
-        f->memory.block = glint_block_take(bytes, &f->memory.mem);
+        f->memory.block = glint_block_allocate_aligned(bytes, &f->memory.mem);
         if (!f->memory.block)
             return GLINT_E_MEMORY;
         f->memory.bytes = bytes;
@@ -207,7 +209,7 @@ enum glint_status glint_frame_regrow(struct glint_frame *f)
 }
 
 /* Allocates N static lights. */
-static enum glint_status hold_still(struct glint_frame *f, int n)
+static enum glint_status allocate_static_lights(struct glint_frame *f, int n)
 {
     struct glint_still *s = &f->still;
     const size_t size = (size_t)n;
@@ -226,7 +228,8 @@ static enum glint_status hold_still(struct glint_frame *f, int n)
     return GLINT_OK;
 }
 
-enum glint_status glint_frame_still(struct glint_frame *f, int32_t near_q30)
+enum glint_status glint_frame_use_static_lights(struct glint_frame *f,
+                                                int32_t near_q30)
 {
     struct glint_still *s = &f->still;
     int n;
@@ -234,7 +237,8 @@ enum glint_status glint_frame_still(struct glint_frame *f, int32_t near_q30)
     if (!f->cfg.reuse || f->dials.still_px <= 0 ||
         (f->limits.reserved && !f->cfg.reuse_gains))
         return GLINT_OK;
-    if (!f->limits.reserved && hold_still(f, f->lights.capacity) != GLINT_OK)
+    if (!f->limits.reserved &&
+        allocate_static_lights(f, f->lights.capacity) != GLINT_OK)
         return GLINT_E_MEMORY;
     if (s->n > larger(f->lights.n, f->dials.max_lights))
         s->n = 0;
@@ -250,66 +254,69 @@ enum glint_status glint_frame_still(struct glint_frame *f, int32_t near_q30)
 
 /* Returns whether the block has capacity to plan N bundles of the frame's
  * lights. */
-static bool has_room(const struct glint_frame *f, int n)
+static bool has_plan_capacity(const struct glint_frame *f, int n)
 {
     return f->memory.block && n <= f->cfg.max_bundles &&
            (!f->cfg.reuse || f->lights.n <= f->cfg.reuse_lights) &&
            (!f->lights.gain_q14 || f->cfg.reuse_gains);
 }
 
-enum glint_status glint_frame_make_room(struct glint_frame *f)
+enum glint_status glint_frame_ensure_plan_capacity(struct glint_frame *f)
 {
-    const int bundles = count_bundles(f, f->lights.n);
+    const int bundles = count_first_set_bundles(f, f->lights.n);
 
-    if (f->limits.reserved || has_room(f, bundles))
+    if (f->limits.reserved || has_plan_capacity(f, bundles))
         return GLINT_OK;
     f->cfg.max_bundles = larger(bundles, f->cfg.max_bundles);
     if (f->cfg.reuse)
         f->cfg.reuse_lights = larger(f->lights.n, f->cfg.reuse_lights);
     f->cfg.reuse_gains |= f->lights.gain_q14 != NULL;
-    return glint_frame_regrow(f);
+    return glint_frame_reallocate_flare(f);
 }
 
-size_t glint_frame_least_bytes(struct glint_frame *f)
+size_t glint_frame_compute_min_bytes(struct glint_frame *f)
 {
-    return compute_bytes(f, 1);
+    return set_primitive_capacity(f, 1);
 }
 
-enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
-                                      size_t bytes, int n_lamps, int n_drawn)
+enum glint_status glint_frame_reserve_memory(struct glint_frame *f, void *mem,
+                                             size_t bytes, int n_lamps,
+                                             int n_drawn)
 {
     struct glint_workers *const workers = f->cfg.workers;
 
     f->dials.max_lights =
         smaller(f->dials.max_lights, smaller(n_drawn, n_lamps));
     /* Not all ghosts are visible, and few use the largest set. */
-    f->cfg.max_bundles = clamp_bundles((glint_frame_has_sets(f) ? 2. : 1) *
-                                       count_bundles(f, f->dials.max_lights));
+    f->cfg.max_bundles =
+        clamp_bundle_count((glint_frame_has_wave_sets(f) ? 2. : 1) *
+                           count_first_set_bundles(f, f->dials.max_lights));
     if (f->cfg.reuse)
         f->cfg.reuse_lights = f->dials.max_lights;
     f->cfg.reuse_gains = f->cfg.reuse && f->dials.still_px > 0;
     f->cfg.workers = NULL;
-    fit_primitives(f, bytes);
+    fit_capacity_to_bytes(f, bytes);
     f->limits.most_primitives = f->cfg.max_primitives;
     f->cfg.workers = workers;
-    if (!fit_primitives(f, bytes))
+    if (!fit_capacity_to_bytes(f, bytes))
         return GLINT_E_MEMORY;
     /* Dials may change later, when nothing is allocated any more. */
-    if (glint_frame_hold_ghosts(f) != GLINT_OK ||
-        (f->lens && glint_frame_hold_dim(f) != GLINT_OK) ||
-        glint_frame_hold_lights(f, n_lamps) != GLINT_OK ||
-        (f->cfg.reuse_gains && hold_still(f, f->cfg.reuse_lights) != GLINT_OK))
+    if (glint_frame_allocate_ghost_data(f) != GLINT_OK ||
+        (f->lens && glint_frame_allocate_dim_table(f) != GLINT_OK) ||
+        glint_frame_allocate_lights(f, n_lamps) != GLINT_OK ||
+        (f->cfg.reuse_gains &&
+         allocate_static_lights(f, f->cfg.reuse_lights) != GLINT_OK))
         return GLINT_E_MEMORY;
     f->limits.reserved = true;
     if (!mem)
-        return glint_frame_regrow(f);
+        return glint_frame_reallocate_flare(f);
     f->memory.block = mem;
     f->memory.bytes = bytes;
     return glint_flare_init(&f->memory.flare, &f->cfg, mem, bytes);
 }
 
-size_t glint_frame_bytes_used(const struct glint_frame *f,
-                              const struct glint_flare_stats *s)
+size_t glint_frame_count_used_bytes(const struct glint_frame *f,
+                                    const struct glint_flare_stats *s)
 {
     struct glint_flare_config used = f->cfg;
 
@@ -320,8 +327,8 @@ size_t glint_frame_bytes_used(const struct glint_frame *f,
     return glint_flare_bytes(&used);
 }
 
-size_t glint_frame_bytes_needed(const struct glint_frame *f,
-                                const struct glint_flare_stats *s)
+size_t glint_frame_count_needed_bytes(const struct glint_frame *f,
+                                      const struct glint_flare_stats *s)
 {
     const struct glint_flare_config needed = make_needed_config(f, s);
 
@@ -335,23 +342,23 @@ static double estimate_probe_minsn(double n_rays)
     return 1e-3 * glint_cost_weight[GLINT_COST_LOOKED_AT].counted * n_rays;
 }
 
-static double find_minsn_limit(const struct glint_frame *f)
+static double compute_minsn_limit(const struct glint_frame *f)
 {
     return f->limits.most_minsn * f->limits.share;
 }
 
-bool glint_frame_hold_looking(struct glint_frame *f)
+bool glint_frame_limit_probing(struct glint_frame *f)
 {
     enum { RAYS = 200 }; /* rays of a coarse and a fine probe */
-    const int waves = glint_frame_has_sets(f) ? f->setup->set_size[0]
-                                              : f->setup->n_wavelengths;
+    const int waves = glint_frame_has_wave_sets(f) ? f->setup->set_size[0]
+                                                   : f->setup->n_wavelengths;
     const double light =
         estimate_probe_minsn((double)RAYS * f->setup->n_ghosts * waves);
     const int n = f->lights.n;
 
     if (f->limits.most_minsn <= 0)
         return false;
-    while (f->lights.n > 1 && f->lights.n * light > find_minsn_limit(f) / 2)
+    while (f->lights.n > 1 && f->lights.n * light > compute_minsn_limit(f) / 2)
         f->lights.n--;
     if (f->lights.n == n)
         return false;
@@ -360,29 +367,30 @@ bool glint_frame_hold_looking(struct glint_frame *f)
 }
 
 /* Returns whether dust causes most of COST and can be drawn coarser. */
-static bool is_dusty(const struct glint_frame *f,
-                     const struct glint_cost_plan *plan,
-                     const struct glint_cost *cost)
+static bool is_cost_mostly_dust(const struct glint_frame *f,
+                                const struct glint_cost_plan *plan,
+                                const struct glint_cost *cost)
 {
     return plan->shade && f->dials.dust_log2 > GLINT_SHADE_LEAST_LOG2 &&
            2e-3 * glint_cost_weight[GLINT_COST_PARTS].planned *
                    cost->count[GLINT_COST_PARTS] >
-               glint_cost_minsn(cost);
+               glint_cost_to_minsn(cost);
 }
 
 /* Makes tables of dust and grids as fine as PLAN allows within MINSN, or
  * else the coarsest. Returns the cost of the result, millions of
  * instructions. */
-static double hold_grids(struct glint_frame *f,
-                         const struct glint_cost_plan *plan, double minsn)
+static double coarsen_grids_to_minsn(struct glint_frame *f,
+                                     const struct glint_cost_plan *plan,
+                                     double minsn)
 {
     enum { STEP = 8 };
     struct glint_cost cost = glint_cost_of(plan, &f->dials);
 
     if (plan->shade)
         f->dials.dust_log2 = smaller(f->dials.dust_log2, plan->shade->log2);
-    while (glint_cost_minsn(&cost) > minsn) {
-        if (is_dusty(f, plan, &cost))
+    while (glint_cost_to_minsn(&cost) > minsn) {
+        if (is_cost_mostly_dust(f, plan, &cost))
             f->dials.dust_log2--;
         else if (f->dials.fineness > LEAST_FINENESS)
             f->dials.fineness = larger(
@@ -392,13 +400,13 @@ static double hold_grids(struct glint_frame *f,
             break;
         cost = glint_cost_of(plan, &f->dials);
     }
-    return glint_cost_minsn(&cost);
+    return glint_cost_to_minsn(&cost);
 }
 
 /* Limits ghosts to three wavelengths each. Returns the work that this leaves of
  * MINSN, the work of the plan with the coarsest grids, in millions of
  * instructions. */
-static double hold_waves(struct glint_frame *f, double minsn)
+static double limit_ghost_wavelengths(struct glint_frame *f, double minsn)
 {
     enum { WAVES = 3 };
     const double jobs = (double)f->lights.n * f->setup->n_ghosts;
@@ -413,14 +421,14 @@ static double hold_waves(struct glint_frame *f, double minsn)
 
 /* Returns the plan, also before it is drawn, so that its cost can be predicted.
  */
-struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
+struct glint_cost_plan glint_frame_make_cost_plan(const struct glint_frame *f)
 {
     return (struct glint_cost_plan){
         .flare = f->memory.flare,
         .width = f->cfg.width,
         .height = f->cfg.height,
         .n_star = f->star.is_set ? f->star.pixels : 0,
-        .n_veil = glint_frame_veil_pixels(f),
+        .n_veil = glint_frame_veil_cost_in_pixels(f),
         .n_looked_at =
             f->memory.flare ? (double)glint_flare_looked(f->memory.flare) : 0,
         .can_half = f->picture.can_half,
@@ -430,23 +438,23 @@ struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
         .dials = f->dials};
 }
 
-bool glint_frame_hold_work(struct glint_frame *f)
+bool glint_frame_limit_work(struct glint_frame *f)
 {
     enum { MOST_PLANS = 12 };
-    const struct glint_cost_plan plan = glint_frame_plan(f);
+    const struct glint_cost_plan plan = glint_frame_make_cost_plan(f);
     const struct glint_cost cost = glint_cost_of(&plan, &f->dials);
     const double spent = estimate_probe_minsn((double)f->plan.n_looked);
     const double again = spent / f->plan.n_plans;
-    const double left = find_minsn_limit(f) - spent;
+    const double left = compute_minsn_limit(f) - spent;
     const struct glint_dials before = f->dials;
     double then;
 
     if (f->limits.most_minsn <= 0 || f->plan.n_plans >= MOST_PLANS ||
-        glint_cost_minsn(&cost) <= left)
+        glint_cost_to_minsn(&cost) <= left)
         return false;
-    then = hold_grids(f, &plan, left - again);
-    if (then > left - again && glint_frame_has_sets(f))
-        then = hold_waves(f, then);
+    then = coarsen_grids_to_minsn(f, &plan, left - again);
+    if (then > left - again && glint_frame_has_wave_sets(f))
+        then = limit_ghost_wavelengths(f, then);
     if (then > left - again && f->lights.n > 1)
         f->dials.max_lights = larger(
             1, (int)(f->lights.n * fmin(0.75, fmax(0, left / (then + again)))));
@@ -460,7 +468,7 @@ bool glint_frame_hold_work(struct glint_frame *f)
 
 /* ------------------------------------------------------------------- dust */
 
-bool glint_frame_shade(struct glint_frame *f)
+bool glint_frame_select_dust_tables(struct glint_frame *f)
 {
     const struct glint_shade *all =
         f->setup->dirt ? &f->setup->dirt->shade : NULL;

@@ -60,8 +60,8 @@ static struct glint_star_optics make_star_optics(const struct glint_frame *f)
         .pixel_um = 1e3 * f->view.sensor_width_mm / f->view.width};
 }
 
-static bool are_same(const struct glint_star_optics *a,
-                     const struct glint_star_optics *b)
+static bool are_star_optics_equal(const struct glint_star_optics *a,
+                                  const struct glint_star_optics *b)
 {
     return a->n_blades == b->n_blades && a->rotation_deg == b->rotation_deg &&
            a->round == b->round && a->soft == b->soft && a->smear == b->smear &&
@@ -70,7 +70,7 @@ static bool are_same(const struct glint_star_optics *a,
 
 /* Makes the smear of dirt in the stop, unless it is up to date. Sets IS_NEW
  * to whether it changed. */
-static enum glint_status make_smear(struct glint_frame *f, bool *is_new)
+static enum glint_status update_dirt_smear(struct glint_frame *f, bool *is_new)
 {
     struct glint_frame_star *s = &f->star;
     const struct glint_dirt *dirt = f->setup->dirt;
@@ -84,17 +84,17 @@ static enum glint_status make_smear(struct glint_frame *f, bool *is_new)
     return mark ? glint_smear_init(&s->smear, f->setup) : GLINT_OK;
 }
 
-static enum glint_status make_tables(struct glint_frame *f)
+static enum glint_status update_star_tables(struct glint_frame *f)
 {
     struct glint_frame_star *s = &f->star;
     struct glint_star_optics optics = make_star_optics(f);
     bool is_new;
-    enum glint_status status = make_smear(f, &is_new);
+    enum glint_status status = update_dirt_smear(f, &is_new);
 
     if (status != GLINT_OK)
         return status;
     optics.smear = s->smear.sum ? &s->smear : NULL;
-    if (s->tables && are_same(&s->optics, &optics) && !is_new)
+    if (s->tables && are_star_optics_equal(&s->optics, &optics) && !is_new)
         return GLINT_OK;
     glint_star_tables_free(s->tables);
     s->tables = NULL;
@@ -102,7 +102,7 @@ static enum glint_status make_tables(struct glint_frame *f)
     return glint_star_tables_make(&s->tables, &optics);
 }
 
-static enum glint_status take_room(struct glint_frame *f, int n)
+static enum glint_status allocate_star_lights(struct glint_frame *f, int n)
 {
     struct glint_frame_star *s = &f->star;
     struct glint_star_config cfg = {
@@ -119,7 +119,7 @@ static enum glint_status take_room(struct glint_frame *f, int n)
     s->star = NULL;
     free(s->mem);
     bytes = glint_star_bytes(&cfg);
-    block = glint_block_take(bytes, &s->mem);
+    block = glint_block_allocate_aligned(bytes, &s->mem);
     light = realloc(s->light, (size_t)n * sizeof *s->light);
     if (light)
         s->light = light;
@@ -130,22 +130,22 @@ static enum glint_status take_room(struct glint_frame *f, int n)
     return glint_star_init(&s->star, &cfg, block, bytes);
 }
 
-static double airy_of_photo(const struct glint_frame *f)
+static double compute_photo_airy_px(const struct glint_frame *f)
 {
     return photo_airy * hypot(f->view.width, f->view.height);
 }
 
-enum glint_status glint_frame_star_hold(struct glint_frame *f, int n)
+enum glint_status glint_frame_star_allocate(struct glint_frame *f, int n)
 {
     enum glint_status status;
 
     if (!(f->star.share > 0) || n == 0)
         return GLINT_OK;
-    status = make_tables(f);
-    return status == GLINT_OK ? take_room(f, n) : status;
+    status = update_star_tables(f);
+    return status == GLINT_OK ? allocate_star_lights(f, n) : status;
 }
 
-size_t glint_frame_star_bytes(const struct glint_frame *f)
+size_t glint_frame_star_count_bytes(const struct glint_frame *f)
 {
     const struct glint_frame_star *s = &f->star;
 
@@ -157,9 +157,9 @@ size_t glint_frame_star_bytes(const struct glint_frame *f)
 
 /* Returns lamp I of LAMPS, the lamps of the ghosts, as its starburst has it:
  * with its whole power. */
-static const struct glint_lamp *find_star_lamp(const struct glint_frame *f,
-                                               const struct glint_lamp *lamps,
-                                               int i)
+static const struct glint_lamp *get_star_lamp(const struct glint_frame *f,
+                                              const struct glint_lamp *lamps,
+                                              int i)
 {
     return f->known ? &f->known[i].lamp : &lamps[i];
 }
@@ -173,7 +173,7 @@ struct seen {
     bool is_bare; /* true: the lamp is not visible in the picture */
 };
 
-static struct seen find_seen_lamp(const struct glint_frame *f, int i)
+static struct seen find_lamp_appearance(const struct glint_frame *f, int i)
 {
     const struct glint_engine_lamp *lamp = f->known ? &f->known[i] : NULL;
     const double size_px = lamp ? fmax(lamp->seen_px, 0) : 0;
@@ -189,7 +189,7 @@ static double estimate_unclipped_power(const struct glint_frame *f,
                                        const struct seen *seen, double power)
 {
     const double most = white_share * pow(GLINT_PI * seen->radius_px, 3) /
-                        airy_of_photo(f) * seen->level;
+                        compute_photo_airy_px(f) * seen->level;
 
     return seen->radius_px > 0 ? fmin(clipped_times * power, fmax(most, power))
                                : power;
@@ -204,12 +204,12 @@ static double estimate_unclipped_power(const struct glint_frame *f,
  * white; the square of that is subtracted from the square of what is SEEN. A
  * lamp of a video is as wide as that of a still, which is at least HIDDEN_PX.
  */
-static double compute_disc_radius(const struct glint_frame *f,
-                                  const struct seen *seen, double found,
-                                  double power, double own_px)
+static double compute_lamp_disc_radius(const struct glint_frame *f,
+                                       const struct seen *seen, double found,
+                                       double power, double own_px)
 {
     const double white_px =
-        cbrt(power / seen->level * airy_of_photo(f)) / GLINT_PI;
+        cbrt(power / seen->level * compute_photo_airy_px(f)) / GLINT_PI;
     const double point_px = least_px + white_px;
     const double area = GLINT_PI * seen->radius_px * seen->radius_px;
     const double over =
@@ -224,16 +224,17 @@ static double compute_disc_radius(const struct glint_frame *f,
 
 /* Sets LIGHT for LAMP times SCALE. Returns false if it is too far from the
  * picture or has no light. */
-static bool set_light(const struct glint_frame *f,
-                      const struct glint_lamp *lamp, double scale,
-                      const struct seen *seen, struct glint_star_light *light)
+static bool set_star_light(const struct glint_frame *f,
+                           const struct glint_lamp *lamp, double scale,
+                           const struct seen *seen,
+                           struct glint_star_light *light)
 {
     const double focal_mm = f->setup->optics.focal_mm;
     const double pixels = glint_frame_pixels_per_tangent(f);
     const double most = fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
     const double found = lamp->power * most,
                  all = estimate_unclipped_power(f, seen, found);
-    const double radius = compute_disc_radius(
+    const double radius = compute_lamp_disc_radius(
         f, seen, found, all, 2 * fmax(lamp->axis[0], lamp->axis[1]) * pixels);
     const double power = all * scale;
     double x, y;
@@ -253,7 +254,7 @@ static bool set_light(const struct glint_frame *f,
     return true;
 }
 
-static int by_power(const void *a, const void *b)
+static int compare_star_power(const void *a, const void *b)
 {
     const struct glint_star_light *p = a, *q = b;
 
@@ -268,8 +269,8 @@ static int by_power(const void *a, const void *b)
 
 /* Sets the star of N_LIGHTS down to light FAINTEST, or to the least light with
  * which it keeps to its fraction of the budget. */
-static void set_lights_within_budget(struct glint_frame *f, int n_lights,
-                                     double faintest)
+static void set_star_lights_within_budget(struct glint_frame *f, int n_lights,
+                                          double faintest)
 {
     struct glint_frame_star *s = &f->star;
     const double most_minsn =
@@ -289,10 +290,10 @@ static void set_lights_within_budget(struct glint_frame *f, int n_lights,
     s->pixels = 0;
 }
 
-enum glint_status glint_frame_star_set(struct glint_frame *f,
-                                       const struct glint_lamp *lamps, int n,
-                                       double scale,
-                                       const struct glint_image *image)
+enum glint_status glint_frame_star_set_lamps(struct glint_frame *f,
+                                             const struct glint_lamp *lamps,
+                                             int n, double scale,
+                                             const struct glint_image *image)
 {
     struct glint_frame_star *s = &f->star;
     enum glint_status status;
@@ -301,28 +302,30 @@ enum glint_status glint_frame_star_set(struct glint_frame *f,
     s->is_set = false;
     if (!(s->share > 0) || n == 0)
         return GLINT_OK;
-    status = glint_frame_star_hold(f, n);
+    status = glint_frame_star_allocate(f, n);
     /* what lies in the stop may let no light through */
     if (status != GLINT_OK || (s->smear_mark && !s->smear.sum))
         return status;
     for (int i = 0; i < n; i++) {
-        const struct seen seen = find_seen_lamp(f, i);
+        const struct seen seen = find_lamp_appearance(f, i);
 
-        n_lights += set_light(f, find_star_lamp(f, lamps, i), scale * s->share,
-                              &seen, &s->light[n_lights]);
+        n_lights +=
+            set_star_light(f, get_star_lamp(f, lamps, i), scale * s->share,
+                           &seen, &s->light[n_lights]);
     }
     if (n_lights > GLINT_STAR_MAX_LIGHTS)
-        qsort(s->light, (size_t)n_lights, sizeof *s->light, by_power);
-    set_lights_within_budget(
+        qsort(s->light, (size_t)n_lights, sizeof *s->light, compare_star_power);
+    set_star_lights_within_budget(
         f, n_lights,
-        STAR_CULL * glint_frame_codes_light(f, image, f->dials.cull_codes));
+        f->dials.star_cull *
+            glint_frame_convert_codes_to_light(f, image, f->dials.cull_codes));
     s->n_lights = n_lights;
     s->is_set = true;
     return GLINT_OK;
 }
 
-void glint_frame_paint(struct glint_frame *frame,
-                       const struct glint_image *image)
+void glint_frame_draw_passes(struct glint_frame *frame,
+                             const struct glint_image *image)
 {
     if (frame->veil.is_set && frame->star.is_set) {
         const struct glint_pass star =
@@ -338,13 +341,13 @@ void glint_frame_paint(struct glint_frame *frame,
 }
 
 /* Returns the largest channel of the powers of all lamps' starbursts. */
-static double find_brightest(const struct glint_frame *f,
-                             const struct glint_lamp *lamps, int n)
+static double find_max_star_power(const struct glint_frame *f,
+                                  const struct glint_lamp *lamps, int n)
 {
     double most = 0;
 
     for (int i = 0; i < n; i++) {
-        const struct glint_lamp *const lamp = find_star_lamp(f, lamps, i);
+        const struct glint_lamp *const lamp = get_star_lamp(f, lamps, i);
 
         for (int c = 0; c < 3; c++)
             most = fmax(most, lamp->power * lamp->rgb[c]);
@@ -352,22 +355,23 @@ static double find_brightest(const struct glint_frame *f,
     return most;
 }
 
-enum glint_status glint_frame_star_alone(struct glint_frame *frame,
-                                         const struct glint_lamp *lamps, int n,
-                                         double gain, int32_t *linear_q20,
-                                         float *rgb)
+enum glint_status glint_frame_star_draw_alone(struct glint_frame *frame,
+                                              const struct glint_lamp *lamps,
+                                              int n, double gain,
+                                              int32_t *linear_q20, float *rgb)
 {
     const int width = frame->view.width, height = frame->view.height;
     const size_t samples = 3 * (size_t)width * (size_t)height;
     struct glint_image layer =
         glint_image_over(linear_q20, GLINT_LINEAR_Q20, width, height);
     /* No pixel gets more than all of a lamp's light. */
-    const double most = find_brightest(frame, lamps, n) * frame->star.share;
+    const double most =
+        find_max_star_power(frame, lamps, n) * frame->star.share;
     const double scale = most > 0 ? exp2(10 - ceil(log2(most))) : 1;
     enum glint_status status;
 
     memset(linear_q20, 0, samples * sizeof *linear_q20);
-    status = glint_frame_star_set(frame, lamps, n, scale, &layer);
+    status = glint_frame_star_set_lamps(frame, lamps, n, scale, &layer);
     if (status != GLINT_OK || !frame->star.is_set)
         return status;
     glint_star_draw_alone(frame->star.star, frame->memory.flare, &layer);

@@ -43,30 +43,30 @@ struct glint_frame_star {
 /* Sets the star of LAMPS times SCALE for pictures like IMAGE, and makes tables
  * if there are none for the frame's stop. Does nothing if the fraction is 0.
  * GLINT_E_MEMORY. */
-enum glint_status glint_frame_star_set(struct glint_frame *frame,
-                                       const struct glint_lamp *lamps, int n,
-                                       double scale,
-                                       const struct glint_image *image);
+enum glint_status glint_frame_star_set_lamps(struct glint_frame *frame,
+                                             const struct glint_lamp *lamps,
+                                             int n, double scale,
+                                             const struct glint_image *image);
 
 /* Allocates the stars of N lamps and makes their tables, so that frames
  * allocate nothing. Does nothing if the fraction is 0. GLINT_E_MEMORY. */
-enum glint_status glint_frame_star_hold(struct glint_frame *frame, int n);
+enum glint_status glint_frame_star_allocate(struct glint_frame *frame, int n);
 
 /* Returns the bytes that the star of FRAME holds, for its tables and its lamps,
  * and its veil. */
-size_t glint_frame_star_bytes(const struct glint_frame *frame);
+size_t glint_frame_star_count_bytes(const struct glint_frame *frame);
 
 /* Draws the bins of the flare, and the star and the veil that are set, onto
  * IMAGE. */
-void glint_frame_paint(struct glint_frame *frame,
-                       const struct glint_image *image);
+void glint_frame_draw_passes(struct glint_frame *frame,
+                             const struct glint_image *image);
 
 /* Adds the star of LAMPS alone, times GAIN, to RGB, linear light into which
- * glint_frame_draw_alone() has drawn the ghosts. */
-enum glint_status glint_frame_star_alone(struct glint_frame *frame,
-                                         const struct glint_lamp *lamps, int n,
-                                         double gain, int32_t *linear_q20,
-                                         float *rgb);
+ * glint_frame_draw_flare_alone() has drawn the ghosts. */
+enum glint_status glint_frame_star_draw_alone(struct glint_frame *frame,
+                                              const struct glint_lamp *lamps,
+                                              int n, double gain,
+                                              int32_t *linear_q20, float *rgb);
 
 void glint_frame_star_finish(struct glint_frame_star *star);
 

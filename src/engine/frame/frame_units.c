@@ -13,8 +13,9 @@ double glint_frame_pixels_per_tangent(const struct glint_frame *f)
                 f->view.sensor_width_mm);
 }
 
-double glint_frame_codes_light(const struct glint_frame *f,
-                               const struct glint_image *image, double codes)
+double glint_frame_convert_codes_to_light(const struct glint_frame *f,
+                                          const struct glint_image *image,
+                                          double codes)
 {
     return !image || !is_in_codes(f, image)
                ? 0
@@ -22,8 +23,8 @@ double glint_frame_codes_light(const struct glint_frame *f,
                      (image->transfer == GLINT_TONE_SRGB ? 12.92 : 4.5);
 }
 
-struct glint_frame_scale glint_frame_scale_of(int brightest_log2,
-                                              int together_log2)
+struct glint_frame_scale glint_frame_compute_scale(int brightest_log2,
+                                                   int together_log2)
 {
     const int most = 23 - together_log2, likely = 5 - brightest_log2;
 

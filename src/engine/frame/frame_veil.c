@@ -35,8 +35,8 @@ bool glint_frame_has_veil(const struct glint_frame *f)
     return f->veil.glare > 0 || f->veil.haze > 0 || f->veil.front;
 }
 
-static bool are_same(const struct glint_front_optics *a,
-                     const struct glint_front_optics *b)
+static bool are_front_optics_equal(const struct glint_front_optics *a,
+                                   const struct glint_front_optics *b)
 {
     return a->tangent == b->tangent && a->z == b->z && a->radius == b->radius &&
            a->width == b->width && a->height == b->height &&
@@ -46,7 +46,7 @@ static bool are_same(const struct glint_front_optics *a,
 
 /* Makes the table of dirt on the front element if that dirt or the frame's
  * optics have changed. */
-static enum glint_status hold_front(struct glint_frame *f)
+static enum glint_status update_front_table(struct glint_frame *f)
 {
     struct glint_frame_veil *v = &f->veil;
     struct glint_front_optics optics;
@@ -54,7 +54,8 @@ static enum glint_status hold_front(struct glint_frame *f)
     if (!v->front)
         return GLINT_OK;
     v->front->method->optics(&optics, f->setup, f->lens, &f->view);
-    if (v->table && v->table_of == v->front && are_same(&optics, &v->table_for))
+    if (v->table && v->table_of == v->front &&
+        are_front_optics_equal(&optics, &v->table_for))
         return GLINT_OK;
     free(v->table);
     v->table_of = v->front;
@@ -62,7 +63,7 @@ static enum glint_status hold_front(struct glint_frame *f)
     return v->front->method->table(&v->table, v->front, &optics, f->setup);
 }
 
-enum glint_status glint_frame_veil_hold(struct glint_frame *f)
+enum glint_status glint_frame_veil_allocate(struct glint_frame *f)
 {
     struct glint_frame_veil *v = &f->veil;
     const struct glint_veil_config cfg = {
@@ -70,7 +71,7 @@ enum glint_status glint_frame_veil_hold(struct glint_frame *f)
         .width = f->view.width,
         .height = f->view.height,
         .has_front = v->front != NULL};
-    const enum glint_status status = hold_front(f);
+    const enum glint_status status = update_front_table(f);
     size_t bytes;
     void *block;
 
@@ -80,7 +81,7 @@ enum glint_status glint_frame_veil_hold(struct glint_frame *f)
     free(v->mem);
     v->veil = NULL;
     bytes = glint_veil_bytes(&cfg);
-    block = glint_block_take(bytes, &v->mem);
+    block = glint_block_allocate_aligned(bytes, &v->mem);
     if (!block)
         return GLINT_E_MEMORY;
     v->bytes = bytes;
@@ -94,15 +95,15 @@ void glint_frame_veil_finish(struct glint_frame_veil *veil)
     free(veil->table);
 }
 
-enum glint_status glint_frame_veil_look(struct glint_frame *f,
-                                        const struct glint_image *image,
-                                        double white)
+enum glint_status glint_frame_veil_read_picture(struct glint_frame *f,
+                                                const struct glint_image *image,
+                                                double white)
 {
     enum glint_status status;
 
     if (!glint_frame_has_veil(f))
         return GLINT_OK;
-    status = glint_frame_veil_hold(f);
+    status = glint_frame_veil_allocate(f);
     if (status == GLINT_OK)
         glint_veil_look(f->veil.veil, image, glint_real_of(white),
                         f->cfg.workers);
@@ -137,8 +138,8 @@ static void set_gaussian_table(int32_t *table_q30, int n, double sigma)
 }
 
 /* Makes a spread of SIGMA pixels, 0: even, that gives SHARE of all light. */
-static struct glint_veil_spread make_spread(const struct glint_frame *f,
-                                            double sigma, double share)
+static struct glint_veil_spread
+make_gaussian_spread(const struct glint_frame *f, double sigma, double share)
 {
     struct glint_veil_spread s;
     const double size[2] = {f->view.width, f->view.height};
@@ -158,48 +159,49 @@ static struct glint_veil_spread make_spread(const struct glint_frame *f,
 }
 
 /* Returns the fraction of all light that dirt on the front element scatters. */
-static double front_share(const struct glint_frame_veil *v)
+static double get_front_scattered_fraction(const struct glint_frame_veil *v)
 {
     return v->front && v->table ? v->table->mean : 0;
 }
 
 /* Returns all light / light that is not scattered. */
-static double over_direct(const struct glint_frame_veil *v)
+static double compute_total_over_direct_light(const struct glint_frame_veil *v)
 {
-    return 1 / (1 - fmin(v->glare + v->haze + front_share(v), GLINT_MOST_VEIL));
+    return 1 / (1 - fmin(v->glare + v->haze + get_front_scattered_fraction(v),
+                         GLINT_MOST_VEIL));
 }
 
 /* Sets SPREADS for haze of the fraction SHARE; returns their number. */
-static int set_haze(const struct glint_frame *f, double share,
-                    struct glint_veil_spread spreads[N_HAZE])
+static int set_haze_spreads(const struct glint_frame *f, double share,
+                            struct glint_veil_spread spreads[N_HAZE])
 {
     for (int k = 0; k < N_HAZE; k++)
-        spreads[k] = make_spread(f,
-                                 glint_frame_pixels_per_tangent(f) *
-                                     tan(haze_deg[k] * GLINT_PI / 180),
-                                 share / N_HAZE);
+        spreads[k] = make_gaussian_spread(f,
+                                          glint_frame_pixels_per_tangent(f) *
+                                              tan(haze_deg[k] * GLINT_PI / 180),
+                                          share / N_HAZE);
     return N_HAZE;
 }
 
 /* Sets SPREADS for the glare and haze of FRAME; returns their number. */
-static int set_spreads(const struct glint_frame *f,
-                       struct glint_veil_spread spreads[N_GLARE + N_HAZE])
+static int set_veil_spreads(const struct glint_frame *f,
+                            struct glint_veil_spread spreads[N_GLARE + N_HAZE])
 {
     const struct glint_frame_veil *v = &f->veil;
-    const double over = over_direct(v);
+    const double over = compute_total_over_direct_light(v);
     int n = 0;
 
     for (int k = 0; k < N_GLARE && v->glare > 0; k++)
-        spreads[n++] = make_spread(
+        spreads[n++] = make_gaussian_spread(
             f, glare[k].sigma * hypot(f->view.width, f->view.height),
             v->glare * over * glare[k].share);
     if (v->haze > 0)
-        n += set_haze(f, v->haze * over, spreads + n);
+        n += set_haze_spreads(f, v->haze * over, spreads + n);
     return n;
 }
 
 /* Scatters the light of dirt on the front, scaled by its max cover. */
-static void spread_front(const struct glint_frame *f)
+static void spread_front_dirt_light(const struct glint_frame *f)
 {
     const struct glint_frame_veil *v = &f->veil;
     struct glint_veil_spread spreads[N_HAZE];
@@ -207,7 +209,9 @@ static void spread_front(const struct glint_frame *f)
     if (v->front)
         v->front->method->spread(
             v->veil, &v->table->front, spreads,
-            set_haze(f, v->table->most * over_direct(v), spreads));
+            set_haze_spreads(
+                f, v->table->most * compute_total_over_direct_light(v),
+                spreads));
 }
 
 /* Sigma, a fraction of the diagonal, that stands for even glare of
@@ -226,7 +230,7 @@ static double compute_offscreen_fraction(const struct glint_frame *f,
                                          double far)
 {
     const struct glint_frame_veil *v = &f->veil;
-    const double haze = v->haze + front_share(v);
+    const double haze = v->haze + get_front_scattered_fraction(v);
     const double diagonal = hypot(f->view.width, f->view.height);
     double sum = 0;
 
@@ -248,7 +252,7 @@ static const double front_pixels = 0.4;
 
 /* Cost of the veil in pixels; spreading light from one cell costs as much as
  * 1 / SPREADING pixel. */
-double glint_frame_veil_pixels(const struct glint_frame *f)
+double glint_frame_veil_cost_in_pixels(const struct glint_frame *f)
 {
     const double spreading = 14;
     const int n = (f->veil.glare > 0 ? N_GLARE : 0) +
@@ -264,8 +268,8 @@ double glint_frame_veil_pixels(const struct glint_frame *f)
            3. * n * cells[0] * cells[1] * (cells[0] + cells[1]) / spreading;
 }
 
-static void add_lamp(struct glint_frame *f, const struct glint_lamp *lamp,
-                     double power)
+static void add_lamp_to_veil(struct glint_frame *f,
+                             const struct glint_lamp *lamp, double power)
 {
     const double most = fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
     int32_t rgb_q14[3];
@@ -288,9 +292,10 @@ static void add_lamp(struct glint_frame *f, const struct glint_lamp *lamp,
                     rgb_q14);
 }
 
-enum glint_status glint_frame_veil_set(struct glint_frame *f,
-                                       const struct glint_lamp *lamps, int n,
-                                       const struct glint_image *image)
+enum glint_status glint_frame_veil_set_light(struct glint_frame *f,
+                                             const struct glint_lamp *lamps,
+                                             int n,
+                                             const struct glint_image *image)
 {
     struct glint_frame_veil *v = &f->veil;
     struct glint_veil_spread spreads[N_GLARE + N_HAZE];
@@ -299,22 +304,23 @@ enum glint_status glint_frame_veil_set(struct glint_frame *f,
     v->is_set = false;
     if (!glint_frame_has_veil(f) || f->dials.flags & GLINT_DIAL_NO_VEIL)
         return GLINT_OK;
-    status = glint_frame_veil_hold(f);
+    status = glint_frame_veil_allocate(f);
     if (status == GLINT_OK && !v->has_look)
-        status = glint_frame_veil_look(f, image, 1);
+        status = glint_frame_veil_read_picture(f, image, 1);
     v->has_look = false;
     if (status != GLINT_OK)
         return status;
     for (int i = 0; i < n; i++)
-        add_lamp(f, &lamps[i], f->known ? f->known[i].excess : lamps[i].power);
-    glint_veil_spread(v->veil, spreads, set_spreads(f, spreads));
-    spread_front(f);
+        add_lamp_to_veil(f, &lamps[i],
+                         f->known ? f->known[i].excess : lamps[i].power);
+    glint_veil_spread(v->veil, spreads, set_veil_spreads(f, spreads));
+    spread_front_dirt_light(f);
     v->is_set = true;
     return GLINT_OK;
 }
 
-void glint_frame_veil_add(struct glint_frame *f, double times,
-                          int32_t *linear_q20, float *rgb)
+void glint_frame_veil_add_to_rgb(struct glint_frame *f, double times,
+                                 int32_t *linear_q20, float *rgb)
 {
     const struct glint_image layer = glint_image_over(
         linear_q20, GLINT_LINEAR_Q20, f->view.width, f->view.height);
@@ -328,10 +334,10 @@ void glint_frame_veil_add(struct glint_frame *f, double times,
         rgb[i] += (float)(linear_q20[i] * 0x1p-20 * times);
 }
 
-enum glint_status glint_frame_veil_alone(struct glint_frame *f,
-                                         const struct glint_lamp *lamps, int n,
-                                         double gain, int32_t *linear_q20,
-                                         float *rgb)
+enum glint_status glint_frame_veil_draw_alone(struct glint_frame *f,
+                                              const struct glint_lamp *lamps,
+                                              int n, double gain,
+                                              int32_t *linear_q20, float *rgb)
 {
     const struct glint_image black = glint_image_over(
         linear_q20, GLINT_LINEAR_Q20, f->view.width, f->view.height);
@@ -339,10 +345,10 @@ enum glint_status glint_frame_veil_alone(struct glint_frame *f,
     enum glint_status status;
 
     memset(linear_q20, 0, samples * sizeof *linear_q20);
-    status = glint_frame_veil_set(f, lamps, n, &black);
+    status = glint_frame_veil_set_light(f, lamps, n, &black);
     if (status == GLINT_OK)
-        glint_frame_veil_add(f,
-                             f->veil.alone_gain > 0 ? f->veil.alone_gain : gain,
-                             linear_q20, rgb);
+        glint_frame_veil_add_to_rgb(
+            f, f->veil.alone_gain > 0 ? f->veil.alone_gain : gain, linear_q20,
+            rgb);
     return status;
 }

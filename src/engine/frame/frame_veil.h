@@ -43,36 +43,37 @@ bool glint_frame_has_veil(const struct glint_frame *frame);
 /* Allocates the veil, and makes the table of dirt on the front element unless
  * there is a table for the frame's stop. Does nothing if there is no veil.
  * Returns GLINT_E_MEMORY on failure. */
-enum glint_status glint_frame_veil_hold(struct glint_frame *frame);
+enum glint_status glint_frame_veil_allocate(struct glint_frame *frame);
 
 /* Reads the light of IMAGE, whose white is WHITE, for the next frame; needed
  * if that is drawn onto another picture, as otherwise drawing reads it. Does
  * nothing without a veil. Returns GLINT_E_MEMORY on failure. */
-enum glint_status glint_frame_veil_look(struct glint_frame *frame,
-                                        const struct glint_image *image,
-                                        double white);
+enum glint_status glint_frame_veil_read_picture(struct glint_frame *frame,
+                                                const struct glint_image *image,
+                                                double white);
 
 /* Sets the veil of LAMPS and of IMAGE, unless IMAGE was read before. Does
  * nothing without a veil. Returns GLINT_E_MEMORY on failure. */
-enum glint_status glint_frame_veil_set(struct glint_frame *frame,
-                                       const struct glint_lamp *lamps, int n,
-                                       const struct glint_image *image);
+enum glint_status glint_frame_veil_set_light(struct glint_frame *frame,
+                                             const struct glint_lamp *lamps,
+                                             int n,
+                                             const struct glint_image *image);
 
 /* Adds the veil of this frame, times TIMES, to RGB, linear light.
  * LINEAR_Q20, of the same size, is scratch memory and is overwritten. Does
  * nothing without a veil. */
-void glint_frame_veil_add(struct glint_frame *frame, double times,
-                          int32_t *linear_q20, float *rgb);
+void glint_frame_veil_add_to_rgb(struct glint_frame *frame, double times,
+                                 int32_t *linear_q20, float *rgb);
 
 /* Adds the veil of LAMPS alone, times GAIN, to RGB, linear light. */
-enum glint_status glint_frame_veil_alone(struct glint_frame *frame,
-                                         const struct glint_lamp *lamps, int n,
-                                         double gain, int32_t *linear_q20,
-                                         float *rgb);
+enum glint_status glint_frame_veil_draw_alone(struct glint_frame *frame,
+                                              const struct glint_lamp *lamps,
+                                              int n, double gain,
+                                              int32_t *linear_q20, float *rgb);
 
 void glint_frame_veil_finish(struct glint_frame_veil *veil);
 
 /* Returns the cost of the veil of FRAME, as an equivalent number of pixels. */
-double glint_frame_veil_pixels(const struct glint_frame *frame);
+double glint_frame_veil_cost_in_pixels(const struct glint_frame *frame);
 
 #endif

@@ -14,7 +14,7 @@ enum { SIDE = GLINT_FRONT_SIDE, LEAST_CHORDS = 24, MOST_CHORDS = 96 };
 /* ---------------------------------------------------------------- the front */
 
 /* Returns the cover of the mask at (X, Y): its nearest pixel. */
-static double covered_by_mask(const struct glint_front *f, double x, double y)
+static double read_mask_cover(const struct glint_front *f, double x, double y)
 {
     const int i = (int)(0.5 * (x + 1) * f->mask_width);
     const int j = (int)(0.5 * (1 - y) * f->mask_height);
@@ -23,9 +23,9 @@ static double covered_by_mask(const struct glint_front *f, double x, double y)
 }
 
 /* Sets the sums along the rows of DIRT; outside the rim the cover is 0. */
-static void set_row_sums(struct glint_front_dirt *dirt,
-                         const struct glint_front *f,
-                         const struct glint_dust *dust)
+static void sum_cover_along_rows(struct glint_front_dirt *dirt,
+                                 const struct glint_front *f,
+                                 const struct glint_dust *dust)
 {
     for (int j = 0; j < SIDE; j++) {
         float *row = dirt->along + (ptrdiff_t)j * (SIDE + 1);
@@ -37,8 +37,8 @@ static void set_row_sums(struct glint_front_dirt *dirt,
             const double x = (2 * i + 1.) / SIDE - 1;
 
             if (x * x + y * y < 1)
-                sum += 1 - glint_dust_through(dust, x, y) *
-                               (1 - covered_by_mask(f, x, y));
+                sum += 1 - glint_dust_compute_transmission(dust, x, y) *
+                               (1 - read_mask_cover(f, x, y));
             row[i + 1] = (float)sum;
         }
     }
@@ -46,7 +46,7 @@ static void set_row_sums(struct glint_front_dirt *dirt,
 
 static const struct glint_front_method method;
 
-static const char *check_front(const struct glint_front *f)
+static const char *check_front_config(const struct glint_front *f)
 {
     if (!(f->dust >= 0 && f->dust <= 0.5))
         return "dust must cover 0 to 0.5 of the front element";
@@ -59,7 +59,7 @@ enum glint_status glint_front_make(struct glint_front_dirt **dirt,
                                    const struct glint_front *front,
                                    struct glint_error *error)
 {
-    const char *wrong = check_front(front);
+    const char *wrong = check_front_config(front);
     struct glint_dust *dust;
     struct glint_front_dirt *d;
 
@@ -75,8 +75,8 @@ enum glint_status glint_front_make(struct glint_front_dirt **dirt,
     if (dust && d) {
         d->method = &method;
         d->along = (float *)(void *)(d + 1);
-        glint_dust_strew(dust, front->dust, front->dust_seed);
-        set_row_sums(d, front, dust);
+        glint_dust_generate_specks(dust, front->dust, front->dust_seed);
+        sum_cover_along_rows(d, front, dust);
         *dirt = d;
     } else {
         free(d);
@@ -102,13 +102,13 @@ struct chords {
 
 /* Sets chords of SETUP's stop, whose radius is RADIUS radii of the front
  * element: one per row of cells, up to the max number. */
-static void set_chords(struct chords *c, const struct glint_setup *setup,
-                       double radius)
+static void set_stop_chords(struct chords *c, const struct glint_setup *setup,
+                            double radius)
 {
     enum { STEPS = 512 };
     struct glint_iris_sides sides;
 
-    glint_iris_sides(&sides, setup);
+    glint_iris_compute_sides(&sides, setup);
     c->n = (int)fmin(fmax(radius * SIDE, LEAST_CHORDS), MOST_CHORDS);
     c->all = 0;
     for (int k = 0; k < c->n; k++) {
@@ -116,8 +116,8 @@ static void set_chords(struct chords *c, const struct glint_setup *setup,
 
         c->y[k] = (2 * k + 1.) / c->n - 1;
         for (int i = 0; i < STEPS; i++)
-            if (glint_iris_depth(&sides, (2 * i + 1.) / STEPS - 1, c->y[k]) >=
-                0) {
+            if (glint_iris_edge_distance(&sides, (2 * i + 1.) / STEPS - 1,
+                                         c->y[k]) >= 0) {
                 first = i < first ? i : first;
                 last = i;
             }
@@ -128,7 +128,7 @@ static void set_chords(struct chords *c, const struct glint_setup *setup,
 }
 
 /* Returns the sum of the cover of a row of cells up to X, in cells. */
-static double sum_row_to(const float *row, double x)
+static double sum_row_cover_to(const float *row, double x)
 {
     const double at = fmin(fmax(x, 0), SIDE);
     const int i = (int)fmin(at, SIDE - 1);
@@ -137,22 +137,23 @@ static double sum_row_to(const float *row, double x)
 }
 
 /* Returns the cover along chord K, moved to MIDDLE, in row J. */
-static double on_row(const struct glint_front_dirt *d, const struct chords *c,
-                     int k, double scale, double middle, int j)
+static double sum_chord_cover(const struct glint_front_dirt *d,
+                              const struct chords *c, int k, double scale,
+                              double middle, int j)
 {
     const float *row = d->along + (ptrdiff_t)j * (SIDE + 1);
 
     return j < 0 || j >= SIDE
                ? 0
-               : sum_row_to(row, middle + scale * c->to[k]) -
-                     sum_row_to(row, middle + scale * c->from[k]);
+               : sum_row_cover_to(row, middle + scale * c->to[k]) -
+                     sum_row_cover_to(row, middle + scale * c->from[k]);
 }
 
 /* Returns the mean cover over a stop of RADIUS front radii, centred at (X,
  * Y) on the front element, in front radii. */
-static double mean_about(const struct glint_front_dirt *d,
-                         const struct chords *c, double radius, double x,
-                         double y)
+static double compute_mean_stop_cover(const struct glint_front_dirt *d,
+                                      const struct chords *c, double radius,
+                                      double x, double y)
 {
     const double half = 0.5 * SIDE, middle = (x + 1) * half;
     const double scale = radius * half;
@@ -161,8 +162,8 @@ static double mean_about(const struct glint_front_dirt *d,
     for (int k = 0; k < c->n; k++) {
         const double at = (y + radius * c->y[k] + 1) * half - 0.5;
         const int j = (int)floor(fmin(fmax(at, -2), SIDE));
-        const double low = on_row(d, c, k, scale, middle, j);
-        const double high = on_row(d, c, k, scale, middle, j + 1);
+        const double low = sum_chord_cover(d, c, k, scale, middle, j);
+        const double high = sum_chord_cover(d, c, k, scale, middle, j + 1);
 
         sum += low + (fmin(fmax(at, -2), SIDE) - j) * (high - low);
     }
@@ -177,7 +178,7 @@ static void set_front_optics(struct glint_front_optics *o,
                              const struct glint_lens *lens,
                              const struct glint_view *view)
 {
-    const struct glint_entrance e = glint_entrance_of(setup, lens);
+    const struct glint_entrance e = glint_entrance_find_pupil(setup, lens);
     const double front = fmax(e.front_mm, setup->optics.entrance_radius_mm);
 
     *o = (struct glint_front_optics){
@@ -194,15 +195,15 @@ static void set_front_optics(struct glint_front_optics *o,
 /* Returns the position on the front element, in its radii, through which
  * pixel AT of N looks along x, or along y if turned, at the middle of the
  * stop. */
-static double find_front_position(const struct glint_front_optics *o, double at,
-                                  int n)
+static double map_pixel_to_front(const struct glint_front_optics *o, double at,
+                                 int n)
 {
     return -o->z * o->tangent * (at - 0.5 * n);
 }
 
 /* Returns log2 of the distance between nodes at which the cover is computed;
  * 16 nodes per disc radius suffice. */
-static int choose_node_step_log2(const struct glint_front_optics *o)
+static int choose_node_step(const struct glint_front_optics *o)
 {
     const double disc =
         o->radius / (fabs(o->z * o->tangent) * GLINT_VEIL_FRONT_PX * 16 + 1e-9);
@@ -214,21 +215,21 @@ static int choose_node_step_log2(const struct glint_front_optics *o)
 }
 
 /* Sets COVERED at every STEP-th node, and interpolates between them. */
-static void set_covered(double *covered, int n_x, int n_y,
-                        const struct glint_front_dirt *dirt,
-                        const struct glint_front_optics *o,
-                        const struct glint_setup *setup)
+static void compute_node_covers(double *covered, int n_x, int n_y,
+                                const struct glint_front_dirt *dirt,
+                                const struct glint_front_optics *o,
+                                const struct glint_setup *setup)
 {
-    const int step = choose_node_step_log2(o);
+    const int step = choose_node_step(o);
     struct chords chords;
 
-    set_chords(&chords, setup, o->radius);
+    set_stop_chords(&chords, setup, o->radius);
     for (int j = 0; j < n_y; j += step)
         for (int i = 0; i < n_x; i += step)
-            covered[j * n_x + i] = mean_about(
+            covered[j * n_x + i] = compute_mean_stop_cover(
                 dirt, &chords, o->radius,
-                find_front_position(o, GLINT_VEIL_FRONT_PX * i, o->width),
-                -find_front_position(o, GLINT_VEIL_FRONT_PX * j, o->height));
+                map_pixel_to_front(o, GLINT_VEIL_FRONT_PX * i, o->width),
+                -map_pixel_to_front(o, GLINT_VEIL_FRONT_PX * j, o->height));
     /* outside the table the last node is repeated */
     for (int j = 0; j < n_y; j += step)
         for (int i = 0; i < n_x; i++) {
@@ -251,8 +252,8 @@ static void set_covered(double *covered, int n_x, int n_y,
         }
 }
 
-static void set_nodes(struct glint_front_table *t, const double *covered,
-                      uint16_t *part_q16)
+static void encode_node_covers(struct glint_front_table *t,
+                               const double *covered, uint16_t *part_q16)
 {
     const int n = t->front.n_x * t->front.n_y;
     double sum = 0;
@@ -267,10 +268,9 @@ static void set_nodes(struct glint_front_table *t, const double *covered,
         part_q16[i] = (uint16_t)lrint(65535 * covered[i] / t->most);
 }
 
-static enum glint_status make_table(struct glint_front_table **table,
-                                    const struct glint_front_dirt *dirt,
-                                    const struct glint_front_optics *optics,
-                                    const struct glint_setup *setup)
+static enum glint_status make_front_table(
+    struct glint_front_table **table, const struct glint_front_dirt *dirt,
+    const struct glint_front_optics *optics, const struct glint_setup *setup)
 {
     const int n_x = GLINT_VEIL_FRONT_NODES(optics->width);
     const int n_y = GLINT_VEIL_FRONT_NODES(optics->height);
@@ -289,38 +289,37 @@ static enum glint_status make_table(struct glint_front_table **table,
     t->front =
         (struct glint_veil_front){glint_veil_front_row, n_x, n_y,
                                   (const uint16_t *)(const void *)(t + 1)};
-    set_covered(covered, n_x, n_y, dirt, optics, setup);
-    set_nodes(t, covered, (uint16_t *)(void *)(t + 1));
+    compute_node_covers(covered, n_x, n_y, dirt, optics, setup);
+    encode_node_covers(t, covered, (uint16_t *)(void *)(t + 1));
     free(covered);
     return GLINT_OK;
 }
 
-static const struct glint_front_method method = {set_front_optics, make_table,
-                                                 glint_veil_front};
+static const struct glint_front_method method = {
+    set_front_optics, make_front_table, glint_veil_front};
 
-double glint_front_covered(const struct glint_front_dirt *dirt,
-                           const struct glint_front_optics *o,
-                           const struct glint_setup *setup, double x, double y,
-                           int steps)
+double glint_front_sum_pixel_cover(const struct glint_front_dirt *dirt,
+                                   const struct glint_front_optics *o,
+                                   const struct glint_setup *setup, double x,
+                                   double y, int steps)
 {
     struct glint_iris_sides sides;
     double sum = 0;
     int n = 0;
 
-    glint_iris_sides(&sides, setup);
+    glint_iris_compute_sides(&sides, setup);
     for (int k = 0; k < steps * steps; k++) {
         const int row = k / steps;
         const double u = (2 * (k % steps) + 1.) / steps - 1;
         const double v = (2 * row + 1.) / steps - 1;
         const double at_x =
-            (find_front_position(o, x, o->width) + o->radius * u + 1) * SIDE /
-            2;
+            (map_pixel_to_front(o, x, o->width) + o->radius * u + 1) * SIDE / 2;
         const double at_y =
-            (-find_front_position(o, y, o->height) + o->radius * v + 1) * SIDE /
+            (-map_pixel_to_front(o, y, o->height) + o->radius * v + 1) * SIDE /
             2;
         const float *row_at;
 
-        if (glint_iris_depth(&sides, u, v) < 0)
+        if (glint_iris_edge_distance(&sides, u, v) < 0)
             continue;
         n++;
         if (at_x < 0 || at_x >= SIDE || at_y < 0 || at_y >= SIDE)

@@ -74,9 +74,9 @@ struct glint_front_dirt {
 
 /* Returns the cover for the pixel at (X, Y) from the top left, summed over
  * STEPS^2 points of the stop; for tests. */
-double glint_front_covered(const struct glint_front_dirt *dirt,
-                           const struct glint_front_optics *optics,
-                           const struct glint_setup *setup, double x, double y,
-                           int steps);
+double glint_front_sum_pixel_cover(const struct glint_front_dirt *dirt,
+                                   const struct glint_front_optics *optics,
+                                   const struct glint_setup *setup, double x,
+                                   double y, int steps);
 
 #endif

@@ -14,8 +14,8 @@ static struct glint_real normalise_rgb(const double rgb[3], int32_t rgb_q14[3])
     return glint_real_of(most);
 }
 
-struct glint_wave glint_wave_of(double nm, const double rgb[3],
-                                double unit_flux)
+struct glint_wave glint_wave_from_nm(double nm, const double rgb[3],
+                                     double unit_flux)
 {
     struct glint_wave w;
     const double size = glint_real_value(normalise_rgb(rgb, w.rgb_q14));
@@ -25,7 +25,8 @@ struct glint_wave glint_wave_of(double nm, const double rgb[3],
     return w;
 }
 
-struct glint_light glint_light_of(const struct glint_lamp *l, double scale)
+struct glint_light glint_light_from_lamp(const struct glint_lamp *l,
+                                         double scale)
 {
     struct glint_light b;
     const double size = glint_real_value(normalise_rgb(l->rgb, b.rgb_q14));
@@ -40,7 +41,7 @@ struct glint_light glint_light_of(const struct glint_lamp *l, double scale)
     return b;
 }
 
-struct glint_lamp glint_lamp_of(const struct glint_light *light)
+struct glint_lamp glint_lamp_from_light(const struct glint_light *light)
 {
     return (struct glint_lamp){
         .theta_deg = atan2(light->sine_q30, light->cosine_q30) / degree,
@@ -50,8 +51,8 @@ struct glint_lamp glint_lamp_of(const struct glint_light *light)
                 light->rgb_q14[2] * 0x1p-14}};
 }
 
-int glint_light_is_beyond(const struct glint_lens *lens,
-                          const struct glint_light *light)
+int glint_light_is_outside_model(const struct glint_lens *lens,
+                                 const struct glint_light *light)
 {
     return lens && light->sine_q30 > lens->header->sine_hi_q30;
 }

@@ -8,18 +8,19 @@
 #include "glint/bake.h"
 #include "glint/flare.h"
 
-struct glint_wave glint_wave_of(double nm, const double rgb[3],
-                                double unit_flux);
+struct glint_wave glint_wave_from_nm(double nm, const double rgb[3],
+                                     double unit_flux);
 
 /* Returns LAMP as a point light, its power times SCALE. */
-struct glint_light glint_light_of(const struct glint_lamp *lamp, double scale);
+struct glint_light glint_light_from_lamp(const struct glint_lamp *lamp,
+                                         double scale);
 
 /* Returns LIGHT as a lamp of no extent. */
-struct glint_lamp glint_lamp_of(const struct glint_light *light);
+struct glint_lamp glint_lamp_from_light(const struct glint_light *light);
 
 /* Returns whether LIGHT is beyond the largest angle of LENS; 0 if LENS is NULL.
  */
-int glint_light_is_beyond(const struct glint_lens *lens,
-                          const struct glint_light *light);
+int glint_light_is_outside_model(const struct glint_lens *lens,
+                                 const struct glint_light *light);
 
 #endif

@@ -51,7 +51,7 @@ double glint_quality_named(int name)
 }
 
 /* Interpolates geometrically from A to B; PART is 0 at A, 1 at B. */
-static double interpolate_ratio(double a, double b, double part)
+static double interpolate_geometrically(double a, double b, double part)
 {
     return a > 0 && b > 0 ? a * pow(b / a, part) : a + part * (b - a);
 }
@@ -72,7 +72,7 @@ double glint_quality_place(double quality)
 /* Returns the settings at QUALITY, interpolated between levels of the table.
  * Settings that cannot be interpolated are those of the nearer level, except
  * the model: the finer one, as it costs no time. */
-static struct level find_level(double quality)
+static struct level interpolate_quality_level(double quality)
 {
     const double at = glint_quality_place(quality);
     const int below =
@@ -81,16 +81,16 @@ static struct level find_level(double quality)
     struct level l = at - below < 0.5 ? *a : *b;
 
     l.tolerance = at > below ? b->tolerance : a->tolerance;
-    l.grid = interpolate_ratio(a->grid, b->grid, at - below);
-    l.quantum = interpolate_ratio(a->quantum, b->quantum, at - below);
-    l.snap = interpolate_ratio(a->snap, b->snap, at - below);
-    l.cull = interpolate_ratio(a->cull, b->cull, at - below);
-    l.dim = interpolate_ratio(a->dim, b->dim, at - below);
-    l.points = interpolate_ratio(a->points, b->points, at - below);
-    l.still = interpolate_ratio(a->still, b->still, at - below);
+    l.grid = interpolate_geometrically(a->grid, b->grid, at - below);
+    l.quantum = interpolate_geometrically(a->quantum, b->quantum, at - below);
+    l.snap = interpolate_geometrically(a->snap, b->snap, at - below);
+    l.cull = interpolate_geometrically(a->cull, b->cull, at - below);
+    l.dim = interpolate_geometrically(a->dim, b->dim, at - below);
+    l.points = interpolate_geometrically(a->points, b->points, at - below);
+    l.still = interpolate_geometrically(a->still, b->still, at - below);
     if (a->dispersion > 0 && b->dispersion > 0)
         l.dispersion =
-            interpolate_ratio(a->dispersion, b->dispersion, at - below);
+            interpolate_geometrically(a->dispersion, b->dispersion, at - below);
     return l;
 }
 
@@ -102,7 +102,7 @@ int glint_quality_steps(double quantum)
 
 struct glint_quality glint_quality_at(double quality)
 {
-    const struct level l = find_level(quality);
+    const struct level l = interpolate_quality_level(quality);
 
     return (struct glint_quality){
         /* The fineness of grids has steps of four cells. */
@@ -133,8 +133,8 @@ double glint_quality_for_error(double px)
     const double grid = 64 * sqrt(0.1 / px);
     int i = 0;
 
-    while (i < 256 &&
-           (find_level(i / 256.).half || find_level(i / 256.).grid < grid))
+    while (i < 256 && (interpolate_quality_level(i / 256.).half ||
+                       interpolate_quality_level(i / 256.).grid < grid))
         i++;
     return i / 256.;
 }

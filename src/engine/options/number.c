@@ -9,7 +9,7 @@
 /* max number of digits; longer numbers are rejected */
 enum { MOST_DIGITS = 100 };
 
-static const char *digits_end(const char *at)
+static const char *find_digits_end(const char *at)
 {
     while (*at >= '0' && *at <= '9')
         at++;
@@ -18,16 +18,16 @@ static const char *digits_end(const char *at)
 
 /* Returns the end of the exponent at AT, such as "e-3", and sets EXPONENT;
  * returns AT if there is none. */
-static const char *exponent_end(const char *at, long *exponent)
+static const char *parse_exponent(const char *at, long *exponent)
 {
     const bool is_signed = *at && (at[1] == '-' || at[1] == '+');
     const char *const first = at + 1 + is_signed;
     const char *end;
 
     *exponent = 0;
-    if ((*at != 'e' && *at != 'E') || digits_end(first) == first)
+    if ((*at != 'e' && *at != 'E') || find_digits_end(first) == first)
         return at;
-    end = digits_end(first);
+    end = find_digits_end(first);
     if (end - first > 6)
         return at;
     *exponent = strtol(at + 1, NULL, 10);
@@ -40,9 +40,9 @@ double glint_option_number(const char *text, const char **end)
 {
     const char *const first = text + strspn(text, " \t");
     const char *const whole = first + (*first == '-' || *first == '+');
-    const char *const point = digits_end(whole);
+    const char *const point = find_digits_end(whole);
     const char *const decimals = *point == '.' ? point + 1 : point;
-    const char *const last = digits_end(decimals);
+    const char *const last = find_digits_end(decimals);
     const int n_whole = (int)(point - whole), n = (int)(last - decimals);
     char digits[MOST_DIGITS + 24];
     long exponent;
@@ -50,7 +50,7 @@ double glint_option_number(const char *text, const char **end)
     *end = text;
     if (n_whole + n == 0 || n_whole + n > MOST_DIGITS)
         return 0;
-    *end = exponent_end(last, &exponent);
+    *end = parse_exponent(last, &exponent);
     snprintf(digits, sizeof digits, "%s%.*s%.*se%ld", *first == '-' ? "-" : "",
              n_whole, whole, n, decimals, exponent - n);
     return strtod(digits, NULL);

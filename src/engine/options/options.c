@@ -77,7 +77,8 @@ const struct glint_option *glint_option_named(const char *name)
 /* ------------------------------------------------------------------- setting
  */
 
-static void store_value(struct glint_options *options, int i, double value)
+static void store_option_value(struct glint_options *options, int i,
+                               double value)
 {
     void *const at = (char *)options + place[i].begin;
 
@@ -93,39 +94,42 @@ static void store_value(struct glint_options *options, int i, double value)
     }
 }
 
-static void store_text(struct glint_options *options, int i, const char *text)
+static void store_option_text(struct glint_options *options, int i,
+                              const char *text)
 {
     *(const char **)((char *)options + place[i].begin) = text;
 }
 
 /* Returns whether OPTIONS, which may be an older program's smaller struct,
  * contain row I. */
-static bool has_row(const struct glint_options *options, int i)
+static bool has_option_row(const struct glint_options *options, int i)
 {
     return place[i].end <= options->size;
 }
 
 /* Returns the index of option NAME of OPTIONS, or -1. */
-static int find_row(const struct glint_options *options, const char *name)
+static int find_option_row(const struct glint_options *options,
+                           const char *name)
 {
     const struct glint_option *const option = glint_option_named(name);
     const int i = option ? (int)(option - table) : -1;
 
-    return i >= 0 && has_row(options, i) ? i : -1;
+    return i >= 0 && has_option_row(options, i) ? i : -1;
 }
 
 void glint_options_defaults_sized(struct glint_options *options, size_t size)
 {
     memset(options, 0, size);
     options->size = size;
-    for (int i = 0; i < GLINT_N_OPTIONS && has_row(options, i); i++)
+    for (int i = 0; i < GLINT_N_OPTIONS && has_option_row(options, i); i++)
         if (table[i].type == GLINT_OPTION_TEXT)
-            store_text(options, i, table[i].text[0] ? table[i].text : NULL);
+            store_option_text(options, i,
+                              table[i].text[0] ? table[i].text : NULL);
         else if (!isnan(table[i].initial))
-            store_value(options, i, table[i].initial);
+            store_option_value(options, i, table[i].initial);
 }
 
-struct glint_options glint_options_whole(const struct glint_options *options)
+struct glint_options glint_options_complete(const struct glint_options *options)
 {
     struct glint_options whole;
 
@@ -138,8 +142,8 @@ struct glint_options glint_options_whole(const struct glint_options *options)
 
 /* Returns the number of words of OPTION; sets WORD and N to word INDEX and
  * its length. */
-static int find_word(const struct glint_option *option, int index, size_t *n,
-                     const char **word)
+static int find_option_word(const struct glint_option *option, int index,
+                            size_t *n, const char **word)
 {
     const char *at = option->accepts;
     int count = 0;
@@ -157,20 +161,20 @@ static int find_word(const struct glint_option *option, int index, size_t *n,
     }
 }
 
-static int word_index(const struct glint_option *option, const char *text)
+static int find_word_index(const struct glint_option *option, const char *text)
 {
     const char *word = NULL;
     size_t n = 0;
 
-    for (int i = 0; i < find_word(option, i, &n, &word); i++)
+    for (int i = 0; i < find_option_word(option, i, &n, &word); i++)
         if (strlen(text) == n && memcmp(text, word, n) == 0)
             return i;
     return -1;
 }
 
 /* Writes "UNIT, LOW to HIGH, or WORD". */
-static void accepts_number(const struct glint_option *option, char *text,
-                           size_t bytes)
+static void describe_number_range(const struct glint_option *option, char *text,
+                                  size_t bytes)
 {
     const char *const unit = option->accepts;
     const bool is_word = strncmp(unit, "or ", 3) == 0;
@@ -206,9 +210,9 @@ void glint_option_accepts(const struct glint_option *option, char *text,
         snprintf(text, bytes, "%s", option->accepts);
         break;
     case GLINT_OPTION_WORD:
-        count = find_word(option, 0, &n, &word);
+        count = find_option_word(option, 0, &n, &word);
         for (int i = 0; i < count && used < (int)bytes; i++) {
-            find_word(option, i, &n, &word);
+            find_option_word(option, i, &n, &word);
             used += snprintf(text + used, bytes - (size_t)used, "%s%.*s",
                              i == 0           ? ""
                              : i == count - 1 ? " or "
@@ -217,26 +221,26 @@ void glint_option_accepts(const struct glint_option *option, char *text,
         }
         break;
     default:
-        accepts_number(option, text, bytes);
+        describe_number_range(option, text, bytes);
     }
 }
 
-static enum glint_status reject_value(const struct glint_option *option,
-                                      struct glint_error *error)
+static enum glint_status reject_option_value(const struct glint_option *option,
+                                             struct glint_error *error)
 {
     glint_option_accepts(option, error->text, sizeof error->text);
     return GLINT_E_ARGUMENT;
 }
 
-static enum glint_status reject_name(const char *name,
-                                     struct glint_error *error)
+static enum glint_status reject_option_name(const char *name,
+                                            struct glint_error *error)
 {
     snprintf(error->text, sizeof error->text, "there is no option %s", name);
     return GLINT_E_ARGUMENT;
 }
 
 /* If two options exclude each other, the one set last is used. */
-static void note_given(struct glint_options *options, int i)
+static void mark_option_given(struct glint_options *options, int i)
 {
     options->given[i] = true;
     if (i == GLINT_OPTION_OF_strength)
@@ -252,8 +256,8 @@ static void note_given(struct glint_options *options, int i)
 }
 
 /* Returns whether option I of OPTIONS accepts VALUE, which is in its range. */
-static bool accepts_value(const struct glint_options *options, int i,
-                          double value)
+static bool is_option_value_accepted(const struct glint_options *options, int i,
+                                     double value)
 {
     switch (i) {
     case GLINT_OPTION_OF_dispersion:
@@ -271,25 +275,25 @@ enum glint_status glint_options_set(struct glint_options *options,
                                     const char *name, double value,
                                     struct glint_error *error)
 {
-    const int i = find_row(options, name);
+    const int i = find_option_row(options, name);
     const struct glint_option *const option = i < 0 ? NULL : &table[i];
     const char *word;
     double high;
     size_t n;
 
     if (!option)
-        return reject_name(name, error);
+        return reject_option_name(name, error);
     if (option->type == GLINT_OPTION_TEXT)
-        return reject_value(option, error);
+        return reject_option_value(option, error);
     high = option->type == GLINT_OPTION_WORD
-               ? find_word(option, -1, &n, &word) - 1
+               ? find_option_word(option, -1, &n, &word) - 1
                : option->high;
     if (!(value >= option->low && value <= high) || isinf(value) ||
         (option->type != GLINT_OPTION_REAL && value != floor(value)) ||
-        !accepts_value(options, i, value))
-        return reject_value(option, error);
-    store_value(options, i, value);
-    note_given(options, i);
+        !is_option_value_accepted(options, i, value))
+        return reject_option_value(option, error);
+    store_option_value(options, i, value);
+    mark_option_given(options, i);
     return GLINT_OK;
 }
 
@@ -297,8 +301,8 @@ enum glint_status glint_options_set(struct glint_options *options,
  */
 
 /* Reads TEXT as a word that stands for a value of numeric option I. */
-static bool named_number(struct glint_options *options, int i, const char *text,
-                         double *value)
+static bool parse_named_number(struct glint_options *options, int i,
+                               const char *text, double *value)
 {
     if (i == GLINT_OPTION_OF_starburst && strcmp(text, "off") == 0) {
         *value = 0;
@@ -321,7 +325,7 @@ static bool named_number(struct glint_options *options, int i, const char *text,
 }
 
 /* Reads TEXT as the value of a flag; NULL and "": yes. */
-static bool flag_value(const char *text, double *value)
+static bool parse_flag_value(const char *text, double *value)
 {
     static const char *const words[] = {"no", "yes", "0", "1"};
 
@@ -336,17 +340,18 @@ static bool flag_value(const char *text, double *value)
     return false;
 }
 
-static enum glint_status set_text(struct glint_options *options, int i,
-                                  const char *text, struct glint_error *error)
+static enum glint_status set_text_option(struct glint_options *options, int i,
+                                         const char *text,
+                                         struct glint_error *error)
 {
     const bool is_set = text && *text;
 
-    if (is_set && !glint_text_is_valid((enum glint_option_id)i, text))
-        return reject_value(&table[i], error);
-    store_text(options, i,
-               is_set             ? text
-               : table[i].text[0] ? table[i].text
-                                  : NULL);
+    if (is_set && !glint_option_text_is_valid((enum glint_option_id)i, text))
+        return reject_option_value(&table[i], error);
+    store_option_text(options, i,
+                      is_set             ? text
+                      : table[i].text[0] ? table[i].text
+                                         : NULL);
     options->given[i] = is_set;
     return GLINT_OK;
 }
@@ -355,35 +360,35 @@ enum glint_status glint_options_set_text(struct glint_options *options,
                                          const char *name, const char *text,
                                          struct glint_error *error)
 {
-    const int i = find_row(options, name);
+    const int i = find_option_row(options, name);
     const struct glint_option *const option = i < 0 ? NULL : &table[i];
     double value = 1;
 
     error->text[0] = '\0';
     if (!option)
-        return reject_name(name, error);
+        return reject_option_name(name, error);
     switch (option->type) {
     case GLINT_OPTION_TEXT:
-        return set_text(options, i, text, error);
+        return set_text_option(options, i, text, error);
     case GLINT_OPTION_FLAG:
-        if (!flag_value(text, &value))
-            return reject_value(option, error);
+        if (!parse_flag_value(text, &value))
+            return reject_option_value(option, error);
         break;
     case GLINT_OPTION_WORD:
-        value = text ? word_index(option, text) : -1;
+        value = text ? find_word_index(option, text) : -1;
         break;
     default:
         if (!text)
-            return reject_value(option, error);
+            return reject_option_value(option, error);
         /* Without a distance the lens is focused at infinity. */
         if (i == GLINT_OPTION_OF_focus && strcmp(text, "inf") == 0) {
             options->focus = 0;
             options->given[i] = true;
             return GLINT_OK;
         }
-        if (!named_number(options, i, text, &value) &&
+        if (!parse_named_number(options, i, text, &value) &&
             glint_option_numbers(text, &value, 1) != 1)
-            return reject_value(option, error);
+            return reject_option_value(option, error);
     }
     return glint_options_set(options, name, value, error);
 }
@@ -393,7 +398,7 @@ enum glint_status glint_options_set_text(struct glint_options *options,
 
 struct glint_quality glint_options_quality(const struct glint_options *options)
 {
-    const struct glint_options whole = glint_options_whole(options);
+    const struct glint_options whole = glint_options_complete(options);
     const struct glint_options *const o = &whole;
     struct glint_quality q = glint_quality_at(o->quality);
 

@@ -10,8 +10,8 @@
 /* Reads a number LOW .. HIGH after NAME at *AT, and moves *AT past the comma
  * after it or to the end of the text. Returns false, without changing *AT,
  * if the text does not begin with NAME. */
-static bool read_part(const char **at, const char *name, double low,
-                      double high, double *value)
+static bool parse_named_part(const char **at, const char *name, double low,
+                             double high, double *value)
 {
     const size_t n = strlen(name);
     const char *end;
@@ -39,15 +39,16 @@ bool glint_option_stop(const char *text, struct glint_stop_shape *stop)
         if (text[6] && text[6] != ',')
             return false;
         at += text[6] ? 7 : 6;
-    } else if (!read_part(&at, "polygon:", 3, GLINT_MAX_BLADES, &n) ||
+    } else if (!parse_named_part(&at, "polygon:", 3, GLINT_MAX_BLADES, &n) ||
                n != floor(n))
         return false;
     if (!is_circle && *at && *at != 'r' && *at != 's' &&
-        !read_part(&at, "", -1e9, 1e9, &s.rotation_deg))
+        !parse_named_part(&at, "", -1e9, 1e9, &s.rotation_deg))
         return false;
     while (*at)
-        if ((is_circle || !read_part(&at, "round:", 0, 1, &s.roundness)) &&
-            !read_part(&at, "soft:", 0, 1, &s.softness))
+        if ((is_circle ||
+             !parse_named_part(&at, "round:", 0, 1, &s.roundness)) &&
+            !parse_named_part(&at, "soft:", 0, 1, &s.softness))
             return false;
     if (at > text && at[-1] == ',')
         return false;
@@ -148,7 +149,7 @@ bool glint_option_light(const char *text, struct glint_lamp *lamp)
     return true;
 }
 
-bool glint_text_is_valid(enum glint_option_id id, const char *text)
+bool glint_option_text_is_valid(enum glint_option_id id, const char *text)
 {
     struct glint_stop_shape stop;
     struct glint_waves waves;

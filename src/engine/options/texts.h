@@ -10,10 +10,11 @@
 /* Returns whether option ID accepts TEXT, which is not empty. Does not look
  * up names of files and lenses, and does not parse coatings, as that needs
  * the offline half. */
-bool glint_text_is_valid(enum glint_option_id id, const char *text);
+bool glint_option_text_is_valid(enum glint_option_id id, const char *text);
 
 /* Returns OPTIONS, perhaps the smaller struct of an older program, with the
  * defaults of the rows that it does not have. */
-struct glint_options glint_options_whole(const struct glint_options *options);
+struct glint_options
+glint_options_complete(const struct glint_options *options);
 
 #endif

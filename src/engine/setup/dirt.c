@@ -13,7 +13,8 @@ enum { NODES = (1 << GLINT_DIRT_LOG2) + 1 };
 /* ----------------------------------------------------------------- doubles */
 
 /* Returns the light of the mask at (X, Y), interpolated between four pixels. */
-static double of_mask(const struct glint_iris *iris, double x, double y)
+static double interpolate_mask(const struct glint_iris *iris, double x,
+                               double y)
 {
     const double u = 0.5 * (x + 1) * iris->mask_width - 0.5;
     const double v = 0.5 * (1 - y) * iris->mask_height - 0.5;
@@ -30,30 +31,33 @@ static double of_mask(const struct glint_iris *iris, double x, double y)
 }
 
 /* Returns the fraction of light that passes dust and mask at (X, Y). */
-static double read_clear_light(const struct glint_dirt *d, double x, double y)
+static double compute_dirt_transmission(const struct glint_dirt *d, double x,
+                                        double y)
 {
     const double u = x * d->cos_turn + y * d->sin_turn;
     const double v = y * d->cos_turn - x * d->sin_turn;
-    const double light = d->dust.n ? glint_dust_through(&d->dust, u, v) : 1;
+    const double light =
+        d->dust.n ? glint_dust_compute_transmission(&d->dust, u, v) : 1;
 
-    return d->iris.mask ? light * of_mask(&d->iris, u, v) : light;
+    return d->iris.mask ? light * interpolate_mask(&d->iris, u, v) : light;
 }
 
-static double read_light(const struct glint_dirt *d, double x, double y)
+static double compute_stop_transmission(const struct glint_dirt *d, double x,
+                                        double y)
 {
     const double soft = d->iris.softness;
     double in;
 
     if (!(soft > 0))
-        return read_clear_light(d, x, y);
-    in = fmin(fmax(glint_iris_depth(&d->sides, x, y) / soft, 0), 1);
-    return in * in * (3 - 2 * in) * read_clear_light(d, x, y);
+        return compute_dirt_transmission(d, x, y);
+    in = fmin(fmax(glint_iris_edge_distance(&d->sides, x, y) / soft, 0), 1);
+    return in * in * (3 - 2 * in) * compute_dirt_transmission(d, x, y);
 }
 
 /* ------------------------------------------------------------------- table */
 
 /* Returns the mean light of the cell around node (I, J) of the finest level. */
-static double mean_about(const struct glint_dirt *d, int i, int j)
+static double compute_mean_around_node(const struct glint_dirt *d, int i, int j)
 {
     enum { N = 2 };
     const double cell = 2.0 / (NODES - 1);
@@ -63,20 +67,21 @@ static double mean_about(const struct glint_dirt *d, int i, int j)
         const int row = k / N;
         const double a = (k % N + 0.5) / N - 0.5, b = (row + 0.5) / N - 0.5;
 
-        sum += read_light(d, (i + a) * cell - 1, (j + b) * cell - 1);
+        sum += compute_stop_transmission(d, (i + a) * cell - 1,
+                                         (j + b) * cell - 1);
     }
     return sum / (N * N);
 }
 
-static void set_finest(struct glint_dirt *d)
+static void set_finest_level(struct glint_dirt *d)
 {
     for (int j = 0; j < NODES; j++)
         for (int i = 0; i < NODES; i++)
             d->node_q15[j * NODES + i] =
-                (uint16_t)lrint(mean_about(d, i, j) * 32768);
+                (uint16_t)lrint(compute_mean_around_node(d, i, j) * 32768);
 }
 
-static void set_mean(struct glint_dirt *d)
+static void set_mean_transmission(struct glint_dirt *d)
 {
     enum { N = 400 };
     double sum = 0, mean;
@@ -87,9 +92,9 @@ static void set_mean(struct glint_dirt *d)
         const double x = (2 * (k % N) + 1.0) / N - 1;
         const double y = (2 * row + 1.0) / N - 1;
 
-        if (glint_iris_depth(&d->sides, x, y) < 0)
+        if (glint_iris_edge_distance(&d->sides, x, y) < 0)
             continue;
-        sum += read_light(d, x, y);
+        sum += compute_stop_transmission(d, x, y);
         n++;
     }
     mean = sum / n;
@@ -99,8 +104,8 @@ static void set_mean(struct glint_dirt *d)
 /* Sets a level of COARSER nodes per side from the next finer one of SIDE
  * nodes per side: each node is the mean of the nodes around it, with weights
  * 1/4, 1/2, 1/4 across and down. */
-static void set_coarser(const uint16_t *finer, int side, uint16_t *level,
-                        int coarser)
+static void downsample_level(const uint16_t *finer, int side, uint16_t *level,
+                             int coarser)
 {
     static const int weight[3] = {1, 2, 1};
 
@@ -120,7 +125,7 @@ static void set_coarser(const uint16_t *finer, int side, uint16_t *level,
         }
 }
 
-static size_t all_nodes(void)
+static size_t count_nodes_of_all_levels(void)
 {
     size_t n = 0;
 
@@ -136,8 +141,9 @@ static size_t all_nodes(void)
  * finer levels up to REACH nodes around it: the nodes of the next finer
  * level, of FINE_SIDE nodes per side, and their own differences to still
  * finer levels. */
-static int find_roughness(const uint16_t *fine, const uint8_t *rough,
-                          int fine_side, int i, int j, int reach, int value)
+static int find_node_roughness(const uint16_t *fine, const uint8_t *rough,
+                               int fine_side, int i, int j, int reach,
+                               int value)
 {
     int most = 0;
 
@@ -156,7 +162,7 @@ static int find_roughness(const uint16_t *fine, const uint8_t *rough,
 }
 
 /* Returns a digest of the N nodes and the sides of D, never 0 [FNV-1a]. */
-static uint64_t compute_digest(const struct glint_dirt *d, int n)
+static uint64_t compute_shade_digest(const struct glint_dirt *d, int n)
 {
     uint64_t mark = UINT64_C(0xcbf29ce484222325);
     const int sides[3] = {d->sides.n, (int)lrint(d->sides.round * 0x1p20),
@@ -169,7 +175,7 @@ static uint64_t compute_digest(const struct glint_dirt *d, int n)
     return mark | 1;
 }
 
-static void set_table(struct glint_dirt *d)
+static void make_shade_table(struct glint_dirt *d)
 {
     uint16_t *light = d->node_q15;
     uint8_t *rough = d->rough_q8;
@@ -178,17 +184,17 @@ static void set_table(struct glint_dirt *d)
     d->shade = (struct glint_shade){
         .method = &glint_shade_method,
         .log2 = d->dust.n || d->iris.mask ? GLINT_DIRT_LOG2 : 0};
-    set_mean(d);
+    set_mean_transmission(d);
     /* A table includes the soft edge. */
     if (!d->shade.log2) {
         d->shade.soft_q16 = (int32_t)lrint(d->iris.softness * 65536);
         return;
     }
-    set_finest(d);
-    d->mark = compute_digest(d, side * side);
+    set_finest_level(d);
+    d->mark = compute_shade_digest(d, side * side);
     for (int i = 0; i < side * side; i++)
-        rough[i] = (uint8_t)find_roughness(light, NULL, side, i % side,
-                                           i / side, 1, light[i]);
+        rough[i] = (uint8_t)find_node_roughness(light, NULL, side, i % side,
+                                                i / side, 1, light[i]);
     for (int k = 0; k < GLINT_DIRT_LOG2; k++) {
         const int n = side * side, coarser = side / 2 + 1;
 
@@ -196,11 +202,11 @@ static void set_table(struct glint_dirt *d)
         d->shade.rough_q8[k] = rough;
         if (k + 1 == GLINT_DIRT_LOG2)
             break;
-        set_coarser(light, side, light + n, coarser);
+        downsample_level(light, side, light + n, coarser);
         for (int i = 0; i < coarser * coarser; i++)
-            rough[n + i] =
-                (uint8_t)find_roughness(light, rough, side, 2 * (i % coarser),
-                                        2 * (i / coarser), 3, light[n + i]);
+            rough[n + i] = (uint8_t)find_node_roughness(
+                light, rough, side, 2 * (i % coarser), 2 * (i / coarser), 3,
+                light[n + i]);
         light += n;
         rough += n;
         side = coarser;
@@ -210,7 +216,7 @@ static void set_table(struct glint_dirt *d)
 /* -------------------------------------------------------------------- iris
  */
 
-static const char *check_iris(const struct glint_iris *i)
+static const char *check_iris_config(const struct glint_iris *i)
 {
     if (!(i->roundness >= 0 && i->roundness <= 1))
         return "the roundness of blades must be 0 to 1";
@@ -223,30 +229,31 @@ static const char *check_iris(const struct glint_iris *i)
     return NULL;
 }
 
-static bool is_dirty(const struct glint_iris *i)
+static bool has_iris_dirt(const struct glint_iris *i)
 {
     return i->softness > 0 || i->dust > 0 || i->mask;
 }
 
-static struct glint_dirt *make_dirt(const struct glint_setup *setup)
+static struct glint_dirt *make_stop_dirt(const struct glint_setup *setup)
 {
     struct glint_dirt *d = calloc(1, sizeof *d);
 
     if (!d)
         return NULL;
     d->iris = setup->iris;
-    d->through = read_light;
+    d->through = compute_stop_transmission;
     d->cos_turn = glint_cos_deg(setup->blade_rotation_deg);
     d->sin_turn = glint_sin_deg(setup->blade_rotation_deg);
-    d->node_q15 = malloc(all_nodes() * sizeof *d->node_q15);
-    d->rough_q8 = malloc(all_nodes() * sizeof *d->rough_q8);
+    d->node_q15 = malloc(count_nodes_of_all_levels() * sizeof *d->node_q15);
+    d->rough_q8 = malloc(count_nodes_of_all_levels() * sizeof *d->rough_q8);
     if (!d->node_q15 || !d->rough_q8) {
         glint_dirt_free(d);
         return NULL;
     }
-    glint_iris_sides(&d->sides, setup);
-    glint_dust_strew(&d->dust, setup->iris.dust, setup->iris.dust_seed);
-    set_table(d);
+    glint_iris_compute_sides(&d->sides, setup);
+    glint_dust_generate_specks(&d->dust, setup->iris.dust,
+                               setup->iris.dust_seed);
+    make_shade_table(d);
     return d;
 }
 
@@ -260,8 +267,8 @@ enum glint_status glint_setup_iris(struct glint_setup *setup,
                                    struct glint_dirt **dirt,
                                    struct glint_error *error)
 {
-    const double before = glint_iris_share(setup);
-    const char *const wrong = check_iris(iris);
+    const double before = glint_iris_area_fraction(setup);
+    const char *const wrong = check_iris_config(iris);
 
     *dirt = NULL;
     if (wrong) {
@@ -271,8 +278,8 @@ enum glint_status glint_setup_iris(struct glint_setup *setup,
     setup->iris = *iris;
     setup->dirt = NULL;
     setup->clear = 1;
-    if (is_dirty(iris)) {
-        *dirt = make_dirt(setup);
+    if (has_iris_dirt(iris)) {
+        *dirt = make_stop_dirt(setup);
         if (!*dirt) {
             snprintf(error->text, sizeof error->text, "not enough memory");
             return GLINT_E_MEMORY;
@@ -281,6 +288,6 @@ enum glint_status glint_setup_iris(struct glint_setup *setup,
         setup->clear = (*dirt)->mean;
     }
     for (int i = 0; i < setup->n_wavelengths; i++)
-        setup->direct_flux[i] *= glint_iris_share(setup) / before;
-    return glint_setup_units(setup, "the lens", error);
+        setup->direct_flux[i] *= glint_iris_area_fraction(setup) / before;
+    return glint_setup_set_unit_flux(setup, "the lens", error);
 }

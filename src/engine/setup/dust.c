@@ -15,33 +15,34 @@ struct draw {
 
 /* Returns a number in 0 .. 1 (excluded): the upper bits of a linear
  * congruential generator; the same on every machine. */
-static double draw_random(struct draw *d)
+static double generate_random(struct draw *d)
 {
     d->state = d->state * UINT64_C(6364136223846793005) +
                UINT64_C(1442695040888963407);
     return (double)(d->state >> 40) * 0x1p-24;
 }
 
-static double draw_between(struct draw *d, double a, double b)
+static double generate_random_between(struct draw *d, double a, double b)
 {
-    return a + (b - a) * draw_random(d);
+    return a + (b - a) * generate_random(d);
 }
 
 /* Sets AT to a random position, uniform in the unit circle. */
-static void draw_position(struct draw *d, double at[2])
+static void generate_random_position(struct draw *d, double at[2])
 {
-    const double r = sqrt(draw_random(d)), phi = 2 * GLINT_PI * draw_random(d);
+    const double r = sqrt(generate_random(d)),
+                 phi = 2 * GLINT_PI * generate_random(d);
 
     at[0] = r * cos(phi);
     at[1] = r * sin(phi);
 }
 
-static void add_disc(struct glint_dust *dust, struct draw *d, double radius,
-                     double rim, double opacity)
+static void add_dust_disc(struct glint_dust *dust, struct draw *d,
+                          double radius, double rim, double opacity)
 {
     struct glint_speck *s = &dust->speck[dust->n++];
 
-    draw_position(d, s->end[0]);
+    generate_random_position(d, s->end[0]);
     s->end[1][0] = s->end[0][0];
     s->end[1][1] = s->end[0][1];
     s->radius = radius;
@@ -52,19 +53,19 @@ static void add_disc(struct glint_dust *dust, struct draw *d, double radius,
 static void add_scratch(struct glint_dust *dust, struct draw *d)
 {
     struct glint_speck *s = &dust->speck[dust->n++];
-    const double length = draw_between(d, 0.2, 1),
-                 phi = 2 * GLINT_PI * draw_random(d);
+    const double length = generate_random_between(d, 0.2, 1),
+                 phi = 2 * GLINT_PI * generate_random(d);
 
-    draw_position(d, s->end[0]);
+    generate_random_position(d, s->end[0]);
     s->end[1][0] = s->end[0][0] + length * cos(phi);
     s->end[1][1] = s->end[0][1] + length * sin(phi);
-    s->radius = draw_between(d, 0.004, 0.01);
+    s->radius = generate_random_between(d, 0.004, 0.01);
     s->rim = 0.5;
-    s->opacity = draw_between(d, 0.2, 0.6);
+    s->opacity = generate_random_between(d, 0.2, 0.6);
 }
 
 /* Sets the bounding square of S. */
-static void set_box(struct glint_speck *s)
+static void set_bounding_square(struct glint_speck *s)
 {
     double half = 0;
 
@@ -75,7 +76,8 @@ static void set_box(struct glint_speck *s)
     s->reach = half + s->radius * (1 + s->rim);
 }
 
-void glint_dust_strew(struct glint_dust *dust, double amount, int seed)
+void glint_dust_generate_specks(struct glint_dust *dust, double amount,
+                                int seed)
 {
     /* A disc covers the square of its radius as a fraction of the circle. */
     const int n_lines = (int)ceil(fmin(8, 40 * amount));
@@ -91,29 +93,32 @@ void glint_dust_strew(struct glint_dust *dust, double amount, int seed)
     for (int i = 0; i < n_smudges; i++) {
         /* One draw per statement, as the order in which arguments are
          * evaluated is not defined. */
-        const double opacity = fmin(amount * draw_between(&d, 0.5, 2), 0.5);
-        const double radius = draw_between(&d, 0.15, 0.4);
+        const double opacity =
+            fmin(amount * generate_random_between(&d, 0.5, 2), 0.5);
+        const double radius = generate_random_between(&d, 0.15, 0.4);
 
-        add_disc(dust, &d, radius, 0.9, opacity);
+        add_dust_disc(dust, &d, radius, 0.9, opacity);
     }
     while (left > 0 && dust->n < GLINT_DUST_MOST) {
         const double radius = least_radius * pow(most_radius / least_radius,
-                                                 pow(draw_random(&d), 1.5));
+                                                 pow(generate_random(&d), 1.5));
 
-        add_disc(dust, &d, radius, 0.3, draw_between(&d, 0.3, 0.95));
+        add_dust_disc(dust, &d, radius, 0.3,
+                      generate_random_between(&d, 0.3, 0.95));
         left -= radius * radius;
     }
     for (int i = 0; i < dust->n; i++)
-        set_box(&dust->speck[i]);
+        set_bounding_square(&dust->speck[i]);
 }
 
-static double square(double x)
+static double square_number(double x)
 {
     return x * x;
 }
 
 /* Returns the square of the distance of (X, Y) from the line of S. */
-static double distance2(const struct glint_speck *s, double x, double y)
+static double compute_squared_line_distance(const struct glint_speck *s,
+                                            double x, double y)
 {
     const double ax = s->end[1][0] - s->end[0][0];
     const double ay = s->end[1][1] - s->end[0][1];
@@ -122,10 +127,11 @@ static double distance2(const struct glint_speck *s, double x, double y)
     const double t =
         length2 > 0 ? fmin(fmax((ax * bx + ay * by) / length2, 0), 1) : 0;
 
-    return square(bx - t * ax) + square(by - t * ay);
+    return square_number(bx - t * ax) + square_number(by - t * ay);
 }
 
-double glint_dust_through(const struct glint_dust *dust, double x, double y)
+double glint_dust_compute_transmission(const struct glint_dust *dust, double x,
+                                       double y)
 {
     double light = 1;
 
@@ -137,7 +143,7 @@ double glint_dust_through(const struct glint_dust *dust, double x, double y)
         if (fabs(x - s->middle[0]) > s->reach ||
             fabs(y - s->middle[1]) > s->reach)
             continue;
-        far2 = distance2(s, x, y);
+        far2 = compute_squared_line_distance(s, x, y);
         if (far2 >= end * end)
             continue;
         in = fmin((end - sqrt(far2)) / (2 * s->radius * s->rim), 1);

@@ -24,9 +24,11 @@ struct glint_dust {
  * the stop's circle, limited to GLINT_DUST_MOST specks, and to scratches and
  * smudges whose number grows with AMOUNT. The same SEED gives the same
  * positions. */
-void glint_dust_strew(struct glint_dust *dust, double amount, int seed);
+void glint_dust_generate_specks(struct glint_dust *dust, double amount,
+                                int seed);
 
 /* Returns the fraction of light that passes the dust at (X, Y). */
-double glint_dust_through(const struct glint_dust *dust, double x, double y);
+double glint_dust_compute_transmission(const struct glint_dust *dust, double x,
+                                       double y);
 
 #endif

@@ -45,8 +45,8 @@ static bool find_chief_ray(const struct glint_lens *lens, int ghost,
 /* A ghost that is reflected only behind the stop reaches the stop as direct
  * light does: on the axis, a stop radius corresponds to a radius of the
  * entrance pupil. These ghosts are the last of a model. */
-static double z_of_model(const struct glint_setup *setup,
-                         const struct glint_lens *lens)
+static double compute_pupil_z_from_model(const struct glint_setup *setup,
+                                         const struct glint_lens *lens)
 {
     const double sine = 0.03, tangent = sine / sqrt(1 - sine * sine);
     const double radius = glint_real_value(lens->header->entrance_radius_mm);
@@ -65,13 +65,13 @@ static double z_of_model(const struct glint_setup *setup,
            fmax(field, 1e-6);
 }
 
-struct glint_entrance glint_entrance_of(const struct glint_setup *setup,
-                                        const struct glint_lens *lens)
+struct glint_entrance glint_entrance_find_pupil(const struct glint_setup *setup,
+                                                const struct glint_lens *lens)
 {
     if (setup->lens || !lens)
         return (struct glint_entrance){
             setup->optics.entrance_z_mm,
             setup->lens ? setup->lens->surface[0].semi_mm : 0};
-    return (struct glint_entrance){z_of_model(setup, lens),
+    return (struct glint_entrance){compute_pupil_z_from_model(setup, lens),
                                    glint_real_value(lens->header->front_mm)};
 }

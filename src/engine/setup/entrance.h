@@ -16,7 +16,7 @@ struct glint_entrance {
 /* Returns the position of the entrance pupil of SETUP. LENS is the model
  * whose polynomials give it, or NULL if the setup was made from a lens
  * table. */
-struct glint_entrance glint_entrance_of(const struct glint_setup *setup,
-                                        const struct glint_lens *lens);
+struct glint_entrance glint_entrance_find_pupil(const struct glint_setup *setup,
+                                                const struct glint_lens *lens);
 
 #endif

@@ -19,16 +19,16 @@ struct glint_iris_sides {
     double normal[GLINT_MAX_BLADES][2]; /* outwards */
 };
 
-void glint_iris_sides(struct glint_iris_sides *sides,
-                      const struct glint_setup *setup);
+void glint_iris_compute_sides(struct glint_iris_sides *sides,
+                              const struct glint_setup *setup);
 
 /* Returns how far (X, Y) lies inside side SIDE: the distance where that is
  * small, and less than that beyond a corner. */
-double glint_iris_inside(const struct glint_iris_sides *sides, int side,
-                         double x, double y);
+double glint_iris_side_distance(const struct glint_iris_sides *sides, int side,
+                                double x, double y);
 
 /* Returns how far (X, Y) lies inside the nearest side. */
-double glint_iris_depth(const struct glint_iris_sides *sides, double x,
-                        double y);
+double glint_iris_edge_distance(const struct glint_iris_sides *sides, double x,
+                                double y);
 
 #endif

@@ -32,10 +32,10 @@ static void normalise_colours(struct glint_setup *s)
     }
 }
 
-static void set_colours(struct glint_setup *s)
+static void set_wavelength_colours(struct glint_setup *s)
 {
     for (int i = 0; i < s->n_wavelengths; i++) {
-        glint_observer_rgb(s->wavelength_nm[i], s->rgb[i]);
+        glint_observer_compute_rgb(s->wavelength_nm[i], s->rgb[i]);
         for (int c = 0; s->n_wavelengths == 3 && c < 3; c++)
             s->rgb[i][c] = c == i;
     }
@@ -43,9 +43,9 @@ static void set_colours(struct glint_setup *s)
         normalise_colours(s);
 }
 
-enum glint_status glint_setup_check(int n_blades, double rotation_deg,
-                                    const double *wavelength_nm, int n,
-                                    struct glint_error *error)
+enum glint_status glint_setup_check_arguments(int n_blades, double rotation_deg,
+                                              const double *wavelength_nm,
+                                              int n, struct glint_error *error)
 {
     if (n_blades != 0 && (n_blades < 3 || n_blades > GLINT_MAX_BLADES))
         snprintf(error->text, sizeof error->text,
@@ -71,8 +71,9 @@ enum glint_status glint_setup_check(int n_blades, double rotation_deg,
     return GLINT_E_ARGUMENT;
 }
 
-void glint_setup_common(struct glint_setup *s, int n_blades,
-                        double rotation_deg, const double *wavelength_nm, int n)
+void glint_setup_init_common(struct glint_setup *s, int n_blades,
+                             double rotation_deg, const double *wavelength_nm,
+                             int n)
 {
     s->opening = 1;
     s->iris = (struct glint_iris){0};
@@ -83,11 +84,12 @@ void glint_setup_common(struct glint_setup *s, int n_blades,
     s->n_sets = 0;
     s->n_wavelengths = n;
     memcpy(s->wavelength_nm, wavelength_nm, (size_t)n * sizeof *wavelength_nm);
-    set_colours(s);
+    set_wavelength_colours(s);
 }
 
-enum glint_status glint_setup_units(struct glint_setup *s, const char *name,
-                                    struct glint_error *error)
+enum glint_status glint_setup_set_unit_flux(struct glint_setup *s,
+                                            const char *name,
+                                            struct glint_error *error)
 {
     const int n = s->n_wavelengths;
     double mean = 0;
@@ -107,7 +109,8 @@ enum glint_status glint_setup_units(struct glint_setup *s, const char *name,
 }
 
 /* Evaluates the polynomial COEF, N powers, at W. */
-static double of_powers(const struct glint_real *coef, int n, double w)
+static double evaluate_polynomial(const struct glint_real *coef, int n,
+                                  double w)
 {
     double sum = 0;
 
@@ -118,16 +121,19 @@ static double of_powers(const struct glint_real *coef, int n, double w)
 
 /* Returns the model's flux through a stop of OPENING at NM, which is clamped to
  * the model's band. */
-static double model_flux(const struct glint_model_header *h, double opening,
-                         double nm)
+static double compute_model_flux(const struct glint_model_header *h,
+                                 double opening, double nm)
 {
     const double lo = h->wave_lo_q24, hi = h->wave_hi_q24;
     const double wave = 0x1p24 * 1e6 / (nm * nm);
     const double w = fmax(-1, fmin(1, (2 * wave - lo - hi) / fmax(1, hi - lo)));
     const double closed = 1 - opening * opening;
-    const double flux = of_powers(h->direct_flux, GLINT_FLUX_TERMS, w);
-    const double first = of_powers(h->stopped_flux[0], GLINT_FLUX_TERMS, w);
-    const double second = of_powers(h->stopped_flux[1], GLINT_FLUX_TERMS, w);
+    const double flux =
+        evaluate_polynomial(h->direct_flux, GLINT_FLUX_TERMS, w);
+    const double first =
+        evaluate_polynomial(h->stopped_flux[0], GLINT_FLUX_TERMS, w);
+    const double second =
+        evaluate_polynomial(h->stopped_flux[1], GLINT_FLUX_TERMS, w);
 
     return opening * opening * (flux + closed * (first + closed * second));
 }
@@ -140,7 +146,7 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
                                          struct glint_error *error)
 {
     const struct glint_model_header *h = lens->header;
-    const enum glint_status status = glint_setup_check(
+    const enum glint_status status = glint_setup_check_arguments(
         n_blades, blade_rotation_deg, wavelength_nm, n, error);
 
     if (status != GLINT_OK)
@@ -162,11 +168,12 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
     for (int k = 0; k < setup->n_ghosts; k++)
         setup->ghost[k] =
             (struct glint_ghost){(int)lens->ghost[k].i, (int)lens->ghost[k].j};
-    glint_setup_common(setup, n_blades, blade_rotation_deg, wavelength_nm, n);
+    glint_setup_init_common(setup, n_blades, blade_rotation_deg, wavelength_nm,
+                            n);
     for (int i = 0; i < n; i++)
-        setup->direct_flux[i] =
-            glint_iris_share(setup) * model_flux(h, 1, wavelength_nm[i]);
-    return glint_setup_units(setup, h->name, error);
+        setup->direct_flux[i] = glint_iris_area_fraction(setup) *
+                                compute_model_flux(h, 1, wavelength_nm[i]);
+    return glint_setup_set_unit_flux(setup, h->name, error);
 }
 
 enum glint_status glint_setup_stop_down(struct glint_setup *setup,
@@ -191,9 +198,10 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
     setup->optics.entrance_radius_mm *= by;
     setup->optics.stop_radius_mm *= by;
     for (int i = 0; i < setup->n_wavelengths; i++)
-        setup->direct_flux[i] = glint_iris_share(setup) *
-                                model_flux(h, by, setup->wavelength_nm[i]);
-    return glint_setup_units(setup, h->name, error);
+        setup->direct_flux[i] =
+            glint_iris_area_fraction(setup) *
+            compute_model_flux(h, by, setup->wavelength_nm[i]);
+    return glint_setup_set_unit_flux(setup, h->name, error);
 }
 
 void glint_setup_weigh(struct glint_setup *setup)
@@ -210,7 +218,7 @@ void glint_setup_weigh(struct glint_setup *setup)
 
 /* Returns the flux of the direct image at NM, interpolated by a parabola in
  * 1 / wavelength^2 through three wavelengths of SETUP. */
-static double flux_between(const struct glint_setup *s, double nm)
+static double interpolate_direct_flux(const struct glint_setup *s, double nm)
 {
     const int at[3] = {0, s->n_wavelengths / 2, s->n_wavelengths - 1};
     double sum = 0;
@@ -251,9 +259,10 @@ void glint_setup_spread(struct glint_setup *setup,
             wave[i].nm = nm[i];
             memcpy(wave[i].rgb, rgb[i], sizeof rgb[i]);
             wave[i].direct_flux =
-                lens ? glint_iris_share(setup) *
-                           model_flux(lens->header, setup->opening, nm[i])
-                     : flux_between(setup, nm[i]);
+                lens ? glint_iris_area_fraction(setup) *
+                           compute_model_flux(lens->header, setup->opening,
+                                              nm[i])
+                     : interpolate_direct_flux(setup, nm[i]);
             mean += share[i] * wave[i].direct_flux;
         }
         for (int i = 0; i < sizes[s]; i++)

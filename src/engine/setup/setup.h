@@ -8,22 +8,23 @@
 
 /* Validates stop and wavelengths. Returns GLINT_E_ARGUMENT if one is out of
  * range; ERROR names it. */
-enum glint_status glint_setup_check(int n_blades, double rotation_deg,
-                                    const double *wavelength_nm, int n,
-                                    struct glint_error *error);
+enum glint_status glint_setup_check_arguments(int n_blades, double rotation_deg,
+                                              const double *wavelength_nm,
+                                              int n, struct glint_error *error);
 
 /* Sets stop, wavelengths and colours of SETUP from validated arguments. */
-void glint_setup_common(struct glint_setup *setup, int n_blades,
-                        double rotation_deg, const double *wavelength_nm,
-                        int n);
+void glint_setup_init_common(struct glint_setup *setup, int n_blades,
+                             double rotation_deg, const double *wavelength_nm,
+                             int n);
 
 /* Sets unit_flux of all wavelengths to the mean of direct_flux. Returns
  * GLINT_E_LENS if lens NAME passes no light at some wavelength. */
-enum glint_status glint_setup_units(struct glint_setup *setup, const char *name,
-                                    struct glint_error *error);
+enum glint_status glint_setup_set_unit_flux(struct glint_setup *setup,
+                                            const char *name,
+                                            struct glint_error *error);
 
 /* Returns the light that passes the stop of SETUP / the light that passes a
  * circular stop. Direct light is uniform over the stop to 1/10000. */
-double glint_iris_share(const struct glint_setup *setup);
+double glint_iris_area_fraction(const struct glint_setup *setup);
 
 #endif

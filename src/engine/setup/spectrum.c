@@ -31,8 +31,8 @@ enum {
 };
 
 /* Returns a Gaussian with different widths below and above its centre. */
-static double evaluate_lobe(double nm, double centre, double below,
-                            double above)
+static double evaluate_gaussian_lobe(double nm, double centre, double below,
+                                     double above)
 {
     const double t = (nm - centre) / (nm < centre ? below : above);
 
@@ -41,18 +41,18 @@ static double evaluate_lobe(double nm, double centre, double below,
 
 /* Sets XYZ of the CIE 1931 2 degree observer by the multi-lobe fit of
  * [Wyman13], table 1; within 1 % of the peak of the tabulated functions. */
-static void evaluate_observer(double nm, double xyz[3])
+static void evaluate_cie_observer(double nm, double xyz[3])
 {
-    xyz[0] = 1.056 * evaluate_lobe(nm, 599.8, 37.9, 31.0) +
-             0.362 * evaluate_lobe(nm, 442.0, 16.0, 26.7) -
-             0.065 * evaluate_lobe(nm, 501.1, 20.4, 26.2);
-    xyz[1] = 0.821 * evaluate_lobe(nm, 568.8, 46.9, 40.5) +
-             0.286 * evaluate_lobe(nm, 530.9, 16.3, 31.1);
-    xyz[2] = 1.217 * evaluate_lobe(nm, 437.0, 11.8, 36.0) +
-             0.681 * evaluate_lobe(nm, 459.0, 26.0, 13.8);
+    xyz[0] = 1.056 * evaluate_gaussian_lobe(nm, 599.8, 37.9, 31.0) +
+             0.362 * evaluate_gaussian_lobe(nm, 442.0, 16.0, 26.7) -
+             0.065 * evaluate_gaussian_lobe(nm, 501.1, 20.4, 26.2);
+    xyz[1] = 0.821 * evaluate_gaussian_lobe(nm, 568.8, 46.9, 40.5) +
+             0.286 * evaluate_gaussian_lobe(nm, 530.9, 16.3, 31.1);
+    xyz[2] = 1.217 * evaluate_gaussian_lobe(nm, 437.0, 11.8, 36.0) +
+             0.681 * evaluate_gaussian_lobe(nm, 459.0, 26.0, 13.8);
 }
 
-static void to_bt709(const double xyz[3], double rgb[3])
+static void convert_xyz_to_bt709(const double xyz[3], double rgb[3])
 {
     static const double m[3][3] = {{3.2404542, -1.5371385, -0.4985314},
                                    {-0.9692660, 1.8760108, 0.0415560},
@@ -62,20 +62,20 @@ static void to_bt709(const double xyz[3], double rgb[3])
         rgb[c] = m[c][0] * xyz[0] + m[c][1] * xyz[1] + m[c][2] * xyz[2];
 }
 
-void glint_observer_rgb(double nm, double rgb[3])
+void glint_observer_compute_rgb(double nm, double rgb[3])
 {
     double xyz[3];
 
-    evaluate_observer(nm, xyz);
-    to_bt709(xyz, rgb);
+    evaluate_cie_observer(nm, xyz);
+    convert_xyz_to_bt709(xyz, rgb);
 }
 
 /* Sets the colours of all wavelengths, scaled so that a flat spectrum is white.
  */
-static void all_colours(double rgb[N_ALL][3])
+static void compute_all_colours(double rgb[N_ALL][3])
 {
     for (int j = 0; j < N_ALL; j++)
-        glint_observer_rgb(FIRST_NM + STEP_NM * j, rgb[j]);
+        glint_observer_compute_rgb(FIRST_NM + STEP_NM * j, rgb[j]);
     for (int c = 0; c < 3; c++) {
         double sum = 0;
 
@@ -87,11 +87,11 @@ static void all_colours(double rgb[N_ALL][3])
 }
 
 /* Returns the density of wavelengths at NM, in arbitrary units. */
-static double evaluate_density(double nm)
+static double compute_wavelength_density(double nm)
 {
     double rgb[3], squares = 0;
 
-    glint_observer_rgb(nm, rgb);
+    glint_observer_compute_rgb(nm, rgb);
     for (int c = 0; c < 3; c++)
         squares += rgb[c] * rgb[c];
     return cbrt(squares / (nm * nm * nm)); /* d (1 / nm^2) ~ nm^-3 */
@@ -105,9 +105,9 @@ static void place_wavelengths(int n, double *wavelength_nm)
     int i = 0;
 
     for (int nm = FIRST_NM; nm < LAST_NM; nm++)
-        sum += evaluate_density(nm + 0.5);
+        sum += compute_wavelength_density(nm + 0.5);
     for (int nm = FIRST_NM; nm < LAST_NM; nm++) {
-        const double here = evaluate_density(nm + 0.5);
+        const double here = compute_wavelength_density(nm + 0.5);
 
         for (; i < n && sum * (i + 0.5) / n < passed + here; i++)
             wavelength_nm[i] = nm + (sum * (i + 0.5) / n - passed) / here;
@@ -117,7 +117,9 @@ static void place_wavelengths(int n, double *wavelength_nm)
 
 /* Returns the index of the first of the wavelengths from which the value at
  * NM is interpolated. */
-static int first_near(int n, const double *wavelength_nm, double nm)
+static int find_first_interpolated_wavelength(int n,
+                                              const double *wavelength_nm,
+                                              double nm)
 {
     int i = 0;
 
@@ -130,12 +132,12 @@ static int first_near(int n, const double *wavelength_nm, double nm)
 
 /* Returns the weight of wavelength K in the interpolated value at NM:
  * Lagrange's polynomial. */
-static double compute_wave_share(int n, const double *wavelength_nm, int k,
-                                 double nm)
+static double compute_lagrange_weight(int n, const double *wavelength_nm, int k,
+                                      double nm)
 {
     const double at = fmin(fmax(nm, wavelength_nm[0] - BEYOND_NM),
                            wavelength_nm[n - 1] + BEYOND_NM);
-    const int first = first_near(n, wavelength_nm, at);
+    const int first = find_first_interpolated_wavelength(n, wavelength_nm, at);
     double share = 1;
 
     if (k < first || k >= first + POINTS)
@@ -152,13 +154,13 @@ void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
 {
     double all[N_ALL][3];
 
-    all_colours(all);
+    compute_all_colours(all);
     place_wavelengths(n, wavelength_nm);
     for (int k = 0; k < n; k++) {
         share[k] = rgb[k][0] = rgb[k][1] = rgb[k][2] = 0;
         for (int j = 0; j < N_ALL; j++) {
-            const double part =
-                compute_wave_share(n, wavelength_nm, k, FIRST_NM + STEP_NM * j);
+            const double part = compute_lagrange_weight(n, wavelength_nm, k,
+                                                        FIRST_NM + STEP_NM * j);
 
             share[k] += part / N_ALL;
             for (int c = 0; c < 3; c++)

@@ -7,6 +7,6 @@
 
 /* Sets RGB to the linear BT.709 colour of light of wavelength NM, by the CIE
  * 1931 observer; channels are negative for colours outside the gamut. */
-void glint_observer_rgb(double nm, double rgb[3]);
+void glint_observer_compute_rgb(double nm, double rgb[3]);
 
 #endif

@@ -9,7 +9,7 @@ void glint_setup_stop(const struct glint_setup *setup, struct glint_stop *stop)
     const int n = setup->n_blades;
     struct glint_iris_sides sides;
 
-    glint_iris_sides(&sides, setup);
+    glint_iris_compute_sides(&sides, setup);
     *stop = (struct glint_stop){.n_blades = n,
                                 .apothem_q16 = 1 << 16,
                                 .opening_q30 =

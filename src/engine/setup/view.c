@@ -24,7 +24,7 @@ struct glint_view glint_view_fit(int width, int height, double film_width_mm,
 #define MOST_DEG 89.9
 #define MOST_RHO 1e6
 
-static bool is_tangent(const struct glint_projection *p)
+static bool is_rectilinear(const struct glint_projection *p)
 {
     bool zero = true;
 
@@ -33,7 +33,8 @@ static bool is_tangent(const struct glint_projection *p)
     return zero;
 }
 
-static double bend_radius(const struct glint_projection *p, double rho)
+static double compute_polynomial_angle_deg(const struct glint_projection *p,
+                                           double rho)
 {
     const double r = fmin(rho, p->reach), r2 = r * r;
     double sum = 0;
@@ -46,9 +47,9 @@ static double bend_radius(const struct glint_projection *p, double rho)
 double glint_projection_deg(const struct glint_projection *projection,
                             double rho)
 {
-    return is_tangent(projection)
+    return is_rectilinear(projection)
                ? atan(rho) * (180 / GLINT_PI)
-               : fmin(MOST_DEG, bend_radius(projection, rho));
+               : fmin(MOST_DEG, compute_polynomial_angle_deg(projection, rho));
 }
 
 double glint_projection_rho(const struct glint_projection *projection,
@@ -57,10 +58,10 @@ double glint_projection_rho(const struct glint_projection *projection,
     enum { DOUBLINGS = 64, HALVINGS = 60 };
     double lo = 0, hi = 1;
 
-    if (is_tangent(projection))
+    if (is_rectilinear(projection))
         return glint_sin_deg(theta_deg) / glint_cos_deg(theta_deg);
     for (int k = 0; k < DOUBLINGS && hi < MOST_RHO &&
-                    bend_radius(projection, hi) < theta_deg;
+                    compute_polynomial_angle_deg(projection, hi) < theta_deg;
          k++) {
         lo = hi;
         hi *= 2;
@@ -68,7 +69,7 @@ double glint_projection_rho(const struct glint_projection *projection,
     for (int k = 0; k < HALVINGS; k++) {
         const double middle = 0.5 * (lo + hi);
 
-        if (bend_radius(projection, middle) < theta_deg)
+        if (compute_polynomial_angle_deg(projection, middle) < theta_deg)
             lo = middle;
         else
             hi = middle;

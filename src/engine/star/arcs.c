@@ -30,7 +30,7 @@ static int count_summed_sides(int n)
 }
 
 /* Returns the direction of the normal in the middle of side I. */
-static double compute_normal(const struct glint_arcs *a, int i)
+static double compute_side_normal_angle(const struct glint_arcs *a, int i)
 {
     return a->rotation_deg * (GLINT_PI / 180) + (i + 0.5) * 2 * GLINT_PI / a->n;
 }
@@ -38,7 +38,7 @@ static double compute_normal(const struct glint_arcs *a, int i)
 /* Returns C(x) + i S(x), Fresnel's integrals of pi t^2 / 2: (1 + i) / 2 erf(z)
  * with z = sqrt(pi) (1 - i) x / 2, by its series or by the continued fraction
  * of erfc(z) = exp(-z^2) / sqrt(pi) / (z + 1/2 / (z + 1 / (z + 3/2 / ...))). */
-static double complex fresnel(double x)
+static double complex compute_fresnel_integral(double x)
 {
     const double ax = fabs(x), half = 0.5 * sqrt(GLINT_PI) * ax;
     double complex value;
@@ -72,7 +72,7 @@ static double complex fresnel(double x)
 }
 
 /* Returns what is taken at the end W beside the Fresnel integral. */
-static double complex end_of(double w, double kappa)
+static double complex compute_arc_end_correction(double w, double kappa)
 {
     const double g = 2 * (1 - 2 * w * w) / sqrt(1 - w * w) - 2;
     const double phase = kappa * w * w;
@@ -85,7 +85,8 @@ static double complex end_of(double w, double kappa)
 /* Returns the integral along an arc whose normal is turned by TO from the
  * direction of q, but for its phase in the middle. On the far side of the stop
  * it is the same, with phases turned round. */
-static double complex arc(const struct glint_arcs *a, double q, double to)
+static double complex integrate_arc_asymptotically(const struct glint_arcs *a,
+                                                   double q, double to)
 {
     const double at = fabs(remainder(to, 2 * GLINT_PI));
     const double near = at > 0.5 * GLINT_PI ? GLINT_PI - at : at;
@@ -93,18 +94,23 @@ static double complex arc(const struct glint_arcs *a, double q, double to)
     const double w1 = sin(0.5 * (-a->turn - near));
     const double w2 = sin(0.5 * (a->turn - near));
     const double scale = sqrt(2 * kappa / GLINT_PI);
-    const double complex middle =
-        2 * (fresnel(w2 * scale) - fresnel(w1 * scale)) / scale;
+    const double complex middle = 2 *
+                                  (compute_fresnel_integral(w2 * scale) -
+                                   compute_fresnel_integral(w1 * scale)) /
+                                  scale;
 
-    return q / a->round * (middle + end_of(w2, kappa) - end_of(w1, kappa));
+    return q / a->round *
+           (middle + compute_arc_end_correction(w2, kappa) -
+            compute_arc_end_correction(w1, kappa));
 }
 
 /* --------------------------------------------------------------------- near */
 
 /* Returns the integral along one arc, with its phase: Simpson's rule, with a
  * few points for each turn of the phase. */
-static double complex along(const struct glint_arcs *a, double normal, double q,
-                            double direction)
+static double complex integrate_arc_numerically(const struct glint_arcs *a,
+                                                double normal, double q,
+                                                double direction)
 {
     const double to = direction - normal, radius = 1 / a->round;
     const int steps =
@@ -123,11 +129,12 @@ static double complex along(const struct glint_arcs *a, double normal, double q,
 }
 
 /* Returns the same far from the middle. */
-static double complex along_far(const struct glint_arcs *a, double normal,
-                                double q, double direction)
+static double complex integrate_arc_far_from_centre(const struct glint_arcs *a,
+                                                    double normal, double q,
+                                                    double direction)
 {
     const double to = direction - normal;
-    const double complex size = arc(a, q, to);
+    const double complex size = integrate_arc_asymptotically(a, q, to);
     const int is_behind = cos(to) < 0;
     const double phase =
         2 * GLINT_PI * q *
@@ -137,7 +144,8 @@ static double complex along_far(const struct glint_arcs *a, double normal,
            (cos(phase) - i_unit * sin(phase));
 }
 
-double glint_arcs_transform(const struct glint_arcs *a, double qx, double qy)
+double glint_arcs_compute_pattern(const struct glint_arcs *a, double qx,
+                                  double qy)
 {
     const double q = hypot(qx, qy), direction = atan2(qy, qx);
     double complex sum = 0;
@@ -147,7 +155,8 @@ double glint_arcs_transform(const struct glint_arcs *a, double qx, double qy)
         return 1;
     for (int i = 0; i < count_summed_sides(a->n); i++)
         sum +=
-            (q > 5 ? along_far : along)(a, compute_normal(a, i), q, direction);
+            (q > 5 ? integrate_arc_far_from_centre : integrate_arc_numerically)(
+                a, compute_side_normal_angle(a, i), q, direction);
     size = (a->n % 2 ? cabs(sum) : 2 * cimag(sum)) /
            (2 * GLINT_PI * q * q * a->area);
     return size * size;
@@ -155,7 +164,8 @@ double glint_arcs_transform(const struct glint_arcs *a, double qx, double qy)
 
 /* ---------------------------------------------------------------------- far */
 
-double glint_arcs_far(const struct glint_arcs *a, double qx, double qy)
+double glint_arcs_compute_far_pattern(const struct glint_arcs *a, double qx,
+                                      double qy)
 {
     const double q = hypot(qx, qy), to = atan2(qy, qx);
     /* an angle at which the ends of an arc do not stand out any more */
@@ -163,8 +173,9 @@ double glint_arcs_far(const struct glint_arcs *a, double qx, double qy)
     double sum = 0;
 
     for (int i = 0; i < count_summed_sides(a->n); i++) {
-        const double normal = compute_normal(a, i);
-        const double size = cabs(arc(a, q, normal - to));
+        const double normal = compute_side_normal_angle(a, i);
+        const double size =
+            cabs(integrate_arc_asymptotically(a, q, normal - to));
         /* the corner after it: normals of both arcs there */
         const double one = to - (normal + a->turn);
         const double other = to - (normal + 2 * GLINT_PI / a->n - a->turn);

@@ -31,10 +31,11 @@ void glint_arcs_init(struct glint_arcs *arcs, int n, double rotation_deg,
 
 /* Returns |F(q)|^2 / A^2 by adding up the outline; q is in cycles per stop
  * radius, x right, y up. */
-double glint_arcs_transform(const struct glint_arcs *arcs, double qx,
-                            double qy);
+double glint_arcs_compute_pattern(const struct glint_arcs *arcs, double qx,
+                                  double qy);
 
 /* Returns the same far out, without the fringes between different arcs. */
-double glint_arcs_far(const struct glint_arcs *arcs, double qx, double qy);
+double glint_arcs_compute_far_pattern(const struct glint_arcs *arcs, double qx,
+                                      double qy);
 
 #endif

@@ -30,14 +30,14 @@ struct cells {
     double (*sum)[3]; /* [side + 1][side + 1] */
 };
 
-static double (*at(const struct cells *s, int i, int k))[3]
+static double (*find_cell_sum(const struct cells *s, int i, int k))[3]
 {
     return &s->sum[(i + s->half) * (s->side + 1) + k + s->half];
 }
 
 /* Returns the number of sample points per side of a cell whose middle is R
  * pixels from the light. */
-static int count_points(const struct glint_psf *psf, double r)
+static int count_cell_samples(const struct glint_psf *psf, double r)
 {
     const double fine = r < 12 * psf->airy_px + 0.5
                             ? psf->airy_px / 8
@@ -47,11 +47,12 @@ static int count_points(const struct glint_psf *psf, double r)
     return (int)fmin(fmax(ceil(1.0 / CELLS / fine), 1), most);
 }
 
-static void cell_light(const struct cells *s, int i, int k, double rgb[3])
+static void integrate_cell_light(const struct cells *s, int i, int k,
+                                 double rgb[3])
 {
     const struct glint_psf *psf = s->psf;
     const double side = 1.0 / CELLS;
-    const int n = count_points(psf, side * hypot(i + 0.5, k + 0.5));
+    const int n = count_cell_samples(psf, side * hypot(i + 0.5, k + 0.5));
 
     rgb[0] = rgb[1] = rgb[2] = 0;
     for (int p = 0; p < n * n; p++) {
@@ -60,15 +61,15 @@ static void cell_light(const struct cells *s, int i, int k, double rgb[3])
         const double y = side * (i + (row + 0.5) / n);
         double here[3];
 
-        glint_psf_light(psf, x, y, here);
+        glint_psf_compute_light(psf, x, y, here);
         for (int c = 0; c < 3; c++)
             rgb[c] += here[c] * side * side / (n * n);
     }
     if (s->smear) {
         double more[3];
 
-        glint_smear_light(s->smear, psf, s->airy_px, side * (k + 0.5),
-                          side * (i + 0.5), side / 2, more);
+        glint_smear_compute_light(s->smear, psf, s->airy_px, side * (k + 0.5),
+                                  side * (i + 0.5), side / 2, more);
         for (int c = 0; c < 3; c++)
             rgb[c] = rgb[c] * s->smear->clear + more[c] * side * side;
     }
@@ -76,18 +77,19 @@ static void cell_light(const struct cells *s, int i, int k, double rgb[3])
 
 /* Returns the fraction of the light of channel C that lies farther out than R
  * pixels. */
-static double integrate_beyond(const struct cells *s, double r, int c)
+static double compute_light_beyond(const struct cells *s, double r, int c)
 {
-    const double all = glint_psf_beyond(s->psf, r, c);
+    const double all = glint_psf_compute_light_beyond(s->psf, r, c);
 
-    return s->smear ? s->smear->clear * all +
-                          glint_smear_beyond(s->smear, s->psf, s->airy_px, r, c)
-                    : all;
+    return s->smear
+               ? s->smear->clear * all + glint_smear_compute_light_beyond(
+                                             s->smear, s->psf, s->airy_px, r, c)
+               : all;
 }
 
 /* Stores the light of each cell where its sum will be; the half above the
  * light mirrors the half below. */
-static void set_cells(struct cells *s)
+static void compute_cell_lights(struct cells *s)
 {
     double missing[3] = {0, 0, 0};
     const double r = (double)s->half / CELLS;
@@ -96,46 +98,50 @@ static void set_cells(struct cells *s)
         for (int k = -s->half; k < s->half; k++) {
             double rgb[3];
 
-            cell_light(s, i, k, rgb);
+            integrate_cell_light(s, i, k, rgb);
             for (int c = 0; c < 3; c++) {
-                (*at(s, i + 1, k + 1))[c] = rgb[c];
-                (*at(s, -i, -k))[c] = rgb[c];
+                (*find_cell_sum(s, i + 1, k + 1))[c] = rgb[c];
+                (*find_cell_sum(s, -i, -k))[c] = rgb[c];
                 if (hypot(i + 0.5, k + 0.5) < s->half)
                     missing[c] += 2 * rgb[c];
             }
         }
     for (int c = 0; c < 3; c++) {
-        const double more = (1 - integrate_beyond(s, r, c) - missing[c]) / 4;
+        const double more =
+            (1 - compute_light_beyond(s, r, c) - missing[c]) / 4;
 
         for (int p = 0; p < 4; p++)
-            (*at(s, p / 2, p % 2))[c] += more;
+            (*find_cell_sum(s, p / 2, p % 2))[c] += more;
     }
 }
 
-static void sum_cells(struct cells *s)
+static void make_summed_area_table(struct cells *s)
 {
     for (int i = -s->half; i < s->half; i++)
         for (int k = -s->half; k < s->half; k++)
             for (int c = 0; c < 3; c++)
-                (*at(s, i + 1, k + 1))[c] += (*at(s, i, k + 1))[c] +
-                                             (*at(s, i + 1, k))[c] -
-                                             (*at(s, i, k))[c];
+                (*find_cell_sum(s, i + 1, k + 1))[c] +=
+                    (*find_cell_sum(s, i, k + 1))[c] +
+                    (*find_cell_sum(s, i + 1, k))[c] -
+                    (*find_cell_sum(s, i, k))[c];
 }
 
 /* Sets RGB to the light of the pixel centred at (X, Y), in cells. */
-static void pixel_light(const struct cells *s, int y, int x, double rgb[3])
+static void sum_pixel_light(const struct cells *s, int y, int x, double rgb[3])
 {
     const int h = CELLS / 2;
 
     for (int c = 0; c < 3; c++)
-        rgb[c] = (*at(s, y + h, x + h))[c] - (*at(s, y - h, x + h))[c] -
-                 (*at(s, y + h, x - h))[c] + (*at(s, y - h, x - h))[c];
+        rgb[c] = (*find_cell_sum(s, y + h, x + h))[c] -
+                 (*find_cell_sum(s, y - h, x + h))[c] -
+                 (*find_cell_sum(s, y + h, x - h))[c] +
+                 (*find_cell_sum(s, y - h, x - h))[c];
 }
 
 /* --------------------------------------------------------------- far field */
 
-static double halo_log2(const struct glint_star_tables *t, double row,
-                        double column, int c)
+static double interpolate_halo_log2(const struct glint_star_tables *t,
+                                    double row, double column, int c)
 {
     const double i = fmin(fmax(row, 0), GLINT_STAR_HALO_ROWS - 1.0001);
     const double k = fmin(fmax(column, 0), GLINT_STAR_HALO_COLUMNS - 1.0001);
@@ -147,8 +153,8 @@ static double halo_log2(const struct glint_star_tables *t, double row,
     return (near + (far - near) * (i - i0)) / 2048 + t->halo_log2_q16 / 65536.0;
 }
 
-void glint_star_tabled(const struct glint_star_tables *t, double x, double y,
-                       double rgb[3])
+void glint_star_evaluate_far_tables(const struct glint_star_tables *t, double x,
+                                    double y, double rgb[3])
 {
     const double inner = t->inner_q8 / 256.0, reach = t->reach_q8 / 256.0;
     const double r2 = fmax(x * x + y * y, inner * inner);
@@ -169,14 +175,15 @@ void glint_star_tabled(const struct glint_star_tables *t, double x, double y,
                       glint_real_value(t->step) * (1 - less) / r2;
     }
     for (int c = 0; c < 3; c++)
-        rgb[c] += exp2(halo_log2(t, 2 * (log2(r2) - 4),
-                                 4 * log2(1 + 4 * nearest / reach), c)) /
-                  r2;
+        rgb[c] +=
+            exp2(interpolate_halo_log2(t, 2 * (log2(r2) - 4),
+                                       4 * log2(1 + 4 * nearest / reach), c)) /
+            r2;
 }
 
 /* -------------------------------------------------------------------- core */
 
-static uint16_t encode_light(double light)
+static uint16_t encode_core_light(double light)
 {
     const unsigned sign = light < 0 ? 1U << 15 : 0;
     double size = fabs(light) * 0x1p40;
@@ -192,7 +199,7 @@ static uint16_t encode_light(double light)
 
 /* Returns the number of cells between nodes: small enough to resolve rings,
  * large enough that the core reaches to where rings have faded. */
-static int count_cells(const struct glint_psf *psf)
+static int count_cells_between_nodes(const struct glint_psf *psf)
 {
     const double far = 9 * psf->airy_px / GLINT_STAR_CORE;
 
@@ -200,18 +207,18 @@ static int count_cells(const struct glint_psf *psf)
 }
 
 /* Adds the light at (X, Y) from the table of dirt in the stop. */
-static void add_smeared(const struct glint_star_tables *t, double x, double y,
-                        double rgb[3])
+static void add_smear_light(const struct glint_star_tables *t, double x,
+                            double y, double rgb[3])
 {
     double more[3];
 
-    glint_smear_tabled(t->smear, x, y, more);
+    glint_smear_evaluate_table(t->smear, x, y, more);
     for (int c = 0; c < 3; c++)
         rgb[c] += more[c];
 }
 
-static void set_nodes(struct glint_star_tables *t, const struct cells *s,
-                      int step)
+static void set_core_nodes(struct glint_star_tables *t, const struct cells *s,
+                           int step)
 {
     for (int i = 0; i <= GLINT_STAR_CORE; i++)
         for (int k = -GLINT_STAR_CORE; k <= GLINT_STAR_CORE; k++) {
@@ -221,24 +228,24 @@ static void set_nodes(struct glint_star_tables *t, const struct cells *s,
             const double part = in * in * (3 - 2 * in);
             double light[3], far[3];
 
-            pixel_light(s, i * step, k * step, light);
-            glint_star_tabled(t, (double)k * step / CELLS,
-                              (double)i * step / CELLS, far);
+            sum_pixel_light(s, i * step, k * step, light);
+            glint_star_evaluate_far_tables(t, (double)k * step / CELLS,
+                                           (double)i * step / CELLS, far);
             if (t->smear)
-                add_smeared(t, (double)k * step / CELLS,
-                            (double)i * step / CELLS, far);
+                add_smear_light(t, (double)k * step / CELLS,
+                                (double)i * step / CELLS, far);
             for (int c = 0; c < 3; c++)
                 t->core[i][k + GLINT_STAR_CORE][c] =
-                    encode_light(part * (light[c] - far[c]));
+                    encode_core_light(part * (light[c] - far[c]));
         }
 }
 
-enum glint_status glint_star_set_core(struct glint_star_tables *tables,
-                                      const struct glint_psf *psf,
-                                      const struct glint_smear *smear,
-                                      double airy_px)
+enum glint_status glint_star_make_core_table(struct glint_star_tables *tables,
+                                             const struct glint_psf *psf,
+                                             const struct glint_smear *smear,
+                                             double airy_px)
 {
-    const int step = count_cells(psf);
+    const int step = count_cells_between_nodes(psf);
     struct cells s = {.psf = psf,
                       .smear = smear,
                       .airy_px = airy_px,
@@ -249,9 +256,9 @@ enum glint_status glint_star_set_core(struct glint_star_tables *tables,
     if (!s.sum)
         return GLINT_E_MEMORY;
     tables->core_per_pixel_q16 = 65536 * CELLS / step;
-    set_cells(&s);
-    sum_cells(&s);
-    set_nodes(tables, &s, step);
+    compute_cell_lights(&s);
+    make_summed_area_table(&s);
+    set_core_nodes(tables, &s, step);
     free(s.sum);
     return GLINT_OK;
 }

@@ -10,16 +10,16 @@
 #include "star/starburst.h"
 
 /* Sets the core of TABLES, whose other members are set. SMEAR is the smear
- * of dirt in the stop, or NULL; AIRY_PX as in glint_smear_light(). Returns
- * GLINT_E_MEMORY on failure. */
-enum glint_status glint_star_set_core(struct glint_star_tables *tables,
-                                      const struct glint_psf *psf,
-                                      const struct glint_smear *smear,
-                                      double airy_px);
+ * of dirt in the stop, or NULL; AIRY_PX as in glint_smear_compute_light().
+ * Returns GLINT_E_MEMORY on failure. */
+enum glint_status glint_star_make_core_table(struct glint_star_tables *tables,
+                                             const struct glint_psf *psf,
+                                             const struct glint_smear *smear,
+                                             double airy_px);
 
 /* Sets RGB to the light of lines and halo at (X, Y) from a light of power 1;
  * differs from the drawn light by integer rounding alone. */
-void glint_star_tabled(const struct glint_star_tables *tables, double x,
-                       double y, double rgb[3]);
+void glint_star_evaluate_far_tables(const struct glint_star_tables *tables,
+                                    double x, double y, double rgb[3]);
 
 #endif

@@ -22,7 +22,7 @@ static const double first_order = 12, last_px = 16384;
  * circle. */
 static const double fade_from = 0.85, fade_to = 0.98;
 
-double glint_psf_softness(double soft, double q)
+double glint_psf_compute_soft_edge_factor(double soft, double q)
 {
     const double p = GLINT_PI * q * soft;
     const double a =
@@ -32,8 +32,8 @@ double glint_psf_softness(double soft, double q)
 }
 
 /* Sets RGB to light times r^2 at R pixels, in a direction OFF from a line. */
-static void evaluate_direct(const struct glint_psf *p, double r, double off,
-                            double rgb[3])
+static void sum_fan_light(const struct glint_psf *p, double r, double off,
+                          double rgb[3])
 {
     const double at = GLINT_PI / p->n_blades + off;
 
@@ -41,8 +41,8 @@ static void evaluate_direct(const struct glint_psf *p, double r, double off,
     for (int i = 0; i < GLINT_PSF_WAVES; i += EVERY) {
         const double s = p->scale[i], q = r / (2 * p->airy_px * s);
         const double light =
-            glint_arcs_far(&p->arcs, q * cos(at), q * sin(at)) *
-            glint_psf_softness(p->soft, q) * p->area * q * q;
+            glint_arcs_compute_far_pattern(&p->arcs, q * cos(at), q * sin(at)) *
+            glint_psf_compute_soft_edge_factor(p->soft, q) * p->area * q * q;
 
         for (int c = 0; c < 3; c++)
             rgb[c] += p->weight[i][c] * light;
@@ -54,12 +54,14 @@ static void evaluate_direct(const struct glint_psf *p, double r, double off,
 /* Blends the far field of a circle into RGB, light times r^2 at R pixels:
  * for a stop close to a circle the gaps between fans are as narrow as their
  * blur. */
-static void evaluate_fade(const struct glint_psf *p, double r, double rgb[3])
+static void blend_circle_light(const struct glint_psf *p, double r,
+                               double rgb[3])
 {
     const double t =
         fmin(fmax((p->round - fade_from) / (fade_to - fade_from), 0), 1);
     const double part = t * t * (3 - 2 * t);
-    const double soft = glint_psf_softness(p->soft, r / (2 * p->airy_px));
+    const double soft =
+        glint_psf_compute_soft_edge_factor(p->soft, r / (2 * p->airy_px));
 
     for (int c = 0; c < 3; c++) {
         const double circle = soft * p->mean[c] * p->airy_px /
@@ -69,7 +71,7 @@ static void evaluate_fade(const struct glint_psf *p, double r, double rgb[3])
     }
 }
 
-enum glint_status glint_fans_init(struct glint_psf *p)
+enum glint_status glint_fans_make_table(struct glint_psf *p)
 {
     const double first = first_order * p->airy_px;
     const double half = 0.5 * GLINT_PI / p->n_lines;
@@ -86,16 +88,16 @@ enum glint_status glint_fans_init(struct glint_psf *p)
         const int row = k / COLUMNS;
         const double r = first * exp2((double)row / PER_OCTAVE);
 
-        evaluate_direct(p, r, half * (k % COLUMNS) / (COLUMNS - 1), p->far[k]);
+        sum_fan_light(p, r, half * (k % COLUMNS) / (COLUMNS - 1), p->far[k]);
         for (int c = 0; c < 3; c++)
             p->far[k][c] /= sum[c];
-        evaluate_fade(p, r, p->far[k]);
+        blend_circle_light(p, r, p->far[k]);
     }
     return GLINT_OK;
 }
 
-void glint_fans_at(const struct glint_psf *p, double r, double off,
-                   double rgb[3])
+void glint_fans_interpolate_light(const struct glint_psf *p, double r,
+                                  double off, double rgb[3])
 {
     const double step = GLINT_PI / p->n_lines;
     const double row =

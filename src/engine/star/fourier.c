@@ -19,7 +19,7 @@ static void swap_complex(double a[2], double b[2])
 }
 
 /* Moves each of N numbers to the index with its bits reversed. */
-static void turn_bits(double (*at)[2], int n)
+static void permute_bit_reversed(double (*at)[2], int n)
 {
     for (int i = 1, j = 0; i < n; i++) {
         int bit = n >> 1;
@@ -33,9 +33,10 @@ static void turn_bits(double (*at)[2], int n)
 }
 
 /* Transforms N numbers; ROOT: the first N / 2 of the N roots of 1. */
-static void transform_line(double (*at)[2], int n, const double (*root)[2])
+static void fourier_transform_row(double (*at)[2], int n,
+                                  const double (*root)[2])
 {
-    turn_bits(at, n);
+    permute_bit_reversed(at, n);
     for (int half = 1; half < n; half *= 2)
         for (int first = 0; first < n; first += 2 * half)
             for (int k = 0; k < half; k++) {
@@ -53,7 +54,7 @@ static void transform_line(double (*at)[2], int n, const double (*root)[2])
 
 typedef double complex_number[2]; /* real, imaginary */
 
-enum glint_status glint_fourier(double (*at)[2], int n, int used)
+enum glint_status glint_fourier_transform_2d(double (*at)[2], int n, int used)
 {
     /* columns transformed together, as they share cache lines */
     enum { ABREAST = 8 };
@@ -66,7 +67,8 @@ enum glint_status glint_fourier(double (*at)[2], int n, int used)
         root[i][1] = -sin(2 * GLINT_PI * i / n);
     }
     for (int i = 0; i < used && root && column; i++)
-        transform_line(at + (size_t)i * (size_t)n, n, (const double(*)[2])root);
+        fourier_transform_row(at + (size_t)i * (size_t)n, n,
+                              (const double(*)[2])root);
     for (int x = 0; x < n && root && column; x += ABREAST) {
         for (int y = 0; y < n; y++)
             for (int k = 0; k < ABREAST; k++)
@@ -74,7 +76,7 @@ enum glint_status glint_fourier(double (*at)[2], int n, int used)
                     column[k * n + y][c] =
                         at[(size_t)y * (size_t)n + (size_t)(x + k)][c];
         for (int k = 0; k < ABREAST; k++)
-            transform_line(column + k * n, n, (const double(*)[2])root);
+            fourier_transform_row(column + k * n, n, (const double(*)[2])root);
         for (int y = 0; y < n; y++)
             for (int k = 0; k < ABREAST; k++)
                 for (int c = 0; c < 2; c++)

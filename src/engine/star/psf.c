@@ -36,7 +36,7 @@ static double evaluate_bessel1(double x)
     return sum / n;
 }
 
-static double transform_circle(double q)
+static double compute_circle_pattern(double q)
 {
     const double x = 2 * GLINT_PI * q;
     const double f = x < 1e-3 ? 1 - x * x / 8 : 2 * evaluate_bessel1(x) / x;
@@ -53,7 +53,7 @@ struct sides {
     double c[GLINT_MAX_BLADES], s[GLINT_MAX_BLADES];
 };
 
-static void set_sides(struct sides *p, int n, double rotation_deg)
+static void set_polygon_sides(struct sides *p, int n, double rotation_deg)
 {
     const double step = 2 * GLINT_PI / n;
 
@@ -71,7 +71,8 @@ static void set_sides(struct sides *p, int n, double rotation_deg)
 }
 
 /* Returns |F|^2 / area^2 of a polygon at (QX, QY). */
-static double transform_polygon(const struct sides *p, double qx, double qy)
+static double compute_polygon_pattern(const struct sides *p, double qx,
+                                      double qy)
 {
     const double q2 = qx * qx + qy * qy;
     double re = 0, im = 0;
@@ -93,19 +94,20 @@ static double transform_polygon(const struct sides *p, double qx, double qy)
            (4 * GLINT_PI * GLINT_PI * q2 * q2 * p->area * p->area);
 }
 
-double glint_psf_transform(int n, double rotation_deg, double qx, double qy)
+double glint_psf_compute_pattern(int n, double rotation_deg, double qx,
+                                 double qy)
 {
     struct sides sides;
 
     if (n == 0)
-        return transform_circle(hypot(qx, qy));
-    set_sides(&sides, n, rotation_deg);
-    return transform_polygon(&sides, qx, qy);
+        return compute_circle_pattern(hypot(qx, qy));
+    set_polygon_sides(&sides, n, rotation_deg);
+    return compute_polygon_pattern(&sides, qx, qy);
 }
 
 /* ---------------------------------------------------------------- spectrum */
 
-static void set_spectrum(struct glint_psf *p)
+static void set_spectrum_weights(struct glint_psf *p)
 {
     double sum[3] = {0, 0, 0};
 
@@ -113,7 +115,7 @@ static void set_spectrum(struct glint_psf *p)
         const double nm = 400 + 300.0 * i / (GLINT_PSF_WAVES - 1);
 
         p->scale[i] = nm / 550;
-        glint_observer_rgb(nm, p->weight[i]);
+        glint_observer_compute_rgb(nm, p->weight[i]);
         for (int c = 0; c < 3; c++)
             sum[c] += p->weight[i][c];
     }
@@ -125,7 +127,7 @@ static void set_spectrum(struct glint_psf *p)
         }
 }
 
-static void set_profile(struct glint_psf *p)
+static void set_line_profile(struct glint_psf *p)
 {
     for (int k = 0; k <= GLINT_PSF_PROFILE; k++) {
         const double v = span * k / GLINT_PSF_PROFILE;
@@ -141,7 +143,7 @@ static void set_profile(struct glint_psf *p)
 
 /* Sets the smooth profile: the profile averaged over one fringe around each
  * position. */
-static void set_smooth(struct glint_psf *p)
+static void set_smooth_profile(struct glint_psf *p)
 {
     const int half = (int)(0.6 / span * GLINT_PSF_PROFILE);
 
@@ -158,8 +160,8 @@ static void set_smooth(struct glint_psf *p)
         }
 }
 
-static void interpolate_profile(const struct glint_psf *p, double v,
-                                const double (*table)[3], double rgb[3])
+static void interpolate_profile_table(const struct glint_psf *p, double v,
+                                      const double (*table)[3], double rgb[3])
 {
     const double size =
         p->n_pair * p->edge * p->edge / (4 * GLINT_PI * GLINT_PI * p->area);
@@ -177,16 +179,17 @@ static void interpolate_profile(const struct glint_psf *p, double v,
     }
 }
 
-void glint_psf_profile(const struct glint_psf *p, double v, double rgb[3])
+void glint_psf_interpolate_profile(const struct glint_psf *p, double v,
+                                   double rgb[3])
 {
-    interpolate_profile(p, v, (const double(*)[3])p->profile, rgb);
+    interpolate_profile_table(p, v, (const double(*)[3])p->profile, rgb);
 }
 
 /* -------------------------------------------------------------------- near */
 
 /* Returns a table of the transform, or NULL if memory is short: one row per
  * 1 / GLINT_PSF_STEPS order of diffraction, one column per angle. */
-static double *tabulate_transforms(const struct glint_psf *p, int n_rows)
+static double *tabulate_patterns(const struct glint_psf *p, int n_rows)
 {
     double *table =
         malloc((size_t)n_rows * (size_t)p->n_columns * sizeof *table);
@@ -194,7 +197,7 @@ static double *tabulate_transforms(const struct glint_psf *p, int n_rows)
     struct sides sides;
 
     if (p->n_blades)
-        set_sides(&sides, p->n_blades, 0);
+        set_polygon_sides(&sides, p->n_blades, 0);
     for (int k = 0; k < p->n_columns && table; k++) {
         /* The table is for a stop without rotation. Angles begin at the
          * normal of a side, half a side away from a corner. */
@@ -207,16 +210,17 @@ static double *tabulate_transforms(const struct glint_psf *p, int n_rows)
             const double q = 0.5 * i / GLINT_PSF_STEPS;
 
             table[i * p->n_columns + k] =
-                (p->fans       ? glint_arcs_transform(&p->arcs, q * x, q * y)
-                 : p->n_blades ? transform_polygon(&sides, q * x, q * y)
-                               : transform_circle(q)) *
-                glint_psf_softness(p->soft, q);
+                (p->fans ? glint_arcs_compute_pattern(&p->arcs, q * x, q * y)
+                 : p->n_blades ? compute_polygon_pattern(&sides, q * x, q * y)
+                               : compute_circle_pattern(q)) *
+                glint_psf_compute_soft_edge_factor(p->soft, q);
         }
     }
     return table;
 }
 
-static void add_wave(struct glint_psf *p, int wave, const double *table)
+static void add_wave_to_near_table(struct glint_psf *p, int wave,
+                                   const double *table)
 {
     const double s = p->scale[wave];
 
@@ -235,7 +239,7 @@ static void add_wave(struct glint_psf *p, int wave, const double *table)
     }
 }
 
-static enum glint_status set_near(struct glint_psf *p)
+static enum glint_status make_near_table(struct glint_psf *p)
 {
     const int n_rows = (int)(ORDERS * GLINT_PSF_STEPS / p->scale[0]) + 3;
     double *table;
@@ -245,9 +249,9 @@ static enum glint_status set_near(struct glint_psf *p)
                                            ORDERS * 0.7 * GLINT_PSF_STEPS)
                                : 1;
     p->near = calloc((size_t)p->n_rows * (size_t)p->n_columns, sizeof *p->near);
-    table = tabulate_transforms(p, n_rows);
+    table = tabulate_patterns(p, n_rows);
     for (int i = 0; i < GLINT_PSF_WAVES && table && p->near; i++)
-        add_wave(p, i, table);
+        add_wave_to_near_table(p, i, table);
     free(table);
     return table && p->near ? GLINT_OK : GLINT_E_MEMORY;
 }
@@ -263,7 +267,7 @@ static const double circle_round = 0.98;
 
 /* Replaces a soft edge by a hard edge in the middle of its slope: a smaller
  * stop. */
-static void set_soft(struct glint_psf *p, double soft)
+static void apply_soft_edge(struct glint_psf *p, double soft)
 {
     const double apothem = p->n_blades ? cos(GLINT_PI / p->n_blades) : 1;
     const double size = fmax(1 - 0.5 * soft / apothem, 0.1);
@@ -272,7 +276,7 @@ static void set_soft(struct glint_psf *p, double soft)
     p->soft = soft / size;
 }
 
-static void set_fans(struct glint_psf *p, double round)
+static void set_fan_arcs(struct glint_psf *p, double round)
 {
     p->fans = 1;
     p->round = round;
@@ -314,16 +318,16 @@ enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
         psf->normal[i][0] = cos(a);
         psf->normal[i][1] = -sin(a);
     }
-    set_spectrum(psf);
-    set_profile(psf);
-    set_smooth(psf);
+    set_spectrum_weights(psf);
+    set_line_profile(psf);
+    set_smooth_profile(psf);
     if (soft > 0 && !(n && is_straight))
-        set_soft(psf, soft);
+        apply_soft_edge(psf, soft);
     if (n && !is_straight)
-        set_fans(psf, round);
-    if (psf->fans && glint_fans_init(psf) != GLINT_OK)
+        set_fan_arcs(psf, round);
+    if (psf->fans && glint_fans_make_table(psf) != GLINT_OK)
         return GLINT_E_MEMORY;
-    return set_near(psf);
+    return make_near_table(psf);
 }
 
 void glint_psf_finish(struct glint_psf *psf)
@@ -333,7 +337,7 @@ void glint_psf_finish(struct glint_psf *psf)
     psf->near = psf->far = NULL;
 }
 
-double glint_psf_angle(const struct glint_psf *p, int i)
+double glint_psf_line_angle(const struct glint_psf *p, int i)
 {
     const double step = 180.0 / p->n_lines;
     /* y changes from up to down, which reverses the rotation */
@@ -348,9 +352,9 @@ double glint_psf_angle(const struct glint_psf *p, int i)
 /* Adds the light of edges, without corners. SUM receives the sum of products of
  * cotangents of the angles to neighbouring edges, limited where profiles end.
  */
-static void add_edges(const struct glint_psf *p, double x, double y,
-                      glint_psf_window_fn *window, const void *self,
-                      double rgb[3], double *sum)
+static void add_edge_light(const struct glint_psf *p, double x, double y,
+                           glint_psf_window_fn *window, const void *self,
+                           double rgb[3], double *sum)
 {
     const double end = 0.25 * p->width_px * p->width_px;
     const double r2 = x * x + y * y;
@@ -365,7 +369,7 @@ static void add_edges(const struct glint_psf *p, double x, double y,
             (1 - (window ? window(v, self) : 0)) * u * u / (r2 * r2);
         double here[3];
 
-        interpolate_profile(
+        interpolate_profile_table(
             p, v, (const double(*)[3])(window ? p->smooth : p->profile), here);
         for (int c = 0; c < 3; c++)
             rgb[c] += part * here[c];
@@ -377,8 +381,9 @@ static void add_edges(const struct glint_psf *p, double x, double y,
     *sum = p->n_pair * (*sum + last * first);
 }
 
-void glint_psf_far(const struct glint_psf *p, double x, double y,
-                   glint_psf_window_fn *window, const void *self, double rgb[3])
+void glint_psf_compute_far_light(const struct glint_psf *p, double x, double y,
+                                 glint_psf_window_fn *window, const void *self,
+                                 double rgb[3])
 {
     const double pi2 = GLINT_PI * GLINT_PI;
     const double r2 = x * x + y * y, r = sqrt(r2);
@@ -386,24 +391,27 @@ void glint_psf_far(const struct glint_psf *p, double x, double y,
 
     rgb[0] = rgb[1] = rgb[2] = 0;
     if (p->n_blades == 0) {
-        const double soft =
-            p->soft > 0 ? glint_psf_softness(p->soft, r / (2 * p->airy_px)) : 1;
+        const double soft = p->soft > 0 ? glint_psf_compute_soft_edge_factor(
+                                              p->soft, r / (2 * p->airy_px))
+                                        : 1;
 
         for (int c = 0; c < 3; c++)
             rgb[c] = soft * p->mean[c] * p->airy_px / (pi2 * GLINT_PI * r2 * r);
         return;
     }
     if (p->fans) {
-        glint_fans_at(p, hypot(x, y), atan2(y, x) - glint_psf_angle(p, 0), rgb);
+        glint_fans_interpolate_light(
+            p, hypot(x, y), atan2(y, x) - glint_psf_line_angle(p, 0), rgb);
         return;
     }
-    add_edges(p, x, y, window, self, rgb, &sum);
+    add_edge_light(p, x, y, window, self, rgb, &sum);
     size = p->airy_px * p->airy_px / (2 * pi2 * pi2 * p->area * r2 * r2);
     for (int c = 0; c < 3; c++)
         rgb[c] = fmax(rgb[c] - size * p->square[c] * sum, 0.02 * rgb[c]);
 }
 
-double glint_psf_beyond(const struct glint_psf *p, double r, int c)
+double glint_psf_compute_light_beyond(const struct glint_psf *p, double r,
+                                      int c)
 {
     return p->perimeter / p->area * p->mean[c] * p->airy_px /
            (GLINT_PI * GLINT_PI * r);
@@ -412,20 +420,22 @@ double glint_psf_beyond(const struct glint_psf *p, double r, int c)
 /* -------------------------------------------------------------------- both */
 
 /* Returns the angle of (X, Y) to the nearest line. */
-static double to_line(const struct glint_psf *p, double x, double y)
+static double compute_angle_to_line(const struct glint_psf *p, double x,
+                                    double y)
 {
     const double step = GLINT_PI / p->n_lines;
 
-    return fabs(remainder(atan2(y, x) - glint_psf_angle(p, 0), step));
+    return fabs(remainder(atan2(y, x) - glint_psf_line_angle(p, 0), step));
 }
 
-static void near_light(const struct glint_psf *p, double x, double y,
-                       double rgb[3])
+static void interpolate_near_light(const struct glint_psf *p, double x,
+                                   double y, double rgb[3])
 {
     const double row = hypot(x, y) / p->airy_px * GLINT_PSF_STEPS;
-    const double column = p->n_columns > 1 ? to_line(p, x, y) * 2 * p->n_lines /
-                                                 GLINT_PI * (p->n_columns - 1)
-                                           : 0;
+    const double column = p->n_columns > 1
+                              ? compute_angle_to_line(p, x, y) * 2 *
+                                    p->n_lines / GLINT_PI * (p->n_columns - 1)
+                              : 0;
     const int i = (int)fmin(row, p->n_rows - 2);
     const int k = (int)fmin(column, p->n_columns > 1 ? p->n_columns - 2 : 0);
     const int next = p->n_columns > 1;
@@ -439,8 +449,8 @@ static void near_light(const struct glint_psf *p, double x, double y,
                  (p->airy_px * p->airy_px);
 }
 
-void glint_psf_light(const struct glint_psf *p, double x, double y,
-                     double rgb[3])
+void glint_psf_compute_light(const struct glint_psf *p, double x, double y,
+                             double rgb[3])
 {
     const double order = hypot(x, y) / p->airy_px;
     const double t =
@@ -449,9 +459,9 @@ void glint_psf_light(const struct glint_psf *p, double x, double y,
     double far[3] = {0, 0, 0}, near[3] = {0, 0, 0};
 
     if (part > 0)
-        glint_psf_far(p, x, y, NULL, NULL, far);
+        glint_psf_compute_far_light(p, x, y, NULL, NULL, far);
     if (part < 1)
-        near_light(p, x, y, near);
+        interpolate_near_light(p, x, y, near);
     for (int c = 0; c < 3; c++)
         rgb[c] = near[c] + part * (far[c] - near[c]);
 }

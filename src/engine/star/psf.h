@@ -5,8 +5,8 @@
  * averages out.
  *
  *     glint_psf_init(&psf, n_blades, rotation_deg, airy_px);
- *     glint_psf_light(&psf, x, y, rgb);           a point of the picture
- *     glint_psf_finish(&psf);
+ *     glint_psf_compute_light(&psf, x, y, rgb);           a point of the
+ * picture glint_psf_finish(&psf);
  *
  * With F the transform of the stop of area A (both in stop radii), and a =
  * wavelength times f-number in pixels, light per pixel^2 is |F(x / 2a)|^2 / (4
@@ -77,41 +77,43 @@ enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
                                       double rotation_deg, double airy_px,
                                       double round, double soft);
 
-/* Computes the table of fans; glint_fans_at() returns their light at orders
- * of diffraction above 12. */
-enum glint_status glint_fans_init(struct glint_psf *psf);
+/* Computes the table of fans; glint_fans_interpolate_light() returns their
+ * light at orders of diffraction above 12. */
+enum glint_status glint_fans_make_table(struct glint_psf *psf);
 /* Sets RGB to the light of fans R pixels away, in a direction OFF from a
  * line. */
-void glint_fans_at(const struct glint_psf *psf, double r, double off,
-                   double rgb[3]);
+void glint_fans_interpolate_light(const struct glint_psf *psf, double r,
+                                  double off, double rgb[3]);
 
 /* Returns the factor of a soft edge of width SOFT on light at Q cycles per
  * stop radius: the square of the transform of its slope. */
-double glint_psf_softness(double soft, double q);
+double glint_psf_compute_soft_edge_factor(double soft, double q);
 
 /* Returns the angle of line I, y down, 0 to below pi, rising. */
-double glint_psf_angle(const struct glint_psf *psf, int i);
+double glint_psf_line_angle(const struct glint_psf *psf, int i);
 
 /* Sets RGB to the light of a line's profile V pixels across it, times r^4 /
  * u^2. */
-void glint_psf_profile(const struct glint_psf *psf, double v, double rgb[3]);
+void glint_psf_interpolate_profile(const struct glint_psf *psf, double v,
+                                   double rgb[3]);
 
 /* Sets RGB to the light far from the lamp, of profiles and corners. With
  * WINDOW, profiles have no fringes and are multiplied by 1 - WINDOW(V). */
 typedef double glint_psf_window_fn(double v, const void *self);
-void glint_psf_far(const struct glint_psf *psf, double x, double y,
-                   glint_psf_window_fn *window, const void *self,
-                   double rgb[3]);
+void glint_psf_compute_far_light(const struct glint_psf *psf, double x,
+                                 double y, glint_psf_window_fn *window,
+                                 const void *self, double rgb[3]);
 
-void glint_psf_light(const struct glint_psf *psf, double x, double y,
-                     double rgb[3]);
+void glint_psf_compute_light(const struct glint_psf *psf, double x, double y,
+                             double rgb[3]);
 
 /* Returns the fraction of the light of channel C that lies farther out than R
  * pixels. */
-double glint_psf_beyond(const struct glint_psf *psf, double r, int c);
+double glint_psf_compute_light_beyond(const struct glint_psf *psf, double r,
+                                      int c);
 
 /* Returns |F(q)|^2 / A^2; q is in cycles per stop radius, x right, y up. */
-double glint_psf_transform(int n_blades, double rotation_deg, double qx,
-                           double qy);
+double glint_psf_compute_pattern(int n_blades, double rotation_deg, double qx,
+                                 double qy);
 
 #endif

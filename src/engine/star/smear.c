@@ -29,7 +29,7 @@ static double compute_inside_fraction(double depth)
 }
 
 /* Returns what a soft edge lets through DEPTH inside. */
-static double compute_softness(double soft, double depth)
+static double compute_soft_edge_transmission(double soft, double depth)
 {
     const double in = soft > 0 ? fmin(fmax(depth / soft, 0), 1) : 1;
 
@@ -37,19 +37,20 @@ static double compute_softness(double soft, double depth)
 }
 
 /* Sets AT to the amplitudes of row J of the stop, 0 at its lowest y. */
-static void set_row(const struct glint_dirt *d, int j, double (*at)[2],
-                    struct totals *t)
+static void set_amplitude_row(const struct glint_dirt *d, int j,
+                              double (*at)[2], struct totals *t)
 {
     for (int i = 0; i < HALF; i++) {
         const double x = (i + 0.5 - 0.5 * HALF) * cell;
         const double y = (j + 0.5 - 0.5 * HALF) * cell;
-        const double depth = glint_iris_depth(&d->sides, x, y);
+        const double depth = glint_iris_edge_distance(&d->sides, x, y);
         const double part = compute_inside_fraction(depth);
         double clear, light;
 
         if (part <= 0)
             continue;
-        clear = compute_softness(d->iris.softness, fmax(depth, 0));
+        clear =
+            compute_soft_edge_transmission(d->iris.softness, fmax(depth, 0));
         light = d->through(d, x, y);
         at[i][0] = part * sqrt(light);
         at[i][1] = part * sqrt(clear);
@@ -65,18 +66,18 @@ static void set_row(const struct glint_dirt *d, int j, double (*at)[2],
 /* --------------------------------------------------------------- transform */
 
 /* Returns element (I, K) of the transform, counted from its middle. */
-static const double *compute_element(double (*at)[2], int i, int k)
+static const double *get_transform_element(double (*at)[2], int i, int k)
 {
     return at[(size_t)((i + N) % N) * N + (size_t)((k + N) % N)];
 }
 
 /* Returns D at (I, K): G and O are the transforms of the real and the imaginary
  * part. */
-static double compute_difference(double (*at)[2], int i, int k,
-                                 const struct totals *t, double clear)
+static double compute_pattern_difference(double (*at)[2], int i, int k,
+                                         const struct totals *t, double clear)
 {
-    const double *a = compute_element(at, i, k),
-                 *b = compute_element(at, -i, -k);
+    const double *a = get_transform_element(at, i, k),
+                 *b = get_transform_element(at, -i, -k);
     const double g_re = a[0] + b[0], g_im = a[1] - b[1];
     const double o_re = a[1] + b[1], o_im = a[0] - b[0];
     const double unit = cell * cell * cell * cell / 4;
@@ -85,8 +86,8 @@ static double compute_difference(double (*at)[2], int i, int k,
                    clear * (o_re * o_re + o_im * o_im) / t->area);
 }
 
-static void set_sums(struct glint_smear *s, double (*at)[2],
-                     const struct totals *t)
+static void sum_pattern_differences(struct glint_smear *s, double (*at)[2],
+                                    const struct totals *t)
 {
     double ring = 0;
     int n = 0;
@@ -100,7 +101,7 @@ static void set_sums(struct glint_smear *s, double (*at)[2],
         row[0] = 0;
         for (int k = 0; k < N; k++) {
             const double d =
-                compute_difference(at, i - HALF, k - HALF, t, s->clear);
+                compute_pattern_difference(at, i - HALF, k - HALF, t, s->clear);
             const double q = step_q * hypot(i - HALF, k - HALF);
 
             along += d * step_q * step_q;
@@ -126,14 +127,14 @@ enum glint_status glint_smear_init(struct glint_smear *smear,
     *smear = (struct glint_smear){
         .sum = malloc((size_t)(N + 1) * (N + 1) * sizeof *smear->sum)};
     for (int j = 0; j < HALF && at; j++)
-        set_row(setup->dirt, j, at + (size_t)j * N, &t);
+        set_amplitude_row(setup->dirt, j, at + (size_t)j * N, &t);
     if (at && smear->sum)
-        status = glint_fourier(at, N, HALF);
+        status = glint_fourier_transform_2d(at, N, HALF);
     if (status == GLINT_OK && t.light > 1e-6) {
         const double rim = t.n_rim > 0 ? t.rim / t.n_rim : 0;
 
         smear->clear = fmin(rim * rim * t.area / t.light, 1);
-        set_sums(smear, at, &t);
+        sum_pattern_differences(smear, at, &t);
     } else if (status == GLINT_OK) {
         glint_smear_finish(smear);
     }
@@ -152,7 +153,8 @@ void glint_smear_finish(struct glint_smear *smear)
 /* ------------------------------------------------------------------- means */
 
 /* Returns the integral up to place (X, Y) of the sums. */
-static double sum_spectrum_at(const struct glint_smear *s, double y, double x)
+static double interpolate_difference_sum(const struct glint_smear *s, double y,
+                                         double x)
 {
     const int i = (int)fmin(fmax(y, 0), N - 1),
               k = (int)fmin(fmax(x, 0), N - 1);
@@ -164,8 +166,8 @@ static double sum_spectrum_at(const struct glint_smear *s, double y, double x)
            a * ((1 - b) * high[0] + b * high[1]);
 }
 
-double glint_smear_mean(const struct glint_smear *s, double qx, double qy,
-                        double half)
+double glint_smear_compute_mean(const struct glint_smear *s, double qx,
+                                double qy, double half)
 {
     const double q = hypot(qx, qy), wide = fmax(half, 0.5 * step_q);
     /* an element is the middle of its square */
@@ -174,14 +176,14 @@ double glint_smear_mean(const struct glint_smear *s, double qx, double qy,
 
     if (fmax(fabs(qx), fabs(qy)) + wide > HALF * step_q - 1)
         return s->edge * pow(edge_q / fmax(q, edge_q), 3);
-    return (sum_spectrum_at(s, y + h, x + h) -
-            sum_spectrum_at(s, y - h, x + h) -
-            sum_spectrum_at(s, y + h, x - h) +
-            sum_spectrum_at(s, y - h, x - h)) /
+    return (interpolate_difference_sum(s, y + h, x + h) -
+            interpolate_difference_sum(s, y - h, x + h) -
+            interpolate_difference_sum(s, y + h, x - h) +
+            interpolate_difference_sum(s, y - h, x - h)) /
            (4 * wide * wide);
 }
 
-double glint_smear_within(const struct glint_smear *s, double q)
+double glint_smear_integrate_within(const struct glint_smear *s, double q)
 {
     const double held = fmin(q, HALF * step_q - 2);
     const double far = fmax(q, held);
@@ -193,10 +195,10 @@ double glint_smear_within(const struct glint_smear *s, double q)
         const double mid = HALF + 0.5, row = i + HALF;
 
         if (x > 0)
-            sum += sum_spectrum_at(s, row + 1, mid + x / step_q) -
-                   sum_spectrum_at(s, row, mid + x / step_q) -
-                   sum_spectrum_at(s, row + 1, mid - x / step_q) +
-                   sum_spectrum_at(s, row, mid - x / step_q);
+            sum += interpolate_difference_sum(s, row + 1, mid + x / step_q) -
+                   interpolate_difference_sum(s, row, mid + x / step_q) -
+                   interpolate_difference_sum(s, row + 1, mid - x / step_q) +
+                   interpolate_difference_sum(s, row, mid - x / step_q);
     }
     return sum + 2 * GLINT_PI * s->edge * edge_q * edge_q * edge_q *
                      (1 / held - 1 / far);

@@ -51,14 +51,14 @@ static inline size_t glint_smear_bytes(const struct glint_smear *smear)
 
 /* Returns the mean of D over a square of half width HALF about (QX, QY), cycles
  * per stop radius, x right, y up. */
-double glint_smear_mean(const struct glint_smear *smear, double qx, double qy,
-                        double half);
+double glint_smear_compute_mean(const struct glint_smear *smear, double qx,
+                                double qy, double half);
 
 /* Returns the integral of D within Q cycles per stop radius, 0 .. 1. */
-double glint_smear_within(const struct glint_smear *smear, double q);
+double glint_smear_integrate_within(const struct glint_smear *smear, double q);
 
 /* Transforms N x N complex numbers in place, N a power of two, without a
  * factor; rows from USED on are 0. GLINT_E_MEMORY. */
-enum glint_status glint_fourier(double (*at)[2], int n, int used);
+enum glint_status glint_fourier_transform_2d(double (*at)[2], int n, int used);
 
 #endif

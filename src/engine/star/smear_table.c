@@ -13,53 +13,54 @@ enum {
     NODES = (HALF + 1) * SIDE
 };
 
-void glint_smear_light(const struct glint_smear *smear,
-                       const struct glint_psf *psf, double airy_px, double x,
-                       double y, double half, double rgb[3])
+void glint_smear_compute_light(const struct glint_smear *smear,
+                               const struct glint_psf *psf, double airy_px,
+                               double x, double y, double half, double rgb[3])
 {
     rgb[0] = rgb[1] = rgb[2] = 0;
     for (int w = 0; w < GLINT_PSF_WAVES; w++) {
         const double twice = 2 * airy_px * psf->scale[w];
-        const double light =
-            glint_smear_mean(smear, x / twice, -y / twice, half / twice) /
-            (twice * twice);
+        const double light = glint_smear_compute_mean(
+                                 smear, x / twice, -y / twice, half / twice) /
+                             (twice * twice);
 
         for (int c = 0; c < 3; c++)
             rgb[c] += psf->weight[w][c] * light;
     }
 }
 
-double glint_smear_beyond(const struct glint_smear *smear,
-                          const struct glint_psf *psf, double airy_px, double r,
-                          int c)
+double glint_smear_compute_light_beyond(const struct glint_smear *smear,
+                                        const struct glint_psf *psf,
+                                        double airy_px, double r, int c)
 {
     double within = 0;
 
     for (int w = 0; w < GLINT_PSF_WAVES; w++)
-        within += psf->weight[w][c] *
-                  glint_smear_within(smear, r / (2 * airy_px * psf->scale[w]));
+        within +=
+            psf->weight[w][c] * glint_smear_integrate_within(
+                                    smear, r / (2 * airy_px * psf->scale[w]));
     return 1 - smear->clear - within;
 }
 
 /* Returns pixels from node to node of ring K. */
-static double find_ring_step(int k)
+static double compute_ring_step_px(int k)
 {
     return exp2(k) * GLINT_STAR_SMEAR_PX / HALF;
 }
 
 /* Sets LIGHT to the light at the nodes of ring K; returns the largest. */
-static double ring_light(const struct glint_smear *smear,
-                         const struct glint_psf *psf, double airy_px, int k,
-                         double (*light)[3])
+static double compute_ring_light(const struct glint_smear *smear,
+                                 const struct glint_psf *psf, double airy_px,
+                                 int k, double (*light)[3])
 {
-    const double step = find_ring_step(k);
+    const double step = compute_ring_step_px(k);
     double most = 0;
 
     for (int i = 0; i < NODES; i++) {
         const int row = i / SIDE;
 
-        glint_smear_light(smear, psf, airy_px, step * (i % SIDE - HALF),
-                          step * row, 0.5 * fmax(step, 1), light[i]);
+        glint_smear_compute_light(smear, psf, airy_px, step * (i % SIDE - HALF),
+                                  step * row, 0.5 * fmax(step, 1), light[i]);
         most = fmax(most, glint_largest_channel(light[i]));
     }
     return most;
@@ -67,16 +68,17 @@ static double ring_light(const struct glint_smear *smear,
 
 typedef double colour[3]; /* red, green, blue */
 
-enum glint_status glint_smear_table(struct glint_star_smear *t,
-                                    const struct glint_smear *smear,
-                                    const struct glint_psf *psf, double airy_px)
+enum glint_status glint_smear_make_table(struct glint_star_smear *t,
+                                         const struct glint_smear *smear,
+                                         const struct glint_psf *psf,
+                                         double airy_px)
 {
     colour *const light = malloc(NODES * sizeof *light);
     const enum glint_status status = light ? GLINT_OK : GLINT_E_MEMORY;
 
     for (int k = 0; k < RINGS && light; k++) {
         const double most =
-            fmax(ring_light(smear, psf, airy_px, k, light), 0x1p-60);
+            fmax(compute_ring_light(smear, psf, airy_px, k, light), 0x1p-60);
 
         t->step[k] = glint_real_of(most / 65535);
         for (int i = 0; i < 3 * NODES; i++) {
@@ -90,8 +92,8 @@ enum glint_status glint_smear_table(struct glint_star_smear *t,
     return status;
 }
 
-void glint_smear_tabled(const struct glint_star_smear *t, double x, double y,
-                        double rgb[3])
+void glint_smear_evaluate_table(const struct glint_star_smear *t, double x,
+                                double y, double rgb[3])
 {
     const double turn = y < 0 ? -1 : 1;
     const double far = fmax(fabs(x), fabs(y));
@@ -103,8 +105,8 @@ void glint_smear_tabled(const struct glint_star_smear *t, double x, double y,
         k++;
     if (k == RINGS)
         return;
-    at_x = turn * x / find_ring_step(k) + HALF;
-    at_y = turn * y / find_ring_step(k);
+    at_x = turn * x / compute_ring_step_px(k) + HALF;
+    at_y = turn * y / compute_ring_step_px(k);
     i = (int)fmin(fmax(at_x, 0), 2 * HALF - 1);
     j = (int)fmin(at_y, HALF - 1);
     a = at_x - i;

@@ -29,7 +29,7 @@ struct window {
     double end; /* pixels */
 };
 
-static double evaluate_window(double v, const void *self)
+static double evaluate_fade_window(double v, const void *self)
 {
     const struct window *w = self;
     const double t = fmin(fmax(2 * fabs(v) / w->end - 1, 0), 1);
@@ -37,31 +37,32 @@ static double evaluate_window(double v, const void *self)
     return 0.5 + 0.5 * cos(GLINT_PI * t);
 }
 
-static int32_t hold_value(double x, double most)
+static int32_t round_and_clamp(double x, double most)
 {
     return (int32_t)lrint(fmin(fmax(x, -most), most));
 }
 
 /* ------------------------------------------------------------------- lines */
 
-static void set_direction(struct glint_star_line *line, double angle,
-                          double border)
+static void set_line_direction(struct glint_star_line *line, double angle,
+                               double border)
 {
     const double c = cos(angle), s = sin(angle);
     const double held_s = fmax(fabs(s), 1.0 / 4096);
 
     line->cos_q30 = (int32_t)lrint(c * 0x1p30);
     line->sin_q30 = (int32_t)lrint(s * 0x1p30);
-    line->cot_q16 = hold_value(fabs(s) < 1e-9 ? 0 : 65536 * c / s, 0x1p28);
-    line->across_q16 = hold_value(65536 / held_s, 0x1p28);
+    line->cot_q16 = round_and_clamp(fabs(s) < 1e-9 ? 0 : 65536 * c / s, 0x1p28);
+    line->across_q16 = round_and_clamp(65536 / held_s, 0x1p28);
     line->border_q16 =
-        hold_value(65536 * cos(border) / fmax(sin(border), 1e-9), 0x1p28);
+        round_and_clamp(65536 * cos(border) / fmax(sin(border), 1e-9), 0x1p28);
 }
 
 /* Sets RGB to the profile at V averaged over a pixel that is turned by ANGLE,
  * which is a convolution with two boxes. */
-static void filter_psf(const struct glint_psf *psf, const struct window *window,
-                       double angle, double v, double rgb[3])
+static void filter_profile_by_pixel(const struct glint_psf *psf,
+                                    const struct window *window, double angle,
+                                    double v, double rgb[3])
 {
     enum { N = 192 };
     const double a = fabs(cos(angle)), b = fabs(sin(angle));
@@ -75,33 +76,37 @@ static void filter_psf(const struct glint_psf *psf, const struct window *window,
         const double part = rim < narrow ? rim / narrow : 1;
         double here[3];
 
-        glint_psf_profile(psf, v + at, here);
+        glint_psf_interpolate_profile(psf, v + at, here);
         for (int c = 0; c < 3; c++)
-            rgb[c] += part * here[c] * evaluate_window(v + at, window);
+            rgb[c] += part * here[c] * evaluate_fade_window(v + at, window);
         total += part;
     }
     for (int c = 0; c < 3; c++)
         rgb[c] /= total;
 }
 
-static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
-                      const struct glint_psf *psf, const struct window *window)
+static void make_line_tables(struct glint_star_tables *t,
+                             struct glint_star_line *line,
+                             const struct glint_psf *psf,
+                             const struct window *window)
 {
     const double reach = t->reach_q8 / 256.0;
     const double half = 0.5 * GLINT_PI / psf->n_lines;
     double peak = 0x1p-60, rgb[3];
 
     for (int i = 0; i < psf->n_lines; i++) {
-        filter_psf(psf, window, glint_psf_angle(psf, i), 0, rgb);
+        filter_profile_by_pixel(psf, window, glint_psf_line_angle(psf, i), 0,
+                                rgb);
         peak = fmax(peak, glint_largest_channel(rgb) * 1.001);
     }
     t->step = glint_real_of(peak / 65535);
     for (int i = 0; i < psf->n_lines; i++) {
-        const double angle = glint_psf_angle(psf, i);
+        const double angle = glint_psf_line_angle(psf, i);
 
-        set_direction(&line[i], angle, fmod(angle + half, GLINT_PI));
+        set_line_direction(&line[i], angle, fmod(angle + half, GLINT_PI));
         for (int k = 0; k < GLINT_STAR_PROFILE; k++) {
-            filter_psf(psf, window, angle, reach * k / GLINT_STAR_PROFILE, rgb);
+            filter_profile_by_pixel(psf, window, angle,
+                                    reach * k / GLINT_STAR_PROFILE, rgb);
             for (int c = 0; c < 3; c++) {
                 line[i].profile[k][c] =
                     (uint16_t)lrint(fmin(rgb[c] / peak, 1) * 65535);
@@ -110,7 +115,7 @@ static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
             }
         }
     }
-    t->first = glint_psf_angle(psf, psf->n_lines - 1) + half >= GLINT_PI
+    t->first = glint_psf_line_angle(psf, psf->n_lines - 1) + half >= GLINT_PI
                    ? psf->n_lines - 1
                    : 0;
 }
@@ -121,8 +126,8 @@ static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
  * angle OFF from a line: their mean over chords of the lamp across the line. A
  * fan may be thinner than a pixel, and its sides steeper than the table's
  * columns are fine, so that a point is blurred as well. */
-static void add_fans(const struct glint_psf *psf, double r, double off,
-                     double v, double radius, double rgb[3])
+static void add_blurred_fans(const struct glint_psf *psf, double r, double off,
+                             double v, double radius, double rgb[3])
 {
     const int n = 8 + (int)(radius / 1.5);
     const double half = hypot(radius, 0.4 + 0.1 * v);
@@ -136,7 +141,7 @@ static void add_fans(const struct glint_psf *psf, double r, double off,
         const double turn = half * i / ((n + 1) * fmax(r, radius));
         double here[3];
 
-        glint_fans_at(psf, r, off + turn, here);
+        glint_fans_interpolate_light(psf, r, off + turn, here);
         for (int c = 0; c < 3; c++)
             rgb[c] += part * here[c];
     }
@@ -144,36 +149,37 @@ static void add_fans(const struct glint_psf *psf, double r, double off,
 
 /* Sets log2 of light times r^2 at ROW and COLUMN of the halo of a lamp of
  * radius RADIUS. */
-static void set_halo_node(const struct glint_psf *psf,
-                          const struct window *window, double reach,
-                          double radius, int row, int column, double log2_of[3])
+static void compute_halo_node(const struct glint_psf *psf,
+                              const struct window *window, double reach,
+                              double radius, int row, int column,
+                              double log2_of[3])
 {
     const double r = exp2(2 + 0.25 * row);
     const double v = 0.25 * reach * (exp2(0.25 * column) - 1);
     const double off = asin(fmin(v / r, sin(0.5 * GLINT_PI / psf->n_lines)));
-    const double angle = glint_psf_angle(psf, 0) + off;
+    const double angle = glint_psf_line_angle(psf, 0) + off;
     double rgb[3] = {0, 0, 0};
 
     if (psf->fans)
-        add_fans(psf, r, off, v, radius, rgb);
+        add_blurred_fans(psf, r, off, v, radius, rgb);
     else
-        glint_psf_far(psf, r * cos(angle), r * sin(angle), evaluate_window,
-                      window, rgb);
+        glint_psf_compute_far_light(psf, r * cos(angle), r * sin(angle),
+                                    evaluate_fade_window, window, rgb);
     for (int c = 0; c < 3; c++)
         log2_of[c] = log2(fmax(rgb[c] * r * r, 0x1p-60));
 }
 
 /* Sets the codes of a row of a halo, and raises MOST to the largest. */
-static void set_halo_row(struct glint_star_tables *t,
-                         const struct glint_psf *psf,
-                         const struct window *window, double radius, int row,
-                         glint_star_halo_row codes, uint16_t *most)
+static void encode_halo_row(struct glint_star_tables *t,
+                            const struct glint_psf *psf,
+                            const struct window *window, double radius, int row,
+                            glint_star_halo_row codes, uint16_t *most)
 {
     double log2_of[3];
 
     for (int k = 0; k < GLINT_STAR_HALO_COLUMNS; k++) {
-        set_halo_node(psf, window, t->reach_q8 / 256.0, radius, row, k,
-                      log2_of);
+        compute_halo_node(psf, window, t->reach_q8 / 256.0, radius, row, k,
+                          log2_of);
         for (int c = 0; c < 3; c++) {
             const double steps = 2048 * log2_of[c] - t->halo_log2_q16 / 32.0;
 
@@ -184,39 +190,44 @@ static void set_halo_row(struct glint_star_tables *t,
     }
 }
 
-static void set_halo(struct glint_star_tables *t, const struct glint_psf *psf,
-                     const struct window *window)
+static void make_halo_table(struct glint_star_tables *t,
+                            const struct glint_psf *psf,
+                            const struct window *window)
 {
     const double reach = t->reach_q8 / 256.0;
     double top = -60, log2_of[3];
 
     for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++)
         for (int k = 0; k < GLINT_STAR_HALO_COLUMNS; k++) {
-            set_halo_node(psf, window, reach, 0, i, k, log2_of);
+            compute_halo_node(psf, window, reach, 0, i, k, log2_of);
             top = fmax(top, glint_largest_channel(log2_of));
         }
     t->halo_log2_q16 = (int32_t)lrint((top - 31.99) * 65536);
     for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++) {
         t->halo_max[i] = 0;
-        set_halo_row(t, psf, window, 0, i, t->halo[i], &t->halo_max[i]);
+        encode_halo_row(t, psf, window, 0, i, t->halo[i], &t->halo_max[i]);
     }
 }
 
 /* Sets the halos of wide lamps, WIDE. */
-static void set_wide(struct glint_star_tables *t, const struct glint_psf *psf,
-                     const struct window *window, glint_star_halo_row *wide)
+static void make_wide_lamp_halos(struct glint_star_tables *t,
+                                 const struct glint_psf *psf,
+                                 const struct window *window,
+                                 glint_star_halo_row *wide)
 {
     for (int k = 0; k < GLINT_STAR_WIDE; k++)
         for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++)
-            set_halo_row(t, psf, window, exp2(k - 1), i,
-                         wide[k * GLINT_STAR_HALO_ROWS + i], &t->halo_max[i]);
+            encode_halo_row(t, psf, window, exp2(k - 1), i,
+                            wide[k * GLINT_STAR_HALO_ROWS + i],
+                            &t->halo_max[i]);
     t->wide = (const glint_star_halo_row *)wide;
 }
 
 /* --------------------------------------------------------------------- all */
 
-static void set_sizes(struct glint_star_tables *t, const struct glint_psf *psf,
-                      struct window *window)
+static void set_profile_sizes(struct glint_star_tables *t,
+                              const struct glint_psf *psf,
+                              struct window *window)
 {
     window->end = widths * fmax(1, psf->n_blades ? psf->width_px : 0);
     t->reach_q8 = (int32_t)lrint(256 * fmin(window->end + filter_px, 16384));
@@ -234,11 +245,11 @@ static void set_sizes(struct glint_star_tables *t, const struct glint_psf *psf,
 static const double least_clear = 1e-6;
 
 /* Sets what SMEAR makes of the clear stop's pattern, and its table. */
-static enum glint_status set_smear(struct glint_star_tables *t,
-                                   const struct glint_psf *psf,
-                                   const struct glint_smear *smear,
-                                   double airy_px,
-                                   struct glint_star_smear *table)
+static enum glint_status make_dirt_smear_table(struct glint_star_tables *t,
+                                               const struct glint_psf *psf,
+                                               const struct glint_smear *smear,
+                                               double airy_px,
+                                               struct glint_star_smear *table)
 {
     const double clear = fmax(smear->clear, least_clear);
 
@@ -246,7 +257,7 @@ static enum glint_status set_smear(struct glint_star_tables *t,
     t->halo_log2_q16 += (int32_t)lrint(log2(clear) * 65536);
     table->part = glint_star_smear_part;
     t->smear = table;
-    return glint_smear_table(table, smear, psf, airy_px);
+    return glint_smear_make_table(table, smear, psf, airy_px);
 }
 
 enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
@@ -270,17 +281,17 @@ enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
         line = (void *)((char *)(t + 1) + smear_bytes);
         t->n_lines = psf.n_lines;
         t->line = line;
-        set_sizes(t, &psf, &window);
-        set_lines(t, line, &psf, &window);
-        set_halo(t, &psf, &window);
+        set_profile_sizes(t, &psf, &window);
+        make_line_tables(t, line, &psf, &window);
+        make_halo_table(t, &psf, &window);
         if (psf.fans)
-            set_wide(t, &psf, &window,
-                     (glint_star_halo_row *)(line + psf.n_lines));
+            make_wide_lamp_halos(t, &psf, &window,
+                                 (glint_star_halo_row *)(line + psf.n_lines));
         if (o->smear)
-            status = set_smear(t, &psf, o->smear, airy_px,
-                               (struct glint_star_smear *)(t + 1));
+            status = make_dirt_smear_table(t, &psf, o->smear, airy_px,
+                                           (struct glint_star_smear *)(t + 1));
         if (status == GLINT_OK)
-            status = glint_star_set_core(t, &psf, o->smear, airy_px);
+            status = glint_star_make_core_table(t, &psf, o->smear, airy_px);
     }
     glint_psf_finish(&psf);
     if (!t || status != GLINT_OK) {

@@ -264,8 +264,8 @@ static void draw_flare_by_integers(struct glint_view view,
 
     glint_frame_init(&frame, &setup, view, workers);
     frame.trace = &glint_frame_traces;
-    assert_ok(
-        glint_frame_draw_alone(&frame, lamps, n_lamps, 1, linear, report));
+    assert_ok(glint_frame_draw_flare_alone(&frame, lamps, n_lamps, 1, linear,
+                                           report));
     for (int i = 0; i < 3 * view.width * view.height; i++)
         out[i] = (double)linear[i];
     glint_frame_finish(&frame);
@@ -316,8 +316,8 @@ TEST(picture_does_not_depend_on_memory)
         frame.cfg.tile_log2 = 4;
         if (i)
             frame.limits.most_bytes = 1 << 20;
-        assert_ok(
-            glint_frame_draw_alone(&frame, lamps, 2, 1, linear[i], &report[i]));
+        assert_ok(glint_frame_draw_flare_alone(&frame, lamps, 2, 1, linear[i],
+                                               &report[i]));
         glint_frame_finish(&frame);
     }
     print_message("%zu and %zu bytes\n", report[0].arena_bytes,
@@ -410,7 +410,8 @@ static void draw_lamps_linear(struct glint_frame *frame, struct glint_view view,
 
     glint_frame_init(frame, &setup, view, NULL);
     frame->trace = &glint_frame_traces;
-    assert_ok(glint_frame_draw_alone(frame, lamps, n, 1, linear, &report));
+    assert_ok(
+        glint_frame_draw_flare_alone(frame, lamps, n, 1, linear, &report));
 }
 
 /* Checks that a frame which adopts the pupil boxes that a smaller frame found,
@@ -437,8 +438,8 @@ TEST(adopted_rays_do_not_change_the_picture)
         draw_lamps_linear(&adopting, view, lamps + 1 - k, 2, linear[1]);
         draw_lamps_linear(&from, small, lamps + k, 2, other_size);
         glint_frame_traces.adopt(&adopting, &from);
-        assert_ok(glint_frame_draw_alone(&adopting, lamps + k, 2, 1, linear[1],
-                                         &report));
+        assert_ok(glint_frame_draw_flare_alone(&adopting, lamps + k, 2, 1,
+                                               linear[1], &report));
         assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
         glint_frame_finish(&from);
         glint_frame_finish(&own);
@@ -469,12 +470,12 @@ TEST(earlier_pictures_do_not_change_the_picture)
         used.trace = &glint_frame_traces;
         used.dials.area_points = used.asked.area_points = 1;
         used.tints = k < 2 ? NULL : tints;
-        assert_ok(
-            glint_frame_draw_alone(&used, lamps, 2, 1, linear[1], &report));
+        assert_ok(glint_frame_draw_flare_alone(&used, lamps, 2, 1, linear[1],
+                                               &report));
         lamps[0].axis[0] = 0;
         used.tints = NULL;
-        assert_ok(
-            glint_frame_draw_alone(&used, lamps, 2, 1, linear[1], &report));
+        assert_ok(glint_frame_draw_flare_alone(&used, lamps, 2, 1, linear[1],
+                                               &report));
         assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
         glint_frame_finish(&fresh);
         glint_frame_finish(&used);
@@ -546,10 +547,12 @@ TEST(progress_rises_from_exposure_to_picture)
     frame.trace = &glint_frame_traces;
     frame.progress = record_report;
     frame.progress_ctx = &reports;
-    assert_ok(glint_response_draw(&frame, &lamp, 1, 5000, NULL, &light, NULL));
+    assert_ok(glint_response_draw_and_measure(&frame, &lamp, 1, 5000, NULL,
+                                              &light, NULL));
     reports.n_exposing = reports.n;
     reports.exposed = reports.last;
-    assert_ok(glint_frame_draw_alone(&frame, &lamp, 1, 1, linear, &report));
+    assert_ok(
+        glint_frame_draw_flare_alone(&frame, &lamp, 1, 1, linear, &report));
     glint_frame_finish(&frame);
     assert_true(reports.n_exposing > 1);
     assert_true(reports.exposed == GLINT_FRAME_FOUND);

@@ -22,7 +22,7 @@ static void set_observer_responses(double all[ALL][3])
     double sum[3] = {0, 0, 0};
 
     for (int j = 0; j < ALL; j++) {
-        glint_observer_rgb(400 + 10 * j, all[j]);
+        glint_observer_compute_rgb(400 + 10 * j, all[j]);
         for (int c = 0; c < 3; c++)
             sum[c] += all[j][c];
     }
@@ -147,7 +147,7 @@ static double compute_step_error(int n)
     for (int i = 0; i <= FINE; i++) {
         double at[3];
 
-        glint_observer_rgb(400 + 0.1 * i, at);
+        glint_observer_compute_rgb(400 + 0.1 * i, at);
         for (int c = 0; c < 3; c++)
             total[c] += at[c];
     }
@@ -155,7 +155,7 @@ static double compute_step_error(int n)
         const double here = 400 + 0.1 * i;
         double at[3];
 
-        glint_observer_rgb(here, at);
+        glint_observer_compute_rgb(here, at);
         for (; next < n && nm[next] <= here; next++)
             for (int c = 0; c < 3; c++)
                 step[c] += rgb[next][c];

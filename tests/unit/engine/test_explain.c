@@ -116,7 +116,8 @@ TEST(explains_lights_outside_and_inside_the_model)
     assert_int_equal(e.n_lights, 2);
     assert_int_equal(glint_explain_bundles(&e.all), 2 * 13 * 3);
     for (int i = 0; i < N_LAMPS; i++)
-        assert_int_equal(glint_frame_is_beyond(&frame, &lamps[i]), i == 2);
+        assert_int_equal(glint_frame_is_lamp_outside_model(&frame, &lamps[i]),
+                         i == 2);
     /* At 12 degrees ghosts 5 and 7 pass no light. At 8 degrees they do, but
      * ghost 5 falls off-screen. */
     assert_int_equal(e.light[0].of[GLINT_OUTCOME_CLOSED], 2 * 3);
@@ -209,10 +210,12 @@ TEST(explains_bundles_dropped_for_memory)
     draw_explained_frame(&frame, lamps, N_LAMPS, &report);
     need = report.peak_bytes;
     glint_frame_finish(&frame);
-    make_test_frame(&frame);
-    assert_ok(
-        glint_frame_reserve(&frame, NULL, need * 9 / 10, N_LAMPS, N_LAMPS));
-    draw_explained_frame(&frame, lamps, N_LAMPS, &report);
+    make_test_frame(&explains_lights_outside_and_inside_the_model);
+    assert_ok(glint_frame_reserve_memory(
+        &explains_lights_outside_and_inside_the_model, NULL, need * 9 / 10,
+        N_LAMPS, N_LAMPS));
+    draw_explained_frame(&explains_lights_outside_and_inside_the_model, lamps,
+                         N_LAMPS, &report);
     assert_true(report.stats.dropped_bundles > 0);
     assert_ok(glint_explain_frame(&e, &frame, 1));
     assert_explanation_matches_report(&e, &report);

@@ -126,7 +126,8 @@ TEST(regrown_frame_equals_a_new_frame)
     struct glint_engine_report report, other;
 
     make_heliar_frame(&reserved);
-    assert_ok(glint_frame_reserve(&reserved, NULL, 8 << 20, N_LAMPS, N_LAMPS));
+    assert_ok(
+        glint_frame_reserve_memory(&reserved, NULL, 8 << 20, N_LAMPS, N_LAMPS));
     assert_true(reserved.memory.bytes <= 8 << 20);
     for (size_t i = 0; i < sizeof n_of / sizeof *n_of; i++) {
         n_allocations = 0;
@@ -166,7 +167,7 @@ TEST(too_little_memory_drops_and_counts)
         int lost;
 
         make_frame_of_uniform_grids(&frame, 8);
-        if (glint_frame_reserve(&frame, NULL, bytes, N_LAMPS, N_LAMPS) !=
+        if (glint_frame_reserve_memory(&frame, NULL, bytes, N_LAMPS, N_LAMPS) !=
             GLINT_OK) {
             glint_frame_finish(&frame);
             break;
@@ -184,8 +185,9 @@ TEST(too_little_memory_drops_and_counts)
     }
     assert_true(n_lost >= 5 && n_darker >= 5);
     make_heliar_frame(&frame);
-    assert_int_equal(glint_frame_reserve(&frame, NULL, 1000, N_LAMPS, N_LAMPS),
-                     GLINT_E_MEMORY);
+    assert_int_equal(
+        glint_frame_reserve_memory(&frame, NULL, 1000, N_LAMPS, N_LAMPS),
+        GLINT_E_MEMORY);
     glint_frame_finish(&frame);
 }
 
@@ -318,7 +320,8 @@ TEST(dropped_bundles_do_not_depend_on_workers)
         init_shuffled_workers(&shuffle, n, 7);
         make_frame_of_uniform_grids(&frame, 192);
         frame.cfg.workers = &shuffle.workers;
-        assert_ok(glint_frame_reserve(&frame, NULL, 4 << 20, N_LAMPS, N_LAMPS));
+        assert_ok(glint_frame_reserve_memory(&frame, NULL, 4 << 20, N_LAMPS,
+                                             N_LAMPS));
         draw_lamps_on_grey(&frame, n, got[n > 1], &report);
         draw_lamps_on_grey(&frame, N_LAMPS, got[n > 1], &report);
         assert_true(report.tight && report.stats.dropped_bundles == 0);
@@ -336,7 +339,8 @@ TEST(lamps_above_max_lights_are_merged)
 
     make_heliar_frame(&frame);
     frame.dials.max_lights = 2;
-    assert_ok(glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS));
+    assert_ok(
+        glint_frame_reserve_memory(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS));
     n_allocations = 0;
     draw_lamps_on_grey(&frame, N_LAMPS, got, &report);
     assert_int_equal(n_allocations, 0);
@@ -363,7 +367,8 @@ TEST(changed_settings_equal_a_new_frame)
     int n_changed = 0;
 
     make_heliar_frame(&frame);
-    assert_ok(glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS));
+    assert_ok(
+        glint_frame_reserve_memory(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS));
     for (size_t i = 0; i < sizeof setting / sizeof *setting; i++) {
         struct glint_frame *const both[2] = {&frame, &fresh};
 
@@ -408,8 +413,8 @@ TEST(failed_allocation_draws_completely_or_fails)
             frame.dials.max_lights = 2;
             n_allocations = 0;
             fail_at = nth;
-            status = glint_frame_draw_alone(&frame, lamps, 3, 1,
-                                            nth ? got : want, &report);
+            status = glint_frame_draw_flare_alone(&frame, lamps, 3, 1,
+                                                  nth ? got : want, &report);
             fail_at = 0;
             glint_frame_finish(&frame);
             n_refused += status == GLINT_E_MEMORY;
@@ -482,8 +487,9 @@ TEST(rejects_overflowing_numbers_of_bundles)
     frame.setup = &crowd;
     frame.dials.max_lights = N;
     frame.apart_px = 0;
-    assert_int_equal(glint_frame_draw_alone(&frame, many, N, 1, rgb, &report),
-                     GLINT_E_MEMORY);
+    assert_int_equal(
+        glint_frame_draw_flare_alone(&frame, many, N, 1, rgb, &report),
+        GLINT_E_MEMORY);
     glint_frame_finish(&frame);
     free(many);
 }
@@ -516,9 +522,10 @@ TEST(points_of_wide_lamps_use_point_room)
         frame.dials.area_points = 61;
         frame.picture.point_room = setting[k].point_room;
         if (setting[k].reserved)
-            assert_ok(glint_frame_reserve(&frame, NULL, 16 << 20, 100,
-                                          setting[k].max_lights));
-        assert_ok(glint_frame_draw_alone(&frame, wide, 3, 1, rgb, &report));
+            assert_ok(glint_frame_reserve_memory(&frame, NULL, 16 << 20, 100,
+                                                 setting[k].max_lights));
+        assert_ok(
+            glint_frame_draw_flare_alone(&frame, wide, 3, 1, rgb, &report));
         assert_in_range(frame.lights.n, setting[k].least, setting[k].most);
         glint_frame_finish(&frame);
     }

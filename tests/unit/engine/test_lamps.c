@@ -33,7 +33,7 @@ TEST(finds_a_white_square)
     glint_lamp_finder_defaults(&cfg, WIDTH, HEIGHT);
     assert_ok(glint_lamp_detector_open(&finder, &cfg));
     assert_int_equal(
-        glint_lamp_detector_frame(&finder, &image, 0, &view, 50, lamp), 1);
+        glint_lamp_detector_find_lamps(&finder, &image, 0, &view, 50, lamp), 1);
     glint_lamp_detector_close(&finder);
     glint_view_to_pixel(&view, 50, &lamp[0], &x, &y);
     assert_near(x, 225, 0.02);
@@ -71,23 +71,25 @@ TEST(tracked_stationary_lamp_equals_a_still)
     glint_lamp_finder_defaults(&cfg, W, H);
     assert_ok(glint_lamp_detector_open(&finder, &cfg));
     for (int frame = 0; frame < 5; frame++)
-        assert_int_equal(
-            glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp),
-            1);
+        assert_int_equal(glint_lamp_detector_find_lamps(&finder, &image, 40000,
+                                                        &view, 50, lamp),
+                         1);
     assert_int_equal(
-        glint_lamp_detector_frame(&finder, &image, 0, &view, 50, still), 1);
+        glint_lamp_detector_find_lamps(&finder, &image, 0, &view, 50, still),
+        1);
     assert_memory_equal(lamp, still, sizeof *lamp);
 
     draw_white_square(&image, 200, 100, 9);
     assert_int_equal(
-        glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp), 2);
+        glint_lamp_detector_find_lamps(&finder, &image, 40000, &view, 50, lamp),
+        2);
     assert_int_equal(finder.n_tracks, 2);
     /* after 40 ms of the fade, which lasts 200 ms */
     assert_near(lamp[1].power, still[0].power / 5, 10);
     assert_int_equal(finder.track[1].state, GLINT_LAMP_RISING);
 
-    glint_lamp_detector_restart(&finder);
-    glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp);
+    glint_lamp_detector_restart_tracking(&finder);
+    glint_lamp_detector_find_lamps(&finder, &image, 40000, &view, 50, lamp);
     assert_true(lamp[1].power == still[0].power);
     glint_lamp_detector_close(&finder);
     glint_lamp_detector_close(&finder);
@@ -116,10 +118,11 @@ TEST(lamp_in_glare_may_become_a_point)
     glint_lamp_finder_defaults(&cfg, W, H);
     assert_ok(glint_lamp_detector_open(&finder, &cfg));
     assert_int_equal(
-        glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp), 1);
+        glint_lamp_detector_find_lamps(&finder, &image, 40000, &view, 50, lamp),
+        1);
     assert_true(finder.track[0].axis_q8[0] < finder.track[0].size_q8 / 6);
     assert_int_equal(
-        glint_lamp_detector_frame(&finder, &image, 0, &view, 50, lamp), 1);
+        glint_lamp_detector_find_lamps(&finder, &image, 0, &view, 50, lamp), 1);
     least = finder.track[0].size_q8 / 256.0 / 6;
     assert_true(least > 0.5);
     for (int k = 0; k < 2; k++)
@@ -145,8 +148,9 @@ TEST(largest_lamps_are_returned)
     glint_lamp_finder_defaults(&cfg, W, H);
     assert_ok(glint_lamp_detector_open(&finder, &cfg));
     for (int us = 0; us <= 40000; us += 40000) {
-        assert_int_equal(
-            glint_lamp_detector_frame(&finder, &image, us, &view, 50, lamp), 4);
+        assert_int_equal(glint_lamp_detector_find_lamps(&finder, &image, us,
+                                                        &view, 50, lamp),
+                         4);
         for (int i = 0; i < 4; i++)
             assert_true(lamp[i].power == (14 - i) * (14 - i));
     }
@@ -188,7 +192,7 @@ TEST(lamp_is_preferred_to_a_flat_window)
     cfg.judge = 0;
     assert_ok(glint_lamp_detector_open(&finder, &cfg));
     assert_int_equal(
-        glint_lamp_detector_frame(&finder, &image, 0, &view, 50, lamp), 1);
+        glint_lamp_detector_find_lamps(&finder, &image, 0, &view, 50, lamp), 1);
     glint_view_to_pixel(&view, 50, &lamp[0], &x, &y);
     assert_near(x, 80, 1);
     assert_near(y, 80, 1);

@@ -35,8 +35,8 @@ TEST_CLOSE
 
 static void open_both_frames(double px)
 {
-    glint_frame_like(&reusing, &stage.frame, stage.view);
-    glint_frame_like(&fresh, &stage.frame, stage.view);
+    glint_frame_init_like(&reusing, &stage.frame, stage.view);
+    glint_frame_init_like(&fresh, &stage.frame, stage.view);
     reusing.cfg.reuse = &glint_reuse;
     reusing.dials.still_px = px;
     for (int i = 0; i < LIGHTS; i++)
@@ -76,7 +76,7 @@ static void set_stop_of_frames(double opening)
 
     for (int i = 0; i < 2; i++) {
         all[i]->cfg.stop.opening_q30 = (int32_t)lrint(opening * 0x1p30);
-        glint_frame_retune(all[i]);
+        glint_frame_apply_config(all[i]);
     }
 }
 
@@ -248,11 +248,12 @@ TEST(frame_with_too_many_lights_is_drawn_again)
 
     open_both_frames(0);
     reusing.cfg.reuse_lights = 2;
-    assert_ok(glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS));
+    assert_ok(
+        glint_frame_reserve_memory(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS));
     draw_with_and_without_reuse(4);
     assert_true(draw_with_and_without_reuse(4));
     reusing.cfg.reuse_lights = 3;
-    glint_frame_retune(&reusing);
+    glint_frame_apply_config(&reusing);
     draw_with_and_without_reuse(4);
     assert_false(draw_with_and_without_reuse(4));
     draw_with_and_without_reuse(3);
@@ -285,7 +286,7 @@ static double sum_image_codes(const uint8_t *codes)
 static bool draw_stationary_lamps(int n, double scale)
 {
     draw_lamps_with_frame(&reusing, n, scale, got, &of_reusing);
-    glint_frame_retune(&fresh);
+    glint_frame_apply_config(&fresh);
     draw_lamps_with_frame(&fresh, n, scale, want, &of_fresh);
     assert_int_equal(of_fresh.stats.reused, 0);
     assert_memory_equal(got, want, BYTES);
@@ -388,7 +389,8 @@ TEST(reserved_memory_limits_reuse)
 {
     for (int i = 0; i < 2; i++) {
         open_both_frames(i ? 0.5 : 0);
-        assert_ok(glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS));
+        assert_ok(glint_frame_reserve_memory(&reusing, NULL, 8 << 20, LIGHTS,
+                                             LIGHTS));
         reusing.dials.still_px = 0.5;
         draw_lamps_with_frame(&reusing, LIGHTS, 1, got, &of_reusing);
         assert_int_equal(reusing.still.n, i ? LIGHTS : 0);

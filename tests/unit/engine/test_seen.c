@@ -35,7 +35,7 @@ static struct glint_seen measure_flare_visibility(void)
 {
     struct glint_seen seen;
 
-    glint_seen_on(&seen, &ground, light[0][0], WIDTH, HEIGHT);
+    glint_seen_measure_visibility(&seen, &ground, light[0][0], WIDTH, HEIGHT);
     return seen;
 }
 
@@ -103,7 +103,7 @@ TEST(background_is_sampled_from_the_image)
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 50);
 
     canvas_fill_grey_box(&image, 0, 0, 50, 50, 255);
-    glint_ground_take(&ground, &image);
+    glint_ground_sample_picture(&bright_background_lowers_visibility, &image);
     assert_int_equal(ground.rgb[90][159][0], 255);
     assert_int_equal(ground.rgb[90][160][2], 0);
     free(image.plane[0]);
@@ -122,7 +122,7 @@ static double exposed_flare_peak(double asked, double peak, double mean,
     glint_strength_defaults(&s);
     s.asked = asked;
     s.scale = 1;
-    glint_strength_correct(&s, &drawn, &seen);
+    glint_strength_correct_exposure(&s, &drawn, &seen);
     return s.light.peak[0];
 }
 

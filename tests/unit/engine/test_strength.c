@@ -59,7 +59,7 @@ static double exposed_flare_peak(struct glint_strength *s,
 
     for (int i = 0; i < n; i++)
         lamps[i].level = level ? level[i] : 1;
-    glint_strength_expose(s, r, &all, us);
+    glint_strength_expose_frame(s, r, &all, us);
     return glint_largest_channel(s->light.peak);
 }
 
@@ -128,7 +128,7 @@ TEST(veil_is_limited_by_its_mean)
     struct glint_engine_lamp lamp = make_lamp_at_angle(5, PIXELS);
     const struct glint_strength_lamps all = {&lamp, part, 1, PIXELS};
 
-    glint_strength_expose(&strength, &r, &all, 0);
+    glint_strength_expose_frame(&strength, &r, &all, 0);
     assert_true(fabs(glint_largest_channel(strength.light.mean) - 0.015) <
                 1e-6);
 }
@@ -140,7 +140,7 @@ TEST(power_ratios_between_lamps_are_kept)
                                          make_lamp_at_angle(9, 1e3)};
     const struct glint_strength_lamps all = {lamps, part, 2, PIXELS};
 
-    glint_strength_expose(&strength, &r, &all, 0);
+    glint_strength_expose_frame(&strength, &r, &all, 0);
     assert_true(part[0] == 1 && part[1] == 1);
 }
 
@@ -167,15 +167,15 @@ TEST(exposure_matches_hand_computation)
     strength.is_physical = true;
     strength.exposure_ev = 3;
     strength.gain = 0.5;
-    glint_strength_expose(&strength, &r, &all, 0);
+    glint_strength_expose_frame(&strength, &r, &all, 0);
     assert_true(strength.scale == 4);
     assert_true(fabs(glint_largest_channel(strength.light.peak) - 0.125) <
                 1e-9);
     strength.gain = 0;
-    glint_strength_expose(&strength, &r, &all, 0);
+    glint_strength_expose_frame(&strength, &r, &all, 0);
     assert_true(strength.scale == 0);
     strength = (struct glint_strength){.asked = 0.5, .gain = 2};
-    glint_strength_expose(&strength, &r, &all, 0);
+    glint_strength_expose_frame(&strength, &r, &all, 0);
     assert_true(fabs(glint_largest_channel(strength.light.peak) - 0.5) < 1e-3);
 }
 
@@ -186,10 +186,10 @@ TEST(lamps_without_light_give_a_finite_exposure)
     const struct glint_strength_lamps all = {&lamp, part, 1, PIXELS};
     const struct glint_strength_lamps none = {NULL, NULL, 0, PIXELS};
 
-    glint_strength_expose(&strength, &r, &all, 0);
+    glint_strength_expose_frame(&strength, &r, &all, 0);
     assert_true(isfinite(strength.scale));
     assert_true(glint_largest_channel(strength.light.peak) == 0);
-    glint_strength_expose(&strength, &r, &none, 0);
+    glint_strength_expose_frame(&strength, &r, &none, 0);
     assert_true(strength.scale == 0);
 }
 
@@ -210,7 +210,7 @@ static double corrected_flare_peak(double asked, double stops,
     assert_false(s.is_drawn);
     drawn.peak[1] = exp2(stops - 5);
     drawn.mean[1] = exp2(stops - 5 - mean_stops);
-    glint_strength_correct(&s, &drawn, NULL);
+    glint_strength_correct_exposure(&s, &drawn, NULL);
     assert_true(s.is_drawn == (asked > 0));
     assert_true(s.light.mean[1] < 0.0151);
     assert_true(asked <= 0 ||
@@ -244,10 +244,10 @@ TEST(physical_exposure_is_not_corrected)
 
     exposed_flare_peak(&strength, &r, &lamp, NULL, 1, 0);
     scale = strength.scale;
-    glint_strength_correct(&strength, &none, NULL);
+    glint_strength_correct_exposure(&strength, &none, NULL);
     assert_true(strength.scale == scale && !strength.is_drawn);
     strength.is_physical = true;
-    glint_strength_correct(&strength, &bright, NULL);
+    glint_strength_correct_exposure(&strength, &bright, NULL);
     assert_true(strength.scale == scale && !strength.is_drawn);
 }
 
@@ -423,9 +423,9 @@ static void check_automatic_exposure_of_lens(const char *lens,
         /* azimuths for which the lamp is inside the image */
         lamp.lamp.phi_deg = 29 + 180 * (i % 2);
         glint_strength_defaults(&s);
-        glint_strength_expose(&s, &r, &all, 0);
-        assert_ok(glint_response_draw(&frame, &lamp.lamp, 1,
-                                      GLINT_RESPONSE_FINE, NULL, &drawn, NULL));
+        glint_strength_expose_frame(&s, &r, &all, 0);
+        assert_ok(glint_response_draw_and_measure(
+            &frame, &lamp.lamp, 1, GLINT_RESPONSE_FINE, NULL, &drawn, NULL));
         /* FINE measures the brightest 1e-4 of the pixels, the response 1e-3;
          * hence the wide bounds. */
         assert_true(s.scale * glint_largest_channel(drawn.peak) > 1 / 16.0 ||
@@ -471,12 +471,12 @@ TEST(response_is_interpolated_between_angles)
     const struct glint_response r = make_lens_response(4, 6);
     struct glint_response_light light;
 
-    glint_response_at(&r, 10, &light);
+    glint_response_interpolate_light(&r, 10, &light);
     assert_true(fabs(log2(light.peak[0]) + 4) < 1e-9);
-    glint_response_at(&r, 15, &light);
+    glint_response_interpolate_light(&r, 15, &light);
     assert_true(fabs(log2(light.peak[1]) + 5) < 1e-9);
     assert_true(fabs(log2(light.mean[1]) + 11) < 1e-9);
-    glint_response_at(&r, 60, &light);
+    glint_response_interpolate_light(&r, 60, &light);
     assert_true(fabs(log2(light.peak[2]) + 6) < 1e-9);
 }
 

@@ -39,7 +39,7 @@ static struct glint_light compute_direction_in_double(int width, int height,
     struct glint_lamp lamp = {.power = 1, .rgb = {1, 1, 1}};
 
     glint_view_to_angles(&view, focal_mm, x, y, &lamp);
-    return glint_light_of(&lamp, 1);
+    return glint_light_from_lamp(&lamp, 1);
 }
 
 static void assert_same_direction_and_power(const struct glint_light *a,
@@ -134,7 +134,7 @@ static void check_wavelength_fluxes(const double flux[6])
     glint_flare_waves(wave, &lens);
     for (int i = 0; i < GLINT_FLARE_WAVES; i++) {
         const struct glint_wave w =
-            glint_wave_of(nm[i], setup.rgb[i], setup.unit_flux[i]);
+            glint_wave_from_nm(nm[i], setup.rgb[i], setup.unit_flux[i]);
 
         assert_int_equal(wave[i].wave_q24, w.wave_q24);
         assert_memory_equal(wave[i].rgb_q14, w.rgb_q14, sizeof w.rgb_q14);

@@ -353,7 +353,7 @@ TEST(sum_of_ghosts_of_a_white_lamp_is_white)
     assert_ok(opened_lens_open(&tool, &bare.lens, &bare.settings,
                                "lenses/heliar-tronnier.lens"));
     assert_ok(make_frame_from_settings(&tool, &bare, WIDTH, HEIGHT, &frame));
-    assert_ok(glint_frame_draw_alone(&frame, &lamp, 1, 1, rgb, &report));
+    assert_ok(glint_frame_draw_flare_alone(&frame, &lamp, 1, 1, rgb, &report));
     for (int i = 0; i < SAMPLES; i++)
         sum[i % 3] += (double)rgb[i];
     print_message("uncoated: %.3f 1 %.3f\n", sum[0] / sum[1], sum[2] / sum[1]);

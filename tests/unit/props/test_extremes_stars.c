@@ -40,8 +40,8 @@ static double max_relative_difference(const struct glint_star_tables *t,
     for (int k = 0; k < N / 3; k++) {
         double rgb[3];
 
-        glint_star_tabled(t, k % WIDTH + 0.5 - at[0], k / WIDTH + 0.5 - at[1],
-                          rgb);
+        glint_star_evaluate_far_tables(t, k % WIDTH + 0.5 - at[0],
+                                       k / WIDTH + 0.5 - at[1], rgb);
         for (int c = 0; c < 3; c++) {
             const double want = fmin(rgb[c] * exp2(power_log2 + 20), INT32_MAX);
 

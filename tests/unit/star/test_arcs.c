@@ -36,13 +36,13 @@ static double compute_circle_pattern(const struct glint_arcs *arcs, double x,
                                      double y)
 {
     (void)arcs;
-    return glint_psf_transform(0, 0, x, y);
+    return glint_psf_compute_pattern(0, 0, x, y);
 }
 
 static double compute_polygon_pattern(const struct glint_arcs *arcs, double x,
                                       double y)
 {
-    return glint_psf_transform(arcs->n, arcs->rotation_deg, x, y);
+    return glint_psf_compute_pattern(arcs->n, arcs->rotation_deg, x, y);
 }
 
 TEST(arcs_end_at_the_corners)
@@ -56,11 +56,13 @@ TEST(arcs_end_at_the_corners)
             double one, other;
 
             glint_arcs_init(&arcs, blades[i], 10, 0.9999);
-            one = mean_scaled_pattern(glint_arcs_transform, &arcs, at, phi);
+            one =
+                mean_scaled_pattern(glint_arcs_compute_pattern, &arcs, at, phi);
             other = mean_scaled_pattern(compute_circle_pattern, &arcs, at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
             glint_arcs_init(&arcs, blades[i], 10, 1e-3);
-            one = mean_scaled_pattern(glint_arcs_transform, &arcs, at, phi);
+            one =
+                mean_scaled_pattern(glint_arcs_compute_pattern, &arcs, at, phi);
             other =
                 mean_scaled_pattern(compute_polygon_pattern, &arcs, at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
@@ -79,10 +81,10 @@ TEST(switching_methods_causes_no_step)
             double before, after;
 
             glint_arcs_init(&arcs, n, 10, 0.05 + 0.04 * k);
-            before = glint_arcs_transform(&arcs, 4.99999 * cos(phi),
-                                          4.99999 * sin(phi));
-            after = glint_arcs_transform(&arcs, 5.00001 * cos(phi),
-                                         5.00001 * sin(phi));
+            before = glint_arcs_compute_pattern(&arcs, 4.99999 * cos(phi),
+                                                4.99999 * sin(phi));
+            after = glint_arcs_compute_pattern(&arcs, 5.00001 * cos(phi),
+                                               5.00001 * sin(phi));
             assert_true(fabs(sqrt(before) - sqrt(after)) < 4e-4);
         }
 }
@@ -101,9 +103,9 @@ TEST(distant_pattern_sums_over_a_circle)
         for (int i = 0; i < PHIS; i++) {
             const double phi = 2 * GLINT_PI * i / PHIS, at = k < 12 ? 12 : 60;
             const double one =
-                mean_scaled_pattern(glint_arcs_transform, &arcs, at, phi);
-            const double other =
-                mean_scaled_pattern(glint_arcs_far, &arcs, at, phi);
+                mean_scaled_pattern(glint_arcs_compute_pattern, &arcs, at, phi);
+            const double other = mean_scaled_pattern(
+                glint_arcs_compute_far_pattern, &arcs, at, phi);
 
             assert_true(other > 0.3 * one && other < 3 * one);
             exact += one;
@@ -125,7 +127,8 @@ static int count_peaks_on_circle(const struct glint_psf *p, double r)
         const double phi = 2 * GLINT_PI * i / N;
         double rgb[3];
 
-        glint_psf_far(p, r * cos(phi), r * sin(phi), NULL, NULL, rgb);
+        glint_psf_compute_far_light(p, r * cos(phi), r * sin(phi), NULL, NULL,
+                                    rgb);
         light[i] = rgb[1];
         mean += rgb[1] / N;
     }
@@ -150,10 +153,10 @@ TEST(fans_rotate_with_the_blades)
         for (int k = 0; k < 90; k++) {
             const double phi = k * GLINT_PI / 180, turn = GLINT_PI / 180;
 
-            /* y points down in glint_psf_light() */
-            glint_psf_light(&one, 40 * cos(phi), 40 * sin(phi), a);
-            glint_psf_light(&turned, 40 * cos(phi - turn), 40 * sin(phi - turn),
-                            b);
+            /* y points down here */
+            glint_psf_compute_light(&one, 40 * cos(phi), 40 * sin(phi), a);
+            glint_psf_compute_light(&turned, 40 * cos(phi - turn),
+                                    40 * sin(phi - turn), b);
             assert_true(fabs(a[1] / b[1] - 1) < 1e-6);
         }
         glint_psf_finish(&one);
@@ -168,15 +171,15 @@ TEST(soft_edge_removes_distant_light)
     struct glint_psf hard, soft;
     double a[3], b[3];
 
-    assert_true(fabs(glint_psf_softness(0.1, 0) - 1) < 1e-9);
-    assert_true(glint_psf_softness(0.1, 100) < 1e-3);
+    assert_true(fabs(glint_psf_compute_soft_edge_factor(0.1, 0) - 1) < 1e-9);
+    assert_true(glint_psf_compute_soft_edge_factor(0.1, 100) < 1e-3);
     assert_ok(glint_psf_init_iris(&hard, 8, 0, 1, 0.3, 0));
     assert_ok(glint_psf_init_iris(&soft, 8, 0, 1, 0.3, 0.1));
-    glint_psf_light(&hard, 0, 0, a);
-    glint_psf_light(&soft, 0, 0, b);
+    glint_psf_compute_light(&hard, 0, 0, a);
+    glint_psf_compute_light(&soft, 0, 0, b);
     assert_true(b[1] > 0.75 * a[1] && b[1] < a[1]);
-    glint_psf_light(&hard, 100, 30, a);
-    glint_psf_light(&soft, 100, 30, b);
+    glint_psf_compute_light(&hard, 100, 30, a);
+    glint_psf_compute_light(&soft, 100, 30, b);
     assert_true(b[1] < 0.02 * a[1]);
     glint_psf_finish(&hard);
     glint_psf_finish(&soft);

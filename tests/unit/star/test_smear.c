@@ -85,7 +85,7 @@ static void set_stop_amplitudes(const struct stop *s)
                 const double row = k / 4;
                 const double y = (j + (row + 0.5) / 4 - FINE) / FINE;
 
-                if (glint_iris_depth(&s->dirt->sides, x, y) < 0)
+                if (glint_iris_edge_distance(&s->dirt->sides, x, y) < 0)
                     continue;
                 in += 1.0 / 16;
                 light += sqrt(glint_dirt_light(s->dirt, x, y)) / 16;
@@ -132,7 +132,7 @@ static double sum_pixel_directly(double x, double y, double airy_px)
         const double a = airy_px * nm / 550;
         double rgb[3];
 
-        glint_observer_rgb(nm, rgb);
+        glint_observer_compute_rgb(nm, rgb);
         weights += rgb[1];
         for (int k = 0; k < POINTS * POINTS; k++) {
             const int row = k / POINTS;
@@ -208,8 +208,10 @@ TEST(total_light_does_not_depend_on_size)
             sum += linear[i] * 0x1p-30;
         assert_ok(glint_psf_init(&psf, 8, 10, airy_px));
         /* the image has the area of a circle of this radius */
-        beyond = s.smear.clear * glint_psf_beyond(&psf, 0.564 * SIDE, 1) +
-                 glint_smear_beyond(&s.smear, &psf, airy_px, 0.564 * SIDE, 1);
+        beyond = s.smear.clear *
+                     glint_psf_compute_light_beyond(&psf, 0.564 * SIDE, 1) +
+                 glint_smear_compute_light_beyond(&s.smear, &psf, airy_px,
+                                                  0.564 * SIDE, 1);
         printf("smear: %.4f of the light, %.4f of it beyond the picture\n",
                sum + beyond, beyond);
         assert_true(fabs(sum + beyond - 1) < 0.01);
@@ -252,7 +254,7 @@ TEST(white_mask_is_no_mask)
 
     open_stop_with_iris(&s, &iris, 0.5);
     assert_true(fabs(s.smear.clear - 1) < 1e-9);
-    assert_true(fabs(glint_smear_within(&s.smear, 100)) < 1e-9);
+    assert_true(fabs(glint_smear_integrate_within(&s.smear, 100)) < 1e-9);
     free_stop(&s);
     memset(mask, 0, sizeof mask);
     open_stop_with_iris(&s, &iris, 0.5);

@@ -114,7 +114,7 @@ TEST(first_dark_ring_of_a_circle)
     double dark = 0, least = 1;
 
     for (double x = 0.9; x < 1.5; x += 1e-4) {
-        const double light = glint_psf_transform(0, 0, x / 2, 0);
+        const double light = glint_psf_compute_pattern(0, 0, x / 2, 0);
 
         dark = light < least ? x : dark;
         least = fmin(least, light);
@@ -166,7 +166,7 @@ TEST(light_sums_to_the_total)
         for (int c = 0; c < 3; c++) {
             /* The light outside the image's sides is about that outside a
              * circle of 48 pixels. */
-            const double beyond = glint_psf_beyond(&psf, 48, c);
+            const double beyond = glint_psf_compute_light_beyond(&psf, 48, c);
 
             assert_true(
                 fabs(sum_channel_of_pixels(linear_q20, c) + beyond - 1) < 0.01);
@@ -191,7 +191,7 @@ static void sum_pixel_directly(int n_blades, double rotation_deg,
     double weight[WAVES][3], sum[3] = {0, 0, 0};
 
     for (int i = 0; i < WAVES; i++) {
-        glint_observer_rgb(400 + 300 * (i + 0.5) / WAVES, weight[i]);
+        glint_observer_compute_rgb(400 + 300 * (i + 0.5) / WAVES, weight[i]);
         for (int c = 0; c < 3; c++)
             sum[c] += weight[i][c];
     }
@@ -203,8 +203,8 @@ static void sum_pixel_directly(int n_blades, double rotation_deg,
         for (int i = 0; i < WAVES; i++) {
             const double a = airy_px * (400 + 300 * (i + 0.5) / WAVES) / 550;
             const double light =
-                glint_psf_transform(n_blades, rotation_deg, px / (2 * a),
-                                    -py / (2 * a)) *
+                glint_psf_compute_pattern(n_blades, rotation_deg, px / (2 * a),
+                                          -py / (2 * a)) *
                 area / (4 * a * a) / (points * points);
 
             for (int c = 0; c < 3; c++)
@@ -338,8 +338,8 @@ static double max_relative_difference(const struct glint_star_tables *t,
     for (int k = 0; k < N / 3; k++) {
         double rgb[3];
 
-        glint_star_tabled(t, k % WIDTH + 0.5 - place[0],
-                          k / WIDTH + 0.5 - place[1], rgb);
+        glint_star_evaluate_far_tables(t, k % WIDTH + 0.5 - place[0],
+                                       k / WIDTH + 0.5 - place[1], rgb);
         for (int c = 0; c < 3; c++) {
             const double want = fmin(rgb[c] * 0x1p45, 0x1p31);
 

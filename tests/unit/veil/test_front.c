@@ -60,8 +60,8 @@ TEST(table_has_the_dust_fractions)
     assert_int_equal(t->front.n_x, GLINT_VEIL_FRONT_NODES(WIDTH));
     for (int j = 0; j < t->front.n_y; j += 3)
         for (int i = 0; i < t->front.n_x; i += 3) {
-            const double want =
-                glint_front_covered(dirt, &optics, &setup, 4 * i, 4 * j, 100);
+            const double want = glint_front_sum_pixel_cover(
+                dirt, &optics, &setup, 4 * i, 4 * j, 100);
             const double is =
                 t->front.part_q16[j * t->front.n_x + i] * t->most / 65535;
 
@@ -86,12 +86,12 @@ TEST(mask_is_mirrored_by_the_lens)
     for (int k = 0; k < 2; k++) {
         struct glint_front_dirt *dirt = make_front_dirt(&(struct glint_front){
             .mask = k ? high : left, .mask_width = 2, .mask_height = 2});
-        const double low =
-            glint_front_covered(dirt, &optics, &setup, WIDTH / 2 - (k ? 0 : 30),
-                                HEIGHT / 2 - (k ? 20 : 0), 40);
-        const double far =
-            glint_front_covered(dirt, &optics, &setup, WIDTH / 2 + (k ? 0 : 30),
-                                HEIGHT / 2 + (k ? 20 : 0), 40);
+        const double low = glint_front_sum_pixel_cover(
+            dirt, &optics, &setup, WIDTH / 2 - (k ? 0 : 30),
+            HEIGHT / 2 - (k ? 20 : 0), 40);
+        const double far = glint_front_sum_pixel_cover(
+            dirt, &optics, &setup, WIDTH / 2 + (k ? 0 : 30),
+            HEIGHT / 2 + (k ? 20 : 0), 40);
 
         assert_true(low < 1e-3 && far > 0.99);
         glint_front_free(dirt);
