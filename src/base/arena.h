@@ -18,18 +18,19 @@
 struct glint_arena {
     uint8_t *base; /* GLINT_ALIGN-aligned, or NULL to measure */
     size_t size;   /* bytes at base; SIZE_MAX while measuring */
-    size_t used;   /* bytes allocated; if this exceeds size, an allocation
-                      failed */
+    size_t used;   /* bytes allocated so far; a value above size means that an
+                      allocation failed */
 };
 
-/* Returns an arena that measures. */
+/* Returns an arena that only counts bytes: base is NULL. */
 struct glint_arena glint_arena_measure(void);
 
 /* Returns an arena over MEM[BYTES]; MEM is aligned to GLINT_ALIGN. */
 struct glint_arena glint_arena_over(void *mem, size_t bytes);
 
-/* Allocates COUNT items of BYTES each, uninitialised; NULL while measuring, or
- * if the arena is full. A product that overflows leaves the arena full. */
+/* Allocates COUNT items of BYTES bytes each and returns the uninitialised
+ * memory. Returns NULL if the arena only measures or is full. If COUNT times
+ * BYTES overflows, the arena is full afterwards. */
 void *glint_arena_take(struct glint_arena *arena, size_t count, size_t bytes);
 
 #endif

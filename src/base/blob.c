@@ -28,7 +28,7 @@ uint32_t glint_blob_crc32(const void *data, size_t bytes)
     return ~update_crc32(UINT32_MAX, data, bytes);
 }
 
-static uint32_t compute_checksum(const void *data, size_t bytes)
+static uint32_t compute_file_checksum(const void *data, size_t bytes)
 {
     const size_t from = offsetof(struct glint_blob_header, variant);
 
@@ -57,7 +57,7 @@ enum glint_blob_fault glint_blob_open(struct glint_blob *blob,
         return GLINT_BLOB_TRUNCATED;
     if (bytes > h->bytes)
         return GLINT_BLOB_LONGER;
-    if (compute_checksum(data, bytes) != h->crc32)
+    if (compute_file_checksum(data, bytes) != h->crc32)
         return GLINT_BLOB_DAMAGED;
     *blob = (struct glint_blob){h, bytes, kind->header_bytes, 0};
     return GLINT_BLOB_OK;
@@ -73,7 +73,8 @@ enum glint_blob_fault glint_blob_check_name(const struct glint_blob *blob)
 
         if (c < 0x20 || c == 0x7f)
             return GLINT_BLOB_NAME_CONTROL;
-        if (c >= 0x80) /* terminals interpret 0x9b as the start of a command */
+        if (c >= 0x80) /* bytes above 0x7f are unsafe to print: terminals take
+                          0x9b as the start of a command */
             return GLINT_BLOB_NAME_FOREIGN;
     }
     if (n == sizeof blob->header->name)
@@ -100,5 +101,5 @@ void glint_blob_seal(void *data, size_t bytes)
     struct glint_blob_header *h = data;
 
     h->bytes = (uint32_t)bytes;
-    h->crc32 = compute_checksum(data, bytes);
+    h->crc32 = compute_file_checksum(data, bytes);
 }

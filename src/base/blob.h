@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Baked file: one block of little-endian 32-bit words that is checked once and
- * then used where it lies, in ROM or in a mapped file.
+ * Container of all baked files: one block of little-endian 32-bit words that is
+ * validated once and then used in place, in ROM or in a mapped file.
  *
  *     fault = glint_blob_open(&blob, &kind, data, bytes);
  *     table = glint_blob_section(&blob, at, n, sizeof *table);
@@ -9,7 +9,7 @@
  * The header of every file type begins with struct glint_blob_header and
  * continues with fields of its own type. The sections follow: tables in any
  * order. Header fields hold their offsets in bytes from the start of the file,
- * multiples of 4. The magic number identifies the file type.
+ * which are multiples of 4. The magic number identifies the file type.
  */
 #ifndef GLINT_BASE_BLOB_H
 #define GLINT_BASE_BLOB_H
@@ -21,19 +21,20 @@
 
 struct glint_blob_header {
     uint32_t magic, version;
-    uint32_t bytes;   /* size of the file including the header, bytes */
-    uint32_t crc32;   /* CRC-32 of all bytes after this word: polynomial
-                         0xedb88320, reflected, initial value and final XOR all
-                         ones */
-    uint32_t variant; /* variant of the file type, which defines its meaning */
-    uint32_t key[2];  /* hash of the source and of the options of the bake, low
-                         word first */
-    char name[64];    /* name of the baked object, zero-terminated */
+    uint32_t bytes; /* size of the file including the header, bytes */
+    uint32_t crc32; /* CRC-32 of all bytes after this word: polynomial
+                       0xedb88320, reflected, initial value and final XOR all
+                       ones */
+    uint32_t
+        variant; /* variant of the file; each file type defines its values */
+    uint32_t key[2]; /* hash of the source and of the options of the bake, low
+                        word first */
+    char name[64];   /* name of the baked object, zero-terminated */
 };
 
 struct glint_blob_kind {
     uint32_t magic, version;
-    /* size of the header with the fields of its file type */
+    /* size of the header including the fields of the file type, bytes */
     size_t header_bytes;
 };
 
@@ -54,9 +55,9 @@ enum glint_blob_fault {
     GLINT_BLOB_FAULTS
 };
 
-/* Error messages of the faults. THING names the file type, THINGS is its
- * plural, DONE is the participle of the operation. The message of
- * GLINT_BLOB_OK is NULL. */
+/* Initialiser of an array of error messages, indexed by fault. THING is the
+ * name of the file type, THINGS its plural, DONE the participle of the
+ * operation that makes it ("baked"). The message of GLINT_BLOB_OK is NULL. */
 #define GLINT_BLOB_FAULT_TEXT(thing, things, done)                          \
     {                                                                       \
         [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes", \
@@ -93,19 +94,20 @@ enum glint_blob_fault {
 struct glint_blob {
     const struct glint_blob_header *header;
     size_t bytes, header_bytes;
-    /* Sum of the bytes of all requested sections; a section counts once per
-     * request. */
+    /* sum of the sizes of all requested sections, bytes; a section that is
+     * requested twice counts twice */
     uint64_t referred;
 };
 
-/* Checks that DATA[BYTES] is a complete file of KIND, in time proportional
- * to BYTES, and points BLOB into it. Does not check the header fields from
- * the variant on. Sets BLOB only if there is no fault. */
+/* Checks that DATA[BYTES] is a complete file of KIND, in time proportional to
+ * BYTES, and sets BLOB to refer to it. Does not check the header fields after
+ * crc32. Sets BLOB only if there is no fault. */
 enum glint_blob_fault glint_blob_open(struct glint_blob *blob,
                                       const struct glint_blob_kind *kind,
                                       const void *data, size_t bytes);
 
-/* Checks that the name is safe to print on a terminal. */
+/* Checks that the name in the header is zero-terminated, not empty and safe to
+ * print on a terminal. */
 enum glint_blob_fault glint_blob_check_name(const struct glint_blob *blob);
 
 /* Returns the section of COUNT items of ITEM_BYTES each at AT; NULL if it does

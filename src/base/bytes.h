@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares and counts the eight bytes of a 64-bit word in parallel. The byte at
- * the lowest address is the lowest byte of the word.
+ * Compares and counts the eight bytes of a 64-bit word at once. The byte at the
+ * lowest address is the lowest byte of the word.
  */
 #ifndef GLINT_BASE_BYTES_H
 #define GLINT_BASE_BYTES_H
@@ -20,9 +20,10 @@ static WHOLLY_INLINE uint64_t bytes_load(const uint8_t *p)
            (uint64_t)p[6] << 48 | (uint64_t)p[7] << 56;
 }
 
-/* Returns a word with the high bit set in each byte where V is at least CODE.
- * CODE must be 1 .. 128, or 129 .. 256 if IS_ABOVE_128. No byte carries into
- * the next, as both addends are below 128. */
+/* Compares the eight bytes of V with CODE: returns a word in which the high bit
+ * of each byte is set if that byte of V is at least CODE. CODE must be 1 ..
+ * 128, or 129 .. 256 if IS_ABOVE_128. No byte carries into the next, as both
+ * addends are below 128. */
 static WHOLLY_INLINE uint64_t bytes_reach(uint64_t v, int code,
                                           int is_above_128)
 {
@@ -33,8 +34,8 @@ static WHOLLY_INLINE uint64_t bytes_reach(uint64_t v, int code,
     return (is_above_128 ? sum & v : sum | v) & BYTES_HIGH;
 }
 
-/* Packs the high bits of the eight bytes of HIGH into bits 0 .. 7; the first
- * byte gives bit 0. */
+/* Packs the high bits of the eight bytes of HIGH into bits 0 .. 7 of the
+ * result; bit 0 is that of the lowest byte. */
 static WHOLLY_INLINE uint32_t bytes_high_bits(uint64_t high)
 {
     return (uint32_t)((high >> 7) * UINT64_C(0x0102040810204080) >> 56);

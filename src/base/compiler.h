@@ -16,8 +16,8 @@
 /* Right shifts of negative numbers are arithmetic wherever glint runs. */
 STATIC_ASSERT((-3 >> 1) == -2);
 
-/* Hides the value of P from the optimiser, so that it reloads values from
- * memory instead of spilling registers to preserve them. */
+/* Hides the value of pointer P from the optimiser, which then reloads values
+ * from memory instead of keeping them in spilled registers. */
 #define FORGET(p) __asm__("" : "+r"(p))
 
 /* Prefetches the memory at P into the cache. */
@@ -59,10 +59,11 @@ static inline uint32_t bits_set(uint32_t x)
 }
 
 /* The compiler builds a function marked WIDE_VECTORS twice: for every CPU of
- * the architecture, and for AVX2. The loader chooses one; both give equal
- * results. Functions that it calls are marked WHOLLY_INLINE. Disabled with
- * sanitizers, which do not support such functions, and with clang, which
- * would export the resolvers of static functions. */
+ * the architecture, and for AVX2. The loader chooses one of the two at run
+ * time; both give equal results. All functions called by such a function must
+ * be marked WHOLLY_INLINE. Disabled with sanitizers, which do not support such
+ * functions, and with clang, which would export the resolvers of static
+ * functions. */
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && \
     !defined(GLINT_SANITIZED)
 #define WIDE_VECTORS __attribute__((target_clones("avx2", "default")))

@@ -8,10 +8,10 @@ static uint32_t multiply_high(uint32_t a, uint32_t b)
     return (uint32_t)((uint64_t)a * b >> 32);
 }
 
-/* Returns 2^63 / X, or slightly less, for X >= 2^31. Starts from a linear
- * approximation with an error of at most 1/17; three steps of Newton's
- * method square the error each time. Products are truncated, so the result
- * is never too large. */
+/* Returns an approximation of 2^63 / X, never above it, for X >= 2^31. Starts
+ * from a linear approximation with an error of at most 1/17; three steps of
+ * Newton's method square the error each time. Products are truncated, so the
+ * result is never too large. */
 static uint32_t approximate_reciprocal(uint32_t x)
 {
     /* 48/17 - 32/17 x in _q31, modulo 2^32; x in _q32 */
@@ -34,14 +34,14 @@ uint32_t glint_reciprocal(uint32_t x)
     return r;
 }
 
-/* Long division with up to 30 bits of the quotient per step. The upper
- * 32 bits of the remainder and of D give a digit that is never too large. The
- * loop ends when the remainder is less than four times D. */
+/* Long division: each step computes up to 30 bits of the quotient from the
+ * upper 32 bits of the remainder and of D, rounded such that they are never too
+ * large. The loop ends when the remainder is less than four times D. */
 int64_t glint_divide(int64_t n, int64_t d)
 {
     const uint64_t by = q_magnitude(d);
     const int wide = bit_length(by);
-    /* NOLINTNEXTLINE: D is not 0 */
+    /* NOLINTNEXTLINE: the caller guarantees that D is not 0 */
     const uint32_t top = (uint32_t)(by << (64 - wide) >> 32);
     const uint32_t one_over =
         approximate_reciprocal(top < UINT32_MAX ? top + 1 : top);
@@ -50,7 +50,7 @@ int64_t glint_divide(int64_t n, int64_t d)
 
     while ((more = bit_length(rest) - wide) >= 2) {
         const uint32_t of = (uint32_t)(rest << (64 - wide - more) >> 32);
-        const uint64_t ratio = multiply_high(of, one_over); /* Q31 */
+        const uint64_t ratio = multiply_high(of, one_over); /* _q31 */
         const uint64_t times =
             more < 31 ? ratio >> (31 - more) : ratio << (more - 31);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * 64-bit division for hot code. On 32-bit CPUs the compiler's own division
- * works bit by bit and needs about 300 instructions.
+ * 64-bit integer division for hot code. On 32-bit CPUs the compiler's own
+ * 64-bit division computes one bit at a time, in about 300 instructions.
  */
 #ifndef GLINT_BASE_DIVIDE_H
 #define GLINT_BASE_DIVIDE_H
@@ -10,8 +10,8 @@
 
 #include "base/q.h"
 
-/* Returns N / D, truncated towards 0, computed in 32-bit steps. D must not be
- * 0; neither N nor D may be INT64_MIN. */
+/* Returns N / D, truncated towards 0, computed with 32-bit operations only. D
+ * must not be 0; neither N nor D may be INT64_MIN. */
 int64_t glint_divide(int64_t n, int64_t d);
 
 /* Returns N / D, truncated towards 0, by the method that is faster on this
@@ -25,7 +25,7 @@ static inline int64_t q_divide(int64_t n, int64_t d)
 #endif
 }
 
-/* Returns the floor of (2^63 - 1) / X, for X from 2^31 on. */
+/* Returns (2^63 - 1) / X, rounded down; X must be at least 2^31. */
 uint32_t glint_reciprocal(uint32_t x);
 
 static inline uint32_t q_reciprocal(uint32_t x)
@@ -48,8 +48,8 @@ static inline uint32_t q_upper(uint64_t x, int up)
 #endif
 }
 
-/* Returns 32 minus the bit length of X; negative if X is longer than 32
- * bits. */
+/* Returns 32 minus the bit length of X: the left shift that normalises X to 32
+ * bits; negative if X has more than 32 bits. */
 static inline int q_up(uint64_t x)
 {
     return 32 - bit_length(x | 1);

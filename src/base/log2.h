@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Binary logarithm and exponential in fixed point: continuous, exact at powers
- * of 2.
+ * Binary logarithm and exponential in fixed point; both are continuous, and
+ * exact at powers of 2.
  */
 #ifndef GLINT_BASE_LOG2_H
 #define GLINT_BASE_LOG2_H
 
 #include "base/q.h"
 
-/* Returns log2(X) for X >= 1; the error is below 2^-14. Between powers of 2 it
- * is f + f (1 - f) times a minimax polynomial. */
+/* Returns log2(X) for X >= 1; the error is below 2^-14. With X = 2^n (1 + f)
+ * the result is n + f + f (1 - f) p(f), where p is a minimax polynomial. */
 static inline int32_t q_log2_q16(uint64_t x)
 {
     const int whole = bit_length(x) - 1;

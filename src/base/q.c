@@ -2,9 +2,9 @@
 #include "base/q.h"
 
 #ifdef GLINT_Q_CHECK
-/* Traps where an operation of CONFIG=qcheck overflows, so that the failing
- * operation is on the stack. Does not print, since the run-time half has no
- * stdio. */
+/* Stops the program when a fixed-point operation overflows in a build with
+ * CONFIG=qcheck; a debugger then shows the operation on the stack. Prints
+ * nothing, since the run-time half has no stdio. */
 void glint_q_overflow(const char *operation, int64_t exact)
 {
     (void)operation;

@@ -2,10 +2,11 @@
  *
  * Fixed-point arithmetic.
  *
- * Variables have stdint types, and the suffix of a name states the format:
- * x_q30 has 30 fraction bits. q_mul(a_qA, b_qB, s) is a Q(A + B - s);
- * tools/lint/q checks the suffixes. All functions round to nearest, ties up.
- * With -DGLINT_Q_CHECK, an operation whose exact result does not fit aborts.
+ * Variables have stdint types, and the suffix of a name states the number of
+ * fraction bits: x_q30 has 30. q_mul(a_qA, b_qB, s) has A + B - s fraction
+ * bits; tools/lint/q checks the suffixes. All functions round to nearest, ties
+ * up. With -DGLINT_Q_CHECK, an operation whose exact result does not fit
+ * aborts.
  */
 #ifndef GLINT_BASE_Q_H
 #define GLINT_BASE_Q_H
@@ -27,7 +28,8 @@ void glint_q_overflow(const char *operation, int64_t exact);
 #define Q_FITS(op, r, lo, hi) ((void)0)
 #endif
 
-/* Converts a literal to a rounded Q(FRAC) constant at compile time. */
+/* Converts a literal at compile time to a rounded fixed-point constant with
+ * FRAC fraction bits. */
 #define Q_CONST(x, frac) \
     ((int32_t)((x) * (double)(INT64_C(1) << (frac)) + ((x) < 0 ? -0.5 : 0.5)))
 
@@ -52,7 +54,8 @@ static inline int32_t q_mul(int32_t a, int32_t b, int s)
 }
 
 /* Returns X / 2^S, rounded, for any S. If the magnitude of the result would
- * reach LIMIT (at most 2^30), returns 0 and sets all bits of *LOST. */
+ * reach LIMIT, which is at most 2^30, returns 0 and sets all bits of *LOST;
+ * otherwise *LOST is unchanged. */
 static inline int32_t q_scaled(int64_t x, int s, int32_t limit, int32_t *lost)
 {
     int64_t y = 0;
@@ -69,8 +72,8 @@ static inline int32_t q_scaled(int64_t x, int s, int32_t limit, int32_t *lost)
     return fits ? (int32_t)y : 0;
 }
 
-/* Returns the square root of X, rounded down. If X is a Q(2 n), the root is
- * a Q(n). */
+/* Returns the square root of X, rounded down. The root has half as many
+ * fraction bits as X. */
 static inline uint32_t q_root(uint64_t x)
 {
     uint64_t root = 0;
@@ -84,7 +87,7 @@ static inline uint32_t q_root(uint64_t x)
     return (uint32_t)root;
 }
 
-/* Return the smaller and the larger of two numbers. */
+/* Return the min and the max of two numbers. */
 static inline int32_t q_smaller(int32_t a, int32_t b)
 {
     return a < b ? a : b;
@@ -95,7 +98,8 @@ static inline int32_t q_larger(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-/* Returns X clamped to LO .. HI. Used for light, never for geometry. */
+/* Returns X clamped to LO .. HI. Meant for light; clamped positions would
+ * distort outlines. */
 static inline int32_t q_clamp_sat(int64_t x, int32_t lo, int32_t hi)
 {
     return x < lo ? lo : x > hi ? hi : (int32_t)x;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/sort.h"
 
-void glint_heap_sift(const struct glint_heap *heap, int at, int n)
+void glint_heap_restore_order(const struct glint_heap *heap, int at, int n)
 {
     void *const things = heap->things;
 
@@ -19,18 +19,18 @@ void glint_heap_sift(const struct glint_heap *heap, int at, int n)
     }
 }
 
-void glint_heap_make(const struct glint_heap *heap, int n)
+void glint_heap_build(const struct glint_heap *heap, int n)
 {
     for (int i = n / 2 - 1; i >= 0; i--)
-        glint_heap_sift(heap, i, n);
+        glint_heap_restore_order(heap, i, n);
 }
 
 void glint_heap_sort(const struct glint_heap *heap, int n)
 {
-    glint_heap_make(heap, n);
+    glint_heap_build(heap, n);
     for (int end = n - 1; end > 0; end--) {
         heap->swap(heap->things, 0, end);
-        glint_heap_sift(heap, 0, end);
+        glint_heap_restore_order(heap, 0, end);
     }
 }
 
@@ -42,14 +42,14 @@ struct numbers {
     const void *ctx;
 };
 
-static int is_before(const void *things, int a, int b)
+static int is_number_before(const void *things, int a, int b)
 {
     const struct numbers *const n = things;
 
     return n->before(n->ctx, n->order[a], n->order[b]);
 }
 
-static void swap(void *things, int a, int b)
+static void swap_numbers(void *things, int a, int b)
 {
     const struct numbers *const n = things;
     const int32_t old = n->order[a];
@@ -61,7 +61,7 @@ static void swap(void *things, int a, int b)
 void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx)
 {
     struct numbers numbers = {order, before, ctx};
-    const struct glint_heap heap = {is_before, swap, &numbers};
+    const struct glint_heap heap = {is_number_before, swap_numbers, &numbers};
 
     glint_heap_sort(&heap, n);
 }

@@ -28,11 +28,11 @@ struct glint_heap {
 };
 
 /* Reorders the objects 0 .. N - 1 into a heap. */
-void glint_heap_make(const struct glint_heap *heap, int n);
+void glint_heap_build(const struct glint_heap *heap, int n);
 
 /* Restores the heap of objects 0 .. N - 1 after object AT was replaced by an
  * object that comes earlier in sorting order. */
-void glint_heap_sift(const struct glint_heap *heap, int at, int n);
+void glint_heap_restore_order(const struct glint_heap *heap, int at, int n);
 
 void glint_heap_sort(const struct glint_heap *heap, int n);
 

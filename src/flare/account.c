@@ -10,8 +10,8 @@
 
 /* Returns the number of a bundle among all combinations of light, ghost and
  * wave. */
-static int64_t compute_number(const struct glint_flare *f, int ghost, int light,
-                              int wave)
+static int64_t compute_bundle_number(const struct glint_flare *f, int ghost,
+                                     int light, int wave)
 {
     const struct glint_flare_frame *r = f->plan.frame;
 
@@ -23,7 +23,8 @@ static int64_t compute_number(const struct glint_flare *f, int ghost, int light,
 /* Returns the index of the first planned bundle whose number is at least
  * NUMBER, or n_bundles if there is no such bundle. Planned bundles are sorted
  * by number. */
-static int find_first(const struct glint_flare *f, int64_t number)
+static int find_first_planned_bundle(const struct glint_flare *f,
+                                     int64_t number)
 {
     int low = 0, high = f->n_bundles;
 
@@ -31,7 +32,7 @@ static int find_first(const struct glint_flare *f, int64_t number)
         const int middle = low + (high - low) / 2;
         const struct glint_bundle_plan *s = &f->planned[middle];
 
-        if (compute_number(f, s->ghost, s->light, s->wave) < number)
+        if (compute_bundle_number(f, s->ghost, s->light, s->wave) < number)
             low = middle + 1;
         else
             high = middle;
@@ -41,27 +42,29 @@ static int find_first(const struct glint_flare *f, int64_t number)
 
 /* Returns the index of the bundle with number NUMBER among the planned
  * bundles, or -1 if it was not planned. */
-static int find_bundle(const struct glint_flare *f, int64_t number)
+static int find_planned_bundle(const struct glint_flare *f, int64_t number)
 {
-    const int at = find_first(f, number);
+    const int at = find_first_planned_bundle(f, number);
 
     if (at == f->n_bundles)
         return -1;
-    return compute_number(f, f->planned[at].ghost, f->planned[at].light,
-                          f->planned[at].wave) == number
+    return compute_bundle_number(f, f->planned[at].ghost, f->planned[at].light,
+                                 f->planned[at].wave) == number
                ? at
                : -1;
 }
 
 /* Returns the index of the wave set chosen for GHOST and LIGHT; 0 if no
  * bundle of GHOST and LIGHT was planned. */
-static int find_set(const struct glint_flare *f, int ghost, int light)
+static int find_chosen_wave_set(const struct glint_flare *f, int ghost,
+                                int light)
 {
-    const int at = find_first(f, compute_number(f, ghost, light, 0));
+    const int at =
+        find_first_planned_bundle(f, compute_bundle_number(f, ghost, light, 0));
     const struct glint_bundle_plan *s = &f->planned[at];
 
     return at < f->n_bundles && s->ghost == ghost && s->light == light
-               ? glint_wave_sets_of(f->plan.frame->sets, s->wave)
+               ? glint_wave_sets_find_set(f->plan.frame->sets, s->wave)
                : 0;
 }
 
@@ -70,16 +73,16 @@ static int find_set(const struct glint_flare *f, int ghost, int light)
  * is the bundle's number. With wave sets the plan first considers all waves
  * of the first set, for each ghost and light, and then chooses a set; the
  * index is that of the last of these waves. */
-static int64_t compute_slot(const struct glint_flare *f, int ghost, int light,
-                            int wave)
+static int64_t compute_bundle_slot_index(const struct glint_flare *f, int ghost,
+                                         int light, int wave)
 {
     const struct glint_flare_frame *r = f->plan.frame;
-    const int64_t number = compute_number(f, ghost, light, wave);
+    const int64_t number = compute_bundle_number(f, ghost, light, wave);
 
     return r->sets ? (number / r->n_waves + 1) * r->sets->size[0] - 1 : number;
 }
 
-static int count_terms(const struct glint_transfer *t, int kind)
+static int count_polynomial_terms(const struct glint_transfer *t, int kind)
 {
     int n = 0;
 
@@ -89,19 +92,19 @@ static int count_terms(const struct glint_transfer *t, int kind)
     return n;
 }
 
-static void count_outputs(const struct glint_transfer *t,
-                          struct glint_account *a)
+static void count_transfer_outputs(const struct glint_transfer *t,
+                                   struct glint_account *a)
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (t->outputs >> kind & 1) {
             a->outputs++;
             a->barrels += kind >= GLINT_OUT_RADIUS;
-            a->terms += count_terms(t, kind);
+            a->terms += count_polynomial_terms(t, kind);
         }
 }
 
 /* Returns the number of rows of the picture that EDGE crosses. */
-static int count_rows(const struct glint_edge *edge, int height)
+static int count_edge_rows(const struct glint_edge *edge, int height)
 {
     const int first = edge->y_q8 > 0 ? edge->y_q8 >> 8 : 0;
     const int end = (edge->end_y_q8 + 255) >> 8;
@@ -109,23 +112,23 @@ static int count_rows(const struct glint_edge *edge, int height)
     return (end < height ? end : height) - first;
 }
 
-static void count_edges(const struct glint_flare *f,
-                        const struct glint_bundle_slot *slot,
-                        struct glint_account *a)
+static void count_bundle_edges(const struct glint_flare *f,
+                               const struct glint_bundle_slot *slot,
+                               struct glint_account *a)
 {
     const struct glint_edge *edge = glint_by_edges_of(f)->edge;
 
     a->edges = slot->n;
     for (int i = slot->first; i < slot->first + slot->n; i++) {
-        a->rows += count_rows(&edge[i], f->cfg.height);
-        a->refs =
-            glint_flare_add_need(a->refs, glint_edge_span(&edge[i], &f->bins));
+        a->rows += count_edge_rows(&edge[i], f->cfg.height);
+        a->refs = glint_flare_add_need(
+            a->refs, glint_edge_count_bin_entries(&edge[i], &f->bins));
     }
 }
 
 /* Returns whether, for GHOST, all light of light LIGHT was merged into
  * another light. */
-static int is_shared(const struct glint_flare *f, int ghost, int light)
+static int is_light_merged(const struct glint_flare *f, int ghost, int light)
 {
     const struct glint_flare_frame *r = f->plan.frame;
 
@@ -137,10 +140,10 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
                          int wave, struct glint_account *account)
 {
     struct glint_plan_scratch *scratch = flare->worker[0].plan;
-    const int64_t number = compute_number(flare, ghost, light, wave);
-    const int64_t place = compute_slot(flare, ghost, light, wave);
+    const int64_t number = compute_bundle_number(flare, ghost, light, wave);
+    const int64_t place = compute_bundle_slot_index(flare, ghost, light, wave);
     const struct glint_wave_sets *sets = flare->plan.frame->sets;
-    const int at = find_bundle(flare, number);
+    const int at = find_planned_bundle(flare, number);
     struct glint_bundle_plan planned = {
         .ghost = ghost, .light = light, .wave = wave};
     struct glint_bundle bundle;
@@ -149,8 +152,8 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
     account->outcome = glint_plan_bundle(
         &flare->plan, &flare->plan.light[light], &planned, &bundle, scratch);
     account->probed = scratch->probe.n_rays;
-    if (sets &&
-        glint_wave_sets_of(sets, wave) != find_set(flare, ghost, light)) {
+    if (sets && glint_wave_sets_find_set(sets, wave) !=
+                    find_chosen_wave_set(flare, ghost, light)) {
         account->outcome = GLINT_OUTCOME_OTHER_SET;
         account->probed *= wave < sets->size[0];
         return;
@@ -162,7 +165,7 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
     } else if (at >= flare->n_drawn)
         account->outcome = GLINT_OUTCOME_NO_ROOM;
     else if (at < 0 && account->outcome == GLINT_OUTCOME_DRAWN &&
-             is_shared(flare, ghost, light))
+             is_light_merged(flare, ghost, light))
         account->outcome = GLINT_OUTCOME_SHARED;
     else if (at < 0 && account->outcome == GLINT_OUTCOME_DRAWN)
         account->outcome = GLINT_OUTCOME_FAINT;
@@ -171,18 +174,19 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
     account->flux = flare->planned[at].flux;
     account->cells = flare->bundle[at].n_cells;
     account->vertices = (account->cells + 1) * (account->cells + 1);
-    glint_plan_transfer(&flare->plan, &flare->planned[at], &scratch->transfer);
-    count_outputs(&scratch->transfer, account);
+    glint_plan_set_transfer(&flare->plan, &flare->planned[at],
+                            &scratch->transfer);
+    count_transfer_outputs(&scratch->transfer, account);
     if (account->outcome == GLINT_OUTCOME_NO_ROOM)
         return;
-    count_edges(flare, &flare->slot[at], account);
+    count_bundle_edges(flare, &flare->slot[at], account);
     if (account->edges == 0)
         account->outcome = GLINT_OUTCOME_EMPTY;
 }
 
-static int is_bundle_of(const struct glint_flare *f,
-                        const struct glint_bundle_plan *s, int ghost, int light,
-                        int wave)
+static int is_bundle_selected(const struct glint_flare *f,
+                              const struct glint_bundle_plan *s, int ghost,
+                              int light, int wave)
 {
     const struct glint_model_ghost *of = f->plan.frame->lens->ghost;
     const struct glint_wave_sets *sets = f->plan.frame->sets;
@@ -191,7 +195,7 @@ static int is_bundle_of(const struct glint_flare *f,
     return (ghost < 0 || (here->i == of[ghost].i && here->j == of[ghost].j)) &&
            (light < 0 || s->light == light) &&
            (wave < 0 ||
-            (sets ? glint_wave_sets_of(sets, s->wave) : s->wave) == wave);
+            (sets ? glint_wave_sets_find_set(sets, s->wave) : s->wave) == wave);
 }
 
 void glint_flare_keep(struct glint_flare *flare, int ghost, int light, int wave)
@@ -199,23 +203,24 @@ void glint_flare_keep(struct glint_flare *flare, int ghost, int light, int wave)
     const struct glint_edge *edge = glint_by_edges_of(flare)->edge;
 
     flare->reusable = GLINT_REUSABLE_NOT;
-    glint_bins_open(&flare->bins);
+    glint_bins_clear_counts(&flare->bins);
     for (int put = 0; put < 2; put++) {
         for (int i = 0; i < flare->n_drawn; i++) {
             const struct glint_bundle_slot *slot = &flare->slot[i];
 
-            if (!is_bundle_of(flare, &flare->planned[i], ghost, light, wave))
+            if (!is_bundle_selected(flare, &flare->planned[i], ghost, light,
+                                    wave))
                 continue;
             for (int k = slot->first; k < slot->first + slot->n; k++)
                 if (put)
-                    glint_edge_put(&edge[k], &flare->bins, k);
+                    glint_edge_put_into_bins(&edge[k], &flare->bins, k);
                 else
-                    glint_edge_count(&edge[k], &flare->bins);
+                    glint_edge_count_into_bins(&edge[k], &flare->bins);
         }
         if (!put)
-            glint_bins_sum(&flare->bins);
+            glint_bins_convert_counts_to_starts(&flare->bins);
     }
-    glint_bins_close(&flare->bins);
+    glint_bins_reset_starts(&flare->bins);
 }
 
 int glint_flare_listed(const struct glint_flare *flare, int tile)

@@ -20,7 +20,8 @@ struct glint_real glint_flare_pixels_per_mm(const struct glint_lens *lens,
 }
 
 /* Returns SMALL / LARGE, at most 1; 0 if SMALL is 0. */
-static int32_t compute_ratio(struct glint_real small, struct glint_real large)
+static int32_t compute_ratio_q30(struct glint_real small,
+                                 struct glint_real large)
 {
     if (small.mantissa == 0)
         return 0;
@@ -29,11 +30,12 @@ static int32_t compute_ratio(struct glint_real small, struct glint_real large)
 
 /* Sets COSINE and SINE of the direction from (0, 0) to (X, Y); X and Y must not
  * be negative. For (0, 0) it is the direction of x. */
-static void compute_direction(struct glint_real x, struct glint_real y,
-                              int32_t *cosine_q30, int32_t *sine_q30)
+static void compute_unit_direction(struct glint_real x, struct glint_real y,
+                                   int32_t *cosine_q30, int32_t *sine_q30)
 {
     const int steep = real_less(x, y);
-    const int64_t ratio_q30 = steep ? compute_ratio(x, y) : compute_ratio(y, x);
+    const int64_t ratio_q30 =
+        steep ? compute_ratio_q30(x, y) : compute_ratio_q30(y, x);
     const int64_t length_q30 =
         q_root((UINT64_C(1) << 60) + (uint64_t)(ratio_q30 * ratio_q30));
     const int32_t large_q30 = q_narrow(q_divide(INT64_C(1) << 60, length_q30));
@@ -59,12 +61,13 @@ struct glint_light glint_light_from_pixel(const struct glint_lens *lens,
                                 .rgb_q14 = {1 << 14, 1 << 14, 1 << 14}};
     int64_t distance_q38;
 
-    compute_direction(real_of(x < 0 ? -x : x, -8), real_of(y < 0 ? -y : y, -8),
-                      &light.cos_q30, &light.sin_q30);
+    compute_unit_direction(real_of(x < 0 ? -x : x, -8),
+                           real_of(y < 0 ? -y : y, -8), &light.cos_q30,
+                           &light.sin_q30);
     light.cos_q30 = x < 0 ? -light.cos_q30 : light.cos_q30;
     light.sin_q30 = y < 0 ? -light.sin_q30 : light.sin_q30;
     distance_q38 = (int64_t)x * light.cos_q30 + (int64_t)y * light.sin_q30;
-    compute_direction(
+    compute_unit_direction(
         (struct glint_real){side * focal.mantissa, focal.exponent},
         real_of(distance_q38, -38), &light.cosine_q30, &light.sine_q30);
     return light;

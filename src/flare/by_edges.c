@@ -20,8 +20,8 @@ static size_t count_max_jobs(const struct glint_flare_config *c)
 
 /* Both functions are called twice: first with an arena that only measures,
  * when they return NULL, then to allocate. */
-struct glint_by_edges *glint_edges_carve(struct glint_arena *a,
-                                         const struct glint_flare_config *c)
+struct glint_by_edges *glint_edges_allocate(struct glint_arena *a,
+                                            const struct glint_flare_config *c)
 {
     struct glint_by_edges measured, *placed, *own;
 
@@ -34,8 +34,8 @@ struct glint_by_edges *glint_edges_carve(struct glint_arena *a,
 }
 
 struct glint_edges_worker *
-glint_edges_carve_worker(struct glint_arena *a,
-                         const struct glint_flare_config *c)
+glint_edges_allocate_worker(struct glint_arena *a,
+                            const struct glint_flare_config *c)
 {
     const size_t side = (size_t)1 << c->tile_log2;
     const size_t n_sums = 3 * side * (size_t)GLINT_EDGE_STRIDE(c->tile_log2);
@@ -56,7 +56,7 @@ glint_edges_carve_worker(struct glint_arena *a,
     return placed;
 }
 
-void glint_edges_begin(struct glint_flare *f)
+void glint_edges_clear_sums(struct glint_flare *f)
 {
     const int log2 = f->cfg.tile_log2;
 
@@ -79,7 +79,7 @@ typedef int weight_fn(const struct glint_flare *f, int job);
 /* Sorts N jobs by descending log2 of their weight, so that no worker begins a
  * long job when the others have finished. The order does not change the
  * output. */
-static void set_order(struct glint_flare *f, int n, weight_fn *weight)
+static void sort_jobs_by_weight(struct glint_flare *f, int n, weight_fn *weight)
 {
     int32_t *order = glint_by_edges_of(f)->order;
     int32_t at[33] = {0};
@@ -96,12 +96,12 @@ static void set_order(struct glint_flare *f, int n, weight_fn *weight)
         order[at[32 - bit_length((uint32_t)weight(f, i))]++] = i;
 }
 
-static int count_cells(const struct glint_flare *f, int bundle)
+static int get_bundle_cells(const struct glint_flare *f, int bundle)
 {
     return f->bundle[bundle].n_cells;
 }
 
-static int count_row_edges(const struct glint_flare *f, int row)
+static int count_tile_row_edges(const struct glint_flare *f, int row)
 {
     const int32_t *start = f->bins.start + row * f->bins.tiles_x;
 
@@ -112,7 +112,7 @@ static int count_row_edges(const struct glint_flare *f, int row)
 
 /* Returns the flux of a bundle at energy 1, display white times pixels, clamped
  * to 2^26. */
-static int64_t compute_flux(const struct glint_bundle *b)
+static int64_t compute_bundle_flux(const struct glint_bundle *b)
 {
     const int64_t cells = (int64_t)b->n_cells * b->n_cells; /* at most 2^20 */
     const int up = b->flux_exponent - 31 + 8;
@@ -130,13 +130,13 @@ static int64_t compute_flux(const struct glint_bundle *b)
  * as long as no pixel gets more than 2^24. No cell can give a pixel more
  * than its flux; if the flux of all bundles reaches 2^24, each cell is
  * limited to 2^23 / the number of cells. */
-static int32_t compute_light_limit_q8(const struct glint_flare *f)
+static int32_t compute_cell_light_limit_q8(const struct glint_flare *f)
 {
     const int64_t most = INT64_C(1) << 24;
     int64_t flux = 0, cells = 1, share_q8;
 
     for (int i = 0; i < f->n_bundles; i++) {
-        flux += compute_flux(&f->bundle[i]);
+        flux += compute_bundle_flux(&f->bundle[i]);
         cells += (int64_t)f->bundle[i].n_cells * f->bundle[i].n_cells;
     }
     if (flux < most)
@@ -145,20 +145,22 @@ static int32_t compute_light_limit_q8(const struct glint_flare *f)
     return (int32_t)(share_q8 < GLINT_LIMIT_Q8 ? share_q8 : GLINT_LIMIT_Q8);
 }
 
-static int add_refs(const struct glint_flare *f, int refs, int first, int n)
+static int add_bin_entries(const struct glint_flare *f, int refs, int first,
+                           int n)
 {
     const struct glint_edge *edge = glint_by_edges_of(f)->edge + first;
 
     for (int k = 0; k < n; k++)
-        refs = glint_flare_add_need(refs, glint_edge_span(&edge[k], &f->bins));
+        refs = glint_flare_add_need(
+            refs, glint_edge_count_bin_entries(&edge[k], &f->bins));
     return refs;
 }
 
 /* Converts a bundle to edges in the unused rest of the worker's range of
  * edges. If they do not fit, all of them are dropped; unless BINS is NULL,
  * the number of entries that they need in BINS is stored in the slot's refs. */
-static void emit_bundle(struct glint_flare *f, int bundle, int worker,
-                        const struct glint_bins *bins)
+static void emit_bundle_edges(struct glint_flare *f, int bundle, int worker,
+                              const struct glint_bins *bins)
 {
     const struct glint_by_edges *own = glint_by_edges_of(f);
     struct glint_plan_scratch *plan = f->worker[worker].plan;
@@ -184,18 +186,19 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker,
         .bins = bins};
 
     if (f->plan.frame) {
-        glint_plan_transfer(&f->plan, &f->planned[bundle], &plan->transfer);
+        glint_plan_set_transfer(&f->plan, &f->planned[bundle], &plan->transfer);
         ghost.transfer = &plan->transfer;
         ghost.coded = f->plan.frame->faintest.mantissa != 0;
         ghost.snap_codes_q8 = ghost.coded ? f->plan.frame->snap_codes_q8 : 0;
-        ghost.place = glint_plan_place(&f->plan, &f->planned[bundle]);
+        ghost.place =
+            glint_plan_map_sensor_to_picture(&f->plan, &f->planned[bundle]);
         ghost.sag_q16 = f->planned[bundle].sag_q16;
         ghost.flux = f->planned[bundle].flux;
         ghost.irradiance = f->planned[bundle].irradiance;
     }
     if (!f->rays ||
         f->rays->open(f->rays->ctx, worker, bundle, ghost.top, ghost.height))
-        glint_ghost_edges_emit(&ghost);
+        glint_ghost_emit_edges(&ghost);
     slot->first = -1;
     slot->n = ghost.n_edges;
     slot->n_dropped = ghost.n_dropped;
@@ -203,8 +206,9 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker,
     slot->refs = 0;
     if (ghost.n_edges > ghost.max_edges) {
         if (bins)
-            slot->refs = add_refs(f, ghost.more_refs,
-                                  w->first_edge + w->n_edges, ghost.max_edges);
+            slot->refs =
+                add_bin_entries(f, ghost.more_refs, w->first_edge + w->n_edges,
+                                ghost.max_edges);
         return;
     }
     slot->first = w->first_edge + w->n_edges;
@@ -221,27 +225,29 @@ static struct glint_bins make_worker_bins(const struct glint_flare *f,
     return bins;
 }
 
-static void count_bundle(struct glint_flare *f, int bundle, int worker)
+static void count_bundle_bin_entries(struct glint_flare *f, int bundle,
+                                     int worker)
 {
     const struct glint_bundle_slot *slot = &f->slot[bundle];
     struct glint_bins bins = make_worker_bins(f, worker);
 
     for (int k = 0; slot->first >= 0 && k < slot->n; k++)
-        glint_edge_count(&glint_by_edges_of(f)->edge[slot->first + k], &bins);
+        glint_edge_count_into_bins(&glint_by_edges_of(f)->edge[slot->first + k],
+                                   &bins);
 }
 
-static void emit_job(void *ctx, int job, int worker)
+static void emit_bundle_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
     const int bundle = glint_by_edges_of(f)->order[job];
 
-    emit_bundle(f, bundle, worker, NULL);
+    emit_bundle_edges(f, bundle, worker, NULL);
     f->slot[bundle].worker = worker;
-    count_bundle(f, bundle, worker);
+    count_bundle_bin_entries(f, bundle, worker);
 }
 
 /* Gives each of N workers an equal range of the array of edges. */
-static void split_edges(struct glint_flare *f, int n)
+static void split_edge_array(struct glint_flare *f, int n)
 {
     const int part = f->cfg.max_primitives / n;
 
@@ -254,16 +260,16 @@ static void split_edges(struct glint_flare *f, int n)
     }
 }
 
-static void clear_counts(struct glint_flare *f)
+static void clear_bin_counts(struct glint_flare *f)
 {
     for (int i = 0; i < glint_workers_count(f->cfg.workers); i++) {
         struct glint_bins bins = make_worker_bins(f, i);
 
-        glint_bins_open(&bins);
+        glint_bins_clear_counts(&bins);
     }
 }
 
-static int are_all_placed(const struct glint_flare *f)
+static int are_all_bundles_placed(const struct glint_flare *f)
 {
     for (int i = 0; i < f->n_bundles; i++)
         if (f->slot[i].first < 0)
@@ -273,7 +279,7 @@ static int are_all_placed(const struct glint_flare *f)
 
 /* Converts each bundle whose edges did not fit into its worker's range,
  * using the range of any worker that has enough space left. */
-static void emit_leftovers(struct glint_flare *f)
+static void emit_leftover_bundles(struct glint_flare *f)
 {
     const int n_workers = glint_workers_count(f->cfg.workers);
 
@@ -283,44 +289,44 @@ static void emit_leftovers(struct glint_flare *f)
 
             if (f->slot[i].n > w->max_edges - w->n_edges)
                 continue;
-            emit_bundle(f, i, k, NULL);
+            emit_bundle_edges(f, i, k, NULL);
             f->slot[i].worker = k;
-            count_bundle(f, i, k);
+            count_bundle_bin_entries(f, i, k);
         }
 }
 
 /* Converts all bundles to edges again, in order and into one list, so that
  * the set of dropped bundles does not depend on the timing of workers. */
-static void emit_in_order(struct glint_flare *f)
+static void emit_bundles_in_order(struct glint_flare *f)
 {
     int full = 0;
 
-    split_edges(f, 1);
-    clear_counts(f);
+    split_edge_array(f, 1);
+    clear_bin_counts(f);
     for (int i = 0; i < f->n_bundles; i++) {
         struct glint_bundle_slot *slot = &f->slot[i];
 
-        emit_bundle(f, i, 0, &f->bins);
+        emit_bundle_edges(f, i, 0, &f->bins);
         slot->worker = 0;
         full |= slot->first < 0;
         if (full && slot->first >= 0)
-            slot->refs = add_refs(f, 0, slot->first, slot->n);
+            slot->refs = add_bin_entries(f, 0, slot->first, slot->n);
         if (full)
             slot->first = -1;
-        count_bundle(f, i, 0);
+        count_bundle_bin_entries(f, i, 0);
     }
 }
 
-static void emit_all(struct glint_flare *f)
+static void emit_all_bundles(struct glint_flare *f)
 {
-    split_edges(f, glint_workers_count(f->cfg.workers));
-    clear_counts(f);
-    set_order(f, f->n_bundles, count_cells);
-    glint_workers_run(f->cfg.workers, f->n_bundles, emit_job, f);
-    if (!are_all_placed(f))
-        emit_leftovers(f);
-    if (!are_all_placed(f))
-        emit_in_order(f);
+    split_edge_array(f, glint_workers_count(f->cfg.workers));
+    clear_bin_counts(f);
+    sort_jobs_by_weight(f, f->n_bundles, get_bundle_cells);
+    glint_workers_run(f->cfg.workers, f->n_bundles, emit_bundle_job, f);
+    if (!are_all_bundles_placed(f))
+        emit_leftover_bundles(f);
+    if (!are_all_bundles_placed(f))
+        emit_bundles_in_order(f);
     for (int i = 0; i < f->n_bundles; i++) {
         f->stats.need_primitives =
             glint_flare_add_need(f->stats.need_primitives, f->slot[i].n);
@@ -335,7 +341,7 @@ static void emit_all(struct glint_flare *f)
 
 /* Keeps as many bundles, from the first on, as have entries that fit into
  * the bins. The counts in the bins are undefined afterwards. */
-static void drop_refs(struct glint_flare *f)
+static void drop_bundles_that_overflow_bins(struct glint_flare *f)
 {
     struct glint_bins bins = make_worker_bins(f, 0);
     int refs = 0, n_kept = 0;
@@ -344,7 +350,7 @@ static void drop_refs(struct glint_flare *f)
         for (int k = 0; k < f->slot[i].n; k++)
             refs = glint_flare_add_need(
                 refs,
-                glint_edge_count(
+                glint_edge_count_into_bins(
                     &glint_by_edges_of(f)->edge[f->slot[i].first + k], &bins));
         if (refs > f->cfg.max_refs)
             break;
@@ -356,7 +362,7 @@ static void drop_refs(struct glint_flare *f)
 /* Converts the workers' counts to start indices: in each tile, a worker's
  * entries follow the entries of the workers before it. Returns the total
  * number of entries. */
-static int assign_refs(struct glint_flare *f)
+static int assign_bin_indices(struct glint_flare *f)
 {
     const int n_tiles = f->bins.tiles_x * f->bins.tiles_y;
     const int n_workers = glint_workers_count(f->cfg.workers);
@@ -377,8 +383,8 @@ static int assign_refs(struct glint_flare *f)
 }
 
 /* Job JOB puts the edges that worker JOB counted into the bins, at the indices
- * that assign_refs() computed for that worker. Any worker may run it. */
-static void bin_job(void *ctx, int job, int worker)
+ * that assign_bin_indices() computed for that worker. Any worker may run it. */
+static void bin_worker_edges_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
     struct glint_bins bins = make_worker_bins(f, job);
@@ -388,8 +394,9 @@ static void bin_job(void *ctx, int job, int worker)
         const struct glint_bundle_slot *slot = &f->slot[i];
 
         for (int k = 0; slot->worker == job && k < slot->n; k++)
-            glint_edge_put(&glint_by_edges_of(f)->edge[slot->first + k], &bins,
-                           slot->first + k);
+            glint_edge_put_into_bins(
+                &glint_by_edges_of(f)->edge[slot->first + k], &bins,
+                slot->first + k);
     }
 }
 
@@ -397,20 +404,21 @@ void glint_edges_bin(struct glint_flare *flare)
 {
     struct glint_flare_stats *s = &flare->stats;
 
-    glint_by_edges_of(flare)->limit_q8 = compute_light_limit_q8(flare);
+    glint_by_edges_of(flare)->limit_q8 = compute_cell_light_limit_q8(flare);
     flare->n_drawn = 0;
-    emit_all(flare);
-    s->refs = assign_refs(flare);
+    emit_all_bundles(flare);
+    s->refs = assign_bin_indices(flare);
     s->need_refs = glint_flare_add_need(s->need_refs, s->refs);
     if (s->refs > flare->cfg.max_refs) {
-        drop_refs(flare);
-        clear_counts(flare);
+        drop_bundles_that_overflow_bins(flare);
+        clear_bin_counts(flare);
         for (int i = 0; i < flare->n_drawn; i++)
-            count_bundle(flare, i, flare->slot[i].worker);
-        s->refs = assign_refs(flare);
+            count_bundle_bin_entries(flare, i, flare->slot[i].worker);
+        s->refs = assign_bin_indices(flare);
     }
     glint_workers_run(flare->cfg.workers,
-                      glint_workers_count(flare->cfg.workers), bin_job, flare);
+                      glint_workers_count(flare->cfg.workers),
+                      bin_worker_edges_job, flare);
 }
 
 /* ----------------------------------------------------------------- drawing */
@@ -422,13 +430,13 @@ struct draw {
     int n_passes;
 };
 
-static void row_job(void *ctx, int job, int worker)
+static void draw_tile_row_job(void *ctx, int job, int worker)
 {
     const struct draw *d = ctx;
 
-    glint_tile_rows(d->tiles, d->pass, d->n_passes,
-                    glint_by_edges_of(d->flare)->order[job], worker,
-                    &d->flare->worker[worker].tile);
+    glint_tiles_draw_row(d->tiles, d->pass, d->n_passes,
+                         glint_by_edges_of(d->flare)->order[job], worker,
+                         &d->flare->worker[worker].tile);
 }
 
 void glint_edges_draw(struct glint_flare *flare,
@@ -439,7 +447,8 @@ void glint_edges_draw(struct glint_flare *flare,
 
     glint_by_edges_of(flare)->linear =
         tiles->image && tiles->image->format == GLINT_LINEAR_Q20;
-    pass[n_below] = glint_edges_pass(flare);
-    set_order(flare, flare->bins.tiles_y, count_row_edges);
-    glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
+    pass[n_below] = glint_edges_make_pass(flare);
+    sort_jobs_by_weight(flare, flare->bins.tiles_y, count_tile_row_edges);
+    glint_workers_run(flare->cfg.workers, flare->bins.tiles_y,
+                      draw_tile_row_job, &d);
 }

@@ -48,15 +48,15 @@ enum { GLINT_EDGES_MAX_BUNDLES = 1 << 20 };
 
 /* Carve the memory for edges, of a flare and of one worker, out of A. Return
  * NULL while A only measures. */
-struct glint_by_edges *glint_edges_carve(struct glint_arena *a,
-                                         const struct glint_flare_config *c);
+struct glint_by_edges *glint_edges_allocate(struct glint_arena *a,
+                                            const struct glint_flare_config *c);
 struct glint_edges_worker *
-glint_edges_carve_worker(struct glint_arena *a,
-                         const struct glint_flare_config *c);
+glint_edges_allocate_worker(struct glint_arena *a,
+                            const struct glint_flare_config *c);
 
 /* Sets all sums of all workers to 0, the state that is required before each
  * tile. */
-void glint_edges_begin(struct glint_flare *f);
+void glint_edges_clear_sums(struct glint_flare *f);
 
 /* Converts the bundles to edges and sorts these into tiles. Sets n_drawn,
  * the state for drawing, and all statistics except the numbers of bundles
@@ -70,6 +70,6 @@ void glint_edges_draw(struct glint_flare *flare,
                       int n_below);
 
 /* Returns the pass that draws the edges in the bins. */
-struct glint_pass glint_edges_pass(const struct glint_flare *flare);
+struct glint_pass glint_edges_make_pass(const struct glint_flare *flare);
 
 #endif

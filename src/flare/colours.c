@@ -8,8 +8,8 @@
 /* Returns the flux of the direct image times 2^FRAC, mm^2, at W_Q30, the
  * position in the band of wavelengths, -1 .. 1. Each coefficient is clamped to
  * 2^27, so sums stay below 2^30. */
-static int32_t compute_direct_flux(const struct glint_model_header *h,
-                                   int32_t w_q30, int frac)
+static int32_t compute_direct_image_flux(const struct glint_model_header *h,
+                                         int32_t w_q30, int frac)
 {
     int32_t flux = 0;
 
@@ -35,7 +35,7 @@ void glint_flare_waves(struct glint_wave wave[GLINT_FLARE_WAVES],
                                                 h->wave_lo_q24 - h->wave_hi_q24,
                                             -band_q24, band_q24);
         const int32_t w_q30 = q_narrow(q_divide(off_q24 * (1 << 30), band_q24));
-        const int32_t flux = compute_direct_flux(h, w_q30, frac);
+        const int32_t flux = compute_direct_image_flux(h, w_q30, frac);
 
         wave[i] = (struct glint_wave){.wave_q24 = wave_q24[i]};
         wave[i].rgb_q14[i] = 1 << 14;

@@ -11,8 +11,8 @@ enum { BRIGHT_Q8 = 1 << 16 };
 
 /* Returns value K of ghost GHOST at the angle whose sine is SINE,
  * interpolated, or GLINT_DIM_DARK. */
-static int32_t interpolate_value(const struct glint_flare_frame *frame,
-                                 int32_t sine_q30, int ghost, int k)
+static int32_t interpolate_dim_value(const struct glint_flare_frame *frame,
+                                     int32_t sine_q30, int ghost, int k)
 {
     const int32_t at_q16 = glint_dim_node_q16(frame, sine_q30);
     const int node = at_q16 >> 16;
@@ -26,7 +26,8 @@ static int32_t interpolate_value(const struct glint_flare_frame *frame,
 
 /* Returns whether all waves of the ghost get through at node NODE. Returns 1 if
  * NODE is out of range. */
-static int is_known(const struct glint_flare_frame *frame, int ghost, int node)
+static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
+                                     int ghost, int node)
 {
     const int16_t *value;
 
@@ -42,43 +43,44 @@ static int is_known(const struct glint_flare_frame *frame, int ghost, int node)
 /* If the ghost counts as bright in the previous or next interval, the result
  * falls from 1, at the node shared with that interval, to the interpolated
  * value. It reaches that value halfway to the other node at the latest. */
-int32_t glint_dim_above_q8(const struct glint_flare_frame *frame,
-                           const struct glint_light *light, int ghost)
+int32_t glint_dim_brightness_log2_q8(const struct glint_flare_frame *frame,
+                                     const struct glint_light *light, int ghost)
 {
     const int32_t at_q16 = glint_dim_node_q16(frame, light->sine_q30);
     const int node = at_q16 >> 16;
     const int from_q8 = (at_q16 & 65535) >> 7;
     int32_t share_q8;
 
-    if (!is_known(frame, ghost, node) || !is_known(frame, ghost, node + 1))
+    if (!is_ghost_brightness_known(frame, ghost, node) ||
+        !is_ghost_brightness_known(frame, ghost, node + 1))
         return BRIGHT_Q8;
-    share_q8 = interpolate_value(frame, light->sine_q30, ghost, 0) +
+    share_q8 = interpolate_dim_value(frame, light->sine_q30, ghost, 0) +
                glint_dim_log2_q8(light->power) -
                glint_dim_log2_q8(frame->dimmest);
     if (frame->tints)
         share_q8 += glint_dim_log2_q8(frame->tints[ghost].gain);
-    if (!is_known(frame, ghost, node - 1) &&
+    if (!is_ghost_brightness_known(frame, ghost, node - 1) &&
         share_q8 < GLINT_DIM_WHOLE_Q8 - from_q8)
         share_q8 = GLINT_DIM_WHOLE_Q8 - from_q8;
-    if (!is_known(frame, ghost, node + 2) &&
+    if (!is_ghost_brightness_known(frame, ghost, node + 2) &&
         share_q8 < from_q8 - GLINT_DIM_WHOLE_Q8)
         share_q8 = from_q8 - GLINT_DIM_WHOLE_Q8;
     return share_q8;
 }
 
-int glint_dim_share_q8(const struct glint_flare_frame *frame,
-                       const struct glint_light *light, int ghost)
+int glint_dim_own_rays_fraction_q8(const struct glint_flare_frame *frame,
+                                   const struct glint_light *light, int ghost)
 {
-    return q_clamp_sat(glint_dim_above_q8(frame, light, ghost), 0,
+    return q_clamp_sat(glint_dim_brightness_log2_q8(frame, light, ghost), 0,
                        GLINT_DIM_WHOLE_Q8);
 }
 
-int64_t glint_dim_ratio_q16(const struct glint_flare_frame *frame,
-                            int32_t sine_q30, int ghost, int wave)
+int64_t glint_dim_wave_ratio_q16(const struct glint_flare_frame *frame,
+                                 int32_t sine_q30, int ghost, int wave)
 {
     const int32_t log2 = q_clamp_sat(
-        interpolate_value(frame, sine_q30, ghost, 1 + wave) -
-            interpolate_value(frame, sine_q30, ghost, 1 + GLINT_DIM_WAVE),
+        interpolate_dim_value(frame, sine_q30, ghost, 1 + wave) -
+            interpolate_dim_value(frame, sine_q30, ghost, 1 + GLINT_DIM_WAVE),
         -16 * 256, 11 * 256);
     const int64_t one_q16 = (int64_t)(256 + (log2 & 255)) << 8;
     const int octaves = log2 >> 8;

@@ -46,7 +46,8 @@ struct glint_dim_method {
      * I as merged so far. */
     int (*kept_q8)(const struct glint_flare_frame *frame,
                    const struct glint_light *light, int i, int ghost);
-    /* Pointers to glint_dim_share_q8() and glint_dim_ratio_q16(). */
+    /* Pointers to glint_dim_own_rays_fraction_q8() and
+     * glint_dim_wave_ratio_q16(). */
     int (*share_q8)(const struct glint_flare_frame *frame,
                     const struct glint_light *light, int ghost);
     int64_t (*ratio_q16)(const struct glint_flare_frame *frame,
@@ -56,24 +57,25 @@ struct glint_dim_method {
 /* Returns log2 of the ratio of the mean light of GHOST from LIGHT to the
  * frame's parameter dimmest; a value far above 0 if the mean light is not
  * known. */
-int32_t glint_dim_above_q8(const struct glint_flare_frame *frame,
-                           const struct glint_light *light, int ghost);
+int32_t glint_dim_brightness_log2_q8(const struct glint_flare_frame *frame,
+                                     const struct glint_light *light,
+                                     int ghost);
 
 /* Returns the fraction of a wave's light, in ghost GHOST of LIGHT, that is
  * drawn with rays of that wave, 0 to GLINT_DIM_WHOLE_Q8; the rays of
  * GLINT_DIM_WAVE draw the rest. */
-int glint_dim_share_q8(const struct glint_flare_frame *frame,
-                       const struct glint_light *light, int ghost);
+int glint_dim_own_rays_fraction_q8(const struct glint_flare_frame *frame,
+                                   const struct glint_light *light, int ghost);
 
 /* Returns the ratio of the ghost's light in wave WAVE to its light in
  * GLINT_DIM_WAVE, both without the colours of the waves; at most 2^27. */
-int64_t glint_dim_ratio_q16(const struct glint_flare_frame *frame,
-                            int32_t sine_q30, int ghost, int wave);
+int64_t glint_dim_wave_ratio_q16(const struct glint_flare_frame *frame,
+                                 int32_t sine_q30, int ghost, int wave);
 
 /* Returns the squared distance of two directions on the unit sphere, at most 4.
  */
-uint64_t glint_light_apart2_q60(const struct glint_light *a,
-                                const struct glint_light *b);
+uint64_t glint_light_squared_distance_q60(const struct glint_light *a,
+                                          const struct glint_light *b);
 
 /* Merges B into A: A gets the summed power, the mean colour and a direction
  * between both. Colours have GLINT_LIGHT_HELD additional fraction bits. */

@@ -18,8 +18,8 @@ struct glint_flare_under {
  * with the flare's tiles: at half resolution these have pixels twice as wide
  * and high; if cells are drawn in two levels, a row of tiles ends at the
  * side of each large tile. */
-void glint_flare_draw_over(struct glint_flare *flare,
-                           const struct glint_image *image,
-                           const struct glint_flare_under *under);
+void glint_flare_draw_over_passes(struct glint_flare *flare,
+                                  const struct glint_image *image,
+                                  const struct glint_flare_under *under);
 
 #endif

@@ -14,7 +14,7 @@ enum { FINE_OUTLINES = 1024 };
 
 /* Returns whether F needs sums of _q20. With a soft edge each bundle may have
  * GLINT_SOFT_RINGS outlines. */
-static int is_fine(const struct glint_flare *f)
+static int are_fine_sums_needed(const struct glint_flare *f)
 {
     const struct glint_shade *shade = f->cfg.stop.shade;
     const int rings = shade && shade->soft_q16 ? GLINT_SOFT_RINGS : 1;
@@ -23,7 +23,7 @@ static int is_fine(const struct glint_flare *f)
 }
 
 /* Returns whether any row carries light into the next tile. */
-static int has_carry(const struct glint_edge_sums *s)
+static int has_light_carry(const struct glint_edge_sums *s)
 {
     int64_t any = 0;
 
@@ -32,7 +32,7 @@ static int has_carry(const struct glint_edge_sums *s)
     return any != 0;
 }
 
-static void *begin_row(const void *self, struct glint_box row, int worker)
+static void *begin_tile_row(const void *self, struct glint_box row, int worker)
 {
     const struct glint_flare *f = self;
     const int log2 = f->cfg.tile_log2;
@@ -45,7 +45,7 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     s->patch = s->shade ? s->shade->method->draw : NULL;
     s->scratch = w->rows; /* unused while pixels are drawn */
     s->linear = glint_by_edges_of(f)->linear;
-    s->fine = is_fine(f);
+    s->fine = are_fine_sums_needed(f);
     s->lit = 0;
     s->tile_log2 = log2;
     s->stride = GLINT_EDGE_STRIDE(log2);
@@ -54,7 +54,7 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     return w;
 }
 
-static int add_tile(void *state, struct glint_box tile)
+static int accumulate_tile_edges(void *state, struct glint_box tile)
 {
     struct glint_edges_worker *w = state;
     const struct glint_flare *f = w->flare;
@@ -63,25 +63,26 @@ static int add_tile(void *state, struct glint_box tile)
     struct glint_edge_sums *s = &w->sums;
 
     /* Carries change only in tiles that are drawn. */
-    s->lit = n > 0 || (s->lit && has_carry(s));
+    s->lit = n > 0 || (s->lit && has_light_carry(s));
     if (!s->lit)
         return 0;
     s->tile = tile;
-    glint_edge_add(s, glint_by_edges_of(f)->edge, f->bundle,
-                   f->bins.ref + start[0], n);
+    glint_edges_add_to_sums(s, glint_by_edges_of(f)->edge, f->bundle,
+                            f->bins.ref + start[0], n);
     return 1;
 }
 
-static enum glint_given light_row(const struct glint_edge_sums *s,
-                                  const struct glint_pass_rows *rows)
+static enum glint_given write_linear_row(const struct glint_edge_sums *s,
+                                         const struct glint_pass_rows *rows)
 {
     for (int c = 0; c < 3; c++)
-        glint_edge_linear(s, c, rows->y - s->tile.y0, rows->light_q20[c]);
+        glint_sums_read_linear_row(s, c, rows->y - s->tile.y0,
+                                   rows->light_q20[c]);
     return GLINT_GIVES_LIGHT;
 }
 
-static enum glint_given light_rows(void *state,
-                                   const struct glint_pass_rows *rows)
+static enum glint_given write_pixel_rows(void *state,
+                                         const struct glint_pass_rows *rows)
 {
     const struct glint_edges_worker *w = state;
     const struct glint_edge_sums *s = &w->sums;
@@ -90,20 +91,21 @@ static enum glint_given light_rows(void *state,
     int lit = 0;
 
     if (s->linear)
-        return light_row(s, rows);
-    if (glint_edge_dark(s, first) && glint_edge_dark(s, first + rows->n - 1))
+        return write_linear_row(s, rows);
+    if (glint_sums_is_row_dark(s, first) &&
+        glint_sums_is_row_dark(s, first + rows->n - 1))
         return GLINT_GIVES_NOTHING;
     for (int c = 0; c < 3; c++)
         for (int row = 0; row < rows->n; row++)
-            lit |= glint_edge_light(s, c, first + row, kernels,
-                                    rows->light->rgb_q16[c][row]);
+            lit |= glint_sums_read_code_row(s, c, first + row, kernels,
+                                            rows->light->rgb_q16[c][row]);
     return lit ? GLINT_GIVES_LIGHT : GLINT_GIVES_NOTHING;
 }
 
-struct glint_pass glint_edges_pass(const struct glint_flare *flare)
+struct glint_pass glint_edges_make_pass(const struct glint_flare *flare)
 {
     return (struct glint_pass){.self = flare,
-                               .begin = begin_row,
-                               .tile = add_tile,
-                               .rows = light_rows};
+                               .begin = begin_tile_row,
+                               .tile = accumulate_tile_edges,
+                               .rows = write_pixel_rows};
 }

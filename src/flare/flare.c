@@ -15,8 +15,8 @@ enum {
 
 /* ------------------------------------------------------------------- memory */
 
-static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
-                         const struct glint_flare_config *c)
+static void allocate_worker(struct glint_flare_worker *w, struct glint_arena *a,
+                            const struct glint_flare_config *c)
 {
     const size_t side = (size_t)1 << c->tile_log2;
     struct glint_tile_scratch *t = &w->tile;
@@ -25,13 +25,13 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
     t->light_q20 = glint_arena_take(a, 3 * 2 * side, sizeof *t->light_q20);
     t->codes = glint_arena_take(a, 1, sizeof *t->codes);
     w->plan = glint_arena_take(a, 1, sizeof *w->plan);
-    w->edges = glint_edges_carve_worker(a, c);
+    w->edges = glint_edges_allocate_worker(a, c);
 }
 
 /* Called twice: first with an arena that only measures, when it returns
  * NULL, then to allocate. */
-static struct glint_flare *carve_flare(struct glint_arena *a,
-                                       const struct glint_flare_config *c)
+static struct glint_flare *allocate_flare(struct glint_arena *a,
+                                          const struct glint_flare_config *c)
 {
     const size_t n_workers = (size_t)glint_workers_count(c->workers);
     union {
@@ -48,7 +48,7 @@ static struct glint_flare *carve_flare(struct glint_arena *a,
     f->planned =
         glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->planned);
     f->vertex = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->vertex);
-    f->edges = glint_edges_carve(a, c);
+    f->edges = glint_edges_allocate(a, c);
     f->reuse = c->reuse ? c->reuse->carve(a, c) : NULL;
     f->bins.start = glint_arena_take(
         a, glint_flare_count_tiles(c->width, c->height, c->tile_log2) + 1,
@@ -58,7 +58,7 @@ static struct glint_flare *carve_flare(struct glint_arena *a,
     f->resolve = glint_arena_take(a, 1, sizeof *f->resolve);
     workers = a->base ? f->worker : NULL;
     for (size_t i = 0; i < n_workers; i++)
-        carve_worker(workers ? &workers[i] : &measured.worker, a, c);
+        allocate_worker(workers ? &workers[i] : &measured.worker, a, c);
     return placed;
 }
 
@@ -94,7 +94,7 @@ static int is_valid_config(const struct glint_flare_config *c)
            is_valid_stop(&c->stop);
 }
 
-void glint_flare_forget(struct glint_flare *flare)
+void glint_flare_reset_tile_state(struct glint_flare *flare)
 {
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++) {
         struct glint_tile_scratch *t = &flare->worker[i].tile;
@@ -110,7 +110,7 @@ size_t glint_flare_bytes(const struct glint_flare_config *cfg)
 
     if (!is_valid_config(cfg))
         return 0;
-    carve_flare(&arena, cfg);
+    allocate_flare(&arena, cfg);
     return arena.used;
 }
 
@@ -125,10 +125,10 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
         return GLINT_E_ARGUMENT;
     if (glint_flare_bytes(cfg) > bytes)
         return GLINT_E_MEMORY;
-    f = carve_flare(&arena, cfg);
+    f = allocate_flare(&arena, cfg);
     f->cfg = *cfg;
-    glint_flare_forget(f);
-    glint_edges_begin(f);
+    glint_flare_reset_tile_state(f);
+    glint_edges_clear_sums(f);
     glint_flare_begin(f);
     *flare = f;
     return GLINT_OK;
@@ -148,7 +148,7 @@ enum glint_status glint_flare_set_stop(struct glint_flare *flare,
 
 /* Sets the size that is drawn: the size of the picture, or if HALF is 1 half of
  * its width and height. */
-static void set_size(struct glint_flare *f, int half)
+static void set_drawn_size(struct glint_flare *f, int half)
 {
     f->half = half;
     f->width = (f->cfg.width + half) >> half;
@@ -159,7 +159,7 @@ static void set_size(struct glint_flare *f, int half)
 
 void glint_flare_begin(struct glint_flare *flare)
 {
-    set_size(flare, 0);
+    set_drawn_size(flare, 0);
     flare->n_bundles = flare->n_vertices = flare->n_drawn = 0;
     flare->plan.frame = NULL;
     flare->rays = NULL;
@@ -218,13 +218,13 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 static int count_lights_in_range(const struct glint_lens *lens,
                                  const struct glint_light *lights, int n)
 {
-    while (n > 0 && glint_plan_is_beyond(lens, &lights[n - 1]))
+    while (n > 0 && glint_plan_is_light_outside_model(lens, &lights[n - 1]))
         n--;
     return n;
 }
 
 /* Plans all waves of one ghost and light. */
-static void plan_job(void *ctx, int job, int worker)
+static void plan_ghost_and_light_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
     const struct glint_flare_frame *r = f->plan.frame;
@@ -254,7 +254,7 @@ static void plan_job(void *ctx, int job, int worker)
  * is summed, as the sum may be visible although each summand is not; so a
  * ghost is removed, in a wave, for all lights or for none. Sums are
  * integers, so their order does not matter. */
-static void leave_out_faint(struct glint_flare *f, int n)
+static void remove_invisible_ghosts(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;
     const int64_t stride = (int64_t)r->lens->header->n_ghosts * r->n_waves;
@@ -270,7 +270,7 @@ static void leave_out_faint(struct glint_flare *f, int n)
 }
 
 /* Removes invisible bundles from the first N bundles and closes the gaps. */
-static void keep_seen(struct glint_flare *f, int n)
+static void compact_visible_bundles(struct glint_flare *f, int n)
 {
     for (int i = 0; i < n; i++) {
         if (f->bundle[i].n_cells == 0)
@@ -296,9 +296,9 @@ static int plan_all_bundles(struct glint_flare *f, int n_jobs)
     f->stats.need_bundles = need;
     f->stats.dropped_bundles = need - n;
     if (n > 0)
-        glint_workers_run(f->cfg.workers, (n + n_waves - 1) / n_waves, plan_job,
-                          f);
-    leave_out_faint(f, n);
+        glint_workers_run(f->cfg.workers, (n + n_waves - 1) / n_waves,
+                          plan_ghost_and_light_job, f);
+    remove_invisible_ghosts(f, n);
     return n;
 }
 
@@ -317,7 +317,7 @@ void glint_flare_plan(struct glint_flare *flare,
         return;
     glint_flare_begin(flare);
     flare->quads = frame->half;
-    set_size(flare, frame->half != NULL);
+    set_drawn_size(flare, frame->half != NULL);
     flare->plan = (struct glint_plan){
         .frame = frame,
         .light = lights,
@@ -343,8 +343,9 @@ void glint_flare_plan(struct glint_flare *flare,
             flare, count_lights_in_range(frame->lens, lights, n_lights));
     }
     flare->flux = flare->brightest = (struct glint_real){0, 0};
-    keep_seen(flare, frame->sets ? frame->sets->planner->plan(flare, n_jobs)
-                                 : plan_all_bundles(flare, n_jobs));
+    compact_visible_bundles(
+        flare, frame->sets ? frame->sets->planner->plan(flare, n_jobs)
+                           : plan_all_bundles(flare, n_jobs));
     if (flare->cfg.reuse)
         flare->reusable = GLINT_REUSABLE_PLANNED;
 }
@@ -390,7 +391,7 @@ int64_t glint_flare_looked(const struct glint_flare *flare)
 
 /* Sets the totals of the statistics over the bundles whose edges fit into the
  * bins. */
-static void sum_statistics(struct glint_flare *f)
+static void sum_drawn_statistics(struct glint_flare *f)
 {
     struct glint_flare_stats *s = &f->stats;
 
@@ -413,15 +414,15 @@ void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
     if (flare->reusable != GLINT_REUSABLE_BINNED) {
         if (flare->n_bundles > 0)
             glint_edges_bin(flare);
-        sum_statistics(flare);
+        sum_drawn_statistics(flare);
     }
     if (flare->reusable != GLINT_REUSABLE_NOT)
         flare->cfg.reuse->turn(flare);
     *stats = flare->stats;
 }
 
-struct glint_tiles glint_flare_start(struct glint_flare *flare,
-                                     const struct glint_image *image)
+struct glint_tiles glint_flare_prepare_tiles(struct glint_flare *flare,
+                                             const struct glint_image *image)
 {
     static const struct glint_image none = {.format = GLINT_YUYV};
 
@@ -444,10 +445,10 @@ void glint_flare_draw(struct glint_flare *flare,
     struct glint_tiles tiles;
 
     if (flare->bins.region.y0 == 0)
-        glint_flare_forget(flare);
+        glint_flare_reset_tile_state(flare);
     if (flare->stats.primitives == 0)
         return; /* the bins may hold the edges of an earlier frame */
-    tiles = glint_flare_start(flare, image);
+    tiles = glint_flare_prepare_tiles(flare, image);
     glint_edges_draw(flare, &tiles, pass, 0);
 }
 

@@ -48,17 +48,18 @@ struct direction {
     int32_t x_q30, y_q30, z_q30;
 };
 
-static struct direction compute_direction(const struct glint_light *b)
+static struct direction compute_light_direction(const struct glint_light *b)
 {
     return (struct direction){q_mul(b->sine_q30, b->cos_q30, 30),
                               q_mul(b->sine_q30, b->sin_q30, 30),
                               b->cosine_q30};
 }
 
-uint64_t glint_light_apart2_q60(const struct glint_light *a,
-                                const struct glint_light *b)
+uint64_t glint_light_squared_distance_q60(const struct glint_light *a,
+                                          const struct glint_light *b)
 {
-    const struct direction p = compute_direction(a), q = compute_direction(b);
+    const struct direction p = compute_light_direction(a),
+                           q = compute_light_direction(b);
     const int64_t x = (int64_t)p.x_q30 - q.x_q30;
     const int64_t y = (int64_t)p.y_q30 - q.y_q30;
     const int64_t z = (int64_t)p.z_q30 - q.z_q30;
@@ -68,7 +69,8 @@ uint64_t glint_light_apart2_q60(const struct glint_light *a,
 
 /* Sets the azimuth of B to the direction of (X, Y); returns the length of (X,
  * Y). If the length is 0 (light on the axis), the azimuth does not matter. */
-static int64_t set_azimuth(struct glint_light *b, int32_t x_q30, int32_t y_q30)
+static int64_t set_light_azimuth(struct glint_light *b, int32_t x_q30,
+                                 int32_t y_q30)
 {
     const uint32_t size = (uint32_t)(x_q30 < 0 ? -x_q30 : x_q30) |
                           (uint32_t)(y_q30 < 0 ? -y_q30 : y_q30);
@@ -86,9 +88,10 @@ static int64_t set_azimuth(struct glint_light *b, int32_t x_q30, int32_t y_q30)
 }
 
 /* Sets the direction of B to D. D may have any length. */
-static void set_direction(struct glint_light *b, const struct direction *d)
+static void set_light_direction(struct glint_light *b,
+                                const struct direction *d)
 {
-    const int64_t off = set_azimuth(b, d->x_q30, d->y_q30), z = d->z_q30;
+    const int64_t off = set_light_azimuth(b, d->x_q30, d->y_q30), z = d->z_q30;
     const int64_t length = q_root((uint64_t)(off * off + z * z));
 
     /* The length is 0 for the mean of two lights in opposite directions. */
@@ -107,7 +110,7 @@ struct order {
     uint32_t x0, y0;
 };
 
-static void list_words(const struct glint_light *b, int32_t *word)
+static void list_light_words(const struct glint_light *b, int32_t *word)
 {
     word[0] = b->power.exponent;
     word[1] = b->power.mantissa;
@@ -121,12 +124,13 @@ static void list_words(const struct glint_light *b, int32_t *word)
 }
 
 /* Returns whether A comes before B. Compares all members, power first. */
-static int is_brighter(const struct glint_light *a, const struct glint_light *b)
+static int is_brighter_light(const struct glint_light *a,
+                             const struct glint_light *b)
 {
     int32_t p[WORDS], q[WORDS];
 
-    list_words(a, p);
-    list_words(b, q);
+    list_light_words(a, p);
+    list_light_words(b, q);
     for (int i = 0; i < WORDS; i++)
         if (p[i] != q[i])
             return p[i] > q[i];
@@ -135,24 +139,25 @@ static int is_brighter(const struct glint_light *a, const struct glint_light *b)
 
 /* Returns the distance of V, -1 .. 1, from the lower end -1 - ZERO of the
  * axis; _q30. */
-static uint32_t compute_offset(int32_t v_q30, uint32_t zero)
+static uint32_t compute_curve_offset(int32_t v_q30, uint32_t zero)
 {
     return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;
 }
 
-static int is_before(const void *order, int i, int j)
+static int is_before_in_light_order(const void *order, int i, int j)
 {
     const struct order *const o = order;
     const struct glint_light *const a = &o->light[i], *const b = &o->light[j];
-    const struct direction p = compute_direction(a), q = compute_direction(b);
-    const uint32_t px = compute_offset(p.x_q30, o->x0),
-                   qx = compute_offset(q.x_q30, o->x0);
-    const uint32_t py = compute_offset(p.y_q30, o->y0),
-                   qy = compute_offset(q.y_q30, o->y0);
+    const struct direction p = compute_light_direction(a),
+                           q = compute_light_direction(b);
+    const uint32_t px = compute_curve_offset(p.x_q30, o->x0),
+                   qx = compute_curve_offset(q.x_q30, o->x0);
+    const uint32_t py = compute_curve_offset(p.y_q30, o->y0),
+                   qy = compute_curve_offset(q.y_q30, o->y0);
     const uint32_t dx = px ^ qx, dy = py ^ qy;
 
     if (o->by_power || (dx | dy) == 0)
-        return is_brighter(a, b);
+        return is_brighter_light(a, b);
     /* Compares positions along the Z curve: the highest differing bit
      * decides; y's bit ranks above x's bit of the same weight. */
     return dx < dy && dx < (dx ^ dy) ? py < qy : px < qx;
@@ -169,14 +174,14 @@ static void swap_lights(void *order, int i, int j)
 
 static void sort_lights(struct order *o, int n)
 {
-    const struct glint_heap heap = {is_before, swap_lights, o};
+    const struct glint_heap heap = {is_before_in_light_order, swap_lights, o};
 
     glint_heap_sort(&heap, n);
 }
 
 /* Sorts lights along the curve of round ROUND. Curves begin at multiples of
  * irrational numbers, so that no two of them separate the same neighbours. */
-static void sort_along_curve(struct glint_light *b, int n, int round)
+static void sort_lights_along_curve(struct glint_light *b, int n, int round)
 {
     const uint32_t k = (uint32_t)round;
     struct order o = {b, 0, k * UINT32_C(1640531527) >> 2,
@@ -193,7 +198,8 @@ void glint_light_merge(struct glint_light *a, const struct glint_light *b)
     const int64_t share_q30 =
         power.mantissa ? real_integer(real_over(b->power, power), 30, ONE_Q30)
                        : 0;
-    const struct direction p = compute_direction(a), q = compute_direction(b);
+    const struct direction p = compute_light_direction(a),
+                           q = compute_light_direction(b);
     const struct direction mean = {
         q_narrow(p.x_q30 +
                  q_shift(((int64_t)q.x_q30 - p.x_q30) * share_q30, 30)),
@@ -214,14 +220,14 @@ void glint_light_merge(struct glint_light *a, const struct glint_light *b)
     a->power = real_times(power, real_of(most, -14 - HELD));
     if (b->apart_q30 > a->apart_q30)
         a->apart_q30 = b->apart_q30;
-    set_direction(a, &mean);
+    set_light_direction(a, &mean);
 }
 
 /* Returns the base-2 exponent of the squared cost of merging A and B. */
-static int compute_cost_log2(const struct glint_light *a,
-                             const struct glint_light *b)
+static int compute_merge_cost_log2(const struct glint_light *a,
+                                   const struct glint_light *b)
 {
-    const uint64_t d2_q59 = glint_light_apart2_q60(a, b) >> 1 | 1;
+    const uint64_t d2_q59 = glint_light_squared_distance_q60(a, b) >> 1 | 1;
     const struct glint_real light = real_times(a->power, b->power);
 
     return real_times(real_times(light, light), real_of((int64_t)d2_q59, -59))
@@ -232,26 +238,27 @@ static int compute_cost_log2(const struct glint_light *a,
 struct rule {
     uint64_t near2_q60; /* if not 0: lights merge if their squared distance is
                            at most this */
-    int cost; /* if near2_q60 is 0: max compute_cost_log2() at which lights
-                 merge */
+    int cost; /* if near2_q60 is 0: max compute_merge_cost_log2() at which
+                 lights merge */
     int most; /* merging stops at this number of lights */
 };
 
-static int may_merge(const struct rule *r, const struct glint_light *a,
-                     const struct glint_light *b)
+static int can_lights_merge(const struct rule *r, const struct glint_light *a,
+                            const struct glint_light *b)
 {
-    return r->near2_q60 ? glint_light_apart2_q60(a, b) <= r->near2_q60
-                        : compute_cost_log2(a, b) <= r->cost;
+    return r->near2_q60 ? glint_light_squared_distance_q60(a, b) <= r->near2_q60
+                        : compute_merge_cost_log2(a, b) <= r->cost;
 }
 
 /* Merges neighbours in the list of N lights that satisfy R; returns the
  * number of lights left. */
-static int merge_neighbours(struct glint_light *b, int n, const struct rule *r)
+static int merge_neighbouring_lights(struct glint_light *b, int n,
+                                     const struct rule *r)
 {
     int last = 0, left = n;
 
     for (int i = 1; i < n; i++)
-        if (left > r->most && may_merge(r, &b[last], &b[i])) {
+        if (left > r->most && can_lights_merge(r, &b[last], &b[i])) {
             glint_light_merge(&b[last], &b[i]);
             left--;
         } else
@@ -261,20 +268,20 @@ static int merge_neighbours(struct glint_light *b, int n, const struct rule *r)
 
 /* Returns the min cost limit, to within 1 / BINS of the range of costs, at
  * which enough neighbours merge: 1 / PART of the N - MOST surplus lights. */
-static int find_next_cost(const struct glint_light *b, int n, int most)
+static int find_next_cost_limit(const struct glint_light *b, int n, int most)
 {
     int count[BINS] = {0}, low = INT32_MAX, high = INT32_MIN, width, bin = 0;
     int wanted = (n - most + PART - 1) / PART;
 
     for (int i = 1; i < n; i++) {
-        const int cost = compute_cost_log2(&b[i - 1], &b[i]);
+        const int cost = compute_merge_cost_log2(&b[i - 1], &b[i]);
 
         low = cost < low ? cost : low;
         high = cost > high ? cost : high;
     }
     width = (int)(((int64_t)high - low) / BINS) + 1;
     for (int i = 1; i < n; i++)
-        count[(compute_cost_log2(&b[i - 1], &b[i]) - low) / width]++;
+        count[(compute_merge_cost_log2(&b[i - 1], &b[i]) - low) / width]++;
     while (bin < BINS - 1 && (wanted -= count[bin]) > 0)
         bin++;
     return low + (bin + 1) * width - 1;
@@ -317,15 +324,15 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
     int n = prepare_lights(lights, n_lights), round = 0;
 
     for (; round < CURVES && n > 1; round++) {
-        sort_along_curve(lights, n, round);
-        n = merge_neighbours(lights, n, &rule);
+        sort_lights_along_curve(lights, n, round);
+        n = merge_neighbouring_lights(lights, n, &rule);
     }
     *n_apart = n;
     rule = (struct rule){.most = most > 1 ? most : 1};
     for (; n > rule.most; round++) {
-        sort_along_curve(lights, n, round);
-        rule.cost = find_next_cost(lights, n, rule.most);
-        n = merge_neighbours(lights, n, &rule);
+        sort_lights_along_curve(lights, n, round);
+        rule.cost = find_next_cost_limit(lights, n, rule.most);
+        n = merge_neighbouring_lights(lights, n, &rule);
     }
     finish_lights(lights, n);
     return n;

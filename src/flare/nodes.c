@@ -22,7 +22,7 @@ struct fill {
     int node;
 };
 
-static int16_t clamp_value(int32_t log2)
+static int16_t clamp_log2_to_int16(int32_t log2)
 {
     return (int16_t)q_clamp_sat(log2, -MOST_Q8, MOST_Q8);
 }
@@ -42,7 +42,7 @@ static struct glint_real find_max_channel(const struct glint_wave *w)
 
 /* Computes the table entry of one ghost at a node, in a picture so large
  * that it contains the whole ghost. */
-static void fill_job(void *ctx, int ghost, int worker)
+static void fill_ghost_entry_job(void *ctx, int ghost, int worker)
 {
     const struct fill *fill = ctx;
     struct glint_plan_scratch *scratch = fill->flare->worker[worker].plan;
@@ -61,18 +61,18 @@ static void fill_job(void *ctx, int ghost, int worker)
             continue;
         light =
             real_over(planned.flux, find_max_channel(&fill->frame.wave[wave]));
-        value[1 + wave] =
-            clamp_value(glint_dim_log2_q8(light) +
-                        glint_dim_log2_q8(real_of(scratch->probe.energy,
-                                                  planned.energy_up - 30)));
+        value[1 + wave] = clamp_log2_to_int16(
+            glint_dim_log2_q8(light) +
+            glint_dim_log2_q8(
+                real_of(scratch->probe.energy, planned.energy_up - 30)));
         if (wave == GLINT_DIM_WAVE)
-            value[0] = clamp_value(
+            value[0] = clamp_log2_to_int16(
                 glint_dim_log2_q8(planned.irradiance) +
                 (scratch->probe.n_up && scratch->probe.n_down ? FOLD_Q8 : 0));
     }
 }
 
-static void fill_node(struct glint_flare *f, int node)
+static void fill_brightness_node(struct glint_flare *f, int node)
 {
     const struct glint_flare_frame *r = f->plan.frame;
     const int64_t one_q30 = INT32_C(1) << 30;
@@ -98,12 +98,12 @@ static void fill_node(struct glint_flare *f, int node)
     fill.plan.n_lights = 1;
     fill.plan.width = fill.plan.height = 1 << 20;
     fill.plan.dims = 0;
-    glint_workers_run(f->cfg.workers, (int)r->lens->header->n_ghosts, fill_job,
-                      &fill);
+    glint_workers_run(f->cfg.workers, (int)r->lens->header->n_ghosts,
+                      fill_ghost_entry_job, &fill);
     r->dim->done[node] = 1;
 }
 
-static void fill_nodes(struct glint_flare *flare, int n_lights)
+static void fill_brightness_nodes(struct glint_flare *flare, int n_lights)
 {
     uint8_t *done = flare->plan.frame->dim->done;
 
@@ -114,7 +114,7 @@ static void fill_nodes(struct glint_flare *flare, int n_lights)
 
         for (int node = at - 1; node <= at + 2; node++)
             if (node >= 0 && node <= GLINT_DIM_LAST && !done[node])
-                fill_node(flare, node);
+                fill_brightness_node(flare, node);
     }
 }
 
@@ -131,8 +131,8 @@ enum {
 
 /* Returns the merged light of a ghost, which is stored in the memory of its
  * first bundle. */
-static struct glint_light *get_merged(struct glint_flare *f, int ghost,
-                                      int light)
+static struct glint_light *get_merged_light(struct glint_flare *f, int ghost,
+                                            int light)
 {
     const struct glint_flare_frame *r = f->plan.frame;
     const int64_t at =
@@ -146,7 +146,7 @@ STATIC_ASSERT(sizeof(struct glint_light) <= sizeof(struct glint_bundle_plan));
 /* For each of N lights, finds the nearest of the preceding lights in the
  * list, and log2 of the distance to it. The unit of distance is 1 / SIDE of
  * the picture's longer side, divided by sqrt(N). */
-static void find_nearest(struct glint_flare *f, int n)
+static void find_nearest_preceding_lights(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;
     const struct glint_light *light = f->plan.light;
@@ -163,7 +163,7 @@ static void find_nearest(struct glint_flare *f, int n)
 
         for (int k = 0; k < i; k++) {
             const uint64_t apart2_q60 =
-                glint_light_apart2_q60(&light[k], &light[i]);
+                glint_light_squared_distance_q60(&light[k], &light[i]);
 
             if (apart2_q60 < least2_q60) {
                 least2_q60 = apart2_q60;
@@ -181,32 +181,34 @@ static void find_nearest(struct glint_flare *f, int n)
 /* Returns the fraction of the light that is not merged. The error of a
  * merged ghost is its light times the distance that it moves: up to half of
  * the allowed error all light is merged, from the allowed error on no light. */
-static int kept_q8(const struct glint_flare_frame *frame,
-                   const struct glint_light *light, int i, int ghost)
+static int compute_unmerged_fraction_q8(const struct glint_flare_frame *frame,
+                                        const struct glint_light *light, int i,
+                                        int ghost)
 {
     if (i == 0 || i >= GLINT_DIM_LIGHTS ||
-        glint_plan_is_beyond(frame->lens, light))
+        glint_plan_is_light_outside_model(frame->lens, light))
         return GLINT_DIM_WHOLE_Q8;
-    return q_clamp_sat(glint_dim_above_q8(frame, light, ghost) +
+    return q_clamp_sat(glint_dim_brightness_log2_q8(frame, light, ghost) +
                            frame->dim->apart_log2_q8[i],
                        0, GLINT_DIM_WHOLE_Q8);
 }
 
 /* Merges the fraction of light that B, light I, does not keep into the
  * nearest preceding light. */
-static void merge_rest(struct glint_flare *f, struct glint_light *b, int ghost,
-                       int i)
+static void merge_shared_fraction(struct glint_flare *f, struct glint_light *b,
+                                  int ghost, int i)
 {
     struct glint_light part = *b;
-    const int left_q8 = kept_q8(f->plan.frame, b, i, ghost);
+    const int left_q8 =
+        compute_unmerged_fraction_q8(f->plan.frame, b, i, ghost);
 
     if (left_q8 == GLINT_DIM_WHOLE_Q8)
         return;
     b->power = real_times(part.power, real_of(left_q8, -8));
     part.power =
         real_times(part.power, real_of(GLINT_DIM_WHOLE_Q8 - left_q8, -8));
-    glint_light_merge(get_merged(f, ghost, f->plan.frame->dim->nearest[i]),
-                      &part);
+    glint_light_merge(
+        get_merged_light(f, ghost, f->plan.frame->dim->nearest[i]), &part);
 }
 
 struct gather {
@@ -216,7 +218,7 @@ struct gather {
 
 /* Merges lights from the last to the first, so that light merged into a
  * light is merged further with it. */
-static void gather_job(void *ctx, int ghost, int worker)
+static void merge_ghost_lights_job(void *ctx, int ghost, int worker)
 {
     const struct gather *g = ctx;
     struct glint_light *b;
@@ -224,7 +226,7 @@ static void gather_job(void *ctx, int ghost, int worker)
 
     (void)worker;
     for (; n < g->n_lights; n++) {
-        b = get_merged(g->flare, ghost, n);
+        b = get_merged_light(g->flare, ghost, n);
         if (!b)
             break;
         *b = g->flare->plan.light[n];
@@ -232,10 +234,10 @@ static void gather_job(void *ctx, int ghost, int worker)
             b->rgb_q14[c] *= 1 << GLINT_LIGHT_HELD;
     }
     for (int i = n - 1; i >= 0; i--) {
-        b = get_merged(g->flare, ghost, i);
+        b = get_merged_light(g->flare, ghost, i);
         if (!b)
             continue;
-        merge_rest(g->flare, b, ghost, i);
+        merge_shared_fraction(g->flare, b, ghost, i);
         for (int c = 0; c < 3; c++)
             b->rgb_q14[c] = q_narrow(q_shift(b->rgb_q14[c], GLINT_LIGHT_HELD));
     }
@@ -245,12 +247,16 @@ static void merge_near_lights(struct glint_flare *flare, int n_lights)
 {
     struct gather gather = {flare, n_lights};
 
-    find_nearest(flare, q_smaller(n_lights, GLINT_DIM_LIGHTS));
+    find_nearest_preceding_lights(flare, q_smaller(n_lights, GLINT_DIM_LIGHTS));
     glint_workers_run(flare->cfg.workers,
                       (int)flare->plan.frame->lens->header->n_ghosts,
-                      gather_job, &gather);
+                      merge_ghost_lights_job, &gather);
 }
 
 const struct glint_dim_method glint_dim_method = {
-    fill_nodes, merge_near_lights,  get_merged,
-    kept_q8,    glint_dim_share_q8, glint_dim_ratio_q16};
+    fill_brightness_nodes,
+    merge_near_lights,
+    get_merged_light,
+    compute_unmerged_fraction_q8,
+    glint_dim_own_rays_fraction_q8,
+    glint_dim_wave_ratio_q16};

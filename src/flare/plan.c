@@ -31,7 +31,8 @@ static int64_t convert_to_pixels_q8(const struct glint_plan *p,
 
 /* Returns X, a length within a ghost in pixels, after the ghost's
  * enlargement. */
-static int64_t enlarge_length(const struct glint_bundle_plan *s, int64_t x_q8)
+static int64_t scale_by_enlargement(const struct glint_bundle_plan *s,
+                                    int64_t x_q8)
 {
     return s->wider_q16 ? x_q8 * s->wider_q16 >> 16 : x_q8;
 }
@@ -44,36 +45,36 @@ struct reach {
 };
 
 /* Returns half the extent of E perpendicular to the light's azimuth. */
-static int64_t compute_half_height(const struct glint_probe_extent *e)
+static int64_t compute_extent_half_height(const struct glint_probe_extent *e)
 {
     return (e->y_high - e->y_low) / 2;
 }
 
 /* Returns the bounding box, in pixels, of the range E of the probe's rays,
  * enlarged by a tenth. */
-static struct reach compute_reach(const struct glint_plan *p,
-                                  const struct glint_bundle_plan *planned,
-                                  const struct glint_transfer *t,
-                                  const struct glint_probe_extent *e)
+static struct reach compute_bundle_box(const struct glint_plan *p,
+                                       const struct glint_bundle_plan *planned,
+                                       const struct glint_transfer *t,
+                                       const struct glint_probe_extent *e)
 {
-    const int64_t high = compute_half_height(e);
+    const int64_t high = compute_extent_half_height(e);
 
     return (struct reach){
         convert_to_pixels_q8(p, t, (e->low + e->high) / 2),
         convert_to_pixels_q8(p, t, (e->y_low + e->y_high) / 2),
-        enlarge_length(
+        scale_by_enlargement(
             planned,
             convert_to_pixels_q8(p, t, q_divide((e->high - e->low) * 11, 20))) +
             256,
-        enlarge_length(planned,
-                       convert_to_pixels_q8(p, t, high + q_divide(high, 10))) +
+        scale_by_enlargement(
+            planned, convert_to_pixels_q8(p, t, high + q_divide(high, 10))) +
             256};
 }
 
 /* Returns whether the box E, rotated by TURN, overlaps the picture. across
  * is nonzero only for ghosts that are not rotated. */
-static int is_in_view(const struct glint_plan *p, struct glint_azimuth turn,
-                      const struct reach *e)
+static int is_box_in_picture(const struct glint_plan *p,
+                             struct glint_azimuth turn, const struct reach *e)
 {
     const int64_t c = turn.cos_q30 < 0 ? -turn.cos_q30 : turn.cos_q30;
     const int64_t s = turn.sin_q30 < 0 ? -turn.sin_q30 : turn.sin_q30;
@@ -88,7 +89,8 @@ static int is_in_view(const struct glint_plan *p, struct glint_azimuth turn,
 
 /* Returns the fraction, 0 .. 255, of the interval MIDDLE +- WIDE that lies
  * between -HALF and HALF. */
-static int64_t compute_span_q8(int64_t middle, int64_t wide, int64_t half)
+static int64_t compute_interval_overlap_q8(int64_t middle, int64_t wide,
+                                           int64_t half)
 {
     const int64_t low = middle - wide > -half ? middle - wide : -half;
     const int64_t high = middle + wide < half ? middle + wide : half;
@@ -98,22 +100,24 @@ static int64_t compute_span_q8(int64_t middle, int64_t wide, int64_t half)
 
 /* Returns the fraction of the upright bounding box of E, rotated by TURN, that
  * lies in the picture. */
-static uint8_t compute_view_q8(const struct glint_plan *p,
-                               struct glint_azimuth turn, const struct reach *e)
+static uint8_t compute_visible_fraction_q8(const struct glint_plan *p,
+                                           struct glint_azimuth turn,
+                                           const struct reach *e)
 {
     const int64_t c = turn.cos_q30 < 0 ? -turn.cos_q30 : turn.cos_q30;
     const int64_t s = turn.sin_q30 < 0 ? -turn.sin_q30 : turn.sin_q30;
-    const int64_t across = compute_span_q8(
+    const int64_t across = compute_interval_overlap_q8(
         e->middle_q8 * c >> 30, (e->wide_q8 * c + e->high_q8 * s) >> 30,
         p->width * 128 >> p->half);
-    const int64_t down = compute_span_q8(
+    const int64_t down = compute_interval_overlap_q8(
         (e->middle_q8 * s + e->across_q8 * c) >> 30,
         (e->wide_q8 * s + e->high_q8 * c) >> 30, p->height * 128 >> p->half);
 
     return (uint8_t)((across * down + 254) >> 8);
 }
 
-static struct glint_real compute_box_side(const struct glint_transfer *t, int k)
+static struct glint_real get_pupil_box_side(const struct glint_transfer *t,
+                                            int k)
 {
     return real_of(t->box[k], t->box_exponent);
 }
@@ -136,10 +140,10 @@ static int64_t compute_dim_factor_q16(const struct glint_plan *p,
 
 /* Sets RGB to the colour of the bundle, scaled such that its max channel is
  * 1; returns the max channel before scaling. */
-static struct glint_real compute_colour(const struct glint_plan *p,
-                                        const struct glint_light *b,
-                                        const struct glint_bundle_plan *planned,
-                                        int share_q8, int32_t *rgb_q14)
+static struct glint_real
+compute_bundle_colour(const struct glint_plan *p, const struct glint_light *b,
+                      const struct glint_bundle_plan *planned, int share_q8,
+                      int32_t *rgb_q14)
 {
     const struct glint_wave *w = p->frame->wave;
     const struct glint_tint *tint =
@@ -174,15 +178,16 @@ static struct glint_real compute_colour(const struct glint_plan *p,
 /* Returns the flux of the bundle, display white times pixels, if all rays of
  * its window had energy 2^EXPONENT. The hole of an annular box does not
  * count. */
-static struct glint_real compute_flux(const struct glint_plan *p,
-                                      const struct glint_light *b,
-                                      const struct glint_bundle_plan *s,
-                                      const struct glint_transfer *t,
-                                      struct glint_real colour, int exponent)
+static struct glint_real compute_bundle_flux(const struct glint_plan *p,
+                                             const struct glint_light *b,
+                                             const struct glint_bundle_plan *s,
+                                             const struct glint_transfer *t,
+                                             struct glint_real colour,
+                                             int exponent)
 {
     const struct glint_wave *w = &p->frame->wave[s->wave];
     struct glint_real x =
-        real_times(compute_box_side(t, 1), compute_box_side(t, 2));
+        real_times(get_pupil_box_side(t, 1), get_pupil_box_side(t, 2));
 
     /* Both sides are halves of the box; so is the window's height unless T
      * covers the whole box. */
@@ -204,10 +209,10 @@ static struct glint_real compute_flux(const struct glint_plan *p,
  * light between probed rays may be brighter. Returns 0 for folded ghosts,
  * whose cell areas do not bound their brightness. */
 static struct glint_real
-compute_brightest(const struct glint_plan *p,
-                  const struct glint_bundle_plan *planned,
-                  const struct glint_probe *s, const struct glint_transfer *t,
-                  struct glint_real flux)
+compute_max_pixel_light(const struct glint_plan *p,
+                        const struct glint_bundle_plan *planned,
+                        const struct glint_probe *s,
+                        const struct glint_transfer *t, struct glint_real flux)
 {
     struct glint_real area;
 
@@ -229,8 +234,8 @@ compute_brightest(const struct glint_plan *p,
 
 /* Returns BRIGHTEST in units of the min visible light; 2^20 units if
  * BRIGHTEST is 0 (not known), and for linear pictures. */
-static int64_t compute_peak_q20(const struct glint_plan *p,
-                                struct glint_real brightest)
+static int64_t compute_peak_in_visible_units_q20(const struct glint_plan *p,
+                                                 struct glint_real brightest)
 {
     const int64_t most = INT64_C(1) << 40;
 
@@ -241,8 +246,9 @@ static int64_t compute_peak_q20(const struct glint_plan *p,
 
 /* Sets the members inside_q8 and contrast_q4 of PLANNED, which
  * glint_flare_planned() returns. */
-static void set_shape(const struct glint_probe *s, struct glint_real brightest,
-                      struct glint_bundle_plan *planned)
+static void set_inside_and_contrast(const struct glint_probe *s,
+                                    struct glint_real brightest,
+                                    struct glint_bundle_plan *planned)
 {
     const int nodes = (s->across + 1) * (s->down + 1);
 
@@ -256,9 +262,9 @@ static void set_shape(const struct glint_probe *s, struct glint_real brightest,
                                  0, 254);
 }
 
-void glint_plan_transfer(const struct glint_plan *plan,
-                         const struct glint_bundle_plan *planned,
-                         struct glint_transfer *transfer)
+void glint_plan_set_transfer(const struct glint_plan *plan,
+                             const struct glint_bundle_plan *planned,
+                             struct glint_transfer *transfer)
 {
     const struct glint_flare_frame *r = plan->frame;
 
@@ -271,8 +277,9 @@ void glint_plan_transfer(const struct glint_plan *plan,
     transfer->window = planned->window;
 }
 
-struct glint_place glint_plan_place(const struct glint_plan *plan,
-                                    const struct glint_bundle_plan *planned)
+struct glint_place
+glint_plan_map_sensor_to_picture(const struct glint_plan *plan,
+                                 const struct glint_bundle_plan *planned)
 {
     struct glint_place place = {
         .cos_q30 = planned->turn.cos_q30,
@@ -301,15 +308,16 @@ struct glint_place glint_plan_place(const struct glint_plan *plan,
 
 /* Returns log2 of the factor by which energies can be scaled up without
  * overflow, if they are at most 5/4 of the probe's max ENERGY. */
-static int find_energy_shift(int64_t energy)
+static int compute_energy_shift(int64_t energy)
 {
     const int up = 29 - bit_length((uint64_t)(energy + energy / 4));
 
     return up > 0 ? up : 0;
 }
 
-static void set_flux(struct glint_bundle *b, const struct glint_transfer *t,
-                     struct glint_real flux)
+static void set_cell_flux(struct glint_bundle *b,
+                          const struct glint_transfer *t,
+                          struct glint_real flux)
 {
     const int rows = b->n_cells - (t->annulus ? 2 : 0);
     const struct glint_real cell =
@@ -320,15 +328,15 @@ static void set_flux(struct glint_bundle *b, const struct glint_transfer *t,
     b->flux_exponent = cell.exponent > 400 ? 431 : cell.exponent + 31;
 }
 
-int glint_plan_is_beyond(const struct glint_lens *lens,
-                         const struct glint_light *light)
+int glint_plan_is_light_outside_model(const struct glint_lens *lens,
+                                      const struct glint_light *light)
 {
     return light->sine_q30 > lens->header->sine_hi_q30;
 }
 
 /* Returns whether ghost (or piece of a ghost) GHOST is not muted and belongs to
  * the pair of surfaces of only_ghost. */
-static int is_wanted(const struct glint_flare_frame *r, int ghost)
+static int is_ghost_selected(const struct glint_flare_frame *r, int ghost)
 {
     const struct glint_model_ghost *g = &r->lens->ghost[ghost];
     const struct glint_model_ghost *only =
@@ -339,7 +347,7 @@ static int is_wanted(const struct glint_flare_frame *r, int ghost)
 }
 
 /* Returns the length of (X, Y); both magnitudes must be below 2^31. */
-static int64_t compute_length(int64_t x, int64_t y)
+static int64_t compute_vector_length(int64_t x, int64_t y)
 {
     if (y == 0)
         return x < 0 ? -x : x;
@@ -354,22 +362,23 @@ static int64_t compute_length(int64_t x, int64_t y)
  * distance from the middle. Lights on the axis need no magnification. The
  * centre may have an offset perpendicular to the azimuth only if the ghost
  * is mirrored rather than rotated. */
-static void set_wider(const struct glint_plan *p, const struct glint_light *b,
-                      struct glint_bundle_plan *planned,
-                      const struct glint_transfer *t,
-                      const struct glint_probe_extent *e)
+static void set_ghost_enlargement(const struct glint_plan *p,
+                                  const struct glint_light *b,
+                                  struct glint_bundle_plan *planned,
+                                  const struct glint_transfer *t,
+                                  const struct glint_probe_extent *e)
 {
     const int64_t middle = (e->low + e->high) / 2;
     const int64_t across = (e->y_low + e->y_high) / 2;
     const struct glint_real wide =
-        real_of((e->high - e->low) / 2 + compute_half_height(e), 0);
+        real_of((e->high - e->low) / 2 + compute_extent_half_height(e), 0);
     struct glint_real wanted;
 
     planned->wider_q16 = planned->centre_q8[0] = planned->centre_q8[1] = 0;
     if (b->apart_q30 <= 0 || b->sine_q30 <= 0 || wide.mantissa <= 0)
         return;
     wanted = real_times(
-        real_of(compute_length(middle, across), 0),
+        real_of(compute_vector_length(middle, across), 0),
         real_over(real_of(b->cosine_q30, -30), real_of(b->sine_q30, -30)));
     wanted = real_times(wanted, real_of(5 * (int64_t)b->apart_q30, -31));
     if (!real_less(wide, wanted))
@@ -385,15 +394,15 @@ static void set_wider(const struct glint_plan *p, const struct glint_light *b,
 
 /* Narrows the window of the transfer to the rays that the stop transmits, if
  * the stop is narrower than the model's. Returns 0 if no ray is left. */
-static int set_window(const struct glint_plan *plan,
-                      struct glint_bundle_plan *planned,
-                      struct glint_plan_scratch *scratch)
+static int narrow_window_to_stop(const struct glint_plan *plan,
+                                 struct glint_bundle_plan *planned,
+                                 struct glint_plan_scratch *scratch)
 {
     int any = 1;
 
     if (plan->opening_q30 < INT32_C(1) << 30) {
-        any = glint_window_find(&scratch->window, &scratch->transfer,
-                                plan->opening_q30);
+        any = glint_window_narrow_to_stop(&scratch->window, &scratch->transfer,
+                                          plan->opening_q30);
         scratch->probe.n_rays += scratch->window.n_rays;
     }
     planned->window = scratch->transfer.window;
@@ -405,29 +414,29 @@ static int set_window(const struct glint_plan *plan,
 static int probe_bundle(const struct glint_plan *plan,
                         struct glint_transfer *transfer, struct glint_probe *s)
 {
-    glint_probe_run(s, transfer, plan->opening_q30, FEW_ACROSS, FEW_DOWN);
+    glint_probe_trace_bundle(s, transfer, plan->opening_q30, FEW_ACROSS,
+                             FEW_DOWN);
     if (s->n_inside < FEW_INSIDE)
-        glint_probe_run(s, transfer, plan->opening_q30, GLINT_PROBE_ACROSS,
-                        GLINT_PROBE_DOWN);
+        glint_probe_trace_bundle(s, transfer, plan->opening_q30,
+                                 GLINT_PROBE_ACROSS, GLINT_PROBE_DOWN);
     return s->n_inside > 0;
 }
 
 /* Returns the area of the bounding box of the range E of rays, square
  * pixels. */
-static struct glint_real compute_area(const struct glint_plan *p,
-                                      const struct glint_bundle_plan *planned,
-                                      const struct glint_transfer *t,
-                                      const struct glint_probe_extent *e)
+static struct glint_real compute_bounding_box_area(
+    const struct glint_plan *p, const struct glint_bundle_plan *planned,
+    const struct glint_transfer *t, const struct glint_probe_extent *e)
 {
-    const int64_t high = compute_half_height(e);
+    const int64_t high = compute_extent_half_height(e);
     const int64_t wide_q8 =
-        enlarge_length(
+        scale_by_enlargement(
             planned,
             convert_to_pixels_q8(p, t, q_divide((e->high - e->low) * 3, 5))) +
         256;
     const int64_t high_q8 =
-        enlarge_length(planned,
-                       convert_to_pixels_q8(p, t, high + q_divide(high, 10))) +
+        scale_by_enlargement(
+            planned, convert_to_pixels_q8(p, t, high + q_divide(high, 10))) +
         256;
 
     return real_times(real_of(wide_q8, -7), real_of(high_q8, -7));
@@ -435,8 +444,9 @@ static struct glint_real compute_area(const struct glint_plan *p,
 
 /* Returns the rotation in the picture that the sensor outputs of T need for
  * a light at AZIMUTH. */
-static struct glint_azimuth choose_rotation(const struct glint_transfer *t,
-                                            struct glint_azimuth azimuth)
+static struct glint_azimuth
+choose_ghost_rotation(const struct glint_transfer *t,
+                      struct glint_azimuth azimuth)
 {
     const struct glint_azimuth upright = {t->sign * (INT32_C(1) << 30), 0};
 
@@ -458,46 +468,50 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
     int exponent, share_q8;
 
     bundle->n_cells = s->n_rays = 0;
-    if (!is_wanted(r, planned->ghost))
+    if (!is_ghost_selected(r, planned->ghost))
         return GLINT_OUTCOME_OTHER;
-    if (glint_plan_is_beyond(r->lens, b))
+    if (glint_plan_is_light_outside_model(r->lens, b))
         return GLINT_OUTCOME_BEYOND;
     if (!glint_transfer_init_at(transfer, r->lens, planned->ghost, b->sine_q30,
                                 azimuth, r->wave[planned->wave].wave_q24))
         return GLINT_OUTCOME_CLOSED;
-    planned->turn = choose_rotation(transfer, azimuth);
+    planned->turn = choose_ghost_rotation(transfer, azimuth);
     transfer->sets = plan->sets;
     share_q8 = plan->dims ? r->dim->method->share_q8(r, b, planned->ghost)
                           : GLINT_DIM_WHOLE_Q8;
     if (share_q8 == 0 && planned->wave != GLINT_DIM_WAVE)
         return GLINT_OUTCOME_OTHER_SET;
-    colour = compute_colour(plan, b, planned, share_q8, bundle->rgb_q14);
+    colour = compute_bundle_colour(plan, b, planned, share_q8, bundle->rgb_q14);
     if (colour.mantissa == 0 || b->power.mantissa == 0)
         return GLINT_OUTCOME_DARK;
-    if (!set_window(plan, planned, scratch))
+    if (!narrow_window_to_stop(plan, planned, scratch))
         return GLINT_OUTCOME_BLOCKED;
     if (!probe_bundle(plan, transfer, s))
         return GLINT_OUTCOME_BLOCKED;
-    set_wider(plan, b, planned, transfer, &s->seen);
-    reach = compute_reach(plan, planned, transfer, &s->reach);
-    if (!is_in_view(plan, planned->turn, &reach))
+    set_ghost_enlargement(plan, b, planned, transfer, &s->seen);
+    reach = compute_bundle_box(plan, planned, transfer, &s->reach);
+    if (!is_box_in_picture(plan, planned->turn, &reach))
         return GLINT_OUTCOME_OUTSIDE;
-    planned->view_q8 = compute_view_q8(plan, planned->turn, &reach);
-    planned->energy_up = (uint8_t)find_energy_shift(s->energy);
+    planned->view_q8 = compute_visible_fraction_q8(plan, planned->turn, &reach);
+    planned->energy_up = (uint8_t)compute_energy_shift(s->energy);
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - planned->energy_up;
-    planned->flux = compute_flux(plan, b, planned, transfer, colour, exponent);
+    planned->flux =
+        compute_bundle_flux(plan, b, planned, transfer, colour, exponent);
     if (share_q8 < GLINT_DIM_WHOLE_Q8 && planned->wave != GLINT_DIM_WAVE)
         planned->flux = real_times(planned->flux, real_of(share_q8, -8));
-    brightest = compute_brightest(plan, planned, s, transfer, planned->flux);
-    planned->peak_q20 = compute_peak_q20(plan, brightest);
+    brightest =
+        compute_max_pixel_light(plan, planned, s, transfer, planned->flux);
+    planned->peak_q20 = compute_peak_in_visible_units_q20(plan, brightest);
     if (plan->n_lights == 1 && !r->sets && planned->peak_q20 < 1 << 20)
         return GLINT_OUTCOME_FAINT;
-    planned->irradiance = real_over(
-        planned->flux, compute_area(plan, planned, transfer, &s->seen));
-    set_shape(s, brightest, planned);
-    bundle->n_cells = glint_plan_cells(plan, s, transfer, planned->irradiance);
-    glint_plan_sags(planned, s, transfer, bundle->n_cells, plan->round_q16);
-    set_flux(bundle, transfer, planned->flux);
+    planned->irradiance =
+        real_over(planned->flux,
+                  compute_bounding_box_area(plan, planned, transfer, &s->seen));
+    set_inside_and_contrast(s, brightest, planned);
+    bundle->n_cells =
+        glint_plan_choose_cells(plan, s, transfer, planned->irradiance);
+    glint_plan_set_sags(planned, s, transfer, bundle->n_cells, plan->round_q16);
+    set_cell_flux(bundle, transfer, planned->flux);
     return GLINT_OUTCOME_DRAWN;
 }
 

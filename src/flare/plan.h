@@ -76,8 +76,8 @@ struct glint_plan_scratch {
 
 /* Returns whether the angle of LIGHT exceeds the max angle that the model
  * was baked for. */
-int glint_plan_is_beyond(const struct glint_lens *lens,
-                         const struct glint_light *light);
+int glint_plan_is_light_outside_model(const struct glint_lens *lens,
+                                      const struct glint_light *light);
 
 /* Plans one bundle with light LIGHT; its ghost, light and wave must be set
  * in PLANNED. Returns the outcome; unless it is GLINT_OUTCOME_DRAWN, the
@@ -89,13 +89,14 @@ enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
                                      struct glint_plan_scratch *scratch);
 
 /* Sets TRANSFER to the polynomials of a planned bundle. */
-void glint_plan_transfer(const struct glint_plan *plan,
-                         const struct glint_bundle_plan *planned,
-                         struct glint_transfer *transfer);
+void glint_plan_set_transfer(const struct glint_plan *plan,
+                             const struct glint_bundle_plan *planned,
+                             struct glint_transfer *transfer);
 
 /* Returns the map from the sensor to the picture for the ghost of a planned
  * bundle. */
-struct glint_place glint_plan_place(const struct glint_plan *plan,
-                                    const struct glint_bundle_plan *planned);
+struct glint_place
+glint_plan_map_sensor_to_picture(const struct glint_plan *plan,
+                                 const struct glint_bundle_plan *planned);
 
 #endif

@@ -10,7 +10,7 @@ enum { FOLD_OCTAVES = 3, MOST_SHADE_CELLS = 128, SHADE_CELL_LOG2 = 4 };
 
 /* Returns the root of the mean SUM / N of squares. Each square was divided
  * by 2^10 before it was added to SUM; N may be 0. */
-static int64_t compute_rms(uint64_t sum, int n)
+static int64_t compute_root_mean_square(uint64_t sum, int n)
 {
     return n ? (int64_t)q_root((uint64_t)q_divide((int64_t)sum, n)) << 5 : 0;
 }
@@ -19,15 +19,17 @@ static int64_t compute_rms(uint64_t sum, int n)
  * distance on the sensor, in units of the sensor outputs times
  * 2^GLINT_PROBE_FINE_LOG2: second differences / first differences, times the
  * first differences of the sensor outputs. */
-static int64_t compute_bend(const struct glint_probe *s, int a, int b)
+static int64_t compute_output_curvature(const struct glint_probe *s, int a,
+                                        int b)
 {
-    const int64_t second = compute_rms(
+    const int64_t second = compute_root_mean_square(
         s->change[a].second + (a == b ? 0 : s->change[b].second), s->n_bends);
-    const int64_t first = compute_rms(
+    const int64_t first = compute_root_mean_square(
         s->change[a].first + (a == b ? 0 : s->change[b].first), s->n_bends);
-    const int64_t sensor = compute_rms(s->change[GLINT_OUT_SENSOR_X].first +
-                                           s->change[GLINT_OUT_SENSOR_Y].first,
-                                       s->n_bends);
+    const int64_t sensor =
+        compute_root_mean_square(s->change[GLINT_OUT_SENSOR_X].first +
+                                     s->change[GLINT_OUT_SENSOR_Y].first,
+                                 s->n_bends);
 
     /* at most 2^30 * 2^31 */
     return first ? q_divide(second * sensor, first) : 0;
@@ -35,23 +37,23 @@ static int64_t compute_bend(const struct glint_probe *s, int a, int b)
 
 /* Returns the change of the stop position over the box, in units of the stop
  * outputs times 2^GLINT_PROBE_FINE_LOG2. */
-static int64_t compute_stop_change(const struct glint_probe *s)
+static int64_t compute_stop_position_change(const struct glint_probe *s)
 {
-    return compute_rms(s->change[GLINT_OUT_STOP_X].first +
-                           s->change[GLINT_OUT_STOP_Y].first,
-                       s->n_bends);
+    return compute_root_mean_square(s->change[GLINT_OUT_STOP_X].first +
+                                        s->change[GLINT_OUT_STOP_Y].first,
+                                    s->n_bends);
 }
 
 /* Returns the change of the position on the sensor over the box, in units of
  * the sensor outputs times 2^GLINT_PROBE_FINE_LOG2. */
-static int64_t compute_sensor_change(const struct glint_probe *s)
+static int64_t compute_sensor_position_change(const struct glint_probe *s)
 {
-    return compute_rms(s->change[GLINT_OUT_SENSOR_X].first +
-                           s->change[GLINT_OUT_SENSOR_Y].first,
-                       s->n_bends);
+    return compute_root_mean_square(s->change[GLINT_OUT_SENSOR_X].first +
+                                        s->change[GLINT_OUT_SENSOR_Y].first,
+                                    s->n_bends);
 }
 
-static int64_t compute_radius(const struct glint_probe *s)
+static int64_t compute_stop_radius(const struct glint_probe *s)
 {
     /* The limit is 1.05 radii. */
     const int64_t radius =
@@ -61,18 +63,19 @@ static int64_t compute_radius(const struct glint_probe *s)
     return radius > 0 ? radius : 1;
 }
 
-/* Like compute_bend(), for the outline of a stop of curvature ROUND. A round
- * stop cuts where (1 + r^2) / 2 is 1, like a barrel: at r = 1 this function
- * changes as fast as the stop position s, and its second difference is the
- * square of the first difference of s. */
-static int64_t compute_round_bend(const struct glint_probe *s,
-                                  int32_t round_q16)
+/* Like compute_output_curvature(), for the outline of a stop of curvature
+ * ROUND. A round stop cuts where (1 + r^2) / 2 is 1, like a barrel: at r = 1
+ * this function changes as fast as the stop position s, and its second
+ * difference is the square of the first difference of s. */
+static int64_t compute_round_stop_curvature(const struct glint_probe *s,
+                                            int32_t round_q16)
 {
-    const int64_t change = (compute_stop_change(s) >> 2) * round_q16 >> 16;
-    const int64_t sensor = compute_sensor_change(s);
+    const int64_t change =
+        (compute_stop_position_change(s) >> 2) * round_q16 >> 16;
+    const int64_t sensor = compute_sensor_position_change(s);
 
     /* at most 2^30 * 2^31 */
-    return q_divide(change * sensor, (compute_radius(s) >> 2) + 1);
+    return q_divide(change * sensor, (compute_stop_radius(s) >> 2) + 1);
 }
 
 /* Reduces N cells per side to the number that a picture in codes (not linear
@@ -80,8 +83,8 @@ static int64_t compute_round_bend(const struct glint_probe *s,
  * that a ghost gets fainter, its light in codes shrinks by 2^(5/12); errors
  * shrink with the square of the cells. Folds are brighter than the ghost's
  * mean. */
-static int cells_for_codes(const struct glint_probe *s,
-                           struct glint_real irradiance, int n)
+static int reduce_cells_for_codes(const struct glint_probe *s,
+                                  struct glint_real irradiance, int n)
 {
     const int folded = s->n_up && s->n_down;
     int octaves = -(irradiance.exponent + 31) - (folded ? FOLD_OCTAVES : 0);
@@ -98,20 +101,20 @@ static int cells_for_codes(const struct glint_probe *s,
  * barrel of a vertex is the tightest of all but the first, and has kinks
  * where these meet, so that tips of outlines appear and vanish with the
  * grid. It is also 5 for a round stop, which curves all outlines. */
-static int outline_over_light(const struct glint_plan *p,
-                              const struct glint_transfer *t)
+static int choose_outline_tolerance_ratio(const struct glint_plan *p,
+                                          const struct glint_transfer *t)
 {
     return p->round_q16 || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
 }
 
 /* Returns the cells per side with which subdivided cells (edges/ghost_shade.h)
  * resolve the shade of the stop to a pixel. */
-static int cells_for_shade(const struct glint_plan *p,
-                           const struct glint_probe *s,
-                           const struct glint_transfer *t)
+static int compute_cells_for_shade(const struct glint_plan *p,
+                                   const struct glint_probe *s,
+                                   const struct glint_transfer *t)
 {
     const struct glint_real pixels = real_times(
-        real_of(compute_sensor_change(s),
+        real_of(compute_sensor_position_change(s),
                 t->exponent[GLINT_OUT_SENSOR_X] + GLINT_PROBE_FINE_LOG2),
         plan_pixels_per_mm(p));
 
@@ -120,16 +123,18 @@ static int cells_for_shade(const struct glint_plan *p,
 
 /* Returns the cells per side by the rule of lens/grid.h, from the probe's
  * results. */
-static int compute_cells(const struct glint_plan *p,
-                         const struct glint_probe *s,
-                         const struct glint_transfer *t,
-                         struct glint_real irradiance)
+static int compute_cells_per_side(const struct glint_plan *p,
+                                  const struct glint_probe *s,
+                                  const struct glint_transfer *t,
+                                  struct glint_real irradiance)
 {
     const struct glint_flare_frame *r = p->frame;
     const int folds = glint_grid_most(r->fineness, s->n_up && s->n_down);
     const int most = folds < GLINT_MAX_CELLS ? folds : GLINT_MAX_CELLS;
-    int64_t bend = compute_bend(s, GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y);
-    int64_t outline = compute_bend(s, GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y);
+    int64_t bend =
+        compute_output_curvature(s, GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y);
+    int64_t outline =
+        compute_output_curvature(s, GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y);
     int64_t bend_q8;
     int n;
 
@@ -137,16 +142,16 @@ static int compute_cells(const struct glint_plan *p,
         return r->fineness;
     for (int k = GLINT_OUT_RADIUS; k < GLINT_OUT_KINDS; k++)
         if (t->outputs >> k & 1) {
-            const int64_t cut = compute_bend(s, k, k);
+            const int64_t cut = compute_output_curvature(s, k, k);
 
             outline = cut > outline ? cut : outline;
         }
     if (p->round_q16) {
-        const int64_t cut = compute_round_bend(s, p->round_q16);
+        const int64_t cut = compute_round_stop_curvature(s, p->round_q16);
 
         outline = cut > outline ? cut : outline;
     }
-    outline = q_divide(outline, outline_over_light(p, t));
+    outline = q_divide(outline, choose_outline_tolerance_ratio(p, t));
     bend = bend > outline ? bend : outline;
     bend_q8 =
         real_integer(real_times(real_of(bend, t->exponent[GLINT_OUT_SENSOR_X] +
@@ -158,12 +163,12 @@ static int compute_cells(const struct glint_plan *p,
         ((int64_t)q_root((uint64_t)bend_q8 * 3200) * r->fineness + 16383) >>
         14);
     if (p->shaded) {
-        const int shade = cells_for_shade(p, s, t);
+        const int shade = compute_cells_for_shade(p, s, t);
 
         n = shade > n ? shade : n;
     }
     if (r->faintest.mantissa)
-        n = cells_for_codes(s, irradiance, n);
+        n = reduce_cells_for_codes(s, irradiance, n);
     n = n < GLINT_LEAST_CELLS ? GLINT_LEAST_CELLS : n;
     n = glint_grid_fours(n);
     return n < most ? n : most;
@@ -171,26 +176,26 @@ static int compute_cells(const struct glint_plan *p,
 
 /* Returns N + 2, rounded up to an even number, or GLINT_MAX_CELLS if that is
  * less. The two rows of cells are those in the hole of an annular box. */
-static int annular_cells(int n)
+static int add_annulus_hole_cells(int n)
 {
     const int more = (n + 3) / 2 * 2;
 
     return more < GLINT_MAX_CELLS ? more : GLINT_MAX_CELLS;
 }
 
-int glint_plan_cells(const struct glint_plan *plan,
-                     const struct glint_probe *probe,
-                     const struct glint_transfer *transfer,
-                     struct glint_real irradiance)
+int glint_plan_choose_cells(const struct glint_plan *plan,
+                            const struct glint_probe *probe,
+                            const struct glint_transfer *transfer,
+                            struct glint_real irradiance)
 {
-    const int n = compute_cells(plan, probe, transfer, irradiance);
+    const int n = compute_cells_per_side(plan, probe, transfer, irradiance);
 
-    return transfer->annulus ? annular_cells(n) : n;
+    return transfer->annulus ? add_annulus_hole_cells(n) : n;
 }
 
 /* Returns the sum of the mean second differences of output K across and down
  * the box, in the output's unit times 2^GLINT_PROBE_FINE_LOG2. */
-static int64_t compute_bowl(const struct glint_probe *s, int k)
+static int64_t sum_mean_second_differences(const struct glint_probe *s, int k)
 {
     int64_t sum = 0;
 
@@ -200,12 +205,14 @@ static int64_t compute_bowl(const struct glint_probe *s, int k)
     return sum;
 }
 
-/* Like compute_bowl(), for (1 + r^2) / 2 of a round stop: in each direction
- * the square of the distance that the stop position moves, in stop radii. */
-static int64_t compute_round_bowl_q16(const struct glint_probe *s)
+/* Like sum_mean_second_differences(), for (1 + r^2) / 2 of a round stop: in
+ * each direction the square of the distance that the stop position moves, in
+ * stop radii. */
+static int64_t sum_round_stop_differences_q16(const struct glint_probe *s)
 {
-    const struct glint_real change = real_over(
-        real_of(compute_stop_change(s), 0), real_of(compute_radius(s), 0));
+    const struct glint_real change =
+        real_over(real_of(compute_stop_position_change(s), 0),
+                  real_of(compute_stop_radius(s), 0));
 
     return 2 * real_integer(real_times(change, change), 16, INT64_C(1) << 40);
 }
@@ -222,16 +229,16 @@ static uint16_t compute_sag_q16(int64_t bowl_q16, int n_cells)
 /* Implements plan_cells.h. A barrel's (1 + r^2) / 2 is a paraboloid. After
  * the sag is subtracted, drawn outlines lie outside the true outlines as
  * often as inside. */
-void glint_plan_sags(struct glint_bundle_plan *planned,
-                     const struct glint_probe *probe,
-                     const struct glint_transfer *transfer, int n_cells,
-                     int32_t round_q16)
+void glint_plan_set_sags(struct glint_bundle_plan *planned,
+                         const struct glint_probe *probe,
+                         const struct glint_transfer *transfer, int n_cells,
+                         int32_t round_q16)
 {
     for (int k = GLINT_OUT_BARREL_0; k <= GLINT_OUT_BARREL_1; k++) {
         const int64_t bowl_q16 =
             transfer->outputs >> k & 1
                 ? real_integer(
-                      real_of(compute_bowl(probe, k),
+                      real_of(sum_mean_second_differences(probe, k),
                               transfer->exponent[k] + GLINT_PROBE_FINE_LOG2),
                       16, INT64_C(1) << 40)
                 : 0;
@@ -240,8 +247,10 @@ void glint_plan_sags(struct glint_bundle_plan *planned,
             compute_sag_q16(bowl_q16, n_cells);
     }
     planned->sag_q16[2] =
-        round_q16 ? compute_sag_q16(
-                        q_shift(compute_round_bowl_q16(probe) * round_q16, 16),
-                        n_cells)
-                  : 0;
+        round_q16
+            ? compute_sag_q16(
+                  q_shift(sum_round_stop_differences_q16(probe) * round_q16,
+                          16),
+                  n_cells)
+            : 0;
 }

@@ -21,16 +21,16 @@ static inline struct glint_real plan_pixels_per_mm(const struct glint_plan *p)
 /* Returns the cells per side of the grid of a bundle with the irradiance
  * IRRADIANCE, display white. For an annular box the number includes the two
  * rows of cells next to the middle, which carry no light. */
-int glint_plan_cells(const struct glint_plan *plan,
-                     const struct glint_probe *probe,
-                     const struct glint_transfer *transfer,
-                     struct glint_real irradiance);
+int glint_plan_choose_cells(const struct glint_plan *plan,
+                            const struct glint_probe *probe,
+                            const struct glint_transfer *transfer,
+                            struct glint_real irradiance);
 
 /* Sets the sags of PLANNED for a grid of N_CELLS cells per side and a stop
  * whose outline has the curvature ROUND_Q16, 1 / stop radius. */
-void glint_plan_sags(struct glint_bundle_plan *planned,
-                     const struct glint_probe *probe,
-                     const struct glint_transfer *transfer, int n_cells,
-                     int32_t round_q16);
+void glint_plan_set_sags(struct glint_bundle_plan *planned,
+                         const struct glint_probe *probe,
+                         const struct glint_transfer *transfer, int n_cells,
+                         int32_t round_q16);
 
 #endif

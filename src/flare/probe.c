@@ -5,8 +5,8 @@
 #include "base/real.h"
 
 /* Returns X as an integer in the unit of output KIND. */
-static int64_t convert_to_units(const struct glint_transfer *t, int kind,
-                                int64_t x_q46)
+static int64_t convert_to_output_units(const struct glint_transfer *t, int kind,
+                                       int64_t x_q46)
 {
     return real_integer(real_of(x_q46, -46), -t->exponent[kind],
                         INT64_C(1) << 31);
@@ -17,8 +17,8 @@ static int is_stop_output(int kind)
     return kind == GLINT_OUT_STOP_X || kind == GLINT_OUT_STOP_Y;
 }
 
-static void begin_probe(struct glint_probe *s, const struct glint_transfer *t,
-                        int32_t opening_q30, int across, int down)
+static void init_probe(struct glint_probe *s, const struct glint_transfer *t,
+                       int32_t opening_q30, int across, int down)
 {
     /* 1.05 times the limits: rays just outside count as inside. */
     const int64_t near_q16 = 68813;
@@ -37,7 +37,7 @@ static void begin_probe(struct glint_probe *s, const struct glint_transfer *t,
     s->n_kinds = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         s->change[k] = (struct glint_probe_change){0, 0, {0, 0}};
-        s->limit[k] = convert_to_units(
+        s->limit[k] = convert_to_output_units(
             t, k,
             near_q16 * (is_stop_output(k) ? opening_q30 : INT32_C(1) << 30));
         if (t->outputs >> k & 1 && k != GLINT_OUT_ENERGY)
@@ -45,8 +45,8 @@ static void begin_probe(struct glint_probe *s, const struct glint_transfer *t,
     }
 }
 
-static int is_inside(const struct glint_probe *s,
-                     const struct glint_transfer *t, const int32_t *at)
+static int is_ray_inside(const struct glint_probe *s,
+                         const struct glint_transfer *t, const int32_t *at)
 {
     const int64_t x = at[GLINT_OUT_STOP_X], y = at[GLINT_OUT_STOP_Y];
     const int64_t r = s->limit[GLINT_OUT_STOP_X];
@@ -60,7 +60,8 @@ static int is_inside(const struct glint_probe *s,
 }
 
 /* Traces the rays of row J, 0 .. s->down. */
-static void trace_row(struct glint_probe *s, struct glint_transfer *t, int j)
+static void trace_probe_row(struct glint_probe *s, struct glint_transfer *t,
+                            int j)
 {
     const int32_t one_q30 = INT32_C(1) << 30;
     const int32_t v_q30 = glint_transfer_v(t, j, s->down);
@@ -81,7 +82,7 @@ static void trace_row(struct glint_probe *s, struct glint_transfer *t, int j)
             for (int k = 0; k < s->n_kinds; k++)
                 n->at[s->kind[k]] = out[s->kind[k]][i];
             n->at[GLINT_OUT_ENERGY] = out[GLINT_OUT_ENERGY][i];
-            n->inside = is_inside(s, t, n->at);
+            n->inside = is_ray_inside(s, t, n->at);
         }
     }
 }
@@ -89,9 +90,11 @@ static void trace_row(struct glint_probe *s, struct glint_transfer *t, int j)
 /* Adds the first and second differences at B, a ray between its neighbours A
  * and C. The whole box has STEPS cells in this direction; WAY is 0 across, 1
  * down. */
-static void add_bend(struct glint_probe *s, const struct glint_probe_node *a,
-                     const struct glint_probe_node *b,
-                     const struct glint_probe_node *c, int steps, int way)
+static void add_differences_at_ray(struct glint_probe *s,
+                                   const struct glint_probe_node *a,
+                                   const struct glint_probe_node *b,
+                                   const struct glint_probe_node *c, int steps,
+                                   int way)
 {
     if (!b->inside)
         return;
@@ -116,9 +119,10 @@ static void add_bend(struct glint_probe *s, const struct glint_probe_node *a,
     s->n_bent[way]++;
 }
 
-static void add_cell(struct glint_probe *s, const struct glint_probe_node *a,
-                     const struct glint_probe_node *b,
-                     const struct glint_probe_node *c)
+static void add_cell_orientation_and_area(struct glint_probe *s,
+                                          const struct glint_probe_node *a,
+                                          const struct glint_probe_node *b,
+                                          const struct glint_probe_node *c)
 {
     const int64_t turn =
         ((int64_t)b->at[0] - a->at[0]) * ((int64_t)c->at[1] - a->at[1]) / 2 -
@@ -132,9 +136,9 @@ static void add_cell(struct glint_probe *s, const struct glint_probe_node *a,
     s->least_area = area < s->least_area ? area : s->least_area;
 }
 
-static void extend_extent(const struct glint_probe *s,
-                          struct glint_probe_extent *e,
-                          const struct glint_probe_node *n)
+static void extend_extent_by_ray(const struct glint_probe *s,
+                                 struct glint_probe_extent *e,
+                                 const struct glint_probe_node *n)
 {
     const int64_t x = n->at[GLINT_OUT_SENSOR_X], y = n->at[GLINT_OUT_SENSOR_Y];
     const int64_t away = y < 0 ? -y : y;
@@ -148,33 +152,36 @@ static void extend_extent(const struct glint_probe *s,
 
 /* Extends the reach by the cell of A, B and, below them, C, D, if one of its
  * rays is inside. */
-static void add_reach(struct glint_probe *s, const struct glint_probe_node *a,
-                      const struct glint_probe_node *b,
-                      const struct glint_probe_node *c,
-                      const struct glint_probe_node *d)
+static void extend_reach_by_cell(struct glint_probe *s,
+                                 const struct glint_probe_node *a,
+                                 const struct glint_probe_node *b,
+                                 const struct glint_probe_node *c,
+                                 const struct glint_probe_node *d)
 {
     if (!(a->inside || b->inside || c->inside || d->inside))
         return;
-    extend_extent(s, &s->reach, a);
-    extend_extent(s, &s->reach, b);
-    extend_extent(s, &s->reach, c);
-    extend_extent(s, &s->reach, d);
+    extend_extent_by_ray(s, &s->reach, a);
+    extend_extent_by_ray(s, &s->reach, b);
+    extend_extent_by_ray(s, &s->reach, c);
+    extend_extent_by_ray(s, &s->reach, d);
 }
 
-static void add_seen(struct glint_probe *s, const struct glint_probe_node *n)
+static void add_passing_ray(struct glint_probe *s,
+                            const struct glint_probe_node *n)
 {
     if (!n->inside)
         return;
     s->n_inside++;
-    extend_extent(s, &s->seen, n);
+    extend_extent_by_ray(s, &s->seen, n);
     s->energy = n->at[GLINT_OUT_ENERGY] > s->energy ? n->at[GLINT_OUT_ENERGY]
                                                     : s->energy;
 }
 
-void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
-                     int32_t opening_q30, int across, int down)
+void glint_probe_trace_bundle(struct glint_probe *probe,
+                              struct glint_transfer *t, int32_t opening_q30,
+                              int across, int down)
 {
-    begin_probe(probe, t, opening_q30, across, down);
+    init_probe(probe, t, opening_q30, across, down);
     down = probe->down;
     probe->n_rays += (across + 1) * (down + 1);
     for (int j = 0; j <= down; j++) {
@@ -182,18 +189,20 @@ void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
         const struct glint_probe_node *above = probe->row[(j + 2) % 3];
         const struct glint_probe_node *top = probe->row[(j + 1) % 3];
 
-        trace_row(probe, t, j);
+        trace_probe_row(probe, t, j);
         for (int i = 0; i <= across; i++) {
-            add_seen(probe, &here[i]);
+            add_passing_ray(probe, &here[i]);
             if (i > 0 && i < across)
-                add_bend(probe, &here[i - 1], &here[i], &here[i + 1], across,
-                         0);
+                add_differences_at_ray(probe, &here[i - 1], &here[i],
+                                       &here[i + 1], across, 0);
             if (j > 1)
-                add_bend(probe, &top[i], &above[i], &here[i], probe->rows, 1);
+                add_differences_at_ray(probe, &top[i], &above[i], &here[i],
+                                       probe->rows, 1);
             if (j > 0 && i < across) {
-                add_cell(probe, &above[i], &above[i + 1], &here[i]);
-                add_reach(probe, &above[i], &above[i + 1], &here[i],
-                          &here[i + 1]);
+                add_cell_orientation_and_area(probe, &above[i], &above[i + 1],
+                                              &here[i]);
+                extend_reach_by_cell(probe, &above[i], &above[i + 1], &here[i],
+                                     &here[i + 1]);
             }
         }
     }

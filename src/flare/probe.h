@@ -67,7 +67,8 @@ enum { GLINT_PROBE_FINE_LOG2 = 6 };
  * or of ACROSS x 2 DOWN cells over all of it if T is whole. The stop has
  * OPENING_Q30 times the model's radius. Adds to n_rays; resets all other
  * members. */
-void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
-                     int32_t opening_q30, int across, int down);
+void glint_probe_trace_bundle(struct glint_probe *probe,
+                              struct glint_transfer *t, int32_t opening_q30,
+                              int across, int down);
 
 #endif

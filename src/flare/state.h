@@ -86,12 +86,12 @@ struct glint_reuse {
 
 /* Clears the tile counts of the last draw and the state for blending with
  * passes under the flare. */
-void glint_flare_forget(struct glint_flare *flare);
+void glint_flare_reset_tile_state(struct glint_flare *flare);
 
 /* Prepares the flare's tables for IMAGE (NULL: light is discarded) and returns
  * the tiles that the frame is drawn in. */
-struct glint_tiles glint_flare_start(struct glint_flare *flare,
-                                     const struct glint_image *image);
+struct glint_tiles glint_flare_prepare_tiles(struct glint_flare *flare,
+                                             const struct glint_image *image);
 
 /* Returns A + B, clamped to INT32_MAX, a need that no memory satisfies
  * anyway. */

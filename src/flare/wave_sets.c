@@ -20,13 +20,13 @@ typedef char
     glint_job_fits[sizeof(struct job) <= sizeof(struct glint_bundle_slot) ? 1
                                                                           : -1];
 
-static struct job *get_jobs(struct glint_flare *f)
+static struct job *get_job_array(struct glint_flare *f)
 {
     return (struct job *)(void *)f->slot;
 }
 
 /* Returns the index of the first wave of set SET. */
-static int find_first_wave(const struct glint_wave_sets *sets, int set)
+static int find_first_wave_of_set(const struct glint_wave_sets *sets, int set)
 {
     int first = 0;
 
@@ -35,7 +35,7 @@ static int find_first_wave(const struct glint_wave_sets *sets, int set)
     return first;
 }
 
-int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave)
+int glint_wave_sets_find_set(const struct glint_wave_sets *sets, int wave)
 {
     int set = 0;
 
@@ -48,16 +48,16 @@ int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave)
 
 /* Sets AT_Q8 to the positions of rays of PLANNED in the picture, pixels. The
  * rays are spread evenly over half of the bundle's window. */
-static void trace_rays(const struct glint_plan *plan,
-                       const struct glint_bundle_plan *planned,
-                       struct glint_transfer *t,
-                       int32_t at_q8[ROWS][2][GLINT_RAYS])
+static void trace_sample_rays(const struct glint_plan *plan,
+                              const struct glint_bundle_plan *planned,
+                              struct glint_transfer *t,
+                              int32_t at_q8[ROWS][2][GLINT_RAYS])
 {
     const int32_t one_q30 = INT32_C(1) << 30;
     const struct glint_real scale =
-        glint_plan_place(plan, planned).pixels_per_mm;
+        glint_plan_map_sensor_to_picture(plan, planned).pixels_per_mm;
 
-    glint_plan_transfer(plan, planned, t);
+    glint_plan_set_transfer(plan, planned, t);
     for (int row = 0; row < ROWS; row++) {
         const int32_t v_q30 = glint_transfer_v(t, 2 * row + 1, 2 * ROWS);
         int32_t u_q30[GLINT_RAYS], out[GLINT_OUT_KINDS][GLINT_RAYS];
@@ -78,17 +78,16 @@ static void trace_rays(const struct glint_plan *plan,
 
 /* Returns the distance in pixels between the outlines of FIRST and LAST, the
  * outermost waves of the first set. */
-static int64_t compute_distance_q8(const struct glint_plan *plan,
-                                   const struct glint_bundle_plan *first,
-                                   const struct glint_bundle_plan *last,
-                                   struct glint_transfer *t)
+static int64_t compute_outline_distance_q8(
+    const struct glint_plan *plan, const struct glint_bundle_plan *first,
+    const struct glint_bundle_plan *last, struct glint_transfer *t)
 {
     int32_t a_q8[ROWS][2][GLINT_RAYS], b_q8[ROWS][2][GLINT_RAYS];
     /* sum of 24 squares of x and 24 of y, each at most 2^52 */
     uint64_t squares = 0;
 
-    trace_rays(plan, first, t, a_q8);
-    trace_rays(plan, last, t, b_q8);
+    trace_sample_rays(plan, first, t, a_q8);
+    trace_sample_rays(plan, last, t, b_q8);
     for (int row = 0; row < ROWS; row++)
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < GLINT_RAYS; i++) {
@@ -100,9 +99,10 @@ static int64_t compute_distance_q8(const struct glint_plan *plan,
 }
 
 /* Returns the width of wave set SET in 1 / wavelength^2, um^-2 in _q24. */
-static int64_t compute_width(const struct glint_flare_frame *r, int set)
+static int64_t compute_wave_set_width(const struct glint_flare_frame *r,
+                                      int set)
 {
-    const struct glint_wave *w = r->wave + find_first_wave(r->sets, set);
+    const struct glint_wave *w = r->wave + find_first_wave_of_set(r->sets, set);
     const int32_t span = w[r->sets->size[set] - 1].wave_q24 - w[0].wave_q24;
 
     return span < 0 ? -span : span;
@@ -114,8 +114,8 @@ static int64_t compute_width(const struct glint_flare_frame *r, int set)
  * invisible if a tenth of that is below s->step, or if the outlines are near
  * enough to each other. APART: distance between the outermost outlines of
  * the first set, pixels _q8. */
-static int hides_steps(const struct glint_flare_frame *r, int set,
-                       int64_t apart, struct glint_real light)
+static int are_wave_steps_invisible(const struct glint_flare_frame *r, int set,
+                                    int64_t apart, struct glint_real light)
 {
     const struct glint_wave_sets *s = r->sets;
     const int64_t gaps = s->size[set] - 1;
@@ -123,16 +123,16 @@ static int hides_steps(const struct glint_flare_frame *r, int set,
         real_over(light, real_of(s->size[set], 1)); /* LIGHT / (2 n) */
 
     return real_less(step, s->step) ||
-           apart * compute_width(r, set) <=
-               s->apart_q8 * gaps * compute_width(r, 0);
+           apart * compute_wave_set_width(r, set) <=
+               s->apart_q8 * gaps * compute_wave_set_width(r, 0);
 }
 
 /* Returns the index of the smallest set whose steps are invisible in a
  * ghost, given the ghost's bundles of the first set. */
-static int choose_set(const struct glint_plan *plan,
-                      const struct glint_bundle_plan *planned,
-                      const struct glint_bundle *bundle,
-                      struct glint_transfer *t)
+static int choose_smallest_wave_set(const struct glint_plan *plan,
+                                    const struct glint_bundle_plan *planned,
+                                    const struct glint_bundle *bundle,
+                                    struct glint_transfer *t)
 {
     const struct glint_flare_frame *r = plan->frame;
     const int n = r->sets->size[0];
@@ -143,12 +143,14 @@ static int choose_set(const struct glint_plan *plan,
     for (int i = 0; i < n; i++)
         if (bundle[i].n_cells)
             light = real_plus(light, planned[i].irradiance);
-    if (r->sets->n_sets > 1 && !hides_steps(r, 0, FARTHEST_Q8, light)) {
-        const int64_t apart =
-            both ? compute_distance_q8(plan, &planned[0], &planned[n - 1], t)
-                 : FARTHEST_Q8;
+    if (r->sets->n_sets > 1 &&
+        !are_wave_steps_invisible(r, 0, FARTHEST_Q8, light)) {
+        const int64_t apart = both ? compute_outline_distance_q8(
+                                         plan, &planned[0], &planned[n - 1], t)
+                                   : FARTHEST_Q8;
 
-        while (set < r->sets->n_sets - 1 && !hides_steps(r, set, apart, light))
+        while (set < r->sets->n_sets - 1 &&
+               !are_wave_steps_invisible(r, set, apart, light))
             set++;
     }
     return set;
@@ -156,11 +158,12 @@ static int choose_set(const struct glint_plan *plan,
 
 /* -------------------------------------------------------------------- jobs */
 
-static void plan_waves(struct glint_flare *f, const struct job *job, int at,
-                       int set, struct glint_plan_scratch *scratch)
+static void plan_waves_of_set(struct glint_flare *f, const struct job *job,
+                              int at, int set,
+                              struct glint_plan_scratch *scratch)
 {
     const struct glint_wave_sets *sets = f->plan.frame->sets;
-    const int first = find_first_wave(sets, set);
+    const int first = find_first_wave_of_set(sets, set);
 
     for (int i = 0; i < sets->size[set]; i++) {
         f->planned[at + i] = (struct glint_bundle_plan){
@@ -175,7 +178,7 @@ static void plan_waves(struct glint_flare *f, const struct job *job, int at,
 static void plan_first_set_job(void *ctx, int number, int worker)
 {
     struct glint_flare *f = ctx;
-    struct job *job = &get_jobs(f)[number];
+    struct job *job = &get_job_array(f)[number];
     const struct glint_flare_frame *r = f->plan.frame;
     const int n_ghosts = (int)r->lens->header->n_ghosts;
     const int n = r->sets->size[0], at = number * n;
@@ -183,7 +186,7 @@ static void plan_first_set_job(void *ctx, int number, int worker)
 
     *job = (struct job){
         .ghost = number % n_ghosts, .light = number / n_ghosts, .set = UNSEEN};
-    plan_waves(f, job, at, 0, f->worker[worker].plan);
+    plan_waves_of_set(f, job, at, 0, f->worker[worker].plan);
     for (int i = 0; i < n; i++)
         if (f->bundle[at + i].n_cells) {
             job->set = 0;
@@ -191,25 +194,26 @@ static void plan_first_set_job(void *ctx, int number, int worker)
         }
     job->peak_q20 = (int)q_clamp_sat(peak_q20, 0, 1 << 20);
     if (job->set == 0)
-        job->set = choose_set(&f->plan, &f->planned[at], &f->bundle[at],
-                              &f->worker[worker].plan->transfer);
+        job->set =
+            choose_smallest_wave_set(&f->plan, &f->planned[at], &f->bundle[at],
+                                     &f->worker[worker].plan->transfer);
 }
 
 static void plan_chosen_set_job(void *ctx, int number, int worker)
 {
     struct glint_flare *f = ctx;
-    const struct job *job = &get_jobs(f)[number];
+    const struct job *job = &get_job_array(f)[number];
 
     if (job->set > 0)
-        plan_waves(f, job, job->first, job->set, f->worker[worker].plan);
+        plan_waves_of_set(f, job, job->first, job->set, f->worker[worker].plan);
 }
 
 /* Removes each ghost that would be invisible even if its brightest pixels by
  * all lights coincided. */
-static void leave_out_faint(struct glint_flare *f, int n)
+static void remove_invisible_ghosts(struct glint_flare *f, int n)
 {
     const int n_ghosts = (int)f->plan.frame->lens->header->n_ghosts;
-    struct job *job = get_jobs(f);
+    struct job *job = get_job_array(f);
 
     for (int ghost = 0; ghost < n_ghosts && ghost < n; ghost++) {
         int64_t sum_q20 = 0;
@@ -223,7 +227,7 @@ static void leave_out_faint(struct glint_flare *f, int n)
 
 /* Moves N bundles from index FROM to TO. Starts with the last bundle if TO
  * is larger, as the ranges may overlap. */
-static void move_bundles(struct glint_flare *f, int from, int to, int n)
+static void move_planned_bundles(struct glint_flare *f, int from, int to, int n)
 {
     for (int i = 0; i < n && from != to; i++) {
         const int k = to > from ? n - 1 - i : i;
@@ -235,16 +239,16 @@ static void move_bundles(struct glint_flare *f, int from, int to, int n)
 
 /* Removes invisible jobs from the N jobs and closes the gaps; returns the
  * number of jobs left. */
-static int keep_seen(struct glint_flare *f, int n)
+static int compact_visible_jobs(struct glint_flare *f, int n)
 {
     const int size = f->plan.frame->sets->size[0];
-    struct job *job = get_jobs(f);
+    struct job *job = get_job_array(f);
     int kept = 0;
 
     for (int i = 0; i < n; i++)
         if (job[i].set != UNSEEN) {
             job[kept] = job[i];
-            move_bundles(f, i * size, kept++ * size, size);
+            move_planned_bundles(f, i * size, kept++ * size, size);
         }
     return kept;
 }
@@ -252,10 +256,10 @@ static int keep_seen(struct glint_flare *f, int n)
 /* Assigns bundle indices to N jobs; if the set of a job does not fit, the job
  * falls back to the first set. Returns the number of bundles; *NEED receives
  * the number of bundles without a limit. */
-static int assign_indices(struct glint_flare *f, int n, int64_t *need)
+static int assign_bundle_indices(struct glint_flare *f, int n, int64_t *need)
 {
     const int *size = f->plan.frame->sets->size;
-    struct job *job = get_jobs(f);
+    struct job *job = get_job_array(f);
     int total = 0;
 
     *need = 0;
@@ -270,11 +274,11 @@ static int assign_indices(struct glint_flare *f, int n, int64_t *need)
     }
     for (int i = n - 1; i >= 0; i--)
         if (job[i].set == 0)
-            move_bundles(f, i * size[0], job[i].first, size[0]);
+            move_planned_bundles(f, i * size[0], job[i].first, size[0]);
     return total;
 }
 
-static int plan_sets(struct glint_flare *flare, int n_jobs)
+static int plan_ghosts_with_wave_sets(struct glint_flare *flare, int n_jobs)
 {
     struct glint_flare_stats *s = &flare->stats;
     const int size = flare->plan.frame->sets->size[0];
@@ -286,9 +290,9 @@ static int plan_sets(struct glint_flare *flare, int n_jobs)
         q_narrow(q_clamp_sat((int64_t)(n_jobs - n) * size, 0, INT32_MAX));
     if (n > 0) {
         glint_workers_run(flare->cfg.workers, n, plan_first_set_job, flare);
-        leave_out_faint(flare, n);
-        n = keep_seen(flare, n);
-        total = assign_indices(flare, n, &need);
+        remove_invisible_ghosts(flare, n);
+        n = compact_visible_jobs(flare, n);
+        total = assign_bundle_indices(flare, n, &need);
     }
     if (n > 0)
         glint_workers_run(flare->cfg.workers, n, plan_chosen_set_job, flare);
@@ -297,4 +301,5 @@ static int plan_sets(struct glint_flare *flare, int n_jobs)
     return total;
 }
 
-const struct glint_wave_planner glint_wave_planner = {plan_sets};
+const struct glint_wave_planner glint_wave_planner = {
+    plan_ghosts_with_wave_sets};

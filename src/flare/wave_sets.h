@@ -26,6 +26,6 @@ struct glint_wave_planner {
 };
 
 /* Returns the set that wave WAVE belongs to. */
-int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave);
+int glint_wave_sets_find_set(const struct glint_wave_sets *sets, int wave);
 
 #endif

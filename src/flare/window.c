@@ -21,17 +21,18 @@ struct extent {
 
 /* -------------------------------------------------------------------- nodes */
 
-static int is_cut(int kind)
+static int is_barrel_output(int kind)
 {
     return kind >= GLINT_OUT_RADIUS;
 }
 
-static int has_output(const struct glint_transfer *t, int kind)
+static int has_transfer_output(const struct glint_transfer *t, int kind)
 {
     return t->outputs >> kind & 1;
 }
 
-static void trace_nodes(struct glint_window_nodes *n, struct glint_transfer *t)
+static void trace_window_nodes(struct glint_window_nodes *n,
+                               struct glint_transfer *t)
 {
     const uint32_t outputs = t->outputs;
 
@@ -51,7 +52,8 @@ static void trace_nodes(struct glint_window_nodes *n, struct glint_transfer *t)
                            ((INT32_C(1) << 30) / (ACROSS - 1)));
             glint_transfer_rays(t, v_q30, u_q30, first == 0, out);
             for (int k = 0; k < GLINT_OUT_KINDS; k++)
-                for (int i = 0; has_output(t, k) && i < GLINT_RAYS; i++)
+                for (int i = 0; has_transfer_output(t, k) && i < GLINT_RAYS;
+                     i++)
                     n->at[k][j][first + i] = out[k][i];
         }
     }
@@ -62,8 +64,8 @@ static void trace_nodes(struct glint_window_nodes *n, struct glint_transfer *t)
 /* Returns the second difference of output K about node (I, J): twice the
  * distance by which the output may deviate from a straight line between
  * rays. At most about 2^31, as values are below 2^30. */
-static int64_t compute_bend(const struct glint_window_nodes *n, int k, int i,
-                            int j)
+static int64_t compute_second_difference(const struct glint_window_nodes *n,
+                                         int k, int i, int j)
 {
     const int32_t(*at)[ACROSS] = n->at[k];
     const int x = i < 1 ? 1 : i > ACROSS - 2 ? ACROSS - 2 : i;
@@ -78,8 +80,8 @@ static int64_t compute_bend(const struct glint_window_nodes *n, int k, int i,
 
 /* Returns a mask of the sides of the octagon around the stop outside of
  * which a node lies, one bit per side. */
-static uint32_t find_outer_sides(int64_t x, int64_t y, int64_t radius,
-                                 int64_t bend)
+static uint32_t find_outside_octagon_sides(int64_t x, int64_t y, int64_t radius,
+                                           int64_t bend)
 {
     const int64_t straight = radius + bend;
     const int64_t slanted = radius + radius * 106 / 256 + 2 * bend;
@@ -90,42 +92,43 @@ static uint32_t find_outer_sides(int64_t x, int64_t y, int64_t radius,
                       (x - y > slanted) << 6 | (x - y < -slanted) << 7);
 }
 
-static void test_node(struct glint_window_nodes *n, int i, int j)
+static void classify_node_by_stop(struct glint_window_nodes *n, int i, int j)
 {
     const int64_t x = n->at[GLINT_OUT_STOP_X][j][i];
     const int64_t y = n->at[GLINT_OUT_STOP_Y][j][i];
-    const int64_t bend_x = compute_bend(n, GLINT_OUT_STOP_X, i, j);
-    const int64_t bend_y = compute_bend(n, GLINT_OUT_STOP_Y, i, j);
+    const int64_t bend_x = compute_second_difference(n, GLINT_OUT_STOP_X, i, j);
+    const int64_t bend_y = compute_second_difference(n, GLINT_OUT_STOP_Y, i, j);
     const int64_t bend = bend_x > bend_y ? bend_x : bend_y;
 
     n->bend[j][i] = (int32_t)(bend < INT32_MAX ? bend : INT32_MAX);
-    n->beyond[j][i] = find_outer_sides(x, y, n->radius, bend);
+    n->beyond[j][i] = find_outside_octagon_sides(x, y, n->radius, bend);
     n->inside[j][i] = x * x + y * y < n->radius * n->radius;
 }
 
 /* Sets, in the masks of the stop's sides, a bit for each barrel outside of
  * which a node lies. */
-static void test_barrels(struct glint_window_nodes *n,
-                         const struct glint_transfer *t)
+static void classify_nodes_by_barrels(struct glint_window_nodes *n,
+                                      const struct glint_transfer *t)
 {
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         int64_t one;
 
-        if (!is_cut(k) || !has_output(t, k))
+        if (!is_barrel_output(k) || !has_transfer_output(t, k))
             continue;
         one = real_integer(real_of(1, 0), -t->exponent[k], INT64_C(1) << 31);
         for (int j = 0; j < DOWN; j++)
             for (int i = 0; i < ACROSS; i++)
                 n->beyond[j][i] |=
-                    (uint32_t)(n->at[k][j][i] > one + compute_bend(n, k, i, j))
+                    (uint32_t)(n->at[k][j][i] >
+                               one + compute_second_difference(n, k, i, j))
                     << (8 + k);
     }
 }
 
 /* -------------------------------------------------------------------- cells */
 
-static void extend_extent(struct extent *e, int32_t across_q16,
-                          int32_t down_q16)
+static void extend_extent_to_point(struct extent *e, int32_t across_q16,
+                                   int32_t down_q16)
 {
     const int32_t at_q16[2] = {across_q16, down_q16};
 
@@ -139,8 +142,9 @@ static void extend_extent(struct extent *e, int32_t across_q16,
 
 /* Returns the distance of a node from the middle of the stop, in units of the
  * stop outputs. */
-static int64_t compute_distance(const struct glint_window_nodes *n, int i,
-                                int j)
+static int64_t
+compute_distance_from_stop_centre(const struct glint_window_nodes *n, int i,
+                                  int j)
 {
     const int64_t x = n->at[GLINT_OUT_STOP_X][j][i];
     const int64_t y = n->at[GLINT_OUT_STOP_Y][j][i];
@@ -151,9 +155,9 @@ static int64_t compute_distance(const struct glint_window_nodes *n, int i,
 /* Extends E to where the stop's circle crosses the line from node (I, J) to
  * the next node, if that node lies outside. WAY is 0 across or 1 down, STEP
  * is 1 or -1. Node (I, J) must be inside. */
-static void extend_to_circle(struct extent *e,
-                             const struct glint_window_nodes *n, int i, int j,
-                             int way, int step)
+static void extend_extent_to_circle(struct extent *e,
+                                    const struct glint_window_nodes *n, int i,
+                                    int j, int way, int step)
 {
     const int i2 = i + (way == 0 ? step : 0), j2 = j + (way == 1 ? step : 0);
     int64_t here, there;
@@ -161,18 +165,18 @@ static void extend_to_circle(struct extent *e,
 
     if (n->inside[j2][i2])
         return;
-    here = compute_distance(n, i, j);
-    there = compute_distance(n, i2, j2);
+    here = compute_distance_from_stop_centre(n, i, j);
+    there = compute_distance_from_stop_centre(n, i2, j2);
     part_q16 =
         (int32_t)q_divide((n->radius - here) * ONE_NODE_Q16, there - here + 1) *
         step;
-    extend_extent(e, i * ONE_NODE_Q16 + (way == 0 ? part_q16 : 0),
-                  j * ONE_NODE_Q16 + (way == 1 ? part_q16 : 0));
+    extend_extent_to_point(e, i * ONE_NODE_Q16 + (way == 0 ? part_q16 : 0),
+                           j * ONE_NODE_Q16 + (way == 1 ? part_q16 : 0));
 }
 
 /* Returns whether the cell at (I, J) is small compared with the stop and
  * nearly flat. */
-static int is_fine(const struct glint_window_nodes *n, int i, int j)
+static int is_cell_fine(const struct glint_window_nodes *n, int i, int j)
 {
     int64_t size = 0, bend = 0;
 
@@ -191,15 +195,17 @@ static int is_fine(const struct glint_window_nodes *n, int i, int j)
     return 3 * size < n->radius && 16 * bend < n->radius;
 }
 
-static void add_cell(struct extent *e, const struct glint_window_nodes *n,
-                     int i, int j)
+static void extend_extent_by_cell(struct extent *e,
+                                  const struct glint_window_nodes *n, int i,
+                                  int j)
 {
     if (n->beyond[j][i] & n->beyond[j][i + 1] & n->beyond[j + 1][i] &
         n->beyond[j + 1][i + 1])
         return;
-    if (!is_fine(n, i, j)) {
-        extend_extent(e, i * ONE_NODE_Q16, j * ONE_NODE_Q16);
-        extend_extent(e, (i + 1) * ONE_NODE_Q16, (j + 1) * ONE_NODE_Q16);
+    if (!is_cell_fine(n, i, j)) {
+        extend_extent_to_point(e, i * ONE_NODE_Q16, j * ONE_NODE_Q16);
+        extend_extent_to_point(e, (i + 1) * ONE_NODE_Q16,
+                               (j + 1) * ONE_NODE_Q16);
         return;
     }
     for (int corner = 0; corner < 4; corner++) {
@@ -207,26 +213,27 @@ static void add_cell(struct extent *e, const struct glint_window_nodes *n,
 
         if (!n->inside[j + low][i + right])
             continue;
-        extend_extent(e, (i + right) * ONE_NODE_Q16, (j + low) * ONE_NODE_Q16);
-        extend_to_circle(e, n, i + right, j + low, 0, right ? -1 : 1);
-        extend_to_circle(e, n, i + right, j + low, 1, low ? -1 : 1);
+        extend_extent_to_point(e, (i + right) * ONE_NODE_Q16,
+                               (j + low) * ONE_NODE_Q16);
+        extend_extent_to_circle(e, n, i + right, j + low, 0, right ? -1 : 1);
+        extend_extent_to_circle(e, n, i + right, j + low, 1, low ? -1 : 1);
     }
 }
 
 /* Returns the range of the window of T from which rays may get through. */
-static struct extent find_extent(struct glint_window_nodes *n,
-                                 struct glint_transfer *t)
+static struct extent find_transmitted_extent(struct glint_window_nodes *n,
+                                             struct glint_transfer *t)
 {
     struct extent e = {{INT32_MAX, INT32_MAX}, {-1, -1}};
 
-    trace_nodes(n, t);
+    trace_window_nodes(n, t);
     for (int j = 0; j < DOWN; j++)
         for (int i = 0; i < ACROSS; i++)
-            test_node(n, i, j);
-    test_barrels(n, t);
+            classify_node_by_stop(n, i, j);
+    classify_nodes_by_barrels(n, t);
     for (int j = 0; j < DOWN - 1; j++)
         for (int i = 0; i < ACROSS - 1; i++)
-            add_cell(&e, n, i, j);
+            extend_extent_by_cell(&e, n, i, j);
     return e;
 }
 
@@ -235,7 +242,8 @@ static struct extent find_extent(struct glint_window_nodes *n,
 /* Extends E along axis K, 0 across or 1 down, by 1 / PART of its size on
  * either side, within 0 .. STEPS: between the lines of the grid a circle
  * that spans six or more cells bulges by a hundredth of its size. */
-static void enlarge_extent(struct extent *e, int k, int steps, int part)
+static void enlarge_extent_along_axis(struct extent *e, int k, int steps,
+                                      int part)
 {
     const int32_t most_q16 = steps * ONE_NODE_Q16;
     const int32_t more_q16 = (e->high_q16[k] - e->low_q16[k]) / part + 1;
@@ -248,7 +256,7 @@ static void enlarge_extent(struct extent *e, int k, int steps, int part)
 
 /* Narrows the window of T to its subrange E; returns whether it got much
  * smaller. */
-static int narrow_window(struct glint_transfer *t, struct extent *e)
+static int narrow_window_to_extent(struct glint_transfer *t, struct extent *e)
 {
     struct glint_box_window *w = &t->window;
     const struct glint_box_window old = *w;
@@ -269,8 +277,8 @@ static int narrow_window(struct glint_transfer *t, struct extent *e)
            8 * ((int64_t)w->v_to_q30 - w->v_from_q30) < 7 * high_q30;
 }
 
-int glint_window_find(struct glint_window_nodes *nodes,
-                      struct glint_transfer *t, int32_t opening_q30)
+int glint_window_narrow_to_stop(struct glint_window_nodes *nodes,
+                                struct glint_transfer *t, int32_t opening_q30)
 {
     int more = 1;
 
@@ -280,16 +288,17 @@ int glint_window_find(struct glint_window_nodes *nodes,
     nodes->radius += !nodes->radius;
     nodes->n_rays = 0;
     for (int pass = 0; more && pass < MOST_PASSES; pass++) {
-        struct extent e = find_extent(nodes, t);
+        struct extent e = find_transmitted_extent(nodes, t);
 
         if (e.high_q16[0] < 0)
             return 0;
-        enlarge_extent(&e, 0, ACROSS - 1, 48);
-        enlarge_extent(&e, 1, DOWN - 1,
-                       24); /* E covers half the height, so 1/24 of it
-                       is 1/48 of the whole height. */
+        enlarge_extent_along_axis(&e, 0, ACROSS - 1, 48);
+        enlarge_extent_along_axis(&e, 1, DOWN - 1,
+                                  24); /* E covers half the height, so 1/24 of
+                                  it is 1/48 of the whole height. */
         more =
-            narrow_window(t, &e) && t->window.u_half_q30 > LEAST_HALF_Q30 &&
+            narrow_window_to_extent(t, &e) &&
+            t->window.u_half_q30 > LEAST_HALF_Q30 &&
             (int64_t)t->window.v_to_q30 - t->window.v_from_q30 > LEAST_HALF_Q30;
     }
     return 1;

@@ -36,7 +36,7 @@ struct glint_window_nodes {
 /* Narrows the window of T to the range that a stop of OPENING_Q30 times the
  * model's radius, 2^20 .. 2^30, lets through. Returns 0 if no ray gets
  * through. */
-int glint_window_find(struct glint_window_nodes *nodes,
-                      struct glint_transfer *t, int32_t opening_q30);
+int glint_window_narrow_to_stop(struct glint_window_nodes *nodes,
+                                struct glint_transfer *t, int32_t opening_q30);
 
 #endif

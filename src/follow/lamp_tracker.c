@@ -2,9 +2,9 @@
  *
  * Tracks lamps over time, from the spots of successive pictures.
  *
- * In each step tracks move to their predicted positions and are matched with
- * the spots there (match.h); each track continues with its spot or without a
- * spot (record.h); unmatched spots become new tracks; the strongest tracks are
+ * For each picture: predicts the position of every track, assigns spots to
+ * tracks (match.h), updates each track with its spot or without one (record.h),
+ * starts new tracks for unmatched spots, and selects the strongest tracks to be
  * shown. */
 #include "glint/lamp_tracker.h"
 
@@ -23,11 +23,11 @@ enum {
 };
 
 #define MAX_ELAPSED_US 10000000
-/* Microseconds after which the search radius of a lost lamp grows by one
- * more reach, up to MAX_REACHES. */
+/* Time in which the search radius of a lost lamp grows by reach_q8, us; the
+ * radius is at most MAX_REACHES times reach_q8. */
 #define REACH_US    1000000
 #define MAX_REACHES 3
-/* time in which white falls to 1/e, us: one stop per second */
+/* time in which the white level falls to 1/e, us: one stop per second */
 #define WHITE_US 1442695
 
 struct glint_lamp_tracker {
@@ -45,26 +45,28 @@ struct glint_lamp_tracker {
 
 /* ------------------------------------------------------------------- memory */
 
-static int is_valid_time(int32_t ms)
+static int is_valid_duration(int32_t ms)
 {
     return ms >= 1 && ms <= MAX_MS;
 }
 
-static int is_valid(const struct glint_lamp_tracker_config *c)
+static int is_valid_config(const struct glint_lamp_tracker_config *c)
 {
     return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
            c->height <= GLINT_MAX_SIDE && c->max_tracks >= 1 &&
            c->max_tracks <= MAX_TRACKS && c->max_shown >= 1 &&
            c->max_shown <= c->max_tracks && c->match_q15 >= 0 &&
            c->match_q15 <= 1 << 15 && c->cut_q15 >= 1 &&
-           is_valid_time(c->attack_ms) && is_valid_time(c->release_ms) &&
-           is_valid_time(c->leave_ms) && is_valid_time(c->memory_ms) &&
-           is_valid_time(c->smooth_ms);
+           is_valid_duration(c->attack_ms) &&
+           is_valid_duration(c->release_ms) && is_valid_duration(c->leave_ms) &&
+           is_valid_duration(c->memory_ms) && is_valid_duration(c->smooth_ms);
 }
 
-/* Allocates a tracker from A. Returns NULL if A only measures or is full. */
+/* Allocates a tracker from arena A. Returns NULL if A only measures or is full.
+ */
 static struct glint_lamp_tracker *
-carve(struct glint_arena *a, const struct glint_lamp_tracker_config *c)
+allocate_tracker(struct glint_arena *a,
+                 const struct glint_lamp_tracker_config *c)
 {
     const size_t n_records = (size_t)c->max_tracks;
     struct glint_lamp_tracker *placed = glint_arena_take(a, 1, sizeof *placed);
@@ -74,7 +76,7 @@ carve(struct glint_arena *a, const struct glint_lamp_tracker_config *c)
     t->record = glint_arena_take(a, n_records, sizeof *t->record);
     t->owner = glint_arena_take(a, n_records, sizeof *t->owner);
     t->order = glint_arena_take(a, MAX_SPOTS, sizeof *t->order);
-    glint_match_carve(&t->match, a, c->max_tracks, MAX_SPOTS);
+    glint_match_allocate(&t->match, a, c->max_tracks, MAX_SPOTS);
     return a->used <= a->size ? placed : NULL;
 }
 
@@ -98,9 +100,9 @@ size_t glint_lamp_tracker_bytes(const struct glint_lamp_tracker_config *cfg)
 {
     struct glint_arena measured = glint_arena_measure();
 
-    if (!is_valid(cfg))
+    if (!is_valid_config(cfg))
         return 0;
-    carve(&measured, cfg);
+    allocate_tracker(&measured, cfg);
     return measured.used;
 }
 
@@ -112,9 +114,9 @@ glint_lamp_tracker_init(struct glint_lamp_tracker **tracks,
     struct glint_arena arena = glint_arena_over(mem, bytes);
     struct glint_lamp_tracker *t;
 
-    if (!is_valid(cfg) || (uintptr_t)mem % GLINT_ALIGN)
+    if (!is_valid_config(cfg) || (uintptr_t)mem % GLINT_ALIGN)
         return GLINT_E_ARGUMENT;
-    t = carve(&arena, cfg);
+    t = allocate_tracker(&arena, cfg);
     if (!t)
         return GLINT_E_MEMORY;
     t->cfg = *cfg;
@@ -153,14 +155,15 @@ int32_t glint_lamp_tracker_white_q15(const struct glint_lamp_tracker *tracks,
 {
     const int32_t us = q_clamp_sat(elapsed_us, 0, MAX_ELAPSED_US);
 
-    return has_tracks(tracks) ? (1 << 15) - glint_pace_part_q15(us, WHITE_US)
-                              : 0;
+    return has_tracks(tracks)
+               ? (1 << 15) - glint_pace_compute_fraction_q15(us, WHITE_US)
+               : 0;
 }
 
 /* ----------------------------------------------------------------- matching */
 
-static int32_t compute_reach_q8(const struct glint_lamp_tracker *t,
-                                const struct glint_record *r)
+static int32_t compute_search_radius_q8(const struct glint_lamp_tracker *t,
+                                        const struct glint_record *r)
 {
     const int64_t more_q8 = (int64_t)t->reach_q8 * r->lost_us / REACH_US;
     const int32_t most_q8 = t->reach_q8 * (MAX_REACHES - 1);
@@ -168,8 +171,9 @@ static int32_t compute_reach_q8(const struct glint_lamp_tracker *t,
     return t->reach_q8 + (more_q8 < most_q8 ? (int32_t)more_q8 : most_q8);
 }
 
-/* Makes a seeker for each track, at its predicted position. */
-static void make_seekers(struct glint_lamp_tracker *t)
+/* Sets up the input of the matcher: one seeker per track, at the track's
+ * predicted position. */
+static void make_seekers_for_tracks(struct glint_lamp_tracker *t)
 {
     struct glint_match *m = &t->match;
 
@@ -179,31 +183,32 @@ static void make_seekers(struct glint_lamp_tracker *t)
 
         if (!r->id)
             continue;
-        glint_record_look_ahead(r, &t->step);
+        glint_record_predict_position(r, &t->step);
         t->owner[m->n_seekers] = i;
         m->seeker[m->n_seekers++] = (struct glint_seeker){
             .id = r->id,
             .x_q8 = q_narrow(r->ahead_q16[0] / 256),
             .y_q8 = q_narrow(r->ahead_q16[1] / 256),
-            .reach_q8 = compute_reach_q8(t, r),
+            .reach_q8 = compute_search_radius_q8(t, r),
             .max_faint_area = q_clamp_sat(r->last.area, 0, 1 << 26) * 4,
             .is_lost = r->lost_us > 0};
     }
 }
 
-/* Returns the squared distance within which a spot is the same lamp if there
- * are N spots. It shrinks with N, as among many spots one is within reach by
- * chance. */
-static int64_t compute_near2_q16(const struct glint_lamp_tracker *t, int n)
+/* Returns the squared distance, in pixels^2, up to which a matched spot counts
+ * as the same lamp in a picture of N spots. It shrinks with N, because among
+ * many spots one lies within reach by chance. */
+static int64_t
+compute_same_lamp_distance2_q16(const struct glint_lamp_tracker *t, int n)
 {
     const int64_t reach2_q16 = (int64_t)t->reach_q8 * t->reach_q8;
 
     return n > FEW_SPOTS ? reach2_q16 * FEW_SPOTS / n : reach2_q16;
 }
 
-/* Returns the flux that spot NOW has in common with BEFORE, the lamp's last
- * spot; 0 if NOW is too far from the predicted position in S. LIMIT2:
- * squared max distance. */
+/* Returns the smaller flux of spot NOW and of BEFORE, the last spot of the same
+ * lamp; 0 if NOW is farther than sqrt(LIMIT2) from the predicted position in S.
+ */
 static int64_t compute_common_flux(const struct glint_seeker *s,
                                    const struct glint_spot *before,
                                    const struct glint_spot *now,
@@ -211,41 +216,42 @@ static int64_t compute_common_flux(const struct glint_seeker *s,
 {
     const int64_t dx_q8 = (int64_t)now->x_q8 - s->x_q8;
     const int64_t dy_q8 = (int64_t)now->y_q8 - s->y_q8;
-    const int64_t p_q16 = glint_record_flux_q16(before);
-    const int64_t q_q16 = glint_record_flux_q16(now);
+    const int64_t p_q16 = glint_record_clamp_flux_q16(before);
+    const int64_t q_q16 = glint_record_clamp_flux_q16(now);
 
     if (dx_q8 * dx_q8 + dy_q8 * dy_q8 > limit2_q16)
         return 0;
     return p_q16 < q_q16 ? p_q16 : q_q16;
 }
 
-/* The flux on one side of a possible cut: total flux of the picture, and the
- * flux that is also in the other picture. N: number of lamps. */
+/* The lamps of the picture before or after a possible cut: their total flux,
+ * the flux that also occurs in the other picture (kept), and their number n. */
 struct side {
     int64_t flux, kept;
     int n;
 };
 
-/* Returns whether most of the flux of A is not in B. If A has no flux, several
- * lamps in B indicate a cut: all of them appeared, or vanished, at once. */
-static int is_mostly_new(const struct glint_lamp_tracker *t,
-                         const struct side *a, const struct side *b)
+/* Returns whether at least the fraction cut_q15 of the flux of A does not occur
+ * in B. If A has no flux, returns whether B has at least MANY_LIGHTS lamps:
+ * that many appear or vanish at once only at a cut. */
+static int is_flux_mostly_unmatched(const struct glint_lamp_tracker *t,
+                                    const struct side *a, const struct side *b)
 {
     return a->flux > 0 ? a->flux - a->kept >= (a->flux * t->cfg.cut_q15) >> 15
                        : b->n >= MANY_LIGHTS;
 }
 
-/* Returns whether most of the previous flux is gone and most of the current
- * flux is new. */
-static int is_cut(const struct glint_lamp_tracker *t,
-                  const struct glint_spot *spots, int n)
+/* Returns whether the picture follows a cut: most flux of the previous picture
+ * has vanished, and most flux of this one is new. */
+static int is_scene_cut(const struct glint_lamp_tracker *t,
+                        const struct glint_spot *spots, int n)
 {
-    const int64_t limit2_q16 = compute_near2_q16(t, n);
+    const int64_t limit2_q16 = compute_same_lamp_distance2_q16(t, n);
     struct side before = {0, 0, 0}, now = {0, 0, 0};
 
     for (int i = 0; i < n; i++)
         if (!spots[i].faint || t->match.taken[i]) {
-            now.flux += glint_record_flux_q16(&spots[i]);
+            now.flux += glint_record_clamp_flux_q16(&spots[i]);
             now.n++;
         }
     for (int i = 0; i < t->match.n_seekers; i++) {
@@ -259,33 +265,34 @@ static int is_cut(const struct glint_lamp_tracker *t,
         now.kept += kept;
         if (s->is_lost)
             continue;
-        before.flux += glint_record_flux_q16(last);
+        before.flux += glint_record_clamp_flux_q16(last);
         before.kept += kept;
         before.n++;
     }
-    return is_mostly_new(t, &before, &now) && is_mostly_new(t, &now, &before);
+    return is_flux_mostly_unmatched(t, &before, &now) &&
+           is_flux_mostly_unmatched(t, &now, &before);
 }
 
-/* Assigns spots to tracks; after a cut all tracks are dropped. */
-static void match_spots(struct glint_lamp_tracker *t,
-                        const struct glint_spot *spots, int n)
+/* Assigns spots to tracks. At a cut, drops all tracks first. */
+static void match_spots_to_tracks(struct glint_lamp_tracker *t,
+                                  const struct glint_spot *spots, int n)
 {
-    make_seekers(t);
-    glint_match_find(&t->match, spots, n);
-    if (is_cut(t, spots, n)) {
+    make_seekers_for_tracks(t);
+    glint_match_assign_spots(&t->match, spots, n);
+    if (is_scene_cut(t, spots, n)) {
         glint_lamp_tracker_restart(t);
-        make_seekers(t);
-        glint_match_find(&t->match, spots, n);
+        make_seekers_for_tracks(t);
+        glint_match_assign_spots(&t->match, spots, n);
     }
     t->was_cut = t->step.is_fresh;
 }
 
 /* --------------------------------------------------------------------- new */
 
-/* Returns whether P should be replaced before Q: lost lamps first, then
- * faint lamps, then young lamps. */
-static int is_replaced_before(const struct glint_record *p,
-                              const struct glint_record *q)
+/* Returns whether record P is to be reused for a new lamp rather than record Q:
+ * lost lamps first, then the fainter, then the younger. */
+static int is_record_replaced_before(const struct glint_record *p,
+                                     const struct glint_record *q)
 {
     const int64_t p_q16 = p->of[GLINT_CHANNEL_POWER].value;
     const int64_t q_q16 = q->of[GLINT_CHANNEL_POWER].value;
@@ -295,11 +302,11 @@ static int is_replaced_before(const struct glint_record *p,
     return p_q16 != q_q16 ? p_q16 < q_q16 : p->id > q->id;
 }
 
-/* Returns the record for a new lamp of POWER: a free record, else the record of
- * a track that is not shown and is lost or fainter. Returns NULL if there is no
- * such record. */
-static struct glint_record *find_record(struct glint_lamp_tracker *t,
-                                        int64_t power_q16)
+/* Returns a record for a new lamp of POWER: a free one, or else that of a track
+ * that is not shown and whose lamp is lost or fainter. Returns NULL if there is
+ * none. */
+static struct glint_record *
+find_record_for_new_lamp(struct glint_lamp_tracker *t, int64_t power_q16)
 {
     struct glint_record *best = NULL;
 
@@ -311,7 +318,7 @@ static struct glint_record *find_record(struct glint_lamp_tracker *t,
         if (r->level_q30 > 0 || r->is_shown ||
             (r->lost_us == 0 && r->of[GLINT_CHANNEL_POWER].value >= power_q16))
             continue;
-        if (!best || is_replaced_before(r, best))
+        if (!best || is_record_replaced_before(r, best))
             best = r;
     }
     return best;
@@ -322,18 +329,20 @@ struct ranked_spots {
     const int32_t *by_x;
 };
 
-static int is_brighter(const void *ctx, int32_t a, int32_t b)
+static int is_spot_brighter(const void *ctx, int32_t a, int32_t b)
 {
     const struct ranked_spots *r = ctx;
-    const int64_t p_q16 = glint_record_power_q16(&r->spots[r->by_x[a]]);
-    const int64_t q_q16 = glint_record_power_q16(&r->spots[r->by_x[b]]);
+    const int64_t p_q16 = glint_record_clamp_power_q16(&r->spots[r->by_x[a]]);
+    const int64_t q_q16 = glint_record_clamp_power_q16(&r->spots[r->by_x[b]]);
 
     return p_q16 != q_q16 ? p_q16 > q_q16 : a < b;
 }
 
-/* Makes tracks of the unmatched spots, the brightest first. */
-static void begin_tracks(struct glint_lamp_tracker *t,
-                         const struct glint_spot *spots, int n)
+/* Starts a track for each unmatched spot, the brightest first, until no record
+ * is left. */
+static void begin_tracks_of_unmatched_spots(struct glint_lamp_tracker *t,
+                                            const struct glint_spot *spots,
+                                            int n)
 {
     const struct ranked_spots ranked = {spots, t->match.by_x};
     int n_new = 0;
@@ -344,10 +353,11 @@ static void begin_tracks(struct glint_lamp_tracker *t,
         if (!t->match.taken[spot] && !spots[spot].faint)
             t->order[n_new++] = i;
     }
-    glint_sort(t->order, n_new, is_brighter, &ranked);
+    glint_sort(t->order, n_new, is_spot_brighter, &ranked);
     for (int i = 0; i < n_new; i++) {
         const struct glint_spot *s = &spots[t->match.by_x[t->order[i]]];
-        struct glint_record *r = find_record(t, glint_record_power_q16(s));
+        struct glint_record *r =
+            find_record_for_new_lamp(t, glint_record_clamp_power_q16(s));
 
         if (!r)
             return;
@@ -357,8 +367,9 @@ static void begin_tracks(struct glint_lamp_tracker *t,
 
 /* -------------------------------------------------------------------- shown */
 
-/* Returns the power of R for ranking. The power of shown tracks is raised by a
- * quarter, so that two tracks of similar power do not alternate. */
+/* Returns the power by which R is ranked: that of a track that is already shown
+ * counts a quarter more, so that two tracks of similar power do not alternate.
+ */
 static int64_t compute_rank_power(const struct glint_record *r)
 {
     const int64_t power_q16 = r->of[GLINT_CHANNEL_POWER].value;
@@ -366,7 +377,7 @@ static int64_t compute_rank_power(const struct glint_record *r)
     return power_q16 + (r->is_shown ? power_q16 / 4 : 0);
 }
 
-static int is_stronger(const void *ctx, int32_t a, int32_t b)
+static int is_track_stronger(const void *ctx, int32_t a, int32_t b)
 {
     const struct glint_record *record = ctx;
     const int64_t p = compute_rank_power(&record[a]),
@@ -375,16 +386,17 @@ static int is_stronger(const void *ctx, int32_t a, int32_t b)
     return p != q ? p > q : record[a].id < record[b].id;
 }
 
-/* Lists all tracks in t->order, the strongest first, and selects the tracks
- * to show. Returns the number of all tracks. */
-static int rank_tracks(struct glint_lamp_tracker *t)
+/* Writes the indices of all tracks to t->order, the strongest first, and marks
+ * the max_shown strongest visible ones as shown. Returns the number of tracks.
+ */
+static int rank_and_select_tracks(struct glint_lamp_tracker *t)
 {
     int n = 0, n_shown = 0;
 
     for (int i = 0; i < t->cfg.max_tracks; i++)
         if (t->record[i].id)
             t->order[n++] = i;
-    glint_sort(t->order, n, is_stronger, t->record);
+    glint_sort(t->order, n, is_track_stronger, t->record);
     for (int i = 0; i < n; i++) {
         struct glint_record *r = &t->record[t->order[i]];
 
@@ -394,10 +406,10 @@ static int rank_tracks(struct glint_lamp_tracker *t)
     return n;
 }
 
-static int write_shown(struct glint_lamp_tracker *t,
-                       struct glint_lamp_track *out, int max)
+static int write_shown_tracks(struct glint_lamp_tracker *t,
+                              struct glint_lamp_track *out, int max)
 {
-    const int n = rank_tracks(t);
+    const int n = rank_and_select_tracks(t);
     int n_out = 0;
 
     for (int i = 0; i < n; i++) {
@@ -405,7 +417,7 @@ static int write_shown(struct glint_lamp_tracker *t,
 
         glint_record_set_level(r, &t->step);
         if (r->level_q30 >= 1 << 15 && n_out < max)
-            out[n_out++] = glint_record_track(r);
+            out[n_out++] = glint_record_make_track(r);
     }
     return n_out;
 }
@@ -417,20 +429,20 @@ int glint_lamp_tracker_step(struct glint_lamp_tracker *tracks,
 {
     struct glint_lamp_tracker *t = tracks;
 
-    t->step.pace = glint_pace_of(q_clamp_sat(elapsed_us, 0, MAX_ELAPSED_US),
-                                 t->cfg.smooth_ms * 1000);
-    match_spots(t, spots, n);
+    t->step.pace = glint_pace_compute(
+        q_clamp_sat(elapsed_us, 0, MAX_ELAPSED_US), t->cfg.smooth_ms * 1000);
+    match_spots_to_tracks(t, spots, n);
     for (int i = 0; i < t->match.n_seekers; i++) {
         struct glint_record *r = &t->record[t->owner[i]];
         const int32_t spot = t->match.seeker[i].spot;
 
         if (spot >= 0)
-            glint_record_see(r, &t->step, &spots[spot]);
+            glint_record_update_with_spot(r, &t->step, &spots[spot]);
         else
-            glint_record_miss(r, &t->step);
+            glint_record_update_without_spot(r, &t->step);
     }
-    begin_tracks(t, spots, n);
-    n = write_shown(t, out, max);
+    begin_tracks_of_unmatched_spots(t, spots, n);
+    n = write_shown_tracks(t, out, max);
     t->step.is_fresh = 0;
     return n;
 }

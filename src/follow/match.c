@@ -6,8 +6,8 @@
 
 enum {
     NEAREST_SPOTS = 8,
-    FAR_LOG2 = 2, /* log2 of the factor on squared distances of a faint spot,
-                     and of a lost lamp */
+    FAR_LOG2 = 2, /* log2 of the factor on the squared distance of a faint spot,
+                     and again on that of a lost lamp */
     PIXEL2_Q16 = 1 << 16
 };
 
@@ -17,8 +17,8 @@ struct glint_pair {
     int32_t rank; /* the spot's rank in by_x */
 };
 
-void glint_match_carve(struct glint_match *m, struct glint_arena *arena,
-                       int max_seekers, int max_spots)
+void glint_match_allocate(struct glint_match *m, struct glint_arena *arena,
+                          int max_seekers, int max_spots)
 {
     const size_t n_pairs = (size_t)max_seekers * NEAREST_SPOTS;
 
@@ -33,7 +33,8 @@ void glint_match_carve(struct glint_match *m, struct glint_arena *arena,
 
 enum { SPOT_NUMBERS = 15 };
 
-static void list_numbers(const struct glint_spot *s, int64_t v[SPOT_NUMBERS])
+static void list_spot_members(const struct glint_spot *s,
+                              int64_t v[SPOT_NUMBERS])
 {
     v[0] = s->x_q8;
     v[1] = s->y_q8;
@@ -51,8 +52,8 @@ static void list_numbers(const struct glint_spot *s, int64_t v[SPOT_NUMBERS])
     v[14] = s->sin_q15;
 }
 
-/* Orders spots by all their members; the order is ambiguous only for equal
- * spots. */
+/* Sort order of spots: by x, then by all other members, so that only equal
+ * spots are interchangeable. */
 static int is_spot_before(const void *ctx, int32_t a, int32_t b)
 {
     const struct glint_spot *spots = ctx;
@@ -60,8 +61,8 @@ static int is_spot_before(const void *ctx, int32_t a, int32_t b)
 
     if (spots[a].x_q8 != spots[b].x_q8)
         return spots[a].x_q8 < spots[b].x_q8;
-    list_numbers(&spots[a], p);
-    list_numbers(&spots[b], q);
+    list_spot_members(&spots[a], p);
+    list_spot_members(&spots[b], q);
     for (int i = 0; i < SPOT_NUMBERS; i++)
         if (p[i] != q[i])
             return p[i] < q[i];
@@ -82,11 +83,12 @@ static int is_pair_before(const void *ctx, int32_t a, int32_t b)
 
 /* -------------------------------------------------------------------- pairs */
 
-/* Returns the cost of assigning SPOT to S: the squared distance, multiplied
- * by 2^FAR_LOG2 if the spot is faint and again if the lamp is lost. Returns
- * -1 if SPOT is too far away, or faint and too large. */
-static int64_t compute_cost_q16(const struct glint_seeker *s,
-                                const struct glint_spot *spot)
+/* Returns the cost of assigning SPOT to lamp S: their squared distance in
+ * pixels^2, multiplied by 2^FAR_LOG2 if the spot is faint, and again if the
+ * lamp is lost. Returns -1 if the assignment is not allowed: SPOT lies outside
+ * the reach of S, or is faint and too large. */
+static int64_t compute_match_cost_q16(const struct glint_seeker *s,
+                                      const struct glint_spot *spot)
 {
     const int64_t reach_q8 = s->reach_q8;
     const int64_t dx_q8 = (int64_t)spot->x_q8 - s->x_q8;
@@ -103,9 +105,11 @@ static int64_t compute_cost_q16(const struct glint_seeker *s,
     return is_far ? (d2_q16 + PIXEL2_Q16) << (is_far * FAR_LOG2) : d2_q16;
 }
 
-/* Returns the index in by_x of the first spot whose x is X or more. */
-static int find_first(const struct glint_match *m,
-                      const struct glint_spot *spots, int n, int64_t x_q8)
+/* Returns the index in by_x of the first spot with x >= X_Q8, by binary search.
+ */
+static int find_first_spot_from_x(const struct glint_match *m,
+                                  const struct glint_spot *spots, int n,
+                                  int64_t x_q8)
 {
     int low = 0, high = n;
 
@@ -120,9 +124,11 @@ static int find_first(const struct glint_match *m,
     return low;
 }
 
-/* Keeps PAIR if it is among the NEAREST_SPOTS of its seeker. The seeker's pairs
- * begin at FIRST, sorted by cost; equal costs stay in the order of by_x. */
-static void keep_near(struct glint_match *m, int first, struct glint_pair pair)
+/* Inserts PAIR into the pairs of its seeker, which begin at index FIRST and are
+ * sorted by cost; equal costs stay in the order of by_x. Only the NEAREST_SPOTS
+ * cheapest pairs are stored. */
+static void insert_pair_if_among_nearest(struct glint_match *m, int first,
+                                         struct glint_pair pair)
 {
     int at = m->n_pairs;
 
@@ -145,18 +151,20 @@ static void find_near_spots(struct glint_match *m, int seeker,
     const int64_t right_q8 = (int64_t)s->x_q8 + s->reach_q8;
     const int first = m->n_pairs;
 
-    for (int i = find_first(m, spots, n, (int64_t)s->x_q8 - s->reach_q8);
+    for (int i = find_first_spot_from_x(m, spots, n,
+                                        (int64_t)s->x_q8 - s->reach_q8);
          i < n && spots[m->by_x[i]].x_q8 <= right_q8; i++) {
         const int32_t spot = m->by_x[i];
-        const int64_t cost = compute_cost_q16(s, &spots[spot]);
+        const int64_t cost = compute_match_cost_q16(s, &spots[spot]);
 
         if (cost >= 0)
-            keep_near(m, first, (struct glint_pair){cost, seeker, spot, i});
+            insert_pair_if_among_nearest(
+                m, first, (struct glint_pair){cost, seeker, spot, i});
     }
 }
 
-void glint_match_find(struct glint_match *m, const struct glint_spot *spots,
-                      int n)
+void glint_match_assign_spots(struct glint_match *m,
+                              const struct glint_spot *spots, int n)
 {
     for (int i = 0; i < n; i++) {
         m->by_x[i] = i;

@@ -3,9 +3,9 @@
  * The state of one tracked lamp (a record), and its update for each picture.
  *
  *     glint_record_begin(r, id, spot);               once
- *     glint_record_look_ahead(r, &step);             each picture
- *     glint_record_see(r, &step, spot);              or
- *     glint_record_miss(r, &step);
+ *     glint_record_predict_position(r, &step);             each picture
+ *     glint_record_update_with_spot(r, &step, spot);              or
+ *     glint_record_update_without_spot(r, &step);
  *     glint_record_set_level(r, &step); */
 #ifndef GLINT_FOLLOW_RECORD_H
 #define GLINT_FOLLOW_RECORD_H
@@ -15,28 +15,30 @@
 /* The state of the filter of one number of a lamp (record.c). */
 struct glint_follow {
     int64_t value;
-    /* Averages of the errors with their signs, and of their magnitudes. */
+    /* averages of the errors: signed (drift), and of their magnitudes (spread)
+     */
     int64_t drift, spread;
     int64_t offset; /* the number shown is value + offset */
-    int64_t stride; /* change of the offset over the time of a blend */
+    int64_t stride; /* max change of offset in one attack or release time */
 };
 
 /* The filter's parameters for the time between two pictures. */
 struct glint_pace {
     int32_t elapsed_us;
-    int32_t smooth_q15; /* fraction of the error that is corrected per picture
-                           if it is noise */
-    int32_t settle_q15; /* fraction that is corrected if the error persists */
+    int32_t smooth_q15; /* fraction of an error that one picture corrects if the
+                           error is noise */
+    int32_t settle_q15; /* fraction of an error that one picture corrects if
+                           spots repeat exactly */
 };
 
-struct glint_pace glint_pace_of(int32_t elapsed_us, int32_t smooth_us);
+struct glint_pace glint_pace_compute(int32_t elapsed_us, int32_t smooth_us);
 
 /* Returns ELAPSED_US / (ELAPSED_US + TIME_US): the fraction of an error that an
  * average over TIME_US corrects. TIME_US must be at least 1. */
-int32_t glint_pace_part_q15(int32_t elapsed_us, int32_t time_us);
+int32_t glint_pace_compute_fraction_q15(int32_t elapsed_us, int32_t time_us);
 
-/* The channels of the filter: positions in _q16, all others as in struct
- * glint_spot. */
+/* The numbers of a lamp that are filtered: positions in _q16, all others in the
+ * units of struct glint_spot. */
 enum glint_record_channel {
     GLINT_CHANNEL_X,
     GLINT_CHANNEL_Y,
@@ -58,20 +60,21 @@ struct glint_record {
     enum glint_lamp_state state;
     struct glint_follow of[GLINT_CHANNELS];
     struct glint_spot last; /* the last spot that was assigned to the lamp */
-    int n_same; /* number of consecutive pictures, after the first, with an
-                   equal spot */
-    int is_new; /* number of steps in which the first motion is taken as the
-                   lamp's velocity; 0: it has one, or does not move */
+    int n_same; /* number of consecutive pictures whose spot equals the one
+                   before */
+    int is_new; /* number of further pictures in which the first motion sets the
+                   velocity; 0: the velocity is known, or the lamp does not move
+                 */
     int64_t velocity_q16[2]; /* pixels per second */
     int64_t ahead_q16[2];    /* predicted position of the lamp, pixels, _q16 */
     int32_t level_q30;
-    int32_t lost_us; /* time since the lamp was last seen, us; 0: it is seen in
-                        this picture */
-    int is_shown; /* set by the caller: true if the level rises while the lamp
-                     is seen */
+    int32_t lost_us; /* time since the lamp last had a spot, us; 0: it has one
+                        in this picture */
+    int is_shown; /* set by the caller; 1: the fade level rises while the lamp
+                     has a spot */
 };
 
-/* The values that all records of a picture share. */
+/* Parameters of one picture, common to all records. */
 struct glint_record_step {
     const struct glint_lamp_tracker_config *cfg;
     struct glint_pace pace;
@@ -80,32 +83,33 @@ struct glint_record_step {
 
 /* Returns the flux of a spot, clamped to 0 .. 2^42, the flux of the largest
  * picture if all white. */
-int64_t glint_record_flux_q16(const struct glint_spot *spot);
+int64_t glint_record_clamp_flux_q16(const struct glint_spot *spot);
 
 /* Returns the power of a spot, clamped to 0 .. 2^42. */
-int64_t glint_record_power_q16(const struct glint_spot *spot);
+int64_t glint_record_clamp_power_q16(const struct glint_spot *spot);
 
 void glint_record_begin(struct glint_record *r, uint32_t id,
                         const struct glint_spot *spot);
 
-/* Predicts the position of the lamp. */
-void glint_record_look_ahead(struct glint_record *r,
-                             const struct glint_record_step *step);
+/* Sets ahead_q16 to the position that the velocity predicts for this picture.
+ */
+void glint_record_predict_position(struct glint_record *r,
+                                   const struct glint_record_step *step);
 
-void glint_record_see(struct glint_record *r,
-                      const struct glint_record_step *step,
-                      const struct glint_spot *spot);
+void glint_record_update_with_spot(struct glint_record *r,
+                                   const struct glint_record_step *step,
+                                   const struct glint_spot *spot);
 
-/* Updates a record for a picture without a spot of the lamp: the lamp moves
- * on with its velocity, and is dropped after a time. */
-void glint_record_miss(struct glint_record *r,
-                       const struct glint_record_step *step);
+/* Updates a record for a picture in which the lamp has no spot: moves the lamp
+ * by its velocity, and frees the record after memory_ms. */
+void glint_record_update_without_spot(struct glint_record *r,
+                                      const struct glint_record_step *step);
 
-/* Raises or lowers the level according to the time of the step, and sets the
- * state. */
+/* Raises or lowers the fade level by as much as the elapsed time allows, and
+ * sets the lamp's state. */
 void glint_record_set_level(struct glint_record *r,
                             const struct glint_record_step *step);
 
-struct glint_lamp_track glint_record_track(const struct glint_record *r);
+struct glint_lamp_track glint_record_make_track(const struct glint_record *r);
 
 #endif

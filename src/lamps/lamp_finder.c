@@ -76,7 +76,7 @@ static void add_candidate(struct glint_lamp_finder *f,
         f->order[f->n] = f->n;
         f->n++;
         if (f->n == LIGHT_CANDIDATES)
-            glint_heap_make(&heap, f->n);
+            glint_heap_build(&heap, f->n);
         return;
     }
     *last = *candidate;
@@ -85,7 +85,7 @@ static void add_candidate(struct glint_lamp_finder *f,
 
         f->candidate[f->order[0]] = *last;
         *last = out;
-        glint_heap_sift(&heap, 0, f->n);
+        glint_heap_restore_order(&heap, 0, f->n);
     }
     f->dropped += !last->faint;
 }

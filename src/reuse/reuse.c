@@ -1,27 +1,29 @@
 /* SPDX-License-Identifier: MIT
  *
- * Detects frames with the same inputs as the previous frame. Their bundles,
- * edges and tile lists are drawn again without tracing a ray. Lights and
- * parameters are compared one by one; waves and tints, of which there can be
- * thousands, by a 64-bit digest. */
+ * Detects frames whose inputs equal those of the previous frame. The bundles,
+ * edges and tile lists of the previous frame are then drawn again without
+ * tracing a ray. Lights and parameters are compared one by one; waves and
+ * tints, of which there can be thousands, are compared by a 64-bit digest. */
 #include "base/q.h"
 #include "flare/state.h"
 
 struct reuse {
-    int n_lights; /* -1: there were more lights than fit */
+    int n_lights; /* number of lights stored; -1: the frame had more lights than
+                     reuse_lights */
     struct glint_flare_frame frame;
-    uint64_t digest; /* of the data that FRAME points to */
+    uint64_t digest; /* digest of the waves, wave sets and tints that FRAME
+                        points to */
     struct glint_light *light;
-    /* [max_bundles], with reuse_gains: colours of the bundles without factors,
-     * set in the first frame with factors. */
+    /* [max_bundles], NULL unless cfg.reuse_gains: colours of the bundles before
+     * they are multiplied by gain_q14; set in the first frame that has gains */
     int32_t (*rgb_q14)[3];
     int has_rgb;
 };
 
-/* Allocates the state from A. Called twice: to measure (returns NULL) and to
- * place. */
-static void *carve_reuse(struct glint_arena *a,
-                         const struct glint_flare_config *c)
+/* Allocates the reuse state from arena A. Called twice: with an arena that only
+ * measures (returns NULL), then to allocate. */
+static void *allocate_reuse_state(struct glint_arena *a,
+                                  const struct glint_flare_config *c)
 {
     struct reuse measured, *placed, *own;
 
@@ -43,100 +45,104 @@ static uint64_t mix_into_digest(uint64_t digest, int64_t x)
     return y ^ y >> 29;
 }
 
-static uint64_t mix_real(uint64_t digest, struct glint_real x)
+static uint64_t mix_real_into_digest(uint64_t digest, struct glint_real x)
 {
     return mix_into_digest(mix_into_digest(digest, x.mantissa), x.exponent);
 }
 
-static uint64_t mix_rgb(uint64_t digest, const int32_t rgb_q14[3])
+static uint64_t mix_rgb_into_digest(uint64_t digest, const int32_t rgb_q14[3])
 {
     for (int c = 0; c < 3; c++)
         digest = mix_into_digest(digest, rgb_q14[c]);
     return digest;
 }
 
-static uint64_t compute_digest(const struct glint_flare_frame *r)
+static uint64_t compute_frame_digest(const struct glint_flare_frame *r)
 {
     uint64_t d = 1;
 
     for (int i = 0; i < r->n_waves; i++) {
-        d = mix_real(mix_into_digest(d, r->wave[i].wave_q24),
-                     r->wave[i].weight);
-        d = mix_rgb(d, r->wave[i].rgb_q14);
+        d = mix_real_into_digest(mix_into_digest(d, r->wave[i].wave_q24),
+                                 r->wave[i].weight);
+        d = mix_rgb_into_digest(d, r->wave[i].rgb_q14);
     }
     d = mix_into_digest(d, r->sets != NULL);
     if (r->sets) {
         for (int i = 0; i < r->sets->n_sets; i++)
             d = mix_into_digest(d, r->sets->size[i]);
-        d = mix_real(mix_into_digest(d, r->sets->apart_q8), r->sets->step);
+        d = mix_real_into_digest(mix_into_digest(d, r->sets->apart_q8),
+                                 r->sets->step);
     }
     d = mix_into_digest(d, r->tints != NULL);
     for (uint32_t i = 0; r->tints && i < r->lens->header->n_ghosts; i++)
-        d = mix_rgb(mix_real(d, r->tints[i].gain), r->tints[i].rgb_q14);
+        d = mix_rgb_into_digest(mix_real_into_digest(d, r->tints[i].gain),
+                                r->tints[i].rgb_q14);
     return d;
 }
 
-static int is_same_real(struct glint_real a, struct glint_real b)
+static int are_reals_equal(struct glint_real a, struct glint_real b)
 {
     return a.mantissa == b.mantissa && a.exponent == b.exponent;
 }
 
-static int is_same_light(const struct glint_light *a,
-                         const struct glint_light *b)
+static int are_lights_equal(const struct glint_light *a,
+                            const struct glint_light *b)
 {
     return a->sine_q30 == b->sine_q30 && a->cosine_q30 == b->cosine_q30 &&
            a->cos_q30 == b->cos_q30 && a->sin_q30 == b->sin_q30 &&
-           a->apart_q30 == b->apart_q30 && is_same_real(a->power, b->power) &&
+           a->apart_q30 == b->apart_q30 &&
+           are_reals_equal(a->power, b->power) &&
            a->rgb_q14[0] == b->rgb_q14[0] && a->rgb_q14[1] == b->rgb_q14[1] &&
            a->rgb_q14[2] == b->rgb_q14[2];
 }
 
-static int is_same_frame(const struct glint_flare_frame *a,
-                         const struct glint_flare_frame *b)
+static int are_frame_settings_equal(const struct glint_flare_frame *a,
+                                    const struct glint_flare_frame *b)
 {
     return a->lens == b->lens && a->n_waves == b->n_waves &&
-           is_same_real(a->pixels_per_mm, b->pixels_per_mm) &&
+           are_reals_equal(a->pixels_per_mm, b->pixels_per_mm) &&
            a->fineness == b->fineness && a->uniform == b->uniform &&
            a->only_ghost == b->only_ghost &&
-           is_same_real(a->faintest, b->faintest) && a->dim == b->dim &&
-           is_same_real(a->dimmest, b->dimmest) &&
+           are_reals_equal(a->faintest, b->faintest) && a->dim == b->dim &&
+           are_reals_equal(a->dimmest, b->dimmest) &&
            a->snap_codes_q8 == b->snap_codes_q8 && a->half == b->half;
 }
 
-static int is_same(const struct glint_flare *f,
-                   const struct glint_flare_frame *frame,
-                   const struct glint_light *lights, int n_lights)
+static int are_inputs_unchanged(const struct glint_flare *f,
+                                const struct glint_flare_frame *frame,
+                                const struct glint_light *lights, int n_lights)
 {
     const struct reuse *own = f->reuse;
 
-    if (n_lights != own->n_lights || !is_same_frame(frame, &own->frame))
+    if (n_lights != own->n_lights ||
+        !are_frame_settings_equal(frame, &own->frame))
         return 0;
     for (int i = 0; i < n_lights; i++)
-        if (!is_same_light(&lights[i], &own->light[i]))
+        if (!are_lights_equal(&lights[i], &own->light[i]))
             return 0;
-    return compute_digest(frame) == own->digest;
+    return compute_frame_digest(frame) == own->digest;
 }
 
-static void store_frame(struct glint_flare *f,
-                        const struct glint_flare_frame *frame,
-                        const struct glint_light *lights, int n_lights)
+static void store_frame_inputs(struct glint_flare *f,
+                               const struct glint_flare_frame *frame,
+                               const struct glint_light *lights, int n_lights)
 {
     struct reuse *own = f->reuse;
 
     own->n_lights = n_lights <= f->cfg.reuse_lights ? n_lights : -1;
     own->frame = *frame;
-    own->digest = compute_digest(frame);
+    own->digest = compute_frame_digest(frame);
     for (int i = 0; i < own->n_lights; i++)
         own->light[i] = lights[i];
 }
 
-static int reuse_frame(struct glint_flare *f,
-                       const struct glint_flare_frame *frame,
-                       const struct glint_light *lights, int n_lights)
+static int reuse_unchanged_frame(struct glint_flare *f,
+                                 const struct glint_flare_frame *frame,
+                                 const struct glint_light *lights, int n_lights)
 {
     if (f->reusable != GLINT_REUSABLE_BINNED ||
-        !is_same(f, frame, lights, n_lights)) {
-        store_frame(f, frame, lights, n_lights);
+        !are_inputs_unchanged(f, frame, lights, n_lights)) {
+        store_frame_inputs(f, frame, lights, n_lights);
         return 0;
     }
     f->plan.frame = frame;
@@ -147,7 +153,7 @@ static int reuse_frame(struct glint_flare *f,
     return 1;
 }
 
-static void update_gains(struct glint_flare *f)
+static void apply_light_gains(struct glint_flare *f)
 {
     struct reuse *own = f->reuse;
     const int32_t(*gain_q14)[3] = f->plan.frame->gain_q14;
@@ -172,4 +178,5 @@ static void update_gains(struct glint_flare *f)
     own->has_rgb = 1;
 }
 
-const struct glint_reuse glint_reuse = {carve_reuse, reuse_frame, update_gains};
+const struct glint_reuse glint_reuse = {
+    allocate_reuse_state, reuse_unchanged_frame, apply_light_gains};

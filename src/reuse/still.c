@@ -1,28 +1,31 @@
 /* SPDX-License-Identifier: MIT
  *
- * Static lights: matches the lights of a frame with the planned lights; changes
- * of brightness become factors on the colours of their bundles. */
+ * Static lights: assigns each light of a frame to a light that was planned in
+ * an earlier frame, so that its rays are reused. A change of brightness becomes
+ * a factor on the colours of the light's bundles. */
 #include "flare/dim.h"
 #include "flare/state.h"
 
 enum {
     ONE_Q14 = 1 << 14,
     MOST_GAIN_Q14 = ONE_Q14 + ONE_Q14 / 2,
-    LEAST_PART = 64 /* 1 / max error of a channel, relative to the largest
-                       channel */
+    LEAST_PART = 64 /* reciprocal of the max error of a colour channel, as a
+                       fraction of the largest channel */
 };
 
 /* Returns the index of the planned light nearest to LIGHT, or -1 if no planned
  * light is within NEAR_Q30. */
-static int find_nearest_light(const struct glint_still *s,
-                              const struct glint_light *light, int32_t near_q30)
+static int find_nearest_planned_light(const struct glint_still *s,
+                                      const struct glint_light *light,
+                                      int32_t near_q30)
 {
     uint64_t least2_q60 = (uint64_t)near_q30 * (uint64_t)near_q30;
     int at = -1;
 
     for (int i = 0; i < s->n; i++) {
         const int32_t apart_q30 = light->apart_q30 - s->light[i].apart_q30;
-        const uint64_t apart2_q60 = glint_light_apart2_q60(light, &s->light[i]);
+        const uint64_t apart2_q60 =
+            glint_light_squared_distance_q60(light, &s->light[i]);
 
         if (apart2_q60 > least2_q60 || apart_q30 > near_q30 ||
             apart_q30 < -near_q30 || (at >= 0 && apart2_q60 == least2_q60))
@@ -33,9 +36,10 @@ static int find_nearest_light(const struct glint_still *s,
     return at;
 }
 
-/* Returns channel C of B divided by the power UNIT, 2^4 at most. */
-static int64_t channel_q20(const struct glint_light *b, int c,
-                           struct glint_real unit)
+/* Returns the power of light B in channel C divided by the power UNIT; at most
+ * 2^4. */
+static int64_t compute_channel_over_power_q20(const struct glint_light *b,
+                                              int c, struct glint_real unit)
 {
     const struct glint_real x =
         real_times(b->power, real_of(b->rgb_q14[c], -14));
@@ -43,9 +47,10 @@ static int64_t channel_q20(const struct glint_light *b, int c,
     return real_integer(real_over(x, unit), 20, INT64_C(1) << 24);
 }
 
-/* Converts the sum for light I to its factors. Returns 0 if the light is too
- * bright for factors, or has another colour. */
-static int set_gain(struct glint_still *s, int i)
+/* Sets the gains of planned light I to the power that was assigned to it
+ * (sum_q20) divided by its planned power. Returns 0 if a gain would exceed 1.5,
+ * or would change the colour by more than 1/64. */
+static int compute_light_gain(struct glint_still *s, int i)
 {
     const int64_t *sum_q20 = s->sum_q20[i];
     int64_t most_q20 = 1;
@@ -54,7 +59,8 @@ static int set_gain(struct glint_still *s, int i)
     for (int c = 0; c < 3; c++)
         most_q20 = sum_q20[c] > most_q20 ? sum_q20[c] : most_q20;
     for (int c = 0; c < 3; c++) {
-        const int64_t was_q20 = channel_q20(&s->light[i], c, s->light[i].power);
+        const int64_t was_q20 =
+            compute_channel_over_power_q20(&s->light[i], c, s->light[i].power);
         const int64_t ratio_q14 =
             was_q20 > 0 ? q_divide(sum_q20[c] * ONE_Q14 + was_q20 / 2, was_q20)
                         : ONE_Q14;
@@ -68,11 +74,13 @@ static int set_gain(struct glint_still *s, int i)
     return serves;
 }
 
-/* Matches LIGHTS with the planned lights and sets the factors. Returns whether
- * the planned lights can stand for LIGHTS. */
-static int covers_all_lights(struct glint_still *s,
-                             const struct glint_light *lights, int n,
-                             int32_t near_q30)
+/* Assigns each of N LIGHTS to the nearest planned light and sets the gains of
+ * the planned lights. Returns 0 if a light has no planned light within
+ * NEAR_Q30, or if a gain is out of range: the lights then have to be planned
+ * again. */
+static int match_lights_and_set_gains(struct glint_still *s,
+                                      const struct glint_light *lights, int n,
+                                      int32_t near_q30)
 {
     int all = 1;
 
@@ -80,15 +88,16 @@ static int covers_all_lights(struct glint_still *s,
         for (int c = 0; c < 3; c++)
             s->sum_q20[i][c] = 0;
     for (int i = 0; i < n; i++) {
-        const int at = find_nearest_light(s, &lights[i], near_q30);
+        const int at = find_nearest_planned_light(s, &lights[i], near_q30);
 
         if (at < 0 || s->light[at].power.mantissa <= 0)
             return 0;
         for (int c = 0; c < 3; c++)
-            s->sum_q20[at][c] += channel_q20(&lights[i], c, s->light[at].power);
+            s->sum_q20[at][c] += compute_channel_over_power_q20(
+                &lights[i], c, s->light[at].power);
     }
     for (int i = 0; i < s->n; i++)
-        all &= set_gain(s, i);
+        all &= compute_light_gain(s, i);
     return all;
 }
 
@@ -96,7 +105,8 @@ int glint_lights_still(struct glint_still *still,
                        const struct glint_light *lights, int n_lights,
                        int32_t near_q30)
 {
-    if (still->n > 0 && covers_all_lights(still, lights, n_lights, near_q30))
+    if (still->n > 0 &&
+        match_lights_and_set_gains(still, lights, n_lights, near_q30))
         return still->n;
     still->n = n_lights <= still->max_lights ? n_lights : 0;
     for (int i = 0; i < still->n; i++) {

@@ -670,7 +670,7 @@ static int64_t count_entries(struct glint_scene *s, uint32_t object)
     int is_small;
 
     for (uint32_t i = 0; i < m->n_triangles; i++)
-        n += glint_bins_span(
+        n += glint_bins_count_overlapped_tiles(
             &s->bins,
             compute_box(s, object, glint_mesh_triangle(s, m, i), &is_small));
     return n;
@@ -715,9 +715,9 @@ static void list_triangles(struct glint_scene *s, int facing)
             if (glint_box_empty(b))
                 continue;
             if (facing != BOTH_SIDES)
-                glint_bins_put(&s->bins, b, (int32_t)glint_id(k, i));
+                glint_bins_put_item(&s->bins, b, (int32_t)glint_id(k, i));
             else
-                glint_bins_count(&s->bins, b);
+                glint_bins_count_box(&s->bins, b);
         }
     }
 }
@@ -727,7 +727,7 @@ static void project_meshes(struct glint_scene *s,
 {
     int64_t need = 0;
 
-    glint_bins_open(&s->bins);
+    glint_bins_clear_counts(&s->bins);
     for (uint32_t k = 0; k < s->model.header->n_objects; k++) {
         struct glint_placed *p = &s->placed[k];
         int64_t span;
@@ -747,10 +747,10 @@ static void project_meshes(struct glint_scene *s,
     }
     stats->need_refs = q_clamp_sat(need, 0, INT32_MAX);
     list_triangles(s, BOTH_SIDES);
-    glint_bins_sum(&s->bins);
+    glint_bins_convert_counts_to_starts(&s->bins);
     list_triangles(s, 1); /* facing triangles first, as they hide most others */
     list_triangles(s, 0);
-    glint_bins_close(&s->bins);
+    glint_bins_reset_starts(&s->bins);
     s->has_triangles = stats->refs > 0;
 }
 

@@ -469,8 +469,8 @@ static void row_job(void *ctx, int job, int worker)
 {
     struct draw *d = ctx;
 
-    glint_tile_rows(&d->tiles, &d->pass, 1, job, worker,
-                    &d->scene->worker[worker].scratch);
+    glint_tiles_draw_row(&d->tiles, &d->pass, 1, job, worker,
+                         &d->scene->worker[worker].scratch);
 }
 
 void glint_scene_draw(struct glint_scene *scene,
@@ -493,6 +493,6 @@ void glint_scene_draw(struct glint_scene *scene,
         scene->cfg.parts.highlights->begin(scene->bright);
     for (int i = 0; i < glint_workers_count(scene->cfg.workers); i++)
         scene->worker[i].is_linear = image->format == GLINT_LINEAR_Q20;
-    glint_workers_run(scene->cfg.workers, glint_tiles_down(&d.tiles), row_job,
-                      &d);
+    glint_workers_run(scene->cfg.workers, glint_tiles_count_rows(&d.tiles),
+                      row_job, &d);
 }

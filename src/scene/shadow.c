@@ -193,14 +193,14 @@ static int64_t set_casters(const struct glint_scene *s,
 
 static void list_by_cell(struct glint_shadow *shadow)
 {
-    glint_bins_open(&shadow->bins);
+    glint_bins_clear_counts(&shadow->bins);
     for (int i = 0; i < shadow->n_things; i++) {
         const struct glint_box b = find_cells(&shadow->thing[i]);
 
         if (!glint_box_empty(b))
-            glint_bins_count(&shadow->bins, b);
+            glint_bins_count_box(&shadow->bins, b);
     }
-    glint_bins_sum(&shadow->bins);
+    glint_bins_convert_counts_to_starts(&shadow->bins);
     for (int i = 0; i < shadow->n_things; i++) {
         const struct glint_box b = find_cells(&shadow->thing[i]);
 
@@ -208,7 +208,7 @@ static void list_by_cell(struct glint_shadow *shadow)
             for (int x = b.x0; x < b.x1; x++)
                 shadow->bins.ref[shadow->bins.start[y * CELLS + x]++] = i;
     }
-    glint_bins_close(&shadow->bins);
+    glint_bins_reset_starts(&shadow->bins);
 }
 
 /* Sorts each list by height, the highest object first, except long lists. */

@@ -75,12 +75,13 @@ struct glint_star {
         inverse_q31[GLINT_STAR_INVERSES + 2]; /* 2^31 / (2^15 (1 + i / n)) */
 };
 
-glint_star_part_fn glint_star_lines, glint_star_halo, glint_star_core;
+glint_star_part_fn glint_star_add_lines_row, glint_star_add_halo_row,
+    glint_star_add_core_row;
 
 /* Returns whether lines of LAMP may reach pixels of BOX; conservative. */
-int glint_star_lines_reach(const struct glint_star *star,
-                           const struct glint_star_lamp *lamp,
-                           struct glint_box box);
+int glint_star_can_lines_reach_box(const struct glint_star *star,
+                                   const struct glint_star_lamp *lamp,
+                                   struct glint_box box);
 
 /* Returns the distance in pixels from a light to the end of its core. */
 static inline int glint_star_core_reach(const struct glint_star *star)

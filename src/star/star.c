@@ -83,8 +83,8 @@ enum glint_status glint_star_init(struct glint_star **star,
 
 /* Sets PART to the product of X and each channel of RGB, 15 bits each.
  * Returns the exponent of PART. */
-static int multiply_rgb(const int32_t rgb_q14[3], struct glint_real x,
-                        int32_t part[3])
+static int multiply_rgb_by_real(const int32_t rgb_q14[3], struct glint_real x,
+                                int32_t part[3])
 {
     for (int c = 0; c < 3; c++)
         part[c] = (int32_t)((int64_t)q_clamp_sat(rgb_q14[c], 0, 1 << 14) *
@@ -93,7 +93,7 @@ static int multiply_rgb(const int32_t rgb_q14[3], struct glint_real x,
     return x.exponent + 16;
 }
 
-static int32_t log2_q16(struct glint_real x)
+static int32_t compute_real_log2_q16(struct glint_real x)
 {
     return x.mantissa > 0
                ? q_log2_q16((uint64_t)x.mantissa) + x.exponent * 65536
@@ -110,8 +110,8 @@ static int compute_exp2_ceil(int32_t log2_of_q16)
 
 /* Returns the number of profile steps up to the last one whose light exceeds
  * 2^MIN_LOG2. */
-static int count_visible_steps(const struct glint_star_tables *t,
-                               int32_t min_log2_q16)
+static int count_visible_profile_steps(const struct glint_star_tables *t,
+                                       int32_t min_log2_q16)
 {
     const int64_t least =
         q_exp2_q16(q_clamp_sat(min_log2_q16, -65536, 17 * 65536)) >> 16;
@@ -126,8 +126,9 @@ static int count_visible_steps(const struct glint_star_tables *t,
 /* Divides the distance up to the lamp's reach into zones and sets the number
  * of visible profile steps in each. OVER is log2 of (light of one step of a
  * profile at 1 pixel / min visible light). */
-static void set_zones(struct glint_star_lamp *lamp,
-                      const struct glint_star_tables *t, int32_t over_log2_q16)
+static void set_distance_zones(struct glint_star_lamp *lamp,
+                               const struct glint_star_tables *t,
+                               int32_t over_log2_q16)
 {
     const int32_t inner_log2_q16 = q_log2_q16(lamp->inner_q16) - 16 * 65536;
     int n = 1;
@@ -141,7 +142,7 @@ static void set_zones(struct glint_star_lamp *lamp,
         const uint64_t r = (uint64_t)lamp->start[i];
         const int32_t r2_log2_q16 = r ? q_log2_q16(r * r) : 0;
 
-        lamp->seen[i] = count_visible_steps(
+        lamp->seen[i] = count_visible_profile_steps(
             t, q_larger(r2_log2_q16, inner_log2_q16) - over_log2_q16);
     }
 }
@@ -175,13 +176,14 @@ static int compute_smear_reach(const struct glint_star_smear *s,
 {
     int k = s ? GLINT_STAR_SMEAR_RINGS : 0;
 
-    while (k > 0 && log2_q16(s->step[k - 1]) + 16 * 65536 + power_log2_q16 <
-                        min_log2_q16)
+    while (k > 0 &&
+           compute_real_log2_q16(s->step[k - 1]) + 16 * 65536 + power_log2_q16 <
+               min_log2_q16)
         k--;
     return k > 0 ? GLINT_STAR_SMEAR_PX << (k - 1) : 0;
 }
 
-static struct glint_real clamp_power(struct glint_real power)
+static struct glint_real clamp_lamp_power(struct glint_real power)
 {
     const struct glint_real most = {1 << 30, 0};
 
@@ -190,8 +192,8 @@ static struct glint_real clamp_power(struct glint_real power)
 
 /* Returns the factor by which a lamp of RADIUS widens and dims lines, at
  * most 2^10. A uniform disc is 1.73 radii wide at half its brightness. */
-static int64_t compute_widening_q8(const struct glint_star_tables *t,
-                                   int32_t radius_q8)
+static int64_t compute_line_widening_q8(const struct glint_star_tables *t,
+                                        int32_t radius_q8)
 {
     const int64_t disc_q8 = q_divide(
         443 * (int64_t)q_clamp_sat(radius_q8, 0, 1 << 22), t->width_q8);
@@ -202,8 +204,9 @@ static int64_t compute_widening_q8(const struct glint_star_tables *t,
 
 /* Chooses the two halo tables between which the halo of a lamp of RADIUS is
  * interpolated. */
-static void set_halos(struct glint_star_lamp *lamp,
-                      const struct glint_star_tables *t, int32_t radius_q8)
+static void choose_halo_tables(struct glint_star_lamp *lamp,
+                               const struct glint_star_tables *t,
+                               int32_t radius_q8)
 {
     const int32_t radius = q_clamp_sat(radius_q8, 0, 1 << 22);
     const int32_t last_q16 = (GLINT_STAR_WIDE - 1) << 16;
@@ -227,17 +230,18 @@ static void set_halos(struct glint_star_lamp *lamp,
 }
 
 /* Sets LAMP for light L. Returns 0 if the light is not visible. */
-static int set_lamp(struct glint_star_lamp *lamp,
-                    const struct glint_star_tables *t,
-                    const struct glint_star_light *l,
-                    struct glint_real faintest)
+static int set_star_lamp(struct glint_star_lamp *lamp,
+                         const struct glint_star_tables *t,
+                         const struct glint_star_light *l,
+                         struct glint_real faintest)
 {
     const int32_t far = 1 << 25;
-    const struct glint_real power = clamp_power(l->power);
-    const int64_t wide_q8 = compute_widening_q8(t, l->radius_q8);
+    const struct glint_real power = clamp_lamp_power(l->power);
+    const int64_t wide_q8 = compute_line_widening_q8(t, l->radius_q8);
     const struct glint_real line =
         real_over(real_times(power, t->step), real_of(wide_q8, -8));
-    const int32_t min_log2_q16 = q_larger(log2_q16(faintest), -21 * 65536);
+    const int32_t min_log2_q16 =
+        q_larger(compute_real_log2_q16(faintest), -21 * 65536);
     const int32_t radius_q8 =
         q_larger(q_clamp_sat(l->radius_q8, 0, 1 << 22), t->inner_q8);
     int32_t most = 0;
@@ -255,34 +259,36 @@ static int set_lamp(struct glint_star_lamp *lamp,
         (int32_t)q_divide((int64_t)t->per_pixel_q16 << 8, wide_q8);
     lamp->pixels_q16 = (int32_t)(t->pixels_q16 * wide_q8 >> 8);
     lamp->inner_q16 = (uint64_t)radius_q8 * (uint64_t)radius_q8;
-    set_halos(lamp, t, l->radius_q8);
-    lamp->line_exponent = multiply_rgb(l->rgb_q14, line, lamp->line);
-    lamp->core_exponent = multiply_rgb(l->rgb_q14, power, lamp->core);
+    choose_halo_tables(lamp, t, l->radius_q8);
+    lamp->line_exponent = multiply_rgb_by_real(l->rgb_q14, line, lamp->line);
+    lamp->core_exponent = multiply_rgb_by_real(l->rgb_q14, power, lamp->core);
     for (int c = 0; c < 3; c++)
-        lamp->halo_log2_q16[c] =
-            l->rgb_q14[c] > 0
-                ? log2_q16(real_times(power, real_of(l->rgb_q14[c], -14)))
-                : INT32_MIN / 2;
-    lamp->reach = t->n_lines && line.mantissa > 0
-                      ? compute_exp2_ceil(
-                            (log2_q16(line) + 16 * 65536 - min_log2_q16) / 2)
-                      : 0;
-    set_zones(lamp, t, log2_q16(line) - min_log2_q16);
-    lamp->halo_reach = compute_halo_reach(t, log2_q16(power), min_log2_q16);
-    lamp->smear_reach =
-        compute_smear_reach(t->smear, log2_q16(power), min_log2_q16);
+        lamp->halo_log2_q16[c] = l->rgb_q14[c] > 0
+                                     ? compute_real_log2_q16(real_times(
+                                           power, real_of(l->rgb_q14[c], -14)))
+                                     : INT32_MIN / 2;
+    lamp->reach =
+        t->n_lines && line.mantissa > 0
+            ? compute_exp2_ceil(
+                  (compute_real_log2_q16(line) + 16 * 65536 - min_log2_q16) / 2)
+            : 0;
+    set_distance_zones(lamp, t, compute_real_log2_q16(line) - min_log2_q16);
+    lamp->halo_reach =
+        compute_halo_reach(t, compute_real_log2_q16(power), min_log2_q16);
+    lamp->smear_reach = compute_smear_reach(
+        t->smear, compute_real_log2_q16(power), min_log2_q16);
     return lamp->smear_reach > 1 || lamp->is_bare || lamp->reach > 1 ||
            lamp->halo_reach > 1;
 }
 
-void glint_star_set(struct glint_star *star,
-                    const struct glint_star_tables *tables,
-                    const struct glint_star_light *lights, int n,
-                    struct glint_real faintest)
+void glint_star_set_lights(struct glint_star *star,
+                           const struct glint_star_tables *tables,
+                           const struct glint_star_light *lights, int n,
+                           struct glint_real faintest)
 {
     star->tables = tables;
     star->n_lamps = 0;
     for (int i = 0; i < n && star->n_lamps < star->cfg.max_lights; i++)
-        star->n_lamps +=
-            set_lamp(&star->lamp[star->n_lamps], tables, &lights[i], faintest);
+        star->n_lamps += set_star_lamp(&star->lamp[star->n_lamps], tables,
+                                       &lights[i], faintest);
 }

@@ -9,8 +9,8 @@
 #include "star/parts.h"
 
 /* Decodes node (I, J) of channel C, relative to the centre. */
-static int64_t decode_node_q40(const struct glint_star_tables *t, int i, int j,
-                               int c)
+static int64_t decode_core_node_q40(const struct glint_star_tables *t, int i,
+                                    int j, int c)
 {
     const int turn = j < 0 ? -1 : 1;
     const uint16_t code = t->core[j * turn][i * turn + GLINT_STAR_CORE][c];
@@ -21,7 +21,7 @@ static int64_t decode_node_q40(const struct glint_star_tables *t, int i, int j,
 }
 
 /* Returns X 2^-SHIFT, |X| below 2^57, clamped to +-2^50. */
-static int64_t shift_clamped(int64_t x, int shift)
+static int64_t shift_right_clamped(int64_t x, int shift)
 {
     const uint64_t size = q_magnitude(x);
 
@@ -32,30 +32,31 @@ static int64_t shift_clamped(int64_t x, int shift)
     return x * (INT64_C(1) << -shift);
 }
 
-static void add_pixel(const struct glint_star *star,
-                      const struct glint_star_lamp *lamp, int64_t i_q8,
-                      int64_t j_q8, int64_t *const light_q20[3])
+static void add_core_pixel(const struct glint_star *star,
+                           const struct glint_star_lamp *lamp, int64_t i_q8,
+                           int64_t j_q8, int64_t *const light_q20[3])
 {
     const struct glint_star_tables *t = star->tables;
     const int i = (int)(i_q8 >> 8), j = (int)(j_q8 >> 8);
     const int64_t a_q8 = i_q8 & 255, b_q8 = j_q8 & 255;
 
     for (int c = 0; c < 3; c++) {
-        const int64_t above = decode_node_q40(t, i, j, c) * (256 - a_q8) +
-                              decode_node_q40(t, i + 1, j, c) * a_q8;
-        const int64_t below = decode_node_q40(t, i, j + 1, c) * (256 - a_q8) +
-                              decode_node_q40(t, i + 1, j + 1, c) * a_q8;
+        const int64_t above = decode_core_node_q40(t, i, j, c) * (256 - a_q8) +
+                              decode_core_node_q40(t, i + 1, j, c) * a_q8;
+        const int64_t below =
+            decode_core_node_q40(t, i, j + 1, c) * (256 - a_q8) +
+            decode_core_node_q40(t, i + 1, j + 1, c) * a_q8;
         const int64_t light_q40 =
             ((above >> 8) * (256 - b_q8) + (below >> 8) * b_q8) >> 8;
 
-        *light_q20[c] +=
-            shift_clamped(light_q40 * lamp->core[c], 20 - lamp->core_exponent);
+        *light_q20[c] += shift_right_clamped(light_q40 * lamp->core[c],
+                                             20 - lamp->core_exponent);
     }
 }
 
-void glint_star_core(const struct glint_star *star,
-                     const struct glint_star_lamp *lamp,
-                     struct glint_star_stretch *row)
+void glint_star_add_core_row(const struct glint_star *star,
+                             const struct glint_star_lamp *lamp,
+                             struct glint_star_stretch *row)
 {
     const int64_t steps_q16 = star->tables->core_per_pixel_q16;
     const int64_t end_q8 = (GLINT_STAR_CORE - 1) << 8;
@@ -75,6 +76,6 @@ void glint_star_core(const struct glint_star *star,
         if (i_q8 < -end_q8 || i_q8 > end_q8)
             continue;
         glint_star_note(row, x, x + 1);
-        add_pixel(star, lamp, i_q8, j_q8, light_q20);
+        add_core_pixel(star, lamp, i_q8, j_q8, light_q20);
     }
 }

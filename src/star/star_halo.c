@@ -21,14 +21,14 @@ struct place {
 };
 
 /* Converts X to a fractional index, clamped to below LAST. */
-static struct place compute_index(int32_t x_q16, int last)
+static struct place compute_table_index(int32_t x_q16, int last)
 {
     const int32_t held_q16 = q_clamp_sat(x_q16, 0, (last << 16) - 1);
 
     return (struct place){held_q16 >> 16, held_q16 >> 1 & 32767};
 }
 
-static int32_t interpolate(int32_t a, int32_t b, int part_q15)
+static int32_t interpolate_int32(int32_t a, int32_t b, int part_q15)
 {
     return a + ((b - a) * part_q15 >> 15);
 }
@@ -41,8 +41,8 @@ struct node {
     int64_t light_q20[3];
 };
 
-static struct node make_node(const struct span *s,
-                             const struct glint_star_line *line, int x)
+static struct node make_halo_node(const struct span *s,
+                                  const struct glint_star_line *line, int x)
 {
     struct node n = {.x = x, .dx_q8 = (int64_t)x * 256 + 128 - s->lamp->x_q8};
 
@@ -51,18 +51,19 @@ static struct node make_node(const struct span *s,
 }
 
 /* Interpolates channel C of HALO at ROW and COLUMN. */
-static int32_t interpolate_halo(const glint_star_halo_row *halo,
-                                struct place row, struct place column, int c)
+static int32_t interpolate_halo_table(const glint_star_halo_row *halo,
+                                      struct place row, struct place column,
+                                      int c)
 {
     const uint16_t(*near)[3] = &halo[row.at][column.at];
     const uint16_t(*far)[3] = &halo[row.at + 1][column.at];
 
-    return interpolate(interpolate(near[0][c], near[1][c], column.part_q15),
-                       interpolate(far[0][c], far[1][c], column.part_q15),
-                       row.part_q15);
+    return interpolate_int32(
+        interpolate_int32(near[0][c], near[1][c], column.part_q15),
+        interpolate_int32(far[0][c], far[1][c], column.part_q15), row.part_q15);
 }
 
-static void compute_light(const struct span *s, struct node *n)
+static void compute_node_light(const struct span *s, struct node *n)
 {
     const struct glint_star_tables *t = s->star->tables;
     const int64_t v_q8 = n->v_q8 < 0 ? -n->v_q8 : n->v_q8;
@@ -75,15 +76,15 @@ static void compute_light(const struct span *s, struct node *n)
     /* log2 of 1 + 4 v / reach */
     column_q16 =
         q_log2_q16((uint64_t)(v_q8 * 4 + t->reach_q8)) - t->reach_log2_q16;
-    row =
-        compute_index((r2_log2_q16 - 4 * 65536) * 2, GLINT_STAR_HALO_ROWS - 1);
-    column = compute_index(column_q16 * 4, GLINT_STAR_HALO_COLUMNS - 1);
+    row = compute_table_index((r2_log2_q16 - 4 * 65536) * 2,
+                              GLINT_STAR_HALO_ROWS - 1);
+    column = compute_table_index(column_q16 * 4, GLINT_STAR_HALO_COLUMNS - 1);
     for (int c = 0; c < 3; c++) {
-        int32_t at = interpolate_halo(s->lamp->halo, row, column, c);
+        int32_t at = interpolate_halo_table(s->lamp->halo, row, column, c);
 
         if (s->lamp->halo_part_q15 > 0)
-            at = interpolate(
-                at, interpolate_halo(s->lamp->next_halo, row, column, c),
+            at = interpolate_int32(
+                at, interpolate_halo_table(s->lamp->next_halo, row, column, c),
                 s->lamp->halo_part_q15);
         log2_of_q16 = 32 * at;
         log2_of_q16 += t->halo_log2_q16 + s->lamp->halo_log2_q16[c] -
@@ -94,8 +95,8 @@ static void compute_light(const struct span *s, struct node *n)
 
 /* Adds the light of STEP pixels from A on, interpolated linearly between A
  * and B. STEP is the distance from A to B. */
-static void add_between(const struct span *s, const struct node *a,
-                        const struct node *b, int step)
+static void add_interpolated_run(const struct span *s, const struct node *a,
+                                 const struct node *b, int step)
 {
     const int shift = step == 8 ? 3 : step == 4 ? 2 : 0;
 
@@ -108,7 +109,7 @@ static void add_between(const struct span *s, const struct node *a,
     }
 }
 
-static int64_t min_size(int64_t a, int64_t b)
+static int64_t compute_min_magnitude(int64_t a, int64_t b)
 {
     const int64_t p = a < 0 ? -a : a, q = b < 0 ? -b : b;
 
@@ -119,50 +120,51 @@ static int64_t min_size(int64_t a, int64_t b)
  * pixels apart. Light falls with r^-3 and v^-2, so interpolated light is too
  * high by at most the fractions 1.5 n^2 / r^2 and 0.75 n^2 / v^2, here 0.01
  * and 0.02. */
-static int is_straight(const struct span *s, const struct node *a,
-                       const struct node *b)
+static int is_halo_nearly_linear(const struct span *s, const struct node *a,
+                                 const struct node *b)
 {
     const int64_t far_q8 = (int64_t)(b->x - a->x) << 8;
-    const int64_t dx_q8 = min_size(a->dx_q8, b->dx_q8);
+    const int64_t dx_q8 = compute_min_magnitude(a->dx_q8, b->dx_q8);
 
-    return min_size(a->v_q8, b->v_q8) >= 6 * far_q8 &&
+    return compute_min_magnitude(a->v_q8, b->v_q8) >= 6 * far_q8 &&
            dx_q8 * dx_q8 + s->dy_q8 * s->dy_q8 >= 144 * far_q8 * far_q8;
 }
 
 /* Returns the number of pixels from FROM on, up to X1, that can be
  * interpolated linearly: 8, 4 or 1. Runs begin at multiples of their length,
  * so that the result does not depend on tile borders. */
-static int choose_run(const struct span *s, const struct glint_star_line *line,
-                      const struct node *from, int x1)
+static int choose_run_length(const struct span *s,
+                             const struct glint_star_line *line,
+                             const struct node *from, int x1)
 {
     for (int n = 8; n >= 4; n >>= 1) {
         struct node to;
 
         if ((from->x & (n - 1)) != 0 || from->x + n > x1)
             continue;
-        to = make_node(s, line, from->x + n);
-        if (is_straight(s, from, &to))
+        to = make_halo_node(s, line, from->x + n);
+        if (is_halo_nearly_linear(s, from, &to))
             return n;
     }
     return 1;
 }
 
 /* Adds light to pixels X0 .. X1 - 1, which lie in the sector of LINE. */
-static void add_sector(const struct span *s, const struct glint_star_line *line,
-                       int x0, int x1)
+static void add_sector_light(const struct span *s,
+                             const struct glint_star_line *line, int x0, int x1)
 {
-    struct node at = make_node(s, line, x0);
+    struct node at = make_halo_node(s, line, x0);
 
     if (x0 < x1)
-        compute_light(s, &at);
+        compute_node_light(s, &at);
     for (int n; at.x < x1;) {
         struct node next;
 
-        n = choose_run(s, line, &at, x1);
-        next = make_node(s, line, at.x + n);
+        n = choose_run_length(s, line, &at, x1);
+        next = make_halo_node(s, line, at.x + n);
         if (next.x < x1 || n > 1)
-            compute_light(s, &next);
-        add_between(s, &at, &next, n);
+            compute_node_light(s, &next);
+        add_interpolated_run(s, &at, &next, n);
         at = next;
     }
 }
@@ -170,7 +172,7 @@ static void add_sector(const struct span *s, const struct glint_star_line *line,
 /* Adds light to pixels X0 .. X1 - 1 sector by sector. Lines are sorted by
  * angle, so that borders between sectors are crossed from right to left
  * below the lamp and from left to right above it. */
-static void add_sectors(const struct span *s, int x0, int x1)
+static void add_light_of_all_sectors(const struct span *s, int x0, int x1)
 {
     const struct glint_star_tables *t = s->star->tables;
     const int below = s->dy_q8 >= 0;
@@ -182,23 +184,23 @@ static void add_sectors(const struct span *s, int x0, int x1)
         const int here = q_clamp_sat((border_q8 + 127) >> 8, x0, x1);
 
         if (below && here < at) {
-            add_sector(s, &t->line[line], here, at);
+            add_sector_light(s, &t->line[line], here, at);
             at = here;
         } else if (!below && here > at) {
-            add_sector(s, &t->line[line], at, here);
+            add_sector_light(s, &t->line[line], at, here);
             at = here;
         }
         line = line + 1 < t->n_lines ? line + 1 : 0;
     }
     if (below)
-        add_sector(s, &t->line[line], x0, at);
+        add_sector_light(s, &t->line[line], x0, at);
     else
-        add_sector(s, &t->line[line], at, x1);
+        add_sector_light(s, &t->line[line], at, x1);
 }
 
-void glint_star_halo(const struct glint_star *star,
-                     const struct glint_star_lamp *lamp,
-                     struct glint_star_stretch *row)
+void glint_star_add_halo_row(const struct glint_star *star,
+                             const struct glint_star_lamp *lamp,
+                             struct glint_star_stretch *row)
 {
     const struct span s = {star, lamp, (int64_t)row->y * 256 + 128 - lamp->y_q8,
                            row};
@@ -215,5 +217,5 @@ void glint_star_halo(const struct glint_star *star,
     if (x0 >= x1)
         return;
     glint_star_note(row, x0, x1);
-    add_sectors(&s, x0, x1);
+    add_light_of_all_sectors(&s, x0, x1);
 }

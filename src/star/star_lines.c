@@ -12,7 +12,7 @@
 
 /* Returns X 2^-SHIFT, at most 2^50. X must be below 2^48; SHIFT may be
  * negative. */
-static int64_t shift_clamped(uint64_t x, int shift)
+static int64_t shift_right_clamped(uint64_t x, int shift)
 {
     const uint64_t most = UINT64_C(1) << 50;
 
@@ -26,7 +26,7 @@ struct stretch {
     int x0, x1;
 };
 
-static struct stretch intersect_stretches(struct stretch a, struct stretch b)
+static struct stretch intersect_pixel_ranges(struct stretch a, struct stretch b)
 {
     return (struct stretch){q_larger(a.x0, b.x0), q_smaller(a.x1, b.x1)};
 }
@@ -42,8 +42,8 @@ struct strip {
 
 /* Looks up 1 / r^2 in pixels^-2 = INVERSE 2^(1 - BITS): returns INVERSE and
  * sets BITS. */
-static uint32_t compute_inverse(const struct glint_star *star, uint64_t r2_q16,
-                                int *bits)
+static uint32_t look_up_inverse_square(const struct glint_star *star,
+                                       uint64_t r2_q16, int *bits)
 {
     const int n = bit_length(r2_q16);
     /* mantissa, 2^15 .. 2^16 - 1 */
@@ -56,7 +56,7 @@ static uint32_t compute_inverse(const struct glint_star *star, uint64_t r2_q16,
     return v[0] - ((v[0] - v[1]) * part >> 8);
 }
 
-static void add_pixel(const struct strip *s, int x, int64_t v_q16)
+static void add_line_pixel(const struct strip *s, int x, int64_t v_q16)
 {
     const int at = (int)(v_q16 >> 16), part_q8 = (int)(v_q16 >> 8 & 255);
     const int64_t dx_q8 = (int64_t)x * 256 + 128 - s->lamp->x_q8;
@@ -68,7 +68,7 @@ static void add_pixel(const struct strip *s, int x, int64_t v_q16)
     int bits;
 
     r2_q16 = r2_q16 > s->lamp->inner_q16 ? r2_q16 : s->lamp->inner_q16;
-    inverse = compute_inverse(s->star, r2_q16, &bits);
+    inverse = look_up_inverse_square(s->star, r2_q16, &bits);
     /* (v / r)^2, _q16 */
     less_q16 = (uint32_t)((v_q8 * v_q8 * inverse) >> (bits - 1));
     less_q16 = less_q16 < 65536 ? less_q16 : 65536;
@@ -76,7 +76,7 @@ static void add_pixel(const struct strip *s, int x, int64_t v_q16)
     for (int c = 0; c < 3; c++) {
         const int32_t steps = p[c] + ((p[c + 3] - p[c]) * part_q8 >> 8);
 
-        s->row->light_q20[c][x - s->row->x0] += shift_clamped(
+        s->row->light_q20[c][x - s->row->x0] += shift_right_clamped(
             (uint64_t)((uint32_t)s->lamp->line[c] * (uint32_t)steps) * inverse,
             bits - 21 - s->lamp->line_exponent);
     }
@@ -84,7 +84,8 @@ static void add_pixel(const struct strip *s, int x, int64_t v_q16)
 
 /* Adds light to the pixels of HERE that are less than SEEN steps from the
  * strip's centre line. */
-static void add_stretch(const struct strip *s, struct stretch here, int seen)
+static void add_line_pixel_range(const struct strip *s, struct stretch here,
+                                 int seen)
 {
     const int64_t step_q16 = s->lamp->per_pixel_q16;
     const int64_t dx_q8 = (int64_t)here.x0 * 256 + 128 - s->lamp->x_q8;
@@ -102,7 +103,7 @@ static void add_stretch(const struct strip *s, struct stretch here, int seen)
         const int64_t size_q16 = v_q16 < 0 ? -v_q16 : v_q16;
 
         if (size_q16 < end_q16)
-            add_pixel(s, x, size_q16);
+            add_line_pixel(s, x, size_q16);
     }
 }
 
@@ -121,7 +122,7 @@ static struct stretch find_strip_pixels(const struct strip *s, int seen)
                     INT32_MAX / 2)};
 }
 
-static void add_line(const struct strip *s, struct stretch here)
+static void add_line_strip(const struct strip *s, struct stretch here)
 {
     const struct glint_star_lamp *lamp = s->lamp;
     const int x = lamp->x_q8 >> 8, dy = s->row->y - (lamp->y_q8 >> 8);
@@ -133,30 +134,32 @@ static void add_line(const struct strip *s, struct stretch here)
 
         if (lamp->seen[i] == 0)
             continue;
-        row = intersect_stretches(here, find_strip_pixels(s, lamp->seen[i]));
+        row = intersect_pixel_ranges(here, find_strip_pixels(s, lamp->seen[i]));
         if (row.x0 >= row.x1)
             continue;
         if (down >= near) {
-            add_stretch(s,
-                        intersect_stretches(
-                            row, (struct stretch){x - far + 1, x + far}),
-                        lamp->seen[i]);
-        } else {
-            add_stretch(s,
-                        intersect_stretches(
-                            row, (struct stretch){x - far + 1, x - near + 1}),
-                        lamp->seen[i]);
-            add_stretch(
+            add_line_pixel_range(
                 s,
-                intersect_stretches(row, (struct stretch){x + near, x + far}),
+                intersect_pixel_ranges(row,
+                                       (struct stretch){x - far + 1, x + far}),
                 lamp->seen[i]);
+        } else {
+            add_line_pixel_range(
+                s,
+                intersect_pixel_ranges(
+                    row, (struct stretch){x - far + 1, x - near + 1}),
+                lamp->seen[i]);
+            add_line_pixel_range(s,
+                                 intersect_pixel_ranges(
+                                     row, (struct stretch){x + near, x + far}),
+                                 lamp->seen[i]);
         }
     }
 }
 
-void glint_star_lines(const struct glint_star *star,
-                      const struct glint_star_lamp *lamp,
-                      struct glint_star_stretch *row)
+void glint_star_add_lines_row(const struct glint_star *star,
+                              const struct glint_star_lamp *lamp,
+                              struct glint_star_stretch *row)
 {
     struct strip s = {.star = star,
                       .lamp = lamp,
@@ -165,13 +168,13 @@ void glint_star_lines(const struct glint_star *star,
 
     for (int k = 0; k < star->tables->n_lines; k++) {
         s.line = &star->tables->line[k];
-        add_line(&s, (struct stretch){row->x0, row->x1});
+        add_line_strip(&s, (struct stretch){row->x0, row->x1});
     }
 }
 
 /* Returns the distance max(|dx|, |dy|) from pixel (X, Y) to BOX; 0 if the
  * pixel is inside. */
-static int compute_box_distance(struct glint_box b, int x, int y)
+static int compute_distance_to_box(struct glint_box b, int x, int y)
 {
     const int dx = q_larger(b.x0 - x, x - (b.x1 - 1));
     const int dy = q_larger(b.y0 - y, y - (b.y1 - 1));
@@ -179,15 +182,15 @@ static int compute_box_distance(struct glint_box b, int x, int y)
     return q_larger(q_larger(dx, dy), 0);
 }
 
-int glint_star_lines_reach(const struct glint_star *star,
-                           const struct glint_star_lamp *lamp,
-                           struct glint_box box)
+int glint_star_can_lines_reach_box(const struct glint_star *star,
+                                   const struct glint_star_lamp *lamp,
+                                   struct glint_box box)
 {
     const int64_t x_q8 = 128 * (int64_t)(box.x0 + box.x1) - lamp->x_q8;
     const int64_t y_q8 = 128 * (int64_t)(box.y0 + box.y1) - lamp->y_q8;
     const int64_t half_q8 = 128 * (int64_t)(box.x1 - box.x0 + box.y1 - box.y0);
     const int near =
-        compute_box_distance(box, lamp->x_q8 >> 8, lamp->y_q8 >> 8);
+        compute_distance_to_box(box, lamp->x_q8 >> 8, lamp->y_q8 >> 8);
     int zone = 0, seen;
 
     if (near >= lamp->reach)

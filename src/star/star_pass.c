@@ -10,16 +10,16 @@
 
 /* Returns the distance in pixels from LAMP up to which it has halo, core or
  * smear. */
-static int compute_round_reach(const struct glint_star *star,
-                               const struct glint_star_lamp *lamp)
+static int compute_halo_and_core_reach(const struct glint_star *star,
+                                       const struct glint_star_lamp *lamp)
 {
     return q_larger(lamp->is_bare ? glint_star_core_reach(star) : 0,
                     q_larger(lamp->halo_reach, lamp->smear_reach)) +
            2;
 }
 
-static int is_within(const struct glint_star_lamp *lamp, struct glint_box box,
-                     int far)
+static int is_box_within_reach(const struct glint_star_lamp *lamp,
+                               struct glint_box box, int far)
 {
     const int x = lamp->x_q8 >> 8, y = lamp->y_q8 >> 8;
 
@@ -27,21 +27,22 @@ static int is_within(const struct glint_star_lamp *lamp, struct glint_box box,
            box.y1 >= y - far;
 }
 
-static void *begin_row(const void *self, struct glint_box row, int worker)
+static void *begin_tile_row(const void *self, struct glint_box row, int worker)
 {
     const struct glint_star *star = self;
     struct glint_star_row *r = &star->worker[worker];
 
     r->n_near = 0;
     for (int i = 0; i < star->n_lamps; i++)
-        if (is_within(&star->lamp[i], row,
-                      q_larger(compute_round_reach(star, &star->lamp[i]),
-                               star->lamp[i].reach)))
+        if (is_box_within_reach(
+                &star->lamp[i], row,
+                q_larger(compute_halo_and_core_reach(star, &star->lamp[i]),
+                         star->lamp[i].reach)))
             r->near[r->n_near++] = (uint16_t)i;
     return r;
 }
 
-static int begin_tile(void *state, struct glint_box tile)
+static int select_tile_lamps(void *state, struct glint_box tile)
 {
     struct glint_star_row *r = state;
     const struct glint_star *s = r->star;
@@ -51,24 +52,25 @@ static int begin_tile(void *state, struct glint_box tile)
     for (int i = 0; i < r->n_near; i++) {
         const struct glint_star_lamp *lamp = &s->lamp[r->near[i]];
 
-        if (is_within(lamp, tile, compute_round_reach(s, lamp)) ||
-            glint_star_lines_reach(s, lamp, tile))
+        if (is_box_within_reach(lamp, tile,
+                                compute_halo_and_core_reach(s, lamp)) ||
+            glint_star_can_lines_reach_box(s, lamp, tile))
             r->here[r->n_here++] = r->near[i];
     }
     return r->n_here > 0;
 }
 
-static void light_row(const struct glint_star_row *r,
-                      struct glint_star_stretch *row)
+static void add_lamps_to_row(const struct glint_star_row *r,
+                             struct glint_star_stretch *row)
 {
     const struct glint_star *s = r->star;
 
     for (int i = 0; i < r->n_here; i++) {
         const struct glint_star_lamp *lamp = &s->lamp[r->here[i]];
 
-        glint_star_lines(s, lamp, row);
-        glint_star_halo(s, lamp, row);
-        glint_star_core(s, lamp, row);
+        glint_star_add_lines_row(s, lamp, row);
+        glint_star_add_halo_row(s, lamp, row);
+        glint_star_add_core_row(s, lamp, row);
         if (s->tables->smear)
             s->tables->smear->part(s, lamp, row);
     }
@@ -76,8 +78,8 @@ static void light_row(const struct glint_star_row *r,
 
 /* Moves the light of channel C from ROW to LIGHT, clamped to 16 bits, and
  * clears it in ROW. Returns whether there was any light. */
-static int move_to_codes(const struct glint_star_stretch *row, int c,
-                         uint16_t *light_q16)
+static int move_light_to_codes(const struct glint_star_stretch *row, int c,
+                               uint16_t *light_q16)
 {
     int64_t *const light_q20 = row->light_q20[c];
     int any = 0;
@@ -92,8 +94,8 @@ static int move_to_codes(const struct glint_star_stretch *row, int c,
     return any;
 }
 
-static int move_to_linear(const struct glint_star_stretch *row, int c,
-                          int32_t *to_q20)
+static int move_light_to_linear(const struct glint_star_stretch *row, int c,
+                                int32_t *to_q20)
 {
     int64_t *const light_q20 = row->light_q20[c];
 
@@ -106,8 +108,8 @@ static int move_to_linear(const struct glint_star_stretch *row, int c,
     return row->lo < row->hi;
 }
 
-static enum glint_given light_rows(void *state,
-                                   const struct glint_pass_rows *rows)
+static enum glint_given write_pixel_rows(void *state,
+                                         const struct glint_pass_rows *rows)
 {
     const struct glint_star_row *r = state;
     int any = 0;
@@ -120,18 +122,20 @@ static enum glint_given light_rows(void *state,
                                          .hi = r->tile.x0,
                                          .light_q20 = r->light_q20};
 
-        light_row(r, &row);
+        add_lamps_to_row(r, &row);
         for (int c = 0; c < 3; c++)
-            any |= r->star->is_linear
-                       ? move_to_linear(&row, c, rows->light_q20[c])
-                       : move_to_codes(&row, c, rows->light->rgb_q16[c][k]);
+            any |=
+                r->star->is_linear
+                    ? move_light_to_linear(&row, c, rows->light_q20[c])
+                    : move_light_to_codes(&row, c, rows->light->rgb_q16[c][k]);
     }
     return any ? GLINT_GIVES_LIGHT : GLINT_GIVES_NOTHING;
 }
 
-static struct glint_pass make_pass(const struct glint_star *star)
+static struct glint_pass make_star_pass(const struct glint_star *star)
 {
-    return (struct glint_pass){star, begin_row, begin_tile, light_rows};
+    return (struct glint_pass){star, begin_tile_row, select_tile_lamps,
+                               write_pixel_rows};
 }
 
 /* ----------------------------------------------------------------- drawing */
@@ -142,49 +146,51 @@ struct draw {
     struct glint_pass pass;
 };
 
-static void row_job(void *ctx, int job, int worker)
+static void draw_tile_row_job(void *ctx, int job, int worker)
 {
     const struct draw *d = ctx;
 
-    glint_tile_rows(&d->tiles, &d->pass, 1, job, worker,
-                    &d->flare->worker[worker].tile);
+    glint_tiles_draw_row(&d->tiles, &d->pass, 1, job, worker,
+                         &d->flare->worker[worker].tile);
 }
 
 /* Draws the starburst to all pixels, even if the flare is drawn at half
  * resolution. */
-static void draw_alone(struct glint_star *star, struct glint_flare *flare,
-                       const struct glint_image *image)
+static void draw_star_without_flare(struct glint_star *star,
+                                    struct glint_flare *flare,
+                                    const struct glint_image *image)
 {
-    struct draw d = {flare, glint_flare_start(flare, image), make_pass(star)};
+    struct draw d = {flare, glint_flare_prepare_tiles(flare, image),
+                     make_star_pass(star)};
 
     d.tiles.half = 0;
     d.tiles.quads = NULL;
     d.tiles.region =
         (struct glint_box){0, 0, flare->cfg.width, flare->cfg.height};
-    glint_workers_run(flare->cfg.workers, glint_tiles_down(&d.tiles), row_job,
-                      &d);
+    glint_workers_run(flare->cfg.workers, glint_tiles_count_rows(&d.tiles),
+                      draw_tile_row_job, &d);
 }
 
-struct glint_pass glint_star_pass_on(struct glint_star *star,
-                                     const struct glint_image *image)
+struct glint_pass glint_star_make_pass_on(struct glint_star *star,
+                                          const struct glint_image *image)
 {
     star->is_linear = image && image->format == GLINT_LINEAR_Q20;
-    return make_pass(star);
+    return make_star_pass(star);
 }
 
 void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,
                            const struct glint_image *image)
 {
-    glint_flare_forget(flare);
+    glint_flare_reset_tile_state(flare);
     star->is_linear = image && image->format == GLINT_LINEAR_Q20;
     if (star->n_lamps > 0)
-        draw_alone(star, flare, image);
+        draw_star_without_flare(star, flare, image);
 }
 
 void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
                      const struct glint_image *image)
 {
-    const struct glint_pass pass = make_pass(star);
+    const struct glint_pass pass = make_star_pass(star);
     const struct glint_flare_under under = {&pass, 1, &glint_blend, star->rows};
 
     star->is_linear = image && image->format == GLINT_LINEAR_Q20;
@@ -192,8 +198,8 @@ void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
         glint_flare_draw(flare, image);
     } else if (flare->half) {
         glint_flare_draw(flare, image);
-        draw_alone(star, flare, image);
+        draw_star_without_flare(star, flare, image);
     } else {
-        glint_flare_draw_over(flare, image, &under);
+        glint_flare_draw_over_passes(flare, image, &under);
     }
 }

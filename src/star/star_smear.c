@@ -28,7 +28,7 @@ struct span {
     int shift;        /* light of table value 1 is share 2^-shift, _q20 */
 };
 
-static void set_ring(struct span *s, int ring)
+static void set_smear_ring(struct span *s, int ring)
 {
     const struct glint_real step = s->table->step[ring];
 
@@ -40,8 +40,8 @@ static void set_ring(struct span *s, int ring)
 }
 
 /* Adds light to pixel AT of the row, at (DX, DY) from the lamp. */
-static void add_pixel(const struct span *s, int at, int64_t dx_q8,
-                      int64_t dy_q8)
+static void add_smear_pixel(const struct span *s, int at, int64_t dx_q8,
+                            int64_t dy_q8)
 {
     const int turn = dy_q8 < 0 ? -1 : 1, down = s->ring;
     /* position in steps */
@@ -70,16 +70,16 @@ static void add_pixel(const struct span *s, int at, int64_t dx_q8,
 
 /* Returns the ring of pixels at distance FAR = max(|dx|, |dy|) from the
  * lamp, at least LEAST; RINGS if they are outside all rings. */
-static int find_ring(int64_t far_q8, int least)
+static int find_smear_ring(int64_t far_q8, int least)
 {
     const int bits = bit_length((uint64_t)far_q8) - FIRST_LOG2;
 
     return q_larger(bits > 0 ? bits : 0, least);
 }
 
-void glint_star_smear_part(const struct glint_star *star,
-                           const struct glint_star_lamp *lamp,
-                           struct glint_star_stretch *row)
+void glint_star_add_smear_row(const struct glint_star *star,
+                              const struct glint_star_lamp *lamp,
+                              struct glint_star_stretch *row)
 {
     struct span s = {.table = star->tables->smear,
                      .lamp = lamp,
@@ -101,12 +101,12 @@ void glint_star_smear_part(const struct glint_star *star,
         const int64_t dx_q8 = (int64_t)x * 256 + 128 - lamp->x_q8;
         const int64_t wide_q8 = dx_q8 < 0 ? -dx_q8 : dx_q8;
         const int ring =
-            find_ring(wide_q8 > high_q8 ? wide_q8 : high_q8, least);
+            find_smear_ring(wide_q8 > high_q8 ? wide_q8 : high_q8, least);
 
         if (ring >= RINGS)
             continue;
         if (ring != s.ring)
-            set_ring(&s, ring);
-        add_pixel(&s, x - row->x0, dx_q8, dy_q8);
+            set_smear_ring(&s, ring);
+        add_smear_pixel(&s, x - row->x0, dx_q8, dy_q8);
     }
 }

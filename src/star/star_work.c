@@ -8,7 +8,7 @@
 #include "star/parts.h"
 
 /* Returns the number of pixels from A to B - 1 that are within HALF of X. */
-static int64_t count_overlap(int a, int b, int x, int half)
+static int64_t count_interval_overlap(int a, int b, int x, int half)
 {
     const int from = q_larger(a, x - half), to = q_smaller(b, x + half);
 
@@ -20,8 +20,8 @@ static int64_t count_overlap(int a, int b, int x, int half)
 static int64_t count_square_pixels(const struct glint_star *star,
                                    const struct glint_star_lamp *lamp, int half)
 {
-    return count_overlap(0, star->cfg.width, lamp->x_q8 >> 8, half) *
-           count_overlap(0, star->cfg.height, lamp->y_q8 >> 8, half);
+    return count_interval_overlap(0, star->cfg.width, lamp->x_q8 >> 8, half) *
+           count_interval_overlap(0, star->cfg.height, lamp->y_q8 >> 8, half);
 }
 
 /* Estimates the number of pixels that all lines of LAMP light. In each zone
@@ -46,7 +46,7 @@ static int64_t count_line_pixels(const struct glint_star *star,
     return sum * star->tables->n_lines;
 }
 
-int64_t glint_star_pixels(const struct glint_star *star)
+int64_t glint_star_estimate_pixels(const struct glint_star *star)
 {
     int64_t sum = 0;
 

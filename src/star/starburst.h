@@ -5,7 +5,7 @@
  *
  *     bytes = glint_star_bytes(&cfg);                       once
  *     glint_star_init(&star, &cfg, mem, bytes);
- *     glint_star_set(star, &tables, lights, n, faintest);   each frame
+ *     glint_star_set_lights(star, &tables, lights, n, faintest);   each frame
  *     glint_star_draw(star, flare, &image);      instead of glint_flare_draw()
  *
  * The image of a point light behind a stop is the stop's Fraunhofer pattern,
@@ -135,15 +135,15 @@ enum glint_status glint_star_init(struct glint_star **star,
 /* Sets the N lights to draw. TABLES must stay valid while they are drawn,
  * LIGHTS need not. Skips lights from index max_lights on, and light below
  * FAINTEST, in display white, which must be 0 or at least 2^-21. */
-void glint_star_set(struct glint_star *star,
-                    const struct glint_star_tables *tables,
-                    const struct glint_star_light *lights, int n,
-                    struct glint_real faintest);
+void glint_star_set_lights(struct glint_star *star,
+                           const struct glint_star_tables *tables,
+                           const struct glint_star_light *lights, int n,
+                           struct glint_real faintest);
 
 /* Estimates the number of pixels that lines, halos, smears and cores light;
  * a pixel counts once for each of these. The drawing time is proportional to
  * the result. */
-int64_t glint_star_pixels(const struct glint_star *star);
+int64_t glint_star_estimate_pixels(const struct glint_star *star);
 
 /* Adds the starburst and then the binned ghosts of FLARE, like
  * glint_flare_draw(). If the flare is drawn at half resolution, the
@@ -153,8 +153,8 @@ void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
 
 /* Returns a pass that draws the starburst onto IMAGE, for use with other
  * passes. */
-struct glint_pass glint_star_pass_on(struct glint_star *star,
-                                     const struct glint_image *image);
+struct glint_pass glint_star_make_pass_on(struct glint_star *star,
+                                          const struct glint_image *image);
 
 /* Adds the star without the binned ghosts of FLARE. */
 void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,

@@ -30,20 +30,21 @@ static struct glint_box find_tile_range(const struct glint_bins *bins,
                               ((in.y1 - 1 - r->y0) >> log2) + 1};
 }
 
-int glint_bins_span(const struct glint_bins *bins, struct glint_box box)
+int glint_bins_count_overlapped_tiles(const struct glint_bins *bins,
+                                      struct glint_box box)
 {
     const struct glint_box t = find_tile_range(bins, box);
 
     return (t.x1 - t.x0) * (t.y1 - t.y0);
 }
 
-void glint_bins_open(struct glint_bins *bins)
+void glint_bins_clear_counts(struct glint_bins *bins)
 {
     for (int i = 0; i <= bins->tiles_x * bins->tiles_y; i++)
         bins->start[i] = 0;
 }
 
-void glint_bins_count(struct glint_bins *bins, struct glint_box box)
+void glint_bins_count_box(struct glint_bins *bins, struct glint_box box)
 {
     const struct glint_box t = find_tile_range(bins, box);
 
@@ -52,7 +53,7 @@ void glint_bins_count(struct glint_bins *bins, struct glint_box box)
             bins->start[y * bins->tiles_x + x]++;
 }
 
-void glint_bins_sum(struct glint_bins *bins)
+void glint_bins_convert_counts_to_starts(struct glint_bins *bins)
 {
     int32_t sum = 0;
 
@@ -64,7 +65,8 @@ void glint_bins_sum(struct glint_bins *bins)
     }
 }
 
-void glint_bins_put(struct glint_bins *bins, struct glint_box box, int32_t item)
+void glint_bins_put_item(struct glint_bins *bins, struct glint_box box,
+                         int32_t item)
 {
     const struct glint_box t = find_tile_range(bins, box);
 
@@ -73,14 +75,15 @@ void glint_bins_put(struct glint_bins *bins, struct glint_box box, int32_t item)
             bins->ref[bins->start[y * bins->tiles_x + x]++] = item;
 }
 
-void glint_bins_close(struct glint_bins *bins)
+void glint_bins_reset_starts(struct glint_bins *bins)
 {
     for (int i = bins->tiles_x * bins->tiles_y; i > 0; i--)
         bins->start[i] = bins->start[i - 1];
     bins->start[0] = 0;
 }
 
-struct glint_box glint_bins_tile(const struct glint_bins *bins, int tile)
+struct glint_box glint_bins_compute_tile_box(const struct glint_bins *bins,
+                                             int tile)
 {
     const int side = 1 << bins->tile_log2;
     const int x = bins->region.x0 + (tile % bins->tiles_x) * side;

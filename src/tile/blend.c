@@ -3,7 +3,7 @@
 
 #include "base/q.h"
 
-/* Returns LIGHT behind a cover: LIGHT (1 - COVER). */
+/* Returns the light that is seen past a partial cover: LIGHT (1 - COVER). */
 static int64_t attenuate_light(int64_t light, int cover_q8)
 {
     return q_shift(light * (GLINT_COVER_ALL - cover_q8), 8);
@@ -11,8 +11,9 @@ static int64_t attenuate_light(int64_t light, int cover_q8)
 
 /* ---------------------------------------------------------------- together */
 
-static void add_codes(const struct glint_pass_rows *rows, int row, int n_x,
-                      const struct glint_blend_rows *s, int covers)
+static void blend_code_light(const struct glint_pass_rows *rows, int row,
+                             int n_x, const struct glint_blend_rows *s,
+                             int covers)
 {
     for (int c = 0; c < 3; c++) {
         uint16_t *to_q16 = rows->light->rgb_q16[c][row];
@@ -31,8 +32,8 @@ static void add_codes(const struct glint_pass_rows *rows, int row, int n_x,
     }
 }
 
-static void add_linear(const struct glint_pass_rows *rows, int n_x,
-                       const struct glint_blend_rows *s, int covers)
+static void blend_linear_light(const struct glint_pass_rows *rows, int n_x,
+                               const struct glint_blend_rows *s, int covers)
 {
     for (int c = 0; c < 3; c++)
         for (int x = 0; x < n_x; x++)
@@ -43,9 +44,11 @@ static void add_linear(const struct glint_pass_rows *rows, int n_x,
                 INT32_MIN, INT32_MAX);
 }
 
-/* Combines the cover of a pass with the cover so far. COVERED is 0 if no
- * earlier pass gave cover. */
-static void add_cover(struct glint_blend_rows *s, int row, int n_x, int covered)
+/* Combines the cover of the current pass with the total cover of the passes
+ * behind it: 1 - (1 - cover) (1 - cover of this pass). COVERED is 0 if no
+ * earlier pass gave cover; the total is then not yet initialised. */
+static void blend_cover(struct glint_blend_rows *s, int row, int n_x,
+                        int covered)
 {
     uint16_t *to_q8 = s->cover.cover_q8[row];
 
@@ -59,10 +62,10 @@ static void add_cover(struct glint_blend_rows *s, int row, int n_x, int covered)
     }
 }
 
-static enum glint_given add_pass(const struct glint_pass *pass, void *state,
-                                 const struct glint_pass_rows *rows,
-                                 enum glint_given given, int n_x,
-                                 struct glint_blend_rows *scratch)
+static enum glint_given blend_pass(const struct glint_pass *pass, void *state,
+                                   const struct glint_pass_rows *rows,
+                                   enum glint_given given, int n_x,
+                                   struct glint_blend_rows *scratch)
 {
     struct glint_pass_rows next = {
         rows->y, rows->n, &scratch->light, {0}, &scratch->next};
@@ -75,27 +78,29 @@ static enum glint_given add_pass(const struct glint_pass *pass, void *state,
         return given;
     for (int row = 0; row < rows->n; row++) {
         if (rows->light_q20[0])
-            add_linear(rows, n_x, scratch, more == GLINT_GIVES_COVER);
+            blend_linear_light(rows, n_x, scratch, more == GLINT_GIVES_COVER);
         else
-            add_codes(rows, row, n_x, scratch, more == GLINT_GIVES_COVER);
+            blend_code_light(rows, row, n_x, scratch,
+                             more == GLINT_GIVES_COVER);
         if (more == GLINT_GIVES_COVER)
-            add_cover(scratch, row, n_x, given == GLINT_GIVES_COVER);
+            blend_cover(scratch, row, n_x, given == GLINT_GIVES_COVER);
     }
     return more > given ? more : given;
 }
 
 /* ------------------------------------------------------------------- cover */
 
-/* Writes each of PART values of cover to 2 x 2 pixels. */
-static void double_cover(const uint16_t *from_q8, int part,
-                         struct glint_cover_rows *to)
+/* Copies each of PART cover values at half resolution to 2 x 2 pixels. */
+static void double_cover_pixels(const uint16_t *from_q8, int part,
+                                struct glint_cover_rows *to)
 {
     for (int i = 0; i < 2 * part; i++)
         to->cover_q8[0][i] = to->cover_q8[1][i] = from_q8[i / 2];
 }
 
-static void hide_row(const struct glint_tiles *tiles, struct glint_box tile,
-                     int y, struct glint_tile_scratch *scratch)
+static void hide_picture_row(const struct glint_tiles *tiles,
+                             struct glint_box tile, int y,
+                             struct glint_tile_scratch *scratch)
 {
     enum { PART = GLINT_CODES_WIDTH / 2 };
     struct glint_cover_rows *wide = &scratch->blend->next;
@@ -109,7 +114,7 @@ static void hide_row(const struct glint_tiles *tiles, struct glint_box tile,
             scratch->blend->cover.cover_q8[0] + at - tile.x0;
 
         if (tiles->half) {
-            double_cover(from_q8, part, wide);
+            double_cover_pixels(from_q8, part, wide);
             from_q8 = wide->cover_q8[0];
         }
         if (tiles->image->format != GLINT_LINEAR_Q20)
@@ -121,5 +126,5 @@ static void hide_row(const struct glint_tiles *tiles, struct glint_box tile,
     }
 }
 
-const struct glint_blend glint_blend = {add_pass, glint_cover_stretch,
-                                        hide_row};
+const struct glint_blend glint_blend = {blend_pass, glint_cover_stretch,
+                                        hide_picture_row};

@@ -10,7 +10,7 @@
 
 #include "tile/pass.h"
 
-/* Assign its address to tiles->blend to draw several passes. */
+/* The functions that draw several passes: set tiles->blend to its address. */
 extern const struct glint_blend glint_blend;
 
 #endif

@@ -3,7 +3,7 @@
 
 #include "base/q.h"
 
-/* A tile, and the passes that are drawn in it. */
+/* The state of a worker that draws passes in one tile. */
 struct visit {
     const struct glint_tiles *tiles;
     const struct glint_pass *pass;
@@ -14,10 +14,10 @@ struct visit {
     struct glint_tile_scratch *scratch;
 };
 
-/* Calls all passes that draw in this tile for ROWS. Returns the type of
- * their combined output. */
-static enum glint_given draw_passes(const struct visit *v,
-                                    struct glint_pass_rows *rows)
+/* Draws ROWS with all passes that are active in this tile, from back to front.
+ * Returns the type of their combined output. */
+static enum glint_given call_active_passes(const struct visit *v,
+                                           struct glint_pass_rows *rows)
 {
     struct glint_blend_rows *more = v->scratch->blend;
     enum glint_given given = GLINT_GIVES_NOTHING;
@@ -34,10 +34,11 @@ static enum glint_given draw_passes(const struct visit *v,
     return given;
 }
 
-/* Applies the passes' cover to row Y of the picture, if there is any. For
- * linear pictures and half resolution, where cover and light are applied in
- * separate steps. */
-static void hide_row(const struct visit *v, enum glint_given given, int y)
+/* Hides the covered fraction of row Y of the picture if the passes gave cover.
+ * Used for linear pictures and at half resolution, where cover and light are
+ * applied in separate steps. */
+static void hide_picture_row(const struct visit *v, enum glint_given given,
+                             int y)
 {
     if (given == GLINT_GIVES_COVER)
         v->tiles->blend->hide(v->tiles, v->tile, y, v->scratch);
@@ -45,14 +46,14 @@ static void hide_row(const struct visit *v, enum glint_given given, int y)
 
 /* ------------------------------------------------------------------ linear */
 
-/* Writes each of N values twice, in place. */
-static void double_row(int32_t *row, int n)
+/* Expands N values to 2 N in place by repeating each value. */
+static void double_row_values(int32_t *row, int n)
 {
     for (int i = n - 1; i >= 0; i--)
         row[2 * i] = row[2 * i + 1] = row[i];
 }
 
-static void draw_linear(const struct visit *v)
+static void draw_linear_tile(const struct visit *v)
 {
     const struct glint_tiles *t = v->tiles;
     const int n = v->tile.x1 - v->tile.x0, twice = 2 << t->tile_log2;
@@ -67,12 +68,12 @@ static void draw_linear(const struct visit *v)
         const int y = rows.y << t->half;
         const int end = q_smaller(y + 1 + t->half, t->height);
 
-        given = draw_passes(v, &rows);
+        given = call_active_passes(v, &rows);
         if (given == GLINT_GIVES_NOTHING)
             continue;
-        hide_row(v, given, rows.y);
+        hide_picture_row(v, given, rows.y);
         for (int c = 0; c < 3 && t->half; c++)
-            double_row(rows.light_q20[c], n);
+            double_row_values(rows.light_q20[c], n);
         for (int k = y; k < end; k++)
             v->scratch->n_held += glint_resolve_linear(
                 t->image, x, k, n_x, (const int32_t *const *)rows.light_q20);
@@ -81,8 +82,8 @@ static void draw_linear(const struct visit *v)
 
 /* ------------------------------------------------------------------- codes */
 
-static void resolve_rows(const struct visit *v, enum glint_given given,
-                         const struct glint_pass_rows *rows)
+static void resolve_code_rows(const struct visit *v, enum glint_given given,
+                              const struct glint_pass_rows *rows)
 {
     const struct glint_tiles *t = v->tiles;
     const int x = v->tile.x0, n_x = v->tile.x1 - x;
@@ -97,7 +98,7 @@ static void resolve_rows(const struct visit *v, enum glint_given given,
 
 /* Draws a tile of a picture in codes two rows at a time, as 4:2:0 rows share
  * their chroma in pairs. */
-static void draw_codes(const struct visit *v)
+static void draw_code_tile(const struct visit *v)
 {
     struct glint_pass_rows rows = {.light = v->scratch->light};
 
@@ -105,18 +106,18 @@ static void draw_codes(const struct visit *v)
         enum glint_given given;
 
         rows.n = q_smaller(2, v->tile.y1 - rows.y);
-        given = draw_passes(v, &rows);
+        given = call_active_passes(v, &rows);
         if (given != GLINT_GIVES_NOTHING && v->tiles->image)
-            resolve_rows(v, given, &rows);
+            resolve_code_rows(v, given, &rows);
     }
 }
 
-/* max number of 2 x 2 pixel blocks that are resolved at once */
+/* max number of 2 x 2 pixel blocks to which light is added at once */
 enum { QUADS = GLINT_CODES_WIDTH / 2 };
 
 /* Adds one row of light at half resolution to two rows of the picture. */
-static void resolve_quads(const struct visit *v,
-                          const struct glint_pass_rows *rows)
+static void resolve_half_resolution_row(const struct visit *v,
+                                        const struct glint_pass_rows *rows)
 {
     const struct glint_tiles *t = v->tiles;
     const int n_y = q_smaller(2, t->height - 2 * rows->y);
@@ -135,23 +136,23 @@ static void resolve_quads(const struct visit *v,
     }
 }
 
-static void draw_half(const struct visit *v)
+static void draw_half_resolution_tile(const struct visit *v)
 {
     struct glint_pass_rows rows = {.n = 1, .light = v->scratch->light};
 
     for (rows.y = v->tile.y0; rows.y < v->tile.y1; rows.y++) {
-        const enum glint_given given = draw_passes(v, &rows);
+        const enum glint_given given = call_active_passes(v, &rows);
 
         if (given == GLINT_GIVES_NOTHING || !v->tiles->image)
             continue;
-        hide_row(v, given, rows.y);
-        resolve_quads(v, &rows);
+        hide_picture_row(v, given, rows.y);
+        resolve_half_resolution_row(v, &rows);
     }
 }
 
 /* ------------------------------------------------------------------- tiles */
 
-static void draw_tile(struct visit *v)
+static void draw_passes_in_tile(struct visit *v)
 {
     const struct glint_image *image = v->tiles->image;
 
@@ -162,23 +163,23 @@ static void draw_tile(struct visit *v)
         return;
     v->scratch->n_tiles++;
     if (image && image->format == GLINT_LINEAR_Q20)
-        draw_linear(v);
+        draw_linear_tile(v);
     else if (v->tiles->half)
-        draw_half(v);
+        draw_half_resolution_tile(v);
     else
-        draw_codes(v);
+        draw_code_tile(v);
 }
 
-int glint_tiles_down(const struct glint_tiles *tiles)
+int glint_tiles_count_rows(const struct glint_tiles *tiles)
 {
     const int side = 1 << tiles->tile_log2;
 
     return (tiles->region.y1 - tiles->region.y0 + side - 1) >> tiles->tile_log2;
 }
 
-void glint_tile_rows(const struct glint_tiles *tiles,
-                     const struct glint_pass *pass, int n_passes, int row,
-                     int worker, struct glint_tile_scratch *scratch)
+void glint_tiles_draw_row(const struct glint_tiles *tiles,
+                          const struct glint_pass *pass, int n_passes, int row,
+                          int worker, struct glint_tile_scratch *scratch)
 {
     const int side = 1 << tiles->tile_log2;
     struct glint_box b = tiles->region;
@@ -193,6 +194,6 @@ void glint_tile_rows(const struct glint_tiles *tiles,
         v.tile = b;
         v.tile.x0 = x;
         v.tile.x1 = q_smaller(b.x1, x + side);
-        draw_tile(&v);
+        draw_passes_in_tile(&v);
     }
 }

@@ -5,17 +5,17 @@
  *   in   passes, from the hindmost to the foremost; the picture as it is so far
  *   out  its pixels, changed in place
  *
- * The driver goes along a row of tiles from left to right, so that a pass may
- * carry state from tile to tile. It draws two rows of pixels at a time, as they
- * share chroma in 4:2:0; for linear pictures and at half resolution, one row.
- * Rows of tiles share no state: they may be drawn in any order, or
- * concurrently, each by another worker.
+ * The driver processes a row of tiles from left to right, so that a pass may
+ * carry state from tile to tile. Within a tile it draws two pixel rows at a
+ * time, as two rows share chroma in 4:2:0; for linear pictures and at half
+ * resolution, one row at a time. Rows of tiles share no state: they may be
+ * drawn in any order, or concurrently, each by another worker.
  *
- * Passes give light, which is added, and may give cover, the fraction of each
- * pixel in which they hide the picture and the light of the passes before them:
- * a fully covered pixel is overwritten. Several passes, or one pass that gives
- * cover, need glint_blend (blend.h); a program that draws only flares does not
- * link it. */
+ * A pass returns light, which is added to the picture. It may also return
+ * cover, the fraction of each pixel in which it hides the picture and the light
+ * of the passes before it: a fully covered pixel is overwritten. Several
+ * passes, or one pass that gives cover, need glint_blend (blend.h); a program
+ * that draws only flares does not link it. */
 #ifndef GLINT_TILE_PASS_H
 #define GLINT_TILE_PASS_H
 
@@ -27,9 +27,9 @@
 
 enum { GLINT_MAX_PASSES = 4 };
 
-/* Output rows of a pass: rows Y .. Y + N - 1 of its tile, from the tile's
- * left side on. A pass writes light_q20 for a linear picture, where N is 1,
- * else light. */
+/* Output of a pass: rows Y .. Y + N - 1 of the picture within the current tile,
+ * beginning at the tile's left side. For a linear picture a pass writes
+ * light_q20, and N is 1; otherwise it writes LIGHT. */
 struct glint_pass_rows {
     int y, n;
     struct glint_light_rows *light; /* _q16, padded to GLINT_LANES */
@@ -67,9 +67,11 @@ struct glint_tiles {
     int width, height;               /* size of the picture */
     const struct glint_image *image; /* if NULL, light is discarded */
     const struct glint_resolve *resolve;
-    /* set at half resolution, unless the picture is linear */
+    /* functions for half resolution; set if HALF is 1 and the picture is not
+     * linear */
     const struct glint_half *quads;
-    /* May be NULL if there is a single pass that gives no cover. */
+    /* functions that combine several passes; may be NULL for a single pass that
+     * gives no cover */
     const struct glint_blend *blend;
 };
 
@@ -78,13 +80,14 @@ struct glint_tile_scratch {
     struct glint_light_rows *light;
     int32_t *light_q20; /* [3][2 * width of a tile]; for linear pictures */
     struct glint_quads_rows *codes;
-    int n_tiles; /* number of tiles drawn so far in which a pass was active */
+    int n_tiles; /* number of tiles in which at least one pass drew */
     int n_held;  /* number of samples of a linear picture that were clamped */
     struct glint_blend_rows *blend; /* set if the tiles blend passes */
 };
 
-/* Scratch memory of one worker: the output of the next pass, and the
- * combined cover of the passes so far. */
+/* Scratch memory of one worker for blending: the light and cover of the pass
+ * that is being added (light, light_q20, next), and the combined cover of the
+ * passes before it (cover). */
 struct glint_blend_rows {
     struct glint_light_rows light;
     int32_t light_q20[3][GLINT_CODES_WIDTH];
@@ -95,32 +98,34 @@ struct glint_blend_rows {
  * are called through this table, so that only programs that name glint_blend
  * (blend.h) link them. */
 struct glint_blend {
-    /* Draws ROWS of N_X pixels of PASS in front of the output of the passes
-     * before, whose type is GIVEN. Returns the type of the combined output. */
+    /* Draws ROWS, N_X pixels wide, with PASS, and blends the result over the
+     * output of the earlier passes, whose type is GIVEN. Returns the type of
+     * the combined output. */
     enum glint_given (*add)(const struct glint_pass *pass, void *state,
                             const struct glint_pass_rows *rows,
                             enum glint_given given, int n_x,
                             struct glint_blend_rows *scratch);
-    /* Hides the fraction COVER of the picture, then adds the light as
+    /* Hides the fraction COVER of each pixel of the picture, then adds LIGHT as
      * glint_resolve_stretch() does. */
     void (*stretch)(const struct glint_resolve *resolve,
                     const struct glint_image *image, int x, int y, int n_x,
                     int n_y, const struct glint_cover_rows *cover,
                     struct glint_light_rows *light,
                     struct glint_resolve_rows *rows);
-    /* Hides the picture's pixels in row Y of TILE behind the cover, before
-     * light is added: for linear pictures and at half resolution. */
+    /* Hides the covered fraction of the picture's pixels in row Y of TILE,
+     * before light is added. Used for linear pictures and at half resolution.
+     */
     void (*hide)(const struct glint_tiles *tiles, struct glint_box tile, int y,
                  struct glint_tile_scratch *scratch);
 };
 
-/* Draws row ROW of tiles, counted from the region's upper side, as worker
- * WORKER. */
-void glint_tile_rows(const struct glint_tiles *tiles,
-                     const struct glint_pass *pass, int n_passes, int row,
-                     int worker, struct glint_tile_scratch *scratch);
+/* Draws all passes in row ROW of tiles, counted from the top of the region.
+ * WORKER is the index of the calling worker, SCRATCH its memory. */
+void glint_tiles_draw_row(const struct glint_tiles *tiles,
+                          const struct glint_pass *pass, int n_passes, int row,
+                          int worker, struct glint_tile_scratch *scratch);
 
-/* Returns the number of rows of tiles. */
-int glint_tiles_down(const struct glint_tiles *tiles);
+/* Returns the number of rows of tiles that cover the region. */
+int glint_tiles_count_rows(const struct glint_tiles *tiles);
 
 #endif

@@ -5,11 +5,10 @@
  *
  *     bytes = glint_veil_bytes(&cfg);                         once
  *     glint_veil_init(&veil, &cfg, mem, bytes);
- *     glint_veil_look(veil, &image, white, workers);          each frame
- *     glint_veil_lamp(veil, x_q8, y_q8, power, rgb_q14);      light above white
- *     glint_veil_spread(veil, spreads, n);
- *     glint_veil_draw(veil, NULL, flare, &image);   instead of
- * glint_flare_draw()
+ *     glint_veil_read_picture(veil, &image, white, workers);          each
+ * frame glint_veil_add_lamp(veil, x_q8, y_q8, power, rgb_q14);      light above
+ * white glint_veil_spread_light(veil, spreads, n); glint_veil_draw(veil, NULL,
+ * flare, &image);   instead of glint_flare_draw()
  *
  * Lens, barrel and camera scatter light far away from its image point. ISO 9358
  * measures the veiling glare index V: the fraction of white light in the image
@@ -77,13 +76,13 @@ struct glint_veil_row;
 struct glint_pass_rows;
 typedef void glint_veil_front_fn(const struct glint_veil_row *row,
                                  const struct glint_pass_rows *rows, int k);
-glint_veil_front_fn glint_veil_front_row;
+glint_veil_front_fn glint_veil_add_front_row;
 
 /* The fraction of the front element that dirt covers, as each pixel sees it.
  * A program links the drawing code only if it refers to
- * glint_veil_front_row. */
+ * glint_veil_add_front_row. */
 struct glint_veil_front {
-    glint_veil_front_fn *row; /* glint_veil_front_row() */
+    glint_veil_front_fn *row; /* glint_veil_add_front_row() */
     int n_x, n_y;             /* GLINT_VEIL_FRONT_NODES() of width and height */
     /* [n_y][n_x]: cover / max cover, at the top left corner of every fourth
      * pixel. Must stay valid while the veil is drawn. */
@@ -95,7 +94,7 @@ struct glint_flare;
 
 /* Sets CELLS to the numbers of cells across and down of pictures of WIDTH x
  * HEIGHT pixels. */
-void glint_veil_cells(int width, int height, int cells[2]);
+void glint_veil_count_cells(int width, int height, int cells[2]);
 
 /* Returns the exact number of bytes that glint_veil_init() needs for CFG, or 0
  * if CFG is out of range. */
@@ -109,17 +108,19 @@ enum glint_status glint_veil_init(struct glint_veil **veil,
 
 /* Sums the light of IMAGE, whose white is WHITE, in cells. Removes all lamps
  * added before. If IMAGE is NULL, the picture is black. WORKERS may be NULL. */
-void glint_veil_look(struct glint_veil *veil, const struct glint_image *image,
-                     struct glint_real white, struct glint_workers *workers);
+void glint_veil_read_picture(struct glint_veil *veil,
+                             const struct glint_image *image,
+                             struct glint_real white,
+                             struct glint_workers *workers);
 
 /* Adds a lamp of POWER, white times pixels, and colour RGB, 0 .. 2^14, at
  * (X, Y) pixels from the top left corner. Skips lamps outside the picture. */
-void glint_veil_lamp(struct glint_veil *veil, int32_t x_q8, int32_t y_q8,
-                     struct glint_real power, const int32_t rgb_q14[3]);
+void glint_veil_add_lamp(struct glint_veil *veil, int32_t x_q8, int32_t y_q8,
+                         struct glint_real power, const int32_t rgb_q14[3]);
 
 /* Computes the veil from N Gaussians, 0 .. GLINT_VEIL_SPREADS. */
-void glint_veil_spread(struct glint_veil *veil,
-                       const struct glint_veil_spread *spreads, int n);
+void glint_veil_spread_light(struct glint_veil *veil,
+                             const struct glint_veil_spread *spreads, int n);
 
 /* Computes the light that dirt on the front element scatters, from N
  * Gaussians whose shares are those at the max cover. FRONT must stay valid

@@ -62,15 +62,16 @@ struct glint_veil {
 };
 
 /* Sets CELL to the light of N Gaussians. Returns whether there is any light. */
-int glint_veil_spread_to(struct glint_veil *veil,
-                         const struct glint_veil_spread *spreads, int n,
-                         int32_t *cell_q20);
+int glint_veil_spread_light_to(struct glint_veil *veil,
+                               const struct glint_veil_spread *spreads, int n,
+                               int32_t *cell_q20);
 
 /* Interpolates the light of CELLS, channel C, along row Y of the tile.
  * Writes one of two outputs, the other is NULL: TO in units of white 2^(DOWN
  * - 20), at most 65534, or TO_Q20. */
-void glint_veil_row(const struct glint_veil_row *row, const int32_t *cell_q20,
-                    int c, int y, int down, uint16_t *to, int32_t *to_q20);
+void glint_veil_interpolate_row(const struct glint_veil_row *row,
+                                const int32_t *cell_q20, int c, int y, int down,
+                                uint16_t *to, int32_t *to_q20);
 
 /* Returns the index I + BY, clamped to 0 .. N - 1. */
 static inline int glint_veil_beside(int i, int by, int n)

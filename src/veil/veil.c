@@ -16,7 +16,7 @@ static int is_valid_config(const struct glint_veil_config *c)
 
 /* Returns the number of cells along SIDE of a picture whose longer side has
  * LONGER pixels. */
-static int count_cells(int side, int longer)
+static int count_cells_along_side(int side, int longer)
 {
     const int most =
         q_larger(1, q_smaller(GLINT_VEIL_CELLS, longer / GLINT_VEIL_LEAST_PX));
@@ -24,12 +24,12 @@ static int count_cells(int side, int longer)
     return q_larger(1, (most * side + longer / 2) / longer);
 }
 
-void glint_veil_cells(int width, int height, int cells[2])
+void glint_veil_count_cells(int width, int height, int cells[2])
 {
     const int longer = q_larger(width, height);
 
-    cells[0] = count_cells(width, longer);
-    cells[1] = count_cells(height, longer);
+    cells[0] = count_cells_along_side(width, longer);
+    cells[1] = count_cells_along_side(height, longer);
 }
 
 static void allocate_axis(struct glint_arena *a, struct glint_veil_axis *axis,
@@ -54,7 +54,7 @@ static struct glint_veil *allocate_veil(struct glint_arena *a,
     int cells[2];
     size_t n;
 
-    glint_veil_cells(c->width, c->height, cells);
+    glint_veil_count_cells(c->width, c->height, cells);
     n = 3 * (size_t)cells[0] * (size_t)cells[1];
     placed = glint_arena_take(a, 1, sizeof *placed);
     v = placed ? placed : &measured;
@@ -89,7 +89,8 @@ size_t glint_veil_bytes(const struct glint_veil_config *cfg)
 
 /* Sets fill_q16: width of a cell (N cells over SIDE pixels) / number of its
  * pixels that are summed, when every STEP pixels are read together. */
-static void set_fill(struct glint_veil_axis *axis, int side, int n, int step)
+static void set_cell_fill_factors(struct glint_veil_axis *axis, int side, int n,
+                                  int step)
 {
     for (int k = 0; k < n; k++)
         axis->fill_q16[k] = 0;
@@ -104,7 +105,7 @@ static void set_fill(struct glint_veil_axis *axis, int side, int n, int step)
 }
 
 /* Sets the cell and the spline weights of each of SIDE pixels among N cells. */
-static void set_axis(struct glint_veil_axis *axis, int side, int n)
+static void set_axis_weights(struct glint_veil_axis *axis, int side, int n)
 {
     const uint32_t twice = 2 * (uint32_t)side;
     uint32_t next = 0;
@@ -145,10 +146,10 @@ enum glint_status glint_veil_init(struct glint_veil **veil,
     v->cfg = *cfg;
     v->is_linear = v->any = v->any_front = v->has_curve = 0;
     v->front = NULL;
-    set_axis(&v->across, cfg->width, v->n_x);
-    set_axis(&v->down, cfg->height, v->n_y);
-    set_fill(&v->across, cfg->width, v->n_x, 1);
-    set_fill(&v->down, cfg->height, v->n_y, 2);
+    set_axis_weights(&v->across, cfg->width, v->n_x);
+    set_axis_weights(&v->down, cfg->height, v->n_y);
+    set_cell_fill_factors(&v->across, cfg->width, v->n_x, 1);
+    set_cell_fill_factors(&v->down, cfg->height, v->n_y, 2);
     for (int i = 0; i < cfg->n_workers; i++)
         v->worker[i].veil = v;
     for (int i = 0; i < 3 * v->n_x * v->n_y; i++) {
@@ -180,8 +181,8 @@ static int count_excess_bits(const int64_t *light_q16, int n)
 
 /* Sets SHARE to the fraction of each of N cells' light that reaches cell TO,
  * including light mirrored at the borders. */
-static void set_shares(const int32_t *table_q30, int n, int to,
-                       int32_t share_q30[GLINT_VEIL_CELLS])
+static void set_spread_shares(const int32_t *table_q30, int n, int to,
+                              int32_t share_q30[GLINT_VEIL_CELLS])
 {
     for (int from = 0; from < n; from++) {
         const int direct = to > from ? to - from : from - to;
@@ -193,8 +194,9 @@ static void set_shares(const int32_t *table_q30, int n, int to,
 }
 
 /* Returns the sum of N cells, STEP apart, weighted by SHARE. */
-static int32_t sum_weighted(const int32_t *from, int step,
-                            const int32_t share_q30[GLINT_VEIL_CELLS], int n)
+static int32_t sum_weighted_cells(const int32_t *from, int step,
+                                  const int32_t share_q30[GLINT_VEIL_CELLS],
+                                  int n)
 {
     int64_t sum = 0;
 
@@ -203,22 +205,22 @@ static int32_t sum_weighted(const int32_t *from, int step,
     return (int32_t)q_shift(sum, 30);
 }
 
-static void spread_across(struct glint_veil *v,
-                          const struct glint_veil_spread *s)
+static void spread_light_across(struct glint_veil *v,
+                                const struct glint_veil_spread *s)
 {
     int32_t share_q30[GLINT_VEIL_CELLS];
 
     for (int x = 0; x < v->n_x; x++) {
-        set_shares(s->across_q30, v->n_x, x, share_q30);
+        set_spread_shares(s->across_q30, v->n_x, x, share_q30);
         for (int row = 0; row < 3 * v->n_y; row++)
-            v->along[row * v->n_x + x] =
-                sum_weighted(v->narrow + row * v->n_x, 1, share_q30, v->n_x);
+            v->along[row * v->n_x + x] = sum_weighted_cells(
+                v->narrow + row * v->n_x, 1, share_q30, v->n_x);
     }
 }
 
 /* Returns LIGHT times FACTOR, rounded and clamped to 2^50. FACTOR converts
  * the scaled light of a cell to _q30 of white. */
-static int64_t scale_light(int32_t light, struct glint_real factor)
+static int64_t scale_cell_light(int32_t light, struct glint_real factor)
 {
     const int64_t product = (int64_t)light * factor.mantissa;
     const int down = -factor.exponent;
@@ -233,27 +235,29 @@ static int64_t scale_light(int32_t light, struct glint_real factor)
                : (int64_t)((uint64_t)product << -down);
 }
 
-static void spread_down(struct glint_veil *v, const struct glint_veil_spread *s,
-                        struct glint_real factor)
+static void spread_light_down(struct glint_veil *v,
+                              const struct glint_veil_spread *s,
+                              struct glint_real factor)
 {
     int32_t share_q30[GLINT_VEIL_CELLS];
 
     for (int y = 0; y < v->n_y; y++) {
-        set_shares(s->down_q30, v->n_y, y, share_q30);
+        set_spread_shares(s->down_q30, v->n_y, y, share_q30);
         for (int c = 0; c < 3; c++)
             for (int x = 0; x < v->n_x; x++) {
                 const int first = c * v->n_y * v->n_x + x;
 
-                v->sum_q30[first + y * v->n_x] += scale_light(
-                    sum_weighted(v->along + first, v->n_x, share_q30, v->n_y),
+                v->sum_q30[first + y * v->n_x] += scale_cell_light(
+                    sum_weighted_cells(v->along + first, v->n_x, share_q30,
+                                       v->n_y),
                     factor);
             }
     }
 }
 
-int glint_veil_spread_to(struct glint_veil *v,
-                         const struct glint_veil_spread *spreads, int n,
-                         int32_t *cell_q20)
+int glint_veil_spread_light_to(struct glint_veil *v,
+                               const struct glint_veil_spread *spreads, int n,
+                               int32_t *cell_q20)
 {
     const int cells = v->n_x * v->n_y;
     const int over = count_excess_bits(v->light_q16, 3 * cells);
@@ -267,8 +271,8 @@ int glint_veil_spread_to(struct glint_veil *v,
         struct glint_real factor = spreads[k].share;
 
         factor.exponent += 30 + over - 16;
-        spread_across(v, &spreads[k]);
-        spread_down(v, &spreads[k], factor);
+        spread_light_across(v, &spreads[k]);
+        spread_light_down(v, &spreads[k], factor);
     }
     for (int i = 0; i < 3 * cells; i++) {
         cell_q20[i] = q_clamp_sat(q_shift(v->sum_q30[i], 10), 0, MOST_Q20);
@@ -277,8 +281,8 @@ int glint_veil_spread_to(struct glint_veil *v,
     return any;
 }
 
-void glint_veil_spread(struct glint_veil *v,
-                       const struct glint_veil_spread *spreads, int n)
+void glint_veil_spread_light(struct glint_veil *v,
+                             const struct glint_veil_spread *spreads, int n)
 {
-    v->any = glint_veil_spread_to(v, spreads, n, v->cell_q20);
+    v->any = glint_veil_spread_light_to(v, spreads, n, v->cell_q20);
 }

@@ -15,8 +15,9 @@ void glint_veil_front(struct glint_veil *veil,
     int32_t max_q20 = 0;
 
     veil->front = front;
-    veil->any_front = front && veil->front_q20 &&
-                      glint_veil_spread_to(veil, spreads, n, veil->front_q20);
+    veil->any_front =
+        front && veil->front_q20 &&
+        glint_veil_spread_light_to(veil, spreads, n, veil->front_q20);
     for (int i = 0; i < 3 * veil->n_x * veil->n_y && veil->any_front; i++)
         max_q20 = q_larger(max_q20, veil->front_q20[i]);
     /* shift such that the brightest cell fits 16 bits */
@@ -28,8 +29,8 @@ void glint_veil_front(struct glint_veil *veil,
 /* Interpolates the covered fraction of the front element linearly for pixels
  * X0 .. X1 - 1 of row Y, and a few more. X0 must be a multiple of PX. Nodes
  * lie at the top left corners of every PX-th pixel. */
-static void interpolate_cover(const struct glint_veil_front *front, int y,
-                              int x0, int x1, uint16_t *part_q16)
+static void interpolate_front_cover(const struct glint_veil_front *front, int y,
+                                    int x0, int x1, uint16_t *part_q16)
 {
     const uint32_t low = 2 * (uint32_t)(y % PX) + 1, high = 2 * PX - low;
     const uint16_t *top = front->part_q16 + (ptrdiff_t)(y / PX) * front->n_x;
@@ -48,9 +49,9 @@ static void interpolate_cover(const struct glint_veil_front *front, int y,
 }
 
 /* Adds LIGHT, white times 2^16 >> DOWN, times PART to N pixels. */
-static void add_codes(const uint16_t *restrict light,
-                      const uint16_t *restrict part_q16, int down, int n,
-                      uint16_t *restrict to_q16)
+static void add_covered_code_light(const uint16_t *restrict light,
+                                   const uint16_t *restrict part_q16, int down,
+                                   int n, uint16_t *restrict to_q16)
 {
     const uint16_t most = (uint16_t)(65535 >> down);
 
@@ -64,15 +65,16 @@ static void add_codes(const uint16_t *restrict light,
     }
 }
 
-static void add_linear(const int32_t *light_q20, const uint16_t *part_q16,
-                       int n, int32_t *to_q20)
+static void add_covered_linear_light(const int32_t *light_q20,
+                                     const uint16_t *part_q16, int n,
+                                     int32_t *to_q20)
 {
     for (int x = 0; x < n; x++) /* both are at most 2^28 */
         to_q20[x] += (int32_t)q_shift((int64_t)light_q20[x] * part_q16[x], 16);
 }
 
-void glint_veil_front_row(const struct glint_veil_row *r,
-                          const struct glint_pass_rows *rows, int k)
+void glint_veil_add_front_row(const struct glint_veil_row *r,
+                              const struct glint_pass_rows *rows, int k)
 {
     const struct glint_veil *v = r->veil;
     const int n = r->tile.x1 - r->tile.x0, y = rows->y + k;
@@ -80,14 +82,17 @@ void glint_veil_front_row(const struct glint_veil_row *r,
     uint16_t light[GLINT_CODES_WIDTH];
     int32_t light_q20[GLINT_CODES_WIDTH];
 
-    interpolate_cover(v->front, y, r->tile.x0, r->tile.x1, part_q16);
+    interpolate_front_cover(v->front, y, r->tile.x0, r->tile.x1, part_q16);
     for (int c = 0; c < 3; c++)
         if (v->is_linear) {
-            glint_veil_row(r, v->front_q20, c, y, 0, NULL, light_q20);
-            add_linear(light_q20, part_q16, n, rows->light_q20[c]);
+            glint_veil_interpolate_row(r, v->front_q20, c, y, 0, NULL,
+                                       light_q20);
+            add_covered_linear_light(light_q20, part_q16, n,
+                                     rows->light_q20[c]);
         } else {
-            glint_veil_row(r, v->front_q20, c, y, v->front_down, light, NULL);
-            add_codes(light, part_q16, v->front_down - 4, n,
-                      rows->light->rgb_q16[c][k]);
+            glint_veil_interpolate_row(r, v->front_q20, c, y, v->front_down,
+                                       light, NULL);
+            add_covered_code_light(light, part_q16, v->front_down - 4, n,
+                                   rows->light->rgb_q16[c][k]);
         }
 }

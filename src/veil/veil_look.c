@@ -13,8 +13,8 @@ struct look {
 };
 
 /* Adds SUM, the light of pixels in cell (X, Y), scaled to the cell's area. */
-static void add_to_cell(const struct look *l, int x, int y,
-                        const int64_t sum_q20[3])
+static void add_light_to_cell(const struct look *l, int x, int y,
+                              const int64_t sum_q20[3])
 {
     const struct glint_veil *v = l->veil;
 
@@ -38,8 +38,8 @@ static void add_to_cell(const struct look *l, int x, int y,
 
 /* Adds rows Y .. Y + N_Y - 1 of the picture (N_Y at most 2) to the cells of
  * their row. */
-static void sum_rows(const struct look *l, struct glint_codes *codes, int y,
-                     int n_y, int64_t (*sum_q20)[3])
+static void sum_row_pair_light(const struct look *l, struct glint_codes *codes,
+                               int y, int n_y, int64_t (*sum_q20)[3])
 {
     const struct glint_veil *v = l->veil;
     const int width = l->sum.image->width;
@@ -60,7 +60,7 @@ static void sum_rows(const struct look *l, struct glint_codes *codes, int y,
 }
 
 /* Sums the pairs of rows of pixels whose first row lies in row JOB of cells. */
-static void sum_rows_job(void *ctx, int job, int worker)
+static void sum_cell_row_job(void *ctx, int job, int worker)
 {
     const struct look *l = ctx;
     struct glint_veil *v = l->veil;
@@ -70,14 +70,16 @@ static void sum_rows_job(void *ctx, int job, int worker)
         sum_q20[x][0] = sum_q20[x][1] = sum_q20[x][2] = 0;
     for (int y = 0; y < l->sum.image->height; y += 2)
         if (v->down.cell[y] == job)
-            sum_rows(l, &v->worker[worker].codes, y,
-                     q_smaller(2, l->sum.image->height - y), sum_q20);
+            sum_row_pair_light(l, &v->worker[worker].codes, y,
+                               q_smaller(2, l->sum.image->height - y), sum_q20);
     for (int x = 0; x < v->n_x; x++)
-        add_to_cell(l, x, job, sum_q20[x]);
+        add_light_to_cell(l, x, job, sum_q20[x]);
 }
 
-void glint_veil_look(struct glint_veil *veil, const struct glint_image *image,
-                     struct glint_real white, struct glint_workers *workers)
+void glint_veil_read_picture(struct glint_veil *veil,
+                             const struct glint_image *image,
+                             struct glint_real white,
+                             struct glint_workers *workers)
 {
     struct look l = {.veil = veil, .white = white};
 
@@ -90,7 +92,7 @@ void glint_veil_look(struct glint_veil *veil, const struct glint_image *image,
         glint_light_curve_init(veil->curve, image->transfer);
     veil->has_curve = 1;
     veil->transfer = image->transfer;
-    glint_workers_run(workers, veil->n_y, sum_rows_job, &l);
+    glint_workers_run(workers, veil->n_y, sum_cell_row_job, &l);
 }
 
 /* ------------------------------------------------------------------- lamps */
@@ -102,7 +104,7 @@ struct place {
     int32_t weight_q15[3];
 };
 
-static struct place find_cell(int32_t at_q8, int side, int n)
+static struct place find_cell_and_weights(int32_t at_q8, int side, int n)
 {
     const int32_t along_q15 =
         (int32_t)((((int64_t)at_q8 * n) << 7) / side); /* position in cells */
@@ -117,7 +119,7 @@ static struct place find_cell(int32_t at_q8, int side, int n)
 
 /* Returns POWER times RGB, white times pixels, clamped to 2^46 units of
  * light_q16. */
-static int64_t compute_power_q16(struct glint_real power, int32_t rgb_q14)
+static int64_t compute_lamp_power_q16(struct glint_real power, int32_t rgb_q14)
 {
     const int64_t part = (int64_t)power.mantissa * rgb_q14;
     const int down = 14 - 16 - power.exponent;
@@ -130,18 +132,18 @@ static int64_t compute_power_q16(struct glint_real power, int32_t rgb_q14)
                                                           : part << -down;
 }
 
-void glint_veil_lamp(struct glint_veil *veil, int32_t x_q8, int32_t y_q8,
-                     struct glint_real power, const int32_t rgb_q14[3])
+void glint_veil_add_lamp(struct glint_veil *veil, int32_t x_q8, int32_t y_q8,
+                         struct glint_real power, const int32_t rgb_q14[3])
 {
     struct place x, y;
 
     if (x_q8 < 0 || y_q8 < 0 || x_q8 > veil->cfg.width * 256 ||
         y_q8 > veil->cfg.height * 256)
         return;
-    x = find_cell(x_q8, veil->cfg.width, veil->n_x);
-    y = find_cell(y_q8, veil->cfg.height, veil->n_y);
+    x = find_cell_and_weights(x_q8, veil->cfg.width, veil->n_x);
+    y = find_cell_and_weights(y_q8, veil->cfg.height, veil->n_y);
     for (int c = 0; c < 3; c++) {
-        const int64_t all = compute_power_q16(power, rgb_q14[c]);
+        const int64_t all = compute_lamp_power_q16(power, rgb_q14[c]);
 
         for (int j = 0; j < 9; j++) {
             const int at_x = glint_veil_beside(x.cell, j % 3 - 1, veil->n_x);

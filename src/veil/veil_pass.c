@@ -8,7 +8,7 @@
 #include "flare/state.h"
 #include "veil/parts.h"
 
-static void *begin_row(const void *self, struct glint_box row, int worker)
+static void *begin_tile_row(const void *self, struct glint_box row, int worker)
 {
     const struct glint_veil *veil = self;
 
@@ -16,7 +16,7 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     return &veil->worker[worker];
 }
 
-static int begin_tile(void *state, struct glint_box tile)
+static int begin_veil_tile(void *state, struct glint_box tile)
 {
     struct glint_veil_row *r = state;
 
@@ -26,10 +26,10 @@ static int begin_tile(void *state, struct glint_box tile)
 
 /* Interpolates N cells from FIRST on to row Y of pixels: LIGHT in units of
  * white 2^(DOWN - 20), at most MOST. */
-static void interpolate_rows(const struct glint_veil *v,
-                             const int32_t *cell_q20, int c, int y, int first,
-                             int n, int down, int32_t most,
-                             int32_t light[GLINT_VEIL_CELLS])
+static void interpolate_cell_rows(const struct glint_veil *v,
+                                  const int32_t *cell_q20, int c, int y,
+                                  int first, int n, int down, int32_t most,
+                                  int32_t light[GLINT_VEIL_CELLS])
 {
     const struct glint_veil_axis *axis = &v->down;
     const int cell = axis->cell[y];
@@ -61,9 +61,9 @@ static inline uint16_t multiply_high(uint16_t a, uint16_t b)
  * from X on, rounded up to whole vectors. Each product is truncated and
  * loses 2^-17 on average. Adding 2^-16 where there is light compensates for
  * a part of the loss. */
-static void interpolate_codes(const struct glint_veil_axis *axis, int x, int n,
-                              const int32_t light_q16[3],
-                              uint16_t *restrict to_q16)
+static void interpolate_code_pixels(const struct glint_veil_axis *axis, int x,
+                                    int n, const int32_t light_q16[3],
+                                    uint16_t *restrict to_q16)
 {
     enum { LANES = GLINT_VEIL_LANES };
     const uint16_t *restrict s0_q16 = axis->share_q16[0] + x;
@@ -85,8 +85,9 @@ static void interpolate_codes(const struct glint_veil_axis *axis, int x, int n,
                            near_q16[3][k]);
 }
 
-static void interpolate_linear(const struct glint_veil_axis *axis, int x, int n,
-                               const int32_t light_q20[3], int32_t *to_q20)
+static void interpolate_linear_pixels(const struct glint_veil_axis *axis, int x,
+                                      int n, const int32_t light_q20[3],
+                                      int32_t *to_q20)
 {
     for (int i = 0; i < n; i++)
         to_q20[i] = (int32_t)q_shift(
@@ -96,8 +97,9 @@ static void interpolate_linear(const struct glint_veil_axis *axis, int x, int n,
             16);
 }
 
-void glint_veil_row(const struct glint_veil_row *r, const int32_t *cell_q20,
-                    int c, int y, int down, uint16_t *to, int32_t *to_q20)
+void glint_veil_interpolate_row(const struct glint_veil_row *r,
+                                const int32_t *cell_q20, int c, int y, int down,
+                                uint16_t *to, int32_t *to_q20)
 {
     const struct glint_veil *v = r->veil;
     const struct glint_veil_axis *axis = &v->across;
@@ -107,8 +109,8 @@ void glint_veil_row(const struct glint_veil_row *r, const int32_t *cell_q20,
     int32_t light[GLINT_VEIL_CELLS];
     uint16_t row[GLINT_CODES_WIDTH + GLINT_VEIL_LANES] = {0};
 
-    interpolate_rows(v, cell_q20, c, y, first, last - first + 1, down,
-                     to ? 65534 : 1 << 28, light);
+    interpolate_cell_rows(v, cell_q20, c, y, first, last - first + 1, down,
+                          to ? 65534 : 1 << 28, light);
     for (int x = x0, next; x < x1; x = next) {
         const int cell = axis->cell[x];
         const int32_t *at = light + cell - first;
@@ -117,16 +119,16 @@ void glint_veil_row(const struct glint_veil_row *r, const int32_t *cell_q20,
 
         next = q_smaller(x1, axis->start[cell + 1]);
         if (to)
-            interpolate_codes(axis, x, next - x, near, row + x - x0);
+            interpolate_code_pixels(axis, x, next - x, near, row + x - x0);
         else
-            interpolate_linear(axis, x, next - x, near, to_q20 + x - x0);
+            interpolate_linear_pixels(axis, x, next - x, near, to_q20 + x - x0);
     }
     for (int x = 0; x < x1 - x0 && to; x++)
         to[x] = row[x];
 }
 
-static enum glint_given light_rows(void *state,
-                                   const struct glint_pass_rows *rows)
+static enum glint_given write_pixel_rows(void *state,
+                                         const struct glint_pass_rows *rows)
 {
     const struct glint_veil_row *r = state;
     const struct glint_veil *v = r->veil;
@@ -137,11 +139,11 @@ static enum glint_given light_rows(void *state,
         /* codes saturate at white, so 16 bits are enough */
         for (int c = 0; c < 3; c++)
             if (v->is_linear)
-                glint_veil_row(r, v->cell_q20, c, y, 0, NULL,
-                               rows->light_q20[c]);
+                glint_veil_interpolate_row(r, v->cell_q20, c, y, 0, NULL,
+                                           rows->light_q20[c]);
             else
-                glint_veil_row(r, v->cell_q20, c, y, 4,
-                               rows->light->rgb_q16[c][k], NULL);
+                glint_veil_interpolate_row(r, v->cell_q20, c, y, 4,
+                                           rows->light->rgb_q16[c][k], NULL);
         if (v->any_front)
             v->front->row(r, rows, k);
     }
@@ -157,21 +159,22 @@ struct draw {
     int n;
 };
 
-static void row_job(void *ctx, int job, int worker)
+static void draw_tile_row_job(void *ctx, int job, int worker)
 {
     const struct draw *d = ctx;
 
-    glint_tile_rows(&d->tiles, d->pass, d->n, job, worker,
-                    &d->flare->worker[worker].tile);
+    glint_tiles_draw_row(&d->tiles, d->pass, d->n, job, worker,
+                         &d->flare->worker[worker].tile);
 }
 
 /* Draws N passes to all pixels, even if the flare is drawn at half
  * resolution. */
-static void draw_passes(struct glint_veil *veil, struct glint_flare *flare,
-                        const struct glint_image *image,
-                        const struct glint_pass *pass, int n)
+static void draw_full_resolution_passes(struct glint_veil *veil,
+                                        struct glint_flare *flare,
+                                        const struct glint_image *image,
+                                        const struct glint_pass *pass, int n)
 {
-    struct draw d = {flare, glint_flare_start(flare, image), pass, n};
+    struct draw d = {flare, glint_flare_prepare_tiles(flare, image), pass, n};
 
     d.tiles.half = 0;
     d.tiles.quads = NULL;
@@ -180,15 +183,15 @@ static void draw_passes(struct glint_veil *veil, struct glint_flare *flare,
         (struct glint_box){0, 0, flare->cfg.width, flare->cfg.height};
     for (int i = 0; i < veil->cfg.n_workers; i++)
         flare->worker[i].tile.blend = &veil->rows[i];
-    glint_workers_run(flare->cfg.workers, glint_tiles_down(&d.tiles), row_job,
-                      &d);
+    glint_workers_run(flare->cfg.workers, glint_tiles_count_rows(&d.tiles),
+                      draw_tile_row_job, &d);
 }
 
 void glint_veil_draw(struct glint_veil *veil, const struct glint_pass *over,
                      struct glint_flare *flare, const struct glint_image *image)
 {
     const struct glint_pass passes[2] = {
-        {veil, begin_row, begin_tile, light_rows},
+        {veil, begin_tile_row, begin_veil_tile, write_pixel_rows},
         over ? *over : (struct glint_pass){0}};
     const struct glint_flare_under under = {passes, over ? 2 : 1, &glint_blend,
                                             veil->rows};
@@ -196,18 +199,19 @@ void glint_veil_draw(struct glint_veil *veil, const struct glint_pass *over,
     veil->is_linear = image && image->format == GLINT_LINEAR_Q20;
     if (flare->half) {
         glint_flare_draw(flare, image);
-        draw_passes(veil, flare, image, passes, under.n);
+        draw_full_resolution_passes(veil, flare, image, passes, under.n);
     } else {
-        glint_flare_draw_over(flare, image, &under);
+        glint_flare_draw_over_passes(flare, image, &under);
     }
 }
 
 void glint_veil_draw_alone(struct glint_veil *veil, struct glint_flare *flare,
                            const struct glint_image *image)
 {
-    const struct glint_pass pass = {veil, begin_row, begin_tile, light_rows};
+    const struct glint_pass pass = {veil, begin_tile_row, begin_veil_tile,
+                                    write_pixel_rows};
 
     veil->is_linear = image && image->format == GLINT_LINEAR_Q20;
-    glint_flare_forget(flare);
-    draw_passes(veil, flare, image, &pass, 1);
+    glint_flare_reset_tile_state(flare);
+    draw_full_resolution_passes(veil, flare, image, &pass, 1);
 }

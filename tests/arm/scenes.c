@@ -164,7 +164,7 @@ static void draw_starbursts(const struct glint_flare_config *c,
     star_make_random(&any, &seed);
     for (int i = 0; i < n; i++)
         light[i] = star_make_random_light(c->width, c->height, &seed);
-    glint_star_set(star, &any.tables, light, n, faintest);
+    glint_star_set_lights(star, &any.tables, light, n, faintest);
     glint_star_draw(star, flare, image);
 }
 

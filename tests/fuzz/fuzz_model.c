@@ -77,7 +77,7 @@ static void check_window_in_box(struct glint_transfer *t, int32_t opening_q30)
     const struct glint_box_window *w = &t->window;
 
     t->window = glint_box_whole(t);
-    if (!glint_window_find(&nodes, t, opening_q30))
+    if (!glint_window_narrow_to_stop(&nodes, t, opening_q30))
         return;
     require(w->u_half_q30 > 0 && w->v_from_q30 >= (t->whole ? -ONE : 0) &&
             w->v_to_q30 > w->v_from_q30 && w->v_to_q30 <= ONE);

@@ -152,14 +152,14 @@ static void run(struct glint_frame *f, int n, glint_job_fn *each, double from,
                 double to)
 {
     struct job job = {f, 0};
-    const int part = f->progress ? larger(n / PARTS, LEAST_PART) : n;
+    const int part = f->progress ? max_int(n / PARTS, LEAST_PART) : n;
 
     for (job.first = 0; job.first < n; job.first += part) {
-        glint_workers_run(f->cfg.workers, smaller(part, n - job.first), each,
+        glint_workers_run(f->cfg.workers, min_int(part, n - job.first), each,
                           &job);
         if (f->progress)
             f->progress(f->progress_ctx,
-                        from + (to - from) * smaller(job.first + part, n) / n);
+                        from + (to - from) * min_int(job.first + part, n) / n);
     }
 }
 
@@ -188,7 +188,7 @@ static void set_waves(struct traced *t, const struct glint_setup *s,
     const struct wave_set *widest;
 
     memset(t->set, 0, sizeof t->set);
-    t->n_sets = larger(s->n_sets, 1);
+    t->n_sets = max_int(s->n_sets, 1);
     for (int k = 0; k < s->n_sets; w += s->set_size[k++])
         for (int i = 0; i < s->set_size[k]; i++)
             add_wave(&t->set[k], w[i].nm, w[i].rgb, w[i].unit_flux);
@@ -1182,23 +1182,23 @@ static int fewer_rows(const struct glint_frame *f, int n,
 {
     const int side = 1 << f->cfg.tile_log2;
     const double part =
-        fmin((double)f->cfg.max_primitives / larger(s->need_primitives, 1),
-             (double)f->cfg.max_refs / larger(s->need_refs, 1));
+        fmin((double)f->cfg.max_primitives / max_int(s->need_primitives, 1),
+             (double)f->cfg.max_refs / max_int(s->need_refs, 1));
 
-    return larger(smaller((int)(0.8 * part * n), n - 1) / side, 1) * side;
+    return max_int(min_int((int)(0.8 * part * n), n - 1) / side, 1) * side;
 }
 
 static void add_stats(struct glint_flare_stats *all,
                       const struct glint_flare_stats *s)
 {
-    all->bundles = larger(all->bundles, s->bundles);
+    all->bundles = max_int(all->bundles, s->bundles);
     all->need_bundles = s->need_bundles;
     all->primitives += s->primitives;
     all->refs += s->refs;
-    all->need_primitives = larger(all->need_primitives, s->need_primitives);
-    all->need_refs = larger(all->need_refs, s->need_refs);
-    all->dropped_cells = larger(all->dropped_cells, s->dropped_cells);
-    all->held_cells = larger(all->held_cells, s->held_cells);
+    all->need_primitives = max_int(all->need_primitives, s->need_primitives);
+    all->need_refs = max_int(all->need_refs, s->need_refs);
+    all->dropped_cells = max_int(all->dropped_cells, s->dropped_cells);
+    all->held_cells = max_int(all->held_cells, s->held_cells);
 }
 
 /* Bins and draws all rows of IMAGE, as many at a time as have room. */
@@ -1211,7 +1211,7 @@ static enum glint_status draw_rows(struct glint_frame *f, double scale,
     int rows = height;
 
     for (int y0 = 0; y0 < height && status == GLINT_OK;) {
-        const int n = smaller(rows, height - y0);
+        const int n = min_int(rows, height - y0);
         struct glint_flare_stats s;
 
         bin_rows(f, y0, y0 + n, &s);
@@ -1255,10 +1255,10 @@ static enum glint_status draw(struct glint_frame *frame,
     expected.need_primitives = (int)fmin(EDGES * t->n_bundles, INT_MAX);
     expected.need_refs = expected.need_primitives;
     *stats = (struct glint_flare_stats){0};
-    frame->cfg.max_bundles = larger(t->n_bundles, 1);
+    frame->cfg.max_bundles = max_int(t->n_bundles, 1);
     frame->cfg.max_vertices = 0;
-    frame->cfg.max_primitives = larger(frame->cfg.max_primitives, 1 << 13);
-    frame->cfg.max_refs = larger(frame->cfg.max_refs, 1 << 14);
+    frame->cfg.max_primitives = max_int(frame->cfg.max_primitives, 1 << 13);
+    frame->cfg.max_refs = max_int(frame->cfg.max_refs, 1 << 14);
     widen(frame, &expected, false);
     status = begin_flare(frame, scale);
     if (status == GLINT_OK)

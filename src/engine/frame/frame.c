@@ -155,8 +155,8 @@ static int compute_max_lights(const struct glint_frame *f, int n)
     const int most = f->dials.max_lights;
 
     if (f->limits.reserved)
-        return smaller(most, f->lights.capacity);
-    return n <= most ? larger(most, f->picture.point_room) : most;
+        return min_int(most, f->lights.capacity);
+    return n <= most ? max_int(most, f->picture.point_room) : most;
 }
 
 /* Converts LAMPS to F's lights; merges those that are too near or too many. */
@@ -183,11 +183,11 @@ static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
     f->lights.n_more = within - (n - f->lights.n_beyond);
     f->lights.n = glint_lights_merge(
         f->lights.light, within, convert_px_to_chord_q30(f, f->apart_px),
-        larger(room, f->dials.max_lights), &f->lights.n_apart);
+        max_int(room, f->dials.max_lights), &f->lights.n_apart);
     if (!f->limits.is_held) /* after a limit was met, fewer lights keep the
                         fraction of all */
         f->limits.share =
-            1 + larger(f->lights.n - 1, 0) / (double)GLINT_FRAME_PER_LIGHT;
+            1 + max_int(f->lights.n - 1, 0) / (double)GLINT_FRAME_PER_LIGHT;
     if (f->star.is_alone)
         f->lights.n = 0;
     return GLINT_OK;
@@ -405,7 +405,7 @@ static void fill_frame_report(struct glint_frame *frame,
 {
     report->beyond_lights = frame->lights.n_beyond;
     report->apart_lights =
-        larger(frame->lights.n_apart - frame->lights.n_more, 1);
+        max_int(frame->lights.n_apart - frame->lights.n_more, 1);
     report->coarsened = frame->limits.is_held;
     report->tight = frame->limits.tight > 0;
     report->blurred = frame->cfg.stop.shade == &frame->shade;
@@ -413,8 +413,8 @@ static void fill_frame_report(struct glint_frame *frame,
     report->binned = frame->plan.n_binned;
     report->looked = frame->plan.n_looked;
     report->drawn_lights =
-        larger(frame->lights.n - frame->lights.n_more,
-               frame->star.is_alone ? report->apart_lights : 1);
+        max_int(frame->lights.n - frame->lights.n_more,
+                frame->star.is_alone ? report->apart_lights : 1);
     report->tiles = glint_flare_tiles(frame->memory.flare);
     report->held_samples = glint_flare_held(frame->memory.flare);
     report->arena_bytes = frame->memory.bytes;

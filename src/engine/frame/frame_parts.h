@@ -9,12 +9,12 @@
 
 #include "engine/frame/frame.h"
 
-static inline int larger(int a, int b)
+static inline int max_int(int a, int b)
 {
     return a > b ? a : b;
 }
 
-static inline int smaller(int a, int b)
+static inline int min_int(int a, int b)
 {
     return a < b ? a : b;
 }

@@ -149,9 +149,9 @@ static bool coarsen_grids_to_memory(struct glint_frame *f,
     if (f->limits.tight <= 0)
         f->limits.tight_bytes = glint_frame_count_needed_bytes(f, s);
     f->limits.tight = need;
-    f->dials.fineness = larger(
+    f->dials.fineness = max_int(
         LEAST_FINENESS,
-        smaller(fineness - 1,
+        min_int(fineness - 1,
                 (int)(fineness * sqrt(fmax(0, (ROOM_SHARE * most - fixed) /
                                                   (need - fixed))))));
     if (!f->limits.reserved)
@@ -174,13 +174,13 @@ bool glint_frame_fit_capacity(struct glint_frame *f,
     if (bundles <= c->max_bundles && s->need_primitives <= c->max_primitives &&
         s->need_refs <= c->max_refs)
         return true;
-    c->max_bundles = larger(c->max_bundles, bundles);
-    c->max_primitives = larger(
+    c->max_bundles = max_int(c->max_bundles, bundles);
+    c->max_primitives = max_int(
         c->max_primitives,
         (int)fmin(INT_MAX,
                   s->need_primitives *
                       (glint_workers_count(c->workers) > 1 ? UNEVEN : 1.0)));
-    c->max_refs = larger(c->max_refs, s->need_refs);
+    c->max_refs = max_int(c->max_refs, s->need_refs);
     return false;
 }
 
@@ -240,7 +240,7 @@ enum glint_status glint_frame_use_static_lights(struct glint_frame *f,
     if (!f->limits.reserved &&
         allocate_static_lights(f, f->lights.capacity) != GLINT_OK)
         return GLINT_E_MEMORY;
-    if (s->n > larger(f->lights.n, f->dials.max_lights))
+    if (s->n > max_int(f->lights.n, f->dials.max_lights))
         s->n = 0;
     n = glint_lights_still(s, f->lights.light, f->lights.n, near_q30);
     if (n == 0)
@@ -267,9 +267,9 @@ enum glint_status glint_frame_ensure_plan_capacity(struct glint_frame *f)
 
     if (f->limits.reserved || has_plan_capacity(f, bundles))
         return GLINT_OK;
-    f->cfg.max_bundles = larger(bundles, f->cfg.max_bundles);
+    f->cfg.max_bundles = max_int(bundles, f->cfg.max_bundles);
     if (f->cfg.reuse)
-        f->cfg.reuse_lights = larger(f->lights.n, f->cfg.reuse_lights);
+        f->cfg.reuse_lights = max_int(f->lights.n, f->cfg.reuse_lights);
     f->cfg.reuse_gains |= f->lights.gain_q14 != NULL;
     return glint_frame_reallocate_flare(f);
 }
@@ -286,7 +286,7 @@ enum glint_status glint_frame_reserve_memory(struct glint_frame *f, void *mem,
     struct glint_workers *const workers = f->cfg.workers;
 
     f->dials.max_lights =
-        smaller(f->dials.max_lights, smaller(n_drawn, n_lamps));
+        min_int(f->dials.max_lights, min_int(n_drawn, n_lamps));
     /* Not all ghosts are visible, and few use the largest set. */
     f->cfg.max_bundles =
         clamp_bundle_count((glint_frame_has_wave_sets(f) ? 2. : 1) *
@@ -320,7 +320,7 @@ size_t glint_frame_count_used_bytes(const struct glint_frame *f,
 {
     struct glint_flare_config used = f->cfg;
 
-    used.max_bundles = smaller(s->need_bundles, f->cfg.max_bundles);
+    used.max_bundles = min_int(s->need_bundles, f->cfg.max_bundles);
     used.max_vertices = s->vertices;
     used.max_primitives = s->primitives;
     used.max_refs = s->refs;
@@ -388,12 +388,12 @@ static double coarsen_grids_to_minsn(struct glint_frame *f,
     struct glint_cost cost = glint_cost_of(plan, &f->dials);
 
     if (plan->shade)
-        f->dials.dust_log2 = smaller(f->dials.dust_log2, plan->shade->log2);
+        f->dials.dust_log2 = min_int(f->dials.dust_log2, plan->shade->log2);
     while (glint_cost_to_minsn(&cost) > minsn) {
         if (is_cost_mostly_dust(f, plan, &cost))
             f->dials.dust_log2--;
         else if (f->dials.fineness > LEAST_FINENESS)
-            f->dials.fineness = larger(
+            f->dials.fineness = max_int(
                 f->dials.fineness - (f->dials.fineness + STEP - 1) / STEP,
                 LEAST_FINENESS);
         else
@@ -456,7 +456,7 @@ bool glint_frame_limit_work(struct glint_frame *f)
     if (then > left - again && glint_frame_has_wave_sets(f))
         then = limit_ghost_wavelengths(f, then);
     if (then > left - again && f->lights.n > 1)
-        f->dials.max_lights = larger(
+        f->dials.max_lights = max_int(
             1, (int)(f->lights.n * fmin(0.75, fmax(0, left / (then + again)))));
     if (f->dials.fineness == before.fineness &&
         f->dials.dust_log2 == before.dust_log2 &&
@@ -478,8 +478,8 @@ bool glint_frame_select_dust_tables(struct glint_frame *f)
 
     if (!all || !before)
         return false;
-    skipped = larger(
-        all->log2 - larger(f->dials.dust_log2, GLINT_SHADE_LEAST_LOG2), 0);
+    skipped = max_int(
+        all->log2 - max_int(f->dials.dust_log2, GLINT_SHADE_LEAST_LOG2), 0);
     f->shade = *all;
     f->shade.log2 = all->log2 - skipped;
     for (int k = 0; k < f->shade.log2; k++) {

@@ -277,16 +277,17 @@ static void set_star_lights_within_budget(struct glint_frame *f, int n_lights,
         budget_share * f->budget.ms / fmax(f->budget.ms_per_minsn, 1e-9);
 
     for (int i = 0; i <= BUDGET_STEPS; i++) {
-        glint_star_set(s->star, s->tables, s->light, n_lights,
-                       glint_real_of(faintest));
-        s->pixels = (double)glint_star_pixels(s->star);
+        glint_star_set_lights(s->star, s->tables, s->light, n_lights,
+                              glint_real_of(faintest));
+        s->pixels = (double)glint_star_estimate_pixels(s->star);
         if (f->budget.ms <= 0 ||
             1e-3 * glint_cost_weight[GLINT_COST_STAR].planned * s->pixels <=
                 most_minsn)
             return;
         faintest *= 2;
     }
-    glint_star_set(s->star, s->tables, s->light, 0, glint_real_of(faintest));
+    glint_star_set_lights(s->star, s->tables, s->light, 0,
+                          glint_real_of(faintest));
     s->pixels = 0;
 }
 
@@ -329,7 +330,7 @@ void glint_frame_draw_passes(struct glint_frame *frame,
 {
     if (frame->veil.is_set && frame->star.is_set) {
         const struct glint_pass star =
-            glint_star_pass_on(frame->star.star, image);
+            glint_star_make_pass_on(frame->star.star, image);
 
         glint_veil_draw(frame->veil.veil, &star, frame->memory.flare, image);
     } else if (frame->veil.is_set)

@@ -105,8 +105,8 @@ enum glint_status glint_frame_veil_read_picture(struct glint_frame *f,
         return GLINT_OK;
     status = glint_frame_veil_allocate(f);
     if (status == GLINT_OK)
-        glint_veil_look(f->veil.veil, image, glint_real_of(white),
-                        f->cfg.workers);
+        glint_veil_read_picture(f->veil.veil, image, glint_real_of(white),
+                                f->cfg.workers);
     f->veil.has_look = status == GLINT_OK;
     f->veil.is_set = false;
     return status;
@@ -145,7 +145,7 @@ make_gaussian_spread(const struct glint_frame *f, double sigma, double share)
     const double size[2] = {f->view.width, f->view.height};
     int cells[2];
 
-    glint_veil_cells(f->view.width, f->view.height, cells);
+    glint_veil_count_cells(f->view.width, f->view.height, cells);
     for (int k = 0; k < 2; k++) {
         const double in_cells = fmax(sigma * cells[k] / size[k], least_sigma);
         /* A wider Gaussian is treated as even. */
@@ -263,7 +263,7 @@ double glint_frame_veil_cost_in_pixels(const struct glint_frame *f)
 
     if (!glint_frame_has_veil(f))
         return 0;
-    glint_veil_cells(f->view.width, f->view.height, cells);
+    glint_veil_count_cells(f->view.width, f->view.height, cells);
     return rows * f->view.width * f->view.height +
            3. * n * cells[0] * cells[1] * (cells[0] + cells[1]) / spreading;
 }
@@ -287,9 +287,9 @@ static void add_lamp_to_veil(struct glint_frame *f,
         return;
     for (int c = 0; c < 3; c++)
         rgb_q14[c] = (int32_t)lrint(fmax(lamp->rgb[c], 0) / most * 16384);
-    glint_veil_lamp(f->veil.veil, (int32_t)lrint(256 * at_x),
-                    (int32_t)lrint(256 * at_y), glint_real_of(power * most),
-                    rgb_q14);
+    glint_veil_add_lamp(f->veil.veil, (int32_t)lrint(256 * at_x),
+                        (int32_t)lrint(256 * at_y), glint_real_of(power * most),
+                        rgb_q14);
 }
 
 enum glint_status glint_frame_veil_set_light(struct glint_frame *f,
@@ -313,7 +313,7 @@ enum glint_status glint_frame_veil_set_light(struct glint_frame *f,
     for (int i = 0; i < n; i++)
         add_lamp_to_veil(f, &lamps[i],
                          f->known ? f->known[i].excess : lamps[i].power);
-    glint_veil_spread(v->veil, spreads, set_veil_spreads(f, spreads));
+    glint_veil_spread_light(v->veil, spreads, set_veil_spreads(f, spreads));
     spread_front_dirt_light(f);
     v->is_set = true;
     return GLINT_OK;

@@ -287,7 +287,7 @@ static enum glint_status make_front_table(
     }
     t->bytes = sizeof *t + n * sizeof(uint16_t);
     t->front =
-        (struct glint_veil_front){glint_veil_front_row, n_x, n_y,
+        (struct glint_veil_front){glint_veil_add_front_row, n_x, n_y,
                                   (const uint16_t *)(const void *)(t + 1)};
     compute_node_covers(covered, n_x, n_y, dirt, optics, setup);
     encode_node_covers(t, covered, (uint16_t *)(void *)(t + 1));

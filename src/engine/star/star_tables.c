@@ -255,7 +255,7 @@ static enum glint_status make_dirt_smear_table(struct glint_star_tables *t,
 
     t->step = glint_real_of(glint_real_value(t->step) * clear);
     t->halo_log2_q16 += (int32_t)lrint(log2(clear) * 65536);
-    table->part = glint_star_smear_part;
+    table->part = glint_star_add_smear_row;
     t->smear = table;
     return glint_smear_make_table(table, smear, psf, airy_px);
 }

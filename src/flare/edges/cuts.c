@@ -11,14 +11,14 @@ enum { BARREL = 64, NOTHING = GLINT_CUT_NOTHING };
 
 /* ------------------------------------------------------------------- nodes */
 
-static int64_t radius2_q32(const struct glint_vertex *v)
+static int64_t compute_squared_radius_q32(const struct glint_vertex *v)
 {
     return (int64_t)v->stop_x_q16 * v->stop_x_q16 +
            (int64_t)v->stop_y_q16 * v->stop_y_q16;
 }
 
 /* Returns half the number of sides if opposite sides are parallel, else 0. */
-static int half_sides(const struct glint_stop *stop)
+static int count_parallel_side_pairs(const struct glint_stop *stop)
 {
     const int half = stop->n_blades / 2;
 
@@ -31,11 +31,12 @@ static int half_sides(const struct glint_stop *stop)
 
 /* Returns 1 - (1 + r^2) / 2 at V in a round stop, minus its inset; clamped far
  * outside. */
-static int64_t evaluate_disc_q16(const struct glint_stop *stop,
-                                 const struct glint_vertex *v)
+static int64_t evaluate_round_stop_q16(const struct glint_stop *stop,
+                                       const struct glint_vertex *v)
 {
     const int64_t value_q16 =
-        (((INT64_C(1) << 32) - radius2_q32(v)) >> 17) - stop->inset_q16;
+        (((INT64_C(1) << 32) - compute_squared_radius_q32(v)) >> 17) -
+        stop->inset_q16;
 
     return value_q16 > -(1 << 30) ? value_q16 : -(1 << 30);
 }
@@ -67,22 +68,23 @@ static inline uint64_t find_outside_sides(const struct glint_stop *stop,
 static uint64_t find_outside_arcs(const struct glint_stop *stop,
                                   const struct glint_vertex *v)
 {
-    const int64_t disc_q16 = glint_disc_q16(v);
+    const int64_t disc_q16 = glint_disc_function_q16(v);
     uint64_t sides = 0;
 
     for (int k = stop->n_blades - 1; k >= 0; k--) {
         const int64_t straight_q16 = glint_straight_q16(stop, k, v);
 
-        sides = 2 * sides + (glint_arc_q16(stop, straight_q16, disc_q16) <= 0);
+        sides = 2 * sides +
+                (glint_arc_distance_q16(stop, straight_q16, disc_q16) <= 0);
     }
     return sides;
 }
 
-void glint_cuts_row(const struct glint_stop *stop,
-                    const struct glint_vertex *row, int n, uint64_t *sides,
-                    uint8_t *barrels)
+void glint_cuts_classify_row(const struct glint_stop *stop,
+                             const struct glint_vertex *row, int n,
+                             uint64_t *sides, uint8_t *barrels)
 {
-    const int half = half_sides(stop);
+    const int half = count_parallel_side_pairs(stop);
     const int64_t apothem_q16 = stop->apothem_q16;
     const int64_t least_q46 =
         apothem_q16 * (INT64_C(1) << 30) - (INT64_C(1) << 29);
@@ -92,8 +94,8 @@ void glint_cuts_row(const struct glint_stop *stop,
     for (int i = 0; i < n; i++) {
         const struct glint_vertex *v = &row[i];
 
-        sides[i] = stop->n_blades == 0 ? evaluate_disc_q16(stop, v) <= 0
-                   : radius2_q32(v) < within_q32 ? 0
+        sides[i] = stop->n_blades == 0 ? evaluate_round_stop_q16(stop, v) <= 0
+                   : compute_squared_radius_q32(v) < within_q32 ? 0
                    : stop->round_q30
                        ? find_outside_arcs(stop, v)
                        : find_outside_sides(stop, half, v, least_q46);
@@ -102,7 +104,7 @@ void glint_cuts_row(const struct glint_stop *stop,
     }
 }
 
-int glint_cuts_count(struct glint_outside o)
+int glint_cuts_count_crossed(struct glint_outside o)
 {
     int n = (o.barrels & 1) + (o.barrels >> 1 & 1);
 
@@ -114,13 +116,13 @@ int glint_cuts_count(struct glint_outside o)
 /* ------------------------------------------------------------------- parts */
 
 /* Returns the value of cut CUT at V, positive inside. */
-static int64_t evaluate_cut_q16(const struct glint_stop *stop, int cut,
-                                const struct glint_vertex *v)
+static int64_t evaluate_cut_function_q16(const struct glint_stop *stop, int cut,
+                                         const struct glint_vertex *v)
 {
     if (cut >= BARREL)
         return glint_barrel_q16(cut - BARREL, v);
     return stop->n_blades ? glint_side_q16(stop, cut, v)
-                          : evaluate_disc_q16(stop, v);
+                          : evaluate_round_stop_q16(stop, v);
 }
 
 struct interval {
@@ -128,12 +130,13 @@ struct interval {
     int cut[2];
 };
 
-static void shorten_interval(const struct glint_stop *stop, struct interval *in,
-                             int cut, const struct glint_vertex *a,
-                             const struct glint_vertex *b)
+static void clip_interval_by_cut(const struct glint_stop *stop,
+                                 struct interval *in, int cut,
+                                 const struct glint_vertex *a,
+                                 const struct glint_vertex *b)
 {
-    const int64_t fa = evaluate_cut_q16(stop, cut, a),
-                  fb = evaluate_cut_q16(stop, cut, b);
+    const int64_t fa = evaluate_cut_function_q16(stop, cut, a),
+                  fb = evaluate_cut_function_q16(stop, cut, b);
     const int end = fb <= 0; /* index of the end that is outside */
     int32_t t_q30;
 
@@ -150,9 +153,9 @@ static void shorten_interval(const struct glint_stop *stop, struct interval *in,
     }
 }
 
-static void interpolate_point(const struct glint_vertex *a,
-                              const struct glint_vertex *b, int64_t t_q30,
-                              int32_t at_q8[2])
+static void interpolate_vertex_position(const struct glint_vertex *a,
+                                        const struct glint_vertex *b,
+                                        int64_t t_q30, int32_t at_q8[2])
 {
     at_q8[0] =
         a->x_q8 + q_narrow(q_shift((b->x_q8 - (int64_t)a->x_q8) * t_q30, 30));
@@ -160,15 +163,17 @@ static void interpolate_point(const struct glint_vertex *a,
         a->y_q8 + q_narrow(q_shift((b->y_q8 - (int64_t)a->y_q8) * t_q30, 30));
 }
 
-static int lowest_bit(uint64_t x)
+static int find_lowest_bit(uint64_t x)
 {
     return bit_length(x & (~x + 1)) - 1;
 }
 
-void glint_cuts_part(const struct glint_stop *stop,
-                     const struct glint_vertex *a, struct glint_outside at_a,
-                     const struct glint_vertex *b, struct glint_outside at_b,
-                     struct glint_edge_part *part)
+void glint_cuts_find_visible_part(const struct glint_stop *stop,
+                                  const struct glint_vertex *a,
+                                  struct glint_outside at_a,
+                                  const struct glint_vertex *b,
+                                  struct glint_outside at_b,
+                                  struct glint_edge_part *part)
 {
     struct interval in = {{0, INT64_C(1) << 30}, {NOTHING, NOTHING}};
 
@@ -177,13 +182,13 @@ void glint_cuts_part(const struct glint_stop *stop,
     if (!part->visible)
         return;
     for (uint64_t m = at_a.sides | at_b.sides; m; m &= m - 1)
-        shorten_interval(stop, &in, lowest_bit(m), a, b);
+        clip_interval_by_cut(stop, &in, find_lowest_bit(m), a, b);
     for (int k = 0; k < 2; k++)
         if ((at_a.barrels | at_b.barrels) >> k & 1)
-            shorten_interval(stop, &in, BARREL + k, a, b);
+            clip_interval_by_cut(stop, &in, BARREL + k, a, b);
     part->visible = in.t_q30[0] < in.t_q30[1];
     for (int k = 0; k < 2 && part->visible; k++) {
-        interpolate_point(a, b, in.t_q30[k], part->end_q8[k]);
+        interpolate_vertex_position(a, b, in.t_q30[k], part->end_q8[k]);
         part->cut[k] = in.cut[k];
     }
 }
@@ -197,7 +202,7 @@ struct plane {
     int64_t middle4, u2, v2;
 };
 
-static struct plane fit_plane(const int64_t value[4])
+static struct plane fit_plane_to_corners(const int64_t value[4])
 {
     return (struct plane){value[0] + value[1] + value[2] + value[3],
                           value[1] - value[0] + value[2] - value[3],
@@ -219,9 +224,9 @@ static int divide_in_cell_q16(int64_t x, int64_t y, int64_t *q16)
     return 1;
 }
 
-int glint_cuts_cross(const struct glint_stop *stop,
-                     const struct glint_vertex *const corner[4], int a, int b,
-                     int32_t at_q8[2])
+int glint_cuts_find_crossing(const struct glint_stop *stop,
+                             const struct glint_vertex *const corner[4], int a,
+                             int b, int32_t at_q8[2])
 {
     int64_t fa[4], fb[4], x[4], y[4], u_q16, v_q16, det;
     struct plane pa, pb, px, py;
@@ -231,8 +236,8 @@ int glint_cuts_cross(const struct glint_stop *stop,
     for (int k = 0; k < 4; k++) {
         const struct glint_vertex *v = corner[k];
 
-        fa[k] = evaluate_cut_q16(stop, a, v);
-        fb[k] = evaluate_cut_q16(stop, b, v);
+        fa[k] = evaluate_cut_function_q16(stop, a, v);
+        fb[k] = evaluate_cut_function_q16(stop, b, v);
         most |=
             (uint64_t)(fa[k] ^ fa[k] >> 63) | (uint64_t)(fb[k] ^ fb[k] >> 63);
         x[k] = v->x_q8;
@@ -244,8 +249,8 @@ int glint_cuts_cross(const struct glint_stop *stop,
         fa[k] >>= down;
         fb[k] >>= down;
     }
-    pa = fit_plane(fa);
-    pb = fit_plane(fb);
+    pa = fit_plane_to_corners(fa);
+    pb = fit_plane_to_corners(fb);
     /* Both planes are 0: middle4 / 4 + u u2 / 2 + v v2 / 2 = 0, so 2 u u2 + 2 v
      * v2 = -middle4. */
     det = 2 * (pa.u2 * pb.v2 - pb.u2 * pa.v2);
@@ -254,8 +259,8 @@ int glint_cuts_cross(const struct glint_stop *stop,
         !divide_in_cell_q16(pa.middle4 * pb.u2 - pb.middle4 * pa.u2, det,
                             &v_q16))
         return 0;
-    px = fit_plane(x);
-    py = fit_plane(y);
+    px = fit_plane_to_corners(x);
+    py = fit_plane_to_corners(y);
     at_q8[0] = q_narrow(
         q_shift(px.middle4 * 32768 + px.u2 * u_q16 + px.v2 * v_q16, 17));
     at_q8[1] = q_narrow(

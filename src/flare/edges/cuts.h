@@ -26,12 +26,12 @@ struct glint_outside {
 
 /* Sets SIDES and BARRELS of N nodes in a row. They are undefined for invalid
  * nodes. */
-void glint_cuts_row(const struct glint_stop *stop,
-                    const struct glint_vertex *row, int n, uint64_t *sides,
-                    uint8_t *barrels);
+void glint_cuts_classify_row(const struct glint_stop *stop,
+                             const struct glint_vertex *row, int n,
+                             uint64_t *sides, uint8_t *barrels);
 
 /* Returns the number of cuts in O, or 3 if there are more. */
-int glint_cuts_count(struct glint_outside o);
+int glint_cuts_count_crossed(struct glint_outside o);
 
 /* The visible part of the edge between two neighbouring nodes; the order of its
  * ends is the order of the nodes in the grid. */
@@ -44,16 +44,18 @@ struct glint_edge_part {
 
 enum { GLINT_CUT_NOTHING = -1 };
 
-void glint_cuts_part(const struct glint_stop *stop,
-                     const struct glint_vertex *a, struct glint_outside at_a,
-                     const struct glint_vertex *b, struct glint_outside at_b,
-                     struct glint_edge_part *part);
+void glint_cuts_find_visible_part(const struct glint_stop *stop,
+                                  const struct glint_vertex *a,
+                                  struct glint_outside at_a,
+                                  const struct glint_vertex *b,
+                                  struct glint_outside at_b,
+                                  struct glint_edge_part *part);
 
 /* Finds the point where the cuts A and B, numbered as in struct
  * glint_edge_part, cross within the cell with the corners CORNER, in order.
  * Returns 0 if they do not cross in the cell. */
-int glint_cuts_cross(const struct glint_stop *stop,
-                     const struct glint_vertex *const corner[4], int a, int b,
-                     int32_t at_q8[2]);
+int glint_cuts_find_crossing(const struct glint_stop *stop,
+                             const struct glint_vertex *const corner[4], int a,
+                             int b, int32_t at_q8[2]);
 
 #endif

@@ -12,7 +12,7 @@
 /* Returns ACROSS / DOWN, rounded towards 0 with an error of at most 2^-31 of
  * the result plus one unit. DOWN must be above 0, both magnitudes below
  * 2^30. */
-static int64_t divide_slope(int32_t across, int32_t down)
+static int64_t compute_slope_q40(int32_t across, int32_t down)
 {
     const int up = q_up((uint32_t)down);
     const int64_t r = q_reciprocal((uint32_t)down << up);
@@ -21,26 +21,27 @@ static int64_t divide_slope(int32_t across, int32_t down)
     return across < 0 ? -size_q40 : size_q40;
 }
 
-int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
-                   const int32_t b_q8[2], int32_t light, int32_t other)
+int glint_edge_set_from_points(struct glint_edge *edge, const int32_t a_q8[2],
+                               const int32_t b_q8[2], int32_t light,
+                               int32_t other)
 {
     const int up = b_q8[1] < a_q8[1];
     const int32_t *upper = up ? b_q8 : a_q8, *lower = up ? a_q8 : b_q8;
 
     if (a_q8[1] == b_q8[1])
         return 0;
-    *edge = (struct glint_edge){
-        .x_q8 = upper[0],
-        .y_q8 = upper[1],
-        .end_y_q8 = lower[1],
-        .slope_q40 = divide_slope(lower[0] - upper[0], lower[1] - upper[1]),
-        .left = up ? other : light,
-        .right = up ? light : other};
+    *edge = (struct glint_edge){.x_q8 = upper[0],
+                                .y_q8 = upper[1],
+                                .end_y_q8 = lower[1],
+                                .slope_q40 = compute_slope_q40(
+                                    lower[0] - upper[0], lower[1] - upper[1]),
+                                .left = up ? other : light,
+                                .right = up ? light : other};
     return 1;
 }
 
 /* Adding half a pixel turns rounding to the nearest pixel into truncation. */
-void glint_edge_make_snapped(struct glint_edge *edge)
+void glint_edge_snap_to_pixels(struct glint_edge *edge)
 {
     edge->x_q8 += edge->whole ? 0 : 128;
     edge->whole = 1;
@@ -52,7 +53,7 @@ enum visit { COUNT, PUT, SPAN };
 
 /* Returns the index, in a row of tiles, of the tile of column X; LAST is the
  * last column of the region. */
-static inline int find_tile(int x, int last, int log2)
+static inline int find_tile_column(int x, int last, int log2)
 {
     return (x < 0 ? 0 : x > last ? last : x) >> log2;
 }
@@ -60,9 +61,9 @@ static inline int find_tile(int x, int last, int log2)
 /* Visits the tiles that edge E crosses, or the tiles of a patch's box, row
  * by row of tiles. Pieces left of the region count for its first column.
  * Returns the number of entries. */
-static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
-                                   const struct glint_bins *bins,
-                                   enum visit visit, int32_t index)
+static WHOLLY_INLINE int visit_crossed_tiles(const struct glint_edge *e,
+                                             const struct glint_bins *bins,
+                                             enum visit visit, int32_t index)
 {
     const struct glint_box *r = &bins->region;
     const int log2 = bins->tile_log2, last = r->x1 - 1 - r->x0;
@@ -84,8 +85,8 @@ static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
         const int low = q_smaller(x, next_x), high = q_larger(x, next_x);
 
         if (low <= last)
-            for (int k = find_tile(low, last, log2);
-                 k <= find_tile(high, last, log2); k++) {
+            for (int k = find_tile_column(low, last, log2);
+                 k <= find_tile_column(high, last, log2); k++) {
                 n++;
                 if (visit == PUT)
                     bins->ref[start[k]] = index;
@@ -100,19 +101,20 @@ static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
     return n;
 }
 
-int glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins)
+int glint_edge_count_into_bins(const struct glint_edge *edge,
+                               struct glint_bins *bins)
 {
-    return each_tile(edge, bins, COUNT, 0);
+    return visit_crossed_tiles(edge, bins, COUNT, 0);
 }
 
-void glint_edge_put(const struct glint_edge *edge, struct glint_bins *bins,
-                    int32_t index)
+void glint_edge_put_into_bins(const struct glint_edge *edge,
+                              struct glint_bins *bins, int32_t index)
 {
-    each_tile(edge, bins, PUT, index);
+    visit_crossed_tiles(edge, bins, PUT, index);
 }
 
-int glint_edge_span(const struct glint_edge *edge,
-                    const struct glint_bins *bins)
+int glint_edge_count_bin_entries(const struct glint_edge *edge,
+                                 const struct glint_bins *bins)
 {
-    return each_tile(edge, bins, SPAN, 0);
+    return visit_crossed_tiles(edge, bins, SPAN, 0);
 }

@@ -88,8 +88,8 @@ struct glint_edge_sums {
     glint_patch_fn *patch;
     const struct glint_shade *shade;
     void *scratch;
-    int in_narrow; /* set by glint_edge_add(): 1 if the narrow sums sufficed and
-                      hold the result */
+    int in_narrow; /* set by glint_edges_add_to_sums(): 1 if the narrow sums
+                      sufficed and hold the result */
     uint64_t *wide;
     uint32_t *narrow;
     int64_t *carry;    /* [3][side rows]: light that runs into the tile; after a
@@ -103,8 +103,9 @@ struct glint_edge_sums {
 /* Sets EDGE to the line from A to B, (x, y) _q8. LIGHT is on the right of an
  * upward line, y falling, OTHER on the other side. Returns 0 if the line is
  * horizontal, and so not an edge. */
-int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
-                   const int32_t b_q8[2], int32_t light, int32_t other);
+int glint_edge_set_from_points(struct glint_edge *edge, const int32_t a_q8[2],
+                               const int32_t b_q8[2], int32_t light,
+                               int32_t other);
 
 /* Returns x of EDGE at height Y, which must be between its ends. The magnitude
  * is below 2^61. Slopes are rounded towards 0, so x never lies beyond the
@@ -117,37 +118,40 @@ static inline int64_t edge_x_at_q40(const struct glint_edge *e, int32_t y_q8)
 /* Snaps EDGE to the nearest pixel boundary in each row. This costs a fraction
  * of a smooth edge, and is meant for changes of light that are barely visible.
  * Closed outlines still cancel, as heights are unchanged. */
-void glint_edge_make_snapped(struct glint_edge *edge);
+void glint_edge_snap_to_pixels(struct glint_edge *edge);
 
 /* Put EDGE, whose index is INDEX, into the bins of the tiles that it crosses,
  * or only count it there and return the number of entries. Parts left of the
  * picture belong to the first column of tiles. */
-int glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins);
-void glint_edge_put(const struct glint_edge *edge, struct glint_bins *bins,
-                    int32_t index);
+int glint_edge_count_into_bins(const struct glint_edge *edge,
+                               struct glint_bins *bins);
+void glint_edge_put_into_bins(const struct glint_edge *edge,
+                              struct glint_bins *bins, int32_t index);
 /* Returns the number of entries of EDGE in BINS without counting it there. */
-int glint_edge_span(const struct glint_edge *edge,
-                    const struct glint_bins *bins);
+int glint_edge_count_bin_entries(const struct glint_edge *edge,
+                                 const struct glint_bins *bins);
 
 /* Adds the edges EDGE[REF[0 .. N_REFS - 1]] to the changes of SUMS, each in the
  * colour of its bundle. The light of both sides is coloured before it is
  * subtracted, so that edges still cancel. */
-void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
-                    const struct glint_bundle *bundle, const int32_t *ref,
-                    int n_refs);
+void glint_edges_add_to_sums(struct glint_edge_sums *sums,
+                             const struct glint_edge *edge,
+                             const struct glint_bundle *bundle,
+                             const int32_t *ref, int n_refs);
 
 /* Returns whether row ROW has no light: neither changes nor light from the
  * left. */
-int glint_edge_dark(const struct glint_edge_sums *sums, int row);
+int glint_sums_is_row_dark(const struct glint_edge_sums *sums, int row);
 
 /* Write the light of row ROW of the tile in channel CHANNEL, clear its changes,
  * and set its carry to the light that runs out of the tile. For linear pictures
  * one value per pixel is written, clamped to int32. For pictures in codes the
  * number of values is rounded up to a multiple of GLINT_LANES; returns 0 if the
  * row has no light at all. */
-void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
-                       int32_t *light_q20);
-int glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
-                     const struct glint_kernels *kernels, uint16_t *light_q16);
+void glint_sums_read_linear_row(const struct glint_edge_sums *sums, int channel,
+                                int row, int32_t *light_q20);
+int glint_sums_read_code_row(const struct glint_edge_sums *sums, int channel,
+                             int row, const struct glint_kernels *kernels,
+                             uint16_t *light_q16);
 
 #endif

@@ -36,12 +36,12 @@ struct run {
                    for linear light */
     int x0, x1; /* the tile's columns */
     int64_t light;
-    int64_t
-        rise_q32; /* rise of the covered area per pixel, see compute_rise() */
+    int64_t rise_q32; /* rise of the covered area per pixel, see
+                         compute_area_rise() */
 };
 
-static inline void add_change(const struct run *r, enum mode mode, int x,
-                              fast area)
+static inline void add_light_change(const struct run *r, enum mode mode, int x,
+                                    fast area)
 {
     if (mode == NARROW)
         r->row.narrow[x] += (uint32_t)r->light * (uint32_t)area;
@@ -50,8 +50,8 @@ static inline void add_change(const struct run *r, enum mode mode, int x,
 }
 
 /* Returns AREA, at most one pixel, in the units of the sums. */
-static inline fast convert_area(const struct run *r, enum mode mode,
-                                fast area_q16)
+static inline fast convert_area_to_sum_units(const struct run *r,
+                                             enum mode mode, fast area_q16)
 {
     const int less = mode == NARROW ? 8 : r->less;
 
@@ -62,8 +62,9 @@ static inline fast convert_area(const struct run *r, enum mode mode,
  * that spans several pixels. Covered areas rise from pixel to pixel from 0 to
  * HEIGHT; each pixel of the tile changes by the difference from the pixel
  * before. */
-static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
-                     int64_t b_q40, fast height_q16)
+static void add_piece_over_many_pixels(const struct run *r, enum mode mode,
+                                       int64_t a_q40, int64_t b_q40,
+                                       fast height_q16)
 {
     const int first = (int)(a_q40 >> 40), last = (int)(b_q40 >> 40);
     const int64_t a_q16 = a_q40 >> 24, b_q16 = b_q40 >> 24;
@@ -85,23 +86,24 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
          * side */
         const fast far_q16 = (fast)((i > first ? ONE_Q16 : side_q16 - a_q16) +
                                     (i < last ? 0 : side_q16 - b_q16));
-        const fast area = convert_area(
+        const fast area = convert_area_to_sum_units(
             r, mode, low + (fast)((int64_t)(high - low) * far_q16 >> 17));
 
         if (i >= r->x0)
-            add_change(r, mode, i, area - before);
+            add_light_change(r, mode, i, area - before);
         before = area;
         low = high;
     }
     if (last < r->x1 && last >= r->x0)
-        add_change(r, mode, last + 1,
-                   convert_area(r, mode, height_q16) - before);
+        add_light_change(r, mode, last + 1,
+                         convert_area_to_sum_units(r, mode, height_q16) -
+                             before);
 }
 
 /* Returns the rise of an edge, height _q16 / width _q16, with 32 additional
  * fraction bits. Edges so steep that they move by less than 2^-16 pixels per
  * 1/256 pixel of height get a smaller rise. */
-static int64_t compute_rise(int64_t slope_q40)
+static int64_t compute_area_rise(int64_t slope_q40)
 {
     const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
     const int64_t least = INT64_C(1) << 24;
@@ -116,38 +118,40 @@ static int64_t compute_rise(int64_t slope_q40)
 
 /* Adds a piece that lies in one or two pixels of the tile, using only
  * registers. */
-static inline void add_near(const struct run *r, enum mode mode, fast a_q16,
-                            fast b_q16, fast height_q16)
+static inline void add_piece_in_two_pixels(const struct run *r, enum mode mode,
+                                           fast a_q16, fast b_q16,
+                                           fast height_q16)
 {
     const int first = (int)(a_q16 >> 16);
     const fast far_q16 = ONE_Q16 - (a_q16 & 0xffff);
     const fast left_q16 = ONE_Q16 - (b_q16 & 0xffff);
-    const fast height = convert_area(r, mode, height_q16);
+    const fast height = convert_area_to_sum_units(r, mode, height_q16);
 
     if (first == b_q16 >> 16) {
         const int64_t area_q33 = (int64_t)height_q16 * (far_q16 + left_q16);
-        const fast area = convert_area(r, mode, (fast)(area_q33 >> 17));
+        const fast area =
+            convert_area_to_sum_units(r, mode, (fast)(area_q33 >> 17));
 
-        add_change(r, mode, first, area);
-        add_change(r, mode, first + 1, height - area);
+        add_light_change(r, mode, first, area);
+        add_light_change(r, mode, first + 1, height - area);
     } else {
         const fast low_q16 = (fast)(r->rise_q32 * far_q16 >> 32);
         const int64_t rest_q33 =
             (int64_t)(height_q16 - low_q16) * (ONE_Q16 + left_q16);
-        const fast one =
-            convert_area(r, mode, (fast)((int64_t)low_q16 * far_q16 >> 17));
-        const fast two =
-            convert_area(r, mode, low_q16 + (fast)(rest_q33 >> 17));
+        const fast one = convert_area_to_sum_units(
+            r, mode, (fast)((int64_t)low_q16 * far_q16 >> 17));
+        const fast two = convert_area_to_sum_units(
+            r, mode, low_q16 + (fast)(rest_q33 >> 17));
 
-        add_change(r, mode, first, one);
-        add_change(r, mode, first + 1, two - one);
-        add_change(r, mode, first + 2, height - two);
+        add_light_change(r, mode, first, one);
+        add_light_change(r, mode, first + 1, two - one);
+        add_light_change(r, mode, first + 2, height - two);
     }
 }
 
 /* Adds the piece from A to B over HEIGHT. A may be larger than B. */
-static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
-                             int64_t b_q40, fast height_q16)
+static inline void add_edge_piece(const struct run *r, enum mode mode,
+                                  int64_t a_q40, int64_t b_q40, fast height_q16)
 {
     const int64_t low_q40 = a_q40 < b_q40 ? a_q40 : b_q40;
     const int64_t high_q40 = a_q40 < b_q40 ? b_q40 : a_q40;
@@ -156,20 +160,21 @@ static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
     if (last < r->x0) { /* A piece left of the picture counts as one at the
                            picture's left side. */
         if (r->x0 == 0)
-            add_change(r, mode, 0, convert_area(r, mode, height_q16));
+            add_light_change(r, mode, 0,
+                             convert_area_to_sum_units(r, mode, height_q16));
     } else if (first >= r->x1) {
         return;
     } else if (first == last ||
                (last == first + 1 && first >= r->x0 && last < r->x1)) {
-        add_near(r, mode, (fast)(low_q40 >> 24), (fast)(high_q40 >> 24),
-                 height_q16);
+        add_piece_in_two_pixels(r, mode, (fast)(low_q40 >> 24),
+                                (fast)(high_q40 >> 24), height_q16);
     } else {
-        add_wide(r, mode, low_q40, high_q40, height_q16);
+        add_piece_over_many_pixels(r, mode, low_q40, high_q40, height_q16);
     }
 }
 
 /* Moves R by N rows down. */
-static inline void go_down(struct run *r, enum mode mode, ptrdiff_t n)
+static inline void move_run_down(struct run *r, enum mode mode, ptrdiff_t n)
 {
     if (mode == NARROW)
         r->row.narrow += n;
@@ -178,35 +183,37 @@ static inline void go_down(struct run *r, enum mode mode, ptrdiff_t n)
 }
 
 /* Returns a set of 64 bits with bits A .. B - 1 set. */
-static uint64_t rows_between(int a, int b)
+static uint64_t make_row_mask(int a, int b)
 {
     return (UINT64_MAX << a) & (UINT64_MAX >> (64 - b));
 }
 
 /* Adds N complete rows of an edge that begins at X and moves by STEP per
  * row. */
-static inline void add_rows(struct run r, enum mode mode, int n, int64_t x_q40,
-                            int64_t step_q40, int stride)
+static inline void add_complete_rows(struct run r, enum mode mode, int n,
+                                     int64_t x_q40, int64_t step_q40,
+                                     int stride)
 {
     for (; n > 0; n--) {
-        add_piece(&r, mode, x_q40, x_q40 + step_q40, ONE_Q16);
-        go_down(&r, mode, stride);
+        add_edge_piece(&r, mode, x_q40, x_q40 + step_q40, ONE_Q16);
+        move_run_down(&r, mode, stride);
         x_q40 += step_q40;
     }
 }
 
-/* Like add_rows(), but in each row the edge must cross only one or two pixels
- * of the tile. */
-static inline void add_near_rows(struct run r, enum mode mode, int n,
-                                 int64_t x_q40, int64_t step_q40, int stride)
+/* Like add_complete_rows(), but in each row the edge must cross only one or two
+ * pixels of the tile. */
+static inline void add_rows_in_two_pixels(struct run r, enum mode mode, int n,
+                                          int64_t x_q40, int64_t step_q40,
+                                          int stride)
 {
     for (; n > 0; n--) {
         const fast a_q16 = (fast)(x_q40 >> 24);
         const fast b_q16 = (fast)((x_q40 += step_q40) >> 24);
 
-        add_near(&r, mode, a_q16 < b_q16 ? a_q16 : b_q16,
-                 a_q16 < b_q16 ? b_q16 : a_q16, ONE_Q16);
-        go_down(&r, mode, stride);
+        add_piece_in_two_pixels(&r, mode, a_q16 < b_q16 ? a_q16 : b_q16,
+                                a_q16 < b_q16 ? b_q16 : a_q16, ONE_Q16);
+        move_run_down(&r, mode, stride);
     }
 }
 
@@ -233,7 +240,7 @@ static inline struct part clip_edge_to_tile(const struct glint_edge_sums *s,
                      end_q8,
                      edge_x_at_q40(e, y_q8)};
 
-    s->touched[channel] |= rows_between(row, ((end_q8 + 255) >> 8) - t->y0);
+    s->touched[channel] |= make_row_mask(row, ((end_q8 + 255) >> 8) - t->y0);
     if (mode == NARROW)
         p.run.row.narrow = s->narrow + at;
     else
@@ -242,14 +249,15 @@ static inline struct part clip_edge_to_tile(const struct glint_edge_sums *s,
 }
 
 /* Returns the height, in 1/256 pixel, of the part of P within its first row. */
-static inline int32_t find_first_height(const struct part *p)
+static inline int32_t compute_first_row_height(const struct part *p)
 {
     return q_smaller((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
 }
 
 /* Adds all rows of P as a smooth edge. */
-static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
-                              const struct glint_edge *e, struct part p)
+static inline void add_smooth_edge(const struct glint_edge_sums *s,
+                                   enum mode mode, const struct glint_edge *e,
+                                   struct part p)
 {
     const int64_t end_q40 = edge_x_at_q40(e, p.end_q8);
     const int64_t low_q40 = p.x_q40 < end_q40 ? p.x_q40 : end_q40;
@@ -257,13 +265,13 @@ static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
     int n;
 
     if (low_q40 >> 40 != high_q40 >> 40)
-        p.run.rise_q32 = compute_rise(e->slope_q40);
+        p.run.rise_q32 = compute_area_rise(e->slope_q40);
     if (p.y_q8 & 255) {
-        const int32_t height_q8 = find_first_height(&p);
+        const int32_t height_q8 = compute_first_row_height(&p);
         const int64_t next_q40 = p.x_q40 + e->slope_q40 * height_q8;
 
-        add_piece(&p.run, mode, p.x_q40, next_q40, height_q8 * 256);
-        go_down(&p.run, mode, s->stride);
+        add_edge_piece(&p.run, mode, p.x_q40, next_q40, height_q8 * 256);
+        move_run_down(&p.run, mode, s->stride);
         p.x_q40 = next_q40;
         p.y_q8 += height_q8;
     }
@@ -275,92 +283,98 @@ static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
 
         if (low_q40 >> 40 < p.run.x0 || high_q40 >> 40 >= p.run.x1 ||
             !is_narrow)
-            add_rows(p.run, mode, n, p.x_q40, step_q40, s->stride);
+            add_complete_rows(p.run, mode, n, p.x_q40, step_q40, s->stride);
         else
-            add_near_rows(p.run, mode, n, p.x_q40, step_q40, s->stride);
-        go_down(&p.run, mode, (ptrdiff_t)n * s->stride);
+            add_rows_in_two_pixels(p.run, mode, n, p.x_q40, step_q40,
+                                   s->stride);
+        move_run_down(&p.run, mode, (ptrdiff_t)n * s->stride);
         p.x_q40 += n * step_q40;
         p.y_q8 += n * 256;
     }
     if (p.y_q8 < p.end_q8)
-        add_piece(&p.run, mode, p.x_q40, end_q40, (p.end_q8 - p.y_q8) * 256);
+        add_edge_piece(&p.run, mode, p.x_q40, end_q40,
+                       (p.end_q8 - p.y_q8) * 256);
 }
 
 /* Adds AREA, the area of one row, to the pixel of the edge in that row and all
  * pixels on its right. X_Q40 counts from the tile's left side. An edge left of
  * the picture counts as one at the picture's left side. */
-static inline void add_whole(const struct run *r, enum mode mode, int64_t x_q40,
-                             fast area)
+static inline void add_snapped_row(const struct run *r, enum mode mode,
+                                   int64_t x_q40, fast area)
 {
     const int x = (int)(x_q40 >> 40);
 
     if ((unsigned)x < (unsigned)r->x1)
-        add_change(r, mode, x, area);
+        add_light_change(r, mode, x, area);
     else if (x < 0 && r->x0 == 0)
-        add_change(r, mode, 0, area);
+        add_light_change(r, mode, 0, area);
 }
 
-/* Like add_whole(), for N complete rows; the edge moves by STEP per row. */
-static inline void add_full_rows(struct run r, enum mode mode, int n,
-                                 int64_t x_q40, int64_t step_q40, int stride)
+/* Like add_snapped_row(), for N complete rows; the edge moves by STEP per row.
+ */
+static inline void add_complete_snapped_rows(struct run r, enum mode mode,
+                                             int n, int64_t x_q40,
+                                             int64_t step_q40, int stride)
 {
     const uint64_t end_q40 = (uint64_t)(r.x1 * ONE_Q40);
-    const fast full = convert_area(&r, mode, ONE_Q16);
+    const fast full = convert_area_to_sum_units(&r, mode, ONE_Q16);
 
     x_q40 += step_q40 / 2;
     if (r.x0 == 0 && (x_q40 < 0 || x_q40 + (n - 1) * step_q40 < 0)) {
         for (; n > 0; n--, x_q40 += step_q40) {
-            add_whole(&r, mode, x_q40, full);
-            go_down(&r, mode, stride);
+            add_snapped_row(&r, mode, x_q40, full);
+            move_run_down(&r, mode, stride);
         }
         return;
     }
     /* skips rows to the left or right of the tile, then follows the edge until
      * it leaves the tile for good */
     for (; n > 0 && (uint64_t)x_q40 >= end_q40; n--, x_q40 += step_q40)
-        go_down(&r, mode, stride);
+        move_run_down(&r, mode, stride);
     for (; n > 0 && (uint64_t)x_q40 < end_q40; n--, x_q40 += step_q40) {
-        add_change(&r, mode, (int)(x_q40 >> 40), full);
-        go_down(&r, mode, stride);
+        add_light_change(&r, mode, (int)(x_q40 >> 40), full);
+        move_run_down(&r, mode, stride);
     }
 }
 
 /* Adds all rows of P as a pixel-snapped edge. */
-static inline void add_whole_rows(const struct glint_edge_sums *s,
-                                  enum mode mode, const struct glint_edge *e,
-                                  struct part p)
+static inline void add_snapped_edge(const struct glint_edge_sums *s,
+                                    enum mode mode, const struct glint_edge *e,
+                                    struct part p)
 {
     int n;
 
-    go_down(&p.run, mode, p.run.x0); /* From here on columns count from the
-                                        tile's left side. */
+    move_run_down(&p.run, mode, p.run.x0); /* From here on columns count from
+                                        the tile's left side. */
     p.x_q40 -= p.run.x0 * ONE_Q40;
     p.run.x1 -= p.run.x0;
     if (p.y_q8 & 255) {
-        const int32_t height_q8 = find_first_height(&p);
+        const int32_t height_q8 = compute_first_row_height(&p);
         const int64_t step_q40 = e->slope_q40 * height_q8;
 
-        add_whole(&p.run, mode, p.x_q40 + step_q40 / 2,
-                  convert_area(&p.run, mode, height_q8 * 256));
-        go_down(&p.run, mode, s->stride);
+        add_snapped_row(
+            &p.run, mode, p.x_q40 + step_q40 / 2,
+            convert_area_to_sum_units(&p.run, mode, height_q8 * 256));
+        move_run_down(&p.run, mode, s->stride);
         p.x_q40 += step_q40;
         p.y_q8 += height_q8;
     }
     n = (p.end_q8 - p.y_q8) >> 8;
     /* If n is 0, the edge may be so flat that its step overflows. */
     if (n > 0) {
-        add_full_rows(p.run, mode, n, p.x_q40, e->slope_q40 * 256, s->stride);
-        go_down(&p.run, mode, (ptrdiff_t)n * s->stride);
+        add_complete_snapped_rows(p.run, mode, n, p.x_q40, e->slope_q40 * 256,
+                                  s->stride);
+        move_run_down(&p.run, mode, (ptrdiff_t)n * s->stride);
         p.x_q40 += n * (e->slope_q40 * 256);
         p.y_q8 += n * 256;
     }
     if (p.y_q8 < p.end_q8)
-        add_whole(&p.run, mode,
-                  p.x_q40 + e->slope_q40 * (p.end_q8 - p.y_q8) / 2,
-                  convert_area(&p.run, mode, (p.end_q8 - p.y_q8) * 256));
+        add_snapped_row(
+            &p.run, mode, p.x_q40 + e->slope_q40 * (p.end_q8 - p.y_q8) / 2,
+            convert_area_to_sum_units(&p.run, mode, (p.end_q8 - p.y_q8) * 256));
 }
 
-static int64_t coloured_q20(int32_t light, int32_t colour_q14)
+static int64_t multiply_by_colour_q20(int32_t light, int32_t colour_q14)
 {
     const int64_t light_q20 = glint_light_q20(light);
 
@@ -370,23 +384,23 @@ static int64_t coloured_q20(int32_t light, int32_t colour_q14)
 
 /* Returns the change of light across E in one channel, with LESS of the 20
  * fraction bits dropped. */
-static int64_t find_light_change(const struct glint_edge *e, int32_t colour_q14,
-                                 int less)
+static int64_t compute_light_change(const struct glint_edge *e,
+                                    int32_t colour_q14, int less)
 {
-    return q_shift(coloured_q20(e->right, colour_q14), less) -
-           q_shift(coloured_q20(e->left, colour_q14), less);
+    return q_shift(multiply_by_colour_q20(e->right, colour_q14), less) -
+           q_shift(multiply_by_colour_q20(e->left, colour_q14), less);
 }
 
 /* Adds patch E in the colour RGB. Returns the max light over the channels, with
  * LESS of the 20 fraction bits dropped. */
-static int64_t add_patch(const struct glint_edge_sums *s, enum mode mode,
-                         const struct glint_edge *e, const int32_t rgb_q14[3],
-                         int less)
+static int64_t add_patch_light(const struct glint_edge_sums *s, enum mode mode,
+                               const struct glint_edge *e,
+                               const int32_t rgb_q14[3], int less)
 {
     int64_t light[3], most = 0;
 
     for (int c = 0; c < 3; c++) {
-        light[c] = q_shift(coloured_q20(e->left, rgb_q14[c]), less);
+        light[c] = q_shift(multiply_by_colour_q20(e->left, rgb_q14[c]), less);
         most = light[c] > most ? light[c] : most;
     }
     s->patch(s, mode == NARROW, e, light);
@@ -395,11 +409,10 @@ static int64_t add_patch(const struct glint_edge_sums *s, enum mode mode,
 
 /* Adds the edges to the sums of MODE. Returns the sum of the magnitudes of all
  * changes of light, a bound on how far a sum can get from its start. */
-static WHOLLY_INLINE int64_t add_edges(const struct glint_edge_sums *s,
-                                       enum mode mode,
-                                       const struct glint_edge *edge,
-                                       const struct glint_bundle *bundle,
-                                       const int32_t *ref, int n_refs)
+static WHOLLY_INLINE int64_t add_edges_to_sums(
+    const struct glint_edge_sums *s, enum mode mode,
+    const struct glint_edge *edge, const struct glint_bundle *bundle,
+    const int32_t *ref, int n_refs)
 {
     const int less = s->linear || s->fine ? 0 : 4;
     int64_t far[3] = {0, 0, 0}, most;
@@ -411,7 +424,7 @@ static WHOLLY_INLINE int64_t add_edges(const struct glint_edge_sums *s,
         if (k + AHEAD < n_refs)
             PREFETCH(&edge[ref[k + AHEAD]]);
         if (e->patch) {
-            most = add_patch(s, mode, e, rgb_q14, less);
+            most = add_patch_light(s, mode, e, rgb_q14, less);
             for (int c = 0; c < 3; c++)
                 far[c] += most;
             if (mode == NARROW && far[0] >= MOST_NARROW)
@@ -420,7 +433,7 @@ static WHOLLY_INLINE int64_t add_edges(const struct glint_edge_sums *s,
         }
         for (int c = 0; c < 3; c++) {
             const int64_t step =
-                rgb_q14[c] ? find_light_change(e, rgb_q14[c], less) : 0;
+                rgb_q14[c] ? compute_light_change(e, rgb_q14[c], less) : 0;
 
             if (step == 0)
                 continue;
@@ -429,17 +442,18 @@ static WHOLLY_INLINE int64_t add_edges(const struct glint_edge_sums *s,
                 return far[c]; /* The narrow sums could overflow in this tile;
                                   the caller uses the wide sums. */
             if (e->whole)
-                add_whole_rows(s, mode, e,
-                               clip_edge_to_tile(s, mode, e, step, c));
+                add_snapped_edge(s, mode, e,
+                                 clip_edge_to_tile(s, mode, e, step, c));
             else
-                add_smooth(s, mode, e, clip_edge_to_tile(s, mode, e, step, c));
+                add_smooth_edge(s, mode, e,
+                                clip_edge_to_tile(s, mode, e, step, c));
         }
     }
     most = far[0] > far[1] ? far[0] : far[1];
     return most > far[2] ? most : far[2];
 }
 
-static int64_t far_carry(const struct glint_edge_sums *s)
+static int64_t find_max_carry(const struct glint_edge_sums *s)
 {
     int64_t most = 0;
 
@@ -451,24 +465,25 @@ static int64_t far_carry(const struct glint_edge_sums *s)
     return most;
 }
 
-void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
-                    const struct glint_bundle *bundle, const int32_t *ref,
-                    int n_refs)
+void glint_edges_add_to_sums(struct glint_edge_sums *sums,
+                             const struct glint_edge *edge,
+                             const struct glint_bundle *bundle,
+                             const int32_t *ref, int n_refs)
 {
     const int64_t most = MOST_NARROW * 256;
     int64_t far = 0; /* light times area, in the units of the sums */
 
     sums->in_narrow = 0;
     if (!sums->linear)
-        far = far_carry(sums);
+        far = find_max_carry(sums);
     if (!sums->linear && far < most) {
-        far +=
-            add_edges(sums, NARROW, edge, bundle, ref, n_refs) * INT64_C(256);
+        far += add_edges_to_sums(sums, NARROW, edge, bundle, ref, n_refs) *
+               INT64_C(256);
         sums->in_narrow = far + 2048 < most;
         if (sums->in_narrow)
             return;
         for (int i = 0; i < (3 << sums->tile_log2) * sums->stride; i++)
             sums->narrow[i] = 0;
     }
-    add_edges(sums, WIDE, edge, bundle, ref, n_refs);
+    add_edges_to_sums(sums, WIDE, edge, bundle, ref, n_refs);
 }

@@ -17,8 +17,8 @@ typedef int32_t point_q8[2];
 
 /* Returns whether the change from LIGHT to OTHER is so small that its edge may
  * be pixel-snapped. */
-static int is_weak(const struct glint_ghost_edges *g, int32_t light,
-                   int32_t other)
+static int is_light_change_weak(const struct glint_ghost_edges *g,
+                                int32_t light, int32_t other)
 {
     const int64_t a_q20 = glint_light_q20(light);
     const int64_t b_q20 = glint_light_q20(other);
@@ -30,32 +30,33 @@ static int is_weak(const struct glint_ghost_edges *g, int32_t light,
     return change_q20 < weak_q20 && change_q20 > -weak_q20;
 }
 
-static void make_edge(const struct glint_ghost_edges *g,
-                      struct glint_edge *edge, const int32_t a_q8[2],
-                      const int32_t b_q8[2], int32_t light, int32_t other)
+static void make_ghost_edge(const struct glint_ghost_edges *g,
+                            struct glint_edge *edge, const int32_t a_q8[2],
+                            const int32_t b_q8[2], int32_t light, int32_t other)
 {
-    glint_edge_set(edge, a_q8, b_q8, light, other);
+    glint_edge_set_from_points(edge, a_q8, b_q8, light, other);
     edge->bundle = g->number & 0x3fffffff;
     edge->patch = 0;
-    if (is_weak(g, light, other))
-        glint_edge_make_snapped(edge);
+    if (is_light_change_weak(g, light, other))
+        glint_edge_snap_to_pixels(edge);
 }
 
 /* Counts the entries in the bins of an edge that did not fit. */
-static void count_only(struct glint_ghost_edges *g, const int32_t a_q8[2],
-                       const int32_t b_q8[2], int32_t light, int32_t other)
+static void count_edge_bin_entries(struct glint_ghost_edges *g,
+                                   const int32_t a_q8[2], const int32_t b_q8[2],
+                                   int32_t light, int32_t other)
 {
     struct glint_edge edge;
 
-    make_edge(g, &edge, a_q8, b_q8, light, other);
-    g->more_refs +=
-        q_smaller(INT32_MAX - g->more_refs, glint_edge_span(&edge, g->bins));
+    make_ghost_edge(g, &edge, a_q8, b_q8, light, other);
+    g->more_refs += q_smaller(INT32_MAX - g->more_refs,
+                              glint_edge_count_bin_entries(&edge, g->bins));
 }
 
 /* Adds the edge from A to B with LIGHT on its inner side and OTHER on its outer
  * side, if it can change a pixel. */
-static void add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
-                     const int32_t b_q8[2], int32_t light, int32_t other)
+static void add_ghost_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
+                           const int32_t b_q8[2], int32_t light, int32_t other)
 {
     const int32_t right_q8 = g->width * 256, bottom_q8 = g->height * 256;
     const int32_t top_q8 = g->top * 256;
@@ -67,17 +68,17 @@ static void add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
         return;
     if (g->n_edges++ >= g->max_edges) {
         if (g->bins)
-            count_only(g, a_q8, b_q8, light, other);
+            count_edge_bin_entries(g, a_q8, b_q8, light, other);
         return;
     }
-    make_edge(g, &edge, a_q8, b_q8, light, other);
+    make_ghost_edge(g, &edge, a_q8, b_q8, light, other);
     g->edge[g->n_edges - 1] = edge;
 }
 
 /* ------------------------------------------------------------------- cells */
 
-static void set_cell(const struct glint_ghost_edges *g, int i, int j,
-                     struct glint_ghost_cell *c)
+static void set_cell_corners(const struct glint_ghost_edges *g, int i, int j,
+                             struct glint_ghost_cell *c)
 {
     const struct glint_ghost_rows *r = g->rows;
 
@@ -93,7 +94,8 @@ static void set_cell(const struct glint_ghost_edges *g, int i, int j,
 
 /* Returns twice the signed area of the triangle of corners I, I + 1 and I + 2.
  */
-static int64_t compute_corner_area_q16(const struct glint_corners *c, int i)
+static int64_t compute_corner_double_area_q16(const struct glint_corners *c,
+                                              int i)
 {
     const struct glint_vertex *a = c->at[i], *b = c->at[i + 1];
     const struct glint_vertex *d = c->at[(i + 2) & 3];
@@ -102,13 +104,13 @@ static int64_t compute_corner_area_q16(const struct glint_corners *c, int i)
 }
 
 /* Returns the sign of the cell's area if the cell is convex, else 0.
- * compute_corner_area_q16() of two opposite corners adds up to twice the area
- * of the cell. */
-static int find_convexity(const struct glint_corners *c)
+ * compute_corner_double_area_q16() of two opposite corners adds up to twice the
+ * area of the cell. */
+static int find_convex_orientation(const struct glint_corners *c)
 {
-    const int64_t one = compute_corner_area_q16(c, 0),
+    const int64_t one = compute_corner_double_area_q16(c, 0),
                   other = c->area2_q16 - one;
-    const int64_t two = compute_corner_area_q16(c, 1),
+    const int64_t two = compute_corner_double_area_q16(c, 1),
                   another = c->area2_q16 - two;
 
     if (one > 0 && other > 0 && two > 0 && another > 0)
@@ -120,7 +122,7 @@ static int find_convexity(const struct glint_corners *c)
  * fainter light more coarsely: the light of one code shrinks by only 2^(7/12)
  * with each octave, so 3/4 of the steps per octave would suffice; 7/8 are used,
  * as many ghosts may overlap. */
-static void set_steps(struct glint_ghost_edges *g)
+static void set_irradiance_steps(struct glint_ghost_edges *g)
 {
     int steps_q8 = g->steps * 256;
 
@@ -134,7 +136,7 @@ static void set_steps(struct glint_ghost_edges *g)
 /* Sets, for each octave, the light of snap_codes_q8 codes: with each octave
  * below white the light of one code falls to 2/3, about 2^(-7/12), until codes
  * are linear in light. */
-static void set_weak(struct glint_ghost_edges *g)
+static void set_snapping_limits(struct glint_ghost_edges *g)
 {
     const int32_t least_q20 = 318;
     int32_t code_q20 = 9869; /* light of one code at white */
@@ -149,7 +151,7 @@ static void set_weak(struct glint_ghost_edges *g)
 }
 
 /* Returns X rounded to the nearest step of its octave. X must be below 2^44. */
-static int64_t in_steps(int64_t x, const uint16_t *steps_of)
+static int64_t round_to_irradiance_step(int64_t x, const uint16_t *steps_of)
 {
     const int log2 = bit_length((uint64_t)x | 1) - 1;
     const int steps = steps_of[log2];
@@ -163,30 +165,33 @@ static int64_t in_steps(int64_t x, const uint16_t *steps_of)
     return base + (((int64_t)((k << 19) / (uint32_t)steps) << log2) >> 19);
 }
 
-int32_t glint_ghost_step(struct glint_ghost_edges *g, int64_t irradiance_q22,
-                         int64_t energy_q16, int sign)
+int32_t glint_ghost_pack_cell_light(struct glint_ghost_edges *g,
+                                    int64_t irradiance_q22, int64_t energy_q16,
+                                    int sign)
 {
     return glint_light_pack(
-        sign *
-        in_steps(q_shift(irradiance_q22 * energy_q16, 18), g->rows->steps));
+        sign * round_to_irradiance_step(
+                   q_shift(irradiance_q22 * energy_q16, 18), g->rows->steps));
 }
 
 /* Returns the packed light of 2^SHARE_LOG2 cells that cover AREA2 / 2^FRAC
  * pixels. SIGN is -1 for a mirrored cell, else 1. */
-static int32_t pack_light(struct glint_ghost_edges *g, int64_t area2, int frac,
-                          int share_log2, int64_t energy_q16, int sign)
+static int32_t compute_packed_cell_light(struct glint_ghost_edges *g,
+                                         int64_t area2, int frac,
+                                         int share_log2, int64_t energy_q16,
+                                         int sign)
 {
-    const int64_t irradiance_q22 = glint_irradiance_q22(
+    const int64_t irradiance_q22 = glint_compute_irradiance_q22(
         g->bundle, share_log2, area2, frac, g->limit_q8, &g->n_held);
 
-    return glint_ghost_step(g, irradiance_q22, energy_q16, sign);
+    return glint_ghost_pack_cell_light(g, irradiance_q22, energy_q16, sign);
 }
 
 /* -------------------------------------------------- cells drawn separately */
 
 /* Adds the edges of the closed outline O. */
-static void add_outline(struct glint_ghost_edges *g,
-                        const struct glint_outline *o, int32_t light)
+static void add_outline_edges(struct glint_ghost_edges *g,
+                              const struct glint_outline *o, int32_t light)
 {
     point_q8 first, last, here;
 
@@ -194,19 +199,19 @@ static void add_outline(struct glint_ghost_edges *g,
         here[0] = q_narrow(q_shift(o->x_q16[i], 8));
         here[1] = q_narrow(q_shift(o->y_q16[i], 8));
         if (i > 0)
-            add_edge(g, last, here, light, 0);
+            add_ghost_edge(g, last, here, light, 0);
         for (int k = 0; k < 2; k++) {
             last[k] = here[k];
             first[k] = i ? first[k] : here[k];
         }
     }
     if (o->n > 0)
-        add_edge(g, last, first, light, 0);
+        add_ghost_edge(g, last, first, light, 0);
 }
 
-void glint_ghost_add_alone(struct glint_ghost_edges *g,
-                           const struct glint_vertex *const *corner, int n,
-                           int share_log2)
+void glint_ghost_add_clipped_primitive(struct glint_ghost_edges *g,
+                                       const struct glint_vertex *const *corner,
+                                       int n, int share_log2)
 {
     struct glint_outline *o = &g->rows->outline;
     const struct glint_vertex *turned[4] = {corner[0]};
@@ -220,7 +225,7 @@ void glint_ghost_add_alone(struct glint_ghost_edges *g,
     glint_corners_set(&c, turned, n);
     cut = glint_outline_classify(&c, g->stop);
     if (cut < 0 ||
-        glint_box_empty(glint_corners_reach(&c, g->width, g->height)))
+        glint_box_empty(glint_corners_pixel_box(&c, g->width, g->height)))
         return;
     cut |= cut && (g->transfer || g->rays) ? GLINT_CUT_LOWERED : 0;
     thin = glint_corners_thin(&c);
@@ -229,9 +234,9 @@ void glint_ghost_add_alone(struct glint_ghost_edges *g,
         int frac = 2 * GLINT_VERTEX_FRAC + 1, share = share_log2;
 
         if (cut)
-            glint_outline_cut(o, &c, k, g->stop, cut);
+            glint_outline_clip_triangle(o, &c, k, g->stop, cut);
         else
-            glint_outline_whole(o, &c);
+            glint_outline_set_unclipped(o, &c);
         if (o->n == 0)
             continue;
         share_q28 = 1 << 28;
@@ -241,19 +246,19 @@ void glint_ghost_add_alone(struct glint_ghost_edges *g,
             area2 = glint_outline_widen_q32(o);
             frac = 33;
         }
-        light = pack_light(g, area2, frac, share,
-                           q_shift(o->energy_q16 * share_q28, 28), 1);
+        light = compute_packed_cell_light(
+            g, area2, frac, share, q_shift(o->energy_q16 * share_q28, 28), 1);
         if (g->patch)
             g->stop->shade->method->patch(g, light);
         if (!g->patch || g->patch->clear)
-            add_outline(g, o, light);
+            add_outline_edges(g, o, light);
     }
 }
 
 /* Draws a cell that is not a convex quad: as two triangles, or as one triangle
  * if one corner is invalid. */
-static NEVER_INLINE void add_triangles(struct glint_ghost_edges *g,
-                                       const struct glint_ghost_cell *c)
+static NEVER_INLINE void add_cell_as_triangles(struct glint_ghost_edges *g,
+                                               const struct glint_ghost_cell *c)
 {
     static const int half[2][3] = {{0, 1, 2}, {0, 2, 3}};
     const struct glint_vertex *left[4];
@@ -264,40 +269,41 @@ static NEVER_INLINE void add_triangles(struct glint_ghost_edges *g,
             left[n++] = c->corner[k];
     g->n_dropped += n < 4;
     if (n == 3)
-        glint_ghost_add_alone(g, left, 3, -1);
+        glint_ghost_add_clipped_primitive(g, left, 3, -1);
     for (int k = 0; n == 4 && k < 2; k++) {
         const struct glint_vertex *const t[3] = {c->corner[half[k][0]],
                                                  c->corner[half[k][1]],
                                                  c->corner[half[k][2]]};
 
-        glint_ghost_add_alone(g, t, 3, -1);
+        glint_ghost_add_clipped_primitive(g, t, 3, -1);
     }
 }
 
 /* Draws a cell that shares no side with its neighbours. TURN is its
- * find_convexity(). */
-static NEVER_INLINE void add_odd(struct glint_ghost_edges *g,
-                                 const struct glint_ghost_cell *c,
-                                 const struct glint_corners *corners, int turn)
+ * find_convex_orientation(). */
+static NEVER_INLINE void
+add_cell_separately(struct glint_ghost_edges *g,
+                    const struct glint_ghost_cell *c,
+                    const struct glint_corners *corners, int turn)
 {
-    if (turn == 0 && !glint_corners_tiny(corners, 16))
-        add_triangles(g, c);
+    if (turn == 0 && !glint_corners_are_tiny(corners, 16))
+        add_cell_as_triangles(g, c);
     else
-        glint_ghost_add_alone(g, c->corner, 4, 0);
+        glint_ghost_add_clipped_primitive(g, c->corner, 4, 0);
 }
 
 /* ------------------------------------------------------------- in the grid */
 
 /* Finds the visible part of side K of a cell, from corner K to K + 1. */
-static void part_of_side(const struct glint_ghost_edges *g,
-                         const struct glint_ghost_cell *c, int k,
-                         struct glint_edge_part *part)
+static void find_visible_side_part(const struct glint_ghost_edges *g,
+                                   const struct glint_ghost_cell *c, int k,
+                                   struct glint_edge_part *part)
 {
     const int reverse = k >= 2, next = (k + 1) & 3;
     const int from = reverse ? next : k, to = reverse ? k : next;
 
-    glint_cuts_part(g->stop, c->corner[from], c->at[from], c->corner[to],
-                    c->at[to], part);
+    glint_cuts_find_visible_part(g->stop, c->corner[from], c->at[from],
+                                 c->corner[to], c->at[to], part);
     if (reverse) {
         const struct glint_edge_part forward = *part;
 
@@ -311,14 +317,14 @@ static void part_of_side(const struct glint_ghost_edges *g,
 
 /* Adds the chords of a cell that is cut: they connect the visible parts of its
  * sides. */
-static void add_chords(struct glint_ghost_edges *g,
-                       const struct glint_ghost_cell *c, int32_t light)
+static void add_cell_chords(struct glint_ghost_edges *g,
+                            const struct glint_ghost_cell *c, int32_t light)
 {
     struct glint_edge_part part[4];
     int n = 0;
 
     for (int k = 0; k < 4; k++) {
-        part_of_side(g, c, k, &part[n]);
+        find_visible_side_part(g, c, k, &part[n]);
         n += part[n].visible;
     }
     for (int k = 0; k < n; k++) {
@@ -328,12 +334,12 @@ static void add_chords(struct glint_ghost_edges *g,
 
         if (here->cut[1] != next->cut[0] && here->cut[1] != GLINT_CUT_NOTHING &&
             next->cut[0] != GLINT_CUT_NOTHING &&
-            glint_cuts_cross(g->stop, c->corner, here->cut[1], next->cut[0],
-                             corner)) {
-            add_edge(g, here->end_q8[1], corner, light, 0);
-            add_edge(g, corner, next->end_q8[0], light, 0);
+            glint_cuts_find_crossing(g->stop, c->corner, here->cut[1],
+                                     next->cut[0], corner)) {
+            add_ghost_edge(g, here->end_q8[1], corner, light, 0);
+            add_ghost_edge(g, corner, next->end_q8[0], light, 0);
         } else
-            add_edge(g, here->end_q8[1], next->end_q8[0], light, 0);
+            add_ghost_edge(g, here->end_q8[1], next->end_q8[0], light, 0);
     }
 }
 
@@ -344,8 +350,8 @@ static int64_t compute_mean_energy_q16(const struct glint_corners *c)
            2;
 }
 
-static void set_corners(const struct glint_ghost_edges *g, int i, int j,
-                        struct glint_corners *corners)
+static void set_grid_cell_corners(const struct glint_ghost_edges *g, int i,
+                                  int j, struct glint_corners *corners)
 {
     const struct glint_vertex *const at[4] = {
         ghost_node(g, i, j), ghost_node(g, i + 1, j),
@@ -356,7 +362,7 @@ static void set_corners(const struct glint_ghost_edges *g, int i, int j,
 
 /* Returns whether the cells of row J touch the middle row of nodes of an
  * annular box: that row has no rays, and there is no light to draw. */
-static int is_in_hole(const struct glint_ghost_edges *g, int j)
+static int is_row_in_annulus_hole(const struct glint_ghost_edges *g, int j)
 {
     const int middle = g->bundle->n_cells / 2;
 
@@ -366,9 +372,10 @@ static int is_in_hole(const struct glint_ghost_edges *g, int j)
 
 /* Dims the corners of a cell that is drawn separately. If the stop has a shade,
  * DIMMED receives the dimmed corners. */
-static void dim_cell(const struct glint_ghost_edges *g,
-                     struct glint_ghost_cell *c, struct glint_corners *corners,
-                     struct glint_vertex dimmed[4])
+static void dim_separate_cell(const struct glint_ghost_edges *g,
+                              struct glint_ghost_cell *c,
+                              struct glint_corners *corners,
+                              struct glint_vertex dimmed[4])
 {
     const struct glint_shade *shade = g->stop->shade;
 
@@ -396,49 +403,50 @@ static int32_t find_cell_light(struct glint_ghost_edges *g, int i, int j)
     int32_t light;
     int cuts, turn, odd;
 
-    if (some & NODE_LOST && is_in_hole(g, j))
+    if (some & NODE_LOST && is_row_in_annulus_hole(g, j))
         return 0;
     if (some & NODE_LOST) {
-        set_cell(g, i, j, &cell);
-        dim_cell(g, &cell, &corners, dimmed);
-        add_triangles(g, &cell);
+        set_cell_corners(g, i, j, &cell);
+        dim_separate_cell(g, &cell, &corners, dimmed);
+        add_cell_as_triangles(g, &cell);
         return 0;
     }
     /* The whole cell lies outside one side or barrel, or off-screen where its
      * edges change no pixel. */
     if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]))
         return 0;
-    set_corners(g, i, j, &corners);
-    turn = find_convexity(&corners);
-    cuts = any.sides || any.barrels ? glint_cuts_count(any) : 0;
+    set_grid_cell_corners(g, i, j, &corners);
+    turn = find_convex_orientation(&corners);
+    cuts = any.sides || any.barrels ? glint_cuts_count_crossed(any) : 0;
     odd = turn == 0 || cuts > 2 ||
           (cuts && !g->transfer && !g->rays &&
            (g->stop->n_blades == 0 || g->stop->round_q30)) ||
           glint_corners_thin(&corners);
     if (odd || cuts)
-        set_cell(g, i, j, &cell);
+        set_cell_corners(g, i, j, &cell);
     if (odd) {
-        dim_cell(g, &cell, &corners, dimmed);
-        add_odd(g, &cell, &corners, turn);
+        dim_separate_cell(g, &cell, &corners, dimmed);
+        add_cell_separately(g, &cell, &corners, turn);
         return 0;
     }
     energy_q16 = compute_mean_energy_q16(&corners);
     if (g->stop->shade &&
         !g->stop->shade->method->cell(g, &corners, turn, cuts, &energy_q16))
         return 0;
-    light = pack_light(g, turn * corners.area2_q16, 2 * GLINT_VERTEX_FRAC + 1,
-                       0, energy_q16, turn);
+    light = compute_packed_cell_light(g, turn * corners.area2_q16,
+                                      2 * GLINT_VERTEX_FRAC + 1, 0, energy_q16,
+                                      turn);
     if (cuts)
-        add_chords(g, &cell, light);
+        add_cell_chords(g, &cell, light);
     return light;
 }
 
 /* Adds the visible part of the edge from A to B between two cells of light
  * LIGHT and OTHER. */
-static void add_shared(struct glint_ghost_edges *g,
-                       const struct glint_vertex *a, struct glint_outside at_a,
-                       const struct glint_vertex *b, struct glint_outside at_b,
-                       int32_t light, int32_t other)
+static void
+add_shared_edge(struct glint_ghost_edges *g, const struct glint_vertex *a,
+                struct glint_outside at_a, const struct glint_vertex *b,
+                struct glint_outside at_b, int32_t light, int32_t other)
 {
     struct glint_edge_part part;
 
@@ -447,16 +455,16 @@ static void add_shared(struct glint_ghost_edges *g,
     if (!(at_a.sides | at_b.sides) && !(at_a.barrels | at_b.barrels)) {
         const point_q8 from = {a->x_q8, a->y_q8}, to = {b->x_q8, b->y_q8};
 
-        add_edge(g, from, to, light, other);
+        add_ghost_edge(g, from, to, light, other);
         return;
     }
-    glint_cuts_part(g->stop, a, at_a, b, at_b, &part);
+    glint_cuts_find_visible_part(g->stop, a, at_a, b, at_b, &part);
     if (part.visible)
-        add_edge(g, part.end_q8[0], part.end_q8[1], light, other);
+        add_ghost_edge(g, part.end_q8[0], part.end_q8[1], light, other);
 }
 
-static struct glint_outside find_outside_bits(const struct glint_ghost_edges *g,
-                                              int i, int j)
+static struct glint_outside get_outside_bits(const struct glint_ghost_edges *g,
+                                             int i, int j)
 {
     return (struct glint_outside){g->rows->sides[j & 1][i],
                                   g->rows->barrels[j & 1][i] & NODE_BARRELS};
@@ -468,9 +476,9 @@ static void add_horizontal_edges(struct glint_ghost_edges *g, int j,
 {
     for (int i = 0; i < g->bundle->n_cells; i++)
         if (above[i] != below[i])
-            add_shared(g, ghost_node(g, i, j), find_outside_bits(g, i, j),
-                       ghost_node(g, i + 1, j), find_outside_bits(g, i + 1, j),
-                       below[i], above[i]);
+            add_shared_edge(g, ghost_node(g, i, j), get_outside_bits(g, i, j),
+                            ghost_node(g, i + 1, j),
+                            get_outside_bits(g, i + 1, j), below[i], above[i]);
 }
 
 /* Adds the edges between neighbouring cells of row J. */
@@ -484,26 +492,26 @@ static void add_vertical_edges(struct glint_ghost_edges *g, int j,
         const int32_t behind = i < n ? light[i] : 0;
 
         if (before != behind)
-            add_shared(g, ghost_node(g, i, j), find_outside_bits(g, i, j),
-                       ghost_node(g, i, j + 1), find_outside_bits(g, i, j + 1),
-                       before, behind);
+            add_shared_edge(g, ghost_node(g, i, j), get_outside_bits(g, i, j),
+                            ghost_node(g, i, j + 1),
+                            get_outside_bits(g, i, j + 1), before, behind);
     }
 }
 
-void glint_ghost_emit_once(struct glint_ghost_edges *ghost)
+void glint_ghost_emit_hard_outline(struct glint_ghost_edges *ghost)
 {
     struct glint_ghost_rows *r = ghost->rows;
     const int n = ghost->bundle->n_cells;
 
-    set_steps(ghost);
-    set_weak(ghost);
-    glint_ghost_set_nodes(ghost, 0);
+    set_irradiance_steps(ghost);
+    set_snapping_limits(ghost);
+    glint_ghost_fill_node_row(ghost, 0);
     for (int i = 0; i < n; i++)
         r->light[1][i] = 0;
     for (int j = 0; j < n; j++) {
         int32_t *here = r->light[j & 1], *above = r->light[~j & 1];
 
-        glint_ghost_set_nodes(ghost, j + 1);
+        glint_ghost_fill_node_row(ghost, j + 1);
         for (int i = 0; i < n; i++)
             here[i] = find_cell_light(ghost, i, j);
         add_horizontal_edges(ghost, j, above, here);
@@ -514,7 +522,7 @@ void glint_ghost_emit_once(struct glint_ghost_edges *ghost)
     add_horizontal_edges(ghost, n, r->light[~n & 1], r->light[n & 1]);
 }
 
-void glint_ghost_edges_emit(struct glint_ghost_edges *ghost)
+void glint_ghost_emit_edges(struct glint_ghost_edges *ghost)
 {
     const struct glint_shade *shade = ghost->stop->shade;
 
@@ -523,5 +531,5 @@ void glint_ghost_edges_emit(struct glint_ghost_edges *ghost)
     if (shade)
         shade->method->emit(ghost);
     else
-        glint_ghost_emit_once(ghost);
+        glint_ghost_emit_hard_outline(ghost);
 }

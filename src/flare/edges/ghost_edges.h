@@ -103,6 +103,6 @@ struct glint_ghost_edges {
                       limit_q8 */
 };
 
-void glint_ghost_edges_emit(struct glint_ghost_edges *ghost);
+void glint_ghost_emit_edges(struct glint_ghost_edges *ghost);
 
 #endif

@@ -34,21 +34,22 @@ ghost_node(const struct glint_ghost_edges *g, int i, int j)
 
 /* Adds the edges of the bundle for the stop's hard outline; soft edges of its
  * shade are ignored. */
-void glint_ghost_emit_once(struct glint_ghost_edges *g);
+void glint_ghost_emit_hard_outline(struct glint_ghost_edges *g);
 
 /* Fills row J of the nodes; it stays valid until row J + 2 is filled. */
-void glint_ghost_set_nodes(struct glint_ghost_edges *g, int j);
+void glint_ghost_fill_node_row(struct glint_ghost_edges *g, int j);
 
 /* Returns the packed light, rounded to steps, of a cell that has IRRADIANCE at
  * energy 1. */
-int32_t glint_ghost_step(struct glint_ghost_edges *g, int64_t irradiance_q22,
-                         int64_t energy_q16, int sign);
+int32_t glint_ghost_pack_cell_light(struct glint_ghost_edges *g,
+                                    int64_t irradiance_q22, int64_t energy_q16,
+                                    int sign);
 
 /* Draws the part that the cuts leave of a convex primitive of N corners, whose
  * flux is 2^SHARE_LOG2 of a cell's. If it is thin, its light is spread over a
  * strip a sixteenth of a pixel wide. */
-void glint_ghost_add_alone(struct glint_ghost_edges *g,
-                           const struct glint_vertex *const *corner, int n,
-                           int share_log2);
+void glint_ghost_add_clipped_primitive(struct glint_ghost_edges *g,
+                                       const struct glint_vertex *const *corner,
+                                       int n, int share_log2);
 
 #endif

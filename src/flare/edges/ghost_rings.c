@@ -15,7 +15,7 @@ static const uint16_t depth_q16[GLINT_SOFT_RINGS] = {
     34134, 36886, 39698, 42622, 45732, 49152, 53143, 58598};
 
 /* Returns log2 of X, rounded down and clamped to 0 .. 30. */
-static int compute_log2(struct glint_real x)
+static int compute_floor_log2(struct glint_real x)
 {
     const int64_t n = real_integer(x, 0, INT64_C(1) << 30);
 
@@ -24,7 +24,7 @@ static int compute_log2(struct glint_real x)
 
 /* Returns log2 of the number of rings, limited so that they are at least a
  * pixel apart and each has the light of at least half a code. */
-static int rings_log2(const struct glint_ghost_edges *g)
+static int choose_rings_log2(const struct glint_ghost_edges *g)
 {
     int log2 = MOST_LOG2;
 
@@ -40,7 +40,7 @@ static int rings_log2(const struct glint_ghost_edges *g)
         const struct glint_real soft = real_of(g->stop->shade->soft_q16, -16);
         const struct glint_real pixels2 = real_times(
             real_over(g->flux, g->irradiance), real_times(soft, soft));
-        const int pixels_log2 = compute_log2(pixels2) / 2;
+        const int pixels_log2 = compute_floor_log2(pixels2) / 2;
 
         log2 = pixels_log2 < log2 ? pixels_log2 : log2;
     }
@@ -49,7 +49,7 @@ static int rings_log2(const struct glint_ghost_edges *g)
 
 /* Moves the outline of STOP inwards by BY, in stop radii; returns 0 if no
  * opening is left. */
-static int shrink_stop(struct glint_stop *stop, int32_t by_q16)
+static int shrink_stop_outline(struct glint_stop *stop, int32_t by_q16)
 {
     if (stop->n_blades == 0)
         stop->inset_q16 =
@@ -67,10 +67,10 @@ static int shrink_stop(struct glint_stop *stop, int32_t by_q16)
                                : stop->apothem_q16 > 0;
 }
 
-void glint_rings_emit(struct glint_ghost_edges *g)
+void glint_rings_emit_edges(struct glint_ghost_edges *g)
 {
     const struct glint_stop *whole = g->stop;
-    const int log2 = whole->shade->soft_q16 ? rings_log2(g) : 0;
+    const int log2 = whole->shade->soft_q16 ? choose_rings_log2(g) : 0;
     const struct glint_bundle *bundle = g->bundle;
     const int32_t limit_q8 = g->limit_q8;
     struct glint_bundle share = *bundle;
@@ -78,7 +78,7 @@ void glint_rings_emit(struct glint_ghost_edges *g)
     int n_dropped = 0;
 
     if (!whole->shade->soft_q16) {
-        glint_ghost_emit_once(g);
+        glint_ghost_emit_hard_outline(g);
         return;
     }
     share.flux_exponent -= log2;
@@ -93,12 +93,12 @@ void glint_rings_emit(struct glint_ghost_edges *g)
                 : (depth_q16[(at - 1) / 2] + depth_q16[at / 2]) / 2;
 
         ring = *whole;
-        if (!shrink_stop(
+        if (!shrink_stop_outline(
                 &ring,
                 (int32_t)q_shift((int64_t)whole->shade->soft_q16 * depth, 16)))
             break;
         g->n_dropped = 0;
-        glint_ghost_emit_once(g);
+        glint_ghost_emit_hard_outline(g);
         n_dropped = g->n_dropped > n_dropped ? g->n_dropped : n_dropped;
     }
     g->n_dropped = n_dropped;

@@ -9,7 +9,7 @@
 
 #include "base/q.h"
 
-static int vertex_valid(const struct glint_vertex *v)
+static int is_vertex_valid(const struct glint_vertex *v)
 {
     const uint32_t most = GLINT_VERTEX_LIMIT_Q8 - 1;
 
@@ -19,8 +19,8 @@ static int vertex_valid(const struct glint_vertex *v)
 
 /* Subtracts the sag from the barrels' values in a row, and moves the stop
  * positions inwards by the sag of a round stop. */
-static struct glint_vertex *subtract_sags(const struct glint_ghost_edges *g,
-                                          struct glint_vertex *row)
+static struct glint_vertex *subtract_row_sags(const struct glint_ghost_edges *g,
+                                              struct glint_vertex *row)
 {
     const int64_t nearer_q16 = g->sag_q16[2];
     const int lowers = g->sag_q16[0] | g->sag_q16[1];
@@ -38,7 +38,8 @@ static struct glint_vertex *subtract_sags(const struct glint_ghost_edges *g,
 }
 
 /* Returns row J of the grid; it stays valid until row J + 2 is requested. */
-static const struct glint_vertex *find_row(struct glint_ghost_edges *g, int j)
+static const struct glint_vertex *get_grid_row(struct glint_ghost_edges *g,
+                                               int j)
 {
     const int n = g->bundle->n_cells;
     struct glint_ghost_rows *r = g->rows;
@@ -55,11 +56,11 @@ static const struct glint_vertex *find_row(struct glint_ghost_edges *g, int j)
     else if (2 * j < n)
         glint_transfer_rows(g->transfer, &g->place, n, j, row, r->held[j]);
     else
-        return subtract_sags(g, r->held[n - j]);
-    return subtract_sags(g, row);
+        return subtract_row_sags(g, r->held[n - j]);
+    return subtract_row_sags(g, row);
 }
 
-void glint_ghost_set_nodes(struct glint_ghost_edges *g, int j)
+void glint_ghost_fill_node_row(struct glint_ghost_edges *g, int j)
 {
     const int n = g->bundle->n_cells;
     uint64_t *sides = g->rows->sides[j & 1];
@@ -67,12 +68,12 @@ void glint_ghost_set_nodes(struct glint_ghost_edges *g, int j)
     const int32_t top = g->top * 256, floor = g->height * 256;
     const int32_t right = g->width * 256;
 
-    g->row[j & 1] = find_row(g, j);
-    glint_cuts_row(g->stop, g->row[j & 1], n + 1, sides, barrels);
+    g->row[j & 1] = get_grid_row(g, j);
+    glint_cuts_classify_row(g->stop, g->row[j & 1], n + 1, sides, barrels);
     for (int i = 0; i <= n; i++) {
         const struct glint_vertex *v = ghost_node(g, i, j);
 
-        if (!vertex_valid(v)) {
+        if (!is_vertex_valid(v)) {
             sides[i] = 0;
             barrels[i] = NODE_LOST;
         } else

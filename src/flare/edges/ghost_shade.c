@@ -12,7 +12,7 @@ enum { WHITE_LOG2 = 20 }; /* log2 of display white in _q20 */
 
 /* ------------------------------------------------------------------ tables */
 
-static int64_t magnitude(int64_t x)
+static int64_t compute_magnitude(int64_t x)
 {
     return x < 0 ? -x : x;
 }
@@ -22,27 +22,28 @@ static int64_t max_int64(int64_t a, int64_t b)
     return a > b ? a : b;
 }
 
-static int find_level_shift(const struct glint_shade *s, int level)
+static int compute_level_shift(const struct glint_shade *s, int level)
 {
     return 17 - s->log2 + level;
 }
 
 /* Returns a coordinate in the stop as a distance from the table's first node,
  * clamped to the table. */
-static int32_t clamp_to_table(int64_t at_q16)
+static int32_t clamp_stop_position_to_table(int64_t at_q16)
 {
     return q_clamp_sat(at_q16 + (1 << 16), 0, (1 << 17) - 1);
 }
 
 /* Returns the light at (X, Y), in stop radii, interpolated between the four
  * nodes around it. */
-static int32_t interpolate_light_q15(const struct glint_shade *s, int level,
-                                     int64_t x_q16, int64_t y_q16)
+static int32_t interpolate_shade_light_q15(const struct glint_shade *s,
+                                           int level, int64_t x_q16,
+                                           int64_t y_q16)
 {
-    const int shift = find_level_shift(s, level);
+    const int shift = compute_level_shift(s, level);
     const int side = (1 << (s->log2 - level)) + 1;
-    const int32_t one = 1 << shift, x = clamp_to_table(x_q16),
-                  y = clamp_to_table(y_q16);
+    const int32_t one = 1 << shift, x = clamp_stop_position_to_table(x_q16),
+                  y = clamp_stop_position_to_table(y_q16);
     const int32_t u = x & (one - 1), v = y & (one - 1);
     const uint16_t *at =
         s->level_q15[level] + (ptrdiff_t)(y >> shift) * side + (x >> shift);
@@ -54,40 +55,42 @@ static int32_t interpolate_light_q15(const struct glint_shade *s, int level,
 }
 
 /* Returns the max difference of finer levels from LEVEL near (X, Y). */
-static int rough_q8(const struct glint_shade *s, int level, int64_t x_q16,
-                    int64_t y_q16)
+static int read_roughness_q8(const struct glint_shade *s, int level,
+                             int64_t x_q16, int64_t y_q16)
 {
-    const int shift = find_level_shift(s, level);
+    const int shift = compute_level_shift(s, level);
     const int side = (1 << (s->log2 - level)) + 1;
     const int32_t half = 1 << (shift - 1);
 
-    return s->rough_q8[level][((clamp_to_table(y_q16) + half) >> shift) * side +
-                              ((clamp_to_table(x_q16) + half) >> shift)];
+    return s->rough_q8[level]
+                      [((clamp_stop_position_to_table(y_q16) + half) >> shift) *
+                           side +
+                       ((clamp_stop_position_to_table(x_q16) + half) >> shift)];
 }
 
 /* Returns the level whose nodes are as far apart as the corners CORNER, or at
  * least half as far. */
-static int choose_level(const struct glint_shade *s,
-                        const struct glint_vertex *const *corner)
+static int choose_shade_level(const struct glint_shade *s,
+                              const struct glint_vertex *const *corner)
 {
     int64_t far = 0;
     int level;
 
     for (int k = 1; k < 4; k += 2) {
-        far = max_int64(far, magnitude((int64_t)corner[k]->stop_x_q16 -
-                                       corner[0]->stop_x_q16));
-        far = max_int64(far, magnitude((int64_t)corner[k]->stop_y_q16 -
-                                       corner[0]->stop_y_q16));
+        far = max_int64(far, compute_magnitude((int64_t)corner[k]->stop_x_q16 -
+                                               corner[0]->stop_x_q16));
+        far = max_int64(far, compute_magnitude((int64_t)corner[k]->stop_y_q16 -
+                                               corner[0]->stop_y_q16));
     }
-    level = bit_length((uint64_t)far) - 1 - find_level_shift(s, 0);
+    level = bit_length((uint64_t)far) - 1 - compute_level_shift(s, 0);
     return level < 0 ? 0 : level < s->log2 ? level : s->log2 - 1;
 }
 
 /* Returns the smallest visible difference of light near LIGHT: LIGHT / 128 for
  * linear pictures, else the light of a code. With each octave below white that
  * falls to 2/3, until codes are linear in light. */
-static int64_t tolerance_q20(const struct glint_ghost_edges *g,
-                             int64_t light_q20)
+static int64_t compute_visible_difference_q20(const struct glint_ghost_edges *g,
+                                              int64_t light_q20)
 {
     const int log2 = bit_length((uint64_t)light_q20 | 1) - 1;
     int64_t code_q20 = 9869;
@@ -109,8 +112,8 @@ struct span {
 
 /* Returns the sum of the changes along the sides from corner A to B and from D
  * to C. */
-static struct span add_sides(const struct glint_vertex *const *at, int a, int b,
-                             int d, int c)
+static struct span sum_side_changes(const struct glint_vertex *const *at, int a,
+                                    int b, int d, int c)
 {
     return (struct span){
         (int64_t)at[b]->x_q8 - at[a]->x_q8 + at[c]->x_q8 - at[d]->x_q8,
@@ -123,8 +126,8 @@ static struct span add_sides(const struct glint_vertex *const *at, int a, int b,
 
 /* Returns (A B - C D) / DET as _q24, clamped to +-2^32. A and C are _q16, B and
  * D _q8, DET _q16. */
-static int64_t slope_q24(int64_t a, int64_t b, int64_t c, int64_t d,
-                         struct glint_real det)
+static int64_t compute_slope_q24(int64_t a, int64_t b, int64_t c, int64_t d,
+                                 struct glint_real det)
 {
     return real_integer(real_over(real_of(a * b - c * d, -24), det), 24,
                         INT64_C(1) << 32);
@@ -133,11 +136,12 @@ static int64_t slope_q24(int64_t a, int64_t b, int64_t c, int64_t d,
 /* Sets the map from pixels of P to positions in the stop, from the corners AT
  * of a cell. The box of P must be set. Returns 0 if the slope is out of
  * range. */
-static int set_map(struct glint_patch *p, const struct glint_vertex *const *at)
+static int set_pixel_to_stop_map(struct glint_patch *p,
+                                 const struct glint_vertex *const *at)
 {
     const int64_t most_q24 = INT64_C(1) << 24;
-    const struct span a = add_sides(at, 0, 1, 3, 2),
-                      b = add_sides(at, 0, 3, 1, 2);
+    const struct span a = sum_side_changes(at, 0, 1, 3, 2),
+                      b = sum_side_changes(at, 0, 3, 1, 2);
     const struct glint_real det =
         real_of(a.x_q8 * b.y_q8 - a.y_q8 * b.x_q8, -16);
     const int64_t x_q8 =
@@ -153,14 +157,15 @@ static int set_map(struct glint_patch *p, const struct glint_vertex *const *at)
                     at[2]->stop_y_q16 + at[3]->stop_y_q16
               : (int64_t)at[0]->stop_x_q16 + at[1]->stop_x_q16 +
                     at[2]->stop_x_q16 + at[3]->stop_x_q16;
-        const int64_t across =
-            slope_q24(a.stop_q16[k], b.y_q8, b.stop_q16[k], a.y_q8, det);
-        const int64_t down =
-            slope_q24(b.stop_q16[k], a.x_q8, a.stop_q16[k], b.x_q8, det);
+        const int64_t across = compute_slope_q24(a.stop_q16[k], b.y_q8,
+                                                 b.stop_q16[k], a.y_q8, det);
+        const int64_t down = compute_slope_q24(b.stop_q16[k], a.x_q8,
+                                               a.stop_q16[k], b.x_q8, det);
         int64_t from_q24;
 
-        if (magnitude(across) > most_q24 || magnitude(down) > most_q24 ||
-            magnitude(sum_q16) > 1 << 24)
+        if (compute_magnitude(across) > most_q24 ||
+            compute_magnitude(down) > most_q24 ||
+            compute_magnitude(sum_q16) > 1 << 24)
             return 0;
         from_q24 =
             sum_q16 * 64 + q_shift(across * (p->box.x0 * 256 + 128 - x_q8) +
@@ -176,7 +181,8 @@ static int set_map(struct glint_patch *p, const struct glint_vertex *const *at)
 
 /* Sets the box of pixels within the corners of P; returns 0 if no pixel of the
  * picture is in it. */
-static int set_box(struct glint_patch *p, const struct glint_ghost_edges *g)
+static int set_patch_box(struct glint_patch *p,
+                         const struct glint_ghost_edges *g)
 {
     int32_t low[2] = {INT32_MAX, INT32_MAX}, high[2] = {INT32_MIN, INT32_MIN};
 
@@ -193,34 +199,34 @@ static int set_box(struct glint_patch *p, const struct glint_ghost_edges *g)
     return !glint_box_empty(p->box);
 }
 
-static void set_level(struct glint_patch *p, const struct glint_shade *s)
+static void set_patch_level(struct glint_patch *p, const struct glint_shade *s)
 {
     int64_t most = 1;
 
     for (int k = 0; k < 2; k++)
-        most = max_int64(most, max_int64(magnitude(p->across_q24[k]),
-                                         magnitude(p->down_q24[k])));
+        most = max_int64(most, max_int64(compute_magnitude(p->across_q24[k]),
+                                         compute_magnitude(p->down_q24[k])));
     p->level = bit_length((uint64_t)most) - 1 - (25 - s->log2);
     p->level = p->level < 0 ? 0 : p->level < s->log2 ? p->level : s->log2 - 1;
 }
 
 /* Adds patch P over the cell of corners AT. The corners of P must be set. */
-static void add_patch(struct glint_ghost_edges *g, struct glint_patch *p,
-                      const struct glint_vertex *const *at)
+static void store_patch(struct glint_ghost_edges *g, struct glint_patch *p,
+                        const struct glint_vertex *const *at)
 {
     const int n = glint_patch_places(p->n), first = g->n_edges;
     struct glint_edge head = {0};
 
-    if (p->light == 0 || !set_box(p, g) || !set_map(p, at))
+    if (p->light == 0 || !set_patch_box(p, g) || !set_pixel_to_stop_map(p, at))
         return;
-    set_level(p, g->stop->shade);
+    set_patch_level(p, g->stop->shade);
     g->n_edges += n;
     if (g->n_edges <= g->max_edges) {
-        glint_patch_write(&g->edge[first], p, g->number);
+        glint_patch_write_slots(&g->edge[first], p, g->number);
         return;
     }
     if (first < g->max_edges)
-        glint_patch_blank(&g->edge[first], g->max_edges - first);
+        glint_patch_fill_empty_slots(&g->edge[first], g->max_edges - first);
     head.x_q8 = p->box.x0 * 256;
     head.y_q8 = p->box.y0 * 256;
     head.end_y_q8 = p->box.y1 * 256;
@@ -228,10 +234,10 @@ static void add_patch(struct glint_ghost_edges *g, struct glint_patch *p,
     head.patch = 1;
     if (g->bins)
         g->more_refs += q_smaller(INT32_MAX - g->more_refs,
-                                  glint_edge_span(&head, g->bins));
+                                  glint_edge_count_bin_entries(&head, g->bins));
 }
 
-static void patch_outline(struct glint_ghost_edges *g, int32_t light)
+static void add_outline_patch(struct glint_ghost_edges *g, int32_t light)
 {
     const struct glint_outline *o = &g->rows->outline;
     struct glint_patch *p = g->patch;
@@ -242,38 +248,38 @@ static void patch_outline(struct glint_ghost_edges *g, int32_t light)
         p->x_q8[i] = q_narrow(q_shift(o->x_q16[i], 8));
         p->y_q8[i] = q_narrow(q_shift(o->y_q16[i], 8));
     }
-    add_patch(g, p, p->cell);
+    store_patch(g, p, p->cell);
 }
 
 /* ------------------------------------------------------------------- cells */
 
 /* Returns log2 of the larger of a cell's width and height in pixels, rounded
  * down. */
-static int pixels_log2(const struct glint_vertex *const *corner)
+static int compute_cell_size_log2(const struct glint_vertex *const *corner)
 {
     int64_t far = 0;
 
     for (int k = 1; k < 4; k++) {
-        far = max_int64(far,
-                        magnitude((int64_t)corner[k]->x_q8 - corner[0]->x_q8));
-        far = max_int64(far,
-                        magnitude((int64_t)corner[k]->y_q8 - corner[0]->y_q8));
+        far = max_int64(
+            far, compute_magnitude((int64_t)corner[k]->x_q8 - corner[0]->x_q8));
+        far = max_int64(
+            far, compute_magnitude((int64_t)corner[k]->y_q8 - corner[0]->y_q8));
     }
     return bit_length((uint64_t)far >> 8) - 1;
 }
 
 /* Returns a bound on how far the shade's light within a cell differs from the
  * mean of LIGHT, the light of the cell's corners at LEVEL. */
-static int roughness_q8(const struct glint_shade *s, int level,
-                        const struct glint_vertex *const *corner,
-                        const int32_t light[4])
+static int bound_cell_roughness_q8(const struct glint_shade *s, int level,
+                                   const struct glint_vertex *const *corner,
+                                   const int32_t light[4])
 {
     int32_t low = light[0], high = light[0];
     int most = 0;
 
     for (int k = 0; k < 4; k++) {
-        const int rough =
-            rough_q8(s, level, corner[k]->stop_x_q16, corner[k]->stop_y_q16);
+        const int rough = read_roughness_q8(s, level, corner[k]->stop_x_q16,
+                                            corner[k]->stop_y_q16);
 
         most = rough > most ? rough : most;
         low = light[k] < low ? light[k] : low;
@@ -282,12 +288,13 @@ static int roughness_q8(const struct glint_shade *s, int level,
     return most + ((high - low) >> 7);
 }
 
-static int draw_cell(struct glint_ghost_edges *g, const struct glint_corners *c,
-                     int turn, int cuts, int64_t *energy_q16)
+static int draw_shaded_cell(struct glint_ghost_edges *g,
+                            const struct glint_corners *c, int turn, int cuts,
+                            int64_t *energy_q16)
 {
     const struct glint_shade *s = g->stop->shade;
     const struct glint_vertex *const *corner = c->at;
-    const int level = s->log2 ? choose_level(s, corner) : 0;
+    const int level = s->log2 ? choose_shade_level(s, corner) : 0;
     const int64_t whole_q16 = *energy_q16;
     struct glint_patch p;
     int32_t light[4];
@@ -296,30 +303,30 @@ static int draw_cell(struct glint_ghost_edges *g, const struct glint_corners *c,
     if (!s->log2)
         return 1;
     for (int k = 0; k < 4; k++) {
-        light[k] = interpolate_light_q15(s, level, corner[k]->stop_x_q16,
-                                         corner[k]->stop_y_q16);
+        light[k] = interpolate_shade_light_q15(s, level, corner[k]->stop_x_q16,
+                                               corner[k]->stop_y_q16);
         sum += light[k];
     }
     *energy_q16 = q_shift(whole_q16 * sum, 17);
-    irradiance_q22 = glint_irradiance_q22(g->bundle, 0, turn * c->area2_q16,
-                                          2 * GLINT_VERTEX_FRAC + 1,
-                                          g->limit_q8, &g->n_held);
+    irradiance_q22 = glint_compute_irradiance_q22(
+        g->bundle, 0, turn * c->area2_q16, 2 * GLINT_VERTEX_FRAC + 1,
+        g->limit_q8, &g->n_held);
     light_q20 = q_shift(irradiance_q22 * whole_q16, 18);
-    if (pixels_log2(corner) < 1 ||
-        light_q20 * roughness_q8(s, level, corner, light) >> 8 <
-            tolerance_q20(g, light_q20))
+    if (compute_cell_size_log2(corner) < 1 ||
+        light_q20 * bound_cell_roughness_q8(s, level, corner, light) >> 8 <
+            compute_visible_difference_q20(g, light_q20))
         return 1;
     p.clear = sum > 1 << 16;
     for (int k = 0; k < 4; k++)
         p.cell[k] = corner[k];
     if (cuts) {
         g->patch = &p;
-        glint_ghost_add_alone(g, corner, 4, 0);
+        glint_ghost_add_clipped_primitive(g, corner, 4, 0);
         g->patch = NULL;
         return 0;
     }
     *energy_q16 = p.clear ? whole_q16 : 0;
-    p.light = glint_ghost_step(g, irradiance_q22, whole_q16, 1);
+    p.light = glint_ghost_pack_cell_light(g, irradiance_q22, whole_q16, 1);
     p.n = 4;
     for (int k = 0; k < 4; k++) {
         const struct glint_vertex *v = corner[turn > 0 ? k : 3 - k];
@@ -327,30 +334,32 @@ static int draw_cell(struct glint_ghost_edges *g, const struct glint_corners *c,
         p.x_q8[k] = v->x_q8;
         p.y_q8[k] = v->y_q8;
     }
-    add_patch(g, &p, corner);
+    store_patch(g, &p, corner);
     return 1;
 }
 
-static void dim_corners(const struct glint_shade *shade,
-                        struct glint_ghost_cell *c,
-                        struct glint_vertex dimmed[4])
+static void dim_cell_corners(const struct glint_shade *shade,
+                             struct glint_ghost_cell *c,
+                             struct glint_vertex dimmed[4])
 {
-    const int level = shade->log2 ? choose_level(shade, c->corner) : 0;
+    const int level = shade->log2 ? choose_shade_level(shade, c->corner) : 0;
 
     for (int k = 0; k < 4 && shade->log2; k++) {
         dimmed[k] = *c->corner[k];
         if (!(c->at[k].barrels & NODE_LOST))
-            dimmed[k].energy_q16 = (int32_t)q_shift(
-                (int64_t)dimmed[k].energy_q16 *
-                    interpolate_light_q15(shade, level, dimmed[k].stop_x_q16,
-                                          dimmed[k].stop_y_q16),
-                15);
+            dimmed[k].energy_q16 =
+                (int32_t)q_shift((int64_t)dimmed[k].energy_q16 *
+                                     interpolate_shade_light_q15(
+                                         shade, level, dimmed[k].stop_x_q16,
+                                         dimmed[k].stop_y_q16),
+                                 15);
         c->corner[k] = &dimmed[k];
     }
 }
 
-const struct glint_shade_method glint_shade_method = {.emit = glint_rings_emit,
-                                                      .cell = draw_cell,
-                                                      .patch = patch_outline,
-                                                      .draw = glint_patch_draw,
-                                                      .corners = dim_corners};
+const struct glint_shade_method glint_shade_method = {
+    .emit = glint_rings_emit_edges,
+    .cell = draw_shaded_cell,
+    .patch = add_outline_patch,
+    .draw = glint_patch_draw,
+    .corners = dim_cell_corners};

@@ -21,7 +21,7 @@
 enum { GLINT_SOFT_RINGS = 16 }; /* max outlines of a soft edge */
 
 struct glint_shade_method {
-    /* Turns a bundle into edges; called by glint_ghost_edges_emit(). */
+    /* Turns a bundle into edges; called by glint_ghost_emit_edges(). */
     void (*emit)(struct glint_ghost_edges *g);
     /* Draws dust and masks in a convex cell of orientation TURN, with the mean
      * energy *ENERGY and crossed by CUTS cuts. Sets *ENERGY to the energy that
@@ -40,7 +40,7 @@ struct glint_shade_method {
 
 /* The member emit: draws the bundle once, or once for each ring of a soft
  * edge. */
-void glint_rings_emit(struct glint_ghost_edges *g);
+void glint_rings_emit_edges(struct glint_ghost_edges *g);
 
 /* Returns whether SHADE is in range. */
 static inline int glint_shade_ok(const struct glint_shade *shade)

@@ -8,7 +8,7 @@ enum { TO_Q16 = 16 - GLINT_VERTEX_FRAC, STRIP_HALF_Q16 = 1 << 11 };
 
 /* --------------------------------------------------------------- functions */
 
-int64_t glint_disc_q16(const struct glint_vertex *v)
+int64_t glint_disc_function_q16(const struct glint_vertex *v)
 {
     const int64_t x = v->stop_x_q16 / 2, y = v->stop_y_q16 / 2;
 
@@ -18,23 +18,23 @@ int64_t glint_disc_q16(const struct glint_vertex *v)
 
 /* A point 2^14 stop radii away has a value of 2^31; times 2^30 it fits 64
  * bits. */
-int64_t glint_arc_q16(const struct glint_stop *stop, int64_t straight_q16,
-                      int64_t disc_q16)
+int64_t glint_arc_distance_q16(const struct glint_stop *stop,
+                               int64_t straight_q16, int64_t disc_q16)
 {
     return q_shift(straight_q16 * stop->off_q30 + disc_q16 * stop->round_q30,
                    30);
 }
 
 /* Sets VALUE[N] to the distance of each corner inside side SIDE. If sides are
- * round, DISC[N] must have glint_disc_q16() of each corner. */
-static void set_side(const struct glint_stop *stop, int side,
-                     const struct glint_vertex *const *at, int n,
-                     const int64_t *disc, int64_t *value)
+ * round, DISC[N] must have glint_disc_function_q16() of each corner. */
+static void compute_side_distances(const struct glint_stop *stop, int side,
+                                   const struct glint_vertex *const *at, int n,
+                                   const int64_t *disc, int64_t *value)
 {
     for (int i = 0; i < n; i++) {
         value[i] = glint_straight_q16(stop, side, at[i]);
         if (stop->round_q30)
-            value[i] = glint_arc_q16(stop, value[i], disc[i]);
+            value[i] = glint_arc_distance_q16(stop, value[i], disc[i]);
     }
 }
 
@@ -42,7 +42,7 @@ static void set_side(const struct glint_stop *stop, int side,
 
 enum side { OUTSIDE, CUT, INSIDE };
 
-static enum side classify_values(const int64_t *value, int n)
+static enum side classify_corner_values(const int64_t *value, int n)
 {
     int inside = 0;
 
@@ -51,12 +51,12 @@ static enum side classify_values(const int64_t *value, int n)
     return inside == n ? INSIDE : inside ? CUT : OUTSIDE;
 }
 
-static enum side merge_sides(enum side a, enum side b)
+static enum side merge_positions(enum side a, enum side b)
 {
     return a < b ? a : b;
 }
 
-static enum side barrel_side(const struct glint_corners *c)
+static enum side classify_by_barrels(const struct glint_corners *c)
 {
     enum side all = INSIDE;
 
@@ -65,7 +65,7 @@ static enum side barrel_side(const struct glint_corners *c)
 
         for (int i = 0; i < c->n; i++)
             value[i] = glint_barrel_q16(barrel, c->at[i]);
-        all = merge_sides(all, classify_values(value, c->n));
+        all = merge_positions(all, classify_corner_values(value, c->n));
     }
     return all;
 }
@@ -73,35 +73,35 @@ static enum side barrel_side(const struct glint_corners *c)
 /* Returns the position of a primitive relative to the disc. The disc may bulge
  * into a primitive whose corners all lie outside, so only primitives far away
  * count as OUTSIDE. */
-static enum side disc_side(const struct glint_corners *c,
-                           const struct glint_stop *stop)
+static enum side classify_by_disc(const struct glint_corners *c,
+                                  const struct glint_stop *stop)
 {
     int64_t value[4];
     enum side side;
 
     for (int i = 0; i < c->n; i++)
-        value[i] = glint_disc_q16(c->at[i]) - stop->inset_q16;
-    side = classify_values(value, c->n);
+        value[i] = glint_disc_function_q16(c->at[i]) - stop->inset_q16;
+    side = classify_corner_values(value, c->n);
     if (side != OUTSIDE)
         return side;
     for (int i = 0; i < c->n; i++)
         value[i] += 1 << 14;
-    return merge_sides(CUT, classify_values(value, c->n));
+    return merge_positions(CUT, classify_corner_values(value, c->n));
 }
 
-static enum side stop_side(const struct glint_corners *c,
-                           const struct glint_stop *stop)
+static enum side classify_by_stop(const struct glint_corners *c,
+                                  const struct glint_stop *stop)
 {
     enum side all = INSIDE;
     int64_t disc[4] = {0}, value[4];
 
     if (stop->n_blades == 0)
-        return disc_side(c, stop);
+        return classify_by_disc(c, stop);
     for (int i = 0; i < c->n && stop->round_q30; i++)
-        disc[i] = glint_disc_q16(c->at[i]);
+        disc[i] = glint_disc_function_q16(c->at[i]);
     for (int side = 0; side < stop->n_blades && all != OUTSIDE; side++) {
-        set_side(stop, side, c->at, c->n, disc, value);
-        all = merge_sides(all, classify_values(value, c->n));
+        compute_side_distances(stop, side, c->at, c->n, disc, value);
+        all = merge_positions(all, classify_corner_values(value, c->n));
     }
     return all;
 }
@@ -109,9 +109,9 @@ static enum side stop_side(const struct glint_corners *c,
 int glint_outline_classify(const struct glint_corners *corners,
                            const struct glint_stop *stop)
 {
-    const enum side at_barrel = barrel_side(corners);
+    const enum side at_barrel = classify_by_barrels(corners);
     const enum side at_stop =
-        at_barrel == OUTSIDE ? OUTSIDE : stop_side(corners, stop);
+        at_barrel == OUTSIDE ? OUTSIDE : classify_by_stop(corners, stop);
 
     if (at_stop == OUTSIDE)
         return -1;
@@ -121,7 +121,7 @@ int glint_outline_classify(const struct glint_corners *corners,
 
 /* --------------------------------------------------------------------- cut */
 
-static int64_t interpolate_value(const int64_t *value_q16,
+static int64_t interpolate_at_uv(const int64_t *value_q16,
                                  const struct glint_uv *p)
 {
     return value_q16[0] + q_shift((value_q16[1] - value_q16[0]) * p->u_q28 +
@@ -131,47 +131,49 @@ static int64_t interpolate_value(const int64_t *value_q16,
 
 /* Returns the coordinate between A and B at which a linear function with
  * values FA and FB is 0. Products are below 2^28 times 2^33. */
-static int32_t find_zero(int32_t a_q28, int32_t b_q28, int64_t fa, int64_t fb)
+static int32_t find_zero_coordinate(int32_t a_q28, int32_t b_q28, int64_t fa,
+                                    int64_t fb)
 {
     return a_q28 + (int32_t)q_divide((b_q28 - a_q28) * fa, fa - fb);
 }
 
 /* Clips O by one half plane. VALUE is its linear function at the triangle's
  * corners: negative outside. */
-static void cut_one(struct glint_outline *o, const int64_t *value_q16)
+static void clip_by_half_plane(struct glint_outline *o,
+                               const int64_t *value_q16)
 {
     int64_t here, next;
     int n = 0;
 
-    if (o->n == 0 || classify_values(value_q16, 3) == INSIDE)
+    if (o->n == 0 || classify_corner_values(value_q16, 3) == INSIDE)
         return;
     o->uv[o->n] = o->uv[0];
-    here = interpolate_value(value_q16, &o->uv[0]);
+    here = interpolate_at_uv(value_q16, &o->uv[0]);
     for (int i = 0; i < o->n; i++, here = next) {
         const struct glint_uv *a = &o->uv[i], *b = &o->uv[i + 1];
 
-        next = interpolate_value(value_q16, b);
+        next = interpolate_at_uv(value_q16, b);
         if (here >= 0)
             o->kept[n++] = *a;
         if ((here >= 0) != (next >= 0))
-            o->kept[n++] =
-                (struct glint_uv){find_zero(a->u_q28, b->u_q28, here, next),
-                                  find_zero(a->v_q28, b->v_q28, here, next)};
+            o->kept[n++] = (struct glint_uv){
+                find_zero_coordinate(a->u_q28, b->u_q28, here, next),
+                find_zero_coordinate(a->v_q28, b->v_q28, here, next)};
     }
     o->n = n < 3 ? 0 : n;
     for (int i = 0; i < o->n; i++)
         o->uv[i] = o->kept[i];
 }
 
-static void cut_barrels(struct glint_outline *o,
-                        const struct glint_vertex *const *at)
+static void clip_by_barrels(struct glint_outline *o,
+                            const struct glint_vertex *const *at)
 {
     for (int barrel = 0; barrel < 2; barrel++) {
         int64_t value[3];
 
         for (int i = 0; i < 3; i++)
             value[i] = glint_barrel_q16(barrel, at[i]);
-        cut_one(o, value);
+        clip_by_half_plane(o, value);
     }
 }
 
@@ -195,9 +197,9 @@ static int64_t compute_disc_bulge_q16(const struct glint_vertex *const *at)
     return sum_q16 / 24;
 }
 
-static void cut_stop(struct glint_outline *o,
-                     const struct glint_vertex *const *at,
-                     const struct glint_stop *stop, int lowered)
+static void clip_by_stop(struct glint_outline *o,
+                         const struct glint_vertex *const *at,
+                         const struct glint_stop *stop, int lowered)
 {
     const int64_t lift_q16 = lowered ? 0 : compute_disc_bulge_q16(at);
     const int64_t arc_lift_q16 =
@@ -205,24 +207,24 @@ static void cut_stop(struct glint_outline *o,
     int64_t disc[3] = {0}, value[3];
 
     for (int i = 0; i < 3 && (stop->n_blades == 0 || stop->round_q30); i++)
-        disc[i] = glint_disc_q16(at[i]);
+        disc[i] = glint_disc_function_q16(at[i]);
     if (stop->n_blades == 0) {
         for (int i = 0; i < 3; i++)
             value[i] = disc[i] + lift_q16 - stop->inset_q16;
-        cut_one(o, value);
+        clip_by_half_plane(o, value);
     }
     for (int side = 0; side < stop->n_blades; side++) {
-        set_side(stop, side, at, 3, disc, value);
+        compute_side_distances(stop, side, at, 3, disc, value);
         for (int i = 0; i < 3; i++)
             value[i] += arc_lift_q16;
-        cut_one(o, value);
+        clip_by_half_plane(o, value);
     }
 }
 
 /* Converts the corners' u and v to pixels. Products are below 2^29 times
  * 2^28. */
-static void set_pixels(struct glint_outline *o,
-                       const struct glint_vertex *const *at)
+static void convert_corners_to_pixels(struct glint_outline *o,
+                                      const struct glint_vertex *const *at)
 {
     const int64_t ux = at[1]->x_q8 - at[0]->x_q8;
     const int64_t uy = at[1]->y_q8 - at[0]->y_q8;
@@ -241,8 +243,8 @@ static void set_pixels(struct glint_outline *o,
 
 /* Sets the share and the energy of O. The whole triangle has an area of 1/2 in
  * u and v. */
-static void set_share(struct glint_outline *o,
-                      const struct glint_vertex *const *at)
+static void set_share_and_energy(struct glint_outline *o,
+                                 const struct glint_vertex *const *at)
 {
     const int64_t energy_q16[3] = {at[0]->energy_q16, at[1]->energy_q16,
                                    at[2]->energy_q16};
@@ -250,7 +252,7 @@ static void set_share(struct glint_outline *o,
     int64_t twice_q56 = 0, energy = 0;
 
     for (int i = 0; i < o->n; i++)
-        energy += interpolate_value(energy_q16, &o->uv[i]);
+        energy += interpolate_at_uv(energy_q16, &o->uv[i]);
     for (int i = 1; i + 1 < o->n; i++) {
         const struct glint_uv *a = &o->uv[i], *b = &o->uv[i + 1];
 
@@ -262,9 +264,9 @@ static void set_share(struct glint_outline *o,
     o->energy_q16 = (int32_t)(o->n ? energy / o->n : 0);
 }
 
-void glint_outline_cut(struct glint_outline *outline,
-                       const struct glint_corners *corners, int k,
-                       const struct glint_stop *stop, int cut)
+void glint_outline_clip_triangle(struct glint_outline *outline,
+                                 const struct glint_corners *corners, int k,
+                                 const struct glint_stop *stop, int cut)
 {
     const struct glint_vertex *const at[3] = {
         corners->at[0], corners->at[k + 1], corners->at[k + 2]};
@@ -275,15 +277,15 @@ void glint_outline_cut(struct glint_outline *outline,
     outline->uv[1] = (struct glint_uv){one_q28, 0};
     outline->uv[2] = (struct glint_uv){0, one_q28};
     if (cut & GLINT_CUT_BARREL)
-        cut_barrels(outline, at);
+        clip_by_barrels(outline, at);
     if (cut & GLINT_CUT_STOP)
-        cut_stop(outline, at, stop, cut & GLINT_CUT_LOWERED);
-    set_pixels(outline, at);
-    set_share(outline, at);
+        clip_by_stop(outline, at, stop, cut & GLINT_CUT_LOWERED);
+    convert_corners_to_pixels(outline, at);
+    set_share_and_energy(outline, at);
 }
 
-void glint_outline_whole(struct glint_outline *outline,
-                         const struct glint_corners *corners)
+void glint_outline_set_unclipped(struct glint_outline *outline,
+                                 const struct glint_corners *corners)
 {
     int64_t energy_q16 = 0;
 

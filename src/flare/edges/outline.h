@@ -26,16 +26,16 @@
 
 /* Returns (1 - r^2) / 2 at V, the function that a round stop cuts by; clamped
  * far outside. */
-int64_t glint_disc_q16(const struct glint_vertex *v);
+int64_t glint_disc_function_q16(const struct glint_vertex *v);
 
 /* Returns how far a point lies inside the arc between two corners of the stop,
  * in stop radii. STRAIGHT is its distance inside the straight line between the
- * corners, DISC is glint_disc_q16() of it. For a circle of radius 1 / k whose
- * centre lies d behind the stop's centre, k^-2 - |v + d n|^2 is 2 d STRAIGHT +
- * 1 - r^2 if both corners have r = 1. The result is that times k / 2, which
- * equals the distance where it is small. */
-int64_t glint_arc_q16(const struct glint_stop *stop, int64_t straight_q16,
-                      int64_t disc_q16);
+ * corners, DISC is glint_disc_function_q16() of it. For a circle of radius 1 /
+ * k whose centre lies d behind the stop's centre, k^-2 - |v + d n|^2 is 2 d
+ * STRAIGHT + 1 - r^2 if both corners have r = 1. The result is that times k /
+ * 2, which equals the distance where it is small. */
+int64_t glint_arc_distance_q16(const struct glint_stop *stop,
+                               int64_t straight_q16, int64_t disc_q16);
 
 /* Returns how far V lies inside the straight line of side SIDE, in stop radii;
  * negative outside. */
@@ -56,9 +56,9 @@ static inline int64_t glint_side_q16(const struct glint_stop *stop, int side,
 {
     const int64_t straight_q16 = glint_straight_q16(stop, side, v);
 
-    return stop->round_q30
-               ? glint_arc_q16(stop, straight_q16, glint_disc_q16(v))
-               : straight_q16;
+    return stop->round_q30 ? glint_arc_distance_q16(stop, straight_q16,
+                                                    glint_disc_function_q16(v))
+                           : straight_q16;
 }
 
 static inline int64_t glint_barrel_q16(int barrel, const struct glint_vertex *v)
@@ -88,14 +88,14 @@ int glint_outline_classify(const struct glint_corners *corners,
                            const struct glint_stop *stop);
 
 /* Sets OUTLINE to the whole primitive. */
-void glint_outline_whole(struct glint_outline *outline,
-                         const struct glint_corners *corners);
+void glint_outline_set_unclipped(struct glint_outline *outline,
+                                 const struct glint_corners *corners);
 
 /* Sets OUTLINE to the part of the triangle of corners 0, K + 1 and K + 2 that
  * the cuts CUT leave. */
-void glint_outline_cut(struct glint_outline *outline,
-                       const struct glint_corners *corners, int k,
-                       const struct glint_stop *stop, int cut);
+void glint_outline_clip_triangle(struct glint_outline *outline,
+                                 const struct glint_corners *corners, int k,
+                                 const struct glint_stop *stop, int cut);
 
 /* Replaces an OUTLINE thinner than a sixteenth of a pixel by a strip of that
  * width, along its longer side and at least as long as wide. Returns twice its

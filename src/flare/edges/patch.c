@@ -5,7 +5,7 @@
 
 enum { WORDS = 7 }; /* words per slot */
 
-static void set_word(struct glint_edge *e, int i, int32_t word)
+static void write_patch_word(struct glint_edge *e, int i, int32_t word)
 {
     int32_t *const at[5] = {&e->x_q8, &e->y_q8, &e->end_y_q8, &e->left,
                             &e->right};
@@ -21,7 +21,7 @@ static void set_word(struct glint_edge *e, int i, int32_t word)
             (int64_t)((both & UINT32_MAX) | (uint64_t)(uint32_t)word << 32);
 }
 
-static int32_t read_word(const struct glint_edge *e, int i)
+static int32_t read_patch_word(const struct glint_edge *e, int i)
 {
     const int32_t at[5] = {e->x_q8, e->y_q8, e->end_y_q8, e->left, e->right};
 
@@ -29,18 +29,18 @@ static int32_t read_word(const struct glint_edge *e, int i)
                  : (int32_t)((uint64_t)e->slope_q40 >> (i == 5 ? 0 : 32));
 }
 
-void glint_patch_blank(struct glint_edge *edge, int n)
+void glint_patch_fill_empty_slots(struct glint_edge *edge, int n)
 {
     for (int i = 0; i < n; i++)
         edge[i] = (struct glint_edge){.patch = 1, .whole = 1};
 }
 
-void glint_patch_write(struct glint_edge *edge, const struct glint_patch *p,
-                       unsigned bundle)
+void glint_patch_write_slots(struct glint_edge *edge,
+                             const struct glint_patch *p, unsigned bundle)
 {
     int k = 0;
 
-    glint_patch_blank(edge, glint_patch_places(p->n));
+    glint_patch_fill_empty_slots(edge, glint_patch_places(p->n));
     edge[0] = (struct glint_edge){.slope_q40 = 0,
                                   .x_q8 = p->box.x0 * 256,
                                   .y_q8 = p->box.y0 * 256,
@@ -55,19 +55,21 @@ void glint_patch_write(struct glint_edge *edge, const struct glint_patch *p,
                                  p->down_q24[i]};
 
         for (int j = 0; j < 3; j++, k++)
-            set_word(&edge[k / WORDS], k % WORDS, word[j]);
+            write_patch_word(&edge[k / WORDS], k % WORDS, word[j]);
     }
-    set_word(&edge[k / WORDS], k % WORDS, p->n * 64 + p->level * 2 + p->clear);
+    write_patch_word(&edge[k / WORDS], k % WORDS,
+                     p->n * 64 + p->level * 2 + p->clear);
     k++;
     for (int i = 0; i < p->n; i++) {
-        set_word(&edge[k / WORDS], k % WORDS, p->x_q8[i]);
+        write_patch_word(&edge[k / WORDS], k % WORDS, p->x_q8[i]);
         k++;
-        set_word(&edge[k / WORDS], k % WORDS, p->y_q8[i]);
+        write_patch_word(&edge[k / WORDS], k % WORDS, p->y_q8[i]);
         k++;
     }
 }
 
-void glint_patch_read(struct glint_patch *p, const struct glint_edge *edge)
+void glint_patch_read_slots(struct glint_patch *p,
+                            const struct glint_edge *edge)
 {
     const struct glint_edge *e = edge + 1;
     int k = 0;
@@ -80,17 +82,17 @@ void glint_patch_read(struct glint_patch *p, const struct glint_edge *edge)
                                   &p->down_q24[i]};
 
         for (int j = 0; j < 3; j++, k++)
-            *word[j] = read_word(&e[k / WORDS], k % WORDS);
+            *word[j] = read_patch_word(&e[k / WORDS], k % WORDS);
     }
-    p->n = read_word(&e[k / WORDS], k % WORDS);
+    p->n = read_patch_word(&e[k / WORDS], k % WORDS);
     k++;
     p->clear = p->n & 1;
     p->level = p->n >> 1 & 31;
     p->n >>= 6;
     for (int i = 0; i < p->n; i++) {
-        p->x_q8[i] = read_word(&e[k / WORDS], k % WORDS);
+        p->x_q8[i] = read_patch_word(&e[k / WORDS], k % WORDS);
         k++;
-        p->y_q8[i] = read_word(&e[k / WORDS], k % WORDS);
+        p->y_q8[i] = read_patch_word(&e[k / WORDS], k % WORDS);
         k++;
     }
 }

@@ -45,15 +45,16 @@ static inline int glint_patch_places(int n)
 
 /* Writes P, which belongs to bundle number BUNDLE, to the slots from EDGE
  * on. */
-void glint_patch_write(struct glint_edge *edge, const struct glint_patch *p,
-                       unsigned bundle);
+void glint_patch_write_slots(struct glint_edge *edge,
+                             const struct glint_patch *p, unsigned bundle);
 
-void glint_patch_read(struct glint_patch *p, const struct glint_edge *edge);
+void glint_patch_read_slots(struct glint_patch *p,
+                            const struct glint_edge *edge);
 
 /* The member draw of struct glint_shade_method. */
 glint_patch_fn glint_patch_draw;
 
 /* Fills EDGE[N] with slots that draw nothing. */
-void glint_patch_blank(struct glint_edge *edge, int n);
+void glint_patch_fill_empty_slots(struct glint_edge *edge, int n);
 
 #endif

@@ -53,7 +53,8 @@ struct draw {
     int nodes, shift;     /* nodes per side; log2 of their distance, _q24 */
     struct glint_box box; /* the part of the patch within the tile */
     /* The current row: the sides that cut its pixels, and for each pixel and
-     * one more the difference from the edges' light, see convert_to_area(). */
+     * one more the difference from the edges' light, see
+     * convert_light_to_area(). */
     int n_parts;
     struct part part[GLINT_OUTLINE_CORNERS];
     int32_t area[MOST_TILE + 2 * RUN];
@@ -61,12 +62,12 @@ struct draw {
 
 STATIC_ASSERT(sizeof(struct draw) <= GLINT_PATCH_SCRATCH);
 
-static int32_t magnitude(int32_t x)
+static int32_t compute_magnitude(int32_t x)
 {
     return x < 0 ? -x : x;
 }
 
-static void set_side(struct side *s, const struct draw *d, int i)
+static void set_patch_side(struct side *s, const struct draw *d, int i)
 {
     const struct glint_patch *p = &d->patch;
     const int next = i + 1 < p->n ? i + 1 : 0;
@@ -83,10 +84,11 @@ static void set_side(struct side *s, const struct draw *d, int i)
     s->down_q16 = (int32_t)q_divide(dx * ONE_Q16, all);
     s->at_q24 = (d->box.x0 * 256 + 128 - p->x_q8[i]) * (int64_t)s->across_q16 +
                 (d->box.y0 * 256 + 128 - p->y_q8[i]) * (int64_t)s->down_q16;
-    s->less_q16 = q_smaller(magnitude(s->across_q16), magnitude(s->down_q16));
+    s->less_q16 = q_smaller(compute_magnitude(s->across_q16),
+                            compute_magnitude(s->down_q16));
     larger_q16 = q_larger(ONE_Q16 - s->less_q16, HALF_Q16);
     s->larger_q16 = (int32_t)q_divide(INT64_C(1) << 32, larger_q16);
-    if (magnitude(s->across_q16) > STEEP_Q16) {
+    if (compute_magnitude(s->across_q16) > STEEP_Q16) {
         s->column_q16 =
             q_divide(-((s->at_q24 >> 8) + HALF_Q16) * ONE_Q16, s->across_q16);
         s->step_q16 = q_divide(-(int64_t)s->down_q16 * ONE_Q16, s->across_q16);
@@ -99,7 +101,8 @@ static void set_side(struct side *s, const struct draw *d, int i)
 
 /* Returns the fraction of a pixel inside S; DISTANCE is the function of S at
  * the pixel's middle. */
-static int32_t compute_share_q16(const struct side *s, int64_t distance_q16)
+static int32_t compute_inside_fraction_q16(const struct side *s,
+                                           int64_t distance_q16)
 {
     const int upper = distance_q16 > 0;
     /* distance of the side from the nearer extreme corner of the pixel */
@@ -117,7 +120,7 @@ static int32_t compute_share_q16(const struct side *s, int64_t distance_q16)
 }
 
 /* Returns the fraction of pixel X of the row that lies in the patch. */
-static int32_t compute_cover_q16(const struct draw *d, int x)
+static int32_t compute_pixel_cover_q16(const struct draw *d, int x)
 {
     int64_t cover_q16 = ONE_Q16;
 
@@ -126,12 +129,13 @@ static int32_t compute_cover_q16(const struct draw *d, int x)
         const int64_t at_q16 = p->at_q16 + (int64_t)x * p->side->across_q16;
 
         if (at_q16 < HALF_Q16)
-            cover_q16 = cover_q16 * compute_share_q16(p->side, at_q16) >> 16;
+            cover_q16 =
+                cover_q16 * compute_inside_fraction_q16(p->side, at_q16) >> 16;
     }
     return (int32_t)cover_q16;
 }
 
-static int32_t held_q24(int32_t at_q24)
+static int32_t clamp_to_table_q24(int32_t at_q24)
 {
     const int32_t one = 1 << 24;
 
@@ -140,10 +144,11 @@ static int32_t held_q24(int32_t at_q24)
 
 /* Returns the light of the shade at a position, interpolated between the four
  * nodes around it. */
-static inline int32_t interpolate_light_q15(const struct draw *d, int32_t s_q24,
-                                            int32_t t_q24)
+static inline int32_t interpolate_shade_light_q15(const struct draw *d,
+                                                  int32_t s_q24, int32_t t_q24)
 {
-    const uint32_t x = (uint32_t)held_q24(s_q24), y = (uint32_t)held_q24(t_q24);
+    const uint32_t x = (uint32_t)clamp_to_table_q24(s_q24),
+                   y = (uint32_t)clamp_to_table_q24(t_q24);
     const uint32_t u = x >> (d->shift - 8) & 255, v = y >> (d->shift - 8) & 255;
     const uint16_t *at =
         d->node_q15 + (y >> d->shift) * (uint32_t)d->nodes + (x >> d->shift);
@@ -159,7 +164,7 @@ struct place {
                            matter */
 };
 
-static struct place find_stop_place(const struct draw *d, int y, int x)
+static struct place find_stop_position(const struct draw *d, int y, int x)
 {
     const struct glint_patch *p = &d->patch;
     const uint32_t dx = (uint32_t)(d->box.x0 - p->box.x0 + x);
@@ -175,7 +180,8 @@ static struct place find_stop_place(const struct draw *d, int y, int x)
 
 /* Returns by how much LIGHT differs from the light that edges give a pixel, in
  * units of the sums. */
-static inline int32_t convert_to_area(const struct draw *d, int32_t light_q15)
+static inline int32_t convert_light_to_area(const struct draw *d,
+                                            int32_t light_q15)
 {
     const int32_t off_q15 = light_q15 - d->patch.clear * 32768;
 
@@ -185,7 +191,7 @@ static inline int32_t convert_to_area(const struct draw *d, int32_t light_q15)
 /* Returns whether edges alone draw the run from AT on correctly: the shade at
  * the nearest node of the level whose nodes are two runs apart equals the
  * edges' light, clear or dark. */
-static int is_even(const struct draw *d, struct place at)
+static int is_run_uniform(const struct draw *d, struct place at)
 {
     const struct glint_patch *p = &d->patch;
     int node[2];
@@ -194,7 +200,8 @@ static int is_even(const struct draw *d, struct place at)
         const uint32_t middle_q24 =
             at.at_q24[k] + RUN / 2 * (uint32_t)p->across_q24[k];
 
-        node[k] = (held_q24((int32_t)middle_q24) + (1 << (d->run_shift - 1))) >>
+        node[k] = (clamp_to_table_q24((int32_t)middle_q24) +
+                   (1 << (d->run_shift - 1))) >>
                   d->run_shift;
     }
     node[0] = d->run_q15[node[1] * d->run_nodes + node[0]];
@@ -204,11 +211,13 @@ static int is_even(const struct draw *d, struct place at)
 static inline int32_t compute_pixel_area(const struct draw *d,
                                          const struct place *at)
 {
-    return convert_to_area(d, interpolate_light_q15(d, (int32_t)at->at_q24[0],
-                                                    (int32_t)at->at_q24[1]));
+    return convert_light_to_area(
+        d, interpolate_shade_light_q15(d, (int32_t)at->at_q24[0],
+                                       (int32_t)at->at_q24[1]));
 }
 
-static inline void advance_place(struct place *at, const uint32_t by_q24[2])
+static inline void advance_stop_position(struct place *at,
+                                         const uint32_t by_q24[2])
 {
     at->at_q24[0] += by_q24[0];
     at->at_q24[1] += by_q24[1];
@@ -217,12 +226,12 @@ static inline void advance_place(struct place *at, const uint32_t by_q24[2])
 /* Sets the areas of a run that begins at pixel X, whose position in the stop is
  * AT. In linear pictures each pixel is computed; in codes every second pixel,
  * and means between them. Returns nonzero if any area is nonzero. */
-static int32_t add_run(struct draw *d, struct place at, int x)
+static int32_t set_run_areas(struct draw *d, struct place at, int x)
 {
     int32_t any = 0, area = compute_pixel_area(d, &at);
 
     if (d->sums->linear) {
-        for (int i = 0; i < RUN; i++, advance_place(&at, d->once_q24)) {
+        for (int i = 0; i < RUN; i++, advance_stop_position(&at, d->once_q24)) {
             d->area[x + i] = compute_pixel_area(d, &at);
             any |= d->area[x + i];
         }
@@ -231,7 +240,7 @@ static int32_t add_run(struct draw *d, struct place at, int x)
     for (int i = 0; i < RUN; i += 2) {
         int32_t next;
 
-        advance_place(&at, d->twice_q24);
+        advance_stop_position(&at, d->twice_q24);
         next = compute_pixel_area(d, &at);
         d->area[x + i] = area;
         d->area[x + i + 1] = (area + next) >> 1;
@@ -244,41 +253,41 @@ static int32_t add_run(struct draw *d, struct place at, int x)
 /* Sets the areas of row Y, without cuts by the patch's sides, for all runs that
  * contain pixels FROM .. END - 1. Runs begin at multiples of their length, so
  * that tiles do not show. Returns whether any area is nonzero. */
-static int add_inside(struct draw *d, int y, int from, int end)
+static int set_uncut_row_areas(struct draw *d, int y, int from, int end)
 {
     int any = 0;
 
     for (int x = from & ~(RUN - 1); x < end; x += RUN) {
-        const struct place at = find_stop_place(d, y, x);
+        const struct place at = find_stop_position(d, y, x);
 
-        if (d->run_q15 && is_even(d, at))
+        if (d->run_q15 && is_run_uniform(d, at))
             for (int i = 0; i < RUN; i++)
                 d->area[x + i] = 0;
         else
-            any |= add_run(d, at, x);
+            any |= set_run_areas(d, at, x);
     }
     return any;
 }
 
-static void scale_area(struct draw *d, int x, int32_t cover_q16)
+static void scale_pixel_area(struct draw *d, int x, int32_t cover_q16)
 {
     d->area[x] = (int32_t)(((int64_t)d->area[x] * cover_q16 + HALF_Q16) >> 16);
 }
 
 /* Sets the areas of row Y in columns FROM .. END - 1, those that the patch may
  * touch. Returns 0 if all areas are 0. */
-static int set_row(struct draw *d, int y, int from, int end)
+static int set_row_areas(struct draw *d, int y, int from, int end)
 {
     int32_t cover;
     int x = from, last = end;
 
-    if (!add_inside(d, y, from, end))
+    if (!set_uncut_row_areas(d, y, from, end))
         return 0;
-    for (; x < last && (cover = compute_cover_q16(d, x)) < ONE_Q16; x++)
-        scale_area(d, x, cover);
-    for (; last > x && (cover = compute_cover_q16(d, last - 1)) < ONE_Q16;
+    for (; x < last && (cover = compute_pixel_cover_q16(d, x)) < ONE_Q16; x++)
+        scale_pixel_area(d, x, cover);
+    for (; last > x && (cover = compute_pixel_cover_q16(d, last - 1)) < ONE_Q16;
          last--)
-        scale_area(d, last - 1, cover);
+        scale_pixel_area(d, last - 1, cover);
     d->area[end] = 0;
     return 1;
 }
@@ -286,7 +295,7 @@ static int set_row(struct draw *d, int y, int from, int end)
 /* Finds the columns of the box that the patch may touch in row Y. Sides whose
  * function rises along x bound them on the left, sides whose function falls
  * bound them on the right. */
-static void find_columns(const struct draw *d, int y, int *from, int *end)
+static void find_row_columns(const struct draw *d, int y, int *from, int *end)
 {
     int64_t low = 0, high = d->box.x1 - d->box.x0;
 
@@ -304,7 +313,7 @@ static void find_columns(const struct draw *d, int y, int *from, int *end)
 }
 
 /* Finds the sides that cut pixels of row Y between the columns FROM and END. */
-static void find_parts(struct draw *d, int y, int from, int end)
+static void find_cutting_sides(struct draw *d, int y, int from, int end)
 {
     d->n_parts = 0;
     for (int i = 0; i < d->patch.n; i++) {
@@ -317,7 +326,8 @@ static void find_parts(struct draw *d, int y, int from, int end)
     }
 }
 
-static void add_narrow(uint32_t *row, const int32_t *area, int n, int64_t light)
+static void add_areas_to_narrow_sums(uint32_t *row, const int32_t *area, int n,
+                                     int64_t light)
 {
     uint32_t before = 0;
 
@@ -329,7 +339,8 @@ static void add_narrow(uint32_t *row, const int32_t *area, int n, int64_t light)
     }
 }
 
-static void add_wide(uint64_t *row, const int32_t *area, int n, int64_t light)
+static void add_areas_to_wide_sums(uint64_t *row, const int32_t *area, int n,
+                                   int64_t light)
 {
     uint64_t before = 0;
 
@@ -343,8 +354,8 @@ static void add_wide(uint64_t *row, const int32_t *area, int n, int64_t light)
 
 /* Adds the areas of row Y in columns FROM .. END - 1, times LIGHT, to the
  * sums. */
-static void add_row(const struct draw *d, int narrow, int y, int from, int end,
-                    const int64_t light[3])
+static void add_row_to_sums(const struct draw *d, int narrow, int y, int from,
+                            int end, const int64_t light[3])
 {
     const struct glint_edge_sums *s = d->sums;
     const int row = d->box.y0 + y - s->tile.y0;
@@ -359,13 +370,14 @@ static void add_row(const struct draw *d, int narrow, int y, int from, int end,
             continue;
         s->touched[c] |= UINT64_C(1) << row;
         if (narrow)
-            add_narrow(s->narrow + at, d->area + from, n, light[c]);
+            add_areas_to_narrow_sums(s->narrow + at, d->area + from, n,
+                                     light[c]);
         else
-            add_wide(s->wide + at, d->area + from, n, light[c]);
+            add_areas_to_wide_sums(s->wide + at, d->area + from, n, light[c]);
     }
 }
 
-static void set_levels(struct draw *d)
+static void set_shade_levels(struct draw *d)
 {
     const struct glint_shade *s = d->sums->shade;
     const int level = d->patch.level, coarse = level + RUN_LOG2 + 1;
@@ -388,21 +400,21 @@ void glint_patch_draw(const struct glint_edge_sums *sums, int narrow,
     struct draw *const d = sums->scratch;
     int from, end;
 
-    glint_patch_read(&d->patch, e);
+    glint_patch_read_slots(&d->patch, e);
     d->sums = sums;
     d->box = glint_box_cut(d->patch.box, sums->tile);
     if (glint_box_empty(d->box))
         return;
     d->box.x0 &= ~(RUN - 1);
-    set_levels(d);
+    set_shade_levels(d);
     for (int i = 0; i < d->patch.n; i++)
-        set_side(&d->side[i], d, i);
+        set_patch_side(&d->side[i], d, i);
     for (int y = 0; y < d->box.y1 - d->box.y0; y++) {
-        find_columns(d, y, &from, &end);
+        find_row_columns(d, y, &from, &end);
         if (from >= end)
             continue;
-        find_parts(d, y, from, end);
-        if (set_row(d, y, from, end))
-            add_row(d, narrow, y, from, end, light);
+        find_cutting_sides(d, y, from, end);
+        if (set_row_areas(d, y, from, end))
+            add_row_to_sums(d, narrow, y, from, end, light);
     }
 }

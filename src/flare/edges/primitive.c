@@ -11,7 +11,8 @@ static int clamp_to_max(int x, int max)
 }
 
 /* Returns the bounding box of the corners, pixels _q8. */
-static struct glint_box extent_q8(const struct glint_corners *corners)
+static struct glint_box
+compute_bounding_box_q8(const struct glint_corners *corners)
 {
     struct glint_box b = {corners->at[0]->x_q8, corners->at[0]->y_q8,
                           corners->at[0]->x_q8, corners->at[0]->y_q8};
@@ -27,17 +28,17 @@ static struct glint_box extent_q8(const struct glint_corners *corners)
     return b;
 }
 
-int glint_corners_tiny(const struct glint_corners *corners, int part)
+int glint_corners_are_tiny(const struct glint_corners *corners, int part)
 {
-    const struct glint_box e = extent_q8(corners);
+    const struct glint_box e = compute_bounding_box_q8(corners);
     const int64_t x = e.x1 - e.x0, y = e.y1 - e.y0;
 
     return (x > y ? x : y) * part <= 1 << GLINT_VERTEX_FRAC;
 }
 
-int glint_corners_lean(const struct glint_corners *corners)
+int glint_corners_are_thin_exactly(const struct glint_corners *corners)
 {
-    const struct glint_box e = extent_q8(corners);
+    const struct glint_box e = compute_bounding_box_q8(corners);
     const int64_t x = e.x1 - e.x0, y = e.y1 - e.y0;
     const int64_t area2 =
         corners->area2_q16 < 0 ? -corners->area2_q16 : corners->area2_q16;
@@ -48,11 +49,11 @@ int glint_corners_lean(const struct glint_corners *corners)
 
 /* The box is enlarged by half the width of a strip, and by 1/256 pixel for
  * rounding. */
-struct glint_box glint_corners_reach(const struct glint_corners *corners,
-                                     int width, int height)
+struct glint_box glint_corners_pixel_box(const struct glint_corners *corners,
+                                         int width, int height)
 {
     const int grow = (1 << GLINT_VERTEX_FRAC) / 32 + 1;
-    const struct glint_box e = extent_q8(corners);
+    const struct glint_box e = compute_bounding_box_q8(corners);
 
     return (struct glint_box){
         clamp_to_max((e.x0 - grow) >> GLINT_VERTEX_FRAC, width),
@@ -63,7 +64,8 @@ struct glint_box glint_corners_reach(const struct glint_corners *corners,
 
 /* Returns the light MANTISSA * 2^UP, clamped to LIMIT; adds 1 to *N_HELD if it
  * was clamped. */
-static int64_t scaled_sat(int64_t mantissa, int up, int64_t limit, int *n_held)
+static int64_t scale_and_clamp_light(int64_t mantissa, int up, int64_t limit,
+                                     int *n_held)
 {
     int64_t x;
 
@@ -77,9 +79,9 @@ static int64_t scaled_sat(int64_t mantissa, int up, int64_t limit, int *n_held)
     return x < limit ? x : limit;
 }
 
-int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
-                             int64_t area, int frac, int32_t limit_q8,
-                             int *n_held)
+int64_t glint_compute_irradiance_q22(const struct glint_bundle *bundle,
+                                     int share_log2, int64_t area, int frac,
+                                     int32_t limit_q8, int *n_held)
 {
     /* The area is scaled to 32 bits before the division. */
     const int up = q_up((uint64_t)area);
@@ -98,7 +100,7 @@ int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
 
     /* The flux is 2^(e - 31), the area area_32 2^(-up - frac), and ratio is the
      * quotient of both mantissas times 2^32; the result is q22. */
-    return scaled_sat(
+    return scale_and_clamp_light(
         ratio, bundle->flux_exponent - 31 + share_log2 + up + frac - 32 + 22,
         limit_q22, n_held);
 }

@@ -41,14 +41,14 @@ static inline int64_t glint_turn_q16(int32_t ax, int32_t ay, int32_t bx,
 /* Returns the irradiance of 2^SHARE_LOG2 cells that cover AREA / 2^FRAC pixels.
  * FRAC must be at most 33, AREA at least 1. The result is clamped so that no
  * pixel gets more than LIMIT_Q8; *N_HELD is incremented if it was. */
-int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
-                             int64_t area, int frac, int32_t limit_q8,
-                             int *n_held);
+int64_t glint_compute_irradiance_q22(const struct glint_bundle *bundle,
+                                     int share_log2, int64_t area, int frac,
+                                     int32_t limit_q8, int *n_held);
 
 /* Returns the box of all pixels that CORNERS may cover, or the strip that
  * replaces CORNERS if they are thin. */
-struct glint_box glint_corners_reach(const struct glint_corners *corners,
-                                     int width, int height);
+struct glint_box glint_corners_pixel_box(const struct glint_corners *corners,
+                                         int width, int height);
 
 /* Sets CORNERS to the N (3 or 4) vertices AT. */
 static inline void glint_corners_set(struct glint_corners *corners,
@@ -92,14 +92,14 @@ static inline int glint_corners_stout(const struct glint_corners *c)
 
 /* Return whether CORNERS are thinner than a sixteenth of a pixel;
  * glint_corners_thin() makes a quick test first. */
-int glint_corners_lean(const struct glint_corners *corners);
+int glint_corners_are_thin_exactly(const struct glint_corners *corners);
 static inline int glint_corners_thin(const struct glint_corners *corners)
 {
-    return corners->area2_q16 == 0 ||
-           (!glint_corners_stout(corners) && glint_corners_lean(corners));
+    return corners->area2_q16 == 0 || (!glint_corners_stout(corners) &&
+                                       glint_corners_are_thin_exactly(corners));
 }
 
 /* Returns whether all corners lie in a square of 1/PART of a pixel. */
-int glint_corners_tiny(const struct glint_corners *corners, int part);
+int glint_corners_are_tiny(const struct glint_corners *corners, int part);
 
 #endif

@@ -5,8 +5,8 @@
 
 #include "flare/edges/edge.h"
 
-void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
-                       int32_t *light_q20)
+void glint_sums_read_linear_row(const struct glint_edge_sums *sums, int channel,
+                                int row, int32_t *light_q20)
 {
     const int at = (channel << sums->tile_log2) + row;
     uint64_t *change_q36 = sums->wide + (ptrdiff_t)at * sums->stride;
@@ -26,31 +26,31 @@ void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
 }
 
 /* Returns the number of fraction bits of a sum in addition to _q16. */
-static int more_bits(const struct glint_edge_sums *s)
+static int get_extra_fraction_bits(const struct glint_edge_sums *s)
 {
     return s->fine ? 12 : 8;
 }
 
-static uint16_t round_to_q16(int64_t sum, int more)
+static uint16_t round_sum_to_q16(int64_t sum, int more)
 {
     return (uint16_t)q_clamp_sat((sum >> more) + (sum >> (more - 1) & 1), 0,
                                  65535);
 }
 
-static void wide_light(uint64_t *change, int64_t *carry, int n, int more,
-                       uint16_t *light_q16)
+static void accumulate_wide_row(uint64_t *change, int64_t *carry, int n,
+                                int more, uint16_t *light_q16)
 {
     uint64_t sum = (uint64_t)*carry;
 
     for (int x = 0; x < n; x++) {
         sum += change[x];
         change[x] = 0;
-        light_q16[x] = round_to_q16((int64_t)sum, more);
+        light_q16[x] = round_sum_to_q16((int64_t)sum, more);
     }
     *carry = (int64_t)sum;
 }
 
-int glint_edge_dark(const struct glint_edge_sums *sums, int row)
+int glint_sums_is_row_dark(const struct glint_edge_sums *sums, int row)
 {
     const int side = 1 << sums->tile_log2;
     const int64_t *carry = sums->carry + row;
@@ -62,17 +62,19 @@ int glint_edge_dark(const struct glint_edge_sums *sums, int row)
 }
 
 /* Fills a row with constant light; returns whether the light is above 0. */
-static int even_light(int64_t carry, int n, int more, uint16_t *light_q16)
+static int fill_row_with_constant_light(int64_t carry, int n, int more,
+                                        uint16_t *light_q16)
 {
-    const uint16_t light = round_to_q16(carry, more);
+    const uint16_t light = round_sum_to_q16(carry, more);
 
     for (int x = 0; x < n; x++)
         light_q16[x] = light;
     return light > 0;
 }
 
-int glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
-                     const struct glint_kernels *kernels, uint16_t *light_q16)
+int glint_sums_read_code_row(const struct glint_edge_sums *sums, int channel,
+                             int row, const struct glint_kernels *kernels,
+                             uint16_t *light_q16)
 {
     const int at = (channel << sums->tile_log2) + row;
     const ptrdiff_t first = (ptrdiff_t)at * sums->stride;
@@ -81,11 +83,12 @@ int glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
     uint32_t carry = (uint32_t)sums->carry[at];
 
     if (!(sums->touched[channel] >> row & 1))
-        return even_light(sums->carry[at], padded, more_bits(sums), light_q16);
+        return fill_row_with_constant_light(
+            sums->carry[at], padded, get_extra_fraction_bits(sums), light_q16);
     sums->touched[channel] &= ~(UINT64_C(1) << row);
     if (!sums->in_narrow) {
-        wide_light(sums->wide + first, &sums->carry[at], padded,
-                   more_bits(sums), light_q16);
+        accumulate_wide_row(sums->wide + first, &sums->carry[at], padded,
+                            get_extra_fraction_bits(sums), light_q16);
         if (padded == n) {
             sums->carry[at] += (int64_t)sums->wide[first + n];
             sums->wide[first + n] = 0;
@@ -93,7 +96,7 @@ int glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
         return 1;
     }
     kernels->run_sum(sums->narrow + first, &carry, light_q16, padded,
-                     more_bits(sums));
+                     get_extra_fraction_bits(sums));
     if (padded == n) {
         carry += sums->narrow[first + n];
         sums->narrow[first + n] = 0;

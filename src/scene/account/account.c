@@ -306,7 +306,8 @@ void glint_scene_account(struct glint_scene *scene,
 
     clear_counts(&a);
     for (int tile = 0; tile < n_tiles; tile++)
-        count_tile(&a, &scene->worker[0], glint_bins_tile(bins, tile));
+        count_tile(&a, &scene->worker[0],
+                   glint_bins_compute_tile_box(bins, tile));
     for (int32_t i = 0; scene->has_triangles && i < bins->start[n_tiles]; i++)
         objects[(uint32_t)bins->ref[i] >> 20].count[GLINT_SCENE_TRIANGLES]++;
     for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {

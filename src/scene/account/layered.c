@@ -25,7 +25,7 @@ void glint_scene_account_layers(struct glint_scene *scene,
         of[kind].n =
             scene->cfg.parts.motions->count(scene, (enum glint_scene_kind)kind);
     for (int tile = 0; tile < n_tiles; tile++) {
-        w->tile = glint_bins_tile(&scene->bins, tile);
+        w->tile = glint_bins_compute_tile_box(&scene->bins, tile);
         for (int y = w->tile.y0; y < w->tile.y1; y++)
             count_row(w, y, of);
     }

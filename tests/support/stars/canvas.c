@@ -41,8 +41,8 @@ int64_t star_canvas_draw_light(struct star_canvas *c,
     int64_t pixels;
 
     memset(mem, 0, glint_image_bytes(format, c->width, c->height));
-    glint_star_set(c->star, t, lights, n, faintest);
-    pixels = glint_star_pixels(c->star);
+    glint_star_set_lights(c->star, t, lights, n, faintest);
+    pixels = glint_star_estimate_pixels(c->star);
     glint_star_draw(c->star, c->bare.flare, &image);
     return pixels;
 }

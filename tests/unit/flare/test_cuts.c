@@ -35,8 +35,9 @@ clip_edge_to_visible_part(const struct glint_vertex *a,
     struct glint_edge_part part;
 
     for (int k = 0; k < 2; k++)
-        glint_cuts_row(&square, end[k], 1, &out[k].sides, &out[k].barrels);
-    glint_cuts_part(&square, a, out[0], b, out[1], &part);
+        glint_cuts_classify_row(&square, end[k], 1, &out[k].sides,
+                                &out[k].barrels);
+    glint_cuts_find_visible_part(&square, a, out[0], b, out[1], &part);
     return part;
 }
 
@@ -108,7 +109,8 @@ TEST(cells_near_a_corner_find_it)
             const struct glint_vertex *const of[4] = {&corner[0], &corner[1],
                                                       &corner[2], &corner[3]};
             int32_t at_q8[2] = {0, 0};
-            const int crosses = glint_cuts_cross(&square, of, 0, 1, at_q8);
+            const int crosses =
+                glint_cuts_find_crossing(&square, of, 0, 1, at_q8);
 
             if (abs(u) < 74 && abs(v) < 74) {
                 assert_true(crosses);

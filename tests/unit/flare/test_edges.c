@@ -45,9 +45,10 @@ static void add_red_edge(struct glint_edge_sums *s, int x0_q8, int y0_q8,
     struct glint_edge edge;
 
     assert_int_equal(
-        glint_edge_set(&edge, a, b, 0, glint_light_pack(light_q20)), 1);
+        glint_edge_set_from_points(&edge, a, b, 0, glint_light_pack(light_q20)),
+        1);
     edge.bundle = 0;
-    glint_edge_add(s, &edge, &red, &first, 1);
+    glint_edges_add_to_sums(s, &edge, &red, &first, 1);
 }
 
 /* Returns the red light of pixel X in row Y of an image in codes, Q16. Half
@@ -56,7 +57,7 @@ static int read_pixel_light(struct glint_edge_sums *s, int x, int y)
 {
     uint16_t light_q16[STRIDE];
 
-    glint_edge_light(s, 0, y, glint_kernels_of(0), light_q16);
+    glint_sums_read_code_row(s, 0, y, glint_kernels_of(0), light_q16);
     return light_q16[x];
 }
 
@@ -77,7 +78,7 @@ TEST(vertical_edge_lights_its_right)
             s = make_row_sums(1);
             add_red_edge(&s, 3 * 256 + from_q8, 512, 3 * 256 + from_q8,
                          512 + height_q8, 1 << 19);
-            glint_edge_linear(&s, 0, 2, linear_q20);
+            glint_sums_read_linear_row(&s, 0, 2, linear_q20);
             assert_int_equal(linear_q20[2], 0);
             assert_int_equal(linear_q20[3], 8 * area_q16);
             assert_int_equal(linear_q20[4], 2048 * height_q8);
@@ -93,7 +94,7 @@ TEST(slanted_edge_lights_partial_pixels)
     uint16_t light_q16[STRIDE];
 
     add_red_edge(&s, 4 * 256, 0, 2 * 256, 256, 1 << 19);
-    glint_edge_light(&s, 0, 0, glint_kernels_of(0), light_q16);
+    glint_sums_read_code_row(&s, 0, 0, glint_kernels_of(0), light_q16);
     assert_int_equal(light_q16[1], 0);
     assert_int_equal(light_q16[2], 32768 / 4);
     assert_int_equal(light_q16[3], 32768 * 3 / 4);
@@ -130,7 +131,7 @@ TEST(edge_gives_the_same_light_in_half_tiles)
             const int end =
                 y0 + high < 256 * (y + 1) ? y0 + high : 256 * (y + 1);
 
-            glint_edge_linear(&s, 0, y, all_q20[y]);
+            glint_sums_read_linear_row(&s, 0, y, all_q20[y]);
             for (int x = 0; x < SIDE; x++) {
                 const int most = end > from ? 1024 * (end - from) : 0;
 
@@ -150,7 +151,7 @@ TEST(edge_gives_the_same_light_in_half_tiles)
             add_red_edge(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high,
                          1 << 18);
             for (int y = 0; y < SIDE; y++) {
-                glint_edge_linear(&s, 0, y, part_q20);
+                glint_sums_read_linear_row(&s, 0, y, part_q20);
                 assert_memory_equal(part_q20, all_q20[y] + s.tile.x0,
                                     FROM * sizeof *part_q20);
             }
@@ -176,15 +177,16 @@ static void draw_eight_edges(int fine, int64_t light_q20, int bright,
         const int64_t pair_q20 = i == 8 ? brightest_q20 : -brightest_q20;
 
         ref[i] = i;
-        glint_edge_set(&edge[i], i < 8 ? a : from, i < 8 ? b : to, 0,
-                       glint_light_pack(i < 8 ? light_q20 : pair_q20));
+        glint_edge_set_from_points(
+            &edge[i], i < 8 ? a : from, i < 8 ? b : to, 0,
+            glint_light_pack(i < 8 ? light_q20 : pair_q20));
         edge[i].bundle = 0;
     }
     s.fine = fine;
-    glint_edge_add(&s, edge, &red, ref, bright ? 10 : 8);
+    glint_edges_add_to_sums(&s, edge, &red, ref, bright ? 10 : 8);
     assert_true(!bright || !s.in_narrow);
     for (int y = 0; y < SIDE; y++)
-        glint_edge_light(&s, 0, y, glint_kernels_of(0), light_q16[y]);
+        glint_sums_read_code_row(&s, 0, y, glint_kernels_of(0), light_q16[y]);
 }
 
 /* Checks that light does not depend on the width of the sums, up to and

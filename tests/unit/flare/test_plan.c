@@ -620,10 +620,10 @@ static void check_rows_and_grids(int32_t opening_q30)
             if (bundle.n_cells == 0)
                 continue;
             assert_int_equal(bundle.n_cells % 4, 0);
-            place = glint_plan_place(&plan, &planned);
+            place = glint_plan_map_sensor_to_picture(&plan, &planned);
             v = glint_flare_add(f.flare, &bundle);
             assert_non_null(v);
-            glint_plan_transfer(&plan, &planned, &scratch.transfer);
+            glint_plan_set_transfer(&plan, &planned, &scratch.transfer);
             glint_transfer_grid(&scratch.transfer, &place, bundle.n_cells, v);
         }
     draw_planned_flare(&f, grid);

@@ -199,7 +199,7 @@ static void check_window_contains_rays(const struct shape *s,
 
     assert_int_equal(glint_transfer_init(&t, lens, 0, 0, MODEL_WAVE_LO_Q24), 1);
     want = find_range_of_passing_rays(&t, opening);
-    if (!glint_window_find(&nodes, &t, (int32_t)(opening * ONE))) {
+    if (!glint_window_narrow_to_stop(&nodes, &t, (int32_t)(opening * ONE))) {
         if (want.n)
             fail_msg("%s at %g: %d rays are invalid", s->name, opening, want.n);
         return;
@@ -268,7 +268,8 @@ TEST(window_moves_smoothly_with_the_stop)
 
         glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
         assert_int_equal(
-            glint_window_find(&nodes, &t, (int32_t)(opening * ONE)), 1);
+            glint_window_narrow_to_stop(&nodes, &t, (int32_t)(opening * ONE)),
+            1);
         now = compute_pupil_window(&t);
         if (opening < 0.89)
             worst = fmax(worst, fmax(fabs(now.right - last.right),
@@ -292,11 +293,13 @@ TEST(no_passing_ray_gives_no_window)
     const struct glint_lens lens = open_shape(&beside, GLINT_BASIS_AUTO, &m);
 
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
-    assert_int_equal(glint_window_find(&nodes, &t, (int32_t)(0.79 * ONE)), 0);
+    assert_int_equal(
+        glint_window_narrow_to_stop(&nodes, &t, (int32_t)(0.79 * ONE)), 0);
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
-    assert_int_equal(glint_window_find(&nodes, &t, (int32_t)(0.85 * ONE)), 1);
+    assert_int_equal(
+        glint_window_narrow_to_stop(&nodes, &t, (int32_t)(0.85 * ONE)), 1);
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
-    assert_int_equal(glint_window_find(&nodes, &t, 1 << 20), 0);
+    assert_int_equal(glint_window_narrow_to_stop(&nodes, &t, 1 << 20), 0);
     free(m.data);
 }
 
@@ -314,7 +317,7 @@ TEST(annular_box_has_two_window_ends)
 
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
     t.annulus = 1; /* The annulus begins at v = 1/2. */
-    assert_int_equal(glint_window_find(&nodes, &t, ONE / 20), 1);
+    assert_int_equal(glint_window_narrow_to_stop(&nodes, &t, ONE / 20), 1);
     low = ldexp(glint_transfer_v(&t, 0, 8), -30);
     high = ldexp(glint_transfer_v(&t, 8, 8), -30);
     assert_true(low > 0.7 && low < 0.76 && high > 0.83 && high < 0.89);

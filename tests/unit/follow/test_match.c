@@ -24,11 +24,11 @@ TEST_OPEN
 {
     struct glint_arena arena = glint_arena_measure();
 
-    glint_match_carve(&match, &arena, MAX, MAX);
+    glint_match_allocate(&match, &arena, MAX, MAX);
     if (posix_memalign(&mem, 64, arena.used) != 0)
         fail();
     arena = glint_arena_over(mem, arena.used);
-    glint_match_carve(&match, &arena, MAX, MAX);
+    glint_match_allocate(&match, &arena, MAX, MAX);
 }
 
 TEST_CLOSE
@@ -119,7 +119,7 @@ TEST(pairs_match_the_slow_search)
             match.seeker[i].y_q8 = match.seeker[i].y_q8 / 8 + (130 << 8);
             match.seeker[i].reach_q8 = 600 << 8;
         }
-        glint_match_find(&match, spot, n_spots);
+        glint_match_assign_spots(&match, spot, n_spots);
         n_matched += match_by_cheapest_pairs(n_spots, partner);
         for (int i = 0; i < n_seekers; i++)
             assert_int_equal(match.seeker[i].spot, partner[i]);
@@ -151,7 +151,7 @@ TEST(crowded_seekers_get_distinct_spots)
     place_seekers_and_spots(MAX, MAX, 30 << 8);
     for (int i = 0; i < MAX; i++)
         match.seeker[i].reach_q8 = 1 << 23;
-    glint_match_find(&match, spot, MAX);
+    glint_match_assign_spots(&match, spot, MAX);
     memset(seen, 0, sizeof seen);
     for (int i = 0; i < MAX; i++) {
         const int32_t at = match.seeker[i].spot;
@@ -181,7 +181,7 @@ TEST(reach_includes_the_max_distance)
             spot[0] =
                 (struct glint_spot){.x_q8 = 50000 + way[k][0] * (3000 + more),
                                     .y_q8 = 40000 + way[k][1] * (3000 + more)};
-            glint_match_find(&match, spot, 1);
+            glint_match_assign_spots(&match, spot, 1);
             assert_int_equal(match.seeker[0].spot, more ? -1 : 0);
         }
 }
@@ -238,13 +238,13 @@ TEST(ties_do_not_depend_on_order)
         const int n = 1 + rng_int_below(&seed, 60);
 
         place_with_equal_costs(n);
-        glint_match_find(&match, spot, n);
+        glint_match_assign_spots(&match, spot, n);
         memset(power, 0, sizeof power);
         memset(again, 0, sizeof again);
         read_powers_of_matches(power);
         shuffle_items(match.seeker, n, sizeof *match.seeker);
         shuffle_items(spot, n, sizeof *spot);
-        glint_match_find(&match, spot, n);
+        glint_match_assign_spots(&match, spot, n);
         read_powers_of_matches(again);
         assert_memory_equal(power, again, sizeof power);
     }

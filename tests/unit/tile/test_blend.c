@@ -104,8 +104,8 @@ static void draw_stripe_passes(const struct glint_image *image, int half,
             (struct glint_pass){&self[i], begin_tile_row, set_current_tile,
                                 set_coverage_and_light_of_rows};
     }
-    for (int row = 0; row < glint_tiles_down(&tiles); row++)
-        glint_tile_rows(&tiles, pass, n_passes, row, 0, &scratch);
+    for (int row = 0; row < glint_tiles_count_rows(&tiles); row++)
+        glint_tiles_draw_row(&tiles, pass, n_passes, row, 0, &scratch);
 }
 
 static double decode_srgb(double code)

@@ -152,7 +152,7 @@ static void draw_triangle_pass(struct glint_frame *f, struct glint_flare *flare)
     f->triangle.half = f->half;
     f->triangle.linear = f->image.format == GLINT_LINEAR_Q20;
     f->triangle.at = at;
-    glint_flare_draw_over(flare, &f->image, &under);
+    glint_flare_draw_over_passes(flare, &f->image, &under);
 }
 
 /* Returns byte I of the image before drawing. */

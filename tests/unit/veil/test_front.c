@@ -143,7 +143,7 @@ static void open_haze_scene(struct scene *s, int tile_log2, int n_workers,
     for (size_t i = 0; i < sizeof s->part_q16 / 2; i++)
         s->part_q16[i] = (uint16_t)rng_int_below(&seed, 65536);
     s->front = (struct glint_veil_front){
-        glint_veil_front_row, GLINT_VEIL_FRONT_NODES(WIDTH),
+        glint_veil_add_front_row, GLINT_VEIL_FRONT_NODES(WIDTH),
         GLINT_VEIL_FRONT_NODES(HEIGHT), s->part_q16};
 }
 
@@ -163,7 +163,7 @@ static void draw_haze_of_lamp(struct scene *s, double light,
     struct glint_veil_spread even;
     int cells[2];
 
-    glint_veil_cells(WIDTH, HEIGHT, cells);
+    glint_veil_count_cells(WIDTH, HEIGHT, cells);
     for (int k = 0; k < 2; k++) {
         int32_t *table = k ? even.down_q30 : even.across_q30;
         int32_t rest = 1 << 30;
@@ -176,10 +176,10 @@ static void draw_haze_of_lamp(struct scene *s, double light,
     }
     even.share =
         glint_real_of(light * cells[0] * cells[1] / 1000 / (WIDTH * HEIGHT));
-    glint_veil_look(s->veil, NULL, one, &s->bare.shuffle.workers);
-    glint_veil_lamp(s->veil, 60 * 256, 40 * 256,
-                    glint_real_of(1000.0 * WIDTH * HEIGHT), rgb_q14);
-    glint_veil_spread(s->veil, NULL, 0);
+    glint_veil_read_picture(s->veil, NULL, one, &s->bare.shuffle.workers);
+    glint_veil_add_lamp(s->veil, 60 * 256, 40 * 256,
+                        glint_real_of(1000.0 * WIDTH * HEIGHT), rgb_q14);
+    glint_veil_spread_light(s->veil, NULL, 0);
     glint_veil_front(s->veil, &s->front, &even, 1);
     glint_veil_draw_alone(s->veil, s->bare.flare, &image);
 }

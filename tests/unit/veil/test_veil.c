@@ -39,7 +39,7 @@ static void open_veil_canvas(struct canvas *c, int width, int height,
 
     c->width = width;
     c->height = height;
-    glint_veil_cells(width, height, c->cells);
+    glint_veil_count_cells(width, height, c->cells);
     bare_flare_open(&c->bare, width, height, tile_log2, n_workers, order);
     c->mem = bare_flare_carve(bytes);
     assert_int_equal(glint_veil_init(&c->veil, &veil, c->mem, bytes - 1),
@@ -112,15 +112,15 @@ static double draw_veil_linear(struct canvas *c, int channel)
 
 static void clear_veil_light(struct canvas *c)
 {
-    glint_veil_look(c->veil, NULL, one, &c->bare.shuffle.workers);
+    glint_veil_read_picture(c->veil, NULL, one, &c->bare.shuffle.workers);
 }
 
 static void add_lamp_to_veil(struct canvas *c, double x, double y, double power)
 {
     const int32_t rgb_q14[3] = {16384, 8192, 0};
 
-    glint_veil_lamp(c->veil, (int32_t)lrint(256 * x), (int32_t)lrint(256 * y),
-                    glint_real_of(power), rgb_q14);
+    glint_veil_add_lamp(c->veil, (int32_t)lrint(256 * x),
+                        (int32_t)lrint(256 * y), glint_real_of(power), rgb_q14);
 }
 
 /* ------------------------------------------------------------------- light */
@@ -143,7 +143,7 @@ TEST(veil_has_its_fraction_of_the_light)
             s = make_gaussian_spread(&c, sigma[i % 3], 0.03);
             clear_veil_light(&c);
             add_lamp_to_veil(&c, x * c.width, y * c.height, 500);
-            glint_veil_spread(c.veil, &s, 1);
+            glint_veil_spread_light(c.veil, &s, 1);
             /* weights are not exact at the middle of three columns */
             assert_true(fabs(draw_veil_linear(&c, 0) / 15 - 1) < 1e-3);
             assert_true(fabs(draw_veil_linear(&c, 1) / 7.5 - 1) < 1e-3);
@@ -165,7 +165,7 @@ TEST(veil_of_a_lamp_is_a_gaussian)
     s = make_gaussian_spread(&c, sigma, 1);
     clear_veil_light(&c);
     add_lamp_to_veil(&c, 81.3, 60.2, 4096);
-    glint_veil_spread(c.veil, &s, 1);
+    glint_veil_spread_light(c.veil, &s, 1);
     draw_veil_linear(&c, 0);
     for (int y = 30; y < 90; y++)
         for (int x = 40; x < 120; x++) {
@@ -212,8 +212,8 @@ TEST(black_spot_has_the_veiling_glare_index)
                 codes[2 * i] = 128;
         }
         s = make_gaussian_spread(&c, 20, 0.05 / 0.95);
-        glint_veil_look(c.veil, &image, one, &c.bare.shuffle.workers);
-        glint_veil_spread(c.veil, &s, 1);
+        glint_veil_read_picture(c.veil, &image, one, &c.bare.shuffle.workers);
+        glint_veil_spread_light(c.veil, &s, 1);
         draw_veil_linear(&c, 1);
         for (int i = 0; i < 162 * 121; i++) {
             least = fmin(least, linear_q20[3 * i + 1] * 0x1p-20);
@@ -244,8 +244,9 @@ TEST(veil_of_an_image_has_its_colours)
             codes[3 * (161 * y + x) + 1] = 188; /* half of white */
         }
     s = make_gaussian_spread(&c, 6, 0.1);
-    glint_veil_look(c.veil, &image, glint_real_of(2), &c.bare.shuffle.workers);
-    glint_veil_spread(c.veil, &s, 1);
+    glint_veil_read_picture(c.veil, &image, glint_real_of(2),
+                            &c.bare.shuffle.workers);
+    glint_veil_spread_light(c.veil, &s, 1);
     draw_veil_linear(&c, 0);
     for (int i = 0; i < 161 * 121; i++) {
         for (int k = 0; k < 3; k++)
@@ -280,7 +281,7 @@ TEST(moving_lamp_keeps_the_veil_steady)
 
         clear_veil_light(&c);
         add_lamp_to_veil(&c, 60 + 0.05 * i, 40 + 0.02 * i, 3000);
-        glint_veil_spread(c.veil, &s, 1);
+        glint_veil_spread_light(c.veil, &s, 1);
         sum = draw_veil_linear(&c, 0);
         least = fmin(least, sum);
         most = fmax(most, sum);
@@ -337,14 +338,14 @@ static void draw_veil_of_random_image(uint32_t seed, int tile_log2,
     for (size_t i = 0; i < bytes; i++)
         mem[i] = (uint8_t)(rng_int_below(&seed, 256) *
                            (format == GLINT_LINEAR_Q20 && i % 4 == 3 ? 0 : 1));
-    glint_veil_look(c.veil, &image, one, &c.bare.shuffle.workers);
+    glint_veil_read_picture(c.veil, &image, one, &c.bare.shuffle.workers);
     for (int i = 0; i < 3; i++)
-        glint_veil_lamp(c.veil, rng_int_below(&seed, 130 * 256),
-                        rng_int_below(&seed, 75 * 256),
-                        (struct glint_real){1 << 30, -30 + 3 * i}, rgb_q14);
+        glint_veil_add_lamp(c.veil, rng_int_below(&seed, 130 * 256),
+                            rng_int_below(&seed, 75 * 256),
+                            (struct glint_real){1 << 30, -30 + 3 * i}, rgb_q14);
     for (int i = 0; i < 2; i++)
         set_random_spread(&s[i], &c, &seed);
-    glint_veil_spread(c.veil, s, 2);
+    glint_veil_spread_light(c.veil, s, 2);
     glint_veil_draw(c.veil, NULL, c.bare.flare, &image);
     close_veil_canvas(&c);
 }
@@ -397,7 +398,7 @@ TEST(extreme_lamps_give_valid_veils)
 
             clear_veil_light(&c);
             add_lamp_to_veil(&c, place[k][0], place[k][1], ldexp(1, p));
-            glint_veil_spread(c.veil, &s, 1);
+            glint_veil_spread_light(c.veil, &s, 1);
             sum = draw_veil_linear(&c, 0);
             assert_true(sum >= before);
             assert_true(k < 3 || sum == 0);
