@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Internal state of a starburst, and its lights in the form that the pass
- * draws.
+ * Internal state of a starburst, shared by the files of this folder: lamps with
+ * powers in units of the tables, rows being drawn, memory.
  */
 #ifndef GLINT_STAR_PARTS_H
 #define GLINT_STAR_PARTS_H
@@ -10,58 +10,62 @@
 #include "tile/blend.h"
 
 enum {
-    /* number of zones of distance from a light; each ends at four times the
-     * distance of the previous zone */
+    /* number of distance zones around a light; each zone ends at four times the
+     * distance of the previous one */
     GLINT_STAR_ZONES = 8,
     GLINT_STAR_INVERSES = 128 /* steps of the table of 1 / x over x = 1 .. 2 */
 };
 
-/* A light, its power multiplied by the units of the tables. */
+/* A light that is drawn: its position, its power in units of the tables, and
+ * the distances up to which it is visible. */
 struct glint_star_lamp {
     int32_t x_q8, y_q8;
-    uint64_t inner_q16; /* lower bound of r^2 in 1 / r^2, pixels^2 */
+    uint64_t inner_q16; /* min r^2 in the factor 1 / r^2, pixels^2 */
     int is_bare;        /* 1: draw the lamp's core as well */
-    /* line: light of one step of a profile; core: power of the lamp; per
-     * channel, 15 bits times 2^exponent. halo: log2 of the power per
-     * channel. */
+    /* Power per channel in three forms. line: light of the profile value 1, a
+     * mantissa of 15 bits times 2^line_exponent; core: power of the lamp, a
+     * mantissa of 15 bits times 2^core_exponent; halo: log2 of the power. */
     int32_t line[3], line_exponent, core[3], core_exponent, halo_log2_q16[3];
-    /* Scale of the profiles for this lamp's radius: steps per pixel, and
-     * pixels per step. */
+    /* Scale of the line profiles, widened by the lamp's radius: profile steps
+     * per pixel, and pixels per profile step. */
     int32_t per_pixel_q16, pixels_q16;
-    /* [GLINT_STAR_HALO_ROWS] each: halos for the tabulated radii below and
-     * above the lamp's radius, and the weight of the latter. Both pointers
-     * are equal if there is a single halo. */
+    /* Halo tables, [GLINT_STAR_HALO_ROWS] each, for the tabulated lamp radii
+     * below (halo) and above (next_halo) the lamp's radius, and the weight of
+     * next_halo. Both pointers are equal if there is only one table. */
     const glint_star_halo_row *halo, *next_halo;
     int halo_part_q15;
-    int reach, halo_reach; /* distances in pixels at which lines, and the halo,
-                              become invisible */
-    int smear_reach; /* distance in pixels at which diffraction by dirt in the
-                        stop becomes invisible */
+    int reach, halo_reach; /* distances from the lamp, pixels, beyond which
+                              lines (reach) and halo are invisible */
+    int smear_reach; /* distance from the lamp, pixels, beyond which diffraction
+                        by dirt in the stop is invisible */
     int n_zones;
-    /* Zone i reaches from start[i] to start[i + 1] pixels; the distance is
-     * max(|dx|, |dy|). In zone i the steps of a profile below seen[i] are
-     * visible. */
+    /* Zone i extends from distance start[i] to start[i + 1], where distance
+     * means max(|dx|, |dy|) in pixels. In zone i the profile steps 0 .. seen[i]
+     * - 1 are visible. */
     int start[GLINT_STAR_ZONES + 1];
     int seen[GLINT_STAR_ZONES];
 };
 
-/* Light that is accumulated for a range of pixels of one row. */
+/* One row of pixels of a tile, in which the light of all lamps is accumulated.
+ */
 struct glint_star_stretch {
     int y, x0, x1; /* row; pixels x0 .. x1 - 1 of the row */
-    int lo, hi;    /* columns lo .. hi - 1 may have light; all others are 0 */
-    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3][x1 - x0]: linear light,
-                                                display white */
+    int lo, hi;    /* range of columns lo .. hi - 1 that may have light; all
+                      other columns are 0 */
+    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3][x1 - x0]: linear light per
+                                                channel, 1 = display white */
 };
 
 /* State of a worker that draws a row of tiles. */
 struct glint_star_row {
     const struct glint_star *star;
     struct glint_box tile;
-    int n_near, n_here; /* numbers of lights that reach this row of tiles, and
-                           this tile */
-    uint16_t *near, *here; /* [max_lights] each: indices of these lights */
-    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3]: buffer for one row of
-                                                pixels; 0 between rows */
+    int n_near, n_here; /* number of lights that reach the row of tiles (near),
+                           and the current tile (here) */
+    uint16_t *near, *here; /* [max_lights] each: indices of the lights that are
+                              counted by n_near and n_here */
+    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3]: buffer for the light of one
+                                                pixel row; all 0 between rows */
 };
 
 struct glint_star {
@@ -78,12 +82,14 @@ struct glint_star {
 glint_star_part_fn glint_star_add_lines_row, glint_star_add_halo_row,
     glint_star_add_core_row;
 
-/* Returns whether lines of LAMP may reach pixels of BOX; conservative. */
+/* Returns whether a line of LAMP may light pixels of BOX. May return 1 although
+ * no line does, never the reverse. */
 int glint_star_can_lines_reach_box(const struct glint_star *star,
                                    const struct glint_star_lamp *lamp,
                                    struct glint_box box);
 
-/* Returns the distance in pixels from a light to the end of its core. */
+/* Returns the distance in pixels up to which the core table extends from a
+ * light. */
 static inline int glint_star_core_reach(const struct glint_star *star)
 {
     const int steps = star->tables->core_per_pixel_q16 >> 16;
@@ -91,7 +97,7 @@ static inline int glint_star_core_reach(const struct glint_star *star)
     return GLINT_STAR_CORE >> (steps == 4 ? 2 : steps == 2 ? 1 : 0);
 }
 
-/* Extends the range of lit columns of ROW by X0 .. X1 - 1. */
+/* Records in ROW that the columns X0 .. X1 - 1 may have light. */
 static inline void glint_star_note(struct glint_star_stretch *row, int x0,
                                    int x1)
 {

@@ -16,8 +16,8 @@ static int is_valid_config(const struct glint_star_config *c)
            c->max_lights <= GLINT_STAR_MAX_LIGHTS;
 }
 
-/* Allocates a star and its tables from A. Called twice: to measure (returns
- * NULL) and to place. */
+/* Allocates a starburst and its arrays from arena A. Called twice: with an
+ * arena that only measures (returns NULL), then to allocate. */
 static struct glint_star *allocate_star(struct glint_arena *a,
                                         const struct glint_star_config *c)
 {
@@ -81,8 +81,8 @@ enum glint_status glint_star_init(struct glint_star **star,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Sets PART to the product of X and each channel of RGB, 15 bits each.
- * Returns the exponent of PART. */
+/* Sets PART to the mantissas, of 15 bits, of X times each channel of RGB.
+ * Returns the exponent that they have in common. */
 static int multiply_rgb_by_real(const int32_t rgb_q14[3], struct glint_real x,
                                 int32_t part[3])
 {
@@ -100,7 +100,7 @@ static int32_t compute_real_log2_q16(struct glint_real x)
                : INT32_MIN / 2;
 }
 
-/* Returns 2^LOG2_OF pixels, rounded up; at most 2^20 + 1. */
+/* Returns 2^LOG2_OF, a distance in pixels, rounded up; at most 2^20 + 1. */
 static int compute_exp2_ceil(int32_t log2_of_q16)
 {
     const int64_t far_q16 = q_exp2_q16(q_smaller(log2_of_q16, 20 * 65536));
@@ -108,8 +108,8 @@ static int compute_exp2_ceil(int32_t log2_of_q16)
     return (int)(far_q16 >> 16) + 1;
 }
 
-/* Returns the number of profile steps up to the last one whose light exceeds
- * 2^MIN_LOG2. */
+/* Returns 1 + the index of the last step of the line profiles whose light
+ * exceeds 2^MIN_LOG2; 0 if none does. */
 static int count_visible_profile_steps(const struct glint_star_tables *t,
                                        int32_t min_log2_q16)
 {
@@ -123,9 +123,9 @@ static int count_visible_profile_steps(const struct glint_star_tables *t,
     return i;
 }
 
-/* Divides the distance up to the lamp's reach into zones and sets the number
- * of visible profile steps in each. OVER is log2 of (light of one step of a
- * profile at 1 pixel / min visible light). */
+/* Divides the distances 0 .. reach around LAMP into zones, and sets the number
+ * of visible profile steps in each zone. OVER: log2 of the ratio of the light
+ * of profile value 1 at a distance of 1 pixel to the min visible light. */
 static void set_distance_zones(struct glint_star_lamp *lamp,
                                const struct glint_star_tables *t,
                                int32_t over_log2_q16)
@@ -147,8 +147,8 @@ static void set_distance_zones(struct glint_star_lamp *lamp,
     }
 }
 
-/* Returns the distance in pixels up to which the halo of a light of POWER
- * exceeds MIN, both as log2; 0 if it never exceeds MIN. */
+/* Returns the distance in pixels up to which the halo of a light of power
+ * 2^POWER_LOG2 is brighter than 2^MIN_LOG2; 0 if it is nowhere. */
 static int compute_halo_reach(const struct glint_star_tables *t,
                               int32_t power_log2_q16, int32_t min_log2_q16)
 {
@@ -169,8 +169,8 @@ static int compute_halo_reach(const struct glint_star_tables *t,
     return 0;
 }
 
-/* Returns the distance in pixels up to which the diffraction by dirt of a
- * light of POWER exceeds MIN, both as log2. */
+/* Returns the distance in pixels up to which the smear (diffraction by dirt) of
+ * a light of power 2^POWER_LOG2 is brighter than 2^MIN_LOG2. */
 static int compute_smear_reach(const struct glint_star_smear *s,
                                int32_t power_log2_q16, int32_t min_log2_q16)
 {
@@ -190,8 +190,9 @@ static struct glint_real clamp_lamp_power(struct glint_real power)
     return real_less(most, power) ? most : power;
 }
 
-/* Returns the factor by which a lamp of RADIUS widens and dims lines, at
- * most 2^10. A uniform disc is 1.73 radii wide at half its brightness. */
+/* Returns the factor by which the disc of a lamp of RADIUS pixels widens its
+ * lines, and by which it dims them; at most 2^10. The profile of a uniform disc
+ * is 1.73 radii wide at half its brightness. */
 static int64_t compute_line_widening_q8(const struct glint_star_tables *t,
                                         int32_t radius_q8)
 {
@@ -202,15 +203,16 @@ static int64_t compute_line_widening_q8(const struct glint_star_tables *t,
     return q_root((uint64_t)(65536 + held_q8 * held_q8));
 }
 
-/* Chooses the two halo tables between which the halo of a lamp of RADIUS is
- * interpolated. */
+/* Sets the two halo tables, and the weight, from which the halo of a lamp of
+ * RADIUS pixels is interpolated. */
 static void choose_halo_tables(struct glint_star_lamp *lamp,
                                const struct glint_star_tables *t,
                                int32_t radius_q8)
 {
     const int32_t radius = q_clamp_sat(radius_q8, 0, 1 << 22);
     const int32_t last_q16 = (GLINT_STAR_WIDE - 1) << 16;
-    /* index into the halos of extended lamps; -1: halo of a point light */
+    /* fractional index into the halo tables of extended lamps; -1: table of a
+     * point light */
     const int32_t at_q16 =
         radius < 128
             ? (radius - 128) * 512
@@ -229,7 +231,8 @@ static void choose_halo_tables(struct glint_star_lamp *lamp,
     }
 }
 
-/* Sets LAMP for light L. Returns 0 if the light is not visible. */
+/* Computes LAMP, the drawing parameters of light L. Returns 0 if no part of its
+ * starburst is brighter than FAINTEST. */
 static int set_star_lamp(struct glint_star_lamp *lamp,
                          const struct glint_star_tables *t,
                          const struct glint_star_light *l,

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
  * Draws the core of a starburst: the exact diffraction pattern near a light,
- * minus lines and halo. The core is a lattice finer than pixels. Light is
- * interpolated between its nodes, so that the sum over all pixels does not
- * change as the light moves.
+ * minus lines and halo. The core table is a lattice finer than pixels. Light is
+ * interpolated between lattice nodes, so that the sum over all pixels does not
+ * change as the lamp moves.
  */
 #include "base/q.h"
 #include "star/parts.h"
 
-/* Decodes node (I, J) of channel C, relative to the centre. */
+/* Decodes channel C of node (I, J) of the core table; the lamp is at node (0,
+ * 0). */
 static int64_t decode_core_node_q40(const struct glint_star_tables *t, int i,
                                     int j, int c)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws the halo of a starburst, the smooth component of the far field. Its
- * table holds logarithms of light by distance from the lamp and distance from
- * the nearest line.
+ * Draws the halo of a starburst, the smooth component of the far field. A table
+ * holds log2 of the light, by distance from the lamp (rows) and distance from
+ * the nearest line (columns).
  */
 #include "base/log2.h"
 #include "star/parts.h"
@@ -15,12 +15,13 @@ struct span {
     struct glint_star_stretch *row;
 };
 
-/* A fractional index into a table: index and weight of the next entry. */
+/* A fractional index into a table: an entry AT, and the weight of entry AT + 1.
+ */
 struct place {
     int at, part_q15;
 };
 
-/* Converts X to a fractional index, clamped to below LAST. */
+/* Splits X into index and weight, clamped such that the index is below LAST. */
 static struct place compute_table_index(int32_t x_q16, int last)
 {
     const int32_t held_q16 = q_clamp_sat(x_q16, 0, (last << 16) - 1);
@@ -33,8 +34,9 @@ static int32_t interpolate_int32(int32_t a, int32_t b, int part_q15)
     return a + ((b - a) * part_q15 >> 15);
 }
 
-/* A pixel at which the halo is evaluated: column, position relative to the
- * lamp along x and across the nearest line, and light. */
+/* A pixel at which the halo is evaluated: its column (x), its distance from the
+ * lamp along x (dx), its distance from the nearest line (v), and its light per
+ * channel. */
 struct node {
     int x;
     int64_t dx_q8, v_q8;
@@ -50,7 +52,7 @@ static struct node make_halo_node(const struct span *s,
     return n;
 }
 
-/* Interpolates channel C of HALO at ROW and COLUMN. */
+/* Interpolates channel C of the table HALO bilinearly at ROW and COLUMN. */
 static int32_t interpolate_halo_table(const glint_star_halo_row *halo,
                                       struct place row, struct place column,
                                       int c)
@@ -93,8 +95,8 @@ static void compute_node_light(const struct span *s, struct node *n)
     }
 }
 
-/* Adds the light of STEP pixels from A on, interpolated linearly between A
- * and B. STEP is the distance from A to B. */
+/* Adds light to the STEP pixels from A up to, not including, B, interpolated
+ * linearly between A and B, which are STEP pixels apart. */
 static void add_interpolated_run(const struct span *s, const struct node *a,
                                  const struct node *b, int step)
 {
@@ -116,10 +118,11 @@ static int64_t compute_min_magnitude(int64_t a, int64_t b)
     return (a < 0) != (b < 0) ? 0 : p < q ? p : q;
 }
 
-/* Returns whether light may be interpolated linearly between A and B, n
- * pixels apart. Light falls with r^-3 and v^-2, so interpolated light is too
- * high by at most the fractions 1.5 n^2 / r^2 and 0.75 n^2 / v^2, here 0.01
- * and 0.02. */
+/* Returns whether the halo between A and B, which are n pixels apart, may be
+ * interpolated linearly. Light falls with r^-3 and v^-2 (r: distance from the
+ * lamp, v: from the line), so linear interpolation is too bright by at most the
+ * fractions 1.5 n^2 / r^2 and 0.75 n^2 / v^2. The test limits these to 0.01 and
+ * 0.02. */
 static int is_halo_nearly_linear(const struct span *s, const struct node *a,
                                  const struct node *b)
 {
@@ -130,9 +133,10 @@ static int is_halo_nearly_linear(const struct span *s, const struct node *a,
            dx_q8 * dx_q8 + s->dy_q8 * s->dy_q8 >= 144 * far_q8 * far_q8;
 }
 
-/* Returns the number of pixels from FROM on, up to X1, that can be
- * interpolated linearly: 8, 4 or 1. Runs begin at multiples of their length,
- * so that the result does not depend on tile borders. */
+/* Returns the length of the run of pixels that begins at FROM and ends at X1 at
+ * the latest, over which the halo is interpolated linearly: 8, 4 or 1. Runs
+ * begin at multiples of their length, so that pictures do not depend on tile
+ * borders. */
 static int choose_run_length(const struct span *s,
                              const struct glint_star_line *line,
                              const struct node *from, int x1)
@@ -149,7 +153,7 @@ static int choose_run_length(const struct span *s,
     return 1;
 }
 
-/* Adds light to pixels X0 .. X1 - 1, which lie in the sector of LINE. */
+/* Adds the halo to pixels X0 .. X1 - 1, all of which are nearest to LINE. */
 static void add_sector_light(const struct span *s,
                              const struct glint_star_line *line, int x0, int x1)
 {
@@ -169,9 +173,9 @@ static void add_sector_light(const struct span *s,
     }
 }
 
-/* Adds light to pixels X0 .. X1 - 1 sector by sector. Lines are sorted by
- * angle, so that borders between sectors are crossed from right to left
- * below the lamp and from left to right above it. */
+/* Adds the halo to pixels X0 .. X1 - 1, sector by sector; a sector is the set
+ * of pixels nearest to one line. Lines are sorted by angle, so their sectors
+ * follow from right to left below the lamp, and from left to right above it. */
 static void add_light_of_all_sectors(const struct span *s, int x0, int x1)
 {
     const struct glint_star_tables *t = s->star->tables;

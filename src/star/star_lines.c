@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws the lines of a starburst: each edge of the stop diffracts light at
- * right angles to the edge, into a strip through each lamp.
+ * Draws the lines of a starburst. Each edge of the stop diffracts light at
+ * right angles to itself, into a line through the lamp, which is drawn as a
+ * strip of pixels.
  *
- * A strip covers the pixels where it is visible. Light falls with the square of
- * the distance, so the strip is narrower in each zone of distance than in the
- * previous one, which is four times nearer.
+ * A strip covers the pixels in which the line is visible. Light falls with the
+ * square of the distance from the lamp, so the strip is narrower in each
+ * distance zone than in the previous one. Each zone ends at four times the
+ * distance of the previous one.
  */
 #include "base/q.h"
 #include "star/parts.h"
 
-/* Returns X 2^-SHIFT, at most 2^50. X must be below 2^48; SHIFT may be
+/* Returns X 2^-SHIFT, clamped to 2^50. X must be below 2^48; SHIFT may be
  * negative. */
 static int64_t shift_right_clamped(uint64_t x, int shift)
 {
@@ -21,7 +23,7 @@ static int64_t shift_right_clamped(uint64_t x, int shift)
     return (int64_t)(bit_length(x) - shift > 50 ? (x ? most : 0) : x << -shift);
 }
 
-/* Pixels of a row, x0 .. x1 - 1. */
+/* A range of pixels of one row: columns x0 .. x1 - 1. */
 struct stretch {
     int x0, x1;
 };
@@ -31,7 +33,7 @@ static struct stretch intersect_pixel_ranges(struct stretch a, struct stretch b)
     return (struct stretch){q_larger(a.x0, b.x0), q_smaller(a.x1, b.x1)};
 }
 
-/* The strip of one line of one lamp in one row of pixels. */
+/* What is needed to draw one line of one lamp in one row of pixels. */
 struct strip {
     const struct glint_star *star;
     const struct glint_star_lamp *lamp;
@@ -40,8 +42,7 @@ struct strip {
     struct glint_star_stretch *row;
 };
 
-/* Looks up 1 / r^2 in pixels^-2 = INVERSE 2^(1 - BITS): returns INVERSE and
- * sets BITS. */
+/* Looks up 1 / R2, pixels^-2: it is the returned value times 2^(1 - BITS). */
 static uint32_t look_up_inverse_square(const struct glint_star *star,
                                        uint64_t r2_q16, int *bits)
 {
@@ -82,8 +83,8 @@ static void add_line_pixel(const struct strip *s, int x, int64_t v_q16)
     }
 }
 
-/* Adds light to the pixels of HERE that are less than SEEN steps from the
- * strip's centre line. */
+/* Adds the line's light to those pixels of HERE that are less than SEEN profile
+ * steps from its centre. */
 static void add_line_pixel_range(const struct strip *s, struct stretch here,
                                  int seen)
 {
@@ -107,8 +108,8 @@ static void add_line_pixel_range(const struct strip *s, struct stretch here,
     }
 }
 
-/* Returns the pixels of the row that are at most SEEN steps from the strip's
- * centre line. */
+/* Returns the range of pixels of the row that lie within SEEN profile steps of
+ * the line's centre. */
 static struct stretch find_strip_pixels(const struct strip *s, int seen)
 {
     const int64_t middle_q8 = (int64_t)s->dy_q8 * s->line->cot_q16 >> 16;
@@ -172,8 +173,8 @@ void glint_star_add_lines_row(const struct glint_star *star,
     }
 }
 
-/* Returns the distance max(|dx|, |dy|) from pixel (X, Y) to BOX; 0 if the
- * pixel is inside. */
+/* Returns the distance max(|dx|, |dy|) in pixels from pixel (X, Y) to box B; 0
+ * if the pixel is inside. */
 static int compute_distance_to_box(struct glint_box b, int x, int y)
 {
     const int dx = q_larger(b.x0 - x, x - (b.x1 - 1));

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws starbursts as a pass: finds the lights that reach each row of tiles and
- * each tile, and adds their light to the rows of pixels.
+ * Draws starbursts as a pass (tile/pass.h): selects the lamps whose starburst
+ * reaches a row of tiles, and of these the lamps that reach a tile, and adds
+ * their light to each pixel row.
  */
 #include "base/q.h"
 #include "flare/draw_over.h"
 #include "flare/state.h"
 #include "star/parts.h"
 
-/* Returns the distance in pixels from LAMP up to which it has halo, core or
- * smear. */
+/* Returns the distance in pixels up to which halo, core or smear of LAMP are
+ * visible. */
 static int compute_halo_and_core_reach(const struct glint_star *star,
                                        const struct glint_star_lamp *lamp)
 {
@@ -76,8 +77,8 @@ static void add_lamps_to_row(const struct glint_star_row *r,
     }
 }
 
-/* Moves the light of channel C from ROW to LIGHT, clamped to 16 bits, and
- * clears it in ROW. Returns whether there was any light. */
+/* Writes the accumulated light of channel C of ROW to LIGHT, clamped to 16
+ * bits, and clears it in ROW. Returns nonzero if any light is nonzero. */
 static int move_light_to_codes(const struct glint_star_stretch *row, int c,
                                uint16_t *light_q16)
 {
@@ -154,8 +155,8 @@ static void draw_tile_row_job(void *ctx, int job, int worker)
                          &d->flare->worker[worker].tile);
 }
 
-/* Draws the starburst to all pixels, even if the flare is drawn at half
- * resolution. */
+/* Draws the starburst without the ghosts, at full resolution even if the flare
+ * is drawn at half resolution. */
 static void draw_star_without_flare(struct glint_star *star,
                                     struct glint_flare *flare,
                                     const struct glint_image *image)

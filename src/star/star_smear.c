@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws light that dirt in the stop diffracts around a lamp, from a table of
- * nested squares (smeared.h). The lamp's disc blurs this light, so squares
- * whose steps are finer than half of the disc's radius are skipped.
+ * Draws the light that dirt in the stop diffracts around a lamp (the smear),
+ * from a table of nested squares (smeared.h). The disc of the lamp blurs this
+ * light, so squares whose table steps are finer than half the disc's radius are
+ * replaced by coarser ones.
  */
 #include "base/compiler.h"
 #include "base/q.h"
@@ -11,21 +12,22 @@
 enum {
     HALF = GLINT_STAR_SMEAR_HALF,
     RINGS = GLINT_STAR_SMEAR_RINGS,
-    /* log2 of the steps per pixel of the first square, and of its half side
-     * in _q8 */
+    /* log2 of the table steps per pixel in the first square, and log2 of half
+     * its side, pixels _q8 */
     STEPS_LOG2 = 2,
     FIRST_LOG2 = 11
 };
 
-/* State for drawing one ring (the area between two nested squares) in one
+/* What is needed to draw one ring, the area between two nested squares, in one
  * row of pixels. */
 struct span {
     const struct glint_star_smear *table;
     const struct glint_star_lamp *lamp;
     int64_t (*light_q20)[GLINT_CODES_WIDTH];
     int ring;
-    int32_t share[3]; /* light of table value 1 per channel */
-    int shift;        /* light of table value 1 is share 2^-shift, _q20 */
+    int32_t share[3]; /* light of table value 1 per channel, before the shift */
+    int shift;        /* the light of table value 1 is share times 2^-shift,
+                         _q20 */
 };
 
 static void set_smear_ring(struct span *s, int ring)
@@ -39,12 +41,13 @@ static void set_smear_ring(struct span *s, int ring)
     s->shift = -(s->lamp->core_exponent + step.exponent + 16 + 20);
 }
 
-/* Adds light to pixel AT of the row, at (DX, DY) from the lamp. */
+/* Adds the smear to the pixel at index AT of the row, whose middle lies at (DX,
+ * DY) pixels from the lamp. */
 static void add_smear_pixel(const struct span *s, int at, int64_t dx_q8,
                             int64_t dy_q8)
 {
     const int turn = dy_q8 < 0 ? -1 : 1, down = s->ring;
-    /* position in steps */
+    /* position in the table, in table steps */
     const int64_t x_q8 =
         (turn * dx_q8 * (1 << STEPS_LOG2) >> down) + HALF * 256;
     const int64_t y_q8 = turn * dy_q8 * (1 << STEPS_LOG2) >> down;
@@ -68,8 +71,9 @@ static void add_smear_pixel(const struct span *s, int at, int64_t dx_q8,
     }
 }
 
-/* Returns the ring of pixels at distance FAR = max(|dx|, |dy|) from the
- * lamp, at least LEAST; RINGS if they are outside all rings. */
+/* Returns the index of the ring that contains the distance FAR = max(|dx|,
+ * |dy|), pixels, from the lamp, but at least LEAST. Returns RINGS or more
+ * outside all rings. */
 static int find_smear_ring(int64_t far_q8, int least)
 {
     const int bits = bit_length((uint64_t)far_q8) - FIRST_LOG2;
@@ -84,13 +88,14 @@ void glint_star_add_smear_row(const struct glint_star *star,
     struct span s = {.table = star->tables->smear,
                      .lamp = lamp,
                      .light_q20 = row->light_q20,
-                     .ring = RINGS}; /* no ring is set yet */
+                     .ring = RINGS}; /* no valid ring, so that the first pixel
+                                        sets one */
     const int64_t dy_q8 = (int64_t)row->y * 256 + 128 - lamp->y_q8;
     const int64_t high_q8 = dy_q8 < 0 ? -dy_q8 : dy_q8;
     const int middle = lamp->x_q8 >> 8;
     const int x0 = q_larger(row->x0, middle - lamp->smear_reach);
     const int x1 = q_smaller(row->x1, middle + lamp->smear_reach + 1);
-    /* A step of ring k is 2^k / 4 pixels. */
+    /* A table step of ring k is 2^k / 4 pixels wide. */
     const int wide = bit_length(lamp->inner_q16 >> 18);
     const int least = wide > 1 ? (wide + 1) / 2 : 0;
 

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Estimates the drawing cost of a starburst: the number of pixels that its
+ * Estimates the drawing cost of a starburst as the number of pixels that its
  * lines, halos, smears and cores light.
  */
 #include "base/divide.h"
 #include "base/q.h"
 #include "star/parts.h"
 
-/* Returns the number of pixels from A to B - 1 that are within HALF of X. */
+/* Returns the number of pixels that the ranges A .. B - 1 and X - HALF .. X +
+ * HALF - 1 have in common. */
 static int64_t count_interval_overlap(int a, int b, int x, int half)
 {
     const int from = q_larger(a, x - half), to = q_smaller(b, x + half);
@@ -15,8 +16,8 @@ static int64_t count_interval_overlap(int a, int b, int x, int half)
     return to > from ? to - from : 0;
 }
 
-/* Returns the number of pixels of the picture in the square of half side
- * HALF around LAMP. */
+/* Returns the number of on-screen pixels in the square around LAMP whose sides
+ * are 2 HALF pixels long. */
 static int64_t count_square_pixels(const struct glint_star *star,
                                    const struct glint_star_lamp *lamp, int half)
 {
@@ -24,10 +25,10 @@ static int64_t count_square_pixels(const struct glint_star *star,
            count_interval_overlap(0, star->cfg.height, lamp->y_q8 >> 8, half);
 }
 
-/* Estimates the number of pixels that all lines of LAMP light. In each zone
- * a line is twice the zone's extent long and as wide as it is visible. The
- * fraction of the line inside the picture is assumed to equal that of the
- * zone's area. */
+/* Estimates the number of on-screen pixels that all lines of LAMP light. In
+ * each distance zone a line has two pieces, each as long as the zone and as
+ * wide as the line is visible. The on-screen fraction of the pieces is assumed
+ * to equal that of the zone's area. */
 static int64_t count_line_pixels(const struct glint_star *star,
                                  const struct glint_star_lamp *lamp)
 {
@@ -54,7 +55,7 @@ int64_t glint_star_estimate_pixels(const struct glint_star *star)
         const struct glint_star_lamp *lamp = &star->lamp[i];
 
         sum += count_line_pixels(star, lamp);
-        /* the area of a circle is 201 / 256 of its square */
+        /* a circle covers pi / 4, about 201 / 256, of its bounding square */
         sum += count_square_pixels(star, lamp, lamp->halo_reach) * 201 >> 8;
         sum += count_square_pixels(star, lamp, lamp->smear_reach);
         if (lamp->is_bare)

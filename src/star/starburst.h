@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Starburst: light that the edges of the stop diffract around each lamp, in
- * integers.
+ * Starburst: the light that the edges of the aperture stop diffract around each
+ * lamp. Run-time half, integers only.
  *
  *     bytes = glint_star_bytes(&cfg);                       once
  *     glint_star_init(&star, &cfg, mem, bytes);
@@ -38,83 +38,92 @@
 
 enum {
     GLINT_STAR_PROFILE = 128, /* steps of a profile */
-    GLINT_STAR_CORE = 48, /* lattice steps from the core's centre to its rim */
-    /* two rows per octave of r^2, from 2^4 px^2 on */
+    GLINT_STAR_CORE = 48, /* lattice steps from the centre of the core table to
+                             its rim */
+    /* rows of a halo table: two per octave of r^2, beginning at r^2 = 2^4
+     * pixels^2 */
     GLINT_STAR_HALO_ROWS = 45,
-    GLINT_STAR_HALO_COLUMNS = 49, /* four columns per octave of 1 + 4 v / reach;
-                                     v: distance from the nearest line */
-    /* number of halos for lamps of radius 2^(i - 1) px, i from 0 */
+    GLINT_STAR_HALO_COLUMNS = 49, /* columns of a halo table: four per octave of
+                                     1 + 4 v / reach, where v is the distance
+                                     from the nearest line */
+    /* number of halo tables for extended lamps; table i is for a radius of 2^(i
+     * - 1) pixels */
     GLINT_STAR_WIDE = 9,
     GLINT_STAR_MAX_LIGHTS = 4096
 };
 
-/* A line: light of a pair of parallel edges, or of one edge. u is the
- * coordinate along the line, v across it: u = x cos + y sin, v = y cos - x
- * sin, pixels, y down. */
+/* A line of a starburst: the light diffracted by one edge of the stop, or by a
+ * pair of parallel edges. In pixels relative to the lamp, y down, u = x cos + y
+ * sin is the coordinate along the line, v = y cos - x sin the coordinate across
+ * it. */
 struct glint_star_line {
     /* direction of the line, 0 <= angle < 180 degrees */
     int32_t cos_q30, sin_q30;
     int32_t cot_q16;    /* cos / sin of the angle, clamped to +-2^12 */
     int32_t across_q16; /* 1 / sin of the angle, at most 2^12 */
-    /* cotangent of the bisector of this line and the next */
+    /* cotangent of the angle half-way between this line and the next */
     int32_t border_q16;
-    /* [i]: light at v = reach i / 128, times r^2 / (1 - (v / r)^2), in units
-     * of STEP of the tables. Entries from 128 on are 0. */
+    /* [i]: light at v = i reach / 128, multiplied by r^2 / (1 - (v / r)^2), in
+     * units of the tables' member step. Entries from 128 on are 0. */
     uint16_t profile[GLINT_STAR_PROFILE + 2][3];
 };
 
-/* [column][channel] of one row: log2 of (light times r^2), _q11. */
+/* One row of a halo table, [column][channel]: log2 of light times r^2, _q11. */
 typedef uint16_t glint_star_halo_row[GLINT_STAR_HALO_COLUMNS][3];
 
-/* Tables of a starburst for one stop, f-number and pixel size. */
+/* Tables of the starburst of a light of power 1, for one stop, f-number and
+ * pixel size. */
 struct glint_star_tables {
     int n_lines; /* 1 .. GLINT_MAX_BLADES, sorted by angle */
     const struct glint_star_line *line;
-    int first; /* index of the line whose sector contains angle 0: n_lines - 1
-                  or 0 */
-    /* light that the value 1 of a profile stands for */
+    int first; /* index of the line nearest to angle 0: 0 or n_lines - 1 */
+    /* light of profile value 1 */
     struct glint_real step;
-    uint16_t line_max[GLINT_STAR_PROFILE]; /* max over all profiles, per step */
+    uint16_t line_max[GLINT_STAR_PROFILE]; /* for each profile step, the max
+                                              over all lines and channels */
     int32_t reach_q8;           /* largest |v| of a profile, 1 .. 2^14 pixels */
     int32_t reach_log2_q16;     /* log2 of reach_q8 */
-    int32_t per_pixel_q16;      /* steps of a profile per pixel, at most 128 */
-    int32_t pixels_q16;         /* pixels per step of a profile */
-    int32_t core_per_pixel_q16; /* steps of the core per pixel, 1 .. 4 */
-    /* Width of the profiles at half their brightness, pixels. */
+    int32_t per_pixel_q16;      /* profile steps per pixel, at most 128 */
+    int32_t pixels_q16;         /* pixels per profile step */
+    int32_t core_per_pixel_q16; /* lattice steps of the core table per pixel, 1
+                                   .. 4 */
+    /* full width at half maximum of the profiles, pixels */
     int32_t width_q8;
-    int32_t inner_q8; /* radius in pixels within which 1 / r^2 is constant */
-    /* log2 of (light times r^2), _q11, relative to halo_log2_q16; and the
-     * max of each row. */
+    int32_t inner_q8; /* distance from the lamp, pixels, within which the factor
+                         1 / r^2 is constant */
+    /* Halo of a point light: log2 of light times r^2 is halo_log2_q16 plus
+     * halo, _q11. halo_max: the max of each row. */
     int32_t halo_log2_q16;
     uint16_t halo[GLINT_STAR_HALO_ROWS][GLINT_STAR_HALO_COLUMNS][3];
     uint16_t halo_max[GLINT_STAR_HALO_ROWS];
-    /* [GLINT_STAR_WIDE][GLINT_STAR_HALO_ROWS]: the halo, blurred by lamps of
-     * radius 2^(i - 1) pixels. NULL if the stop diffracts no fans; lamps
-     * then do not blur the halo. */
+    /* [GLINT_STAR_WIDE][GLINT_STAR_HALO_ROWS]: halos blurred by the discs of
+     * lamps; table i is for a radius of 2^(i - 1) pixels. NULL for stops with
+     * straight hard edges, which diffract no fans: their halos are not blurred.
+     */
     const glint_star_halo_row *wide;
     /* Diffraction by dirt in the stop, or NULL. */
     const struct glint_star_smear *smear;
-    /* The core for y >= 0. The half with y < 0 is its point reflection
-     * through the centre. Entries are 16-bit floating-point numbers, _q40: a
-     * sign, five bits e, ten bits m; the value is (m + 1024) 2^(e - 1), or m
-     * if e is 0. */
+    /* Core table, rows for y >= 0 only. The half with y < 0 is its point
+     * reflection through the centre. Entries are 16-bit floating-point numbers,
+     * _q40: a sign, five bits e, ten bits m; the value is (m + 1024) 2^(e - 1),
+     * or m if e is 0. */
     uint16_t core[GLINT_STAR_CORE + 1][2 * GLINT_STAR_CORE + 1][3];
 };
 
 /* A lamp at its position in the picture. */
 struct glint_star_light {
     int32_t x_q8, y_q8; /* pixels from the top left corner */
-    int32_t radius_q8; /* radius of the lamp's disc, 0 .. 2^14 pixels; it widens
-                          lines. Negative if the picture does not contain the
-                          lamp's image: then the core is drawn as well */
-    /* light, white times pixels; clamped to 2^30 */
+    int32_t radius_q8;  /* radius of the lamp's disc, 0 .. 2^14 pixels, which
+                           widens the lines. Negative if the lamp itself is not
+                           visible in the picture: then the core is drawn, too */
+    /* power, display white times pixels; clamped to 2^30 */
     struct glint_real power;
     int32_t rgb_q14[3]; /* colour, 0 .. 2^14 */
 };
 
 struct glint_star_config {
-    int n_workers; /* max number of workers of the flares that it is drawn with,
-                      1 .. 64 */
+    int n_workers;     /* max number of workers of the flare with which the
+                          starburst is drawn, 1 .. 64 */
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     int max_lights;    /* 1 .. GLINT_STAR_MAX_LIGHTS */
 };
@@ -126,37 +135,40 @@ struct glint_flare;
  * if CFG is out of range. */
 size_t glint_star_bytes(const struct glint_star_config *cfg);
 
-/* Places a star in MEM[BYTES], which must be aligned to 64 bytes. A star needs
- * no cleanup. Returns GLINT_E_MEMORY if BYTES is too small. */
+/* Initialises a starburst in MEM[BYTES], which must be aligned to 64 bytes;
+ * nothing has to be freed. Returns GLINT_E_MEMORY if BYTES is too small,
+ * GLINT_E_ARGUMENT if CFG is out of range. */
 enum glint_status glint_star_init(struct glint_star **star,
                                   const struct glint_star_config *cfg,
                                   void *mem, size_t bytes);
 
-/* Sets the N lights to draw. TABLES must stay valid while they are drawn,
- * LIGHTS need not. Skips lights from index max_lights on, and light below
- * FAINTEST, in display white, which must be 0 or at least 2^-21. */
+/* Sets the N lights to draw. TABLES must stay valid while the starburst is
+ * drawn, LIGHTS need not. Lights from index max_lights on are skipped. Pixels
+ * where a light adds less than FAINTEST are not drawn; FAINTEST is in display
+ * white and must be 0 or at least 2^-21. */
 void glint_star_set_lights(struct glint_star *star,
                            const struct glint_star_tables *tables,
                            const struct glint_star_light *lights, int n,
                            struct glint_real faintest);
 
-/* Estimates the number of pixels that lines, halos, smears and cores light;
- * a pixel counts once for each of these. The drawing time is proportional to
- * the result. */
+/* Estimates the number of pixels that lines, halos, smears and cores light, to
+ * which the drawing time is proportional. A pixel lit by several of them counts
+ * several times. */
 int64_t glint_star_estimate_pixels(const struct glint_star *star);
 
-/* Adds the starburst and then the binned ghosts of FLARE, like
- * glint_flare_draw(). If the flare is drawn at half resolution, the
- * starburst is still drawn to all pixels. */
+/* Draws the starburst and the binned ghosts of FLARE onto IMAGE, in place of
+ * glint_flare_draw(). The starburst has full resolution even if the flare is
+ * drawn at half resolution. */
 void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
                      const struct glint_image *image);
 
-/* Returns a pass that draws the starburst onto IMAGE, for use with other
+/* Returns a pass that draws the starburst onto IMAGE, to be combined with other
  * passes. */
 struct glint_pass glint_star_make_pass_on(struct glint_star *star,
                                           const struct glint_image *image);
 
-/* Adds the star without the binned ghosts of FLARE. */
+/* Draws the starburst onto IMAGE without the ghosts of FLARE, whose workers and
+ * tiles are used. */
 void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,
                            const struct glint_image *image);
 

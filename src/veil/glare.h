@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Veiling glare: a fraction of all light, scattered over the whole picture, in
- * integers.
+ * Veiling glare (the veil): a fraction of all light, scattered over the whole
+ * picture. Run-time half, integers only.
  *
  *     bytes = glint_veil_bytes(&cfg);                         once
  *     glint_veil_init(&veil, &cfg, mem, bytes);
@@ -10,17 +10,17 @@
  * white glint_veil_spread_light(veil, spreads, n); glint_veil_draw(veil, NULL,
  * flare, &image);   instead of glint_flare_draw()
  *
- * Lens, barrel and camera scatter light far away from its image point. ISO 9358
- * measures the veiling glare index V: the fraction of white light in the image
- * of a small black spot on a wide white background. If the fraction V of all
- * light is scattered, a scene P becomes (1 - V) P + V K P, where K is a kernel
- * with integral 1. With the exposure corrected such that the direct image stays
- * unchanged, the veil adds
+ * Lens, barrel and camera body scatter light far away from its image point. ISO
+ * 9358 measures the veiling glare index V: the fraction of white light in the
+ * image of a small black spot on a wide white background. If the fraction V of
+ * all light is scattered, a scene P becomes (1 - V) P + V K P, where K is a
+ * kernel with integral 1. With the exposure corrected such that the direct
+ * image stays unchanged, the veil adds
  *
  *     V / (1 - V) K P
  *
- * So no pixel gets darker, clipped lamps stay clipped, and the veil has the
- * fraction V of all light. P is the mean light of some 64 x 36 cells of the
+ * So no pixel gets darker, clipped lamps stay clipped, and the veil contains
+ * the fraction V of all light. P is the mean light of some 64 x 36 cells of the
  * picture, plus the light of lamps above white. K is a sum of Gaussians,
  * mirrored at the picture's borders, so that no light is lost. Quadratic
  * splines interpolate the light of the cells without visible steps. Light
@@ -43,31 +43,32 @@
 #include "tile/pass.h"
 
 enum {
-    GLINT_VEIL_CELLS = 64,  /* max cells along the picture's longer side */
+    GLINT_VEIL_CELLS = 64,  /* max number of cells along the picture's longer
+                               side */
     GLINT_VEIL_SPREADS = 8, /* max number of Gaussians */
     GLINT_VEIL_LEAST_PX = 4 /* min side of a cell, pixels */
 };
 
-/* A Gaussian over cells, separable in x and y. */
+/* A Gaussian kernel over cells, separable in x and y. */
 struct glint_veil_spread {
-    /* [D]: the fraction of a cell's light that D cells away receive, D = 0
-     * .. n, in a row of n cells that mirroring continues with period 2 n.
-     * [0] + [n] + 2 times the other entries is 2^30. */
+    /* [D]: the fraction of a cell's light that a cell at a distance of D cells
+     * receives, D = 0 .. n, in a row of n cells that is continued by mirroring
+     * with period 2 n. Entry 0 plus entry n plus twice all others is 2^30. */
     int32_t across_q30[GLINT_VEIL_CELLS + 1], down_q30[GLINT_VEIL_CELLS + 1];
-    /* fraction of all light that is scattered, above 0 */
+    /* fraction of all light that this kernel scatters, above 0 */
     struct glint_real share;
 };
 
 struct glint_veil_config {
-    int n_workers; /* max number of workers of the flares that it is drawn with,
-                      1 .. 64 */
+    int n_workers; /* max number of workers of the flare with which the veil is
+                      drawn, 1 .. 64 */
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     int has_front; /* 1: reserve memory for light that dirt on the front element
                       scatters */
 };
 
-/* Distance between nodes of the cover table, pixels; and number of nodes
- * along a side of the picture. */
+/* Distance in pixels between the nodes of the cover table of the front element;
+ * and number of nodes along a side of SIDE pixels. */
 enum { GLINT_VEIL_FRONT_PX = 4 };
 #define GLINT_VEIL_FRONT_NODES(side) \
     (((side) + GLINT_VEIL_FRONT_PX - 1) / GLINT_VEIL_FRONT_PX + 1)
@@ -78,66 +79,71 @@ typedef void glint_veil_front_fn(const struct glint_veil_row *row,
                                  const struct glint_pass_rows *rows, int k);
 glint_veil_front_fn glint_veil_add_front_row;
 
-/* The fraction of the front element that dirt covers, as each pixel sees it.
- * A program links the drawing code only if it refers to
+/* Table of the fraction of the front element that is covered by dirt in the
+ * beam of each pixel. A program links the drawing code only if it refers to
  * glint_veil_add_front_row. */
 struct glint_veil_front {
     glint_veil_front_fn *row; /* glint_veil_add_front_row() */
     int n_x, n_y;             /* GLINT_VEIL_FRONT_NODES() of width and height */
-    /* [n_y][n_x]: cover / max cover, at the top left corner of every fourth
-     * pixel. Must stay valid while the veil is drawn. */
+    /* [n_y][n_x]: cover divided by max cover, at the top left corner of every
+     * fourth pixel. Must stay valid while the veil is drawn. */
     const uint16_t *part_q16;
 };
 
 struct glint_veil; /* opaque, in the caller's memory */
 struct glint_flare;
 
-/* Sets CELLS to the numbers of cells across and down of pictures of WIDTH x
- * HEIGHT pixels. */
+/* Sets CELLS to the number of cells across and down that a picture of WIDTH x
+ * HEIGHT pixels has. */
 void glint_veil_count_cells(int width, int height, int cells[2]);
 
 /* Returns the exact number of bytes that glint_veil_init() needs for CFG, or 0
  * if CFG is out of range. */
 size_t glint_veil_bytes(const struct glint_veil_config *cfg);
 
-/* Places a veil in MEM[BYTES], which must be aligned to 64 bytes. A veil needs
- * no cleanup. Returns GLINT_E_MEMORY if BYTES is too small. */
+/* Initialises a veil in MEM[BYTES], which must be aligned to 64 bytes; nothing
+ * has to be freed. Returns GLINT_E_MEMORY if BYTES is too small,
+ * GLINT_E_ARGUMENT if CFG is out of range. */
 enum glint_status glint_veil_init(struct glint_veil **veil,
                                   const struct glint_veil_config *cfg,
                                   void *mem, size_t bytes);
 
-/* Sums the light of IMAGE, whose white is WHITE, in cells. Removes all lamps
- * added before. If IMAGE is NULL, the picture is black. WORKERS may be NULL. */
+/* Sets the light of the cells to the sums over the pixels of IMAGE, whose white
+ * has the linear light WHITE. Removes the lamps of earlier frames. IMAGE may be
+ * NULL for a black picture, WORKERS NULL for a single thread. */
 void glint_veil_read_picture(struct glint_veil *veil,
                              const struct glint_image *image,
                              struct glint_real white,
                              struct glint_workers *workers);
 
-/* Adds a lamp of POWER, white times pixels, and colour RGB, 0 .. 2^14, at
- * (X, Y) pixels from the top left corner. Skips lamps outside the picture. */
+/* Adds a lamp to the light of the cells. POWER: light above white, in white
+ * times pixels; RGB: colour, 0 .. 2^14; (X, Y): position in pixels from the top
+ * left corner. Skips lamps outside the picture. */
 void glint_veil_add_lamp(struct glint_veil *veil, int32_t x_q8, int32_t y_q8,
                          struct glint_real power, const int32_t rgb_q14[3]);
 
-/* Computes the veil from N Gaussians, 0 .. GLINT_VEIL_SPREADS. */
+/* Computes the veil: convolves the light of the cells with the sum of N
+ * Gaussians, 0 .. GLINT_VEIL_SPREADS. */
 void glint_veil_spread_light(struct glint_veil *veil,
                              const struct glint_veil_spread *spreads, int n);
 
-/* Computes the light that dirt on the front element scatters, from N
- * Gaussians whose shares are those at the max cover. FRONT must stay valid
- * while the veil is drawn; NULL, the initial state: the front element
- * scatters nothing. Requires has_front in the configuration. */
+/* Computes the light that dirt on the front element scatters: convolves the
+ * light of the cells with N Gaussians, whose shares apply at the max cover.
+ * FRONT must stay valid while the veil is drawn; NULL, the initial state: no
+ * dirt. Requires has_front in the configuration. */
 void glint_veil_front(struct glint_veil *veil,
                       const struct glint_veil_front *front,
                       const struct glint_veil_spread *spreads, int n);
 
-/* Draws the veil, then the pass OVER unless it is NULL, then the binned
- * ghosts of FLARE. If the flare is drawn at half resolution, veil and OVER
- * are still drawn to all pixels. */
+/* Draws the veil, then the pass OVER unless it is NULL, then the binned ghosts
+ * of FLARE. Veil and OVER have full resolution even if the flare is drawn at
+ * half resolution. */
 void glint_veil_draw(struct glint_veil *veil, const struct glint_pass *over,
                      struct glint_flare *flare,
                      const struct glint_image *image);
 
-/* Draws the veil without the binned ghosts of FLARE. */
+/* Draws the veil without the ghosts of FLARE, whose workers and tiles are used.
+ */
 void glint_veil_draw_alone(struct glint_veil *veil, struct glint_flare *flare,
                            const struct glint_image *image);
 

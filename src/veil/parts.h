@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Internal state of a veil.
+ * Internal state of a veil, shared by the files of this folder.
  */
 #ifndef GLINT_VEIL_PARTS_H
 #define GLINT_VEIL_PARTS_H
@@ -9,10 +9,12 @@
 #include "tile/blend.h"
 #include "veil/glare.h"
 
-/* Pixels per vectorised group of a row; tables are padded by as much. */
+/* Number of pixels that are computed per vector operation; tables have as many
+ * extra entries. */
 enum { GLINT_VEIL_LANES = 8 };
 
-/* Positions of pixel centres among the cells, along one axis. */
+/* For each pixel along one axis of the picture: its cell, and the weights with
+ * which it interpolates between cells. */
 struct glint_veil_axis {
     uint8_t *cell;  /* [side]: index of the cell of each pixel */
     int32_t *start; /* [cells + 1]: index of the first pixel of each cell */
@@ -25,55 +27,59 @@ struct glint_veil_axis {
     uint32_t *fill_q16;
 };
 
-/* State of a worker that reads or draws a row of tiles. */
+/* State of a worker that reads a picture, or draws a row of tiles. */
 struct glint_veil_row {
     const struct glint_veil *veil;
     struct glint_box tile;
-    /* Used while reading a picture: codes, and the light of each cell of a
-     * row. */
+    /* Used while a picture is read: codes of its pixels, and the light of each
+     * cell in one row of cells. */
     struct glint_codes codes;
     int64_t sum_q20[GLINT_VEIL_CELLS][3];
 };
 
 struct glint_veil {
     struct glint_veil_config cfg;
-    int n_x, n_y; /* number of cells across and down */
+    int n_x, n_y; /* number of cells across (n_x) and down (n_y) */
     struct glint_veil_axis across, down;
-    /* Light of the cells [3][n_y][n_x], white times pixels: in 64 bits;
-     * scaled to 31 bits; scaled and convolved along x. */
+    /* Light of the cells, [3][n_y][n_x], white times pixels, in three stages:
+     * the sum (light); scaled to 31 bits (narrow); convolved along x (along).
+     */
     int64_t *light_q16;
     int32_t *narrow, *along;
-    int64_t *sum_q30;   /* veil per cell, white */
-    int32_t *cell_q20;  /* veil per cell, clamped to 0 .. 2^28 */
-    int is_linear, any; /* 1: the picture is linear; 1: the veil has light */
+    int64_t *sum_q30;   /* veil of each cell, 1 = white */
+    int32_t *cell_q20;  /* veil of each cell, 1 = white, clamped to 0 .. 2^28 */
+    int is_linear, any; /* is_linear: 1 if the picture is linear; any: 1 if the
+                           veil has light */
     const struct glint_veil_front *front; /* cover of the front element, or
                                              NULL */
-    int32_t *front_q20; /* light that the front element scatters, per cell, as
-                           cell_q20; NULL without has_front */
-    int any_front;      /* 1: the front element scatters light */
-    int front_down; /* bits by which front_q20 is shifted right when codes are
-                       drawn, 4 or more */
+    int32_t *front_q20; /* light of each cell that dirt on the front element
+                           scatters, as cell_q20; NULL without has_front */
+    int any_front;      /* 1: dirt on the front element scatters light */
+    int front_down;     /* right shift from front_q20 to the 16-bit light of
+                           pictures in codes, at least 4 */
     struct glint_light_curve *curve;
-    /* transfer function of CURVE; defined if has_curve is set */
+    /* transfer function for which CURVE was made; valid if has_curve is 1 */
     enum glint_tone transfer;
     int has_curve;
     struct glint_veil_row *worker; /* [n_workers] */
     struct glint_blend_rows *rows; /* [n_workers] */
 };
 
-/* Sets CELL to the light of N Gaussians. Returns whether there is any light. */
+/* Sets CELL to the light of all cells convolved with the sum of N Gaussians.
+ * Returns whether there is any light. */
 int glint_veil_spread_light_to(struct glint_veil *veil,
                                const struct glint_veil_spread *spreads, int n,
                                int32_t *cell_q20);
 
-/* Interpolates the light of CELLS, channel C, along row Y of the tile.
- * Writes one of two outputs, the other is NULL: TO in units of white 2^(DOWN
- * - 20), at most 65534, or TO_Q20. */
+/* Interpolates channel C of CELL for the pixels of row Y of the tile. Writes
+ * TO, in units of white 2^(DOWN - 20) and clamped to 65534, or TO_Q20; the
+ * other pointer is NULL. */
 void glint_veil_interpolate_row(const struct glint_veil_row *row,
                                 const int32_t *cell_q20, int c, int y, int down,
                                 uint16_t *to, int32_t *to_q20);
 
-/* Returns the index I + BY, clamped to 0 .. N - 1. */
+/* Returns the index of the cell that is BY cells after cell I, clamped to 0 ..
+ * N - 1. */
 static inline int glint_veil_beside(int i, int by, int n)
 {
     const int k = i + by;

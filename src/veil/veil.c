@@ -14,8 +14,8 @@ static int is_valid_config(const struct glint_veil_config *c)
            c->height <= GLINT_MAX_SIDE;
 }
 
-/* Returns the number of cells along SIDE of a picture whose longer side has
- * LONGER pixels. */
+/* Returns the number of cells along a side of SIDE pixels of a picture whose
+ * longer side has LONGER pixels. */
 static int count_cells_along_side(int side, int longer)
 {
     const int most =
@@ -45,8 +45,8 @@ static void allocate_axis(struct glint_arena *a, struct glint_veil_axis *axis,
     axis->fill_q16 = glint_arena_take(a, N, sizeof *axis->fill_q16);
 }
 
-/* Allocates a veil and its tables from A. Called twice: to measure (returns
- * NULL) and to place. */
+/* Allocates a veil and its arrays from arena A. Called twice: with an arena
+ * that only measures (returns NULL), then to allocate. */
 static struct glint_veil *allocate_veil(struct glint_arena *a,
                                         const struct glint_veil_config *c)
 {
@@ -87,8 +87,9 @@ size_t glint_veil_bytes(const struct glint_veil_config *cfg)
     return arena.used;
 }
 
-/* Sets fill_q16: width of a cell (N cells over SIDE pixels) / number of its
- * pixels that are summed, when every STEP pixels are read together. */
+/* Sets fill_q16 of each of N cells along SIDE pixels: the cell's exact width /
+ * number of pixels summed in it. Pixels are read in groups of STEP, and a group
+ * belongs to the cell of its first pixel. */
 static void set_cell_fill_factors(struct glint_veil_axis *axis, int side, int n,
                                   int step)
 {
@@ -104,7 +105,8 @@ static void set_cell_fill_factors(struct glint_veil_axis *axis, int side, int n,
     }
 }
 
-/* Sets the cell and the spline weights of each of SIDE pixels among N cells. */
+/* Sets, for each of SIDE pixels, the index of its cell among N cells, and its
+ * spline weights. */
 static void set_axis_weights(struct glint_veil_axis *axis, int side, int n)
 {
     const uint32_t twice = 2 * (uint32_t)side;
@@ -162,11 +164,11 @@ enum glint_status glint_veil_init(struct glint_veil **veil,
 
 /* ---------------------------------------------------------------- spreading */
 
-/* Max light of a cell, 2^8 white, so that interpolation fits 63 bits. */
+/* Max light of a cell, 2^8 times white, so that products of the interpolation
+ * fit into 63 bits. */
 enum { MOST_Q20 = 1 << 28 };
 
-/* Returns the number of bits by which the largest of N sums exceeds 30 bits;
- * 0 if none does. */
+/* Returns the right shift that makes the largest of N sums fit into 30 bits. */
 static int count_excess_bits(const int64_t *light_q16, int n)
 {
     uint64_t all = 0;
@@ -179,8 +181,8 @@ static int count_excess_bits(const int64_t *light_q16, int n)
     return over;
 }
 
-/* Sets SHARE to the fraction of each of N cells' light that reaches cell TO,
- * including light mirrored at the borders. */
+/* Sets SHARE[i], for each of N cells in a row, to the fraction of the light of
+ * cell i that reaches cell TO, directly or mirrored at a border. */
 static void set_spread_shares(const int32_t *table_q30, int n, int to,
                               int32_t share_q30[GLINT_VEIL_CELLS])
 {
@@ -193,7 +195,8 @@ static void set_spread_shares(const int32_t *table_q30, int n, int to,
     }
 }
 
-/* Returns the sum of N cells, STEP apart, weighted by SHARE. */
+/* Returns the sum of N cells that are STEP array elements apart, weighted by
+ * SHARE. */
 static int32_t sum_weighted_cells(const int32_t *from, int step,
                                   const int32_t share_q30[GLINT_VEIL_CELLS],
                                   int n)
@@ -218,8 +221,8 @@ static void spread_light_across(struct glint_veil *v,
     }
 }
 
-/* Returns LIGHT times FACTOR, rounded and clamped to 2^50. FACTOR converts
- * the scaled light of a cell to _q30 of white. */
+/* Returns LIGHT times FACTOR, rounded and clamped to 2^50. FACTOR converts the
+ * scaled light of a cell to white, _q30. */
 static int64_t scale_cell_light(int32_t light, struct glint_real factor)
 {
     const int64_t product = (int64_t)light * factor.mantissa;

@@ -26,9 +26,9 @@ void glint_veil_front(struct glint_veil *veil,
         veil->front_down++;
 }
 
-/* Interpolates the covered fraction of the front element linearly for pixels
- * X0 .. X1 - 1 of row Y, and a few more. X0 must be a multiple of PX. Nodes
- * lie at the top left corners of every PX-th pixel. */
+/* Interpolates the covered fraction of the front element bilinearly for pixels
+ * X0 .. X1 - 1 of row Y, and a few more. X0 must be a multiple of PX. Nodes lie
+ * at the top left corners of every PX-th pixel. */
 static void interpolate_front_cover(const struct glint_veil_front *front, int y,
                                     int x0, int x1, uint16_t *part_q16)
 {
@@ -48,7 +48,8 @@ static void interpolate_front_cover(const struct glint_veil_front *front, int y,
                            (4 * PX * PX));
 }
 
-/* Adds LIGHT, white times 2^16 >> DOWN, times PART to N pixels. */
+/* Adds LIGHT times PART to N pixels. LIGHT is in units of white 2^(DOWN - 16).
+ */
 static void add_covered_code_light(const uint16_t *restrict light,
                                    const uint16_t *restrict part_q16, int down,
                                    int n, uint16_t *restrict to_q16)

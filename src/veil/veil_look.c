@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sums the light of a picture, and of lamps, in the cells of a veil.
+ * Sums the light of a picture and of lamps in each cell of a veil.
  */
 #include "base/q.h"
 #include "base/real.h"
@@ -12,15 +12,16 @@ struct look {
     struct glint_real white;
 };
 
-/* Adds SUM, the light of pixels in cell (X, Y), scaled to the cell's area. */
+/* Adds SUM, the light of the pixels read in cell (X, Y), to the cell, scaled to
+ * the cell's exact area. */
 static void add_light_to_cell(const struct look *l, int x, int y,
                               const int64_t sum_q20[3])
 {
     const struct glint_veil *v = l->veil;
 
     for (int c = 0; c < 3; c++) {
-        /* in units of 2^-11: 2^16 white pixels need 28 bits; sums over 31
-         * bits are clamped */
+        /* in units of 2^-11: 2^16 white pixels need 28 bits; larger sums are
+         * clamped to 31 bits */
         const int64_t seen = q_clamp_sat(q_shift(sum_q20[c], 9), 0, INT32_MAX);
         const int64_t part =
             q_clamp_sat(q_shift(q_shift(seen * v->across.fill_q16[x], 16) *
@@ -36,8 +37,8 @@ static void add_light_to_cell(const struct look *l, int x, int y,
     }
 }
 
-/* Adds rows Y .. Y + N_Y - 1 of the picture (N_Y at most 2) to the cells of
- * their row. */
+/* Adds the light of pixel rows Y .. Y + N_Y - 1, N_Y at most 2, to SUM, the
+ * cells of one row of cells. */
 static void sum_row_pair_light(const struct look *l, struct glint_codes *codes,
                                int y, int n_y, int64_t (*sum_q20)[3])
 {
@@ -59,7 +60,8 @@ static void sum_row_pair_light(const struct look *l, struct glint_codes *codes,
     }
 }
 
-/* Sums the pairs of rows of pixels whose first row lies in row JOB of cells. */
+/* Worker function: sums the light of row JOB of cells, to which every pair of
+ * pixel rows belongs whose first row lies in it. */
 static void sum_cell_row_job(void *ctx, int job, int worker)
 {
     const struct look *l = ctx;
@@ -97,8 +99,8 @@ void glint_veil_read_picture(struct glint_veil *veil,
 
 /* ------------------------------------------------------------------- lamps */
 
-/* The cell of a position, and the weights of the previous cell, this cell
- * and the next. */
+/* The cell of a position along one axis, and the spline weights of the previous
+ * cell, this cell and the next. */
 struct place {
     int cell;
     int32_t weight_q15[3];
@@ -107,7 +109,8 @@ struct place {
 static struct place find_cell_and_weights(int32_t at_q8, int side, int n)
 {
     const int32_t along_q15 =
-        (int32_t)((((int64_t)at_q8 * n) << 7) / side); /* position in cells */
+        (int32_t)((((int64_t)at_q8 * n) << 7) / side); /* position in units of
+                                                          cells */
     struct place p = {.cell = q_smaller(along_q15 >> 15, n - 1)};
     const int32_t t_q15 = along_q15 - p.cell * 32768, rest_q15 = 32768 - t_q15;
 
@@ -117,8 +120,8 @@ static struct place find_cell_and_weights(int32_t at_q8, int side, int n)
     return p;
 }
 
-/* Returns POWER times RGB, white times pixels, clamped to 2^46 units of
- * light_q16. */
+/* Returns POWER times RGB in units of light_q16 (white times pixels, _q16),
+ * clamped to 2^46. */
 static int64_t compute_lamp_power_q16(struct glint_real power, int32_t rgb_q14)
 {
     const int64_t part = (int64_t)power.mantissa * rgb_q14;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws a veil as a pass: interpolates the light of the cells between their
- * centres.
+ * Draws a veil as a pass (tile/pass.h): interpolates the light of the cells for
+ * each pixel.
  */
 #include "base/q.h"
 #include "flare/draw_over.h"
@@ -24,8 +24,8 @@ static int begin_veil_tile(void *state, struct glint_box tile)
     return r->veil->any || r->veil->any_front;
 }
 
-/* Interpolates N cells from FIRST on to row Y of pixels: LIGHT in units of
- * white 2^(DOWN - 20), at most MOST. */
+/* Interpolates channel C of the N cells from column FIRST on vertically to
+ * pixel row Y. LIGHT is in units of white 2^(DOWN - 20), clamped to MOST. */
 static void interpolate_cell_rows(const struct glint_veil *v,
                                   const int32_t *cell_q20, int c, int y,
                                   int first, int n, int down, int32_t most,
@@ -51,16 +51,17 @@ static void interpolate_cell_rows(const struct glint_veil *v,
                                0, most);
 }
 
-/* Returns the upper half of a product; vectorises to one instruction. */
+/* Returns the upper 16 bits of the product; compilers vectorise this form to
+ * one instruction. */
 static inline uint16_t multiply_high(uint16_t a, uint16_t b)
 {
     return (uint16_t)((uint32_t)a * b >> 16);
 }
 
-/* Interpolates LIGHT of three neighbouring cells, 0 .. 65534, for N pixels
- * from X on, rounded up to whole vectors. Each product is truncated and
- * loses 2^-17 on average. Adding 2^-16 where there is light compensates for
- * a part of the loss. */
+/* Interpolates LIGHT of three neighbouring cells, 0 .. 65534, for the N pixels
+ * from X on; also writes the pixels up to the end of the last vector. Each
+ * product is truncated and loses 2^-17 on average; adding 2^-16 where there is
+ * light compensates for a part of the loss. */
 static void interpolate_code_pixels(const struct glint_veil_axis *axis, int x,
                                     int n, const int32_t light_q16[3],
                                     uint16_t *restrict to_q16)
@@ -69,7 +70,8 @@ static void interpolate_code_pixels(const struct glint_veil_axis *axis, int x,
     const uint16_t *restrict s0_q16 = axis->share_q16[0] + x;
     const uint16_t *restrict s1_q16 = axis->share_q16[1] + x;
     const uint16_t *restrict s2_q16 = axis->share_q16[2] + x;
-    uint16_t near_q16[4][LANES]; /* each value repeated in all lanes */
+    uint16_t near_q16[4][LANES]; /* light of the three cells and the correction,
+                                    each repeated in all lanes */
 
     for (int k = 0; k < LANES; k++) {
         for (int i = 0; i < 3; i++)
@@ -136,7 +138,7 @@ static enum glint_given write_pixel_rows(void *state,
     for (int k = 0; k < rows->n; k++) {
         const int y = rows->y + k;
 
-        /* codes saturate at white, so 16 bits are enough */
+        /* pictures in codes saturate at white, so 16 bits are enough */
         for (int c = 0; c < 3; c++)
             if (v->is_linear)
                 glint_veil_interpolate_row(r, v->cell_q20, c, y, 0, NULL,
@@ -167,7 +169,7 @@ static void draw_tile_row_job(void *ctx, int job, int worker)
                          &d->flare->worker[worker].tile);
 }
 
-/* Draws N passes to all pixels, even if the flare is drawn at half
+/* Draws N passes at full resolution, even if the flare is drawn at half
  * resolution. */
 static void draw_full_resolution_passes(struct glint_veil *veil,
                                         struct glint_flare *flare,
