@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reports the outcome of each bundle of a frame, and its cause. No other file
- * refers to this file, so programs that do not call it do not link it.
+ * Frame statistics per bundle (ghost, light, wave): whether the bundle was
+ * drawn, why not, and its work. No other file of the library refers to this
+ * file, so only programs that call it link it.
  */
 #include "base/q.h"
 #include "flare/by_edges.h"
 #include "flare/dim.h"
 #include "flare/wave_sets.h"
 
-/* Returns the number of a bundle among all combinations of light, ghost and
- * wave. */
+/* Returns the number of the bundle of GHOST, LIGHT and WAVE, counted over all
+ * combinations of these. */
 static int64_t compute_bundle_number(const struct glint_flare *f, int ghost,
                                      int light, int wave)
 {
@@ -21,8 +22,8 @@ static int64_t compute_bundle_number(const struct glint_flare *f, int ghost,
 }
 
 /* Returns the index of the first planned bundle whose number is at least
- * NUMBER, or n_bundles if there is no such bundle. Planned bundles are sorted
- * by number. */
+ * NUMBER, or n_bundles if all are below; a binary search, as planned bundles
+ * are sorted by number. */
 static int find_first_planned_bundle(const struct glint_flare *f,
                                      int64_t number)
 {
@@ -40,8 +41,8 @@ static int find_first_planned_bundle(const struct glint_flare *f,
     return low;
 }
 
-/* Returns the index of the bundle with number NUMBER among the planned
- * bundles, or -1 if it was not planned. */
+/* Returns the index of the planned bundle with number NUMBER, or -1 if that
+ * bundle was not planned. */
 static int find_planned_bundle(const struct glint_flare *f, int64_t number)
 {
     const int at = find_first_planned_bundle(f, number);
@@ -54,8 +55,8 @@ static int find_planned_bundle(const struct glint_flare *f, int64_t number)
                : -1;
 }
 
-/* Returns the index of the wave set chosen for GHOST and LIGHT; 0 if no
- * bundle of GHOST and LIGHT was planned. */
+/* Returns the index of the wave set that the plan chose for GHOST and LIGHT; 0
+ * if no bundle of both was planned. */
 static int find_chosen_wave_set(const struct glint_flare *f, int ghost,
                                 int light)
 {
@@ -68,11 +69,11 @@ static int find_chosen_wave_set(const struct glint_flare *f, int ghost,
                : 0;
 }
 
-/* Returns the index of the slot, among the flare's max_bundles slots, that
- * the plan needs to consider the bundle at all. Without wave sets the index
- * is the bundle's number. With wave sets the plan first considers all waves
- * of the first set, for each ghost and light, and then chooses a set; the
- * index is that of the last of these waves. */
+/* Returns the index of the bundle slot (of max_bundles) that must exist for the
+ * plan to consider this bundle. Without wave sets the index is the bundle's
+ * number. With wave sets the plan first considers all waves of the first set,
+ * for each ghost and light, and then chooses a set; the index is that of the
+ * last of these waves. */
 static int64_t compute_bundle_slot_index(const struct glint_flare *f, int ghost,
                                          int light, int wave)
 {
@@ -103,7 +104,7 @@ static void count_transfer_outputs(const struct glint_transfer *t,
         }
 }
 
-/* Returns the number of rows of the picture that EDGE crosses. */
+/* Returns the number of pixel rows of the picture that EDGE crosses. */
 static int count_edge_rows(const struct glint_edge *edge, int height)
 {
     const int first = edge->y_q8 > 0 ? edge->y_q8 >> 8 : 0;
@@ -126,8 +127,8 @@ static void count_bundle_edges(const struct glint_flare *f,
     }
 }
 
-/* Returns whether, for GHOST, all light of light LIGHT was merged into
- * another light. */
+/* Returns whether, for GHOST, light LIGHT was merged completely into another
+ * light. */
 static int is_light_merged(const struct glint_flare *f, int ghost, int light)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -159,7 +160,7 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
         return;
     }
     if (place >= flare->cfg.max_bundles && place < flare->stats.need_bundles) {
-        /* this function traced the probe rays, not the plan */
+        /* the probe rays were traced by this function, not by the plan */
         account->probed = 0;
         account->outcome = GLINT_OUTCOME_NO_ROOM;
     } else if (at >= flare->n_drawn)

@@ -19,7 +19,7 @@ struct glint_real glint_flare_pixels_per_mm(const struct glint_lens *lens,
     return real_less(across, down) ? down : across;
 }
 
-/* Returns SMALL / LARGE, at most 1; 0 if SMALL is 0. */
+/* Returns SMALL / LARGE, clamped to 1; 0 if SMALL is 0, whatever LARGE is. */
 static int32_t compute_ratio_q30(struct glint_real small,
                                  struct glint_real large)
 {
@@ -28,8 +28,8 @@ static int32_t compute_ratio_q30(struct glint_real small,
     return (int32_t)real_integer(real_over(small, large), 30, 1 << 30);
 }
 
-/* Sets COSINE and SINE of the direction from (0, 0) to (X, Y); X and Y must not
- * be negative. For (0, 0) it is the direction of x. */
+/* Computes COSINE and SINE of the angle between the x axis and (X, Y), both 0
+ * or more. For (0, 0) the angle is 0. */
 static void compute_unit_direction(struct glint_real x, struct glint_real y,
                                    int32_t *cosine_q30, int32_t *sine_q30)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws a flare: turns bundles into edges, sorts edges into tiles, and turns
- * rows of tiles into pixels. */
+ * Draws a flare in three parallel steps: converts bundles to edges, sorts edges
+ * into tiles, and converts rows of tiles to pixels. */
 #include "base/divide.h"
 #include "base/q.h"
 #include "flare/by_edges.h"
@@ -9,8 +9,8 @@
 
 /* ------------------------------------------------------------------ memory */
 
-/* Returns the larger of the max number of bundles and the number of rows of
- * tiles. */
+/* Returns the max number of jobs of a parallel step: the max number of bundles,
+ * or the number of rows of tiles if that is larger. */
 static size_t count_max_jobs(const struct glint_flare_config *c)
 {
     const size_t rows = glint_flare_count_tiles(1, c->height, c->tile_log2);
@@ -18,8 +18,8 @@ static size_t count_max_jobs(const struct glint_flare_config *c)
     return rows > (size_t)c->max_bundles ? rows : (size_t)c->max_bundles;
 }
 
-/* Both functions are called twice: first with an arena that only measures,
- * when they return NULL, then to allocate. */
+/* This function and the next are called twice: with an arena that only measures
+ * (they return NULL), then to allocate. */
 struct glint_by_edges *glint_edges_allocate(struct glint_arena *a,
                                             const struct glint_flare_config *c)
 {
@@ -76,9 +76,9 @@ void glint_edges_clear_sums(struct glint_flare *f)
 
 typedef int weight_fn(const struct glint_flare *f, int job);
 
-/* Sorts N jobs by descending log2 of their weight, so that no worker begins a
- * long job when the others have finished. The order does not change the
- * output. */
+/* Sorts N jobs by falling log2 of their weight (their work), so that no worker
+ * begins a long job when the others have finished. The order does not change
+ * the picture. */
 static void sort_jobs_by_weight(struct glint_flare *f, int n, weight_fn *weight)
 {
     int32_t *order = glint_by_edges_of(f)->order;
@@ -110,8 +110,8 @@ static int count_tile_row_edges(const struct glint_flare *f, int row)
 
 /* ----------------------------------------------------------------- bundles */
 
-/* Returns the flux of a bundle at energy 1, display white times pixels, clamped
- * to 2^26. */
+/* Returns the flux of bundle B if all its rays had energy 1, in display white
+ * times pixels, clamped to 2^26. */
 static int64_t compute_bundle_flux(const struct glint_bundle *b)
 {
     const int64_t cells = (int64_t)b->n_cells * b->n_cells; /* at most 2^20 */
@@ -156,9 +156,10 @@ static int add_bin_entries(const struct glint_flare *f, int refs, int first,
     return refs;
 }
 
-/* Converts a bundle to edges in the unused rest of the worker's range of
- * edges. If they do not fit, all of them are dropped; unless BINS is NULL,
- * the number of entries that they need in BINS is stored in the slot's refs. */
+/* Converts bundle BUNDLE to edges, stored after those that worker WORKER has
+ * already made. If not all edges fit into the worker's range, all are dropped;
+ * then, unless BINS is NULL, the slot's refs is set to the number of entries in
+ * BINS that the edges would need. */
 static void emit_bundle_edges(struct glint_flare *f, int bundle, int worker,
                               const struct glint_bins *bins)
 {
@@ -215,7 +216,8 @@ static void emit_bundle_edges(struct glint_flare *f, int bundle, int worker,
     w->n_edges += ghost.n_edges;
 }
 
-/* Returns a copy of the bins with the start indices of WORKER's own entries. */
+/* Returns a copy of the flare's bins whose start indices are those of WORKER's
+ * own entries. */
 static struct glint_bins make_worker_bins(const struct glint_flare *f,
                                           int worker)
 {
@@ -246,7 +248,7 @@ static void emit_bundle_job(void *ctx, int job, int worker)
     count_bundle_bin_entries(f, bundle, worker);
 }
 
-/* Gives each of N workers an equal range of the array of edges. */
+/* Divides the edge array into equal ranges, one for each of N workers. */
 static void split_edge_array(struct glint_flare *f, int n)
 {
     const int part = f->cfg.max_primitives / n;
@@ -277,8 +279,8 @@ static int are_all_bundles_placed(const struct glint_flare *f)
     return 1;
 }
 
-/* Converts each bundle whose edges did not fit into its worker's range,
- * using the range of any worker that has enough space left. */
+/* Converts the bundles whose edges did not fit into the range of their worker;
+ * their edges go to the range of any worker with enough space left. */
 static void emit_leftover_bundles(struct glint_flare *f)
 {
     const int n_workers = glint_workers_count(f->cfg.workers);
@@ -295,8 +297,9 @@ static void emit_leftover_bundles(struct glint_flare *f)
         }
 }
 
-/* Converts all bundles to edges again, in order and into one list, so that
- * the set of dropped bundles does not depend on the timing of workers. */
+/* Converts all bundles to edges again, one after the other into one list, so
+ * that it does not depend on the timing of workers which bundles are dropped.
+ * After the first bundle that does not fit, all are dropped. */
 static void emit_bundles_in_order(struct glint_flare *f)
 {
     int full = 0;
@@ -339,8 +342,9 @@ static void emit_all_bundles(struct glint_flare *f)
 
 /* -------------------------------------------------------------------- bins */
 
-/* Keeps as many bundles, from the first on, as have entries that fit into
- * the bins. The counts in the bins are undefined afterwards. */
+/* Reduces n_drawn to the number of bundles, counted from the first, whose
+ * entries fit into the bins. The counts in the bins are undefined afterwards.
+ */
 static void drop_bundles_that_overflow_bins(struct glint_flare *f)
 {
     struct glint_bins bins = make_worker_bins(f, 0);
@@ -359,9 +363,9 @@ static void drop_bundles_that_overflow_bins(struct glint_flare *f)
     f->n_drawn = n_kept;
 }
 
-/* Converts the workers' counts to start indices: in each tile, a worker's
- * entries follow the entries of the workers before it. Returns the total
- * number of entries. */
+/* Converts the workers' counts of entries per tile to start indices. In each
+ * tile the entries are ordered by worker. Returns the total number of entries.
+ */
 static int assign_bin_indices(struct glint_flare *f)
 {
     const int n_tiles = f->bins.tiles_x * f->bins.tiles_y;
@@ -382,8 +386,9 @@ static int assign_bin_indices(struct glint_flare *f)
     return sum;
 }
 
-/* Job JOB puts the edges that worker JOB counted into the bins, at the indices
- * that assign_bin_indices() computed for that worker. Any worker may run it. */
+/* Worker function: puts the edges that worker JOB has counted into the bins, at
+ * the indices that assign_bin_indices() assigned to worker JOB. The calling
+ * worker may be another one. */
 static void bin_worker_edges_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;

@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Interpolates the table of ghost brightness. Logarithms are interpolated
- * between nodes (sampled angles), so that a ghost's share changes smoothly as
- * its light moves or fades. If a wave does not get through the lens at a node,
- * the ghost counts as bright from the previous node to the next one.
+ * Interpolates the table of ghost brightness (dim.h). Logarithms are
+ * interpolated between nodes, which are sampled angles, so that the fraction of
+ * a ghost that is drawn with its own rays changes smoothly as the light moves
+ * or fades. If some wave of a ghost is blocked at a node, the ghost counts as
+ * bright from the previous node to the next one.
  */
 #include "flare/dim.h"
 
 enum { BRIGHT_Q8 = 1 << 16 };
 
-/* Returns value K of ghost GHOST at the angle whose sine is SINE,
- * interpolated, or GLINT_DIM_DARK. */
+/* Returns logarithm K (see glint_dim_values()) of ghost GHOST, interpolated at
+ * the angle whose sine is SINE; GLINT_DIM_DARK if a node next to that angle has
+ * this value. */
 static int32_t interpolate_dim_value(const struct glint_flare_frame *frame,
                                      int32_t sine_q30, int ghost, int k)
 {
@@ -24,8 +26,9 @@ static int32_t interpolate_dim_value(const struct glint_flare_frame *frame,
     return a + q_narrow(q_shift((int64_t)(b - a) * (at_q16 & 65535), 16));
 }
 
-/* Returns whether all waves of the ghost get through at node NODE. Returns 1 if
- * NODE is out of range. */
+/* Returns whether the table has the brightness of all waves of GHOST at node
+ * NODE, so that none of them is blocked there. Returns 1 if NODE is out of
+ * range. */
 static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
                                      int ghost, int node)
 {
@@ -40,9 +43,10 @@ static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
     return 1;
 }
 
-/* If the ghost counts as bright in the previous or next interval, the result
- * falls from 1, at the node shared with that interval, to the interpolated
- * value. It reaches that value halfway to the other node at the latest. */
+/* If the ghost counts as bright in the interval before or after this one, the
+ * result falls continuously from 1, at the node that both intervals share, to
+ * the interpolated value, which it reaches halfway to the other node at the
+ * latest. */
 int32_t glint_dim_brightness_log2_q8(const struct glint_flare_frame *frame,
                                      const struct glint_light *light, int ghost)
 {

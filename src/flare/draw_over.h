@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws a flare over other passes of the same frame. */
+ * Draws a flare in front of other passes, such as veil and starburst, in one
+ * traversal of the tiles. */
 #ifndef GLINT_FLARE_DRAW_OVER_H
 #define GLINT_FLARE_DRAW_OVER_H
 
@@ -14,10 +15,9 @@ struct glint_flare_under {
     struct glint_blend_rows *rows; /* [number of workers of the flare] */
 };
 
-/* Like glint_flare_draw(), over the passes of UNDER. The passes are called
- * with the flare's tiles: at half resolution these have pixels twice as wide
- * and high; if cells are drawn in two levels, a row of tiles ends at the
- * side of each large tile. */
+/* Like glint_flare_draw(), with the passes of UNDER behind the flare. The
+ * passes are called with the flare's tiles: at half resolution the pixels of
+ * these are twice as wide and high as those of the picture. */
 void glint_flare_draw_over_passes(struct glint_flare *flare,
                                   const struct glint_image *image,
                                   const struct glint_flare_under *under);

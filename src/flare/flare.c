@@ -28,8 +28,8 @@ static void allocate_worker(struct glint_flare_worker *w, struct glint_arena *a,
     w->edges = glint_edges_allocate_worker(a, c);
 }
 
-/* Called twice: first with an arena that only measures, when it returns
- * NULL, then to allocate. */
+/* Allocates a flare from arena A. Called twice: with an arena that only
+ * measures (returns NULL), then to allocate. */
 static struct glint_flare *allocate_flare(struct glint_arena *a,
                                           const struct glint_flare_config *c)
 {
@@ -146,8 +146,8 @@ enum glint_status glint_flare_set_stop(struct glint_flare *flare,
 
 /* ------------------------------------------------------------------ bundles */
 
-/* Sets the size that is drawn: the size of the picture, or if HALF is 1 half of
- * its width and height. */
+/* Sets the size of the drawn area, in pixels of the drawing resolution: that of
+ * the picture, or half its width and height if HALF is 1. */
 static void set_drawn_size(struct glint_flare *f, int half)
 {
     f->half = half;
@@ -213,8 +213,9 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 
 /* -------------------------------------------------------------------- plan */
 
-/* Returns N minus the number of trailing lights outside the model's range of
- * angles, so that a frame with only such lights costs nothing. */
+/* Returns the number of LIGHTS without those at the end of the list that lie
+ * outside the model's range of angles, so that a frame with only such lights
+ * costs nothing. */
 static int count_lights_in_range(const struct glint_lens *lens,
                                  const struct glint_light *lights, int n)
 {
@@ -223,14 +224,15 @@ static int count_lights_in_range(const struct glint_lens *lens,
     return n;
 }
 
-/* Plans all waves of one ghost and light. */
+/* Worker function: plans the bundles of all waves of the pair JOB of a ghost
+ * and a light. */
 static void plan_ghost_and_light_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
     const struct glint_flare_frame *r = f->plan.frame;
     const int n_ghosts = (int)r->lens->header->n_ghosts;
     const int ghost = job % n_ghosts, i = job / n_ghosts;
-    /* a copy, as the merged light lies in the memory of the first bundle */
+    /* a copy, as a merged light is stored in the memory of the first bundle */
     const struct glint_light light =
         f->plan.dims ? *r->dim->method->gathered(f, ghost, i)
                      : f->plan.light[i];
@@ -250,10 +252,10 @@ static void plan_ghost_and_light_job(void *ctx, int job, int worker)
     }
 }
 
-/* Removes invisible ghosts. For each ghost and wave the light from all lamps
- * is summed, as the sum may be visible although each summand is not; so a
- * ghost is removed, in a wave, for all lights or for none. Sums are
- * integers, so their order does not matter. */
+/* Marks the bundles of invisible ghosts among the first N bundles by n_cells =
+ * 0. For each ghost and wave the peaks of all lights are summed, as the sum may
+ * be visible although no summand is; so a ghost is removed, in a wave, for all
+ * lights or for none. Sums are integers, so their order does not matter. */
 static void remove_invisible_ghosts(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -269,7 +271,8 @@ static void remove_invisible_ghosts(struct glint_flare *f, int n)
     }
 }
 
-/* Removes invisible bundles from the first N bundles and closes the gaps. */
+/* Removes the bundles with n_cells = 0 from the first N bundles and closes the
+ * gaps. Sets n_bundles, flux and brightest. */
 static void compact_visible_bundles(struct glint_flare *f, int n)
 {
     for (int i = 0; i < n; i++) {
@@ -284,8 +287,8 @@ static void compact_visible_bundles(struct glint_flare *f, int n)
     }
 }
 
-/* Plans all waves of N_JOBS pairs of a ghost and a light. Returns the number
- * of visible bundles. */
+/* Plans the bundles of all waves of N_JOBS pairs of a ghost and a light.
+ * Returns the number of bundles planned, at most max_bundles. */
 static int plan_all_bundles(struct glint_flare *f, int n_jobs)
 {
     const int n_waves = f->plan.frame->n_waves;
@@ -332,7 +335,9 @@ void glint_flare_plan(struct glint_flare *flare,
         .shaded = flare->cfg.stop.shade != NULL,
         .opening_q30 = flare->cfg.stop.opening_q30 ? flare->cfg.stop.opening_q30
                                                    : WHOLE_OPENING_Q30};
-    /* The table of dim ghosts depends only on the angle of the light. */
+    /* The table of dim ghosts depends only on the angle of a light off the
+     * axis, so it is not used with models that also depend on the azimuth
+     * (GLINT_BASIS_LENS). */
     if (frame->dim && frame->dimmest.mantissa && !frame->sets &&
         frame->n_waves == GLINT_DIM_WAVES &&
         !(frame->lens && glint_basis_is_lens(frame->lens->header->basis))) {
@@ -389,8 +394,8 @@ int64_t glint_flare_looked(const struct glint_flare *flare)
     return n;
 }
 
-/* Sets the totals of the statistics over the bundles whose edges fit into the
- * bins. */
+/* Sets the statistics of the frame to the totals over the bundles whose edges
+ * fit into the bins. */
 static void sum_drawn_statistics(struct glint_flare *f)
 {
     struct glint_flare_stats *s = &f->stats;
@@ -447,7 +452,7 @@ void glint_flare_draw(struct glint_flare *flare,
     if (flare->bins.region.y0 == 0)
         glint_flare_reset_tile_state(flare);
     if (flare->stats.primitives == 0)
-        return; /* the bins may hold the edges of an earlier frame */
+        return; /* the bins may contain the edges of an earlier frame */
     tiles = glint_flare_prepare_tiles(flare, image);
     glint_edges_draw(flare, &tiles, pass, 0);
 }

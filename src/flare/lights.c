@@ -1,28 +1,30 @@
 /* SPDX-License-Identifier: MIT
  *
- * Merges many lights into few, moving their images as little as possible.
+ * Merges many lights into few, such that their ghosts move as little as
+ * possible.
  *
  *   in   lights in any order
  *   out  fewer, with the same light from nearly the same directions
  *
  * Method: lights are sorted along a Z-order curve through the plane of their
- * direction sines, and neighbours on the curve are compared. A curve separates
- * some neighbours of the plane, so each round uses a curve through a shifted
- * plane.
+ * direction sines, and only neighbours on the curve are compared. A curve
+ * separates some lights that are close in the plane, so each round shifts the
+ * curve.
  *
- * Lights that cannot be distinguished merge first. Then, while there are too
- * many, the pairs of lowest cost merge. If fluxes a and b lie d apart, they
- * move by d b / (a + b) and d a / (a + b), which shifts the outlines of all
- * their ghosts. The squared error of a shifted outline is the square of its
- * light times the shift; the sum of both is a b d. So faint lights merge over
- * long distances while bright lights hardly move. Each round merges only a
- * fraction of the surplus, the cheapest pairs that it finds, so that costs rise
- * slowly.
+ * Lights too close to be distinguished are merged first. Then, while there are
+ * too many lights, the pairs of lowest cost are merged. If two lights of flux a
+ * and b at a distance d are merged, they move by d b / (a + b) and d a / (a +
+ * b), which shifts the outlines of all their ghosts. The squared error of a
+ * shifted outline is taken as the square of its light times the shift; the sum
+ * over both lights, a b d, is the cost of merging them. So faint lights are
+ * merged over long distances while bright lights hardly move. Each round merges
+ * only a fraction of the surplus, the cheapest pairs that it finds, so that
+ * costs rise slowly.
  *
- * Lights are merged in place, in O(n log n) for all rounds, as each leaves
- * fewer lights. The result does not depend on the order of the input, as the
- * sort compares all members of a light. Between prepare_lights() and
- * finish_lights(), rgb_q14 of a light has HELD additional fraction bits;
+ * Lights are merged in place, in O(n log n) for all rounds together, as each
+ * round leaves fewer lights. The result does not depend on the order of the
+ * input, as the sort compares all members of a light. Between prepare_lights()
+ * and finish_lights(), rgb_q14 of a light has HELD additional fraction bits;
  * otherwise the colour of a faint light would be lost in rounding when it
  * merges with a bright light. */
 #include "base/q.h"
@@ -32,7 +34,7 @@
 #include "glint/flare.h"
 
 enum {
-    CURVES = 3, /* number of curves along which lights that cannot be
+    CURVES = 3, /* number of curves along which lights too close to be
                    distinguished are searched */
     PART = 4,   /* a round merges 1 / PART of the surplus lights */
     BINS = 64,  /* number of bins of the histogram of costs */
@@ -67,14 +69,15 @@ uint64_t glint_light_squared_distance_q60(const struct glint_light *a,
     return (uint64_t)(x * x) + (uint64_t)(y * y) + (uint64_t)(z * z);
 }
 
-/* Sets the azimuth of B to the direction of (X, Y); returns the length of (X,
- * Y). If the length is 0 (light on the axis), the azimuth does not matter. */
+/* Sets the azimuth of light B to that of (X, Y), and returns the length of (X,
+ * Y). The length is 0 for a light on the axis, whose azimuth does not matter.
+ */
 static int64_t set_light_azimuth(struct glint_light *b, int32_t x_q30,
                                  int32_t y_q30)
 {
     const uint32_t size = (uint32_t)(x_q30 < 0 ? -x_q30 : x_q30) |
                           (uint32_t)(y_q30 < 0 ? -y_q30 : y_q30);
-    /* Scales short vectors up to keep precision. */
+    /* Short vectors are scaled up to preserve precision. */
     const int up = 30 - bit_length(size);
     const int64_t scale = INT64_C(1) << (up > 0 ? up : 0);
     const int64_t x = x_q30 * scale, y = y_q30 * scale;
@@ -87,7 +90,8 @@ static int64_t set_light_azimuth(struct glint_light *b, int32_t x_q30,
     return (length + scale / 2) / scale;
 }
 
-/* Sets the direction of B to D. D may have any length. */
+/* Sets the direction of light B to that of vector D, whose length does not
+ * matter. */
 static void set_light_direction(struct glint_light *b,
                                 const struct direction *d)
 {
@@ -102,11 +106,12 @@ static void set_light_direction(struct glint_light *b,
 
 /* ------------------------------------------------------------------- order */
 
-/* The lights and their sort order. */
+/* The array of lights that is sorted, and its sort order. */
 struct order {
     struct glint_light *light;
     int by_power; /* 1: the brightest first; 0: along a curve */
-    /* Start of the curve, as an offset below (-1, -1), _q30. */
+    /* Corner of the plane at which the curve begins, as offsets below (-1, -1),
+     * _q30. */
     uint32_t x0, y0;
 };
 
@@ -123,7 +128,8 @@ static void list_light_words(const struct glint_light *b, int32_t *word)
     word[9] = b->apart_q30;
 }
 
-/* Returns whether A comes before B. Compares all members, power first. */
+/* Returns whether A comes before B in the order of falling power; lights of
+ * equal power are ordered by their other members. */
 static int is_brighter_light(const struct glint_light *a,
                              const struct glint_light *b)
 {
@@ -137,8 +143,8 @@ static int is_brighter_light(const struct glint_light *a,
     return 0;
 }
 
-/* Returns the distance of V, -1 .. 1, from the lower end -1 - ZERO of the
- * axis; _q30. */
+/* Returns coordinate V, -1 .. 1, relative to the corner -1 - ZERO at which the
+ * curve begins, _q30. */
 static uint32_t compute_curve_offset(int32_t v_q30, uint32_t zero)
 {
     return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;
@@ -158,8 +164,9 @@ static int is_before_in_light_order(const void *order, int i, int j)
 
     if (o->by_power || (dx | dy) == 0)
         return is_brighter_light(a, b);
-    /* Compares positions along the Z curve: the highest differing bit
-     * decides; y's bit ranks above x's bit of the same weight. */
+    /* Compares positions along the Z-order curve: the highest bit in which x or
+     * y differ decides; the bit of y ranks above the bit of x of the same
+     * weight. */
     return dx < dy && dx < (dx ^ dy) ? py < qy : px < qx;
 }
 
@@ -179,8 +186,8 @@ static void sort_lights(struct order *o, int n)
     glint_heap_sort(&heap, n);
 }
 
-/* Sorts lights along the curve of round ROUND. Curves begin at multiples of
- * irrational numbers, so that no two of them separate the same neighbours. */
+/* Sorts N lights along the curve of round ROUND. Curves begin at multiples of
+ * irrational numbers, so that no two curves separate the same neighbours. */
 static void sort_lights_along_curve(struct glint_light *b, int n, int round)
 {
     const uint32_t k = (uint32_t)round;
@@ -223,7 +230,8 @@ void glint_light_merge(struct glint_light *a, const struct glint_light *b)
     set_light_direction(a, &mean);
 }
 
-/* Returns the base-2 exponent of the squared cost of merging A and B. */
+/* Returns the binary exponent of the squared cost of merging A and B, (a b
+ * d)^2; see the head of this file. */
 static int compute_merge_cost_log2(const struct glint_light *a,
                                    const struct glint_light *b)
 {
@@ -234,13 +242,13 @@ static int compute_merge_cost_log2(const struct glint_light *a,
         .exponent;
 }
 
-/* The condition under which neighbours merge. */
+/* The condition under which neighbours on the curve are merged. */
 struct rule {
-    uint64_t near2_q60; /* if not 0: lights merge if their squared distance is
-                           at most this */
-    int cost; /* if near2_q60 is 0: max compute_merge_cost_log2() at which
-                 lights merge */
-    int most; /* merging stops at this number of lights */
+    uint64_t near2_q60; /* if not 0: max squared distance of lights that are
+                           merged */
+    int cost; /* if near2_q60 is 0: max compute_merge_cost_log2() of lights that
+                 are merged */
+    int most; /* number of lights at which merging stops */
 };
 
 static int can_lights_merge(const struct rule *r, const struct glint_light *a,
@@ -250,7 +258,7 @@ static int can_lights_merge(const struct rule *r, const struct glint_light *a,
                         : compute_merge_cost_log2(a, b) <= r->cost;
 }
 
-/* Merges neighbours in the list of N lights that satisfy R; returns the
+/* Merges neighbours in the list of N lights that satisfy rule R. Returns the
  * number of lights left. */
 static int merge_neighbouring_lights(struct glint_light *b, int n,
                                      const struct rule *r)
@@ -266,8 +274,8 @@ static int merge_neighbouring_lights(struct glint_light *b, int n,
     return left;
 }
 
-/* Returns the min cost limit, to within 1 / BINS of the range of costs, at
- * which enough neighbours merge: 1 / PART of the N - MOST surplus lights. */
+/* Returns the cost limit at which one round merges 1 / PART of the N - MOST
+ * surplus lights, with a resolution of 1 / BINS of the range of costs. */
 static int find_next_cost_limit(const struct glint_light *b, int n, int most)
 {
     int count[BINS] = {0}, low = INT32_MAX, high = INT32_MIN, width, bin = 0;
@@ -287,8 +295,8 @@ static int find_next_cost_limit(const struct glint_light *b, int n, int most)
     return low + (bin + 1) * width - 1;
 }
 
-/* Removes lights without power or colour, gives colours HELD additional
- * fraction bits, and returns the number of lights left. */
+/* Removes lights without power or colour, and adds HELD fraction bits to the
+ * colours of the others. Returns the number of lights left. */
 static int prepare_lights(struct glint_light *b, int n)
 {
     int kept = 0;

@@ -8,19 +8,19 @@
 #include "flare/plan_cells.h"
 
 enum {
-    /* cells across the small probe; each of its rows has GLINT_RAYS rays,
-     * which are computed at once */
+    /* number of cells across the small probe, whose rows have GLINT_RAYS rays,
+     * as many as are computed at once */
     FEW_ACROSS = GLINT_RAYS - 1,
     FEW_DOWN = 4,
     FEW_INSIDE = 6,
     ONE_Q16 = 1 << 16,
-    WIDEST_Q16 = 64 << 16, /* max factor by which a ghost is enlarged */
-    FARTHEST_Q8 = 1 << 20  /* max distance of the centre of enlargement from the
-                              picture's middle, pixels */
+    WIDEST_Q16 = 64 << 16, /* max enlargement of a ghost */
+    FARTHEST_Q8 = 1 << 20  /* max distance of the fixed point of the enlargement
+                              from the picture's middle, pixels */
 };
 
-/* Converts X from units of the sensor outputs of T to pixels, clamped to +-2^23
- * pixels. */
+/* Converts X, a length in units of the sensor outputs of T, to pixels, clamped
+ * to +-2^23 pixels. */
 static int64_t convert_to_pixels_q8(const struct glint_plan *p,
                                     const struct glint_transfer *t, int64_t x)
 {
@@ -29,7 +29,7 @@ static int64_t convert_to_pixels_q8(const struct glint_plan *p,
                         8, INT64_C(1) << 31);
 }
 
-/* Returns X, a length within a ghost in pixels, after the ghost's
+/* Returns the length X within a ghost, pixels, multiplied by the ghost's
  * enlargement. */
 static int64_t scale_by_enlargement(const struct glint_bundle_plan *s,
                                     int64_t x_q8)
@@ -37,21 +37,21 @@ static int64_t scale_by_enlargement(const struct glint_bundle_plan *s,
     return s->wider_q16 ? x_q8 * s->wider_q16 >> 16 : x_q8;
 }
 
-/* The bounding box of a bundle's light, pixels: the position of its middle
- * along (middle) and across the light's azimuth, and half its size along (wide)
- * and across (high). */
+/* The bounding box of a bundle's light, pixels, in coordinates along and across
+ * the light's azimuth: the position of its middle (middle, across), and half
+ * its size (wide, high). */
 struct reach {
     int64_t middle_q8, across_q8, wide_q8, high_q8;
 };
 
-/* Returns half the extent of E perpendicular to the light's azimuth. */
+/* Returns half the size of extent E across the light's azimuth. */
 static int64_t compute_extent_half_height(const struct glint_probe_extent *e)
 {
     return (e->y_high - e->y_low) / 2;
 }
 
-/* Returns the bounding box, in pixels, of the range E of the probe's rays,
- * enlarged by a tenth. */
+/* Returns the bounding box, in pixels, of the extent E of probed rays, made
+ * larger by a tenth and one pixel. */
 static struct reach compute_bundle_box(const struct glint_plan *p,
                                        const struct glint_bundle_plan *planned,
                                        const struct glint_transfer *t,
@@ -71,8 +71,8 @@ static struct reach compute_bundle_box(const struct glint_plan *p,
             256};
 }
 
-/* Returns whether the box E, rotated by TURN, overlaps the picture. across
- * is nonzero only for ghosts that are not rotated. */
+/* Returns whether the box E, rotated by TURN, overlaps the picture. Its member
+ * across is nonzero only for ghosts that are not rotated. */
 static int is_box_in_picture(const struct glint_plan *p,
                              struct glint_azimuth turn, const struct reach *e)
 {
@@ -87,8 +87,8 @@ static int is_box_in_picture(const struct glint_plan *p,
                p->height * 128 >> p->half;
 }
 
-/* Returns the fraction, 0 .. 255, of the interval MIDDLE +- WIDE that lies
- * between -HALF and HALF. */
+/* Returns the fraction of the interval MIDDLE +- WIDE that lies within -HALF ..
+ * HALF, 0 .. 255. */
 static int64_t compute_interval_overlap_q8(int64_t middle, int64_t wide,
                                            int64_t half)
 {
@@ -98,8 +98,8 @@ static int64_t compute_interval_overlap_q8(int64_t middle, int64_t wide,
     return high > low && wide > 0 ? q_divide(255 * (high - low), 2 * wide) : 0;
 }
 
-/* Returns the fraction of the upright bounding box of E, rotated by TURN, that
- * lies in the picture. */
+/* Returns the fraction, 0 .. 255, of the axis-parallel bounding box of E,
+ * rotated by TURN, that lies in the picture. */
 static uint8_t compute_visible_fraction_q8(const struct glint_plan *p,
                                            struct glint_azimuth turn,
                                            const struct reach *e)
@@ -122,10 +122,10 @@ static struct glint_real get_pupil_box_side(const struct glint_transfer *t,
     return real_of(t->box[k], t->box_exponent);
 }
 
-/* Returns the ratio of the light of wave WAVE that is drawn with the rays of
- * PLANNED to the light of the wave of PLANNED itself. It is 1 for that wave;
- * for other waves it includes only the fraction that is not drawn with their
- * own rays. */
+/* Returns the light of wave WAVE that is drawn with the rays of bundle PLANNED,
+ * divided by the light of the bundle's own wave. It is 1 for the own wave; for
+ * other waves of a dim ghost it is only the fraction that is not drawn with
+ * their own rays. */
 static int64_t compute_dim_factor_q16(const struct glint_plan *p,
                                       const struct glint_bundle_plan *planned,
                                       int wave, int share_q8)
@@ -138,8 +138,8 @@ static int64_t compute_dim_factor_q16(const struct glint_plan *p,
                    8);
 }
 
-/* Sets RGB to the colour of the bundle, scaled such that its max channel is
- * 1; returns the max channel before scaling. */
+/* Sets RGB to the colour of the bundle, of light, waves and tint, scaled such
+ * that its max channel is 1. Returns the max channel before scaling. */
 static struct glint_real
 compute_bundle_colour(const struct glint_plan *p, const struct glint_light *b,
                       const struct glint_bundle_plan *planned, int share_q8,
@@ -176,8 +176,8 @@ compute_bundle_colour(const struct glint_plan *p, const struct glint_light *b,
 }
 
 /* Returns the flux of the bundle, display white times pixels, if all rays of
- * its window had energy 2^EXPONENT. The hole of an annular box does not
- * count. */
+ * its window had energy 2^EXPONENT. The area of the hole of an annular pupil
+ * box is excluded. */
 static struct glint_real compute_bundle_flux(const struct glint_plan *p,
                                              const struct glint_light *b,
                                              const struct glint_bundle_plan *s,
@@ -189,8 +189,8 @@ static struct glint_real compute_bundle_flux(const struct glint_plan *p,
     struct glint_real x =
         real_times(get_pupil_box_side(t, 1), get_pupil_box_side(t, 2));
 
-    /* Both sides are halves of the box; so is the window's height unless T
-     * covers the whole box. */
+    /* Both sides are half sides of the pupil box. The window's height also
+     * covers half of the box only, unless T covers the whole box. */
     x.exponent += (t->whole ? 1 : 2) + exponent;
     /* A pixel at half resolution covers four pixels of the picture. */
     x.exponent -= 2 * p->half;
@@ -204,10 +204,11 @@ static struct glint_real compute_bundle_flux(const struct glint_plan *p,
     return real_times(x, colour);
 }
 
-/* Returns an upper limit on the light of a pixel from one cell: 2 * (flux of
- * a cell of the probe) / (min area of such a cell on the sensor), as the
- * light between probed rays may be brighter. Returns 0 for folded ghosts,
- * whose cell areas do not bound their brightness. */
+/* Returns an upper bound on the light that the bundle adds to a pixel, display
+ * white: twice the flux of a cell of the probe, divided by the min area of such
+ * a cell on the sensor. Twice, as light between probed rays may be brighter.
+ * Returns 0 for folded ghosts, whose cell areas do not bound their brightness.
+ */
 static struct glint_real
 compute_max_pixel_light(const struct glint_plan *p,
                         const struct glint_bundle_plan *planned,
@@ -227,13 +228,14 @@ compute_max_pixel_light(const struct glint_plan *p,
             area,
             real_of((int64_t)planned->wider_q16 * planned->wider_q16, -32));
     flux.exponent += 1;
-    /* number of cells over the whole box */
+    /* number of cells of the whole pupil box */
     area = real_times(area, real_of(s->across * s->rows, 0));
     return real_over(flux, area);
 }
 
-/* Returns BRIGHTEST in units of the min visible light; 2^20 units if
- * BRIGHTEST is 0 (not known), and for linear pictures. */
+/* Returns BRIGHTEST, the max light of a pixel, in units of the min visible
+ * light. Returns 2^20 units if BRIGHTEST is 0 (not known), and for linear
+ * pictures. */
 static int64_t compute_peak_in_visible_units_q20(const struct glint_plan *p,
                                                  struct glint_real brightest)
 {
@@ -244,8 +246,9 @@ static int64_t compute_peak_in_visible_units_q20(const struct glint_plan *p,
     return real_integer(real_over(brightest, p->frame->faintest), 20, most);
 }
 
-/* Sets the members inside_q8 and contrast_q4 of PLANNED, which
- * glint_flare_planned() returns. */
+/* Sets inside_q8, the fraction of probed rays that are not blocked, and
+ * contrast_q4, log2 of BRIGHTEST / mean irradiance, of PLANNED.
+ * glint_flare_planned() returns both. */
 static void set_inside_and_contrast(const struct glint_probe *s,
                                     struct glint_real brightest,
                                     struct glint_bundle_plan *planned)
@@ -306,8 +309,8 @@ glint_plan_map_sensor_to_picture(const struct glint_plan *plan,
     return place;
 }
 
-/* Returns log2 of the factor by which energies can be scaled up without
- * overflow, if they are at most 5/4 of the probe's max ENERGY. */
+/* Returns the left shift by which energies can be scaled up without overflow if
+ * they are at most 5/4 of ENERGY, the max of the probe. */
 static int compute_energy_shift(int64_t energy)
 {
     const int up = 29 - bit_length((uint64_t)(energy + energy / 4));
@@ -334,8 +337,9 @@ int glint_plan_is_light_outside_model(const struct glint_lens *lens,
     return light->sine_q30 > lens->header->sine_hi_q30;
 }
 
-/* Returns whether ghost (or piece of a ghost) GHOST is not muted and belongs to
- * the pair of surfaces of only_ghost. */
+/* Returns whether ghost GHOST (or part of a ghost) is to be drawn: its tint is
+ * not 0, and it belongs to the same pair of surfaces as only_ghost, if that is
+ * set. */
 static int is_ghost_selected(const struct glint_flare_frame *r, int ghost)
 {
     const struct glint_model_ghost *g = &r->lens->ghost[ghost];
@@ -346,7 +350,8 @@ static int is_ghost_selected(const struct glint_flare_frame *r, int ghost)
            (!r->tints || r->tints[ghost].gain.mantissa > 0);
 }
 
-/* Returns the length of (X, Y); both magnitudes must be below 2^31. */
+/* Returns the length of the vector (X, Y); the magnitudes of X and Y must be
+ * below 2^31. */
 static int64_t compute_vector_length(int64_t x, int64_t y)
 {
     if (y == 0)
@@ -354,14 +359,14 @@ static int64_t compute_vector_length(int64_t x, int64_t y)
     return q_root((uint64_t)(x * x + y * y));
 }
 
-/* Sets the magnification of the ghost, at most WIDEST_Q16. A lamp with
- * extent is sampled by point lights. If the ghosts of the points are smaller
- * than the distance between them, the lamp's ghost becomes a pattern of
- * dots; so each ghost is enlarged to two and a half times the distance
- * between neighbours. A ghost moves with the light in proportion to its
- * distance from the middle. Lights on the axis need no magnification. The
- * centre may have an offset perpendicular to the azimuth only if the ghost
- * is mirrored rather than rotated. */
+/* Sets the enlargement of the ghost, at most WIDEST_Q16, and its fixed point. A
+ * lamp of visible extent is sampled by point lights. If the ghosts of these
+ * points were smaller than the distance between them, the ghost of the lamp
+ * would become a pattern of dots; so each ghost is enlarged to two and a half
+ * times the distance between neighbours. When a light moves, its ghost moves in
+ * proportion to the ghost's distance from the picture's middle; so lights on
+ * the axis need no enlargement. The fixed point may lie off the light's azimuth
+ * only if the ghost is mirrored rather than rotated. */
 static void set_ghost_enlargement(const struct glint_plan *p,
                                   const struct glint_light *b,
                                   struct glint_bundle_plan *planned,
@@ -392,8 +397,8 @@ static void set_ghost_enlargement(const struct glint_plan *p,
         FARTHEST_Q8);
 }
 
-/* Narrows the window of the transfer to the rays that the stop transmits, if
- * the stop is narrower than the model's. Returns 0 if no ray is left. */
+/* If the stop is narrower than the model's, narrows the window of the transfer
+ * to the rays that the stop transmits. Returns 0 if the stop transmits none. */
 static int narrow_window_to_stop(const struct glint_plan *plan,
                                  struct glint_bundle_plan *planned,
                                  struct glint_plan_scratch *scratch)
@@ -409,8 +414,8 @@ static int narrow_window_to_stop(const struct glint_plan *plan,
     return any;
 }
 
-/* Traces a few rays, and more if fewer than FEW_INSIDE get through. Returns
- * whether any ray gets through. */
+/* Traces the rays of a small probe, and of a larger one if fewer than
+ * FEW_INSIDE rays pass. Returns whether any ray passes. */
 static int probe_bundle(const struct glint_plan *plan,
                         struct glint_transfer *transfer, struct glint_probe *s)
 {
@@ -422,8 +427,8 @@ static int probe_bundle(const struct glint_plan *plan,
     return s->n_inside > 0;
 }
 
-/* Returns the area of the bounding box of the range E of rays, square
- * pixels. */
+/* Returns the area of the bounding box of the extent E of rays, with margins,
+ * in pixels^2. */
 static struct glint_real compute_bounding_box_area(
     const struct glint_plan *p, const struct glint_bundle_plan *planned,
     const struct glint_transfer *t, const struct glint_probe_extent *e)
@@ -442,8 +447,8 @@ static struct glint_real compute_bounding_box_area(
     return real_times(real_of(wide_q8, -7), real_of(high_q8, -7));
 }
 
-/* Returns the rotation in the picture that the sensor outputs of T need for
- * a light at AZIMUTH. */
+/* Returns the rotation from sensor outputs of T to the picture, for a light at
+ * AZIMUTH. */
 static struct glint_azimuth
 choose_ghost_rotation(const struct glint_transfer *t,
                       struct glint_azimuth azimuth)

@@ -8,17 +8,17 @@
 
 enum { FOLD_OCTAVES = 3, MOST_SHADE_CELLS = 128, SHADE_CELL_LOG2 = 4 };
 
-/* Returns the root of the mean SUM / N of squares. Each square was divided
- * by 2^10 before it was added to SUM; N may be 0. */
+/* Returns the root mean square of N values, where SUM is the sum of their
+ * squares, each divided by 2^10; 0 if N is 0. */
 static int64_t compute_root_mean_square(uint64_t sum, int n)
 {
     return n ? (int64_t)q_root((uint64_t)q_divide((int64_t)sum, n)) << 5 : 0;
 }
 
-/* Returns the curvature of the outputs A and B over the box, converted to a
- * distance on the sensor, in units of the sensor outputs times
- * 2^GLINT_PROBE_FINE_LOG2: second differences / first differences, times the
- * first differences of the sensor outputs. */
+/* Returns the curvature of the outputs A and B over the pupil box as a distance
+ * on the sensor: second differences / first differences, times the first
+ * differences of the sensor outputs. The unit is that of the sensor outputs
+ * times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t compute_output_curvature(const struct glint_probe *s, int a,
                                         int b)
 {
@@ -35,8 +35,8 @@ static int64_t compute_output_curvature(const struct glint_probe *s, int a,
     return first ? q_divide(second * sensor, first) : 0;
 }
 
-/* Returns the change of the stop position over the box, in units of the stop
- * outputs times 2^GLINT_PROBE_FINE_LOG2. */
+/* Returns the root mean square change of the stop position over the pupil box,
+ * in units of the stop outputs times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t compute_stop_position_change(const struct glint_probe *s)
 {
     return compute_root_mean_square(s->change[GLINT_OUT_STOP_X].first +
@@ -44,8 +44,8 @@ static int64_t compute_stop_position_change(const struct glint_probe *s)
                                     s->n_bends);
 }
 
-/* Returns the change of the position on the sensor over the box, in units of
- * the sensor outputs times 2^GLINT_PROBE_FINE_LOG2. */
+/* Returns the root mean square change of the position on the sensor over the
+ * pupil box, in units of the sensor outputs times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t compute_sensor_position_change(const struct glint_probe *s)
 {
     return compute_root_mean_square(s->change[GLINT_OUT_SENSOR_X].first +
@@ -55,11 +55,11 @@ static int64_t compute_sensor_position_change(const struct glint_probe *s)
 
 static int64_t compute_stop_radius(const struct glint_probe *s)
 {
-    /* The limit is 1.05 radii. */
+    /* the probe's limit is 1.05 stop radii */
     const int64_t radius =
         q_divide(s->limit[GLINT_OUT_STOP_X] * 20, 21) >> GLINT_PROBE_FINE_LOG2;
 
-    /* A radius below one unit must not count as 0. */
+    /* at least 1, as it is a divisor */
     return radius > 0 ? radius : 1;
 }
 
@@ -78,11 +78,11 @@ static int64_t compute_round_stop_curvature(const struct glint_probe *s,
     return q_divide(change * sensor, (compute_stop_radius(s) >> 2) + 1);
 }
 
-/* Reduces N cells per side to the number that a picture in codes (not linear
- * light) needs. Errors of fainter ghosts are less visible: with each octave
- * that a ghost gets fainter, its light in codes shrinks by 2^(5/12); errors
- * shrink with the square of the cells. Folds are brighter than the ghost's
- * mean. */
+/* Reduces N cells per side to the number that a picture in codes (not in linear
+ * light) needs. Errors of faint ghosts are less visible: with each octave by
+ * which a ghost is fainter, its light in codes shrinks by 2^(5/12), and errors
+ * are inversely proportional to the square of the number of cells. Folds are
+ * brighter than the mean of the ghost. */
 static int reduce_cells_for_codes(const struct glint_probe *s,
                                   struct glint_real irradiance, int n)
 {
@@ -96,19 +96,19 @@ static int reduce_cells_for_codes(const struct glint_probe *s,
     return n;
 }
 
-/* Returns the ratio of the error allowed for outlines to the error allowed
- * for light. It is 5, not 10, if three or more barrels cut: the second
- * barrel of a vertex is the tightest of all but the first, and has kinks
- * where these meet, so that tips of outlines appear and vanish with the
- * grid. It is also 5 for a round stop, which curves all outlines. */
+/* Returns the ratio of the error allowed for outlines to the error allowed for
+ * light, 10 or 5. It is 5 if three or more barrels cut the bundle: the second
+ * barrel value of a vertex is then the tightest of all barrels but the first,
+ * and has kinks where two of them meet, so that tips of outlines would depend
+ * on the grid. It is also 5 for a round stop, which curves all outlines. */
 static int choose_outline_tolerance_ratio(const struct glint_plan *p,
                                           const struct glint_transfer *t)
 {
     return p->round_q16 || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
 }
 
-/* Returns the cells per side with which subdivided cells (edges/ghost_shade.h)
- * resolve the shade of the stop to a pixel. */
+/* Returns the number of cells per side that a stop with a shade needs, so that
+ * dust and masks within cells (edges/ghost_shade.h) are resolved to a pixel. */
 static int compute_cells_for_shade(const struct glint_plan *p,
                                    const struct glint_probe *s,
                                    const struct glint_transfer *t)
@@ -121,8 +121,8 @@ static int compute_cells_for_shade(const struct glint_plan *p,
     return (int)real_integer(pixels, -SHADE_CELL_LOG2, MOST_SHADE_CELLS);
 }
 
-/* Returns the cells per side by the rule of lens/grid.h, from the probe's
- * results. */
+/* Returns the number of grid cells per side by the rule of lens/grid.h, from
+ * the differences of the probe's rays. */
 static int compute_cells_per_side(const struct glint_plan *p,
                                   const struct glint_probe *s,
                                   const struct glint_transfer *t,
@@ -158,7 +158,7 @@ static int compute_cells_per_side(const struct glint_plan *p,
                                                   GLINT_PROBE_FINE_LOG2),
                                 plan_pixels_per_mm(p)),
                      8, INT64_C(1) << 40);
-    /* sqrt(12.5 * bend in pixels) * fineness / 64 */
+    /* sqrt(12.5 * curvature in pixels) * fineness / 64 */
     n = q_narrow(
         ((int64_t)q_root((uint64_t)bend_q8 * 3200) * r->fineness + 16383) >>
         14);
@@ -174,8 +174,8 @@ static int compute_cells_per_side(const struct glint_plan *p,
     return n < most ? n : most;
 }
 
-/* Returns N + 2, rounded up to an even number, or GLINT_MAX_CELLS if that is
- * less. The two rows of cells are those in the hole of an annular box. */
+/* Returns N + 2, rounded up to an even number and clamped to GLINT_MAX_CELLS:
+ * adds the two rows of cells in the hole of an annular pupil box. */
 static int add_annulus_hole_cells(int n)
 {
     const int more = (n + 3) / 2 * 2;
@@ -193,8 +193,8 @@ int glint_plan_choose_cells(const struct glint_plan *plan,
     return transfer->annulus ? add_annulus_hole_cells(n) : n;
 }
 
-/* Returns the sum of the mean second differences of output K across and down
- * the box, in the output's unit times 2^GLINT_PROBE_FINE_LOG2. */
+/* Returns the mean second difference of output K across the pupil box plus that
+ * down the box, in the output's unit times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t sum_mean_second_differences(const struct glint_probe *s, int k)
 {
     int64_t sum = 0;
@@ -205,9 +205,9 @@ static int64_t sum_mean_second_differences(const struct glint_probe *s, int k)
     return sum;
 }
 
-/* Like sum_mean_second_differences(), for (1 + r^2) / 2 of a round stop: in
- * each direction the square of the distance that the stop position moves, in
- * stop radii. */
+/* Like sum_mean_second_differences(), for the function (1 + r^2) / 2 of a round
+ * stop: in each direction it is the square of the change of the stop position,
+ * in stop radii. */
 static int64_t sum_round_stop_differences_q16(const struct glint_probe *s)
 {
     const struct glint_real change =
@@ -217,18 +217,19 @@ static int64_t sum_round_stop_differences_q16(const struct glint_probe *s)
     return 2 * real_integer(real_times(change, change), 16, INT64_C(1) << 40);
 }
 
-/* Returns the mean height, above a paraboloid, of the straight lines between
- * the rays of a grid of N_CELLS: (D + E) / 12 for second differences D across
- * and E down a cell. */
+/* Returns the sag of a grid of N_CELLS cells per side: the mean height of the
+ * straight lines between its rays above a paraboloid, which is (D + E) / 12 for
+ * second differences D across and E down a cell. BOWL is D + E over the whole
+ * pupil box. */
 static uint16_t compute_sag_q16(int64_t bowl_q16, int n_cells)
 {
     return (uint16_t)q_clamp_sat(
         q_divide(bowl_q16, 12 * (int64_t)n_cells * n_cells), 0, 1 << 12);
 }
 
-/* Implements plan_cells.h. A barrel's (1 + r^2) / 2 is a paraboloid. After
- * the sag is subtracted, drawn outlines lie outside the true outlines as
- * often as inside. */
+/* The function (1 + r^2) / 2 of a barrel is a paraboloid. After the sag is
+ * subtracted, drawn outlines lie outside the true outlines as often as inside.
+ */
 void glint_plan_set_sags(struct glint_bundle_plan *planned,
                          const struct glint_probe *probe,
                          const struct glint_transfer *transfer, int n_cells,

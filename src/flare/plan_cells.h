@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Chooses the fineness of a bundle's grid from the second differences of its
- * rays.
+ * Chooses the number of cells of a bundle's ray grid from the second
+ * differences of probed rays.
  *
  *   in   a probe of the bundle, its irradiance
  *   out  cells per side; mean error of straight lines between rays (sags) */
@@ -18,16 +18,17 @@ static inline struct glint_real plan_pixels_per_mm(const struct glint_plan *p)
     return x;
 }
 
-/* Returns the cells per side of the grid of a bundle with the irradiance
- * IRRADIANCE, display white. For an annular box the number includes the two
- * rows of cells next to the middle, which carry no light. */
+/* Returns the number of cells per side of the grid of a bundle with the mean
+ * irradiance IRRADIANCE, 1 = display white. For an annular pupil box the number
+ * includes the two rows of cells next to the middle, which have no light. */
 int glint_plan_choose_cells(const struct glint_plan *plan,
                             const struct glint_probe *probe,
                             const struct glint_transfer *transfer,
                             struct glint_real irradiance);
 
-/* Sets the sags of PLANNED for a grid of N_CELLS cells per side and a stop
- * whose outline has the curvature ROUND_Q16, 1 / stop radius. */
+/* Sets the sags of PLANNED (struct glint_bundle_plan) for a grid of N_CELLS
+ * cells per side and a stop whose outline has the curvature ROUND_Q16, in 1 /
+ * stop radius. */
 void glint_plan_set_sags(struct glint_bundle_plan *planned,
                          const struct glint_probe *probe,
                          const struct glint_transfer *transfer, int n_cells,

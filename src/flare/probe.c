@@ -4,7 +4,7 @@
 #include "base/q.h"
 #include "base/real.h"
 
-/* Returns X as an integer in the unit of output KIND. */
+/* Converts X to an integer in the unit of output KIND of T. */
 static int64_t convert_to_output_units(const struct glint_transfer *t, int kind,
                                        int64_t x_q46)
 {
@@ -20,7 +20,7 @@ static int is_stop_output(int kind)
 static void init_probe(struct glint_probe *s, const struct glint_transfer *t,
                        int32_t opening_q30, int across, int down)
 {
-    /* 1.05 times the limits: rays just outside count as inside. */
+    /* 1.05 times the limits, as rays just outside count as inside */
     const int64_t near_q16 = 68813;
 
     s->across = across;
@@ -59,7 +59,7 @@ static int is_ray_inside(const struct glint_probe *s,
     return 1;
 }
 
-/* Traces the rays of row J, 0 .. s->down. */
+/* Traces row J of the probe's rays, 0 .. s->down. */
 static void trace_probe_row(struct glint_probe *s, struct glint_transfer *t,
                             int j)
 {
@@ -87,9 +87,9 @@ static void trace_probe_row(struct glint_probe *s, struct glint_transfer *t,
     }
 }
 
-/* Adds the first and second differences at B, a ray between its neighbours A
- * and C. The whole box has STEPS cells in this direction; WAY is 0 across, 1
- * down. */
+/* Adds the first and second differences of all outputs at ray B, whose
+ * neighbours are A and C, if B is inside. The differences are scaled from STEPS
+ * cells to the whole pupil box. WAY: direction, 0 across, 1 down. */
 static void add_differences_at_ray(struct glint_probe *s,
                                    const struct glint_probe_node *a,
                                    const struct glint_probe_node *b,
@@ -104,8 +104,7 @@ static void add_differences_at_ray(struct glint_probe *s,
         const int64_t second =
             ((int64_t)a->at[k] - 2 * (int64_t)b->at[k] + c->at[k]) * steps *
             steps;
-        /* Squares are below 2^62 / 2^10, so the sum can hold several hundred
-         * of them. */
+        /* Squares are below 2^62 / 2^10, so several hundred can be summed. */
         const int64_t f =
             q_clamp_sat(first >> GLINT_PROBE_FINE_LOG2, -INT32_MAX, INT32_MAX);
         const int64_t d =
@@ -150,8 +149,8 @@ static void extend_extent_by_ray(const struct glint_probe *s,
     e->y_high = high > e->y_high ? high : e->y_high;
 }
 
-/* Extends the reach by the cell of A, B and, below them, C, D, if one of its
- * rays is inside. */
+/* Extends s->reach by the cell of the rays A, B and, below them, C, D, if one
+ * of these is inside. */
 static void extend_reach_by_cell(struct glint_probe *s,
                                  const struct glint_probe_node *a,
                                  const struct glint_probe_node *b,

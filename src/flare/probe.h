@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Traces a few rays of a bundle through its polynomials: finds their positions
- * on the sensor, their extent, and how the outputs change from ray to ray.
+ * Probes a bundle: traces a few of its rays by its polynomials, and computes
+ * their extent on the sensor and how all outputs change from ray to ray.
  *
  *    in   the polynomials of a bundle, the number of rays
  *    out  extents, sums of differences, numbers of cells by orientation
@@ -11,13 +11,13 @@
 
 #include "glint/transfer.h"
 
-/* The bounding box of the light on the sensor, in units of the sensor outputs:
- * min and max x and y. If the light is symmetric in y, y_low is -y_high. */
+/* A bounding box of rays on the sensor, in units of the sensor outputs: min and
+ * max x and y. If the bundle is symmetric in y, y_low is -y_high. */
 struct glint_probe_extent {
     int64_t low, high, y_low, y_high;
 };
 
-/* Max cells across the pupil, and down half of it. */
+/* Max number of cells across the pupil box, and down half of it. */
 enum { GLINT_PROBE_ACROSS = 16, GLINT_PROBE_DOWN = 8 };
 
 struct glint_probe_node {
@@ -26,47 +26,48 @@ struct glint_probe_node {
                    by at most 5 % of their radius */
 };
 
-/* How an output changes from ray to ray, across and down: sums of squares of
- * first and of second differences over both directions, and the plain sum of
- * second differences for each direction. */
+/* Change of one output from ray to ray: sums of the squares of first and of
+ * second differences in both directions, and the sum of second differences per
+ * direction (bent: across, down). */
 struct glint_probe_change {
     uint64_t first, second;
     int64_t bent[2];
 };
 
 struct glint_probe {
-    /* The last three rows of rays, by row number modulo 3. */
+    /* the last three rows of rays, indexed by row number modulo 3 */
     struct glint_probe_node row[3][GLINT_PROBE_ACROSS + 1];
     struct glint_probe_change change[GLINT_OUT_KINDS];
-    /* Numbers of cells. across: across the window; down: down half the
-     * window, or down all of it if rays have no mirror image; rows: down all
-     * of the window. */
+    /* Numbers of cells: across the window (across); down half the window, or
+     * down all of it if rays have no mirror image (down); down all of the
+     * window (rows). */
     int across, down, rows;
     int whole;  /* as in struct glint_transfer */
     int n_rays; /* number of rays of all probes of the bundle */
     int n_bends, n_bent[2], n_inside, n_kinds;
-    /* Kinds of outputs of this bundle, except energy: [n_kinds]. */
+    /* [n_kinds]: outputs that this bundle has, except energy */
     uint8_t kind[GLINT_OUT_KINDS];
-    int n_up, n_down; /* numbers of cells of positive and of negative
-                         orientation */
-    /* Range of the rays that pass the stop and the barrels. */
+    int n_up, n_down; /* numbers of half cells of positive (n_up) and negative
+                         (n_down) orientation; both are above 0 if the ghost is
+                         folded */
+    /* extent of the rays that pass the stop and the barrels */
     struct glint_probe_extent seen;
-    /* Range of all corners of the cells that have a ray inside; it also
-     * contains the light between rays. */
+    /* extent of all corners of cells with at least one ray inside, which
+     * contains the light between rays, too */
     struct glint_probe_extent reach;
     int64_t energy;
-    uint64_t least_area; /* area of the smallest half of a cell on the sensor */
-    int64_t limit[GLINT_OUT_KINDS]; /* max magnitude of an output that counts as
-                                       inside */
+    uint64_t least_area;            /* min area on the sensor of half a cell */
+    int64_t limit[GLINT_OUT_KINDS]; /* per output, the magnitude below which a
+                                       ray counts as inside */
 };
 
-/* log2 of the divisor of differences before they are squared */
+/* Right shift of differences before they are squared. */
 enum { GLINT_PROBE_FINE_LOG2 = 6 };
 
 /* Traces the rays of a grid of ACROSS x DOWN cells over half the window of T,
- * or of ACROSS x 2 DOWN cells over all of it if T is whole. The stop has
- * OPENING_Q30 times the model's radius. Adds to n_rays; resets all other
- * members. */
+ * or of ACROSS x 2 DOWN cells over the complete window if T is whole. The
+ * stop's radius is OPENING_Q30 times that of the model. Adds to n_rays of
+ * PROBE, and sets all other members. */
 void glint_probe_trace_bundle(struct glint_probe *probe,
                               struct glint_transfer *t, int32_t opening_q30,
                               int across, int down);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The state of a flare: bundles and plan (flare.c), their edges and tiles
+ * Internal state of a flare: bundles and plan (flare.c), edges and tiles
  * (by_edges.c). */
 #ifndef GLINT_FLARE_STATE_H
 #define GLINT_FLARE_STATE_H
@@ -24,84 +24,85 @@ struct glint_flare_worker {
 
 struct glint_bundle_slot {
     int first_vertex;
-    int first; /* index of the first edge; -1: the edges did not fit */
+    int first; /* index of the bundle's first edge; -1: the edges did not fit */
     int n, n_dropped, n_held;
     int worker; /* index of the worker that emitted the edges */
-    int refs;   /* entries in the bins; set only if the edges did not fit */
+    int refs;   /* number of bin entries that the edges would need; set only if
+                   the edges did not fit */
 };
 
-/* Whether the bins hold the edges of the current plan. */
+/* State of the plan and the bins, for reuse in the next frame. */
 enum glint_reusable {
     GLINT_REUSABLE_NOT,
-    GLINT_REUSABLE_PLANNED, /* planned, but not binned yet */
-    GLINT_REUSABLE_BINNED   /* the bins hold the edges of the whole plan and
-                               nothing else */
+    GLINT_REUSABLE_PLANNED, /* a plan has been made, but its edges have not been
+                               binned */
+    GLINT_REUSABLE_BINNED   /* the bins contain exactly the edges of the plan */
 };
 
 struct glint_flare {
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
-    /* half: 1 at half resolution. width, height: size of the drawn area, in
-     * pixels of the drawing resolution. */
+    /* half: 1 at half resolution. width, height: size of the drawn area in
+     * pixels, at half resolution of twice the width and height. */
     int half, width, height;
-    const struct glint_half *quads; /* set only at half resolution */
-    int n_bundles, n_vertices;      /* bundles and vertices added so far */
-    /* Computes vertices on demand. NULL: vertices are stored, or computed from
-     * the plan. */
+    const struct glint_half *quads; /* functions for half resolution, or NULL */
+    int n_bundles, n_vertices;      /* number of bundles and vertices added so
+                                       far */
+    /* source of vertices that are computed on demand; NULL: vertices are
+     * stored, or computed by the polynomials of the plan */
     const struct glint_flare_rays *rays;
-    struct glint_plan plan; /* the plan for a lens; plan.frame is NULL if
-                               nothing is planned */
-    struct glint_bundle_plan *planned; /* the plan of each bundle */
-    struct glint_real flux, brightest; /* flux of all planned bundles, and the
-                                          largest mean irradiance of a bundle */
-    int n_drawn; /* number of bundles that glint_edges_bin() kept, counted from
-                    the first */
+    struct glint_plan plan; /* the plan of a frame; plan.frame is NULL if the
+                               bundles were added without a plan */
+    struct glint_bundle_plan
+        *planned; /* [max_bundles]: the plan of each bundle */
+    struct glint_real flux, brightest; /* total flux of all planned bundles; max
+                                          of their mean irradiances */
+    int n_drawn; /* number of bundles, counted from the first, whose edges are
+                    in the bins */
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;
     struct glint_by_edges *edges;
     void *reuse;                  /* state of cfg.reuse, or NULL without it */
-    enum glint_reusable reusable; /* always GLINT_REUSABLE_NOT without
-                                     cfg.reuse */
+    enum glint_reusable reusable; /* GLINT_REUSABLE_NOT if cfg.reuse is NULL */
     struct glint_bins bins;
     struct glint_flare_worker *worker;
-    /* Tables for the picture that is being drawn. */
+    /* tables for the pixel format of the picture that is being drawn */
     struct glint_resolve *resolve;
 };
 
-/* Reuse of binned edges from frame to frame (reuse/). */
+/* Functions that reuse binned edges from frame to frame (reuse/reuse.c). */
 struct glint_reuse {
-    /* Carves the state of the reuse out of A; returns NULL while A only
+    /* Allocates the state of the reuse from arena A; returns NULL while A only
      * measures. */
     void *(*carve)(struct glint_arena *a, const struct glint_flare_config *c);
-    /* Returns whether a plan of these inputs would equal the last plan and
-     * that plan is still binned, so that it is reused. Otherwise records the
-     * inputs for the next plan and returns 0. */
+    /* Returns 1, and reuses the last plan, if its inputs were the same and its
+     * edges are still in the bins. Otherwise records the inputs for the next
+     * frame and returns 0. */
     int (*take)(struct glint_flare *f, const struct glint_flare_frame *frame,
                 const struct glint_light *lights, int n_lights);
     /* Sets the colours of the binned bundles to their planned colours times the
-     * gains of the frame for each light (gain_q14). */
+     * frame's gain for each light (gain_q14). */
     void (*turn)(struct glint_flare *f);
 };
 
-/* Clears the tile counts of the last draw and the state for blending with
- * passes under the flare. */
+/* Resets what the workers recorded in the last draw: the numbers of tiles and
+ * clamped samples, and the pointer for blending. */
 void glint_flare_reset_tile_state(struct glint_flare *flare);
 
-/* Prepares the flare's tables for IMAGE (NULL: light is discarded) and returns
- * the tiles that the frame is drawn in. */
+/* Prepares the flare's tables for the pixel format of IMAGE (NULL: light is
+ * discarded). Returns the tiles in which the frame is drawn. */
 struct glint_tiles glint_flare_prepare_tiles(struct glint_flare *flare,
                                              const struct glint_image *image);
 
-/* Returns A + B, clamped to INT32_MAX, a need that no memory satisfies
- * anyway. */
+/* Returns A + B, numbers of items that need memory, clamped to INT32_MAX. */
 static inline int glint_flare_add_need(int a, int b)
 {
     return a > INT32_MAX - b ? INT32_MAX : a + b;
 }
 
-/* Returns how many tiles of 2^LOG2 x 2^LOG2 pixels cover PIXELS_X x
- * PIXELS_Y. */
+/* Returns the number of tiles of 2^LOG2 x 2^LOG2 pixels that cover PIXELS_X x
+ * PIXELS_Y pixels. */
 static inline size_t glint_flare_count_tiles(int pixels_x, int pixels_y,
                                              int log2)
 {

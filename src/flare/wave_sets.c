@@ -6,14 +6,16 @@
 
 enum { UNSEEN = -1, ROWS = 3, FARTHEST_Q8 = 1 << 25 };
 
-/* A pair of a ghost and a light. Jobs are stored in the memory of the
- * bundles' slots, which are unused until bundles have their final indices. */
+/* A job of the plan: a pair of a ghost and a light. Jobs are stored in the
+ * memory of the bundle slots, which is unused until bundles have their final
+ * indices. */
 struct job {
     int ghost, light;
-    int set;      /* index of the chosen set of waves, or UNSEEN */
+    int set;      /* index of the chosen wave set; UNSEEN: the ghost is
+                     invisible */
     int peak_q20; /* sum of peak_q20 (see struct glint_bundle_plan) over all
                      waves, at most 2^20 */
-    int first;    /* index of its first bundle */
+    int first;    /* index of the job's first bundle */
 };
 
 typedef char
@@ -25,7 +27,8 @@ static struct job *get_job_array(struct glint_flare *f)
     return (struct job *)(void *)f->slot;
 }
 
-/* Returns the index of the first wave of set SET. */
+/* Returns the index, among the waves of all sets, of the first wave of set SET.
+ */
 static int find_first_wave_of_set(const struct glint_wave_sets *sets, int set)
 {
     int first = 0;
@@ -46,8 +49,8 @@ int glint_wave_sets_find_set(const struct glint_wave_sets *sets, int wave)
 
 /* -------------------------------------------------------------- the choice */
 
-/* Sets AT_Q8 to the positions of rays of PLANNED in the picture, pixels. The
- * rays are spread evenly over half of the bundle's window. */
+/* Sets AT to the positions in the picture, pixels, of sample rays of PLANNED,
+ * which are spread evenly over half of the bundle's window. */
 static void trace_sample_rays(const struct glint_plan *plan,
                               const struct glint_bundle_plan *planned,
                               struct glint_transfer *t,
@@ -76,14 +79,15 @@ static void trace_sample_rays(const struct glint_plan *plan,
     }
 }
 
-/* Returns the distance in pixels between the outlines of FIRST and LAST, the
- * outermost waves of the first set. */
+/* Returns the distance in pixels between the ghost outlines of FIRST and LAST,
+ * bundles of the outermost waves of the first set: the root mean square
+ * distance of corresponding rays. */
 static int64_t compute_outline_distance_q8(
     const struct glint_plan *plan, const struct glint_bundle_plan *first,
     const struct glint_bundle_plan *last, struct glint_transfer *t)
 {
     int32_t a_q8[ROWS][2][GLINT_RAYS], b_q8[ROWS][2][GLINT_RAYS];
-    /* sum of 24 squares of x and 24 of y, each at most 2^52 */
+    /* sum of 24 squares of x and 24 squares of y, each at most 2^52 */
     uint64_t squares = 0;
 
     trace_sample_rays(plan, first, t, a_q8);
@@ -98,7 +102,8 @@ static int64_t compute_outline_distance_q8(
     return q_root(squares / (ROWS * GLINT_RAYS));
 }
 
-/* Returns the width of wave set SET in 1 / wavelength^2, um^-2 in _q24. */
+/* Returns the range of 1 / wavelength^2 that wave set SET covers, um^-2 in
+ * _q24. */
 static int64_t compute_wave_set_width(const struct glint_flare_frame *r,
                                       int set)
 {
@@ -108,12 +113,12 @@ static int64_t compute_wave_set_width(const struct glint_flare_frame *r,
     return span < 0 ? -span : span;
 }
 
-/* Returns whether the brightness steps between the waves of set SET are
+/* Returns whether the brightness steps from wave to wave of set SET are
  * invisible in a ghost whose waves have the total light LIGHT. From one of n
- * waves to the next, light changes by about 5 LIGHT / n; the step is
- * invisible if a tenth of that is below s->step, or if the outlines are near
- * enough to each other. APART: distance between the outermost outlines of
- * the first set, pixels _q8. */
+ * waves to the next, light changes by about 5 LIGHT / n. The step is invisible
+ * if a tenth of that is below s->step, or if the outlines of neighbouring waves
+ * are closer than s->apart_q8. APART: distance between the outermost outlines
+ * of the first set, pixels _q8. */
 static int are_wave_steps_invisible(const struct glint_flare_frame *r, int set,
                                     int64_t apart, struct glint_real light)
 {
@@ -127,8 +132,9 @@ static int are_wave_steps_invisible(const struct glint_flare_frame *r, int set,
                s->apart_q8 * gaps * compute_wave_set_width(r, 0);
 }
 
-/* Returns the index of the smallest set whose steps are invisible in a
- * ghost, given the ghost's bundles of the first set. */
+/* Returns the index of the smallest wave set whose brightness steps are
+ * invisible in a ghost. PLANNED and BUNDLE are the ghost's bundles of the first
+ * set. */
 static int choose_smallest_wave_set(const struct glint_plan *plan,
                                     const struct glint_bundle_plan *planned,
                                     const struct glint_bundle *bundle,
@@ -173,8 +179,8 @@ static void plan_waves_of_set(struct glint_flare *f, const struct job *job,
     }
 }
 
-/* Plans a ghost and a light with the first set of waves, and chooses the set
- * that they need. */
+/* Worker function: plans job NUMBER with the first wave set, and chooses the
+ * set that it needs. */
 static void plan_first_set_job(void *ctx, int number, int worker)
 {
     struct glint_flare *f = ctx;
@@ -208,8 +214,8 @@ static void plan_chosen_set_job(void *ctx, int number, int worker)
         plan_waves_of_set(f, job, job->first, job->set, f->worker[worker].plan);
 }
 
-/* Removes each ghost that would be invisible even if its brightest pixels by
- * all lights coincided. */
+/* Marks as UNSEEN the jobs of each ghost that would be invisible even if its
+ * brightest pixels of all lights coincided. */
 static void remove_invisible_ghosts(struct glint_flare *f, int n)
 {
     const int n_ghosts = (int)f->plan.frame->lens->header->n_ghosts;
@@ -225,8 +231,8 @@ static void remove_invisible_ghosts(struct glint_flare *f, int n)
     }
 }
 
-/* Moves N bundles from index FROM to TO. Starts with the last bundle if TO
- * is larger, as the ranges may overlap. */
+/* Moves N bundles and their plans from index FROM to index TO. The ranges may
+ * overlap. */
 static void move_planned_bundles(struct glint_flare *f, int from, int to, int n)
 {
     for (int i = 0; i < n && from != to; i++) {
@@ -237,8 +243,8 @@ static void move_planned_bundles(struct glint_flare *f, int from, int to, int n)
     }
 }
 
-/* Removes invisible jobs from the N jobs and closes the gaps; returns the
- * number of jobs left. */
+/* Removes the UNSEEN jobs of N jobs, with their bundles, and closes the gaps.
+ * Returns the number of jobs left. */
 static int compact_visible_jobs(struct glint_flare *f, int n)
 {
     const int size = f->plan.frame->sets->size[0];
@@ -253,9 +259,10 @@ static int compact_visible_jobs(struct glint_flare *f, int n)
     return kept;
 }
 
-/* Assigns bundle indices to N jobs; if the set of a job does not fit, the job
- * falls back to the first set. Returns the number of bundles; *NEED receives
- * the number of bundles without a limit. */
+/* Assigns bundle indices to the chosen wave sets of N jobs. If the set of a job
+ * does not fit into max_bundles, the job falls back to the first set. Returns
+ * the number of bundles. Sets *NEED to the number of bundles without fall-back.
+ */
 static int assign_bundle_indices(struct glint_flare *f, int n, int64_t *need)
 {
     const int *size = f->plan.frame->sets->size;

@@ -13,7 +13,8 @@ enum {
     LEAST_HALF_Q30 = 1 << 12
 };
 
-/* A range in units of the distance between nodes, counted from the first node.
+/* A rectangle of the window, in units of the distance between nodes, counted
+ * from the first node.
  */
 struct extent {
     int32_t low_q16[2], high_q16[2]; /* [across, down] */
@@ -36,7 +37,8 @@ static void trace_window_nodes(struct glint_window_nodes *n,
 {
     const uint32_t outputs = t->outputs;
 
-    /* The window depends neither on positions on the sensor nor on energies. */
+    /* Positions on the sensor and energies do not affect the result, so these
+     * outputs are not computed. */
     t->outputs &=
         ~(UINT32_C(1) << GLINT_OUT_SENSOR_X |
           UINT32_C(1) << GLINT_OUT_SENSOR_Y | UINT32_C(1) << GLINT_OUT_ENERGY);
@@ -61,9 +63,9 @@ static void trace_window_nodes(struct glint_window_nodes *n,
     n->n_rays += ACROSS * DOWN;
 }
 
-/* Returns the second difference of output K about node (I, J): twice the
- * distance by which the output may deviate from a straight line between
- * rays. At most about 2^31, as values are below 2^30. */
+/* Returns the second difference of output K around node (I, J), divided by 4:
+ * twice the distance by which the output may deviate from a straight line
+ * between nodes. At most about 2^31, as values are below 2^30. */
 static int64_t compute_second_difference(const struct glint_window_nodes *n,
                                          int k, int i, int j)
 {
@@ -78,8 +80,8 @@ static int64_t compute_second_difference(const struct glint_window_nodes *n,
     return ((across < 0 ? -across : across) + (down < 0 ? -down : down)) / 4;
 }
 
-/* Returns a mask of the sides of the octagon around the stop outside of
- * which a node lies, one bit per side. */
+/* Returns a bit mask of the sides of the octagon around the stop outside of
+ * which (X, Y) lies by more than BEND. */
 static uint32_t find_outside_octagon_sides(int64_t x, int64_t y, int64_t radius,
                                            int64_t bend)
 {
@@ -105,8 +107,8 @@ static void classify_node_by_stop(struct glint_window_nodes *n, int i, int j)
     n->inside[j][i] = x * x + y * y < n->radius * n->radius;
 }
 
-/* Sets, in the masks of the stop's sides, a bit for each barrel outside of
- * which a node lies. */
+/* Sets, in the mask n->beyond of each node, a bit for each barrel outside of
+ * which the node lies. */
 static void classify_nodes_by_barrels(struct glint_window_nodes *n,
                                       const struct glint_transfer *t)
 {
@@ -140,8 +142,8 @@ static void extend_extent_to_point(struct extent *e, int32_t across_q16,
     }
 }
 
-/* Returns the distance of a node from the middle of the stop, in units of the
- * stop outputs. */
+/* Returns the distance of node (I, J) from the centre of the stop, in units of
+ * the stop outputs. */
 static int64_t
 compute_distance_from_stop_centre(const struct glint_window_nodes *n, int i,
                                   int j)
@@ -152,9 +154,9 @@ compute_distance_from_stop_centre(const struct glint_window_nodes *n, int i,
     return q_root((uint64_t)(x * x + y * y));
 }
 
-/* Extends E to where the stop's circle crosses the line from node (I, J) to
- * the next node, if that node lies outside. WAY is 0 across or 1 down, STEP
- * is 1 or -1. Node (I, J) must be inside. */
+/* Extends E by the point where the stop's circle crosses the line from node (I,
+ * J), which must be inside, to a neighbouring node, if that is outside. WAY:
+ * direction to the neighbour, 0 across, 1 down; STEP: 1 or -1. */
 static void extend_extent_to_circle(struct extent *e,
                                     const struct glint_window_nodes *n, int i,
                                     int j, int way, int step)
@@ -174,8 +176,8 @@ static void extend_extent_to_circle(struct extent *e,
                            j * ONE_NODE_Q16 + (way == 1 ? part_q16 : 0));
 }
 
-/* Returns whether the cell at (I, J) is small compared with the stop and
- * nearly flat. */
+/* Returns whether the cell at (I, J) is small compared with the stop and nearly
+ * flat, so that the circle of the stop can be located within it. */
 static int is_cell_fine(const struct glint_window_nodes *n, int i, int j)
 {
     int64_t size = 0, bend = 0;
@@ -220,7 +222,8 @@ static void extend_extent_by_cell(struct extent *e,
     }
 }
 
-/* Returns the range of the window of T from which rays may get through. */
+/* Returns the part of the window of T whose rays may pass the stop and the
+ * barrels. */
 static struct extent find_transmitted_extent(struct glint_window_nodes *n,
                                              struct glint_transfer *t)
 {
@@ -239,9 +242,9 @@ static struct extent find_transmitted_extent(struct glint_window_nodes *n,
 
 /* ------------------------------------------------------------------- window */
 
-/* Extends E along axis K, 0 across or 1 down, by 1 / PART of its size on
- * either side, within 0 .. STEPS: between the lines of the grid a circle
- * that spans six or more cells bulges by a hundredth of its size. */
+/* Extends E along axis K (0 across, 1 down) by 1 / PART of its size on either
+ * side, within 0 .. STEPS. Needed because between the lines of the grid a
+ * circle that spans six or more cells bulges by a hundredth of its size. */
 static void enlarge_extent_along_axis(struct extent *e, int k, int steps,
                                       int part)
 {
@@ -254,8 +257,8 @@ static void enlarge_extent_along_axis(struct extent *e, int k, int steps,
     e->high_q16[k] = e->high_q16[k] < most_q16 ? e->high_q16[k] : most_q16;
 }
 
-/* Narrows the window of T to its subrange E; returns whether it got much
- * smaller. */
+/* Narrows the window of T to its part E. Returns whether width or height shrank
+ * by more than an eighth. */
 static int narrow_window_to_extent(struct glint_transfer *t, struct extent *e)
 {
     struct glint_box_window *w = &t->window;
@@ -293,9 +296,9 @@ int glint_window_narrow_to_stop(struct glint_window_nodes *nodes,
         if (e.high_q16[0] < 0)
             return 0;
         enlarge_extent_along_axis(&e, 0, ACROSS - 1, 48);
-        enlarge_extent_along_axis(&e, 1, DOWN - 1,
-                                  24); /* E covers half the height, so 1/24 of
-                                  it is 1/48 of the whole height. */
+        enlarge_extent_along_axis(
+            &e, 1, DOWN - 1, 24); /* E covers half the height, so 1/24 of
+                                     its height is 1/48 of the full height */
         more =
             narrow_window_to_extent(t, &e) &&
             t->window.u_half_q30 > LEAST_HALF_Q30 &&

@@ -6,7 +6,8 @@
 #include "base/q.h"
 #include "flare/edges/outline.h"
 
-/* Numbers of cuts: side K of the stop is K, barrel K is BARREL + K. */
+/* Numbering of cuts: side K of the stop has number K, barrel K has number
+ * BARREL + K. */
 enum { BARREL = 64, NOTHING = GLINT_CUT_NOTHING };
 
 /* ------------------------------------------------------------------- nodes */
@@ -17,7 +18,8 @@ static int64_t compute_squared_radius_q32(const struct glint_vertex *v)
            (int64_t)v->stop_y_q16 * v->stop_y_q16;
 }
 
-/* Returns half the number of sides if opposite sides are parallel, else 0. */
+/* Returns half the number of the stop's sides if every side has a parallel
+ * opposite side, else 0. */
 static int count_parallel_side_pairs(const struct glint_stop *stop)
 {
     const int half = stop->n_blades / 2;
@@ -29,8 +31,9 @@ static int count_parallel_side_pairs(const struct glint_stop *stop)
     return stop->n_blades % 2 ? 0 : half;
 }
 
-/* Returns 1 - (1 + r^2) / 2 at V in a round stop, minus its inset; clamped far
- * outside. */
+/* Returns 1 - (1 + r^2) / 2 at V minus the inset of a round stop, where r is
+ * the distance from the stop's centre in stop radii: positive inside. Clamped
+ * far outside. */
 static int64_t evaluate_round_stop_q16(const struct glint_stop *stop,
                                        const struct glint_vertex *v)
 {
@@ -41,10 +44,11 @@ static int64_t evaluate_round_stop_q16(const struct glint_stop *stop,
     return value_q16 > -(1 << 30) ? value_q16 : -(1 << 30);
 }
 
-/* Returns a bit for each side that V lies on or outside of, where
- * glint_side_q16() is 0 or less. LEAST is the apothem minus half a unit of
- * _q16, as glint_side_q16() rounds. HALF is the number of pairs of parallel
- * sides, which are tested together; if it is 0, sides are tested one by one. */
+/* Returns a mask with a bit set for each straight side of the stop on or
+ * outside of which V lies, so that glint_side_q16() is 0 or less. LEAST is the
+ * apothem minus half a unit of _q16, because glint_side_q16() rounds. HALF is
+ * the number of pairs of parallel sides, which are tested together; 0: sides
+ * are tested one by one. */
 static inline uint64_t find_outside_sides(const struct glint_stop *stop,
                                           int half,
                                           const struct glint_vertex *v,
@@ -64,7 +68,8 @@ static inline uint64_t find_outside_sides(const struct glint_stop *stop,
     return half ? sides | opposite << half : sides;
 }
 
-/* Returns a bit for each arc that V lies on or outside of. */
+/* Returns a mask with a bit set for each arc of a stop with round blades on or
+ * outside of which V lies. */
 static uint64_t find_outside_arcs(const struct glint_stop *stop,
                                   const struct glint_vertex *v)
 {
@@ -115,7 +120,7 @@ int glint_cuts_count_crossed(struct glint_outside o)
 
 /* ------------------------------------------------------------------- parts */
 
-/* Returns the value of cut CUT at V, positive inside. */
+/* Returns the function of cut CUT at V, which is positive inside. */
 static int64_t evaluate_cut_function_q16(const struct glint_stop *stop, int cut,
                                          const struct glint_vertex *v)
 {
@@ -195,10 +200,10 @@ void glint_cuts_find_visible_part(const struct glint_stop *stop,
 
 /* ----------------------------------------------------------------- corners */
 
-/* The plane fitted to the values at four corners: middle + u * slope + v *
- * slope, with u and v from -1/2 to 1/2. */
+/* A plane fitted to the values at the four corners of a cell: middle + u
+ * slope_u + v slope_v, with u and v from -1/2 to 1/2 across the cell. */
 struct plane {
-    /* Members are scaled to stay integers: the middle by 4, the slopes by 2. */
+    /* four times the middle, and twice the slopes, which are integers */
     int64_t middle4, u2, v2;
 };
 
@@ -209,8 +214,8 @@ static struct plane fit_plane_to_corners(const int64_t value[4])
                           value[3] - value[0] + value[2] - value[1]};
 }
 
-/* Sets *Q16 to X / Y if the quotient lies in the cell or near it (-3/4 .. 3/4);
- * else returns 0. */
+/* Sets *Q16 to X / Y, a coordinate u or v. Returns 0 if it is outside -3/4 ..
+ * 3/4, so not in the cell or near it. */
 static int divide_in_cell_q16(int64_t x, int64_t y, int64_t *q16)
 {
     const int wide = bit_length(q_magnitude(x));
@@ -244,7 +249,8 @@ int glint_cuts_find_crossing(const struct glint_stop *stop,
         y[k] = v->y_q8;
     }
     down = bit_length(most) > 27 ? bit_length(most) - 27 : 0;
-    /* Sums below 2^29, their products below 2^58. */
+    /* The sums of fit_plane_to_corners() are then below 2^29, their products
+     * below 2^58. */
     for (int k = 0; k < 4; k++) {
         fa[k] >>= down;
         fb[k] >>= down;

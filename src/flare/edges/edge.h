@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adds light to one tile's sums, given as edges across which the light changes.
+ * Accumulates light in one tile from edges: lines across which the light
+ * changes.
  *
  * An edge adds its light to all pixels on its right, in proportion to the area
- * of a pixel that lies on its right. So a sum changes only at the pixels that
- * the edge crosses, by the difference of that area from one pixel to the next,
- * and one running sum along each row turns changes into light: the interior of
- * a ghost costs nothing.
+ * of each pixel that lies on its right. What is stored are differences between
+ * neighbouring pixels, and these are nonzero only at the pixels that the edge
+ * crosses. One running sum along each row converts differences to light. So the
+ * interior of a ghost costs nothing.
  *
- * The edges of a closed outline cancel exactly: their signed heights in a row
- * cancel, and light times height is never rounded. The light that an edge adds
- * to a pixel depends on the edge alone, so that neither tiles nor the order of
- * edges change any bit. A tile's rows begin with the light that runs in from
- * its left neighbour and end with the light that runs out to the right one.
+ * To the right of a closed outline its edges cancel exactly: their signed
+ * heights in a row cancel, and light times height is never rounded. The light
+ * that an edge adds to a pixel depends only on the edge, so that the picture
+ * depends neither on tiles nor on the order of edges. Each row of a tile begins
+ * with the light that is carried in from the tile on its left, and ends with
+ * the light that is carried out to the right.
  *
  * Formats: corners _q8, slopes _q40, light _q20 below 2^40. Sums for pictures
  * of linear light: light _q20 times areas _q16, modulo 2^64. For all others
@@ -34,20 +36,21 @@
 
 struct glint_edge {     /* 32 bytes */
     int64_t slope_q40;  /* pixels of x per 1/256 pixel of y */
-    int32_t x_q8, y_q8; /* upper end */
-    int32_t end_y_q8;   /* lower end, > y */
-    /* Light on the left and right side, packed; negative for a mirrored ghost.
+    int32_t x_q8, y_q8; /* upper end, pixels */
+    int32_t end_y_q8;   /* y of the lower end, > y_q8, pixels */
+    /* light on the left and right side, packed by glint_light_pack(); negative
+     * for a mirrored ghost
      */
     int32_t left, right;
-    /* patch: 1 if this is not an edge but a slot of a patch (patch.h), the
-     * patch's first slot if whole is 0. Otherwise whole is 1 if the edge is
-     * pixel-snapped. */
+    /* patch: 1 if this struct is not an edge but one slot of a patch (patch.h);
+     * WHOLE is then 0 for the patch's first slot, else 1. For edges, WHOLE is 1
+     * if the edge is pixel-snapped. */
     unsigned bundle : 30, patch : 1, whole : 1;
 };
 
-/* Packs light, display white: a mantissa of 25 bits above an exponent of five.
- * Every packed value is an integer of _q20, so that sums which should cancel do
- * so exactly. */
+/* Packs light (1 = display white) into a floating-point number of 32 bits: a
+ * mantissa of 25 bits above an exponent of 5 bits. Every packed value is an
+ * integer in units of 2^-20, so that sums that should cancel do so exactly. */
 static inline int32_t glint_light_pack(int64_t light_q20)
 {
     const int wide =
@@ -62,10 +65,10 @@ static inline int64_t glint_light_q20(int32_t packed)
     return (packed >> 5) * (INT64_C(1) << (packed & 31));
 }
 
-/* bytes of scratch memory of a patch function */
+/* size of the scratch memory of a patch function, bytes */
 enum { GLINT_PATCH_SCRATCH = 8192 };
 
-/* Adds the part of patch E that lies in a tile to the tile's narrow or wide
+/* Adds the part of patch E that lies in the tile of SUMS to the narrow or wide
  * sums. LIGHT is the light through a clear stop, per channel, in the units of
  * the sums. */
 struct glint_edge_sums;
@@ -73,43 +76,44 @@ typedef void glint_patch_fn(const struct glint_edge_sums *sums, int narrow,
                             const struct glint_edge *e, const int64_t light[3]);
 
 /* Light of one tile, stored as differences between neighbouring pixels of a
- * row: wide and narrow are [3][side rows][stride], R, G, B. The entry after the
- * tile's last column is carried into the next tile. All entries are 0 between
- * tiles. */
+ * row, in 64 bits (wide) or 32 bits (narrow): [3][rows][stride], R, G, B. The
+ * entry after the tile's last column is carried into the tile on the right. All
+ * entries are 0 before a tile is begun. */
 struct glint_edge_sums {
     struct glint_box tile;
     int tile_log2, stride;
     int linear; /* nonzero: the picture is in linear light */
     int fine;   /* 1: light is _q20 even if the picture is in codes */
-    int lit;    /* nonzero: light may run in from the left; set by the code that
-                   draws rows of tiles */
-    /* For patches (patch.h): the function that draws them, the shade of the
+    int lit;    /* nonzero: light may be carried in from the left; set by the
+                   pass (edges_pass.c) */
+    /* For patches (patch.h): the function that draws a patch, the shade of the
      * stop, and scratch memory of GLINT_PATCH_SCRATCH bytes. */
     glint_patch_fn *patch;
     const struct glint_shade *shade;
     void *scratch;
-    int in_narrow; /* set by glint_edges_add_to_sums(): 1 if the narrow sums
-                      sufficed and hold the result */
+    int in_narrow; /* set by glint_edges_add_to_sums(); 1: the light is in the
+                      narrow sums, as 32 bits suffice */
     uint64_t *wide;
     uint32_t *narrow;
-    int64_t *carry;    /* [3][side rows]: light that runs into the tile; after a
-                          row is read, the light that runs out */
-    uint64_t *touched; /* [3]: per channel, bit n is set if row n has changes */
+    int64_t *carry;    /* [3][side rows]: light carried into each row from the
+                          left; after the row is read, the light carried out */
+    uint64_t *touched; /* [3]: per channel, bit n is set if row n has nonzero
+                          differences */
 };
 
-/* Returns the number of values reserved per row of a tile of 2^LOG2 pixels. */
+/* Number of array elements per row of a tile of 2^LOG2 pixels. */
 #define GLINT_EDGE_STRIDE(log2) ((1 << (log2)) + 16)
 
-/* Sets EDGE to the line from A to B, (x, y) _q8. LIGHT is on the right of an
- * upward line, y falling, OTHER on the other side. Returns 0 if the line is
- * horizontal, and so not an edge. */
+/* Sets EDGE to the line from A to B, (x, y) in pixels. If the line goes upwards
+ * (y falls from A to B), LIGHT is on its right side and OTHER on its left side,
+ * else the reverse. Returns 0 if the line is horizontal, and so not an edge. */
 int glint_edge_set_from_points(struct glint_edge *edge, const int32_t a_q8[2],
                                const int32_t b_q8[2], int32_t light,
                                int32_t other);
 
-/* Returns x of EDGE at height Y, which must be between its ends. The magnitude
- * is below 2^61. Slopes are rounded towards 0, so x never lies beyond the
- * ends. */
+/* Returns the x coordinate of EDGE at Y, which must be between the ends of the
+ * edge. The magnitude is below 2^61. Slopes are rounded towards 0, so x never
+ * exceeds the range of the two ends. */
 static inline int64_t edge_x_at_q40(const struct glint_edge *e, int32_t y_q8)
 {
     return e->x_q8 * (INT64_C(1) << 32) + e->slope_q40 * (y_q8 - e->y_q8);
@@ -120,34 +124,36 @@ static inline int64_t edge_x_at_q40(const struct glint_edge *e, int32_t y_q8)
  * Closed outlines still cancel, as heights are unchanged. */
 void glint_edge_snap_to_pixels(struct glint_edge *edge);
 
-/* Put EDGE, whose index is INDEX, into the bins of the tiles that it crosses,
- * or only count it there and return the number of entries. Parts left of the
- * picture belong to the first column of tiles. */
+/* glint_edge_count_into_bins() increments the counts of the tiles that EDGE
+ * crosses and returns their number; glint_edge_put_into_bins() appends INDEX,
+ * the index of EDGE, to the lists of these tiles. Parts left of the picture
+ * belong to the first column of tiles. */
 int glint_edge_count_into_bins(const struct glint_edge *edge,
                                struct glint_bins *bins);
 void glint_edge_put_into_bins(const struct glint_edge *edge,
                               struct glint_bins *bins, int32_t index);
-/* Returns the number of entries of EDGE in BINS without counting it there. */
+/* Returns the number of entries that EDGE needs in BINS, without changing BINS.
+ */
 int glint_edge_count_bin_entries(const struct glint_edge *edge,
                                  const struct glint_bins *bins);
 
-/* Adds the edges EDGE[REF[0 .. N_REFS - 1]] to the changes of SUMS, each in the
- * colour of its bundle. The light of both sides is coloured before it is
- * subtracted, so that edges still cancel. */
+/* Adds the edges EDGE[REF[0 .. N_REFS - 1]] to SUMS, each in the colour of its
+ * bundle. The light on either side is multiplied by the colour before the
+ * difference is taken, so that edges still cancel exactly. */
 void glint_edges_add_to_sums(struct glint_edge_sums *sums,
                              const struct glint_edge *edge,
                              const struct glint_bundle *bundle,
                              const int32_t *ref, int n_refs);
 
-/* Returns whether row ROW has no light: neither changes nor light from the
- * left. */
+/* Returns whether row ROW has no light: no differences, and no light carried in
+ * from the left. */
 int glint_sums_is_row_dark(const struct glint_edge_sums *sums, int row);
 
-/* Write the light of row ROW of the tile in channel CHANNEL, clear its changes,
- * and set its carry to the light that runs out of the tile. For linear pictures
- * one value per pixel is written, clamped to int32. For pictures in codes the
- * number of values is rounded up to a multiple of GLINT_LANES; returns 0 if the
- * row has no light at all. */
+/* Convert row ROW of channel CHANNEL to light, clear the row's differences, and
+ * set its carry to the light carried out of the tile.
+ * glint_sums_read_linear_row() writes one value per pixel, clamped to int32.
+ * glint_sums_read_code_row() rounds the number of values up to a multiple of
+ * GLINT_LANES, and returns 0 if the row has no light. */
 void glint_sums_read_linear_row(const struct glint_edge_sums *sums, int channel,
                                 int row, int32_t *light_q20);
 int glint_sums_read_code_row(const struct glint_edge_sums *sums, int channel,

@@ -18,11 +18,12 @@
  * fastest. */
 typedef int_fast32_t fast;
 
-/* Sums have 64 bits, or 32 if light stays below MOST_NARROW, _q16 or _q20. */
+/* Sums have 64 bits (WIDE), or 32 bits (NARROW) if the light of the tile stays
+ * below MOST_NARROW. */
 enum mode { WIDE, NARROW };
 
-/* A tile's edges are scattered in memory, so each is prefetched AHEAD edges
- * before it is added. */
+/* The edges of a tile are scattered in memory, so each is prefetched AHEAD
+ * edges in advance. */
 enum { AHEAD = 12 };
 #define MOST_NARROW (INT64_C(1) << 23)
 
@@ -32,11 +33,11 @@ struct run {
         uint64_t *wide;
         uint32_t *narrow;
     } row;      /* the mode selects the member */
-    int less;   /* number of low bits of areas _q16 that are dropped: 8, or 0
-                   for linear light */
+    int less;   /* number of low bits of areas (_q16) that are dropped: 8; 0 for
+                   linear pictures */
     int x0, x1; /* the tile's columns */
     int64_t light;
-    int64_t rise_q32; /* rise of the covered area per pixel, see
+    int64_t rise_q32; /* rise of the covered area per pixel of x, see
                          compute_area_rise() */
 };
 
@@ -49,7 +50,7 @@ static inline void add_light_change(const struct run *r, enum mode mode, int x,
         r->row.wide[x] += (uint64_t)(r->light * area);
 }
 
-/* Returns AREA, at most one pixel, in the units of the sums. */
+/* Converts AREA, at most one pixel, to the units of the sums. */
 static inline fast convert_area_to_sum_units(const struct run *r,
                                              enum mode mode, fast area_q16)
 {
@@ -58,18 +59,18 @@ static inline fast convert_area_to_sum_units(const struct run *r,
     return (area_q16 + (1 << less >> 1)) >> less;
 }
 
-/* Adds a piece of an edge within one row, from A to B (A <= B) over HEIGHT,
- * that spans several pixels. Covered areas rise from pixel to pixel from 0 to
- * HEIGHT; each pixel of the tile changes by the difference from the pixel
- * before. */
+/* Adds a piece of an edge that lies in one row and spans several pixels: from x
+ * = A to B (A <= B) over HEIGHT. The covered area rises from pixel to pixel
+ * from 0 to HEIGHT; what is added to each pixel of the tile is the difference
+ * from the pixel before. */
 static void add_piece_over_many_pixels(const struct run *r, enum mode mode,
                                        int64_t a_q40, int64_t b_q40,
                                        fast height_q16)
 {
     const int first = (int)(a_q40 >> 40), last = (int)(b_q40 >> 40);
     const int64_t a_q16 = a_q40 >> 24, b_q16 = b_q40 >> 24;
-    /* The pixel left of the tile, if there is one, is needed for the first
-     * difference. */
+    /* The first difference needs the covered area of the pixel left of the
+     * tile, if there is one. */
     const int begin = r->x0 > 0 ? r->x0 - 1 : 0;
     const int from = first > begin ? first : begin;
     const int to = last < r->x1 - 1 ? last : r->x1 - 1;
@@ -82,8 +83,8 @@ static void add_piece_over_many_pixels(const struct run *r, enum mode mode,
         const fast high = i < last
                               ? (fast)(r->rise_q32 * (side_q16 - a_q16) >> 32)
                               : height_q16;
-        /* sum of the distances of the piece's two ends from the pixel's right
-         * side */
+        /* sum of the distances of the two ends of the piece within this pixel
+         * from the pixel's right side */
         const fast far_q16 = (fast)((i > first ? ONE_Q16 : side_q16 - a_q16) +
                                     (i < last ? 0 : side_q16 - b_q16));
         const fast area = convert_area_to_sum_units(
@@ -100,9 +101,9 @@ static void add_piece_over_many_pixels(const struct run *r, enum mode mode,
                              before);
 }
 
-/* Returns the rise of an edge, height _q16 / width _q16, with 32 additional
- * fraction bits. Edges so steep that they move by less than 2^-16 pixels per
- * 1/256 pixel of height get a smaller rise. */
+/* Returns the height of an edge divided by its width, both _q16, with 32
+ * fraction bits. The result is limited for edges so steep that x moves by less
+ * than 2^-16 pixels per 1/256 pixel of y. */
 static int64_t compute_area_rise(int64_t slope_q40)
 {
     const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
@@ -116,8 +117,8 @@ static int64_t compute_area_rise(int64_t slope_q40)
     return (r << 8) >> (7 - up);
 }
 
-/* Adds a piece that lies in one or two pixels of the tile, using only
- * registers. */
+/* Adds a piece of an edge that lies in one row and in one or two pixels of the
+ * tile: from x = A to B (A <= B) over HEIGHT. */
 static inline void add_piece_in_two_pixels(const struct run *r, enum mode mode,
                                            fast a_q16, fast b_q16,
                                            fast height_q16)
@@ -149,7 +150,8 @@ static inline void add_piece_in_two_pixels(const struct run *r, enum mode mode,
     }
 }
 
-/* Adds the piece from A to B over HEIGHT. A may be larger than B. */
+/* Adds a piece of an edge that lies in one row, from x = A to B over HEIGHT. A
+ * may be larger than B. */
 static inline void add_edge_piece(const struct run *r, enum mode mode,
                                   int64_t a_q40, int64_t b_q40, fast height_q16)
 {
@@ -157,7 +159,7 @@ static inline void add_edge_piece(const struct run *r, enum mode mode,
     const int64_t high_q40 = a_q40 < b_q40 ? b_q40 : a_q40;
     const int first = (int)(low_q40 >> 40), last = (int)(high_q40 >> 40);
 
-    if (last < r->x0) { /* A piece left of the picture counts as one at the
+    if (last < r->x0) { /* A piece left of the picture is treated as one at the
                            picture's left side. */
         if (r->x0 == 0)
             add_light_change(r, mode, 0,
@@ -173,7 +175,8 @@ static inline void add_edge_piece(const struct run *r, enum mode mode,
     }
 }
 
-/* Moves R by N rows down. */
+/* Moves R down by N array elements, which is the stride times a number of rows.
+ */
 static inline void move_run_down(struct run *r, enum mode mode, ptrdiff_t n)
 {
     if (mode == NARROW)
@@ -182,14 +185,15 @@ static inline void move_run_down(struct run *r, enum mode mode, ptrdiff_t n)
         r->row.wide += n;
 }
 
-/* Returns a set of 64 bits with bits A .. B - 1 set. */
+/* Returns a mask of 64 bits with bits A .. B - 1 set: the rows between A and B.
+ */
 static uint64_t make_row_mask(int a, int b)
 {
     return (UINT64_MAX << a) & (UINT64_MAX >> (64 - b));
 }
 
-/* Adds N complete rows of an edge that begins at X and moves by STEP per
- * row. */
+/* Adds an edge over N complete rows; it begins at X and moves by STEP per row.
+ */
 static inline void add_complete_rows(struct run r, enum mode mode, int n,
                                      int64_t x_q40, int64_t step_q40,
                                      int stride)
@@ -201,8 +205,8 @@ static inline void add_complete_rows(struct run r, enum mode mode, int n,
     }
 }
 
-/* Like add_complete_rows(), but in each row the edge must cross only one or two
- * pixels of the tile. */
+/* Like add_complete_rows(), for an edge that crosses only one or two pixels of
+ * the tile in each row. */
 static inline void add_rows_in_two_pixels(struct run r, enum mode mode, int n,
                                           int64_t x_q40, int64_t step_q40,
                                           int stride)
@@ -217,7 +221,7 @@ static inline void add_rows_in_two_pixels(struct run r, enum mode mode, int n,
     }
 }
 
-/* The part of an edge in one channel of a tile. */
+/* The part of an edge within a tile, in one colour channel. */
 struct part {
     struct run run; /* the first row of the part */
     int32_t y_q8, end_q8;
@@ -248,13 +252,14 @@ static inline struct part clip_edge_to_tile(const struct glint_edge_sums *s,
     return p;
 }
 
-/* Returns the height, in 1/256 pixel, of the part of P within its first row. */
+/* Returns the height of P within its first row, in 1/256 pixel. */
 static inline int32_t compute_first_row_height(const struct part *p)
 {
     return q_smaller((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
 }
 
-/* Adds all rows of P as a smooth edge. */
+/* Adds P as a smooth edge: pixels that the edge crosses get the exact covered
+ * area. */
 static inline void add_smooth_edge(const struct glint_edge_sums *s,
                                    enum mode mode, const struct glint_edge *e,
                                    struct part p)
@@ -296,9 +301,10 @@ static inline void add_smooth_edge(const struct glint_edge_sums *s,
                        (p.end_q8 - p.y_q8) * 256);
 }
 
-/* Adds AREA, the area of one row, to the pixel of the edge in that row and all
- * pixels on its right. X_Q40 counts from the tile's left side. An edge left of
- * the picture counts as one at the picture's left side. */
+/* Adds one row of a pixel-snapped edge: AREA, the height of the edge in the
+ * row, goes to the pixel at X and, by the running sum, to all pixels on its
+ * right. X is counted from the tile's left side. An edge left of the picture is
+ * treated as one at the picture's left side. */
 static inline void add_snapped_row(const struct run *r, enum mode mode,
                                    int64_t x_q40, fast area)
 {
@@ -327,8 +333,8 @@ static inline void add_complete_snapped_rows(struct run r, enum mode mode,
         }
         return;
     }
-    /* skips rows to the left or right of the tile, then follows the edge until
-     * it leaves the tile for good */
+    /* skips the rows in which the edge is outside the tile, then adds rows
+     * until the edge leaves the tile; it does not return */
     for (; n > 0 && (uint64_t)x_q40 >= end_q40; n--, x_q40 += step_q40)
         move_run_down(&r, mode, stride);
     for (; n > 0 && (uint64_t)x_q40 < end_q40; n--, x_q40 += step_q40) {
@@ -337,15 +343,16 @@ static inline void add_complete_snapped_rows(struct run r, enum mode mode,
     }
 }
 
-/* Adds all rows of P as a pixel-snapped edge. */
+/* Adds P as a pixel-snapped edge: in each row the light changes at the pixel
+ * boundary nearest to the edge. */
 static inline void add_snapped_edge(const struct glint_edge_sums *s,
                                     enum mode mode, const struct glint_edge *e,
                                     struct part p)
 {
     int n;
 
-    move_run_down(&p.run, mode, p.run.x0); /* From here on columns count from
-                                        the tile's left side. */
+    move_run_down(&p.run, mode, p.run.x0); /* From here on columns are counted
+                                              from the tile's left side. */
     p.x_q40 -= p.run.x0 * ONE_Q40;
     p.run.x1 -= p.run.x0;
     if (p.y_q8 & 255) {
@@ -382,8 +389,8 @@ static int64_t multiply_by_colour_q20(int32_t light, int32_t colour_q14)
                                  : q_shift(light_q20 * colour_q14, 14);
 }
 
-/* Returns the change of light across E in one channel, with LESS of the 20
- * fraction bits dropped. */
+/* Returns the light on the right of E minus that on its left, in a channel of
+ * colour COLOUR, with LESS of the 20 fraction bits dropped. */
 static int64_t compute_light_change(const struct glint_edge *e,
                                     int32_t colour_q14, int less)
 {
@@ -407,8 +414,10 @@ static int64_t add_patch_light(const struct glint_edge_sums *s, enum mode mode,
     return most;
 }
 
-/* Adds the edges to the sums of MODE. Returns the sum of the magnitudes of all
- * changes of light, a bound on how far a sum can get from its start. */
+/* Adds the edges to the wide or narrow sums. Returns the sum of the magnitudes
+ * of all changes of light in the channel in which it is largest: a bound on how
+ * far a running sum can deviate from its start. Stops early in mode NARROW if
+ * that could overflow. */
 static WHOLLY_INLINE int64_t add_edges_to_sums(
     const struct glint_edge_sums *s, enum mode mode,
     const struct glint_edge *edge, const struct glint_bundle *bundle,
@@ -440,7 +449,7 @@ static WHOLLY_INLINE int64_t add_edges_to_sums(
             far[c] += step < 0 ? -step : step;
             if (mode == NARROW && far[c] >= MOST_NARROW)
                 return far[c]; /* The narrow sums could overflow in this tile;
-                                  the caller uses the wide sums. */
+                                  the caller then uses the wide sums. */
             if (e->whole)
                 add_snapped_edge(s, mode, e,
                                  clip_edge_to_tile(s, mode, e, step, c));
@@ -471,7 +480,7 @@ void glint_edges_add_to_sums(struct glint_edge_sums *sums,
                              const int32_t *ref, int n_refs)
 {
     const int64_t most = MOST_NARROW * 256;
-    int64_t far = 0; /* light times area, in the units of the sums */
+    int64_t far = 0; /* bound on light times area, in the units of the sums */
 
     sums->in_narrow = 0;
     if (!sums->linear)

@@ -15,8 +15,8 @@ typedef int32_t point_q8[2];
 
 /* ------------------------------------------------------------------- edges */
 
-/* Returns whether the change from LIGHT to OTHER is so small that its edge may
- * be pixel-snapped. */
+/* Returns whether LIGHT and OTHER, packed light on both sides of an edge,
+ * differ so little that the edge may be pixel-snapped. */
 static int is_light_change_weak(const struct glint_ghost_edges *g,
                                 int32_t light, int32_t other)
 {
@@ -41,7 +41,8 @@ static void make_ghost_edge(const struct glint_ghost_edges *g,
         glint_edge_snap_to_pixels(edge);
 }
 
-/* Counts the entries in the bins of an edge that did not fit. */
+/* Adds to more_refs the number of bin entries that an edge needs for which
+ * there is no space in the edge array. */
 static void count_edge_bin_entries(struct glint_ghost_edges *g,
                                    const int32_t a_q8[2], const int32_t b_q8[2],
                                    int32_t light, int32_t other)
@@ -53,8 +54,8 @@ static void count_edge_bin_entries(struct glint_ghost_edges *g,
                               glint_edge_count_bin_entries(&edge, g->bins));
 }
 
-/* Adds the edge from A to B with LIGHT on its inner side and OTHER on its outer
- * side, if it can change a pixel. */
+/* Stores the edge from A to B, with LIGHT on its inner side and OTHER on its
+ * outer side, unless it cannot change any pixel. */
 static void add_ghost_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
                            const int32_t b_q8[2], int32_t light, int32_t other)
 {
@@ -92,7 +93,8 @@ static void set_cell_corners(const struct glint_ghost_edges *g, int i, int j,
     }
 }
 
-/* Returns twice the signed area of the triangle of corners I, I + 1 and I + 2.
+/* Returns twice the signed area of the triangle of the corners I, I + 1 and I +
+ * 2 of a cell, pixels^2.
  */
 static int64_t compute_corner_double_area_q16(const struct glint_corners *c,
                                               int i)
@@ -103,9 +105,8 @@ static int64_t compute_corner_double_area_q16(const struct glint_corners *c,
     return glint_turn_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8, d->x_q8, d->y_q8);
 }
 
-/* Returns the sign of the cell's area if the cell is convex, else 0.
- * compute_corner_double_area_q16() of two opposite corners adds up to twice the
- * area of the cell. */
+/* Returns 1 or -1, the sign of the cell's area, if the cell is convex, else 0.
+ * The triangles at two opposite corners add up to the cell. */
 static int find_convex_orientation(const struct glint_corners *c)
 {
     const int64_t one = compute_corner_double_area_q16(c, 0),
@@ -118,10 +119,10 @@ static int find_convex_orientation(const struct glint_corners *c)
     return one < 0 && other < 0 && two < 0 && another < 0 ? -1 : 0;
 }
 
-/* Sets the steps of irradiance in each octave. Codes of a picture resolve
- * fainter light more coarsely: the light of one code shrinks by only 2^(7/12)
- * with each octave, so 3/4 of the steps per octave would suffice; 7/8 are used,
- * as many ghosts may overlap. */
+/* Sets the number of steps per octave to which irradiance is rounded, for each
+ * octave. 8-bit codes resolve faint light more coarsely: with each octave that
+ * light gets fainter, the light of one code shrinks by only 2^(7/12), so 3/4 of
+ * the steps would suffice. 7/8 are used, as many ghosts may overlap. */
 static void set_irradiance_steps(struct glint_ghost_edges *g)
 {
     int steps_q8 = g->steps * 256;
@@ -133,9 +134,10 @@ static void set_irradiance_steps(struct glint_ghost_edges *g)
     }
 }
 
-/* Sets, for each octave, the light of snap_codes_q8 codes: with each octave
- * below white the light of one code falls to 2/3, about 2^(-7/12), until codes
- * are linear in light. */
+/* Sets, for each octave of light, the change of light below which an edge is
+ * pixel-snapped: the light of snap_codes_q8 codes. With each octave below white
+ * the light of one code falls to 2/3, about 2^(-7/12), down to where codes are
+ * linear in light. */
 static void set_snapping_limits(struct glint_ghost_edges *g)
 {
     const int32_t least_q20 = 318;
@@ -150,7 +152,8 @@ static void set_snapping_limits(struct glint_ghost_edges *g)
     }
 }
 
-/* Returns X rounded to the nearest step of its octave. X must be below 2^44. */
+/* Returns irradiance X rounded to the nearest step of its octave; STEPS_OF has
+ * the number of steps per octave. X must be below 2^44. */
 static int64_t round_to_irradiance_step(int64_t x, const uint16_t *steps_of)
 {
     const int log2 = bit_length((uint64_t)x | 1) - 1;
@@ -174,8 +177,9 @@ int32_t glint_ghost_pack_cell_light(struct glint_ghost_edges *g,
                    q_shift(irradiance_q22 * energy_q16, 18), g->rows->steps));
 }
 
-/* Returns the packed light of 2^SHARE_LOG2 cells that cover AREA2 / 2^FRAC
- * pixels. SIGN is -1 for a mirrored cell, else 1. */
+/* Returns the packed irradiance of a primitive that has 2^SHARE_LOG2 times the
+ * flux of a cell and covers AREA2 / 2^FRAC pixels. SIGN is -1 for a mirrored
+ * cell, else 1. */
 static int32_t compute_packed_cell_light(struct glint_ghost_edges *g,
                                          int64_t area2, int frac,
                                          int share_log2, int64_t energy_q16,
@@ -255,8 +259,8 @@ void glint_ghost_add_clipped_primitive(struct glint_ghost_edges *g,
     }
 }
 
-/* Draws a cell that is not a convex quad: as two triangles, or as one triangle
- * if one corner is invalid. */
+/* Adds the edges of a cell that is not a convex quad: of its two triangles, or
+ * of one triangle if one corner is invalid. */
 static NEVER_INLINE void add_cell_as_triangles(struct glint_ghost_edges *g,
                                                const struct glint_ghost_cell *c)
 {
@@ -279,8 +283,8 @@ static NEVER_INLINE void add_cell_as_triangles(struct glint_ghost_edges *g,
     }
 }
 
-/* Draws a cell that shares no side with its neighbours. TURN is its
- * find_convex_orientation(). */
+/* Adds the edges of a cell that is drawn as a closed outline, sharing no edges
+ * with its neighbours. TURN is the result of find_convex_orientation(). */
 static NEVER_INLINE void
 add_cell_separately(struct glint_ghost_edges *g,
                     const struct glint_ghost_cell *c,
@@ -294,7 +298,8 @@ add_cell_separately(struct glint_ghost_edges *g,
 
 /* ------------------------------------------------------------- in the grid */
 
-/* Finds the visible part of side K of a cell, from corner K to K + 1. */
+/* Sets PART to the visible part of side K of cell C, from corner K to corner K
+ * + 1. */
 static void find_visible_side_part(const struct glint_ghost_edges *g,
                                    const struct glint_ghost_cell *c, int k,
                                    struct glint_edge_part *part)
@@ -315,8 +320,8 @@ static void find_visible_side_part(const struct glint_ghost_edges *g,
     }
 }
 
-/* Adds the chords of a cell that is cut: they connect the visible parts of its
- * sides. */
+/* Adds the chords of a cell that is cut by the stop or a barrel: edges that
+ * connect the visible parts of its sides to a closed outline. */
 static void add_cell_chords(struct glint_ghost_edges *g,
                             const struct glint_ghost_cell *c, int32_t light)
 {
@@ -360,8 +365,8 @@ static void set_grid_cell_corners(const struct glint_ghost_edges *g, int i,
     glint_corners_set(corners, at, 4);
 }
 
-/* Returns whether the cells of row J touch the middle row of nodes of an
- * annular box: that row has no rays, and there is no light to draw. */
+/* Returns whether row J of cells lies in the hole of an annular pupil box: it
+ * touches the middle row of nodes, which has no rays, and has no light. */
 static int is_row_in_annulus_hole(const struct glint_ghost_edges *g, int j)
 {
     const int middle = g->bundle->n_cells / 2;
@@ -370,8 +375,9 @@ static int is_row_in_annulus_hole(const struct glint_ghost_edges *g, int j)
            (j == middle - 1 || j == middle);
 }
 
-/* Dims the corners of a cell that is drawn separately. If the stop has a shade,
- * DIMMED receives the dimmed corners. */
+/* If the stop has a shade (soft edge, dust or masks), reduces the energy at the
+ * corners of a cell that is drawn separately: DIMMED receives the new corners.
+ */
 static void dim_separate_cell(const struct glint_ghost_edges *g,
                               struct glint_ghost_cell *c,
                               struct glint_corners *corners,
@@ -385,9 +391,10 @@ static void dim_separate_cell(const struct glint_ghost_edges *g,
     glint_corners_set(corners, c->corner, 4);
 }
 
-/* Returns the light of the cell at (I, J) for the edges that it shares with its
- * neighbours, or 0 for cells that are drawn separately or not at all. Nearly
- * all cells lie wholly outside the visible part or wholly inside it. */
+/* Returns the packed light of the cell at (I, J), for the edges that it shares
+ * with its neighbours. Returns 0 for cells that are invisible, and for cells
+ * that have to be drawn separately; draws the latter. Nearly all cells are
+ * completely visible or completely invisible. */
 static int32_t find_cell_light(struct glint_ghost_edges *g, int i, int j)
 {
     const struct glint_ghost_rows *r = g->rows;
@@ -411,8 +418,8 @@ static int32_t find_cell_light(struct glint_ghost_edges *g, int i, int j)
         add_cell_as_triangles(g, &cell);
         return 0;
     }
-    /* The whole cell lies outside one side or barrel, or off-screen where its
-     * edges change no pixel. */
+    /* All four corners lie outside the same side or barrel, or off-screen
+     * beyond the same side of the picture, where edges change no pixel. */
     if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]))
         return 0;
     set_grid_cell_corners(g, i, j, &corners);
@@ -441,8 +448,8 @@ static int32_t find_cell_light(struct glint_ghost_edges *g, int i, int j)
     return light;
 }
 
-/* Adds the visible part of the edge from A to B between two cells of light
- * LIGHT and OTHER. */
+/* Adds the visible part of the edge from node A to node B, which separates
+ * cells of light LIGHT and OTHER. */
 static void
 add_shared_edge(struct glint_ghost_edges *g, const struct glint_vertex *a,
                 struct glint_outside at_a, const struct glint_vertex *b,
@@ -470,7 +477,8 @@ static struct glint_outside get_outside_bits(const struct glint_ghost_edges *g,
                                   g->rows->barrels[j & 1][i] & NODE_BARRELS};
 }
 
-/* Adds the edges along the nodes of row J, between two rows of cells. */
+/* Adds the edges along row J of nodes, between two rows of cells whose light is
+ * ABOVE and BELOW. */
 static void add_horizontal_edges(struct glint_ghost_edges *g, int j,
                                  const int32_t *above, const int32_t *below)
 {
@@ -481,7 +489,8 @@ static void add_horizontal_edges(struct glint_ghost_edges *g, int j,
                             get_outside_bits(g, i + 1, j), below[i], above[i]);
 }
 
-/* Adds the edges between neighbouring cells of row J. */
+/* Adds the edges between neighbouring cells within row J of cells, whose light
+ * is LIGHT. */
 static void add_vertical_edges(struct glint_ghost_edges *g, int j,
                                const int32_t *light)
 {

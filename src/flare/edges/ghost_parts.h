@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shared by the files behind ghost_edges.h: ghost_rows.c, which fills rows of
- * nodes, ghost_edges.c, which draws cells of the grid, and ghost_shade.c, which
- * draws cells with a soft edge, dust or masks. */
+ * Internal functions shared by ghost_rows.c, which computes rows of nodes,
+ * ghost_edges.c, which converts cells to edges, and ghost_shade.c, which dims
+ * cells by a soft edge, dust or masks. */
 #ifndef GLINT_FLARE_GHOST_PARTS_H
 #define GLINT_FLARE_GHOST_PARTS_H
 
 #include "flare/edges/cuts.h"
 #include "flare/edges/ghost_edges.h"
 
-/* Bits of a node after the bits of the barrels: the ray is invalid, or the node
- * lies off-screen beyond one side of the picture. The left side has no bit, as
- * edges there still add light to the picture. */
+/* Bits of struct glint_ghost_rows, member barrels, for one node: NODE_BARRELS
+ * masks the bits of the barrels; NODE_LOST: the ray is invalid; the others: the
+ * node lies off-screen beyond that side of the picture. There is no bit for the
+ * left side, as edges there still add light to the picture. */
 enum {
     NODE_BARRELS = 3,
     NODE_LOST = 4,
@@ -21,33 +22,34 @@ enum {
 };
 
 struct glint_ghost_cell {
-    const struct glint_vertex *corner[4]; /* corners of the cell, in order */
+    const struct glint_vertex *corner[4]; /* corners of the cell, in cyclic
+                                             order */
     struct glint_outside at[4];
 };
 
-/* Returns node (I, J), which must be in one of the two stored rows. */
+/* Returns node (I, J) of the grid; row J must be one of the two stored rows. */
 static inline const struct glint_vertex *
 ghost_node(const struct glint_ghost_edges *g, int i, int j)
 {
     return &g->row[j & 1][i];
 }
 
-/* Adds the edges of the bundle for the stop's hard outline; soft edges of its
- * shade are ignored. */
+/* Adds the edges of the bundle as if the stop had a hard outline, ignoring the
+ * soft edge of its shade. */
 void glint_ghost_emit_hard_outline(struct glint_ghost_edges *g);
 
-/* Fills row J of the nodes; it stays valid until row J + 2 is filled. */
+/* Computes row J of nodes, which is valid until row J + 2 is computed. */
 void glint_ghost_fill_node_row(struct glint_ghost_edges *g, int j);
 
-/* Returns the packed light, rounded to steps, of a cell that has IRRADIANCE at
- * energy 1. */
+/* Returns the light of a cell, rounded to steps and packed: IRRADIANCE, that at
+ * energy 1, times ENERGY times SIGN. */
 int32_t glint_ghost_pack_cell_light(struct glint_ghost_edges *g,
                                     int64_t irradiance_q22, int64_t energy_q16,
                                     int sign);
 
-/* Draws the part that the cuts leave of a convex primitive of N corners, whose
- * flux is 2^SHARE_LOG2 of a cell's. If it is thin, its light is spread over a
- * strip a sixteenth of a pixel wide. */
+/* Adds the edges of a convex primitive of N corners, clipped by the stop and
+ * the barrels. Its flux is 2^SHARE_LOG2 times that of a cell. If it is thin,
+ * its light is spread over a strip a sixteenth of a pixel wide. */
 void glint_ghost_add_clipped_primitive(struct glint_ghost_edges *g,
                                        const struct glint_vertex *const *corner,
                                        int n, int share_log2);

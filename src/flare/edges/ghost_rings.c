@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws the soft edge of a stop as nested outlines. */
+ * Draws the soft edge of a stop as nested outlines (rings), each with an equal
+ * part of the light. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "base/q.h"
@@ -9,7 +10,8 @@
 
 enum { MOST_LOG2 = 4 }; /* log2 of GLINT_SOFT_RINGS */
 
-/* x of 3 x^2 - 2 x^3 = (2 i + 1) / 32. */
+/* Depth of ring i within the soft edge: the solution x of 3 x^2 - 2 x^3 = (2 i
+ * + 1) / 32. */
 static const uint16_t depth_q16[GLINT_SOFT_RINGS] = {
     6938,  12393, 16384, 19804, 22914, 25838, 28650, 31402,
     34134, 36886, 39698, 42622, 45732, 49152, 53143, 58598};
@@ -22,8 +24,8 @@ static int compute_floor_log2(struct glint_real x)
     return bit_length((uint64_t)n | 1) - 1;
 }
 
-/* Returns log2 of the number of rings, limited so that they are at least a
- * pixel apart and each has the light of at least half a code. */
+/* Returns log2 of the number of rings, limited so that rings are at least a
+ * pixel apart and each adds at least half a code of light. */
 static int choose_rings_log2(const struct glint_ghost_edges *g)
 {
     int log2 = MOST_LOG2;
@@ -47,8 +49,8 @@ static int choose_rings_log2(const struct glint_ghost_edges *g)
     return log2 > 0 ? log2 : 0;
 }
 
-/* Moves the outline of STOP inwards by BY, in stop radii; returns 0 if no
- * opening is left. */
+/* Moves the outline of STOP inwards by BY stop radii. Returns 0 if no opening
+ * is left. */
 static int shrink_stop_outline(struct glint_stop *stop, int32_t by_q16)
 {
     if (stop->n_blades == 0)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fills rows of nodes of a grid: their vertices, and for each node the sides of
- * the stop, the barrels and the sides of the picture that it lies outside
- * of. */
+ * Computes rows of nodes of a ray grid: the vertex of each node, and bit masks
+ * of the stop's sides, barrels and sides of the picture outside of which the
+ * node lies. */
 #include "flare/edges/ghost_parts.h"
 
 #include <stddef.h>
@@ -17,8 +17,9 @@ static int is_vertex_valid(const struct glint_vertex *v)
            (uint32_t)v->y_q8 + most <= 2 * most;
 }
 
-/* Subtracts the sag from the barrels' values in a row, and moves the stop
- * positions inwards by the sag of a round stop. */
+/* Corrects a row of vertices by the sags (struct glint_bundle_plan): subtracts
+ * them from the barrels' values, and moves the stop positions inwards if the
+ * stop is round. */
 static struct glint_vertex *subtract_row_sags(const struct glint_ghost_edges *g,
                                               struct glint_vertex *row)
 {
@@ -37,7 +38,8 @@ static struct glint_vertex *subtract_row_sags(const struct glint_ghost_edges *g,
     return row;
 }
 
-/* Returns row J of the grid; it stays valid until row J + 2 is requested. */
+/* Returns the vertices of row J of the grid, computed or stored; they are valid
+ * until row J + 2 is requested. */
 static const struct glint_vertex *get_grid_row(struct glint_ghost_edges *g,
                                                int j)
 {

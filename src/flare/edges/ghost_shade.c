@@ -27,15 +27,15 @@ static int compute_level_shift(const struct glint_shade *s, int level)
     return 17 - s->log2 + level;
 }
 
-/* Returns a coordinate in the stop as a distance from the table's first node,
- * clamped to the table. */
+/* Converts a coordinate in the stop, -1 .. 1 stop radii, to the distance from
+ * the first node of the shade's table, 0 .. 2, clamped to that range. */
 static int32_t clamp_stop_position_to_table(int64_t at_q16)
 {
     return q_clamp_sat(at_q16 + (1 << 16), 0, (1 << 17) - 1);
 }
 
-/* Returns the light at (X, Y), in stop radii, interpolated between the four
- * nodes around it. */
+/* Returns the fraction of light that the shade transmits at (X, Y), stop radii,
+ * interpolated between the four nodes of LEVEL around that point. */
 static int32_t interpolate_shade_light_q15(const struct glint_shade *s,
                                            int level, int64_t x_q16,
                                            int64_t y_q16)
@@ -54,7 +54,8 @@ static int32_t interpolate_shade_light_q15(const struct glint_shade *s,
     return (int32_t)q_shift(low * (one - v) + high * v, 2 * shift);
 }
 
-/* Returns the max difference of finer levels from LEVEL near (X, Y). */
+/* Returns the max difference between LEVEL of the shade's table and finer
+ * levels near (X, Y), stop radii. */
 static int read_roughness_q8(const struct glint_shade *s, int level,
                              int64_t x_q16, int64_t y_q16)
 {
@@ -68,8 +69,9 @@ static int read_roughness_q8(const struct glint_shade *s, int level,
                        ((clamp_stop_position_to_table(x_q16) + half) >> shift)];
 }
 
-/* Returns the level whose nodes are as far apart as the corners CORNER, or at
- * least half as far. */
+/* Returns the level of the shade's table whose node distance fits a cell:
+ * between half and all of the max distance of the corners CORNER in the stop.
+ */
 static int choose_shade_level(const struct glint_shade *s,
                               const struct glint_vertex *const *corner)
 {
@@ -86,9 +88,9 @@ static int choose_shade_level(const struct glint_shade *s,
     return level < 0 ? 0 : level < s->log2 ? level : s->log2 - 1;
 }
 
-/* Returns the smallest visible difference of light near LIGHT: LIGHT / 128 for
- * linear pictures, else the light of a code. With each octave below white that
- * falls to 2/3, until codes are linear in light. */
+/* Returns the smallest visible difference from LIGHT: LIGHT / 128 for linear
+ * pictures, otherwise the light of one code. With each octave below white the
+ * light of one code falls to 2/3, down to where codes are linear in light. */
 static int64_t compute_visible_difference_q20(const struct glint_ghost_edges *g,
                                               int64_t light_q20)
 {
@@ -104,14 +106,15 @@ static int64_t compute_visible_difference_q20(const struct glint_ghost_edges *g,
 
 /* ----------------------------------------------------------------- patches */
 
-/* The change of the position in the picture, pixels, and of the position in the
- * stop, stop radii, along two opposite sides of a cell. */
+/* Sum over two opposite sides of a cell of the changes along the side: of the
+ * position in the picture, pixels, and of the position in the stop, stop radii.
+ */
 struct span {
     int64_t x_q8, y_q8, stop_q16[2];
 };
 
-/* Returns the sum of the changes along the sides from corner A to B and from D
- * to C. */
+/* Returns the sum of the changes along the side from corner A to corner B and
+ * along the side from corner D to corner C. */
 static struct span sum_side_changes(const struct glint_vertex *const *at, int a,
                                     int b, int d, int c)
 {
@@ -124,8 +127,8 @@ static struct span sum_side_changes(const struct glint_vertex *const *at, int a,
              at[d]->stop_y_q16}};
 }
 
-/* Returns (A B - C D) / DET as _q24, clamped to +-2^32. A and C are _q16, B and
- * D _q8, DET _q16. */
+/* Returns (A B - C D) / DET, a slope, as _q24, clamped to +-2^32. A and C are
+ * _q16, B and D _q8, DET _q16. */
 static int64_t compute_slope_q24(int64_t a, int64_t b, int64_t c, int64_t d,
                                  struct glint_real det)
 {
@@ -133,9 +136,9 @@ static int64_t compute_slope_q24(int64_t a, int64_t b, int64_t c, int64_t d,
                         INT64_C(1) << 32);
 }
 
-/* Sets the map from pixels of P to positions in the stop, from the corners AT
- * of a cell. The box of P must be set. Returns 0 if the slope is out of
- * range. */
+/* Sets the linear map of patch P from pixels to positions in the stop, fitted
+ * to the corners AT of a cell. The box of P must be set. Returns 0 if a
+ * coefficient is out of range. */
 static int set_pixel_to_stop_map(struct glint_patch *p,
                                  const struct glint_vertex *const *at)
 {
@@ -179,8 +182,8 @@ static int set_pixel_to_stop_map(struct glint_patch *p,
     return 1;
 }
 
-/* Sets the box of pixels within the corners of P; returns 0 if no pixel of the
- * picture is in it. */
+/* Sets the box of patch P to the on-screen pixels within its bounding box.
+ * Returns 0 if there are none. */
 static int set_patch_box(struct glint_patch *p,
                          const struct glint_ghost_edges *g)
 {
@@ -210,7 +213,8 @@ static void set_patch_level(struct glint_patch *p, const struct glint_shade *s)
     p->level = p->level < 0 ? 0 : p->level < s->log2 ? p->level : s->log2 - 1;
 }
 
-/* Adds patch P over the cell of corners AT. The corners of P must be set. */
+/* Stores patch P over the cell with the corners AT in the edge array. The
+ * corners and the light of P must be set. */
 static void store_patch(struct glint_ghost_edges *g, struct glint_patch *p,
                         const struct glint_vertex *const *at)
 {
@@ -253,8 +257,8 @@ static void add_outline_patch(struct glint_ghost_edges *g, int32_t light)
 
 /* ------------------------------------------------------------------- cells */
 
-/* Returns log2 of the larger of a cell's width and height in pixels, rounded
- * down. */
+/* Returns log2 of the size of a cell, the larger of width and height in pixels,
+ * rounded down. */
 static int compute_cell_size_log2(const struct glint_vertex *const *corner)
 {
     int64_t far = 0;
@@ -268,8 +272,9 @@ static int compute_cell_size_log2(const struct glint_vertex *const *corner)
     return bit_length((uint64_t)far >> 8) - 1;
 }
 
-/* Returns a bound on how far the shade's light within a cell differs from the
- * mean of LIGHT, the light of the cell's corners at LEVEL. */
+/* Returns an upper bound on the difference between the shade's light anywhere
+ * in a cell and the mean of LIGHT, the shade's light at the cell's corners in
+ * LEVEL. */
 static int bound_cell_roughness_q8(const struct glint_shade *s, int level,
                                    const struct glint_vertex *const *corner,
                                    const int32_t light[4])

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Dims ghosts by the shade of the stop: its soft edge, dust and masks.
+ * Dims ghosts by the shade of the stop, which is its soft edge, dust and masks.
  *
  *   in   a cell of a ghost's grid, tables of the light that the stop lets
  *        through
@@ -8,41 +8,46 @@
  *
  * A soft edge is drawn as a few nested outlines of equal light.
  *
- * The tables have levels, each half as fine as the level before. A cell gets
- * its light from the level whose nodes are about as far apart as its corners.
- * Where finer levels differ visibly from it, a patch (patch.h) adds the
- * difference pixel by pixel. No rays are computed for that, as everything is
+ * Dust and masks are tables of transmitted light, with levels as in a mipmap:
+ * each level is half as fine as the one before. A cell gets its light from the
+ * level whose nodes are about as far apart as the corners of the cell. Where
+ * finer levels differ visibly from that level, a patch (patch.h) adds the
+ * difference pixel by pixel. This needs no further rays, as everything is
  * linear between the rays of a grid. */
 #ifndef GLINT_FLARE_GHOST_SHADE_H
 #define GLINT_FLARE_GHOST_SHADE_H
 
 #include "flare/edges/ghost_parts.h"
 
-enum { GLINT_SOFT_RINGS = 16 }; /* max outlines of a soft edge */
+enum {
+    GLINT_SOFT_RINGS = 16
+}; /* max number of nested outlines of a soft edge */
 
 struct glint_shade_method {
-    /* Turns a bundle into edges; called by glint_ghost_emit_edges(). */
+    /* Converts a bundle to edges; called by glint_ghost_emit_edges(). */
     void (*emit)(struct glint_ghost_edges *g);
-    /* Draws dust and masks in a convex cell of orientation TURN, with the mean
-     * energy *ENERGY and crossed by CUTS cuts. Sets *ENERGY to the energy that
-     * the cell's own edges have to draw. Returns 0 if the whole cell was drawn;
-     * it then shares no edges with its neighbours. */
+    /* Applies dust and masks to a convex cell of orientation TURN that is
+     * crossed by CUTS cuts. *ENERGY: on entry the mean energy of the cell's
+     * corners, on return the energy that the edges of the cell have to draw.
+     * Returns 0 if the cell was drawn completely; it then shares no edges with
+     * its neighbours. */
     int (*cell)(struct glint_ghost_edges *g, const struct glint_corners *c,
                 int turn, int cuts, int64_t *energy_q16);
-    /* Adds the patch over the outline of a cell that is drawn separately. */
+    /* Stores the patch over the outline of a cell that is drawn separately. */
     void (*patch)(struct glint_ghost_edges *g, int32_t light);
     glint_patch_fn *draw;
-    /* Dims the corners of a cell that is drawn separately: DIMMED receives the
-     * dimmed corners, and C is set to point to them. */
+    /* Multiplies the energy at the corners of a cell that is drawn separately
+     * by the shade's light. The new corners are stored in DIMMED, and C is set
+     * to point to them. */
     void (*corners)(const struct glint_shade *shade, struct glint_ghost_cell *c,
                     struct glint_vertex dimmed[4]);
 };
 
-/* The member emit: draws the bundle once, or once for each ring of a soft
- * edge. */
+/* Value of the member emit: converts the bundle to edges once, or once for each
+ * ring of a soft edge. */
 void glint_rings_emit_edges(struct glint_ghost_edges *g);
 
-/* Returns whether SHADE is in range. */
+/* Returns whether softness and table size of SHADE are in range. */
 static inline int glint_shade_ok(const struct glint_shade *shade)
 {
     if (shade->soft_q16 < 0 || shade->soft_q16 > 1 << 16)

@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds the visible part of a primitive, as a convex polygon.
+ * Clips a primitive by the stop and two barrels; the visible part is a convex
+ * polygon.
  *
  *   in   a triangle of a primitive's corners, the stop, two barrels
  *   out  the polygon that the stop's sides and the barrels leave, all of them
  *        linear between the corners: its corners in pixels, its fraction of
  *        the triangle, its mean energy
  *
- * Method: half planes cut the triangle in barycentric coordinates u, v of its
- * second and third corner, one after the other, so that triangles without area
- * on the screen are cut correctly, too. A round stop is also treated as a half
- * plane: (1 - r^2) / 2 at the corners, plus the mean height of the function's
- * bulge over the triangle, which makes the area right.
+ * Method: the triangle is clipped by one half plane after the other, in
+ * barycentric coordinates u, v of its second and third corner, so that
+ * triangles without area on the screen are also clipped correctly. A round stop
+ * is approximated by a half plane: the function (1 - r^2) / 2 at the corners,
+ * plus the mean height of that function above the plane through the corners,
+ * which makes the clipped area correct.
  *
  * Formats: u, v _q28; functions _q16, below 2^33, times u or v below 2^61;
  * pixels _q16 in 64 bits. */
@@ -24,21 +26,23 @@
 #include "flare/edges/primitive.h"
 #include "glint/light.h"
 
-/* Returns (1 - r^2) / 2 at V, the function that a round stop cuts by; clamped
- * far outside. */
+/* Returns (1 - r^2) / 2 at V, where r is the distance from the stop's centre in
+ * stop radii: the function of a round stop, positive inside. Clamped far
+ * outside. */
 int64_t glint_disc_function_q16(const struct glint_vertex *v);
 
-/* Returns how far a point lies inside the arc between two corners of the stop,
- * in stop radii. STRAIGHT is its distance inside the straight line between the
- * corners, DISC is glint_disc_function_q16() of it. For a circle of radius 1 /
- * k whose centre lies d behind the stop's centre, k^-2 - |v + d n|^2 is 2 d
- * STRAIGHT + 1 - r^2 if both corners have r = 1. The result is that times k /
- * 2, which equals the distance where it is small. */
+/* Returns the distance of a point inside the arc between two corners of the
+ * stop, in stop radii; negative outside. STRAIGHT is the distance of the point
+ * inside the straight line between the corners, DISC is
+ * glint_disc_function_q16() of the point. For a circle of radius 1 / k whose
+ * centre lies d behind the stop's centre, k^-2 - |v + d n|^2 is 2 d STRAIGHT +
+ * 1 - r^2 if both corners have r = 1. The result is that times k / 2, which
+ * equals the distance where it is small. */
 int64_t glint_arc_distance_q16(const struct glint_stop *stop,
                                int64_t straight_q16, int64_t disc_q16);
 
-/* Returns how far V lies inside the straight line of side SIDE, in stop radii;
- * negative outside. */
+/* Returns the distance of V inside the straight line between the corners of
+ * side SIDE, in stop radii; negative outside. */
 static inline int64_t glint_straight_q16(const struct glint_stop *stop,
                                          int side, const struct glint_vertex *v)
 {
@@ -49,8 +53,9 @@ static inline int64_t glint_straight_q16(const struct glint_stop *stop,
            q_shift(nx * v->stop_x_q16 + ny * v->stop_y_q16, 30);
 }
 
-/* Return how far V lies inside side SIDE of a stop, in stop radii, or inside a
- * barrel, as 1 - (1 + r^2) / 2. Negative outside. */
+/* Return the distance of V inside side SIDE of the stop, in stop radii, and
+ * inside a barrel, as 1 - (1 + r^2) / 2 with r in barrel radii. Both are
+ * negative outside. */
 static inline int64_t glint_side_q16(const struct glint_stop *stop, int side,
                                      const struct glint_vertex *v)
 {
@@ -66,40 +71,41 @@ static inline int64_t glint_barrel_q16(int barrel, const struct glint_vertex *v)
     return (INT64_C(1) << 16) - v->barrel_q16[barrel];
 }
 
-/* Three corners of a triangle, one more per cut, and a copy of the first corner
- * after the last. */
+/* Max number of corners: three of the triangle, one more per cut, and a copy of
+ * the first corner at the end. */
 enum { GLINT_OUTLINE_CORNERS = GLINT_MAX_BLADES + 8 };
 
-/* Scratch of a worker, 2.3 KB. */
+/* A clipped polygon, and scratch memory for clipping; 2.3 KB. */
 struct glint_outline {
     int n; /* number of corners; 0: nothing is visible */
     int64_t x_q16[GLINT_OUTLINE_CORNERS], y_q16[GLINT_OUTLINE_CORNERS];
     int32_t
         share_q28; /* fraction of the triangle that the cuts leave, 0 .. 1 */
-    int32_t energy_q16; /* mean over the corners */
+    int32_t energy_q16; /* mean energy of the polygon's corners */
     struct glint_uv {
         int32_t u_q28, v_q28;
     } uv[GLINT_OUTLINE_CORNERS], kept[GLINT_OUTLINE_CORNERS];
 };
 
-/* Returns the set of GLINT_CUT_ flags of the cuts that cross the primitive, or
- * -1 if all of it is outside. Masks of the stop are ignored. */
+/* Returns the GLINT_CUT_ flags of what may cut the primitive, 0 if it is
+ * completely visible, or -1 if it is completely outside. Masks of the stop are
+ * ignored. */
 int glint_outline_classify(const struct glint_corners *corners,
                            const struct glint_stop *stop);
 
-/* Sets OUTLINE to the whole primitive. */
+/* Sets OUTLINE to the unclipped primitive. */
 void glint_outline_set_unclipped(struct glint_outline *outline,
                                  const struct glint_corners *corners);
 
-/* Sets OUTLINE to the part of the triangle of corners 0, K + 1 and K + 2 that
- * the cuts CUT leave. */
+/* Sets OUTLINE to the triangle of the corners 0, K + 1 and K + 2, clipped by
+ * what the GLINT_CUT_ flags CUT name. */
 void glint_outline_clip_triangle(struct glint_outline *outline,
                                  const struct glint_corners *corners, int k,
                                  const struct glint_stop *stop, int cut);
 
-/* Replaces an OUTLINE thinner than a sixteenth of a pixel by a strip of that
- * width, along its longer side and at least as long as wide. Returns twice its
- * area. */
+/* Replaces OUTLINE, which is thinner than a sixteenth of a pixel, by a strip of
+ * that width along its longer side, at least as long as wide. Returns twice the
+ * area of the strip, pixels^2. */
 int64_t glint_outline_widen_q32(struct glint_outline *outline);
 
 #endif

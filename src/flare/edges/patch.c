@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stores patches in slots of the array of edges. */
+ * Stores patches in slots of the edge array, so that they are sorted into tiles
+ * like edges. */
 #include "flare/edges/patch.h"
 
-enum { WORDS = 7 }; /* words per slot */
+enum { WORDS = 7 }; /* data words per slot */
 
 static void write_patch_word(struct glint_edge *e, int i, int32_t word)
 {

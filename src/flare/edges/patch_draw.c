@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adds patches to a tile's sums, row by row, as changes from pixel to pixel
- * like edges. */
+ * Draws patches: adds them to the sums of a tile, row by row, as differences
+ * between neighbouring pixels, as edges are. */
 #include <stddef.h>
 
 #include "base/compiler.h"
@@ -15,46 +15,51 @@ enum {
     MOST_TILE = 64,
     RUN_LOG2 = 3, /* log2 of the pixels of a run */
     RUN = 1 << RUN_LOG2,
-    STEEP_Q16 = 1 << 10 /* sides with a smaller across_q16 are nearly horizontal
-                           and bound no columns */
+    STEEP_Q16 = 1 << 10 /* min magnitude of across_q16; sides below it are
+                           nearly horizontal and do not limit the columns of a
+                           row */
 };
 
-/* A side of a patch, as a linear function: the distance of a pixel's middle
- * from it, positive inside, in pixels divided by |x| + |y| of its unit
- * normal. */
+/* A side of a patch, as a linear function of the pixel: the distance of the
+ * pixel's middle from the side, positive inside, in pixels divided by |x| + |y|
+ * of the side's unit normal (x, y). */
 struct side {
-    int64_t at_q24; /* value at the middle of the first pixel of the box */
+    int64_t at_q24; /* value of the function at the middle of the box's first
+                       pixel */
     int32_t across_q16, down_q16;
-    /* For the covered fraction of a pixel: with p and q the smaller and larger
-     * component of the scaled normal, less is p, square 1 / (2 p q), larger 1 /
-     * q. */
+    /* Coefficients for the covered fraction of a pixel: if p and q are the
+     * smaller and the larger component of the scaled normal, less is p, square
+     * is 1 / (2 p q), larger is 1 / q. */
     int32_t less_q16, square_q16, larger_q16;
-    /* The column at which the function is -1/2 in row 0, and its change per
-     * row; not set if the side is nearly horizontal. */
+    /* The column at which the function is -1/2 in row 0 (column), and its
+     * change per row (step); not set if the side is nearly horizontal. */
     int64_t column_q16, step_q16;
 };
 
-/* A side that cuts pixels of the current row. */
+/* A side of the patch that cuts pixels of the current row. */
 struct part {
     const struct side *side;
-    int64_t at_q16; /* value at the row's first pixel */
+    int64_t at_q16; /* value of the side's function at the row's first pixel */
 };
 
 struct draw {
     const struct glint_edge_sums *sums;
     struct glint_patch patch;
     struct side side[GLINT_OUTLINE_CORNERS];
-    /* Nodes of the patch's level, and of the level whose nodes are two runs
-     * apart; NULL: there is no such level. */
+    /* Nodes of the patch's level of the shade (node), and of the level whose
+     * nodes are two runs of pixels apart (run; NULL if there is no such level).
+     */
     const uint16_t *node_q15, *run_q15;
     int run_nodes, run_shift;
     uint32_t once_q24[2], twice_q24[2]; /* change of the position in the stop
-                                           per pixel and per two pixels */
-    int nodes, shift;     /* nodes per side; log2 of their distance, _q24 */
-    struct glint_box box; /* the part of the patch within the tile */
-    /* The current row: the sides that cut its pixels, and for each pixel and
-     * one more the difference from the edges' light, see
-     * convert_light_to_area(). */
+                                           per pixel (once) and per two pixels
+                                           (twice) */
+    int nodes, shift;     /* number of nodes per side of the level; log2 of
+                             their distance, _q24 */
+    struct glint_box box; /* pixels of the patch's box within the tile */
+    /* The current row: the sides that cut its pixels (part), and for each
+     * pixel, plus one, the difference between the light through the shade and
+     * the light that edges draw (area, see convert_light_to_area()). */
     int n_parts;
     struct part part[GLINT_OUTLINE_CORNERS];
     int32_t area[MOST_TILE + 2 * RUN];
@@ -99,13 +104,14 @@ static void set_patch_side(struct side *s, const struct draw *d, int i)
             : 0;
 }
 
-/* Returns the fraction of a pixel inside S; DISTANCE is the function of S at
- * the pixel's middle. */
+/* Returns the fraction of a pixel that lies inside side S. DISTANCE is the
+ * function of S at the pixel's middle. */
 static int32_t compute_inside_fraction_q16(const struct side *s,
                                            int64_t distance_q16)
 {
     const int upper = distance_q16 > 0;
-    /* distance of the side from the nearer extreme corner of the pixel */
+    /* distance from the side to the outermost corner of the pixel beyond it,
+     * seen from the pixel's middle */
     const int64_t t_q16 = HALF_Q16 - (upper ? distance_q16 : -distance_q16);
     int64_t part_q16;
 
@@ -119,7 +125,7 @@ static int32_t compute_inside_fraction_q16(const struct side *s,
     return (int32_t)(upper ? ONE_Q16 - part_q16 : part_q16);
 }
 
-/* Returns the fraction of pixel X of the row that lies in the patch. */
+/* Returns the fraction of pixel X of the current row that lies in the patch. */
 static int32_t compute_pixel_cover_q16(const struct draw *d, int x)
 {
     int64_t cover_q16 = ONE_Q16;
@@ -142,8 +148,8 @@ static int32_t clamp_to_table_q24(int32_t at_q24)
     return at_q24 < -one ? 0 : at_q24 >= one ? 2 * one - 1 : at_q24 + one;
 }
 
-/* Returns the light of the shade at a position, interpolated between the four
- * nodes around it. */
+/* Returns the light of the shade at position (S, T) in the stop, stop radii,
+ * interpolated between the four nodes around it. */
 static inline int32_t interpolate_shade_light_q15(const struct draw *d,
                                                   int32_t s_q24, int32_t t_q24)
 {
@@ -158,7 +164,8 @@ static inline int32_t interpolate_shade_light_q15(const struct draw *d,
     return (int32_t)((low * (256 - v) + high * v + (1 << 15)) >> 16);
 }
 
-/* The position in the stop, in stop radii, of a pixel. */
+/* The position in the stop, in stop radii, through which the ray of a pixel
+ * passes. */
 struct place {
     uint32_t at_q24[2]; /* modulo 2^32, as only positions within the stop
                            matter */
@@ -178,8 +185,8 @@ static struct place find_stop_position(const struct draw *d, int y, int x)
     return at;
 }
 
-/* Returns by how much LIGHT differs from the light that edges give a pixel, in
- * units of the sums. */
+/* Returns LIGHT minus the light that edges draw (1 or 0), in the units of areas
+ * in the sums. */
 static inline int32_t convert_light_to_area(const struct draw *d,
                                             int32_t light_q15)
 {
@@ -188,9 +195,9 @@ static inline int32_t convert_light_to_area(const struct draw *d,
     return d->sums->linear ? off_q15 * 2 : (off_q15 + 64) >> 7;
 }
 
-/* Returns whether edges alone draw the run from AT on correctly: the shade at
- * the nearest node of the level whose nodes are two runs apart equals the
- * edges' light, clear or dark. */
+/* Returns whether the run of pixels that begins at AT needs no patch: the shade
+ * at the nearest node of the level whose nodes are two runs apart equals the
+ * light that edges draw, clear or dark. */
 static int is_run_uniform(const struct draw *d, struct place at)
 {
     const struct glint_patch *p = &d->patch;
@@ -223,9 +230,10 @@ static inline void advance_stop_position(struct place *at,
     at->at_q24[1] += by_q24[1];
 }
 
-/* Sets the areas of a run that begins at pixel X, whose position in the stop is
- * AT. In linear pictures each pixel is computed; in codes every second pixel,
- * and means between them. Returns nonzero if any area is nonzero. */
+/* Sets the areas of the run of pixels that begins at pixel X, whose position in
+ * the stop is AT. For linear pictures each pixel is computed; for codes every
+ * second pixel, and the others are means of their neighbours. Returns nonzero
+ * if any area is nonzero. */
 static int32_t set_run_areas(struct draw *d, struct place at, int x)
 {
     int32_t any = 0, area = compute_pixel_area(d, &at);
@@ -250,9 +258,10 @@ static int32_t set_run_areas(struct draw *d, struct place at, int x)
     return any;
 }
 
-/* Sets the areas of row Y, without cuts by the patch's sides, for all runs that
- * contain pixels FROM .. END - 1. Runs begin at multiples of their length, so
- * that tiles do not show. Returns whether any area is nonzero. */
+/* Sets the areas of row Y, before the patch's sides cut them, for all runs that
+ * contain pixels of FROM .. END - 1. Runs begin at multiples of their length,
+ * so that the picture does not depend on tiles. Returns whether any area is
+ * nonzero. */
 static int set_uncut_row_areas(struct draw *d, int y, int from, int end)
 {
     int any = 0;
@@ -274,8 +283,9 @@ static void scale_pixel_area(struct draw *d, int x, int32_t cover_q16)
     d->area[x] = (int32_t)(((int64_t)d->area[x] * cover_q16 + HALF_Q16) >> 16);
 }
 
-/* Sets the areas of row Y in columns FROM .. END - 1, those that the patch may
- * touch. Returns 0 if all areas are 0. */
+/* Sets the areas of row Y in the columns FROM .. END - 1, which the patch may
+ * touch, weighted by the covered fraction of each pixel. Returns 0 if all areas
+ * are 0. */
 static int set_row_areas(struct draw *d, int y, int from, int end)
 {
     int32_t cover;
@@ -292,9 +302,9 @@ static int set_row_areas(struct draw *d, int y, int from, int end)
     return 1;
 }
 
-/* Finds the columns of the box that the patch may touch in row Y. Sides whose
- * function rises along x bound them on the left, sides whose function falls
- * bound them on the right. */
+/* Finds the range of columns FROM .. END - 1 of the box that the patch may
+ * touch in row Y. A side whose function rises with x limits it on the left, a
+ * side whose function falls on the right. */
 static void find_row_columns(const struct draw *d, int y, int *from, int *end)
 {
     int64_t low = 0, high = d->box.x1 - d->box.x0;
@@ -312,7 +322,8 @@ static void find_row_columns(const struct draw *d, int y, int *from, int *end)
     *end = (int)high;
 }
 
-/* Finds the sides that cut pixels of row Y between the columns FROM and END. */
+/* Lists the sides of the patch that cut pixels of row Y in the columns FROM ..
+ * END - 1. */
 static void find_cutting_sides(struct draw *d, int y, int from, int end)
 {
     d->n_parts = 0;
@@ -352,7 +363,7 @@ static void add_areas_to_wide_sums(uint64_t *row, const int32_t *area, int n,
     }
 }
 
-/* Adds the areas of row Y in columns FROM .. END - 1, times LIGHT, to the
+/* Adds LIGHT times the areas of row Y in the columns FROM .. END - 1 to the
  * sums. */
 static void add_row_to_sums(const struct draw *d, int narrow, int y, int from,
                             int end, const int64_t light[3])

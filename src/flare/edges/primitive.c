@@ -10,7 +10,7 @@ static int clamp_to_max(int x, int max)
     return x < 0 ? 0 : x > max ? max : x;
 }
 
-/* Returns the bounding box of the corners, pixels _q8. */
+/* Returns the bounding box of CORNERS, in pixels with 8 fraction bits. */
 static struct glint_box
 compute_bounding_box_q8(const struct glint_corners *corners)
 {
@@ -47,8 +47,8 @@ int glint_corners_are_thin_exactly(const struct glint_corners *corners)
            area2 == 0;
 }
 
-/* The box is enlarged by half the width of a strip, and by 1/256 pixel for
- * rounding. */
+/* The box is enlarged by half the width of the strip that replaces thin
+ * primitives, and by 1/256 pixel for rounding. */
 struct glint_box glint_corners_pixel_box(const struct glint_corners *corners,
                                          int width, int height)
 {
@@ -62,8 +62,8 @@ struct glint_box glint_corners_pixel_box(const struct glint_corners *corners,
         clamp_to_max(((e.y1 + grow) >> GLINT_VERTEX_FRAC) + 1, height)};
 }
 
-/* Returns the light MANTISSA * 2^UP, clamped to LIMIT; adds 1 to *N_HELD if it
- * was clamped. */
+/* Returns MANTISSA 2^UP, an irradiance, clamped to LIMIT. Increments *N_HELD if
+ * it was clamped. */
 static int64_t scale_and_clamp_light(int64_t mantissa, int up, int64_t limit,
                                      int *n_held)
 {
@@ -83,23 +83,24 @@ int64_t glint_compute_irradiance_q22(const struct glint_bundle *bundle,
                                      int share_log2, int64_t area, int frac,
                                      int32_t limit_q8, int *n_held)
 {
-    /* The area is scaled to 32 bits before the division. */
+    /* The area is normalised to 32 bits before the division. */
     const int up = q_up((uint64_t)area);
     const uint32_t area_32 = q_upper((uint64_t)area, up);
-    /* Rounding makes this exact if the area is a power of two. */
+    /* exact, by rounding, if the area is a power of two */
     const int64_t ratio =
         (int64_t)(((uint64_t)bundle->flux_q31 * q_reciprocal(area_32) +
                    (1 << 30)) >>
                   31);
-    /* An area below one pixel counts as one pixel for the limit. limit_q8 is
-     * below 2^20, the area at least 2^-33. */
+    /* The limit is per pixel, so for areas below one pixel it is divided by the
+     * area. limit_q8 is below 2^20, the area at least 2^-33. */
     const int64_t limit_q22 =
         (area >> frac ? (int64_t)limit_q8
                       : q_divide((int64_t)limit_q8 << frac, area))
         << 14;
 
-    /* The flux is 2^(e - 31), the area area_32 2^(-up - frac), and ratio is the
-     * quotient of both mantissas times 2^32; the result is q22. */
+    /* The flux is flux_q31 2^(flux_exponent - 31), the area is area_32 2^(-up -
+     * frac), and ratio is the quotient of both mantissas times 2^32; the result
+     * is _q22. */
     return scale_and_clamp_light(
         ratio, bundle->flux_exponent - 31 + share_log2 + up + frac - 32 + 22,
         limit_q22, n_held);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Cells of the ray grids, quads and triangles, and their irradiance. */
+ * Primitives: cells of a ray grid, which are quads, or triangles of them. Size
+ * and irradiance of primitives. */
 #ifndef GLINT_FLARE_PRIMITIVE_H
 #define GLINT_FLARE_PRIMITIVE_H
 
@@ -12,45 +13,47 @@
 enum {
     GLINT_CUT_STOP = 1,   /* the outline of the stop may cross the cell */
     GLINT_CUT_BARREL = 2, /* a barrel may cross the cell */
-    /* The functions of round cuts are already lowered by their sag. */
+    /* the functions of round cuts have been corrected by their sag already */
     GLINT_CUT_LOWERED = 16
 };
 
-/* Max light that a cell may give a pixel, display white. */
+/* Max light that a cell may add to a pixel, 1 = display white. */
 enum { GLINT_LIMIT_Q8 = 1 << 19 };
 
 /* Fraction bits of a vertex position. */
 enum { GLINT_VERTEX_FRAC = 8 };
 
-/* The corners of a cell. */
+/* The corners of a primitive. */
 struct glint_corners {
     int n; /* 3 or 4 */
     const struct glint_vertex *at[4];
-    int64_t area2_q16; /* twice the area, pixels squared, > 0 */
+    int64_t area2_q16; /* twice the signed area, pixels^2 */
 };
 
-/* Returns (B - A) x (P - A): positive if A, B, P turn in the direction from the
- * x axis to the y axis. Within +-2^60 for coordinates inside
- * GLINT_VERTEX_LIMIT_Q8. */
+/* Returns the cross product (B - A) x (P - A): positive if the triangle A, B, P
+ * has the orientation from the x axis to the y axis. Within +-2^60 for
+ * coordinates inside GLINT_VERTEX_LIMIT_Q8. */
 static inline int64_t glint_turn_q16(int32_t ax, int32_t ay, int32_t bx,
                                      int32_t by, int32_t px, int32_t py)
 {
     return (int64_t)(bx - ax) * (py - ay) - (int64_t)(by - ay) * (px - ax);
 }
 
-/* Returns the irradiance of 2^SHARE_LOG2 cells that cover AREA / 2^FRAC pixels.
- * FRAC must be at most 33, AREA at least 1. The result is clamped so that no
- * pixel gets more than LIMIT_Q8; *N_HELD is incremented if it was. */
+/* Returns the irradiance of a primitive that has 2^SHARE_LOG2 times the flux of
+ * a cell and covers AREA / 2^FRAC pixels. FRAC must be at most 33, AREA at
+ * least 1. The result is clamped so that no pixel gets more than LIMIT_Q8; if
+ * so, *N_HELD is incremented. */
 int64_t glint_compute_irradiance_q22(const struct glint_bundle *bundle,
                                      int share_log2, int64_t area, int frac,
                                      int32_t limit_q8, int *n_held);
 
-/* Returns the box of all pixels that CORNERS may cover, or the strip that
- * replaces CORNERS if they are thin. */
+/* Returns the bounding box of all pixels that a primitive may cover, including
+ * the strip that replaces it if it is thin; clipped to a picture of WIDTH x
+ * HEIGHT pixels. */
 struct glint_box glint_corners_pixel_box(const struct glint_corners *corners,
                                          int width, int height);
 
-/* Sets CORNERS to the N (3 or 4) vertices AT. */
+/* Sets CORNERS to the N vertices AT (3 or 4), and computes the area. */
 static inline void glint_corners_set(struct glint_corners *corners,
                                      const struct glint_vertex *const *at,
                                      int n)
@@ -71,7 +74,7 @@ static inline void glint_corners_set(struct glint_corners *corners,
                                             p[1]->y_q8, p[2]->x_q8, p[2]->y_q8);
 }
 
-/* Returns the distance |x| + |y| between two vertices, pixels _q8. */
+/* Returns the distance |x| + |y| between vertices A and B, pixels _q8. */
 static inline int64_t glint_reach(const struct glint_vertex *a,
                                   const struct glint_vertex *b)
 {
@@ -81,8 +84,9 @@ static inline int64_t glint_reach(const struct glint_vertex *a,
     return (x < 0 ? -x : x) + (y < 0 ? -y : y);
 }
 
-/* Returns whether C is certainly not thin: twice its area is at least 32 times
- * the sum of its diagonals, and that sum exceeds its width and height. */
+/* Quick test for glint_corners_thin(): returns 1 if C is certainly not thin,
+ * because twice its area is at least 32 times the sum of its diagonals, and
+ * that sum exceeds its width and height. */
 static inline int glint_corners_stout(const struct glint_corners *c)
 {
     return c->n == 4 && (c->area2_q16 < 0 ? -c->area2_q16 : c->area2_q16) >=
@@ -90,7 +94,7 @@ static inline int glint_corners_stout(const struct glint_corners *c)
                                   glint_reach(c->at[1], c->at[3]));
 }
 
-/* Return whether CORNERS are thinner than a sixteenth of a pixel;
+/* Return whether a primitive is thinner than a sixteenth of a pixel;
  * glint_corners_thin() makes a quick test first. */
 int glint_corners_are_thin_exactly(const struct glint_corners *corners);
 static inline int glint_corners_thin(const struct glint_corners *corners)
@@ -99,7 +103,8 @@ static inline int glint_corners_thin(const struct glint_corners *corners)
                                        glint_corners_are_thin_exactly(corners));
 }
 
-/* Returns whether all corners lie in a square of 1/PART of a pixel. */
+/* Returns whether all corners lie in a square whose sides are 1 / PART of a
+ * pixel long. */
 int glint_corners_are_tiny(const struct glint_corners *corners, int part);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Turns the sums of a tile into its light; see edge.h. */
+ * Converts the accumulated differences of a tile to light by a running sum
+ * along each row; see edge.h. */
 #include <stddef.h>
 
 #include "flare/edges/edge.h"
@@ -25,7 +26,7 @@ void glint_sums_read_linear_row(const struct glint_edge_sums *sums, int channel,
     sums->touched[channel] &= ~(UINT64_C(1) << row);
 }
 
-/* Returns the number of fraction bits of a sum in addition to _q16. */
+/* Returns the number of fraction bits that a sum has in addition to 16. */
 static int get_extra_fraction_bits(const struct glint_edge_sums *s)
 {
     return s->fine ? 12 : 8;
@@ -61,7 +62,8 @@ int glint_sums_is_row_dark(const struct glint_edge_sums *sums, int row)
            (carry[0] | carry[side] | carry[2 * side]) == 0;
 }
 
-/* Fills a row with constant light; returns whether the light is above 0. */
+/* Fills a row without edges with the light that is carried in from the left.
+ * Returns whether that light is above 0. */
 static int fill_row_with_constant_light(int64_t carry, int n, int more,
                                         uint16_t *light_q16)
 {
