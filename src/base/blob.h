@@ -58,23 +58,23 @@ enum glint_blob_fault {
 /* Initialiser of an array of error messages, indexed by fault. THING is the
  * name of the file type, THINGS its plural, DONE the participle of the
  * operation that makes it ("baked"). The message of GLINT_BLOB_OK is NULL. */
-#define GLINT_BLOB_FAULT_TEXT(thing, things, done)                          \
-    {                                                                       \
-        [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes", \
-        [GLINT_BLOB_FOREIGN] = "not a baked " thing,                        \
-        [GLINT_BLOB_NEWER] = "the " thing " was " done " by a newer glint", \
-        [GLINT_BLOB_NO_VERSION] =                                           \
-            "no glint ever " done " " things " of this version",            \
-        [GLINT_BLOB_OLDER] =                                                \
-            "the " thing " was " done " by an older glint: bake it again",  \
-        [GLINT_BLOB_TRUNCATED] = "the " thing " is truncated",              \
-        [GLINT_BLOB_LONGER] = "the " thing " continues after its end",      \
-        [GLINT_BLOB_DAMAGED] =                                              \
-            "the checksum is wrong: the " thing " is damaged",              \
-        [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",     \
-        [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte beyond ASCII",     \
-        [GLINT_BLOB_NAME_ENDLESS] = "the name does not end",                \
-        [GLINT_BLOB_NAME_EMPTY] = "the name is empty"                       \
+#define GLINT_BLOB_FAULT_TEXT(thing, things, done)                            \
+    {                                                                         \
+        [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes",   \
+        [GLINT_BLOB_FOREIGN] = "not a baked " thing,                          \
+        [GLINT_BLOB_NEWER] = "the " thing " was " done " by a newer glint",   \
+        [GLINT_BLOB_NO_VERSION] =                                             \
+            "glint has never " done " " things " of version 0",               \
+        [GLINT_BLOB_OLDER] =                                                  \
+            "the " thing " was " done " by an older glint: bake it again",    \
+        [GLINT_BLOB_TRUNCATED] = "the " thing " is truncated",                \
+        [GLINT_BLOB_LONGER] = "the " thing " is longer than its header says", \
+        [GLINT_BLOB_DAMAGED] =                                                \
+            "the checksum is wrong: the " thing " is damaged",                \
+        [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",       \
+        [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte above 0x7f",         \
+        [GLINT_BLOB_NAME_ENDLESS] = "the name is not zero-terminated",        \
+        [GLINT_BLOB_NAME_EMPTY] = "the name is empty"                         \
     }
 
 /* Checks at compile time that the struct HEADER begins with the fields of

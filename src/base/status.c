@@ -15,7 +15,7 @@ const char *glint_status_text(enum glint_status status)
     case GLINT_E_UNSUPPORTED:
         return "not supported";
     case GLINT_E_LENS:
-        return "bad lens data";
+        return "invalid lens data";
     case GLINT_E_IO:
         return "reading failed";
     case GLINT_E_OUTPUT:

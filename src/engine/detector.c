@@ -7,12 +7,12 @@
 
 #include "engine/frame/block.h"
 
-/* Min number of spots of a still picture whose power is measured. */
+/* Min number of spots of a still picture whose power is measured before the
+ * strongest are selected. */
 enum { MEASURED = 16 };
 
-/* Returns the max number of tracks if at most MAX lamps are shown. The
- * number is larger than MAX, so that a lamp that becomes strong has been
- * tracked before. */
+/* Returns the max number of tracks for MAX lamps that are shown. It exceeds
+ * MAX, so that a lamp that becomes strong has been tracked before. */
 static int choose_max_tracks(int max)
 {
     const int wanted = max < 64 ? 128 : 2 * max;
@@ -20,7 +20,8 @@ static int choose_max_tracks(int max)
     return wanted < GLINT_LAMP_DETECTOR_MAX ? wanted : GLINT_LAMP_DETECTOR_MAX;
 }
 
-/* Returns BYTES rounded up to the alignment that the init functions require. */
+/* Returns BYTES rounded up to a multiple of 64, the alignment that the init
+ * functions require. */
 static size_t round_bytes_up_to_64(size_t bytes)
 {
     return (bytes + 63) & ~(size_t)63;
@@ -113,9 +114,9 @@ static int32_t max_i32(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-/* Returns the min semi-axis of a spot in a still picture. The glare around a
- * lamp's core hides its true size if that is smaller than this; without a
- * minimum the lamp would be drawn as a point, whose ghosts have
+/* Returns the min semi-axis, pixels, of the lamp of SPOT in a still picture.
+ * Glare around the core of a lamp hides the true size of a smaller one; without
+ * a minimum such a lamp would be drawn as a point, whose ghosts have
  * unrealistically sharp outlines. */
 static int32_t compute_min_axis_q8(const struct glint_spot *spot)
 {
@@ -144,9 +145,9 @@ make_track_of_still_picture(const struct glint_spot *spot, uint32_t id)
         .rgb_q15 = {spot->rgb_q15[0], spot->rgb_q15[1], spot->rgb_q15[2]}};
 }
 
-/* Sets the power of a spot as if each clipped pixel had the light
- * 2^headroom. If the headroom is above 8 stops, the unit of power is
- * 2^(headroom - 8), as tracks hold powers up to 2^42. */
+/* Sets the power of a spot as if each clipped pixel had the light 2^headroom.
+ * For a headroom above 8 stops the unit of power is 2^(headroom - 8), as tracks
+ * can store powers only up to 2^42. */
 static void set_spot_power(struct glint_lamp_detector *f,
                            struct glint_spot *spot)
 {
@@ -157,9 +158,10 @@ static void set_spot_power(struct glint_lamp_detector *f,
         ((double)spot->flux_q16 + spot->n_clipped * each) / f->scale, 0x1p42);
 }
 
-/* Finds spots, and measures the profiles of the strongest ones, at most
- * max_tracks. Measuring the profiles of a thousand spots, as in a city at
- * night, would cost several times as much as finding them. */
+/* Finds up to MAX spots of IMAGE, and measures the profiles of the strongest,
+ * at most max_tracks. Returns the number of spots. Measuring the profiles of a
+ * thousand spots, as in a city at night, would cost several times as much as
+ * finding them. */
 static int find_and_measure_spots(struct glint_lamp_detector *f,
                                   const struct glint_image *image, int max)
 {
@@ -174,8 +176,8 @@ static int find_and_measure_spots(struct glint_lamp_detector *f,
     return n;
 }
 
-/* Moves the MAX of N spots that have the most power to the front, the
- * strongest first; equal ones keep their order. */
+/* Sorts the MAX of N spots with the highest power to the beginning of the
+ * array, the strongest first; equal spots stay in order. */
 static void move_strongest_spots_to_front(struct glint_spot *spot, int n,
                                           int max)
 {
@@ -192,9 +194,10 @@ static void move_strongest_spots_to_front(struct glint_spot *spot, int n,
     }
 }
 
-/* Finds the lamps of IMAGE without regard to earlier pictures; returns their
- * number. Of up to MEASURED spots, if max is lower, those of the most power are
- * chosen: a flat window has more clipped light than a lamp that is brighter. */
+/* Finds the lamps of a still picture, without tracking; returns their number,
+ * at most f->max. If max is below MEASURED, the spots of the highest measured
+ * power are selected of MEASURED spots, because a flat window may have more
+ * clipped light than a brighter lamp. */
 static int find_lamps_in_still_picture(struct glint_lamp_detector *f,
                                        const struct glint_image *image)
 {
@@ -261,8 +264,9 @@ int glint_lamp_detector_find_lamps(struct glint_lamp_detector *detector,
     return f->n_tracks;
 }
 
-/* Returns whether a spot is about as compact as a disc, whose area is 2 pi
- * times its squared RMS radius: its area must be at least 60 % of that. */
+/* Returns whether a spot is about as compact as a disc: its area is at least 60
+ * % of 2 pi times its squared RMS radius, the area of a disc of the same RMS
+ * radius. */
 static int is_spot_disc_shaped(const struct glint_spot *spot)
 {
     const double r = spot->size_q8 / 256.0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Finds lamps in pictures of one size, and tracks them if the pictures are
- * frames of a video. Only the open functions allocate memory.
+ * frames of a video. Only the functions named open allocate memory.
  */
 #ifndef GLINT_ENGINE_DETECTOR_H
 #define GLINT_ENGINE_DETECTOR_H
@@ -14,12 +14,13 @@
 enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* equal to GLINT_ENGINE_MAX_LAMPS */
 
 struct glint_lamp_detector {
-    double headroom_ev; /* stops by which clipped pixels exceed white; below 0:
-                           estimated from the profile of each lamp */
+    double headroom_ev; /* assumed brightness of clipped pixels, stops above
+                           white; below 0: estimated from the profile of each
+                           lamp */
     int max; /* max number of lamps per picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
 
-    /* Lamps of the last frame before conversion to directions, the strongest
-     * first. The ids of lamps in a still picture count from 1. */
+    /* Lamps of the last frame in picture coordinates, the strongest first. The
+     * ids of lamps in a still picture count from 1. */
     struct glint_lamp_track *track;
     int n_tracks;
 
@@ -29,8 +30,8 @@ struct glint_lamp_detector {
     struct glint_profile *profile;
     double scale; /* factor from powers of tracks to powers of lamps */
     struct glint_spot *spot; /* [GLINT_LAMP_DETECTOR_MAX] */
-    int n_spots; /* number of spots in the last frame, including spots that are
-                    not lamps */
+    int n_spots; /* number of spots of the last frame, including those rejected
+                    as lamps */
     int max_tracks;
     void *mem;
 };
@@ -50,34 +51,35 @@ glint_lamp_detector_open_at(struct glint_lamp_detector *detector, int width,
                             int height, const double threshold_ev[2]);
 void glint_lamp_detector_close(struct glint_lamp_detector *detector);
 
-/* Finds the lamps of IMAGE, ELAPSED_US after the last frame, or 0 if IMAGE
- * is a still picture. Writes them to LAMPS, an array of
- * GLINT_LAMP_DETECTOR_MAX, and returns their number. Lamps fade in and out
- * as described in glint/lamp_tracker.h, so the number may exceed max for a
- * while. */
+/* Finds the lamps of IMAGE, writes them to LAMPS, an array of
+ * GLINT_LAMP_DETECTOR_MAX, and returns their number. ELAPSED_US: time since the
+ * last frame; 0: IMAGE is a still picture. VIEW and FOCAL_MM convert pixels to
+ * directions. Lamps of a video fade in and out as described in
+ * glint/lamp_tracker.h, so their number may exceed max for a while. */
 int glint_lamp_detector_find_lamps(struct glint_lamp_detector *detector,
                                    const struct glint_image *image,
                                    int32_t elapsed_us,
                                    const struct glint_view *view,
                                    double focal_mm, struct glint_lamp *lamps);
 
-/* Returns the light of LAMP in excess of what the picture shows, in white x
- * pixels. TRACK is the lamp's track, LEVEL its fade level 0 .. 1, SHARE the
- * visible fraction of the lamp, WHITE the linear light of the picture's
- * white. */
+/* Returns the light of LAMP beyond what the picture shows (its flux), in white
+ * times pixels, at least 0. TRACK is the lamp's track, LEVEL its fade level 0
+ * .. 1, SHARE the visible fraction of the lamp, WHITE the linear light of the
+ * picture's white. */
 double glint_lamp_compute_excess_light(const struct glint_lamp *lamp,
                                        const struct glint_lamp_track *track,
                                        double level, double share,
                                        double white);
 
-/* Returns the Ith strongest spot of the last frame that was rejected as a
- * lamp although its mean light is within a stop of white and it is about as
- * compact as a disc; NULL if there are not that many. */
+/* Returns a spot of the last frame that was rejected as a lamp but is doubtful:
+ * its mean light is within a stop of white, and it is about as compact as a
+ * disc. I counts such spots from 0, the strongest first; NULL if there are no
+ * more. */
 const struct glint_spot *
 glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector, int i);
 
-/* Declares that the next frame is unrelated to the last one, as after a cut
- * to another camera. */
+/* Forgets all tracks: the next frame is unrelated to the last one, as after a
+ * cut to another camera. */
 void glint_lamp_detector_restart_tracking(struct glint_lamp_detector *detector);
 
 #endif

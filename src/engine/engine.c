@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Makes engines, and changes them between pictures. */
+ * Creates engines, and changes their settings between pictures. */
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -10,7 +10,8 @@
 #include "engine/engine_parts.h"
 #include "glint/kernels.h"
 
-/* Size of the configuration of the first programs. */
+/* Size of struct glint_engine_config in the first version of the library, the
+ * min that programs may pass. */
 #define FIRST_SIZE offsetof(struct glint_engine_config, cache)
 
 void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
@@ -36,8 +37,8 @@ void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
     memcpy(cfg, &all, size < sizeof all ? size : sizeof all);
 }
 
-/* Returns whether the reserved members of C are 0: a program of a newer library
- * may set members there that this one does not know. */
+/* Returns whether the reserved members of C are 0. A program that was compiled
+ * for a newer library may set members there that this library does not have. */
 static bool are_reserved_members_zero(const struct glint_engine_config *c)
 {
     static const uint64_t zero[16];
@@ -48,7 +49,8 @@ static bool are_reserved_members_zero(const struct glint_engine_config *c)
            UNSET(drawing.dials);
 }
 
-/* Returns a text that states what is out of range in C, or NULL. */
+/* Returns a message that names the setting of C that is out of range, or NULL.
+ */
 static const char *check_engine_config(const struct glint_engine_config *c)
 {
     const struct glint_engine_light *l = &c->light;
@@ -57,36 +59,38 @@ static const char *check_engine_config(const struct glint_engine_config *c)
 
     if (c->width < 1 || c->width > GLINT_MAX_SIDE || c->height < 1 ||
         c->height > GLINT_MAX_SIDE)
-        return "pictures have 1 to 32768 pixels a side";
+        return "width and height must be 1 to 32768 pixels";
     if (!c->model &&
         !(c->camera.setup && c->camera.rays && c->camera.sensor_width_mm > 0))
-        return "there is no model";
+        return "model is NULL, and camera has no setup, rays and "
+               "sensor_width_mm";
     if (s->max_found < 0 || s->max_found > GLINT_ENGINE_MAX_LAMPS)
         return "max_found must be 0 to 1024";
     if (s->more_lamps < 0 || s->more_lamps > 1 << 24 || s->max_drawn < 0 ||
         isnan(s->headroom_ev))
-        return "the number of lamps is out of range";
+        return "more_lamps, max_drawn or headroom_ev is out of range";
     if (!(l->strength >= 0 && l->strength <= 100) ||
         !(l->gain >= 0 && isfinite(l->gain)) || !(fabs(l->exposure_ev) <= 100))
-        return "the exposure is out of range";
+        return "strength must be 0 to 100, gain at least 0, exposure_ev -100 "
+               "to 100";
     if (d->tile_log2 < 3 || d->tile_log2 > 6 || !(d->apart_px >= 0))
-        return "tile_log2 or apart_px is out of range";
+        return "tile_log2 must be 3 to 6, and apart_px at least 0";
     if (c->arena && c->arena_has_all)
         return "arena must be NULL if arena_has_all is set";
     if (!(l->starburst >= 0 && l->starburst <= 1000))
-        return "the starburst is out of range";
+        return "starburst must be 0 to 1000";
     if (!(l->veil >= 0 && l->haze >= 0 && l->veil + l->haze <= GLINT_MOST_VEIL))
-        return "the veil is out of range";
+        return "veil and haze must be at least 0, and their sum at most 0.9";
     if (!(s->threshold_ev[0] <= 0 && s->threshold_ev[0] >= -20 &&
           s->threshold_ev[1] >= -20 &&
           s->threshold_ev[1] <= s->threshold_ev[0]))
-        return "the thresholds are out of range";
+        return "threshold_ev must be -20 to 0, the second not above the first";
     return NULL;
 }
 
 /* ------------------------------------------------------------------- making */
 
-/* Returns whether IRIS has more than straight, clean blades. */
+/* Returns whether IRIS has round blades, a soft edge, dust or a mask. */
 static bool has_nondefault_iris(const struct glint_iris *iris)
 {
     return iris->roundness != 0 || iris->softness != 0 || iris->dust != 0 ||
@@ -103,7 +107,7 @@ set_setup_iris(struct glint_setup *setup,
     if (camera->stops)
         return camera->stops->set_iris(setup, &camera->iris, dirt, error);
     snprintf(error->text, sizeof error->text,
-             "camera.iris needs camera.stops = &glint_engine_all_stops");
+             "camera.iris requires camera.stops = &glint_engine_all_stops");
     return GLINT_E_ARGUMENT;
 }
 
@@ -122,8 +126,8 @@ enum glint_status glint_engine_setup(struct glint_setup *setup,
     if (waves->kind != GLINT_WAVES_AUTO &&
         (waves->n < 1 || waves->n > GLINT_MAX_WAVELENGTHS)) {
         snprintf(error->text, sizeof error->text,
-                 "there are %d wavelengths; 1 to %d are possible", waves->n,
-                 GLINT_MAX_WAVELENGTHS);
+                 "camera.waves has %d wavelengths, but must have 1 to %d",
+                 waves->n, GLINT_MAX_WAVELENGTHS);
         return GLINT_E_ARGUMENT;
     }
     n = glint_waves_list(waves, nm);
@@ -149,7 +153,8 @@ enum glint_status glint_engine_setup(struct glint_setup *setup,
     return GLINT_OK;
 }
 
-/* Makes the dirt on the front element, unless the caller of C has some. */
+/* Makes the dirt on the front element, unless the caller has set camera->front.
+ */
 static enum glint_status
 make_front_dirt(struct glint_engine_optics *o,
                 const struct glint_engine_camera *camera,
@@ -162,7 +167,7 @@ make_front_dirt(struct glint_engine_optics *o,
         status = camera->stops->make_front(&o->own_front, dirt, error);
     } else if (!camera->front && (dirt->dust != 0 || dirt->mask)) {
         snprintf(error->text, sizeof error->text,
-                 "camera.front_dirt needs camera.stops = "
+                 "camera.front_dirt requires camera.stops = "
                  "&glint_engine_all_stops");
         status = GLINT_E_ARGUMENT;
     }
@@ -229,7 +234,8 @@ static enum glint_status open_lamp_detector(struct glint_engine *e,
                                        c->search.threshold_ev);
 }
 
-/* Takes the memory that C gives for drawing. */
+/* Allocates all memory for drawing, within the limits of C, so that drawing
+ * allocates nothing. */
 static enum glint_status
 reserve_drawing_memory(struct glint_engine *e,
                        const struct glint_engine_config *c)
@@ -256,8 +262,8 @@ reserve_drawing_memory(struct glint_engine *e,
         f, NULL, bytes - glint_frame_star_count_bytes(f), e->most_lamps, drawn);
 }
 
-/* Writes why an engine could not be made; with too little memory, the minimum
- * that it needs. */
+/* Writes to ERROR why the engine could not be created; if the arena is too
+ * small, also the min size. */
 static void describe_creation_failure(struct glint_engine *e,
                                       const struct glint_engine_config *c,
                                       enum glint_status status,
@@ -292,7 +298,8 @@ static enum glint_status init_engine(struct glint_engine *e,
         status = make_front_dirt(o, &c->camera, error);
     if (status == GLINT_OK &&
         c->drawing.only_ghost >= o->setup->n_ghosts - o->setup->n_parts) {
-        snprintf(error->text, sizeof error->text, "the lens has %d ghosts",
+        snprintf(error->text, sizeof error->text,
+                 "only_ghost is too high: the lens has %d ghosts",
                  o->setup->n_ghosts - o->setup->n_parts);
         status = GLINT_E_ARGUMENT;
     }
@@ -312,8 +319,9 @@ static enum glint_status init_engine(struct glint_engine *e,
         status = GLINT_E_MEMORY;
     if (status == GLINT_OK)
         status = init_drawing_frame(e, c);
-    /* By hand the response is only for glint_engine_exposed(). Without a model
-     * it is measured when a video needs it. */
+    /* With an exposure set by hand the response is needed only by
+     * glint_engine_exposed(). Without a model it is measured when a video needs
+     * it. */
     if (status == GLINT_OK && e->paint.frame.lens &&
         (!c->light.by_hand || c->cache))
         status = glint_response_measure_cached(&e->paint.frame, c->arena_bytes,
@@ -342,8 +350,8 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
     if (cfg->size < FIRST_SIZE || cfg->size > sizeof whole ||
         !are_reserved_members_zero(cfg)) {
         snprintf(error->text, sizeof error->text,
-                 "the program needs another version of the library, or its "
-                 "configuration is not of glint_engine_defaults()");
+                 "the configuration was not set by glint_engine_defaults(), or "
+                 "the program was compiled for another version of glint");
         return GLINT_E_ARGUMENT;
     }
     glint_engine_defaults(&whole, cfg->width, cfg->height);
@@ -355,7 +363,7 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
     }
     e = calloc(1, sizeof *e);
     if (!e) {
-        snprintf(error->text, sizeof error->text, "no memory");
+        snprintf(error->text, sizeof error->text, "not enough memory");
         return GLINT_E_MEMORY;
     }
     status = init_engine(e, &whole, error);
@@ -430,14 +438,14 @@ void glint_engine_update_stop(struct glint_engine *engine)
 {
     struct glint_frame *f = &engine->paint.frame;
 
-    if (f->trace) /* forgets the rays of the former setup */
+    if (f->trace) /* frees the cached rays of the former setup */
         f->trace->finish(f);
     glint_setup_stop(engine->optics.setup, &f->cfg.stop);
     glint_frame_apply_config(f);
 }
 
-/* Exchanges the stop of ENGINE, which OTHER, CAMERA and DIRT make, with
- * these. */
+/* Swaps setup, camera and stop dirt of ENGINE with OTHER, CAMERA and DIRT, and
+ * applies the new stop. A second call restores the former state. */
 static void swap_engine_stop(struct glint_engine *engine,
                              struct glint_setup *other,
                              struct glint_engine_camera *camera,
@@ -479,7 +487,7 @@ glint_engine_change_stop(struct glint_engine *engine,
         return status;
     swap_engine_stop(engine, &setup, &other, &dirt);
     if (measure && engine->expose.light.by_hand)
-        response.n = 0; /* of another stop */
+        response.n = 0; /* invalid, as it was measured for another stop */
     else if (measure)
         status = glint_response_measure(
             f, f->limits.reserved ? f->memory.bytes : 0, &response);

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Configures an engine from the table of options. */
+ * Fills the configuration of an engine from the options of glint/options.h. */
 #include "engine/options/texts.h"
 #include "engine/engine_parts.h"
 #include "glint/options.h"
 
-/* Max lamps of a search: most pictures have many barely visible ones. */
+/* Default max number of lamps per picture; most pictures have many more that
+ * are barely visible. */
 enum { FOUND = 16 };
 
 static unsigned select_flare_parts(int only)
@@ -22,7 +23,8 @@ static unsigned select_flare_parts(int only)
     }
 }
 
-/* Returns the factor on the star: off with a single ghost, unless given. */
+/* Returns the factor on the brightness of starbursts: 0 if a single ghost is
+ * drawn, unless option starburst is set. */
 static double choose_starburst_factor(const struct glint_options *o)
 {
     if (GLINT_OPTION_GIVEN(o, starburst))
@@ -41,7 +43,8 @@ make_drawing_config(const struct glint_options *o)
     struct glint_engine_drawing d = {
         .dials = glint_options_quality(o).dials,
         .budget_ms = o->budget,
-        /* A limit of work would make the grid coarser than was requested. */
+        /* 0, no limit, if a grid was requested, as a limit of work would make
+         * it coarser */
         .most_minsn =
             has_grid && !GLINT_OPTION_GIVEN(o, work) ? 0 : 1000 * o->work,
         .apart_px = o->apart,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws the flare of a picture, and parts of it as layers. */
+ * Draws the flare of a picture, or parts of the flare as separate layers. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,7 +34,8 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     return status;
 }
 
-/* Draws what is chosen as it is planned for pictures of 8 bits. */
+/* Draws the selected parts into RGB, linear light, with the plan and the
+ * quality that a picture of 8-bit codes would get. */
 static enum glint_status draw_with_8bit_plan(struct glint_frame *f,
                                              const struct glint_lamp *lamps,
                                              int n, double scale, float *rgb,
@@ -45,7 +46,7 @@ static enum glint_status draw_with_8bit_plan(struct glint_frame *f,
         glint_image_over(rgb, GLINT_LINEAR_Q20, f->view.width, f->view.height);
     enum glint_status status;
 
-    /* RGB holds integers until they are converted. */
+    /* RGB contains integers, _q20, until they are converted below. */
     f->picture.for_codes = true;
     status = glint_frame_draw(f, lamps, n, scale, &layer, report);
     f->picture.for_codes = false;
@@ -58,7 +59,7 @@ static enum glint_status draw_with_8bit_plan(struct glint_frame *f,
     return status;
 }
 
-/* Draws the veil that was set for the last picture. */
+/* Adds the veil that was computed for the last picture to RGB. */
 static enum glint_status draw_prepared_veil(struct glint_frame *f, float *rgb)
 {
     const size_t samples = 3 * (size_t)f->view.width * (size_t)f->view.height;

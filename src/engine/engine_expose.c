@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * How bright the flare of a picture is. */
+ * Chooses the brightness of the flare of a picture: the exposure. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,8 +27,9 @@ bool glint_engine_can_draw(const struct glint_engine *engine,
            n >= 0 && n <= engine->most_lamps;
 }
 
-/* Returns the factor on the ghosts of the lamp ID, which is lamp I of the
- * picture or, if only some of its lamps are drawn, another one. */
+/* Returns the factor on the ghosts of the lamp with number ID, from the last
+ * exposure; 1 if that had no such lamp. I: index at which the lamp probably is,
+ * which is wrong if only some lamps of the picture are drawn. */
 static double find_ghost_factor(const struct glint_engine_exposing *x,
                                 uint32_t id, int i)
 {
@@ -68,8 +69,8 @@ void glint_engine_select_parts(struct glint_engine *engine, unsigned parts,
     f->veil.front = veil ? engine->optics.front : NULL;
 }
 
-/* Exposes a still picture, for which there is time, by drawing its flare
- * small. */
+/* Corrects the exposure of a still picture by drawing its flare at reduced size
+ * and measuring it. Too slow for videos. */
 static enum glint_status
 expose_by_drawing_flare(struct glint_engine *e, int n,
                         const struct glint_image *image, double white)
@@ -92,9 +93,10 @@ expose_by_drawing_flare(struct glint_engine *e, int n,
     return status;
 }
 
-/* Returns the light of LAMP, which was found, in excess of what the picture
- * shows, ignoring occlusion. In a video it is smoothed over a third of a
- * second, as the estimate for a clipped lamp may jump in a single picture.
+/* Returns the light of LAMP, found in the picture, beyond what the picture
+ * shows, as if the lamp were not occluded; white times pixels. In a video it is
+ * smoothed over a third of a second, as the estimate for a clipped lamp may
+ * jump from picture to picture.
  */
 static double compute_smoothed_excess(const struct glint_engine_exposing *x,
                                       const struct glint_engine_lamp *lamp,
@@ -143,7 +145,8 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
         find->is_cut || (find->is_searched && elapsed_us > 0 &&
                          glint_lamp_tracker_was_cut(find->detector.tracks));
     const bool is_drawn = elapsed_us == 0 && f->budget.ms <= 0 && x->by_drawing;
-    /* Stands for the response where the flare is drawn: that replaces it. */
+    /* placeholder for the response of a picture whose flare is drawn, which
+     * replaces the exposure by the response */
     const struct glint_response any = {.n = 1};
     enum glint_status status = GLINT_OK;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The lamps of a picture. */
+ * Finds the lamps of a picture. */
 #include "engine/engine_parts.h"
 
 struct glint_engine_lamp glint_engine_lamp_of(const struct glint_lamp *lamp,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stops other than straight, clean blades, and dirt on the front element: only
- * programs that name them link this file. */
+ * Stops with round blades, soft edges, dust or masks, and dirt on the front
+ * element. Only programs that refer to this file link it. */
 #include "engine/engine_parts.h"
 
 const struct glint_engine_stops glint_engine_all_stops = {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * State of an engine, by stage: optics, lamp search, exposure, drawing. Shared
- * by the files engine*.c.
+ * Internal state of an engine, by stage: optics, lamp search, exposure,
+ * drawing. Shared by the files engine*.c.
  */
 #ifndef GLINT_ENGINE_ENGINE_PARTS_H
 #define GLINT_ENGINE_ENGINE_PARTS_H
@@ -14,7 +14,8 @@
 #include "glint/engine.h"
 #include "glint/setup.h"
 
-/* glint_setup_iris(), glint_front_make() and glint_front_free(). */
+/* Pointers to glint_setup_iris(), glint_front_make() and glint_front_free(), so
+ * that only programs that need these link them. */
 struct glint_engine_stops {
     enum glint_status (*set_iris)(struct glint_setup *setup,
                                   const struct glint_iris *iris,
@@ -27,27 +28,28 @@ struct glint_engine_stops {
 };
 
 struct glint_engine_optics {
-    /* points to OWN, or to the caller's setup */
+    /* OWN, or the caller's setup */
     const struct glint_setup *setup;
     struct glint_setup own;
-    struct glint_engine_camera camera; /* camera that OWN was made for */
-    struct glint_dirt *dirt; /* dirt on the front lens in OWN, or NULL */
+    struct glint_engine_camera camera; /* camera for which OWN was made */
+    struct glint_dirt *dirt; /* dust and masks in the stop of OWN, or NULL */
     struct glint_front_dirt *own_front;
-    /* points to OWN_FRONT, to the caller's, or NULL */
+    /* dirt on the front element: OWN_FRONT, the caller's, or NULL */
     const struct glint_front_dirt *front;
 };
 
 struct glint_engine_finding {
     struct glint_lamp_detector detector;
     struct glint_lamp found[GLINT_LAMP_DETECTOR_MAX];
-    int32_t elapsed_us; /* time from the last picture to the next, us; 0: not
-                           known */
-    bool is_searched;   /* true: lamps of the picture that is drawn next have
-                           been searched */
+    int32_t elapsed_us; /* time from the last picture to the next, us; 0:
+                           unknown, or a still picture */
+    bool is_searched;   /* true: the lamps of the next picture have been
+                           searched */
     bool is_cut; /* true: the next picture is unrelated to the last one */
 };
 
-/* Light of a lamp in the last picture in excess of what the picture showed. */
+/* The light of one lamp of the last picture beyond what that picture showed,
+ * white times pixels. */
 struct glint_engine_before {
     uint32_t id;
     double excess;
@@ -62,14 +64,14 @@ struct glint_engine_exposing {
                         at reduced size and measuring it */
     bool is_done;    /* true: the exposure of the next picture is set */
     struct glint_engine_before *before;
-    double *part; /* [most_lamps]: factor on the ghosts of each lamp of the last
+    double *part; /* [n_before]: factor on the ghosts of each lamp of the last
                      picture (engine/strength.h) */
     int n_before;
 };
 
 struct glint_engine_painting {
     struct glint_frame frame;
-    struct glint_lamp *lamp; /* [most_lamps]: lamps to draw in the picture */
+    struct glint_lamp *lamp; /* [most_lamps]: lamps that are drawn */
     unsigned parts;
     bool keep_points, keep_lights;
 };
@@ -82,33 +84,33 @@ struct glint_engine {
     int most_lamps; /* max number of lamps per picture */
 };
 
-/* Sets the stop of CAMERA by those of the options stop and dust that are set
- * in O. */
+/* Sets the stop of CAMERA from the options stop and dust of O; an option that
+ * is not set changes nothing. */
 struct glint_options;
 void glint_engine_configure_stop(struct glint_engine_camera *camera,
                                  const struct glint_options *o);
 
-/* Sets another stop of ENGINE, for which it makes its own setup. If MEASURE
- * is set, measures the brightness of flares again. On failure the stop is
- * unchanged. */
+/* Replaces the stop of ENGINE by that of CAMERA, and makes a new setup. If
+ * MEASURE is true, measures the lens response again. On failure the stop is
+ * unchanged, and ERROR has the reason. */
 enum glint_status
 glint_engine_change_stop(struct glint_engine *engine,
                          const struct glint_engine_camera *camera, bool measure,
                          struct glint_error *error);
 
-/* Enables PARTS of the flare as far as the options permit them, with
- * starbursts of brightness STAR, and a veil if VEIL is set; disables all
- * other parts. */
+/* Selects the parts of the flare that are drawn next: PARTS, GLINT_ENGINE_
+ * flags; STAR: factor on the brightness of starbursts; VEIL: false disables the
+ * veil. */
 void glint_engine_select_parts(struct glint_engine *engine, unsigned parts,
                                double star, bool veil);
 
-/* Returns whether ENGINE can draw N lamps on IMAGE: the number and the
- * format and size of IMAGE are in range. */
+/* Returns whether ENGINE can draw N lamps on IMAGE: N is in range, and IMAGE
+ * has the size of the engine's pictures. */
 bool glint_engine_can_draw(const struct glint_engine *engine,
                            const struct glint_image *image, int n);
 
-/* Copies N LAMPS to the array from which they are drawn, and returns that
- * array. The powers are those of their ghosts. */
+/* Copies N LAMPS to the array from which ghosts are drawn, and returns that
+ * array. Powers are multiplied by the factors of the exposure on ghosts. */
 const struct glint_lamp *
 glint_engine_copy_ghost_lamps(struct glint_engine *engine,
                               const struct glint_engine_lamp *lamps, int n);

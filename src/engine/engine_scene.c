@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a scene over a picture does to the lamps of its flare. */
+ * Lamps of a picture onto which a 3-D scene is composited: objects occlude
+ * lamps, and lights of the scene become lamps. */
 #include <math.h>
 
 #include "engine/engine_parts.h"
 #include "glint/area.h"
 #include "glint/scene/scene.h"
 
-/* Lights of scenes are numbered from here on. */
+/* First number of the lamps that are lights of scenes. */
 #define SCENE_IDS UINT32_C(0xffffff00)
 
-/* Leaves of LAMP the fraction SEEN of its light; notes in HIDDEN whether that
- * is none. */
+/* Multiplies the power of LAMP by the visible fraction SEEN, and increments
+ * HIDDEN if that is 0. */
 static void attenuate_lamp(struct glint_engine_lamp *lamp, double seen,
                            int *hidden)
 {
@@ -30,7 +31,7 @@ static int occlude_lamps(const struct glint_engine *e,
     int hidden = 0;
 
     for (int i = 0; i < n; i++) {
-        /* An even disc has twice its RMS semi-axis as radius. */
+        /* the radius of a uniform disc is twice its RMS semi-axis */
         const double radius = 2 * pixels * lamps[i].lamp.axis[0];
         double x, y;
         int cover;
@@ -45,7 +46,8 @@ static int occlude_lamps(const struct glint_engine *e,
     return hidden;
 }
 
-/* Sets LAMP to FROM; returns false if that has no light. */
+/* Converts FROM, a light of a scene, to LAMP. Returns false if it has no light.
+ */
 static bool convert_scene_lamp(const struct glint_engine *e,
                                const struct glint_scene_lamp *from,
                                struct glint_lamp *lamp)
@@ -99,7 +101,8 @@ void glint_engine_apply_shares(struct glint_engine_lamp *lamps, int n,
     for (int i = 0; i < n; i++)
         if (lamps[i].share > GLINT_ENGINE_HIDDEN || !is_still)
             lamps[i].level *= lamps[i].share;
-        else /* the exposure of a still picture lifts what is left */
+        else /* removed, as the exposure of a still picture would raise the rest
+                until it is visible */
             lamps[i].lamp.power = 0;
 }
 

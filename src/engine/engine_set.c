@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Options of an engine that change between pictures, by name. */
+ * Sets options of an engine by name, between pictures. */
 #include <stdio.h>
 
 #include "engine/engine_parts.h"
 #include "glint/options.h"
 
-/* Sets what OPTION of O is, which is valid, for the pictures to come. */
+/* Applies the value of OPTION in O, which is valid, to the following pictures.
+ */
 static enum glint_status apply_option(struct glint_engine *engine,
                                       const struct glint_option *option,
                                       const struct glint_options *o,
@@ -38,14 +39,14 @@ static enum glint_status apply_option(struct glint_engine *engine,
         return glint_engine_change_stop(engine, &camera, false, error);
     default:
         snprintf(error->text, sizeof error->text,
-                 "%s is fixed when the engine is made", option->name);
+                 "%s can be set only when the engine is created", option->name);
         return GLINT_E_ARGUMENT;
     }
     glint_engine_set_light(engine, &light);
     return GLINT_OK;
 }
 
-/* Sets NAME to TEXT, or to VALUE if it is NULL. */
+/* Sets option NAME to TEXT, or to VALUE if TEXT is NULL. */
 static enum glint_status set_engine_option(struct glint_engine *engine,
                                            const char *name, const char *text,
                                            double value,
@@ -63,7 +64,8 @@ static enum glint_status set_engine_option(struct glint_engine *engine,
         return apply_option(engine, option, &o, error);
     if (option && status == GLINT_E_ARGUMENT) {
         glint_option_accepts(option, accepts, sizeof accepts);
-        snprintf(error->text, sizeof error->text, "%s is %s", name, accepts);
+        snprintf(error->text, sizeof error->text, "%s accepts: %s", name,
+                 accepts);
     }
     return status;
 }

@@ -9,15 +9,15 @@
 #include "engine/explain_frame.h"
 #include "engine/frame/frame_parts.h"
 
-/* Returns the cost of N items of KIND, instructions. */
+/* Returns the cost of N items of KIND, such as edges, in instructions. */
 static double compute_item_cost(enum glint_cost_kind kind, double n)
 {
     return 1e3 * glint_cost_weight[kind].counted * n;
 }
 
-/* Returns the cost of P in instructions, and sets STAGE to the cost of each
- * kind of item. Lit pixels and pieces of cells are not counted, as they do
- * not belong to a single ghost, light or wave. */
+/* Returns the cost of part P of the flare, instructions, and sets STAGE to the
+ * cost per kind of item. Lit pixels and subdivided cells are not counted, as
+ * they do not belong to a single ghost, light or wave. */
 static double compute_part_cost(const struct glint_explain_part *p,
                                 double *stage)
 {
@@ -54,8 +54,8 @@ static void add_bundle_account(struct glint_explain_part *p,
                                const struct glint_account *a)
 {
     p->probed += a->probed;
-    if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* The ghost is drawn with
-                                                  another set of waves. */
+    if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* another set of waves was
+                                                  chosen for the ghost */
         return;
     p->of[a->outcome]++;
     if (a->outcome != GLINT_OUTCOME_DRAWN && a->outcome != GLINT_OUTCOME_EMPTY)
@@ -70,7 +70,7 @@ static void add_bundle_account(struct glint_explain_part *p,
     p->refs += a->refs;
 }
 
-/* Returns the index in e->wave of the part that includes wave WAVE: its wave
+/* Returns the index in e->wave of the part that contains wave WAVE: its wave
  * set, or the wave itself if there are no sets. */
 static int find_wave_part(const struct glint_explain *e, int wave)
 {
@@ -96,7 +96,8 @@ static void collect_bundle_accounts(struct glint_explain *e)
                 glint_flare_account(e->frame->memory.flare, ghost, light, wave,
                                     &a);
                 add_bundle_account(&e->all, &a);
-                /* NOLINTNEXTLINE: set_ghost_numbers() has set all of them */
+                /* NOLINTNEXTLINE: set_ghost_numbers() has set all elements of
+                 * ghost_of */
                 add_bundle_account(&e->ghost[e->ghost_of[ghost]], &a);
                 add_bundle_account(&e->light[light], &a);
                 add_bundle_account(&e->wave[find_wave_part(e, wave)], &a);
@@ -127,8 +128,8 @@ void glint_explain_draw(struct glint_explain *explain, int ghost)
     draw_flare_part(explain, ghost, -1, -1);
 }
 
-/* Measures the light of PART, which must be the part drawn last: flux, max,
- * lit pixels and tiles. */
+/* Measures the picture of PART, which must have been drawn last: flux, max,
+ * number of lit pixels and of tiles. */
 static void measure_part_light(struct glint_explain *e,
                                struct glint_explain_part *part)
 {

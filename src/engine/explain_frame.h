@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Explains a frame that was drawn without an engine.
+ * Collects statistics per ghost, light and wave of a frame that was drawn
+ * without an engine.
  */
 #ifndef GLINT_ENGINE_EXPLAIN_FRAME_H
 #define GLINT_ENGINE_EXPLAIN_FRAME_H

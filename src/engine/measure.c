@@ -10,8 +10,8 @@ static size_t count_rgb_samples(const struct glint_float_image *image)
     return 3 * (size_t)image->width * (size_t)image->height;
 }
 
-/* Returns an integer that rises with the luminance of a pixel, also for
- * negative luminance. */
+/* Returns an integer key that orders pixels by luminance, which may be
+ * negative: the bits of the float, made monotonic. */
 static uint32_t encode_luminance_key(const float rgb[3])
 {
     const float y = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
@@ -30,9 +30,9 @@ static double decode_luminance_key(uint32_t key)
     return (double)y;
 }
 
-/* Returns the luminance of the pixel of rank RANK, 0 .. pixels - 1, in the
- * order of rising luminance. A radix selection finds the bits of its key a
- * byte at a time, without allocating memory. */
+/* Returns the luminance of the pixel that has index RANK when pixels are sorted
+ * by rising luminance. A radix selection finds its key one byte after the
+ * other, without allocating memory. */
 static double find_luminance_of_rank(const struct glint_float_image *image,
                                      size_t rank)
 {
@@ -130,12 +130,12 @@ static void measure_code_difference(const uint8_t *a, const uint8_t *b,
 
 static double compute_luma(const uint8_t *p)
 {
-    /* NOLINTNEXTLINE: a picture is never empty */
+    /* NOLINTNEXTLINE: the caller guarantees that the picture is not empty */
     return 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2];
 }
 
-/* Returns the structural similarity (SSIM) of one 8 x 8 block [Wang04], with
- * a flat window instead of a Gaussian. */
+/* Returns the structural similarity (SSIM) of the luma of one 8 x 8 block
+ * [Wang04], with a uniform window instead of a Gaussian. */
 static double compute_block_ssim(const uint8_t *a, const uint8_t *b, int stride)
 {
     double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0, va, vb, ab;
@@ -176,8 +176,8 @@ void glint_measure_codes(const uint8_t *reference, const uint8_t *test,
     result->ssim = compute_ssim(reference, test, width, height);
 }
 
-/* Returns the PSNR in dB of 8-bit codes before rounding, which resolves
- * differences that rounding hides. */
+/* Returns the PSNR, dB, of 8-bit codes before they are rounded, for pictures
+ * whose rounded codes are equal. */
 static double
 compute_unrounded_psnr_db(const struct glint_float_image *reference,
                           const struct glint_float_image *test,

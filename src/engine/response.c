@@ -8,24 +8,24 @@
 #include "glint/area.h"
 #include "engine/setup/spectrum.h"
 
-/* Max N of find_largest_values(). */
+/* Max number of values that find_largest_values() finds. */
 enum { TOP_MAX = GLINT_RESPONSE_FINE / 5000 };
 
 static const double none_log2 = -100;
 
-/* Number of angles, and fineness of ghost grids. Exact rays use fewer angles
+/* Number of angles measured, and fineness of grids. Exact rays use fewer angles
  * and coarser grids, as they cost fifty times as much as a model. */
 enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
 
-/* Lamp powers are scaled until the brightest pixels are 2^AIM_LOG2 times
- * display white, within a factor of 2^AIM_SPAN: far below saturation, and
- * equally far above the quantisation step. */
+/* The powers of lamps are scaled until the brightest pixels are 2^AIM_LOG2
+ * times display white, within a factor of 2^AIM_SPAN: in the middle between
+ * saturation and the quantisation step. */
 enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
 
 /* ----------------------------------------------------------------- looking */
 
-/* Inserts VALUE into the N largest values, sorted in descending order;
- * returns the smallest of them. */
+/* Replaces the smallest of the N values TOP, which are sorted in falling order,
+ * by VALUE. Returns the new smallest. */
 static float insert_into_largest(float *top, int n, float value)
 {
     int i = n - 1;
@@ -36,7 +36,8 @@ static float insert_into_largest(float *top, int n, float value)
     return top[n - 1];
 }
 
-/* Sets TOP to the N largest values of one channel of PIXELS. */
+/* Sets TOP to the N largest values of channel CHANNEL of RGB, which has PIXELS
+ * pixels, in falling order. */
 static void find_largest_values(const float *rgb, size_t pixels, int channel,
                                 float *top, int n)
 {
@@ -48,13 +49,14 @@ static void find_largest_values(const float *rgb, size_t pixels, int channel,
             least = insert_into_largest(top, n, rgb[3 * i + (size_t)channel]);
 }
 
-/* Returns 1 / PARTS of N, clamped to 1 .. TOP_MAX. */
+/* Returns how many pixels 1 / PARTS of N pixels are, clamped to 1 .. TOP_MAX.
+ */
 static int count_brightest_pixels(size_t n, int parts)
 {
     return (int)fmin(fmax(floor((double)n / parts), 1), TOP_MAX);
 }
 
-/* Returns the mean of the brightest 1/1000 of the pixels of one channel. */
+/* Returns the mean of the brightest 1/1000 of N pixels in channel CHANNEL. */
 static double compute_peak_light(const float *rgb, size_t n, int channel)
 {
     float top[TOP_MAX];
@@ -91,8 +93,8 @@ static struct glint_view make_small_view(struct glint_view view, int pixels)
     return view;
 }
 
-/* A small frame with the same field of view as a larger frame, and its
- * picture. It must be closed even if opening fails. */
+/* A small frame with the field of view of another frame, and its picture.
+ * close_small_frame() must be called even if opening fails. */
 struct proxy {
     struct glint_view view;
     struct glint_frame frame;
@@ -101,7 +103,7 @@ struct proxy {
 };
 
 /* Opens a small frame of about PIXELS pixels with all settings of LIKE that
- * affect brightness. */
+ * affect brightness. BYTES: memory for drawing; 0: no limit. */
 static enum glint_status open_small_frame(const struct glint_frame *like,
                                           int pixels, size_t bytes,
                                           struct proxy *p)
@@ -131,8 +133,8 @@ static void close_small_frame(struct proxy *p)
     free(p->rgb);
 }
 
-/* Draws LAMPS with powers scaled by 2^BY, and sets LIGHT to the measured
- * light divided by 2^BY. */
+/* Draws N LAMPS with powers times 2^BY, and sets LIGHT to the measured light
+ * divided by 2^BY. */
 static enum glint_status
 draw_and_measure_lamps(struct proxy *p, const struct glint_lamp *lamps, int n,
                        double by, struct glint_response_light *light)
@@ -152,9 +154,10 @@ draw_and_measure_lamps(struct proxy *p, const struct glint_lamp *lamps, int n,
     return status;
 }
 
-/* Draws LAMPS, with powers scaled repeatedly, until the brightest pixels lie
- * in the range of AIM_LOG2 and AIM_SPAN. *PEAK_LOG2 is log2 of their light:
- * on entry an estimate, on return the measured value. */
+/* Draws N LAMPS and measures their LIGHT, repeatedly with other scales, until
+ * the brightest pixels lie in the range of AIM_LOG2 and AIM_SPAN. *PEAK_LOG2:
+ * log2 of the light of the brightest pixels at scale 1; on entry an estimate,
+ * on return the measured value. */
 static enum glint_status
 draw_at_measurable_scale(struct proxy *p, const struct glint_lamp *lamps, int n,
                          double *peak_log2, struct glint_response_light *light)
@@ -183,8 +186,9 @@ static double compute_corner_angle_deg(struct glint_view view, double focal_mm)
     return atan(half / fabs(focal_mm)) * 180 / GLINT_PI;
 }
 
-/* Sets the angles to measure, degrees: denser near the axis, where ghosts
- * overlap, and none above END, the max angle of the model. */
+/* Sets the N angles to measure, degrees, from 0 to CORNER: denser near the
+ * axis, where ghosts overlap. Angles above END, the max angle of the model, are
+ * left out. */
 static void set_measured_angles(struct glint_response *r, int n, double corner,
                                 double end)
 {
@@ -211,8 +215,8 @@ static void convert_light_to_log2(struct glint_response_light *light)
     }
 }
 
-/* Measures how much fainter the brightest part of the flare becomes if LAMP
- * is a disc rather than a point, for radii up to an eighth of the picture's
+/* Measures by how much the brightest part of the flare gets fainter if LAMP is
+ * a disc instead of a point, for radii up to an eighth of the picture's
  * diagonal. */
 static enum glint_status measure_extent_softening(struct proxy *p,
                                                   struct glint_response *r,
@@ -244,8 +248,7 @@ static enum glint_status measure_extent_softening(struct proxy *p,
 static enum glint_status measure_light_at_angles(struct proxy *p,
                                                  struct glint_response *r)
 {
-    const double azimuth = /* direction from the middle of the picture to a
-                              corner, degrees */
+    const double azimuth = /* azimuth of a corner of the picture, degrees */
         atan2(p->view.height, p->view.width) * 180 / GLINT_PI;
     const double all = (double)p->view.width * p->view.height;
     struct glint_lamp lamp = {
@@ -332,8 +335,8 @@ double glint_response_compute_softening(const struct glint_response *r,
 
 /* ---------------------------------------------------------- what was drawn */
 
-/* Sets the peak of LIGHT to the min value among the brightest 1/10000 of the
- * pixels drawn last. */
+/* Sets the peak of LIGHT to the value that the brightest 1/10000 of the pixels
+ * drawn last reach. */
 static void set_peak_from_brightest_pixels(const struct proxy *p,
                                            struct glint_response_light *light)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Measures the brightness of a lens's flare as a function of the
- * angle of the lamp.
+ * The lens response: brightness of the flare as a function of the angle of the
+ * lamp, measured in small pictures.
  *
  *     glint_response_measure(&frame, bytes, &response);         once
  *     glint_response_interpolate_light(&response, theta_deg, &light); each lamp
@@ -36,51 +36,51 @@ enum {
 struct glint_response {
     int n; /* number of angles, 1 .. GLINT_RESPONSE_ANGLES; 0: nothing was
               measured */
-    /* angles in rising order, from 0 */
+    /* measured angles, rising from 0, degrees */
     double theta_deg[GLINT_RESPONSE_ANGLES];
     /* log2 of the light at each angle; -100: no light */
     struct glint_response_light log2_of[GLINT_RESPONSE_ANGLES];
-    /* Lamps of visible extent: tangents of their RMS radii, rising from 0,
-     * and log2 of the ratio of the peak of their flare to the peak of a
-     * point's flare. */
+    /* For lamps of visible extent: tangents of RMS radii, rising from 0
+     * (extent), and log2 of the peak of the flare divided by the peak of a
+     * point light's flare (softened). */
     double extent[GLINT_RESPONSE_EXTENTS],
         softened_log2[GLINT_RESPONSE_EXTENTS];
-    double ms; /* time that the measurement took, ms */
+    double ms; /* duration of the measurement, ms */
 };
 
-/* Sets LIGHT to the light of the flare of N lamps, drawn with the lens of
- * FRAME in a small picture of about PIXELS pixels. The lamps' powers refer to
- * the view of FRAME, whose next picture of these lamps takes less time if it is
- * drawn by exact rays. The peak is the value that 1/10000 of the pixels reach;
- * smaller specks are ignored. Sets SEEN to the flare's visibility on GROUND,
- * unless both are NULL. Returns GLINT_E_MEMORY on failure. */
+/* Draws the flare of N lamps with the lens of FRAME in a small picture of about
+ * PIXELS pixels, and sets LIGHT to its brightness. The powers of LAMPS are
+ * those for the picture of FRAME. The peak is the value that 1/10000 of the
+ * pixels reach; smaller specks are ignored. Sets SEEN to the visibility of the
+ * flare on GROUND, unless either is NULL. Exact rays are cached for the next
+ * picture of FRAME. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_response_draw_and_measure(
     struct glint_frame *frame, const struct glint_lamp *lamps, int n,
     int pixels, const struct glint_ground *ground,
     struct glint_response_light *light, struct glint_seen *seen);
 
-/* Measures RESPONSE for the lens, view and requested options of LIKE.
- * Allocates at most BYTES for drawing; 0: no limit. Returns GLINT_E_MEMORY
- * on failure. */
+/* Measures RESPONSE for the lens, view and requested options of frame LIKE.
+ * Allocates at most BYTES for drawing; 0: no limit. Returns GLINT_E_MEMORY on
+ * failure. */
 enum glint_status glint_response_measure(const struct glint_frame *like,
                                          size_t bytes,
                                          struct glint_response *response);
 
-/* Like glint_response_measure(), but reads results from CACHE if they are
- * stored there, and stores new ones. CACHE may be NULL. Responses of lenses
+/* Like glint_response_measure(), but reads the result from CACHE if it is
+ * stored there, and otherwise stores it. CACHE may be NULL. Responses of lenses
  * without a model are not cached. */
 enum glint_status
 glint_response_measure_cached(const struct glint_frame *like, size_t bytes,
                               const struct glint_engine_cache *cache,
                               struct glint_response *response);
 
-/* Returns the ratio of the peak of the flare of LAMP to the peak of a
- * point's flare: at most 1, as the extent of the lamp blurs its ghosts. */
+/* Returns the peak of the flare of LAMP divided by the peak of the flare of a
+ * point light: at most 1, as the extent of a lamp blurs its ghosts. */
 double glint_response_compute_softening(const struct glint_response *response,
                                         const struct glint_lamp *lamp);
 
-/* Sets LIGHT to the light of the flare of a point THETA_DEG off the axis.
- * Outside the view it is the light at the corner. */
+/* Sets LIGHT to the brightness of the flare of a point light THETA_DEG degrees
+ * off the axis. Outside the view it is that at the corner. */
 void glint_response_interpolate_light(const struct glint_response *response,
                                       double theta_deg,
                                       struct glint_response_light *light);

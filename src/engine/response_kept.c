@@ -4,7 +4,8 @@
  *
  * The key of an entry is a hash of the model, of all settings that affect
  * brightness, and of the library's version. An entry has about 800 bytes.
- * Entries that are damaged or of another format are measured and written again.
+ * Responses whose entries are damaged or of another format are measured and
+ * stored again.
  */
 #include <math.h>
 #include <string.h>
@@ -12,14 +13,14 @@
 #include "engine/response.h"
 #include "glint/glint.h"
 
-/* Revision of the measured values. Raise it when glint_response_measure()
- * returns other values for the same scene, because frames are drawn or
- * measured differently. */
+/* Part of the key. Must be raised when glint_response_measure() returns other
+ * values for the same lens, because frames are drawn or measured differently.
+ */
 enum { REVISION = 2 };
 
 enum { VALUES = 7 * GLINT_RESPONSE_ANGLES + 2 * GLINT_RESPONSE_EXTENTS };
 
-/* A cache entry, in the machine's byte order, without padding. */
+/* A cache entry, in native byte order, without padding. */
 struct entry {
     char magic[8];
     uint64_t key;
@@ -32,7 +33,7 @@ static const char magic[8] = "glintRS";
 
 /* ---------------------------------------------------------------------- key */
 
-/* Adds the bytes of WORD to KEY by the hash FNV-1a, the lowest byte first. */
+/* Adds the bytes of WORD to the hash KEY (FNV-1a), the lowest byte first. */
 static void hash_word(uint64_t *key, uint64_t word)
 {
     for (int shift = 0; shift < 64; shift += 8)
@@ -49,7 +50,7 @@ static void hash_values(uint64_t *key, const double *value, size_t n)
     }
 }
 
-/* Adds the stop and the wavelengths of a setup to KEY; all other members
+/* Adds stop and wavelengths of a setup to the hash KEY; all other members
  * follow from the model. */
 static void hash_setup(uint64_t *key, const struct glint_setup *s)
 {
@@ -79,8 +80,8 @@ static void hash_setup(uint64_t *key, const struct glint_setup *s)
     }
 }
 
-/* Adds the quality parameters that glint_response_measure() does not set
- * itself to KEY. */
+/* Adds to the hash KEY those quality parameters that affect brightness and that
+ * glint_response_measure() does not set itself. */
 static void hash_quality_parameters(uint64_t *key,
                                     const struct glint_frame *like)
 {
@@ -93,9 +94,9 @@ static void hash_quality_parameters(uint64_t *key,
     hash_values(key, value, sizeof value / sizeof *value);
 }
 
-/* Returns the key of a scene. It contains the aspect ratio of the picture,
- * not its size, and BYTES, as too little memory makes grids coarser or
- * leaves parts of the flare out. */
+/* Returns the key of a response: a hash of model, library version, setup and
+ * settings. It includes the aspect ratio of the picture, not its size, and
+ * BYTES, as too little memory makes grids coarser or leaves bundles out. */
 static uint64_t compute_cache_key(const struct glint_frame *like, size_t bytes)
 {
     const struct glint_model_header *h = like->lens->header;
@@ -117,7 +118,7 @@ static uint64_t compute_cache_key(const struct glint_frame *like, size_t bytes)
 
 /* -------------------------------------------------------------------- entry */
 
-/* Sets AT to pointers to the members of R in the order in which an entry
+/* Sets AT to pointers to the numbers of R in the order in which a cache entry
  * stores them. */
 static void list_response_values(struct glint_response *r, double *at[VALUES])
 {
@@ -149,8 +150,8 @@ static struct entry make_cache_entry(struct glint_response *r, uint64_t key)
     return e;
 }
 
-/* Returns whether all members of R are in the range that
- * glint_response_measure() returns. */
+/* Returns whether all members of R are in the ranges that
+ * glint_response_measure() can return. */
 static bool is_response_in_range(const struct glint_response *r)
 {
     if (r->n < 1 || r->n > GLINT_RESPONSE_ANGLES || r->theta_deg[0] != 0)

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Histogram bins: eight per stop, over 40 stops on either side of 1. */
+/* Number of histogram bins: eight per stop, from 2^-40 to 2^40. */
 enum { STEPS = 8, OCTAVES = 40, BINS = 2 * OCTAVES * STEPS };
 
 void glint_ground_sample_picture(struct glint_ground *ground,
@@ -21,9 +21,9 @@ static double decode_srgb(int code)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-/* For each 8-bit code of a channel: 1 / the linear light that must be added
- * to be visible, and 1 / the light that makes it white; 0 if no light does
- * that, or if the code is not tested. */
+/* For each 8-bit code: 1 / the linear light that must be added to be visible
+ * (visible), and 1 / the linear light that must be added to turn the code white
+ * (white). 0 if that is impossible, or if the code is not considered. */
 struct slopes {
     double visible[256], white[256];
 };
@@ -38,8 +38,8 @@ static void compute_code_slopes(struct slopes *slope)
         slope->white[code] = 1 / (1 - decode_srgb(code));
 }
 
-/* Returns the max over the channels of a pixel's added light divided by the
- * min visible light. */
+/* Returns a pixel's added light divided by the min visible light, max over the
+ * channels. */
 static double compute_pixel_visibility(const float light[3],
                                        const uint8_t code[3],
                                        const struct slopes *slope)
@@ -51,9 +51,9 @@ static double compute_pixel_visibility(const float light[3],
     return most;
 }
 
-/* Returns the min over the channels of a pixel's added light divided by the
- * light that makes the channel white; 0 if a channel is below
- * GLINT_SEEN_BRIGHT or from GLINT_SEEN_WHITE on. */
+/* Returns a pixel's added light divided by the light that turns the channel
+ * white, min over the channels. Returns 0 if a channel is below
+ * GLINT_SEEN_BRIGHT; channels from GLINT_SEEN_WHITE on are ignored. */
 static double compute_pixel_white_ratio(const float light[3],
                                         const uint8_t code[3],
                                         const struct slopes *slope)
@@ -74,8 +74,8 @@ static void add_to_histogram(int count[BINS], double x)
         count[(int)fmin(fmax((log2(x) + OCTAVES) * STEPS, 0), BINS - 1)]++;
 }
 
-/* Returns the max value that N of the counted pixels reach, or 0 if fewer
- * than N were counted. */
+/* Returns the max value that at least N pixels of the histogram reach, or 0 if
+ * it has fewer than N pixels. */
 static double find_value_reached_by_pixels(const int count[BINS], int n)
 {
     for (int bin = BINS - 1, sum = 0; bin >= 0; bin--) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Visibility of a flare on the picture under it.
+ * Visibility of a flare on the picture onto which it is drawn.
  *
  *    in   the picture, as codes; its flare at reduced size, in linear light
  *    out  the flare's light divided by the min visible light, and divided by
@@ -23,27 +23,28 @@ enum {
     GLINT_GROUND_COLUMNS = 320,
     GLINT_GROUND_ROWS = 180,
     GLINT_SEEN_CODES = 32,
-    /* Range of codes of bright ground. Light does not turn darker ground
-     * white; on brighter ground a white disc has no visible edge. */
+    /* Range of codes that count as bright ground. Darker ground is not
+     * considered for white discs; on brighter ground a white disc has no
+     * visible edge. */
     GLINT_SEEN_BRIGHT = 160,
     GLINT_SEEN_WHITE = 248,
-    GLINT_SEEN_FEW = 50, /* one pixel in 50 is few, one in 4 is many */
+    GLINT_SEEN_FEW = 50, /* one pixel in 50 counts as few, one in 4 as many */
     GLINT_SEEN_MANY = 4,
-    GLINT_SEEN_DISC = 1000 /* one pixel in 1000 is the size of a small ghost */
+    GLINT_SEEN_DISC = 1000 /* one pixel in 1000: the area of a small ghost */
 };
 
-/* The picture under the flare, sampled: full-range R'G'B' codes. */
+/* The picture under the flare, sampled to a small size: full-range R'G'B'
+ * codes. */
 struct glint_ground {
     uint8_t rgb[GLINT_GROUND_ROWS][GLINT_GROUND_COLUMNS][3];
 };
 
-/* FEW and MANY: the ratio of added light to the min visible light that one
- * pixel in GLINT_SEEN_FEW, or GLINT_SEEN_MANY, reaches, to an eighth of a
- * stop; 0 if fewer pixels have light. A flare scaled by 1 / few is just
- * visible in few pixels. WHITE: the ratio of added light to the light that
- * makes all channels white, which one pixel in GLINT_SEEN_DISC reaches;
- * counts only pixels whose channels are all in GLINT_SEEN_BRIGHT ..
- * GLINT_SEEN_WHITE - 1. */
+/* few, many: added light divided by the min visible light, as reached by one
+ * pixel in GLINT_SEEN_FEW, or in GLINT_SEEN_MANY, with a resolution of an
+ * eighth of a stop; 0 if fewer pixels have light. So a flare scaled by 1 / few
+ * is just visible in few pixels. white: added light divided by the light that
+ * turns all channels white, as reached by one pixel in GLINT_SEEN_DISC on
+ * bright ground. */
 struct glint_seen {
     double few, many, white;
 };
@@ -51,8 +52,8 @@ struct glint_seen {
 void glint_ground_sample_picture(struct glint_ground *ground,
                                  const struct glint_image *image);
 
-/* Sets SEEN for the flare RGB, [height][width][3], which covers all of
- * GROUND. */
+/* Sets SEEN to the visibility of the flare RGB, [height][width][3], linear
+ * light, on GROUND, which shows the same field of view. */
 void glint_seen_measure_visibility(struct glint_seen *seen,
                                    const struct glint_ground *ground,
                                    const float *rgb, int width, int height);

@@ -5,43 +5,45 @@
 
 #include "engine/setup/spectrum.h"
 
-/* Exponent of the norm that sums the peaks of many flares: with 4, sixteen
- * equal flares, which rarely overlap, count as two that overlap. */
+/* Exponent of the norm by which the peaks of flares are combined: with 4, the
+ * combined peak of sixteen equal flares, which rarely overlap, is twice that of
+ * one. */
 static const double norm = 4;
 
-/* max display light of the picture's mean at strength 1, about a third of
- * white */
+/* mean light of the flare that counts as much as a peak of white, 1 = white */
 static const double mean_most = 0.32;
 
-/* max display light of the flare's mean at strength 1: at strength 0.5, 1.5 %
- * of white. Ghosts that cover the picture fog it from about twice that on. */
+/* max mean light of the flare at strength 1, 1 = white; at strength 0.5 it is
+ * 1.5 % of white. Ghosts that cover the picture fog it from about twice that
+ * on. */
 static const double fog_most = 0.06;
 
-/* log2 of the display light, at --exposure 0, of a flare of medium
- * brightness */
+/* log2 of the light of a flare of medium brightness at --exposure 0, 1 = white
+ */
 static const double common_log2 = -5;
-/* stops by which the exposed flare changes per stop of lamp light */
+/* stops by which the exposed flare gets brighter per stop of lamp power */
 static const double compression = 0.15;
 
-/* Limits of display light at strength 0.5: the max peak and max mean up to
- * which an invisible flare is raised, and the min peak down to which a veil
- * is lowered. */
+/* Limits of light at strength 0.5, 1 = white: max peak and max mean to which an
+ * invisible flare is raised, and min peak to which a veiling flare is lowered.
+ */
 static const double seen_peak = 0.6, seen_mean = 0.04, veil_peak = 0.1;
 
-/* target light of a veil in a quarter of the picture / the min visible light */
+/* target light of a veiling flare in a quarter of the picture / min visible
+ * light */
 static const double veil_light = 0.5;
 
-/* target light of the brightest ghosts on bright ground / the light that
- * turns the ground white */
+/* target light of the brightest ghosts on bright ground / light that turns the
+ * ground white */
 static const double white_part = 0.4;
 
-/* Limits on how the factor changes over time: stops per second, max stops
- * per frame, and the time constant in seconds. */
+/* Limits of the change of the factor over time: stops per second (fall, rise),
+ * stops per frame, and the time constant in seconds. */
 static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;
 static const double settle_s = 0.3;
 
-/* Max fraction by which a lamp may be brighter than its exposure alone would
- * make it. */
+/* Max fraction by which the flare of a new lamp may be brighter than if the
+ * lamp were exposed alone. */
 static const double overshoot = 0.5;
 
 void glint_strength_defaults(struct glint_strength *strength)
@@ -51,7 +53,8 @@ void glint_strength_defaults(struct glint_strength *strength)
 
 /* --------------------------------------------------------------- one frame */
 
-/* Sets LIGHT to the light of lamp I's flare at full level, by channel. */
+/* Sets LIGHT to the light of the flare of lamp I at full fade level and scale
+ * 1. */
 static void compute_lamp_flare_light(const struct glint_response *response,
                                      const struct glint_strength_lamps *lamps,
                                      int i, struct glint_response_light *light)
@@ -102,15 +105,16 @@ static double combine_norm(double a, double b)
     return pow(pow(a, norm) + pow(b, norm), 1 / norm);
 }
 
-/* Returns the stops that the strength set by the caller adds to the factor
- * at strength 1. */
+/* Returns log2 of the factor on light by which the requested strength differs
+ * from strength 1. */
 static double compute_strength_log2(const struct glint_strength *s)
 {
     return 2 * log2(s->asked);
 }
 
-/* Returns the log2 of the factor, at strength 1, that exposes a flare of
- * brightness LIGHT without fogging the picture. */
+/* Returns log2 of the factor that exposes a flare of brightness LIGHT at
+ * strength 1, limited so that the flare does not fog the picture; the formula
+ * is in strength.h. */
 static double compute_exposure_log2(const struct glint_response_light *light)
 {
     const double peak = fmax(glint_largest_channel(light->peak), 1e-60);
@@ -134,17 +138,17 @@ static double limit_exposure_step(double towards, double elapsed_s)
     return fmin(fmax(part * towards, -most), most);
 }
 
-/* Returns the factor that limits TIMES, the ratio of a lamp's exposure to
- * its exposure alone: 1 up to TIMES 1; above, the product rises ever more
- * slowly to 1 + overshoot. */
+/* Returns the factor that limits a lamp whose exposure is TIMES the one that it
+ * would get alone: 1 for TIMES up to 1; above, TIMES times the factor rises
+ * ever more slowly to 1 + overshoot. */
 static double compute_exposure_limit(double times)
 {
     return times <= 1 ? 1
                       : (1 + overshoot * tanh((times - 1) / overshoot)) / times;
 }
 
-/* Lowers LIGHT, the light of a lamp's ghosts, towards the exposure that they
- * would get alone. Returns the factor. */
+/* Lowers LIGHT, the light of a lamp's ghosts, if it is brighter than the lamp's
+ * exposure alone would make it. Returns the factor. */
 static double limit_lamp_light(const struct glint_strength *s,
                                struct glint_response_light *light)
 {
@@ -169,7 +173,8 @@ static void follow_exposure_target(struct glint_strength *s, double target,
     s->follows = true;
 }
 
-/* Returns log2 of the factor at strength 1 for all lamps at full level. */
+/* Returns log2 of the factor that exposes all lamps together at strength 1, as
+ * if all were at full fade level. */
 static double
 compute_full_level_exposure_log2(const struct glint_response *response,
                                  const struct glint_strength_lamps *lamps)
@@ -238,10 +243,10 @@ void glint_strength_expose_frame(struct glint_strength *strength,
     scale_flare_light(s);
 }
 
-/* Returns the stops by which the flare DRAWN is raised until it is visible,
- * or lowered until it neither veils the picture nor turns bright ground
- * white, within the limits on its peak and its mean. BASE: log2 of its
- * factor at strength 0.5. */
+/* Returns the stops by which the exposure of the flare DRAWN is raised until it
+ * is visible, or lowered until it neither veils the picture nor turns bright
+ * ground white, within the limits of its peak and mean. BASE: log2 of the
+ * flare's factor at strength 0.5. */
 static double
 compute_visibility_lift_log2(double base,
                              const struct glint_response_light *drawn,

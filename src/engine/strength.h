@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Chooses the factor on the light of lamps, so that a flare is visible and
- * plausible: the automatic exposure behind --strength.
+ * The automatic exposure behind option --strength: chooses the factor on the
+ * powers of lamps such that the flare is visible and plausible.
  *
  *     glint_strength_expose_frame(&strength, &response, &lit, elapsed_us);
  *
@@ -54,16 +54,16 @@
 
 #include "engine/response.h"
 
-/* The lamps of a frame, for exposure. */
+/* The lamps of a frame, as input of the exposure. */
 struct glint_strength_lamps {
-    /* [n]; powers include the fade levels but not scale */
+    /* [n]: lamps; powers include the fade levels, but not the scale */
     const struct glint_engine_lamp *lamp;
-    /* [n]; set by glint_strength_expose_frame() to the factor on the ghosts of
-     * each lamp: below 1 for a lamp that would still be too bright. Starbursts
-     * do not depend on it. */
+    /* [n]: result of glint_strength_expose_frame(): factor on the ghosts of
+     * each lamp, below 1 for a lamp that would be too bright until the exposure
+     * has adapted. Does not apply to starbursts. */
     double *part;
     int n;
-    double pixels; /* number of pixels of the picture, times the linear light of
+    double pixels; /* number of pixels of the picture times the linear light of
                       its white */
 };
 
@@ -75,45 +75,47 @@ struct glint_strength {
 
     /* Results for the last frame: */
     double scale; /* factor on the powers of lamps; 0: nothing to draw */
-    /* Light of the flare, including the factor scale. */
+    /* light of the flare, including the factor scale */
     struct glint_response_light light;
-    bool is_drawn; /* true: the light was measured in a drawn flare */
+    bool is_drawn; /* true: LIGHT was measured by drawing the flare of this
+                      picture */
 
-    /* Private: log2 of the factor without strength and gain; changes
-     * gradually over time. */
+    /* Private: log2 of the factor without strength and gain, which changes
+     * gradually over time */
     double factor_log2;
     bool follows;
 };
 
-/* Sets strength 0.5 and gain 1. */
+/* Initialises STRENGTH with strength 0.5 and gain 1. */
 void glint_strength_defaults(struct glint_strength *strength);
 
-/* Returns the factor on the brightness of a starburst, in addition to scale.
- * STARBURST: requested brightness / physical brightness. The product does
- * not depend on the exposure of ghosts. */
+/* Returns the factor on the brightness of starbursts, in addition to scale.
+ * STARBURST: requested brightness / physical brightness. The factor times scale
+ * does not depend on the exposure of ghosts. */
 double glint_strength_compute_star_factor(const struct glint_strength *strength,
                                           double starburst);
 
-/* Sets the scale, the light and the parts of LAMPS, ELAPSED_US after the last
- * frame, or 0 if this frame is unrelated to the last one. */
+/* Exposes a frame: sets scale and light of STRENGTH, and part of LAMPS.
+ * ELAPSED_US: time since the last frame; 0: unrelated to the last frame. */
 void glint_strength_expose_frame(struct glint_strength *strength,
                                  const struct glint_response *response,
                                  const struct glint_strength_lamps *lamps,
                                  int32_t elapsed_us);
 
-/* Corrects the exposure of a still picture: sets the scale and the light
- * from DRAWN, the light of the picture's flare drawn at reduced size and
- * scale 1, instead of from the response; and from SEEN, the visibility of
- * that flare on the picture, unless SEEN is NULL. Does nothing if the factor
- * was set by hand or there is no light. */
+/* Replaces the exposure of a still picture, which was computed from the
+ * response, by one from DRAWN, the light of its flare, measured by drawing it
+ * at reduced size and scale 1; and from SEEN, the visibility of that flare on
+ * the picture, unless SEEN is NULL. Does nothing if the factor was set by hand
+ * or there is no light. */
 void glint_strength_correct_exposure(struct glint_strength *strength,
                                      const struct glint_response_light *drawn,
                                      const struct glint_seen *seen);
 
-/* Corrects the exposure of a still picture: draws the flare of N LAMPS with
- * the lens of FRAME at reduced size and scale 1, and measures it. WHITE:
- * linear light of the picture's white. GROUND: the picture under the flare,
- * or NULL. On GLINT_E_MEMORY nothing has changed. */
+/* Draws the flare of a still picture, of N LAMPS with the lens of FRAME, at
+ * reduced size and scale 1, measures it, and corrects the exposure by
+ * glint_strength_correct_exposure(). WHITE: linear light of the picture's
+ * white. GROUND: the picture under the flare, or NULL. On GLINT_E_MEMORY
+ * nothing has changed. */
 enum glint_status glint_strength_expose_still(struct glint_strength *strength,
                                               struct glint_frame *frame,
                                               const struct glint_lamp *lamps,
@@ -121,7 +123,8 @@ enum glint_status glint_strength_expose_still(struct glint_strength *strength,
                                               const struct glint_ground *ground,
                                               double white);
 
-/* Sets LIGHT to the light of the flare of LAMPS by RESPONSE, at scale 1. */
+/* Sets LIGHT to the light of the flare of LAMPS at scale 1, computed from
+ * RESPONSE. */
 void glint_strength_compute_light(const struct glint_response *response,
                                   const struct glint_strength_lamps *lamps,
                                   struct glint_response_light *light);

@@ -10,8 +10,9 @@ static double compute_max_channel_power(const struct glint_lamp *lamp)
     return lamp->power * fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
 }
 
-/* Returns the number of points of a lamp before thinning. A uniform ellipse has
- * semi-axes of twice its RMS semi-axes. */
+/* Returns the number of points by which LAMP, an ellipse, is sampled before
+ * thinning: by its area and its brightness. The semi-axes of a uniform ellipse
+ * are twice its RMS semi-axes. */
 static double count_lamp_points(const struct glint_lamp *lamp,
                                 const struct glint_area_rule *rule)
 {
@@ -40,7 +41,7 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
         const double points = count_lamp_points(&lamps[i], &rule);
 
         more += points - 1;
-        /* The number of points of each wide lamp is rounded up. */
+        /* each of these rounds its number of points up */
         n_wide += points > 1;
     }
     if (n_wide && more > room - n - n_wide)
@@ -51,8 +52,8 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
     return rule;
 }
 
-/* Sets PLACE to point I of a sunflower pattern in the unit circle; returns
- * the fraction of the lamp's power that this point has. */
+/* Sets PLACE to point I of a sunflower pattern in the unit circle. Returns the
+ * fraction of the lamp's power that the point has. */
 static double set_sunflower_point(const struct glint_area *a, int i,
                                   double place[2])
 {
@@ -65,9 +66,9 @@ static double set_sunflower_point(const struct glint_area *a, int i,
     return weight / a->points;
 }
 
-/* Computes the centre and spread of the first N points, as few points are
- * off-centre and too close together. One point has no spread; from two to
- * four points the correction is blended in. */
+/* Computes the centre of N points and the factor that spreads them, because few
+ * points of the pattern are off-centre and too close together. For one point
+ * there is no correction; from two to four points it is blended in. */
 static void measure_point_pattern(struct glint_area *a, int n)
 {
     const double part = fmin((a->points - 1) / 3, 1);
@@ -109,11 +110,11 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     return n;
 }
 
-/* Returns the merge distance: the size of the part of the ellipse that one
- * point represents. For a tube it is at most twice that of a circle of equal
- * area, so that the ghosts of seven points are not as wide as the tube is
- * long. From one to four points the distance is blended in, as the spread
- * is, so that it changes continuously. */
+/* Returns the distance between neighbouring points, as a tangent: the size of
+ * the part of the ellipse that one point represents. For a tube it is limited
+ * to twice that of a circle of equal area, so that the ghosts of seven points
+ * are not as wide as the tube is long. From one to four points it is blended
+ * in, as the spread is, so that it changes continuously. */
 double glint_area_apart(const struct glint_area *area)
 {
     const double major = 2 * area->lamp.axis[0];

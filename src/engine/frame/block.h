@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Allocates memory with the alignment that the run-time half needs. */
+ * Allocates memory aligned to 64 bytes, as the run-time half requires. */
 #ifndef GLINT_ENGINE_FRAME_BLOCK_H
 #define GLINT_ENGINE_FRAME_BLOCK_H
 
@@ -8,9 +8,9 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-/* Allocates BYTES and returns them aligned to 64. Sets *MEM to the block
- * that the caller frees. If memory is short or BYTES is 0, returns NULL and
- * sets *MEM to NULL. */
+/* Allocates BYTES bytes, aligned to 64. The caller frees *MEM, not the returned
+ * pointer. If memory is short or BYTES is 0, returns NULL and sets *MEM to
+ * NULL. */
 static inline void *glint_block_allocate_aligned(size_t bytes, void **mem)
 {
     const uintptr_t last = 63;

@@ -5,29 +5,30 @@
 
 #include "glint/light.h"
 
-/* log2 of the factor by which a first frame is slower, as it allocates
- * memory */
+/* log2 of the factor by which the first frame is slower than later ones, as it
+ * allocates memory */
 #define FIRST 1
-/* fraction of the budget that frames are planned for */
+/* predicted time for which frames are planned / budget */
 #define ROOM 0.98
-/* fraction of the budget below which the next finer quality is tried */
+/* predicted time / budget, below which the next finer quality is tried */
 #define SPARE 0.9
-/* max predicted time of a trial / budget */
+/* max predicted time of a trial frame / budget */
 #define TRY 1.15
-/* fraction of a prediction's error, in octaves, that one frame corrects */
+/* fraction of the error of a prediction, in octaves, that one frame corrects */
 #define LEARNING 0.5
-/* max correction by one frame, octaves */
+/* max error of a prediction that is taken into account, octaves */
 #define MOST_WRONG 0.8
 /* min fraction of a correction that is applied to other qualities */
 #define SPREAD 0.1
-/* fraction of their correction that other qualities lose each frame */
+/* fraction by which corrections of other qualities decay per frame */
 #define FORGETTING 0.01
 
-/* Max plans of one frame. A plan predicts poorly for a fineness far from its
- * own, so that one more may be needed. */
+/* Max number of plans per frame. A plan predicts the cost poorly for a fineness
+ * far from its own, so that another plan may be needed. */
 enum { MAX_TRIES = 3 };
 
-/* max frames drawn at a quality that is predicted to be too slow */
+/* max number of trial frames, drawn at a quality that is predicted to be too
+ * slow */
 enum { TRIALS = 4 };
 
 void glint_budget_init(struct glint_budget *b, double ms)
@@ -49,9 +50,9 @@ void glint_budget_begin_frame(struct glint_budget *b,
     b->n_frames += b->n_frames < 2;
 }
 
-/* Reductions besides the quality, each in addition to those before it, ordered
- * by visibility. LOSS: PSNR against a frame without any of it, dB; estimates,
- * as no sweep has measured dust and veil yet. */
+/* Cuts: reductions of work in addition to a lower quality, ordered by
+ * visibility; each cut includes those before it. LOSS: PSNR against a frame
+ * without cuts, dB; estimates, as no sweep has measured dust and veil yet. */
 static const struct cut {
     double dim;    /* min dim_codes */
     int dust_log2; /* max dust_log2 */
@@ -69,13 +70,14 @@ static const struct cut {
 
 enum { N_CUTS = sizeof cuts / sizeof *cuts, BUNDLES = 256 };
 
-/* PSNR of the levels of quality in the mean of five lenses, dB
- * (glint sweep at revision a3db91ca). */
+/* PSNR of the quality levels, mean of five lenses, dB (glint sweep at revision
+ * a3db91ca). */
 static const double level_db[GLINT_QUALITY_LEVELS] = {39, 44, 49, 53.5, 54.5,
                                                       56, 59, 62, 64,   65};
 
-/* Returns the dials at STEP and CUT. The cost model does not cover sets of
- * wavelengths, so a budget draws with three. */
+/* Returns the quality parameters of quality STEP with CUT. Parameters that do
+ * not depend on quality are those of ASKED. The cost model does not cover sets
+ * of wavelengths, so frames with a budget are drawn with three wavelengths. */
 static struct glint_dials make_dials_at_step(int step, int cut,
                                              const struct glint_dials *asked)
 {
@@ -113,7 +115,7 @@ static double interpolate_learned_error(const struct glint_budget *b, int step)
            (at - below) * (b->octaves[below + 1] - b->octaves[below]);
 }
 
-/* Returns the predicted time of PLAN at quality STEP and CUT, ms. */
+/* Predicts the time of drawing PLAN at quality STEP with CUT, ms. */
 static double predict_frame_ms(const struct glint_budget *b,
                                const struct glint_cost_plan *plan, int step,
                                int cut)
@@ -126,7 +128,8 @@ static double predict_frame_ms(const struct glint_budget *b,
                 (b->n_frames > 1 ? 0 : FIRST));
 }
 
-/* Returns the best quality within the budget with CUT, or the coarsest. */
+/* Returns the best quality step that fits the budget with CUT, or 0 if none
+ * fits; by binary search. */
 static int find_best_affordable_step(const struct glint_budget *b,
                                      const struct glint_cost_plan *plan,
                                      int cut)
@@ -144,14 +147,15 @@ static int find_best_affordable_step(const struct glint_budget *b,
     return low;
 }
 
-/* Converts a PSNR of DB to the mean square error, white 1. */
+/* Converts a PSNR, dB, to the mean square error, 1 = white. */
 static double convert_db_to_mse(double db)
 {
     return pow(10, -db / 10);
 }
 
-/* Returns the estimated error of quality STEP with CUT. For a frame that
- * does not fit the budget it is above 1 and rises with the predicted time. */
+/* Estimates the mean square error of a frame at quality STEP with CUT. If even
+ * quality 0 does not fit the budget, the result is above 1 and rises with the
+ * predicted time. */
 static double estimate_picture_error(const struct glint_budget *b,
                                      const struct glint_cost_plan *plan,
                                      int step, int cut)
@@ -168,7 +172,8 @@ static double estimate_picture_error(const struct glint_budget *b,
            (over > 1 ? over : 0);
 }
 
-/* Returns whether CUT reduces anything in PLAN that the cut before it does not.
+/* Returns whether CUT reduces the work of PLAN by more than the cut before it
+ * does.
  * */
 static bool is_cut_useful(const struct glint_cost_plan *plan, int cut)
 {
@@ -180,9 +185,9 @@ static bool is_cut_useful(const struct glint_cost_plan *plan, int cut)
            (plan->n_veil > 0 && c->no_veil);
 }
 
-/* Chooses the cut and the quality with the smallest error that fit the
- * budget. Returns the quality. Evaluates a sample of the bundles if there
- * are many. */
+/* Chooses cut and quality step with the smallest estimated error that fit the
+ * budget. Sets b->cut and returns the step. Of many bundles only a sample is
+ * evaluated. */
 static int choose_step_and_cut(struct glint_budget *b,
                                const struct glint_cost_plan *plan)
 {
@@ -210,9 +215,10 @@ static int choose_step_and_cut(struct glint_budget *b,
     return step;
 }
 
-/* Returns STEP + 1 for a few frames in all if no level lies between STEP, which
- * leaves much of the budget, and STEP + 1, which is predicted to miss it by
- * little: the prediction may be too high. Else returns STEP. */
+/* Returns STEP + 1 for a trial, else STEP. A trial is made, at most TRIALS
+ * times in total, if the quality jumps between both steps, STEP leaves much of
+ * the budget unused, and STEP + 1 is predicted to exceed it by little: that
+ * prediction may be too high. */
 static int try_next_quality_step(struct glint_budget *b,
                                  const struct glint_cost_plan *plan, int step)
 {
@@ -224,8 +230,8 @@ static int try_next_quality_step(struct glint_budget *b,
         predict_frame_ms(b, plan, step + 1, b->cut) > TRY * b->ms)
         return step;
     b->n_trials++;
-    b->n_tries = MAX_TRIES; /* no more plans, as their prediction would reject
-                               this quality again */
+    b->n_tries = MAX_TRIES; /* prevents another plan, whose prediction would
+                               reject this quality again */
     return step + 1;
 }
 
@@ -250,17 +256,17 @@ bool glint_budget_choose_dials(struct glint_budget *b,
     return true;
 }
 
-/* Corrects the predictions by a frame that took MS: the same prediction
- * would then be wrong by a factor smaller by LEARNING. Neighbouring
- * qualities are corrected, too, and all qualities the more, the larger the
- * error was, as when the machine has become slower. Corrections of other
- * qualities fade, so that one slow frame does not exclude a quality forever. */
+/* Corrects the predictions by the fraction LEARNING of the error of the last
+ * one, in octaves; MS is the measured time of the frame. Neighbouring quality
+ * levels are corrected, too. A large error corrects all levels, as the machine
+ * may have become slower. Corrections of other levels decay, so that one slow
+ * frame does not exclude a quality forever. */
 void glint_budget_learn_from_frame(struct glint_budget *b, double ms)
 {
     const double at = convert_step_to_level(b->step);
     const double part = at - floor(at);
     const double both = part * part + (1 - part) * (1 - part);
-    /* Errors are clamped, as a frame may have waited for other programs. */
+    /* clamped, as the frame may have waited for other programs */
     const double wrong =
         fmax(-MOST_WRONG, fmin(MOST_WRONG, log2(ms / b->predicted_ms)));
     const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));

@@ -4,7 +4,8 @@
 
 #include "engine/frame/frame_parts.h"
 
-/* Draws a few frames; sets *LEAST_MS to the time of the fastest, if lower. */
+/* Draws a few frames with one lamp, and lowers *LEAST_MS to the time of the
+ * fastest one, ms. */
 static enum glint_status time_test_frames(struct glint_frame *frame,
                                           const struct glint_image *image,
                                           struct glint_engine_report *report,
@@ -20,7 +21,7 @@ static enum glint_status time_test_frames(struct glint_frame *frame,
 
     for (int i = 0; i < 4 && status == GLINT_OK; i++) {
         status = glint_frame_draw(frame, &lamp, 1, 1, image, report);
-        if (i > 0) /* the first frame allocates memory */
+        if (i > 0) /* the first frame is not counted, as it allocates memory */
             *least_ms = fmin(*least_ms, report->plan_ms + report->bin_ms +
                                             report->draw_ms);
     }

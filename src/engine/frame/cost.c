@@ -6,13 +6,15 @@
 #include "glint/quality.h"
 #include "glint/bake.h"
 
-#define QUAD 2 /* number of single pixels that take as long as four at once */
+#define QUAD                                                    \
+    2 /* cost of adding light to a block of four pixels at half \
+         resolution / cost of one pixel */
 
-/* Steps per octave that stand for light that is not rounded. */
+/* steps per octave in the cost model for light that is not rounded */
 #define MOST_STEPS 4096
 
-/* log2 of the max number of parts per side of a cell; number of sample
- * positions per side of the stop at which parts are counted */
+/* log2 of the max number of parts into which a cell is divided per side; number
+ * of sample positions per side of the stop at which parts are counted */
 enum { MOST_LOG2 = 4, SAMPLES = 24 };
 
 /* By make cost-fit: least squares of the relative errors of random frames, each
@@ -46,12 +48,12 @@ double glint_cost_to_minsn(const struct glint_cost *cost)
     return 1e-3 * sum;
 }
 
-/* Estimated cells per side at which a grid planned with GLINT_LEAST_CELLS is
- * fine enough. */
+/* Estimated number of cells per side that a grid with GLINT_LEAST_CELLS, the
+ * minimum, would need without that minimum. */
 enum { LESS_CELLS = 6 };
 
-/* Returns the number of cells per side that the plan would choose for grids
- * FINER times as fine; PLANNED is the number in the plan. */
+/* Predicts the number of grid cells per side for a fineness of FINER times that
+ * of the plan, in which it is PLANNED. */
 static double predict_cells_per_side(int planned, double finer)
 {
     const double free =
@@ -62,28 +64,31 @@ static double predict_cells_per_side(int planned, double finer)
 
 /* ------------------------------------------------------------------ bundles */
 
-/* A planned bundle, predicted for other dials. */
+/* A planned bundle, as predicted for other quality parameters. */
 struct bundle {
-    double cells;      /* per side */
-    double light;      /* display white */
-    double area;       /* pixels that the ghost covers, on-screen or not */
-    double inside;     /* fraction of the rays that are not blocked */
-    double view;       /* fraction of the ghost's box that is on-screen */
-    double log_bright; /* natural logarithm of the factor on the number of edges
-                          because light varies within the ghost */
-    double rings;      /* number of nested outlines of a soft edge */
-    double share; /* expected fraction of the bundle that is drawn: dim ghosts
-                     share rays */
+    double cells;  /* per side */
+    double light;  /* display white */
+    double area;   /* pixels that the ghost covers, on-screen or not */
+    double inside; /* fraction of the rays that pass the stop and the
+                      barrels */
+    double view;   /* fraction of the ghost's bounding box that is on-screen */
+    double log_bright; /* natural logarithm of max light / mean light of the
+                          ghost, on which the number of edges depends */
+    double rings;      /* number of nested outlines of a soft edge; 1 for a hard
+                          edge */
+    double share;      /* expected fraction of the bundle that is drawn, as dim
+                          ghosts share rays */
 };
 
-/* Returns the steps per octave, in codes, for a ghost OCTAVES below white. */
+/* Returns the number of irradiance steps per octave for a ghost OCTAVES below
+ * white in a picture in codes; STEPS is the number at white. */
 static double compute_steps_per_octave(int steps, double octaves)
 {
     return octaves > 0 ? steps * pow(7. / 8, octaves) : steps;
 }
 
-/* Returns the number of outlines that draw a soft edge
- * (edges/ghost_rings.c). */
+/* Predicts the number of nested outlines with which the soft edge of bundle B
+ * is drawn (edges/ghost_rings.c). */
 static double count_soft_edge_outlines(const struct glint_cost_plan *p,
                                        const struct bundle *b)
 {
@@ -100,8 +105,8 @@ static double count_soft_edge_outlines(const struct glint_cost_plan *p,
     return exp2(fmax(most, 0));
 }
 
-/* Returns the fraction of the bundle that is still drawn if ghosts below DIM
- * codes share rays; the plan was made with WAS codes. */
+/* Returns the number of bundles per planned bundle B if ghosts dimmer than DIM
+ * codes share rays, whereas in the plan ghosts dimmer than WAS codes do. */
 static double estimate_drawn_fraction(const struct glint_cost_plan *p,
                                       const struct glint_planned *b,
                                       double light, double was, double dim)
@@ -120,10 +125,10 @@ static double estimate_drawn_fraction(const struct glint_cost_plan *p,
 
 /* ------------------------------------------------------------------- counts */
 
-/* Number of edges of a bundle, and of the pixel rows that they cross, as
- * products of powers: least squares over the bundles of 48 random frames of
- * four lenses (Poisson regression). Sums over a frame have a median error of
- * 15 percent. */
+/* This function and the next estimate the number of edges of a bundle, and of
+ * the pixel rows that they cross, as products of powers, fitted to the bundles
+ * of 48 random frames of four lenses (Poisson regression). Sums over a frame
+ * have a median error of 15 percent. */
 static double estimate_edge_count(const struct bundle *b, double log_steps)
 {
     const double n = log(b->cells);
@@ -141,7 +146,8 @@ static double estimate_edge_row_count(const struct bundle *b, double log_steps,
                0.293 * b->log_bright);
 }
 
-/* Predicts planned bundle B for the dials THEN. */
+/* Predicts planned bundle B for the quality parameters THEN. LARGER: factor on
+ * the number of pixels. */
 static struct bundle predict_bundle(const struct glint_cost_plan *p,
                                     const struct glint_planned *b,
                                     const struct glint_dials *then,
@@ -164,17 +170,18 @@ static struct bundle predict_bundle(const struct glint_cost_plan *p,
     return to;
 }
 
-/* The cells of a ghost that what lies in the stop shades (edges/ghost_shade.h).
+/* The cells of a ghost of a stop with dust or masks (edges/ghost_shade.h).
  */
 struct cells {
     double cells;  /* number of the ghost's cells per side */
     double light;  /* display white */
     double area;   /* pixels that the ghost covers */
-    double inside; /* fraction of its cells within the stop */
-    double view;   /* fraction of these that are on-screen */
+    double inside; /* fraction of the cells that lie within the stop */
+    double view; /* fraction of the cells within the stop that are on-screen */
 };
 
-/* Returns the smallest visible step of light on top of LIGHT. */
+/* Returns the smallest visible difference from LIGHT, as a fraction of LIGHT.
+ */
 static double compute_visible_step(const struct glint_cost_plan *p,
                                    double light)
 {
@@ -189,14 +196,19 @@ static int clamp_int(int x, int low, int high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* Returns the mean over the stop of the parts of a cell, as LEVEL of the tables
- * is ROUGH there: at SAMPLES^2 places of it. CUT of the cells lie across its
- * outline. */
+/* Returns the mean number of parts into which a cell is divided because of dust
+ * or masks, over SAMPLES^2 positions in the stop. LEVEL: level of the shade's
+ * tables; STEP: visible difference; MOST: max log2 of the parts per side; CUT:
+ * fraction of the cells that the stop's outline cuts. */
 static double compute_mean_parts_per_cell(const struct glint_shade *s,
                                           int level, double step, int most,
                                           double cut)
 {
-    enum { CUT_LOG2 = 3, ALONE = 4 }; /* parts of cut cells share no edges */
+    enum {
+        CUT_LOG2 = 3,
+        ALONE = 4
+    }; /* factor for cut cells, whose parts share
+          no edges */
     const int side = (1 << (s->log2 - level)) + 1;
     double sum = 0;
     int n = 0;
@@ -213,7 +225,7 @@ static double compute_mean_parts_per_cell(const struct glint_shade *s,
         if (x * x + y * y > 1)
             continue;
         n++;
-        /* log2 of the number of visible steps by which the light differs */
+        /* computes log2 of the number of visible differences, rounded up */
         for (; d >= 1 && log2_parts < most; log2_parts++)
             d /= 2;
         if (log2_parts)
@@ -223,8 +235,9 @@ static double compute_mean_parts_per_cell(const struct glint_shade *s,
     return n ? sum / n : 0;
 }
 
-/* Returns the number of parts for the shade of PLAN, of whose tables those with
- * 2^LOG2_USED cells a side and fewer are used. */
+/* Estimates the number of parts into which the cells G are divided by the shade
+ * of PLAN, if only its tables with at most 2^LOG2_USED cells per side are used.
+ */
 static double estimate_shaded_part_count(const struct glint_cost_plan *plan,
                                          const struct cells *g, int log2_used)
 {
@@ -232,7 +245,7 @@ static double estimate_shaded_part_count(const struct glint_cost_plan *plan,
     const int skipped =
         s->log2 - clamp_int(log2_used, GLINT_SHADE_LEAST_LOG2, s->log2);
     const double n2 = g->cells * g->cells;
-    /* side of a cell, in stop radii and in pixels */
+    /* length of a cell's side, in stop radii (side) and in pixels (px) */
     const double side = sqrt(3.14 / (n2 * g->inside));
     const double px = sqrt(g->area / n2);
     const int level = clamp_int((int)floor(log2(side * (1 << (s->log2 - 1)))),
@@ -274,11 +287,11 @@ static void add_bundle_cost(struct glint_cost *cost,
                         then->dust_log2);
 }
 
-/* Area covered by ghosts; each ghost counts once for all its wavelengths. */
+/* Total area that ghosts cover; the wavelengths of one ghost count once. */
 struct covered {
     int ghost, light;
-    double most, all; /* pixels: max area of this ghost so far; total of all
-                         ghosts before it */
+    double most, all; /* pixels: max area over the wavelengths of the current
+                         ghost; total of all ghosts before it */
 };
 
 static void add_covered_area(struct covered *c, const struct glint_planned *p,
@@ -302,7 +315,8 @@ struct glint_cost glint_cost_of(const struct glint_cost_plan *p,
     const bool was_half = glint_dials_half(&p->dials) && p->can_half;
     const double width = p->width / (half ? 2. : 1);
     const double height = p->height / (half ? 2. : 1);
-    /* Number of pixels with the dials THEN / number of pixels as planned. */
+    /* number of pixels with the parameters THEN / number of pixels of the plan
+     */
     const double larger = pow(4, was_half - half);
     const int every = p->every > 1 ? p->every : 1;
     struct glint_cost cost = {{p->n_looked_at}};

@@ -66,7 +66,7 @@ void glint_frame_finish(struct glint_frame *frame)
     free(frame->memory.mem);
 }
 
-/* Returns the number of waves of all sets together. */
+/* Returns the total number of waves of all wave sets. */
 static int count_all_waves(const struct glint_setup *s)
 {
     int n = 0;
@@ -97,7 +97,8 @@ static void set_frame_waves(struct glint_frame *f)
                                                    s->rgb[i], s->unit_flux[i]);
 }
 
-/* Returns the chord of the angle that corresponds to PX pixels on the axis. */
+/* Converts PX pixels near the axis to the chord of the corresponding angle on
+ * the unit sphere. */
 static int32_t convert_px_to_chord_q30(const struct glint_frame *f, double px)
 {
     const double pixels = glint_frame_pixels_per_tangent(f);
@@ -113,7 +114,7 @@ bool glint_frame_is_lamp_outside_model(const struct glint_frame *frame,
     return glint_light_is_outside_model(frame->lens, &b);
 }
 
-/* Does not use asin(), which adds 25 KB to glint-live. */
+/* Uses atan2(), as asin() would add 25 KB to glint-live. */
 double glint_frame_max_angle_deg(const struct glint_frame *frame)
 {
     const double degree = GLINT_PI / 180;
@@ -125,10 +126,10 @@ double glint_frame_max_angle_deg(const struct glint_frame *frame)
     return atan2(sine, sqrt(1 - sine * sine)) / degree * (1 - 1e-6);
 }
 
-/* Appends lights for those points of LAMP that lie within the model's
- * angles. WITHIN is the number of lights before; returns the number after.
- * Other points are dropped here, as they must not merge with lights that are
- * drawn. */
+/* Appends the points by which LAMP is sampled to the frame's lights, of which
+ * there are WITHIN; returns the new number. Points outside the model's range of
+ * angles are dropped here, before merging, as they must not be merged with
+ * lights that are drawn. */
 static int add_lamp_lights(struct glint_frame *f, const struct glint_lamp *lamp,
                            const struct glint_area_rule *rule, double scale,
                            int within)
@@ -149,7 +150,7 @@ static int add_lamp_lights(struct glint_frame *f, const struct glint_lamp *lamp,
 }
 
 /* Returns the max number of lights for N lamps; a lamp of visible extent
- * becomes several points. */
+ * becomes several lights. */
 static int compute_max_lights(const struct glint_frame *f, int n)
 {
     const int most = f->dials.max_lights;
@@ -159,7 +160,8 @@ static int compute_max_lights(const struct glint_frame *f, int n)
     return n <= most ? max_int(most, f->picture.point_room) : most;
 }
 
-/* Converts LAMPS to F's lights; merges those that are too near or too many. */
+/* Converts N LAMPS to lights of the frame, with powers times SCALE, and merges
+ * lights that are too close or too many. */
 static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
                                                  const struct glint_lamp *lamps,
                                                  int n, double scale)
@@ -184,8 +186,8 @@ static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
     f->lights.n = glint_lights_merge(
         f->lights.light, within, convert_px_to_chord_q30(f, f->apart_px),
         max_int(room, f->dials.max_lights), &f->lights.n_apart);
-    if (!f->limits.is_held) /* after a limit was met, fewer lights keep the
-                        fraction of all */
+    if (!f->limits.is_held) /* if a limit has reduced the lights of this frame,
+                               the fraction for all its lights still applies */
         f->limits.share =
             1 + max_int(f->lights.n - 1, 0) / (double)GLINT_FRAME_PER_LIGHT;
     if (f->star.is_alone)
@@ -193,7 +195,8 @@ static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Returns the settings of ray tracing for IMAGE; NULL: a linear picture. */
+/* Returns the settings with which the run-time half plans and traces a flare
+ * for IMAGE; NULL stands for a linear picture. */
 static struct glint_flare_frame
 make_flare_frame(struct glint_frame *f, const struct glint_image *image)
 {
@@ -231,8 +234,8 @@ void glint_frame_apply_config(struct glint_frame *f)
                          f->memory.bytes);
 }
 
-/* Sets the flare's steps of irradiance and the shade of the stop from the
- * dials. */
+/* Applies the quality parameters that are part of the flare's configuration:
+ * steps of irradiance, and tables of dust. */
 static void apply_dials_to_flare(struct glint_frame *f)
 {
     const bool is_other = f->cfg.irradiance_steps != f->dials.irradiance_steps;
@@ -241,7 +244,7 @@ static void apply_dials_to_flare(struct glint_frame *f)
         glint_frame_apply_config(f);
 }
 
-/* Plans the frame after allocating memory for the max number of bundles. */
+/* Allocates memory for the max number of bundles, and plans the frame. */
 static enum glint_status plan_frame(struct glint_frame *f,
                                     const struct glint_flare_frame *rays)
 {
@@ -257,7 +260,8 @@ static enum glint_status plan_frame(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Returns whether dials changed, so that the frame must be planned again.
+/* Lets the budget choose quality parameters. Returns whether they changed, so
+ * that the frame must be planned again.
  */
 static bool choose_budget_dials(struct glint_frame *f)
 {
@@ -318,8 +322,9 @@ draw_flare_by_model(struct glint_frame *f, const struct glint_lamp *lamps,
     return GLINT_OK;
 }
 
-/* Merges LAMPS for exact rays; sets *N to their new number. Returns NULL if
- * memory is short. */
+/* Samples and merges *N LAMPS for exact rays, as for a model. Returns the
+ * resulting lamps and sets *N to their number. Returns NULL if memory is short.
+ */
 static const struct glint_lamp *
 merge_exact_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
 {
@@ -391,14 +396,15 @@ enum glint_status glint_frame_predict_scale(struct glint_frame *frame,
                  : GLINT_E_MEMORY;
 }
 
-/* Returns the number of bundles of the drawn frame whose ghosts are known. */
+/* Returns the number of bundles of the drawn frame. */
 static int count_drawn_bundles(const struct glint_frame *f,
                                const struct glint_engine_report *r)
 {
     return f->lens ? r->stats.bundles : f->trace->n_bundles(f);
 }
 
-/* Sets the members of REPORT on lights, plans and memory of the drawn frame.
+/* Sets those members of REPORT that describe lights, plans and memory of the
+ * drawn frame.
  */
 static void fill_frame_report(struct glint_frame *frame,
                               struct glint_engine_report *report)
@@ -437,7 +443,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
 
     *report = (struct glint_engine_report){
         .lights = n_lamps, .quality = -1, .arena_bytes = frame->memory.bytes};
-    /* without a veil the picture need not even be read */
+    /* nothing to draw: without a veil the picture is not read */
     if (n_lamps == 0 && !glint_frame_has_veil(frame))
         return GLINT_OK;
     if (glint_frame_allocate_ghost_data(frame) != GLINT_OK)
@@ -461,7 +467,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         report->dials = frame->dials;
         report->unveiled = glint_frame_has_veil(frame) &&
                            frame->dials.flags & GLINT_DIAL_NO_VEIL;
-        /* Frames that allocated memory or reused edges are not
+        /* The times of frames that allocated memory or reused edges are not
          * representative. */
         if (frame->memory.bytes == bytes && !report->stats.reused)
             glint_budget_learn_from_frame(&frame->budget,
@@ -476,7 +482,8 @@ void glint_frame_set_area_sampling(struct glint_frame *frame, bool is_still,
 {
     const struct glint_dials *const asked = &frame->asked;
 
-    /* Whoever draws videos may have lowered the points. */
+    /* A program that draws videos may have lowered the number of points itself.
+     */
     if (!is_still && !frame->picture.is_still)
         return;
     frame->picture.is_still = is_still;

@@ -5,7 +5,7 @@
 
 #include "engine/frame/frame_parts.h"
 
-/* Returns the largest magnitude of N values. */
+/* Returns the max magnitude of N values. */
 static uint32_t find_max_magnitude(const int32_t *linear_q20, size_t n)
 {
     uint32_t peak = 0;
@@ -19,9 +19,10 @@ static uint32_t find_max_magnitude(const int32_t *linear_q20, size_t n)
     return peak;
 }
 
-/* Returns log2 of the factor by which a picture with PEAK should be drawn
- * brighter; 0 instead of 1, as one octave gains too little. Returns a value
- * below 0 if light was clamped, as its peak is then unknown. */
+/* Returns log2 of the factor by which a picture whose brightest pixel is PEAK
+ * should be scaled up before it is drawn again. Returns 0, draw no more,
+ * instead of 1, as one octave gains too little; and a negative value if light
+ * was clamped, so that the true peak is unknown. */
 static int choose_scale_octaves(uint32_t peak, struct glint_frame_scale scale)
 {
     const int room = scale.most - scale.likely;

@@ -25,98 +25,110 @@ static inline double now(const struct glint_frame *f)
     return f->clock ? f->clock() : 0;
 }
 
-/* Returns whether light is added to codes, those of IMAGE or of later
- * pictures. */
+/* Returns whether the flare is planned for codes: IMAGE is in codes, or its
+ * light will be added to codes later. */
 static inline bool is_in_codes(const struct glint_frame *f,
                                const struct glint_image *image)
 {
     return image->format != GLINT_LINEAR_Q20 || f->picture.for_codes;
 }
 
-/* frame_units.c: returns pixels per unit tangent on the axis. */
+/* Returns the focal length in pixels: pixels per unit tangent on the axis. */
 double glint_frame_pixels_per_tangent(const struct glint_frame *frame);
 
-/* Returns whether ghosts choose among the setup's sets of wavelengths. */
+/* Returns whether each ghost is drawn with one of the setup's sets of
+ * wavelengths. */
 bool glint_frame_has_wave_sets(const struct glint_frame *frame);
 
-/* Allocates memory for N lights. Returns GLINT_E_MEMORY on failure. */
+/* Ensures capacity for N lights. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_allocate_lights(struct glint_frame *frame, int n);
 
-/* Allocates the table of dim ghosts. Returns GLINT_E_MEMORY on failure. */
+/* Allocates the table of the brightness of ghosts, unless it exists. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_allocate_dim_table(struct glint_frame *frame);
 
-/* Allocates the data of each ghost. Returns GLINT_E_MEMORY on failure. */
+/* Allocates the arrays with one element per ghost, unless they exist. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_allocate_ghost_data(struct glint_frame *frame);
 
-/* Clears the table of dim ghosts if the opening, the wavelengths or the
- * pixel size has changed. */
+/* Marks all nodes of the table of dim ghosts as not computed if stop opening,
+ * wavelengths or pixel size have changed. */
 void glint_frame_clear_stale_dim_table(struct glint_frame *f);
 
-/* Replaces the block by one for the current capacities, and reinitialises
+/* Replaces the memory block by one for the current capacities, and initialises
  * the flare in it. */
 enum glint_status glint_frame_reallocate_flare(struct glint_frame *frame);
 
-/* Selects the tables of dust that the dials request for the stop; returns
- * whether they changed. */
+/* Selects the tables of dust that are as fine as the quality parameter
+ * dust_log2. Returns whether the selection changed. */
 bool glint_frame_select_dust_tables(struct glint_frame *frame);
 
-/* Allocates memory for the max number of bundles of the frame's lights,
- * unless memory is reserved. Returns GLINT_E_MEMORY on failure. */
+/* Ensures capacity for planning all bundles of the frame's lights, unless
+ * memory is reserved. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_ensure_plan_capacity(struct glint_frame *frame);
 
-/* Replaces the frame's lights by static lights within the chord NEAR_Q30,
- * with factors on their light. Only if the dials set a static tolerance,
- * frames are reused, and reserved memory has capacity. Returns
+/* If each light of the frame lies within the chord NEAR_Q30 of a light of the
+ * last plan, replaces the lights by the planned ones and sets factors on their
+ * colours, so that traced rays are reused. Does nothing unless still_px is
+ * above 0, frames are reused, and reserved memory has capacity. Returns
  * GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_use_static_lights(struct glint_frame *frame,
                                                 int32_t near_q30);
 
-/* Returns the number of distinct ghosts among the N bundles of the last
- * frame. */
+/* Returns the number of distinct ghosts among the N bundles of the last frame.
+ */
 int glint_frame_count_ghosts(struct glint_frame *frame, int n);
 
-/* Returns true if all edges counted in STATS fitted, or the memory cannot
- * grow. Otherwise raises the capacities, or makes grids coarser if the
- * capacities would exceed the frame's memory, and returns false. */
+/* Returns true if the result of binning, STATS, can be drawn: all edges fitted,
+ * or memory cannot grow. Otherwise raises the capacities, or makes grids
+ * coarser if the capacities would exceed the memory limit, and returns false:
+ * the frame has to be planned again. */
 bool glint_frame_fit_capacity(struct glint_frame *frame,
                               const struct glint_flare_stats *stats);
 
-/* Returns the bytes that the frame used, as glint_flare_bytes() counts them. */
+/* Returns the number of bytes that the frame used, as glint_flare_bytes()
+ * counts them. */
 size_t glint_frame_count_used_bytes(const struct glint_frame *frame,
                                     const struct glint_flare_stats *stats);
 
-/* Returns the bytes that would have drawn everything. */
+/* Returns the number of bytes with which all of the frame would have been drawn
+ * at the requested quality. */
 size_t glint_frame_count_needed_bytes(const struct glint_frame *frame,
                                       const struct glint_flare_stats *stats);
 
-/* Sets *SCALE to the scale of LAMPS as the plan predicts it, without drawing,
- * or to {0, 0} if there is no light. Returns GLINT_E_MEMORY on failure. */
+/* Plans the flare of LAMPS, without drawing it, and sets *SCALE to the factors
+ * by which it may be scaled, or to {0, 0} if there is no light. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_predict_scale(struct glint_frame *frame,
                                             const struct glint_lamp *lamps,
                                             int n_lamps,
                                             struct glint_frame_scale *scale);
 
-/* Returns the light of CODES near black in IMAGE; 0 if IMAGE is NULL or linear.
+/* Returns the linear light of CODES codes near black in IMAGE; 0 if IMAGE is
+ * NULL or linear.
  */
 double glint_frame_convert_codes_to_light(const struct glint_frame *frame,
                                           const struct glint_image *image,
                                           double codes);
 
-/* Returns whether ghost or part GHOST of SETUP is ghost NUMBER. */
+/* Returns whether GHOST, a ghost of SETUP or a part of one, belongs to the same
+ * pair of surfaces as ghost NUMBER. */
 bool glint_frame_is_part_of_ghost(const struct glint_setup *setup, int ghost,
                                   int number);
 
-/* Returns the number of the ghost of which GHOST of SETUP is a part. */
+/* Returns the number of the ghost of SETUP of which GHOST is a part; GHOST
+ * itself if it is not a part. */
 int glint_frame_find_ghost_number(const struct glint_setup *setup, int ghost);
 
-/* Removes lights until probing all bundles of all lights cannot cost more than
- * half of the frame's limit. Returns whether it did, so that lights have to be
- * merged again. */
+/* Lowers max_lights until probing all bundles costs at most half of the frame's
+ * limit of work. Returns whether it did; lights then have to be merged again.
+ */
 bool glint_frame_limit_probing(struct glint_frame *f);
 
-/* Reduces the dials if the plan would exceed the rest of the frame's limit:
- * grids first, then wavelengths, then lights. Returns whether it did, so that
- * the frame has to be planned again, at most a dozen times. */
+/* Reduces quality parameters if the plan would exceed the rest of the frame's
+ * limit of work: first the fineness of grids, then wavelengths, then lights.
+ * Returns whether it did; the frame then has to be planned again, at most a
+ * dozen times. */
 bool glint_frame_limit_work(struct glint_frame *f);
 
 #endif

@@ -11,17 +11,18 @@
 
 /* max number of bundles of a frame */
 enum { MAX_BUNDLES = 1 << 20 };
-/* min fineness to which limits reduce grids */
+/* min fineness of grids to which limits of memory and work reduce them */
 enum { LEAST_FINENESS = 8 };
-/* Factor on the capacity for primitives, as the shares of workers are
- * uneven. Limits apply it to one worker, too, so that results do not depend
- * on the number of workers; with one worker this overestimates the memory. */
+/* Factor on the capacity for primitives, because workers do not fill their
+ * ranges evenly. Memory limits include it even for one worker, so that pictures
+ * do not depend on the number of workers; with one worker this overestimates
+ * the memory. */
 #define UNEVEN 1.5
-/* Target size of a frame that is made coarser / memory limit; below 1, as
- * grids have whole numbers of cells. */
+/* Target size of a frame whose grids are made coarser / memory limit; below 1,
+ * as grids have integer numbers of cells. */
 #define ROOM_SHARE 0.9
-/* Grids are not made coarser if they would still need more than this
- * fraction of the bytes. */
+/* Grids are not made coarser again if the last time left more than this
+ * fraction of the memory needed. */
 #define NO_GAIN 0.98
 
 bool glint_frame_has_wave_sets(const struct glint_frame *f)
@@ -49,8 +50,8 @@ static int clamp_bundle_count(double n)
     return n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 }
 
-/* Returns the number of bundles of N_LIGHTS lights; with sets of
- * wavelengths, of the first set. */
+/* Returns the number of bundles of N_LIGHTS lights in the first set of
+ * wavelengths, or in all wavelengths if there are no sets. */
 static int count_first_set_bundles(const struct glint_frame *f, int n_lights)
 {
     const struct glint_setup *s = f->setup;
@@ -65,7 +66,8 @@ static size_t compute_max_bytes(const struct glint_frame *f)
     return (size_t)((double)f->limits.most_bytes * f->limits.share);
 }
 
-/* Returns a configuration whose capacities hold the bins of STATS. */
+/* Returns the frame's configuration with the capacities that STATS, the result
+ * of binning, needs. */
 static struct glint_flare_config
 make_needed_config(const struct glint_frame *f,
                    const struct glint_flare_stats *s)
@@ -79,9 +81,10 @@ make_needed_config(const struct glint_frame *f,
     return needed;
 }
 
-/* Returns the bytes of that configuration for one worker, with UNEVEN times
- * the primitives, so that they do not depend on the number of workers. Sets
- * FIXED to the bytes that do not shrink with coarser grids. */
+/* Returns the bytes that the configuration of make_needed_config() takes with
+ * one worker and UNEVEN times the primitives, so that the result does not
+ * depend on the number of workers. Sets FIXED to the bytes that coarser grids
+ * do not save. */
 static double estimate_flare_bytes(const struct glint_frame *f,
                                    const struct glint_flare_stats *s,
                                    double *fixed)
@@ -97,8 +100,9 @@ static double estimate_flare_bytes(const struct glint_frame *f,
     return bytes;
 }
 
-/* Returns the bytes for a number of primitives and their references, rounded
- * up generously. */
+/* Sets the capacities of the frame's configuration for a number of primitives
+ * and twice as many references to them. Returns the bytes that it then takes.
+ */
 static size_t set_primitive_capacity(struct glint_frame *f, int primitives)
 {
     f->cfg.max_primitives = primitives;
@@ -106,7 +110,8 @@ static size_t set_primitive_capacity(struct glint_frame *f, int primitives)
     return glint_flare_bytes(&f->cfg);
 }
 
-/* Sets the capacities that BYTES have room for; returns false if there is none.
+/* Sets the capacities to the max that fits into BYTES, by binary search.
+ * Returns false if not even one primitive fits.
  */
 static bool fit_capacity_to_bytes(struct glint_frame *f, size_t bytes)
 {
@@ -121,17 +126,17 @@ static bool fit_capacity_to_bytes(struct glint_frame *f, size_t bytes)
     return most > 0 && set_primitive_capacity(f, most) <= bytes;
 }
 
-/* Returns the number of primitives for which reserved memory would need
- * capacity, in the proportions of set_primitive_capacity(). */
+/* Returns the number of primitives with which set_primitive_capacity() would
+ * give enough capacity for primitives and references of STATS. */
 static double count_needed_primitives(const struct glint_flare_stats *s)
 {
     return fmax(s->need_primitives * UNEVEN, s->need_refs / 2.0);
 }
 
-/* Makes grids coarser if the estimated memory exceeds the frame's limit or
- * the reserved memory. Returns whether it did. The result depends neither on
- * the number of workers nor on earlier frames. A block that is not reserved
- * grows to its limit, so that the grids fit next time. */
+/* Makes grids coarser if the memory that STATS needs exceeds the limit or the
+ * reserved memory. Returns whether it did. The result depends neither on the
+ * number of workers nor on earlier frames. A block that is not reserved grows
+ * to its limit, so that the coarser grids fit. */
 static bool coarsen_grids_to_memory(struct glint_frame *f,
                                     const struct glint_flare_stats *s)
 {
@@ -196,7 +201,8 @@ enum glint_status glint_frame_reallocate_flare(struct glint_frame *f)
         bytes = glint_flare_bytes(&f->cfg);
     }
 
-    /* In a video whose frames are all made coarser, the block is kept. */
+    /* A block of the right size is reused, as in a video whose frames all reach
+     * the limit. */
     if (!f->memory.block || f->memory.bytes != bytes) {
         free(f->memory.mem);
         f->memory.bytes = 0;
@@ -208,7 +214,7 @@ enum glint_status glint_frame_reallocate_flare(struct glint_frame *f)
     return glint_flare_init(&f->memory.flare, &f->cfg, f->memory.block, bytes);
 }
 
-/* Allocates N static lights. */
+/* Ensures capacity for N static lights. */
 static enum glint_status allocate_static_lights(struct glint_frame *f, int n)
 {
     struct glint_still *s = &f->still;
@@ -252,7 +258,7 @@ enum glint_status glint_frame_use_static_lights(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Returns whether the block has capacity to plan N bundles of the frame's
+/* Returns whether the memory block suffices to plan N bundles of the frame's
  * lights. */
 static bool has_plan_capacity(const struct glint_frame *f, int n)
 {
@@ -287,7 +293,8 @@ enum glint_status glint_frame_reserve_memory(struct glint_frame *f, void *mem,
 
     f->dials.max_lights =
         min_int(f->dials.max_lights, min_int(n_drawn, n_lamps));
-    /* Not all ghosts are visible, and few use the largest set. */
+    /* twice the first set suffices, as not all ghosts are visible, and few need
+     * a larger set */
     f->cfg.max_bundles =
         clamp_bundle_count((glint_frame_has_wave_sets(f) ? 2. : 1) *
                            count_first_set_bundles(f, f->dials.max_lights));
@@ -300,7 +307,8 @@ enum glint_status glint_frame_reserve_memory(struct glint_frame *f, void *mem,
     f->cfg.workers = workers;
     if (!fit_capacity_to_bytes(f, bytes))
         return GLINT_E_MEMORY;
-    /* Dials may change later, when nothing is allocated any more. */
+    /* Everything is allocated now, as quality parameters may change later, when
+     * nothing may be allocated. */
     if (glint_frame_allocate_ghost_data(f) != GLINT_OK ||
         (f->lens && glint_frame_allocate_dim_table(f) != GLINT_OK) ||
         glint_frame_allocate_lights(f, n_lamps) != GLINT_OK ||
@@ -336,7 +344,7 @@ size_t glint_frame_count_needed_bytes(const struct glint_frame *f,
                                : glint_flare_bytes(&needed);
 }
 
-/* Returns the millions of instructions of a plan that probes N_RAYS rays. */
+/* Returns the cost of probing N_RAYS rays, millions of instructions. */
 static double estimate_probe_minsn(double n_rays)
 {
     return 1e-3 * glint_cost_weight[GLINT_COST_LOOKED_AT].counted * n_rays;
@@ -349,7 +357,9 @@ static double compute_minsn_limit(const struct glint_frame *f)
 
 bool glint_frame_limit_probing(struct glint_frame *f)
 {
-    enum { RAYS = 200 }; /* rays of a coarse and a fine probe */
+    enum {
+        RAYS = 200
+    }; /* number of rays of a coarse and a fine probe together */
     const int waves = glint_frame_has_wave_sets(f) ? f->setup->set_size[0]
                                                    : f->setup->n_wavelengths;
     const double light =
@@ -366,7 +376,8 @@ bool glint_frame_limit_probing(struct glint_frame *f)
     return f->limits.is_held = true;
 }
 
-/* Returns whether dust causes most of COST and can be drawn coarser. */
+/* Returns whether dust causes more than half of COST and can be drawn coarser.
+ */
 static bool is_cost_mostly_dust(const struct glint_frame *f,
                                 const struct glint_cost_plan *plan,
                                 const struct glint_cost *cost)
@@ -377,9 +388,9 @@ static bool is_cost_mostly_dust(const struct glint_frame *f,
                glint_cost_to_minsn(cost);
 }
 
-/* Makes tables of dust and grids as fine as PLAN allows within MINSN, or
- * else the coarsest. Returns the cost of the result, millions of
- * instructions. */
+/* Reduces the fineness of dust tables and grids step by step until PLAN costs
+ * at most MINSN, or they are the coarsest. Returns the resulting cost, millions
+ * of instructions. */
 static double coarsen_grids_to_minsn(struct glint_frame *f,
                                      const struct glint_cost_plan *plan,
                                      double minsn)
@@ -403,9 +414,8 @@ static double coarsen_grids_to_minsn(struct glint_frame *f,
     return glint_cost_to_minsn(&cost);
 }
 
-/* Limits ghosts to three wavelengths each. Returns the work that this leaves of
- * MINSN, the work of the plan with the coarsest grids, in millions of
- * instructions. */
+/* Limits ghosts to three wavelengths each. MINSN is the cost of the plan
+ * before; returns the estimated cost after, millions of instructions. */
 static double limit_ghost_wavelengths(struct glint_frame *f, double minsn)
 {
     enum { WAVES = 3 };
@@ -419,7 +429,7 @@ static double limit_ghost_wavelengths(struct glint_frame *f, double minsn)
     return minsn * fmin(1, WAVES * jobs / fmax(1, n));
 }
 
-/* Returns the plan, also before it is drawn, so that its cost can be predicted.
+/* Also valid before the plan is drawn, so that its cost can be predicted.
  */
 struct glint_cost_plan glint_frame_make_cost_plan(const struct glint_frame *f)
 {

@@ -9,42 +9,36 @@
 #include "engine/setup/dirt.h"
 #include "engine/frame/frame_parts.h"
 
-/* Factor on cull_codes for stars, whose ends are smooth and faint, unlike edges
- * of ghosts. Half or an eighth as much comes no nearer to all of their light;
- * four times as much costs 0.2 dB and saves 2 of 9 million instructions (a lamp
- * of 12 stops, 1920x1080). */
-#define STAR_CULL 2
-
-/* Lights farther from the picture's top left corner than this, in pixels
- * across or down, are not drawn. */
+/* Max distance of a starburst's lamp from the picture's top left corner,
+ * pixels, along x and y; lamps farther away are skipped. */
 static const double most_px = 1 << 16;
 
-/* Radius, in pixels, of a point in a sharp picture. */
+/* Radius of the image of a point light in a sharp picture, pixels. */
 static const double least_px = 1.5;
 
-/* Limits of the power of a lamp that a picture clips, by the stars in real
- * photographs. Far from a lamp, the light of its star on a whole circle about
- * it, times the square of the radius, is 0.22 times power, wavelength and
- * f-number, whatever the blades. For 10 lamps in two pictures by night, at
- * f/22, this power is 7 to 166 times that estimated from clipped pixels, and
- * 0.37 to 3.4 times, 0.5 in the median, that with which the star's mean is
- * white as far out as the lamp (tests/figures/stars.md). With a starburst of 1
- * the smaller of both limits counts. */
+/* Limits of the estimated power of a lamp that is clipped in the picture, from
+ * starbursts in real photographs. Far from a lamp, the light of its starburst
+ * summed over a circle around it, times the square of the radius, is 0.22 times
+ * power, wavelength and f-number, whatever the blades. For 10 lamps in two
+ * photographs by night, at f/22, the power computed from this is 7 to 166 times
+ * the power estimated from clipped pixels, and 0.37 to 3.4 times (median 0.5)
+ * the power with which the mean of the starburst is white at the rim of the
+ * lamp's image (tests/figures/stars.md). The smaller of both limits applies. */
 static const double clipped_times = 32, white_share = 0.5;
 
-/* Light of a lamp's white spot, in white pixels for each of its own, up to
- * which it is haze, and from which it is glare. Suns in clear skies have 4 to
- * 50, glints and lit haze 0.6 to 1.2. */
+/* Power of a lamp divided by the area of its white spot, 1 = white: up to HAZY
+ * the rim of the spot is lit haze, from GLARING on it is glare of a small lamp.
+ * Suns in clear skies have 4 to 50, glints and lit haze 0.6 to 1.2. */
 static const double hazy = 1, glaring = 5;
 
-/* Fraction of a budget that stars may take. If they would take more, their
- * faintest light is left out, up to 2^BUDGET_STEPS times what cull_codes
- * requests, and then all of it. */
+/* Max fraction of the time budget for starbursts. If they would take more,
+ * their faintest light is left out, up to 2^BUDGET_STEPS times what cull_codes
+ * requests; if they still take more, starbursts are not drawn. */
 static const double budget_share = 0.25;
 enum { BUDGET_STEPS = 8 };
 
-/* Wavelength times f-number over the picture's diagonal, at f/22 on a frame of
- * 36 x 24 mm: a lamp's picture has been taken through some stop. */
+/* Wavelength times f-number, divided by the picture's diagonal, for the camera
+ * that took the picture, assumed to be at f/22 with a sensor of 36 x 24 mm. */
 static const double photo_airy = 0.55e-3 * 22 / 43.27;
 
 static struct glint_star_optics make_star_optics(const struct glint_frame *f)
@@ -68,8 +62,8 @@ static bool are_star_optics_equal(const struct glint_star_optics *a,
            a->f_number == b->f_number && a->pixel_um == b->pixel_um;
 }
 
-/* Makes the smear of dirt in the stop, unless it is up to date. Sets IS_NEW
- * to whether it changed. */
+/* Computes the smear (diffraction by dirt in the stop) again if the dirt has
+ * changed. Sets IS_NEW to whether it has. */
 static enum glint_status update_dirt_smear(struct glint_frame *f, bool *is_new)
 {
     struct glint_frame_star *s = &f->star;
@@ -155,8 +149,8 @@ size_t glint_frame_star_count_bytes(const struct glint_frame *f)
            f->veil.bytes + (f->veil.table ? f->veil.table->bytes : 0);
 }
 
-/* Returns lamp I of LAMPS, the lamps of the ghosts, as its starburst has it:
- * with its whole power. */
+/* Returns lamp I with its full power for the starburst; LAMPS have the powers
+ * of their ghosts, which the exposure may have reduced. */
 static const struct glint_lamp *get_star_lamp(const struct glint_frame *f,
                                               const struct glint_lamp *lamps,
                                               int i)
@@ -164,11 +158,13 @@ static const struct glint_lamp *get_star_lamp(const struct glint_frame *f,
     return f->known ? &f->known[i].lamp : &lamps[i];
 }
 
-/* What the picture shows of a lamp. */
+/* Appearance of a lamp in the picture. */
 struct seen {
-    double radius_px; /* radius of a disc of its extent; 0 if unknown */
-    double hidden_px; /* radius of a lamp that its rim may hide, as stills have
-                         it (engine/detector.c) */
+    double radius_px; /* radius of a disc of the same RMS extent, pixels; 0 if
+                         unknown */
+    double hidden_px; /* max radius of a lamp that the rim of the spot may hide,
+                         pixels: the min semi-axis of lamps in still pictures
+                         (engine/detector.c) */
     double level;
     bool is_bare; /* true: the lamp is not visible in the picture */
 };
@@ -183,8 +179,8 @@ static struct seen find_lamp_appearance(const struct glint_frame *f, int i)
                          f->star.is_bare || (lamp && lamp->seen_px < 0)};
 }
 
-/* Returns the POWER of a lamp, in white pixels of its brightest channel; if the
- * picture clips it, an estimate of its true power. */
+/* Returns POWER, in white times pixels of the brightest channel; if the picture
+ * clips the lamp, a higher estimate of its true power. */
 static double estimate_unclipped_power(const struct glint_frame *f,
                                        const struct seen *seen, double power)
 {
@@ -195,14 +191,16 @@ static double estimate_unclipped_power(const struct glint_frame *f,
                                : power;
 }
 
-/* Returns the radius, pixels, of the disc of a lamp of the extent OWN_PX that
- * the picture shows as SEEN, with light FOUND of an estimated POWER. What the
- * finder takes for glare counts as glare as far as the lamp is brighter than
- * its white spot: with that much light a soft rim is that of a small lamp,
- * without it one of haze. Without glare even a point is white as far out as
- * least_px more than the radius at which the mean of its star over a circle is
- * white; the square of that is subtracted from the square of what is SEEN. A
- * lamp of a video is as wide as that of a still, which is at least HIDDEN_PX.
+/* Returns the radius in pixels of the disc of a lamp, whose white spot in the
+ * picture is SEEN. FOUND: light found, POWER: estimated true power, OWN_PX:
+ * radius that the finder assigns to the lamp. If FOUND is much brighter than
+ * the white spot, the soft rim of the spot is glare of a small lamp, and the
+ * radius is OWN_PX; if not, it is lit haze, and the radius is nearly that of
+ * the spot; in between both are blended. Even a point light has a white spot,
+ * whose radius is least_px plus that at which the mean of its starburst over a
+ * circle is white; the square of this radius is subtracted from the square of
+ * the spot's radius. The result is at least hidden_px, so that lamps of videos
+ * are as wide as those of still pictures.
  */
 static double compute_lamp_disc_radius(const struct glint_frame *f,
                                        const struct seen *seen, double found,
@@ -222,8 +220,8 @@ static double compute_lamp_disc_radius(const struct glint_frame *f,
     return fmax(least, rest_px + glare * (least - rest_px));
 }
 
-/* Sets LIGHT for LAMP times SCALE. Returns false if it is too far from the
- * picture or has no light. */
+/* Converts LAMP, its power times SCALE, to LIGHT. Returns false if it is too
+ * far from the picture or has no light. */
 static bool set_star_light(const struct glint_frame *f,
                            const struct glint_lamp *lamp, double scale,
                            const struct seen *seen,
@@ -267,8 +265,9 @@ static int compare_star_power(const void *a, const void *b)
     return p->y_q8 < q->y_q8 ? -1 : p->y_q8 > q->y_q8;
 }
 
-/* Sets the star of N_LIGHTS down to light FAINTEST, or to the least light with
- * which it keeps to its fraction of the budget. */
+/* Sets the starburst of N_LIGHTS lights, leaving out light below FAINTEST, or
+ * below the smallest higher limit at which the cost stays within budget_share
+ * of the budget. */
 static void set_star_lights_within_budget(struct glint_frame *f, int n_lights,
                                           double faintest)
 {
@@ -304,7 +303,7 @@ enum glint_status glint_frame_star_set_lamps(struct glint_frame *f,
     if (!(s->share > 0) || n == 0)
         return GLINT_OK;
     status = glint_frame_star_allocate(f, n);
-    /* what lies in the stop may let no light through */
+    /* no starburst if dirt in the stop blocks all light */
     if (status != GLINT_OK || (s->smear_mark && !s->smear.sum))
         return status;
     for (int i = 0; i < n; i++) {
@@ -341,7 +340,7 @@ void glint_frame_draw_passes(struct glint_frame *frame,
         glint_flare_draw(frame->memory.flare, image);
 }
 
-/* Returns the largest channel of the powers of all lamps' starbursts. */
+/* Returns the max power of a lamp in any channel, for starbursts. */
 static double find_max_star_power(const struct glint_frame *f,
                                   const struct glint_lamp *lamps, int n)
 {
@@ -365,7 +364,7 @@ enum glint_status glint_frame_star_draw_alone(struct glint_frame *frame,
     const size_t samples = 3 * (size_t)width * (size_t)height;
     struct glint_image layer =
         glint_image_over(linear_q20, GLINT_LINEAR_Q20, width, height);
-    /* No pixel gets more than all of a lamp's light. */
+    /* no pixel can get more than the light of one lamp in total */
     const double most =
         find_max_star_power(frame, lamps, n) * frame->star.share;
     const double scale = most > 0 ? exp2(10 - ceil(log2(most))) : 1;

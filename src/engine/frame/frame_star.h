@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The starburst of a frame: tables of its stop, and its lamps as they lie in
- * the picture. */
+ * The starburst of a frame: tables for its stop, and the lamps in picture
+ * coordinates. */
 #ifndef GLINT_ENGINE_FRAME_FRAME_STAR_H
 #define GLINT_ENGINE_FRAME_FRAME_STAR_H
 
@@ -13,56 +13,59 @@
 struct glint_frame;
 
 struct glint_frame_star {
-    /* Factor on the star: lamps' powers are multiplied by the frame's scale and
-     * by this. 0: there is no star. */
+    /* factor on the starburst: the powers of lamps are multiplied by the
+     * frame's scale and by this; 0: no starburst */
     double share;
-    /* By seen_px of a lamp in frame->known: above 0, the lamp's power is an
-     * estimate that the star may raise; below 0, the lamp's core is drawn. */
-    bool is_bare; /* true: no picture shows the lamps, so their cores are drawn,
-                     too */
-    bool is_alone; /* true: the star is drawn without ghosts */
+    /* See also seen_px of the lamps frame->known: above 0, the power is an
+     * estimate that may be raised for the starburst; below 0, the lamp's core
+     * is drawn. */
+    bool is_bare;  /* true: the lamps are not visible in a picture, so the cores
+                      of their starbursts are drawn, too */
+    bool is_alone; /* true: the starburst is drawn without ghosts */
 
     /* Private. */
     struct glint_star_optics optics; /* optics for which the tables were made */
     struct glint_star_tables *tables;
-    /* Dirt in the stop, if any, and its version. */
+    /* diffraction by dirt in the stop, if any, and the digest of that dirt */
     struct glint_smear smear;
     uint64_t smear_mark;
-    struct glint_star *star; /* NULL: there is none yet */
-    /* [max_lights]; if there are more than GLINT_STAR_MAX_LIGHTS, the brightest
+    struct glint_star *star; /* NULL until the first starburst is drawn */
+    /* [max_lights]; of more than GLINT_STAR_MAX_LIGHTS lights, the brightest
      * are drawn */
     struct glint_star_light *light;
     void *mem;
-    size_t bytes;             /* of MEM */
-    int max_lights, n_lights; /* capacity for lights, and number of lights of
-                                 this frame */
-    double pixels;            /* pixels that its parts light */
-    bool is_set;              /* true: the star is set for this frame */
+    size_t bytes;             /* size of MEM, bytes */
+    int max_lights, n_lights; /* capacity of LIGHT, and number of lights of this
+                                 frame */
+    double pixels;            /* estimated number of pixels that the starburst
+                                 lights */
+    bool is_set; /* true: the starburst has been set for this frame */
 };
 
-/* Sets the star of LAMPS times SCALE for pictures like IMAGE, and makes tables
- * if there are none for the frame's stop. Does nothing if the fraction is 0.
- * GLINT_E_MEMORY. */
+/* Sets the starburst of LAMPS, with powers times SCALE, for pictures of the
+ * format of IMAGE. Makes the tables if there are none for the frame's stop.
+ * Does nothing if share is 0. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_star_set_lamps(struct glint_frame *frame,
                                              const struct glint_lamp *lamps,
                                              int n, double scale,
                                              const struct glint_image *image);
 
-/* Allocates the stars of N lamps and makes their tables, so that frames
- * allocate nothing. Does nothing if the fraction is 0. GLINT_E_MEMORY. */
+/* Allocates memory for the starbursts of N lamps and makes the tables, so that
+ * frames allocate nothing. Does nothing if share is 0. Returns GLINT_E_MEMORY
+ * on failure. */
 enum glint_status glint_frame_star_allocate(struct glint_frame *frame, int n);
 
-/* Returns the bytes that the star of FRAME holds, for its tables and its lamps,
- * and its veil. */
+/* Returns the bytes that are allocated for the starburst of FRAME and for its
+ * veil. */
 size_t glint_frame_star_count_bytes(const struct glint_frame *frame);
 
-/* Draws the bins of the flare, and the star and the veil that are set, onto
- * IMAGE. */
+/* Draws the binned flare onto IMAGE, and the starburst and the veil if they are
+ * set. */
 void glint_frame_draw_passes(struct glint_frame *frame,
                              const struct glint_image *image);
 
-/* Adds the star of LAMPS alone, times GAIN, to RGB, linear light into which
- * glint_frame_draw_flare_alone() has drawn the ghosts. */
+/* Adds the starburst of LAMPS, times GAIN, to RGB, [height][width][3], linear
+ * light. LINEAR_Q20, of the same size, is scratch memory and is overwritten. */
 enum glint_status glint_frame_star_draw_alone(struct glint_frame *frame,
                                               const struct glint_lamp *lamps,
                                               int n, double gain,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Units of a frame: pixels per unit tangent, light per code, and the powers of
- * two by which light may be scaled.
+ * Unit conversions of a frame: pixels per unit tangent, light per code, and the
+ * powers of two by which light may be scaled.
  */
 #include <math.h>
 

@@ -8,21 +8,23 @@
 #include "engine/frame/block.h"
 #include "engine/frame/frame_parts.h"
 
-/* Veiling glare as a sum of Gaussians. Half of it is uniform over the picture,
- * like light scattered by barrel and camera. Sigmas are fractions of the
- * diagonal; 0: uniform. */
+/* The kernel of veiling glare, as a sum of Gaussians. Half of the glare is
+ * uniform over the picture, like light scattered by barrel and camera body.
+ * Sigmas are fractions of the picture's diagonal; 0: uniform. */
 static const struct {
     double sigma, share;
 } glare[] = {{0.08, 0.25}, {0.25, 0.25}, {0, 0.5}};
 
-/* Haze: a quarter of the light in each octave of angle, so that it falls with
- * the square of the angle as glare of the eye does from 1 to 30 degrees [Vos,
- * Disability glare, CIE Journal 3(2), 1984]. Hazy plastics are measured by the
- * light scattered by more than 2.5 degrees (ASTM D1003): 0.7 of this light is.
+/* The kernel of haze: Gaussians with these sigmas, degrees, each with a quarter
+ * of the light, so that the light falls with the square of the angle, as glare
+ * in the eye does from 1 to 30 degrees [Vos, Disability glare, CIE Journal
+ * 3(2), 1984]. The haze of plastics is defined as the fraction scattered by
+ * more than 2.5 degrees (ASTM D1003), which is 0.7 of the light of this kernel.
  * */
 static const double haze_deg[] = {1.25, 2.5, 5, 10};
 
-/* A narrower Gaussian would show the cells, whose units these are. */
+/* Min sigma of a Gaussian, cells; a narrower one would make the cells visible.
+ */
 static const double least_sigma = 1;
 
 enum {
@@ -44,8 +46,8 @@ static bool are_front_optics_equal(const struct glint_front_optics *a,
            a->roundness == b->roundness;
 }
 
-/* Makes the table of dirt on the front element if that dirt or the frame's
- * optics have changed. */
+/* Computes the table of dirt on the front element again if the dirt or the
+ * frame's optics have changed. */
 static enum glint_status update_front_table(struct glint_frame *f)
 {
     struct glint_frame_veil *v = &f->veil;
@@ -114,8 +116,8 @@ enum glint_status glint_frame_veil_read_picture(struct glint_frame *f,
 
 /* ------------------------------------------------------------------ kernels */
 
-/* Sets TABLE to a Gaussian of SIGMA cells, 0: even, over N cells and their
- * mirror images. */
+/* Sets TABLE to a Gaussian kernel of SIGMA cells (0: uniform) over N cells and
+ * their mirror images; see struct glint_veil_spread. */
 static void set_gaussian_table(int32_t *table_q30, int n, double sigma)
 {
     double at[GLINT_VEIL_CELLS + 1], sum = 0;
@@ -134,10 +136,11 @@ static void set_gaussian_table(int32_t *table_q30, int n, double sigma)
         table_q30[d] = (int32_t)lrint(at[d] / sum * 0x1p30);
         rest -= (d == n ? 1 : 2) * table_q30[d];
     }
-    table_q30[0] = rest; /* so that the weights sum to 1 */
+    table_q30[0] = rest; /* makes the weights sum to exactly 1 */
 }
 
-/* Makes a spread of SIGMA pixels, 0: even, that gives SHARE of all light. */
+/* Returns a Gaussian kernel of SIGMA pixels (0: uniform) that scatters the
+ * fraction SHARE of all light. */
 static struct glint_veil_spread
 make_gaussian_spread(const struct glint_frame *f, double sigma, double share)
 {
@@ -148,7 +151,7 @@ make_gaussian_spread(const struct glint_frame *f, double sigma, double share)
     glint_veil_count_cells(f->view.width, f->view.height, cells);
     for (int k = 0; k < 2; k++) {
         const double in_cells = fmax(sigma * cells[k] / size[k], least_sigma);
-        /* A wider Gaussian is treated as even. */
+        /* a Gaussian wider than this is treated as uniform */
         const bool is_even = !(sigma > 0) || in_cells > 2 * cells[k];
 
         set_gaussian_table(k ? s.down_q30 : s.across_q30, cells[k],
@@ -158,20 +161,22 @@ make_gaussian_spread(const struct glint_frame *f, double sigma, double share)
     return s;
 }
 
-/* Returns the fraction of all light that dirt on the front element scatters. */
+/* Returns the mean fraction of light that dirt on the front element scatters; 0
+ * without dirt. */
 static double get_front_scattered_fraction(const struct glint_frame_veil *v)
 {
     return v->front && v->table ? v->table->mean : 0;
 }
 
-/* Returns all light / light that is not scattered. */
+/* Returns the ratio of all light to the light that is not scattered. */
 static double compute_total_over_direct_light(const struct glint_frame_veil *v)
 {
     return 1 / (1 - fmin(v->glare + v->haze + get_front_scattered_fraction(v),
                          GLINT_MOST_VEIL));
 }
 
-/* Sets SPREADS for haze of the fraction SHARE; returns their number. */
+/* Sets SPREADS to the kernels of haze that scatter the fraction SHARE in total.
+ * Returns their number. */
 static int set_haze_spreads(const struct glint_frame *f, double share,
                             struct glint_veil_spread spreads[N_HAZE])
 {
@@ -183,7 +188,8 @@ static int set_haze_spreads(const struct glint_frame *f, double share,
     return N_HAZE;
 }
 
-/* Sets SPREADS for the glare and haze of FRAME; returns their number. */
+/* Sets SPREADS to the kernels of the frame's glare and haze. Returns their
+ * number. */
 static int set_veil_spreads(const struct glint_frame *f,
                             struct glint_veil_spread spreads[N_GLARE + N_HAZE])
 {
@@ -200,7 +206,8 @@ static int set_veil_spreads(const struct glint_frame *f,
     return n;
 }
 
-/* Scatters the light of dirt on the front, scaled by its max cover. */
+/* Computes the light that dirt on the front element scatters, for the max cover
+ * of its table; no-op without dirt. */
 static void spread_front_dirt_light(const struct glint_frame *f)
 {
     const struct glint_frame_veil *v = &f->veil;
@@ -214,18 +221,19 @@ static void spread_front_dirt_light(const struct glint_frame *f)
                 spreads));
 }
 
-/* Sigma, a fraction of the diagonal, that stands for even glare of
- * off-screen lamps. */
+/* Sigma, a fraction of the diagonal, that replaces the uniform part of the
+ * glare for off-screen lamps. */
 static const double even_sigma = 0.5;
 
-/* Returns the value of a Gaussian at distance FAR, relative to its centre. */
+/* Returns the value of a Gaussian at distance FAR divided by its value at the
+ * centre. */
 static double compute_gaussian_falloff(double far, double sigma)
 {
     return exp(-0.5 * far * far / (sigma * sigma));
 }
 
-/* Returns the veil of a lamp FAR pixels off-screen as a fraction of its veil
- * at the border: each spread falls by its own Gaussian. */
+/* Returns the veil of a lamp FAR pixels off-screen, divided by its veil if it
+ * were at the border of the picture: each kernel falls by its own Gaussian. */
 static double compute_offscreen_fraction(const struct glint_frame *f,
                                          double far)
 {
@@ -247,11 +255,11 @@ static double compute_offscreen_fraction(const struct glint_frame *f,
     return sum / fmax(v->glare + haze, 1e-9);
 }
 
-/* Additional cost of dirt on the front, as a fraction of a pixel's time. */
+/* Additional cost per pixel of dirt on the front element / cost of a pixel. */
 static const double front_pixels = 0.4;
 
-/* Cost of the veil in pixels; spreading light from one cell costs as much as
- * 1 / SPREADING pixel. */
+/* Drawing costs one unit per pixel; convolving the light of one cell with
+ * another costs 1 / SPREADING. */
 double glint_frame_veil_cost_in_pixels(const struct glint_frame *f)
 {
     const double spreading = 14;

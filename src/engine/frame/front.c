@@ -13,7 +13,8 @@ enum { SIDE = GLINT_FRONT_SIDE, LEAST_CHORDS = 24, MOST_CHORDS = 96 };
 
 /* ---------------------------------------------------------------- the front */
 
-/* Returns the cover of the mask at (X, Y): its nearest pixel. */
+/* Returns the fraction of the front element that the mask covers at (X, Y), in
+ * front radii: the value of the nearest pixel; 0 without a mask. */
 static double read_mask_cover(const struct glint_front *f, double x, double y)
 {
     const int i = (int)(0.5 * (x + 1) * f->mask_width);
@@ -22,7 +23,8 @@ static double read_mask_cover(const struct glint_front *f, double x, double y)
     return f->mask ? 1 - f->mask[(ptrdiff_t)j * f->mask_width + i] / 255. : 0;
 }
 
-/* Sets the sums along the rows of DIRT; outside the rim the cover is 0. */
+/* Sets the running sums of the covered fraction along the rows of DIRT. Outside
+ * the rim the cover is 0. */
 static void sum_cover_along_rows(struct glint_front_dirt *dirt,
                                  const struct glint_front *f,
                                  const struct glint_dust *dust)
@@ -93,15 +95,15 @@ void glint_front_free(struct glint_front_dirt *dirt)
 
 /* ---------------------------------------------------------------- the stop */
 
-/* The stop as chords parallel to x, of equal height. */
+/* The opening of the stop as strips parallel to x, of equal height. */
 struct chords {
     int n;
     double y[MOST_CHORDS], from[MOST_CHORDS], to[MOST_CHORDS]; /* stop radii */
-    double all; /* sum of the chords' lengths */
+    double all; /* sum of the lengths of all chords, stop radii */
 };
 
-/* Sets chords of SETUP's stop, whose radius is RADIUS radii of the front
- * element: one per row of cells, up to the max number. */
+/* Divides the stop of SETUP, whose radius is RADIUS front radii, into chords:
+ * one per row of cells of the front element, up to the max number. */
 static void set_stop_chords(struct chords *c, const struct glint_setup *setup,
                             double radius)
 {
@@ -127,7 +129,8 @@ static void set_stop_chords(struct chords *c, const struct glint_setup *setup,
     }
 }
 
-/* Returns the sum of the cover of a row of cells up to X, in cells. */
+/* Returns the integral of the cover along a row of cells from its left end to
+ * X, in cells. */
 static double sum_row_cover_to(const float *row, double x)
 {
     const double at = fmin(fmax(x, 0), SIDE);
@@ -136,7 +139,8 @@ static double sum_row_cover_to(const float *row, double x)
     return (double)row[i] + (at - i) * (double)(row[i + 1] - row[i]);
 }
 
-/* Returns the cover along chord K, moved to MIDDLE, in row J. */
+/* Returns the integral of the cover of row J along chord K of a stop centred at
+ * MIDDLE, in cells. SCALE: cells per stop radius. */
 static double sum_chord_cover(const struct glint_front_dirt *d,
                               const struct chords *c, int k, double scale,
                               double middle, int j)
@@ -149,8 +153,9 @@ static double sum_chord_cover(const struct glint_front_dirt *d,
                      sum_row_cover_to(row, middle + scale * c->from[k]);
 }
 
-/* Returns the mean cover over a stop of RADIUS front radii, centred at (X,
- * Y) on the front element, in front radii. */
+/* Returns the mean cover over the beam of a pixel, which crosses the front
+ * element in the shape of the stop: radius RADIUS, centre (X, Y), in front
+ * radii. */
 static double compute_mean_stop_cover(const struct glint_front_dirt *d,
                                       const struct chords *c, double radius,
                                       double x, double y)
@@ -172,7 +177,7 @@ static double compute_mean_stop_cover(const struct glint_front_dirt *d,
 
 /* --------------------------------------------------------------- the table */
 
-/* A stop smaller than a cell is treated as one of a cell. */
+/* A stop smaller than a cell is treated as if it were a cell wide. */
 static void set_front_optics(struct glint_front_optics *o,
                              const struct glint_setup *setup,
                              const struct glint_lens *lens,
@@ -192,17 +197,16 @@ static void set_front_optics(struct glint_front_optics *o,
         .roundness = setup->iris.roundness};
 }
 
-/* Returns the position on the front element, in its radii, through which
- * pixel AT of N looks along x, or along y if turned, at the middle of the
- * stop. */
+/* Returns the coordinate on the front element, in front radii, at which the
+ * chief ray of pixel AT of N crosses it. */
 static double map_pixel_to_front(const struct glint_front_optics *o, double at,
                                  int n)
 {
     return -o->z * o->tangent * (at - 0.5 * n);
 }
 
-/* Returns log2 of the distance between nodes at which the cover is computed;
- * 16 nodes per disc radius suffice. */
+/* Returns the distance, in nodes, between the nodes at which the cover is
+ * computed: a power of two; 16 per radius of an out-of-focus disc suffice. */
 static int choose_node_step(const struct glint_front_optics *o)
 {
     const double disc =
@@ -214,7 +218,8 @@ static int choose_node_step(const struct glint_front_optics *o)
     return n;
 }
 
-/* Sets COVERED at every STEP-th node, and interpolates between them. */
+/* Computes the cover at every STEP-th node of the table, and interpolates the
+ * nodes between them. */
 static void compute_node_covers(double *covered, int n_x, int n_y,
                                 const struct glint_front_dirt *dirt,
                                 const struct glint_front_optics *o,
@@ -230,7 +235,7 @@ static void compute_node_covers(double *covered, int n_x, int n_y,
                 dirt, &chords, o->radius,
                 map_pixel_to_front(o, GLINT_VEIL_FRONT_PX * i, o->width),
                 -map_pixel_to_front(o, GLINT_VEIL_FRONT_PX * j, o->height));
-    /* outside the table the last node is repeated */
+    /* beyond the last computed node its value is repeated */
     for (int j = 0; j < n_y; j += step)
         for (int i = 0; i < n_x; i++) {
             const int from = i - i % step;

@@ -1,26 +1,29 @@
 /* SPDX-License-Identifier: MIT
  *
- * Dust, scratches and smudges on the front element, in doubles.
+ * Dust, scratches and smudges on the front element of the lens: the table of
+ * light that they scatter, in doubles.
  *
- * A grain throws as much light about its shadow as it takes from the beam
- * [vandeHulst57, 8.2: an efficiency of 2, half of it diffraction], whatever it
- * is made of, and so spreads a lamp's light over some degrees: haze. Since it
- * is far out of focus, it appears as a disc with the shape of the stop. A pixel
- * whose light comes at the tangents U looks through the part
+ * A grain of dust diffracts as much light around its shadow as it blocks,
+ * whatever its material [vandeHulst57, 8.2: an efficiency of 2, half of it
+ * diffraction]. So it scatters the light of a lamp over some degrees, as haze
+ * does. The grain is far out of focus and appears as a disc with the shape of
+ * the stop. The beam of a pixel, whose direction has the tangents U, crosses
+ * the front element in the points
  *
  *     X = e - z U,   e in the entrance pupil, z its distance from the front
  *
- * of the front, of which the fraction C is covered. So it gets the haze of a
- * front that is uniformly covered by C: the light of the lamps, spread by the
- * grains' lobe p, times
+ * and dirt covers the fraction C of these. So the pixel gets the haze of a
+ * front element that is uniformly covered by C: the light of the lamps,
+ * convolved with the scattering lobe p of the grains, times
  *
  *     C = mean over the stop of covered(X)
  *
- * Light of one angle leaves towards one pixel, so that p is taken at the pixel;
- * C is a table of the picture that stays where it is as lamps move. It is sharp
- * where the stop is small and the lens wide, and even at a wide stop of a long
- * lens, as on photographs. The light that dirt blocks counts as a change of
- * exposure, and streaks of single scratches are left out. */
+ * All light that leaves the front element at one angle goes to one pixel, so p
+ * is evaluated at the pixel, and C is a table over the picture that does not
+ * depend on the lamps. The discs are sharp for a small stop and a wide-angle
+ * lens, and blurred to uniformity for a large stop and a long lens, as in
+ * photographs. The light that dirt blocks is treated as a change of exposure;
+ * streaks of single scratches are not modelled. */
 #ifndef GLINT_ENGINE_FRAME_FRONT_H
 #define GLINT_ENGINE_FRAME_FRONT_H
 
@@ -31,24 +34,27 @@
 #include "glint/view.h"
 #include "veil/glare.h"
 
-/* The table of a lens, a stop and a picture. */
+/* Table of the cover for one lens, stop and picture size. */
 struct glint_front_table {
-    struct glint_veil_front front; /* nodes are in the same block as this */
+    struct glint_veil_front front; /* its nodes follow this struct in the same
+                                      memory block */
     size_t bytes;
-    /* fraction that is covered: mean and max over the picture */
+    /* covered fraction: mean and max over the picture */
     double mean, most;
 };
 
-/* The settings for which a table is made. */
+/* The settings on which a table depends. */
 struct glint_front_optics {
-    double tangent;    /* of a pixel on the axis */
-    double z, radius;  /* of the entrance pupil / radius of the front element */
+    double tangent;    /* tangent of the angle of a pixel on the axis */
+    double z, radius;  /* distance of the entrance pupil from the front vertex,
+                          and its radius, in radii of the front element */
     int width, height; /* pixels */
     int n_blades;
     double rotation_deg, roundness;
 };
 
-/* Functions that a program without dirt does not link. */
+/* Functions called through pointers, so that programs without dirt on the front
+ * element do not link them. */
 struct glint_front_method {
     void (*optics)(struct glint_front_optics *optics,
                    const struct glint_setup *setup,
@@ -63,17 +69,21 @@ struct glint_front_method {
                    const struct glint_veil_spread *spreads, int n);
 };
 
-enum { GLINT_FRONT_SIDE = 512 }; /* cells per side of the front's square */
+enum {
+    GLINT_FRONT_SIDE = 512
+}; /* number of cells per side of the square
+      around the front element */
 
 struct glint_front_dirt {
     const struct glint_front_method *method;
-    /* [SIDE][SIDE + 1]: sum of the cover from the left up to each cell, in
-     * cells; row 0 has the lowest y */
+    /* [SIDE][SIDE + 1]: sum of the covered fractions of all cells to the left
+     * in the same row; row 0 has the lowest y */
     float *along;
 };
 
-/* Returns the cover for the pixel at (X, Y) from the top left, summed over
- * STEPS^2 points of the stop; for tests. */
+/* Returns the covered fraction for the pixel at (X, Y), pixels from the top
+ * left, by summing over STEPS^2 points of the stop; a slow reference for tests.
+ */
 double glint_front_sum_pixel_cover(const struct glint_front_dirt *dirt,
                                    const struct glint_front_optics *optics,
                                    const struct glint_setup *setup, double x,

@@ -6,20 +6,27 @@
 
 #include "glint/light.h"
 
-/* max number of lights; 128 cost less than three times as much as 64 */
+/* Max number of lights; 128 lights cost less than three times as much as 64. */
 enum { MAX_LIGHTS = 128 };
 
-/* Levels along the front that glint sweep measures over five lenses at
- * 1280x720, the coarsest first. Coarser models are not on it: they save nothing
- * and cost 6 dB. Finer models cost next to nothing but bytes and time to bake,
- * so all levels above the default have them. Dispersion has a front of its own
- * (make colour-table): levels for small boards draw three wavelengths. Levels
- * below the default draw dim ghosts with one wavelength and of lights near each
- * other as one, the more the dimmer: half of the time of a frame of many
- * lights. Those for small boards trace no ray again while lamps of a video move
- * by less than a quarter of a pixel, which is at 55 dB or more (make
- * reuse-table). Levels from the default up leave out ghosts below an eighth of
- * a code: hundreds of them together are still not seen. */
+/* Default light below which starbursts are not drawn / cull_codes; at the
+ * default quality a quarter of a code. Half or an eighth of this changes the
+ * PSNR little; four times as much costs 0.2 dB and saves 2 of 9 million
+ * instructions (tests/figures/cost/stars.md: a lamp of 12 stops). */
+#define STAR_CULL 2
+
+/* Quality levels, the coarsest first: points on the Pareto front of time and
+ * error that glint sweep measures over five lenses at 1280x720. Coarser models
+ * are not on the front: they save no time and cost 6 dB. Finer models cost only
+ * memory and time to bake, so all levels above the default have them.
+ * Dispersion has a separate Pareto front (make colour-table): levels for small
+ * boards draw three wavelengths. Levels below the default draw dim ghosts with
+ * one wavelength, and near lights as one light, the more the dimmer the ghost;
+ * this halves the time of a frame with many lights. Levels for small boards
+ * reuse traced rays while lamps of a video move by less than a quarter of a
+ * pixel, with 55 dB or more (make reuse-table). Levels from the default up
+ * leave out ghosts below an eighth of a code, of which even hundreds together
+ * are invisible. */
 /* clang-format off */
 static const struct level {
     double quality, grid, quantum, snap, cull, dim, tolerance, dispersion, points;
@@ -50,7 +57,8 @@ double glint_quality_named(int name)
     return (double)name / (GLINT_QUALITY_NAMES - 1);
 }
 
-/* Interpolates geometrically from A to B; PART is 0 at A, 1 at B. */
+/* Interpolates between A and B, geometrically if both are above 0; PART is 0 at
+ * A, 1 at B. */
 static double interpolate_geometrically(double a, double b, double part)
 {
     return a > 0 && b > 0 ? a * pow(b / a, part) : a + part * (b - a);
@@ -69,9 +77,10 @@ double glint_quality_place(double quality)
     return level[i].half == level[i + 1].half ? i + part : i + (part >= 0.5);
 }
 
-/* Returns the settings at QUALITY, interpolated between levels of the table.
- * Settings that cannot be interpolated are those of the nearer level, except
- * the model: the finer one, as it costs no time. */
+/* Returns the settings at QUALITY, 0 .. 1, interpolated between two levels of
+ * the table. Settings that cannot be interpolated are those of the nearer
+ * level, except the tolerance of the model, which is that of the finer level,
+ * as it costs no time. */
 static struct level interpolate_quality_level(double quality)
 {
     const double at = glint_quality_place(quality);
@@ -126,7 +135,7 @@ struct glint_dials glint_dials_at(int quality_q15)
     return glint_quality_at(quality_q15 * 0x1p-15).dials;
 }
 
-/* The error of outlines is 0.1 pixels at fineness 64 and inversely
+/* Assumes an error of outlines of 0.1 pixels at fineness 64, inversely
  * proportional to the square of the fineness. */
 double glint_quality_for_error(double px)
 {

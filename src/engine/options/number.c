@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* max number of digits; longer numbers are rejected */
+/* Max number of digits; longer numbers are rejected. */
 enum { MOST_DIGITS = 100 };
 
 static const char *find_digits_end(const char *at)
@@ -16,8 +16,8 @@ static const char *find_digits_end(const char *at)
     return at;
 }
 
-/* Returns the end of the exponent at AT, such as "e-3", and sets EXPONENT;
- * returns AT if there is none. */
+/* Parses the exponent at AT, such as "e-3": sets EXPONENT and returns its end.
+ * If there is none, sets 0 and returns AT. */
 static const char *parse_exponent(const char *at, long *exponent)
 {
     const bool is_signed = *at && (at[1] == '-' || at[1] == '+');
@@ -34,8 +34,9 @@ static const char *parse_exponent(const char *at, long *exponent)
     return end;
 }
 
-/* Calls strtod() with "125e-1" for 12.5: without a decimal point the result
- * does not depend on the locale and is still correctly rounded. */
+/* Passes digits and exponent to strtod() without a decimal point, such as
+ * "125e-1" for 12.5, so that the result does not depend on the locale and is
+ * correctly rounded. */
 double glint_option_number(const char *text, const char **end)
 {
     const char *const first = text + strspn(text, " \t");

@@ -44,8 +44,8 @@ static const struct glint_option table[] = {
 #include "glint/options.inc"
 };
 
-/* Offsets in struct glint_options of the first byte of each row's value and
- * of the byte after it. */
+/* For each option: the range of bytes in struct glint_options that its value
+ * occupies, from begin to end - 1. */
 static const struct place {
     size_t begin, end;
 } place[] = {
@@ -100,14 +100,14 @@ static void store_option_text(struct glint_options *options, int i,
     *(const char **)((char *)options + place[i].begin) = text;
 }
 
-/* Returns whether OPTIONS, which may be an older program's smaller struct,
- * contain row I. */
+/* Returns whether OPTIONS contain option I; programs compiled for an older
+ * library have a smaller struct. */
 static bool has_option_row(const struct glint_options *options, int i)
 {
     return place[i].end <= options->size;
 }
 
-/* Returns the index of option NAME of OPTIONS, or -1. */
+/* Returns the index of option NAME, or -1 if OPTIONS do not contain it. */
 static int find_option_row(const struct glint_options *options,
                            const char *name)
 {
@@ -140,8 +140,8 @@ struct glint_options glint_options_complete(const struct glint_options *options)
     return whole;
 }
 
-/* Returns the number of words of OPTION; sets WORD and N to word INDEX and
- * its length. */
+/* Sets WORD and N to word INDEX of OPTION and its length; words are separated
+ * by "|". Returns the number of words. */
 static int find_option_word(const struct glint_option *option, int index,
                             size_t *n, const char **word)
 {
@@ -172,7 +172,8 @@ static int find_word_index(const struct glint_option *option, const char *text)
     return -1;
 }
 
-/* Writes "UNIT, LOW to HIGH, or WORD". */
+/* Writes the values that a numeric OPTION accepts to TEXT: "UNIT, LOW to HIGH,
+ * or WORD". */
 static void describe_number_range(const struct glint_option *option, char *text,
                                   size_t bytes)
 {
@@ -239,7 +240,8 @@ static enum glint_status reject_option_name(const char *name,
     return GLINT_E_ARGUMENT;
 }
 
-/* If two options exclude each other, the one set last is used. */
+/* Records that option I was set by the caller. Of two options that exclude each
+ * other, the one set last is used. */
 static void mark_option_given(struct glint_options *options, int i)
 {
     options->given[i] = true;
@@ -255,7 +257,8 @@ static void mark_option_given(struct glint_options *options, int i)
     }
 }
 
-/* Returns whether option I of OPTIONS accepts VALUE, which is in its range. */
+/* Checks what ranges do not express: returns whether option I accepts VALUE,
+ * which is in its range, given the other OPTIONS. */
 static bool is_option_value_accepted(const struct glint_options *options, int i,
                                      double value)
 {
@@ -300,7 +303,8 @@ enum glint_status glint_options_set(struct glint_options *options,
 /* ------------------------------------------------------------------- parsing
  */
 
-/* Reads TEXT as a word that stands for a value of numeric option I. */
+/* Parses TEXT as a word that stands for a value of numeric option I, such as
+ * "default" for a quality. Returns false if it is not such a word. */
 static bool parse_named_number(struct glint_options *options, int i,
                                const char *text, double *value)
 {
@@ -324,7 +328,8 @@ static bool parse_named_number(struct glint_options *options, int i,
     return false;
 }
 
-/* Reads TEXT as the value of a flag; NULL and "": yes. */
+/* Parses TEXT as the value of a flag; NULL and "" mean yes. Returns false if
+ * TEXT is invalid. */
 static bool parse_flag_value(const char *text, double *value)
 {
     static const char *const words[] = {"no", "yes", "0", "1"};
@@ -380,7 +385,7 @@ enum glint_status glint_options_set_text(struct glint_options *options,
     default:
         if (!text)
             return reject_option_value(option, error);
-        /* Without a distance the lens is focused at infinity. */
+        /* infinity is represented by 0 and has no number */
         if (i == GLINT_OPTION_OF_focus && strcmp(text, "inf") == 0) {
             options->focus = 0;
             options->given[i] = true;

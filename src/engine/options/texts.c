@@ -7,9 +7,9 @@
 
 #include "glint/area.h"
 
-/* Reads a number LOW .. HIGH after NAME at *AT, and moves *AT past the comma
- * after it or to the end of the text. Returns false, without changing *AT,
- * if the text does not begin with NAME. */
+/* Parses NAME followed by a number LOW .. HIGH at *AT, and moves *AT past the
+ * comma that follows, or to the end of the text. Returns false, and leaves *AT
+ * unchanged, if the text does not begin with both. */
 static bool parse_named_part(const char **at, const char *name, double low,
                              double high, double *value)
 {
@@ -101,7 +101,7 @@ bool glint_option_sensor(const char *text, double mm[2])
            mm[0] <= 1000 && mm[1] >= 0.1 && mm[1] <= 1000;
 }
 
-/* Default extent of a lamp below its threshold, stops. */
+/* Default of how far a lamp extends below the brightness threshold, stops. */
 #define EXTENDS_EV 0.05
 
 bool glint_option_threshold(const char *text, double ev[2])

@@ -7,13 +7,14 @@
 
 #include "glint/options.h"
 
-/* Returns whether option ID accepts TEXT, which is not empty. Does not look
- * up names of files and lenses, and does not parse coatings, as that needs
- * the offline half. */
+/* Returns whether option ID accepts TEXT, which must not be empty. Does not
+ * check that files and lenses exist, and does not parse coatings, which
+ * requires the offline half. */
 bool glint_option_text_is_valid(enum glint_option_id id, const char *text);
 
-/* Returns OPTIONS, perhaps the smaller struct of an older program, with the
- * defaults of the rows that it does not have. */
+/* Returns a copy of OPTIONS in which options that the caller's struct does not
+ * contain, as the program was compiled for an older library, have their
+ * defaults. */
 struct glint_options
 glint_options_complete(const struct glint_options *options);
 

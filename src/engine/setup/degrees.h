@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sine and cosine of degrees, exact at multiples of 90, so that the picture of
- * a light on an axis is symmetric to the bit. */
+ * Sine and cosine of angles in degrees, exact at multiples of 90, so that the
+ * flare of a light on the x or y axis is symmetric to the bit. */
 #ifndef GLINT_ENGINE_SETUP_DEGREES_H
 #define GLINT_ENGINE_SETUP_DEGREES_H
 

@@ -12,7 +12,8 @@ enum { NODES = (1 << GLINT_DIRT_LOG2) + 1 };
 
 /* ----------------------------------------------------------------- doubles */
 
-/* Returns the light of the mask at (X, Y), interpolated between four pixels. */
+/* Returns the fraction of light that the mask transmits at (X, Y), stop radii,
+ * interpolated between four pixels. */
 static double interpolate_mask(const struct glint_iris *iris, double x,
                                double y)
 {
@@ -30,7 +31,8 @@ static double interpolate_mask(const struct glint_iris *iris, double x,
     return (high + t * (at[0] + s * (at[1] - at[0]) - high)) / 255;
 }
 
-/* Returns the fraction of light that passes dust and mask at (X, Y). */
+/* Returns the fraction of light that dust and mask transmit at (X, Y), stop
+ * radii. */
 static double compute_dirt_transmission(const struct glint_dirt *d, double x,
                                         double y)
 {
@@ -56,7 +58,8 @@ static double compute_stop_transmission(const struct glint_dirt *d, double x,
 
 /* ------------------------------------------------------------------- table */
 
-/* Returns the mean light of the cell around node (I, J) of the finest level. */
+/* Returns the mean transmission around node (I, J) of the finest level, over a
+ * square as wide as the distance between nodes. */
 static double compute_mean_around_node(const struct glint_dirt *d, int i, int j)
 {
     enum { N = 2 };
@@ -101,9 +104,9 @@ static void set_mean_transmission(struct glint_dirt *d)
     d->mean = mean > 1e-4 ? mean : 1;
 }
 
-/* Sets a level of COARSER nodes per side from the next finer one of SIDE
- * nodes per side: each node is the mean of the nodes around it, with weights
- * 1/4, 1/2, 1/4 across and down. */
+/* Computes LEVEL, with COARSER nodes per side, from the next finer level, with
+ * SIDE nodes per side: each node is the mean of the 3 x 3 finer nodes around
+ * it, with weights 1/4, 1/2, 1/4 across and down. */
 static void downsample_level(const uint16_t *finer, int side, uint16_t *level,
                              int coarser)
 {
@@ -137,10 +140,10 @@ static size_t count_nodes_of_all_levels(void)
     return n;
 }
 
-/* Returns the max difference between VALUE, node (I, J) of a level, and
- * finer levels up to REACH nodes around it: the nodes of the next finer
- * level, of FINE_SIDE nodes per side, and their own differences to still
- * finer levels. */
+/* Returns the max difference between VALUE, the value of a node, and all finer
+ * levels near it. FINE: the next finer level, with FINE_SIDE nodes per side,
+ * whose nodes up to REACH nodes from (I, J) are examined; ROUGH: their
+ * differences to still finer levels, or NULL. */
 static int find_node_roughness(const uint16_t *fine, const uint8_t *rough,
                                int fine_side, int i, int j, int reach,
                                int value)
@@ -161,7 +164,7 @@ static int find_node_roughness(const uint16_t *fine, const uint8_t *rough,
     return most < 255 ? most : 255;
 }
 
-/* Returns a digest of the N nodes and the sides of D, never 0 [FNV-1a]. */
+/* Returns a digest of the N nodes and the sides of D, never 0 (FNV-1a). */
 static uint64_t compute_shade_digest(const struct glint_dirt *d, int n)
 {
     uint64_t mark = UINT64_C(0xcbf29ce484222325);
@@ -185,7 +188,7 @@ static void make_shade_table(struct glint_dirt *d)
         .method = &glint_shade_method,
         .log2 = d->dust.n || d->iris.mask ? GLINT_DIRT_LOG2 : 0};
     set_mean_transmission(d);
-    /* A table includes the soft edge. */
+    /* The table, if there is one, includes the soft edge. */
     if (!d->shade.log2) {
         d->shade.soft_q16 = (int32_t)lrint(d->iris.softness * 65536);
         return;

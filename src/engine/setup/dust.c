@@ -6,15 +6,15 @@
 
 #include "glint/view.h"
 
-/* Range of radii of specks, in stop radii; large specks are rarer. */
+/* Min and max radius of round specks, stop radii; large specks are rarer. */
 static const double least_radius = 0.01, most_radius = 0.05;
 
 struct draw {
     uint64_t state;
 };
 
-/* Returns a number in 0 .. 1 (excluded): the upper bits of a linear
- * congruential generator; the same on every machine. */
+/* Returns a random number, 0 <= x < 1: the upper bits of a linear congruential
+ * generator, so the same on every machine. */
 static double generate_random(struct draw *d)
 {
     d->state = d->state * UINT64_C(6364136223846793005) +
@@ -27,7 +27,7 @@ static double generate_random_between(struct draw *d, double a, double b)
     return a + (b - a) * generate_random(d);
 }
 
-/* Sets AT to a random position, uniform in the unit circle. */
+/* Sets AT to a random position with uniform density in the unit circle. */
 static void generate_random_position(struct draw *d, double at[2])
 {
     const double r = sqrt(generate_random(d)),
@@ -64,7 +64,7 @@ static void add_scratch(struct glint_dust *dust, struct draw *d)
     s->opacity = generate_random_between(d, 0.2, 0.6);
 }
 
-/* Sets the bounding square of S. */
+/* Sets centre and half side of the bounding square of speck S. */
 static void set_bounding_square(struct glint_speck *s)
 {
     double half = 0;
@@ -79,7 +79,8 @@ static void set_bounding_square(struct glint_speck *s)
 void glint_dust_generate_specks(struct glint_dust *dust, double amount,
                                 int seed)
 {
-    /* A disc covers the square of its radius as a fraction of the circle. */
+    /* A disc covers the square of its radius, as a fraction of the stop's
+     * circle. */
     const int n_lines = (int)ceil(fmin(8, 40 * amount));
     const int n_smudges = (int)ceil(fmin(4, 20 * amount));
     struct draw d = {(uint64_t)(uint32_t)seed * UINT64_C(0x9e3779b97f4a7c15)};
@@ -91,8 +92,8 @@ void glint_dust_generate_specks(struct glint_dust *dust, double amount,
     for (int i = 0; i < n_lines; i++)
         add_scratch(dust, &d);
     for (int i = 0; i < n_smudges; i++) {
-        /* One draw per statement, as the order in which arguments are
-         * evaluated is not defined. */
+        /* One random number per statement, as the order in which arguments are
+         * evaluated is undefined. */
         const double opacity =
             fmin(amount * generate_random_between(&d, 0.5, 2), 0.5);
         const double radius = generate_random_between(&d, 0.15, 0.4);
@@ -116,7 +117,7 @@ static double square_number(double x)
     return x * x;
 }
 
-/* Returns the square of the distance of (X, Y) from the line of S. */
+/* Returns the squared distance of (X, Y) from the line segment of speck S. */
 static double compute_squared_line_distance(const struct glint_speck *s,
                                             double x, double y)
 {

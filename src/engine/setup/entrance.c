@@ -7,19 +7,22 @@
 #include "engine/setup/setup.h"
 #include "glint/transfer.h"
 
-/* Position at which the rays of a ghost through the middle of the stop
- * enter. */
+/* The chief ray of a ghost, through the centre of the stop. */
 struct chief {
-    double x_mm;         /* on the vertex plane, in the light's frame */
-    double radii_per_mm; /* stop radii per mm on that plane */
+    double x_mm;         /* where the ray enters: coordinate along the light's
+                            azimuth on the plane of the front vertex, mm */
+    double radii_per_mm; /* change of the position in the stop per mm on that
+                            plane, stop radii */
 };
 
-/* Finds CHIEF of GHOST for light at SINE; returns false if no ray passes. */
+/* Finds the chief ray of GHOST for light at the angle whose sine is SINE.
+ * Returns false if there is none. */
 static bool find_chief_ray(const struct glint_lens *lens, int ghost,
                            double sine, struct chief *chief)
 {
     enum { STOP = GLINT_OUT_STOP_X };
-    const int32_t u_q30 = 1 << 28; /* a quarter of the box to both sides */
+    const int32_t u_q30 = 1 << 28; /* a quarter of the pupil box on either side
+                                      of the middle */
     struct glint_transfer t;
     struct glint_outputs out;
     double stop[2], mm;
@@ -42,9 +45,11 @@ static bool find_chief_ray(const struct glint_lens *lens, int ghost,
     return true;
 }
 
-/* A ghost that is reflected only behind the stop reaches the stop as direct
- * light does: on the axis, a stop radius corresponds to a radius of the
- * entrance pupil. These ghosts are the last of a model. */
+/* Returns the distance of the entrance pupil from the front vertex, mm, from
+ * the polynomials of a ghost. A ghost that is reflected only behind the stop
+ * reaches the stop as direct light does, so on the axis a stop radius
+ * corresponds to a radius of the entrance pupil. Such ghosts are the last of a
+ * model. */
 static double compute_pupil_z_from_model(const struct glint_setup *setup,
                                          const struct glint_lens *lens)
 {
@@ -59,8 +64,8 @@ static double compute_pupil_z_from_model(const struct glint_setup *setup,
             fabs(fabs(on.radii_per_mm) * radius - 1) < 0.05 &&
             find_chief_ray(lens, k, sine, &off))
             return (on.x_mm - off.x_mm) / tangent;
-    /* such that the picture's corner is visible past the rim of the front
-     * element */
+    /* if no ghost serves: a distance at which the picture's corner is just
+     * visible past the rim of the front element */
     return fmax(front - radius, 0.1 * radius) * fabs(setup->optics.focal_mm) /
            fmax(field, 1e-6);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Position of the entrance pupil.
+ * Finds the position of the entrance pupil of a lens.
  */
 #ifndef GLINT_ENGINE_SETUP_ENTRANCE_H
 #define GLINT_ENGINE_SETUP_ENTRANCE_H
@@ -9,12 +9,12 @@
 
 struct glint_entrance {
     double z_mm;     /* distance of the entrance pupil from the front vertex,
-                        towards the sensor */
-    double front_mm; /* semi-diameter of the first surface */
+                        towards the sensor, mm */
+    double front_mm; /* semi-diameter of the front surface, mm */
 };
 
-/* Returns the position of the entrance pupil of SETUP. LENS is the model
- * whose polynomials give it, or NULL if the setup was made from a lens
+/* Returns the position of the entrance pupil of SETUP. LENS is the model from
+ * whose polynomials it is computed, or NULL if the setup was made from a lens
  * table. */
 struct glint_entrance glint_entrance_find_pupil(const struct glint_setup *setup,
                                                 const struct glint_lens *lens);

@@ -6,8 +6,8 @@
 #include "engine/setup/degrees.h"
 #include "engine/setup/setup.h"
 
-/* Max curvature of arcs: above it, arcs barely differ from a circle, and
- * their centres would be too close to the stop's centre for 30 bits. */
+/* Max curvature of arcs. Above it they barely differ from a circle, and the
+ * offsets of their centres would be too small for 30 fraction bits. */
 static const double most_round = 0.9999;
 
 void glint_iris_compute_sides(struct glint_iris_sides *sides,
@@ -21,7 +21,8 @@ void glint_iris_compute_sides(struct glint_iris_sides *sides,
         return;
     sides->apothem = cos(GLINT_PI / n);
     sides->round = round;
-    /* The offset d solves d^2 + 2 d apothem + 1 = 1 / round^2. */
+    /* The offset d of an arc's centre solves d^2 + 2 d apothem + 1 = 1 /
+     * round^2. */
     sides->off =
         sqrt(1 - round * round * (1 - sides->apothem * sides->apothem)) -
         sides->apothem * round;
@@ -53,8 +54,9 @@ double glint_iris_edge_distance(const struct glint_iris_sides *sides, double x,
     return depth;
 }
 
-/* Returns the area of a stop with N sides of curvature ROUND: the area of
- * the polygon plus the segments between its sides and the arcs. */
+/* Returns the area of a stop with N sides of curvature ROUND, stop radii^2: the
+ * area of the polygon plus that of the segments between its sides and the arcs.
+ */
 static double compute_opening_area(int n, double round)
 {
     const double half_side = sin(GLINT_PI / n);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * The outline of a stop, in doubles: straight sides, arcs or a circle. Lengths
- * are stop radii, x right, y up. */
+ * are in stop radii; x is to the right, y up. */
 #ifndef GLINT_ENGINE_SETUP_IRIS_H
 #define GLINT_ENGINE_SETUP_IRIS_H
 
@@ -9,25 +9,27 @@
 
 #include "glint/setup.h"
 
-/* The sides of a stop between corners on the unit circle. */
+/* The sides of a stop, which connect corners on the unit circle. */
 struct glint_iris_sides {
-    int n; /* 0: circle */
+    int n; /* number of sides; 0: circle */
     bool arcs;
     double apothem;
-    double round, off; /* curvature of arcs; distance of their centres from the
-                          stop's, times that; 0 and 1 for straight sides */
-    double normal[GLINT_MAX_BLADES][2]; /* outwards */
+    double round, off; /* curvature of arcs (round); distance of their centres
+                          from the stop's centre, times the curvature (off). 0
+                          and 1 for straight sides */
+    double normal[GLINT_MAX_BLADES][2]; /* outward unit normal of each side */
 };
 
 void glint_iris_compute_sides(struct glint_iris_sides *sides,
                               const struct glint_setup *setup);
 
-/* Returns how far (X, Y) lies inside side SIDE: the distance where that is
- * small, and less than that beyond a corner. */
+/* Returns the signed distance of (X, Y) from side SIDE, positive inside. Exact
+ * near the side; for arcs an approximation farther away. */
 double glint_iris_side_distance(const struct glint_iris_sides *sides, int side,
                                 double x, double y);
 
-/* Returns how far (X, Y) lies inside the nearest side. */
+/* Returns the signed distance of (X, Y) from the nearest side, positive inside
+ * the stop. */
 double glint_iris_edge_distance(const struct glint_iris_sides *sides, double x,
                                 double y);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Prepares lens, stop and wavelengths once: colours of the wavelengths, and the
- * flux of the direct image by which all light is measured. */
+ * Prepares lens, stop and wavelengths for drawing: colours of the wavelengths,
+ * and the flux of the direct image, relative to which all light is measured. */
 #include "engine/setup/setup.h"
 
 #include <math.h>
@@ -12,9 +12,9 @@
 #include "engine/setup/spectrum.h"
 #include "glint/model.h"
 
-/* Scales each channel to the sum 1, so that a flat spectrum is white. If a
- * channel's sum is near 0 or negative, all its values are set equal: a grey
- * picture is better than wrong colours. */
+/* Scales each channel of the wavelengths' colours to the sum 1, so that a flat
+ * spectrum is white. If the sum of a channel is near 0 or negative, all its
+ * values are set equal: a grey picture is better than wrong colours. */
 static void normalise_colours(struct glint_setup *s)
 {
     const int n = s->n_wavelengths;
@@ -108,7 +108,7 @@ enum glint_status glint_setup_set_unit_flux(struct glint_setup *s,
     return GLINT_OK;
 }
 
-/* Evaluates the polynomial COEF, N powers, at W. */
+/* Evaluates the polynomial with the N coefficients COEF at W. */
 static double evaluate_polynomial(const struct glint_real *coef, int n,
                                   double w)
 {
@@ -119,8 +119,8 @@ static double evaluate_polynomial(const struct glint_real *coef, int n,
     return sum;
 }
 
-/* Returns the model's flux through a stop of OPENING at NM, which is clamped to
- * the model's band. */
+/* Returns the flux of the direct image, mm^2, at wavelength NM, clamped to the
+ * model's band, with the stop at OPENING times the model's radius. */
 static double compute_model_flux(const struct glint_model_header *h,
                                  double opening, double nm)
 {
@@ -152,8 +152,8 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
     if (status != GLINT_OK)
         return status;
     if (h->n_ghosts > GLINT_MAX_GHOSTS) {
-        snprintf(error->text, sizeof error->text, "%s has %lu ghosts", h->name,
-                 (unsigned long)h->n_ghosts);
+        snprintf(error->text, sizeof error->text, "%s has too many ghosts: %lu",
+                 h->name, (unsigned long)h->n_ghosts);
         return GLINT_E_LENS;
     }
     setup->lens = NULL;
@@ -183,7 +183,7 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
 {
     const struct glint_model_header *h = lens->header;
     const double widest = glint_real_value(h->f_number);
-    /* F_NUMBER may be the rounded f-number of the full opening. */
+    /* tolerates that F_NUMBER is the rounded f-number of the full opening */
     const double by =
         fabs(widest / f_number - 1) < 1e-6 ? 1 : widest / f_number;
 
@@ -216,8 +216,8 @@ void glint_setup_weigh(struct glint_setup *setup)
         setup->unit_flux[i] = mean;
 }
 
-/* Returns the flux of the direct image at NM, interpolated by a parabola in
- * 1 / wavelength^2 through three wavelengths of SETUP. */
+/* Returns the flux of the direct image, mm^2, at wavelength NM, interpolated by
+ * a parabola in 1 / wavelength^2 through three wavelengths of S. */
 static double interpolate_direct_flux(const struct glint_setup *s, double nm)
 {
     const int at[3] = {0, s->n_wavelengths / 2, s->n_wavelengths - 1};

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shared by setups of a model and of a lens table. */
+ * Functions shared by setups that are made from a model and from a lens table.
+ */
 #ifndef GLINT_ENGINE_SETUP_SETUP_H
 #define GLINT_ENGINE_SETUP_SETUP_H
 
 #include "glint/setup.h"
 
-/* Validates stop and wavelengths. Returns GLINT_E_ARGUMENT if one is out of
- * range; ERROR names it. */
+/* Validates stop and wavelengths. Returns GLINT_E_ARGUMENT if a value is out of
+ * range, and names it in ERROR. */
 enum glint_status glint_setup_check_arguments(int n_blades, double rotation_deg,
                                               const double *wavelength_nm,
                                               int n, struct glint_error *error);
@@ -23,8 +24,9 @@ enum glint_status glint_setup_set_unit_flux(struct glint_setup *setup,
                                             const char *name,
                                             struct glint_error *error);
 
-/* Returns the light that passes the stop of SETUP / the light that passes a
- * circular stop. Direct light is uniform over the stop to 1/10000. */
+/* Returns the area of SETUP's stop as a fraction of the circle, which is also
+ * the fraction of direct light that passes: that light is uniform over the stop
+ * to 1/10000. */
 double glint_iris_area_fraction(const struct glint_setup *setup);
 
 #endif

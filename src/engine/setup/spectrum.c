@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * Chooses a few wavelengths that stand for all.
+ * Chooses a few wavelengths that represent the visible spectrum, and their
+ * colours.
  *
  *   in   how many
  *   out  the wavelengths, and the colour of each
  *
- * Method: a spectrum is sampled at the wavelengths and interpolated by cubics
- * through the four nearest; the colour of each wavelength is what the observer
- * sees of its part, summed over 31 wavelengths that are as good as all. An edge
- * that moves with the wavelength becomes as many steps as there are
- * wavelengths. Places with the density (sum of squares of the colour over 1 /
- * wavelength^2)^(1/3) make the sum of squared differences to the smooth edge
- * least. */
+ * Method: light is known at the chosen wavelengths and interpolated between
+ * them by cubics through the four nearest. The colour of a wavelength is the
+ * integral of the observer's colour times that wavelength's interpolation
+ * weight, as a sum over 31 wavelengths. An outline that moves with the
+ * wavelength is drawn as one step per wavelength. The sum of squared
+ * differences to the smooth colour gradient is smallest if wavelengths are
+ * placed with a density proportional to the cube root of the squared colour per
+ * unit of 1 / wavelength^2. */
 #include "engine/setup/spectrum.h"
 
 #include <math.h>
@@ -24,13 +26,14 @@ enum {
     FIRST_NM = 400,
     LAST_NM = 700,
     STEP_NM = 10,
-    /* Distance, nm, by which cubics are extrapolated outside the outermost
-     * wavelengths. */
+    /* distance, nm, by which cubics are extrapolated beyond the outermost
+     * wavelengths */
     BEYOND_NM = 15,
     POINTS = 4
 };
 
-/* Returns a Gaussian with different widths below and above its centre. */
+/* Returns a Gaussian lobe at NM with the sigma BELOW on one side of its centre,
+ * and ABOVE on the other. */
 static double evaluate_gaussian_lobe(double nm, double centre, double below,
                                      double above)
 {
@@ -39,8 +42,9 @@ static double evaluate_gaussian_lobe(double nm, double centre, double below,
     return exp(-0.5 * t * t);
 }
 
-/* Sets XYZ of the CIE 1931 2 degree observer by the multi-lobe fit of
- * [Wyman13], table 1; within 1 % of the peak of the tabulated functions. */
+/* Sets XYZ to the colour matching functions of the CIE 1931 2 degree observer
+ * at NM, by the multi-lobe fit of [Wyman13], table 1; the error is within 1 %
+ * of the functions' peaks. */
 static void evaluate_cie_observer(double nm, double xyz[3])
 {
     xyz[0] = 1.056 * evaluate_gaussian_lobe(nm, 599.8, 37.9, 31.0) +
@@ -70,7 +74,8 @@ void glint_observer_compute_rgb(double nm, double rgb[3])
     convert_xyz_to_bt709(xyz, rgb);
 }
 
-/* Sets the colours of all wavelengths, scaled so that a flat spectrum is white.
+/* Sets RGB to the colours of N_ALL wavelengths that sample the spectrum, scaled
+ * so that a flat spectrum is white.
  */
 static void compute_all_colours(double rgb[N_ALL][3])
 {
@@ -86,7 +91,8 @@ static void compute_all_colours(double rgb[N_ALL][3])
     }
 }
 
-/* Returns the density of wavelengths at NM, in arbitrary units. */
+/* Returns the density with which wavelengths are placed at NM, in arbitrary
+ * units. */
 static double compute_wavelength_density(double nm)
 {
     double rgb[3], squares = 0;
@@ -97,8 +103,8 @@ static double compute_wavelength_density(double nm)
     return cbrt(squares / (nm * nm * nm)); /* d (1 / nm^2) ~ nm^-3 */
 }
 
-/* Places N wavelengths so that each lies in the middle of an equal part of
- * the density. */
+/* Places N wavelengths such that each lies in the middle of 1 / N of the
+ * integral of the density. */
 static void place_wavelengths(int n, double *wavelength_nm)
 {
     double sum = 0, passed = 0;
@@ -115,7 +121,7 @@ static void place_wavelengths(int n, double *wavelength_nm)
     }
 }
 
-/* Returns the index of the first of the wavelengths from which the value at
+/* Returns the index of the first of the four wavelengths from which a value at
  * NM is interpolated. */
 static int find_first_interpolated_wavelength(int n,
                                               const double *wavelength_nm,
@@ -130,8 +136,8 @@ static int find_first_interpolated_wavelength(int n,
     return i > 0 ? i : 0;
 }
 
-/* Returns the weight of wavelength K in the interpolated value at NM:
- * Lagrange's polynomial. */
+/* Returns the weight of wavelength K in a value that is interpolated at NM: a
+ * Lagrange polynomial. */
 static double compute_lagrange_weight(int n, const double *wavelength_nm, int k,
                                       double nm)
 {

@@ -20,7 +20,7 @@ struct glint_view glint_view_fit(int width, int height, double film_width_mm,
 
 /* ------------------------------------------------------------- projections */
 
-/* Max angle of a light off the axis, degrees. */
+/* Max angle off the axis that is returned, degrees. */
 #define MOST_DEG 89.9
 #define MOST_RHO 1e6
 

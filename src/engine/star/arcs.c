@@ -22,14 +22,14 @@ void glint_arcs_init(struct glint_arcs *a, int n, double rotation_deg,
               n * (2 * a->turn - sin(2 * a->turn)) / (2 * round * round);
 }
 
-/* Returns the number of sides to sum, half of an even number: light of the
- * opposite side equals that of a side with its phase reversed. */
+/* Returns the number of sides to sum: all of an odd number, half of an even
+ * number, as the contribution of the opposite side is the complex conjugate. */
 static int count_summed_sides(int n)
 {
     return n % 2 ? n : n / 2;
 }
 
-/* Returns the direction of the normal in the middle of side I. */
+/* Returns the direction of the normal in the middle of side I, radians. */
 static double compute_side_normal_angle(const struct glint_arcs *a, int i)
 {
     return a->rotation_deg * (GLINT_PI / 180) + (i + 0.5) * 2 * GLINT_PI / a->n;
@@ -71,7 +71,8 @@ static double complex compute_fresnel_integral(double x)
     return x < 0 ? -value : value;
 }
 
-/* Returns what is taken at the end W beside the Fresnel integral. */
+/* Returns the correction to the Fresnel integral at the end of an arc at W: the
+ * slowly varying factor there differs from that at w = 0. */
 static double complex compute_arc_end_correction(double w, double kappa)
 {
     const double g = 2 * (1 - 2 * w * w) / sqrt(1 - w * w) - 2;
@@ -82,9 +83,10 @@ static double complex compute_arc_end_correction(double w, double kappa)
                                 (cos(phase) + i_unit * sin(phase));
 }
 
-/* Returns the integral along an arc whose normal is turned by TO from the
- * direction of q, but for its phase in the middle. On the far side of the stop
- * it is the same, with phases turned round. */
+/* Returns the integral along one arc by its far-field approximation, without
+ * the phase of the arc's middle. TO: angle between the arc's normal and the
+ * direction of q, radians; Q: |q|. For an arc on the far side of the stop it is
+ * the complex conjugate. */
 static double complex integrate_arc_asymptotically(const struct glint_arcs *a,
                                                    double q, double to)
 {
@@ -106,8 +108,8 @@ static double complex integrate_arc_asymptotically(const struct glint_arcs *a,
 
 /* --------------------------------------------------------------------- near */
 
-/* Returns the integral along one arc, with its phase: Simpson's rule, with a
- * few points for each turn of the phase. */
+/* Returns the integral along one arc, including its phase, by Simpson's rule
+ * with a few points per turn of the phase. */
 static double complex integrate_arc_numerically(const struct glint_arcs *a,
                                                 double normal, double q,
                                                 double direction)
@@ -128,7 +130,7 @@ static double complex integrate_arc_numerically(const struct glint_arcs *a,
     return sum * (q * radius * a->turn / steps / 3);
 }
 
-/* Returns the same far from the middle. */
+/* Returns the same integral by its far-field approximation, for large Q. */
 static double complex integrate_arc_far_from_centre(const struct glint_arcs *a,
                                                     double normal, double q,
                                                     double direction)
@@ -168,7 +170,8 @@ double glint_arcs_compute_far_pattern(const struct glint_arcs *a, double qx,
                                       double qy)
 {
     const double q = hypot(qx, qy), to = atan2(qy, qx);
-    /* an angle at which the ends of an arc do not stand out any more */
+    /* squared sine of the angle within which the contributions of an arc's ends
+     * merge with that of its middle */
     const double limit = 0.25 / (q * q);
     double sum = 0;
 
@@ -176,14 +179,16 @@ double glint_arcs_compute_far_pattern(const struct glint_arcs *a, double qx,
         const double normal = compute_side_normal_angle(a, i);
         const double size =
             cabs(integrate_arc_asymptotically(a, q, normal - to));
-        /* the corner after it: normals of both arcs there */
+        /* the corner after this arc: angles to the normals of both arcs there
+         */
         const double one = to - (normal + a->turn);
         const double other = to - (normal + 2 * GLINT_PI / a->n - a->turn);
         const double s = sin(one), t = sin(other);
 
         sum += size * size;
-        /* of 2 Re of the products of what the ends give, (q n) / (2 pi i q t),
-         * one with the sign of an end, one of a beginning */
+        /* subtracts twice the real part of the product of both arcs'
+         * contributions at the corner, (q n) / (2 pi i q t): one is the end of
+         * an arc, the other a beginning, so their signs differ */
         sum -= 2 * cos(one) * cos(other) / (4 * GLINT_PI * GLINT_PI) *
                (s / (s * s + limit)) * (t / (t * t + limit));
     }

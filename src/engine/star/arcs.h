@@ -7,11 +7,11 @@
  *     F(q) = 1 / (2 pi |q|^2) integral of (q n) exp(-2 pi i q s) ds
  *
  * An arc diffracts light along its normals: into a fan, as wide as the angle of
- * the arc, whose light falls with r^-3, instead of the line of a straight edge.
- * Far out an arc is a Fresnel integral: with w the sine of half the angle to
- * the direction of q the phase is 4 pi |q| w^2 / curvature, and what varies
- * slowly beside it is taken at w = 0 and, for the rest, at both ends
- * [Bleistein66]. */
+ * the arc, whose light falls with r^-3; a straight edge diffracts into a line
+ * instead. Far from the lamp the integral along an arc becomes a Fresnel
+ * integral: if w is the sine of half the angle to the direction of q, the phase
+ * is 4 pi |q| w^2 / curvature, and the slowly varying factor is replaced by its
+ * value at w = 0, with corrections at both ends [Bleistein66]. */
 #ifndef GLINT_ENGINE_STAR_ARCS_H
 #define GLINT_ENGINE_STAR_ARCS_H
 
@@ -20,21 +20,23 @@
 struct glint_arcs {
     int n; /* sides */
     double rotation_deg;
-    double round;  /* curvature, above 0, 1 / stop radius */
-    double turn;   /* half the angle that an arc turns by */
-    double behind; /* distance from the stop's centre to an arc's centre */
+    double round; /* curvature, above 0, 1 / stop radius */
+    double turn; /* half the angle of an arc as seen from its centre, radians */
+    double behind; /* distance from the stop's centre to an arc's centre, stop
+                      radii */
     double area, perimeter;
 };
 
 void glint_arcs_init(struct glint_arcs *arcs, int n, double rotation_deg,
                      double round);
 
-/* Returns |F(q)|^2 / A^2 by adding up the outline; q is in cycles per stop
- * radius, x right, y up. */
+/* Returns |F(q)|^2 / A^2, the pattern relative to its centre, where A is the
+ * area of the stop. q is in cycles per stop radius, x to the right, y up. */
 double glint_arcs_compute_pattern(const struct glint_arcs *arcs, double qx,
                                   double qy);
 
-/* Returns the same far out, without the fringes between different arcs. */
+/* Returns the same far from the lamp, without the fringes between different
+ * arcs. */
 double glint_arcs_compute_far_pattern(const struct glint_arcs *arcs, double qx,
                                       double qy);
 

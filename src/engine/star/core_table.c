@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Makes the core table of a starburst.
+ * Computes the core table of a starburst: the exact pattern near the lamp minus
+ * lines and halo.
  *
  *   in   a pattern, and the tables of its far field
  *   out  the table of what these lack near the light
  *
- * Method: light of the pattern is summed in cells of a quarter of a pixel, from
- * as many points each as it takes. The four cells in the middle get the rest:
- * what the sum over all cells and the light beyond them lack of 1, which no
- * point caught. A node of the core is the sum of the cells of a pixel about it,
- * minus the far field, and fades out towards the core's rim. */
+ * Method: the pattern is integrated over cells of a quarter of a pixel, by
+ * sample points whose density depends on the distance from the lamp. The four
+ * cells in the middle also get the light that sampling has missed: 1 minus the
+ * sum over all cells minus the light beyond them. A node of the core table is
+ * the sum over the cells of a pixel around it, minus the far field; it fades
+ * out towards the rim of the table. */
 #include "engine/star/core_table.h"
 
 #include <math.h>
@@ -20,13 +22,15 @@
 
 enum { CELLS = 4 }; /* cells per pixel, across and down */
 
-/* A square of cells around the light, and the sums over all cells from its
- * first corner. */
+/* A square of cells around the lamp, and its summed-area table. */
 struct cells {
     const struct glint_psf *psf;
-    const struct glint_smear *smear; /* NULL: the stop has no dirt */
-    double airy_px;                  /* of the smear */
-    int half, side;   /* cells from the middle to a side; cells per side */
+    const struct glint_smear
+        *smear;       /* diffraction by dirt in the stop, or NULL */
+    double airy_px;   /* airy_px (550 nm times the f-number,
+                         pixels) for the smear */
+    int half, side;   /* number of cells from the middle to a side (half), and
+                         per side (side) */
     double (*sum)[3]; /* [side + 1][side + 1] */
 };
 
@@ -36,7 +40,7 @@ static double (*find_cell_sum(const struct cells *s, int i, int k))[3]
 }
 
 /* Returns the number of sample points per side of a cell whose middle is R
- * pixels from the light. */
+ * pixels from the lamp. */
 static int count_cell_samples(const struct glint_psf *psf, double r)
 {
     const double fine = r < 12 * psf->airy_px + 0.5
@@ -75,8 +79,8 @@ static void integrate_cell_light(const struct cells *s, int i, int k,
     }
 }
 
-/* Returns the fraction of the light of channel C that lies farther out than R
- * pixels. */
+/* Returns the fraction of the light of channel C that lies farther than R
+ * pixels from the lamp. */
 static double compute_light_beyond(const struct cells *s, double r, int c)
 {
     const double all = glint_psf_compute_light_beyond(s->psf, r, c);
@@ -87,8 +91,9 @@ static double compute_light_beyond(const struct cells *s, double r, int c)
                : all;
 }
 
-/* Stores the light of each cell where its sum will be; the half above the
- * light mirrors the half below. */
+/* Stores the light of each cell in the summed-area table, where its sum is
+ * computed later. The half above the lamp is the point reflection of the half
+ * below. */
 static void compute_cell_lights(struct cells *s)
 {
     double missing[3] = {0, 0, 0};
@@ -126,7 +131,8 @@ static void make_summed_area_table(struct cells *s)
                     (*find_cell_sum(s, i, k))[c];
 }
 
-/* Sets RGB to the light of the pixel centred at (X, Y), in cells. */
+/* Sets RGB to the light of the pixel that is centred at (X, Y), a corner of
+ * cells. */
 static void sum_pixel_light(const struct cells *s, int y, int x, double rgb[3])
 {
     const int h = CELLS / 2;
@@ -197,8 +203,9 @@ static uint16_t encode_core_light(double light)
     return (uint16_t)(sign | e << 10 | ((unsigned)lrint(size) - 1024));
 }
 
-/* Returns the number of cells between nodes: small enough to resolve rings,
- * large enough that the core reaches to where rings have faded. */
+/* Returns the distance between nodes of the core table, in cells: 1, 2 or 4;
+ * small enough to resolve diffraction rings, large enough that the table
+ * extends to where rings have faded. */
 static int count_cells_between_nodes(const struct glint_psf *psf)
 {
     const double far = 9 * psf->airy_px / GLINT_STAR_CORE;
@@ -206,7 +213,8 @@ static int count_cells_between_nodes(const struct glint_psf *psf)
     return far > 0.5 ? 4 : far > 0.25 ? 2 : 1;
 }
 
-/* Adds the light at (X, Y) from the table of dirt in the stop. */
+/* Adds the light of diffraction by dirt at (X, Y), pixels from the lamp, to
+ * RGB. */
 static void add_smear_light(const struct glint_star_tables *t, double x,
                             double y, double rgb[3])
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The core of a starburst: the exact pattern over each pixel, minus the light
- * of lines and halo there. */
+ * Makes the core table of a starburst: the exact pattern, integrated over a
+ * pixel, minus lines and halo. */
 #ifndef GLINT_ENGINE_STAR_CORE_TABLE_H
 #define GLINT_ENGINE_STAR_CORE_TABLE_H
 
@@ -9,16 +9,17 @@
 #include "engine/star/smear.h"
 #include "star/starburst.h"
 
-/* Sets the core of TABLES, whose other members are set. SMEAR is the smear
- * of dirt in the stop, or NULL; AIRY_PX as in glint_smear_compute_light().
- * Returns GLINT_E_MEMORY on failure. */
+/* Sets the core table of TABLES, whose other members must be set. SMEAR:
+ * diffraction by dirt in the stop, or NULL; AIRY_PX as in
+ * glint_smear_compute_light(). Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_star_make_core_table(struct glint_star_tables *tables,
                                              const struct glint_psf *psf,
                                              const struct glint_smear *smear,
                                              double airy_px);
 
-/* Sets RGB to the light of lines and halo at (X, Y) from a light of power 1;
- * differs from the drawn light by integer rounding alone. */
+/* Sets RGB to the light of lines and halo at (X, Y), pixels from a light of
+ * power 1, as TABLES give it; the drawn light differs only by integer rounding.
+ */
 void glint_star_evaluate_far_tables(const struct glint_star_tables *tables,
                                     double x, double y, double rgb[3]);
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The far field of stops with round blades or a soft edge, which produce fans
- * instead of lines: a table by distance and angle.
+ * The far field of stops with round blades or a soft edge, which diffract into
+ * fans instead of lines: a table over distance from the lamp and angle to the
+ * nearest line.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -10,16 +11,18 @@
 #include "glint/view.h"
 
 enum {
-    COLUMNS = 129, /* columns from a line to half-way to the next line */
+    COLUMNS = 129, /* number of table columns, from a line to half-way to the
+                      next line */
     PER_OCTAVE = 4,
-    EVERY = 2 /* every second wavelength is used */
+    EVERY = 2 /* only every second wavelength is used */
 };
 
-/* Order of diffraction at which the table begins; pixels at which it ends. */
+/* Distance at which the table begins, in orders of diffraction, and at which it
+ * ends, in pixels. */
 static const double first_order = 12, last_px = 16384;
 
-/* Range of curvatures over which fans are blended into the far field of a
- * circle. */
+/* Range of blade curvatures over which fans are blended into the far field of a
+ * circular stop. */
 static const double fade_from = 0.85, fade_to = 0.98;
 
 double glint_psf_compute_soft_edge_factor(double soft, double q)
@@ -31,7 +34,8 @@ double glint_psf_compute_soft_edge_factor(double soft, double q)
     return a * a;
 }
 
-/* Sets RGB to light times r^2 at R pixels, in a direction OFF from a line. */
+/* Sets RGB to the light of fans times r^2, R pixels from the lamp, at an angle
+ * OFF from the nearest line. */
 static void sum_fan_light(const struct glint_psf *p, double r, double off,
                           double rgb[3])
 {
@@ -51,9 +55,9 @@ static void sum_fan_light(const struct glint_psf *p, double r, double off,
         rgb[c] = fmax(rgb[c], 0);
 }
 
-/* Blends the far field of a circle into RGB, light times r^2 at R pixels:
- * for a stop close to a circle the gaps between fans are as narrow as their
- * blur. */
+/* Blends the far field of a circular stop into RGB, which is light times r^2 at
+ * R pixels: for a nearly circular stop the gaps between fans are as narrow as
+ * the blur of their sides. */
 static void blend_circle_light(const struct glint_psf *p, double r,
                                double rgb[3])
 {

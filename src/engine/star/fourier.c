@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fourier transform of a square array, radix 2 [Cooley65].
+ * Fast Fourier transform of a square array, radix 2 [Cooley65].
  */
 #include <math.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static void swap_complex(double a[2], double b[2])
     }
 }
 
-/* Moves each of N numbers to the index with its bits reversed. */
+/* Permutes N numbers: each moves to the index whose bits are reversed. */
 static void permute_bit_reversed(double (*at)[2], int n)
 {
     for (int i = 1, j = 0; i < n; i++) {
@@ -32,7 +32,8 @@ static void permute_bit_reversed(double (*at)[2], int n)
     }
 }
 
-/* Transforms N numbers; ROOT: the first N / 2 of the N roots of 1. */
+/* Transforms a row of N numbers in place. ROOT: the first N / 2 of the N roots
+ * of unity. */
 static void fourier_transform_row(double (*at)[2], int n,
                                   const double (*root)[2])
 {
@@ -56,7 +57,8 @@ typedef double complex_number[2]; /* real, imaginary */
 
 enum glint_status glint_fourier_transform_2d(double (*at)[2], int n, int used)
 {
-    /* columns transformed together, as they share cache lines */
+    /* number of columns that are transformed together, as they share cache
+     * lines */
     enum { ABREAST = 8 };
     complex_number *const root = malloc((size_t)n * sizeof *root);
     complex_number *const column = malloc((size_t)n * ABREAST * sizeof *column);

@@ -10,7 +10,7 @@
 
 enum { ORDERS = 20, BLEND_FROM = 15 };
 
-/* Width of the table of a profile, in units of width_px. */
+/* Range of the table of a line profile, in units of width_px. */
 static const double span = 32;
 
 /* --------------------------------------------------------------- transform */
@@ -22,7 +22,7 @@ static double evaluate_sinc(double x)
     return fabs(t) < 1e-4 ? 1 - t * t / 6 : sin(t) / t;
 }
 
-/* Returns Bessel's function of order 1 at X, as an integral over a period. */
+/* Returns the Bessel function J1(X), as an integral over a period. */
 static double evaluate_bessel1(double x)
 {
     const int n = 32 + (int)(fabs(x) * 0.7);
@@ -44,12 +44,12 @@ static double compute_circle_pattern(double q)
     return f * f;
 }
 
-/* The sides of a stop of circumradius 1. */
+/* The sides of a polygonal stop of circumradius 1. */
 struct sides {
-    int n, n_pair; /* 2: opposite sides are parallel, and each listed side
-                      stands for both */
+    int n, n_pair; /* n: number of listed sides; n_pair: 2 if opposite sides are
+                      parallel and each listed side stands for both, else 1 */
     double length, apothem, area;
-    /* cosines and sines of the sides' normals */
+    /* cosine and sine of the direction of each side's normal */
     double c[GLINT_MAX_BLADES], s[GLINT_MAX_BLADES];
 };
 
@@ -70,7 +70,8 @@ static void set_polygon_sides(struct sides *p, int n, double rotation_deg)
     }
 }
 
-/* Returns |F|^2 / area^2 of a polygon at (QX, QY). */
+/* Returns |F|^2 / area^2 of a polygonal stop at (QX, QY), cycles per stop
+ * radius. */
 static double compute_polygon_pattern(const struct sides *p, double qx,
                                       double qy)
 {
@@ -141,8 +142,8 @@ static void set_line_profile(struct glint_psf *p)
     }
 }
 
-/* Sets the smooth profile: the profile averaged over one fringe around each
- * position. */
+/* Sets the smooth profile: at each position the mean of the profile over one
+ * fringe. */
 static void set_smooth_profile(struct glint_psf *p)
 {
     const int half = (int)(0.6 / span * GLINT_PSF_PROFILE);
@@ -187,8 +188,9 @@ void glint_psf_interpolate_profile(const struct glint_psf *p, double v,
 
 /* -------------------------------------------------------------------- near */
 
-/* Returns a table of the transform, or NULL if memory is short: one row per
- * 1 / GLINT_PSF_STEPS order of diffraction, one column per angle. */
+/* Returns a table of the stop's pattern at one wavelength, with N_ROWS rows: a
+ * row per 1 / GLINT_PSF_STEPS order of diffraction, a column per angle. Returns
+ * NULL if memory is short; the caller frees it. */
 static double *tabulate_patterns(const struct glint_psf *p, int n_rows)
 {
     double *table =
@@ -256,17 +258,18 @@ static enum glint_status make_near_table(struct glint_psf *p)
     return table && p->near ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-/* Blades of less curvature are drawn with lines instead of fans. */
+/* Min curvature of the arcs with which fans are computed. */
 static const double least_round = 0.02;
 
-/* Less curvature, and a softer edge than this, are those of straight blades:
- * their fans are narrower than lines as far as a picture reaches. More
- * curvature than the last is a circle's, and fans fade into it before. */
+/* Blades with less curvature and less softness than these are treated as
+ * straight and hard: their fans would be narrower than lines everywhere in a
+ * picture. Blades with more curvature than circle_round are treated as a
+ * circle, into which fans are blended before. */
 static const double straight_round = 0.01, straight_soft = 0.002;
 static const double circle_round = 0.98;
 
-/* Replaces a soft edge by a hard edge in the middle of its slope: a smaller
- * stop. */
+/* Moves the edge of a soft stop to the middle of its slope: scales airy_px to
+ * the smaller stop, and SOFT to its radius. */
 static void apply_soft_edge(struct glint_psf *p, double soft)
 {
     const double apothem = p->n_blades ? cos(GLINT_PI / p->n_blades) : 1;
@@ -340,7 +343,8 @@ void glint_psf_finish(struct glint_psf *psf)
 double glint_psf_line_angle(const struct glint_psf *p, int i)
 {
     const double step = 180.0 / p->n_lines;
-    /* y changes from up to down, which reverses the rotation */
+    /* y is up in the stop and down in the picture, which reverses the rotation
+     */
     const double one =
         p->n_blades ? -(p->rotation_deg + 180.0 / p->n_blades) : 0;
 
@@ -349,8 +353,10 @@ double glint_psf_line_angle(const struct glint_psf *p, int i)
 
 /* --------------------------------------------------------------------- far */
 
-/* Adds the light of edges, without corners. SUM receives the sum of products of
- * cotangents of the angles to neighbouring edges, limited where profiles end.
+/* Adds the light of all lines at (X, Y) to RGB, without the contribution of
+ * corners. Sets SUM to the sum, over neighbouring edges, of products of the
+ * cotangents of the angles to both, on which the corners' contribution depends;
+ * cotangents are limited near lines.
  */
 static void add_edge_light(const struct glint_psf *p, double x, double y,
                            glint_psf_window_fn *window, const void *self,
@@ -419,7 +425,8 @@ double glint_psf_compute_light_beyond(const struct glint_psf *p, double r,
 
 /* -------------------------------------------------------------------- both */
 
-/* Returns the angle of (X, Y) to the nearest line. */
+/* Returns the angle between the direction of (X, Y) and the nearest line,
+ * radians. */
 static double compute_angle_to_line(const struct glint_psf *p, double x,
                                     double y)
 {

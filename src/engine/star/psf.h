@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The Fraunhofer pattern of a stop, in doubles: near the light summed exactly
- * over the spectrum, farther out without the fringes, which the spectrum
- * averages out.
+ * The Fraunhofer diffraction pattern of a stop (its point spread function), in
+ * doubles: near the lamp summed exactly over the spectrum, farther out without
+ * fringes, which the spectrum averages out.
  *
  *     glint_psf_init(&psf, n_blades, rotation_deg, airy_px);
  *     glint_psf_compute_light(&psf, x, y, rgb);           a point of the
@@ -15,10 +15,10 @@
  *
  *     F(q) = sum i L (q n) / (2 pi |q|^2) sinc(q t L) exp(-2 pi i q m)
  *
- * Far out, edges that share no end add up by their squares. With u = q n, v = q
- * t in pixels, each edge gives L^2 u^2 / (4 pi^2 A r^4) sinc^2(v L / 2a), and
- * each pair of neighbours, which share an end, -a^2 / (2 pi^4 A r^4) u u' / (v
- * v'). */
+ * Far from the lamp the intensities of edges that share no corner are added.
+ * With u = q n, v = q t in pixels, each edge contributes L^2 u^2 / (4 pi^2 A
+ * r^4) sinc^2(v L / 2a), and each pair of neighbouring edges, which share a
+ * corner, -a^2 / (2 pi^4 A r^4) u u' / (v v'). */
 #ifndef GLINT_ENGINE_STAR_PSF_H
 #define GLINT_ENGINE_STAR_PSF_H
 
@@ -27,78 +27,90 @@
 #include "glint/status.h"
 
 enum {
-    GLINT_PSF_WAVES = 41, /* wavelengths, 400 to 700 nm */
-    GLINT_PSF_STEPS = 20, /* rows of a table per order of diffraction */
+    GLINT_PSF_WAVES = 41, /* number of wavelengths, 400 to 700 nm */
+    GLINT_PSF_STEPS = 20, /* number of table rows per order of diffraction */
     GLINT_PSF_PROFILE = 2048
 };
 
 struct glint_psf {
-    int n_blades; /* 0: circle */
+    int n_blades; /* number of blades; 0: circle */
     double rotation_deg;
     double soft; /* width of a soft edge, stop radii */
-    int fans; /* 1: blades are round or soft and produce fans instead of lines
-               */
-    double round;           /* curvature of blades with fans */
+    int fans; /* 1: blades are round or have a soft edge, and diffract into fans
+                 instead of lines */
+    double round;           /* curvature of blades with fans, 1 / stop radius */
     struct glint_arcs arcs; /* arcs of a stop with fans, without rotation */
-    double (*far)[3];       /* [n_far][129]: light times r^2 of fans */
+    double (*far)[3];       /* [n_far][129]: table of the light of fans times
+                               r^2 */
     int n_far;
-    double airy_px; /* pixels: 550 nm times the f-number */
-    /* Number of lines that edges produce, and number of parallel edges per
-     * line, 1 or 2. */
+    double airy_px; /* 550 nm times the f-number, pixels */
+    /* number of lines of the starburst, and number of parallel edges per line,
+     * 1 or 2 */
     int n_lines, n_pair;
-    double edge, area, perimeter; /* size of the stop of radius 1 */
-    /* Normals of the lines, y down; edges in order. */
+    double edge, area, perimeter; /* length of an edge, area and perimeter of
+                                     the stop of radius 1 */
+    /* unit vectors along the lines, normal to the edges, y down; edges in order
+     */
     double normal[GLINT_MAX_BLADES][2];
-    double width_px; /* pixels from the middle of a profile to its first zero,
-                        at 550 nm */
+    double width_px; /* distance from the middle of a line's profile to its
+                        first zero at 550 nm, pixels */
     double scale[GLINT_PSF_WAVES];     /* wavelength / 550 nm */
-    double weight[GLINT_PSF_WAVES][3]; /* each channel sums to 1 */
-    /* Sums of weight * scale, and of weight * scale^2. */
+    double weight[GLINT_PSF_WAVES][3]; /* colour of each wavelength; each
+                                          channel sums to 1 */
+    /* sums over the wavelengths of weight * scale (mean), and of weight *
+     * scale^2 (square) */
     double mean[3], square[3];
-    /* Mean of sinc^2 over the spectrum at v = 32 width_px i /
-     * GLINT_PSF_PROFILE. */
+    /* profile of a line: mean of sinc^2 over the spectrum at v = 32 width_px i
+     * / GLINT_PSF_PROFILE */
     double profile[GLINT_PSF_PROFILE + 1][3];
-    double smooth[GLINT_PSF_PROFILE + 1][3]; /* profile averaged over fringes */
-    int n_rows, n_columns; /* size of NEAR: GLINT_PSF_STEPS rows for each order
-                              of diffraction, from the middle, and a column for
-                              each angle from a line to half-way to the next */
-    double (*near)[3];     /* [n_rows][n_columns]: light times airy_px^2 */
+    double smooth[GLINT_PSF_PROFILE + 1][3]; /* profile, averaged over one
+                                                fringe */
+    int n_rows, n_columns; /* size of NEAR: GLINT_PSF_STEPS rows per order of
+                              diffraction, beginning at the centre; columns are
+                              angles from a line to half-way to the next */
+    double (*near)[3];     /* [n_rows][n_columns]: table of the light near the
+                              lamp, times airy_px^2 */
 };
 
-/* Computes the pattern of a stop. Returns GLINT_E_MEMORY on failure. */
+/* Computes the pattern of a stop with straight blades and a hard edge. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status glint_psf_init(struct glint_psf *psf, int n_blades,
                                  double rotation_deg, double airy_px);
 void glint_psf_finish(struct glint_psf *psf);
 
-/* Makes the pattern of a stop with blades of curvature ROUND, 0 .. 1, and an
- * edge as soft as SOFT, 0 .. 1, as in struct glint_iris. ROUND below 0.01 with
- * SOFT below 0.002 is straight, ROUND from 0.98 on is a circle. */
+/* Computes the pattern of a stop with blades of curvature ROUND, 0 .. 1, and an
+ * edge of softness SOFT, 0 .. 1, as in struct glint_iris. ROUND below 0.01 with
+ * SOFT below 0.002 is treated as straight, ROUND from 0.98 on as a circle.
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
                                       double rotation_deg, double airy_px,
                                       double round, double soft);
 
-/* Computes the table of fans; glint_fans_interpolate_light() returns their
- * light at orders of diffraction above 12. */
+/* Computes the table of fans, for orders of diffraction above 12. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status glint_fans_make_table(struct glint_psf *psf);
-/* Sets RGB to the light of fans R pixels away, in a direction OFF from a
+/* Sets RGB to the light of fans R pixels from the lamp, at an angle OFF from a
  * line. */
 void glint_fans_interpolate_light(const struct glint_psf *psf, double r,
                                   double off, double rgb[3]);
 
-/* Returns the factor of a soft edge of width SOFT on light at Q cycles per
- * stop radius: the square of the transform of its slope. */
+/* Returns the factor by which a soft edge of width SOFT, stop radii, reduces
+ * light at Q cycles per stop radius: the squared Fourier transform of its
+ * slope. */
 double glint_psf_compute_soft_edge_factor(double soft, double q);
 
-/* Returns the angle of line I, y down, 0 to below pi, rising. */
+/* Returns the angle of line I, radians, y down: 0 <= angle < pi, rising with I.
+ */
 double glint_psf_line_angle(const struct glint_psf *psf, int i);
 
-/* Sets RGB to the light of a line's profile V pixels across it, times r^4 /
- * u^2. */
+/* Sets RGB to the profile of a line, V pixels from its centre: light times r^4
+ * / u^2. */
 void glint_psf_interpolate_profile(const struct glint_psf *psf, double v,
                                    double rgb[3]);
 
-/* Sets RGB to the light far from the lamp, of profiles and corners. With
- * WINDOW, profiles have no fringes and are multiplied by 1 - WINDOW(V). */
+/* Sets RGB to the far-field light at (X, Y), pixels from the lamp: lines,
+ * corners and fans. If WINDOW is not NULL, the smooth profiles of lines are
+ * used, multiplied by 1 - WINDOW(V). */
 typedef double glint_psf_window_fn(double v, const void *self);
 void glint_psf_compute_far_light(const struct glint_psf *psf, double x,
                                  double y, glint_psf_window_fn *window,
@@ -107,12 +119,13 @@ void glint_psf_compute_far_light(const struct glint_psf *psf, double x,
 void glint_psf_compute_light(const struct glint_psf *psf, double x, double y,
                              double rgb[3]);
 
-/* Returns the fraction of the light of channel C that lies farther out than R
- * pixels. */
+/* Returns the fraction of the light of channel C that lies farther than R
+ * pixels from the lamp. */
 double glint_psf_compute_light_beyond(const struct glint_psf *psf, double r,
                                       int c);
 
-/* Returns |F(q)|^2 / A^2; q is in cycles per stop radius, x right, y up. */
+/* Returns |F(q)|^2 / A^2 at one wavelength; q is in cycles per stop radius, x
+ * to the right, y up. */
 double glint_psf_compute_pattern(int n_blades, double rotation_deg, double qx,
                                  double qy);
 

@@ -11,24 +11,29 @@ enum { N = GLINT_SMEAR_SIDE, HALF = N / 2 };
 
 static const double cell = (double)GLINT_SMEAR_SPAN / N;
 
-/* Cycles per radius: the step of the transform, and where its end is taken. */
+/* In cycles per stop radius: the step between elements of the transform
+ * (step_q), and where D is measured to extrapolate it (edge_q). */
 static const double step_q = 1.0 / GLINT_SMEAR_SPAN, edge_q = 112;
 
-/* What the light of a stop adds up to. */
+/* Sums over the cells of a stop. */
 struct totals {
-    double light, area; /* integrals of T and of the clear stop */
-    double rim, n_rim;  /* amplitude along the outline */
+    double light, area; /* integrals of the transmission T and of the clear
+                           stop, stop radii^2 */
+    double rim, n_rim;  /* sum of the relative amplitude over the cells along
+                           the outline, and their number */
 };
 
 /* ------------------------------------------------------------------ fields */
 
-/* Returns the fraction of a cell that lies within the outline, DEPTH inside. */
+/* Returns the fraction of a cell that lies within the outline, if its middle is
+ * DEPTH stop radii inside. */
 static double compute_inside_fraction(double depth)
 {
     return fmin(fmax(depth / cell + 0.5, 0), 1);
 }
 
-/* Returns what a soft edge lets through DEPTH inside. */
+/* Returns the transmission of a soft edge of width SOFT at a point DEPTH stop
+ * radii inside the outline. */
 static double compute_soft_edge_transmission(double soft, double depth)
 {
     const double in = soft > 0 ? fmin(fmax(depth / soft, 0), 1) : 1;
@@ -36,7 +41,9 @@ static double compute_soft_edge_transmission(double soft, double depth)
     return in * in * (3 - 2 * in);
 }
 
-/* Sets AT to the amplitudes of row J of the stop, 0 at its lowest y. */
+/* Sets AT[i] to the amplitudes in row J of cells of the stop: real part g with
+ * dirt, imaginary part o without. Row 0 has the lowest y. Adds to the sums T.
+ */
 static void set_amplitude_row(const struct glint_dirt *d, int j,
                               double (*at)[2], struct totals *t)
 {
@@ -65,14 +72,14 @@ static void set_amplitude_row(const struct glint_dirt *d, int j,
 
 /* --------------------------------------------------------------- transform */
 
-/* Returns element (I, K) of the transform, counted from its middle. */
+/* Returns element (I, K) of the transform, counted from zero frequency. */
 static const double *get_transform_element(double (*at)[2], int i, int k)
 {
     return at[(size_t)((i + N) % N) * N + (size_t)((k + N) % N)];
 }
 
-/* Returns D at (I, K): G and O are the transforms of the real and the imaginary
- * part. */
+/* Returns D (smear.h) at element (I, K): G and O are the transforms of the real
+ * and the imaginary part. */
 static double compute_pattern_difference(double (*at)[2], int i, int k,
                                          const struct totals *t, double clear)
 {
@@ -152,7 +159,7 @@ void glint_smear_finish(struct glint_smear *smear)
 
 /* ------------------------------------------------------------------- means */
 
-/* Returns the integral up to place (X, Y) of the sums. */
+/* Interpolates the running integral s->sum at (X, Y), in elements. */
 static double interpolate_difference_sum(const struct glint_smear *s, double y,
                                          double x)
 {
@@ -170,7 +177,7 @@ double glint_smear_compute_mean(const struct glint_smear *s, double qx,
                                 double qy, double half)
 {
     const double q = hypot(qx, qy), wide = fmax(half, 0.5 * step_q);
-    /* an element is the middle of its square */
+    /* an element lies in the middle of its square */
     const double x = qx / step_q + HALF + 0.5, y = qy / step_q + HALF + 0.5;
     const double h = wide / step_q;
 

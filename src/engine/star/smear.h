@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * Change of a stop's diffraction pattern by dust, scratches, smudges and masks,
- * in doubles.
+ * The smear: change of a stop's diffraction pattern by dust, scratches, smudges
+ * and masks, in doubles.
  *
- * With T the light that lies through the stop, the amplitude is its root g, and
- * that of the clear stop 1, o. The pattern is |G|^2 / integral of T. Most of it
- * is that of the clear stop, |O|^2 / area, times the fraction C of the
- * outline's own light that remains. The rest is smooth, over angles of
- * wavelength over speck, and may be negative near the light:
+ * If T is the transmission of the stop, the amplitude is g = sqrt(T); for the
+ * clear stop it is o = 1. With the Fourier transforms G and O the pattern is
+ * |G|^2 / integral of T. Most of it is the pattern of the clear stop, |O|^2 /
+ * area, times the fraction C of the light at the outline that is transmitted.
+ * The rest, D, is smooth, extends over angles of wavelength / size of a speck,
+ * and may be negative near the lamp:
  *
  *     D = |G|^2 / integral of T - C |O|^2 / area,  integral of D = 1 - C
  *
- * Both transforms are one, of g + i o, on a grid of 1024 x 1024 over 4 stop
- * radii: D is known up to 128 cycles per radius, beyond which it falls with the
- * third power, as the light of smooth rims does at least. [Cooley65] */
+ * One transform, of g + i o, on a grid of 1024 x 1024 cells over 4 stop radii,
+ * yields both G and O [Cooley65]. D is known up to 128 cycles per radius;
+ * beyond, it is assumed to fall with the third power of the frequency, as the
+ * light of smooth rims does at least. */
 #ifndef GLINT_ENGINE_STAR_SMEAR_H
 #define GLINT_ENGINE_STAR_SMEAR_H
 
@@ -29,19 +31,21 @@ enum {
 
 struct glint_smear {
     double clear; /* C */
-    /* [SIDE + 1][SIDE + 1]: integral of D over cycles per radius from
-     * -SIDE / (2 SPAN) on; row 0 at the lowest y. */
+    /* [SIDE + 1][SIDE + 1]: running integral of D over both frequencies, cycles
+     * per radius, beginning at -SIDE / (2 SPAN); row 0 has the lowest y. NULL:
+     * dirt blocks all light */
     double *sum;
-    double edge; /* D at EDGE_Q, beyond which it is taken to fall */
+    double edge; /* mean of D around 112 cycles per radius, from which it is
+                    extrapolated */
 };
 
-/* Makes the smear of what lies in the stop of SETUP; it has a table.
- * GLINT_E_MEMORY. */
+/* Computes the smear of the dirt in the stop of SETUP. Returns GLINT_E_MEMORY
+ * on failure. */
 enum glint_status glint_smear_init(struct glint_smear *smear,
                                    const struct glint_setup *setup);
 void glint_smear_finish(struct glint_smear *smear);
 
-/* Returns the bytes that SMEAR takes, 0 if it is finished. */
+/* Returns the bytes allocated for SMEAR; 0 after glint_smear_finish(). */
 static inline size_t glint_smear_bytes(const struct glint_smear *smear)
 {
     return smear->sum ? (size_t)(GLINT_SMEAR_SIDE + 1) *
@@ -49,16 +53,18 @@ static inline size_t glint_smear_bytes(const struct glint_smear *smear)
                       : 0;
 }
 
-/* Returns the mean of D over a square of half width HALF about (QX, QY), cycles
- * per stop radius, x right, y up. */
+/* Returns the mean of D over a square of half width HALF around (QX, QY), in
+ * cycles per stop radius, x to the right, y up. */
 double glint_smear_compute_mean(const struct glint_smear *smear, double qx,
                                 double qy, double half);
 
-/* Returns the integral of D within Q cycles per stop radius, 0 .. 1. */
+/* Returns the integral of D over the frequencies up to Q cycles per stop
+ * radius. */
 double glint_smear_integrate_within(const struct glint_smear *smear, double q);
 
-/* Transforms N x N complex numbers in place, N a power of two, without a
- * factor; rows from USED on are 0. GLINT_E_MEMORY. */
+/* Fourier-transforms N x N complex numbers in place, without normalisation. N
+ * must be a power of two; rows from USED on must be 0. Returns GLINT_E_MEMORY
+ * on failure. */
 enum glint_status glint_fourier_transform_2d(double (*at)[2], int n, int used);
 
 #endif

@@ -42,13 +42,14 @@ double glint_smear_compute_light_beyond(const struct glint_smear *smear,
     return 1 - smear->clear - within;
 }
 
-/* Returns pixels from node to node of ring K. */
+/* Returns the distance between table nodes of ring K, pixels. */
 static double compute_ring_step_px(int k)
 {
     return exp2(k) * GLINT_STAR_SMEAR_PX / HALF;
 }
 
-/* Sets LIGHT to the light at the nodes of ring K; returns the largest. */
+/* Sets LIGHT to the light at all table nodes of ring K. Returns the max over
+ * nodes and channels. */
 static double compute_ring_light(const struct glint_smear *smear,
                                  const struct glint_psf *psf, double airy_px,
                                  int k, double (*light)[3])

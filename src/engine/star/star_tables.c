@@ -10,18 +10,19 @@
 #include "engine/star/smear_table.h"
 #include "glint/view.h"
 
-/* Range of 550 nm times the f-number, in pixels, for which tables are made;
- * outside it the nearest end is used. */
+/* Range of airy_px (550 nm times the f-number, pixels) for which tables are
+ * made; values outside are clamped. */
 static const double least_airy_px = 1.0 / 64, most_airy_px = 16;
 
-/* Widths of a profile, or pixels if these are wider, up to which it is tabled;
- * it fades into the halo in the outer half. */
+/* Half width of the tabulated line profiles, in widths of a profile, or in
+ * pixels if these are larger. In the outer half, profiles fade into the halo.
+ */
 static const double widths = 4;
 
-/* Half of a pixel's diagonal. */
+/* Half the diagonal of a pixel, pixels. */
 static const double filter_px = 0.7072;
 
-/* Size of the halos of wide lamps. */
+/* Size of the halo tables of extended lamps, bytes. */
 static const size_t wide_bytes =
     GLINT_STAR_WIDE * GLINT_STAR_HALO_ROWS * sizeof(glint_star_halo_row);
 
@@ -58,8 +59,8 @@ static void set_line_direction(struct glint_star_line *line, double angle,
         round_and_clamp(65536 * cos(border) / fmax(sin(border), 1e-9), 0x1p28);
 }
 
-/* Sets RGB to the profile at V averaged over a pixel that is turned by ANGLE,
- * which is a convolution with two boxes. */
+/* Sets RGB to the profile at V, averaged over the area of a pixel that is
+ * rotated by ANGLE relative to the line: a convolution with two boxes. */
 static void filter_profile_by_pixel(const struct glint_psf *psf,
                                     const struct window *window, double angle,
                                     double v, double rgb[3])
@@ -122,10 +123,10 @@ static void make_line_tables(struct glint_star_tables *t,
 
 /* -------------------------------------------------------------------- halo */
 
-/* Adds to RGB the fans R pixels from a lamp of radius RADIUS, V pixels and the
- * angle OFF from a line: their mean over chords of the lamp across the line. A
- * fan may be thinner than a pixel, and its sides steeper than the table's
- * columns are fine, so that a point is blurred as well. */
+/* Adds to RGB the light of fans, R pixels from a lamp of radius RADIUS, at V
+ * pixels and the angle OFF from a line: the mean over chords of the lamp's
+ * disc. Point lights are blurred slightly, too, as a fan may be thinner than a
+ * pixel, and its sides steeper than the table's columns resolve. */
 static void add_blurred_fans(const struct glint_psf *psf, double r, double off,
                              double v, double radius, double rgb[3])
 {
@@ -147,8 +148,8 @@ static void add_blurred_fans(const struct glint_psf *psf, double r, double off,
     }
 }
 
-/* Sets log2 of light times r^2 at ROW and COLUMN of the halo of a lamp of
- * radius RADIUS. */
+/* Sets LOG2_OF to log2 of light times r^2 at ROW and COLUMN of the halo table
+ * of a lamp of radius RADIUS pixels. */
 static void compute_halo_node(const struct glint_psf *psf,
                               const struct window *window, double reach,
                               double radius, int row, int column,
@@ -169,7 +170,8 @@ static void compute_halo_node(const struct glint_psf *psf,
         log2_of[c] = log2(fmax(rgb[c] * r * r, 0x1p-60));
 }
 
-/* Sets the codes of a row of a halo, and raises MOST to the largest. */
+/* Computes and encodes row ROW of the halo table of a lamp of radius RADIUS,
+ * and raises *MOST to the max code. */
 static void encode_halo_row(struct glint_star_tables *t,
                             const struct glint_psf *psf,
                             const struct window *window, double radius, int row,
@@ -209,7 +211,7 @@ static void make_halo_table(struct glint_star_tables *t,
     }
 }
 
-/* Sets the halos of wide lamps, WIDE. */
+/* Computes the halo tables of extended lamps, WIDE. */
 static void make_wide_lamp_halos(struct glint_star_tables *t,
                                  const struct glint_psf *psf,
                                  const struct window *window,
@@ -241,10 +243,12 @@ static void set_profile_sizes(struct glint_star_tables *t,
     t->inner_q8 = (int32_t)lrint(256 * fmax(2, psf->airy_px));
 }
 
-/* Least fraction of the clear stop's light that is distinguished from none. */
+/* Min fraction of the clear stop's pattern that remains in the tables, as a
+ * logarithm of 0 does not exist. */
 static const double least_clear = 1e-6;
 
-/* Sets what SMEAR makes of the clear stop's pattern, and its table. */
+/* Adds dirt to the tables of the clear stop: scales lines and halo by the
+ * fraction SMEAR leaves, and makes the smear table. */
 static enum glint_status make_dirt_smear_table(struct glint_star_tables *t,
                                                const struct glint_psf *psf,
                                                const struct glint_smear *smear,

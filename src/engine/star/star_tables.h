@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tables of the starburst of a stop, made at setup in doubles.
+ * Makes the tables of the starburst of a stop, at setup, in doubles.
  */
 #ifndef GLINT_ENGINE_STAR_STAR_TABLES_H
 #define GLINT_ENGINE_STAR_STAR_TABLES_H
@@ -13,18 +13,18 @@ struct glint_star_optics {
     double rotation_deg, f_number;
     double round, soft; /* as in struct glint_iris */
     double pixel_um;    /* side of a pixel on the sensor, um */
-    /* Dirt in the stop, or NULL. */
+    /* diffraction by dirt in the stop, or NULL */
     const struct glint_smear *smear;
 };
 
-/* Returns 550 nm times the f-number, in pixels. */
+/* Returns airy_px: 550 nm times the f-number, pixels. */
 static inline double glint_star_airy_px(const struct glint_star_optics *o)
 {
     return 0.55 * o->f_number / o->pixel_um;
 }
 
-/* Makes the tables for optics O; glint_star_tables_free() frees them.
- * GLINT_E_MEMORY. */
+/* Makes the tables for optics O, to be freed by glint_star_tables_free().
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
                                          const struct glint_star_optics *o);
 /* Frees TABLES, which may be NULL. */
