@@ -49,7 +49,7 @@ static inline int bit_length(uint64_t x)
 #endif
 }
 
-static inline uint32_t bits_set(uint32_t x)
+static inline uint32_t count_set_bits(uint32_t x)
 {
     uint32_t n = 0;
 

@@ -87,8 +87,8 @@ expose_by_drawing_flare(struct glint_engine *e, int n,
             return GLINT_E_MEMORY;
         glint_ground_sample_picture(ground, image);
     }
-    status = glint_strength_expose_still(&x->strength, &e->paint.frame,
-                                         e->paint.lamp, n, ground, white);
+    status = glint_strength_expose_still_picture(
+        &x->strength, &e->paint.frame, e->paint.lamp, n, ground, white);
     free(ground);
     return status;
 }

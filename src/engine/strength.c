@@ -80,7 +80,7 @@ static void add_lamp_light(struct glint_response_light *sum,
     }
 }
 
-static void compute_peaks(struct glint_response_light *sum)
+static void convert_sums_to_peaks(struct glint_response_light *sum)
 {
     for (int c = 0; c < 3; c++)
         sum->peak[c] = pow(sum->peak[c], 1 / norm);
@@ -97,7 +97,7 @@ void glint_strength_compute_light(const struct glint_response *response,
         compute_lamp_flare_light(response, lamps, i, &one);
         add_lamp_light(light, &one, lamps->lamp[i].level);
     }
-    compute_peaks(light);
+    convert_sums_to_peaks(light);
 }
 
 static double combine_norm(double a, double b)
@@ -188,7 +188,7 @@ compute_full_level_exposure_log2(const struct glint_response *response,
         compute_lamp_flare_light(response, &full, i, &one);
         add_lamp_light(&light, &one, 1);
     }
-    compute_peaks(&light);
+    convert_sums_to_peaks(&light);
     return compute_exposure_log2(&light);
 }
 
@@ -206,7 +206,7 @@ static void expose_lamps(struct glint_strength *s,
         lamps->part[i] = limit_lamp_light(s, &one);
         add_lamp_light(&s->light, &one, lamps->lamp[i].level);
     }
-    compute_peaks(&s->light);
+    convert_sums_to_peaks(&s->light);
     s->scale = s->gain * exp2(compute_strength_log2(s) + s->factor_log2);
 }
 
@@ -284,12 +284,10 @@ void glint_strength_correct_exposure(struct glint_strength *strength,
     scale_flare_light(s);
 }
 
-enum glint_status glint_strength_expose_still(struct glint_strength *strength,
-                                              struct glint_frame *frame,
-                                              const struct glint_lamp *lamps,
-                                              int n,
-                                              const struct glint_ground *ground,
-                                              double white)
+enum glint_status glint_strength_expose_still_picture(
+    struct glint_strength *strength, struct glint_frame *frame,
+    const struct glint_lamp *lamps, int n, const struct glint_ground *ground,
+    double white)
 {
     struct glint_response_light drawn;
     struct glint_seen seen = {0, 0, 0};

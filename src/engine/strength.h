@@ -116,12 +116,10 @@ void glint_strength_correct_exposure(struct glint_strength *strength,
  * glint_strength_correct_exposure(). WHITE: linear light of the picture's
  * white. GROUND: the picture under the flare, or NULL. On GLINT_E_MEMORY
  * nothing has changed. */
-enum glint_status glint_strength_expose_still(struct glint_strength *strength,
-                                              struct glint_frame *frame,
-                                              const struct glint_lamp *lamps,
-                                              int n,
-                                              const struct glint_ground *ground,
-                                              double white);
+enum glint_status glint_strength_expose_still_picture(
+    struct glint_strength *strength, struct glint_frame *frame,
+    const struct glint_lamp *lamps, int n, const struct glint_ground *ground,
+    double white);
 
 /* Sets LIGHT to the light of the flare of LAMPS at scale 1, computed from
  * RESPONSE. */

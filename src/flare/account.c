@@ -117,12 +117,12 @@ static void count_bundle_edges(const struct glint_flare *f,
                                const struct glint_bundle_slot *slot,
                                struct glint_account *a)
 {
-    const struct glint_edge *edge = glint_by_edges_of(f)->edge;
+    const struct glint_edge *edge = glint_flare_get_edges(f)->edge;
 
     a->edges = slot->n;
     for (int i = slot->first; i < slot->first + slot->n; i++) {
         a->rows += count_edge_rows(&edge[i], f->cfg.height);
-        a->refs = glint_flare_add_need(
+        a->refs = glint_flare_add_needed_count(
             a->refs, glint_edge_count_bin_entries(&edge[i], &f->bins));
     }
 }
@@ -201,7 +201,7 @@ static int is_bundle_selected(const struct glint_flare *f,
 
 void glint_flare_keep(struct glint_flare *flare, int ghost, int light, int wave)
 {
-    const struct glint_edge *edge = glint_by_edges_of(flare)->edge;
+    const struct glint_edge *edge = glint_flare_get_edges(flare)->edge;
 
     flare->reusable = GLINT_REUSABLE_NOT;
     glint_bins_clear_counts(&flare->bins);

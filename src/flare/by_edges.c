@@ -61,7 +61,7 @@ void glint_edges_clear_sums(struct glint_flare *f)
     const int log2 = f->cfg.tile_log2;
 
     for (int i = 0; i < glint_workers_count(f->cfg.workers); i++) {
-        struct glint_edge_sums *s = &glint_edges_worker_of(f, i)->sums;
+        struct glint_edge_sums *s = &glint_flare_get_edges_worker(f, i)->sums;
 
         for (int c = 0; c < 3; c++)
             s->touched[c] = 0;
@@ -81,7 +81,7 @@ typedef int weight_fn(const struct glint_flare *f, int job);
  * the picture. */
 static void sort_jobs_by_weight(struct glint_flare *f, int n, weight_fn *weight)
 {
-    int32_t *order = glint_by_edges_of(f)->order;
+    int32_t *order = glint_flare_get_edges(f)->order;
     int32_t at[33] = {0};
 
     for (int i = 0; i < n; i++)
@@ -148,10 +148,10 @@ static int32_t compute_cell_light_limit_q8(const struct glint_flare *f)
 static int add_bin_entries(const struct glint_flare *f, int refs, int first,
                            int n)
 {
-    const struct glint_edge *edge = glint_by_edges_of(f)->edge + first;
+    const struct glint_edge *edge = glint_flare_get_edges(f)->edge + first;
 
     for (int k = 0; k < n; k++)
-        refs = glint_flare_add_need(
+        refs = glint_flare_add_needed_count(
             refs, glint_edge_count_bin_entries(&edge[k], &f->bins));
     return refs;
 }
@@ -163,9 +163,9 @@ static int add_bin_entries(const struct glint_flare *f, int refs, int first,
 static void emit_bundle_edges(struct glint_flare *f, int bundle, int worker,
                               const struct glint_bins *bins)
 {
-    const struct glint_by_edges *own = glint_by_edges_of(f);
+    const struct glint_by_edges *own = glint_flare_get_edges(f);
     struct glint_plan_scratch *plan = f->worker[worker].plan;
-    struct glint_edges_worker *w = glint_edges_worker_of(f, worker);
+    struct glint_edges_worker *w = glint_flare_get_edges_worker(f, worker);
     struct glint_bundle_slot *slot = &f->slot[bundle];
     struct glint_ghost_edges ghost = {
         .vertex = f->vertex + slot->first_vertex,
@@ -223,7 +223,7 @@ static struct glint_bins make_worker_bins(const struct glint_flare *f,
 {
     struct glint_bins bins = f->bins;
 
-    bins.start = glint_edges_worker_of(f, worker)->at;
+    bins.start = glint_flare_get_edges_worker(f, worker)->at;
     return bins;
 }
 
@@ -234,14 +234,14 @@ static void count_bundle_bin_entries(struct glint_flare *f, int bundle,
     struct glint_bins bins = make_worker_bins(f, worker);
 
     for (int k = 0; slot->first >= 0 && k < slot->n; k++)
-        glint_edge_count_into_bins(&glint_by_edges_of(f)->edge[slot->first + k],
-                                   &bins);
+        glint_edge_count_into_bins(
+            &glint_flare_get_edges(f)->edge[slot->first + k], &bins);
 }
 
 static void emit_bundle_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
-    const int bundle = glint_by_edges_of(f)->order[job];
+    const int bundle = glint_flare_get_edges(f)->order[job];
 
     emit_bundle_edges(f, bundle, worker, NULL);
     f->slot[bundle].worker = worker;
@@ -254,7 +254,7 @@ static void split_edge_array(struct glint_flare *f, int n)
     const int part = f->cfg.max_primitives / n;
 
     for (int i = 0; i < n; i++) {
-        struct glint_edges_worker *w = glint_edges_worker_of(f, i);
+        struct glint_edges_worker *w = glint_flare_get_edges_worker(f, i);
 
         w->first_edge = i * part;
         w->max_edges = part;
@@ -287,7 +287,8 @@ static void emit_leftover_bundles(struct glint_flare *f)
 
     for (int i = 0; i < f->n_bundles; i++)
         for (int k = 0; k < n_workers && f->slot[i].first < 0; k++) {
-            const struct glint_edges_worker *w = glint_edges_worker_of(f, k);
+            const struct glint_edges_worker *w =
+                glint_flare_get_edges_worker(f, k);
 
             if (f->slot[i].n > w->max_edges - w->n_edges)
                 continue;
@@ -331,10 +332,10 @@ static void emit_all_bundles(struct glint_flare *f)
     if (!are_all_bundles_placed(f))
         emit_bundles_in_order(f);
     for (int i = 0; i < f->n_bundles; i++) {
-        f->stats.need_primitives =
-            glint_flare_add_need(f->stats.need_primitives, f->slot[i].n);
+        f->stats.need_primitives = glint_flare_add_needed_count(
+            f->stats.need_primitives, f->slot[i].n);
         f->stats.need_refs =
-            glint_flare_add_need(f->stats.need_refs, f->slot[i].refs);
+            glint_flare_add_needed_count(f->stats.need_refs, f->slot[i].refs);
         if (f->slot[i].first >= 0)
             f->n_drawn = i + 1;
     }
@@ -352,10 +353,10 @@ static void drop_bundles_that_overflow_bins(struct glint_flare *f)
 
     for (int i = 0; i < f->n_drawn; i++) {
         for (int k = 0; k < f->slot[i].n; k++)
-            refs = glint_flare_add_need(
-                refs,
-                glint_edge_count_into_bins(
-                    &glint_by_edges_of(f)->edge[f->slot[i].first + k], &bins));
+            refs = glint_flare_add_needed_count(
+                refs, glint_edge_count_into_bins(
+                          &glint_flare_get_edges(f)->edge[f->slot[i].first + k],
+                          &bins));
         if (refs > f->cfg.max_refs)
             break;
         n_kept = i + 1;
@@ -375,11 +376,11 @@ static int assign_bin_indices(struct glint_flare *f)
     for (int tile = 0; tile < n_tiles; tile++) {
         f->bins.start[tile] = sum;
         for (int i = 0; i < n_workers; i++) {
-            int32_t *at = glint_edges_worker_of(f, i)->at + tile;
+            int32_t *at = glint_flare_get_edges_worker(f, i)->at + tile;
             const int32_t n = *at;
 
             *at = sum;
-            sum = glint_flare_add_need(sum, n);
+            sum = glint_flare_add_needed_count(sum, n);
         }
     }
     f->bins.start[n_tiles] = sum;
@@ -400,7 +401,7 @@ static void bin_worker_edges_job(void *ctx, int job, int worker)
 
         for (int k = 0; slot->worker == job && k < slot->n; k++)
             glint_edge_put_into_bins(
-                &glint_by_edges_of(f)->edge[slot->first + k], &bins,
+                &glint_flare_get_edges(f)->edge[slot->first + k], &bins,
                 slot->first + k);
     }
 }
@@ -409,11 +410,11 @@ void glint_edges_bin(struct glint_flare *flare)
 {
     struct glint_flare_stats *s = &flare->stats;
 
-    glint_by_edges_of(flare)->limit_q8 = compute_cell_light_limit_q8(flare);
+    glint_flare_get_edges(flare)->limit_q8 = compute_cell_light_limit_q8(flare);
     flare->n_drawn = 0;
     emit_all_bundles(flare);
     s->refs = assign_bin_indices(flare);
-    s->need_refs = glint_flare_add_need(s->need_refs, s->refs);
+    s->need_refs = glint_flare_add_needed_count(s->need_refs, s->refs);
     if (s->refs > flare->cfg.max_refs) {
         drop_bundles_that_overflow_bins(flare);
         clear_bin_counts(flare);
@@ -440,7 +441,7 @@ static void draw_tile_row_job(void *ctx, int job, int worker)
     const struct draw *d = ctx;
 
     glint_tiles_draw_row(d->tiles, d->pass, d->n_passes,
-                         glint_by_edges_of(d->flare)->order[job], worker,
+                         glint_flare_get_edges(d->flare)->order[job], worker,
                          &d->flare->worker[worker].tile);
 }
 
@@ -450,7 +451,7 @@ void glint_edges_draw(struct glint_flare *flare,
 {
     struct draw d = {flare, tiles, pass, n_below + 1};
 
-    glint_by_edges_of(flare)->linear =
+    glint_flare_get_edges(flare)->linear =
         tiles->image && tiles->image->format == GLINT_LINEAR_Q20;
     pass[n_below] = glint_edges_make_pass(flare);
     sort_jobs_by_weight(flare, flare->bins.tiles_y, count_tile_row_edges);

@@ -36,13 +36,13 @@ struct glint_edges_worker {
 };
 
 static inline struct glint_by_edges *
-glint_by_edges_of(const struct glint_flare *f)
+glint_flare_get_edges(const struct glint_flare *f)
 {
     return f->edges;
 }
 
 static inline struct glint_edges_worker *
-glint_edges_worker_of(const struct glint_flare *f, int i)
+glint_flare_get_edges_worker(const struct glint_flare *f, int i)
 {
     return f->worker[i].edges;
 }

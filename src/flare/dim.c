@@ -10,16 +10,16 @@
 
 enum { BRIGHT_Q8 = 1 << 16 };
 
-/* Returns logarithm K (see glint_dim_values()) of ghost GHOST, interpolated at
- * the angle whose sine is SINE; GLINT_DIM_DARK if a node next to that angle has
- * this value. */
+/* Returns logarithm K (see glint_dim_get_values()) of ghost GHOST, interpolated
+ * at the angle whose sine is SINE; GLINT_DIM_DARK if a node next to that angle
+ * has this value. */
 static int32_t interpolate_dim_value(const struct glint_flare_frame *frame,
                                      int32_t sine_q30, int ghost, int k)
 {
-    const int32_t at_q16 = glint_dim_node_q16(frame, sine_q30);
+    const int32_t at_q16 = glint_dim_find_node_q16(frame, sine_q30);
     const int node = at_q16 >> 16;
-    const int32_t a = glint_dim_values(frame, node, ghost)[k];
-    const int32_t b = glint_dim_values(frame, node + 1, ghost)[k];
+    const int32_t a = glint_dim_get_values(frame, node, ghost)[k];
+    const int32_t b = glint_dim_get_values(frame, node + 1, ghost)[k];
 
     if (a == GLINT_DIM_DARK || b == GLINT_DIM_DARK)
         return GLINT_DIM_DARK;
@@ -36,7 +36,7 @@ static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
 
     if (node < 0 || node > GLINT_DIM_LAST)
         return 1;
-    value = glint_dim_values(frame, node, ghost);
+    value = glint_dim_get_values(frame, node, ghost);
     for (int wave = 0; wave < GLINT_DIM_WAVES; wave++)
         if (value[1 + wave] == GLINT_DIM_DARK)
             return 0;
@@ -50,7 +50,7 @@ static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
 int32_t glint_dim_brightness_log2_q8(const struct glint_flare_frame *frame,
                                      const struct glint_light *light, int ghost)
 {
-    const int32_t at_q16 = glint_dim_node_q16(frame, light->sine_q30);
+    const int32_t at_q16 = glint_dim_find_node_q16(frame, light->sine_q30);
     const int node = at_q16 >> 16;
     const int from_q8 = (at_q16 & 65535) >> 7;
     int32_t share_q8;
@@ -59,10 +59,10 @@ int32_t glint_dim_brightness_log2_q8(const struct glint_flare_frame *frame,
         !is_ghost_brightness_known(frame, ghost, node + 1))
         return BRIGHT_Q8;
     share_q8 = interpolate_dim_value(frame, light->sine_q30, ghost, 0) +
-               glint_dim_log2_q8(light->power) -
-               glint_dim_log2_q8(frame->dimmest);
+               glint_dim_compute_log2_q8(light->power) -
+               glint_dim_compute_log2_q8(frame->dimmest);
     if (frame->tints)
-        share_q8 += glint_dim_log2_q8(frame->tints[ghost].gain);
+        share_q8 += glint_dim_compute_log2_q8(frame->tints[ghost].gain);
     if (!is_ghost_brightness_known(frame, ghost, node - 1) &&
         share_q8 < GLINT_DIM_WHOLE_Q8 - from_q8)
         share_q8 = GLINT_DIM_WHOLE_Q8 - from_q8;

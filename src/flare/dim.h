@@ -88,15 +88,15 @@ void glint_light_merge(struct glint_light *a, const struct glint_light *b);
 
 /* Returns log2 of X, interpolated linearly between powers of two. X must be
  * above 0. */
-static inline int32_t glint_dim_log2_q8(struct glint_real x)
+static inline int32_t glint_dim_compute_log2_q8(struct glint_real x)
 {
     return q_clamp_sat(x.exponent, -120, 120) * 256 + 30 * 256 +
            ((x.mantissa >> 22) - 256);
 }
 
 /* Converts the sine of an angle to a fractional index of the table's nodes. */
-static inline int32_t glint_dim_node_q16(const struct glint_flare_frame *frame,
-                                         int32_t sine_q30)
+static inline int32_t
+glint_dim_find_node_q16(const struct glint_flare_frame *frame, int32_t sine_q30)
 {
     const int64_t most = frame->lens->header->sine_hi_q30;
 
@@ -109,8 +109,8 @@ static inline int32_t glint_dim_node_q16(const struct glint_flare_frame *frame,
  * white light of power 1. Value 0: log2 of the ghost's mean light in
  * GLINT_DIM_WAVE, 1 = display white, or of eight times that if the ghost is
  * folded. Value 1 + w: log2 of the total light of wave w. */
-static inline int16_t *glint_dim_values(const struct glint_flare_frame *frame,
-                                        int node, int ghost)
+static inline int16_t *
+glint_dim_get_values(const struct glint_flare_frame *frame, int node, int ghost)
 {
     const int64_t at = (int64_t)node * frame->lens->header->n_ghosts + ghost;
 

@@ -37,7 +37,7 @@ static void *begin_tile_row(const void *self, struct glint_box row, int worker)
 {
     const struct glint_flare *f = self;
     const int log2 = f->cfg.tile_log2;
-    struct glint_edges_worker *w = glint_edges_worker_of(f, worker);
+    struct glint_edges_worker *w = glint_flare_get_edges_worker(f, worker);
     struct glint_edge_sums *s = &w->sums;
 
     w->flare = f;
@@ -46,7 +46,7 @@ static void *begin_tile_row(const void *self, struct glint_box row, int worker)
     s->patch = s->shade ? s->shade->method->draw : NULL;
     s->scratch = w->rows; /* used only while edges are made, so free as scratch
                              memory now */
-    s->linear = glint_by_edges_of(f)->linear;
+    s->linear = glint_flare_get_edges(f)->linear;
     s->fine = are_fine_sums_needed(f);
     s->lit = 0;
     s->tile_log2 = log2;
@@ -70,7 +70,7 @@ static int accumulate_tile_edges(void *state, struct glint_box tile)
     if (!s->lit)
         return 0;
     s->tile = tile;
-    glint_edges_add_to_sums(s, glint_by_edges_of(f)->edge, f->bundle,
+    glint_edges_add_to_sums(s, glint_flare_get_edges(f)->edge, f->bundle,
                             f->bins.ref + start[0], n);
     return 1;
 }

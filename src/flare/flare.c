@@ -73,7 +73,7 @@ static int is_valid_stop(const struct glint_stop *s)
     if (s->opening_q30 && (s->opening_q30 < LEAST_OPENING_Q30 ||
                            s->opening_q30 > WHOLE_OPENING_Q30))
         return 0;
-    if (s->shade && !glint_shade_ok(s->shade))
+    if (s->shade && !glint_shade_is_valid(s->shade))
         return 0;
     return s->n_blades == 0 ||
            (s->n_blades >= 3 && s->n_blades <= GLINT_MAX_BLADES &&
@@ -197,7 +197,7 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 
     flare->reusable = GLINT_REUSABLE_NOT;
     s->need_bundles++;
-    s->need_vertices = glint_flare_add_need(s->need_vertices, n);
+    s->need_vertices = glint_flare_add_needed_count(s->need_vertices, n);
     if (flare->n_bundles == flare->cfg.max_bundles ||
         n > flare->cfg.max_vertices - flare->n_vertices) {
         s->dropped_bundles++;
@@ -409,8 +409,9 @@ static void sum_drawn_statistics(struct glint_flare *f)
 
         s->primitives += slot->n;
         s->dropped_cells =
-            glint_flare_add_need(s->dropped_cells, slot->n_dropped);
-        s->held_cells = glint_flare_add_need(s->held_cells, slot->n_held);
+            glint_flare_add_needed_count(s->dropped_cells, slot->n_dropped);
+        s->held_cells =
+            glint_flare_add_needed_count(s->held_cells, slot->n_held);
     }
 }
 

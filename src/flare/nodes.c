@@ -46,7 +46,7 @@ static void fill_ghost_entry_job(void *ctx, int ghost, int worker)
 {
     const struct fill *fill = ctx;
     struct glint_plan_scratch *scratch = fill->flare->worker[worker].plan;
-    int16_t *value = glint_dim_values(&fill->frame, fill->node, ghost);
+    int16_t *value = glint_dim_get_values(&fill->frame, fill->node, ghost);
 
     for (int wave = 0; wave < GLINT_DIM_WAVES; wave++) {
         struct glint_bundle_plan planned = {.ghost = ghost, .wave = wave};
@@ -62,12 +62,12 @@ static void fill_ghost_entry_job(void *ctx, int ghost, int worker)
         light =
             real_over(planned.flux, find_max_channel(&fill->frame.wave[wave]));
         value[1 + wave] = clamp_log2_to_int16(
-            glint_dim_log2_q8(light) +
-            glint_dim_log2_q8(
+            glint_dim_compute_log2_q8(light) +
+            glint_dim_compute_log2_q8(
                 real_of(scratch->probe.energy, planned.energy_up - 30)));
         if (wave == GLINT_DIM_WAVE)
             value[0] = clamp_log2_to_int16(
-                glint_dim_log2_q8(planned.irradiance) +
+                glint_dim_compute_log2_q8(planned.irradiance) +
                 (scratch->probe.n_up && scratch->probe.n_down ? FOLD_Q8 : 0));
     }
 }
@@ -108,8 +108,8 @@ static void fill_brightness_nodes(struct glint_flare *flare, int n_lights)
     uint8_t *done = flare->plan.frame->dim->done;
 
     for (int i = 0; i < n_lights; i++) {
-        const int at = glint_dim_node_q16(flare->plan.frame,
-                                          flare->plan.light[i].sine_q30) >>
+        const int at = glint_dim_find_node_q16(flare->plan.frame,
+                                               flare->plan.light[i].sine_q30) >>
                        16;
 
         for (int node = at - 1; node <= at + 2; node++)
@@ -154,9 +154,9 @@ static void find_nearest_preceding_lights(struct glint_flare *f, int n)
     const struct glint_real focal = real_times(
         r->lens->header->focal_mm, r->pixels_per_mm); /* focal length, pixels */
     const int32_t scale_log2 =
-        glint_dim_log2_q8(real_over(real_times(focal, real_of(SIDE, 0)),
-                                    real_of(longer, 0))) +
-        glint_dim_log2_q8(real_of(n, 0)) / 2;
+        glint_dim_compute_log2_q8(real_over(real_times(focal, real_of(SIDE, 0)),
+                                            real_of(longer, 0))) +
+        glint_dim_compute_log2_q8(real_of(n, 0)) / 2;
 
     for (int i = 1; i < n; i++) {
         uint64_t least2_q60 = UINT64_MAX;
@@ -171,7 +171,7 @@ static void find_nearest_preceding_lights(struct glint_flare *f, int n)
             }
         }
         r->dim->apart_log2_q8[i] = (int16_t)q_clamp_sat(
-            scale_log2 + glint_dim_log2_q8(
+            scale_log2 + glint_dim_compute_log2_q8(
                              real_of((int64_t)(least2_q60 >> 1 | 1), -59)) /
                              2,
             -FARTHEST_Q8, FARTHEST_Q8);

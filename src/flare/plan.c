@@ -258,11 +258,11 @@ static void set_inside_and_contrast(const struct glint_probe *s,
     planned->inside_q8 = (uint8_t)q_divide(255 * (int64_t)s->n_inside, nodes);
     planned->contrast_q4 = 255;
     if (brightest.mantissa && planned->irradiance.mantissa)
-        planned->contrast_q4 =
-            (uint8_t)q_clamp_sat((glint_dim_log2_q8(brightest) -
-                                  glint_dim_log2_q8(planned->irradiance)) >>
-                                     4,
-                                 0, 254);
+        planned->contrast_q4 = (uint8_t)q_clamp_sat(
+            (glint_dim_compute_log2_q8(brightest) -
+             glint_dim_compute_log2_q8(planned->irradiance)) >>
+                4,
+            0, 254);
 }
 
 void glint_plan_set_transfer(const struct glint_plan *plan,

@@ -96,7 +96,7 @@ struct glint_tiles glint_flare_prepare_tiles(struct glint_flare *flare,
                                              const struct glint_image *image);
 
 /* Returns A + B, numbers of items that need memory, clamped to INT32_MAX. */
-static inline int glint_flare_add_need(int a, int b)
+static inline int glint_flare_add_needed_count(int a, int b)
 {
     return a > INT32_MAX - b ? INT32_MAX : a + b;
 }

@@ -210,7 +210,7 @@ static int has_negative_lens_size(const int32_t p[GLINT_BOX_TERMS])
 static const char *check_system_box(struct check *c,
                                     const struct glint_model_system *s)
 {
-    const uint64_t terms = bits_set(s->box_terms);
+    const uint64_t terms = count_set_bits(s->box_terms);
     const int lens = glint_basis_is_lens(c->header->basis);
     const int sides = lens ? GLINT_LENS_SIDES : 3;
     const int32_t *box;

@@ -90,7 +90,7 @@ int glint_star_can_lines_reach_box(const struct glint_star *star,
 
 /* Returns the distance in pixels up to which the core table extends from a
  * light. */
-static inline int glint_star_core_reach(const struct glint_star *star)
+static inline int glint_star_compute_core_reach(const struct glint_star *star)
 {
     const int steps = star->tables->core_per_pixel_q16 >> 16;
 
@@ -98,8 +98,8 @@ static inline int glint_star_core_reach(const struct glint_star *star)
 }
 
 /* Records in ROW that the columns X0 .. X1 - 1 may have light. */
-static inline void glint_star_note(struct glint_star_stretch *row, int x0,
-                                   int x1)
+static inline void glint_star_mark_lit_columns(struct glint_star_stretch *row,
+                                               int x0, int x1)
 {
     row->lo = x0 < row->lo ? x0 : row->lo;
     row->hi = x1 > row->hi ? x1 : row->hi;

@@ -76,7 +76,7 @@ void glint_star_add_core_row(const struct glint_star *star,
 
         if (i_q8 < -end_q8 || i_q8 > end_q8)
             continue;
-        glint_star_note(row, x, x + 1);
+        glint_star_mark_lit_columns(row, x, x + 1);
         add_core_pixel(star, lamp, i_q8, j_q8, light_q20);
     }
 }

@@ -220,6 +220,6 @@ void glint_star_add_halo_row(const struct glint_star *star,
     x1 = q_smaller(row->x1, middle + half + 1);
     if (x0 >= x1)
         return;
-    glint_star_note(row, x0, x1);
+    glint_star_mark_lit_columns(row, x0, x1);
     add_light_of_all_sectors(&s, x0, x1);
 }

@@ -98,7 +98,7 @@ static void add_line_pixel_range(const struct strip *s, struct stretch here,
 
     if (here.x0 >= here.x1)
         return;
-    glint_star_note(s->row, here.x0, here.x1);
+    glint_star_mark_lit_columns(s->row, here.x0, here.x1);
     for (int x = here.x0; x < here.x1; x++, v_q38 -= along_q38) {
         const int64_t v_q16 = (v_q38 >> 22) * step_q16 >> 16;
         const int64_t size_q16 = v_q16 < 0 ? -v_q16 : v_q16;

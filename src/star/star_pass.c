@@ -14,7 +14,7 @@
 static int compute_halo_and_core_reach(const struct glint_star *star,
                                        const struct glint_star_lamp *lamp)
 {
-    return q_larger(lamp->is_bare ? glint_star_core_reach(star) : 0,
+    return q_larger(lamp->is_bare ? glint_star_compute_core_reach(star) : 0,
                     q_larger(lamp->halo_reach, lamp->smear_reach)) +
            2;
 }

@@ -101,7 +101,7 @@ void glint_star_add_smear_row(const struct glint_star *star,
 
     if (x0 >= x1 || high_q8 >= (int64_t)lamp->smear_reach << 8)
         return;
-    glint_star_note(row, x0, x1);
+    glint_star_mark_lit_columns(row, x0, x1);
     for (int x = x0; x < x1; x++) {
         const int64_t dx_q8 = (int64_t)x * 256 + 128 - lamp->x_q8;
         const int64_t wide_q8 = dx_q8 < 0 ? -dx_q8 : dx_q8;

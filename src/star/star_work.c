@@ -59,7 +59,8 @@ int64_t glint_star_estimate_pixels(const struct glint_star *star)
         sum += count_square_pixels(star, lamp, lamp->halo_reach) * 201 >> 8;
         sum += count_square_pixels(star, lamp, lamp->smear_reach);
         if (lamp->is_bare)
-            sum += count_square_pixels(star, lamp, glint_star_core_reach(star));
+            sum += count_square_pixels(star, lamp,
+                                       glint_star_compute_core_reach(star));
     }
     return sum;
 }

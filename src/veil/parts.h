@@ -80,7 +80,7 @@ void glint_veil_interpolate_row(const struct glint_veil_row *row,
 
 /* Returns the index of the cell that is BY cells after cell I, clamped to 0 ..
  * N - 1. */
-static inline int glint_veil_beside(int i, int by, int n)
+static inline int glint_veil_neighbour_index(int i, int by, int n)
 {
     const int k = i + by;
 

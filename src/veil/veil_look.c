@@ -149,8 +149,10 @@ void glint_veil_add_lamp(struct glint_veil *veil, int32_t x_q8, int32_t y_q8,
         const int64_t all = compute_lamp_power_q16(power, rgb_q14[c]);
 
         for (int j = 0; j < 9; j++) {
-            const int at_x = glint_veil_beside(x.cell, j % 3 - 1, veil->n_x);
-            const int at_y = glint_veil_beside(y.cell, j / 3 - 1, veil->n_y);
+            const int at_x =
+                glint_veil_neighbour_index(x.cell, j % 3 - 1, veil->n_x);
+            const int at_y =
+                glint_veil_neighbour_index(y.cell, j / 3 - 1, veil->n_y);
             /* the light is below 2^47, a weight at most 2^15 */
             const int64_t part = q_shift(all * x.weight_q15[j % 3], 15);
 

@@ -40,7 +40,8 @@ static void interpolate_cell_rows(const struct glint_veil *v,
         share_q16[k] = axis->share_q16[k][y];
         row_q20[k] =
             cell_q20 + first +
-            (c * v->n_y + glint_veil_beside(cell, k - 1, v->n_y)) * v->n_x;
+            (c * v->n_y + glint_veil_neighbour_index(cell, k - 1, v->n_y)) *
+                v->n_x;
     }
     /* cells are at most 2^28, so that sums are below 2^45 */
     for (int x = 0; x < n; x++)
@@ -106,8 +107,8 @@ void glint_veil_interpolate_row(const struct glint_veil_row *r,
     const struct glint_veil *v = r->veil;
     const struct glint_veil_axis *axis = &v->across;
     const int x0 = r->tile.x0, x1 = r->tile.x1;
-    const int first = glint_veil_beside(axis->cell[x0], -1, v->n_x);
-    const int last = glint_veil_beside(axis->cell[x1 - 1], 1, v->n_x);
+    const int first = glint_veil_neighbour_index(axis->cell[x0], -1, v->n_x);
+    const int last = glint_veil_neighbour_index(axis->cell[x1 - 1], 1, v->n_x);
     int32_t light[GLINT_VEIL_CELLS];
     uint16_t row[GLINT_CODES_WIDTH + GLINT_VEIL_LANES] = {0};
 

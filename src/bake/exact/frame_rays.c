@@ -994,7 +994,7 @@ static enum glint_status plan(struct glint_frame *f,
     t->mem = calloc((size_t)t->n_fields + 1, sizeof *t->mem);
     if (!t->set_of || !t->mem || !t->level)
         return GLINT_E_MEMORY;
-    t->in_codes = is_in_codes(f, image);
+    t->in_codes = is_planned_for_codes(f, image);
     list_fields(f);
     status = skip_faint(
         f, scale,
@@ -1242,16 +1242,16 @@ static enum glint_status draw(struct glint_frame *frame,
     enum glint_status status;
     struct traced *t;
 
-    times[0] = now(frame);
+    times[0] = read_frame_clock(frame);
     if (!frame->memory.traced)
         frame->memory.traced = calloc(1, sizeof *t);
     t = frame->memory.traced;
     status = t ? plan(frame, lamps, n_lamps, scale, image) : GLINT_E_MEMORY;
     if (status != GLINT_OK)
         return status;
-    times[1] = now(frame);
+    times[1] = read_frame_clock(frame);
     run(frame, t->n_fields, trace_job, GLINT_FRAME_FOUND, TRACED);
-    times[2] = times[3] = now(frame);
+    times[2] = times[3] = read_frame_clock(frame);
     expected.need_primitives = (int)fmin(EDGES * t->n_bundles, INT_MAX);
     expected.need_refs = expected.need_primitives;
     *stats = (struct glint_flare_stats){0};
@@ -1263,7 +1263,7 @@ static enum glint_status draw(struct glint_frame *frame,
     status = begin_flare(frame, scale);
     if (status == GLINT_OK)
         status = draw_rows(frame, scale, image, stats);
-    times[4] = now(frame);
+    times[4] = read_frame_clock(frame);
     return status;
 }
 

@@ -336,9 +336,9 @@ void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
         fabs(2 * compute_polygon_area((const double(*)[2])s.uv, s.n));
     piece->energy =
         interpolate_node_channel(&s, NODE_ENERGY, middle) *
-        glint_dirt_through(cells->setup,
-                           interpolate_node_channel(&s, NODE_STOP_X, middle),
-                           interpolate_node_channel(&s, NODE_STOP_Y, middle));
+        glint_dirt_compute_transmission(
+            cells->setup, interpolate_node_channel(&s, NODE_STOP_X, middle),
+            interpolate_node_channel(&s, NODE_STOP_Y, middle));
 }
 
 bool glint_cells_touch(const struct glint_cells *cells, int i, int j,

@@ -278,7 +278,7 @@ draw_flare_by_model(struct glint_frame *f, const struct glint_lamp *lamps,
     const struct glint_dials asked = f->dials;
     enum glint_status status;
 
-    f->picture.can_half = is_in_codes(f, image);
+    f->picture.can_half = is_planned_for_codes(f, image);
     f->picture.code_light = glint_frame_convert_codes_to_light(f, image, 1);
     f->plan.scale = scale;
     f->limits.is_held = f->limits.is_full = false;
@@ -286,7 +286,7 @@ draw_flare_by_model(struct glint_frame *f, const struct glint_lamp *lamps,
     f->plan.n_plans = f->plan.n_binned = 0;
     f->plan.n_looked = 0;
     glint_budget_begin_frame(&f->budget, &f->asked);
-    times[0] = now(f);
+    times[0] = read_frame_clock(f);
     status = convert_lamps_to_lights(f, lamps, n_lamps, scale);
     if (status == GLINT_OK && f->budget.ms <= 0 && glint_frame_limit_probing(f))
         status = convert_lamps_to_lights(f, lamps, n_lamps, scale);
@@ -304,7 +304,7 @@ draw_flare_by_model(struct glint_frame *f, const struct glint_lamp *lamps,
             status = convert_lamps_to_lights(f, lamps, n_lamps, scale);
             continue;
         }
-        times[1] = times[2] = now(f);
+        times[1] = times[2] = read_frame_clock(f);
         glint_flare_bin(f->memory.flare, stats);
         f->plan.n_binned++;
         if (glint_frame_fit_capacity(f, stats))
@@ -316,9 +316,9 @@ draw_flare_by_model(struct glint_frame *f, const struct glint_lamp *lamps,
         f->dials = asked;
     if (status != GLINT_OK)
         return status;
-    times[3] = now(f);
+    times[3] = read_frame_clock(f);
     glint_frame_draw_passes(f, image);
-    times[4] = now(f);
+    times[4] = read_frame_clock(f);
     return GLINT_OK;
 }
 

@@ -20,15 +20,15 @@ static inline int min_int(int a, int b)
 }
 
 /* Returns the time of the frame's clock in seconds; 0 if it has none. */
-static inline double now(const struct glint_frame *f)
+static inline double read_frame_clock(const struct glint_frame *f)
 {
     return f->clock ? f->clock() : 0;
 }
 
 /* Returns whether the flare is planned for codes: IMAGE is in codes, or its
  * light will be added to codes later. */
-static inline bool is_in_codes(const struct glint_frame *f,
-                               const struct glint_image *image)
+static inline bool is_planned_for_codes(const struct glint_frame *f,
+                                        const struct glint_image *image)
 {
     return image->format != GLINT_LINEAR_Q20 || f->picture.for_codes;
 }

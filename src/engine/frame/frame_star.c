@@ -143,7 +143,7 @@ size_t glint_frame_star_count_bytes(const struct glint_frame *f)
 {
     const struct glint_frame_star *s = &f->star;
 
-    return glint_smear_bytes(&s->smear) +
+    return glint_smear_count_bytes(&s->smear) +
            (s->tables ? glint_star_tables_bytes(s->tables) : 0) +
            (s->star ? s->bytes + (size_t)s->max_lights * sizeof *s->light : 0) +
            f->veil.bytes + (f->veil.table ? f->veil.table->bytes : 0);

@@ -17,7 +17,7 @@ double glint_frame_convert_codes_to_light(const struct glint_frame *f,
                                           const struct glint_image *image,
                                           double codes)
 {
-    return !image || !is_in_codes(f, image)
+    return !image || !is_planned_for_codes(f, image)
                ? 0
                : codes / 255 /
                      (image->transfer == GLINT_TONE_SRGB ? 12.92 : 4.5);

@@ -32,8 +32,9 @@ struct glint_dirt {
 
 /* Returns the fraction of light that the stop of SETUP transmits at (X, Y),
  * stop radii, inside its outline. */
-static inline double glint_dirt_through(const struct glint_setup *setup,
-                                        double x, double y)
+static inline double
+glint_dirt_compute_transmission(const struct glint_setup *setup, double x,
+                                double y)
 {
     return setup->dirt ? setup->dirt->through(setup->dirt, x, y) : 1;
 }

@@ -46,7 +46,7 @@ enum glint_status glint_smear_init(struct glint_smear *smear,
 void glint_smear_finish(struct glint_smear *smear);
 
 /* Returns the bytes allocated for SMEAR; 0 after glint_smear_finish(). */
-static inline size_t glint_smear_bytes(const struct glint_smear *smear)
+static inline size_t glint_smear_count_bytes(const struct glint_smear *smear)
 {
     return smear->sum ? (size_t)(GLINT_SMEAR_SIDE + 1) *
                             (GLINT_SMEAR_SIDE + 1) * sizeof *smear->sum

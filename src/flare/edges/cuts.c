@@ -45,10 +45,10 @@ static int64_t evaluate_round_stop_q16(const struct glint_stop *stop,
 }
 
 /* Returns a mask with a bit set for each straight side of the stop on or
- * outside of which V lies, so that glint_side_q16() is 0 or less. LEAST is the
- * apothem minus half a unit of _q16, because glint_side_q16() rounds. HALF is
- * the number of pairs of parallel sides, which are tested together; 0: sides
- * are tested one by one. */
+ * outside of which V lies, so that glint_side_distance_q16() is 0 or less.
+ * LEAST is the apothem minus half a unit of _q16, because
+ * glint_side_distance_q16() rounds. HALF is the number of pairs of parallel
+ * sides, which are tested together; 0: sides are tested one by one. */
 static inline uint64_t find_outside_sides(const struct glint_stop *stop,
                                           int half,
                                           const struct glint_vertex *v,
@@ -77,7 +77,8 @@ static uint64_t find_outside_arcs(const struct glint_stop *stop,
     uint64_t sides = 0;
 
     for (int k = stop->n_blades - 1; k >= 0; k--) {
-        const int64_t straight_q16 = glint_straight_q16(stop, k, v);
+        const int64_t straight_q16 =
+            glint_straight_side_distance_q16(stop, k, v);
 
         sides = 2 * sides +
                 (glint_arc_distance_q16(stop, straight_q16, disc_q16) <= 0);
@@ -125,8 +126,8 @@ static int64_t evaluate_cut_function_q16(const struct glint_stop *stop, int cut,
                                          const struct glint_vertex *v)
 {
     if (cut >= BARREL)
-        return glint_barrel_q16(cut - BARREL, v);
-    return stop->n_blades ? glint_side_q16(stop, cut, v)
+        return glint_barrel_function_q16(cut - BARREL, v);
+    return stop->n_blades ? glint_side_distance_q16(stop, cut, v)
                           : evaluate_round_stop_q16(stop, v);
 }
 

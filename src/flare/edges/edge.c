@@ -72,7 +72,7 @@ static WHOLLY_INLINE int visit_crossed_tiles(const struct glint_edge *e,
     const int row = ((y_q8 >> 8) - r->y0) >> log2;
     int32_t floor_q8 = (r->y0 + ((row + 1) * (1 << log2))) * 256;
     int32_t *start = bins->start + (ptrdiff_t)row * bins->tiles_x;
-    int64_t x_q40 = edge_x_at_q40(e, y_q8) - r->x0 * ONE_Q40;
+    int64_t x_q40 = compute_edge_x_q40(e, y_q8) - r->x0 * ONE_Q40;
     int n = 0;
 
     if (e->patch && e->whole)

@@ -60,7 +60,7 @@ static inline int32_t glint_light_pack(int64_t light_q20)
     return q_narrow(q_shift(light_q20, exponent) * 32 + exponent);
 }
 
-static inline int64_t glint_light_q20(int32_t packed)
+static inline int64_t glint_light_unpack_q20(int32_t packed)
 {
     return (packed >> 5) * (INT64_C(1) << (packed & 31));
 }
@@ -114,7 +114,8 @@ int glint_edge_set_from_points(struct glint_edge *edge, const int32_t a_q8[2],
 /* Returns the x coordinate of EDGE at Y, which must be between the ends of the
  * edge. The magnitude is below 2^61. Slopes are rounded towards 0, so x never
  * exceeds the range of the two ends. */
-static inline int64_t edge_x_at_q40(const struct glint_edge *e, int32_t y_q8)
+static inline int64_t compute_edge_x_q40(const struct glint_edge *e,
+                                         int32_t y_q8)
 {
     return e->x_q8 * (INT64_C(1) << 32) + e->slope_q40 * (y_q8 - e->y_q8);
 }

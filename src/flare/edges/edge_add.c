@@ -242,7 +242,7 @@ static inline struct part clip_edge_to_tile(const struct glint_edge_sums *s,
     struct part p = {{{NULL}, s->linear ? 0 : 8, t->x0, t->x1, light, 0},
                      y_q8,
                      end_q8,
-                     edge_x_at_q40(e, y_q8)};
+                     compute_edge_x_q40(e, y_q8)};
 
     s->touched[channel] |= make_row_mask(row, ((end_q8 + 255) >> 8) - t->y0);
     if (mode == NARROW)
@@ -264,7 +264,7 @@ static inline void add_smooth_edge(const struct glint_edge_sums *s,
                                    enum mode mode, const struct glint_edge *e,
                                    struct part p)
 {
-    const int64_t end_q40 = edge_x_at_q40(e, p.end_q8);
+    const int64_t end_q40 = compute_edge_x_q40(e, p.end_q8);
     const int64_t low_q40 = p.x_q40 < end_q40 ? p.x_q40 : end_q40;
     const int64_t high_q40 = p.x_q40 < end_q40 ? end_q40 : p.x_q40;
     int n;
@@ -383,7 +383,7 @@ static inline void add_snapped_edge(const struct glint_edge_sums *s,
 
 static int64_t multiply_by_colour_q20(int32_t light, int32_t colour_q14)
 {
-    const int64_t light_q20 = glint_light_q20(light);
+    const int64_t light_q20 = glint_light_unpack_q20(light);
 
     return colour_q14 == 1 << 14 ? light_q20
                                  : q_shift(light_q20 * colour_q14, 14);

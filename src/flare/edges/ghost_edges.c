@@ -20,8 +20,8 @@ typedef int32_t point_q8[2];
 static int is_light_change_weak(const struct glint_ghost_edges *g,
                                 int32_t light, int32_t other)
 {
-    const int64_t a_q20 = glint_light_q20(light);
-    const int64_t b_q20 = glint_light_q20(other);
+    const int64_t a_q20 = glint_light_unpack_q20(light);
+    const int64_t b_q20 = glint_light_unpack_q20(other);
     const uint64_t size = (uint64_t)(a_q20 < 0 ? -a_q20 : a_q20) |
                           (uint64_t)(b_q20 < 0 ? -b_q20 : b_q20) | 1;
     const int64_t change_q20 = a_q20 - b_q20;
@@ -86,7 +86,7 @@ static void set_cell_corners(const struct glint_ghost_edges *g, int i, int j,
     for (int k = 0; k < 4; k++) {
         const int across = i + (k == 1 || k == 2), down = j + (k >= 2);
 
-        c->corner[k] = ghost_node(g, across, down);
+        c->corner[k] = get_ghost_node(g, across, down);
         c->at[k] = (struct glint_outside){r->sides[down & 1][across],
                                           r->barrels[down & 1][across] &
                                               (NODE_BARRELS | NODE_LOST)};
@@ -102,7 +102,8 @@ static int64_t compute_corner_double_area_q16(const struct glint_corners *c,
     const struct glint_vertex *a = c->at[i], *b = c->at[i + 1];
     const struct glint_vertex *d = c->at[(i + 2) & 3];
 
-    return glint_turn_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8, d->x_q8, d->y_q8);
+    return glint_cross_product_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8, d->x_q8,
+                                   d->y_q8);
 }
 
 /* Returns 1 or -1, the sign of the cell's area, if the cell is convex, else 0.
@@ -232,7 +233,7 @@ void glint_ghost_add_clipped_primitive(struct glint_ghost_edges *g,
         glint_box_empty(glint_corners_pixel_box(&c, g->width, g->height)))
         return;
     cut |= cut && (g->transfer || g->rays) ? GLINT_CUT_LOWERED : 0;
-    thin = glint_corners_thin(&c);
+    thin = glint_corners_are_thin(&c);
     for (int k = 0; k < (cut ? n - 2 : 1); k++) {
         int64_t area2 = c.area2_q16, share_q28;
         int frac = 2 * GLINT_VERTEX_FRAC + 1, share = share_log2;
@@ -359,8 +360,8 @@ static void set_grid_cell_corners(const struct glint_ghost_edges *g, int i,
                                   int j, struct glint_corners *corners)
 {
     const struct glint_vertex *const at[4] = {
-        ghost_node(g, i, j), ghost_node(g, i + 1, j),
-        ghost_node(g, i + 1, j + 1), ghost_node(g, i, j + 1)};
+        get_ghost_node(g, i, j), get_ghost_node(g, i + 1, j),
+        get_ghost_node(g, i + 1, j + 1), get_ghost_node(g, i, j + 1)};
 
     glint_corners_set(corners, at, 4);
 }
@@ -428,7 +429,7 @@ static int32_t find_cell_light(struct glint_ghost_edges *g, int i, int j)
     odd = turn == 0 || cuts > 2 ||
           (cuts && !g->transfer && !g->rays &&
            (g->stop->n_blades == 0 || g->stop->round_q30)) ||
-          glint_corners_thin(&corners);
+          glint_corners_are_thin(&corners);
     if (odd || cuts)
         set_cell_corners(g, i, j, &cell);
     if (odd) {
@@ -484,8 +485,9 @@ static void add_horizontal_edges(struct glint_ghost_edges *g, int j,
 {
     for (int i = 0; i < g->bundle->n_cells; i++)
         if (above[i] != below[i])
-            add_shared_edge(g, ghost_node(g, i, j), get_outside_bits(g, i, j),
-                            ghost_node(g, i + 1, j),
+            add_shared_edge(g, get_ghost_node(g, i, j),
+                            get_outside_bits(g, i, j),
+                            get_ghost_node(g, i + 1, j),
                             get_outside_bits(g, i + 1, j), below[i], above[i]);
 }
 
@@ -501,8 +503,9 @@ static void add_vertical_edges(struct glint_ghost_edges *g, int j,
         const int32_t behind = i < n ? light[i] : 0;
 
         if (before != behind)
-            add_shared_edge(g, ghost_node(g, i, j), get_outside_bits(g, i, j),
-                            ghost_node(g, i, j + 1),
+            add_shared_edge(g, get_ghost_node(g, i, j),
+                            get_outside_bits(g, i, j),
+                            get_ghost_node(g, i, j + 1),
                             get_outside_bits(g, i, j + 1), before, behind);
     }
 }

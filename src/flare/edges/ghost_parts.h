@@ -29,7 +29,7 @@ struct glint_ghost_cell {
 
 /* Returns node (I, J) of the grid; row J must be one of the two stored rows. */
 static inline const struct glint_vertex *
-ghost_node(const struct glint_ghost_edges *g, int i, int j)
+get_ghost_node(const struct glint_ghost_edges *g, int i, int j)
 {
     return &g->row[j & 1][i];
 }

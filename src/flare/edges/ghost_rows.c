@@ -73,7 +73,7 @@ void glint_ghost_fill_node_row(struct glint_ghost_edges *g, int j)
     g->row[j & 1] = get_grid_row(g, j);
     glint_cuts_classify_row(g->stop, g->row[j & 1], n + 1, sides, barrels);
     for (int i = 0; i <= n; i++) {
-        const struct glint_vertex *v = ghost_node(g, i, j);
+        const struct glint_vertex *v = get_ghost_node(g, i, j);
 
         if (!is_vertex_valid(v)) {
             sides[i] = 0;

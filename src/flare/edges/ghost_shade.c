@@ -218,7 +218,7 @@ static void set_patch_level(struct glint_patch *p, const struct glint_shade *s)
 static void store_patch(struct glint_ghost_edges *g, struct glint_patch *p,
                         const struct glint_vertex *const *at)
 {
-    const int n = glint_patch_places(p->n), first = g->n_edges;
+    const int n = glint_patch_count_slots(p->n), first = g->n_edges;
     struct glint_edge head = {0};
 
     if (p->light == 0 || !set_patch_box(p, g) || !set_pixel_to_stop_map(p, at))

@@ -48,7 +48,7 @@ struct glint_shade_method {
 void glint_rings_emit_edges(struct glint_ghost_edges *g);
 
 /* Returns whether softness and table size of SHADE are in range. */
-static inline int glint_shade_ok(const struct glint_shade *shade)
+static inline int glint_shade_is_valid(const struct glint_shade *shade)
 {
     if (shade->soft_q16 < 0 || shade->soft_q16 > 1 << 16)
         return 0;

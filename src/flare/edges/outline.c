@@ -33,7 +33,7 @@ static void compute_side_distances(const struct glint_stop *stop, int side,
                                    const int64_t *disc, int64_t *value)
 {
     for (int i = 0; i < n; i++) {
-        value[i] = glint_straight_q16(stop, side, at[i]);
+        value[i] = glint_straight_side_distance_q16(stop, side, at[i]);
         if (stop->round_q30)
             value[i] = glint_arc_distance_q16(stop, value[i], disc[i]);
     }
@@ -65,7 +65,7 @@ static enum side classify_by_barrels(const struct glint_corners *c)
         int64_t value[4];
 
         for (int i = 0; i < c->n; i++)
-            value[i] = glint_barrel_q16(barrel, c->at[i]);
+            value[i] = glint_barrel_function_q16(barrel, c->at[i]);
         all = merge_positions(all, classify_corner_values(value, c->n));
     }
     return all;
@@ -173,7 +173,7 @@ static void clip_by_barrels(struct glint_outline *o,
         int64_t value[3];
 
         for (int i = 0; i < 3; i++)
-            value[i] = glint_barrel_q16(barrel, at[i]);
+            value[i] = glint_barrel_function_q16(barrel, at[i]);
         clip_by_half_plane(o, value);
     }
 }

@@ -43,8 +43,9 @@ int64_t glint_arc_distance_q16(const struct glint_stop *stop,
 
 /* Returns the distance of V inside the straight line between the corners of
  * side SIDE, in stop radii; negative outside. */
-static inline int64_t glint_straight_q16(const struct glint_stop *stop,
-                                         int side, const struct glint_vertex *v)
+static inline int64_t
+glint_straight_side_distance_q16(const struct glint_stop *stop, int side,
+                                 const struct glint_vertex *v)
 {
     const int64_t nx = stop->normal_q30[side][0];
     const int64_t ny = stop->normal_q30[side][1];
@@ -56,17 +57,20 @@ static inline int64_t glint_straight_q16(const struct glint_stop *stop,
 /* Return the distance of V inside side SIDE of the stop, in stop radii, and
  * inside a barrel, as 1 - (1 + r^2) / 2 with r in barrel radii. Both are
  * negative outside. */
-static inline int64_t glint_side_q16(const struct glint_stop *stop, int side,
-                                     const struct glint_vertex *v)
+static inline int64_t glint_side_distance_q16(const struct glint_stop *stop,
+                                              int side,
+                                              const struct glint_vertex *v)
 {
-    const int64_t straight_q16 = glint_straight_q16(stop, side, v);
+    const int64_t straight_q16 =
+        glint_straight_side_distance_q16(stop, side, v);
 
     return stop->round_q30 ? glint_arc_distance_q16(stop, straight_q16,
                                                     glint_disc_function_q16(v))
                            : straight_q16;
 }
 
-static inline int64_t glint_barrel_q16(int barrel, const struct glint_vertex *v)
+static inline int64_t glint_barrel_function_q16(int barrel,
+                                                const struct glint_vertex *v)
 {
     return (INT64_C(1) << 16) - v->barrel_q16[barrel];
 }

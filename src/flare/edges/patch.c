@@ -41,7 +41,7 @@ void glint_patch_write_slots(struct glint_edge *edge,
 {
     int k = 0;
 
-    glint_patch_fill_empty_slots(edge, glint_patch_places(p->n));
+    glint_patch_fill_empty_slots(edge, glint_patch_count_slots(p->n));
     edge[0] = (struct glint_edge){.slope_q40 = 0,
                                   .x_q8 = p->box.x0 * 256,
                                   .y_q8 = p->box.y0 * 256,

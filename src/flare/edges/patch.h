@@ -41,7 +41,7 @@ struct glint_patch {
 };
 
 /* Returns the number of edge slots that a patch of N corners occupies. */
-static inline int glint_patch_places(int n)
+static inline int glint_patch_count_slots(int n)
 {
     return 1 + (7 + 2 * n + 6) / 7;
 }

@@ -36,7 +36,7 @@ int glint_corners_are_tiny(const struct glint_corners *corners, int part)
     return (x > y ? x : y) * part <= 1 << GLINT_VERTEX_FRAC;
 }
 
-int glint_corners_are_thin_exactly(const struct glint_corners *corners)
+int glint_corners_test_thinness(const struct glint_corners *corners)
 {
     const struct glint_box e = compute_bounding_box_q8(corners);
     const int64_t x = e.x1 - e.x0, y = e.y1 - e.y0;

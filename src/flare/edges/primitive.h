@@ -33,8 +33,9 @@ struct glint_corners {
 /* Returns the cross product (B - A) x (P - A): positive if the triangle A, B, P
  * has the orientation from the x axis to the y axis. Within +-2^60 for
  * coordinates inside GLINT_VERTEX_LIMIT_Q8. */
-static inline int64_t glint_turn_q16(int32_t ax, int32_t ay, int32_t bx,
-                                     int32_t by, int32_t px, int32_t py)
+static inline int64_t glint_cross_product_q16(int32_t ax, int32_t ay,
+                                              int32_t bx, int32_t by,
+                                              int32_t px, int32_t py)
 {
     return (int64_t)(bx - ax) * (py - ay) - (int64_t)(by - ay) * (px - ax);
 }
@@ -70,13 +71,14 @@ static inline void glint_corners_set(struct glint_corners *corners,
             (int64_t)(p[2]->x_q8 - p[0]->x_q8) * (p[3]->y_q8 - p[1]->y_q8) -
             (int64_t)(p[2]->y_q8 - p[0]->y_q8) * (p[3]->x_q8 - p[1]->x_q8);
     else
-        corners->area2_q16 = glint_turn_q16(p[0]->x_q8, p[0]->y_q8, p[1]->x_q8,
-                                            p[1]->y_q8, p[2]->x_q8, p[2]->y_q8);
+        corners->area2_q16 =
+            glint_cross_product_q16(p[0]->x_q8, p[0]->y_q8, p[1]->x_q8,
+                                    p[1]->y_q8, p[2]->x_q8, p[2]->y_q8);
 }
 
 /* Returns the distance |x| + |y| between vertices A and B, pixels _q8. */
-static inline int64_t glint_reach(const struct glint_vertex *a,
-                                  const struct glint_vertex *b)
+static inline int64_t glint_vertex_distance_q8(const struct glint_vertex *a,
+                                               const struct glint_vertex *b)
 {
     const int64_t x = (int64_t)a->x_q8 - b->x_q8,
                   y = (int64_t)a->y_q8 - b->y_q8;
@@ -84,23 +86,25 @@ static inline int64_t glint_reach(const struct glint_vertex *a,
     return (x < 0 ? -x : x) + (y < 0 ? -y : y);
 }
 
-/* Quick test for glint_corners_thin(): returns 1 if C is certainly not thin,
- * because twice its area is at least 32 times the sum of its diagonals, and
- * that sum exceeds its width and height. */
-static inline int glint_corners_stout(const struct glint_corners *c)
+/* Quick test for glint_corners_are_thin(): returns 1 if C is certainly not
+ * thin, because twice its area is at least 32 times the sum of its diagonals,
+ * and that sum exceeds its width and height. */
+static inline int
+glint_corners_are_certainly_thick(const struct glint_corners *c)
 {
     return c->n == 4 && (c->area2_q16 < 0 ? -c->area2_q16 : c->area2_q16) >=
-                            32 * (glint_reach(c->at[0], c->at[2]) +
-                                  glint_reach(c->at[1], c->at[3]));
+                            32 * (glint_vertex_distance_q8(c->at[0], c->at[2]) +
+                                  glint_vertex_distance_q8(c->at[1], c->at[3]));
 }
 
 /* Return whether a primitive is thinner than a sixteenth of a pixel;
- * glint_corners_thin() makes a quick test first. */
-int glint_corners_are_thin_exactly(const struct glint_corners *corners);
-static inline int glint_corners_thin(const struct glint_corners *corners)
+ * glint_corners_are_thin() makes a quick test first. */
+int glint_corners_test_thinness(const struct glint_corners *corners);
+static inline int glint_corners_are_thin(const struct glint_corners *corners)
 {
-    return corners->area2_q16 == 0 || (!glint_corners_stout(corners) &&
-                                       glint_corners_are_thin_exactly(corners));
+    return corners->area2_q16 == 0 ||
+           (!glint_corners_are_certainly_thick(corners) &&
+            glint_corners_test_thinness(corners));
 }
 
 /* Returns whether all corners lie in a square whose sides are 1 / PART of a

@@ -493,7 +493,7 @@ static double count_crossed_rows(const struct glint_flare *flare)
     for (int i = 0; i < flare->n_drawn; i++)
         for (int k = 0; k < flare->slot[i].n; k++) {
             const struct glint_edge *e =
-                &glint_by_edges_of(flare)->edge[flare->slot[i].first + k];
+                &glint_flare_get_edges(flare)->edge[flare->slot[i].first + k];
             const int first = e->y_q8 > 0 ? e->y_q8 >> 8 : 0;
             const int end = (e->end_y_q8 + 255) >> 8;
 

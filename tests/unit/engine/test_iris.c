@@ -147,7 +147,8 @@ static void check_integer_stop_test(const struct glint_setup *s,
         y = v.stop_y_q16 / 65536.0;
         for (int k = 0; k < stop.n_blades; k++) {
             const double d = glint_iris_side_distance(sides, k, x, y);
-            const double got = (double)glint_side_q16(&stop, k, &v) / 65536;
+            const double got =
+                (double)glint_side_distance_q16(&stop, k, &v) / 65536;
 
             assert_true(fabs(got - d) < 5e-5);
         }

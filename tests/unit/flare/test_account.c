@@ -373,8 +373,9 @@ TEST(counts_rows_of_edges)
     plan_and_bin_edges(&f);
     for (int i = 0; i < f.stats.primitives; i++)
         for (int y = 0; y < HEIGHT; y++)
-            want += glint_by_edges_of(f.flare)->edge[i].y_q8 < 256 * (y + 1) &&
-                    glint_by_edges_of(f.flare)->edge[i].end_y_q8 > 256 * y;
+            want +=
+                glint_flare_get_edges(f.flare)->edge[i].y_q8 < 256 * (y + 1) &&
+                glint_flare_get_edges(f.flare)->edge[i].end_y_q8 > 256 * y;
     for (int light = 0; light < 2; light++)
         for (int ghost = 0; ghost < 3; ghost++)
             for (int wave = 0; wave < WAVES; wave++) {
