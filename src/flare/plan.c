@@ -210,10 +210,10 @@ static struct glint_real compute_bundle_flux(const struct glint_plan *p,
  * Returns 0 for folded ghosts, whose cell areas do not bound their brightness.
  */
 static struct glint_real
-compute_max_pixel_light(const struct glint_plan *p,
-                        const struct glint_bundle_plan *planned,
-                        const struct glint_probe *s,
-                        const struct glint_transfer *t, struct glint_real flux)
+compute_max_light(const struct glint_plan *p,
+                  const struct glint_bundle_plan *planned,
+                  const struct glint_probe *s, const struct glint_transfer *t,
+                  struct glint_real flux)
 {
     struct glint_real area;
 
@@ -504,8 +504,7 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
         compute_bundle_flux(plan, b, planned, transfer, colour, exponent);
     if (share_q8 < GLINT_DIM_WHOLE_Q8 && planned->wave != GLINT_DIM_WAVE)
         planned->flux = real_times(planned->flux, real_of(share_q8, -8));
-    brightest =
-        compute_max_pixel_light(plan, planned, s, transfer, planned->flux);
+    brightest = compute_max_light(plan, planned, s, transfer, planned->flux);
     planned->peak_q20 = compute_peak_in_visible_units_q20(plan, brightest);
     if (plan->n_lights == 1 && !r->sets && planned->peak_q20 < 1 << 20)
         return GLINT_OUTCOME_FAINT;

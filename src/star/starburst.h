@@ -114,8 +114,8 @@ struct glint_star_tables {
 struct glint_star_light {
     int32_t x_q8, y_q8; /* pixels from the top left corner */
     int32_t radius_q8;  /* radius of the lamp's disc, 0 .. 2^14 pixels, which
-                           widens the lines. Negative if the lamp itself is not
-                           visible in the picture: then the core is drawn, too */
+                           widens lines. Negative if the lamp itself is not
+                           visible in the picture: its core is drawn, too */
     /* power, display white times pixels; clamped to 2^30 */
     struct glint_real power;
     int32_t rgb_q14[3]; /* colour, 0 .. 2^14 */

@@ -75,14 +75,16 @@ struct glint_tiles {
     const struct glint_blend *blend;
 };
 
-/* The memory that a worker needs for tiles. */
+/* Scratch memory of one worker for drawing tiles. */
 struct glint_tile_scratch {
     struct glint_light_rows *light;
-    int32_t *light_q20; /* [3][2 * width of a tile]; for linear pictures */
+    int32_t
+        *light_q20; /* [3][2 * width of a tile]: light, for linear pictures */
     struct glint_quads_rows *codes;
     int n_tiles; /* number of tiles in which at least one pass drew */
     int n_held;  /* number of samples of a linear picture that were clamped */
-    struct glint_blend_rows *blend; /* set if the tiles blend passes */
+    struct glint_blend_rows *blend; /* set if several passes are blended, else
+                                       NULL */
 };
 
 /* Scratch memory of one worker for blending: the light and cover of the pass

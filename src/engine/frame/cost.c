@@ -6,9 +6,9 @@
 #include "glint/quality.h"
 #include "glint/bake.h"
 
-#define QUAD                                                    \
-    2 /* cost of adding light to a block of four pixels at half \
-         resolution / cost of one pixel */
+/* Cost of adding light to four pixels at half resolution / cost of one pixel.
+ */
+#define QUAD 2
 
 /* steps per octave in the cost model for light that is not rounded */
 #define MOST_STEPS 4096

@@ -86,8 +86,8 @@ struct glint_frame_picture {
     double code_light; /* linear light of one code near black; 0: the picture is
                           linear */
     int point_room;    /* max number of lights, including points of area lamps;
-                          replaces max_lights if it is larger and there are at most
-                          max_lights lamps */
+                          replaces max_lights if larger, for up to max_lights
+                          lamps */
 };
 
 /* Limits of the memory and the work of a frame. */

@@ -100,8 +100,7 @@ struct glint_ghost_edges {
     /* Results. */
     int n_edges; /* number of edges of the bundle, of which the first max_edges
                     are stored */
-    int more_refs; /* number of bin entries that the edges beyond max_edges need
-                    */
+    int more_refs; /* bin entries that the edges beyond max_edges need */
     int n_dropped; /* number of cells with an invalid corner, which are drawn as
                       a triangle or not at all */
     int n_held;    /* number of cells, or halves of cells, whose light was
