@@ -50,7 +50,7 @@ static void check_line_round_trip(const struct control_line *l,
                               f->clause ? f->clause : "");
     for (int i = 0; i < l->n; i++)
         n += snprintf(text + n, sizeof text - (size_t)n, " %.17g", l->v[i]);
-    require(control_parse(text, "again", &again, &error) == GLINT_OK);
+    require(control_parse_line(text, "again", &again, &error) == GLINT_OK);
     require(again.verb == l->verb && again.frame == l->frame);
     require(again.n == l->n && !strcmp(again.name[0], l->name[0]));
     for (int i = 0; i < l->n; i++)
@@ -80,13 +80,13 @@ static void parse_control_text(const char *text, struct playback *playback)
     struct glint_error error;
     int frame;
 
-    if (control_parse(text, "fuzz:7", &line, &error) != GLINT_OK) {
+    if (control_parse_line(text, "fuzz:7", &line, &error) != GLINT_OK) {
         require(!strncmp(error.text, "fuzz:7:", 7) && atoi(error.text + 7) > 0);
         return;
     }
     check_parsed_line(&line);
     playback_execute_line(playback, &line);
-    frame = playback_next(playback, .04);
+    frame = playback_next_frame(playback, .04);
     require(frame >= 0 && frame <= playback->last);
 }
 

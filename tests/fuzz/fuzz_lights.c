@@ -30,7 +30,7 @@ static void check_lamp_values(const struct lamp_list *list, int frame)
     const struct glint_view view = {
         .width = 640, .height = 360, .sensor_width_mm = 36};
     struct glint_engine_lamp lamp[ROWS];
-    const int n = lamp_list_frame(list, frame, &view, 50, lamp, ROWS);
+    const int n = lamp_list_get_frame(list, frame, &view, 50, lamp, ROWS);
 
     require(n >= 0 && n <= list->n && n <= ROWS);
     for (int i = 0; i < n; i++) {

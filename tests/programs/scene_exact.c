@@ -50,7 +50,7 @@ static int parse_option(const struct tool *tool, struct exact *e, int c,
     default:
         return -2;
     }
-    return ok ? -1 : tool_refuse(tool, name, optarg);
+    return ok ? -1 : tool_report_bad_value(tool, name, optarg);
 }
 
 static int parse_options(struct tool *tool, int argc, char **argv,
@@ -70,13 +70,13 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         int code = parse_option(tool, e, c, options[at].name);
 
         if (code == -2)
-            code = tool_option(tool, c, optarg);
+            code = tool_apply_option(tool, c, optarg);
         if (code >= 0)
             return code;
     }
     if (!e->output)
         return tool_usage(tool, "needs -o OUT");
-    return tool_inputs(tool, argc, argv, 1, "expects one scene");
+    return tool_check_inputs(tool, argc, argv, 1, "expects one scene");
 }
 
 static void print_lights_as_json(const struct glint_description *scene,
@@ -102,7 +102,7 @@ static int render_reference_scene(const struct tool *tool,
                                             malloc(3 * n * sizeof(float))};
     struct twin twin;
     bool is_linear;
-    int code = render_file_check(tool, e->output, &is_linear);
+    int code = render_file_check_path(tool, e->output, &is_linear);
 
     if (code == EXIT_OK &&
         (!pixels || !image.rgb || reference_open(&twin, scene) != GLINT_OK))
@@ -134,15 +134,15 @@ int main(int argc, char **argv)
     int code = parse_options(&tool, argc, argv, &e);
 
     if (code < 0)
-        code = tool_start(&tool);
+        code = tool_start_threads(&tool);
     if (code == EXIT_OK && tool.workers && scene) {
-        code = tool_scene(&tool, argv[optind], scene, NULL);
+        code = tool_read_scene(&tool, argv[optind], scene, NULL);
         if (code == EXIT_OK) {
             code = render_reference_scene(&tool, &e, scene);
             glint_description_free(scene);
         }
     }
-    tool_finish(&tool);
+    tool_stop_threads(&tool);
     free(scene);
     return code;
 }

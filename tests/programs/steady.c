@@ -82,7 +82,7 @@ static double compute_true_light_span(const struct steady *s)
 
 static void record_light_step(struct steady *s, double total, double own)
 {
-    const bool is_cut = drawing_is_new(&s->drawing);
+    const bool is_cut = drawing_has_restarted(&s->drawing);
     /* a fainter flare is invisible, so its appearance is not a step */
     const double least = 1e-6;
 
@@ -116,16 +116,16 @@ static void draw_and_record_frame(struct steady *s,
     struct drawing *drawing = &s->drawing;
     double own, drawn, power = 0, held = 0;
 
-    drawing_find(drawing, image, elapsed_us);
+    drawing_detect_and_draw_scene(drawing, image, elapsed_us);
     own = drawn = sum_flare_light(s);
     for (int i = 0; i < drawing->run.n_lamps; i++)
         power += drawing->run.lamp[i].lamp.power;
-    drawing_expose(drawing, image);
+    drawing_set_exposure(drawing, image);
     for (int i = 0; i < drawing->run.n_lamps; i++)
         held += drawing->run.lamp[i].lamp.power;
-    if (held < power) /* the exposure limited lamps that are too bright */
+    if (held < power) /* limits lamps that are too bright */
         drawn = sum_flare_light(s);
-    record_light_step(s, drawn * drawing_scale(&drawing->run), own);
+    record_light_step(s, drawn * drawing_exposure_factor(&drawing->run), own);
     if (drawing->run.n_lamps > s->most_lights)
         s->most_lights = drawing->run.n_lamps;
     s->frames++;
@@ -136,7 +136,7 @@ static void begin_video_statistics(struct steady *s, int width, int height)
     s->total = s->own = s->worst = s->largest = 0;
     s->unmade = s->unmade_frame = 0;
     s->worst_frame = s->cuts = s->frames = s->most_lights = 0;
-    if (drawing_size(&s->tool, &s->drawing, width, height) != EXIT_OK)
+    if (drawing_allocate(&s->tool, &s->drawing, width, height) != EXIT_OK)
         exit(EXIT_RUNTIME);
 }
 
@@ -348,13 +348,13 @@ int main(int argc, char **argv)
     bool good = true;
     int c;
 
-    drawing_line_defaults(&s.drawing.line);
+    drawing_line_set_defaults(&s.drawing.line);
     while ((c = getopt_long(argc, argv, "", options, NULL)) >= 0) {
         if (c != 'l')
             return EXIT_USAGE;
         s.drawing.line.settings.options.lens = optarg;
     }
-    if (tool_start(&s.tool) != EXIT_OK ||
+    if (tool_start_threads(&s.tool) != EXIT_OK ||
         drawing_open(&s.tool, &s.drawing) != EXIT_OK)
         return EXIT_RUNTIME;
     puts("| scene | frames | lights | cuts | largest step, % | beside the "
@@ -365,6 +365,6 @@ int main(int argc, char **argv)
     for (int i = optind; i < argc; i++)
         good = measure_video_file(&s, argv[i]) && good;
     drawing_close(&s.drawing);
-    tool_finish(&s.tool);
+    tool_stop_threads(&s.tool);
     return good ? 0 : 1;
 }

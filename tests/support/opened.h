@@ -17,8 +17,8 @@ static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
 static inline void open_heliar_lens(void)
 {
-    settings_defaults(&opened.settings);
-    assert_ok(tool_start(&tool));
+    settings_set_defaults(&opened.settings);
+    assert_ok(tool_start_threads(&tool));
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
                                "lenses/heliar-tronnier.lens"));
 }
@@ -26,7 +26,7 @@ static inline void open_heliar_lens(void)
 static inline void close_opened_lens(void)
 {
     opened_lens_close(&opened.lens);
-    tool_finish(&tool);
+    tool_stop_threads(&tool);
 }
 
 #endif

@@ -29,10 +29,10 @@ int make_frame_from_settings(const struct tool *tool,
                      tool->workers);
     frame->cfg.sets = tool_enabled_instruction_sets(tool);
     frame->lens = lens->model.data ? &lens->model.lens : NULL;
-    frame->trace = opened_table_rays();
+    frame->trace = opened_table_ray_functions();
     frame->clock = tool_clock_s;
     frame->dials = settings->dials;
-    frame->only_ghost = settings_only_ghost(settings);
+    frame->only_ghost = settings_get_only_ghost(settings);
     frame->tints = lens->tints;
     /* A limit of work would make the grid coarser than requested. */
     frame->limits.most_minsn =

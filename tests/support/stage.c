@@ -105,9 +105,9 @@ bool stage_bake_or_load_model(struct stage *stage, double tolerance,
                               .n_threads = 1,
                               .workers = stage->workers};
 
-    return model_cached(&tool, &stage->lens, stage->lens.name,
-                        make_bake_options(stage, tolerance, max_deg),
-                        &stage->file) == EXIT_OK &&
+    return model_open_cached(&tool, &stage->lens, stage->lens.name,
+                             make_bake_options(stage, tolerance, max_deg),
+                             &stage->file) == EXIT_OK &&
            set_lens_of_model(stage);
 }
 
@@ -165,7 +165,7 @@ bool stage_open_model_file(struct stage *stage, const char *path, int width,
     const struct glint_model_header *header;
     struct glint_error error = {"no setup"};
 
-    if (tool_model(&tool, path, &stage->file) != EXIT_OK)
+    if (tool_open_model(&tool, path, &stage->file) != EXIT_OK)
         return false;
     header = stage->file.lens.header;
     if (glint_setup_from_model(&stage->of_model, &stage->file.lens, 8, 0, nm, 3,

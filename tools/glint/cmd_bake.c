@@ -101,7 +101,7 @@ static int parse_option(struct tool *tool, struct bake *b, int c,
         ok = zoom_option_parse(&b->zoom, optarg);
         break;
     case 'F':
-        ok = zoom_option_focus(&b->zoom, optarg);
+        ok = zoom_option_parse_focus(&b->zoom, optarg);
         break;
     case 'f':
         ok = tool_parse_number(optarg, &b->f_number) && b->f_number > 0;
@@ -122,9 +122,9 @@ static int parse_option(struct tool *tool, struct bake *b, int c,
         ok = tool_parse_number(optarg, &o->tolerance);
         break;
     default:
-        return tool_option(tool, c, optarg);
+        return tool_apply_option(tool, c, optarg);
     }
-    return ok ? -1 : tool_refuse(tool, name, optarg);
+    return ok ? -1 : tool_report_bad_value(tool, name, optarg);
 }
 
 static int parse_options(struct tool *tool, int argc, char **argv,
@@ -149,7 +149,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
                             &index)) >= 0)
         if ((code = parse_option(tool, b, c, options[index].name)) >= 0)
             return code;
-    code = tool_inputs(tool, argc, argv, 1, "expects one lens");
+    code = tool_check_inputs(tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
     if (!b->output)
@@ -240,8 +240,8 @@ static int write_model(struct glint_output *out, const struct tool *tool,
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (strcmp(b->output, "-") != 0)
-        model_report_bake(tool, &opened, tool_clock_s() - start, report,
-                          &check);
+        model_report_print_bake(tool, &opened, tool_clock_s() - start, report,
+                                &check);
     return EXIT_OK;
 }
 
@@ -324,7 +324,7 @@ static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
     const double start = tool_clock_s();
     struct glint_error error = {""};
     struct zoom_baked baked;
-    enum glint_status status = zoom_bake_run(tool, &zoom, &baked, &error);
+    enum glint_status status = zoom_bake_positions(tool, &zoom, &baked, &error);
     char where[64];
 
     if (status == GLINT_OK && b->is_strict && baked.least_db > 0 &&
@@ -363,9 +363,9 @@ static int bake_lens_by_name(struct tool *tool, struct bake *b,
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     apart_add_input(&files, NULL, name);
     apart_add_output(&files, "-o", b->output);
-    code = apart_check(tool, &files);
+    code = apart_check_outputs(tool, &files);
     if (code == EXIT_OK)
-        code = tool_lens(tool, name, lens);
+        code = tool_read_lens(tool, name, lens);
     if (code == EXIT_OK)
         code = b->positions ? EXIT_OK : zoom_option_apply(tool, &b->zoom, lens);
     if (code == EXIT_OK)
@@ -394,10 +394,10 @@ static int bake_lens(struct tool *tool, int argc, char **argv)
     code = parse_options(tool, argc, argv, &b);
     if (code >= 0)
         return code;
-    code = tool_start(tool);
+    code = tool_start_threads(tool);
     if (code == EXIT_OK)
         code = bake_lens_by_name(tool, &b, argv[optind]);
-    tool_finish(tool);
+    tool_stop_threads(tool);
     return code;
 }
 

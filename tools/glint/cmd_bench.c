@@ -32,7 +32,7 @@ static int parse_option(struct bench *b, int c)
 
 static int parse_options(struct bench *b, int argc, char **argv)
 {
-    const struct option *const options = engine_getopt(
+    const struct option *const options = engine_build_options(
         b->tool, b->subject->groups, &b->base.options, b->subject->own);
     int c, at = 0, code;
 
@@ -41,12 +41,12 @@ static int parse_options(struct bench *b, int argc, char **argv)
         const int taken = parse_option(b, c);
 
         if (taken == 0)
-            return tool_refuse(b->tool, options[at].name, optarg);
+            return tool_report_bad_value(b->tool, options[at].name, optarg);
         if (taken != -2)
             continue;
-        code = settings_option(b->tool, &b->base, c, optarg);
+        code = settings_apply_option(b->tool, &b->base, c, optarg);
         if (code == -2)
-            code = tool_option(b->tool, c, optarg);
+            code = tool_apply_option(b->tool, c, optarg);
         if (code >= 0)
             return code;
     }
@@ -79,14 +79,14 @@ int cmd_bench(int argc, char **argv)
     b->rounds = 15;
     b->width = 1920;
     b->height = 1080;
-    settings_defaults(&b->base);
+    settings_set_defaults(&b->base);
     code = parse_options(b, argc, argv);
     if (code < 0)
-        code = tool_start(&tool);
+        code = tool_start_threads(&tool);
     if (code == EXIT_OK && tool.workers)
         code =
             bench_run_all(b, argc - optind, (const char *const *)argv + optind);
     bench_close(b);
-    tool_finish(&tool);
+    tool_stop_threads(&tool);
     return code;
 }

@@ -241,8 +241,13 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     else if (c == 'g')
         good = tool_parse_numbers(value, o->glass, 2) > 0 &&
                o->glass[0] >= 1.01 && o->glass[0] <= 4 && o->glass[1] >= 0;
-    else
-        return tool_option(tool, c, value);
+    else if (c == 'a') {
+        o->n_angles = tool_parse_numbers(value, o->angle_deg, ANGLES);
+        good = o->n_angles > 0;
+        for (int k = 0; k < o->n_angles; k++)
+            good = good && o->angle_deg[k] >= 0 && o->angle_deg[k] < 90;
+    } else
+        return tool_apply_option(tool, c, value);
     return good ? -1 : -2;
 }
 
@@ -260,8 +265,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         tool, argc, argv, TOOL_COMMON_SHORT "o:", options, parse_option, o);
 
     if (code < 0)
-        code =
-            tool_inputs(tool, argc, argv, 1, "needs one coating or one lens");
+        code = tool_check_inputs(tool, argc, argv, 1,
+                                 "needs one coating or one lens");
     if (code >= 0)
         return code;
     if (o->output && !glint_ends_in(o->output, ".svg"))
@@ -269,7 +274,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     if (o->output && o->surface >= 0)
         apart_add_input(&files, NULL, argv[optind]);
     apart_add_output(&files, "-o", o->output);
-    code = apart_check(tool, &files);
+    code = apart_check_outputs(tool, &files);
     if (code == EXIT_OK && o->output)
         code = tool_check_output(tool, o->output);
     return code == EXIT_OK ? -1 : code;
@@ -285,7 +290,7 @@ static int find_lens_coating(const struct tool *tool, const char *name,
 
     if (!lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    code = tool_lens(tool, name, lens);
+    code = tool_read_lens(tool, name, lens);
     if (code == EXIT_OK && c->surface >= lens->n_surfaces)
         code = tool_usage(tool, "%s has surfaces 0 to %d", name,
                           lens->n_surfaces - 1);

@@ -168,14 +168,14 @@ int cmd_compare(int argc, char **argv)
            0) {
         a.fit |= c == 'f';
         if (c == 'x' && !parse_exposure(&a, optarg))
-            return tool_refuse(&tool, "exposure", optarg);
+            return tool_report_bad_value(&tool, "exposure", optarg);
         if (c == 'f' || c == 'x')
             continue;
-        code = tool_option(&tool, c, optarg);
+        code = tool_apply_option(&tool, c, optarg);
         if (code >= 0)
             return code;
     }
-    code = tool_inputs(&tool, argc, argv, 2, "expects two pictures");
+    code = tool_check_inputs(&tool, argc, argv, 2, "expects two pictures");
     if (code >= 0)
         return code;
     a.name[0] = argv[optind];

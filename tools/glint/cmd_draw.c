@@ -69,11 +69,11 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     else if (c == 'z')
         good = zoom_option_parse(&o->zoom, value);
     else if (c == 'F')
-        good = zoom_option_focus(&o->zoom, value);
+        good = zoom_option_parse_focus(&o->zoom, value);
     else if (c == 'f')
         good = tool_parse_number(value, &o->f_number) && o->f_number > 0;
     else
-        return tool_option(tool, c, value);
+        return tool_apply_option(tool, c, value);
     return good ? -1 : -2;
 }
 
@@ -95,7 +95,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         tool, argc, argv, TOOL_COMMON_SHORT "o:", options, parse_option, o);
 
     if (code < 0)
-        code = tool_inputs(tool, argc, argv, 1, "expects one lens");
+        code = tool_check_inputs(tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
     if (!o->output)
@@ -104,7 +104,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         return tool_usage(tool, "--angle needs --ghost");
     apart_add_input(&files, NULL, argv[optind]);
     apart_add_output(&files, "-o", o->output);
-    code = apart_check(tool, &files);
+    code = apart_check_outputs(tool, &files);
     if (code == EXIT_OK)
         code = tool_check_ending(tool, o->output, ".svg", "a figure");
     if (code == EXIT_OK)
@@ -134,7 +134,7 @@ static int draw_lens_section(struct tool *tool, struct draw *o,
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
-    int code = tool_lens(tool, name, &o->lens), n;
+    int code = tool_read_lens(tool, name, &o->lens), n;
 
     if (code == EXIT_OK)
         code = zoom_option_apply(tool, &o->zoom, &o->lens);
@@ -162,9 +162,9 @@ int cmd_draw(int argc, char **argv)
     code = parse_options(&tool, argc, argv, &o);
     if (code >= 0)
         return code;
-    code = tool_start(&tool);
+    code = tool_start_threads(&tool);
     if (code == EXIT_OK)
         code = draw_lens_section(&tool, &o, argv[optind]);
-    tool_finish(&tool);
+    tool_stop_threads(&tool);
     return code;
 }

@@ -125,30 +125,30 @@ static int check_options(struct tool *tool, const struct explain_command *c)
 static int parse_options(struct tool *tool, int argc, char **argv,
                          struct explain_command *c)
 {
-    const struct option *const options =
-        engine_getopt(tool, ENGINE_ALL, &c->drawing.line.settings.options, own);
+    const struct option *const options = engine_build_options(
+        tool, ENGINE_ALL, &c->drawing.line.settings.options, own);
     int option, index = 0;
-    int code = drawing_line_style_of(tool, &c->drawing.line, argc, argv,
-                                     "o:" TOOL_COMMON_SHORT, options);
+    int code = drawing_line_apply_command_style(
+        tool, &c->drawing.line, argc, argv, "o:" TOOL_COMMON_SHORT, options);
 
     if (code >= 0)
         return code;
     while ((option = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                                  &index)) >= 0) {
-        code = drawing_line_option(tool, &c->drawing.line, option, optarg);
+        code = drawing_line_set_option(tool, &c->drawing.line, option, optarg);
         if (code == -2 && (option == 'o' || option >= ENGINE_OPTIONS_END)) {
             code = -1;
             if (!parse_option(c, option, optarg))
-                return tool_refuse(tool, options[index].name, optarg);
+                return tool_report_bad_value(tool, options[index].name, optarg);
         } else if (code == -2)
-            code = tool_option(tool, option, optarg);
+            code = tool_apply_option(tool, option, optarg);
         if (code >= 0)
             return code;
     }
     code = c->width && optind == argc
                ? -1
-               : tool_inputs(tool, argc, argv, 1,
-                             "needs one input picture, or --size WxH");
+               : tool_check_inputs(tool, argc, argv, 1,
+                                   "needs one input picture, or --size WxH");
     if (code >= 0)
         return code;
     c->input = argv[optind]; /* NULL if there is no argument */
@@ -184,7 +184,7 @@ static enum glint_status draw_linear_flare(struct explain_command *c)
     struct drawing *drawing = &c->drawing;
     const size_t n = (size_t)c->width * (size_t)c->height;
     struct glint_float_image light = {.width = c->width, .height = c->height};
-    enum glint_status status = drawing_find_lamps(drawing, &c->image, 0);
+    enum glint_status status = drawing_detect_lamps_only(drawing, &c->image, 0);
     struct glint_lamp *plain;
     uint8_t *codes;
 
@@ -229,8 +229,8 @@ static int save_picture(struct tool *tool, const struct explain_command *c,
     struct glint_error error = {""};
     struct glint_image marked = {.plane = {NULL}};
     enum glint_status status =
-        scene ? explain_scene_mark(scene, &c->image, &marked)
-              : explain_mark(e, title, &c->image, &marked);
+        scene ? explain_scene_draw_marks(scene, &c->image, &marked)
+              : explain_draw_marks(e, title, &c->image, &marked);
 
     if (status == GLINT_OK)
         status = glint_picture_save(c->output, &marked, &error);
@@ -253,9 +253,9 @@ static int save_ghost_images(struct tool *tool, const struct explain_command *c,
 
     glint_explain_sort(e, ghosts);
     if (c->ghosts)
-        status = ghost_list_write(&list, c->ghosts, &error);
+        status = ghost_list_write_file(&list, c->ghosts, &error);
     if (c->sheet && status == GLINT_OK)
-        status = ghost_list_sheet(&list, c->sheet, &error);
+        status = ghost_list_save_sheet(&list, c->sheet, &error);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
@@ -275,10 +275,10 @@ static int print_scene_explanation(struct tool *tool,
         return tool_fail(tool, status, NULL);
     if (tool->json) {
         json_write(&json, "{scene: ");
-        explain_scene_json(&json, &scene);
+        explain_scene_write_json(&json, &scene);
         json_write(&json, flare ? "flare: " : "}\n");
     } else {
-        explain_scene_print(&scene);
+        explain_scene_print_tables(&scene);
         printf(flare ? "\n" : "");
     }
     if (c->output)
@@ -312,9 +312,9 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
     if (status != GLINT_OK)
         code = tool_fail(tool, status, NULL);
     else if (tool->json)
-        explain_json(&e, &title);
+        explain_write_json(&e, &title);
     else
-        explain_print(&e, &title);
+        explain_print_tables(&e, &title);
     if (code == EXIT_OK && tool->json && drawing->files.scene.is_open)
         printf("}\n");
     if (status == GLINT_OK && drawing->run.n_lamps == 0 && !tool->quiet) {
@@ -355,7 +355,7 @@ static int check_outputs_differ_from_inputs(const struct tool *tool,
     apart_add_output(&files, "--save-ghosts", c->ghosts);
     apart_add_output(&files, "--ghost-sheet", c->sheet);
     apart_add_drawing_files(&files, &c->drawing.line);
-    return apart_check(tool, &files);
+    return apart_check_outputs(tool, &files);
 }
 
 static int explain_frame(struct tool *tool, struct explain_command *c)
@@ -374,14 +374,15 @@ static int explain_frame(struct tool *tool, struct explain_command *c)
     if (code == EXIT_OK)
         code = load_input_image(tool, c);
     if (code == EXIT_OK)
-        code = drawing_size(tool, &c->drawing, c->image.width, c->image.height);
+        code = drawing_allocate(tool, &c->drawing, c->image.width,
+                                c->image.height);
     if (code != EXIT_OK)
         return code;
-    status =
-        linear ? draw_linear_flare(c) : drawing_draw(&c->drawing, &c->image, 0);
+    status = linear ? draw_linear_flare(c)
+                    : drawing_draw_flare(&c->drawing, &c->image, 0);
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
-    code = drawing_finish(tool, &c->drawing);
+    code = drawing_finish_lamp_file(tool, &c->drawing);
     if (code == EXIT_OK)
         code = c->drawing.files.has_lens
                    ? print_explanation(tool, c, linear)
@@ -398,15 +399,15 @@ int cmd_explain(int argc, char **argv)
 
     if (!c)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    drawing_line_defaults(&c->drawing.line);
+    drawing_line_set_defaults(&c->drawing.line);
     c->drawing.line.is_still = true;
     c->top = 20;
     code = parse_options(&tool, argc, argv, c);
     if (code < 0) {
-        code = tool_start(&tool);
+        code = tool_start_threads(&tool);
         if (code == EXIT_OK)
             code = explain_frame(&tool, c);
-        tool_finish(&tool);
+        tool_stop_threads(&tool);
     }
     drawing_close(&c->drawing);
     free(c->image.plane[0]);

@@ -96,7 +96,7 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     else if (c == 'k')
         o->key = value;
     else
-        return tool_option(tool, c, value);
+        return tool_apply_option(tool, c, value);
     return good ? -1 : -2;
 }
 
@@ -117,7 +117,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         tool, argc, argv, TOOL_COMMON_SHORT "o:", options, parse_option, o);
 
     if (code < 0)
-        code = tool_inputs(tool, argc, argv, 1, "expects one file");
+        code = tool_check_inputs(tool, argc, argv, 1, "expects one file");
     if (code >= 0)
         return code;
     if (!o->output)
@@ -127,10 +127,10 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     if (!o->format)
         return tool_usage(tool,
                           "%s: the format is ambiguous; choose --format %s",
-                          argv[optind], values_of("import", "format"));
+                          argv[optind], values_describe("import", "format"));
     apart_add_input(&files, NULL, argv[optind]);
     apart_add_output(&files, "-o", o->output);
-    code = apart_check(tool, &files);
+    code = apart_check_outputs(tool, &files);
     if (code == EXIT_OK)
         code = tool_check_output(tool, o->output);
     return code == EXIT_OK ? -1 : code;
@@ -272,10 +272,10 @@ int cmd_import(int argc, char **argv)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     code = parse_options(&tool, argc, argv, o);
     if (code < 0) {
-        code = tool_start(&tool);
+        code = tool_start_threads(&tool);
         if (code == EXIT_OK)
             code = import_lens_file(&tool, o, argv[optind]);
-        tool_finish(&tool);
+        tool_stop_threads(&tool);
     }
     free(o);
     return code;

@@ -168,7 +168,7 @@ static int print_model_info(const struct tool *tool, const char *path,
                             const struct zoom_option *zoom)
 {
     struct model_file model;
-    int code = tool_model(tool, path, &model);
+    int code = tool_open_model(tool, path, &model);
 
     if (code != EXIT_OK)
         return code;
@@ -178,9 +178,9 @@ static int print_model_info(const struct tool *tool, const char *path,
                           "and does not accept --zoom",
                           path);
     else
-        code = zoom_option_of_model(tool, zoom, path);
+        code = zoom_option_reject_for_model(tool, zoom, path);
     if (code == EXIT_OK)
-        model_report_info(tool, &model);
+        model_report_print_info(tool, &model);
     model_file_close(&model);
     return code;
 }
@@ -218,7 +218,7 @@ static int print_motion_info(const struct tool *tool, const char *path,
     if (code != EXIT_OK)
         return code;
     if (poses)
-        code = motion_file_poses(tool, &file, poses);
+        code = motion_file_write_poses(tool, &file, poses);
     if (code == EXIT_OK && !(poses && strcmp(poses, "-") == 0))
         motion_file_print(tool, &file);
     motion_file_close(&file);
@@ -253,19 +253,19 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         else if (c == 'z')
             good = zoom_option_parse(&asked->zoom, optarg);
         else if (c == 'F')
-            good = zoom_option_focus(&asked->zoom, optarg);
+            good = zoom_option_parse_focus(&asked->zoom, optarg);
         else if (c == 'p')
             asked->poses = optarg;
         else
             code = c == 'c'
                        ? coating_parse_option(tool, &asked->coating, optarg)
-                       : tool_option(tool, c, optarg);
+                       : tool_apply_option(tool, c, optarg);
         if (code >= 0)
             return code;
         if (!good)
-            return tool_refuse(tool, options[index].name, optarg);
+            return tool_report_bad_value(tool, options[index].name, optarg);
     }
-    code = tool_inputs(tool, argc, argv, 1, "expects one lens");
+    code = tool_check_inputs(tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
     return -1;
@@ -324,7 +324,7 @@ static int print_table_info(const struct tool *tool, const char *path,
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
-    int code = tool_lens(tool, path, &info->lens);
+    int code = tool_read_lens(tool, path, &info->lens);
 
     if (code == EXIT_OK)
         code = zoom_option_apply(tool, &asked->zoom, &info->lens);
@@ -362,7 +362,8 @@ int cmd_info(int argc, char **argv)
     if (code >= 0)
         return code;
     if (tool_is_model(argv[optind]) &&
-        coating_of_model(&tool, &asked.coating, argv[optind]) != EXIT_OK)
+        coating_reject_for_model(&tool, &asked.coating, argv[optind]) !=
+            EXIT_OK)
         return EXIT_USAGE;
     if (tool_is_model(argv[optind]))
         return asked.f_number != 0

@@ -91,9 +91,9 @@ struct entry {
 static void set_default_settings(struct settings *settings, bool plain)
 {
     if (plain)
-        settings_defaults(settings);
+        settings_set_defaults(settings);
     else
-        settings_defaults_photo(settings);
+        settings_set_photo_defaults(settings);
 }
 
 static int load_lens_entry(const struct tool *tool, const char *name,
@@ -102,13 +102,13 @@ static int load_lens_entry(const struct tool *tool, const char *name,
     int code;
 
     set_default_settings(&e->settings, plain);
-    code = tool_lens(tool, name, &e->table);
+    code = tool_read_lens(tool, name, &e->table);
     if (code != EXIT_OK)
         return code;
     coating_apply(&e->settings.coating, &e->table);
     glint_optics_of(&e->table, &e->optics);
     e->n_ghosts = glint_ghost_list(&e->table, e->ghost, GLINT_MAX_GHOSTS);
-    e->options = opened_table_bake(&e->table, &e->settings);
+    e->options = opened_table_bake_options(&e->table, &e->settings);
     e->is_baked = model_is_cached(&e->table, &e->options);
     return EXIT_OK;
 }
@@ -221,7 +221,7 @@ static void print_measured_times(struct lenses *l, const char *name)
     FILE *const page = l->page;
     struct measured m;
 
-    if (measured_find(name, &m) != GLINT_OK)
+    if (measured_read_row(name, &m) != GLINT_OK)
         l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
     else if (!*m.f_number)
         fputs("<p class=\"less\">bake and frame not measured yet</p>", page);
@@ -247,11 +247,11 @@ static void print_lens_card(struct lenses *l, const char *name,
                                    .n_ghosts = e->n_ghosts};
 
     if (l->n++ == 0)
-        page_begin(l->page);
-    page_card_begin(l->page, &card);
+        page_write_head(l->page);
+    page_begin_card(l->page, &card);
     write_flare_thumbnails(l, name, e);
     print_measured_times(l, name);
-    page_card_end(l->page);
+    page_end_card(l->page);
 }
 
 /* ------------------------------------------------------------------ models */
@@ -274,11 +274,12 @@ static int copy_or_bake_model(const struct lenses *l, const struct entry *e)
     int code;
 
     if ((size_t)snprintf(path, sizeof path, "%s", l->folder) >= sizeof path ||
-        !model_cache_name(path, sizeof path, e->table.name, key))
+        !model_cache_append_name(path, sizeof path, e->table.name, key))
         return tool_usage(l->tool, "%s: the name is too long", l->folder);
     if (stat(path, &st) == 0)
         return EXIT_OK;
-    code = model_cached(l->tool, &e->table, e->table.name, e->options, &model);
+    code = model_open_cached(l->tool, &e->table, e->table.name, e->options,
+                             &model);
     if (code == EXIT_OK)
         code = save_model_to_folder(l->tool, path, &model);
     if (code == EXIT_OK && !l->tool->quiet)
@@ -380,7 +381,7 @@ static int write_lens_page(struct lenses *l)
         tool_progress_start(&l->progress, l->tool, "lenses");
         n = lens_files_visit_all(list_lens, l);
         tool_progress_end(&l->progress);
-        page_end(l->page);
+        page_write_end(l->page);
         if (n < 0 || l->n == 0)
             fclose(l->page);
     }
@@ -396,7 +397,7 @@ static int write_lens_page(struct lenses *l)
 
 static int print_lens_list(struct lenses *l)
 {
-    const int code = lens_names_check(l->only, l->n_only);
+    const int code = lens_check_names(l->only, l->n_only);
 
     if (code != EXIT_OK)
         return code;
@@ -436,14 +437,14 @@ static int parse_options(struct lenses *l, int argc, char **argv)
         else if (c == 'H')
             l->html = optarg;
         else if (c == 'r' && tool_find_word(optarg, rays) < 0)
-            return tool_refuse(l->tool, "rays", optarg);
+            return tool_report_bad_value(l->tool, "rays", optarg);
         else if (c == 'r')
             l->exact = tool_find_word(optarg, rays) == 1;
         else if (c == 'o' && l->n_only == MAX_ONLY)
             return tool_usage(l->tool, "more than %d lenses", MAX_ONLY);
         else if (c == 'o')
             l->only[l->n_only++] = optarg;
-        else if ((code = tool_option(l->tool, c, optarg)) >= 0)
+        else if ((code = tool_apply_option(l->tool, c, optarg)) >= 0)
             return code;
     }
     l->words = argv + optind;
@@ -470,10 +471,10 @@ int cmd_lenses(int argc, char **argv)
     int code = parse_options(&l, argc, argv);
 
     if (code < 0) {
-        code = tool_start(&tool);
+        code = tool_start_threads(&tool);
         if (code == EXIT_OK)
             code = print_lens_list(&l);
-        tool_finish(&tool);
+        tool_stop_threads(&tool);
     }
     return code;
 }

@@ -432,7 +432,7 @@ static int lint_lens_file(const struct tool *tool, const char *name)
     char path[1024];
     const char *file = strcmp(name, "-") == 0
                            ? name
-                           : tool_lens_file(tool, name, path, sizeof path);
+                           : tool_find_lens_file(tool, name, path, sizeof path);
     uint8_t *text = NULL;
     size_t bytes = 0;
     int n = 0;
@@ -463,14 +463,14 @@ int cmd_lint(int argc, char **argv)
 
     while (code < 0 &&
            (c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >= 0)
-        code = tool_option(&tool, c, optarg);
+        code = tool_apply_option(&tool, c, optarg);
     if (code < 0)
-        code = tool_inputs(&tool, argc, argv, 1, "expects one lens");
+        code = tool_check_inputs(&tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
-    code = tool_start(&tool);
+    code = tool_start_threads(&tool);
     if (code == EXIT_OK)
         code = lint_lens_file(&tool, argv[optind]);
-    tool_finish(&tool);
+    tool_stop_threads(&tool);
     return code;
 }

@@ -128,7 +128,7 @@ static void set_live_defaults(struct live_options *o)
                                          .n_buffers = 4},
                                .output = "fb",
                                .snapshot = "glint-%03d.ppm"};
-    drawing_line_defaults(&o->drawing.line);
+    drawing_line_set_defaults(&o->drawing.line);
     o->drawing.line.reserve_bytes = 32 << 20;
     o->drawing.line.is_live = true;
 }
@@ -270,14 +270,15 @@ static const char *find_option_name(int option)
 
 static int parse_option(struct line *line, int option, const char *value)
 {
-    int code = drawing_line_option(line->tool, &line->into->drawing.line,
-                                   option, value);
+    int code = drawing_line_set_option(line->tool, &line->into->drawing.line,
+                                       option, value);
 
     if (code == -2)
         code = parse_live_option(line->into, option, value);
     if (code == -3)
-        return tool_refuse(line->tool, find_option_name(option), value);
-    return code == -2 ? tool_option(line->tool, option, value) : code;
+        return tool_report_bad_value(line->tool, find_option_name(option),
+                                     value);
+    return code == -2 ? tool_apply_option(line->tool, option, value) : code;
 }
 
 static int parse_config_option(void *ctx, const struct option *option,
@@ -316,7 +317,7 @@ static int check_outputs_differ_from_inputs(const struct tool *tool,
         apart_add_output(&files, "-o", output.path);
     apart_add_output(&files, "--snapshot", o->snapshot);
     apart_add_drawing_files(&files, &o->drawing.line);
-    code = apart_check(tool, &files);
+    code = apart_check_outputs(tool, &files);
     return code == EXIT_OK ? -1 : code;
 }
 
@@ -337,10 +338,11 @@ static int parse_options(struct line *line, struct config *config,
         code = config_read(config, path);
         if (code != EXIT_OK)
             return code;
-        drawing_line_end(&into->drawing.line);
+        drawing_line_end_file(&into->drawing.line);
     }
-    code = drawing_line_style_of(line->tool, &into->drawing.line, line->argc,
-                                 line->argv, SHORT, options);
+    code = drawing_line_apply_command_style(line->tool, &into->drawing.line,
+                                            line->argc, line->argv, SHORT,
+                                            options);
     if (code < 0)
         code = parse_command_line(line);
     return code < 0 ? check_outputs_differ_from_inputs(line->tool, into, path)
@@ -385,18 +387,18 @@ int cmd_live(int argc, char **argv)
     if (!o)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     set_live_defaults(o);
-    options = engine_getopt(&tool, ENGINE_ALL,
-                            &o->drawing.line.settings.options, own);
+    options = engine_build_options(&tool, ENGINE_ALL,
+                                   &o->drawing.line.settings.options, own);
     line.config.options = options;
     line.again = line.config;
     code = parse_options(&line, &line.config, o);
     if (code < 0 && (o->list_devices || o->list_formats))
         code = list_cameras(&tool, o);
     else if (code < 0) {
-        code = tool_start(&tool);
+        code = tool_start_threads(&tool);
         if (code == EXIT_OK)
             code = live_run(&tool, o, reread_options, &line);
-        tool_finish(&tool);
+        tool_stop_threads(&tool);
     }
     drawing_close(&o->drawing);
     config_free(&line.config);

@@ -242,11 +242,11 @@ static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
                                     struct overlay *o, const char *output,
                                     const char **folder)
 {
-    const struct option *const options =
-        engine_getopt(tool, ENGINE_ALL, &o->drawing.line.settings.options, own);
+    const struct option *const options = engine_build_options(
+        tool, ENGINE_ALL, &o->drawing.line.settings.options, own);
     int c, index = 0;
-    int code = drawing_line_style_of(tool, &o->drawing.line, argc, argv,
-                                     "o:" TOOL_COMMON_SHORT, options);
+    int code = drawing_line_apply_command_style(
+        tool, &o->drawing.line, argc, argv, "o:" TOOL_COMMON_SHORT, options);
 
     if (code >= 0)
         return code;
@@ -254,7 +254,7 @@ static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
                             &index)) >= 0) {
         if (c == ENGINE_OPTION_OF(zoom) && zoom_clip_parse(&o->zoom, optarg))
             continue;
-        code = drawing_line_option(tool, &o->drawing.line, c, optarg);
+        code = drawing_line_set_option(tool, &o->drawing.line, c, optarg);
         if (code >= 0)
             return code;
         if (code == -1)
@@ -265,13 +265,14 @@ static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
             o->encode = optarg;
         else if (strchr("rx4123nQLTFWB", c)) {
             if (!parse_option(o, c, optarg))
-                return tool_refuse(tool, options[index].name, optarg);
-        } else if ((code = tool_option(tool, c, optarg)) >= 0)
+                return tool_report_bad_value(tool, options[index].name, optarg);
+        } else if ((code = tool_apply_option(tool, c, optarg)) >= 0)
             return code;
     }
     if (optind == argc)
-        return tool_inputs(tool, argc, argv, 1,
-                           "needs an input: a picture, a sequence or a video");
+        return tool_check_inputs(
+            tool, argc, argv, 1,
+            "needs an input: a picture, a sequence or a video");
     if (!output && o->output && folder_is_folder(o->output)) {
         *folder = o->output;
         code = check_folder_options(tool, o, argc - optind);
@@ -314,7 +315,7 @@ static void print_overlay_json(const struct overlay *o,
                o->figures.find_ms / n, o->figures.flare_ms / n,
                o->figures.most_lights, o->figures.n_reused);
     overlay_write_json(&json, o, light);
-    settings_json(&json, &o->drawing.run.report);
+    settings_write_json(&json, &o->drawing.run.report);
     json_write(&json, "}\n");
 }
 
@@ -353,7 +354,8 @@ static int check_input_file(struct tool *tool, struct overlay *o)
                                 "standard input");
     if (strcmp(o->input, "-") == 0 || overlay_is_sequence(o))
         return EXIT_OK;
-    if (access(o->input, F_OK) != 0 && numbered_from_hashes(pattern, o->input))
+    if (access(o->input, F_OK) != 0 &&
+        numbered_convert_hashes(pattern, o->input))
         status = glint_error_report(
             &error, GLINT_E_IO, o->input,
             "does not exist; a sequence has a name like %s", pattern);
@@ -445,14 +447,14 @@ static int overlay_single_input(struct tool *tool, struct overlay *o)
     if (o->lists_shots)
         disable_bake_and_metering(&o->drawing.line.settings, o->zoom.is_asked);
     if (code == EXIT_OK && o->is_video)
-        code = overlay_video_check(tool, o);
+        code = overlay_check_ffmpeg(tool, o);
     if (code == EXIT_OK)
         code = check_input_file(tool, o);
     if (code == EXIT_OK)
-        code = layers_check(tool, &o->layers,
-                            o->is_video || overlay_is_sequence(o));
+        code = layers_check_names(tool, &o->layers,
+                                  o->is_video || overlay_is_sequence(o));
     if (code == EXIT_OK)
-        code = overlay_check_apart(tool, o, o->input, o->output);
+        code = overlay_check_outputs(tool, o, o->input, o->output);
     if (code == EXIT_OK)
         code = zoom_clip_open(tool, &o->zoom, o->is_video ? o->input : NULL,
                               &o->drawing.line);
@@ -463,13 +465,13 @@ static int overlay_single_input(struct tool *tool, struct overlay *o)
         return code;
     o->figures.started = tool_clock_s();
     if (o->is_video)
-        code = overlay_video(tool, o);
+        code = overlay_draw_video(tool, o);
     else if (overlay_is_sequence(o))
-        code = overlay_sequence(tool, o);
+        code = overlay_draw_sequence(tool, o);
     else
-        code = overlay_picture(tool, o, o->input, o->output);
+        code = overlay_draw_picture_file(tool, o, o->input, o->output);
     if (code == EXIT_OK)
-        code = drawing_finish(tool, &o->drawing);
+        code = drawing_finish_lamp_file(tool, &o->drawing);
     if (code == EXIT_OK && !o->lists_shots)
         print_overlay_result(tool, o);
     return code;
@@ -497,7 +499,7 @@ static int overlay_inputs_to_folder(const struct tool *tool, char **argv,
 
     if (!line)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    code = folder_open(tool, folder, argv + first, n, options, &is_new);
+    code = folder_create(tool, folder, argv + first, n, options, &is_new);
     is_wrong = code != EXIT_OK;
     for (int i = 0; i < n && !is_wrong; i++) {
         int one = EXIT_OUTPUT;
@@ -536,7 +538,7 @@ static int overlay_command_line(int argc, char **argv, const char *output,
 
     if (!o)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    drawing_line_defaults(&o->drawing.line);
+    drawing_line_set_defaults(&o->drawing.line);
     o->start_number = o->transfer = -1;
     o->last = o->warm_up = INT_MAX;
     o->is_one_of_many = n > 1;
@@ -546,10 +548,10 @@ static int overlay_command_line(int argc, char **argv, const char *output,
             overlay_inputs_to_folder(&tool, argv, optind, argc - optind, folder,
                                      &o->drawing.line.settings.options);
     else if (code < 0) {
-        code = tool_start(&tool);
+        code = tool_start_threads(&tool);
         if (code == EXIT_OK)
             code = overlay_single_input(&tool, o);
-        tool_finish(&tool);
+        tool_stop_threads(&tool);
     }
     overlay_y4m_close(o);
     drawing_close(&o->drawing);

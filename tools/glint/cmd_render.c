@@ -99,9 +99,9 @@ static int parse_option(struct tool *tool, struct render *r, int c)
         if (r->exact)
             r->settings.options.rays = GLINT_RAYS_EXACT;
         GLINT_OPTION_GIVEN(&r->settings.options, rays) = true;
-        return word >= 0 ? -1 : tool_refuse(tool, "engine", optarg);
+        return word >= 0 ? -1 : tool_report_bad_value(tool, "engine", optarg);
     default:
-        return tool_option(tool, c, optarg);
+        return tool_apply_option(tool, c, optarg);
     }
 }
 
@@ -116,18 +116,18 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         {"engine", required_argument, NULL, 'e'},
         {NULL, 0, NULL, 0}};
     const struct option *const options =
-        engine_getopt(tool, ENGINE_DRAWING, &r->settings.options, own);
+        engine_build_options(tool, ENGINE_DRAWING, &r->settings.options, own);
     int c, code;
 
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             NULL)) >= 0) {
-        code = settings_option(tool, &r->settings, c, optarg);
+        code = settings_apply_option(tool, &r->settings, c, optarg);
         if (code == -2)
             code = parse_option(tool, r, c);
         if (code >= 0)
             return code;
     }
-    code = tool_inputs(tool, argc, argv, 1, "expects one lens");
+    code = tool_check_inputs(tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
     if (!r->output)
@@ -187,13 +187,13 @@ static int render_exact_rays(struct tool *tool, struct render *r)
         .grid = settings_has_grid(&r->settings)
                     ? (r->settings.dials.fineness + 1) / 2 * 2
                     : 512,
-        .only_ghost = settings_only_ghost(&r->settings),
+        .only_ghost = settings_get_only_ghost(&r->settings),
         .tints = r->lens.tints,
         .workers = tool->workers,
         .progress = tool_progress_show,
         .progress_ctx = &progress};
     const int n_ghosts =
-        settings_only_ghost(&r->settings) < 0 ? r->lens.setup.n_ghosts : 1;
+        settings_get_only_ghost(&r->settings) < 0 ? r->lens.setup.n_ghosts : 1;
     double *rgb = malloc(n * sizeof *rgb);
     enum glint_status status = GLINT_E_MEMORY;
 
@@ -251,7 +251,8 @@ static int render_model_flare(struct tool *tool, struct render *r)
     tool_progress_start(&progress, tool, "exact rays");
     progress.least_s = 3;
     progress.waits = true;
-    opened_lens_engine(tool, &r->lens, &r->settings, r->width, r->height, &cfg);
+    opened_lens_configure_engine(tool, &r->lens, &r->settings, r->width,
+                                 r->height, &cfg);
     cfg.light.by_hand = 1;
     cfg.search.max_found = 0;
     cfg.drawing.is_fresh = 1;
@@ -274,7 +275,7 @@ static int render_model_flare(struct tool *tool, struct render *r)
     if (tool->json) {
         json_write(&r->json, "{engine: %s, rays: %s", "model",
                    chosen_ray_method(r, "model", "exact"));
-        settings_json(&r->json, &report);
+        settings_write_json(&r->json, &report);
     }
     print_light_statistics(tool, &report);
     return EXIT_OK;
@@ -300,7 +301,7 @@ static int append_lamp_file(struct tool *tool, struct render *r)
     r->lamp = all ? all : r->lamp;
     read = malloc(((size_t)list.n + 1) * sizeof *read);
     if (all && read) {
-        const int n = lamp_list_frame(
+        const int n = lamp_list_get_frame(
             &list, 0, &view, r->lens.setup.optics.focal_mm, read, list.n);
 
         for (int i = 0; i < n; i++)
@@ -324,7 +325,7 @@ static int check_output_differs_from_inputs(const struct tool *tool,
     apart_add_input(&files, "--ghosts", r->settings.options.ghosts);
     apart_add_input(&files, "--stop-mask", r->settings.options.stop_mask);
     apart_add_output(&files, "-o", r->output);
-    return apart_check(tool, &files);
+    return apart_check_outputs(tool, &files);
 }
 
 static int render_lens_flare(struct tool *tool, struct render *r,
@@ -335,7 +336,7 @@ static int render_lens_flare(struct tool *tool, struct render *r,
     double start;
 
     if (code == EXIT_OK)
-        code = render_file_check(tool, r->output, &r->linear);
+        code = render_file_check_path(tool, r->output, &r->linear);
     r->settings.unbaked = settings_choose_unbaked(&r->settings);
     if (code == EXIT_OK)
         code = opened_lens_open(tool, &r->lens, &r->settings, lens);
@@ -380,16 +381,16 @@ int cmd_render(int argc, char **argv)
         free(r);
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     }
-    settings_defaults(&r->settings);
+    settings_set_defaults(&r->settings);
     r->json.to = stdout;
     r->width = 960;
     r->height = 540;
     code = parse_options(&tool, argc, argv, r);
     if (code < 0) {
-        code = tool_start(&tool);
+        code = tool_start_threads(&tool);
         if (code == EXIT_OK)
             code = render_lens_flare(&tool, r, argv[optind]);
-        tool_finish(&tool);
+        tool_stop_threads(&tool);
     }
     opened_lens_close(&r->lens);
     free(r->lamp);

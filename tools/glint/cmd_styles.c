@@ -52,23 +52,23 @@ struct styles_command {
 static int parse_options(struct tool *tool, struct styles_command *c,
                          struct drawing *drawing)
 {
-    const struct option *const options =
-        engine_getopt(tool, ENGINE_ALL, &drawing->line.settings.options, own);
+    const struct option *const options = engine_build_options(
+        tool, ENGINE_ALL, &drawing->line.settings.options, own);
     int option, code;
 
     optind = 0;
     while ((option = tool_getopt(c->argc, c->argv, shorts, options, NULL)) >=
            0) {
-        code = drawing_line_option(tool, &drawing->line, option, optarg);
+        code = drawing_line_set_option(tool, &drawing->line, option, optarg);
         if (code == -2 && option == 'o') {
             c->output = optarg;
             code = -1;
         } else if (code == -2 && option == OPT_WIDTH) {
             code = -1;
             if (!tool_parse_integer(optarg, 64, 2048, &c->width))
-                return tool_refuse(tool, "width", optarg);
+                return tool_report_bad_value(tool, "width", optarg);
         } else if (code == -2)
-            code = tool_option(tool, option, optarg);
+            code = tool_apply_option(tool, option, optarg);
         if (code >= 0)
             return code;
     }
@@ -91,7 +91,8 @@ static enum glint_status load_sample_photograph(struct glint_image *image,
         "the sample photograph of glint is not installed; name a picture");
 
     for (int k = 0; k < 4; k++)
-        for (int i = 0; lens_folder(i, "lenses", folder, sizeof folder); i++) {
+        for (int i = 0; lens_find_folder(i, "lenses", folder, sizeof folder);
+             i++) {
             snprintf(path, PATH_BYTES, "%s/%s", folder, places[k]);
             if (!*folder || access(path, R_OK) != 0)
                 continue;
@@ -141,7 +142,7 @@ static enum glint_status open_contact_sheet(struct sheet *sheet, int n,
         int rows;
 
         write_style_caption(text, &styles[k]);
-        rows = sheet_caption_lines(small->width, text);
+        rows = sheet_count_caption_lines(small->width, text);
         most = rows > most ? rows : most;
     }
     return sheet_open(sheet, n, small->width, small->height, most);
@@ -165,22 +166,22 @@ static int draw_style_image(struct tool *tool, struct styles_command *c,
     struct glint_image small = {.plane = {NULL}};
     enum glint_status status;
     char text[CAPTION_BYTES];
-    int code = drawing_size(tool, drawing, c->image.width, c->image.height);
+    int code = drawing_allocate(tool, drawing, c->image.width, c->image.height);
 
     if (code != EXIT_OK)
         return code;
     copy_image_rows(&c->drawn, &c->image);
-    status = drawing_draw(drawing, &c->drawn, 0);
+    status = drawing_draw_flare(drawing, &c->drawn, 0);
     if (status == GLINT_OK)
-        status = sheet_reduce(&small, &c->drawn, c->width);
+        status = sheet_reduce_image(&small, &c->drawn, c->width);
     if (status == GLINT_OK && k == 0)
         status = open_contact_sheet(sheet, n, &small);
     if (status == GLINT_OK) {
-        const struct glint_image to = sheet_picture(sheet, k);
+        const struct glint_image to = sheet_get_image(sheet, k);
 
         copy_image_rows(&to, &small);
         write_style_caption(text, style);
-        sheet_caption(sheet, k, text);
+        sheet_draw_caption(sheet, k, text);
     }
     free(small.plane[0]);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
@@ -204,8 +205,8 @@ static int draw_all_styles(struct tool *tool, struct styles_command *c,
 
     if (!drawing)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    drawing_line_defaults(&drawing->line);
-    code = drawing_line_style(tool, &drawing->line, style->name);
+    drawing_line_set_defaults(&drawing->line);
+    code = drawing_line_apply_style(tool, &drawing->line, style->name);
     if (code < 0)
         code = parse_options(tool, c, drawing);
     if (code < 0)
@@ -274,7 +275,7 @@ static int check_output_differs_from_inputs(const struct tool *tool,
     apart_add_input(&files, NULL, c->input);
     apart_add_output(&files, "-o", c->output);
     apart_add_drawing_files(&files, &drawing->line);
-    return apart_check(tool, &files);
+    return apart_check_outputs(tool, &files);
 }
 
 /* Checks the command line before a lens is baked. */
@@ -285,7 +286,7 @@ static int check_style_options(struct tool *tool, struct styles_command *c)
 
     if (!drawing)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    drawing_line_defaults(&drawing->line);
+    drawing_line_set_defaults(&drawing->line);
     code = parse_options(tool, c, drawing);
     if (code < 0 && drawing->line.style)
         code =
@@ -315,10 +316,10 @@ int cmd_styles(int argc, char **argv)
         list_styles();
         return EXIT_OK;
     }
-    code = tool_start(&tool);
+    code = tool_start_threads(&tool);
     if (code == EXIT_OK)
         code = draw_contact_sheet(&tool, &c);
-    tool_finish(&tool);
+    tool_stop_threads(&tool);
     glint_picture_free(&c.image);
     free(c.drawn.plane[0]);
     return code;

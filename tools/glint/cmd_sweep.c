@@ -162,7 +162,7 @@ static int measure_sweep_cases(struct sweep *s)
     for (int c = 0; c < s->n_cases && code == EXIT_OK; c++) {
         print_sweep_case(s, c);
         tool_progress_start(&progress, s->tool, "sweep");
-        code = sweep_measure(s, c, &progress);
+        code = sweep_measure_case(s, c, &progress);
         tool_progress_end(&progress);
     }
     return code;
@@ -282,8 +282,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         const int taken = parse_option(s, a, c);
 
         if (taken == 0)
-            return tool_refuse(tool, options[at].name, optarg);
-        if (taken == -2 && (code = tool_option(tool, c, optarg)) >= 0)
+            return tool_report_bad_value(tool, options[at].name, optarg);
+        if (taken == -2 && (code = tool_apply_option(tool, c, optarg)) >= 0)
             return code;
     }
     if (!a->folder)
@@ -338,15 +338,15 @@ int cmd_sweep(int argc, char **argv)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     s->tool = &tool;
     s->counter = -1;
-    settings_defaults(&s->base);
+    settings_set_defaults(&s->base);
     code = parse_options(&tool, argc, argv, s, &asked);
     if (code < 0)
-        code = tool_start(&tool);
+        code = tool_start_threads(&tool);
     if (code == EXIT_OK && tool.workers && asked.folder) {
         set_sweep_defaults(s, &asked);
         code = run_sweep(s, &asked);
     }
     close_sweep(s);
-    tool_finish(&tool);
+    tool_stop_threads(&tool);
     return code;
 }

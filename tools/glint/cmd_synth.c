@@ -317,7 +317,7 @@ static int write_item_files(const struct tool *tool,
     const size_t n = 3 * (size_t)drawing->width * (size_t)drawing->height;
     const struct synth_file *const file = set->layout->file;
     float *const rgb = malloc(n * sizeof *rgb);
-    char *const line = synth_item_print(item, result);
+    char *const line = synth_item_format_json(item, result);
     char path[SYNTH_PATH_BYTES];
     struct glint_error error = {""};
     enum glint_status status = rgb && line ? GLINT_OK : GLINT_E_MEMORY;
@@ -665,7 +665,7 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
         good = parse_quality(&s->all, value);
         break;
     default:
-        return tool_option(tool, c, value);
+        return tool_apply_option(tool, c, value);
     }
     return good ? -1 : -2;
 }
@@ -731,7 +731,8 @@ static char *format_set_settings(const struct synth *s, int seed)
     synth_ranges_json(&json, &s->ranges);
     json_write(&json, "}, backgrounds: [");
     for (int i = 0; i < s->backgrounds.n; i++)
-        json_write(&json, "%s", synth_background_name(s->backgrounds.path[i]));
+        json_write(&json, "%s",
+                   synth_background_file_name(s->backgrounds.path[i]));
     json_write(&json, "]}\n");
     if (glint_memory_file_close(json.to))
         return text;
@@ -748,15 +749,15 @@ static int choose_item_parameters(const struct tool *tool, struct synth *s,
     int k;
 
     *item = s->all;
-    synth_item_draw(item, &s->ranges, tool->seed, number);
+    synth_item_randomise(item, &s->ranges, tool->seed, number);
     snprintf(item->lens, sizeof item->lens, "%s",
-             s->lens[synth_item_choose(item, "lens", s->n_lenses)]);
-    k = synth_item_choose(item, "background", s->backgrounds.n);
+             s->lens[synth_item_random_index(item, "lens", s->n_lenses)]);
+    k = synth_item_random_index(item, "background", s->backgrounds.n);
     snprintf(item->background, sizeof item->background, "%s",
-             synth_background_name(s->backgrounds.path[k]));
+             synth_background_file_name(s->backgrounds.path[k]));
     if (!s->keys[k][0])
         status =
-            synth_background_key(s->keys[k], s->backgrounds.path[k], &error);
+            synth_hash_background(s->keys[k], s->backgrounds.path[k], &error);
     memcpy(item->background_key, s->keys[k], sizeof s->keys[k]);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
@@ -787,7 +788,8 @@ static int draw_described_item(const struct tool *tool, struct synth *s)
 {
     struct glint_error error = {""};
     struct synth_item item;
-    const enum glint_status status = synth_item_read(&item, s->line, &error);
+    const enum glint_status status =
+        synth_item_parse_json(&item, s->line, &error);
     int code =
         status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 
@@ -899,7 +901,7 @@ int cmd_synth(int argc, char **argv)
                                  .quality = 0.5,
                                  .glint = GLINT_VERSION,
                                  .coating = "mixed"};
-    synth_ranges_defaults(&s->ranges);
+    synth_ranges_set_defaults(&s->ranges);
     parse_lens_list(s, default_lenses);
     code = parse_options(&tool, argc, argv, s);
     if (code < 0) {
@@ -909,11 +911,11 @@ int cmd_synth(int argc, char **argv)
         if (code == EXIT_OK && !s->keys)
             code = tool_fail(&tool, GLINT_E_MEMORY, NULL);
         if (code == EXIT_OK)
-            code = tool_start(&tool);
+            code = tool_start_threads(&tool);
         if (code == EXIT_OK)
             code = s->line ? draw_described_item(&tool, s)
                            : draw_item_set(&tool, s);
-        tool_finish(&tool);
+        tool_stop_threads(&tool);
     }
     close_synth(s);
     return code;

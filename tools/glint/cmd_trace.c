@@ -84,20 +84,20 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         else if (c == 'z')
             ok = zoom_option_parse(&o->zoom, optarg);
         else if (c == 'F')
-            ok = zoom_option_focus(&o->zoom, optarg);
+            ok = zoom_option_parse_focus(&o->zoom, optarg);
         else if (c == 'm')
             o->model = optarg;
         else if (c == 'p')
             o->pupil = true;
         else
             code = c == 'C' ? coating_parse_option(tool, &o->coating, optarg)
-                            : tool_option(tool, c, optarg);
+                            : tool_apply_option(tool, c, optarg);
         if (code >= 0)
             return code;
         if (!ok)
-            return tool_refuse(tool, options[index].name, optarg);
+            return tool_report_bad_value(tool, options[index].name, optarg);
     }
-    code = tool_inputs(tool, argc, argv, 1, "expects one lens");
+    code = tool_check_inputs(tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
     return -1;
@@ -357,7 +357,7 @@ static int trace_ray_grid(const struct tool *tool, const struct options *o,
     glint_path_init(&tracer.path, lens, o->ghost < 0 ? NULL : &ghosts[o->ghost],
                     o->wavelength_nm);
     if (o->model)
-        code = tool_model(tool, o->model, &model);
+        code = tool_open_model(tool, o->model, &model);
     if (o->model && code == EXIT_OK)
         code = prepare_model_tracer(tool, o, lens, n, &model.lens, &tracer);
     if (code == EXIT_OK)
@@ -378,9 +378,10 @@ int cmd_trace(int argc, char **argv)
 
     if (code >= 0)
         return code;
-    code = o.model ? coating_of_model(&tool, &o.coating, o.model) : EXIT_OK;
+    code = o.model ? coating_reject_for_model(&tool, &o.coating, o.model)
+                   : EXIT_OK;
     if (code == EXIT_OK)
-        code = tool_lens(&tool, argv[optind], &lens);
+        code = tool_read_lens(&tool, argv[optind], &lens);
     if (code == EXIT_OK)
         code = zoom_option_apply(&tool, &o.zoom, &lens);
     if (code != EXIT_OK)

@@ -132,7 +132,7 @@ static int run_command_by_name(int argc, char **argv)
         struct tool tool = {.name = "version", .help = help};
 
         tool.json = argc > 2 && strcmp(argv[2], "--json") == 0;
-        return tool_option(&tool, 'V', NULL);
+        return tool_apply_option(&tool, 'V', NULL);
     }
     if (*name)
         return report_missing_command(name);

@@ -4,8 +4,8 @@
  * a lens table.
  *
  *     imported_init(&lens, "x.zmx", strict);
- *     text = import_parse_file(&lens, import_find_format("x.zmx"), data,
- * &bytes);
+ *     format = import_find_format("x.zmx");
+ *     text = import_parse_file(&lens, format, data, &bytes);
  *
  * Readers store the file's values in its own units; imported_write_table()
  * completes them and writes a .lens table. Everything guessed or left out is

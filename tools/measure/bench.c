@@ -31,8 +31,8 @@ static struct canvas *find_canvas_for_case(struct bench *b, int width,
     return c;
 }
 
-struct bench_case *bench_add(struct bench *b, const char *name,
-                             const struct bench_variation *v)
+struct bench_case *bench_add_case(struct bench *b, const char *name,
+                                  const struct bench_variation *v)
 {
     struct canvas *const canvas = find_canvas_for_case(
         b, v->width ? v->width : b->width, v->height ? v->height : b->height);
@@ -54,7 +54,7 @@ struct bench_case *bench_add(struct bench *b, const char *name,
     return b->cases[b->n_cases++];
 }
 
-bool bench_is_possible(const struct bench_variation *v)
+bool bench_is_variation_supported(const struct bench_variation *v)
 {
     return (v->sets & ~glint_system_sets()) == 0;
 }

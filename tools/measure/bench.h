@@ -111,11 +111,11 @@ void bench_close(struct bench *bench);
 
 /* Adds a case of variation V, with its canvas, threads and kernels. Returns
  * NULL if there is no memory or there are BENCH_CASES cases. */
-struct bench_case *bench_add(struct bench *bench, const char *name,
-                             const struct bench_variation *v);
+struct bench_case *bench_add_case(struct bench *bench, const char *name,
+                                  const struct bench_variation *v);
 
 /* Returns whether this CPU has the instruction sets that V needs. */
-bool bench_is_possible(const struct bench_variation *v);
+bool bench_is_variation_supported(const struct bench_variation *v);
 
 void bench_write_json_format(struct json_writer *json,
                              const struct bench *bench,

@@ -110,7 +110,7 @@ static int add_bench_case(struct bench *b, const struct opened_lens *lens,
                           const struct bench_variation *v)
 {
     struct flare_case *const t =
-        (struct flare_case *)bench_add(b, lens->table.name, v);
+        (struct flare_case *)bench_add_case(b, lens->table.name, v);
     struct glint_engine_config cfg;
     struct glint_error error = {""};
     enum glint_status status;
@@ -143,7 +143,7 @@ static int add_supported_variations(struct bench *b,
     int code = EXIT_OK;
 
     for (size_t i = 0; i < n && code == EXIT_OK; i++)
-        if (bench_is_possible(&v[i]))
+        if (bench_is_variation_supported(&v[i]))
             code = add_bench_case(b, lens, &v[i]);
     return code;
 }

@@ -138,9 +138,10 @@ static int add_bench_case(struct bench *b, const struct bench_variation *v)
     struct scene_case *t;
     int code;
 
-    if (!set_quality_parameters(b, v, &dials) || !bench_is_possible(v))
+    if (!set_quality_parameters(b, v, &dials) ||
+        !bench_is_variation_supported(v))
         return EXIT_OK;
-    t = (struct scene_case *)bench_add(b, o->scene.model.header->name, v);
+    t = (struct scene_case *)bench_add_case(b, o->scene.model.header->name, v);
     if (!t)
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     t->tool = *b->tool;
@@ -177,7 +178,7 @@ static void time_frame_stages(struct scene_frame *frame,
     struct glint_scene_lamp lamps[GLINT_SCENE_MAX_LIGHTS];
 
     at_s[0] = tool_clock_s();
-    scene_frame_begin(frame);
+    scene_frame_prepare(frame);
     at_s[1] = tool_clock_s();
     glint_scene_look_around(frame->scene, image);
     at_s[2] = tool_clock_s();

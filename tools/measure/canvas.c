@@ -102,7 +102,7 @@ void canvas_open_engine(const struct tool *tool, const struct opened_lens *lens,
                         const struct settings *asked, int width, int height,
                         struct glint_engine_config *cfg)
 {
-    opened_lens_engine(tool, lens, asked, width, height, cfg);
+    opened_lens_configure_engine(tool, lens, asked, width, height, cfg);
     cfg->light.by_hand = 1;
     cfg->search.max_found = 0;
     cfg->drawing.is_fresh = 1;
@@ -135,7 +135,7 @@ draw_exact_image(const struct tool *tool, const struct opened_lens *lens,
 {
     const size_t n = 3 * (size_t)to->width * (size_t)to->height;
     struct glint_setup *setup = malloc(sizeof *setup);
-    struct glint_engine_camera camera = opened_lens_camera(lens, s);
+    struct glint_engine_camera camera = opened_lens_make_camera(lens, s);
     struct glint_dirt *dirt = NULL;
     double *rgb = malloc(n * sizeof *rgb);
     struct tool_progress progress;
@@ -145,7 +145,7 @@ draw_exact_image(const struct tool *tool, const struct opened_lens *lens,
         .lamps = lamp,
         .n_lamps = n_lamps,
         .grid = grid,
-        .only_ghost = settings_only_ghost(s),
+        .only_ghost = settings_get_only_ghost(s),
         .workers = tool->workers,
         .progress = tool_progress_show,
         .progress_ctx = &progress};
@@ -187,10 +187,10 @@ static uint64_t compute_cache_key(const struct opened_lens *lens,
                                   const struct glint_lamp *lamp, int n_lamps,
                                   int grid, const struct glint_float_image *to)
 {
-    const int only_ghost = settings_only_ghost(s);
+    const int only_ghost = settings_get_only_ghost(s);
     const struct glint_view view =
         opened_lens_view(lens, s, to->width, to->height);
-    const struct glint_engine_camera camera = opened_lens_camera(lens, s);
+    const struct glint_engine_camera camera = opened_lens_make_camera(lens, s);
     const struct glint_iris *const i = &camera.iris;
     struct glint_bake_options options;
     uint64_t hash;
@@ -253,7 +253,7 @@ enum glint_status canvas_draw_exact(const struct tool *tool,
 
     snprintf(file, sizeof file, "exact-%08lx%08lx.pfm",
              (unsigned long)(key >> 32), (unsigned long)(key & 0xffffffff));
-    kept = model_cache_path(path, sizeof path, file);
+    kept = model_cache_make_path(path, sizeof path, file);
     if (kept && load_cached_image(path, to))
         return GLINT_OK;
     status = draw_exact_image(tool, lens, settings, lamp, n_lamps, grid, to);

@@ -4,8 +4,8 @@
  * frames, by stage, on emulated machines. Counts are the same on every run.
  *
  *     qemu-aarch64 -plugin \
- *         ./insncount.so,frame=F,idle=G,skip=N,at=H:NAME,at=... -d plugin
- * PROGRAM
+ *         ./insncount.so,frame=F,idle=G,skip=N,at=H:NAME,at=... -d plugin \
+ *         PROGRAM
  *
  * A frame begins when function F is entered after G has run. Within it, each
  * function H begins the stage NAME, and F begins stage 0, "rest". Functions not

@@ -114,7 +114,7 @@ void sweep_apply_setting(struct settings *settings,
 enum glint_status sweep_plan_points(struct sweep *s);
 
 /* Measures all points of case C. Returns an exit code. */
-int sweep_measure(struct sweep *s, int c, struct tool_progress *progress);
+int sweep_measure_case(struct sweep *s, int c, struct tool_progress *progress);
 
 /* ------------------------------------------------------------------- fronts */
 

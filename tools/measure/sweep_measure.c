@@ -326,7 +326,7 @@ static enum glint_status measure_all_points(struct bay *b,
     return status;
 }
 
-int sweep_measure(struct sweep *s, int c, struct tool_progress *progress)
+int sweep_measure_case(struct sweep *s, int c, struct tool_progress *progress)
 {
     const double from = (double)s->scase[c].first / s->n_points;
     const double to = from + (double)s->scase[c].n / s->n_points;

@@ -57,7 +57,7 @@ static void set_parameter_value(struct settings *s,
         settings_set_number(s, p->option, value);
     for (int i = 0; p->words[0] && i < p->n_values; i++)
         if (p->value[i] == value)
-            settings_set(s, p->option, p->words[i]);
+            settings_set_text(s, p->option, p->words[i]);
 }
 
 void sweep_apply_setting(struct settings *s, const struct sweep_setting *set,

@@ -18,7 +18,7 @@
 
 /* ------------------------------------------------------------------ listing */
 
-const char *synth_background_name(const char *path)
+const char *synth_background_file_name(const char *path)
 {
     const char *const slash = strrchr(path, '/');
 
@@ -89,8 +89,8 @@ static int add_background_folder(const struct tool *tool,
 
 static int compare_background_names(const void *a, const void *b)
 {
-    return strcmp(synth_background_name(*(char *const *)a),
-                  synth_background_name(*(char *const *)b));
+    return strcmp(synth_background_file_name(*(char *const *)a),
+                  synth_background_file_name(*(char *const *)b));
 }
 
 int synth_backgrounds_open(const struct tool *tool,
@@ -116,7 +116,8 @@ int synth_backgrounds_open(const struct tool *tool,
     qsort(list->path, (size_t)list->n, sizeof *list->path,
           compare_background_names);
     for (int i = 0; i < list->n; i++) {
-        if (strlen(synth_background_name(list->path[i])) >= SYNTH_NAME_BYTES)
+        if (strlen(synth_background_file_name(list->path[i])) >=
+            SYNTH_NAME_BYTES)
             return tool_usage(tool, "%s: its name is too long", list->path[i]);
         if (i > 0 &&
             compare_background_names(&list->path[i - 1], &list->path[i]) == 0)
@@ -139,8 +140,8 @@ void synth_backgrounds_close(struct synth_backgrounds *list)
 
 enum { MOST_BYTES = 1 << 30 };
 
-enum glint_status synth_background_key(char key[20], const char *path,
-                                       struct glint_error *error)
+enum glint_status synth_hash_background(char key[20], const char *path,
+                                        struct glint_error *error)
 {
     uint64_t number = TOOL_KEY_BEGIN;
     uint8_t *data = NULL;
@@ -231,7 +232,8 @@ static const char *find_background_path(const struct synth_backgrounds *list,
                                         const struct synth_item *item)
 {
     for (int i = 0; i < list->n; i++)
-        if (strcmp(synth_background_name(list->path[i]), item->background) == 0)
+        if (strcmp(synth_background_file_name(list->path[i]),
+                   item->background) == 0)
             return list->path[i];
     return NULL;
 }
@@ -254,7 +256,7 @@ static enum glint_status load_background(const struct synth_backgrounds *list,
     if (!path)
         return glint_error_report(error, GLINT_E_IO, item->background,
                                   "is not among the backgrounds");
-    status = synth_background_key(key, path, error);
+    status = synth_hash_background(key, path, error);
     if (status == GLINT_OK && strcmp(key, item->background_key) != 0)
         return glint_error_report(error, GLINT_E_IO, path,
                                   "is not the picture that the item was drawn "
@@ -309,7 +311,7 @@ static int open_lens_by_name(const struct tool *tool, struct synth_lens *lens,
     snprintf(lens->name, sizeof lens->name, "%s", item->lens);
     snprintf(lens->coating, sizeof lens->coating, "%s", item->coating);
     lens->quality = item->quality;
-    settings_defaults(s);
+    settings_set_defaults(s);
     snprintf(quality, sizeof quality, "%.6f", item->quality);
     settings_set_quality(s, glint_option_number(quality, &end));
     s->camera.waves.kind = GLINT_WAVES_AUTO;
@@ -487,8 +489,8 @@ static int draw_flare_part(const struct tool *tool,
     struct glint_error error = {""};
     enum glint_status status;
 
-    opened_lens_engine(tool, &lens->opened, &lens->settings, (int)item->width,
-                       (int)item->height, &cfg);
+    opened_lens_configure_engine(tool, &lens->opened, &lens->settings,
+                                 (int)item->width, (int)item->height, &cfg);
     cfg.drawing.parts = part;
     cfg.light.haze = item->haze;
     cfg.light.starburst = 1;

@@ -63,11 +63,11 @@ int synth_backgrounds_open(const struct tool *tool,
 void synth_backgrounds_close(struct synth_backgrounds *list);
 
 /* Returns the part of PATH after its last slash. */
-const char *synth_background_name(const char *path);
+const char *synth_background_file_name(const char *path);
 
 /* Sets KEY to a hash of the bytes of the file PATH. */
-enum glint_status synth_background_key(char key[20], const char *path,
-                                       struct glint_error *error);
+enum glint_status synth_hash_background(char key[20], const char *path,
+                                        struct glint_error *error);
 
 enum glint_status synth_drawing_init(struct synth_drawing *d, int width,
                                      int height);

@@ -74,7 +74,7 @@ static const struct synth_field *get_field(int k)
                             : &synth_light_field[k - SYNTH_FIELDS];
 }
 
-void synth_ranges_defaults(struct synth_ranges *ranges)
+void synth_ranges_set_defaults(struct synth_ranges *ranges)
 {
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++) {
         ranges->low[k] = get_field(k)->low;
@@ -187,7 +187,8 @@ static double compute_random_unit(const struct synth_item *item,
     return (double)(synth_random_bits(&state) >> 11) * 0x1p-53;
 }
 
-int synth_item_choose(const struct synth_item *item, const char *what, int n)
+int synth_item_random_index(const struct synth_item *item, const char *what,
+                            int n)
 {
     return (int)(compute_random_unit(item, what) * n);
 }
@@ -220,8 +221,9 @@ static double *find_number_in_struct(void *from,
     return (double *)(void *)((char *)from + field->at);
 }
 
-void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
-                     int seed, int number)
+void synth_item_randomise(struct synth_item *item,
+                          const struct synth_ranges *ranges, int seed,
+                          int number)
 {
     char name[32];
 
@@ -291,8 +293,8 @@ static void write_item_result(struct json_writer *json,
     json_write(json, "]}");
 }
 
-char *synth_item_print(const struct synth_item *item,
-                       const struct synth_result *result)
+char *synth_item_format_json(const struct synth_item *item,
+                             const struct synth_result *result)
 {
     char *text = NULL;
     size_t bytes = 0;

@@ -3,9 +3,9 @@
  * item.h - an item of a data set for flare removal: all numbers that define its
  * images.
  *
- *     synth_item_draw(&item, &ranges, seed, number);   random, but reproducible
- *     synth_item_print(&text, &item, &result);         as a line of a manifest
- *     synth_item_read(&item, line, &error);            reads that line
+ *     synth_item_randomise(&item, &ranges, seed, number);  reproducible
+ *     synth_item_format_json(&text, &item, &result);  as a line of a manifest
+ *     synth_item_parse_json(&item, line, &error);  reads that line
  *
  * Each number depends only on the seed, the item's number and its own name, so
  * adding a member changes no other. Numbers are rounded to 1e-6, which the line
@@ -85,7 +85,7 @@ struct synth_ranges {
         high[SYNTH_FIELDS + SYNTH_LIGHT_FIELDS];
 };
 
-void synth_ranges_defaults(struct synth_ranges *ranges);
+void synth_ranges_set_defaults(struct synth_ranges *ranges);
 
 /* Parses TEXT, "NAME=LOW,HIGH" or "NAME=VALUE", into RANGES. Returns false,
  * with the cause in WHY, if the name is unknown or a number is out of range. */
@@ -101,12 +101,14 @@ void synth_ranges_json(struct json_writer *json,
 
 /* Sets the numbers of ITEM to random values that depend on SEED and NUMBER.
  * Does not change texts, size and quality. */
-void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
-                     int seed, int number);
+void synth_item_randomise(struct synth_item *item,
+                          const struct synth_ranges *ranges, int seed,
+                          int number);
 
 /* Returns a random integer, 0 .. N - 1, that depends on ITEM's seed and number
  * and on WHAT. */
-int synth_item_choose(const struct synth_item *item, const char *what, int n);
+int synth_item_random_index(const struct synth_item *item, const char *what,
+                            int n);
 
 /* synth_item_random_state() returns the initial state of a random generator for
  * WHAT of ITEM; synth_random_bits() returns its next 64 bits [Steele14]. */
@@ -116,14 +118,15 @@ uint64_t synth_random_bits(uint64_t *state);
 
 /* Returns ITEM and RESULT as a line of JSON, which the caller frees, or NULL
  * if there is no memory. */
-char *synth_item_print(const struct synth_item *item,
-                       const struct synth_result *result);
+char *synth_item_format_json(const struct synth_item *item,
+                             const struct synth_result *result);
 
-/* Reads LINE, written by synth_item_print(). Returns GLINT_E_FORMAT with
+/* Reads LINE, written by synth_item_format_json(). Returns GLINT_E_FORMAT with
  * ERROR if LINE is not JSON, or a member is missing or out of range;
  * GLINT_E_UNSUPPORTED if glint was built without jansson. */
-enum glint_status synth_item_read(struct synth_item *item, const char *line,
-                                  struct glint_error *error);
+enum glint_status synth_item_parse_json(struct synth_item *item,
+                                        const char *line,
+                                        struct glint_error *error);
 
 /* Distribution of a member's random value */
 enum synth_law {

@@ -5,8 +5,9 @@
 #include "posix/error.h"
 #include "synth/item.h"
 
-enum glint_status synth_item_read(struct synth_item *item, const char *line,
-                                  struct glint_error *error)
+enum glint_status synth_item_parse_json(struct synth_item *item,
+                                        const char *line,
+                                        struct glint_error *error)
 {
     (void)item;
     (void)line;

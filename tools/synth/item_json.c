@@ -81,8 +81,9 @@ static enum glint_status read_json_item(struct synth_item *item,
     return status;
 }
 
-enum glint_status synth_item_read(struct synth_item *item, const char *line,
-                                  struct glint_error *error)
+enum glint_status synth_item_parse_json(struct synth_item *item,
+                                        const char *line,
+                                        struct glint_error *error)
 {
     json_error_t why;
     json_t *const read = json_loads(line, JSON_REJECT_DUPLICATES, &why);

@@ -272,7 +272,7 @@ TEST(picture_shades_the_tiles_of_a_ghost)
     assert_true(report.tiles > 10 && report.tiles < 200);
     assert_ok(glint_explain_frame(&e, &frame, 1));
     memset(rgb, 0, sizeof rgb);
-    assert_ok(explain_mark(&e, &title, &image, &marked));
+    assert_ok(explain_draw_marks(&e, &title, &image, &marked));
     assert_int_equal(marked.width, WIDTH);
     assert_int_equal(marked.height, HEIGHT + 8 * 2 + 3);
     for (int y = 0; y < HEIGHT; y += SIDE)
@@ -282,7 +282,7 @@ TEST(picture_shades_the_tiles_of_a_ghost)
      * as shaded. */
     assert_true(n <= report.tiles && n >= report.tiles - 2);
     title.top = 0;
-    assert_ok(explain_mark(&e, &title, &image, &unmarked));
+    assert_ok(explain_draw_marks(&e, &title, &image, &unmarked));
     assert_int_equal(unmarked.height, HEIGHT + 8 + 3);
     for (int i = 0; i < BYTES; i += 3)
         outlined += memcmp(marked.plane[0] + i, unmarked.plane[0] + i, 3) != 0;

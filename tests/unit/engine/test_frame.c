@@ -533,11 +533,11 @@ TEST(points_of_wide_lamps_use_point_room)
 
 TEST_OPEN
 {
-    settings_defaults(&opened.settings);
+    settings_set_defaults(&opened.settings);
     opened.settings.max_deg = 15;
-    settings_defaults(&exact_scene.settings);
+    settings_set_defaults(&exact_scene.settings);
     exact_scene.settings.options.rays = GLINT_RAYS_EXACT;
-    assert_ok(tool_start(&tool));
+    assert_ok(tool_start_threads(&tool));
     assert_ok(opened_lens_open(&tool, &exact_scene.lens, &exact_scene.settings,
                                "lenses/heliar-tronnier.lens"));
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
@@ -548,5 +548,5 @@ TEST_CLOSE
 {
     opened_lens_close(&opened.lens);
     opened_lens_close(&exact_scene.lens);
-    tool_finish(&tool);
+    tool_stop_threads(&tool);
 }

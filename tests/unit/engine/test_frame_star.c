@@ -27,7 +27,7 @@ static struct glint_image image = {.format = GLINT_RGB24,
 
 TEST_OPEN
 {
-    settings_defaults(&opened.settings);
+    settings_set_defaults(&opened.settings);
     opened.settings.options.starburst = 1;
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
                                "lenses/heliar-tronnier.lens"));

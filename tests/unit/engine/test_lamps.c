@@ -219,12 +219,12 @@ TEST(csv_and_json_lists_give_the_same_lamps)
 
         read_lamp_list_text(&list, texts[k]);
         assert_int_equal(list.n, 3);
-        assert_int_equal(lamp_list_frame(&list, 1, &view, 50, lamp, 4), 1);
+        assert_int_equal(lamp_list_get_frame(&list, 1, &view, 50, lamp, 4), 1);
         glint_view_to_pixel(&view, 50, &lamp[0].lamp, &x, &y);
         assert_near(x, -30, 1e-9);
         assert_near(y, 40, 1e-9);
         assert_true(lamp[0].lamp.power == 6 && lamp[0].lamp.rgb[1] == 0.5);
-        assert_int_equal(lamp_list_frame(&list, 2, &view, 50, lamp, 4), 2);
+        assert_int_equal(lamp_list_get_frame(&list, 2, &view, 50, lamp, 4), 2);
         assert_true(lamp[1].lamp.power == 3 && list.row[2].size == 4);
         assert_true(lamp[1].lamp.axis[0] > 0 &&
                     lamp[1].lamp.axis[0] == lamp[1].lamp.axis[1]);

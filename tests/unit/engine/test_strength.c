@@ -408,7 +408,7 @@ static void check_automatic_exposure_of_lens(const char *lens,
     struct glint_response r;
     struct glint_frame frame;
 
-    settings_defaults(&opened.settings);
+    settings_set_defaults(&opened.settings);
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings, lens));
     assert_ok(make_frame_from_settings(&tool, &opened, 640, 360, &frame));
     assert_ok(glint_response_measure(&frame, 0, &r));
@@ -453,7 +453,7 @@ TEST(response_is_the_same_in_little_memory)
     struct glint_response r, free;
     struct glint_frame frame;
 
-    settings_defaults(&opened.settings);
+    settings_set_defaults(&opened.settings);
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
                                "lenses/heliar-tronnier.lens"));
     assert_ok(make_frame_from_settings(&tool, &opened, 640, 360, &frame));
@@ -499,5 +499,5 @@ TEST(response_peak_skips_the_brightest_pixels)
 
 TEST_OPEN
 {
-    assert_ok(tool_start(&tool));
+    assert_ok(tool_start_threads(&tool));
 }

@@ -157,7 +157,7 @@ TEST(single_set_equals_the_list)
     struct glint_frame frame;
 
     set.lens.setup.n_sets = 1;
-    assert_true(settings_set(&list.settings, "wavelengths", "4"));
+    assert_true(settings_set_text(&list.settings, "wavelengths", "4"));
     set.settings.dials.cull_codes = list.settings.dials.cull_codes = 0;
     assert_int_equal(list.settings.n_wavelengths, 4);
     list.lens.setup.n_wavelengths = 4;
@@ -310,26 +310,26 @@ TEST(parses_texts_of_wavelengths)
 {
     struct settings s;
 
-    settings_defaults(&s);
+    settings_set_defaults(&s);
     assert_true(s.camera.waves.kind == GLINT_WAVES_LIST &&
                 s.n_wavelengths == 3);
-    assert_true(settings_set(&s, "wavelengths", "auto") &&
+    assert_true(settings_set_text(&s, "wavelengths", "auto") &&
                 s.camera.waves.kind == GLINT_WAVES_AUTO);
-    assert_true(settings_set(&s, "wavelengths", "9") &&
+    assert_true(settings_set_text(&s, "wavelengths", "9") &&
                 s.camera.waves.kind == GLINT_WAVES_COUNT &&
                 s.n_wavelengths == 9);
     assert_true(s.wavelength_nm[0] > 400 && s.wavelength_nm[8] < 700);
-    assert_true(settings_set(&s, "wavelengths", "532") &&
+    assert_true(settings_set_text(&s, "wavelengths", "532") &&
                 s.camera.waves.kind == GLINT_WAVES_LIST &&
                 s.n_wavelengths == 1 && s.wavelength_nm[0] == 532);
-    assert_true(settings_set(&s, "wavelengths", "300,1100") &&
+    assert_true(settings_set_text(&s, "wavelengths", "300,1100") &&
                 s.n_wavelengths == 2);
-    assert_false(settings_set(&s, "wavelengths", "0"));
-    assert_false(settings_set(&s, "wavelengths", "33"));
-    assert_false(settings_set(&s, "wavelengths", "2.5"));
-    assert_false(settings_set(&s, "wavelengths", "0.55"));
-    assert_false(settings_set(&s, "wavelengths", "650,532,1101"));
-    assert_false(settings_set(&s, "wavelengths", "9,17"));
+    assert_false(settings_set_text(&s, "wavelengths", "0"));
+    assert_false(settings_set_text(&s, "wavelengths", "33"));
+    assert_false(settings_set_text(&s, "wavelengths", "2.5"));
+    assert_false(settings_set_text(&s, "wavelengths", "0.55"));
+    assert_false(settings_set_text(&s, "wavelengths", "650,532,1101"));
+    assert_false(settings_set_text(&s, "wavelengths", "9,17"));
     s.camera.waves.kind = GLINT_WAVES_AUTO;
     /* exact rays choose wavelengths per ghost, as models do */
     s.options.rays = GLINT_RAYS_EXACT;
@@ -346,7 +346,7 @@ TEST(sum_of_ghosts_of_a_white_lamp_is_white)
     struct glint_engine_report report;
     struct glint_frame frame;
 
-    settings_defaults(&bare.settings);
+    settings_set_defaults(&bare.settings);
     bare.settings.camera.waves.kind = GLINT_WAVES_AUTO;
     assert_int_equal(
         coating_parse_option(&tool, &bare.settings.coating, "none"), -1);
@@ -365,15 +365,15 @@ TEST(sum_of_ghosts_of_a_white_lamp_is_white)
 
 static void open_lens_with_wavelengths(struct opened *opened, const char *waves)
 {
-    settings_defaults(&opened->settings);
-    assert_true(settings_set(&opened->settings, "wavelengths", waves));
+    settings_set_defaults(&opened->settings);
+    assert_true(settings_set_text(&opened->settings, "wavelengths", waves));
     assert_ok(opened_lens_open(&tool, &opened->lens, &opened->settings,
                                "lenses/heliar-tronnier.lens"));
 }
 
 TEST_OPEN
 {
-    assert_ok(tool_start(&tool));
+    assert_ok(tool_start_threads(&tool));
     open_lens_with_wavelengths(&chosen, "auto");
     open_lens_with_wavelengths(&three, "650,532,450");
     open_lens_with_wavelengths(
@@ -387,5 +387,5 @@ TEST_CLOSE
     opened_lens_close(&chosen.lens);
     opened_lens_close(&three.lens);
     opened_lens_close(&all.lens);
-    tool_finish(&tool);
+    tool_stop_threads(&tool);
 }

@@ -231,13 +231,13 @@ TEST(failed_control_lines_change_nothing)
         struct steer was;
         uint64_t hash;
 
-        control_parse(before[i], "f:1", &line, &error);
+        control_parse_line(before[i], "f:1", &line, &error);
         assert_ok(
             steer_execute_line(&steer, d->frame.scene, &line, "", &error));
         moving_draw_frame(d);
         hash = hash_image(d);
         was = steer;
-        control_parse("distance 9e5", "f:2", &line, &error);
+        control_parse_line("distance 9e5", "f:2", &line, &error);
         assert_int_equal(
             steer_execute_line(&steer, d->frame.scene, &line, "", &error),
             GLINT_E_FORMAT);
@@ -251,7 +251,7 @@ TEST(failed_control_lines_change_nothing)
         moving_draw_frame(d);
         assert_true(hash_image(d) == hash);
     }
-    control_parse("orbit 30 20", "f:3", &line, &error);
+    control_parse_line("orbit 30 20", "f:3", &line, &error);
     assert_ok(steer_execute_line(&steer, d->frame.scene, &line, "", &error));
     steer_close(&steer);
     moving_close_scene(d);

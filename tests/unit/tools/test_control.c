@@ -28,7 +28,7 @@ static struct controls input;
 static void expect_parsed_line(const char *text, enum control_verb verb,
                                int frame, int n)
 {
-    assert_ok(control_parse(text, "f:1", &line, &error));
+    assert_ok(control_parse_line(text, "f:1", &line, &error));
     assert_int_equal(line.verb, verb);
     assert_int_equal(line.frame, frame);
     assert_int_equal(line.n, n);
@@ -74,7 +74,8 @@ TEST(parses_every_command)
 static void expect_parse_error(const char *text, const char *cause)
 {
     memset(&line, 0x55, sizeof line);
-    assert_int_equal(control_parse(text, "f:1", &line, &error), GLINT_E_FORMAT);
+    assert_int_equal(control_parse_line(text, "f:1", &line, &error),
+                     GLINT_E_FORMAT);
     assert_string_equal(error.text, cause);
     assert_int_equal(line.n, 0x55555555); /* unchanged */
 }
@@ -168,9 +169,9 @@ TEST(keys_become_commands)
 static int play_control_line(struct playback *p, const char *text,
                              double elapsed_s)
 {
-    assert_ok(control_parse(text, "f:1", &line, &error));
+    assert_ok(control_parse_line(text, "f:1", &line, &error));
     assert_int_equal(playback_execute_line(p, &line), *text != 0);
-    return playback_next(p, elapsed_s);
+    return playback_next_frame(p, elapsed_s);
 }
 
 TEST(playback_advances_frames)
@@ -181,7 +182,7 @@ TEST(playback_advances_frames)
     /* without a rate, each picture shows the next frame, however long a picture
      * takes */
     for (int i = 0; i < 5; i++)
-        assert_int_equal(playback_next(&p, 7), i);
+        assert_int_equal(playback_next_frame(&p, 7), i);
     assert_int_equal(play_control_line(&p, "pause", 1), 4);
     assert_int_equal(play_control_line(&p, "", 1), 4);
     assert_int_equal(play_control_line(&p, "step", 1), 5);
@@ -192,7 +193,7 @@ TEST(playback_advances_frames)
     assert_int_equal(play_control_line(&p, "play 10", .1), 21);
     /* at 40 pictures per second each frame is shown 4 times */
     for (int i = 1; i < 40; i++)
-        assert_int_equal(playback_next(&p, .025), 21 + i / 4);
+        assert_int_equal(playback_next_frame(&p, .025), 21 + i / 4);
     assert_int_equal(play_control_line(&p, "play 0", 9), 30);
     assert_int_equal(play_control_line(&p, "stop", 9), 0);
     assert_int_equal(play_control_line(&p, "", 9), 0);
@@ -205,7 +206,7 @@ TEST(playback_advances_frames)
 
 static void expect_next_command(int picture, enum control_verb verb)
 {
-    const struct control_line *const l = controls_next(&input, picture);
+    const struct control_line *const l = controls_next_line(&input, picture);
 
     assert_non_null(l);
     assert_int_equal(l->verb, verb);
@@ -232,14 +233,14 @@ TEST(file_lines_are_applied_in_order)
     assert_int_equal(controls_get_line(&input, 3)->verb, CONTROL_PAUSE);
     assert_null(controls_get_line(&input, 4));
     expect_next_command(0, CONTROL_ORBIT);
-    assert_null(controls_next(&input, 2));
+    assert_null(controls_next_line(&input, 2));
     expect_next_command(3, CONTROL_STOP);
     controls_format_location(&input, -1, where);
     snprintf(wanted, sizeof wanted, "%s:4", scratch_file);
     assert_string_equal(where, wanted);
     expect_next_command(3, CONTROL_PLAY);
     expect_next_command(3, CONTROL_PAUSE);
-    assert_null(controls_next(&input, 9));
+    assert_null(controls_next_line(&input, 9));
     controls_close(&input);
     assert_int_equal(read_controls_from_text("stop\n  jumb 3\n"),
                      GLINT_E_FORMAT);
@@ -261,20 +262,20 @@ TEST(pipe_lines_are_applied_when_complete)
     unlink(scratch_file);
     assert_int_equal(mkfifo(scratch_file, 0600), 0);
     assert_ok(controls_open(&input, scratch_file, true, &error));
-    assert_null(controls_next(&input, 0));
+    assert_null(controls_next_line(&input, 0));
     to = open(scratch_file, O_WRONLY);
     assert_true(to >= 0);
     assert_int_equal(write(to, "pau", 3), 3);
-    assert_null(controls_next(&input, 1));
+    assert_null(controls_next_line(&input, 1));
     assert_int_equal(write(to, "se\nrubbish\n5 play\nstop\n", 23), 23);
     expect_next_command(2, CONTROL_PAUSE);
-    assert_null(controls_next(&input, 2));
+    assert_null(controls_next_line(&input, 2));
     assert_int_equal(input.n_bad, 1);
     assert_non_null(strstr(input.bad.text, ":2:1: 'rubbish' is not a command"));
-    assert_null(controls_next(&input, 4));
+    assert_null(controls_next_line(&input, 4));
     expect_next_command(5, CONTROL_PLAY);
     expect_next_command(5, CONTROL_STOP);
-    for (int i = 0; i < 700; i++) /* writes a line that is too long */
+    for (int i = 0; i < 700; i++) /* a line that is too long */
         assert_int_equal(write(to, "7", 1), 1);
     assert_int_equal(write(to, "\nstep\n", 6), 6);
     expect_next_command(6, CONTROL_STEP);
@@ -296,7 +297,7 @@ static void read_terminal_keys(const char *path, int is_killed)
     ioctl(fd, TIOCSCTTY, 0);
     if (keyboard_open(&keys, fd) != GLINT_OK)
         _exit(3);
-    while (!keyboard_next(&keys, &line))
+    while (!keyboard_next_command(&keys, &line))
         ;
     if (is_killed)
         raise(SIGTERM);

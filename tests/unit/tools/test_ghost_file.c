@@ -87,11 +87,11 @@ TEST(printed_lines_parse_to_the_same_values)
     struct glint_error error;
     char line[200];
 
-    ghost_file_line(line, sizeof line, 2, &odd);
+    ghost_file_write_line(line, sizeof line, 2, &odd);
     assert_ok(parse_ghost_file_text(line, &t, &error));
     assert_memory_equal(&t[2], &odd, sizeof odd);
     free(t);
-    ghost_file_line(line, sizeof line, 0, NULL);
+    ghost_file_write_line(line, sizeof line, 0, NULL);
     assert_ok(parse_ghost_file_text(line, &t, &error));
     assert_true(read_ghost_gain(t, 0) == 1);
     free(t);

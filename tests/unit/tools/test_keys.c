@@ -14,7 +14,7 @@ static enum glint_status parse_key_file_text(struct keys *keys,
                                              const char *text,
                                              struct glint_error *error)
 {
-    return keys_parse(keys, "k.csv", text, strlen(text), error);
+    return keys_parse_text(keys, "k.csv", text, strlen(text), error);
 }
 
 TEST(interpolates_values_between_keys)

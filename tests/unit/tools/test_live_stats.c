@@ -20,7 +20,7 @@ static void add_frame_of_latency(int64_t us)
 {
     const struct live_frame_times t = {.shown = true, .shown_us = us};
 
-    live_stats_add(&stats, &t);
+    live_stats_add_frame(&stats, &t);
 }
 
 static int compare_int64(const void *a, const void *b)
@@ -138,14 +138,14 @@ static void add_recorded_frames(void)
 {
     live_stats_start(&stats, 5000000);
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++)
-        live_stats_add(&stats, &frames[i]);
+        live_stats_add_frame(&stats, &frames[i]);
 }
 
 TEST(prints_json)
 {
     add_recorded_frames();
     assert_string_equal(
-        live_stats_json(&stats, 6000000, false, text),
+        live_stats_write_json(&stats, 6000000, false, text),
         "{\"t\":1.000,\"fps\":2.00,\"frames\":2,\"drops\":2,\"late\":1,"
         "\"corrupt\":4,\"latency_ms_p50\":12.35,\"latency_ms_p99\":20.05,"
         "\"ms\":{\"convert\":0.150,\"find\":1.300,\"plan\":0.400,"
@@ -159,13 +159,13 @@ TEST(prints_json)
 TEST(statistics_restart_each_second)
 {
     add_recorded_frames();
-    assert_false(live_stats_due(&stats, 5999999));
-    assert_true(live_stats_due(&stats, 6000000));
+    assert_false(live_stats_is_second_over(&stats, 5999999));
+    assert_true(live_stats_is_second_over(&stats, 6000000));
     live_stats_begin_second(&stats, 6000250);
-    assert_false(live_stats_due(&stats, 7000000));
-    live_stats_add(&stats, &frames[1]);
+    assert_false(live_stats_is_second_over(&stats, 7000000));
+    live_stats_add_frame(&stats, &frames[1]);
     assert_string_equal(
-        live_stats_json(&stats, 6500250, false, text),
+        live_stats_write_json(&stats, 6500250, false, text),
         "{\"t\":1.500,\"fps\":2.00,\"frames\":1,\"drops\":0,\"late\":1,"
         "\"corrupt\":0,\"latency_ms_p50\":20.05,\"latency_ms_p99\":20.05,"
         "\"ms\":{\"convert\":0.200,\"find\":1.400,\"plan\":0.500,"
@@ -173,7 +173,7 @@ TEST(statistics_restart_each_second)
         "\"ghosts\":26,\"bytes\":3000,\"quality\":0.250,"
         "\"reused\":1}");
     assert_string_equal(
-        live_stats_json(&stats, 9000000, true, text),
+        live_stats_write_json(&stats, 9000000, true, text),
         "{\"t\":4.000,\"fps\":0.75,\"frames\":3,\"drops\":2,\"late\":2,"
         "\"corrupt\":4,\"latency_ms_p50\":20.05,\"latency_ms_p99\":20.05,"
         "\"ms\":{\"convert\":0.167,\"find\":1.333,\"plan\":0.433,"
@@ -185,15 +185,15 @@ TEST(statistics_restart_each_second)
 TEST(prints_no_frames)
 {
     live_stats_start(&stats, 7);
-    live_stats_add(&stats, &frames[2]);
+    live_stats_add_frame(&stats, &frames[2]);
     assert_string_equal(
-        live_stats_json(&stats, 7, true, text),
+        live_stats_write_json(&stats, 7, true, text),
         "{\"t\":0.000,\"fps\":0.00,\"frames\":0,\"drops\":0,\"late\":0,"
         "\"corrupt\":4,\"latency_ms_p50\":null,\"latency_ms_p99\":null,"
         "\"ms\":{\"convert\":null,\"find\":null,\"plan\":null,\"bin\":null,"
         "\"draw\":null,\"show\":null},\"lights\":0,\"ghosts\":0,\"bytes\":0,"
         "\"quality\":null,\"reused\":0,\"total\":true}");
-    assert_string_equal(live_stats_line(&stats, 1000007, true, text),
+    assert_string_equal(live_stats_write_line(&stats, 1000007, true, text),
                         "\r0.0 fps  0 dropped 0 late 4 bad  0 lights 0 ghosts"
                         "\033[K");
 }
@@ -201,13 +201,13 @@ TEST(prints_no_frames)
 TEST(prints_a_line)
 {
     add_recorded_frames();
-    assert_string_equal(live_stats_line(&stats, 6000000, true, text),
+    assert_string_equal(live_stats_write_line(&stats, 6000000, true, text),
                         "\r2.0 fps  12.3 ms, p99 20.1  2 dropped 1 late 4 bad"
                         "  3 lights 39 ghosts  q 0.38\033[K");
     live_stats_begin_second(&stats, 6000000);
-    live_stats_add(&stats, &frames[1]);
+    live_stats_add_frame(&stats, &frames[1]);
     assert_string_equal(
-        live_stats_line(&stats, 6250000, false, text),
+        live_stats_write_line(&stats, 6250000, false, text),
         "4.0 fps  20.1 ms, p99 20.1  2 dropped 2 late 4 bad  2 lights 26 "
         "ghosts  q 0.25  ms: convert 0.20 find 1.40 plan 0.50 bin 4.00 draw "
         "5.00 show 0.00  3000 bytes\n");
@@ -231,17 +231,17 @@ TEST(prints_large_counts)
         t.stage_us[i] = INT64_C(1) << 60;
     live_stats_start(&stats, 0);
     for (int i = 0; i < 5; i++)
-        live_stats_add(&stats, &t);
-    live_stats_json(&stats, 1, true, text);
+        live_stats_add_frame(&stats, &t);
+    live_stats_write_json(&stats, 1, true, text);
     assert_non_null(strstr(text, "\"drops\":10737418235,"));
     assert_non_null(strstr(text, "\"late\":10737418235,"));
     assert_non_null(strstr(text, "\"corrupt\":10737418235,"));
     assert_non_null(strstr(text, "\"find\":1152921504606847."));
     assert_int_equal(text[strlen(text) - 1], '}');
-    live_stats_line(&stats, 1, true, text);
+    live_stats_write_line(&stats, 1, true, text);
     assert_int_equal(strlen(text), 1 + 79 + 3);
     assert_string_equal(text + 80, "\033[K");
-    live_stats_line(&stats, 1, false, text);
+    live_stats_write_line(&stats, 1, false, text);
     n = strlen(text);
     assert_true(n < sizeof text - 1 && text[n - 1] == '\n');
 }

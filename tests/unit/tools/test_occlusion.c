@@ -43,7 +43,7 @@ static double measure_unoccluded_fraction(struct occlusion *o, double x,
                                     glint_view_pixel_tangent(&view, focal_mm));
     known = glint_engine_lamp_of(&lamp, 1);
     known.level = 0.5;
-    occlusion_apply(o, 0, &view, focal_mm, &known, 1);
+    occlusion_dim_lamps(o, 0, &view, focal_mm, &known, 1);
     assert_true(fabs(known.level - fmax(0.5 * known.lamp.power / 8, 1e-6)) <
                 1e-12);
     return known.lamp.power / 8;

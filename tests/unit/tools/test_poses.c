@@ -53,7 +53,7 @@ static enum glint_status open_poses_text(const char *text, uint32_t hand)
 
 static void expect_next_pose(int frame, int thing, int x)
 {
-    const struct pose *const p = poses_next(&poses, frame);
+    const struct pose *const p = poses_next_pose(&poses, frame);
 
     assert_non_null(p);
     assert_int_equal(p->thing, thing);
@@ -72,13 +72,13 @@ TEST(poses_are_sorted_by_frame)
                               "*,lamp,4,0,0\n",
                               GLINT_HAND_LEFT));
     expect_next_pose(0, 3, 64);
-    assert_null(poses_next(&poses, 0));
-    assert_null(poses_next(&poses, 2));
+    assert_null(poses_next_pose(&poses, 0));
+    assert_null(poses_next_pose(&poses, 2));
     expect_next_pose(5, POSES_CAMERA, 32);
     expect_next_pose(5, 0, 48);
-    assert_null(poses_next(&poses, 6));
+    assert_null(poses_next_pose(&poses, 6));
     expect_next_pose(100, 1, 16);
-    assert_null(poses_next(&poses, 100));
+    assert_null(poses_next_pose(&poses, 100));
     poses_close(&poses);
 }
 
@@ -91,7 +91,7 @@ TEST(other_handedness_mirrors_poses)
     for (uint32_t hand = 0; hand < 2; hand++) {
         assert_ok(open_poses_text(text, hand));
         for (int i = 0; i < 2; i++)
-            pose[hand][i] = *poses_next(&poses, 0);
+            pose[hand][i] = *poses_next_pose(&poses, 0);
         poses_close(&poses);
     }
     for (int i = 0; i < 2; i++) {
@@ -155,20 +155,20 @@ TEST(pipe_returns_complete_lines)
     assert_int_equal(mkfifo(scratch_file, 0600), 0);
     make_scene_of_two_objects(GLINT_HAND_LEFT);
     assert_ok(poses_open(&poses, scratch_file, true, &model, &error));
-    assert_null(poses_next(&poses, 0));
+    assert_null(poses_next_pose(&poses, 0));
     to = open(scratch_file, O_WRONLY);
     assert_true(to >= 0);
     for (int i = 0; i < 3; i++) {
         assert_int_equal(write(to, parts[i], strlen(parts[i])),
                          strlen(parts[i]));
         if (i == 0)
-            assert_null(poses_next(&poses, 1));
+            assert_null(poses_next_pose(&poses, 1));
         if (i == 1)
             expect_next_pose(2, 0, 16);
         if (i == 2)
             expect_next_pose(3, 1, 48);
     }
-    assert_null(poses_next(&poses, 4));
+    assert_null(poses_next_pose(&poses, 4));
     expect_next_pose(5, 1, 32);
     assert_int_equal(poses.n_bad, 2);
     assert_non_null(strstr(poses.bad.text, ":2: "));
@@ -180,7 +180,7 @@ TEST(pipe_returns_complete_lines)
     assert_int_equal(poses.n_bad, 3);
     /* a pipe without a writer, and with a new writer */
     close(to);
-    assert_null(poses_next(&poses, 7));
+    assert_null(poses_next_pose(&poses, 7));
     to = open(scratch_file, O_WRONLY);
     assert_int_equal(write(to, "*,ball,8,0,0\n", 13), 13);
     expect_next_pose(8, 0, 128);
@@ -210,7 +210,7 @@ TEST(pipe_is_read_up_to_a_limit_per_frame)
 
         while (write(to, lines, 13 * 64) > 0)
             ;
-        while (poses_next(&poses, frame))
+        while (poses_next_pose(&poses, frame))
             taken++;
         assert_in_range(taken - before, 1, (1 << 16) / 13 + 1);
     }

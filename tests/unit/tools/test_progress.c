@@ -82,9 +82,9 @@ TEST(second_part_continues_the_first)
 {
     struct tool_progress p = start_fake_progress(false, false);
 
-    tool_progress_part(&p, 0, 0.6);
+    tool_progress_set_part(&p, 0, 0.6);
     assert_string_equal(print_progress_at(&p, 5, 0.5), "");
-    tool_progress_part(&p, 0.6, 0.4);
+    tool_progress_set_part(&p, 0.6, 0.4);
     assert_string_equal(print_progress_at(&p, 20, 0.5),
                         "bake: 80 % in 20 s, about 5 s left\n");
 }

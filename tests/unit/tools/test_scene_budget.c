@@ -44,9 +44,9 @@ TEST(live_steps_follow_the_levels)
     double last = 1;
 
     live_adapt_init(&adapt);
-    assert_true(live_adapt_quality(&adapt) == 1);
+    assert_true(live_adapt_scene_quality(&adapt) == 1);
     for (adapt.step = 1; adapt.step <= LIVE_MAX_STEP; adapt.step++) {
-        const double now = live_adapt_quality(&adapt);
+        const double now = live_adapt_scene_quality(&adapt);
 
         assert_true(now < last || (now == 0 && last == 0));
         last = now;

@@ -152,7 +152,7 @@ TEST(each_parameter_changes_the_settings)
 
     for (int d = 0; d < n_sweep_parameters; d++)
         standard.value[d] = sweep_parameter[d].standard;
-    settings_defaults(&plain);
+    settings_set_defaults(&plain);
     sweep_apply_setting(&plain, &standard, false);
     for (int d = 0; d < n_sweep_parameters; d++) {
         const struct sweep_parameter *const p = &sweep_parameter[d];
@@ -162,7 +162,7 @@ TEST(each_parameter_changes_the_settings)
             struct sweep_setting set = standard;
             struct settings other;
 
-            settings_defaults(&other);
+            settings_set_defaults(&other);
             set.value[d] = p->value[i];
             sweep_apply_setting(&other, &set, false);
             has_standard |= p->value[i] == p->standard;
@@ -188,8 +188,8 @@ TEST(better_levels_are_never_coarser)
 {
     struct settings last, settings, plain;
 
-    settings_defaults(&plain);
-    settings_defaults(&settings);
+    settings_set_defaults(&plain);
+    settings_set_defaults(&settings);
     settings_set_quality(&settings, 0.5);
     assert_int_equal(settings.dials.fineness, 64);
     assert_true(settings.quantum == plain.quantum &&
@@ -198,8 +198,8 @@ TEST(better_levels_are_never_coarser)
                 settings.options.rays == plain.options.rays);
     settings_set_quality(&settings, 1);
     assert_int_equal(settings.dials.fineness, 256);
-    settings_defaults(&settings);
-    settings_defaults(&last);
+    settings_set_defaults(&settings);
+    settings_set_defaults(&last);
     settings_set_quality(&last, 0);
     for (int i = 1; i <= 100; i++) {
         settings_set_quality(&settings, i / 100.);
@@ -216,11 +216,11 @@ TEST(better_levels_are_never_coarser)
                     is_at_half_resolution(&last));
         last = settings;
     }
-    assert_true(settings_set(&settings, "quality", "0.25") &&
-                settings_set(&last, "quality", "draft"));
+    assert_true(settings_set_text(&settings, "quality", "0.25") &&
+                settings_set_text(&last, "quality", "draft"));
     assert_int_equal(settings.dials.fineness, last.dials.fineness);
-    assert_true(settings_set(&settings, "quality", "exact"));
+    assert_true(settings_set_text(&settings, "quality", "exact"));
     assert_int_equal(settings.options.rays, GLINT_RAYS_EXACT);
-    assert_false(settings_set(&settings, "quality", "1.01"));
-    assert_false(settings_set(&settings, "quality", "best"));
+    assert_false(settings_set_text(&settings, "quality", "1.01"));
+    assert_false(settings_set_text(&settings, "quality", "best"));
 }

@@ -31,16 +31,16 @@ TEST(lines_contain_all_fields)
     static const struct synth_result none;
     struct synth_ranges ranges;
 
-    synth_ranges_defaults(&ranges);
+    synth_ranges_set_defaults(&ranges);
     for (int i = 0; i < 500; i++) {
         struct synth_item item = named, back;
         struct glint_error error = {""};
         char *line;
 
-        synth_item_draw(&item, &ranges, 2147483647 - i, i);
-        line = synth_item_print(&item, &none);
+        synth_item_randomise(&item, &ranges, 2147483647 - i, i);
+        line = synth_item_format_json(&item, &none);
         assert_non_null(line);
-        if (synth_item_read(&back, line, &error) == GLINT_E_UNSUPPORTED) {
+        if (synth_item_parse_json(&back, line, &error) == GLINT_E_UNSUPPORTED) {
             free(line);
             skip(); /* needs jansson */
         }
@@ -65,7 +65,7 @@ TEST(random_numbers_stay_in_range)
     double low[SYNTH_FIELDS], high[SYNTH_FIELDS];
     int zeros = 0;
 
-    synth_ranges_defaults(&ranges);
+    synth_ranges_set_defaults(&ranges);
     for (int k = 0; k < SYNTH_FIELDS; k++) {
         low[k] = INFINITY;
         high[k] = -INFINITY;
@@ -73,7 +73,7 @@ TEST(random_numbers_stay_in_range)
     for (int i = 0; i < 4000; i++) {
         struct synth_item item = named;
 
-        synth_item_draw(&item, &ranges, 1, i);
+        synth_item_randomise(&item, &ranges, 1, i);
         zeros += item.dust == 0;
         assert_true(item.light[0].power == 1);
         for (int k = 0; k < SYNTH_FIELDS; k++)
@@ -103,18 +103,18 @@ TEST(random_numbers_are_independent)
     struct synth_ranges ranges;
     struct glint_error why = {""};
 
-    synth_ranges_defaults(&ranges);
-    synth_item_draw(&a, &ranges, 3, 14);
+    synth_ranges_set_defaults(&ranges);
+    synth_item_randomise(&a, &ranges, 3, 14);
     /* Numbers whose names have the same length are independent as well. */
     assert_true(a.crop_x != a.crop_y);
     assert_true(synth_ranges_parse(&ranges, "level=0.5", &why));
-    synth_item_draw(&b, &ranges, 3, 14);
+    synth_item_randomise(&b, &ranges, 3, 14);
     assert_true(b.level == 0.5);
     b.level = a.level;
     assert_memory_equal(&a, &b, sizeof a);
-    synth_item_draw(&b, &ranges, 3, 15);
+    synth_item_randomise(&b, &ranges, 3, 15);
     assert_true(a.crop_x != b.crop_x);
-    synth_item_draw(&b, &ranges, 4, 14);
+    synth_item_randomise(&b, &ranges, 4, 14);
     assert_true(a.crop_x != b.crop_x);
     assert_false(synth_ranges_parse(&ranges, "level=1,-1", &why));
     assert_false(synth_ranges_parse(&ranges, "levels=1", &why));

@@ -44,7 +44,7 @@ static void bake_zoom_positions(const struct glint_bake_options *options,
     struct glint_error error = {""};
     const char *reason = "";
 
-    if (zoom_bake_run(&tool, &what, &baked, &error) != GLINT_OK)
+    if (zoom_bake_positions(&tool, &what, &baked, &error) != GLINT_OK)
         fail_msg("%s", error.text);
     if (glint_zoom_open(&zoom, baked.data, baked.bytes, &reason) != GLINT_OK)
         fail_msg("%s", reason);

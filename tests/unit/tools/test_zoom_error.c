@@ -81,8 +81,8 @@ static void measure_errors_up_to_angle(double max_deg,
     struct glint_error message = {""};
 
     glint_zoom_set(&zoom, (int32_t)(along * (1 << 30)));
-    if (zoom_error_measure(&tool, lens, &zoom, max_deg, shift, GHOSTS, error,
-                           &message) != GLINT_OK)
+    if (zoom_error_measure_ghosts(&tool, lens, &zoom, max_deg, shift, GHOSTS,
+                                  error, &message) != GLINT_OK)
         fail_msg("%s", message.text);
 }
 

@@ -313,9 +313,9 @@ static enum glint_status read_command_words(struct reader *r,
     return status;
 }
 
-enum glint_status control_parse(const char *text, const char *where,
-                                struct control_line *line,
-                                struct glint_error *error)
+enum glint_status control_parse_line(const char *text, const char *where,
+                                     struct control_line *line,
+                                     struct glint_error *error)
 {
     struct reader r = {
         .text = text, .at = text, .where = where, .error = error};
@@ -444,7 +444,7 @@ static bool read_pressed_keys(struct keyboard *k)
     return n > 0;
 }
 
-bool keyboard_next(struct keyboard *k, struct control_line *line)
+bool keyboard_next_command(struct keyboard *k, struct control_line *line)
 {
     while (k->at < k->n || read_pressed_keys(k)) {
         if (k->bytes[k->at] == 'q')
@@ -486,7 +486,7 @@ static enum glint_status parse_control_line(const struct controls *in,
     enum glint_status status;
 
     format_line_location(in, in->lines.number, where);
-    status = control_parse(text, where, line, error);
+    status = control_parse_line(text, where, line, error);
     line->number = in->lines.number;
     return status;
 }
@@ -567,14 +567,15 @@ static bool read_next_pipe_command(struct controls *in)
     return false;
 }
 
-const struct control_line *controls_next(struct controls *input, int picture)
+const struct control_line *controls_next_line(struct controls *input,
+                                              int picture)
 {
     struct controls *const in = input;
 
     if (!in->is_open)
         return NULL;
     if (in->is_keys)
-        return keyboard_next(&in->keys, &in->ahead) ? &in->ahead : NULL;
+        return keyboard_next_command(&in->keys, &in->ahead) ? &in->ahead : NULL;
     if (in->next < in->n)
         return in->row[in->next].frame > picture ? NULL : &in->row[in->next++];
     if (in->read_at != picture)

@@ -4,7 +4,7 @@
  * flare, from a file, a pipe, or the keys of a terminal.
  *
  *     controls_open(&input, path, is_live, &error);
- *     while ((line = controls_next(&input, picture)))    each picture
+ *     while ((line = controls_next_line(&input, picture)))    each picture
  *         ...
  *     controls_close(&input);
  *
@@ -150,9 +150,9 @@ struct controls {
 
 /* Parses TEXT into LINE. On GLINT_E_FORMAT, ERROR is "WHERE:COLUMN: cause", and
  * LINE is undefined. */
-enum glint_status control_parse(const char *text, const char *where,
-                                struct control_line *line,
-                                struct glint_error *error);
+enum glint_status control_parse_line(const char *text, const char *where,
+                                     struct control_line *line,
+                                     struct glint_error *error);
 
 /* Sets ERROR to "WHERE:COLUMN: cause", the cause by printf() format. Returns
  * GLINT_E_FORMAT. */
@@ -168,7 +168,7 @@ enum glint_status keyboard_open(struct keyboard *k, int fd);
 /* Sets LINE to the command of the next key that was pressed. Returns false if
  * there is no key. Keys without a command are skipped; q requests the end of
  * the process. */
-bool keyboard_next(struct keyboard *k, struct control_line *line);
+bool keyboard_next_command(struct keyboard *k, struct control_line *line);
 
 /* Sets LINE to the command of the first key of TEXT[N], with verb CONTROL_NONE
  * if the key has no command. Returns the bytes of the key. */
@@ -184,7 +184,8 @@ enum glint_status controls_open(struct controls *input, const char *path,
 
 /* Returns the next line for PICTURE or an earlier one, or NULL if there are
  * no more. PICTURE must not decrease from call to call. */
-const struct control_line *controls_next(struct controls *input, int picture);
+const struct control_line *controls_next_line(struct controls *input,
+                                              int picture);
 
 /* Returns line I of a file, or NULL if there are fewer. */
 const struct control_line *controls_get_line(const struct controls *input,

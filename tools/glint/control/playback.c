@@ -45,7 +45,7 @@ bool playback_execute_line(struct playback *playback,
     }
 }
 
-int playback_next(struct playback *playback, double elapsed_s)
+int playback_next_frame(struct playback *playback, double elapsed_s)
 {
     struct playback *const p = playback;
 

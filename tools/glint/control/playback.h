@@ -4,8 +4,8 @@
  * picture shows.
  *
  *     playback_init(&playback);
- *     playback_execute_line(&playback, &line);              step, jump, play
- * ... frame = playback_next(&playback, elapsed_s);  each picture
+ *     playback_execute_line(&playback, &line);            step, jump, play ...
+ *     frame = playback_next_frame(&playback, elapsed_s);  each picture
  *
  * If a rate is set, playback follows time, not the number of pictures: frame k
  * does not depend on what was shown before.
@@ -36,6 +36,6 @@ bool playback_execute_line(struct playback *playback,
 
 /* Returns the frame of the next picture, ELAPSED_S after the previous
  * picture. */
-int playback_next(struct playback *playback, double elapsed_s);
+int playback_next_frame(struct playback *playback, double elapsed_s);
 
 #endif

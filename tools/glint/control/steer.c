@@ -442,9 +442,9 @@ static bool is_brushed_metal(const struct steer *s, int i)
     return s->model.material[i].ward != GLINT_SCENE_NONE;
 }
 
-enum glint_status steer_check(const struct steer *steer,
-                              const struct control_line *line,
-                              const char *where, struct glint_error *error)
+enum glint_status steer_check_line(const struct steer *steer,
+                                   const struct control_line *line,
+                                   const char *where, struct glint_error *error)
 {
     const bool is_set = is_command_for_material(line) && *line->name[0];
     enum glint_scene_kind kind;
@@ -528,8 +528,8 @@ static void begin_camera_orbit(struct steer *s)
         s->orbit.middle[k] = c->at[k] + distance * ahead[k];
 }
 
-bool steer_camera(struct steer *steer, const int32_t at[3],
-                  const int32_t axis_q30[3][3])
+bool steer_record_camera_pose(struct steer *steer, const int32_t at[3],
+                              const int32_t axis_q30[3][3])
 {
     if (steer->is_free)
         return false;
@@ -750,7 +750,7 @@ enum glint_status steer_execute_line(struct steer *steer,
                                      const char *where,
                                      struct glint_error *error)
 {
-    enum glint_status status = steer_check(steer, line, where, error);
+    enum glint_status status = steer_check_line(steer, line, where, error);
 
     if (status != GLINT_OK)
         return line->is_change ? GLINT_OK : status;

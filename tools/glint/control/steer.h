@@ -3,9 +3,9 @@
  * steer.h - applies control lines to a scene and records the changes.
  *
  *     steer_open(&steer, &model);
- *     steer_execute_line(&steer, scene, &line, where, &error);    each line
- *     steer_apply_state(&steer, scene);               a scene that was placed
- * again steer_close(&steer);
+ *     steer_execute_line(&steer, scene, &line, where, &error);  each line
+ *     steer_apply_state(&steer, scene);          after the scene was placed
+ *     steer_close(&steer);
  *
  * No change requires a bake: the next picture shows it.
  */
@@ -66,17 +66,18 @@ void steer_close(struct steer *steer);
 
 /* Records that a pose moved the camera to AT, AXIS_Q30. Returns false if the
  * camera ignores poses, because control lines have moved it. */
-bool steer_camera(struct steer *steer, const int32_t at[3],
-                  const int32_t axis_q30[3][3]);
+bool steer_record_camera_pose(struct steer *steer, const int32_t at[3],
+                              const int32_t axis_q30[3][3]);
 
 /* Checks that the names in LINE exist. On GLINT_E_FORMAT, ERROR is
  * "WHERE:COLUMN: cause". */
-enum glint_status steer_check(const struct steer *steer,
-                              const struct control_line *line,
-                              const char *where, struct glint_error *error);
+enum glint_status steer_check_line(const struct steer *steer,
+                                   const struct control_line *line,
+                                   const char *where,
+                                   struct glint_error *error);
 
 /* Executes LINE, any command except those of playback.h. Returns GLINT_E_FORMAT
- * like steer_check(), without a change. */
+ * like steer_check_line(), without a change. */
 enum glint_status steer_execute_line(struct steer *steer,
                                      struct glint_scene *scene,
                                      const struct control_line *line,

@@ -28,8 +28,9 @@ static bool is_ghost_muted(const struct ghost_list *l, int ghost)
 /* ---------------------------------------------------------------------- file
  */
 
-enum glint_status ghost_list_write(const struct ghost_list *l, const char *path,
-                                   struct glint_error *error)
+enum glint_status ghost_list_write_file(const struct ghost_list *l,
+                                        const char *path,
+                                        struct glint_error *error)
 {
     struct glint_output out;
     enum glint_status status =
@@ -52,8 +53,9 @@ enum glint_status ghost_list_write(const struct ghost_list *l, const char *path,
 
         if (glint_explain_drawn(part) == 0 && !is_ghost_muted(l, ghost))
             continue;
-        ghost_file_line(text, sizeof text, ghost,
-                        l->explain->tints ? &l->explain->tints[ghost] : NULL);
+        ghost_file_write_line(text, sizeof text, ghost,
+                              l->explain->tints ? &l->explain->tints[ghost]
+                                                : NULL);
         n = (int)strlen(text);
         n += snprintf(text + n, sizeof text - (size_t)n,
                       "   # surfaces %d-%d, %.2f %% of the light\n", g->i, g->j,
@@ -141,7 +143,7 @@ static void draw_numbered_ghost(const struct ghost_list *l,
                                 const struct glint_image *small, float *light)
 {
     const size_t n = 3 * (size_t)small->width * (size_t)small->height;
-    const struct glint_image to = sheet_picture(sheet, k);
+    const struct glint_image to = sheet_get_image(sheet, k);
     const struct glint_ghost *g = &l->explain->setup->ghost[ghost];
     char text[64];
 
@@ -151,7 +153,7 @@ static void draw_numbered_ghost(const struct ghost_list *l,
                          find_display_exposure(light, n, light + n));
     snprintf(text, sizeof text, "%d  %d-%d  %.1f%%", ghost, g->i, g->j,
              100 * l->explain->ghost[ghost].share);
-    sheet_caption(sheet, k, text);
+    sheet_draw_caption(sheet, k, text);
 }
 
 static enum glint_status draw_contact_sheet(const struct ghost_list *l,
@@ -178,12 +180,13 @@ static enum glint_status draw_contact_sheet(const struct ghost_list *l,
     return status;
 }
 
-enum glint_status ghost_list_sheet(const struct ghost_list *l, const char *path,
-                                   struct glint_error *error)
+enum glint_status ghost_list_save_sheet(const struct ghost_list *l,
+                                        const char *path,
+                                        struct glint_error *error)
 {
     struct glint_image small = {.plane = {NULL}};
     struct sheet sheet = {.columns = 0};
-    enum glint_status status = sheet_reduce(&small, l->picture, WIDE);
+    enum glint_status status = sheet_reduce_image(&small, l->picture, WIDE);
 
     if (status == GLINT_OK)
         status = draw_contact_sheet(l, &small, &sheet);

@@ -21,13 +21,15 @@ struct ghost_list {
 
 /* Writes to PATH all ghosts that are drawn or muted, each with its fraction
  * of the total light. Errors: GLINT_E_OUTPUT, GLINT_E_CLOSED. */
-enum glint_status ghost_list_write(const struct ghost_list *list,
-                                   const char *path, struct glint_error *error);
+enum glint_status ghost_list_write_file(const struct ghost_list *list,
+                                        const char *path,
+                                        struct glint_error *error);
 
 /* Saves to PATH a contact sheet of the first drawn ghosts, each over the
  * dimmed image and exposed to be visible. Errors: GLINT_E_MEMORY,
  * GLINT_E_OUTPUT. */
-enum glint_status ghost_list_sheet(const struct ghost_list *list,
-                                   const char *path, struct glint_error *error);
+enum glint_status ghost_list_save_sheet(const struct ghost_list *list,
+                                        const char *path,
+                                        struct glint_error *error);
 
 #endif

@@ -91,7 +91,7 @@ static const char *parse_column_heading(struct reading *r,
         const int column = text_find_column(columns, KEYS_COLUMNS, name[i]);
 
         if (column < 0)
-            return text_lines_cause(
+            return text_lines_format_cause(
                 lines,
                 "'%.32s' is not a column; the first line names frame and any "
                 "of exposure, strength, gain, starburst, f-number, turn, "
@@ -150,9 +150,9 @@ static const char *parse_key_line(void *ctx, struct text_lines *lines,
                                                                  line);
 }
 
-enum glint_status keys_parse(struct keys *keys, const char *name,
-                             const char *text, size_t bytes,
-                             struct glint_error *error)
+enum glint_status keys_parse_text(struct keys *keys, const char *name,
+                                  const char *text, size_t bytes,
+                                  struct glint_error *error)
 {
     struct reading r = {.keys = keys};
     struct text_lines lines;
@@ -170,10 +170,10 @@ enum glint_status keys_parse(struct keys *keys, const char *name,
     return status;
 }
 
-enum glint_status keys_read(struct keys *keys, const char *path,
-                            struct glint_error *error)
+enum glint_status keys_read_file(struct keys *keys, const char *path,
+                                 struct glint_error *error)
 {
-    return keys_parse(keys, path, NULL, MAX_BYTES, error);
+    return keys_parse_text(keys, path, NULL, MAX_BYTES, error);
 }
 
 int keys_find_column(const char *name)

@@ -34,7 +34,7 @@ enum key_column {
     KEYS_X,
     KEYS_Y,
     KEYS_EV,
-    KEYS_ZOOM, /* zoom, mm or 0 .. 1, as in model_file_zoom() */
+    KEYS_ZOOM, /* zoom, mm or 0 .. 1, as in model_file_set_zoom() */
     KEYS_COLUMNS
 };
 
@@ -51,13 +51,14 @@ struct keys {
 
 /* Reads PATH. On GLINT_E_IO, GLINT_E_FORMAT or GLINT_E_MEMORY, ERROR names
  * file, line and cause, and KEYS is empty. */
-enum glint_status keys_read(struct keys *keys, const char *path,
-                            struct glint_error *error);
+enum glint_status keys_read_file(struct keys *keys, const char *path,
+                                 struct glint_error *error);
 
-/* Parses TEXT[BYTES] as keys_read() parses a file; NAME is used in errors. */
-enum glint_status keys_parse(struct keys *keys, const char *name,
-                             const char *text, size_t bytes,
-                             struct glint_error *error);
+/* Parses TEXT[BYTES] as keys_read_file() parses a file; NAME is used in errors.
+ */
+enum glint_status keys_parse_text(struct keys *keys, const char *name,
+                                  const char *text, size_t bytes,
+                                  struct glint_error *error);
 
 /* Returns the index of the column NAME, or -1. */
 int keys_find_column(const char *name);

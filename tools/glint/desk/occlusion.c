@@ -209,9 +209,9 @@ static double compute_off_screen_fade(double x, double y, int width, int height,
     return 1 - t * t * (3 - 2 * t);
 }
 
-void occlusion_apply(struct occlusion *o, int frame,
-                     const struct glint_view *view, double focal_mm,
-                     struct glint_engine_lamp *lamps, int n)
+void occlusion_dim_lamps(struct occlusion *o, int frame,
+                         const struct glint_view *view, double focal_mm,
+                         struct glint_engine_lamp *lamps, int n)
 {
     if (!o->file && !(o->fade_px > 0))
         return;

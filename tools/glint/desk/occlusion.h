@@ -4,7 +4,7 @@
  * by the distance of off-screen lamps from the image.
  *
  *     occlusion_open(&o, &error);                          once
- *     occlusion_apply(&o, frame, &view, focal_mm, lamps, n);
+ *     occlusion_dim_lamps(&o, frame, &view, focal_mm, lamps, n);
  *     occlusion_close(&o);
  *
  * A mask is an image, a numbered sequence of images or a y4m video. It is
@@ -43,9 +43,9 @@ enum glint_status occlusion_open(struct occlusion *o,
 /* Scales power and level of each of N LAMPS by its visible fraction in
  * FRAME. FRAME must increase from call to call. After the end of the mask
  * its last frame is used. A read error is reported once. */
-void occlusion_apply(struct occlusion *o, int frame,
-                     const struct glint_view *view, double focal_mm,
-                     struct glint_engine_lamp *lamps, int n);
+void occlusion_dim_lamps(struct occlusion *o, int frame,
+                         const struct glint_view *view, double focal_mm,
+                         struct glint_engine_lamp *lamps, int n);
 
 void occlusion_close(struct occlusion *o);
 

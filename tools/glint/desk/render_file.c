@@ -6,8 +6,8 @@
 
 #include "formats/picture.h"
 
-int render_file_check(const struct tool *tool, const char *path,
-                      bool *is_linear)
+int render_file_check_path(const struct tool *tool, const char *path,
+                           bool *is_linear)
 {
     struct glint_error error = {""};
     enum glint_status status =

@@ -42,7 +42,7 @@ static const char *skip_caption_blanks(const char *text)
     return text + strspn(text, " ");
 }
 
-int sheet_caption_lines(int width, const char *text)
+int sheet_count_caption_lines(int width, const char *text)
 {
     int rows = 0;
 
@@ -56,9 +56,9 @@ static int caption_height(const struct sheet *s)
     return (2 + 7 * s->rows) * s->line;
 }
 
-void sheet_caption(const struct sheet *s, int k, const char *text)
+void sheet_draw_caption(const struct sheet *s, int k, const char *text)
 {
-    struct glint_image below = sheet_picture(s, k);
+    struct glint_image below = sheet_get_image(s, k);
     struct paint p = {.image = &below, .line = s->line};
     char row[160];
 
@@ -104,7 +104,7 @@ enum glint_status sheet_open(struct sheet *s, int n, int width, int height,
     memset(mem, GROUND, bytes);
     glint_image_place(&s->image, mem);
     for (int k = 0; k < n; k++) {
-        const struct glint_image p = sheet_picture(s, k);
+        const struct glint_image p = sheet_get_image(s, k);
 
         for (int y = 0; y < height; y++)
             memset(p.plane[0] + y * p.stride_bytes[0], 0, 3 * (size_t)width);
@@ -112,7 +112,7 @@ enum glint_status sheet_open(struct sheet *s, int n, int width, int height,
     return GLINT_OK;
 }
 
-struct glint_image sheet_picture(const struct sheet *s, int k)
+struct glint_image sheet_get_image(const struct sheet *s, int k)
 {
     const int x = GAP + k % s->columns * (s->width + GAP);
     const int y = GAP + k / s->columns * (s->height + caption_height(s) + GAP);
@@ -159,8 +159,8 @@ static void compute_mean_pixel(const struct glint_image *big,
         px[c] = (uint8_t)lrint(glint_measure_code(sum[c] / n));
 }
 
-enum glint_status sheet_reduce(struct glint_image *small,
-                               const struct glint_image *big, int width)
+enum glint_status sheet_reduce_image(struct glint_image *small,
+                                     const struct glint_image *big, int width)
 {
     const int w = width < big->width ? width : big->width;
     const int h =

@@ -2,9 +2,9 @@
  *
  * sheet.h - contact sheets: images of equal size in rows, each with a caption.
  *
- *     sheet_open(&sheet, n, 320, 240, sheet_caption_lines(320, "TEXT"));
- *     image = sheet_picture(&sheet, k);       to draw on
- *     sheet_caption(&sheet, k, "TEXT");
+ *     sheet_open(&sheet, n, 320, 240, sheet_count_caption_lines(320, "TEXT"));
+ *     image = sheet_get_image(&sheet, k);       to draw on
+ *     sheet_draw_caption(&sheet, k, "TEXT");
  *     glint_picture_save(path, &sheet.image, &error);
  *     sheet_close(&sheet);
  */
@@ -24,7 +24,7 @@ struct sheet {
 
 /* Returns the number of lines that TEXT needs below an image of WIDTH
  * pixels. */
-int sheet_caption_lines(int width, const char *text);
+int sheet_count_caption_lines(int width, const char *text);
 
 /* Makes a sheet of N black images of WIDTH x HEIGHT, with captions of ROWS
  * lines. Returns GLINT_E_MEMORY on failure. */
@@ -32,18 +32,18 @@ enum glint_status sheet_open(struct sheet *sheet, int n, int width, int height,
                              int rows);
 
 /* Returns image K, which points into the memory of the sheet. */
-struct glint_image sheet_picture(const struct sheet *sheet, int k);
+struct glint_image sheet_get_image(const struct sheet *sheet, int k);
 
 /* Writes TEXT below image K, with line breaks between words; text that does
  * not fit is truncated. */
-void sheet_caption(const struct sheet *sheet, int k, const char *text);
+void sheet_draw_caption(const struct sheet *sheet, int k, const char *text);
 
 void sheet_close(struct sheet *sheet);
 
 /* Makes SMALL, a copy of BIG scaled down to at most WIDTH pixels wide by
  * averaging linear light. Both are sRGB, GLINT_RGB24. The caller frees the
  * plane[0] of SMALL. Returns GLINT_E_MEMORY on failure. */
-enum glint_status sheet_reduce(struct glint_image *small,
-                               const struct glint_image *big, int width);
+enum glint_status sheet_reduce_image(struct glint_image *small,
+                                     const struct glint_image *big, int width);
 
 #endif

@@ -7,7 +7,7 @@
 #include "glint/explain.h"
 
 /* Returns OUTCOME as a phrase for tables. */
-const char *explain_reason(enum glint_outcome outcome);
+const char *explain_outcome_reason(enum glint_outcome outcome);
 
 /* Inputs of the frame: lens, given lights, and type of picture */
 struct explain_title {
@@ -21,22 +21,22 @@ struct explain_title {
         *engine; /* engine that searched the picture, or NULL */
 };
 
-void explain_print(const struct glint_explain *explain,
-                   const struct explain_title *title);
-void explain_json(const struct glint_explain *explain,
-                  const struct explain_title *title);
+void explain_print_tables(const struct glint_explain *explain,
+                          const struct explain_title *title);
+void explain_write_json(const struct glint_explain *explain,
+                        const struct explain_title *title);
 
 /* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE
  * dimmed, with tiles that have flare shaded and the first ghosts outlined and
  * numbered, above a legend. Returns GLINT_E_MEMORY on failure. */
-enum glint_status explain_mark(struct glint_explain *explain,
-                               const struct explain_title *title,
-                               const struct glint_image *picture,
-                               struct glint_image *marked);
+enum glint_status explain_draw_marks(struct glint_explain *explain,
+                                     const struct explain_title *title,
+                                     const struct glint_image *picture,
+                                     struct glint_image *marked);
 
 /* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE above
  * LEGEND black rows. Returns GLINT_E_MEMORY on failure. */
-enum glint_status explain_copy(const struct glint_image *picture, int legend,
-                               struct glint_image *marked);
+enum glint_status explain_copy_picture(const struct glint_image *picture,
+                                       int legend, struct glint_image *marked);
 
 #endif

@@ -240,8 +240,8 @@ static void draw_legend_entry(const struct marking *m, int k, int ghost)
 
 /* ------------------------------------------------------------------- whole */
 
-enum glint_status explain_copy(const struct glint_image *picture, int legend,
-                               struct glint_image *marked)
+enum glint_status explain_copy_picture(const struct glint_image *picture,
+                                       int legend, struct glint_image *marked)
 {
     const size_t row = 3 * (size_t)picture->width;
     uint8_t *mem;
@@ -259,10 +259,10 @@ enum glint_status explain_copy(const struct glint_image *picture, int legend,
     return GLINT_OK;
 }
 
-enum glint_status explain_mark(struct glint_explain *e,
-                               const struct explain_title *t,
-                               const struct glint_image *picture,
-                               struct glint_image *marked)
+enum glint_status explain_draw_marks(struct glint_explain *e,
+                                     const struct explain_title *t,
+                                     const struct glint_image *picture,
+                                     struct glint_image *marked)
 {
     struct marking m = {.explain = e,
                         .image = marked,
@@ -272,8 +272,8 @@ enum glint_status explain_mark(struct glint_explain *e,
     enum glint_status status;
     int ghosts[GLINT_MAX_GHOSTS], n = 0;
 
-    status = explain_copy(picture, (8 * count_legend_rows(&m, t) + 3) * m.scale,
-                          marked);
+    status = explain_copy_picture(
+        picture, (8 * count_legend_rows(&m, t) + 3) * m.scale, marked);
     if (status != GLINT_OK)
         return status;
     glint_explain_sort(e, ghosts);

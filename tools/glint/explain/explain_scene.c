@@ -108,7 +108,7 @@ static const char *describe_lamp_outcome(const struct explained_scene *s,
             most = k;
     return most == GLINT_OUTCOME_FAINT
                ? "too faint for the lens"
-               : explain_reason((enum glint_outcome)most);
+               : explain_outcome_reason((enum glint_outcome)most);
 }
 
 /* Returns the state of light I. SEEN[N]: lights ahead of the camera. Lamps of
@@ -318,7 +318,7 @@ static void print_light_maps(const struct explained_scene *s)
                s->drawing->files.scene.frame.map_texels);
 }
 
-void explain_scene_print(const struct explained_scene *s)
+void explain_scene_print_tables(const struct explained_scene *s)
 {
     print_scene_title(s);
     printf("\n%3s %-22s %8s %8s %9s %8s %8s %7s %9s\n", "", "object", "pixels",
@@ -384,8 +384,8 @@ static void write_lights_json(struct json_writer *json,
     json_write(json, "]");
 }
 
-void explain_scene_json(struct json_writer *json,
-                        const struct explained_scene *s)
+void explain_scene_write_json(struct json_writer *json,
+                              const struct explained_scene *s)
 {
     json_write(json, "{objects: [");
     for (uint32_t i = 0; i < get_model(s)->header->n_objects; i++) {

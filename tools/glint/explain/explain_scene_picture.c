@@ -178,9 +178,9 @@ static void draw_legend_entry(const struct heat *h, int i)
     paint_text(&p, x + 8 * p.line, y, text);
 }
 
-enum glint_status explain_scene_mark(const struct explained_scene *scene,
-                                     const struct glint_image *picture,
-                                     struct glint_image *marked)
+enum glint_status explain_scene_draw_marks(const struct explained_scene *scene,
+                                           const struct glint_image *picture,
+                                           struct glint_image *marked)
 {
     struct heat h = {.scene = scene,
                      .image = marked,
@@ -192,7 +192,8 @@ enum glint_status explain_scene_mark(const struct explained_scene *scene,
              count_legend_columns(&h) * ROW +
          4) *
         h.scale;
-    const enum glint_status status = explain_copy(picture, legend, marked);
+    const enum glint_status status =
+        explain_copy_picture(picture, legend, marked);
 
     if (status != GLINT_OK)
         return status;

@@ -33,7 +33,7 @@ static const struct {
                               "dim: shares the rays of a brighter light"},
 };
 
-const char *explain_reason(enum glint_outcome outcome)
+const char *explain_outcome_reason(enum glint_outcome outcome)
 {
     return outcomes[outcome].reason;
 }
@@ -301,7 +301,8 @@ static void write_rejected_json(struct json_writer *json,
     json_write(json, "]");
 }
 
-void explain_print(const struct glint_explain *e, const struct explain_title *t)
+void explain_print_tables(const struct glint_explain *e,
+                          const struct explain_title *t)
 {
     int ghosts[GLINT_MAX_GHOSTS];
 
@@ -383,7 +384,8 @@ static void write_title_json(struct json_writer *json,
     json_write(json, "]");
 }
 
-void explain_json(const struct glint_explain *e, const struct explain_title *t)
+void explain_write_json(const struct glint_explain *e,
+                        const struct explain_title *t)
 {
     struct json_writer json = {.to = stdout};
     int ghosts[GLINT_MAX_GHOSTS];

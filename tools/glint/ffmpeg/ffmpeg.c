@@ -145,7 +145,7 @@ static void replace_running_child(pid_t old, pid_t fresh)
     }
 }
 
-bool child_exists(const char *name)
+bool child_is_program_installed(const char *name)
 {
     const char *path = getenv("PATH");
     char file[4096];
@@ -597,7 +597,7 @@ static bool run_ffprobe(const char *url, const char *const *options,
 static const char *const of_pictures[] = {"-select_streams", "v:0", NULL};
 static const char *const of_all[] = {NULL};
 
-void ffmpeg_probe(struct ffmpeg_video *video, const char *name)
+void ffmpeg_probe_video(struct ffmpeg_video *video, const char *name)
 {
     static const char *const of_first[] = {"-select_streams", "v:0",
                                            "-read_intervals", "%+#1", NULL};
@@ -661,8 +661,9 @@ static int add_unknown_tag(int value, const char *kind, const char *tag,
     return value;
 }
 
-void ffmpeg_colours(const struct ffmpeg_video *video,
-                    struct glint_y4m_header *header, char report[FFMPEG_REPORT])
+void ffmpeg_set_colours(const struct ffmpeg_video *video,
+                        struct glint_y4m_header *header,
+                        char report[FFMPEG_REPORT])
 {
     static const char *const sd[] = {"smpte170m", "bt470bg", "fcc", NULL};
     static const char *const rgb[] = {"gbr", "rgb", NULL};
@@ -762,7 +763,7 @@ static double parse_ratio(const char *text)
     return d > 0 ? n / d : 0;
 }
 
-bool ffmpeg_keeps_times(const char *name)
+bool ffmpeg_can_store_times(const char *name)
 {
     static const char *const types[] = {"mp4", "m4v",  "mov",
                                         "mkv", "webm", NULL};
@@ -905,9 +906,10 @@ static int write_filter_script(const struct ffmpeg_times *times,
 
 /* ---------------------------------------------------------------- decoding */
 
-enum glint_status ffmpeg_read(struct child *child, const char *name,
-                              const struct ffmpeg_video *video,
-                              bool keeps_times, struct glint_error *error)
+enum glint_status ffmpeg_start_reader(struct child *child, const char *name,
+                                      const struct ffmpeg_video *video,
+                                      bool keeps_times,
+                                      struct glint_error *error)
 {
     char url[FFMPEG_URL];
     enum glint_status status;
@@ -1253,10 +1255,10 @@ static void add_alpha_filter(struct words *w, const char *format,
     add_two_arguments(w, "-map", "[o]");
 }
 
-enum glint_status ffmpeg_write(struct child *child,
-                               const struct ffmpeg_target *target,
-                               const struct ffmpeg_video *video,
-                               struct glint_error *error)
+enum glint_status ffmpeg_start_writer(struct child *child,
+                                      const struct ffmpeg_target *target,
+                                      const struct ffmpeg_video *video,
+                                      struct glint_error *error)
 {
     const struct ffmpeg_target *t = target;
     const struct family *f;
@@ -1416,8 +1418,8 @@ static bool decode_video_piece(const char *url, enum piece piece,
     return false;
 }
 
-enum glint_status ffmpeg_check(const char *file, const char *name,
-                               struct glint_error *error)
+enum glint_status ffmpeg_check_output(const char *file, const char *name,
+                                      struct glint_error *error)
 {
     char url[FFMPEG_URL], cause[CAUSE];
     bool has_first;
@@ -1515,7 +1517,7 @@ void ffmpeg_report_losses(const char *file, const char *name,
     struct report r = {"", 0};
     struct ffmpeg_video made;
 
-    ffmpeg_probe(&made, file);
+    ffmpeg_probe_video(&made, file);
     if (!*made.pixels || !*v->pixels)
         return;
     note_pixel_losses(&r, made.pixels, v->pixels);

@@ -3,10 +3,10 @@
  * ffmpeg.h - reads and writes videos by the installed ffmpeg program.
  *
  *     ffmpeg_is_video("in.mp4");
- *     ffmpeg_probe(&video, "in.mp4");                  size, colours, sound
- *     ffmpeg_read(&reader, "in.mp4", &video, &error);  y4m comes out
- *     ffmpeg_write(&writer, &target, &video, &error);  y4m goes in
- *     ffmpeg_check(target.file, target.name, &error);  and decodes
+ *     ffmpeg_probe_video(&video, "in.mp4");                size, colours, sound
+ *     ffmpeg_start_reader(&reader, "in.mp4", &video, &error);  y4m comes out
+ *     ffmpeg_start_writer(&writer, &target, &video, &error);  y4m goes in
+ *     ffmpeg_check_output(target.file, target.name, &error);  and decodes
  *
  * ffmpeg runs as a child process at the other end of a pipe of y4m frames.
  * Sound is copied if the output container supports its codec; else it is
@@ -112,7 +112,7 @@ struct ffmpeg_target {
 const char *find_pixel_format(const char *chroma, int bits);
 
 /* Returns whether NAME is a program in $PATH. */
-bool child_exists(const char *name);
+bool child_is_program_installed(const char *name);
 
 /* Copies new lines of CHILD's messages to standard error. */
 void child_forward_messages(struct child *child);
@@ -130,7 +130,7 @@ bool ffmpeg_is_video(const char *name);
 
 /* Sets VIDEO to the properties that ffprobe reports of NAME; all are empty if
  * it fails. */
-void ffmpeg_probe(struct ffmpeg_video *video, const char *name);
+void ffmpeg_probe_video(struct ffmpeg_video *video, const char *name);
 
 /* Returns the number of frames in NAME, by an ffprobe run that reads the whole
  * file; 0 on failure. */
@@ -139,9 +139,9 @@ long ffmpeg_count_frames(const char *name);
 /* Sets the colour properties of HEADER by the tags of VIDEO. For tags that
  * glint does not know HEADER is unchanged, and REPORT lists them: ", matrix
  * ictcp". */
-void ffmpeg_colours(const struct ffmpeg_video *video,
-                    struct glint_y4m_header *header,
-                    char report[FFMPEG_REPORT]);
+void ffmpeg_set_colours(const struct ffmpeg_video *video,
+                        struct glint_y4m_header *header,
+                        char report[FFMPEG_REPORT]);
 
 /* Reads the times of NAME's frames. Returns true if they deviate from a
  * constant VIDEO->rate. The caller frees times->at. */
@@ -149,28 +149,30 @@ bool ffmpeg_read_times(struct ffmpeg_times *times, const char *name,
                        const struct ffmpeg_video *video);
 
 /* Returns whether the file type of NAME stores a time for each frame. */
-bool ffmpeg_keeps_times(const char *name);
+bool ffmpeg_can_store_times(const char *name);
 
 /* Starts ffmpeg as CHILD, which writes NAME as y4m to child->fd: each frame
  * once if KEEPS_TIMES, else frames are repeated or dropped for a constant rate.
  * Returns GLINT_E_UNSUPPORTED if ffmpeg is not installed or NAME is longer than
  * about 4000 bytes, GLINT_E_IO if no process or descriptor is available. */
-enum glint_status ffmpeg_read(struct child *child, const char *name,
-                              const struct ffmpeg_video *video,
-                              bool keeps_times, struct glint_error *error);
+enum glint_status ffmpeg_start_reader(struct child *child, const char *name,
+                                      const struct ffmpeg_video *video,
+                                      bool keeps_times,
+                                      struct glint_error *error);
 
 /* Starts ffmpeg as CHILD, which reads y4m from child->fd and writes TARGET.
  * VIDEO is the input, with empty members if unknown. Errors are as of
- * ffmpeg_read(), and GLINT_E_ARGUMENT if the command has more than 96 words. */
-enum glint_status ffmpeg_write(struct child *child,
-                               const struct ffmpeg_target *target,
-                               const struct ffmpeg_video *video,
-                               struct glint_error *error);
+ * ffmpeg_start_reader(), and GLINT_E_ARGUMENT if the command has more than 96
+ * words. */
+enum glint_status ffmpeg_start_writer(struct child *child,
+                                      const struct ffmpeg_target *target,
+                                      const struct ffmpeg_video *video,
+                                      struct glint_error *error);
 
 /* Returns GLINT_E_OUTPUT if the first or the last frames of FILE cannot be
  * decoded. FILE was written by ffmpeg and will be renamed to NAME. */
-enum glint_status ffmpeg_check(const char *file, const char *name,
-                               struct glint_error *error);
+enum glint_status ffmpeg_check_output(const char *file, const char *name,
+                                      struct glint_error *error);
 
 /* Prints a warning that lists properties of VIDEO, the input, that are lost in
  * FILE: bits, chroma, alpha, fields, streams, tags and similar. FILE was

@@ -24,7 +24,7 @@ static const struct {
     {"styles", " output width lens light-at strength gain quality "},
 };
 
-void help_all(const struct help *help)
+void help_print_all(const struct help *help)
 {
     for (int i = 0; i < HELP_PARTS; i++)
         if (help->part[i])
@@ -101,7 +101,7 @@ static void print_common_options(const char *text, const char *options,
     }
 }
 
-void help_screen(const struct help *help)
+void help_print_screen(const struct help *help)
 {
     const char *options = NULL;
     int lines = 0;
@@ -112,7 +112,7 @@ void help_screen(const struct help *help)
     for (int i = 0; i < HELP_PARTS; i++)
         lines += help->part[i] ? count_help_lines(help->part[i]) : 0;
     if (!options || lines <= HELP_SCREEN) {
-        help_all(help);
+        help_print_all(help);
         return;
     }
     for (int i = 0; i < HELP_PARTS; i++)
@@ -142,7 +142,7 @@ static bool print_option_summary(const char *text, const char *name)
     return false;
 }
 
-void help_options(const struct help *help, const struct option *options)
+void help_print_options(const struct help *help, const struct option *options)
 {
     for (const struct option *o = options; o && o->name; o++) {
         printf("--%s%s\t", o->name, o->has_arg == required_argument ? "=" : "");

@@ -20,14 +20,15 @@ struct help {
     const char *part[HELP_PARTS];
 };
 
-/* Print HELP. help_all() prints all of it; help_screen() prints only the
- * synopsis and the most common options if it is longer than HELP_SCREEN. */
-void help_all(const struct help *help);
-void help_screen(const struct help *help);
+/* Print HELP. help_print_all() prints all of it; help_print_screen() prints
+ * only the synopsis and the most common options if it is longer than
+ * HELP_SCREEN. */
+void help_print_all(const struct help *help);
+void help_print_screen(const struct help *help);
 
 /* Prints a line for each of OPTIONS, an array for getopt_long(): the name,
  * "=" if the option has a value, a tab, and the first line of its
  * description in HELP. */
-void help_options(const struct help *help, const struct option *options);
+void help_print_options(const struct help *help, const struct option *options);
 
 #endif

@@ -95,7 +95,7 @@ static const struct {
     {NULL, "warm-up", "a whole number, from 0"},
 };
 
-const char *values_of(const char *command, const char *option)
+const char *values_describe(const char *command, const char *option)
 {
     static char of_engine[256];
     const struct glint_option *const row = glint_option_named(option);
@@ -146,7 +146,7 @@ static bool is_literal_word(const char *text, size_t length)
 
 void values_print_words(const char *command, const char *option)
 {
-    const char *text = option ? values_of(command, option) : NULL;
+    const char *text = option ? values_describe(command, option) : NULL;
 
     while (text && *text) {
         const char *const end = find_item_end(text);

@@ -12,7 +12,7 @@
 /* Returns a description of the values that OPTION (without dashes) of COMMAND
  * accepts, or NULL. It is valid until the next call. Engine options are
  * described by glint/options.h. */
-const char *values_of(const char *command, const char *option);
+const char *values_describe(const char *command, const char *option);
 
 /* Prints the fixed words among the values of OPTION, one per line; nothing if
  * OPTION is NULL. */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-uint32_t lamp_id_of(const char *text)
+uint32_t lamp_hash_id(const char *text)
 {
     uint32_t id = 2166136261u; /* FNV-1a */
     uint64_t number = 0;
@@ -60,7 +60,7 @@ static void identify_lamps_of_keys(struct key *key, int n,
     }
 }
 
-enum glint_status lamp_keys_link(struct lamp_list *list)
+enum glint_status lamp_keys_link_rows(struct lamp_list *list)
 {
     struct key *key = malloc(((size_t)list->n + 1) * sizeof *key);
     int n = 0;
@@ -85,8 +85,8 @@ static double interpolate_linearly(double a, double b, double t)
     return a + (b - a) * t;
 }
 
-bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
-                  struct lamp_row *row)
+bool lamp_keys_interpolate_at(const struct lamp_list *list, int i, int frame,
+                              struct lamp_row *row)
 {
     const struct lamp_row *a = &list->row[i];
     const struct lamp_row *b = a->next >= 0 ? &list->row[a->next] : NULL;
@@ -122,7 +122,7 @@ static int list_lamp_ids_at_frame(const struct lamp_list *list, int frame,
     int n = 0;
 
     for (int i = 0; i < list->n && n < GLINT_ENGINE_MAX_LAMPS; i++)
-        if (list->row[i].id && lamp_keys_at(list, i, frame, &row))
+        if (list->row[i].id && lamp_keys_interpolate_at(list, i, frame, &row))
             id[n++] = row.id;
     return n;
 }

@@ -26,17 +26,17 @@
  * unchanged, so that a saved list has the ids of its source; any other text
  * becomes a hash of at least LAMP_ID_TEXT. */
 #define LAMP_ID_TEXT (UINT32_C(1) << 31)
-uint32_t lamp_id_of(const char *text);
+uint32_t lamp_hash_id(const char *text);
 
 /* Links the rows of each lamp in order of frames, by their member next.
  * Returns GLINT_E_MEMORY on failure. */
-enum glint_status lamp_keys_link(struct lamp_list *list);
+enum glint_status lamp_keys_link_rows(struct lamp_list *list);
 
 /* Sets ROW to the lamp of row I at FRAME. Returns false unless row I is for
  * FRAME or for every frame, or FRAME is between it and the next row of its
  * lamp. */
-bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
-                  struct lamp_row *row);
+bool lamp_keys_interpolate_at(const struct lamp_list *list, int i, int frame,
+                              struct lamp_row *row);
 
 /* Returns whether FRAME and the previous frame both have lamps with ids, but
  * no id in common, as after a cut. Compares at most GLINT_ENGINE_MAX_LAMPS

@@ -87,7 +87,7 @@ static const char *parse_row_fields(char *const field[COLUMNS], bool is_object,
         const bool is_text = text && (!is_object || *text == '"');
 
         if (text && k == ID && is_text)
-            v[k] = *text ? lamp_id_of(text + is_object) : 0;
+            v[k] = *text ? lamp_hash_id(text + is_object) : 0;
         else if (text && k == FRAME && is_text &&
                  (strcmp(text + is_object, "*") == 0 || !*text))
             v[k] = -1;
@@ -237,9 +237,9 @@ static void set_lamp_shape(struct glint_lamp *lamp, const struct lamp_row *r,
     lamp->turn_deg = r->turn;
 }
 
-int lamp_list_frame(const struct lamp_list *list, int frame,
-                    const struct glint_view *view, double focal_mm,
-                    struct glint_engine_lamp *lamps, int max)
+int lamp_list_get_frame(const struct lamp_list *list, int frame,
+                        const struct glint_view *view, double focal_mm,
+                        struct glint_engine_lamp *lamps, int max)
 {
     uint32_t largest = 0;
     int n = 0;
@@ -251,7 +251,7 @@ int lamp_list_frame(const struct lamp_list *list, int frame,
         struct glint_lamp lamp = {.power = 0};
         struct lamp_row r;
 
-        if (!lamp_keys_at(list, i, frame, &r))
+        if (!lamp_keys_interpolate_at(list, i, frame, &r))
             continue;
         glint_view_to_angles(view, focal_mm, r.x, r.y, &lamp);
         lamp.power = r.power;

@@ -24,8 +24,8 @@ struct lamp_row {
      * 0: not clipped */
     double seen;
     uint32_t id; /* id of the lamp; 0: none */
-    int next;    /* index of the lamp's next row, set by lamp_keys_link(), or
-                    -1 */
+    int next; /* index of the lamp's next row, set by lamp_keys_link_rows(), or
+                 -1 */
 };
 
 struct lamp_list {
@@ -54,8 +54,8 @@ enum glint_status lamp_list_add(struct lamp_list *list,
  * lamps interpolated between an earlier and a later row. Returns their
  * number. Lamps without an id get ids by their index in LAMPS, above all ids
  * of the list that are below LAMP_ID_TEXT. */
-int lamp_list_frame(const struct lamp_list *list, int frame,
-                    const struct glint_view *view, double focal_mm,
-                    struct glint_engine_lamp *lamps, int max);
+int lamp_list_get_frame(const struct lamp_list *list, int frame,
+                        const struct glint_view *view, double focal_mm,
+                        struct glint_engine_lamp *lamps, int max);
 
 #endif

@@ -25,7 +25,7 @@ enum glint_status lamp_save_open(struct lamp_save *save, const char *path,
     return status;
 }
 
-void lamp_save_row(struct lamp_save *save, const struct lamp_row *r)
+void lamp_save_write_row(struct lamp_save *save, const struct lamp_row *r)
 {
     char line[400];
 

@@ -3,8 +3,8 @@
  * lamp_save.h - saves the lamps of a run as a list for --lights.
  *
  *     lamp_save_open(&save, "lamps.csv", &error);
- *     lamp_save_row(&save, &row);                       each lamp of a frame
- *     lamp_save_finish(&save, &error);                  or lamp_save_abort
+ *     lamp_save_write_row(&save, &row);  each lamp of a frame
+ *     lamp_save_finish(&save, &error);   or lamp_save_abort
  *
  * Numbers are written with all digits, so that reading restores them exactly.
  * The file appears only when it is complete.
@@ -27,7 +27,7 @@ enum glint_status lamp_save_open(struct lamp_save *save, const char *path,
 
 /* Writes ROW. Skips lamps more than a million pixels away, which lists do
  * not allow. Errors are reported by lamp_save_finish(). */
-void lamp_save_row(struct lamp_save *save, const struct lamp_row *row);
+void lamp_save_write_row(struct lamp_save *save, const struct lamp_row *row);
 
 /* Completes the list and renames the file to its path, or returns the first
  * write error. Does nothing if SAVE is closed. */

@@ -53,7 +53,7 @@ static bool read_table_row(const char *line, const char *name,
            read_table_cell(&line, measured->ms, sizeof measured->ms);
 }
 
-enum glint_status measured_find(const char *name, struct measured *measured)
+enum glint_status measured_read_row(const char *name, struct measured *measured)
 {
     static const char file_name[] = "/figures.md";
     char path[PATH_CHARS], line[LINE_CHARS];
@@ -61,7 +61,7 @@ enum glint_status measured_find(const char *name, struct measured *measured)
 
     for (int i = 0;
          !found && !failed &&
-         lens_folder(i, "lenses", path, sizeof path - sizeof file_name);
+         lens_find_folder(i, "lenses", path, sizeof path - sizeof file_name);
          i++) {
         FILE *file = *path ? fopen(strcat(path, file_name), "r") : NULL;
 
@@ -148,7 +148,8 @@ static int draw_lens_thumbnails(const struct tool *tool,
     float *star = calloc(n, sizeof *star);
 
     image.rgb = calloc(n, sizeof *image.rgb);
-    opened_lens_engine(tool, lens, s, image.width, image.height, &cfg);
+    opened_lens_configure_engine(tool, lens, s, image.width, image.height,
+                                 &cfg);
     cfg.light.by_hand = 1;
     cfg.light.starburst = 1;
     cfg.search.max_found = 0;
@@ -229,7 +230,7 @@ static const char script[] =
     "at('tools').hidden=false;show();\n"
     "</script>\n";
 
-void page_begin(FILE *file)
+void page_write_head(FILE *file)
 {
     html_write_head(file, "Lenses", style);
     fputs(head, file);
@@ -253,7 +254,7 @@ static void print_lens_numbers(FILE *file, const struct page_card *card)
             lens->film_height_mm, card->n_ghosts);
 }
 
-void page_card_begin(FILE *file, const struct page_card *card)
+void page_begin_card(FILE *file, const struct page_card *card)
 {
     struct lens_drawing drawing;
 
@@ -276,12 +277,12 @@ void page_card_begin(FILE *file, const struct page_card *card)
     lens_drawing_write(&drawing, file);
 }
 
-void page_card_end(FILE *file)
+void page_end_card(FILE *file)
 {
     fputs("</figure>\n", file);
 }
 
-void page_end(FILE *file)
+void page_write_end(FILE *file)
 {
     fprintf(file, "</main>\n%s", script);
     html_write_end(file);

@@ -29,7 +29,8 @@ struct page_card {
 
 /* Reads the row of lens NAME; without one, f_number is "". Returns
  * GLINT_E_MEMORY if there is no memory to read it. */
-enum glint_status measured_find(const char *name, struct measured *measured);
+enum glint_status measured_read_row(const char *name,
+                                    struct measured *measured);
 
 /* Writes to FILE three <img>: the flare of a lamp at 0.25, 0.5 and 0.8 of
  * the distance to the film's corner. SETTINGS must be the defaults. NAME is
@@ -39,14 +40,14 @@ enum glint_status measured_find(const char *name, struct measured *measured);
 int thumbnails_write(const struct tool *tool, const struct settings *settings,
                      const char *name, FILE *file, size_t *model_bytes);
 
-void page_begin(FILE *file);
+void page_write_head(FILE *file);
 
 /* Writes the upper part of a card. Text that the caller then writes to FILE
  * appears below the section. */
-void page_card_begin(FILE *file, const struct page_card *card);
+void page_begin_card(FILE *file, const struct page_card *card);
 
-void page_card_end(FILE *file);
+void page_end_card(FILE *file);
 
-void page_end(FILE *file);
+void page_write_end(FILE *file);
 
 #endif

@@ -78,7 +78,7 @@ static bool search_lens_words(void *ctx, const char *name)
 {
     struct search *s = ctx;
 
-    if (tool_lens(s->tool, name, s->lens) != EXIT_OK)
+    if (tool_read_lens(s->tool, name, s->lens) != EXIT_OK)
         return true;
     s->found = lens_has_word(name, s->lens, s->word);
     suggest_words_of_text(&s->near[OF_NAME], name);
@@ -144,7 +144,7 @@ static bool compare_lens_name(void *ctx, const char *name)
     return !w->found;
 }
 
-int lens_names_check(const char *const *names, int n)
+int lens_check_names(const char *const *names, int n)
 {
     for (int i = 0; i < n; i++) {
         struct wanted w = {.name = names[i]};

@@ -54,10 +54,10 @@ struct live_output {
 bool live_output_parse(struct live_output *output, const char *name);
 
 /* Returns whether the output can be opened before the image size is known. */
-bool live_output_is_flexible(const struct live_output *output);
+bool live_output_accepts_any_size(const struct live_output *output);
 
 /* Opens OUTPUT for frames of IMAGE's format and size; IMAGE is ignored if
- * live_output_is_flexible(). */
+ * live_output_accepts_any_size(). */
 enum glint_status live_output_open(struct live_output *output,
                                    const struct glint_image *image, int fps_num,
                                    int fps_den, struct glint_error *error);

@@ -78,7 +78,7 @@ bool live_adapt_add_frame(struct live_adapt *a, double busy_ms,
     return a->below_s >= a->hold_s && change_quality_step(a, -1);
 }
 
-double live_adapt_quality(const struct live_adapt *a)
+double live_adapt_scene_quality(const struct live_adapt *a)
 {
     return a->step > 0 ? step_of[a->step].quality : 1;
 }

@@ -42,6 +42,6 @@ struct glint_dials live_adapt_set_dials(const struct live_adapt *adapt,
                                         struct glint_dials asked);
 
 /* Returns the max --quality for drawing a scene at this step. */
-double live_adapt_quality(const struct live_adapt *adapt);
+double live_adapt_scene_quality(const struct live_adapt *adapt);
 
 #endif

@@ -448,8 +448,9 @@ static bool has_file_extension(const char *name)
     return strncmp(name, "/dev/", 5) != 0 && strchr(slash ? slash : name, '.');
 }
 
-int live_input_fail(const struct live_log *log, const char *device,
-                    enum glint_status status, const struct glint_error *error)
+int live_input_report_error(const struct live_log *log, const char *device,
+                            enum glint_status status,
+                            const struct glint_error *error)
 {
     char text[sizeof error->text + 120];
 

@@ -65,8 +65,9 @@ enum glint_status live_input_start(struct live_input *input,
                                    struct glint_error *error);
 
 /* Prints why DEVICE cannot be opened or started. Returns an exit code. */
-int live_input_fail(const struct live_log *log, const char *device,
-                    enum glint_status status, const struct glint_error *error);
+int live_input_report_error(const struct live_log *log, const char *device,
+                            enum glint_status status,
+                            const struct glint_error *error);
 
 /* Closes INPUT, unless it is closed already. */
 void live_input_close(struct live_input *input);

@@ -30,7 +30,7 @@ void live_stats_start(struct live_stats *stats, int64_t now_us)
     start_frame_sums(&stats->total, now_us);
 }
 
-bool live_stats_due(const struct live_stats *stats, int64_t now_us)
+bool live_stats_is_second_over(const struct live_stats *stats, int64_t now_us)
 {
     return now_us - stats->second.began_us >= SECOND_US;
 }
@@ -78,8 +78,8 @@ static void add_frame_to_all_sums(struct live_sums *s,
         add_frame_to_sums(s, t);
 }
 
-void live_stats_add(struct live_stats *stats,
-                    const struct live_frame_times *times)
+void live_stats_add_frame(struct live_stats *stats,
+                          const struct live_frame_times *times)
 {
     add_frame_to_all_sums(&stats->second, times);
     add_frame_to_all_sums(&stats->total, times);
@@ -167,8 +167,8 @@ static bool is_stage_reported(const struct live_stats *stats, int stage)
     return stage != LIVE_SCENE || stats->total.stage_us[LIVE_SCENE] > 0;
 }
 
-char *live_stats_json(const struct live_stats *stats, int64_t now_us,
-                      bool total, char text[LIVE_STATS_TEXT])
+char *live_stats_write_json(const struct live_stats *stats, int64_t now_us,
+                            bool total, char text[LIVE_STATS_TEXT])
 {
     const struct live_sums *const s = total ? &stats->total : &stats->second;
     struct writer w = {text, 0, LIVE_STATS_TEXT};
@@ -228,8 +228,8 @@ static void append_stage_times(struct writer *w, const struct live_stats *stats)
     append(w, "  %zu bytes\n", s->most_bytes);
 }
 
-char *live_stats_line(const struct live_stats *stats, int64_t now_us,
-                      bool terminal, char text[LIVE_STATS_TEXT])
+char *live_stats_write_line(const struct live_stats *stats, int64_t now_us,
+                            bool terminal, char text[LIVE_STATS_TEXT])
 {
     struct writer w = {text, 0, LIVE_STATS_TEXT};
 
@@ -307,11 +307,12 @@ static void print_statistics(const struct live_log *log, bool total)
     if (log->report == LIVE_REPORT_JSON) {
         FILE *const out = log->is_piped ? stderr : stdout;
 
-        fprintf(out, "%s\n", live_stats_json(&log->stats, now_us, total, text));
+        fprintf(out, "%s\n",
+                live_stats_write_json(&log->stats, now_us, total, text));
         fflush(out);
     } else if (log->report == LIVE_REPORT_LINE && !total)
-        fputs(live_stats_line(&log->stats, now_us,
-                              is_terminal_line_overwritten(log), text),
+        fputs(live_stats_write_line(&log->stats, now_us,
+                                    is_terminal_line_overwritten(log), text),
               stderr);
 }
 
@@ -319,7 +320,7 @@ void live_log_print_second(struct live_log *log, bool is_asked)
 {
     const int64_t now_us = glint_now_us();
 
-    if (!live_stats_due(&log->stats, now_us) && !is_asked)
+    if (!live_stats_is_second_over(&log->stats, now_us) && !is_asked)
         return;
     print_statistics(log, false);
     live_stats_begin_second(&log->stats, now_us);

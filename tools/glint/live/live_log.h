@@ -4,12 +4,12 @@
  * a line of text or as JSON.
  *
  *     live_stats_start(&stats, now);
- *     live_stats_add(&stats, &times);                       each frame
- *     if (live_stats_due(&stats, now)) {
- *         fputs(live_stats_line(&stats, now, true, text), stderr);
+ *     live_stats_add_frame(&stats, &times);                       each frame
+ *     if (live_stats_is_second_over(&stats, now)) {
+ *         fputs(live_stats_write_line(&stats, now, true, text), stderr);
  *         live_stats_begin_second(&stats, now);
  *     }
- *     puts(live_stats_json(&stats, now, true, text));       at the end
+ *     puts(live_stats_write_json(&stats, now, true, text));       at the end
  *
  * Times are microseconds of the monotonic clock of the frames' time stamps.
  * Memory is fixed, about 80 KB: latencies are counted in bins of 0.1 ms up to
@@ -86,12 +86,12 @@ struct live_log {
 
 void live_stats_start(struct live_stats *stats, int64_t now_us);
 
-void live_stats_add(struct live_stats *stats,
-                    const struct live_frame_times *times);
+void live_stats_add_frame(struct live_stats *stats,
+                          const struct live_frame_times *times);
 
 /* Returns whether a second has passed since live_stats_start() or
  * live_stats_begin_second(). */
-bool live_stats_due(const struct live_stats *stats, int64_t now_us);
+bool live_stats_is_second_over(const struct live_stats *stats, int64_t now_us);
 
 /* Begins the next second. */
 void live_stats_begin_second(struct live_stats *stats, int64_t now_us);
@@ -104,8 +104,8 @@ double live_stats_latency_ms(const struct live_sums *sums, int percent);
  * TEXT. For a TERMINAL the line has at most 79 characters and overwrites the
  * previous line; else it ends with a line feed and has the stages, too. Counts
  * of dropped, late and corrupt frames are since the start. */
-char *live_stats_line(const struct live_stats *stats, int64_t now_us,
-                      bool terminal, char text[LIVE_STATS_TEXT]);
+char *live_stats_write_line(const struct live_stats *stats, int64_t now_us,
+                            bool terminal, char text[LIVE_STATS_TEXT]);
 
 /* Writes the statistics of the second, or of the run if TOTAL, to TEXT as a
  * JSON object without line feed, and returns TEXT: "t" (seconds since the
@@ -113,8 +113,8 @@ char *live_stats_line(const struct live_stats *stats, int64_t now_us,
  * "latency_ms_p99", "ms" (mean of each stage), the most "lights", "ghosts" and
  * "bytes", mean "quality"; of the total also "total": true. Latencies and means
  * of no frames are null. */
-char *live_stats_json(const struct live_stats *stats, int64_t now_us,
-                      bool total, char text[LIVE_STATS_TEXT]);
+char *live_stats_write_json(const struct live_stats *stats, int64_t now_us,
+                            bool total, char text[LIVE_STATS_TEXT]);
 
 /* Initialises LOG for reports of type ASKED, which may be LIVE_REPORT_AUTO. */
 void live_log_init(struct live_log *log, const struct tool *tool,

@@ -117,7 +117,7 @@ static int apply_quality_step(struct live *l)
 {
     struct drawing *drawing = &l->o->drawing;
     const enum glint_status status = over_scene_set_quality(
-        &drawing->files.scene, live_adapt_quality(&l->adapt));
+        &drawing->files.scene, live_adapt_scene_quality(&l->adapt));
 
     if (drawing->run.engine)
         glint_engine_set_dials(drawing->run.engine,
@@ -134,7 +134,7 @@ static int prepare_drawing(struct live *l, const struct glint_image *image)
     if (drawing->run.is_sized && image->width == drawing->run.view.width &&
         image->height == drawing->run.view.height)
         return EXIT_OK;
-    code = drawing_size(l->tool, drawing, image->width, image->height);
+    code = drawing_allocate(l->tool, drawing, image->width, image->height);
     if (code != EXIT_OK)
         return code;
     if (drawing->run.engine)
@@ -235,11 +235,11 @@ static void record_frame_statistics(struct live *l,
         t.ghosts = drawing->run.report.ghosts;
         t.bytes = drawing->run.report.peak_bytes +
                   drawing->run.report.star_bytes +
-                  over_scene_bytes(&drawing->files.scene);
+                  over_scene_memory_bytes(&drawing->files.scene);
         t.reused = drawing->run.report.stats.reused != 0;
         t.quality = 1 - (double)l->adapt.step / LIVE_MAX_STEP;
     }
-    live_stats_add(&l->log.stats, &t);
+    live_stats_add_frame(&l->log.stats, &t);
 }
 
 /* ------------------------------------------------------------- what is lost */
@@ -329,7 +329,7 @@ static int draw_and_show(struct live *l, const struct glint_source_frame *frame,
     if (code != EXIT_OK)
         return code;
     at_us[1] = glint_now_us();
-    status = drawing_draw(drawing, image, elapsed_us(l, frame->time_us));
+    status = drawing_draw_flare(drawing, image, elapsed_us(l, frame->time_us));
     if (status != GLINT_OK)
         return tool_fail(l->tool, status, NULL);
     live_log_warn_memory(&l->log, &drawing->run.report.stats);
@@ -469,13 +469,13 @@ static int start_live_run(struct live *l)
     enum glint_status status;
     int code = EXIT_OK;
 
-    if (live_output_is_flexible(&l->output))
+    if (live_output_accepts_any_size(&l->output))
         code = open_live_output(l, &(struct glint_image){.width = 0});
     if (code != EXIT_OK)
         return code;
     status = open_camera(l, &error);
     if (status != GLINT_OK)
-        return live_input_fail(&l->log, device, status, &error);
+        return live_input_report_error(&l->log, device, status, &error);
     code = drawing_open(l->tool, &l->o->drawing);
     if (code != EXIT_OK)
         return code;
@@ -486,7 +486,7 @@ static int start_live_run(struct live *l)
     status = start_live_input(l, &error);
     return status == GLINT_OK
                ? EXIT_OK
-               : live_input_fail(&l->log, device, status, &error);
+               : live_input_report_error(&l->log, device, status, &error);
 }
 
 int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
@@ -514,7 +514,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
         live_stats_start(&l->log.stats, glint_now_us());
         code = run_frame_loop(l);
         if (code == EXIT_OK)
-            code = drawing_finish(tool, &o->drawing);
+            code = drawing_finish_lamp_file(tool, &o->drawing);
         live_log_print_summary(&l->log, code == EXIT_OK, l->n_shown,
                                live_output_count_dropped(&l->output));
     }

@@ -25,7 +25,7 @@ bool live_output_parse(struct live_output *o, const char *name)
     return true;
 }
 
-bool live_output_is_flexible(const struct live_output *o)
+bool live_output_accepts_any_size(const struct live_output *o)
 {
     return o->kind == LIVE_OUTPUT_FB || o->kind == LIVE_OUTPUT_NULL ||
            o->kind == LIVE_OUTPUT_WINDOW;

@@ -20,11 +20,11 @@ int bake_line_parse(struct tool *tool, const char *help, int argc, char **argv,
             continue;
         }
         code = take ? take(tool, line, c, options[index].name)
-                    : tool_option(tool, c, optarg);
+                    : tool_apply_option(tool, c, optarg);
         if (code >= 0)
             return code;
     }
-    code = tool_inputs(tool, argc, argv, 1, text);
+    code = tool_check_inputs(tool, argc, argv, 1, text);
     if (code >= 0)
         return code;
     if (!tool->written)

@@ -16,7 +16,7 @@
 #include "posix/output.h"
 #include "posix/process.h"
 
-bool cache_file_folder(char *path, size_t bytes)
+bool cache_file_find_folder(char *path, size_t bytes)
 {
     const char *cache = glint_process_setting("XDG_CACHE_HOME");
     const char *home = glint_process_setting("HOME");
@@ -29,8 +29,8 @@ bool cache_file_folder(char *path, size_t bytes)
     return n > 0 && (size_t)n < bytes;
 }
 
-bool cache_file_name(char *path, size_t bytes, const char *name, uint64_t key,
-                     const char *suffix)
+bool cache_file_append_name(char *path, size_t bytes, const char *name,
+                            uint64_t key, const char *suffix)
 {
     const size_t used = strlen(path);
     char safe[GLINT_NAME_BYTES];

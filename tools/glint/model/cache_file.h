@@ -16,13 +16,13 @@
 enum { CACHE_PATH_BYTES = 1024 };
 
 /* Sets PATH to the folder of the cache. Returns false if no folder is known. */
-bool cache_file_folder(char *path, size_t bytes);
+bool cache_file_find_folder(char *path, size_t bytes);
 
 /* Appends "/NAME-KEY.SUFFIX" to the folder in PATH. Characters of NAME other
  * than letters, digits and "-_." become '_'. Returns false if the path is
  * too long. */
-bool cache_file_name(char *path, size_t bytes, const char *name, uint64_t key,
-                     const char *suffix);
+bool cache_file_append_name(char *path, size_t bytes, const char *name,
+                            uint64_t key, const char *suffix);
 
 /* Creates the folders above PATH. Failures are not reported, as writing the
  * file fails later. */

@@ -71,8 +71,8 @@ void coating_apply(const struct coating *c, struct glint_prescription *lens)
         glint_prescription_coat(lens, standard, n);
 }
 
-int coating_of_model(const struct tool *tool, const struct coating *c,
-                     const char *path)
+int coating_reject_for_model(const struct tool *tool, const struct coating *c,
+                             const char *path)
 {
     return c->given ? tool_usage(tool,
                                  "%s is a model, baked with its coatings: "

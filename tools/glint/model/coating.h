@@ -50,7 +50,7 @@ void coating_apply(const struct coating *coating,
 /* Returns EXIT_OK if --coating was not given; else prints a usage error,
  * since the model PATH was baked with its own coatings, and returns the exit
  * code. */
-int coating_of_model(const struct tool *tool, const struct coating *coating,
-                     const char *path);
+int coating_reject_for_model(const struct tool *tool,
+                             const struct coating *coating, const char *path);
 
 #endif

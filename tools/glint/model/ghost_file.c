@@ -133,7 +133,7 @@ static const char *parse_ghost_line(void *ctx, struct text_lines *lines,
     ghost = parse_ghost_number(r, word);
     if (ghost >= 0)
         return parse_ghost_words(r, ghost, rest);
-    return text_lines_cause(
+    return text_lines_format_cause(
         lines,
         "no ghost '%.20s': lines begin with a number, 0 to %d, or the two "
         "surfaces of a ghost (glint info lists them)",
@@ -207,8 +207,8 @@ enum glint_status ghost_file_read(struct glint_tint **tints, const char *path,
     return ghost_file_parse(tints, path, NULL, MOST_BYTES, setup, lens, error);
 }
 
-void ghost_file_line(char *text, size_t room, int ghost,
-                     const struct glint_tint *tint)
+void ghost_file_write_line(char *text, size_t room, int ghost,
+                           const struct glint_tint *tint)
 {
     const struct glint_tint plain = {{16384, 16384, 16384}, glint_real_of(1)};
     const struct glint_tint *t = tint ? tint : &plain;

@@ -33,7 +33,7 @@ enum glint_status ghost_file_parse(struct glint_tint **tints, const char *name,
 
 /* Writes to TEXT[ROOM] the line of a file that sets GHOST to TINT; if TINT
  * is NULL, the line leaves the ghost unchanged. */
-void ghost_file_line(char *text, size_t room, int ghost,
-                     const struct glint_tint *tint);
+void ghost_file_write_line(char *text, size_t room, int ghost,
+                           const struct glint_tint *tint);
 
 #endif

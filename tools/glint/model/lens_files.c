@@ -38,7 +38,7 @@ static bool find_folder_above_program(int up, char *path, size_t bytes)
     return stat(path, &st) == 0 && !(st.st_mode & S_IWOTH);
 }
 
-bool lens_folder(int i, const char *kind, char *path, size_t bytes)
+bool lens_find_folder(int i, const char *kind, char *path, size_t bytes)
 {
     const char *given = strcmp(kind, "lenses") == 0
                             ? glint_process_setting("GLINT_LENSES")
@@ -72,9 +72,9 @@ static const char *const rooms[] = {"",      "/anamorphic", "/normal", "/phone",
 
 enum { N_ROOMS = sizeof rooms / sizeof *rooms };
 
-bool lens_file_find(const char *name, char *path, size_t bytes)
+bool lens_find_file(const char *name, char *path, size_t bytes)
 {
-    for (int i = 0; lens_folder(i, "lenses", path, bytes); i++) {
+    for (int i = 0; lens_find_folder(i, "lenses", path, bytes); i++) {
         const size_t used = strlen(path);
 
         for (int r = 0; used > 0 && r < N_ROOMS; r++)
@@ -163,7 +163,7 @@ int lens_files_visit_all(lens_files_fn *each, void *ctx)
     bool ok = true;
 
     pthread_once(&once, check_user_folder);
-    for (int i = 0; ok && lens_folder(i, "lenses", path, sizeof path); i++)
+    for (int i = 0; ok && lens_find_folder(i, "lenses", path, sizeof path); i++)
         for (int r = 0; ok && *path && r < N_ROOMS; r++) {
             snprintf(room, sizeof room, "%s%s", path, rooms[r]);
             ok = add_lens_folder(&l, room);

@@ -15,11 +15,11 @@
 /* Sets PATH to folder I, counted from 0, of the folders searched for KIND,
  * "lenses" or "models", or to "" if that folder is unknown. The folder need
  * not exist. Returns false if I is past the last folder. */
-bool lens_folder(int i, const char *kind, char *path, size_t bytes);
+bool lens_find_folder(int i, const char *kind, char *path, size_t bytes);
 
 /* Sets PATH to the table of lens NAME, given without .lens. Returns false if
  * there is no such table. */
-bool lens_file_find(const char *name, char *path, size_t bytes);
+bool lens_find_file(const char *name, char *path, size_t bytes);
 
 /* Calls EACH for every lens, sorted by name, until it returns false. Returns
  * the number of lenses, or -1 if there is no memory. */

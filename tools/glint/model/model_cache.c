@@ -11,16 +11,17 @@
 
 enum { MAX_BYTES = 1 << 28 };
 
-bool model_cache_name(char *path, size_t bytes, const char *lens, uint64_t key)
+bool model_cache_append_name(char *path, size_t bytes, const char *lens,
+                             uint64_t key)
 {
-    return cache_file_name(path, bytes, lens, key, "glint");
+    return cache_file_append_name(path, bytes, lens, key, "glint");
 }
 
 static bool make_model_path(char *path, size_t bytes, const char *lens,
                             uint64_t key)
 {
-    return cache_file_folder(path, bytes) &&
-           model_cache_name(path, bytes, lens, key);
+    return cache_file_find_folder(path, bytes) &&
+           model_cache_append_name(path, bytes, lens, key);
 }
 
 static uint64_t compute_model_key(const struct glint_lens *lens)
@@ -74,8 +75,8 @@ static bool load_installed_model(const char *lens, uint64_t key,
 {
     char path[CACHE_PATH_BYTES];
 
-    for (int i = 0; lens_folder(i, "models", path, sizeof path); i++)
-        if (model_cache_name(path, sizeof path, lens, key) &&
+    for (int i = 0; lens_find_folder(i, "models", path, sizeof path); i++)
+        if (model_cache_append_name(path, sizeof path, lens, key) &&
             load_model_file(path, key, read_installed_model, model))
             return true;
     return false;
@@ -95,11 +96,11 @@ bool model_is_cached(const struct glint_prescription *lens,
     return is;
 }
 
-bool model_cache_path(char *path, size_t bytes, const char *file)
+bool model_cache_make_path(char *path, size_t bytes, const char *file)
 {
     size_t used;
 
-    if (!cache_file_folder(path, bytes))
+    if (!cache_file_find_folder(path, bytes))
         return false;
     used = strlen(path);
     if ((size_t)snprintf(path + used, bytes - used, "/%s", file) >=
@@ -127,7 +128,7 @@ bool model_is_lens_from_file(const struct glint_prescription *lens,
     struct stat a, b;
 
     return tool_is_file_name(file) &&
-           (!lens_file_find(lens->name, own, sizeof own) || stat(own, &a) < 0 ||
+           (!lens_find_file(lens->name, own, sizeof own) || stat(own, &a) < 0 ||
             stat(file, &b) < 0 || a.st_ino != b.st_ino || a.st_dev != b.st_dev);
 }
 
@@ -217,9 +218,10 @@ static void report_bake_wait(void *ctx)
                 w->tool->name, w->lens);
 }
 
-int model_cached(const struct tool *tool, const struct glint_prescription *lens,
-                 const char *file, struct glint_bake_options options,
-                 struct model_file *model)
+int model_open_cached(const struct tool *tool,
+                      const struct glint_prescription *lens, const char *file,
+                      struct glint_bake_options options,
+                      struct model_file *model)
 {
     const uint64_t key = glint_bake_key(lens, &options);
     struct wait wait = {tool, lens->name};

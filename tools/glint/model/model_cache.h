@@ -18,9 +18,10 @@
  * its bake exceeds MODEL_CACHE_WORK; glint bake has no such limit. Overwrites
  * workers, progress and allow of OPTIONS. Returns an exit code, after printing
  * the reason on failure. */
-int model_cached(const struct tool *tool, const struct glint_prescription *lens,
-                 const char *file, struct glint_bake_options options,
-                 struct model_file *model);
+int model_open_cached(const struct tool *tool,
+                      const struct glint_prescription *lens, const char *file,
+                      struct glint_bake_options options,
+                      struct model_file *model);
 
 /* Max bake work, in units of allow() of struct glint_bake_options; about 30 s
  * of processor time */
@@ -38,10 +39,11 @@ bool model_is_cached(const struct glint_prescription *lens,
 
 /* Appends "/NAME-KEY.glint" to the folder in PATH. Returns false if it is too
  * long. */
-bool model_cache_name(char *path, size_t bytes, const char *lens, uint64_t key);
+bool model_cache_append_name(char *path, size_t bytes, const char *lens,
+                             uint64_t key);
 
 /* Sets PATH to the path of FILE in the cache folder, and creates the folder.
  * Returns false if there is no cache. */
-bool model_cache_path(char *path, size_t bytes, const char *file);
+bool model_cache_make_path(char *path, size_t bytes, const char *file);
 
 #endif

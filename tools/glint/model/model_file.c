@@ -65,8 +65,8 @@ static enum glint_status open_model_data(struct model_file *model,
     return status;
 }
 
-int tool_model(const struct tool *tool, const char *path,
-               struct model_file *model)
+int tool_open_model(const struct tool *tool, const char *path,
+                    struct model_file *model)
 {
     struct glint_error error = {""};
     uint8_t *data = NULL;
@@ -94,7 +94,7 @@ static double focal_length_at(struct glint_zoom_lens *z, int32_t along_q30)
     return model_compute_real(z->header.focal_mm);
 }
 
-int model_file_positions(const struct glint_zoom_lens *zoom)
+int model_file_count_positions(const struct glint_zoom_lens *zoom)
 {
     int n = 0;
 
@@ -103,8 +103,8 @@ int model_file_positions(const struct glint_zoom_lens *zoom)
     return n;
 }
 
-enum glint_status model_file_zoom(struct model_file *model, double zoom,
-                                  struct glint_error *error)
+enum glint_status model_file_set_zoom(struct model_file *model, double zoom,
+                                      struct glint_error *error)
 {
     const int32_t whole_q30 = INT32_C(1) << 30;
     /* tolerance: focal lengths engraved on barrels are rounded */

@@ -3,7 +3,7 @@
  * Reading a baked lens from its file.
  *
  *     if (tool_is_model(path))
- *         code = tool_model(tool, path, &model);
+ *         code = tool_open_model(tool, path, &model);
  *     ... model.lens ...
  *     model_file_close(&model);
  */
@@ -34,17 +34,17 @@ bool tool_is_model(const char *path);
 
 /* Reads and checks the model at PATH. Returns an exit code; on failure prints
  * the reason and leaves MODEL closed. */
-int tool_model(const struct tool *tool, const char *path,
-               struct model_file *model);
+int tool_open_model(const struct tool *tool, const char *path,
+                    struct model_file *model);
 
 /* Moves the zoom lens of MODEL to ZOOM: a focal length in mm, or 0 .. 1 from
  * its first position to its last. Returns GLINT_E_ARGUMENT if ZOOM is out of
  * range: ERROR states the range, and MODEL is unchanged. */
-enum glint_status model_file_zoom(struct model_file *model, double zoom,
-                                  struct glint_error *error);
+enum glint_status model_file_set_zoom(struct model_file *model, double zoom,
+                                      struct glint_error *error);
 
 /* Returns the number of baked positions of ZOOM that have all ghosts. */
-int model_file_positions(const struct glint_zoom_lens *zoom);
+int model_file_count_positions(const struct glint_zoom_lens *zoom);
 
 /* Closes MODEL; does nothing if it is closed. */
 void model_file_close(struct model_file *model);

@@ -103,7 +103,7 @@ static void write_system_json(struct json_writer *json,
                model_wavelength_nm(s->wave_hi_q24),
                model_wavelength_nm(s->wave_lo_q24),
                model_outputs_of(lens, s)[GLINT_OUT_ENERGY].roots,
-               model_count_terms(&sum), model_span_bytes(lens, span));
+               model_count_terms(&sum), model_count_span_bytes(lens, span));
     write_errors_json(json, &sum);
     json_write(json, "}");
 }
@@ -126,7 +126,8 @@ static void write_info_json(const struct tool *tool,
     write_header_json(&json, model);
     if (model->zoom)
         json_write(&json, "positions: %d, models: %d",
-                   model_file_positions(model->zoom), model->zoom->n_models);
+                   model_file_count_positions(model->zoom),
+                   model->zoom->n_models);
     if (tool->verbose)
         write_systems_json(&json, &model->lens);
     json_write(&json, "}\n");
@@ -140,13 +141,13 @@ static void write_ghost_json(struct json_writer *json,
     const struct model_summary sum = model_summarise(lens, span);
     double range_deg[2];
 
-    model_span_angles(lens, span, range_deg);
+    model_find_span_angles(lens, span, range_deg);
     json_write(json,
                "{ghost: %u, part: %c, pair: [%u, %u], angle_deg: [%.6f, %.6f], "
                "zones: %u, bytes: %zu, met: %c",
                model_find_first_entry(lens, entry),
                entry >= model_count_ghosts(lens), g->i, g->j, range_deg[0],
-               range_deg[1], span.n, model_span_bytes(lens, span),
+               range_deg[1], span.n, model_count_span_bytes(lens, span),
                !model_has_misses(&sum));
     write_errors_json(json, &sum);
     json_write(json, "}");
@@ -222,8 +223,8 @@ static void print_model_header(const struct model_file *model)
     if (model->zoom)
         printf("positions           %6d of the zoom range, %d more of single "
                "ghosts; all other values are those of the first\n",
-               model_file_positions(model->zoom),
-               model->zoom->n_models - model_file_positions(model->zoom));
+               model_file_count_positions(model->zoom),
+               model->zoom->n_models - model_file_count_positions(model->zoom));
 }
 
 static void print_model_errors(const struct model_summary *sum)
@@ -257,14 +258,14 @@ static void print_ghost_row(const struct glint_lens *lens, uint32_t entry,
     double range_deg[2];
     char pair[32];
 
-    model_span_angles(lens, span, range_deg);
+    model_find_span_angles(lens, span, range_deg);
     snprintf(pair, sizeof pair, "%lu-%lu", (unsigned long)g->i,
              (unsigned long)g->j);
     printf("%5lu%c %-8s %7lu  %7.3f .. %-7.3f %7.0f  %9zu",
            (unsigned long)model_find_first_entry(lens, entry),
            entry < model_count_ghosts(lens) ? ' ' : '+', pair,
            (unsigned long)g->n_systems, range_deg[0], range_deg[1],
-           model_count_terms(sum), model_span_bytes(lens, span));
+           model_count_terms(sum), model_count_span_bytes(lens, span));
 }
 
 static void print_unseen_ghosts(const struct glint_lens *lens)
@@ -417,7 +418,8 @@ static void print_picture_check(const struct picture_check *check)
                PICTURE_CHECK_DB);
 }
 
-void model_report_info(const struct tool *tool, const struct model_file *model)
+void model_report_print_info(const struct tool *tool,
+                             const struct model_file *model)
 {
     struct model_file shown = *model;
 
@@ -427,9 +429,10 @@ void model_report_info(const struct tool *tool, const struct model_file *model)
     (tool->json ? write_info_json : print_model_info)(tool, &shown);
 }
 
-void model_report_bake(const struct tool *tool, const struct glint_lens *lens,
-                       double seconds, const struct glint_bake_report *report,
-                       const struct picture_check *check)
+void model_report_print_bake(const struct tool *tool,
+                             const struct glint_lens *lens, double seconds,
+                             const struct glint_bake_report *report,
+                             const struct picture_check *check)
 {
     if (tool->json)
         write_bake_json(lens, seconds, report, check);

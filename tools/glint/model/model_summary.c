@@ -62,7 +62,8 @@ static size_t count_box_words(const struct glint_model_system *s)
     return n;
 }
 
-size_t model_span_bytes(const struct glint_lens *lens, struct model_span span)
+size_t model_count_span_bytes(const struct glint_lens *lens,
+                              struct model_span span)
 {
     size_t sum = 0;
 
@@ -78,8 +79,8 @@ size_t model_span_bytes(const struct glint_lens *lens, struct model_span span)
     return sum;
 }
 
-void model_span_angles(const struct glint_lens *lens, struct model_span span,
-                       double range_deg[2])
+void model_find_span_angles(const struct glint_lens *lens,
+                            struct model_span span, double range_deg[2])
 {
     int32_t lo_q30 = INT32_MAX, hi_q30 = 0;
 
@@ -189,7 +190,7 @@ static void add_miss(const struct glint_lens *lens, uint32_t system,
 
     if (!model_has_misses(&sum))
         return;
-    model_span_angles(lens, span, range_deg);
+    model_find_span_angles(lens, span, range_deg);
     miss->angle_deg[0] =
         miss->zones ? fmin(miss->angle_deg[0], range_deg[0]) : range_deg[0];
     miss->angle_deg[1] = fmax(miss->angle_deg[1], range_deg[1]);

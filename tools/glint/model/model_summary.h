@@ -36,11 +36,12 @@ model_outputs_of(const struct glint_lens *lens,
 
 /* Returns the bytes that SPAN would occupy in the file if its systems shared
  * no data. */
-size_t model_span_bytes(const struct glint_lens *lens, struct model_span span);
+size_t model_count_span_bytes(const struct glint_lens *lens,
+                              struct model_span span);
 
 /* Sets RANGE_DEG to the min and max angle that SPAN covers. */
-void model_span_angles(const struct glint_lens *lens, struct model_span span,
-                       double range_deg[2]);
+void model_find_span_angles(const struct glint_lens *lens,
+                            struct model_span span, double range_deg[2]);
 
 /* Errors of one output, over the systems of a span that have this output. */
 struct model_errors {

@@ -10,8 +10,8 @@
 #include "model/table_file.h"
 #include "model/opened_table.h"
 
-int tool_lens(const struct tool *tool, const char *argument,
-              struct glint_prescription *lens)
+int tool_read_lens(const struct tool *tool, const char *argument,
+                   struct glint_prescription *lens)
 {
     struct glint_error error;
 
@@ -34,15 +34,15 @@ int tool_lens(const struct tool *tool, const char *argument,
     return tool_fail(tool, GLINT_E_LENS, error.text);
 }
 
-int opened_table(const struct tool *tool, struct opened_lens *lens,
-                 const struct settings *settings, const char *name)
+int opened_table_open(const struct tool *tool, struct opened_lens *lens,
+                      const struct settings *settings, const char *name)
 {
     (void)settings;
-    return tool_lens(tool, name, &lens->table);
+    return tool_read_lens(tool, name, &lens->table);
 }
 
-int stop_mask_read(const struct tool *tool, const char *file,
-                   struct stop_mask *mask)
+int stop_mask_read_image(const struct tool *tool, const char *file,
+                         struct stop_mask *mask)
 {
     (void)mask;
     return tool_usage(
@@ -51,9 +51,10 @@ int stop_mask_read(const struct tool *tool, const char *file,
 
 /* Returns an error, as there is no model. Never called, as every opened lens
  * has a model. */
-enum glint_status opened_table_setup(struct opened_lens *lens,
-                                     const struct glint_engine_camera *camera,
-                                     struct glint_error *error)
+enum glint_status
+opened_table_make_setup(struct opened_lens *lens,
+                        const struct glint_engine_camera *camera,
+                        struct glint_error *error)
 {
     (void)lens, (void)camera;
     snprintf(error->text, sizeof error->text,
@@ -61,7 +62,7 @@ enum glint_status opened_table_setup(struct opened_lens *lens,
     return GLINT_E_LENS;
 }
 
-const struct glint_frame_rays *opened_table_rays(void)
+const struct glint_frame_rays *opened_table_ray_functions(void)
 {
     return NULL;
 }

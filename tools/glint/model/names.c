@@ -34,10 +34,10 @@ void tool_hash_into_key(uint64_t *key, const void *data, size_t bytes)
         *key = (*key ^ byte[i]) * UINT64_C(1099511628211);
 }
 
-enum glint_status tool_find_input(const char *text, const char *name,
-                                  const char *written,
-                                  char path[TOOL_PATH_BYTES],
-                                  struct glint_error *error)
+enum glint_status tool_make_input_path(const char *text, const char *name,
+                                       const char *written,
+                                       char path[TOOL_PATH_BYTES],
+                                       struct glint_error *error)
 {
     const char *const slash = name[0] == '/' ? NULL : strrchr(text, '/');
     const int folder = slash ? (int)(slash - text) + 1 : 0;
@@ -55,7 +55,7 @@ enum glint_status tool_find_input(const char *text, const char *name,
     return GLINT_E_ARGUMENT;
 }
 
-void tool_scene_name(const char *path, char name[64])
+void tool_copy_scene_name(const char *path, char name[64])
 {
     const char *const slash = strrchr(path, '/');
     const char *const start = slash ? slash + 1 : path;

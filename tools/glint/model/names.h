@@ -14,13 +14,13 @@ enum { TOOL_PATH_BYTES = 4096 };
 /* Sets PATH to NAME, which is relative to the folder of the file TEXT.
  * Returns GLINT_E_IO if PATH is too long, GLINT_E_ARGUMENT if it is the
  * output file WRITTEN (may be NULL). */
-enum glint_status tool_find_input(const char *text, const char *name,
-                                  const char *written,
-                                  char path[TOOL_PATH_BYTES],
-                                  struct glint_error *error);
+enum glint_status tool_make_input_path(const char *text, const char *name,
+                                       const char *written,
+                                       char path[TOOL_PATH_BYTES],
+                                       struct glint_error *error);
 
 /* Sets NAME to the name of the file PATH without folder and extension. */
-void tool_scene_name(const char *path, char name[64]);
+void tool_copy_scene_name(const char *path, char name[64]);
 
 /* FNV-1a hash: start with TOOL_KEY_BEGIN; tool_hash_into_key() adds
  * DATA[BYTES]. */

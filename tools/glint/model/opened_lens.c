@@ -11,8 +11,9 @@
 
 /* ---------------------------------------------------------------- the setup */
 
-struct glint_engine_camera opened_lens_camera(const struct opened_lens *lens,
-                                              const struct settings *settings)
+struct glint_engine_camera
+opened_lens_make_camera(const struct opened_lens *lens,
+                        const struct settings *settings)
 {
     struct glint_engine_camera camera = settings->camera;
 
@@ -31,12 +32,12 @@ enum glint_status opened_lens_set_stop(struct opened_lens *lens,
                                        const struct settings *s,
                                        struct glint_error *error)
 {
-    const struct glint_engine_camera camera = opened_lens_camera(lens, s);
+    const struct glint_engine_camera camera = opened_lens_make_camera(lens, s);
     const struct glint_lens *const model =
         lens->model.data ? &lens->model.lens : NULL;
     struct glint_dirt *dirt;
     enum glint_status status =
-        model ? GLINT_OK : opened_table_setup(lens, &camera, error);
+        model ? GLINT_OK : opened_table_make_setup(lens, &camera, error);
 
     if (status == GLINT_OK)
         status = glint_engine_setup(&lens->setup, model, &camera, &dirt, error);
@@ -47,9 +48,9 @@ enum glint_status opened_lens_set_stop(struct opened_lens *lens,
     return GLINT_OK;
 }
 
-enum glint_status opened_lens_zoom(struct opened_lens *lens,
-                                   const struct settings *settings, double zoom,
-                                   struct glint_error *error)
+enum glint_status opened_lens_set_zoom(struct opened_lens *lens,
+                                       const struct settings *settings,
+                                       double zoom, struct glint_error *error)
 {
     enum glint_status status;
 
@@ -64,7 +65,7 @@ enum glint_status opened_lens_zoom(struct opened_lens *lens,
             : lens->table.n_surfaces
                 ? "does not zoom: its table has one position"
                 : "does not zoom: its model is of one position");
-    status = model_file_zoom(&lens->model, zoom, error);
+    status = model_file_set_zoom(&lens->model, zoom, error);
     return status == GLINT_OK ? opened_lens_set_stop(lens, settings, error)
                               : status;
 }
@@ -115,8 +116,9 @@ static int zoom_model_to_option(const struct tool *tool,
     struct glint_error error = {""};
 
     if (!model->zoom || o->is_focused)
-        return zoom_option_of_model(tool, o, path);
-    return !o->is_zoomed || model_file_zoom(model, o->zoom, &error) == GLINT_OK
+        return zoom_option_reject_for_model(tool, o, path);
+    return !o->is_zoomed ||
+                   model_file_set_zoom(model, o->zoom, &error) == GLINT_OK
                ? EXIT_OK
                : tool_usage(tool, "%s: %s", path, error.text);
 }
@@ -130,9 +132,9 @@ static int open_model_file(const struct tool *tool, struct opened_lens *lens,
     if (settings->options.rays == GLINT_RAYS_EXACT)
         return tool_usage(tool, "%s is a model: exact rays need the lens table",
                           path);
-    code = coating_of_model(tool, &settings->coating, path);
+    code = coating_reject_for_model(tool, &settings->coating, path);
     if (code == EXIT_OK)
-        code = tool_model(tool, path, &lens->model);
+        code = tool_open_model(tool, path, &lens->model);
     if (code == EXIT_OK)
         code = zoom_model_to_option(tool, &lens->model, &settings->zoom, path);
     if (code != EXIT_OK)
@@ -159,7 +161,8 @@ static int set_up_opened_lens(const struct tool *tool, struct opened_lens *lens,
                                  lens->table.name, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (settings_only_ghost(s) >= lens->setup.n_ghosts - lens->setup.n_parts)
+    if (settings_get_only_ghost(s) >=
+        lens->setup.n_ghosts - lens->setup.n_parts)
         return tool_usage(tool, "%s has %d ghosts; number %d does not exist",
                           lens->table.name,
                           lens->setup.n_ghosts - lens->setup.n_parts,
@@ -176,7 +179,7 @@ int opened_lens_set_front_dirt(const struct tool *tool,
     struct stop_mask mask = {NULL, 0, 0};
     struct glint_error error = {""};
     enum glint_status status;
-    const int code = file ? stop_mask_read(tool, file, &mask) : EXIT_OK;
+    const int code = file ? stop_mask_read_image(tool, file, &mask) : EXIT_OK;
 
     if (code != EXIT_OK)
         return code;
@@ -202,7 +205,8 @@ int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
         code = tool_usage(tool,
                           "--only veil needs --veil, --haze or --front-dust");
     if (code == EXIT_OK && settings->options.stop_mask)
-        code = stop_mask_read(tool, settings->options.stop_mask, &lens->mask);
+        code = stop_mask_read_image(tool, settings->options.stop_mask,
+                                    &lens->mask);
     if (code == EXIT_OK)
         code = opened_lens_set_front_dirt(tool, lens, &settings->camera,
                                           settings->options.front_mask);
@@ -213,7 +217,7 @@ int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
         return tool_usage(tool, "--projection lens needs a lens table: a "
                                 "baked model has no chief rays");
     code = tool_is_model(name) ? open_model_file(tool, lens, settings, name)
-                               : opened_table(tool, lens, settings, name);
+                               : opened_table_open(tool, lens, settings, name);
 
     if (code == EXIT_OK && lens->model.data &&
         settings->camera.waves.kind == GLINT_WAVES_LIST)
@@ -254,9 +258,10 @@ struct glint_view opened_lens_view(const struct opened_lens *lens,
     return view;
 }
 
-void opened_lens_engine(const struct tool *tool, const struct opened_lens *lens,
-                        const struct settings *settings, int width, int height,
-                        struct glint_engine_config *cfg)
+void opened_lens_configure_engine(const struct tool *tool,
+                                  const struct opened_lens *lens,
+                                  const struct settings *settings, int width,
+                                  int height, struct glint_engine_config *cfg)
 {
     glint_engine_defaults(cfg, width, height);
     glint_engine_configure(cfg, &settings->options);
@@ -265,7 +270,7 @@ void opened_lens_engine(const struct tool *tool, const struct opened_lens *lens,
     cfg->sets = tool_enabled_instruction_sets(tool);
     cfg->clock = tool_clock_s;
     cfg->camera.setup = &lens->setup;
-    cfg->camera.rays = opened_table_rays();
+    cfg->camera.rays = opened_table_ray_functions();
     cfg->camera.tints = lens->tints;
     cfg->camera.front = lens->front;
     cfg->camera.projection = &lens->projection;

@@ -4,7 +4,7 @@
  * that the settings define.
  *
  *     code = opened_lens_open(tool, &lens, &settings, "heliar-tronnier");
- *     opened_lens_engine(tool, &lens, &settings, width, height, &cfg);
+ *     opened_lens_configure_engine(tool, &lens, &settings, w, h, &cfg);
  *     opened_lens_close(&lens);
  */
 #ifndef GLINT_TOOLS_MODEL_OPENED_LENS_H
@@ -50,11 +50,11 @@ enum glint_status opened_lens_set_stop(struct opened_lens *lens,
                                        const struct settings *settings,
                                        struct glint_error *error);
 
-/* Moves the zoom lens LENS to ZOOM, as model_file_zoom() does. Returns
+/* Moves the zoom lens LENS to ZOOM, as model_file_set_zoom() does. Returns
  * GLINT_E_ARGUMENT with the reason in ERROR if that is impossible. */
-enum glint_status opened_lens_zoom(struct opened_lens *lens,
-                                   const struct settings *settings, double zoom,
-                                   struct glint_error *error);
+enum glint_status opened_lens_set_zoom(struct opened_lens *lens,
+                                       const struct settings *settings,
+                                       double zoom, struct glint_error *error);
 
 /* Sets the dirt on the front element of LENS: that of CAMERA and the mask in
  * the image FILE (NULL: none). Returns an exit code. */
@@ -65,8 +65,9 @@ int opened_lens_set_front_dirt(const struct tool *tool,
 
 /* Returns the camera of SETTINGS with the stop mask of LENS. If the command
  * line does not set the stop's shape, it is a circle if the table says so. */
-struct glint_engine_camera opened_lens_camera(const struct opened_lens *lens,
-                                              const struct settings *settings);
+struct glint_engine_camera
+opened_lens_make_camera(const struct opened_lens *lens,
+                        const struct settings *settings);
 
 struct glint_view opened_lens_view(const struct opened_lens *lens,
                                    const struct settings *settings, int width,
@@ -74,8 +75,9 @@ struct glint_view opened_lens_view(const struct opened_lens *lens,
 
 /* Sets CFG to the configuration of an engine for images of WIDTH x HEIGHT
  * through LENS. */
-void opened_lens_engine(const struct tool *tool, const struct opened_lens *lens,
-                        const struct settings *settings, int width, int height,
-                        struct glint_engine_config *cfg);
+void opened_lens_configure_engine(const struct tool *tool,
+                                  const struct opened_lens *lens,
+                                  const struct settings *settings, int width,
+                                  int height, struct glint_engine_config *cfg);
 
 #endif

@@ -9,8 +9,9 @@
 #include "model/table_file.h"
 #include "model/opened_table.h"
 
-struct glint_bake_options opened_table_bake(const struct glint_prescription *l,
-                                            const struct settings *settings)
+struct glint_bake_options
+opened_table_bake_options(const struct glint_prescription *l,
+                          const struct settings *settings)
 {
     const double film = hypot(l->film_width_mm, l->film_height_mm);
     const double sensor = hypot(settings->camera.sensor_width_mm,
@@ -119,7 +120,7 @@ static int find_or_bake_model(const struct tool *tool, struct opened_lens *lens,
                               double deg)
 {
     struct glint_bake_options options =
-        opened_table_bake(&lens->table, settings);
+        opened_table_bake_options(&lens->table, settings);
     int code = EXIT_OK;
 
     if (deg > options.max_deg)
@@ -135,19 +136,19 @@ static int find_or_bake_model(const struct tool *tool, struct opened_lens *lens,
         return code == EXIT_OK ? set_table_f_number(tool, lens, settings)
                                : code;
     lens->is_unbaked = false;
-    return code == EXIT_OK
-               ? model_cached(tool, &lens->table, name, options, &lens->model)
-               : code;
+    return code == EXIT_OK ? model_open_cached(tool, &lens->table, name,
+                                               options, &lens->model)
+                           : code;
 }
 
-int opened_table(const struct tool *tool, struct opened_lens *lens,
-                 const struct settings *settings, const char *name)
+int opened_table_open(const struct tool *tool, struct opened_lens *lens,
+                      const struct settings *settings, const char *name)
 {
     const struct glint_options *const o = &settings->options;
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
     double deg = 0;
-    int code = tool_lens(tool, name, &lens->table);
+    int code = tool_read_lens(tool, name, &lens->table);
 
     if (code == EXIT_OK)
         code = zoom_option_apply(tool, &settings->zoom, &lens->table);
@@ -168,14 +169,15 @@ int opened_table(const struct tool *tool, struct opened_lens *lens,
                : find_or_bake_model(tool, lens, settings, name, deg);
 }
 
-const struct glint_frame_rays *opened_table_rays(void)
+const struct glint_frame_rays *opened_table_ray_functions(void)
 {
     return &glint_frame_traces;
 }
 
-enum glint_status opened_table_setup(struct opened_lens *lens,
-                                     const struct glint_engine_camera *camera,
-                                     struct glint_error *error)
+enum glint_status
+opened_table_make_setup(struct opened_lens *lens,
+                        const struct glint_engine_camera *camera,
+                        struct glint_error *error)
 {
     double nm[GLINT_MAX_WAVELENGTHS];
     const int n = glint_waves_list(&camera->waves, nm);

@@ -17,8 +17,9 @@ static void print_response_notice(const struct tool *tool, const char *lens,
 static bool find_response_path(char path[CACHE_PATH_BYTES], const char *lens,
                                uint64_t key)
 {
-    return cache_file_folder(path, CACHE_PATH_BYTES) &&
-           cache_file_name(path, CACHE_PATH_BYTES, lens, key, "response");
+    return cache_file_find_folder(path, CACHE_PATH_BYTES) &&
+           cache_file_append_name(path, CACHE_PATH_BYTES, lens, key,
+                                  "response");
 }
 
 static int read_cached_response(void *ctx, const char *lens, uint64_t key,
@@ -53,7 +54,7 @@ static void write_cached_response(void *ctx, const char *lens, uint64_t key,
         print_response_notice(ctx, lens, "measured, not kept: ", error.text);
 }
 
-struct glint_engine_cache response_cache(const struct tool *tool)
+struct glint_engine_cache response_cache_callbacks(const struct tool *tool)
 {
     return (struct glint_engine_cache){read_cached_response,
                                        write_cached_response, (void *)tool};

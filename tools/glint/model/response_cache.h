@@ -12,6 +12,6 @@
 
 /* Returns the callbacks of the cache. TOOL must outlive them. With -v the cache
  * prints for each response whether it was read or measured. */
-struct glint_engine_cache response_cache(const struct tool *tool);
+struct glint_engine_cache response_cache_callbacks(const struct tool *tool);
 
 #endif

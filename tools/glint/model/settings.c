@@ -26,7 +26,7 @@ static void compute_derived_settings(struct settings *s)
     s->n_wavelengths = glint_waves_list(&s->camera.waves, s->wavelength_nm);
 }
 
-void settings_defaults(struct settings *settings)
+void settings_set_defaults(struct settings *settings)
 {
     struct glint_options *const o = &settings->options;
 
@@ -38,19 +38,19 @@ void settings_defaults(struct settings *settings)
     compute_derived_settings(settings);
 }
 
-void settings_defaults_photo(struct settings *settings)
+void settings_set_photo_defaults(struct settings *settings)
 {
-    settings_defaults(settings);
+    settings_set_defaults(settings);
     glint_options_defaults(&settings->options);
     settings->coating.kind = COATING_MIXED;
     settings->roundness = PHOTO_ROUNDNESS;
     compute_derived_settings(settings);
 }
 
-int settings_option(const struct tool *tool, struct settings *settings,
-                    int option, const char *value)
+int settings_apply_option(const struct tool *tool, struct settings *settings,
+                          int option, const char *value)
 {
-    int code = engine_option(tool, &settings->options, option, value);
+    int code = engine_apply_option(tool, &settings->options, option, value);
 
     if (code == -1 && option == ENGINE_OPTION_OF(coating))
         code = coating_parse_option(tool, &settings->coating, value);
@@ -59,7 +59,8 @@ int settings_option(const struct tool *tool, struct settings *settings,
     return code;
 }
 
-bool settings_set(struct settings *settings, const char *name, const char *text)
+bool settings_set_text(struct settings *settings, const char *name,
+                       const char *text)
 {
     struct glint_error error;
 
@@ -121,7 +122,7 @@ enum settings_unbaked settings_choose_unbaked(const struct settings *settings)
     return is_chosen ? SETTINGS_BAKE : SETTINGS_TRACE;
 }
 
-int settings_only_ghost(const struct settings *settings)
+int settings_get_only_ghost(const struct settings *settings)
 {
     return GLINT_OPTION_GIVEN(&settings->options, ghost)
                ? settings->options.ghost
@@ -133,8 +134,8 @@ double settings_brightness_scale(const struct settings *settings)
     return settings->options.gain * exp2(settings->options.exposure);
 }
 
-void settings_json(struct json_writer *json,
-                   const struct glint_engine_report *r)
+void settings_write_json(struct json_writer *json,
+                         const struct glint_engine_report *r)
 {
     json_write(
         json,

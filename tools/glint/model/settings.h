@@ -61,19 +61,19 @@ struct settings {
     "deterministic\n"                                                         \
     "  --json   -q   -v   --help   --help-all   --version\n"
 
-/* settings_defaults() sets the defaults of a plain image of a lens: no
+/* settings_set_defaults() sets the defaults of a plain image of a lens: no
  * starburst, the table's coatings, straight blades, three wavelengths.
- * settings_defaults_photo() sets those of flares on photographs: the option
+ * settings_set_photo_defaults() sets those of flares on photographs: the option
  * table's defaults, and blades of PHOTO_ROUNDNESS, as spikes of straight
  * blades are thinner and longer than those in photographs. */
 #define PHOTO_ROUNDNESS 0.2
-void settings_defaults(struct settings *settings);
-void settings_defaults_photo(struct settings *settings);
+void settings_set_defaults(struct settings *settings);
+void settings_set_photo_defaults(struct settings *settings);
 
 /* Sets the engine option OPTION to VALUE. Returns -1 on success, -2 if
  * OPTION is not an engine option, else an exit code. */
-int settings_option(const struct tool *tool, struct settings *settings,
-                    int option, const char *value);
+int settings_apply_option(const struct tool *tool, struct settings *settings,
+                          int option, const char *value);
 
 /* Prints TEXT, the reason why the f-number of S is impossible, and the line
  * of the file that requests it, if any. Returns an exit code. */
@@ -83,8 +83,8 @@ int settings_report_bad_stop(const struct tool *tool, const struct settings *s,
 /* Set the option NAME. TEXT is its value as text; VALUE is a number, the
  * index of a word, or 0 or 1 for a flag. Return false, without a change, if
  * the value is invalid. */
-bool settings_set(struct settings *settings, const char *name,
-                  const char *text);
+bool settings_set_text(struct settings *settings, const char *name,
+                       const char *text);
 bool settings_set_number(struct settings *settings, const char *name,
                          double value);
 
@@ -95,7 +95,7 @@ void settings_set_quality(struct settings *settings, double quality);
 bool settings_has_grid(const struct settings *settings);
 
 /* Returns the index of the only ghost that is drawn, or -1 if all are drawn. */
-int settings_only_ghost(const struct settings *settings);
+int settings_get_only_ghost(const struct settings *settings);
 
 /* Returns whether a veil, light spread over the whole image, is drawn. */
 bool settings_has_veil(const struct settings *settings);
@@ -108,8 +108,8 @@ enum settings_unbaked settings_choose_unbaked(const struct settings *settings);
 double settings_brightness_scale(const struct settings *settings);
 
 /* Writes the report of a frame as members of a JSON object. */
-void settings_json(struct json_writer *json,
-                   const struct glint_engine_report *report);
+void settings_write_json(struct json_writer *json,
+                         const struct glint_engine_report *report);
 
 /* Writes the numbers of lights found and drawn as text. */
 void settings_describe_lights(const struct glint_engine_report *report,

@@ -21,8 +21,8 @@ static void read_luma_codes(const struct glint_image *image, uint8_t *to)
         }
 }
 
-int stop_mask_read(const struct tool *tool, const char *file,
-                   struct stop_mask *mask)
+int stop_mask_read_image(const struct tool *tool, const char *file,
+                         struct stop_mask *mask)
 {
     struct glint_error error = {""};
     struct glint_image image = {0};

@@ -17,7 +17,7 @@ struct stop_mask {
 
 /* Reads the luma of the image FILE into MASK; the caller frees its luma,
  * which is NULL on failure. Returns an exit code. */
-int stop_mask_read(const struct tool *tool, const char *file,
-                   struct stop_mask *mask);
+int stop_mask_read_image(const struct tool *tool, const char *file,
+                         struct stop_mask *mask);
 
 #endif

@@ -118,8 +118,8 @@ static enum glint_status parse_lens_table(const char *file,
     return status;
 }
 
-const char *tool_lens_file(const struct tool *tool, const char *argument,
-                           char *path, size_t bytes)
+const char *tool_find_lens_file(const struct tool *tool, const char *argument,
+                                char *path, size_t bytes)
 {
     if (is_importable_file(argument)) {
         tool_error(
@@ -135,18 +135,18 @@ const char *tool_lens_file(const struct tool *tool, const char *argument,
     }
     if (tool_is_file_name(argument))
         return argument;
-    if (lens_file_find(argument, path, bytes))
+    if (lens_find_file(argument, path, bytes))
         return path;
     print_lens_not_found(tool, argument);
     return NULL;
 }
 
-int tool_lens(const struct tool *tool, const char *argument,
-              struct glint_prescription *lens)
+int tool_read_lens(const struct tool *tool, const char *argument,
+                   struct glint_prescription *lens)
 {
     struct glint_error error = {""};
     char path[1024];
-    const char *file = tool_lens_file(tool, argument, path, sizeof path);
+    const char *file = tool_find_lens_file(tool, argument, path, sizeof path);
     enum glint_status status;
 
     if (!file)

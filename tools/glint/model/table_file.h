@@ -11,12 +11,12 @@
 /* Returns the file of the lens ARGUMENT: ARGUMENT itself if it is a file;
  * else PATH, which is set to the table of the lens with this name. If there
  * is none, prints similar names and returns NULL. */
-const char *tool_lens_file(const struct tool *tool, const char *argument,
-                           char *path, size_t bytes);
+const char *tool_find_lens_file(const struct tool *tool, const char *argument,
+                                char *path, size_t bytes);
 
 /* Reads the lens ARGUMENT, a file name or the name of a table that comes
  * with glint. Returns an exit code, after printing the reason on failure. */
-int tool_lens(const struct tool *tool, const char *argument,
-              struct glint_prescription *lens);
+int tool_read_lens(const struct tool *tool, const char *argument,
+                   struct glint_prescription *lens);
 
 #endif

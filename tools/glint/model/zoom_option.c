@@ -12,7 +12,7 @@ bool zoom_option_parse(struct zoom_option *option, const char *text)
     return tool_parse_number(text, &option->zoom) && option->zoom >= 0;
 }
 
-bool zoom_option_focus(struct zoom_option *option, const char *text)
+bool zoom_option_parse_focus(struct zoom_option *option, const char *text)
 {
     option->is_focused = true;
     option->focus_m = 0;
@@ -38,8 +38,9 @@ int zoom_option_apply(const struct tool *tool, const struct zoom_option *option,
     return status == GLINT_OK ? EXIT_OK : tool_usage(tool, "%s", error.text);
 }
 
-int zoom_option_of_model(const struct tool *tool,
-                         const struct zoom_option *option, const char *path)
+int zoom_option_reject_for_model(const struct tool *tool,
+                                 const struct zoom_option *option,
+                                 const char *path)
 {
     if (!option->is_zoomed && !option->is_focused)
         return EXIT_OK;

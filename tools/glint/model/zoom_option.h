@@ -34,7 +34,7 @@ struct zoom_option {
 /* Parse TEXT as the value of --zoom or --focus. Return false if it is
  * malformed. */
 bool zoom_option_parse(struct zoom_option *option, const char *text);
-bool zoom_option_focus(struct zoom_option *option, const char *text);
+bool zoom_option_parse_focus(struct zoom_option *option, const char *text);
 
 /* Moves the groups of LENS, which was just read, to zoom and focus. Returns
  * an exit code, after printing the reason on failure. */
@@ -43,7 +43,8 @@ int zoom_option_apply(const struct tool *tool, const struct zoom_option *option,
 
 /* Returns EXIT_OK if OPTION has neither --zoom nor --focus; else prints a usage
  * error that names the model PATH and returns its code. */
-int zoom_option_of_model(const struct tool *tool,
-                         const struct zoom_option *option, const char *path);
+int zoom_option_reject_for_model(const struct tool *tool,
+                                 const struct zoom_option *option,
+                                 const char *path);
 
 #endif

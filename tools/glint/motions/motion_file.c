@@ -52,7 +52,7 @@ static enum glint_status bake_motion_recording(const char *path,
     if (baker)
         status = glint_input_open(&reading.in, path, error);
     if (status == GLINT_OK) {
-        tool_scene_name(path, name);
+        tool_copy_scene_name(path, name);
         status = glint_recording_read(baker, path, read_motion_bytes, &reading,
                                       error);
         glint_input_close(&reading.in);
@@ -80,7 +80,8 @@ enum glint_status motion_file_read(const char *path, const char *written,
     const char *reason = "";
     uint8_t *data = NULL;
     char self[TOOL_PATH_BYTES];
-    enum glint_status status = tool_find_input("", path, written, self, error);
+    enum glint_status status =
+        tool_make_input_path("", path, written, self, error);
 
     *file = (struct motion_file){.data = NULL};
     if (status == GLINT_OK && motion_file_is_source(path)) {
@@ -147,8 +148,8 @@ static int print_pose_line(struct motion_file *file, uint32_t k, char *text,
         ldexp(f.pose.turn_q14[2], -14), ldexp(f.pose.turn_q14[3], -14));
 }
 
-int motion_file_poses(const struct tool *tool, struct motion_file *file,
-                      const char *to)
+int motion_file_write_poses(const struct tool *tool, struct motion_file *file,
+                            const char *to)
 {
     enum { LINE = 160 };
     const uint32_t n = file->motion.header.n_frames;

@@ -35,8 +35,8 @@ void motion_file_print(const struct tool *tool, struct motion_file *file);
 
 /* Writes the pose of each frame, in the units of the recording, to a CSV file:
  * frame,x,y,z,qw,qx,qy,qz. Returns an exit code. */
-int motion_file_poses(const struct tool *tool, struct motion_file *file,
-                      const char *to);
+int motion_file_write_poses(const struct tool *tool, struct motion_file *file,
+                            const char *to);
 
 /* The command glint bake for motions; see options/tool.h. */
 int cmd_bake_motion(struct tool *tool, int argc, char **argv);

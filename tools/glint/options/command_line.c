@@ -78,9 +78,9 @@ static bool has_option_name(const struct option *options, const char *name)
     return options->name != NULL;
 }
 
-const struct option *engine_getopt(struct tool *tool, unsigned groups,
-                                   const struct glint_options *defaults,
-                                   const struct option *own)
+const struct option *engine_build_options(struct tool *tool, unsigned groups,
+                                          const struct glint_options *defaults,
+                                          const struct option *own)
 {
     static struct glint_options initial;
     static const struct option common[] = {TOOL_COMMON_OPTIONS};
@@ -140,24 +140,24 @@ static void print_version(bool is_json)
         puts("; MIT licence)");
 }
 
-int tool_option(struct tool *tool, int option, const char *value)
+int tool_apply_option(struct tool *tool, int option, const char *value)
 {
     static char of_engine[ENGINE_HELP_BYTES];
     const struct help help = {tool->name,
                               {tool->help, of_engine, tool->help_end}};
 
-    engine_help(tool, of_engine);
+    engine_write_help(tool, of_engine);
 
     switch (option) {
     case 'h':
-        help_screen(&help);
+        help_print_screen(&help);
         return EXIT_OK;
     case TOOL_HELP_ALL:
-        help_all(&help);
+        help_print_all(&help);
         return EXIT_OK;
     case TOOL_OPTIONS:
         if (!value)
-            help_options(&help, taken);
+            help_print_options(&help, taken);
         values_print_words(tool->name, value);
         return EXIT_OK;
     case 'V':
@@ -223,8 +223,8 @@ const char *tool_find_option_value(int argc, char **argv, const char *shorts,
     return value;
 }
 
-int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
-                const char *text)
+int tool_check_inputs(const struct tool *tool, int argc, char **argv, int n,
+                      const char *text)
 {
     const char *const last = argv[optind - 1];
 
@@ -247,7 +247,7 @@ int tool_parse_options(struct tool *tool, int argc, char **argv,
     while ((c = tool_getopt(argc, argv, shorts, options, &index)) >= 0) {
         code = take(tool, ctx, c, optarg);
         if (code == -2)
-            return tool_refuse(tool, options[index].name, optarg);
+            return tool_report_bad_value(tool, options[index].name, optarg);
         if (code >= 0)
             return code;
     }

@@ -27,7 +27,7 @@ enum { TOOL_HELP_ALL = 900, TOOL_OPTIONS };
         NULL, 0, NULL, 0                                                       \
     }
 
-/* Stores the command line, for suggestions of tool_option() on unknown
+/* Stores the command line, for suggestions of tool_apply_option() on unknown
  * options. */
 void tool_set_command_line(char **argv);
 
@@ -35,9 +35,9 @@ void tool_set_command_line(char **argv);
  * DEFAULTS. Returns an option array, valid until the next call: OWN, which must
  * end with a row without a name, the options of GROUPS, and the common options.
  * A name in both OWN and GROUPS is that of OWN. */
-const struct option *engine_getopt(struct tool *tool, unsigned groups,
-                                   const struct glint_options *defaults,
-                                   const struct option *own);
+const struct option *engine_build_options(struct tool *tool, unsigned groups,
+                                          const struct glint_options *defaults,
+                                          const struct option *own);
 
 /* Calls getopt_long(). Stores OPTIONS for --options, which shell completion
  * uses. */
@@ -47,7 +47,7 @@ int tool_getopt(int argc, char *const *argv, const char *shorts,
 /* Applies a common option. Returns -1 to continue, else the exit code to end
  * with (EXIT_OK after --help and similar options). An unknown option is a usage
  * error. */
-int tool_option(struct tool *tool, int option, const char *value);
+int tool_apply_option(struct tool *tool, int option, const char *value);
 
 /* Returns the value of the last occurrence of OPTION in ARGV, or NULL. Applies
  * no option, and resets getopt_long() to the first argument. */
@@ -57,8 +57,8 @@ const char *tool_find_option_value(int argc, char **argv, const char *shorts,
 /* Checks that N arguments remain in ARGV after the options. Returns -1, or the
  * code of tool_usage() after printing TEXT; if arguments are missing, the
  * message also names the word that the last option consumed as its value. */
-int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
-                const char *text);
+int tool_check_inputs(const struct tool *tool, int argc, char **argv, int n,
+                      const char *text);
 
 /* Applies option C of a command to its CTX. Returns -1 to continue, -2 if the
  * option does not accept VALUE, or an exit code. */

@@ -11,8 +11,8 @@ static bool has_option_group(const struct tool *tool,
     return (tool->groups >> group & 1) != 0;
 }
 
-int engine_option(const struct tool *tool, struct glint_options *values,
-                  int code, const char *value)
+int engine_apply_option(const struct tool *tool, struct glint_options *values,
+                        int code, const char *value)
 {
     const struct glint_option *const row = glint_option(code - ENGINE_OPTION);
     struct glint_error error;
@@ -20,10 +20,10 @@ int engine_option(const struct tool *tool, struct glint_options *values,
     if (!row)
         return -2;
     if (row->type != GLINT_OPTION_FLAG && !*value)
-        return tool_refuse(tool, row->name, value);
+        return tool_report_bad_value(tool, row->name, value);
     return glint_options_set_text(values, row->name, value, &error) == GLINT_OK
                ? -1
-               : tool_refuse(tool, row->name, value);
+               : tool_report_bad_value(tool, row->name, value);
 }
 
 /* ---------------------------------------------------------------------- help
@@ -155,7 +155,7 @@ static void write_option_row(struct page *page, const struct tool *tool, int i)
     write_help_text(page, "\n", 1);
 }
 
-void engine_help(const struct tool *tool, char text[ENGINE_HELP_BYTES])
+void engine_write_help(const struct tool *tool, char text[ENGINE_HELP_BYTES])
 {
     static const char *const headings[GLINT_OPTION_GROUPS] = {
         "Lamps and layers\n",  "Artist controls\n", "Scenes\n",

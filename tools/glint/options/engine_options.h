@@ -4,8 +4,8 @@
  * values, all generated from the table in glint/options.h.
  *
  *     static const struct option own[] = {{"output", ...}, {NULL, 0, NULL, 0}};
- *     options = engine_getopt(&tool, ENGINE_ALL, &values, own);
- *     code = engine_option(&tool, &values, c, optarg);
+ *     options = engine_build_options(&tool, ENGINE_ALL, &values, own);
+ *     code = engine_apply_option(&tool, &values, c, optarg);
  */
 #ifndef GLINT_TOOLS_OPTIONS_ENGINE_OPTIONS_H
 #define GLINT_TOOLS_OPTIONS_ENGINE_OPTIONS_H
@@ -30,11 +30,11 @@ enum {
 /* Sets the option with getopt code CODE in VALUES to VALUE, which is NULL for a
  * flag. Returns -1; -2 if CODE is not an engine option; or an exit code after
  * printing which values the option accepts. */
-int engine_option(const struct tool *tool, struct glint_options *values,
-                  int code, const char *value);
+int engine_apply_option(const struct tool *tool, struct glint_options *values,
+                        int code, const char *value);
 
 /* Writes the help of TOOL's option groups to TEXT, with TOOL's defaults. */
 enum { ENGINE_HELP_BYTES = 24576 };
-void engine_help(const struct tool *tool, char text[ENGINE_HELP_BYTES]);
+void engine_write_help(const struct tool *tool, char text[ENGINE_HELP_BYTES]);
 
 #endif

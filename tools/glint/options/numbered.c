@@ -33,7 +33,7 @@ bool numbered_make_name(char *name, const char *pattern, int number)
     return n >= 0 && n < NUMBERED_BYTES;
 }
 
-bool numbered_from_hashes(char *pattern, const char *text)
+bool numbered_convert_hashes(char *pattern, const char *text)
 {
     const char *const slash = strrchr(text, '/');
     const char *const name = slash ? slash + 1 : text;

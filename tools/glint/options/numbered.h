@@ -21,6 +21,6 @@ bool numbered_make_name(char *name, const char *pattern, int number);
  * file name, as other programs name sequences, replaced by "%0Nd". Folders stay
  * as they are. Returns false if the name has no '#', or if PATTERN is too long
  * or not a pattern. */
-bool numbered_from_hashes(char *pattern, const char *text);
+bool numbered_convert_hashes(char *pattern, const char *text);
 
 #endif

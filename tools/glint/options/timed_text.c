@@ -183,7 +183,7 @@ enum glint_status text_lines_parse_each(struct text_lines *lines,
         const char *const cause = take(ctx, lines, line);
 
         if (cause)
-            status = text_lines_fail(lines, error, cause);
+            status = text_lines_report_error(lines, error, cause);
         if (cause == text_no_memory)
             status = GLINT_E_MEMORY;
     }
@@ -191,8 +191,9 @@ enum glint_status text_lines_parse_each(struct text_lines *lines,
     return status;
 }
 
-enum glint_status text_lines_fail(const struct text_lines *lines,
-                                  struct glint_error *error, const char *cause)
+enum glint_status text_lines_report_error(const struct text_lines *lines,
+                                          struct glint_error *error,
+                                          const char *cause)
 {
     char where[sizeof error->text];
 
@@ -200,7 +201,8 @@ enum glint_status text_lines_fail(const struct text_lines *lines,
     return glint_error_report(error, GLINT_E_FORMAT, where, "%s", cause);
 }
 
-const char *text_lines_cause(struct text_lines *lines, const char *format, ...)
+const char *text_lines_format_cause(struct text_lines *lines,
+                                    const char *format, ...)
 {
     va_list values;
 

@@ -34,7 +34,7 @@ struct text_lines {
     bool is_pipe;
     bool is_long; /* whether the last line of the pipe was too long and was cut
                    */
-    char cause[200]; /* text of text_lines_cause() */
+    char cause[200]; /* text of text_lines_format_cause() */
 
     /* Private. */
     char *mem, *rest; /* contents of a file, and the part not yet read */
@@ -86,12 +86,13 @@ enum glint_status text_lines_parse_each(struct text_lines *lines,
 extern const char text_no_memory[];
 
 /* Sets ERROR to "FILE:LINE: CAUSE" and returns GLINT_E_FORMAT. */
-enum glint_status text_lines_fail(const struct text_lines *lines,
-                                  struct glint_error *error, const char *cause);
+enum glint_status text_lines_report_error(const struct text_lines *lines,
+                                          struct glint_error *error,
+                                          const char *cause);
 
 /* Formats a message into lines->cause and returns it. */
-const char *text_lines_cause(struct text_lines *lines, const char *format, ...)
-    GLINT_PRINTF(2, 3);
+const char *text_lines_format_cause(struct text_lines *lines,
+                                    const char *format, ...) GLINT_PRINTF(2, 3);
 
 void text_lines_close(struct text_lines *lines);
 

@@ -62,9 +62,10 @@ int tool_usage(const struct tool *tool, const char *format, ...)
     return EXIT_USAGE;
 }
 
-int tool_refuse(const struct tool *tool, const char *option, const char *value)
+int tool_report_bad_value(const struct tool *tool, const char *option,
+                          const char *value)
 {
-    const char *takes = values_of(tool->name, option);
+    const char *takes = values_describe(tool->name, option);
 
     return tool_usage(tool, "--%s: '%s' is not valid%s%s", option, value,
                       takes ? "; expected " : "", takes ? takes : "");
@@ -108,7 +109,7 @@ int tool_fail(const struct tool *tool, enum glint_status status,
     return code[status];
 }
 
-int tool_start(struct tool *tool)
+int tool_start_threads(struct tool *tool)
 {
     const enum glint_status status =
         glint_pool_create(&tool->workers, tool->n_threads);
@@ -121,7 +122,7 @@ int tool_start(struct tool *tool)
     return EXIT_OK;
 }
 
-void tool_finish(struct tool *tool)
+void tool_stop_threads(struct tool *tool)
 {
     glint_pool_destroy(tool->workers);
     tool->workers = NULL;
@@ -263,7 +264,7 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
 {
     p->what = what;
     p->less = p->besides = NULL;
-    tool_progress_part(p, 0, 1);
+    tool_progress_set_part(p, 0, 1);
     p->clock = tool_clock_s;
     p->started = p->clock();
     p->last = 0;
@@ -276,7 +277,7 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
     p->is_terminal = isatty(STDERR_FILENO);
 }
 
-void tool_progress_part(struct tool_progress *p, double from, double share)
+void tool_progress_set_part(struct tool_progress *p, double from, double share)
 {
     p->from = from;
     p->share = share;

@@ -40,19 +40,21 @@ struct tool {
     int seed; /* random seed for synth, and for the noise of live -d test */
     unsigned
         sets_off; /* instruction sets that kernels must not use, one bit each */
-    const char *kernels;           /* argument of --kernels, or NULL */
-    struct glint_workers *workers; /* thread pool, created by tool_start() */
-    const char *written;           /* output file, which no scene may read, or
-                                      NULL */
-    struct glint_error *cause;     /* receives messages of tool_error(); may be
-                                      NULL */
+    const char *kernels; /* argument of --kernels, or NULL */
+    struct glint_workers
+        *workers;        /* thread pool, created by tool_start_threads() */
+    const char *written; /* output file, which no scene may read, or
+                            NULL */
+    struct glint_error *cause; /* receives messages of tool_error(); may be
+                                  NULL */
     const char *where; /* "FILE:LINE" of the option being parsed, or NULL for
                           the command line */
 };
 
-/* Starts the worker threads, which tool_finish() ends. Returns an exit code. */
-int tool_start(struct tool *tool);
-void tool_finish(struct tool *tool);
+/* Starts the worker threads, which tool_stop_threads() ends. Returns an exit
+ * code. */
+int tool_start_threads(struct tool *tool);
+void tool_stop_threads(struct tool *tool);
 
 /* Detect failed writes to standard output. Call tool_watch_closed_pipe() at the
  * start of a program and tool_close_stdout() at its end, which returns CODE, or
@@ -85,7 +87,8 @@ enum glint_status tool_count_bake_work(int64_t *left, int64_t work,
 
 /* Prints that OPTION does not accept VALUE, and which values it accepts.
  * Returns the code of tool_usage(). */
-int tool_refuse(const struct tool *tool, const char *option, const char *value);
+int tool_report_bad_value(const struct tool *tool, const char *option,
+                          const char *value);
 
 /* ------------------------------------------------------------------ numbers */
 
@@ -140,7 +143,7 @@ struct tool_progress {
                             minutes, or NULL */
     const char *besides; /* work that the estimate does not include, printed
                             with it, or NULL */
-    double from, share;  /* see tool_progress_part() */
+    double from, share;  /* see tool_progress_set_part() */
     double least_s; /* min estimated time for which an estimate is printed, s;
                        default: 20 */
     bool waits;     /* whether the clock starts with the first report */
@@ -156,7 +159,7 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
                          const char *what);
 /* Maps DONE of later calls to FROM + SHARE * DONE of the whole work. The
  * initial FROM and SHARE are 0 and 1. */
-void tool_progress_part(struct tool_progress *p, double from, double share);
+void tool_progress_set_part(struct tool_progress *p, double from, double share);
 void tool_progress_show(void *progress, double done);
 void tool_progress_end(struct tool_progress *p);
 

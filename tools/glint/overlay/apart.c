@@ -74,7 +74,7 @@ static int report_overwritten_input(const struct tool *tool,
                       output->option, name, input->option);
 }
 
-int apart_check(const struct tool *tool, const struct apart *files)
+int apart_check_outputs(const struct tool *tool, const struct apart *files)
 {
     for (int i = 0; i < files->n_written; i++) {
         const struct apart_file *const to = &files->written[i];

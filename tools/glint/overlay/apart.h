@@ -4,10 +4,10 @@
  * another output.
  *
  *     struct apart files = {.n_read = 0};
- *     apart_add_drawing_files(&files, &drawing.line);      what its options
- * name apart_add_input(&files, NULL, "in.png");         the input
+ *     apart_add_drawing_files(&files, &drawing.line);  files of its options
+ *     apart_add_input(&files, NULL, "in.png");         the input
  *     apart_add_output(&files, "-o", "out.png");
- *     code = apart_check(&tool, &files);
+ *     code = apart_check_outputs(&tool, &files);
  *
  * Patterns of numbered files are compared as text. */
 #ifndef GLINT_TOOLS_OVERLAY_APART_H
@@ -37,6 +37,6 @@ void apart_add_drawing_files(struct apart *files,
 
 /* Rejects an output that is also an input, which would be overwritten, or also
  * another output. Returns an exit code. */
-int apart_check(const struct tool *tool, const struct apart *files);
+int apart_check_outputs(const struct tool *tool, const struct apart *files);
 
 #endif

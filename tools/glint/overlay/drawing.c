@@ -45,7 +45,7 @@ static enum glint_status zoom_lens_to(struct drawing *d, double zoom,
 {
     struct settings *const s = &d->line.settings;
     const enum glint_status status =
-        opened_lens_zoom(&d->files.lens, s, zoom, error);
+        opened_lens_set_zoom(&d->files.lens, s, zoom, error);
 
     if (status != GLINT_OK)
         return status;
@@ -162,7 +162,7 @@ void drawing_replace(struct drawing *drawing, const struct drawing *fresh)
     opened_lens_follow_move(&drawing->files.lens);
 }
 
-int drawing_finish(const struct tool *tool, struct drawing *drawing)
+int drawing_finish_lamp_file(const struct tool *tool, struct drawing *drawing)
 {
     struct glint_error error = {""};
     const enum glint_status status =
@@ -231,7 +231,7 @@ static int report_sizing_failure(const struct tool *tool,
                                  const struct glint_error *error)
 {
     const size_t mib = (size_t)1 << 20;
-    const size_t scene = over_scene_bytes(&d->files.scene);
+    const size_t scene = over_scene_memory_bytes(&d->files.scene);
     char text[400], more[64] = "";
 
     if (status != GLINT_E_MEMORY || !d->line.reserve_bytes)
@@ -247,20 +247,20 @@ static int report_sizing_failure(const struct tool *tool,
 static int allocate_engine(const struct tool *tool, struct drawing *d)
 {
     const struct drawing_line *const line = &d->line;
-    const size_t scene = over_scene_bytes(&d->files.scene);
+    const size_t scene = over_scene_memory_bytes(&d->files.scene);
     struct drawing_run *const run = &d->run;
     struct glint_engine_config cfg;
     struct glint_error error = {""};
     enum glint_status status;
 
-    opened_lens_engine(tool, &d->files.lens, &line->settings, run->view.width,
-                       run->view.height, &cfg);
+    opened_lens_configure_engine(tool, &d->files.lens, &line->settings,
+                                 run->view.width, run->view.height, &cfg);
     cfg.search.more_lamps = count_max_given_lamps(d);
     /* the memory that the scene does not use */
     if (line->reserve_bytes && !d->files.lens.is_unbaked)
         cfg.arena_bytes =
             line->reserve_bytes > scene ? line->reserve_bytes - scene : 1;
-    run->cache = response_cache(tool);
+    run->cache = response_cache_callbacks(tool);
     cfg.cache = &run->cache;
     run->is_progressing = are_rays_exact(d);
     if (run->is_progressing)
@@ -295,8 +295,8 @@ static void warn_of_off_screen_lamps(const struct tool *tool,
     }
 }
 
-int drawing_size(const struct tool *tool, struct drawing *drawing, int width,
-                 int height)
+int drawing_allocate(const struct tool *tool, struct drawing *drawing,
+                     int width, int height)
 {
     struct drawing_run *const run = &drawing->run;
     int code;
@@ -470,8 +470,8 @@ static void collect_image_lamps(struct drawing *d,
         lamp[i] = glint_engine_lamp_of(
             &line->hand[i], (is_listed ? LAMP_ID_TEXT : 1) + (uint32_t)i);
     if (list->n > 0)
-        n += lamp_list_frame(list, run->n_frames, &run->view, lens_focal_mm(d),
-                             lamp + n, list->n);
+        n += lamp_list_get_frame(list, run->n_frames, &run->view,
+                                 lens_focal_mm(d), lamp + n, list->n);
     run->is_followed = elapsed_us > 0 && follows;
     run->n_found = 0;
     if (!is_listed && line->n_hand == 0)
@@ -493,13 +493,13 @@ static enum glint_status find_image_lamps(struct drawing *d,
     if (status != GLINT_OK)
         return status;
     collect_image_lamps(d, image, elapsed_us);
-    occlusion_apply(&d->files.occlusion, d->run.n_frames, &d->run.view,
-                    lens_focal_mm(d), d->run.lamp, d->run.n_lamps);
+    occlusion_dim_lamps(&d->files.occlusion, d->run.n_frames, &d->run.view,
+                        lens_focal_mm(d), d->run.lamp, d->run.n_lamps);
     return GLINT_OK;
 }
 
-void drawing_measure(struct drawing *drawing,
-                     const struct glint_samples *samples)
+void drawing_measure_clipped_lamps(struct drawing *drawing,
+                                   const struct glint_samples *samples)
 {
     const struct drawing_run *const run = &drawing->run;
 
@@ -542,13 +542,13 @@ static void save_frame_lamps(struct lamp_save *save,
     for (int i = 0; save->is_open && i < run->n_lamps; i++) {
         const struct lamp_row row = make_saved_lamp_row(run, focal_mm, i);
 
-        lamp_save_row(save, &row);
+        lamp_save_write_row(save, &row);
     }
 }
 
-enum glint_status drawing_find_lamps(struct drawing *drawing,
-                                     const struct glint_image *image,
-                                     int32_t elapsed_us)
+enum glint_status drawing_detect_lamps_only(struct drawing *drawing,
+                                            const struct glint_image *image,
+                                            int32_t elapsed_us)
 {
     const enum glint_status status =
         find_image_lamps(drawing, image, elapsed_us);
@@ -609,9 +609,9 @@ static enum glint_status draw_scene_on_image(struct drawing *d,
 
 /* ------------------------------------------------------------------- frames */
 
-enum glint_status drawing_find(struct drawing *drawing,
-                               const struct glint_image *image,
-                               int32_t elapsed_us)
+enum glint_status drawing_detect_and_draw_scene(struct drawing *drawing,
+                                                const struct glint_image *image,
+                                                int32_t elapsed_us)
 {
     struct over_scene *const scene = &drawing->files.scene;
     struct drawing_run *const run = &drawing->run;
@@ -630,8 +630,8 @@ enum glint_status drawing_find(struct drawing *drawing,
     return scene->is_open ? draw_scene_on_image(drawing, image) : GLINT_OK;
 }
 
-int drawing_bake_found(const struct tool *tool, struct drawing *d,
-                       const struct glint_image *image)
+int drawing_bake_for_lamps(const struct tool *tool, struct drawing *d,
+                           const struct glint_image *image)
 {
     struct opened_lens *const lens = &d->files.lens;
     struct settings *const s = &d->line.settings;
@@ -648,8 +648,9 @@ int drawing_bake_found(const struct tool *tool, struct drawing *d,
     s->unbaked = SETTINGS_BAKE;
     opened_lens_close(lens);
     code = opened_lens_open(tool, lens, s, s->options.lens);
-    return code == EXIT_OK ? drawing_size(tool, d, image->width, image->height)
-                           : code;
+    return code == EXIT_OK
+               ? drawing_allocate(tool, d, image->width, image->height)
+               : code;
 }
 
 /* Prints the number of lamps of a static picture before exact rays are
@@ -667,8 +668,8 @@ static void print_exact_ray_notice(const struct drawing *d)
             d->files.lens.is_unbaked ? ", as it has no baked model" : "");
 }
 
-enum glint_status drawing_expose(struct drawing *drawing,
-                                 const struct glint_image *image)
+enum glint_status drawing_set_exposure(struct drawing *drawing,
+                                       const struct glint_image *image)
 {
     struct drawing_run *const run = &drawing->run;
     struct glint_engine_config cfg;
@@ -698,8 +699,8 @@ static void record_flare_time(struct drawing_run *run, double start)
     run->flare_ms = 1e3 * (tool_clock_s() - start);
 }
 
-enum glint_status drawing_layer(struct drawing_run *run, bool is_deep,
-                                float *rgb)
+enum glint_status drawing_draw_layer(struct drawing_run *run, bool is_deep,
+                                     float *rgb)
 {
     const double start = tool_clock_s();
     const enum glint_status status = glint_engine_draw_layer(
@@ -717,7 +718,7 @@ static enum glint_status draw_exposed_flare(struct drawing *d,
 {
     struct drawing_run *const run = &d->run;
     const double start = tool_clock_s();
-    enum glint_status status = drawing_expose(d, image);
+    enum glint_status status = drawing_set_exposure(d, image);
 
     if (status != GLINT_OK)
         return status;
@@ -729,16 +730,17 @@ static enum glint_status draw_exposed_flare(struct drawing *d,
     return status;
 }
 
-enum glint_status drawing_draw(struct drawing *drawing,
-                               const struct glint_image *image,
-                               int32_t elapsed_us)
+enum glint_status drawing_draw_flare(struct drawing *drawing,
+                                     const struct glint_image *image,
+                                     int32_t elapsed_us)
 {
-    enum glint_status status = drawing_find(drawing, image, elapsed_us);
+    enum glint_status status =
+        drawing_detect_and_draw_scene(drawing, image, elapsed_us);
 
     if (status == GLINT_OK && drawing->files.has_lens)
         status = draw_exposed_flare(drawing, image);
     if (status == GLINT_OK)
-        drawing_mark(drawing, image);
+        drawing_draw_marks(drawing, image);
     drawing->run.n_frames++;
     return status;
 }
@@ -763,15 +765,15 @@ static void draw_lamp_mark(const struct drawing_run *run, double focal_mm,
     show_lamp_mark_of(image, &track, row.power);
 }
 
-void drawing_mark(const struct drawing *drawing,
-                  const struct glint_image *image)
+void drawing_draw_marks(const struct drawing *drawing,
+                        const struct glint_image *image)
 {
     const struct drawing_line *const line = &drawing->line;
     const struct drawing_run *const run = &drawing->run;
     if (run->engine && line->settings.options.preview)
         /* numbers are omitted if memory is short */
-        preview_number(run->engine, run->lamp, run->n_lamps, drawing_scale(run),
-                       image);
+        preview_draw_numbers(run->engine, run->lamp, run->n_lamps,
+                             drawing_exposure_factor(run), image);
     if (line->show_time_line)
         over_scene_draw_time_line(&drawing->files.scene, image);
     if (!line->show_lights || !run->engine)
@@ -789,12 +791,12 @@ bool drawing_has_marks(const struct drawing_line *line)
 
 /* ------------------------------------------------------------------ results */
 
-double drawing_scale(const struct drawing_run *run)
+double drawing_exposure_factor(const struct drawing_run *run)
 {
     return glint_engine_exposed(run->engine)->scale;
 }
 
-bool drawing_is_new(const struct drawing *drawing)
+bool drawing_has_restarted(const struct drawing *drawing)
 {
     return !drawing->files.has_lens ||
            glint_engine_exposed(drawing->run.engine)->is_new;

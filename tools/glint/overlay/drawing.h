@@ -4,11 +4,11 @@
  * (drawing_line.h), their files (drawing_files.h), and the run over the frames.
  * The stages of a frame are find -> scene -> expose -> draw -> marks.
  *
- *     drawing_line_defaults(&d.line);                   d is zeros
- *     drawing_line_option(&tool, &d.line, option, optarg);
- *     drawing_open(&tool, &d);                          lens, lists, scene
- *     drawing_size(&tool, &d, width, height);           when the size changes
- *     drawing_draw(&d, &image, elapsed_us);             each frame
+ *     drawing_line_set_defaults(&d.line);          d is zeros
+ *     drawing_line_set_option(&tool, &d.line, option, optarg);
+ *     drawing_open(&tool, &d);                     lens, lists, scene
+ *     drawing_allocate(&tool, &d, width, height);  when the size changes
+ *     drawing_draw_flare(&d, &image, elapsed_us);  each frame
  *     drawing_close(&d);
  */
 #ifndef GLINT_TOOLS_OVERLAY_DRAWING_H
@@ -21,15 +21,16 @@
 struct drawing_run {
     struct glint_view view;
     struct glint_engine *engine; /* NULL without a lens, or before
-                                    drawing_size() */
+                                    drawing_allocate() */
     struct glint_engine_cache cache;
     struct tool_progress
         progress; /* progress of the first frame if rays are exact */
     bool is_progressing, is_sized;
     int n_frames;
 
-    /* Set by the caller before drawing_find(): linear light of the picture's
-     * white, and whether the picture has lamps brighter than white */
+    /* Set by the caller before drawing_detect_and_draw_scene(): linear light of
+     * the picture's white, and whether the picture has lamps brighter than
+     * white */
     double white;
     bool is_measured;
 
@@ -60,80 +61,80 @@ int drawing_open_lens(const struct tool *tool, struct drawing *drawing);
 
 /* Allocates the engine and the scene for pictures of WIDTH x HEIGHT pixels.
  * Returns an exit code. */
-int drawing_size(const struct tool *tool, struct drawing *drawing, int width,
-                 int height);
+int drawing_allocate(const struct tool *tool, struct drawing *drawing,
+                     int width, int height);
 
 /* If IMAGE has lamps, bakes the model of a lens that was opened without one
  * (SETTINGS_SEARCH), and allocates the engine again. Returns an exit code. */
-int drawing_bake_found(const struct tool *tool, struct drawing *drawing,
-                       const struct glint_image *image);
+int drawing_bake_for_lamps(const struct tool *tool, struct drawing *drawing,
+                           const struct glint_image *image);
 
-/* Adds the flare to IMAGE, whose size must be that of drawing_size().
+/* Adds the flare to IMAGE, whose size must be that of drawing_allocate().
  * ELAPSED_US: microseconds since the previous frame; 0: IMAGE is an independent
  * picture. Returns GLINT_E_MEMORY on failure. */
-enum glint_status drawing_draw(struct drawing *drawing,
-                               const struct glint_image *image,
-                               int32_t elapsed_us);
+enum glint_status drawing_draw_flare(struct drawing *drawing,
+                                     const struct glint_image *image,
+                                     int32_t elapsed_us);
 
 /* ------------------------------------------------------------------- stages
  *
- * The stages of drawing_draw(), for pictures that are not a struct glint_image:
- * find, expose, a layer, marks. The caller counts run.n_frames. */
+ * The stages of drawing_draw_flare(), for pictures that are not a struct
+ * glint_image: find, expose, a layer, marks. The caller counts run.n_frames. */
 
 /* Detects the lamps of IMAGE and draws the scene over it. Returns
  * GLINT_E_MEMORY on failure. */
-enum glint_status drawing_find(struct drawing *drawing,
-                               const struct glint_image *image,
-                               int32_t elapsed_us);
+enum glint_status drawing_detect_and_draw_scene(struct drawing *drawing,
+                                                const struct glint_image *image,
+                                                int32_t elapsed_us);
 
 /* Corrects power, position and colour of lamps that were detected in a proxy,
  * the 8-bit copy of SAMPLES, by the light that the proxy clips. run.white is
  * the linear light of the proxy's code 255. */
-void drawing_measure(struct drawing *drawing,
-                     const struct glint_samples *samples);
+void drawing_measure_clipped_lamps(struct drawing *drawing,
+                                   const struct glint_samples *samples);
 
 /* Writes the lamps to the --save-lights file and sets the exposure of the flare
  * on IMAGE. Returns GLINT_E_MEMORY on failure. */
-enum glint_status drawing_expose(struct drawing *drawing,
-                                 const struct glint_image *image);
+enum glint_status drawing_set_exposure(struct drawing *drawing,
+                                       const struct glint_image *image);
 
 /* Draws the flare into RGB, upright [height][width][3], linear light. IS_DEEP:
  * with the accuracy of floats; else with that of 8-bit codes, in half the time.
  * Returns GLINT_E_MEMORY on failure. */
-enum glint_status drawing_layer(struct drawing_run *run, bool is_deep,
-                                float *rgb);
+enum glint_status drawing_draw_layer(struct drawing_run *run, bool is_deep,
+                                     float *rgb);
 
 /* Draws the marks of lamps and the time line of a motion on IMAGE if the
  * options request them. */
-void drawing_mark(const struct drawing *drawing,
-                  const struct glint_image *image);
+void drawing_draw_marks(const struct drawing *drawing,
+                        const struct glint_image *image);
 
 /* Returns whether the options request marks or a time line. */
 bool drawing_has_marks(const struct drawing_line *line);
 
 /* ------------------------------------------------------------------ results */
 
-/* Detects and saves the lamps of IMAGE like drawing_find(), but draws
- * nothing. */
-enum glint_status drawing_find_lamps(struct drawing *drawing,
-                                     const struct glint_image *image,
-                                     int32_t elapsed_us);
+/* Detects and saves the lamps of IMAGE like drawing_detect_and_draw_scene(),
+ * but draws nothing. */
+enum glint_status drawing_detect_lamps_only(struct drawing *drawing,
+                                            const struct glint_image *image,
+                                            int32_t elapsed_us);
 
 /* Returns the factor that the exposure applies to the power of lamps. Call it
- * after drawing_expose(). */
-double drawing_scale(const struct drawing_run *run);
+ * after drawing_set_exposure(). */
+double drawing_exposure_factor(const struct drawing_run *run);
 
 /* Returns whether tracking and exposure restarted in the last frame, for
  * example after a cut. */
-bool drawing_is_new(const struct drawing *drawing);
+bool drawing_has_restarted(const struct drawing *drawing);
 
 /* Closes DRAWING and moves FRESH into it. FRESH must be open, without a call of
- * drawing_size(). An open output file of lamps stays open. */
+ * drawing_allocate(). An open output file of lamps stays open. */
 void drawing_replace(struct drawing *drawing, const struct drawing *fresh);
 
 /* Completes the output file of lamps after a successful run. Returns an exit
  * code. */
-int drawing_finish(const struct tool *tool, struct drawing *drawing);
+int drawing_finish_lamp_file(const struct tool *tool, struct drawing *drawing);
 
 void drawing_close(struct drawing *drawing);
 

@@ -51,9 +51,10 @@ static int open_key_file(const struct tool *tool, struct drawing_line *line,
 
     if (!o->keys)
         return EXIT_OK;
-    status = line->keys_text ? keys_parse(&f->keys, o->keys, line->keys_text,
-                                          strlen(line->keys_text), &error)
-                             : keys_read(&f->keys, o->keys, &error);
+    status = line->keys_text
+                 ? keys_parse_text(&f->keys, o->keys, line->keys_text,
+                                   strlen(line->keys_text), &error)
+                 : keys_read_file(&f->keys, o->keys, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (keys_has_column(&f->keys, KEYS_EXPOSURE)) {
@@ -134,7 +135,7 @@ static int check_control_lines(const struct tool *tool, struct settings *s,
             code = report_bad_control_line(tool, scene, i, error.text);
     }
     if (f->lens.model.zoom)
-        opened_lens_zoom(&f->lens, s, zoom, &error);
+        opened_lens_set_zoom(&f->lens, s, zoom, &error);
     s->zoom.zoom = zoom;
     if (s->options.f_number != f_number) {
         s->options.f_number = f_number;
@@ -173,7 +174,7 @@ static int check_zoom_keys(const struct tool *tool, struct drawing_line *line,
     struct glint_error error = {""};
 
     for (int i = f->keys.n[KEYS_ZOOM] - 1; i >= 0; i--) {
-        if (opened_lens_zoom(&f->lens, s, key[i].value, &error) != GLINT_OK)
+        if (opened_lens_set_zoom(&f->lens, s, key[i].value, &error) != GLINT_OK)
             return line->keys_text
                        ? tool_usage(tool, "%.200s: %s", s->options.keys,
                                     error.text)
@@ -198,7 +199,7 @@ static int check_zoom_options(const struct tool *tool,
     if (!keys_has_column(&f->keys, KEYS_ZOOM) || !f->has_lens ||
         tool_is_model(s->options.lens))
         return EXIT_OK;
-    code = tool_lens(tool, s->options.lens, &f->lens.table);
+    code = tool_read_lens(tool, s->options.lens, &f->lens.table);
     return code == EXIT_OK ? check_zoom_keys(tool, line, f) : code;
 }
 
@@ -216,7 +217,7 @@ static enum glint_status open_lamp_list(const struct drawing_line *line,
     if (o->lights)
         status = lamp_list_read(&f->list, o->lights, error);
     if (status == GLINT_OK && o->interpolate)
-        status = lamp_keys_link(&f->list);
+        status = lamp_keys_link_rows(&f->list);
     for (int i = 0; i < line->at.n && status == GLINT_OK; i++)
         status = lamp_list_add(&f->list, &line->at.row[i]);
     f->is_listed = o->lights || line->is_unsearched;

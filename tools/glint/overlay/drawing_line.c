@@ -62,25 +62,25 @@ static void resolve_derived_members(struct drawing_line *line)
     scene_dials_set_defaults(&line->scene_dials, o);
 }
 
-void drawing_line_defaults(struct drawing_line *line)
+void drawing_line_set_defaults(struct drawing_line *line)
 {
     *line = (struct drawing_line){.n_hand = 0};
-    settings_defaults_photo(&line->settings);
+    settings_set_photo_defaults(&line->settings);
     resolve_derived_members(line);
 }
 
-int drawing_line_style(const struct tool *tool, struct drawing_line *line,
-                       const char *name)
+int drawing_line_apply_style(const struct tool *tool, struct drawing_line *line,
+                             const char *name)
 {
     const struct style *const style = find_style_of_lens(name);
     int code = -1;
 
     if (!style)
-        return tool_refuse(tool, "style", name);
+        return tool_report_bad_value(tool, "style", name);
     for (int i = 0; style->set[i].option && code == -1; i++)
         code = drawing_line_set_text(tool, line, style->set[i].option,
                                      style->set[i].value);
-    drawing_line_end(line);
+    drawing_line_end_file(line);
     /* A baked model has fixed coatings; combining it with a style is not an
      * error. */
     line->settings.coating.given = false;
@@ -88,14 +88,15 @@ int drawing_line_style(const struct tool *tool, struct drawing_line *line,
     return code;
 }
 
-int drawing_line_style_of(const struct tool *tool, struct drawing_line *line,
-                          int argc, char **argv, const char *shorts,
-                          const struct option *options)
+int drawing_line_apply_command_style(const struct tool *tool,
+                                     struct drawing_line *line, int argc,
+                                     char **argv, const char *shorts,
+                                     const struct option *options)
 {
     const char *const name = tool_find_option_value(argc, argv, shorts, options,
                                                     ENGINE_OPTION_OF(style));
 
-    return name ? drawing_line_style(tool, line, name) : -1;
+    return name ? drawing_line_apply_style(tool, line, name) : -1;
 }
 
 /* Records OPTION if it is --strength or --exposure. Returns false if the
@@ -111,13 +112,13 @@ static bool record_brightness_option(struct drawing_line *line, int option)
     return true;
 }
 
-void drawing_line_end(struct drawing_line *line)
+void drawing_line_end_file(struct drawing_line *line)
 {
     line->dial = 0;
 }
 
-int drawing_line_option(const struct tool *tool, struct drawing_line *line,
-                        int option, const char *value)
+int drawing_line_set_option(const struct tool *tool, struct drawing_line *line,
+                            int option, const char *value)
 {
     bool is_room = true;
     int code;
@@ -127,8 +128,8 @@ int drawing_line_option(const struct tool *tool, struct drawing_line *line,
             tool, "--strength sets the exposure, so it excludes --exposure");
     if (option == ENGINE_OPTION_OF(style))
         /* The style of a command line was applied before its other options. */
-        return tool->where ? drawing_line_style(tool, line, value) : -1;
-    code = settings_option(tool, &line->settings, option, value);
+        return tool->where ? drawing_line_apply_style(tool, line, value) : -1;
+    code = settings_apply_option(tool, &line->settings, option, value);
     if (code != -1)
         return code;
     if (option == ENGINE_OPTION_OF(lights))
@@ -152,7 +153,7 @@ int drawing_line_set_text(const struct tool *tool, struct drawing_line *line,
 {
     const struct glint_option *const row = glint_option_named(name);
 
-    return drawing_line_option(
+    return drawing_line_set_option(
         tool, line, ENGINE_OPTION + (int)(row - glint_option(0)), text);
 }
 
@@ -163,7 +164,7 @@ int drawing_line_set_number(const struct tool *tool, struct drawing_line *line,
 
     if (!settings_set_number(&line->settings, name, value)) {
         snprintf(text, sizeof text, "%g", value);
-        return tool_refuse(tool, name, text);
+        return tool_report_bad_value(tool, name, text);
     }
     resolve_derived_members(line);
     return -1;

@@ -4,8 +4,8 @@
  * host. No file is opened here. Strings are not copied and must outlive the
  * line.
  *
- *     drawing_line_defaults(&line);
- *     drawing_line_option(&tool, &line, option, optarg);   each option
+ *     drawing_line_set_defaults(&line);
+ *     drawing_line_set_option(&tool, &line, option, optarg);   each option
  */
 #ifndef GLINT_TOOLS_OVERLAY_DRAWING_LINE_H
 #define GLINT_TOOLS_OVERLAY_DRAWING_LINE_H
@@ -38,16 +38,16 @@ struct drawing_line {
                  or --exposure; 0: neither */
 };
 
-void drawing_line_defaults(struct drawing_line *line);
+void drawing_line_set_defaults(struct drawing_line *line);
 
 /* Sets the engine option with getopt code OPTION to VALUE, which must outlive
  * LINE. Returns -1, or -2 if OPTION is not an engine option, or an exit code
  * after printing the error. */
-int drawing_line_option(const struct tool *tool, struct drawing_line *line,
-                        int option, const char *value);
+int drawing_line_set_option(const struct tool *tool, struct drawing_line *line,
+                            int option, const char *value);
 
 /* Set the engine option NAME, which must exist, to a text as
- * drawing_line_option() does, or to a number as glint_options_set() does.
+ * drawing_line_set_option() does, or to a number as glint_options_set() does.
  * Return -1, or an exit code after printing which values the option accepts. */
 int drawing_line_set_text(const struct tool *tool, struct drawing_line *line,
                           const char *name, const char *text);
@@ -61,18 +61,19 @@ bool drawing_line_add_light(struct drawing_line *line, double x, double y,
                             double ev);
 
 /* Sets all options of the style NAME. Returns -1 or an exit code. */
-int drawing_line_style(const struct tool *tool, struct drawing_line *line,
-                       const char *name);
+int drawing_line_apply_style(const struct tool *tool, struct drawing_line *line,
+                             const char *name);
 
 /* Applies the style of a command line before all other options, wherever it
  * stands, so that they override it. The arguments are those of
  * tool_find_option_value(). Returns -1 or an exit code. */
-int drawing_line_style_of(const struct tool *tool, struct drawing_line *line,
-                          int argc, char **argv, const char *shorts,
-                          const struct option *options);
+int drawing_line_apply_command_style(const struct tool *tool,
+                                     struct drawing_line *line, int argc,
+                                     char **argv, const char *shorts,
+                                     const struct option *options);
 
 /* Ends the options of a configuration file, so that the command line may again
  * set --strength or --exposure. */
-void drawing_line_end(struct drawing_line *line);
+void drawing_line_end_file(struct drawing_line *line);
 
 #endif

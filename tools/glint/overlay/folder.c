@@ -102,8 +102,8 @@ static int check_output_is_no_input(const struct tool *tool, const char *folder,
     return EXIT_OK;
 }
 
-int folder_open(const struct tool *tool, const char *folder, char **input,
-                int n, const struct glint_options *options, bool *is_new)
+int folder_create(const struct tool *tool, const char *folder, char **input,
+                  int n, const struct glint_options *options, bool *is_new)
 {
     struct stat *const file = malloc((size_t)n * sizeof *file);
     struct glint_error error = {""};

@@ -22,7 +22,7 @@ bool folder_make_output_path(char path[FOLDER_PATH], const char *folder,
  * INPUT[N] are drawn with OPTIONS. Rejects inputs with the same name, outputs
  * that would overwrite an input, and streams that the first input would
  * consume. Returns an exit code. */
-int folder_open(const struct tool *tool, const char *folder, char **input,
-                int n, const struct glint_options *options, bool *is_new);
+int folder_create(const struct tool *tool, const char *folder, char **input,
+                  int n, const struct glint_options *options, bool *is_new);
 
 #endif

@@ -19,13 +19,13 @@ struct layers {
 
 /* Checks before drawing whether the LAYERS files can be written. IS_VIDEO: the
  * name must have a frame number. Returns an exit code. */
-int layers_check(const struct tool *tool, const struct layers *layers,
-                 bool is_video);
+int layers_check_names(const struct tool *tool, const struct layers *layers,
+                       bool is_video);
 
-/* Calls apart_check() for FILES plus the output files of all LAYERS. Returns
- * its exit code. */
-int layers_check_apart(const struct tool *tool, const struct layers *layers,
-                       const struct apart *files);
+/* Calls apart_check_outputs() for FILES plus the output files of all LAYERS.
+ * Returns its exit code. */
+int layers_check_outputs(const struct tool *tool, const struct layers *layers,
+                         const struct apart *files);
 
 /* Draws and writes the layers of the current frame of DRAWING, whose lamps and
  * exposure must be set. No-op if no layers are requested. Returns an exit

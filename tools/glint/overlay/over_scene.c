@@ -25,7 +25,7 @@ static enum glint_status check_control_line(const struct over_scene *over,
                    : control_report_error(error, where, 1,
                                           "this command changes the flare, but "
                                           "--lens none has none");
-    return over->is_open ? steer_check(&over->steer, line, where, error)
+    return over->is_open ? steer_check_line(&over->steer, line, where, error)
                          : control_report_error(error, where, 1,
                                                 "this command needs --scene");
 }
@@ -88,7 +88,7 @@ void over_scene_apply_control(struct over_scene *over, int frame)
 
     if (!over->control.is_open || (over->is_open && !over->is_sized))
         return;
-    while ((line = controls_next(&over->control, frame))) {
+    while ((line = controls_next_line(&over->control, frame))) {
         struct glint_error error;
 
         if (execute_control_line(over, line, &error) != GLINT_OK)
@@ -181,7 +181,7 @@ bool over_scene_needs_lens(const struct over_scene *over)
            over->baked.model.header->camera.kind == GLINT_CAMERA_LENS;
 }
 
-bool over_scene_keeps_lights(const struct over_scene *over)
+bool over_scene_has_lights_without_flare(const struct over_scene *over)
 {
     return over->is_open && count_scene_lights(over) > 0 &&
            !over->baked.model.header->flare;
@@ -239,7 +239,8 @@ static enum glint_status move_camera_to_pose(struct over_scene *over,
     else
         memcpy(axis_q30, over->baked.model.header->camera.axis_q30,
                sizeof axis_q30);
-    return steer_camera(&over->steer, to->at, (const int32_t(*)[3])axis_q30)
+    return steer_record_camera_pose(&over->steer, to->at,
+                                    (const int32_t(*)[3])axis_q30)
                ? glint_scene_set_camera(scene, to->at,
                                         (const int32_t(*)[3])axis_q30)
                : GLINT_OK;
@@ -302,7 +303,7 @@ static void apply_poses_up_to_frame(struct over_scene *over, int frame)
     if (frame < over->poses.frame && poses_rewind(&over->poses.file))
         reset_all_poses(over);
     over->poses.frame = frame;
-    while ((pose = poses_next(&over->poses.file, frame))) {
+    while ((pose = poses_next_pose(&over->poses.file, frame))) {
         const int i = find_pose_index(over, pose->thing);
         const struct scene_moved before = over->poses.moved[i];
 
@@ -383,9 +384,10 @@ enum glint_status over_scene_draw(struct over_scene *over,
     enum glint_status status;
 
     over_scene_apply_control(over, frame);
-    over->shown = over->control_file
-                      ? playback_next(&over->playback, 1e-6 * over->elapsed_us)
-                      : frame;
+    over->shown =
+        over->control_file
+            ? playback_next_frame(&over->playback, 1e-6 * over->elapsed_us)
+            : frame;
     glint_scene_seek(over->frame.scene, (uint32_t)over->shown);
     if (over->poses.moved)
         apply_poses_up_to_frame(over, over->shown);
@@ -491,7 +493,7 @@ int over_scene_add_highlights(struct over_scene *over, bool follows,
 /* -------------------------------------------------------------------- report
  */
 
-size_t over_scene_bytes(const struct over_scene *over)
+size_t over_scene_memory_bytes(const struct over_scene *over)
 {
     return over->is_sized ? over->frame.bytes : 0;
 }

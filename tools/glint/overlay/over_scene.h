@@ -3,9 +3,9 @@
  * over_scene.h - draws a scene over the pictures of a camera; its objects hide
  * lamps, its lights and highlights add lamps to the flare.
  *
- *     over_scene_open(&over, tool);                   scene and poses
- *     over_scene_allocate(&over, &dials);                 when the size changes
- *     over_scene_draw(&over, &image, frame);          each picture
+ *     over_scene_open(&over, tool);           scene and poses
+ *     over_scene_allocate(&over, &dials);     when the size changes
+ *     over_scene_draw(&over, &image, frame);  each picture
  *     over_scene_close(&over);
  *
  * Frame numbers of a video must rise. Moving objects needs no baking. */
@@ -88,7 +88,7 @@ bool over_scene_needs_lens(const struct over_scene *over);
 
 /* Returns whether the scene has lights that cause no flare, as 'flare lights'
  * is missing. */
-bool over_scene_keeps_lights(const struct over_scene *over);
+bool over_scene_has_lights_without_flare(const struct over_scene *over);
 
 /* Allocates the scene for pictures of the size in DIALS. No-op without a scene.
  * Returns an exit code. */
@@ -139,7 +139,7 @@ int over_scene_add_highlights(struct over_scene *over, bool follows,
                               struct glint_engine_lamp *lamps);
 
 /* Returns the bytes of memory for drawing. */
-size_t over_scene_bytes(const struct over_scene *over);
+size_t over_scene_memory_bytes(const struct over_scene *over);
 
 /* Prints one line of statistics of the frame drawn last. */
 void over_scene_print_line(const struct over_scene *over, FILE *to);

@@ -70,16 +70,16 @@ struct overlay {
 
 /* Draws the flare on IMAGE, the next frame, and updates the statistics. Returns
  * an exit code; so do all functions here that return int. */
-int overlay_draw(struct tool *tool, struct overlay *o,
-                 const struct glint_image *image);
+int overlay_draw_frame(struct tool *tool, struct overlay *o,
+                       const struct glint_image *image);
 
 /* Detects lamps and updates tracks and exposure for IMAGE, a frame before the
  * first one to draw. */
 int overlay_find_lamps_only(struct tool *tool, struct overlay *o,
                             const struct glint_image *image);
 
-/* Same as overlay_draw() for frames that cannot be drawn in place: calls DRAW
- * with CTX to draw the frame. */
+/* Same as overlay_draw_frame() for frames that cannot be drawn in place: calls
+ * DRAW with CTX to draw the frame. */
 typedef enum glint_status overlay_draw_fn(void *ctx, struct drawing *drawing,
                                           const struct glint_image *image,
                                           int32_t elapsed_us);
@@ -89,16 +89,16 @@ int overlay_draw_with(struct tool *tool, struct overlay *o,
 
 /* Prints the progress: one line that is overwritten on a terminal, else a new
  * line every few seconds. */
-void overlay_progress(const struct tool *tool, struct overlay *o);
+void overlay_print_progress(const struct tool *tool, struct overlay *o);
 
 /* Checks a drawing of picture FROM to TO: rejects outputs that would overwrite
  * an input or another output. */
-int overlay_check_apart(const struct tool *tool, const struct overlay *o,
-                        const char *from, const char *to);
+int overlay_check_outputs(const struct tool *tool, const struct overlay *o,
+                          const char *from, const char *to);
 
 /* Draws one picture from file FROM to file TO. */
-int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
-                    const char *to);
+int overlay_draw_picture_file(struct tool *tool, struct overlay *o,
+                              const char *from, const char *to);
 
 /* Returns whether the input is a numbered sequence: its name contains a '%' and
  * no file has this name. */
@@ -106,7 +106,7 @@ bool overlay_is_sequence(const struct overlay *o);
 
 /* Draws the numbered pictures of the pattern o->input to the pattern
  * o->output. */
-int overlay_sequence(struct tool *tool, struct overlay *o);
+int overlay_draw_sequence(struct tool *tool, struct overlay *o);
 
 /* Returns whether NAME is a video, by its extension. */
 bool overlay_is_video(const char *name);
@@ -118,9 +118,9 @@ int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video);
 
 /* Rejects a video that needs ffmpeg if ffmpeg is not installed, before any
  * work. Returns an exit code. */
-int overlay_video_check(const struct tool *tool, const struct overlay *o);
+int overlay_check_ffmpeg(const struct tool *tool, const struct overlay *o);
 
 /* Draws a video from o->input to o->output. */
-int overlay_video(struct tool *tool, struct overlay *o);
+int overlay_draw_video(struct tool *tool, struct overlay *o);
 
 #endif

@@ -208,7 +208,7 @@ static enum glint_status draw_on_grey_image(struct overlay_file *f,
     glint_image_place(&grey, mem);
     grey.range = GLINT_RANGE_FULL;
     copy_green_channel(&grey, &f->image);
-    status = drawing_draw(drawing, &grey, elapsed_us);
+    status = drawing_draw_flare(drawing, &grey, elapsed_us);
     add_grey_difference(&f->image, &grey);
     free(mem);
     return status;
@@ -231,7 +231,8 @@ static bool is_flare_absent(const struct drawing *drawing)
 {
     return !drawing->files.scene.is_open &&
            !glint_engine_has_veil(drawing->run.engine) &&
-           (drawing->run.n_lamps == 0 || !(drawing_scale(&drawing->run) > 0));
+           (drawing->run.n_lamps == 0 ||
+            !(drawing_exposure_factor(&drawing->run) > 0));
 }
 
 /* Copies the pixels of DRAWN that differ from BEFORE, the codes before drawing
@@ -267,7 +268,7 @@ static enum glint_status draw_marks_on_proxy(struct overlay_file *f,
     if (!before)
         return GLINT_E_MEMORY;
     memcpy(before, f->image.plane[0], bytes);
-    drawing_mark(drawing, &f->image);
+    drawing_draw_marks(drawing, &f->image);
     copy_marks_to_samples(samples_to_draw_on(f), &f->image, before);
     free(before);
     return GLINT_OK;
@@ -348,10 +349,10 @@ static enum glint_status draw_flare_layer(struct overlay_file *file,
     if (!file->layer)
         return GLINT_E_MEMORY;
     if (is_lit)
-        status = drawing_layer(&drawing->run,
-                               has_more_than_8_bits(samples_to_draw_on(file)) ||
-                                   !is_composite,
-                               file->layer);
+        status = drawing_draw_layer(
+            &drawing->run,
+            has_more_than_8_bits(samples_to_draw_on(file)) || !is_composite,
+            file->layer);
     if (status != GLINT_OK)
         return status;
     if (is_grey)
@@ -369,17 +370,18 @@ static enum glint_status draw_on_deep_samples(struct overlay_file *file,
                                               struct drawing *drawing,
                                               bool is_grey, int32_t elapsed_us)
 {
-    enum glint_status status = drawing_find(drawing, &file->image, elapsed_us);
+    enum glint_status status =
+        drawing_detect_and_draw_scene(drawing, &file->image, elapsed_us);
 
     if (status != GLINT_OK)
         return status;
     if (file->kept.is_float)
-        drawing_measure(drawing, &file->kept.samples);
+        drawing_measure_clipped_lamps(drawing, &file->kept.samples);
     if (drawing->files.scene.is_open &&
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE)
         status = draw_scene_on_samples(file, drawing, is_grey);
     if (status == GLINT_OK && drawing->files.has_lens) {
-        status = drawing_expose(drawing, &file->image);
+        status = drawing_set_exposure(drawing, &file->image);
         if (status == GLINT_OK)
             status = draw_flare_layer(file, drawing, is_grey);
     }
@@ -406,7 +408,7 @@ static enum glint_status draw_flare_on_file(void *ctx, struct drawing *drawing,
     if (!file->is_direct)
         return draw_on_deep_samples(file, drawing, is_grey, elapsed_us);
     return is_grey ? draw_on_grey_image(file, drawing, elapsed_us)
-                   : drawing_draw(drawing, image, elapsed_us);
+                   : drawing_draw_flare(drawing, image, elapsed_us);
 }
 
 /* ------------------------------------------------------------------- saving */
@@ -502,8 +504,8 @@ static int save_picture(const struct tool *tool, struct overlay_file *file,
 
 /* -------------------------------------------------------------------- whole */
 
-int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
-                    const char *to)
+int overlay_draw_picture_file(struct tool *tool, struct overlay *o,
+                              const char *from, const char *to)
 {
     struct overlay_file file;
     int code = open_picture_file(tool, &file, &o->drawing, from, to);

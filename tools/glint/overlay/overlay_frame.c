@@ -52,11 +52,11 @@ static enum glint_status draw_in_place(void *ctx, struct drawing *drawing,
                                        int32_t elapsed_us)
 {
     (void)ctx;
-    return drawing_draw(drawing, image, elapsed_us);
+    return drawing_draw_flare(drawing, image, elapsed_us);
 }
 
-int overlay_draw(struct tool *tool, struct overlay *o,
-                 const struct glint_image *image)
+int overlay_draw_frame(struct tool *tool, struct overlay *o,
+                       const struct glint_image *image)
 {
     return overlay_draw_with(tool, o, image, draw_in_place, NULL);
 }
@@ -69,15 +69,15 @@ int overlay_find_lamps_only(struct tool *tool, struct overlay *o,
     int code = EXIT_OK;
 
     if (!drawing->run.is_sized)
-        code = drawing_size(tool, drawing, image->width, image->height);
+        code = drawing_allocate(tool, drawing, image->width, image->height);
     if (code != EXIT_OK)
         return code;
     if (o->first - drawing->run.n_frames <= o->warm_up) {
-        status = drawing_find(drawing, image, o->elapsed_us);
+        status = drawing_detect_and_draw_scene(drawing, image, o->elapsed_us);
         if (status == GLINT_OK && drawing->files.has_lens)
-            status = drawing_expose(drawing, image);
+            status = drawing_set_exposure(drawing, image);
     }
-    o->is_cut = drawing_is_new(drawing);
+    o->is_cut = drawing_has_restarted(drawing);
     drawing->run.n_frames++;
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
@@ -110,10 +110,10 @@ int overlay_draw_with(struct tool *tool, struct overlay *o,
 
     drawing->line.is_still = o->elapsed_us == 0;
     if (!drawing->run.is_sized)
-        code = drawing_size(tool, drawing, image->width, image->height);
+        code = drawing_allocate(tool, drawing, image->width, image->height);
     if (code == EXIT_OK && drawing->files.lens.is_unbaked &&
         drawing->line.settings.unbaked == SETTINGS_SEARCH)
-        code = drawing_bake_found(tool, drawing, image);
+        code = drawing_bake_for_lamps(tool, drawing, image);
     if (code != EXIT_OK)
         return code;
     status = draw(ctx, drawing, image, o->elapsed_us);
@@ -146,7 +146,7 @@ int overlay_draw_with(struct tool *tool, struct overlay *o,
     return EXIT_OK;
 }
 
-void overlay_progress(const struct tool *tool, struct overlay *o)
+void overlay_print_progress(const struct tool *tool, struct overlay *o)
 {
     const double now = tool_clock_s(), spent = now - o->figures.started;
     const bool is_terminal = isatty(STDERR_FILENO);
@@ -165,13 +165,13 @@ void overlay_progress(const struct tool *tool, struct overlay *o)
     fflush(stderr);
 }
 
-int overlay_check_apart(const struct tool *tool, const struct overlay *o,
-                        const char *from, const char *to)
+int overlay_check_outputs(const struct tool *tool, const struct overlay *o,
+                          const char *from, const char *to)
 {
     struct apart files = {.n_read = 0};
 
     apart_add_input(&files, NULL, from);
     apart_add_output(&files, "-o", to);
     apart_add_drawing_files(&files, &o->drawing.line);
-    return layers_check_apart(tool, &o->layers, &files);
+    return layers_check_outputs(tool, &o->layers, &files);
 }

@@ -33,7 +33,7 @@ static bool measure_layer_light(struct drawing *drawing,
     const struct glint_engine_report report = drawing->run.report;
     float *rgb = malloc(3 * n * sizeof *rgb);
     const bool is_drawn =
-        rgb && drawing_layer(&drawing->run, true, rgb) == GLINT_OK;
+        rgb && drawing_draw_layer(&drawing->run, true, rgb) == GLINT_OK;
 
     if (is_drawn) {
         glint_response_around(rgb, n, light);
@@ -63,7 +63,7 @@ struct overlay_light overlay_measure_light(struct overlay *o)
     struct glint_response_light drawn;
 
     if (is_single_component_drawn(drawing) && drawing->run.n_lamps > 0 &&
-        drawing_scale(&drawing->run) > 0) {
+        drawing_exposure_factor(&drawing->run) > 0) {
         light.is_known =
             drawing->run.n_frames == 1 && measure_layer_light(drawing, &drawn);
         if (light.is_known) {
@@ -73,14 +73,14 @@ struct overlay_light overlay_measure_light(struct overlay *o)
         return light;
     }
     if (n != 1 || drawing->run.n_lamps == 0 ||
-        drawing_scale(&drawing->run) <= 0 ||
+        drawing_exposure_factor(&drawing->run) <= 0 ||
         glint_engine_exposed(drawing->run.engine)->is_drawn ||
         glint_engine_measure(drawing->run.engine, drawing->run.lamp,
                              drawing->run.n_lamps, &drawn) != GLINT_OK)
         return light;
-    light.peak = drawing_scale(&drawing->run) / drawing->run.white *
+    light.peak = drawing_exposure_factor(&drawing->run) / drawing->run.white *
                  glint_largest_channel(drawn.peak);
-    light.mean = drawing_scale(&drawing->run) / drawing->run.white *
+    light.mean = drawing_exposure_factor(&drawing->run) / drawing->run.white *
                  glint_largest_channel(drawn.mean);
     return light;
 }
@@ -283,7 +283,7 @@ void overlay_print_no_light(const struct drawing *drawing, bool is_copied,
         print_lamp_candidates(drawing->run.engine, to);
     else
         fputs("lower --threshold, or place a lamp by --light-at X,Y", to);
-    if (over_scene_keeps_lights(&drawing->files.scene))
+    if (over_scene_has_lights_without_flare(&drawing->files.scene))
         fputs("; 'flare lights' in the scene file makes its lights visible to "
               "the lens",
               to);
@@ -363,7 +363,7 @@ void overlay_write_json(struct json_writer *json, const struct overlay *o,
         GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure)
             ? (double)NAN
             : drawing->line.settings.options.strength,
-        log2(drawing_scale(&drawing->run)),
+        log2(drawing_exposure_factor(&drawing->run)),
         light->is_known ? light->peak : (double)NAN,
         light->is_known ? light->mean : (double)NAN);
     for (int i = 0; i < drawing->run.n_lamps; i++) {

@@ -157,11 +157,11 @@ static int draw_numbered_picture(struct tool *tool, struct overlay *o,
                                                   : (int32_t)(gap * FRAME_US);
     o->drawing.run.n_frames +=
         (int)(gap - 1); /* lamp lists count missing pictures, too */
-    code = overlay_check_apart(tool, o, from, to);
+    code = overlay_check_outputs(tool, o, from, to);
     if (code == EXIT_OK)
-        code = overlay_picture(tool, o, from, to);
+        code = overlay_draw_picture_file(tool, o, from, to);
     if (code == EXIT_OK && l->n > 1)
-        overlay_progress(tool, o);
+        overlay_print_progress(tool, o);
     return code;
 }
 
@@ -177,7 +177,7 @@ static int draw_all_numbered_pictures(struct tool *tool, struct overlay *o,
         return EXIT_INPUT;
     }
     if (l->n > 1 && !numbered_is_pattern(o->output)) {
-        const bool hashes = numbered_from_hashes(pattern, o->output);
+        const bool hashes = numbered_convert_hashes(pattern, o->output);
 
         return tool_usage(
             tool,
@@ -197,7 +197,7 @@ bool overlay_is_sequence(const struct overlay *o)
     return strchr(o->input, '%') && access(o->input, F_OK) != 0;
 }
 
-int overlay_sequence(struct tool *tool, struct overlay *o)
+int overlay_draw_sequence(struct tool *tool, struct overlay *o)
 {
     const char *percent = strchr(o->input, '%');
     struct numbers l = {NULL, 0};

@@ -103,7 +103,7 @@ static void set_colour_meaning(struct video *v)
     struct glint_y4m_header *const h = &v->in.header;
     char unknown[FFMPEG_REPORT];
 
-    ffmpeg_colours(&v->about, h, unknown);
+    ffmpeg_set_colours(&v->about, h, unknown);
     if (!*unknown && !*v->about.transfer &&
         h->primaries != GLINT_PRIMARIES_BT709)
         snprintf(unknown, sizeof unknown, ", no transfer");
@@ -128,15 +128,15 @@ static int open_coded_input(struct video *v)
     if (status != GLINT_OK)
         return report_video_failure(v, status);
     glint_input_close(&file);
-    ffmpeg_probe(&v->about, v->o->input);
+    ffmpeg_probe_video(&v->about, v->o->input);
     v->is_variable = ffmpeg_read_times(&v->times, v->o->input, &v->about);
     v->keeps_times = v->is_variable && v->writes &&
                      can_keep_other_streams(v->o) &&
-                     ffmpeg_keeps_times(v->o->output) &&
+                     ffmpeg_can_store_times(v->o->output) &&
                      !(v->o->encode && strstr(v->o->encode, "-vf")) &&
                      !(v->o->encode && strstr(v->o->encode, "-filter"));
-    status = ffmpeg_read(&v->reader, v->o->input, &v->about, v->keeps_times,
-                         &v->error);
+    status = ffmpeg_start_reader(&v->reader, v->o->input, &v->about,
+                                 v->keeps_times, &v->error);
     if (status != GLINT_OK)
         return report_video_failure(v, status);
     status = glint_y4m_reader_start(&v->in, read_from_child, &v->reader,
@@ -232,7 +232,7 @@ static enum glint_status open_encoder(struct video *v)
             &v->error, GLINT_E_OUTPUT, o->output,
             "is not a file; only .y4m can be written to a pipe");
     target.file = v->file.tmp;
-    status = ffmpeg_write(&v->writer, &target, &v->about, &v->error);
+    status = ffmpeg_start_writer(&v->writer, &target, &v->about, &v->error);
     if (status != GLINT_OK)
         return status;
     snprintf(v->pipe, sizeof v->pipe, "/proc/self/fd/%d", v->writer.fd);
@@ -264,9 +264,9 @@ static int draw_and_write_frame(struct video *v,
     if (code != EXIT_OK)
         return code;
     status = glint_y4m_writer_put_planes(&v->out, v->in.planes,
-                                         overlay_y4m_bytes(&v->in),
+                                         overlay_y4m_frame_bytes(&v->in),
                                          v->in.frame_tags, &v->error);
-    overlay_progress(v->tool, v->o);
+    overlay_print_progress(v->tool, v->o);
     v->is_closed = status == GLINT_E_CLOSED;
     return status == GLINT_OK || v->is_closed ? EXIT_OK
                                               : report_video_failure(v, status);
@@ -379,7 +379,7 @@ static int finish_encoder(struct video *v)
     /* An encoder that stops early, for example by -frames:v, has written a
      * valid file. */
     if (v->writes && (status == GLINT_OK || status == GLINT_E_CLOSED)) {
-        status = ffmpeg_check(v->file.tmp, v->o->output, &v->error);
+        status = ffmpeg_check_output(v->file.tmp, v->o->output, &v->error);
         if (status == GLINT_OK && !v->o->encode && !v->tool->quiet)
             ffmpeg_report_losses(v->file.tmp, v->o->output, &v->about);
         if (status == GLINT_OK)
@@ -435,16 +435,16 @@ static void close_video_files(struct video *v)
     free(v->times.at);
 }
 
-int overlay_video_check(const struct tool *tool, const struct overlay *o)
+int overlay_check_ffmpeg(const struct tool *tool, const struct overlay *o)
 {
     if (((o->raw.width || is_y4m_name(o->input)) && is_y4m_name(o->output)) ||
-        child_exists("ffmpeg"))
+        child_is_program_installed("ffmpeg"))
         return EXIT_OK;
     ffmpeg_print_manual_commands(tool, o->input, o->output);
     return EXIT_INPUT;
 }
 
-int overlay_video(struct tool *tool, struct overlay *o)
+int overlay_draw_video(struct tool *tool, struct overlay *o)
 {
     struct video v = {.tool = tool,
                       .o = o,

@@ -13,7 +13,7 @@ struct overlay_y4m {
     float *layer;
 };
 
-size_t overlay_y4m_bytes(const struct glint_y4m_reader *in)
+size_t overlay_y4m_frame_bytes(const struct glint_y4m_reader *in)
 {
     return glint_y4m_layout_bytes(&in->header.layout, in->header.width,
                                   in->header.height);
@@ -49,12 +49,13 @@ static enum glint_status draw_flare_on_planes(void *ctx,
                                               int32_t elapsed_us)
 {
     struct overlay_y4m *const y = ctx;
-    enum glint_status status = drawing_find(drawing, image, elapsed_us);
+    enum glint_status status =
+        drawing_detect_and_draw_scene(drawing, image, elapsed_us);
 
     if (status == GLINT_OK)
         status = draw_scene_on_planes(y, drawing);
     if (status == GLINT_OK && drawing->files.has_lens)
-        status = drawing_expose(drawing, image);
+        status = drawing_set_exposure(drawing, image);
     drawing->run.n_frames++;
     if (status != GLINT_OK || !drawing->files.has_lens)
         return status;
@@ -63,8 +64,9 @@ static enum glint_status draw_flare_on_planes(void *ctx,
     if (drawing->run.n_lamps == 0 &&
         !glint_engine_has_veil(drawing->run.engine))
         return GLINT_OK;
-    status = drawing_layer(&drawing->run, y->light.layout.bits > 12, y->layer);
-    if (status == GLINT_OK && (drawing_scale(&drawing->run) > 0 ||
+    status =
+        drawing_draw_layer(&drawing->run, y->light.layout.bits > 12, y->layer);
+    if (status == GLINT_OK && (drawing_exposure_factor(&drawing->run) > 0 ||
                                glint_engine_has_veil(drawing->run.engine)))
         glint_y4m_light_add(&y->light, y->planes, y->layer);
     return status;
@@ -91,7 +93,7 @@ int overlay_y4m_draw(struct tool *tool, struct overlay *o,
                      const struct glint_image *image)
 {
     if (glint_y4m_is_plain(&in->header))
-        return overlay_draw(tool, o, image);
+        return overlay_draw_frame(tool, o, image);
     if (drawing_has_marks(&o->drawing.line))
         return tool_usage(tool,
                           "--show lights needs frames of 8 bits in BT.709, not "

@@ -9,7 +9,7 @@
 #include "video/y4m.h"
 
 /* Returns the bytes of a frame of IN, all planes together. */
-size_t overlay_y4m_bytes(const struct glint_y4m_reader *in);
+size_t overlay_y4m_frame_bytes(const struct glint_y4m_reader *in);
 
 /* Draws the flare on the frame that IN read last; IMAGE is its 8-bit view.
  * Returns an exit code. */

@@ -138,12 +138,12 @@ static enum glint_status add_flare_of_lights(struct frames *f)
     const size_t n = 3 * (size_t)f->r->width * (size_t)f->r->height;
     enum glint_status status;
 
-    status = drawing_expose(c, &f->seen);
+    status = drawing_set_exposure(c, &f->seen);
     if (status != GLINT_OK || !f->flare ||
-        ((c->run.n_lamps == 0 || !(drawing_scale(&c->run) > 0)) &&
+        ((c->run.n_lamps == 0 || !(drawing_exposure_factor(&c->run) > 0)) &&
          !glint_engine_has_veil(c->run.engine)))
         return status;
-    status = drawing_layer(&c->run, true, f->flare);
+    status = drawing_draw_layer(&c->run, true, f->flare);
     for (size_t i = 0; status == GLINT_OK && i < n; i++)
         f->r->image.rgb[i] += f->flare[i];
     return status;
@@ -161,7 +161,7 @@ static enum glint_status draw_scene_frame(struct frames *f)
     memset(f->light_q20, 0, n * sizeof *f->light_q20);
     if (f->c->files.has_lens && f->seen.plane[0]) {
         memset(f->seen.plane[0], 0, n);
-        status = drawing_find(f->c, &f->seen, f->elapsed_us);
+        status = drawing_detect_and_draw_scene(f->c, &f->seen, f->elapsed_us);
         if (status == GLINT_OK)
             glint_scene_draw(f->c->files.scene.frame.scene, &linear);
     } else {
@@ -245,7 +245,7 @@ static void print_run_summary(const struct frames *f, double ms)
     json_write(&json, "lens: %s",
                f->c->files.has_lens ? f->c->files.lens.table.name : NULL);
     if (f->c->files.has_lens)
-        settings_json(&json, &f->c->run.report);
+        settings_write_json(&json, &f->c->run.report);
     json_write(&json, "ms: %.3f}\n", ms);
 }
 
@@ -266,7 +266,7 @@ static int render_all_frames(struct frames *f)
     if (code == EXIT_OK)
         code = finish_output_video(f);
     if (code == EXIT_OK)
-        code = drawing_finish(f->tool, f->c);
+        code = drawing_finish_lamp_file(f->tool, f->c);
     if (code == EXIT_OK)
         print_run_summary(f, 1e3 * (tool_clock_s() - start));
     return code;
@@ -302,7 +302,7 @@ int render_frames(struct tool *tool, struct render_scene *r, const char *path)
     c->line.settings.options.scene = path;
     apart_add_drawing_files(&files, &c->line);
     apart_add_output(&files, "-o", r->output);
-    code = apart_check(tool, &files);
+    code = apart_check_outputs(tool, &files);
     if (code != EXIT_OK)
         return code;
     c->line.scene_dials.edge_samples = r->samples;
@@ -312,7 +312,7 @@ int render_frames(struct tool *tool, struct render_scene *r, const char *path)
     code = drawing_open(tool, c);
     c->files.is_listed = true; /* no photograph to search for lamps */
     if (code == EXIT_OK)
-        code = drawing_size(tool, c, r->width, r->height);
+        code = drawing_allocate(tool, c, r->width, r->height);
     if (code == EXIT_OK)
         code = render_all_frames(&f);
     close_frame_buffers(&f);

@@ -89,18 +89,18 @@ static int parse_animation_option(struct tool *tool, struct render_scene *r,
     case OPT_FRAME:
         r->is_frames = true;
         if (!tool_parse_integer(optarg, 0, MOST_FRAME, &r->first))
-            return tool_refuse(tool, "frame", optarg);
+            return tool_report_bad_value(tool, "frame", optarg);
         r->last = r->first;
         return -1;
     case OPT_FRAMES:
         return parse_frame_range(r, optarg)
                    ? -1
-                   : tool_refuse(tool, "frames", optarg);
+                   : tool_report_bad_value(tool, "frames", optarg);
     case OPT_FPS:
         return tool_parse_number(optarg, &r->fps) && r->fps >= 1 &&
                        r->fps <= 1000
                    ? -1
-                   : tool_refuse(tool, "fps", optarg);
+                   : tool_report_bad_value(tool, "fps", optarg);
     default:
         return -2;
     }
@@ -115,7 +115,7 @@ static int parse_scene_option(struct tool *tool, struct render_scene *r, int c)
     case OPT_SIZE:
         return tool_parse_size(optarg, &r->width, &r->height)
                    ? -1
-                   : tool_refuse(tool, "size", optarg);
+                   : tool_report_bad_value(tool, "size", optarg);
     case OPT_SAMPLES:
         return tool_parse_integer(optarg, 1, 16, &r->samples)
                    ? -1
@@ -126,9 +126,9 @@ static int parse_scene_option(struct tool *tool, struct render_scene *r, int c)
         return tool_parse_number(optarg, &r->exposure_ev) &&
                        fabs(r->exposure_ev) <= 100
                    ? -1
-                   : tool_refuse(tool, "exposure", optarg);
+                   : tool_report_bad_value(tool, "exposure", optarg);
     default:
-        return tool_option(tool, c, optarg);
+        return tool_apply_option(tool, c, optarg);
     }
 }
 
@@ -136,7 +136,7 @@ static int parse_scene_option(struct tool *tool, struct render_scene *r, int c)
  * code. */
 static int parse_any_option(struct tool *tool, struct render_scene *r, int c)
 {
-    int code = drawing_line_option(tool, &r->drawing.line, c, optarg);
+    int code = drawing_line_set_option(tool, &r->drawing.line, c, optarg);
 
     if (code == -1) {
         const enum glint_option_group group =
@@ -168,11 +168,12 @@ static int parse_command_line(struct tool *tool, int argc, char **argv,
         {"frames", required_argument, NULL, OPT_FRAMES},
         {"fps", required_argument, NULL, OPT_FPS},
         {NULL, 0, NULL, 0}};
-    const struct option *const options =
-        engine_getopt(tool, ENGINE_ALL, &r->drawing.line.settings.options, own);
+    const struct option *const options = engine_build_options(
+        tool, ENGINE_ALL, &r->drawing.line.settings.options, own);
     struct scene_dials *const asked = &r->drawing.line.scene_dials;
-    int c, code = drawing_line_style_of(tool, &r->drawing.line, argc, argv,
-                                        "o:" TOOL_COMMON_SHORT, options);
+    int c, code = drawing_line_apply_command_style(tool, &r->drawing.line, argc,
+                                                   argv, "o:" TOOL_COMMON_SHORT,
+                                                   options);
 
     if (code >= 0)
         return code;
@@ -180,7 +181,7 @@ static int parse_command_line(struct tool *tool, int argc, char **argv,
                             NULL)) >= 0)
         if ((code = parse_any_option(tool, r, c)) >= 0)
             return code;
-    code = tool_inputs(tool, argc, argv, 1, "expects one scene");
+    code = tool_check_inputs(tool, argc, argv, 1, "expects one scene");
     if (code >= 0)
         return code;
     if (!r->output)
@@ -315,7 +316,7 @@ static int render_scene_file(struct tool *tool, struct render_scene *r,
     const double start = tool_clock_s();
     int code = r->is_frames && overlay_is_video(r->output)
                    ? EXIT_OK
-                   : render_file_check(tool, r->output, &r->linear);
+                   : render_file_check_path(tool, r->output, &r->linear);
 
     tool->written = r->output;
     if (code != EXIT_OK)
@@ -358,14 +359,14 @@ int cmd_render_scene(int argc, char **argv)
     r->width = 960;
     r->height = 540;
     r->fps = 25;
-    drawing_line_defaults(&r->drawing.line);
+    drawing_line_set_defaults(&r->drawing.line);
     r->drawing.line.settings.options.lens = "none";
     code = parse_command_line(&tool, argc, argv, r);
     if (code < 0) {
-        code = tool_start(&tool);
+        code = tool_start_threads(&tool);
         if (code == EXIT_OK)
             code = render_scene_file(&tool, r, argv[optind]);
-        tool_finish(&tool);
+        tool_stop_threads(&tool);
     }
     drawing_close(&r->drawing);
     free(r);

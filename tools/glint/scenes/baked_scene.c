@@ -30,7 +30,7 @@ int baked_scene_open(const struct tool *tool, const char *path,
     *scene = (struct baked_scene){.data = NULL};
     if (tool_is_scene(path)) {
         code =
-            tool_scene_bake(tool, path, &data, &scene->bytes, &scene->report);
+            tool_bake_scene(tool, path, &data, &scene->bytes, &scene->report);
         if (code != EXIT_OK)
             return code;
         scene->data = data;

@@ -62,7 +62,7 @@ bake_picture(const char *named, const char *from,
     enum glint_status status = glint_picture_load_float(from, &picture, error);
 
     if (status == GLINT_OK) {
-        tool_scene_name(named, name);
+        tool_copy_scene_name(named, name);
         tool_hash_into_key(&key, options, sizeof *options);
         tool_hash_into_key(&key, picture.rgb,
                            3 * sizeof(float) * (size_t)picture.width *
@@ -100,7 +100,7 @@ bake_source(const char *path, const char *written,
     if (is_environment_text(path)) {
         status = read_environment_text(path, &options, source, error);
         if (status == GLINT_OK)
-            status = tool_find_input(path, source, written, beside, error);
+            status = tool_make_input_path(path, source, written, beside, error);
         picture = beside;
     }
     if (override)
@@ -124,7 +124,7 @@ enum glint_status environment_file_read(
     enum glint_status status;
 
     *file = (struct environment_file){.data = NULL};
-    status = tool_find_input("", path, written, self, error);
+    status = tool_make_input_path("", path, written, self, error);
     if (status == GLINT_OK && environment_file_is_source(path)) {
         status = bake_source(path, written, override, ctx, left, file, error);
     } else if (status == GLINT_OK) {
@@ -349,9 +349,9 @@ static int parse_environment_option(struct tool *tool, void *line, int c,
                                 &l->lights);
         break;
     default:
-        return tool_option(tool, c, optarg);
+        return tool_apply_option(tool, c, optarg);
     }
-    return ok ? -1 : tool_refuse(tool, name, optarg);
+    return ok ? -1 : tool_report_bad_value(tool, name, optarg);
 }
 
 int cmd_bake_environment(struct tool *tool, int argc, char **argv)

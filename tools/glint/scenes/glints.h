@@ -4,8 +4,8 @@
  * lamps of the flare.
  *
  *     glints_open(&glints, width, height);
- *     n = glints_track_frame(&glints, scene, elapsed_us);            each
- * picture glints_make_lamp(&glints, i, &view, focal_mm, &lamp, &level);
+ *     n = glints_track_frame(&glints, scene, elapsed_us);  each picture
+ *     level = glints_make_lamp(&glints, i, &view, focal_mm, &lamp);
  *     glints_close(&glints);
  *
  * Highlights are tracked like lamps in a picture: they fade in and out and do

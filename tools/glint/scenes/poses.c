@@ -49,8 +49,8 @@ static int find_object_by_name(const struct glint_scene_model *m,
             return n + (int)i;
         suggest_consider(&suggest, light, strlen(light));
     }
-    text_lines_cause(lines, "the scene has no '%.24s'%s", name,
-                     suggest_from_words(&suggest));
+    text_lines_format_cause(lines, "the scene has no '%.24s'%s", name,
+                            suggest_from_words(&suggest));
     return -2;
 }
 
@@ -265,7 +265,7 @@ void poses_close(struct poses *poses)
 static void record_line_error(struct poses *p, const char *cause)
 {
     if (p->n_bad++ == 0)
-        text_lines_fail(&p->lines, &p->bad, cause);
+        text_lines_report_error(&p->lines, &p->bad, cause);
 }
 
 static void read_poses_from_pipe(struct poses *p)
@@ -282,7 +282,7 @@ static void read_poses_from_pipe(struct poses *p)
     }
 }
 
-const struct pose *poses_next(struct poses *poses, int frame)
+const struct pose *poses_next_pose(struct poses *poses, int frame)
 {
     struct poses *p = poses;
 

@@ -4,7 +4,7 @@
  * frame.
  *
  *     poses_open(&poses, path, is_live, &model, &error);
- *     while ((pose = poses_next(&poses, frame)))           each frame
+ *     while ((pose = poses_next_pose(&poses, frame)))           each frame
  *         ...
  *     poses_close(&poses);
  *
@@ -65,7 +65,7 @@ enum glint_status poses_open(struct poses *poses, const char *path,
 
 /* Returns the next pose for FRAME or an earlier frame, or NULL if there are
  * no more. FRAME must not decrease from call to call. */
-const struct pose *poses_next(struct poses *poses, int frame);
+const struct pose *poses_next_pose(struct poses *poses, int frame);
 
 /* Restarts before the first frame. Returns false for a pipe, which cannot
  * restart. */

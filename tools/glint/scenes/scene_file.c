@@ -33,13 +33,14 @@ struct reading {
 };
 
 /* Sets PATH to the file NAME, relative to the folder of the text. Errors as
- * tool_find_input(). */
+ * tool_make_input_path(). */
 static enum glint_status find_scene_file_path(const struct reading *reading,
                                               const char *name,
                                               char path[TOOL_PATH_BYTES],
                                               struct glint_error *error)
 {
-    return tool_find_input(reading->path, name, reading->written, path, error);
+    return tool_make_input_path(reading->path, name, reading->written, path,
+                                error);
 }
 
 /* If STATUS is GLINT_OK, sets *DATA and its size to FROM[N] and adds them to
@@ -154,8 +155,8 @@ static enum glint_status read_or_bake_motion(void *ctx, const char *name,
                             bytes);
 }
 
-int tool_scene(const struct tool *tool, const char *path,
-               struct glint_description *scene, uint64_t *key)
+int tool_read_scene(const struct tool *tool, const char *path,
+                    struct glint_description *scene, uint64_t *key)
 {
     struct reading reading = {tool, path, tool->written, TOOL_KEY_BEGIN,
                               tool->is_bake ? INT64_MAX : MOST_WORK};
@@ -189,7 +190,7 @@ int tool_scene(const struct tool *tool, const char *path,
     return EXIT_OK;
 }
 
-int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,
+int tool_bake_scene(const struct tool *tool, const char *path, uint8_t **data,
                     size_t *bytes, struct glint_scene_bake_report *report)
 {
     struct glint_description *description = malloc(sizeof *description);
@@ -200,9 +201,9 @@ int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,
     int code = EXIT_OK;
 
     if (description)
-        code = tool_scene(tool, path, description, &key);
+        code = tool_read_scene(tool, path, description, &key);
     if (description && code == EXIT_OK) {
-        tool_scene_name(path, name);
+        tool_copy_scene_name(path, name);
         status = glint_scene_bake(description, name, key, data, bytes, report,
                                   &error);
         glint_description_free(description);

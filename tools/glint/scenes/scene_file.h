@@ -15,12 +15,12 @@ bool tool_is_scene(const char *argument);
  * quiet. KEY, unless NULL, receives a hash of the contents of all files.
  * Returns an exit code, after printing the reason on failure; on EXIT_OK the
  * caller frees SCENE. */
-int tool_scene(const struct tool *tool, const char *path,
-               struct glint_description *scene, uint64_t *key);
+int tool_read_scene(const struct tool *tool, const char *path,
+                    struct glint_description *scene, uint64_t *key);
 
 /* Reads the scene text PATH and bakes it into *DATA, which the caller frees.
  * Returns an exit code, after printing the reason on failure. */
-int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,
+int tool_bake_scene(const struct tool *tool, const char *path, uint8_t **data,
                     size_t *bytes, struct glint_scene_bake_report *report);
 
 #endif

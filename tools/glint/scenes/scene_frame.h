@@ -77,7 +77,7 @@ int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
 void scene_frame_close(struct scene_frame *frame);
 
 /* Calls POSE if needed and prepares a frame. */
-void scene_frame_begin(struct scene_frame *frame);
+void scene_frame_prepare(struct scene_frame *frame);
 
 /* Draw the scene onto IMAGE, which must have the size of the dials. Allocate
  * more memory if the triangle lists need it. scene_frame_draw() prints the

@@ -11,7 +11,7 @@ bool tool_is_scene(const char *argument)
     return glint_ends_in(argument, ".scene");
 }
 
-int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,
+int tool_bake_scene(const struct tool *tool, const char *path, uint8_t **data,
                     size_t *bytes, struct glint_scene_bake_report *report)
 {
     struct glint_error error;

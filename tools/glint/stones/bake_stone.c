@@ -56,9 +56,9 @@ static int parse_medium_option(struct tool *tool, void *line, int c,
         ok = l->model >= 0;
         break;
     default:
-        return tool_option(tool, c, optarg);
+        return tool_apply_option(tool, c, optarg);
     }
-    return ok ? -1 : tool_refuse(tool, name, optarg);
+    return ok ? -1 : tool_report_bad_value(tool, name, optarg);
 }
 
 int cmd_bake_stone(struct tool *tool, int argc, char **argv)

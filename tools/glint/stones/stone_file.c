@@ -76,7 +76,7 @@ static enum glint_status read_medium_mask(const struct tool *tool,
     struct glint_image image = {.width = 0};
     double *mask;
     enum glint_status status =
-        tool_find_input(path, s->text.mask, tool->written, beside, error);
+        tool_make_input_path(path, s->text.mask, tool->written, beside, error);
 
     if (status == GLINT_OK)
         status = glint_picture_load(beside, &image, error);
@@ -98,7 +98,7 @@ static enum glint_status read_measured_rows(const struct tool *tool,
 {
     char beside[TOOL_PATH_BYTES];
     enum glint_status status =
-        tool_find_input(path, s->text.rows, tool->written, beside, error);
+        tool_make_input_path(path, s->text.rows, tool->written, beside, error);
 
     if (status == GLINT_OK)
         status = glint_picture_load_float(beside, &s->rows, error);
@@ -238,10 +238,10 @@ static enum glint_status bake_medium_source(const struct tool *tool,
     enum glint_status status;
 
     tool_progress_start(&progress, tool, name);
-    tool_progress_part(&progress, 0, before);
+    tool_progress_set_part(&progress, 0, before);
     status = compute_scatter_rows(s, &watch, &rows, error);
     if (status == GLINT_OK) {
-        tool_progress_part(&progress, before, 1 - before);
+        tool_progress_set_part(&progress, before, 1 - before);
         status = fit_scatter_rows(&rows, s, name, &watch, file, error);
         glint_scatter_close(&rows);
     }
@@ -306,9 +306,10 @@ read_text(const struct tool *tool, const char *path,
         read_source(tool, path, over, ctx, &source, error);
     bool has_cache;
 
-    tool_scene_name(path, name);
-    has_cache = cache_file_folder(kept, sizeof kept) &&
-                cache_file_name(kept, sizeof kept, name, source.key, "stone");
+    tool_copy_scene_name(path, name);
+    has_cache =
+        cache_file_find_folder(kept, sizeof kept) &&
+        cache_file_append_name(kept, sizeof kept, name, source.key, "stone");
     if (status == GLINT_OK &&
         (anew || !has_cache || !load_cached_medium(kept, source.key, file))) {
         status = tool_count_bake_work(
@@ -333,7 +334,7 @@ stone_file_read(const struct tool *tool, const char *path,
     char self[TOOL_PATH_BYTES];
 
     *file = (struct stone_file){.data = NULL};
-    status = tool_find_input("", path, tool->written, self, error);
+    status = tool_make_input_path("", path, tool->written, self, error);
     if (status == GLINT_OK && stone_file_is_text(path)) {
         status = read_text(tool, path, over, ctx, anew, left, file, error);
     } else if (status == GLINT_OK) {

@@ -260,10 +260,10 @@ static enum glint_status halve_zoom_step(struct run *run, int from)
                    (int32_t)lrint(middle / (run->n_places - 1.0) * 0x1p30));
     status = move_lens_to_place(run, middle, &run->lens);
     if (status == GLINT_OK)
-        status = zoom_error_measure(run->tool, &run->lens, &run->zoom,
-                                    run->bake->options->max_deg,
-                                    fmod(0.5 + middle * GOLDEN, 1),
-                                    run->n_ghosts, run->ghost, run->error);
+        status = zoom_error_measure_ghosts(
+            run->tool, &run->lens, &run->zoom, run->bake->options->max_deg,
+            fmod(0.5 + middle * GOLDEN, 1), run->n_ghosts, run->ghost,
+            run->error);
     if (status != GLINT_OK)
         return status;
     store_ghost_errors(run, from, middle);
@@ -291,7 +291,7 @@ static enum glint_status bake_even_positions(struct run *run)
     p->less = "fewer --positions, a smaller --max-angle or a larger "
               "--tolerance";
     for (int k = 0; k < positions && status == GLINT_OK; k++) {
-        tool_progress_part(p, (double)k / positions, 1.0 / positions);
+        tool_progress_set_part(p, (double)k / positions, 1.0 / positions);
         status = bake_zoom_position(run, k * run->step, true);
         if (status == GLINT_OK && !run->tool->quiet)
             fprintf(stderr, "glint bake: position %d of %d, %.0f s\n", k + 1,
@@ -332,9 +332,10 @@ static bool allocate_zoom_run(struct run *run)
     return run->ghost != NULL;
 }
 
-enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
-                                struct zoom_baked *baked,
-                                struct glint_error *error)
+enum glint_status zoom_bake_positions(struct tool *tool,
+                                      const struct zoom_bake *bake,
+                                      struct zoom_baked *baked,
+                                      struct glint_error *error)
 {
     struct run *const run = calloc(1, sizeof *run);
     const int n = bake->positions - 1;

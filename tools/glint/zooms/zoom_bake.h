@@ -40,8 +40,9 @@ struct zoom_baked {
     double least_db, least_mm;
 };
 
-enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
-                                struct zoom_baked *baked,
-                                struct glint_error *error);
+enum glint_status zoom_bake_positions(struct tool *tool,
+                                      const struct zoom_bake *bake,
+                                      struct zoom_baked *baked,
+                                      struct glint_error *error);
 
 #endif

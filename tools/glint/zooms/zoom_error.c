@@ -276,12 +276,10 @@ static enum glint_status measure_all_angles(struct measuring *m,
     return status;
 }
 
-enum glint_status zoom_error_measure(const struct tool *tool,
-                                     const struct glint_prescription *lens,
-                                     const struct glint_zoom_lens *zoom,
-                                     double max_deg, double shift, int n,
-                                     struct zoom_error *error,
-                                     struct glint_error *message)
+enum glint_status zoom_error_measure_ghosts(
+    const struct tool *tool, const struct glint_prescription *lens,
+    const struct glint_zoom_lens *zoom, double max_deg, double shift, int n,
+    struct zoom_error *error, struct glint_error *message)
 {
     static const double wave_nm[] = {WAVE_NM};
     const double high = ceil(WIDE * lens->film_height_mm / lens->film_width_mm);

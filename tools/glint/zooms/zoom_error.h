@@ -28,11 +28,9 @@ struct zoom_error {
  * position of each light within its interval of angles. Every fourth angle
  * is measured, others only near angles where a ghost appears or vanishes;
  * the rest are interpolated. */
-enum glint_status zoom_error_measure(const struct tool *tool,
-                                     const struct glint_prescription *lens,
-                                     const struct glint_zoom_lens *zoom,
-                                     double max_deg, double shift, int n,
-                                     struct zoom_error *error,
-                                     struct glint_error *message);
+enum glint_status zoom_error_measure_ghosts(
+    const struct tool *tool, const struct glint_prescription *lens,
+    const struct glint_zoom_lens *zoom, double max_deg, double shift, int n,
+    struct zoom_error *error, struct glint_error *message);
 
 #endif

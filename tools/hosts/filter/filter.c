@@ -37,7 +37,7 @@ static void close_filter_drawing(struct filter *f)
 {
     if (f->is_open)
         drawing_close(&f->drawing);
-    tool_finish(&f->tool);
+    tool_stop_threads(&f->tool);
     f->is_open = false;
 }
 
@@ -52,16 +52,17 @@ void filter_destroy(struct filter *f)
 
 /* --------------------------------------------------------------- parameters */
 
-void filter_set_live(struct filter *f, const struct filter_values *values)
+void filter_set_live_values(struct filter *f,
+                            const struct filter_values *values)
 {
     struct filter_parameter p;
 
-    for (int i = 0; filter_parameter(i, &p); i++)
+    for (int i = 0; filter_get_parameter(i, &p); i++)
         if (p.is_live)
             f->values.number[i] = values->number[i];
 }
 
-void filter_set(struct filter *f, const struct filter_values *values)
+void filter_set_values(struct filter *f, const struct filter_values *values)
 {
     if (!filter_values_same_except_live(&f->values, values)) {
         close_filter_drawing(f); /* close the drawing first: its options point
@@ -70,7 +71,7 @@ void filter_set(struct filter *f, const struct filter_values *values)
         filter_values_copy(&f->values, values);
         f->failed = false;
     }
-    filter_set_live(f, values);
+    filter_set_live_values(f, values);
 }
 
 bool filter_has_size(const struct filter *f, int width, int height)
@@ -115,7 +116,7 @@ static int set_filter_options(struct filter *f)
     int code = -1;
 
     for (int pass = 0; pass < 2; pass++)
-        for (int i = 0; filter_parameter(i, &p) && code == -1; i++)
+        for (int i = 0; filter_get_parameter(i, &p) && code == -1; i++)
             if ((pass == 0) == (strcmp(p.name, "style") == 0))
                 code = set_filter_option(f, &p, i);
     if (code == -1 && v->number[FILTER_AUTO] < 0.5)
@@ -136,20 +137,20 @@ static bool open_filter_drawing(struct filter *f)
 
     f->cause.text[0] = '\0';
     memset(c, 0, sizeof *c);
-    drawing_line_defaults(&c->line);
+    drawing_line_set_defaults(&c->line);
     f->is_open = true;
     code = set_filter_options(f);
     if (code == -1)
-        code = tool_start(&f->tool);
+        code = tool_start_threads(&f->tool);
     if (code == EXIT_OK)
         code = drawing_open(&f->tool, c);
     if (code == EXIT_OK)
-        code = drawing_size(&f->tool, c, f->width, f->height);
+        code = drawing_allocate(&f->tool, c, f->width, f->height);
     f->opened = c->line.settings.options;
     return code == EXIT_OK;
 }
 
-bool filter_open(struct filter *f)
+bool filter_open_lens(struct filter *f)
 {
     if (!f->is_open && !f->failed)
         f->failed = !open_filter_drawing(f);
@@ -168,7 +169,7 @@ static void apply_live_options(struct filter *f)
     struct glint_error error;
 
     *o = f->opened;
-    for (int i = 0; filter_parameter(i, &p); i++)
+    for (int i = 0; filter_get_parameter(i, &p); i++)
         if (p.is_live && glint_option_named(p.name) &&
             !filter_is_default(&p, v->number[i]))
             glint_options_set(o, p.name, v->number[i], &error);
@@ -183,13 +184,13 @@ const char *filter_error_text(const struct filter *f)
     return f->cause.text;
 }
 
-bool filter_draw(struct filter *f, const struct glint_image *image,
-                 int32_t elapsed_us)
+bool filter_draw_flare(struct filter *f, const struct glint_image *image,
+                       int32_t elapsed_us)
 {
-    if (!filter_open(f))
+    if (!filter_open_lens(f))
         return false;
     apply_live_options(f);
-    if (drawing_draw(&f->drawing, image, elapsed_us) != GLINT_OK) {
+    if (drawing_draw_flare(&f->drawing, image, elapsed_us) != GLINT_OK) {
         f->failed = true;
         tool_error(&f->tool, "out of memory; frames are passed unchanged");
     }

@@ -4,11 +4,11 @@
  * overlay does, with parameters that may change from picture to picture.
  *
  *     filter_values_init(&values);
- *     filter_set_text(&values, i, "heliar-tronnier");   0 <= i, in the order
- *     filter_set_number(&values, i, 0.75);              of filter_parameter()
+ *     filter_set_text(&values, i, "heliar-tronnier");  filter_get_parameter()
+ *     filter_set_number(&values, i, 0.75);             lists parameters i
  *     filter = filter_create("frei0r", width, height);
- *     filter_set(filter, &values);
- *     filter_draw(filter, &image, elapsed_us);          each picture
+ *     filter_set_values(filter, &values);
+ *     filter_draw_flare(filter, &image, elapsed_us);   each picture
  */
 #ifndef GLINT_TOOLS_FILTER_FILTER_H
 #define GLINT_TOOLS_FILTER_FILTER_H
@@ -33,7 +33,7 @@ struct filter_parameter {
 
 /* Sets PARAMETER to parameter INDEX, counted from 0. Returns false if there is
  * no such parameter. */
-bool filter_parameter(int index, struct filter_parameter *parameter);
+bool filter_get_parameter(int index, struct filter_parameter *parameter);
 
 /* Values of all parameters */
 struct filter_values {
@@ -59,11 +59,13 @@ struct filter;
 struct filter *filter_create(const char *host, int width, int height);
 void filter_destroy(struct filter *filter);
 
-/* filter_set() sets all parameters; if one that is not live has changed, the
- * next picture opens the lens again. filter_set_live() sets only live
- * parameters. */
-void filter_set(struct filter *filter, const struct filter_values *values);
-void filter_set_live(struct filter *filter, const struct filter_values *values);
+/* filter_set_values() sets all parameters; if one that is not live has changed,
+ * the next picture opens the lens again. filter_set_live_values() sets only
+ * live parameters. */
+void filter_set_values(struct filter *filter,
+                       const struct filter_values *values);
+void filter_set_live_values(struct filter *filter,
+                            const struct filter_values *values);
 
 /* filter_has_size() returns whether FILTER draws pictures of WIDTH x HEIGHT,
  * filter_is_reusable() also whether it can draw with VALUES without opening its
@@ -75,9 +77,10 @@ bool filter_is_reusable(const struct filter *filter,
 
 /* Opens the lens before the first picture. If its model is not cached, bakes
  * it, which takes seconds to hours. Returns false on failure. */
-bool filter_open(struct filter *filter);
+bool filter_open_lens(struct filter *filter);
 
-/* Returns the cause of the last failure of filter_draw() or filter_open(), or
+/* Returns the cause of the last failure of filter_draw_flare() or
+ * filter_open_lens(), or
  * "" if it was only printed to standard error. */
 const char *filter_error_text(const struct filter *filter);
 
@@ -85,7 +88,7 @@ const char *filter_error_text(const struct filter *filter);
  * picture; 0: a still image. On failure prints the cause to standard error,
  * once, and returns false; pictures then remain unchanged until a parameter
  * that is not live changes. */
-bool filter_draw(struct filter *filter, const struct glint_image *image,
-                 int32_t elapsed_us);
+bool filter_draw_flare(struct filter *filter, const struct glint_image *image,
+                       int32_t elapsed_us);
 
 #endif

@@ -42,7 +42,7 @@ static enum filter_type find_parameter_type(const struct glint_option *option)
                : FILTER_TEXT;
 }
 
-bool filter_parameter(int index, struct filter_parameter *p)
+bool filter_get_parameter(int index, struct filter_parameter *p)
 {
     const struct row *const row =
         index >= 0 && index < FILTER_MAX ? &rows[index] : NULL;
@@ -82,7 +82,7 @@ void filter_values_init(struct filter_values *values)
     struct filter_parameter p;
 
     memset(values, 0, sizeof *values);
-    for (int i = 0; filter_parameter(i, &p); i++)
+    for (int i = 0; filter_get_parameter(i, &p); i++)
         values->number[i] = p.type == FILTER_TEXT ? 0 : p.initial;
 }
 
@@ -112,7 +112,7 @@ bool filter_values_same_except_live(const struct filter_values *a,
 {
     struct filter_parameter p;
 
-    for (int i = 0; filter_parameter(i, &p); i++)
+    for (int i = 0; filter_get_parameter(i, &p); i++)
         if (!p.is_live &&
             (a->number[i] < b->number[i] || a->number[i] > b->number[i] ||
              !is_same_text(a->text[i], b->text[i])))
@@ -124,7 +124,7 @@ void filter_set_number(struct filter_values *values, int index, double number)
 {
     struct filter_parameter p;
 
-    if (!filter_parameter(index, &p))
+    if (!filter_get_parameter(index, &p))
         return;
     number = isfinite(number) ? fmin(fmax(number, p.low), p.high) : p.initial;
     values->number[index] =

@@ -31,7 +31,7 @@ int f0r_init(void)
 {
     struct filter_parameter p;
 
-    for (int i = 0; filter_parameter(i, &p); i++)
+    for (int i = 0; filter_get_parameter(i, &p); i++)
         if (p.type == FILTER_NUMBER && (p.low != 0 || p.high != 1))
             snprintf(help[i], HELP_BYTES, "%s (0 to 1 stands for %g to %g)",
                      p.help, p.low, p.high);
@@ -49,7 +49,7 @@ void f0r_get_plugin_info(struct f0r_plugin *info)
     struct filter_parameter p;
     int n = 0;
 
-    while (filter_parameter(n, &p))
+    while (filter_get_parameter(n, &p))
         n++;
     *info = (struct f0r_plugin){
         .name = "glint",
@@ -69,7 +69,7 @@ void f0r_get_param_info(struct f0r_param *info, int index)
                                           [FILTER_TEXT] = F0R_STRING};
     struct filter_parameter p;
 
-    if (filter_parameter(index, &p))
+    if (filter_get_parameter(index, &p))
         *info = (struct f0r_param){.name = p.name,
                                    .type = (int)types[p.type],
                                    .explanation = help[index]};
@@ -127,7 +127,7 @@ void f0r_set_param_value(void *instance, void *value, int index)
     struct filter_values *const values = &((struct instance *)instance)->values;
     struct filter_parameter p;
 
-    if (!value || !filter_parameter(index, &p))
+    if (!value || !filter_get_parameter(index, &p))
         return;
     if (p.type == FILTER_TEXT)
         filter_set_text(values, index, *(char **)value);
@@ -142,7 +142,7 @@ void f0r_get_param_value(void *instance, void *value, int index)
         &((struct instance *)instance)->values;
     struct filter_parameter p;
 
-    if (!value || !filter_parameter(index, &p))
+    if (!value || !filter_get_parameter(index, &p))
         return;
     if (p.type == FILTER_TEXT)
         *(const char **)value = values->text[index] ? values->text[index] : "";
@@ -172,7 +172,7 @@ void f0r_update(void *instance, double seconds, const uint32_t *in,
             out, in,
             glint_image_bytes(GLINT_XRGB8888, i->image.width, i->image.height));
     glint_image_place(&i->image, out);
-    filter_set(i->filter, &i->values);
-    if (filter_draw(i->filter, &i->image, elapsed_us(i, seconds)))
+    filter_set_values(i->filter, &i->values);
+    if (filter_draw_flare(i->filter, &i->image, elapsed_us(i, seconds)))
         i->seconds = seconds;
 }

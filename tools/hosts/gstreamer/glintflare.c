@@ -199,13 +199,13 @@ static GstFlowReturn transform_frame(GstVideoFilter *base, GstVideoFrame *frame)
         return GST_FLOW_ERROR;
     }
     GST_OBJECT_LOCK(e);
-    filter_set(e->filter, &e->values);
+    filter_set_values(e->filter, &e->values);
     GST_OBJECT_UNLOCK(e);
     for (int i = 0; i < planes; i++) {
         e->image.plane[i] = GST_VIDEO_FRAME_PLANE_DATA(frame, i);
         e->image.stride_bytes[i] = GST_VIDEO_FRAME_PLANE_STRIDE(frame, i);
     }
-    if (!filter_draw(e->filter, &e->image, elapsed_us(e, now))) {
+    if (!filter_draw_flare(e->filter, &e->image, elapsed_us(e, now))) {
         GST_ELEMENT_ERROR(e, LIBRARY, FAILED,
                           ("No flare: %s", filter_error_text(e->filter)),
                           (NULL));
@@ -258,7 +258,7 @@ static void glint_flare_element_class_init(GlintFlareElementClass *class)
     object->set_property = set_property;
     object->get_property = get_property;
     object->finalize = finalize_element;
-    for (int i = 0; filter_parameter(i, &p); i++)
+    for (int i = 0; filter_get_parameter(i, &p); i++)
         g_object_class_install_property(object, (guint)i + 1,
                                         make_parameter_spec(&p));
     gst_element_class_set_static_metadata(

@@ -114,7 +114,7 @@ static void *open_filter_in_thread(void *arg)
     bool is_left;
 
     /* if this fails, drawing fails as well and prints the cause */
-    filter_open(o->filter);
+    filter_open_lens(o->filter);
     pthread_mutex_lock(&o->lock);
     o->is_done = true;
     is_left = o->is_left;
@@ -137,7 +137,7 @@ static struct opening *start_filter_opening(const struct filter_values *values,
     pthread_mutex_init(&o->lock, NULL);
     o->filter = filter_create("obs", width, height);
     if (o->filter)
-        filter_set(o->filter, values);
+        filter_set_values(o->filter, values);
     if (!o->filter ||
         pthread_create(&thread, NULL, open_filter_in_thread, o) != 0) {
         free_filter_opening(o);
@@ -202,7 +202,7 @@ static void get_default_settings(obs_data_t *data)
 {
     struct filter_parameter p;
 
-    for (int i = 0; filter_parameter(i, &p); i++)
+    for (int i = 0; filter_get_parameter(i, &p); i++)
         if (p.type == FILTER_NUMBER)
             obs_data_set_default_double(data, p.name, p.initial);
         else if (p.type == FILTER_SWITCH)
@@ -215,7 +215,7 @@ static void update_settings(void *ctx, obs_data_t *data)
     struct filter_parameter p;
 
     pthread_mutex_lock(&f->lock);
-    for (int i = 0; filter_parameter(i, &p); i++)
+    for (int i = 0; filter_get_parameter(i, &p); i++)
         if (p.type == FILTER_NUMBER)
             filter_set_number(&f->wanted, i, obs_data_get_double(data, p.name));
         else if (p.type == FILTER_SWITCH)
@@ -273,7 +273,7 @@ static obs_properties_t *get_properties(void *ctx)
     struct filter_parameter p;
 
     (void)ctx;
-    for (int i = 0; filter_parameter(i, &p); i++) {
+    for (int i = 0; filter_get_parameter(i, &p); i++) {
         if (p.type == FILTER_TEXT)
             property = add_parameter_text(all, &p);
         else if (p.type == FILTER_NUMBER)
@@ -330,7 +330,7 @@ static bool prepare_filter(struct flare *f, const struct glint_image *image)
             print_warning_once(f, "no memory");
     }
     if (f->filter)
-        filter_set_live(f->filter, &f->wanted);
+        filter_set_live_values(f->filter, &f->wanted);
     return f->filter && filter_has_size(f->filter, w, h);
 }
 
@@ -362,7 +362,7 @@ filter_video_frame(void *ctx, struct obs_source_frame *frame)
     pthread_mutex_unlock(&f->lock);
     if (!is_ready)
         return frame;
-    if (filter_draw(f->filter, &image, elapsed_us(f, frame->timestamp)))
+    if (filter_draw_flare(f->filter, &image, elapsed_us(f, frame->timestamp)))
         f->last_ns = frame->timestamp;
     else
         disable_failed_filter(f);

@@ -4,7 +4,7 @@
  *
  *     web_set("lens", "heliar-tronnier");  options, by the names of the table
  *     name = web_open(0);                  the file name of the lens's model
- *     web_model(data, bytes);  or  web_bake();
+ *     web_model(data, bytes);              or  web_bake();
  *     web_size(width, height);
  *     n = web_find(pixels);                rows of lamps in web_lamps()
  *     web_draw(pixels, WEB_FOUND, 0);

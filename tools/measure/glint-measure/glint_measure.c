@@ -45,14 +45,14 @@ static int measure_row(int n, char **assignments)
 {
     static struct figure_row row;
     struct tool tool = {.name = "measure", .quiet = true};
-    int code = row_open(&row, &tool, n, assignments);
+    int code = row_parse(&row, &tool, n, assignments);
 
     if (code == EXIT_OK)
-        code = tool_start(&tool);
+        code = tool_start_threads(&tool);
     if (code == EXIT_OK)
         code = row_measure(&row);
     opened_lens_close(&row.opened);
-    tool_finish(&tool);
+    tool_stop_threads(&tool);
     return code;
 }
 
@@ -497,14 +497,14 @@ int main(int argc, char **argv)
         return EXIT_USAGE;
     }
     if (strcmp(argv[1], "--quick") == 0) {
-        for (char *at = text; (at = recipe_read(&r, at, NULL));) {
+        for (char *at = text; (at = recipe_parse(&r, at, NULL));) {
             const int one = measure_recipe(&r, argv[0], true);
 
             code = code == EXIT_OK ? one : code;
         }
         return code;
     }
-    if (!recipe_read(&r, text, argv[1])) {
+    if (!recipe_parse(&r, text, argv[1])) {
         fprintf(stderr, "glint-measure: no rows of %s in %s\n", argv[1],
                 RECIPES);
         return EXIT_USAGE;

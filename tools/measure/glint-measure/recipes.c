@@ -240,7 +240,7 @@ static void parse_recipe_line(struct recipe *r, struct recipe_lines *l,
         fprintf(stderr, "glint-measure: %s: unknown line: %s\n", r->name, line);
 }
 
-char *recipe_read(struct recipe *r, char *text, const char *name)
+char *recipe_parse(struct recipe *r, char *text, const char *name)
 {
     struct recipe_lines l = {.n_set = 0};
     char *line, *rest = text, *next = text;

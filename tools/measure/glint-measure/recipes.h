@@ -41,7 +41,7 @@ struct recipe {
 /* Sets RECIPE to the recipe NAME in TEXT, or to the first one with rows if NAME
  * is NULL. Modifies TEXT, which must outlive RECIPE. Returns the text after the
  * recipe, or NULL if NAME does not exist. */
-char *recipe_read(struct recipe *recipe, char *text, const char *name);
+char *recipe_parse(struct recipe *recipe, char *text, const char *name);
 
 /* Returns the value of PARAMETER in ROW, for a lens its name, or NULL if it is
  * not set. */

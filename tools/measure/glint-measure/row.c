@@ -116,7 +116,7 @@ static bool parse_row_parameter(struct figure_row *r, const char *name,
     if (strcmp(name, "coating") == 0 &&
         coating_parse_option(r->tool, &r->settings.coating, value) != -1)
         return false;
-    return settings_set(&r->settings, name, value);
+    return settings_set_text(&r->settings, name, value);
 }
 
 static int parse_assignment(struct figure_row *row, const char *assignment)
@@ -135,8 +135,8 @@ static int parse_assignment(struct figure_row *row, const char *assignment)
                             assignment);
 }
 
-int row_open(struct figure_row *row, struct tool *tool, int n,
-             char **assignment)
+int row_parse(struct figure_row *row, struct tool *tool, int n,
+              char **assignment)
 {
     int code = EXIT_OK;
 
@@ -158,7 +158,7 @@ int row_open(struct figure_row *row, struct tool *tool, int n,
                                .nm = {650, 532, 450},
                                .n_nm = 3,
                                .step_deg = 0.7};
-    settings_defaults(&row->settings);
+    settings_set_defaults(&row->settings);
     for (int i = 0; i < n && code == EXIT_OK; i++)
         code = parse_assignment(row, assignment[i]);
     return code == EXIT_OK && !row->lens
@@ -193,7 +193,7 @@ static int bake_row_table(struct figure_row *r)
     if (status != GLINT_OK)
         return tool_fail(r->tool, status, error.text);
     json_write(&r->json, "bake_s: %.3f", process_cpu_s() - from);
-    if (!model_cache_path(path, sizeof path, "measured.glint") ||
+    if (!model_cache_make_path(path, sizeof path, "measured.glint") ||
         !(file = fopen(path, "wb"))) {
         free(model);
         return tool_fail(r->tool, GLINT_E_IO, "no cache for a model");
@@ -210,7 +210,7 @@ static int open_row_lens(struct figure_row *r)
     int code = EXIT_OK;
 
     if (!tool_is_model(r->lens))
-        code = tool_lens(r->tool, r->lens, &r->table);
+        code = tool_read_lens(r->tool, r->lens, &r->table);
     if (code != EXIT_OK)
         return code;
     r->settings.max_deg = fmax(r->settings.max_deg, r->theta);
@@ -373,7 +373,7 @@ static enum glint_status draw_reference_image(struct figure_row *r,
     int code = EXIT_RUNTIME;
 
     if (other && copy)
-        code = row_open(other, r->tool, r->n, r->assignment);
+        code = row_parse(other, r->tool, r->n, r->assignment);
     while (code == EXIT_OK && (word = strtok_r(rest, ";", &rest)))
         code = parse_assignment(other, word);
     if (code == EXIT_OK)

@@ -13,7 +13,7 @@ struct figure_row {
     struct tool *tool;
     struct json_writer json;
     int n;
-    char **assignment;   /* [n], as passed to row_open() */
+    char **assignment;   /* [n], as passed to row_parse() */
     const char *metrics; /* names of metrics, separated by commas */
     const char *lens;    /* path of a lens table or model */
     struct settings settings;
@@ -45,8 +45,8 @@ struct figure_row {
 /* Sets ROW to the defaults, then by N texts PARAMETER=VALUE: members above by
  * name, or options of the engine. ASSIGNMENT must outlive ROW. Returns an exit
  * code. */
-int row_open(struct figure_row *row, struct tool *tool, int n,
-             char **assignment);
+int row_parse(struct figure_row *row, struct tool *tool, int n,
+              char **assignment);
 
 /* Measures ROW and prints a JSON object. Returns an exit code. */
 int row_measure(struct figure_row *row);
