@@ -49,10 +49,10 @@ static const char help[] =
     "  --save-ghosts FILE  write the ghosts for --ghosts FILE of overlay, "
     "live\n"
     "                      and render\n"
-    "  --ghost-sheet OUT   write a sheet of the --top ghosts, each exposed to "
-    "be\n"
-    "                      visible, with number, surfaces and fraction of "
-    "light\n"
+    "  --ghost-sheet OUT   write a contact sheet of the --top ghosts, each "
+    "exposed\n"
+    "                      to be visible, with number, surfaces, light "
+    "fraction\n"
     "  --size WxH          size of the frame without IN\n"
     "  --top N             list and mark N ghosts and lights (default 20)\n";
 
