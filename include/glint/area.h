@@ -18,25 +18,27 @@ extern "C" {
 #endif
 
 enum {
-    GLINT_AREA_SAMPLES =
-        7, /* default for the max points of the brightest lamp */
-    /* Factor, in a still picture, on the number of points of a lamp minus 1. */
+    GLINT_AREA_SAMPLES = 7, /* default max points of the brightest lamp */
+    /* Factor, in still pictures, on (number of points of a lamp - 1). */
     GLINT_AREA_STILL = 20,
-    GLINT_AREA_STILL_ROOM = 4, /* factor, in a still picture, on max_lights for
-                                  points of wide lamps */
+    /* Factor, in still pictures, on the points that all wide lamps together may
+     * have, max_lights. */
+    GLINT_AREA_STILL_ROOM = 4,
     /* Side of the square whose area each point represents, pixels. */
     GLINT_AREA_SPACING_PX = 4,
     GLINT_AREA_MOST_SAMPLES = 4096
 };
 
-/* The points of one lamp. */
+/* The points into which one lamp is divided. */
 struct glint_area {
     struct glint_lamp lamp;
     double points; /* number of points, 1 or more; the last may be fractional */
-    double centre[2]; /* centre of the point pattern; it is moved to the
-                         position of the lamp */
-    double spread;    /* factor that gives the pattern the lamp's RMS extent */
-    double u, v;      /* position of the lamp, tangents */
+    /* Middle of the pattern of points, which is moved to the lamp's
+     * position. */
+    double centre[2];
+    /* Factor on the pattern that gives it the lamp's RMS extent. */
+    double spread;
+    double u, v; /* position of the lamp, tangents */
     /* xx, xy, yy of the symmetric matrix that maps the unit circle to the
      * ellipse, tangents. The sign of the axes does not matter, so points
      * stay in place when the orientation jumps from 90 degrees to -90, or
@@ -44,19 +46,20 @@ struct glint_area {
     double stretch[3];
 };
 
-/* Rule for the number of points per lamp. Steps between points are less visible
- * in a faint lamp, so it gets fewer points, by the square root of its power. */
+/* Rule for the number of points of each lamp. The number is proportional to the
+ * square root of the lamp's power, as steps between points are less visible in
+ * a faint lamp. */
 struct glint_area_rule {
     double pixels_per_tangent;
     double most;      /* max points of the brightest lamp */
     double brightest; /* power of the brightest lamp */
-    double thinning;  /* factor on the number of points minus 1, 0 .. 1; 0: one
-                         point per lamp */
+    /* Factor on (number of points - 1), 0 .. 1; 0: one point per lamp. */
+    double thinning;
 };
 
 /* Returns the rule by which LAMPS[N] get at most ROOM points in total, or one
- * point each if N exceeds ROOM; MOST is the max number of points of one lamp.
- * *TOTAL receives an upper bound of the number of points. */
+ * point each if N exceeds ROOM. MOST is the max number of points of one lamp.
+ * Sets *TOTAL to an upper bound of the number of points. */
 struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
                                           double pixels_per_tangent,
                                           double most, int room, int *total);
@@ -65,8 +68,8 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
 int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
                     const struct glint_area_rule *rule);
 
-/* Returns the distance between points of AREA, as a tangent; 0 if there is only
- * one point. */
+/* Returns the distance between neighbouring points of AREA, the tangent of an
+ * angle; 0 if there is only one point. */
 double glint_area_apart(const struct glint_area *area);
 
 /* Returns point I of AREA, with its fraction of the power, as a lamp without

@@ -26,8 +26,9 @@ extern "C" {
 #endif
 
 struct glint_bake_options {
-    double band_nm[2]; /* shortest and longest wavelength, 300 .. 1100 */
-    double max_deg;    /* largest angle of a light, above 0, up to 89 */
+    double band_nm[2]; /* shortest and longest wavelength, nm, 300 .. 1100 */
+    double max_deg;    /* max angle of a light off the axis, degrees, above 0,
+                          up to 89 */
     double field_mm;   /* radius of the field around the sensor's centre within
                           which the model is accurate, mm; 0: 1.1 times the
                           distance to the corners of the film */
@@ -41,22 +42,23 @@ struct glint_bake_options {
      * Ghosts that are not baked have no systems in the model. */
     const bool *ghosts;
     /* [n_beside], at most 2: the lens at neighbouring zoom positions. The model
-     * includes light that is visible or cut at these positions, so that the
-     * models of several positions can be interpolated. glint_bake() returns
-     * GLINT_E_ARGUMENT if they are of another lens, or not symmetric about the
-     * axis. */
+     * includes light that is visible at these positions or cut there, so that
+     * the models of several positions can be interpolated. glint_bake() returns
+     * GLINT_E_ARGUMENT if they are positions of another lens, or not symmetric
+     * about the axis. */
     const struct glint_prescription *beside;
     int n_beside;
     struct glint_workers *workers; /* NULL: one thread. The output is the same
                                       for any number of threads */
-    /* Called after each fit with the estimated fraction of work done, which may
-     * decrease; may be NULL. */
+    /* Called after each fit with the estimated fraction of the work that is
+     * done, which may decrease; may be NULL. */
     glint_progress_fn *progress;
     void *progress_ctx;
-    /* Called before each ghost with 0 and after each fit with its work, 1 or 2
-     * (about 40 ms of processor time each), by several workers at once. The sum
-     * does not depend on their number. If it returns false, glint_bake() ends
-     * and returns GLINT_E_UNSUPPORTED with an empty ERROR. NULL: no limit. */
+    /* Called by several workers at once: before each ghost with WORK 0, and
+     * after each fit with its work, 1 or 2 (about 40 ms of processor time
+     * each). The sum does not depend on the number of workers. If it returns
+     * false, glint_bake() ends and returns GLINT_E_UNSUPPORTED with an empty
+     * ERROR. NULL: no limit. */
     bool (*allow)(void *ctx, int work);
     void *allow_ctx;
 };
@@ -68,26 +70,27 @@ void glint_bake_defaults(struct glint_bake_options *options);
 uint64_t glint_bake_key(const struct glint_prescription *lens,
                         const struct glint_bake_options *options);
 
-/* Sets PROJECTION to the projection of LENS at the d line. Uses chief rays
- * at whole degrees (finer for narrow lenses) up to 85 degrees or the last
- * ray that passes the lens. *MISS_DEG receives the max error of the
- * polynomial at these rays, degrees. Returns GLINT_E_LENS if LENS is not
- * round, or if hardly any light passes; ERROR states the cause, and
- * PROJECTION becomes a pinhole projection. */
+/* Sets PROJECTION to the projection of LENS at the d line. Uses chief rays at
+ * whole degrees (finer for narrow lenses) up to 85 degrees or the last ray that
+ * passes the lens. Sets *MISS_DEG to the max error of the polynomial at these
+ * rays, degrees. Returns GLINT_E_LENS if LENS is not round, or if hardly any
+ * light passes; ERROR states the cause, and PROJECTION becomes a pinhole
+ * projection. */
 enum glint_status glint_projection_of(struct glint_projection *projection,
                                       const struct glint_prescription *lens,
                                       double *miss_deg,
                                       struct glint_error *error);
 
-/* Results of a bake that are not in the model. */
+/* Results of a bake that are not stored in the model. */
 struct glint_bake_report {
-    int rays; /* number of rays that get through the lens, for which errors were
-                 measured */
+    /* Number of rays for which errors were measured: rays that pass the
+     * lens. */
+    int rays;
     /* number of further rays that the model transmits although the lens
      * clearly blocks them: they miss a surface, or lie more than 3 % outside
      * a surface's semi-diameter or the stop's radius */
     int intruders;
-    int unmet; /* number of systems that miss the tolerance */
+    int unmet; /* number of systems whose errors exceed the tolerance */
 };
 
 /* Bakes LENS into the model file *MODEL[*BYTES] (format: glint/model.h),
@@ -101,12 +104,13 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
                              struct glint_bake_report *report,
                              struct glint_error *error);
 
-/* A model of a zoom lens at the position along_q30, 0 .. 2^30. */
+/* A model of a zoom lens at the zoom position along_q30, 0 .. 2^30. */
 struct glint_bake_model {
     unsigned char *data;
     size_t bytes;
     int32_t along_q30;
-    /* options.ghosts of its bake; NULL at both ends of the zoom */
+    /* The value of options.ghosts with which the model was baked; NULL at both
+     * ends of the zoom. */
     const bool *ghosts;
 };
 

@@ -16,13 +16,13 @@ extern "C" {
 #define GLINT_MAX_CELLS   1024 /* max cells per side of a ray grid */
 #define GLINT_LEAST_CELLS 8    /* min cells per side that a plan chooses */
 
-/* Where one ray of a grid lands, and where it crosses the stop and the
- * barrels. */
+/* One ray of a grid: the point where it hits the sensor, and where it crosses
+ * the stop and the barrels. */
 struct glint_vertex {
     int32_t x_q8, y_q8; /* pixels from the top left corner of the picture, y
                            down; within +-GLINT_VERTEX_LIMIT_Q8 */
     int32_t stop_x_q16,
-        stop_y_q16; /* position in the stop, stop radii, within +-2^14 */
+        stop_y_q16; /* position in the stop, in stop radii, within +-2^14 */
     /* (1 + r^2) / 2 at each of two barrels that may cut the ray, where r is the
      * ray's distance from the axis / semi-diameter; above 1 the ray is cut. The
      * value is smooth everywhere, and its slope at r = 1 is the slope of r. 0
@@ -35,8 +35,8 @@ struct glint_vertex {
 
 #define GLINT_VERTEX_LIMIT_Q8 (INT32_C(1) << 28) /* 2^20 pixels */
 
-/* The rays of one ghost, one light and one wavelength, as a square grid over
- * the part of the entrance pupil from which light forms the ghost. */
+/* The rays of one ghost, one light and one wavelength: a square grid of rays
+ * over the part of the entrance pupil from which light forms the ghost. */
 struct glint_bundle {
     int n_cells; /* cells per side, 1 .. GLINT_MAX_CELLS: (n_cells + 1)^2
                     vertices, row by row */
@@ -48,21 +48,21 @@ struct glint_bundle {
                            linear BT.709, -4 .. 4 */
 };
 
-/* Computes the vertices of bundles while they are binned, so that they need not
- * be stored. Bundles are numbered in the order in which they were added. Any
- * worker may call both functions, with its number WORKER; they must give the
- * same result each time. */
+/* Functions that compute the vertices of bundles while these are binned, so
+ * that vertices need not be stored. Bundles are numbered in the order in which
+ * they were added. Any worker may call both functions, with its number WORKER;
+ * they must give the same result each time. */
 struct glint_flare_rays {
-    /* Begins bundle I; returns 0 if all of the bundle lies outside the pixel
+    /* Starts bundle I; returns 0 if the whole bundle lies outside the pixel
      * rows Y0 .. Y1 - 1. */
     int (*open)(void *ctx, int worker, int i, int y0, int y1);
     /* Sets ROW to row J, 0 .. n_cells, of the vertices of the bundle that
-     * WORKER has opened. Called for rising J. */
+     * WORKER has started. Called for increasing J. */
     void (*row)(void *ctx, int worker, int j, struct glint_vertex *row);
     void *ctx;
-    int coded;         /* 1: the picture is in codes, so faint light needs less
-                          precision */
-    int snap_codes_q8; /* as in struct glint_flare_frame */
+    int coded;         /* 1: the picture has integer codes, so faint light needs
+                          less precision */
+    int snap_codes_q8; /* the member of that name in struct glint_flare_frame */
 };
 
 #ifdef __cplusplus

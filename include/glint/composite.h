@@ -30,7 +30,7 @@ struct glint_layer {
     ptrdiff_t stride; /* number of values from one row to the next */
 };
 
-/* Returns the bytes that glint_composite_init() needs. */
+/* Returns the number of bytes of memory that glint_composite_init() needs. */
 size_t glint_composite_bytes(void);
 
 /* Places tables in MEM[BYTES], aligned to 64, for pictures with the format,

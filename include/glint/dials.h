@@ -22,49 +22,58 @@ extern "C" {
 #define GLINT_MOST_VEIL 0.9
 
 enum glint_dial_flag {
-    GLINT_DIAL_HALF = 1, /* pictures of integer codes (not linear light) are
-                            drawn at half resolution */
-    /* GLINT_DIAL_HALF is fixed: a budget does not change it. */
+    /* Pictures of integer codes (not linear light) are drawn at half
+     * resolution. */
+    GLINT_DIAL_HALF = 1,
+    /* A time budget does not change GLINT_DIAL_HALF. */
     GLINT_DIAL_ALWAYS_HALF = 2,
-    GLINT_DIAL_NO_VEIL = 4 /* veil and haze are left out */
+    GLINT_DIAL_NO_VEIL = 4 /* veil and haze are not drawn */
 };
 
 struct glint_dials {
-    /* fineness of ray grids, 4 .. GLINT_MAX_CELLS, as in struct
-     * glint_flare_frame; at 64, the straight lines between rays are off by 0.01
-     * pixels on average */
+    /* Number of cells per side of ray grids, 4 .. GLINT_MAX_CELLS, as in struct
+     * glint_flare_frame. At 64, the straight lines between rays are off by 0.01
+     * pixels on average. */
     int fineness;
-    int irradiance_steps; /* irradiance is rounded to so many steps per octave,
-                             1 .. 4096; 0: irradiance is not rounded */
-    int snap_codes_q8;    /* edges across which light changes by fewer codes are
-                             moved to whole pixels; 0: no edge is moved */
-    int dispersion_q8;    /* max distance between outlines of neighbouring
-                             wavelengths, pixels; 0: all ghosts use three
-                             wavelengths */
+    /* Number of steps per octave to which irradiance is rounded, 1 .. 4096; 0:
+     * irradiance is not rounded. */
+    int irradiance_steps;
+    /* Edges across which light changes by fewer codes are moved to whole
+     * pixels; 0: no edge is moved. */
+    int snap_codes_q8;
+    int dispersion_q8; /* max distance between outlines of neighbouring
+                          wavelengths, pixels; 0: all ghosts use three
+                          wavelengths */
     int max_lights; /* max number of lights; more are merged, faint ones first
                      */
     unsigned flags; /* enum glint_dial_flag */
-    double cull_codes;  /* light that adds fewer codes than this to black may be
-                           left out */
-    double area_points; /* max points of a lamp with an extent */
+    /* Light that adds fewer codes than this to black may be left out. */
+    double cull_codes;
+    double area_points; /* max number of points into which a lamp with an extent
+                           is divided */
     /* Ghosts that add fewer codes than this to black are drawn with the rays of
      * one of the three wavelengths, and merged with ghosts of near-by lights,
      * see dimmest of struct glint_flare_frame. */
     double dim_codes;
-    double still_px; /* static tolerance, pixels: a light of a video that moved
-                        less reuses its rays; 0: rays are always traced */
-    int dust_log2; /* log2 of the cells per side of the finest table of dust and
-                      masks in use, 3 .. GLINT_SHADE_MOST_LOG2; lower values
-                      blur the specks and preserve the light */
-    uint64_t reserved[4]; /* 0, as in struct glint_engine_config */
+    /* Factor on cull_codes for stars: their ends are smooth and faint, unlike
+     * edges of ghosts. */
+    double star_cull;
+    /* Tolerance, pixels, for reusing rays in a video: a light that moved less
+     * reuses its traced rays; 0: rays are always traced. */
+    double still_px;
+    /* Log2 of the number of cells per side of the finest tables of dust and
+     * masks, 3 .. GLINT_SHADE_MOST_LOG2. Lower values blur the specks and
+     * preserve the total light. */
+    int dust_log2;
+    uint64_t reserved[4]; /* must be 0, as in struct glint_engine_config */
 };
 
-/* Returns the dials at QUALITY_Q15, 0 .. 2^15, along the measured Pareto
- * front of error and time; 2^14 is the default. */
+/* Returns the quality parameters at QUALITY_Q15, 0 .. 2^15, on the measured
+ * Pareto front of error and time; 2^14 is the default. */
 struct glint_dials glint_dials_at(int quality_q15);
 
-/* Returns for each dial the coarser of its values in A and B, except that
- * irradiance_steps or dispersion_q8 is 0 if it is 0 in A or B. */
+/* Returns, for each quality parameter, the coarser of its values in A and B,
+ * except that irradiance_steps or dispersion_q8 is 0 if it is 0 in A or B. */
 struct glint_dials glint_dials_coarser(struct glint_dials a,
                                        struct glint_dials b);
 

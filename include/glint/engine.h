@@ -49,20 +49,25 @@ enum { GLINT_ENGINE_MAX_LAMPS = 1024 }; /* max lamps found in a picture */
 /* A lamp of a picture: found by glint_engine_find(), or made by the program
  * with glint_engine_lamp_of(). */
 struct glint_engine_lamp {
-    struct glint_lamp lamp; /* its power is already multiplied by level */
-    uint32_t id;            /* constant while the lamp is followed */
-    /* Level, above 0, at most 1: rises and fades with the track;
-     * glint_engine_apply_shares() lowers it for partly hidden lamps. */
+    struct glint_lamp lamp; /* the lamp; its power is already multiplied by
+                               level */
+    uint32_t id;            /* number of the lamp, constant while it is
+                               tracked */
+    /* Factor on the lamp's power, above 0, at most 1: rises and fades with the
+     * track; glint_engine_apply_shares() lowers it for partly hidden lamps. */
     double level;
-    double share;   /* visible fraction, above 0: GLINT_ENGINE_HIDDEN if all is
-                       hidden */
-    double seen_px; /* RMS radius, pixels, of the spot of a lamp that the
-                       picture clips; 0: not clipped; -1: the picture does not
-                       show the lamp */
-    int is_found;   /* not 0: the lamp was found, and TRACK is its track */
+    /* Visible fraction of the lamp, above 0: GLINT_ENGINE_HIDDEN if all is
+     * hidden. */
+    double share;
+    /* RMS radius, pixels, of the spot of a lamp that the picture clips; 0: the
+     * lamp is not clipped; -1: the picture does not show the lamp. */
+    double seen_px;
+    int is_found; /* 1: the lamp was found in a picture, and TRACK is its
+                     track */
     struct glint_lamp_track track;
-    double excess; /* light of the lamp minus the light that the picture shows
-                      of it; set by glint_engine_expose() */
+    /* Light of the lamp minus the light of it that the picture shows; set by
+     * glint_engine_expose(). */
+    double excess;
 };
 
 /* Returns LAMP with full level, fully visible and not clipped by the
@@ -72,8 +77,9 @@ struct glint_engine_lamp glint_engine_lamp_of(const struct glint_lamp *lamp,
 
 /* ------------------------------------------------------------ configuration */
 
-struct glint_frame_rays;   /* opaque: traces rays */
-struct glint_engine_stops; /* opaque: makes the iris and front_dirt */
+struct glint_frame_rays;   /* opaque: traces exact rays */
+struct glint_engine_stops; /* opaque: makes the iris and the dirt on the
+                              front */
 
 /* A program that names it links the code for dust, masks and other stops than
  * straight, clean blades. */
@@ -81,19 +87,22 @@ extern const struct glint_engine_stops glint_engine_all_stops;
 
 /* Lens, stop and sensor. */
 struct glint_engine_camera {
-    /* n_blades: sides of the stop, 3 .. 64, or 0 for a circle;
-     * blade_rotation_deg: angle of the first corner of the stop; f_number: 0
-     * selects the f-number of the model, its widest opening. */
+    /* Number of sides of the stop, 3 .. 64, or 0 for a circle; angle of its
+     * first corner, degrees; f-number, where 0 selects the f-number of the
+     * model, its widest opening. */
     int n_blades;
     double blade_rotation_deg, f_number;
-    struct glint_iris iris;   /* needs STOPS unless all 0; its mask must outlive
-                                 the engine */
-    struct glint_waves waves; /* default: AUTO */
-    int balance;              /* not 0: glint_setup_balance() */
-    double sensor_width_mm,
-        sensor_height_mm; /* sensor size, mm; 0: size of the model's film */
+    /* Shape of the stop, dust and mask; needs STOPS unless all 0. Its mask must
+     * outlive the engine. */
+    struct glint_iris iris;
+    struct glint_waves waves;                 /* wavelengths; default: AUTO */
+    int balance;                              /* not 0: colours are balanced by
+                                                 glint_setup_balance() */
+    double sensor_width_mm, sensor_height_mm; /* size of the sensor, mm; 0: size
+                                                 of the model's film */
     const struct glint_projection
-        *projection; /* copied; NULL: pinhole projection */
+        *projection; /* projection of the lens, copied; NULL: pinhole
+                        projection */
     /* A setup of the caller, for example of glint_engine_setup(), instead of
      * the stop and colours above; must outlive the engine. The caller calls
      * glint_engine_update_stop() after changing the setup. NULL: the engine
@@ -102,11 +111,12 @@ struct glint_engine_camera {
     /* &glint_frame_traces of libglint-bake.a traces exact rays through the lens
      * of SETUP if there is no model. NULL: a model is required. */
     const struct glint_frame_rays *rays;
-    const struct glint_tint *tints; /* [ghosts of the setup], or NULL; must
-                                       outlive the engine */
-    /* Dirt on the front element: from glint_front_make(), which must outlive
-     * the engine, or NULL: the engine makes that of front_dirt, which needs
-     * STOPS unless all 0, and whose mask is copied. */
+    /* [ghosts of the setup]: tints of ghosts, or NULL; must outlive the
+     * engine. */
+    const struct glint_tint *tints;
+    /* Dirt on the front element, made by glint_front_make(); must outlive the
+     * engine. NULL: the engine makes it from front_dirt, whose mask is copied
+     * and which needs STOPS unless all 0. */
     const struct glint_front_dirt *front;
     struct glint_front front_dirt;
     /* &glint_engine_all_stops, which glint_engine_configure() sets, or NULL:
@@ -117,28 +127,31 @@ struct glint_engine_camera {
 
 /* Parameters of the search for lamps. */
 struct glint_engine_search {
-    /* Thresholds, stops from the picture's white, -20 .. 0: the brightest
-     * pixels of a lamp must reach the first; the lamp extends to pixels that
+    /* Thresholds, stops from the picture's white, -20 .. 0. The brightest
+     * pixels of a lamp must reach the first; a lamp extends to the pixels that
      * reach the second, which must not be higher. */
     double threshold_ev[2];
     double headroom_ev; /* stops by which clipped pixels exceed white; below 0:
                            estimated from the halo of each lamp */
-    int max_found;  /* max lamps that are found, 1 .. GLINT_ENGINE_MAX_LAMPS; 0:
-                       no search, and no memory is allocated for a search */
-    int more_lamps; /* max lamps that the program passes to glint_engine_draw()
-                       in addition to the lamps found, 0 or more */
-    int max_drawn;  /* max lamps that an arena has capacity for; lamps above it
-                       are merged. 0: 2 * max_found + more_lamps, as fading
-                       lamps are drawn in addition to rising lamps */
-    uint64_t reserved[16]; /* 0 */
+    /* Max number of lamps that are found, 1 .. GLINT_ENGINE_MAX_LAMPS; 0: no
+     * search, and no memory is allocated for it. */
+    int max_found;
+    /* Max number of lamps, 0 or more, that the program passes to
+     * glint_engine_draw() in addition to the lamps found. */
+    int more_lamps;
+    /* Max number of lamps for which an arena has capacity; more lamps are
+     * merged. 0: 2 * max_found + more_lamps, as fading lamps are drawn in
+     * addition to rising lamps. */
+    int max_drawn;
+    uint64_t reserved[16]; /* must be 0 */
 };
 
 /* Brightness of the flare. */
 struct glint_engine_light {
-    /* strength, 0 .. 100: at 0.5 the brightest part of the flare is about a
+    /* Strength, 0 .. 100: at 0.5 the brightest part of the flare is about a
      * quarter of white for any lamps and lens; src/engine/strength.h states the
-     * rule. If by_hand is not 0, exposure_ev, in stops, replaces strength. The
-     * resulting light is multiplied by gain. */
+     * rule. If by_hand is not 0, exposure_ev, in stops, replaces strength. Gain
+     * is a factor on the resulting light. */
     double strength, exposure_ev, gain;
     int by_hand;
     /* Factor on the star around each lamp (light diffracted by the edges of the
@@ -149,12 +162,12 @@ struct glint_engine_light {
      * scattered by the lens and by dirt on its front. 0, the default: no
      * scattered light; the sum is at most GLINT_MOST_VEIL. */
     double veil, haze;
-    uint64_t reserved[16]; /* 0 */
+    uint64_t reserved[16]; /* must be 0 */
 };
 
 /* Bits that select the components of a flare, and two flags. CORES: stars
- * include the cores of the lamps, for layers without the picture. CODES: the
- * accuracy suffices for pictures of 8 bits, at about half the cost. */
+ * include the cores of the lamps, for layers without the picture. CODES:
+ * accuracy that suffices for pictures of 8 bits, at about half the cost. */
 enum glint_engine_part {
     GLINT_ENGINE_GHOSTS = 1,
     GLINT_ENGINE_STAR = 2,
@@ -167,32 +180,36 @@ enum glint_engine_part {
 /* How the flare is drawn. */
 struct glint_engine_drawing {
     struct glint_dials dials;
-    double budget_ms;  /* max milliseconds per frame; the engine adjusts the
-                          dials to stay below it; 0: no budget */
-    double most_minsn; /* max predicted cost of a frame with one light, in
-                          millions of instructions; costlier frames are drawn
-                          coarser; each further light adds a 16th to the limit;
-                          0: no limit */
-    double apart_px;   /* merge distance, pixels: lights whose images are closer
-                          are merged */
-    int tile_log2;     /* log2 of the side of tiles, 3 .. 6 */
-    unsigned parts;    /* bits of enum glint_engine_part: the components to
-                          draw */
-    int only_ghost;    /* index of the only ghost drawn; -1: all ghosts */
-    int is_fresh; /* not 0: the previous plan is never reused, even if no lamp
-                     has moved */
+    /* Max milliseconds per frame; the engine adjusts the quality parameters to
+     * stay below it; 0: no budget. */
+    double budget_ms;
+    /* Max predicted cost of a frame with one light, in millions of
+     * instructions; costlier frames are drawn coarser. Each further light adds
+     * a 16th to the limit. 0: no limit. */
+    double most_minsn;
+    double apart_px; /* merge distance, pixels: lights whose images are closer
+                        are merged */
+    int tile_log2;   /* log2 of the side of tiles, 3 .. 6 */
+    int dither;      /* not 0: ordered dither in pictures of 8 bits */
+    /* Bits of enum glint_engine_part: the components that are drawn. */
+    unsigned parts;
+    int only_ghost; /* index of the only ghost that is drawn; -1: all
+                       ghosts */
+    /* Not 0: each picture is planned again, even if no lamp has moved. */
+    int is_fresh;
     /* Not 0: still pictures are drawn with the area_points or max_lights of
      * DIALS. 0: they get more points per wide lamp, or more lights, than
      * video. */
     int keep_points, keep_lights;
-    glint_progress_fn *progress; /* reports the progress of exact rays until the
-                                    first picture is drawn; may be NULL */
+    /* Receives the progress of exact rays until the first picture is drawn; may
+     * be NULL. */
+    glint_progress_fn *progress;
     void *progress_ctx;
-    uint64_t reserved[16]; /* 0 */
+    uint64_t reserved[16]; /* must be 0 */
 };
 
-/* Caches measurements of lenses between runs of a program. KEY identifies an
- * entry; NAME is the name of the lens. */
+/* Callbacks that cache measurements of lenses between runs of a program. KEY
+ * identifies an entry; NAME is the name of the lens. */
 struct glint_engine_cache {
     /* Sets DATA[BYTES] to the entry of NAME and KEY; returns 0 if there is no
      * such entry. */
@@ -210,15 +227,15 @@ struct glint_engine_cache {
 struct glint_engine_config {
     size_t size;       /* sizeof this struct in the program, set by
                           glint_engine_defaults() */
-    int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
-    const struct glint_lens *model; /* must outlive the engine; the caller sets
-                                       it */
-    struct glint_workers *workers;  /* must outlive the engine; NULL: one
-                                       thread. The output is the same for any
-                                       number of threads */
+    int width, height; /* size of the pictures, pixels, 1 .. GLINT_MAX_SIDE */
+    /* The lens model, which the caller sets; must outlive the engine. */
+    const struct glint_lens *model;
+    /* Worker threads; must outlive the engine; NULL: one thread. The output is
+     * the same for any number of threads. */
+    struct glint_workers *workers;
     unsigned sets; /* instruction sets, as in glint/flare.h; 0: plain C */
-    glint_clock_fn *clock; /* may be NULL: reports then have no times, and the
-                              budget is ignored */
+    /* May be NULL: reports then have no times, and the budget is ignored. */
+    glint_clock_fn *clock;
     struct glint_engine_camera camera;
     struct glint_engine_search search;
     struct glint_engine_light light;
@@ -280,59 +297,65 @@ enum glint_status glint_engine_setup(struct glint_setup *setup,
 
 /* Light of a flare without the picture: linear R, G, B, 1 = display white. */
 struct glint_response_light {
-    double peak[3]; /* per channel, mean of its brightest 1/1000 of the pixels,
-                       at most 46 pixels */
-    double mean[3]; /* mean of all pixels */
+    /* Per channel, the mean of the brightest 1/1000 of the pixels, at most 46
+     * pixels. */
+    double peak[3];
+    double mean[3]; /* per channel, the mean of all pixels */
 };
 
 /* Exposure of the last picture. */
 struct glint_engine_exposure {
     double scale; /* factor on the powers of lamps; 0: nothing is drawn */
-    struct glint_response_light light; /* light of the flare, after multiplying
-                                          powers by scale */
-    int is_drawn; /* not 0: the light was measured in a flare that was drawn at
-                     reduced size */
-    int is_new;   /* not 0: exposure restarted in this picture, as after a
-                     cut */
+    /* Light of the flare with powers multiplied by scale. */
+    struct glint_response_light light;
+    /* Not 0: the light was measured in a flare that was drawn at reduced
+     * size. */
+    int is_drawn;
+    /* Not 0: the exposure restarted in this picture, as after a cut. */
+    int is_new;
 };
 
 struct glint_engine_report {
     struct glint_flare_stats stats;
-    int lights;         /* number of lamps passed to the engine */
-    int beyond_lights;  /* lamps farther off the axis than the range of the
-                           model */
-    int apart_lights;   /* number of lights after merging lights closer than
-                           apart_px */
-    int drawn_lights;   /* number of lights drawn, after merging down to
-                           max_lights too */
-    int ghosts, tiles;  /* number of ghosts drawn, and number of tiles with
-                           light */
-    int held_samples;   /* number of samples of a linear picture that
-                           saturated */
-    size_t arena_bytes; /* bytes of the memory passed to the run-time half */
+    int lights; /* number of lamps passed to the engine */
+    /* Number of lamps farther off the axis than the model's range. */
+    int beyond_lights;
+    /* Number of lights left after merging lights closer than apart_px. */
+    int apart_lights;
+    /* Number of lights drawn, after merging down to max_lights, too. */
+    int drawn_lights;
+    int ghosts, tiles; /* number of ghosts drawn, and number of tiles that
+                          contain light */
+    /* Number of samples of a linear picture that were clamped. */
+    int held_samples;
+    size_t arena_bytes; /* bytes of the arena that was passed to libglint */
     size_t peak_bytes;  /* bytes of arena_bytes that this frame used */
-    size_t need_bytes;  /* bytes with which this picture would have been drawn
-                           completely, with grids as fine as requested */
-    size_t star_bytes;  /* additional bytes, for the tables and lamps of stars
-                           and for a veil */
-    int coarsened;      /* not 0: the plan exceeded a limit and was made
-                           coarser */
-    int tight;          /* not 0: the exceeded limit was the memory limit */
-    int plans, binned;  /* number of plans that were made until one was within
-                           the limits, and number of these plans that were
-                           binned */
-    long long looked;   /* number of rays that the plans probed */
+    /* Bytes with which this picture would have been drawn completely, with
+     * grids as fine as requested. */
+    size_t need_bytes;
+    /* Additional bytes, for the tables and lamps of stars and for a
+     * veil. */
+    size_t star_bytes;
+    /* Not 0: the plan exceeded a limit and was made coarser. */
+    int coarsened;
+    int tight; /* not 0: the exceeded limit was the memory limit */
+    /* Number of plans until one was within the limits, and number of these
+     * plans that were binned. */
+    int plans, binned;
+    long long looked; /* number of rays that the plans probed */
     double plan_ms, trace_ms, bin_ms, draw_ms;
     /* With a budget: the predicted time and the quality that was chosen.
      * Without a budget: 0 and -1. */
     double predicted_ms, quality;
-    struct glint_dials dials; /* with a budget, the dials chosen to meet it;
-                                 otherwise 0 */
-    int blurred;  /* not 0: dust or a mask was drawn with coarser tables */
-    int unveiled; /* not 0: the budget left out the veil */
-    double calibrated_minsn; /* cost of the frame that predictions are based on,
-                                in millions of instructions, or 0 */
-    double scale;            /* factor on the powers of lamps */
+    /* With a budget: the quality parameters that were chosen to meet it;
+     * otherwise 0. */
+    struct glint_dials dials;
+    int blurred;  /* not 0: dust or a mask was drawn from coarser tables */
+    int unveiled; /* not 0: the veil was not drawn, to meet the budget */
+    /* Cost of a measured frame on which predictions are based, in millions of
+     * instructions, or 0. */
+    double calibrated_minsn;
+    double scale; /* factor on the powers of lamps */
 };
 
 /* ------------------------------------------------------------------- engine */
@@ -371,8 +394,8 @@ enum glint_status glint_engine_set_text(struct glint_engine *engine,
 void glint_engine_set_light(struct glint_engine *engine,
                             const struct glint_engine_light *light);
 
-/* Set the dials of the following pictures, and return the dials in use: with a
- * budget, the dials that were chosen to meet it. */
+/* Set the quality parameters of the following pictures, and return those in
+ * use: with a budget, the parameters that were chosen to meet it. */
 void glint_engine_set_dials(struct glint_engine *engine,
                             struct glint_dials dials);
 struct glint_dials glint_engine_dials(const struct glint_engine *engine);
@@ -381,7 +404,8 @@ struct glint_dials glint_engine_dials(const struct glint_engine *engine);
  * ghosts are drawn. */
 void glint_engine_set_only_ghost(struct glint_engine *engine, int ghost);
 
-/* Changes the budget; no-op if the engine was made without a budget. */
+/* Changes the time budget of the following pictures; no-op if the engine was
+ * made without a budget. */
 void glint_engine_set_budget(struct glint_engine *engine, double budget_ms);
 
 /* Sets the f-number of the following pictures, which must not be below the
@@ -405,14 +429,14 @@ enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades,
                                     const struct glint_iris *iris,
                                     struct glint_error *error);
 
-/* Reads the setup of the caller again for the following pictures, after its
- * stop or the zoom of its model changed; the exposure stays the same. */
+/* Reads the setup of the caller again, for the following pictures, after its
+ * stop or the zoom of its model changed; the exposure does not change. */
 void glint_engine_update_stop(struct glint_engine *engine);
 
 /* --------------------------------------------------------------------- find */
 
 /* Finds the lamps of IMAGE, ELAPSED_US after the last picture. Any format but
- * GLINT_LINEAR_Q20 is accepted. Lamps are followed from picture to picture, and
+ * GLINT_LINEAR_Q20 is accepted. Lamps are tracked from picture to picture, and
  * rise and fade. If ELAPSED_US is 0, IMAGE is a still picture:
  * glint_engine_expose() then first draws the flare at reduced size to measure
  * its brightness, unless there is a budget or an arena without arena_has_all.
@@ -421,33 +445,32 @@ int glint_engine_find(struct glint_engine *engine,
                       const struct glint_image *image, int32_t elapsed_us,
                       struct glint_engine_lamp *lamps, int max);
 
-/* Begins a picture without a search for lamps, ELAPSED_US after the last
+/* Starts a picture without a search for lamps, ELAPSED_US after the last
  * picture; 0: a still picture. */
 void glint_engine_elapsed(struct glint_engine *engine, int32_t elapsed_us);
 
-/* Declares that there is a cut before the next picture: the exposure
- * restarts. */
+/* Reports a cut before the next picture: the exposure restarts. */
 void glint_engine_mark_cut(struct glint_engine *engine);
 
-/* Forgets all lamps that are followed, as after a cut. */
+/* Removes all tracked lamps, as after a cut. */
 void glint_engine_forget_lamps(struct glint_engine *engine);
 
-/* Sets SPOT to the Ith (from 0) of the doubtful regions of the last picture
- * that was searched: regions that were rejected but look like lamps, the
- * brightest first; SPOT->doubt is the reason of the rejection. Returns 0 if
- * there are fewer. */
+/* Sets SPOT to doubtful region I, from 0, of the last picture that was
+ * searched. Doubtful regions look like lamps but were rejected; they are sorted
+ * by decreasing brightness. SPOT->doubt is the reason of the rejection. Returns
+ * 0 if there are fewer. */
 int glint_engine_doubtful(const struct glint_engine *engine, int i,
                           struct glint_spot *spot);
 
-/* Visible fraction of a completely hidden lamp: not 0, so that power / share
- * is still the power of the lamp. */
+/* Visible fraction of a completely hidden lamp. Not 0, so that power / fraction
+ * is still the lamp's power. */
 #define GLINT_ENGINE_HIDDEN 1e-18
 
-/* Multiplies power and share of each of N LAMPS by the fraction of it that
- * SCENE, as drawn last, leaves visible, and appends the lights of SCENE that
- * cause flares, at most GLINT_SCENE_MAX_LIGHTS. Returns the number of lamps;
- * *HIDDEN receives the number of completely hidden lamps. Only programs that
- * call this function link the scene library. */
+/* Multiplies power and share of each of N LAMPS by the fraction of the lamp
+ * that SCENE, as drawn last, leaves visible, and appends the lights of SCENE
+ * that cause flares, at most GLINT_SCENE_MAX_LIGHTS. Returns the number of
+ * lamps; sets *HIDDEN to the number of completely hidden lamps. Only programs
+ * that call this function link the scene library. */
 struct glint_scene;
 int glint_engine_add_scene(const struct glint_engine *engine,
                            const struct glint_scene *scene,
@@ -527,11 +550,11 @@ enum glint_status glint_engine_measure(struct glint_engine *engine,
                                        int n,
                                        struct glint_response_light *light);
 
-/* Sets LIGHT to the peak and mean light of the N pixels RGB. */
+/* Sets LIGHT to the peak and mean light of the N pixels in RGB. */
 void glint_response_around(const float *rgb, size_t n,
                            struct glint_response_light *light);
 
-/* Returns whether veil or haze is drawn. */
+/* Returns whether the engine draws veil or haze. */
 int glint_engine_has_veil(const struct glint_engine *engine);
 
 #ifdef __cplusplus

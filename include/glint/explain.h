@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/explain.h - explains what a frame drew and what it left out: by ghost,
- * light and wavelength.
+ * glint/explain.h - explains which parts of a frame were drawn or left out, and
+ * why: per ghost, light and wavelength.
  *
- *     glint_explain_open(&explain, engine, 0);      its last picture
+ *     glint_explain_open(&explain, engine, 0); its last picture
  *     glint_explain_close(&explain);
  *
  * Counts and reasons are the flare's own statistics (glint_flare_account);
@@ -19,21 +19,23 @@
 extern "C" {
 #endif
 
-/* Items whose counts determine the cost of a frame, predicted from its plan or
- * measured after drawing. */
+/* Items whose numbers determine the cost of a frame, either predicted from its
+ * plan or counted after drawing. */
 enum glint_cost_kind {
-    GLINT_COST_LOOKED_AT, /* bundles that a plan probes; for a drawn frame, the
-                             rays that its plans probed */
-    GLINT_COST_BUNDLES,   /* bundles drawn, each with a few rays, and a
-                             substitution into polynomials per row */
-    GLINT_COST_VERTICES,  /* vertices of grids */
-    GLINT_COST_EDGES,     /* edges across which light changes */
-    GLINT_COST_ROWS,      /* pixel rows that edges cross */
-    GLINT_COST_PARTS,     /* pieces of cells shaded by dust or a mask */
-    GLINT_COST_LIT,       /* pixels with any light */
-    GLINT_COST_STAR, /* pixels lit by stars, summed over the parts of the stars
-                      */
-    GLINT_COST_VEIL, /* pixels under a veil, including its blur */
+    /* Bundles that a plan probes; for a drawn frame, the rays that its plans
+     * probed. */
+    GLINT_COST_LOOKED_AT,
+    /* Bundles drawn: each costs a few rays, and a substitution into polynomials
+     * per row. */
+    GLINT_COST_BUNDLES,
+    GLINT_COST_VERTICES, /* vertices of ray grids */
+    GLINT_COST_EDGES,    /* edges across which light changes */
+    GLINT_COST_ROWS,     /* pixel rows that these edges cross */
+    GLINT_COST_PARTS,    /* pieces of cells shaded by dust or a mask */
+    GLINT_COST_LIT,      /* pixels with any light */
+    GLINT_COST_STAR,     /* pixels lit by stars, counted once for each part of a
+                            star */
+    GLINT_COST_VEIL, /* pixels under a veil, including the cost of its blur */
     GLINT_COST_KINDS
 };
 
@@ -41,65 +43,73 @@ enum glint_cost_kind {
  * lanes of 32 bits. */
 struct glint_cost_weight {
     const char *name;
-    double planned; /* cost, for counts that glint_cost_of() predicts from a
+    double planned; /* cost of an item that glint_cost_of() predicts from a
                        plan */
-    double counted; /* cost, for counts of a drawn frame */
+    double counted; /* cost of an item that is counted in a drawn frame */
 };
 extern const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS];
 
-/* Statistics of the bundles of a ghost, of a light or of a wavelength; or of
- * the whole frame. */
+/* Statistics of the bundles of one ghost, light or wavelength, or of the whole
+ * frame. */
 struct glint_explain_part {
-    int of[GLINT_OUTCOMES]; /* number of bundles with each outcome */
-    int cells;              /* cells per side of the largest grid */
+    int of[GLINT_OUTCOMES]; /* number of bundles per outcome */
+    int cells;              /* number of cells per side of the largest ray
+                               grid */
     /* Maxima over the bundles: number of terms of all polynomials of a bundle,
      * and number of barrels that can cut a bundle. */
     int terms, barrels;
-    long long probed; /* number of rays that the plan probed */
-    /* all_terms: sum of the terms of each vertex, over all vertices. */
+    long long probed; /* number of rays that the plan probed for these
+                         bundles */
+    /* all_terms: number of polynomial terms of each vertex, summed over all
+     * vertices. */
     long long vertices, edges, rows, refs, all_terms;
-    int tiles, lit;     /* tiles drawn, and pixels that receive light */
-    double flux, share; /* light in the picture, and fraction of the light of
-                           the frame */
-    double brightest;   /* brightest pixel, as the mean of R, G, B */
-    /* Estimated instructions, and their fraction of the instructions of the
-     * frame. */
+    int tiles, lit; /* number of tiles drawn, and number of pixels that
+                       receive light */
+    /* Light in the picture, and its fraction of the light of the frame. */
+    double flux, share;
+    double brightest; /* light of the brightest pixel, mean of R, G and B */
+    /* Estimated number of instructions, and its fraction of the instructions of
+     * the frame. */
     double work, cost;
 };
 
 enum { GLINT_EXPLAIN_BARRELS = 6 };
 
-struct glint_frame; /* opaque */
+struct glint_frame; /* opaque: a planned frame */
 
 struct glint_explain {
     struct glint_frame *frame;
-    struct glint_frame *own; /* equals FRAME if glint_explain_at() made the
-                                frame; else NULL */
+    /* Equals FRAME if glint_explain_at() created the frame, else NULL. */
+    struct glint_frame *own;
     /* Inputs of the frame. */
     const struct glint_view *view;
     const struct glint_setup *setup;
     const struct glint_lens *lens;
-    const struct glint_tint *tints;   /* NULL: no ghost is tinted */
+    const struct glint_tint *tints;   /* tints of ghosts; NULL: no ghost is
+                                         tinted */
     const struct glint_light *lights; /* [n_lights] */
     const struct glint_wave_sets
-        *sets;        /* NULL: all ghosts use the same waves */
-    double dim_codes; /* codes near black below which ghosts shared rays; 0: no
-                         ghosts shared rays */
-    int n_ghosts;     /* number of pairs of surfaces */
+        *sets; /* sets of waves; NULL: all ghosts use the same waves */
+    /* Brightness, in codes near black, below which ghosts shared rays; 0: no
+     * ghosts shared rays. */
+    double dim_codes;
+    int n_ghosts; /* number of pairs of reflecting surfaces */
     int n_lights;
-    int n_waves;   /* number of wavelengths, or number of sets if each ghost
-                      chooses a set */
-    int *ghost_of; /* [ghosts of the lens, parts included]: index of the surface
-                      pair */
+    /* Number of wavelengths, or, if each ghost chooses a set, number of
+     * sets. */
+    int n_waves;
+    /* [ghosts of the lens, parts included]: index of the ghost's surface
+     * pair. */
+    int *ghost_of;
     struct glint_explain_part all, *ghost, *light, *wave;
-    int barrels[GLINT_EXPLAIN_BARRELS]; /* number of bundles cut by 0, 1, ...
-                                           barrels */
+    int barrels[GLINT_EXPLAIN_BARRELS]; /* number of bundles that 0, 1, ...
+                                           barrels cut */
     double stage[GLINT_COST_KINDS]; /* estimated instructions of each stage */
-    double unit;                    /* factor on the light that is drawn */
+    double unit;                    /* factor on the drawn light */
     /* Log2 of the side of a tile, and number of tiles. */
     int tile_log2, n_tiles;
-    int32_t *linear_q20; /* [height][width][3]: light drawn by
-                            glint_explain_draw() */
+    /* [height][width][3]: light that glint_explain_draw() drew. */
+    int32_t *linear_q20;
 };
 
 /* Explains the picture that ENGINE drew last; it must have a model, and the
@@ -126,7 +136,7 @@ void glint_explain_draw(struct glint_explain *explain, int ghost);
 int glint_explain_bundles(const struct glint_explain_part *part);
 int glint_explain_drawn(const struct glint_explain_part *part);
 
-/* Returns the number of primitives of the flare in tile TILE. */
+/* Returns the number of primitives (edges) of the flare in tile TILE. */
 int glint_explain_listed(const struct glint_explain *explain, int tile);
 
 /* Returns whether LAMP is farther off the axis than the model's range. */

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/flare.h - lens-flare ghosts, drawn tile by tile in integers.
+ * glint/flare.h - draws lens-flare ghosts, tile by tile, in integers.
  *
- *     bytes = glint_flare_bytes(&cfg);                       once
+ *     bytes = glint_flare_bytes(&cfg); once
  *     glint_flare_init(&flare, &cfg, mem, bytes);
- *     glint_flare_begin(flare);                              each frame
+ *     glint_flare_begin(flare); each frame
  *     for each ghost, light and wavelength:
- *         vertices = glint_flare_add(flare, &bundle);        fill them in
+ *         vertices = glint_flare_add(flare, &bundle); fill them in
  *     or, for a baked lens, instead of begin and the loop:
  *         glint_flare_plan(flare, &frame, lights, n_lights);
  *     glint_flare_bin(flare, &stats);
@@ -41,22 +41,24 @@ extern "C" {
 struct glint_wave_planner;
 extern const struct glint_wave_planner glint_wave_planner;
 
-/* Sets of waves that represent the same light. Each ghost gets the smallest set
- * whose steps are invisible, because outlines of neighbouring waves are close
- * to each other or faint. */
+/* Sets of waves (wavelengths) that represent the same light. Each ghost is
+ * drawn with the smallest set whose steps are invisible, because the ghost's
+ * outlines in neighbouring waves are close to each other, or faint. */
 struct glint_wave_sets {
     /* &glint_wave_planner. It is a pointer so that only programs that use sets
      * link the planner. */
     const struct glint_wave_planner *planner;
     int n_sets; /* number of sets, 1 .. GLINT_MAX_WAVE_SETS */
-    int size[GLINT_MAX_WAVE_SETS]; /* number of waves of each set, 2 or more, in
-                                      rising order; the sets follow each other
-                                      in glint_flare_frame.wave */
-    int32_t apart_q8; /* max distance between outlines of neighbouring waves,
-                         pixels */
-    struct glint_real step; /* display white: a set also suffices if its steps
-                               of light are below this at any distance of
-                               outlines; 0: every step counts as visible */
+    /* Number of waves of each set, 2 or more, in rising order. The sets follow
+     * each other in glint_flare_frame.wave. */
+    int size[GLINT_MAX_WAVE_SETS];
+    /* Max distance between outlines of a ghost in neighbouring waves,
+     * pixels. */
+    int32_t apart_q8;
+    /* Display white: a set also suffices if its steps of light are smaller than
+     * this, whatever the distance of outlines; 0: every step counts as
+     * visible. */
+    struct glint_real step;
 };
 
 enum { GLINT_DIM_NODES = 33, GLINT_DIM_VALUES = 4, GLINT_DIM_LIGHTS = 256 };
@@ -64,9 +66,9 @@ struct glint_dim_method;
 extern const struct glint_dim_method glint_dim_method;
 
 /* Cache of the brightness of each ghost, by the angle of the light and at three
- * wavelengths. A program keeps one cache for frames of one lens, stop, set of
- * wavelengths and size. Planning a frame fills missing entries; the cache never
- * changes a picture. */
+ * wavelengths. A program uses one cache for all frames of one lens, stop, set
+ * of wavelengths and size. Planning a frame fills missing entries; the cache
+ * never changes a picture. */
 struct glint_dim {
     /* &glint_dim_method. It is a pointer so that only programs that use the
      * cache link the method. */
@@ -74,8 +76,8 @@ struct glint_dim {
     /* [GLINT_DIM_NODES][ghosts of the lens][GLINT_DIM_VALUES]: log2 of the
      * brightness */
     int16_t *log2_q8;
-    /* 1: the node is filled. The caller clears all nodes before the first plan,
-     * and when lens, stop, waves or size change. */
+    /* 1: the node (angle) is filled. The caller clears all nodes before the
+     * first plan, and when lens, stop, waves or size change. */
     uint8_t done[GLINT_DIM_NODES];
     /* Set by each plan: for each light but the first, the index of the nearest
      * light before it, and log2 of its distance. Lights with an index of
@@ -84,7 +86,7 @@ struct glint_dim {
     int16_t apart_log2_q8[GLINT_DIM_LIGHTS];
 };
 
-/* The input of a plan, except its lights. */
+/* The input of a plan except the lights. */
 struct glint_flare_frame {
     const struct glint_lens *lens;
     const struct glint_wave *wave;
@@ -97,10 +99,11 @@ struct glint_flare_frame {
      * or 4 * FINENESS where light folds. At 64, straight lines between rays are
      * off by 0.01 pixels on average, outlines by 0.1. */
     int fineness;
-    int uniform;    /* 1: all grids have FINENESS cells per side */
-    int only_ghost; /* index of the only ghost of the lens to draw, with its
-                       parts; -1: all ghosts */
-    /* [ghosts of the lens, parts included]; NULL: no ghost is tinted. */
+    int uniform; /* 1: all ray grids have FINENESS cells per side */
+    /* Index of the only ghost of the lens that is drawn, with its parts; -1:
+     * all ghosts. */
+    int only_ghost;
+    /* [ghosts of the lens, parts included]: tints; NULL: no ghost is tinted. */
     const struct glint_tint *tints;
     /* For a picture in codes: the max light that changes no pixel, display
      * white. Ghosts fainter than this may be left out; the closer a ghost is to
@@ -134,16 +137,17 @@ struct glint_flare_frame {
     const int32_t (*gain_q14)[3];
 };
 
-/* Static lights, which represent the lights of several frames of a video so
+/* Static lights: they represent the lights of several frames of a video, so
  * that rays can be reused. The caller owns the arrays, MAX_LIGHTS entries each,
  * and sets N to 0 before the first frame. */
 struct glint_still {
     int max_lights;
     int n; /* number of static lights in LIGHT, and of their factors */
     struct glint_light *light;
-    int32_t (*gain_q14)[3]; /* factors of the static lights, for gain_q14 of
-                               struct glint_flare_frame */
-    int64_t (*sum_q20)[3];  /* scratch */
+    /* Factors on the static lights, for gain_q14 of struct
+     * glint_flare_frame. */
+    int32_t (*gain_q14)[3];
+    int64_t (*sum_q20)[3]; /* scratch */
 };
 
 /* Decides whether the static lights can represent LIGHTS. If each of LIGHTS is
@@ -175,15 +179,15 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
  * per cell; folds and slivers preserve their light. A primitive is an edge
  * across which light changes. */
 
-/* Frame reuse: if the input of a plan has not changed, the edges and lists of
- * tiles of the previous frame are drawn again. */
+/* Frame reuse: if the input of a plan equals that of the previous plan, the
+ * edges and lists of tiles of the previous frame are drawn again. */
 struct glint_reuse;
 extern const struct glint_reuse glint_reuse;
 
 struct glint_flare_config {
-    struct glint_workers *workers; /* must outlive the flare; NULL: one thread.
-                                      The output is the same for any number of
-                                      threads */
+    /* Worker threads; must outlive the flare; NULL: one thread. The output is
+     * the same for any number of threads. */
+    struct glint_workers *workers;
     unsigned sets; /* instruction sets, glint_sets_here() or a subset; 0: plain
                       C (kernels.h). The output is the same for all sets */
     int width, height;      /* size of the picture, 1 .. GLINT_MAX_SIDE */
@@ -200,41 +204,43 @@ struct glint_flare_config {
     /* Capacities. The statistics of glint_flare_bin() report the capacities
      * that a frame needed. */
     int max_bundles;
-    int max_vertices;   /* vertices of all bundles of a frame */
-    int max_primitives; /* primitives of a frame. Each worker gets an equal
-                           section; with half as many again as needed, few
-                           bundles must wait for capacity in the section of
-                           another worker. */
-    int max_refs;       /* entries in the lists of all tiles */
+    int max_vertices; /* vertices of all bundles of a frame */
+    /* Primitives (edges) of a frame. Each worker gets an equal section; with
+     * half as many again as needed, few bundles must wait for capacity in the
+     * section of another worker. */
+    int max_primitives;
+    int max_refs; /* entries in the lists of all tiles */
 
     /* &glint_reuse: if lights, waves and dials equal those of the previous
      * plan, and its bundles were binned, these are drawn again. The output is
      * the same. NULL: every frame is planned. It is a pointer so that only
      * programs that use it link frame reuse. */
     const struct glint_reuse *reuse;
-    int reuse_lights; /* max lights of a frame that can be reused, 40 bytes
-                         each; a frame with more lights is always planned
-                         again */
-    int reuse_gains;  /* 1: frames may have gain_q14, which needs 12 bytes for
-                         each of max_bundles */
+    /* Max number of lights of a frame that can be reused, 40 bytes each; a
+     * frame with more lights is always planned again. */
+    int reuse_lights;
+    int reuse_gains; /* 1: frames may have gain_q14, which needs 12 bytes for
+                        each of max_bundles */
 };
 
 struct glint_flare_stats {
-    /* Numbers drawn; VERTICES includes the vertices of bundles that were left
-     * out. */
+    /* Numbers of items drawn; VERTICES includes the vertices of bundles that
+     * were left out. */
     int bundles, vertices, primitives, refs;
-    /* Capacities that would have drawn everything. Exact if max_bundles was
-     * large enough. */
+    /* Capacities that would have sufficed to draw everything. Exact if
+     * max_bundles was large enough. */
     int need_bundles, need_vertices, need_primitives, need_refs;
-    int dropped_bundles; /* bundles left out for lack of capacity */
-    int dropped_cells; /* cells left out of drawn bundles: they have an invalid
-                          ray, a vertex out of range, or no area */
-    int reused;     /* 1: the edges and the lists of tiles of the previous frame
-                       were reused */
-    int held_cells; /* cells, or halves of cells, of drawn bundles whose light
-                       was clamped to the max light of a cell per pixel: 2048
-                       times white, or less if the sum over all cells could
-                       exceed 2^24 */
+    int dropped_bundles; /* number of bundles left out for lack of capacity */
+    /* Number of cells left out of drawn bundles: with an invalid ray, a vertex
+     * out of range, or no area. */
+    int dropped_cells;
+    /* 1: the edges and the lists of tiles of the previous frame were drawn
+     * again. */
+    int reused;
+    /* Number of cells, or halves of cells, of drawn bundles whose light was
+     * clamped to the max light of a cell per pixel: 2048 times white, or less
+     * if the sum over all cells could exceed 2^24. */
+    int held_cells;
 };
 
 struct glint_flare; /* opaque, in the caller's memory */
@@ -273,7 +279,7 @@ void glint_flare_waves(struct glint_wave wave[GLINT_FLARE_WAVES],
 /* Returns a white light of power 1 whose image through LENS lies at (X, Y):
  * pixels from the top left corner, y down, of a picture of WIDTH x HEIGHT that
  * is as large as fits the film of LENS. Distances from the centre, across and
- * down, beyond 2^22 pixels count as 2^22. The integer counterpart of
+ * down, are clamped to 2^22 pixels. The integer counterpart of
  * glint_view_to_angles(): no sine or cosine is off by more than 2^-28. */
 struct glint_light glint_light_from_pixel(const struct glint_lens *lens,
                                           int width, int height, int32_t x_q8,
@@ -297,12 +303,12 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
 enum glint_status glint_flare_set_stop(struct glint_flare *flare,
                                        const struct glint_stop *stop);
 
-/* Forgets all bundles. */
+/* Removes all bundles of the previous frame. */
 void glint_flare_begin(struct glint_flare *flare);
 
-/* Forgets all bundles. RAYS, which must stay valid until the next begin or
- * plan, computes the vertices of the bundles that are then added;
- * glint_flare_add() allocates no vertices for them and returns NULL. */
+/* Removes all bundles of the previous frame. RAYS, which must stay valid until
+ * the next begin or plan, computes the vertices of the bundles that are then
+ * added; glint_flare_add() allocates no vertices for them and returns NULL. */
 void glint_flare_begin_rays(struct glint_flare *flare,
                             const struct glint_flare_rays *rays);
 
@@ -320,36 +326,37 @@ void glint_flare_set_rows(struct glint_flare *flare, int y0, int y1);
 struct glint_vertex *glint_flare_add(struct glint_flare *flare,
                                      const struct glint_bundle *bundle);
 
-/* Forgets all bundles, then adds the visible bundles of all LIGHTS and all
- * ghosts of the lens of FRAME; the caller fills no vertices. LIGHTS, FRAME and
- * everything that FRAME points to must stay valid until glint_flare_bin() has
- * returned. Without capacity for n_lights * ghosts * n_waves bundles the last
- * bundles may be left out. With sets of waves, capacity is needed for the waves
- * of the first set and of the sets that ghosts choose; if it is exceeded, the
- * last ghosts use the first set. */
+/* Removes all bundles of the previous frame, then adds the visible bundles of
+ * all LIGHTS and all ghosts of the lens of FRAME; the caller fills no vertices.
+ * LIGHTS, FRAME and everything that FRAME points to must stay valid until
+ * glint_flare_bin() has returned. Without capacity for n_lights * ghosts *
+ * n_waves bundles the last bundles may be left out. With sets of waves,
+ * capacity is needed for the waves of the first set and of the sets that ghosts
+ * choose; if it is exceeded, the last ghosts use the first set. */
 void glint_flare_plan(struct glint_flare *flare,
                       const struct glint_flare_frame *frame,
                       const struct glint_light *lights, int n_lights);
 
-/* Returns the index, in the lens, of the ghost of planned bundle I, 0 <= I <
- * bundles of the statistics. */
+/* Returns the index, in the lens, of the ghost to which planned bundle I
+ * belongs, 0 <= I < bundles of the statistics. */
 int glint_flare_ghost(const struct glint_flare *flare, int i);
 
-/* A bundle that is planned and not yet binned. A program can predict the cost
+/* A bundle that is planned, but not binned yet. A program can predict the cost
  * of a frame from all its planned bundles. */
 struct glint_planned {
     int n_cells;            /* cells per side of the grid */
     struct glint_real flux; /* flux as planned, display white times pixels */
-    /* Mean over the pixels that the bundle covers, display white. */
+    /* Mean irradiance of the pixels that the bundle covers, display white. */
     struct glint_real irradiance;
     int ghost, light, wave; /* indices, as in glint_flare_account() */
-    int inside_q8;          /* fraction of the probed rays that stop and barrels
-                               transmit, 0 .. 255 */
-    int view_q8;     /* fraction of the bounding box of its light that lies in
-                        the picture, 0 .. 255 */
-    int contrast_q4; /* log2 of the irradiance of its brightest cell / mean
-                        irradiance, 0 .. 254; 255: unknown, as the bundle
-                        folds */
+    /* Fraction of the probed rays that stop and barrels transmit, 0 .. 255. */
+    int inside_q8;
+    /* Fraction of the bounding box of its light that lies in the picture, 0 ..
+     * 255. */
+    int view_q8;
+    /* Log2 of (irradiance of its brightest cell / mean irradiance), 0 .. 254;
+     * 255: unknown, as the bundle folds. */
+    int contrast_q4;
 };
 
 /* Sets PLANNED to planned bundle I, from 0. Returns 0 if there is no bundle
@@ -379,7 +386,7 @@ void glint_flare_bin(struct glint_flare *flare,
 void glint_flare_draw(struct glint_flare *flare,
                       const struct glint_image *image);
 
-/* Returns the number of small tiles in which the last draw drew something. */
+/* Returns the number of small tiles to which the last draw added light. */
 int glint_flare_tiles(const struct glint_flare *flare);
 
 /* Returns the number of samples of a linear picture that the last draw
@@ -391,24 +398,28 @@ int glint_flare_held(const struct glint_flare *flare);
 /* Why the bundle of one ghost, light and wave was drawn or left out. */
 enum glint_outcome {
     GLINT_OUTCOME_DRAWN,
-    GLINT_OUTCOME_EMPTY,  /* planned, but no edge of its grid changes a pixel */
-    GLINT_OUTCOME_OTHER,  /* only_ghost selects another ghost, or a tint mutes
-                             this one */
-    GLINT_OUTCOME_BEYOND, /* the light is farther off the axis than the model's
-                             range */
-    GLINT_OUTCOME_CLOSED, /* the model has no polynomials at this angle: no ray
-                             gets through */
-    GLINT_OUTCOME_BLOCKED, /* stop and barrels cut every ray that the plan
-                              probed */
-    GLINT_OUTCOME_DARK,    /* the light or its colour has no power in this
-                              wave */
-    GLINT_OUTCOME_OUTSIDE, /* the light lands off-screen */
-    GLINT_OUTCOME_FAINT, /* no pixel can show the ghost, even with the light of
-                            all lamps together */
+    GLINT_OUTCOME_EMPTY, /* the bundle was planned, but no edge of its grid
+                            changes a pixel */
+    /* Not drawn, as only_ghost selects another ghost, or a tint mutes this
+     * one. */
+    GLINT_OUTCOME_OTHER,
+    /* The light is farther off the axis than the model's range. */
+    GLINT_OUTCOME_BEYOND,
+    /* The model has no polynomials at this angle: no ray passes the lens. */
+    GLINT_OUTCOME_CLOSED,
+    /* Stop and barrels cut every ray that the plan probed. */
+    GLINT_OUTCOME_BLOCKED,
+    /* The light or its colour has no power in this wave. */
+    GLINT_OUTCOME_DARK,
+    GLINT_OUTCOME_OUTSIDE, /* the ghost's light lands off-screen */
+    /* No pixel can show the ghost, even with the light of all lamps
+     * together. */
+    GLINT_OUTCOME_FAINT,
     GLINT_OUTCOME_NO_ROOM,   /* left out because a capacity is full */
     GLINT_OUTCOME_OTHER_SET, /* the ghost uses another set of waves */
-    GLINT_OUTCOME_SHARED, /* dim, and drawn as one with the ghost of a brighter
-                             near-by light */
+    /* The ghost is dim, and drawn as one with the ghost of a brighter light
+     * near by. */
+    GLINT_OUTCOME_SHARED,
     GLINT_OUTCOMES
 };
 
@@ -417,17 +428,21 @@ enum glint_outcome {
  * outcome is DRAWN. */
 struct glint_account {
     enum glint_outcome outcome;
-    int probed; /* number of rays that the plan probed */
+    int probed; /* number of rays that the plan probed for the bundle */
     /* Cells per side of the grid, and vertices of the whole grid. */
     int cells, vertices;
-    int outputs, barrels; /* number of polynomials per ray, and number of them
-                             that are of barrels that cut */
-    int terms;    /* terms of all these polynomials after substituting angle and
-                     wavelength */
-    int edges;    /* edges drawn; their sum over all bundles is PRIMITIVES of
-                     struct glint_flare_stats */
-    int64_t rows; /* number of pixel rows crossed, summed over the edges */
-    int refs;     /* entries in the lists of all tiles */
+    /* Number of polynomials per ray, and number of these that are of barrels
+     * that cut. */
+    int outputs, barrels;
+    /* Number of terms of all these polynomials after substituting angle and
+     * wavelength. */
+    int terms;
+    /* Number of edges drawn; their sum over all bundles is PRIMITIVES of struct
+     * glint_flare_stats. */
+    int edges;
+    int64_t rows; /* number of pixel rows that the edges cross, summed over the
+                     edges */
+    int refs;     /* number of entries in the lists of all tiles */
     /* Flux as planned, display white times pixels, before the stop, the barrels
      * and the borders of the picture cut the light. */
     struct glint_real flux;

@@ -38,7 +38,7 @@ enum glint_range { GLINT_RANGE_FULL, GLINT_RANGE_LIMITED };
 enum glint_matrix {
     GLINT_MATRIX_BT601,
     GLINT_MATRIX_BT709,
-    GLINT_MATRIX_BT2020 /* BT.2020, non-constant luminance */
+    GLINT_MATRIX_BT2020 /* BT.2020 with non-constant luminance */
 };
 enum glint_tone { GLINT_TONE_SRGB, GLINT_TONE_BT709 };
 
@@ -46,8 +46,9 @@ enum glint_tone { GLINT_TONE_SRGB, GLINT_TONE_BT709 };
  * so odd sizes are fine. Strides may exceed the row and may be negative. */
 struct glint_image {
     enum glint_pixel_format format;
-    int width, height; /* pixels, 1 .. GLINT_MAX_SIDE */
-    uint8_t *plane[3]; /* first sample of the top row; NULL for unused planes */
+    int width, height; /* size of the picture, pixels, 1 .. GLINT_MAX_SIDE */
+    uint8_t *plane[3]; /* address of the first sample of the top row; NULL for
+                          unused planes */
     ptrdiff_t stride_bytes[3];
     enum glint_range range;   /* range of the codes; RGB is always full */
     enum glint_matrix matrix; /* matrix of Y, Cb, Cr; ignored for RGB */
@@ -61,18 +62,18 @@ int glint_image_planes(enum glint_pixel_format format);
  * samples are luma and chroma, grey, or linear light. */
 int glint_image_is_rgb(enum glint_pixel_format format);
 
-/* Return the bytes of a row of plane PLANE without padding, and its number of
- * rows. */
+/* Return the number of bytes in a row of plane PLANE without padding, and the
+ * plane's number of rows. */
 size_t glint_image_row_bytes(enum glint_pixel_format format, int plane,
                              int width);
 int glint_image_plane_height(enum glint_pixel_format format, int plane,
                              int height);
 
-/* Returns the bytes of all planes of a picture without padding; 0 if WIDTH or
- * HEIGHT is out of range. */
+/* Returns the number of bytes of all planes of a picture without padding; 0 if
+ * WIDTH or HEIGHT is out of range. */
 size_t glint_image_bytes(enum glint_pixel_format format, int width, int height);
 
-/* Points the planes of IMAGE into MEM[glint_image_bytes()], one after the other
+/* Sets the planes of IMAGE to consecutive parts of MEM[glint_image_bytes()],
  * without padding; format, width and height of IMAGE must be set. */
 void glint_image_place(struct glint_image *image, void *mem);
 
@@ -90,7 +91,7 @@ void glint_image_sample(const struct glint_image *image, int columns, int rows,
 
 /* A picture of linear light, BT.709 primaries, 1 = display white. */
 struct glint_float_image {
-    int width, height; /* pixels, 1 .. GLINT_MAX_SIDE */
+    int width, height; /* size of the picture, pixels, 1 .. GLINT_MAX_SIDE */
     float *rgb;        /* [height][width][3], the top row first */
 };
 

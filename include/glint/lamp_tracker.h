@@ -34,11 +34,12 @@ extern "C" {
 
 enum glint_lamp_state {
     GLINT_LAMP_RISING,
-    GLINT_LAMP_STEADY, /* visible, at full level */
-    GLINT_LAMP_FADING, /* the lamp is hidden or off, or too many lamps are
-                          brighter: the track moves on, slower and slower */
-    GLINT_LAMP_LEAVING /* the lamp left the picture, and the track moves on
-                          outside it */
+    GLINT_LAMP_STEADY, /* the lamp is visible, at full level */
+    /* The lamp is hidden or off, or too many lamps are brighter: the track
+     * moves on, slower and slower. */
+    GLINT_LAMP_FADING,
+    /* The lamp has left the picture, and the track moves on off-screen. */
+    GLINT_LAMP_LEAVING
 };
 
 /* A lamp over time. Its power does not include the level: draw it with level
@@ -49,11 +50,13 @@ struct glint_lamp_track {
     int32_t x_q8, y_q8; /* position, as in struct glint_spot; may be
                            off-screen */
     int32_t size_q8;    /* RMS radius, pixels */
-    int32_t level_q15; /* 1 .. 32768: how far the lamp has risen or faded; 32768
-                          is full */
-    int64_t flux_q16;  /* linear luminance, 1 = white pixel */
-    int64_t power_q16; /* linear luminance without clipping, as in struct
-                          glint_spot */
+    /* Level, 1 .. 32768: how far the lamp has risen or faded; 32768 is full. */
+    int32_t level_q15;
+    /* Linear luminance in the picture, 1 = white pixel. */
+    int64_t flux_q16;
+    /* Linear luminance as if the picture clipped nothing, as in struct
+     * glint_spot. */
+    int64_t power_q16;
     int32_t axis_q8[2]; /* RMS semi-axes of the core, pixels */
     /* Direction of the major axis, to 1/4 degree; cos >= 0. */
     int32_t cos_q15, sin_q15;
@@ -62,16 +65,19 @@ struct glint_lamp_track {
 
 struct glint_lamp_tracker_config {
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
-    int max_tracks;    /* max lamps that are followed at a time, 1 .. 1024 */
-    int max_shown;     /* max lamps that are reported, 1 .. max_tracks: the
-                          strongest; the level of all others fades */
-    int32_t match_q15; /* max distance of a spot from the predicted position of
-                          its track, as a fraction of the picture's width */
-    int32_t cut_q15;   /* min fraction of the flux that changes at a cut; above
-                          32768: no cuts are detected. There is a cut if this
-                          fraction of the flux before vanishes and this fraction
-                          of the flux now is new, or if three or more lamps
-                          appear or vanish at once */
+    int max_tracks;    /* max number of lamps that are tracked at a time, 1 ..
+                          1024 */
+    /* Max number of lamps that are reported, 1 .. max_tracks: the strongest;
+     * the level of all others fades. */
+    int max_shown;
+    /* Max distance of a spot from the predicted position of its track, as a
+     * fraction of the picture's width. */
+    int32_t match_q15;
+    /* Min fraction of the flux that changes at a cut; above 32768: no cuts are
+     * detected. There is a cut if this fraction of the flux before vanishes and
+     * this fraction of the flux now is new, or if three or more lamps appear or
+     * vanish at once. */
+    int32_t cut_q15;
     /* Milliseconds in which the level rises from 0 to full, or the flux to a
      * greater flux. */
     int32_t attack_ms;
@@ -79,8 +85,8 @@ struct glint_lamp_tracker_config {
                            or the flux to a lesser flux */
     int32_t leave_ms;   /* milliseconds in which the level of a lamp that left
                            the picture falls from full to 0 */
-    int32_t memory_ms; /* milliseconds for which a lamp without a spot keeps its
-                          number */
+    /* Milliseconds for which a lamp without a spot keeps its number. */
+    int32_t memory_ms;
     int32_t smooth_ms; /* time constant of averaging, milliseconds */
 };                     /* Each time is 1 .. 60000 ms. */
 
@@ -111,16 +117,17 @@ int glint_lamp_tracker_step(struct glint_lamp_tracker *tracks,
                             int32_t elapsed_us, struct glint_lamp_track *out,
                             int max);
 
-/* Forgets all tracks: the spots of the next step start new tracks at full
- * level, as after glint_lamp_tracker_init(). To be called at a known cut. */
+/* Removes all tracks: the spots of the next step start new tracks at full
+ * level, as after glint_lamp_tracker_init(). Call it at a known cut. */
 void glint_lamp_tracker_restart(struct glint_lamp_tracker *tracks);
 
-/* Returns whether the last step was the first step, or detected a cut. */
+/* Returns whether the last step was the first one, or detected a cut. */
 int glint_lamp_tracker_was_cut(const struct glint_lamp_tracker *tracks);
 
 /* Returns the argument PART_Q15 of glint_lamp_finder_keep_white() for the next
- * picture of a video, ELAPSED_US after the last picture. Its white may darken
- * by a stop per second, or by any amount if no lamp is seen or remembered. */
+ * picture of a video, ELAPSED_US after the last picture. The white level may
+ * fall by a stop per second, or by any amount if no lamp is visible or
+ * remembered. */
 int32_t glint_lamp_tracker_white_q15(const struct glint_lamp_tracker *tracks,
                                      int32_t elapsed_us);
 

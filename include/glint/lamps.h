@@ -42,22 +42,23 @@
 extern "C" {
 #endif
 
-/* The main reason against a region that is not a lamp. */
+/* The main reason for which a region was rejected as a lamp. */
 enum glint_doubt {
-    GLINT_DOUBT_NONE,   /* the region is a lamp */
-    GLINT_DOUBT_DIM,    /* too few pixels at the upper threshold, or too few at
-                           all */
-    GLINT_DOUBT_AROUND, /* its surroundings are nearly as bright as the region
-                         */
-    GLINT_DOUBT_GLOW,   /* light around it does not fall off, or falls off
-                           unevenly */
-    GLINT_DOUBT_SHAPE,  /* it is not compact */
-    GLINT_DOUBT_SIZE,   /* it is too small relative to the picture */
-    GLINT_DOUBT_GREY,   /* it is darker than white */
-    GLINT_DOUBT_CROWD,  /* many regions are equally bright */
-    GLINT_DOUBT_DAY,    /* the whole picture is bright, or lacks contrast */
-    GLINT_DOUBT_LOW,    /* it lies low in the picture */
-    GLINT_DOUBT_DRAWN   /* it fills its bounding box, as windows and bars do */
+    GLINT_DOUBT_NONE, /* not rejected: the region is a lamp */
+    GLINT_DOUBT_DIM,  /* too few pixels at the upper threshold, or too few at
+                         all */
+    /* The surroundings of the region are nearly as bright as the region. */
+    GLINT_DOUBT_AROUND,
+    /* Light around the region does not fall off, or falls off unevenly. */
+    GLINT_DOUBT_GLOW,
+    GLINT_DOUBT_SHAPE, /* the region is not compact */
+    GLINT_DOUBT_SIZE,  /* the region is too small relative to the picture */
+    GLINT_DOUBT_GREY,  /* the region is darker than white */
+    GLINT_DOUBT_CROWD, /* many regions of the picture are equally bright */
+    GLINT_DOUBT_DAY,   /* the whole picture is bright, or lacks contrast */
+    GLINT_DOUBT_LOW,   /* the region lies low in the picture */
+    GLINT_DOUBT_DRAWN  /* the region fills its bounding box, as windows and
+                          bars do */
 };
 
 /* A lamp in one picture. */
@@ -66,13 +67,16 @@ struct glint_spot {
                            corner of the picture, pixel centres at n + 1/2 */
     int32_t size_q8;    /* RMS radius, pixels */
     int32_t area;       /* number of pixels of the region */
-    int32_t n_clipped; /* number of its pixels whose largest channel is clipped,
-                          or reaches the white of the picture */
-    int64_t flux_q16;  /* sum of linear luminance over its pixels, 1 = white */
+    /* Number of pixels of the region whose largest channel is clipped, or
+     * reaches the white of the picture. */
+    int32_t n_clipped;
+    int64_t flux_q16;   /* linear luminance summed over the region's pixels, 1 =
+                           white */
     int32_t rgb_q15[3]; /* mean linear colour, luminance 1 (BT.709 weights) */
-    int32_t faint;      /* 1: the spot is not a lamp yet; see keep_faint */
-    enum glint_doubt doubt; /* the reason if faint is 1, else
-                               GLINT_DOUBT_NONE */
+    int32_t faint;      /* 1: the spot is not a lamp yet; see keep_faint of
+                           struct glint_lamp_finder_config */
+    /* If faint is 1, the reason; else GLINT_DOUBT_NONE. */
+    enum glint_doubt doubt;
 
     /* glint_profile_measure() (glint/profile.h) sets these members and refines
      * rgb; before that call, they hold the flux, and a circle of the same RMS
@@ -86,26 +90,30 @@ struct glint_spot {
 };
 
 struct glint_lamp_finder_config {
-    int width, height;         /* size of the pictures, 1 .. GLINT_MAX_SIDE */
-    int32_t threshold_high_q8; /* upper threshold, stops from white, -20 .. 0: a
-                                  region must have pixels that reach it */
-    int32_t threshold_low_q8;  /* lower threshold, stops from white, -20 ..
-                                  threshold_high_q8: a region extends to pixels
-                                  that reach it */
-    int white_code; /* 8-bit full-range code of white, 1 .. 255; 0: the code at
-                       which codes clip, and also the white of the picture if it
-                       is darker */
-    int min_area;   /* min area, pixels, 1 or more; smaller regions are noise */
-    int32_t max_share_q15; /* max area of a lamp, as a fraction of the area of
-                              the picture; larger regions are sky or walls */
+    int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
+    /* Upper threshold, stops from white, -20 .. 0: a region must have pixels
+     * that reach it. */
+    int32_t threshold_high_q8;
+    /* Lower threshold, stops from white, -20 .. threshold_high_q8: a region
+     * extends to the pixels that reach it. */
+    int32_t threshold_low_q8;
+    /* 8-bit full-range code of white, 1 .. 255; 0: the code at which codes
+     * clip, and also the white of the picture if it is darker. */
+    int white_code;
+    int min_area; /* min area, pixels, 1 or more; smaller regions are noise */
+    /* Max area of a lamp, as a fraction of the area of the picture; larger
+     * regions are sky or walls. */
+    int32_t max_share_q15;
     int32_t
         merge_q15; /* merge distance, as a fraction of the picture's width */
-    int32_t judge; /* 1: regions are scored by appearance and surroundings; 0:
-                      all bright regions are lamps */
-    int32_t keep_faint; /* 1: after the lamps the list has regions marked faint,
-                           for glint/lamp_tracker.h: regions with too few pixels
-                           at the upper threshold, with an area of only half of
-                           min_area, or with a score slightly too low */
+    /* 1: regions are scored by appearance and surroundings; 0: all bright
+     * regions are lamps. */
+    int32_t judge;
+    /* 1: after the lamps the list has regions marked faint, for
+     * glint/lamp_tracker.h: regions with too few pixels at the upper threshold,
+     * with an area of only half of min_area, or with a score slightly too
+     * low. */
+    int32_t keep_faint;
 };
 
 struct glint_lamp_finder; /* opaque, in the caller's memory */
@@ -118,8 +126,9 @@ void glint_lamp_finder_defaults(struct glint_lamp_finder_config *cfg, int width,
  * CFG, or 0 if CFG is out of range. */
 size_t glint_lamp_finder_bytes(const struct glint_lamp_finder_config *cfg);
 
-/* Places a finder in MEM[BYTES], aligned to 64. Returns GLINT_E_MEMORY if BYTES
- * is too small. Returns GLINT_E_ARGUMENT if CFG or the alignment is wrong. */
+/* Places a finder in MEM[BYTES], aligned to 64; *FINDER points into it. Returns
+ * GLINT_E_MEMORY if BYTES is too small. Returns GLINT_E_ARGUMENT if CFG or the
+ * alignment is wrong. */
 enum glint_status
 glint_lamp_finder_init(struct glint_lamp_finder **finder,
                        const struct glint_lamp_finder_config *cfg, void *mem,

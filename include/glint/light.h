@@ -17,8 +17,8 @@ extern "C" {
 #define GLINT_MAX_WAVE_SETS \
     5 /* max waves, see struct glint_wave_sets, flare.h */
 
-/* Transmission of a stop inside its outline: of its soft edge, and of dust or a
- * mask at each point. */
+/* Transmission of a stop within its outline: of its soft edge, and at each
+ * point of dust or a mask. */
 enum { GLINT_SHADE_LEAST_LOG2 = 3, GLINT_SHADE_MOST_LOG2 = 10 };
 struct glint_shade_method;
 extern const struct glint_shade_method glint_shade_method;
@@ -30,8 +30,9 @@ struct glint_shade {
      * from 0 at the outline as 3 x^2 - 2 x^3, where x is the distance from the
      * outline / width. */
     int32_t soft_q16;
-    int log2; /* log2 of the number of cells per side of the finest table; 0:
-                 there are no tables, and all inside the soft edge is clear */
+    /* Log2 of the number of cells per side of the finest table; 0: there are no
+     * tables, and all inside the soft edge is clear. */
+    int log2;
     /* [log2]: table k has 2^(log2 - k) + 1 nodes per side over +-1 stop radius,
      * row 0 at the lowest y; points outside take the value of the nearest node.
      * Both must outlive the stop. LEVEL: transmission, 0 .. 2^15. ROUGH: max
@@ -54,7 +55,8 @@ struct glint_stop {
      * curvature times the distance from the centre of the stop to the centre of
      * an arc, 1 .. 2^30. Both 0: sides are straight. */
     int32_t round_q30, off_q30;
-    /* Must outlive the stop. NULL: all of the opening is clear. */
+    /* Soft edge, dust and mask of the stop; must outlive the stop. NULL: all of
+     * the opening is clear. */
     const struct glint_shade *shade;
     /* For bundles of a model only: radius of the stop / radius of the stop that
      * the model was baked with, 2^20 .. 2^30; 0: the radii are equal. */
@@ -65,8 +67,8 @@ struct glint_stop {
 struct glint_light {
     /* Sine and cosine of the angle off the axis, 0 .. 2^30. */
     int32_t sine_q30, cosine_q30;
-    int32_t cos_q30, sin_q30; /* cosine and sine of the azimuth: 0 = right, 90
-                                 degrees = up */
+    /* Cosine and sine of the azimuth: 0 = right, 90 degrees = up. */
+    int32_t cos_q30, sin_q30;
     /* Value that the in-focus image of the light would have if it were spread
      * over one pixel; 1 = display white. */
     struct glint_real power;
@@ -81,7 +83,7 @@ struct glint_light {
  * all channels. A ghost with gain {0, 0} is muted: it is not planned. */
 struct glint_tint {
     int32_t rgb_q14[3];
-    struct glint_real gain; /* 0 or more */
+    struct glint_real gain; /* factor on all channels, 0 or more */
 };
 
 /* Returns the factor of TINT on channel C, as a double. */

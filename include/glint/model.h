@@ -59,7 +59,8 @@ enum glint_basis {
 };
 enum { GLINT_MIRRORS_X = 1, GLINT_MIRRORS_Y = 2 };
 
-/* Returns whether BASIS is GLINT_BASIS_LENS, with or without mirrors. */
+/* Returns whether BASIS is GLINT_BASIS_LENS, possibly with bits
+ * GLINT_MIRRORS_. */
 static inline int glint_basis_is_lens(uint32_t basis)
 {
     return basis >> 2 == 1;
@@ -76,22 +77,26 @@ struct glint_model_header {
     char name[64];   /* name of the lens, terminated */
     struct glint_real focal_mm, back_focal_mm, entrance_radius_mm,
         stop_radius_mm, f_number, film_width_mm, film_height_mm;
-    struct glint_real field_mm; /* radius around the centre of the sensor within
-                                   which the model is accurate */
+    /* Radius around the middle of the sensor, mm, within which the model is
+     * accurate. */
+    struct glint_real field_mm;
     struct glint_real front_mm; /* semi-diameter of the front surface */
-    int32_t wave_lo_q24, wave_hi_q24; /* the band of 1 / wavelength^2, um^-2 */
-    int32_t sine_hi_q30; /* sine of the max angle of lights that the model
-                            covers; lights farther off the axis are not drawn */
+    /* Range of 1 / wavelength^2 that the model covers, um^-2. */
+    int32_t wave_lo_q24, wave_hi_q24;
+    /* Sine of the max angle of lights that the model covers; lights farther off
+     * the axis are not drawn. */
+    int32_t sine_hi_q30;
     /* Flux of the direct image at angle 0 for irradiance 1 through a circular
      * stop, mm^2: coefficients of powers of w over the band. */
     struct glint_real direct_flux[GLINT_FLUX_TERMS];
-    /* At R times that radius of the stop, the flux is R^2 (direct_flux + c
+    /* At R times the radius of the stop, the flux is R^2 (direct_flux + c
      * (stopped_flux[0] + c stopped_flux[1])) with c = 1 - R^2. */
     struct glint_real stopped_flux[2][GLINT_FLUX_TERMS];
     uint32_t n_surfaces;
     uint32_t n_ghosts, ghost_at; /* array of struct glint_model_ghost */
-    uint32_t n_parts; /* the last n_parts ghosts are additional pupil regions of
-                         earlier ghosts */
+    /* The last n_parts ghosts are additional pupil regions of earlier
+     * ghosts. */
+    uint32_t n_parts;
     uint32_t n_systems, system_at; /* array of struct glint_model_system */
 };
 
@@ -99,7 +104,7 @@ struct glint_model_header {
  * overlap; so do the systems of successive ghosts. A ghost without systems is
  * invisible. */
 struct glint_model_ghost {
-    uint32_t i, j; /* reflecting surfaces, i < j */
+    uint32_t i, j; /* indices of the two reflecting surfaces, i < j */
     uint32_t first_system, n_systems;
 };
 
@@ -110,7 +115,7 @@ struct glint_model_system {
     int32_t sine_lo_q30, sine_hi_q30;
     int32_t wave_lo_q24, wave_hi_q24; /* range of 1 / wavelength^2; if both are
                                          equal, one wavelength */
-    uint32_t zero_word;               /* 0 */
+    uint32_t zero_word;               /* must be 0 */
     uint32_t across_at; /* int32 _q30 [2]: range of the y component of the
                            direction; in the lens basis only */
     /* The box, mm: middle, half width, half height, int32 * 2^box_exponent.
@@ -133,7 +138,7 @@ enum {
     GLINT_BOX_TERMS = GLINT_BOX_POWERS + 2,
     GLINT_MAX_POWER = 9,
     GLINT_MAX_ANNULUS = 15,
-    GLINT_RAYS = 8, /* number of rays that are computed at once */
+    GLINT_RAYS = 8, /* number of rays that are traced at a time */
     /* Entries in a row of powers of u: a multiple of the width of vectors. */
     GLINT_TABLE_WIDTH = 16,
     GLINT_MAX_MODEL_TERMS = 120,
@@ -145,17 +150,19 @@ enum {
 };
 
 enum glint_channel {
-    GLINT_OUT_SENSOR_X, /* mm, in the frame of the light. Except in the lens
-                           basis, both y outputs are odd in v, all others
-                           even */
+    /* Position on the sensor, mm, in the frame of the light. Except in the lens
+     * basis, both y outputs are odd in v, all others even. */
+    GLINT_OUT_SENSOR_X,
     GLINT_OUT_SENSOR_Y,
     GLINT_OUT_STOP_X, /* position in the stop, stop radii */
     GLINT_OUT_STOP_Y,
     GLINT_OUT_ENERGY,
-    GLINT_OUT_RADIUS,   /* largest height / semi-diameter of the ray over all
-                           surfaces [Bodonyi25] */
-    GLINT_OUT_BARREL_0, /* (1 + r^2) / 2, where r = height / semi-diameter at a
-                           barrel that cuts rays: above 1 the ray is cut */
+    /* Max over all surfaces of (height of the ray / semi-diameter)
+     * [Bodonyi25]. */
+    GLINT_OUT_RADIUS,
+    /* (1 + r^2) / 2, where r = (height of the ray / semi-diameter) at a barrel
+     * that cuts rays: above 1 the ray is cut. */
+    GLINT_OUT_BARREL_0,
     GLINT_OUT_BARREL_1,
     GLINT_OUT_BARREL_2,
     GLINT_OUT_BARREL_3,
@@ -204,8 +211,9 @@ struct glint_lens {
     const struct glint_model_header *header;
     const struct glint_model_ghost *ghost;
     const struct glint_model_system *system;
-    const struct glint_zoom_lens *zoom; /* the zoom lens of which this is one
-                                           position; NULL: a single model */
+    /* The zoom lens of which this model is one position; NULL: a single
+     * model. */
+    const struct glint_zoom_lens *zoom;
 };
 
 /* Checks all of DATA[BYTES], aligned to 4, and points LENS into it; DATA must
@@ -246,14 +254,14 @@ enum { GLINT_MAX_ZOOM_MODELS = 129, GLINT_MAX_ZOOM_GHOSTS = 2048 };
 struct glint_zoom_header {
     uint32_t magic, version;
     uint32_t bytes, crc32; /* as in struct glint_model_header */
-    uint32_t variant;      /* 0 */
+    uint32_t variant;      /* must be 0 */
     uint32_t key[2];       /* key of the table and options, low word first */
     char name[64];         /* name of the lens, terminated */
     uint32_t n_models, model_at; /* array of struct glint_zoom_model */
 };
 
-/* A position, 0 .. 2^30. Positions are sorted; the first is 0, the last
- * 2^30. */
+/* A zoom position with its model. Positions are 0 .. 2^30, sorted; the first is
+ * 0, the last 2^30. */
 struct glint_zoom_model {
     int32_t along_q30;
     uint32_t at, bytes; /* offset and size of the model in the file */
@@ -274,11 +282,13 @@ struct glint_zoom_lens {
     int n_models;
     struct glint_lens model[GLINT_MAX_ZOOM_MODELS];
     int32_t along_q30[GLINT_MAX_ZOOM_MODELS];
-    const uint32_t *has[GLINT_MAX_ZOOM_MODELS]; /* as has_at; NULL: all
-                                                   ghosts */
-    int32_t now_q30;                            /* current position */
-    int below; /* index of the model at or below the current position; the next
-                  model is above */
+    /* Bit masks of the ghosts that each model has, as has_at; NULL: all
+     * ghosts. */
+    const uint32_t *has[GLINT_MAX_ZOOM_MODELS];
+    int32_t now_q30; /* current position */
+    /* Index of the model at or below the current position; the next model is
+     * above. */
+    int below;
     /* For each ghost, the two nearest models that have it: below, above. */
     uint8_t side[2][GLINT_MAX_ZOOM_GHOSTS];
     /* Storage that LENS points to. */

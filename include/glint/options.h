@@ -41,8 +41,8 @@ enum glint_option_type {
     GLINT_OPTION_REAL,
     GLINT_OPTION_INTEGER,
     GLINT_OPTION_FLAG, /* set or not set, without a value */
-    GLINT_OPTION_WORD, /* one of a list of words; the value is the index of the
-                          word */
+    /* One of a list of words; the value is the index of the word. */
+    GLINT_OPTION_WORD,
     GLINT_OPTION_TEXT
 };
 
@@ -57,8 +57,9 @@ enum glint_option_group {
     GLINT_OPTION_GROUPS
 };
 
-/* Who applies an option: the engine, to pictures; who opens the lens, to its
- * table; or the program itself, of files, scenes and videos. */
+/* Where an option is applied: by the engine, to pictures; by the code that
+ * opens the lens, to its table; or by the program itself, to files, scenes and
+ * videos. */
 enum glint_option_scope {
     GLINT_OPTION_PICTURE,
     GLINT_OPTION_TABLE,
@@ -120,7 +121,7 @@ struct glint_options {
 #include "glint/options.inc"
 };
 
-/* True if option MEMBER of OPTIONS was set. */
+/* True if the caller has set option MEMBER of OPTIONS. */
 #define GLINT_OPTION_GIVEN(options, member) \
     ((options)->given[GLINT_OPTION_OF_##member])
 
@@ -153,8 +154,9 @@ enum glint_status glint_options_set_text(struct glint_options *options,
                                          const char *name, const char *text,
                                          struct glint_error *error);
 
-/* Returns the parameters that OPTIONS select: those of the quality, replaced by
- * parameters that were set individually, except max_lights and area_points. */
+/* Returns the quality parameters that OPTIONS select: those of option quality,
+ * replaced by parameters that were set individually, except max_lights and
+ * area_points. */
 struct glint_quality glint_options_quality(const struct glint_options *options);
 
 /* Writes to TEXT[BYTES] a description of the values that OPTION accepts. */

@@ -26,14 +26,14 @@
 extern "C" {
 #endif
 
-/* Makes a pool of N_THREADS, 1 .. GLINT_MAX_WORKERS, including the caller; 0:
- * as many as processors are online. workers->n is lower if the system permits
- * no more threads. Returns GLINT_E_ARGUMENT if N_THREADS is out of range, or
- * GLINT_E_MEMORY. */
+/* Creates a pool of N_THREADS, 1 .. GLINT_MAX_WORKERS, including the calling
+ * thread; 0: one per processor that is online. workers->n is lower if the
+ * system permits no more threads. Returns GLINT_E_ARGUMENT if N_THREADS is out
+ * of range, or GLINT_E_MEMORY. */
 enum glint_status glint_pool_create(struct glint_workers **workers,
                                     int n_threads);
 
-/* Ends the threads and frees WORKERS, which may be NULL, but must not be
+/* Ends the threads and frees WORKERS, which may be NULL. No jobs may be
  * running. */
 void glint_pool_destroy(struct glint_workers *workers);
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/prescription.h - lens tables, and the ghosts of a lens.
+ * glint/prescription.h - parses lens tables, and lists the ghosts of a lens.
  *
  *     glint_prescription_parse(&lens, text, bytes, "x.lens", &error);
- *     glint_optics_of(&lens, &optics);                   focal length, ...
+ *     glint_optics_of(&lens, &optics); focal length, ...
  *     n = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
  *
  * The offline half computes in double precision. Lengths are in millimetres,
@@ -35,8 +35,9 @@ extern "C" {
 struct glint_film {
     /* Index of refraction, 1.01 .. 4, the same at all wavelengths. */
     double index;
-    double quarters; /* index times thickness, in quarters of the design
-                        wavelength of the coating, 0.01 .. 16 */
+    /* Index times thickness, in quarters of the design wavelength of the
+     * coating, 0.01 .. 16. */
+    double quarters;
 };
 
 /* The layers on a surface, the layer next to the air first. */
@@ -63,8 +64,8 @@ struct glint_shape {
     double conic; /* conic constant; 0: sphere, -1: paraboloid */
     double term[GLINT_SHAPE_TERMS]; /* A4 in mm^-3, A6 in mm^-5, .. */
     int bend;                       /* enum glint_bend */
-    double across_mm;               /* radius of the sweep with GLINT_BEND_X or
-                                       Y; 0: a cylinder */
+    /* Radius of the sweep with GLINT_BEND_X or Y, mm; 0: a cylinder. */
+    double across_mm;
     /* The surface is shifted by decentre_mm (x, y), then rotated by tilt_deg,
      * first about x, then about y, right-handed. The centre of rotation is on
      * the axis, pivot_mm behind the vertex. */
@@ -73,18 +74,21 @@ struct glint_shape {
 
 /* A refracting surface. The medium before surface 0 is air. */
 struct glint_surface {
-    double radius_mm;    /* radius of curvature; above 0: its centre is towards
-                            the sensor; 0: plane */
-    double thickness_mm; /* distance along the axis to the next surface, the
-                            stop, or the sensor */
-    double semi_mm;      /* semi-diameter of the barrel at the surface */
-    double nd;           /* index of refraction, at 587.56 nm, of the medium
-                            behind the surface */
+    /* Radius of curvature, mm; above 0: its centre is towards the sensor; 0:
+     * plane. */
+    double radius_mm;
+    /* Distance along the axis to the next surface, the stop, or the sensor,
+     * mm. */
+    double thickness_mm;
+    double semi_mm; /* semi-diameter of the barrel at the surface */
+    double nd;      /* index of refraction, at 587.56 nm, of the medium
+                       behind the surface */
     double vd; /* Abbe number of the medium behind the surface; 0 for air */
     /* Dispersion of a catalogue glass, as glint_glass.sellmeier; all 0:
      * dispersion is given by nd and vd. */
     double sellmeier[6];
-    struct glint_coating coating; /* cemented surfaces are always bare */
+    struct glint_coating coating; /* coating of the surface; cemented surfaces
+                                     have none */
     struct glint_shape shape;
 };
 
@@ -133,8 +137,8 @@ struct glint_glass {
 /* Returns the Kth glass, from 0, or NULL if there are no more. */
 const struct glint_glass *glint_glass_at(int k);
 
-/* Return the glass with the name NAME[BYTES], or with the most similar name;
- * NULL if no name is equal or similar. */
+/* Return the glass with the name NAME[BYTES], or the glass whose name is most
+ * similar to NAME; NULL if no name is equal or similar. */
 const struct glint_glass *glint_glass_find(const char *name, size_t bytes);
 const struct glint_glass *glint_glass_near(const char *name, size_t bytes);
 
@@ -151,9 +155,9 @@ double glint_surface_index(const struct glint_surface *s, double wavelength_nm);
 struct glint_zoom {
     int n_positions; /* number of columns; 0: the lens does not zoom */
     int n_moves;     /* number of gaps that change */
-    int move[GLINT_MAX_MOVES]; /* index of the element before each such gap, of
-                                  surfaces and the stop, counted from the
-                                  front */
+    /* Index of the element before each such gap, among surfaces and the stop,
+     * counted from the front. */
+    int move[GLINT_MAX_MOVES];
     double gap_mm[GLINT_MAX_MOVES][GLINT_MAX_POSITIONS];
     double f_number[GLINT_MAX_POSITIONS];
     /* Values that the table states for each column, to check it; 0: not
@@ -162,7 +166,8 @@ struct glint_zoom {
     double check_back_mm[GLINT_MAX_POSITIONS];
     /* Values that are computed from the columns. */
     double focal_mm[GLINT_MAX_POSITIONS], back_mm[GLINT_MAX_POSITIONS];
-    double last_gap_mm[GLINT_MAX_POSITIONS]; /* last element to sensor */
+    double last_gap_mm[GLINT_MAX_POSITIONS]; /* distance from the last element
+                                                to the sensor, mm */
     /* Zoom parameter of each column, 0 .. 1. */
     double along[GLINT_MAX_POSITIONS];
 };
@@ -187,15 +192,16 @@ struct glint_prescription {
                        GLINT_MAX_SURFACES */
     struct glint_surface surface[GLINT_MAX_SURFACES];
     int stop_after; /* number of surfaces before the stop, 0 .. n_surfaces */
-    double stop_thickness_mm; /* distance from the stop to the next surface (or
-                                 the sensor), mm. A stop in front of the lens
-                                 lies at z < 0, or behind the front vertex if
-                                 the distance is below 0 */
-    double stop_semi_mm;      /* max radius of the stop */
-    bool stop_is_circle;      /* true: the stop is a circle at every opening;
-                                 false: it has blades */
-    double check_focal_mm;    /* values that the table states, to check it; 0:
-                                 not stated */
+    /* Distance from the stop to the next surface (or the sensor), mm. A stop in
+     * front of the lens lies at z < 0, or behind the front vertex if the
+     * distance is below 0. */
+    double stop_thickness_mm;
+    double stop_semi_mm; /* max radius of the stop */
+    bool stop_is_circle; /* true: the stop is a circle at every opening;
+                            false: it has blades */
+    /* Focal length and other values that the table states, to check the data;
+     * 0: not stated. */
+    double check_focal_mm;
     double check_back_mm;
     /* Alternative coatings in the table, chosen for appearance, not
      * measured. glint_prescription_coat() applies them. */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/quality.h - one parameter that sets all dials: quality 0 to 1, along
- * the measured Pareto front of error and time, as a table of levels. */
+ * glint/quality.h - sets all quality parameters of a frame by one number, the
+ * quality 0 to 1: a position on the measured Pareto front of error and time,
+ * stored as a table of levels. */
 #ifndef GLINT_QUALITY_H
 #define GLINT_QUALITY_H
 
@@ -17,34 +18,36 @@ extern "C" {
  * quality, 0 to 1, of name number NAME. */
 enum { GLINT_QUALITY_NAMES = 5, GLINT_QUALITY_LEVELS = 10 };
 extern const char
-    *const glint_quality_name[GLINT_QUALITY_NAMES + 1]; /* the last is NULL */
+    *const glint_quality_name[GLINT_QUALITY_NAMES + 1]; /* names of qualities;
+                                                           the last is NULL */
 double glint_quality_named(int name);
 
-/* Returns the fractional level of QUALITY, 0 to GLINT_QUALITY_LEVELS - 1. It is
- * whole between a level that draws at half resolution and a level that does
- * not. */
+/* Returns the level of QUALITY, a fraction between 0 and GLINT_QUALITY_LEVELS -
+ * 1. It is rounded to a whole level between a level that draws at half
+ * resolution and one that does not. */
 double glint_quality_place(double quality);
 
-/* The parameters of a quality: the dials of a frame, and two others. */
+/* Parameters that a quality selects: those of a frame, and two others. */
 struct glint_quality {
     struct glint_dials dials;
-    double quantum;   /* percent by which irradiance is rounded; determines
-                         irradiance_steps */
-    double tolerance; /* tolerance with which the model is baked, as in struct
-                         glint_bake_options */
+    /* Percent by which irradiance is rounded; determines irradiance_steps. */
+    double quantum;
+    /* Tolerance with which the model is baked, as in struct
+     * glint_bake_options. */
+    double tolerance;
 };
 
-/* Returns the settings of QUALITY, 0 to 1; 0.5 is the default. */
+/* Returns the parameters that QUALITY, 0 to 1, selects; 0.5 is the default. */
 struct glint_quality glint_quality_at(double quality);
 
 /* Returns the lowest quality at which outlines are off by at most PX pixels on
  * average. */
 double glint_quality_for_error(double px);
 
-/* Returns irradiance_steps for a mean step of QUANTUM percent. */
+/* Returns the irradiance_steps whose mean step is QUANTUM percent. */
 int glint_quality_steps(double quantum);
 
-/* Returns whether DIALS draw at half resolution. */
+/* Returns whether DIALS select half resolution. */
 static inline bool glint_dials_half(const struct glint_dials *dials)
 {
     return (dials->flags & (GLINT_DIAL_HALF | GLINT_DIAL_ALWAYS_HALF)) != 0;

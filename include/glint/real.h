@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/real.h - floating-point numbers as two integers.
- *
- * For powers, fluxes and lengths in code without floating point, as their
- * ranges are too wide for fixed point. */
+ * glint/real.h - floating-point numbers as two integers, for powers, fluxes and
+ * lengths in code without floating point, as their ranges are too wide for
+ * fixed point. */
 #ifndef GLINT_REAL_H
 #define GLINT_REAL_H
 
@@ -20,7 +19,8 @@ struct glint_real {
     int32_t exponent;
 };
 
-/* Convert from and to double. A number that is not finite becomes 0. */
+/* Convert a double to glint_real, and back. A number that is not finite becomes
+ * 0. */
 struct glint_real glint_real_of(double x);
 double glint_real_value(struct glint_real x);
 

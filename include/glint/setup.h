@@ -59,7 +59,7 @@ struct glint_iris {
      * 0 (straight) .. 1 (a circle). */
     double roundness;
     /* Width of the soft edge, stop radii inwards from the outline, 0 .. 1:
-     * across it light rises from none to all. */
+     * across it the transmission rises from 0 to 1. */
     double softness;
     /* Fraction of the stop's circle that specks of dust cover, 0 .. 0.5;
      * scratches and smudges are added. dust_seed selects their positions. */
@@ -80,8 +80,8 @@ struct glint_set_wave {
     double direct_flux, unit_flux; /* mm^2, as in struct glint_setup */
 };
 
-/* A lens prepared for drawing: everything that does not depend on light or
- * frame. */
+/* A lens prepared for drawing: values that do not depend on lights or
+ * frames. */
 struct glint_setup {
     /* The lens table, which must outlive the setup; NULL: the setup is made
      * from a model. */
@@ -98,7 +98,7 @@ struct glint_setup {
                                   towards y */
     struct glint_iris iris;
     const struct glint_dirt *dirt; /* dust and mask in the stop; NULL: none */
-    double clear; /* mean transmission of DIRT; 1 if DIRT is NULL */
+    double clear; /* mean transmission of dust and mask; 1 if DIRT is NULL */
     int n_wavelengths;
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
     double rgb[GLINT_MAX_WAVELENGTHS][3]; /* linear BT.709; each channel sums

@@ -40,7 +40,7 @@ struct glint_event {
      * ray. */
     double n_from, n_to;
     int n_films; /* layers of the surface's coating; 0: bare */
-    bool shaped; /* true: the surface is not a centred sphere; see path->form */
+    bool shaped; /* true: the surface is not a centred sphere, but path->form */
 };
 
 /* A layer of a coating at the wavelength of a path. */
@@ -66,11 +66,12 @@ struct glint_path {
      * ROUND. */
     double widen[2][2];
     double to_sensor_mm; /* z from the last vertex to the sensor */
-    bool places_only; /* true: energies are not computed and stay 1, which saves
-                         a third of the time */
+    /* true: energies are not computed but set to 1, which saves a third of the
+     * time. */
+    bool places_only;
 };
 
-/* Makes PATH the path of GHOST through LENS; if GHOST is NULL, the direct
+/* Sets PATH to the path of GHOST through LENS; if GHOST is NULL, to the direct
  * path. */
 void glint_path_init(struct glint_path *path,
                      const struct glint_prescription *lens,
@@ -86,8 +87,9 @@ void glint_path_init_at(struct glint_path *path,
 
 enum glint_ray_status {
     GLINT_RAY_OK = 0,
-    GLINT_RAY_MISSED = 1, /* the ray misses a surface, meets a sphere beyond its
-                             equator, or cannot continue */
+    /* The ray misses a surface, meets a sphere beyond its equator, or cannot
+     * continue. */
+    GLINT_RAY_MISSED = 1,
     GLINT_RAY_TOTAL_REFLECTION =
         2 /* total reflection at a surface where the path refracts */
 };
@@ -98,8 +100,10 @@ struct glint_ray {
     /* Point at which the ray hits the sensor; for an anamorphic lens, x is in
      * the widened picture. */
     double sensor_x_mm, sensor_y_mm;
-    double energy;     /* transmittances times reflectances, 0 .. 1 */
-    double rel_radius; /* largest |xy| / semi-diameter over all surfaces */
+    double energy;     /* product of all transmittances and reflectances, 0 ..
+                          1 */
+    double rel_radius; /* max over all surfaces of (distance from the axis /
+                          semi-diameter) */
 };
 
 /* Traces the ray that starts at (PX, PY) on the vertex plane of the first
@@ -168,7 +172,8 @@ struct glint_pupil {
     double x0_mm, x1_mm, y0_mm, y1_mm;
     bool mirrored;
     double energy;       /* largest energy of the rays that were probed */
-    double sensor_mm[4]; /* range of the light on the sensor: x0, x1, y0, y1 */
+    double sensor_mm[4]; /* bounds of the light on the sensor, mm: x0, x1, y0,
+                            y1 */
 };
 
 /* Returns the height of P, mm, including its mirror image. */

@@ -33,15 +33,16 @@ struct glint_box_window {
 struct glint_transfer {
     const struct glint_model_system *system;
     uint32_t outputs; /* bit KIND is set if the system has that output */
-    int32_t exponent[GLINT_OUT_KINDS]; /* value of an output = integer *
-                                          2^exponent */
-    uint8_t head, roots; /* the members of these names in the struct
-                            glint_model_output of the energy */
-    uint8_t energy_up; /* log2 of the factor on the energy of a vertex, 0 .. 29;
-                          glint_transfer_init() sets it to 0, the caller may
-                          raise it */
-    int32_t box[4];    /* middle, half width and half height at this angle and
-                          wavelength, and (lens basis) the middle along y */
+    /* Exponents: value of an output = integer * 2^exponent. */
+    int32_t exponent[GLINT_OUT_KINDS];
+    /* The members of these names of the energy's struct glint_model_output. */
+    uint8_t head, roots;
+    /* Log2 of the factor on the energy of a vertex, 0 .. 29;
+     * glint_transfer_init() sets it to 0, the caller may raise it. */
+    uint8_t energy_up;
+    /* Middle, half width and half height of the box at this angle and
+     * wavelength, and (lens basis) its middle along y. */
+    int32_t box[4];
     int32_t box_exponent;
     uint8_t annulus;
     /* In the lens basis WHOLE is 1: v runs over all of the box. Outputs for a
@@ -57,9 +58,9 @@ struct glint_transfer {
     /* coefficients of u^a v^b, at [b][a] */
     int32_t table[GLINT_OUT_KINDS][GLINT_MAX_POWER + 1][GLINT_TABLE_WIDTH];
     uint8_t degree_u[GLINT_OUT_KINDS], degree_v[GLINT_OUT_KINDS];
-    unsigned sets; /* instruction sets for rows, GLINT_SET_ bits; 0 after init,
-                      the caller may set it; the result is the same for all
-                      sets */
+    /* Instruction sets for rows, GLINT_SET_ bits; 0 after init, the caller may
+     * set it. The result is the same for all sets. */
+    unsigned sets;
     /* Scratch: polynomials in u of one row of rays, and u of each ray of a
      * row. */
     int32_t of_u[GLINT_OUT_KINDS][GLINT_TABLE_WIDTH];
@@ -113,15 +114,15 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
 
 /* How outputs in mm of the sensor map to pixels of the picture. */
 struct glint_place {
-    int32_t cos_q30, sin_q30; /* cosine and sine of the angle by which outputs
-                                 are rotated: the azimuth of the light; in the
-                                 lens basis SIGN and 0 */
+    /* Cosine and sine of the angle by which outputs are rotated: the azimuth of
+     * the light; in the lens basis SIGN and 0. */
+    int32_t cos_q30, sin_q30;
     struct glint_real pixels_per_mm;
     int32_t middle_x_q8, middle_y_q8; /* position of the centre of the sensor,
                                          pixels */
-    struct glint_real stop_scale; /* radius of the stop of the model / radius of
-                                     the stop of the frame, 1 or more; 0: the
-                                     radii are equal */
+    /* (Radius of the stop of the model / radius of the stop of the frame), 1 or
+     * more; 0: the radii are equal. */
+    struct glint_real stop_scale;
 };
 
 /* Return u at X_Q30, where -1 .. 1 is the width of the window; and v after J of

@@ -11,18 +11,19 @@ extern "C" {
 
 #define GLINT_PI 3.14159265358979323846
 
-/* A light at infinity. */
+/* A lamp: a light at infinity, possibly with an extent. */
 struct glint_lamp {
     double theta_deg; /* angle off the axis, 0 .. 89.9 */
     double phi_deg;   /* angle about the axis: 0 = +x, 90 = up */
-    double power;  /* value that the lamp's in-focus image would have if it were
-                      spread over one pixel, linear; 1 = display white */
+    /* Value that the lamp's in-focus image would have if it were spread over
+     * one pixel, linear; 1 = display white. */
+    double power;
     double rgb[3]; /* colour, linear BT.709; white is 1 1 1 */
-    double axis[2];  /* RMS semi-axes of its extent, the major one first, in
-                        tangents of angles off the axis (image over focal
-                        length); 0 0: a point. Only functions that divide a lamp
-                        into points use it; in exact pictures and traced bundles
-                        the lamp is one point. */
+    /* RMS semi-axes of its extent, the major one first, in tangents of angles
+     * off the axis (image / focal length); 0 0: a point. Only functions that
+     * divide a lamp into points use it; in exact pictures and traced bundles
+     * the lamp is one point. */
+    double axis[2];
     double turn_deg; /* direction of the major axis, 0 = +x, 90 = up */
 };
 
@@ -43,8 +44,8 @@ struct glint_projection {
 struct glint_view {
     int width, height;      /* size of the picture, pixels */
     double sensor_width_mm; /* width of the picture on the sensor, mm */
-    struct glint_projection projection; /* projection of the lens, for all
-                                           lights of the picture */
+    /* Projection of the lens, for all lights of the picture. */
+    struct glint_projection projection;
 };
 
 /* Returns the angle off the axis, 0 .. 89.9 degrees, of light that is imaged at

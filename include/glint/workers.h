@@ -29,7 +29,7 @@ struct glint_workers {
                 void *ctx);
 };
 
-/* Runs the jobs on WORKERS, or on the calling thread if WORKERS is NULL. */
+/* Runs the jobs on WORKERS, or in the calling thread if WORKERS is NULL. */
 void glint_workers_run(struct glint_workers *workers, int n_jobs,
                        glint_job_fn *fn, void *ctx);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * glint/scene/account.h - statistics of a frame of a scene: why each object is
- * visible or not, and its work.
+ * visible or not, and the work that it causes.
  *
  *     glint_scene_begin(scene, &stats);
  *     glint_scene_account(scene, objects, &all, seen);
@@ -19,32 +19,34 @@ extern "C" {
 
 enum glint_scene_fate {
     GLINT_SCENE_DRAWN,
-    GLINT_SCENE_OFF,     /* not shown */
-    GLINT_SCENE_BEHIND,  /* behind the camera */
-    GLINT_SCENE_OUTSIDE, /* off-screen; for a shadow catcher: without any
-                            shadow */
-    GLINT_SCENE_COVERED, /* hidden by other objects */
-    GLINT_SCENE_SMALL,   /* too small: it covers the middle of no pixel */
+    GLINT_SCENE_OFF,    /* the object is not shown */
+    GLINT_SCENE_BEHIND, /* the object is behind the camera */
+    /* The object is off-screen; for a shadow catcher: no shadow falls on it. */
+    GLINT_SCENE_OUTSIDE,
+    GLINT_SCENE_COVERED, /* the object is hidden by other objects */
+    GLINT_SCENE_SMALL,   /* the object is too small: it covers the middle of no
+                            pixel */
     GLINT_SCENE_FATES
 };
 
-/* Kinds of work in a frame that are counted for each object. */
+/* Items of work in a frame that are counted for each object. */
 enum glint_scene_item {
-    GLINT_SCENE_TRIANGLES, /* entries in the lists of tiles */
-    GLINT_SCENE_SAMPLED,   /* samples of pixels in which it is visible */
-    GLINT_SCENE_COVERING,  /* pixels in which it is visible */
-    GLINT_SCENE_SHADED,    /* number of times that a point of it is shaded */
-    GLINT_SCENE_SHADOWS,   /* points of lights that are tested for shadows */
-    GLINT_SCENE_TEXELS,    /* texels read */
+    GLINT_SCENE_TRIANGLES, /* entries of its triangles in the lists of tiles */
+    GLINT_SCENE_SAMPLED,   /* samples of pixels that see the object */
+    GLINT_SCENE_COVERING,  /* pixels that see the object */
+    GLINT_SCENE_SHADED,    /* points of the object that are shaded */
+    GLINT_SCENE_SHADOWS,   /* sample points of lights that are tested for
+                              shadows */
+    GLINT_SCENE_TEXELS,    /* texels read for its textures and maps */
     GLINT_SCENE_LOOKUPS,   /* lookups in an environment, for brushed metal */
-    GLINT_SCENE_BOUNCED,   /* reflected and transmitted rays */
+    GLINT_SCENE_BOUNCED,   /* reflected and transmitted rays that start on it */
     GLINT_SCENE_ITEMS
 };
 
 struct glint_scene_part {
     enum glint_scene_fate fate;
-    int by; /* for COVERED: index of the object that hides most of it; else
-               -1 */
+    /* For COVERED: index of the object that hides most of it; else -1. */
+    int by;
     int64_t count[GLINT_SCENE_ITEMS];
 };
 
@@ -57,16 +59,17 @@ void glint_scene_account(struct glint_scene *scene,
                          struct glint_scene_part *objects,
                          struct glint_scene_part *all, int16_t *seen);
 
-/* Returns about how many tests of reflected, transmitted and shadow rays the
- * frame that was begun last takes, each with an object, a cell of a mesh's grid
- * or a triangle: those of about 2000 pixels, times all pixels. A light on a
- * point counts as 4, a pixel of the box around a ball as 3. Ends early, with a
- * number above MOST, if it is that many. No result depends on the processor
- * or the number of threads. */
+/* Returns the approximate number of tests of reflected, transmitted and shadow
+ * rays in the frame that was begun last, each with an object, a cell of a
+ * mesh's grid or a triangle: counted in about 2000 pixels, and scaled to all
+ * pixels. The light of one source at a point counts as 4 tests, a pixel of the
+ * box around a ball as 3. Ends early, with a number above MOST, if there are
+ * that many. The result does not depend on the processor or the number of
+ * threads. */
 int64_t glint_scene_count_tests(struct glint_scene *scene, int64_t most);
 
-/* Overlays of a recorded motion: number of shells, lines or box edges in the
- * picture, and number of pixels that they may touch. */
+/* Overlays of a recorded motion of one kind: number of shells, lines or box
+ * edges in the picture, and number of pixels that they may cover. */
 struct glint_scene_layered {
     int n;
     int64_t pixels;

@@ -8,7 +8,7 @@
  *     glint_scene_open(&model, data, bytes, &reason);
  *
  * Positions become integers: a unit of the scene is 2^unit_log2 steps, chosen
- * so that everything lies within a quarter of GLINT_SCENE_SPAN (a 64th, if
+ * so that all objects lie within a quarter of GLINT_SCENE_SPAN (a 64th, if
  * there is a plane); the rest of the range is for changes of poses and for
  * planes. The same description gives the same bytes. */
 #ifndef GLINT_SCENE_BAKE_H
@@ -26,11 +26,14 @@ extern "C" {
 
 /* Results of baking. */
 struct glint_scene_bake_report {
-    double step;  /* size of a step, in units of the scene; coordinates are
-                     rounded to it */
-    double reach; /* upper bound of the coordinates of objects, lamps and
-                     camera */
-    int vertices, triangles, cells, refs; /* totals of all meshes */
+    double step; /* size of a step, in units of the scene; coordinates are
+                    rounded to it */
+    /* Upper bound of the coordinates of objects, lamps and camera, units of the
+     * scene. */
+    double reach;
+    int vertices, triangles, cells, refs; /* numbers of vertices, triangles,
+                                             grid cells and their entries, in
+                                             all meshes */
     int flat; /* number of triangles left out, as their area in steps is 0 */
 };
 

@@ -31,17 +31,19 @@ extern "C" {
 
 enum {
     GLINT_DESCRIPTION_NAME_BYTES = 32,
-    GLINT_DESCRIPTION_TEXT_LIGHTS = 16, /* max lights in a text */
-    GLINT_DESCRIPTION_MAX_LIGHTS = 32,  /* including the lights of the
-                                           environment */
+    GLINT_DESCRIPTION_TEXT_LIGHTS = 16, /* max number of lights in a text */
+    GLINT_DESCRIPTION_MAX_LIGHTS = 32,  /* max number of lights, including those
+                                           of the environment */
     GLINT_DESCRIPTION_MAX_ENVIRONMENTS = 16,
     GLINT_DESCRIPTION_MAX_MATERIALS = 256,
     GLINT_DESCRIPTION_MAX_TEXTURES = 64,
     GLINT_DESCRIPTION_MAX_STONES = 16,
     GLINT_DESCRIPTION_MAX_OBJECTS = 1024,
-    GLINT_DESCRIPTION_MAX_TRIANGLES = 1 << 20, /* of all objects together */
+    GLINT_DESCRIPTION_MAX_TRIANGLES = 1 << 20, /* max number of triangles of all
+                                                  objects together */
     GLINT_DESCRIPTION_MAX_SIDE = 4096,      /* max side of a texture, texels */
-    GLINT_DESCRIPTION_MAX_TEXELS = 1 << 26, /* of all textures together */
+    GLINT_DESCRIPTION_MAX_TEXELS = 1 << 26, /* max number of texels of all
+                                               textures together */
     GLINT_DESCRIPTION_MAX_RATIO = 10,       /* max ratio of the alphas of
                                                brushed metal */
     GLINT_DESCRIPTION_MAX_MESH_BYTES = 1 << 27
@@ -76,7 +78,7 @@ struct glint_described_light {
     /* Sun: radiance of its disc. Lamp: value of a white surface that faces it
      * at distance 1: irradiance / pi. */
     double colour[3];
-    double radius;     /* lamp: scene units, 0: a point */
+    double radius;     /* lamp: radius, scene units; 0: a point */
     double radius_deg; /* sun: half of its angular diameter */
 };
 
@@ -90,7 +92,8 @@ enum glint_described_norm { GLINT_DESCRIBED_BOUNDED, GLINT_DESCRIBED_1992 };
 
 struct glint_described_material {
     char name[GLINT_DESCRIPTION_NAME_BYTES];
-    double ambient, diffuse, specular; /* sum at most 1 */
+    double ambient, diffuse, specular; /* weights of the Phong terms; their sum
+                                          is at most 1 */
     double power;                      /* exponent of the specular term */
     double colour[3];
     int texture; /* index of the texture; -1: none */
@@ -101,9 +104,9 @@ struct glint_described_material {
     /* Brushed metal: diffuse is 1, the other weights are 0. */
     bool is_metal;
     double metal[3]; /* specular colour */
-    double alpha[2]; /* along circles around the y axis of spheres and meshes,
-                        or along the x axis of planes; and perpendicular to
-                        that */
+    /* Roughness of brushed metal: along circles around the y axis of spheres
+     * and meshes, or along the x axis of planes; and perpendicular to that. */
+    double alpha[2];
     enum glint_described_norm norm;
     /* Translucent: all weights are 0; brushed metal, if any, is the coat. */
     bool is_stone;
@@ -124,8 +127,8 @@ struct glint_described_environment {
     char name[GLINT_DESCRIPTION_NAME_BYTES];
     uint8_t *data; /* a baked environment, malloc'ed */
     size_t bytes;
-    double turn_deg; /* rotation to the right */
-    double scale;    /* factor on all its light */
+    double turn_deg; /* rotation of the environment to the right, degrees */
+    double scale;    /* factor on all light of the environment */
 };
 
 /* A recorded motion, and how it is shown. Lengths are in units of the scene,
@@ -134,22 +137,24 @@ struct glint_described_motion {
     char name[GLINT_DESCRIPTION_NAME_BYTES];
     uint8_t *data; /* a baked motion, malloc'ed; NULL: there is no motion */
     size_t bytes;
-    double reach;           /* max coordinate of the body and the foods */
-    double size;            /* radius of the body, on whose surface the sensors
-                               are */
-    double sensors, foods;  /* radii of the spheres of sensors and foods */
-    double shells;          /* radius of shells / radius of the food */
-    double lines, box;      /* widths of lines and of the edges of the box */
-    bool both;              /* true: sensors see only foods with an intensity
-                               above LEAST */
-    double least;           /* 0 .. 1 */
+    double reach;          /* max coordinate of the body and the foods */
+    double size;           /* radius of the body, on whose surface the sensors
+                              are */
+    double sensors, foods; /* radii of the spheres of sensors and foods */
+    double shells;         /* radius of a shell / radius of the food that it
+                              surrounds */
+    double lines, box;     /* widths of lines and of the edges of the box */
+    /* true: sensors detect only foods with an intensity above LEAST. */
+    bool both;
+    double least;           /* threshold of intensity, 0 .. 1 */
     int body, sensor, food; /* index of the first object of each kind; -1:
                                none */
     int shell_material, line_material, box_material;
-    int camera;      /* index of the sensor that is the camera, from 0; -1:
-                        none */
-    uint32_t riders; /* lamps that move with the body, a bit for each index:
-                        their positions are in the axes of the body */
+    /* Index of the sensor that is the camera, from 0; -1: none. */
+    int camera;
+    /* Bit mask, by index, of lamps that move with the body: their positions are
+     * in the axes of the body. */
+    uint32_t riders;
 };
 
 enum glint_described_kind {
@@ -163,10 +168,12 @@ struct glint_described_object {
     enum glint_described_kind kind;
     char name[GLINT_DESCRIPTION_NAME_BYTES];
     double at[3];
-    double turn[4];   /* unit quaternion w, x, y, z: from its own axes to the
-                         scene's */
-    double radius;    /* sphere */
-    double normal[3]; /* plane: unit vector, in its own axes */
+    /* Unit quaternion w, x, y, z: rotation from the object's own axes to the
+     * scene's. */
+    double turn[4];
+    double radius;    /* sphere: radius, scene units */
+    double normal[3]; /* plane: normal, a unit vector in the object's own
+                         axes */
     double catcher;   /* plane: fraction by which a shadow darkens the picture
                          behind it; 0: not a shadow catcher */
     int material;     /* -1: none, for a catcher; for a mesh: material of
@@ -179,7 +186,8 @@ struct glint_described_triangle {
                            counter-clockwise seen from outside, in left-handed
                            scenes clockwise */
     double normal[3][3];
-    double uv[3][2]; /* v runs up a texture: 0 is its last row */
+    double uv[3][2]; /* texture coordinates of the corners; v runs up: 0 is the
+                        last row of the texture */
     bool has_normals, has_uv;
     int object, material;
 };
@@ -192,9 +200,10 @@ enum glint_described_background {
 
 enum glint_described_flare {
     GLINT_DESCRIBED_FLARE_OFF,
-    GLINT_DESCRIBED_FLARE_LIGHTS, /* lights of the scene that the camera sees */
-    GLINT_DESCRIBED_FLARE_HIGHLIGHTS /* these lights and highlights on
-                                        objects */
+    GLINT_DESCRIBED_FLARE_LIGHTS, /* lights of the scene that the camera sees
+                                     cause flares */
+    /* These lights and highlights on objects cause flares. */
+    GLINT_DESCRIBED_FLARE_HIGHLIGHTS
 };
 
 struct glint_description {
@@ -202,10 +211,10 @@ struct glint_description {
     struct glint_described_camera camera;
     enum glint_described_background background;
     double background_colour[3];
-    int n_environments;       /* number of environments; the first is shown */
-    int n_environment_lights; /* number of environment lights at the end of
-                                 LIGHT: the max number of lights of an
-                                 environment; the last of them may be dark */
+    int n_environments; /* number of environments; the first is shown */
+    /* Number of environment lights at the end of LIGHT: the max number over all
+     * environments; the last of them may be dark. */
+    int n_environment_lights;
     struct glint_described_environment
         environment[GLINT_DESCRIPTION_MAX_ENVIRONMENTS];
     struct glint_described_motion motion;
@@ -220,9 +229,11 @@ struct glint_description {
     int n_stones;
     struct glint_described_stone stone[GLINT_DESCRIPTION_MAX_STONES];
     struct glint_described_object object[GLINT_DESCRIPTION_MAX_OBJECTS];
-    struct glint_described_triangle *triangle; /* malloc'ed, object by object */
-    char warning[256]; /* a warning of one line about the first unusual
-                          statement of the text; may be empty */
+    struct glint_described_triangle *triangle; /* triangles of all objects,
+                                                  object by object; malloc'ed */
+    /* A warning of one line about the first unusual statement of the text; may
+     * be empty. */
+    char warning[256];
 };
 
 /* Callbacks that read the files that a text names; NAME is the name in the

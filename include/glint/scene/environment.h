@@ -62,9 +62,10 @@ enum glint_environment_code {
 };
 
 struct glint_environment_level {
-    /* Log2 of the side, as by glint_environment_side_log2(). */
+    /* Log2 of the side of the level, as returned by
+     * glint_environment_side_log2(). */
     uint32_t side_log2;
-    uint32_t texel_at; /* codes of all texels, row by row */
+    uint32_t texel_at; /* offset of the codes of all texels, row by row */
     uint32_t zero[2];
 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/environment_bake.h - bakes a panorama to an environment, in
+ * glint/scene/environment_bake.h - bakes a panorama to environment light, in
  * double precision.
  *
  *     glint_environment_defaults(&options);
@@ -8,10 +8,10 @@
  *                            &report, &error);
  *     glint_environment_open(&environment, data, bytes, &reason);
  *
- *   in   a picture in linear light: an equirectangular panorama, twice as wide
+ *   in a picture in linear light: an equirectangular panorama, twice as wide
  *        as high, forward in the middle, backward at the right edge; or the
  *        3 x 2 faces of a cube, +x +y +z above -x -y -z
- *   out  mip levels, irradiance map and list of bright lights, in one file
+ *   out mip levels, irradiance map and list of bright lights, in one file
  *
  * The same picture and options give the same bytes. */
 #ifndef GLINT_SCENE_ENVIRONMENT_BAKE_H
@@ -39,22 +39,25 @@ struct glint_environment_options {
     double light_above; /* lights are sought at falling thresholds, down to this
                            many times the mean luminance of darker texels, 2 ..
                            1000 */
-    double turn_deg;    /* rotation about y, to the right, -360 .. 360 */
+    double turn_deg;    /* rotation of the environment about y to the right,
+                           degrees, -360 .. 360 */
     double scale;       /* factor on all light, 1e-6 .. 1e6 */
 };
 
 /* Results of baking. Luminance is that of BT.709. */
 struct glint_environment_report {
-    int width, height;              /* size of the picture, pixels */
-    long long negative, not_finite; /* pixels that were clamped to 0, or to the
-                                       largest finite value if they were +inf */
-    double mean, largest;           /* mean and max luminance over the sphere */
-    double residual_largest;        /* max luminance of texels after removing
-                                       the lights */
-    double light_share;             /* fraction of all light that is in the list
-                                       of lights */
-    int spots;                      /* number of spots that are lights; at most
-                                       max_lights of them are listed */
+    int width, height; /* size of the picture, pixels */
+    /* Number of pixels that were clamped to 0, or to the largest finite value
+     * if they were +inf. */
+    long long negative, not_finite;
+    double mean, largest; /* mean and max luminance over the sphere */
+    /* Max luminance of texels after the lights were removed. */
+    double residual_largest;
+    double light_share; /* fraction of all light that is in the list
+                           of lights */
+    /* Number of spots that were found to be lights; at most max_lights of them
+     * are listed. */
+    int spots;
 };
 
 /* Sets OPTIONS to a side of 256 texels, Gaussian levels and up to 16 lights. */

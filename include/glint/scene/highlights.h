@@ -28,14 +28,15 @@ extern "C" {
 
 enum {
     GLINT_SCENE_MAX_HIGHLIGHTS = 8,
-    GLINT_SCENE_HIGHLIGHT_APART = 12 /* merge distance, pixels */
+    GLINT_SCENE_HIGHLIGHT_APART = 12 /* distance within which highlights are
+                                        merged, pixels */
 };
 
 struct glint_scene_highlight {
     /* Power equals flux, up to 2^42 _q16; area is the area of its squares; size
      * and axes follow from its moments, at least half a pixel. */
     struct glint_spot spot;
-    int object; /* index of the object with the brightest pixel */
+    int object; /* index of the object that the brightest pixel shows */
 };
 
 /* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS] to the highlights of the picture drawn

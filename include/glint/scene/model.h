@@ -43,23 +43,26 @@ extern "C" {
 
 #define GLINT_SCENE_MAGIC   UINT32_C(0x53544e47) /* "GNTS" */
 #define GLINT_SCENE_VERSION 5
-#define GLINT_SCENE_NONE    UINT32_C(0xffffffff) /* no texture, no material */
+#define GLINT_SCENE_NONE    UINT32_C(0xffffffff) /* index: no such entry */
 
 enum {
     GLINT_SCENE_SPAN = 1 << 28, /* steps: the magnitude of every coordinate is
                                    below this */
     GLINT_SCENE_MAX_OBJECTS = 4095,
-    GLINT_SCENE_MAX_LIGHTS = 32, /* including the lights of the environment */
+    GLINT_SCENE_MAX_LIGHTS = 32, /* max number of lights, including those of the
+                                    environment */
     GLINT_SCENE_MAX_ENVIRONMENTS = 16,
     GLINT_SCENE_MAX_MATERIALS = 4096,
     GLINT_SCENE_MAX_TEXTURES = 256,
     GLINT_SCENE_MAX_MESHES = 4096,
-    GLINT_SCENE_MAX_SKINS = 64,          /* also max translucent media */
-    GLINT_SCENE_MAX_TRIANGLES = 1 << 20, /* of all objects together; a mesh
-                                            counts once for each object that
-                                            uses it */
-    GLINT_SCENE_MAX_CELLS = 256,         /* cells of a grid along each axis */
-    GLINT_SCENE_TEXTURE_LOG2 = 12,       /* log2 of the max side of a texture */
+    /* Max number of maps of translucent objects, and of translucent media. */
+    GLINT_SCENE_MAX_SKINS = 64,
+    /* Max number of triangles of all objects together; a mesh counts once for
+     * each object that uses it. */
+    GLINT_SCENE_MAX_TRIANGLES = 1 << 20,
+    GLINT_SCENE_MAX_CELLS = 256,   /* max number of cells of a mesh's grid
+                                      along each axis */
+    GLINT_SCENE_TEXTURE_LOG2 = 12, /* log2 of the max side of a texture */
     GLINT_SCENE_NAME = 32
 };
 
@@ -79,7 +82,7 @@ enum glint_scene_camera_kind {
  * it. */
 struct glint_scene_camera {
     uint32_t kind;          /* enum glint_scene_camera_kind */
-    int32_t at[3];          /* steps */
+    int32_t at[3];          /* position, steps */
     int32_t axis_q30[3][3]; /* unit vectors: to the right, up, ahead */
     /* Tangents from the middle, 2^12 .. 2^30: of half the width of the picture,
      * and (GLINT_CAMERA_CORNERS) of half its height; 0 if the kind has no such
@@ -101,7 +104,7 @@ enum glint_scene_light_kind {
 struct glint_scene_light {
     char name[GLINT_SCENE_NAME]; /* terminated */
     uint32_t kind;               /* enum glint_scene_light_kind */
-    int32_t at[3];               /* lamp: its position, steps; else 0 */
+    int32_t at[3];               /* lamp: position, steps; else 0 */
     int32_t toward_q30[3];       /* sun: unit vector towards it; else 0 */
     /* Sun: sine of its angular radius, _q30, 0 .. 2^29. Lamp: its radius,
      * steps, 0 .. GLINT_SCENE_SPAN. 0: a point. */
@@ -141,10 +144,10 @@ struct glint_scene_material {
     int32_t rgb_q15[3]; /* colour, each channel 0 .. 32768; multiplied by the
                            texture */
     int32_t power_q8;   /* exponent k of the specular term, 2^8 .. 2^20 */
-    /* Index of refraction of the medium inside the surface, 2^14 .. 2^18; 2^16:
+    /* Refractive index of the medium inside the surface, 2^14 .. 2^18; 2^16:
      * rays are not refracted. */
     int32_t index_q16;
-    uint32_t texture; /* index, or GLINT_SCENE_NONE */
+    uint32_t texture; /* index of the texture, or GLINT_SCENE_NONE */
     uint32_t ward;    /* index of brushed metal (specular_q15 must be 0), or
                          GLINT_SCENE_NONE */
 };
@@ -172,7 +175,8 @@ struct glint_scene_stone {
                          reflection at the surface; 0: all light passes */
 };
 
-/* The map of a translucent object: the point of the surface at each texel. */
+/* The light map of a translucent object: the point of the surface at each
+ * texel. */
 struct glint_scene_skin {
     /* Indices of the object (a sphere or a mesh with uv, in at most one skin)
      * and of its translucent medium. */
@@ -190,8 +194,9 @@ struct glint_scene_skin {
 struct glint_scene_triangle {
     /* Vertices; clockwise as seen from outside. */
     uint32_t vertex[3];
-    uint32_t material; /* index, or GLINT_SCENE_NONE: the material of the
-                          object */
+    /* Index of its material, or GLINT_SCENE_NONE: the material of the
+     * object. */
+    uint32_t material;
 };
 
 /* Triangles, and a grid of cubes that finds the triangles that a ray can
@@ -223,7 +228,10 @@ struct glint_scene_mesh {
     uint32_t ref_at;   /* REF: uint32 [start[cells]] */
 };
 
-enum { GLINT_SCENE_MARGIN = 16 }; /* steps, for bounding boxes */
+enum {
+    GLINT_SCENE_MARGIN = 16
+}; /* margin of the bounding boxes of triangles,
+      steps */
 
 enum glint_scene_object_kind {
     GLINT_OBJECT_SPHERE,
@@ -288,9 +296,10 @@ struct glint_scene_motion {
     uint32_t least;  /* threshold of GLINT_DETECT_BOTH, 255ths */
     uint32_t camera; /* index of the sensor that is the camera, or
                         GLINT_SCENE_NONE */
-    uint32_t riders; /* lamps that move with the body, a bit for each lamp
-                        index: their positions are in the axes of the body */
-    uint32_t bytes;  /* size of the file of the motion, a multiple of 4 */
+    /* Bit mask, by index, of lamps that move with the body: their positions are
+     * in the axes of the body. */
+    uint32_t riders;
+    uint32_t bytes; /* size of the file of the motion, a multiple of 4 */
     uint32_t zero;
 };
 
@@ -307,9 +316,9 @@ struct glint_scene_header {
                          0xedb88320, reflected; initial value and final XOR
                          are all ones */
     uint32_t variant; /* enum glint_scene_hand */
-    uint32_t key[2];  /* key of all texts and the files they name, low word
-                         first */
-    char name[64];    /* name of the scene, terminated */
+    /* Key of all texts and the files that they name, low word first. */
+    uint32_t key[2];
+    char name[64]; /* name of the scene, terminated */
     /* Log2 of the steps in one unit of the scene, -28 .. 60. */
     int32_t unit_log2;
     uint32_t shadow;           /* 1: lights cast shadows */
@@ -327,7 +336,8 @@ struct glint_scene_header {
     uint32_t n_meshes, mesh_at;              /* struct glint_scene_mesh */
     uint32_t n_objects, object_at;           /* struct glint_scene_object */
     uint32_t n_wards, ward_at;               /* struct glint_scene_ward */
-    uint32_t n_environments, environment_at; /* struct of that name */
+    uint32_t n_environments, environment_at; /* struct
+                                                glint_scene_environment */
     /* Number of suns at the end of the list of lights that stand for the lights
      * of the environment that is shown: the max number of lights of an
      * environment. */
@@ -363,7 +373,8 @@ enum glint_status glint_scene_open(struct glint_scene_model *model,
 /* Returns the index of the first object with the name NAME, or -1. */
 int glint_scene_find(const struct glint_scene_model *model, const char *name);
 
-/* The same for materials and for environments. */
+/* Return the index of the first material, or environment, with the name NAME,
+ * or -1. */
 int glint_scene_find_material(const struct glint_scene_model *model,
                               const char *name);
 int glint_scene_find_environment(const struct glint_scene_model *model,

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/motion.h - the file of a recorded motion with reconstructed
- * poses, read in blocks of 4 KiB.
+ * glint/scene/motion.h - reads the file of a recorded motion, with
+ * reconstructed poses, in blocks of 4 KiB.
  *
- *     status = glint_motion_open(&motion, data, bytes, &reason);     in memory
+ *     status = glint_motion_open(&motion, data, bytes, &reason); in memory
  *     status = glint_motion_over(&motion, &blocks, buffer, &reason); elsewhere
- *     status = glint_motion_frame(&motion, k, &frame);               any frame
+ *     status = glint_motion_frame(&motion, k, &frame); any frame
  *
  * A body with sensors moves among foods (objects that the sensors detect). Each
  * frame of the file has position and rotation of the body and the position of
@@ -48,23 +48,23 @@ enum {
 
 /* The pose of the body in a frame, 20 bytes. */
 struct glint_motion_pose {
-    int32_t at[3];       /* steps */
+    int32_t at[3];       /* position, steps */
     int16_t turn_q14[4]; /* unit quaternion w, x, y, z: rotation from the axes
                             of the body to the axes of frame 0 */
 };
 
-/* An event: from frame FRAME on, food SLOT is replaced by a new food at AT. */
+/* An event: from frame FRAME on, a new food at AT replaces food SLOT. */
 struct glint_motion_event {
     uint32_t frame, slot;
     int32_t at[3]; /* steps */
 };
 
-/* State at the first frame of a block of poses. */
+/* State of the foods at the first frame of a block of poses. */
 struct glint_motion_index {
-    uint32_t event;    /* index of the first event after that frame */
-    uint32_t residual; /* steps: max distance, over the frames of the block,
-                          between the position of a food and where it was
-                          seen */
+    uint32_t event; /* index of the first event after that frame */
+    /* Max distance, over the frames of the block, between the position of a
+     * food and where it was observed, steps. */
+    uint32_t residual;
     /* Index of the event that placed each food. */
     uint32_t food[GLINT_MOTION_MAX_FOODS];
 };
@@ -93,8 +93,8 @@ struct glint_motion_header {
     uint32_t n_events; /* at least n_foods: the events that place the foods of
                           frame 0 come first */
     int32_t size;      /* radius of the body, steps */
-    /* Half of the angle of view of a sensor: cosine, -1 .. 1; and tangent (for
-     * cameras), clamped to 2^30, that is 64. */
+    /* Half of the angle of view of a sensor: its cosine, -1 .. 1, and its
+     * tangent (for cameras), clamped to 2^30, that is 64. */
     int32_t cos_half_q30, tan_half_q24;
     int32_t low[3], high[3]; /* bounding box of the body's positions and the
                                 foods, over all frames; steps */
@@ -125,14 +125,14 @@ struct glint_motion {
     const uint8_t *data; /* NULL: blocks are read into BUFFER */
     struct glint_motion_blocks blocks;
     uint8_t *buffer;
-    uint32_t held; /* number of the block in BUFFER; 0: none */
+    uint32_t held; /* number of the block that BUFFER holds; 0: none */
 };
 
-/* State at one frame. */
+/* State of body and foods in one frame. */
 struct glint_motion_frame {
     struct glint_motion_pose pose;
     int32_t food[GLINT_MOTION_MAX_FOODS][3]; /* positions of the foods, steps */
-    /* 255ths, by food and sensor. */
+    /* Intensity of each food at each sensor, 255ths. */
     uint8_t intensity[GLINT_MOTION_MAX_FOODS][GLINT_MOTION_MAX_SENSORS];
 };
 
@@ -166,9 +166,9 @@ enum glint_status glint_motion_event(struct glint_motion *motion, uint32_t i,
 enum glint_status glint_motion_index(struct glint_motion *motion, uint32_t i,
                                      struct glint_motion_index *index);
 
-/* Returns the checksum, by the method of crc32 of the header, of block number
- * BLOCK at AT without its last 4 bytes; for block 0, it begins at the variant
- * of the header. */
+/* Returns the checksum of block number BLOCK at address AT without its last 4
+ * bytes, by the method of crc32 of the header; for block 0, the sum starts at
+ * the variant of the header. */
 uint32_t glint_motion_sum(const uint8_t *at, uint32_t block);
 
 /* Returns the number of records of BYTES each (1 .. GLINT_MOTION_ROOM) in a

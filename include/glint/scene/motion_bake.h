@@ -58,7 +58,7 @@ struct glint_motion_sight {
 struct glint_motion_report {
     long n_frames, n_resets;
     double span; /* diagonal of the bounding box of all frames */
-    double path; /* length of the path of the body */
+    double path; /* length of the body's path */
     double residual, residual_rms;
     long residual_frame, bad_frames; /* number of frames whose residual exceeds
                                         a thousandth of the span */
@@ -73,7 +73,7 @@ struct glint_motion_report {
 
 struct glint_motion_baker;
 
-/* Makes a baker; returns NULL if there is no memory. */
+/* Creates a baker; returns NULL if there is no memory. */
 struct glint_motion_baker *glint_motion_baker_open(void);
 void glint_motion_baker_close(struct glint_motion_baker *baker);
 
@@ -88,9 +88,10 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
                          const struct glint_motion_sight *sight,
                          struct glint_error *error);
 
-/* Makes the file, *DATA, which is malloc'ed. It stores the first 63 characters
- * of NAME that are a-z, A-Z, 0-9, '-' or '_'. Returns GLINT_E_LENS if there is
- * no frame, or body and frames are inconsistent. May return GLINT_E_MEMORY. */
+/* Creates the file *DATA[*BYTES], which is malloc'ed. The file stores the first
+ * 63 characters of NAME that are a-z, A-Z, 0-9, '-' or '_'. Returns
+ * GLINT_E_LENS if there is no frame, or body and frames are inconsistent. May
+ * return GLINT_E_MEMORY. */
 enum glint_status glint_motion_baker_finish(struct glint_motion_baker *baker,
                                             const char *name, uint64_t key,
                                             unsigned char **data, size_t *bytes,

@@ -65,23 +65,28 @@ struct glint_scene_parts {
 };
 
 struct glint_scene_config {
-    struct glint_workers *workers; /* must outlive the scene; NULL: one thread.
-                                      The output is the same for any number of
-                                      threads */
+    /* Worker threads; must outlive the scene; NULL: one thread. The output is
+     * the same for any number of threads. */
+    struct glint_workers *workers;
     unsigned sets; /* instruction sets, glint_sets_here() or a subset; 0: plain
                       C (kernels.h). The output is the same for all sets */
     int width, height; /* size of the picture, 1 .. GLINT_MAX_SIDE */
     int tile_log2; /* log2 of the side of a tile in pixels, 3 .. 6. The output
                       is the same for any side */
-    int edge_samples;  /* 1, 4, 8 or 16: samples per pixel */
-    int shadow_points; /* 1, 4 or 16: points per light with an extent that are
-                          tested for shadows */
-    int half_shading;  /* 1: blocks of 2 x 2 pixels whose samples all see the
-                          same object are shaded once, in their middle */
-    int ward_samples;  /* 1 .. 32: lookups in the environment per shaded point
-                          of brushed metal */
-    int highlights;    /* max highlights that are found, 0 .. 8; -1: the number
-                          in the model */
+    int edge_samples; /* 1, 4, 8 or 16: samples per pixel */
+    /* Number of points, 1, 4 or 16, of a light with an extent that are tested
+     * for shadows. */
+    int shadow_points;
+    /* 1: blocks of 2 x 2 pixels whose samples all see the same object are
+     * shaded once, in their middle. */
+    int half_shading;
+    /* Number of lookups in the environment per shaded point of brushed metal, 1
+     * .. 32. */
+    int ward_samples;
+    /* Max number of highlights that are found, 0 .. 8; -1: the number in the
+     * model. */
+    int highlights;
+    int dither; /* 1: 8-bit output is dithered, deterministically */
     /* For GLINT_CAMERA_LENS: the focal length in pixels, 2^10 .. 2^40 _q16. */
     int64_t focal_q16;
     /* Max entries in the lists of all tiles, one entry for each triangle and
@@ -91,10 +96,11 @@ struct glint_scene_config {
 };
 
 struct glint_scene_stats {
-    int objects;   /* objects that may be visible */
-    int triangles; /* triangles of these objects */
+    int objects;   /* number of objects that may be visible */
+    int triangles; /* number of triangles of these objects */
     int refs, need_refs;
-    int dropped_objects; /* objects left out because max_refs is too small */
+    int dropped_objects; /* number of objects left out because max_refs is too
+                            small */
 };
 
 struct glint_scene; /* opaque, in the caller's memory */
@@ -186,8 +192,9 @@ enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
 enum glint_status glint_scene_set_environment(struct glint_scene *scene,
                                               int environment);
 
-/* Makes SCALE the factor on all light of the environment that is shown. Returns
- * GLINT_E_ARGUMENT if SCALE is not above 0, or there is no environment. */
+/* Sets the factor on all light of the environment that is shown to SCALE.
+ * Returns GLINT_E_ARGUMENT if SCALE is not above 0, or there is no
+ * environment. */
 enum glint_status glint_scene_scale_environment(struct glint_scene *scene,
                                                 struct glint_real scale);
 
@@ -198,12 +205,12 @@ enum glint_status glint_scene_scale_environment(struct glint_scene *scene,
 enum glint_status glint_scene_turn_environment(struct glint_scene *scene,
                                                const int32_t turn_q30[2]);
 
-/* Stores a reduced copy of IMAGE as the background for rays from mirrors and
- * glass that hit nothing: rays ahead see it unchanged, in other directions it
- * is repeated. IMAGE has the size of the configuration; NULL, the default, is
- * black. Costs nothing if no visible material reflects or transmits. Must be
- * called after glint_scene_begin() and before glint_scene_draw() changes
- * IMAGE. */
+/* Stores a reduced copy of IMAGE as the background for reflected and refracted
+ * rays that hit no object: rays ahead see IMAGE unchanged, rays in other
+ * directions see it mirrored. IMAGE has the size of the configuration; NULL,
+ * the default, is black. Costs nothing if no visible material reflects or
+ * transmits. Must be called after glint_scene_begin() and before
+ * glint_scene_draw() changes IMAGE. */
 void glint_scene_look_around(struct glint_scene *scene,
                              const struct glint_image *image);
 
@@ -217,13 +224,13 @@ enum glint_scene_kind {
     GLINT_KIND_BODY,
     GLINT_KIND_SENSORS,
     GLINT_KIND_FOODS,
-    GLINT_KIND_SHELLS, /* around foods that are seen by a sensor */
-    GLINT_KIND_LINES,  /* from these foods to the sensors that see them */
-    GLINT_KIND_BOX,    /* bounding box of all frames */
+    GLINT_KIND_SHELLS, /* shells around foods that a sensor sees */
+    GLINT_KIND_LINES,  /* lines from these foods to the sensors that see them */
+    GLINT_KIND_BOX,    /* the bounding box of all frames */
     GLINT_KINDS
 };
 
-/* Returns how many frames the motion of SCENE has, 0 if it has no motion. */
+/* Returns the number of frames of SCENE's motion, 0 if it has no motion. */
 uint32_t glint_scene_frames(const struct glint_scene *scene);
 
 /* Moves body, sensors, foods, attached lamps, and a camera in a sensor to frame
@@ -248,8 +255,7 @@ enum glint_status glint_scene_size_kind(struct glint_scene *scene,
                                         enum glint_scene_kind kind,
                                         int32_t steps);
 
-/* Returns the set of sensors that see food FOOD in the current frame, a bit for
- * each sensor. */
+/* Returns a bit mask of the sensors that see food FOOD in the current frame. */
 uint32_t glint_scene_seen_by(const struct glint_scene *scene, uint32_t food);
 
 /* ------------------------------------------------------------------- frame */
@@ -260,8 +266,8 @@ void glint_scene_begin(struct glint_scene *scene,
                        struct glint_scene_stats *stats);
 
 /* Computes the light below translucent surfaces where it may be visible and has
- * changed; returns the number of texels. glint_scene_draw() calls this function
- * if the program did not after glint_scene_begin(). */
+ * changed; returns the number of texels computed. glint_scene_draw() calls this
+ * function if the program did not call it after glint_scene_begin(). */
 int glint_scene_spread(struct glint_scene *scene);
 
 /* Draws the scene onto IMAGE, which must have the size of the configuration,
@@ -269,16 +275,17 @@ int glint_scene_spread(struct glint_scene *scene);
 void glint_scene_draw(struct glint_scene *scene,
                       const struct glint_image *image);
 
-/* Returns how much of a disc in the picture drawn last is hidden by the scene,
- * in 256ths, at a resolution of 8 x 8 pixels; shadows on catchers do not count.
- * (X, Y) is the middle of the disc, pixels from the top left corner. */
+/* Returns the fraction, in 256ths, of a disc in the picture drawn last that
+ * objects hide, at a resolution of 8 x 8 pixels; shadows on catchers do not
+ * count. (X, Y) is the middle of the disc, pixels from the top left corner. */
 int glint_scene_cover(const struct glint_scene *scene, int32_t x_q8,
                       int32_t y_q8, int32_t radius_q8);
 
 /* A light of the scene as the camera sees it. */
 struct glint_scene_lamp {
     int light; /* index of the light in the model */
-    int share; /* number of visible points, of 16 points of its disc */
+    int share; /* number of visible points, among 16 sample points of its
+                  disc */
     /* Middle of the disc, pixels from the top left corner, y down. */
     int32_t x_q8, y_q8;
     int32_t radius_q8; /* radius of the disc, pixels, 0 .. 2^22 */

@@ -30,7 +30,8 @@ extern "C" {
 #define GLINT_STONE_FILE_BYTES 201
 
 struct glint_stone_text {
-    struct glint_stone stone; /* the slab; the caller sets its mask */
+    struct glint_stone stone; /* the translucent slab; the caller sets its
+                                 mask */
     struct glint_scatter_options fit;
     /* Names of the picture of the mask and of the file of measured rows; empty:
      * none. */

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * glint/scene/translucent.h - the file of a baked translucent medium, which
- * spreads light below its surface, used in place.
+ * states how light spreads below its surface. Used in place.
  *
- *     status = glint_translucent_open(&stone, data, bytes,
- * &reason);
+ *     status = glint_translucent_open(&stone, data, bytes, &reason);
  *
  * The medium is a square of texels. Of the light E(x) that enters at texel x,
  *
@@ -46,7 +45,7 @@ enum {
                                            odd */
     GLINT_TRANSLUCENT_MOST_PLANES = 20,
     GLINT_TRANSLUCENT_MOST_RANK = 8,
-    GLINT_TRANSLUCENT_CODE_BITS = 8, /* bits of f and in */
+    GLINT_TRANSLUCENT_CODE_BITS = 8, /* number of bits of f and in */
     GLINT_TRANSLUCENT_TAP_BITS = 12, /* the magnitude of every tap is below
                                         2^11 */
     GLINT_TRANSLUCENT_COSINES =
@@ -107,7 +106,8 @@ struct glint_translucent_header {
                                   mantissa may be 0 */
 };
 
-/* An opened file: points into the data of the file, which must outlive it. */
+/* An opened file. Its pointers point into the data of the file, which must
+ * outlive it. */
 struct glint_translucent {
     const struct glint_translucent_header *header;
     const uint8_t *code;

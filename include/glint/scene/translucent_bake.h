@@ -45,8 +45,7 @@ enum {
     GLINT_SCATTER_MAX_RANK = 8
 };
 
-/* ------------------------------------------------------------- the translucent
- * medium */
+/* ------------------------------------------------------------ the medium */
 
 struct glint_stone_material {
     double scatter[3]; /* reduced scattering coefficient, 1/mm, 1e-3 .. 1e3 */
@@ -71,7 +70,8 @@ struct glint_stone {
     double index;    /* index of refraction relative to air, 1 .. 3 */
     struct glint_stone_material material[2];
     enum glint_stone_pattern pattern;
-    int fields;         /* squares per side of GLINT_STONE_CHESS, 1 .. side */
+    /* Number of squares per side of GLINT_STONE_CHESS, 1 .. side. */
+    int fields;
     uint32_t seed;      /* seed of GLINT_STONE_VEINS */
     const double *mask; /* [side][side], 0 .. 1; for GLINT_STONE_MASK, else
                            NULL */
@@ -87,8 +87,9 @@ void glint_stone_defaults(struct glint_stone *stone);
 /* Progress and cancellation. All members may be NULL; so may the struct. */
 struct glint_watch {
     glint_progress_fn *progress;
-    bool (*stop)(void *ctx); /* called as often as progress; if it returns true,
-                                the function ends with GLINT_E_CLOSED */
+    /* Called as often as progress; if it returns true, the function ends with
+     * GLINT_E_CLOSED. */
+    bool (*stop)(void *ctx);
     void *ctx;
 };
 

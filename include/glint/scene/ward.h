@@ -46,21 +46,22 @@ struct glint_ward_material {
 struct glint_ward_options {
     int samples; /* number of half vectors, 1 .. GLINT_WARD_SAMPLES */
     enum glint_ward_rule rule;
-    int32_t bias_q8; /* levels added to the level that the rule selects, -2^12
-                        .. 2^12 */
-    unsigned sets;   /* instruction sets of kernels, GLINT_SET_ bits
-                        (glint/kernels.h) */
+    /* Number of mip levels added to the level that the rule selects, -2^12 ..
+     * 2^12. */
+    int32_t bias_q8;
+    unsigned sets; /* instruction sets of kernels, GLINT_SET_ bits
+                      (glint/kernels.h) */
 };
 
 /* Sets OPTIONS to 8 samples with GLINT_WARD_CONSTANT. */
 void glint_ward_defaults(struct glint_ward_options *options);
 
-/* Raises the smaller alpha to a tenth of the other if it is less; returns 1 if
- * it was. */
+/* Raises the smaller alpha to a tenth of the other if it is below that; returns
+ * 1 if it was raised. */
 int glint_ward_hold(int32_t alpha_q24[2]);
 
-/* Makes LOBE of MATERIAL for ENVIRONMENT. Returns 1 if the smaller alpha was
- * raised to a tenth of the other, else 0. */
+/* Computes the reflection lobe LOBE of MATERIAL for ENVIRONMENT. Returns 1 if
+ * the smaller alpha was raised to a tenth of the other, else 0. */
 int glint_ward_prepare(struct glint_ward_lobe *lobe,
                        const struct glint_environment *environment,
                        const struct glint_ward_material *material,
