@@ -3,8 +3,8 @@
 
 enum { WIDTH = GLINT_CODES_WIDTH };
 
-/* Copies N samples that are TO_STEP and FROM_STEP bytes apart. Separate
- * loops for common steps can be vectorised. */
+/* Copies N samples whose addresses are TO_STEP and FROM_STEP bytes apart.
+ * Common steps have loops of their own, which compilers can vectorise. */
 static inline void copy_samples(uint8_t *restrict to, int to_step,
                                 const uint8_t *restrict from, int from_step,
                                 int n)
@@ -23,7 +23,8 @@ static inline void copy_samples(uint8_t *restrict to, int to_step,
             to[(ptrdiff_t)i * to_step] = from[(ptrdiff_t)i * from_step];
 }
 
-/* Copies N pixels of three samples each, STEP bytes apart, to rows. */
+/* Copies N pixels of three interleaved samples, STEP bytes apart, to one row
+ * per channel. */
 static inline void split_pixels(uint8_t (*sample)[2][WIDTH], int row,
                                 const uint8_t *const from[3], int step, int n)
 {
@@ -32,7 +33,7 @@ static inline void split_pixels(uint8_t (*sample)[2][WIDTH], int row,
             sample[c][row][i] = from[c][(ptrdiff_t)i * step];
 }
 
-/* Copies rows of samples back to N pixels of three samples each. */
+/* Copies one row per channel back to N pixels of three interleaved samples. */
 static inline void join_pixels(const struct glint_codes *codes, int row,
                                uint8_t *const to[3], int step, int n)
 {
@@ -42,7 +43,7 @@ static inline void join_pixels(const struct glint_codes *codes, int row,
 }
 
 /* Repeats the last of N groups of SIZE samples until the row is full. */
-static void repeat_last(uint8_t *to, int n, int size)
+static void repeat_last_group(uint8_t *to, int n, int size)
 {
     for (int i = n * size; i < WIDTH; i++)
         to[i] = to[i - size];
@@ -50,7 +51,8 @@ static void repeat_last(uint8_t *to, int n, int size)
 
 /* --------------------------------------------------------------------- RGB */
 
-static void read_565(struct glint_codes *c, const uint8_t *px, int n, int row)
+static void read_565_row(struct glint_codes *c, const uint8_t *px, int n,
+                         int row)
 {
     for (int i = 0; i < n; i++) {
         const int bits = px[2 * i] | px[2 * i + 1] << 8;
@@ -61,31 +63,32 @@ static void read_565(struct glint_codes *c, const uint8_t *px, int n, int row)
         c->sample[2][row][i] = (uint8_t)(b << 3 | b >> 2);
     }
     for (int k = 0; k < 3; k++)
-        repeat_last(c->sample[k][row], n, 1);
+        repeat_last_group(c->sample[k][row], n, 1);
 }
 
-/* Returns CODE, 0 .. 255, scaled to 0 .. MOST and rounded. Inverts exactly
- * the expansion to 8 bits by read_565(). */
-static int scale_code(int code, int most)
+/* Returns CODE, 0 .. 255, scaled to 0 .. MOST and rounded: the exact inverse of
+ * the expansion to 8 bits in read_565_row(). */
+static int scale_code_to_max(int code, int most)
 {
     return (code * most + 127) / 255;
 }
 
-static void write_565(const struct glint_codes *c, uint8_t *px, int n, int row)
+static void write_565_row(const struct glint_codes *c, uint8_t *px, int n,
+                          int row)
 {
     for (int i = 0; i < n; i++) {
-        const int bits = scale_code(c->sample[0][row][i], 31) << 11 |
-                         scale_code(c->sample[1][row][i], 63) << 5 |
-                         scale_code(c->sample[2][row][i], 31);
+        const int bits = scale_code_to_max(c->sample[0][row][i], 31) << 11 |
+                         scale_code_to_max(c->sample[1][row][i], 63) << 5 |
+                         scale_code_to_max(c->sample[2][row][i], 31);
 
         px[2 * i] = (uint8_t)(bits & 255);
         px[2 * i + 1] = (uint8_t)(bits >> 8);
     }
 }
 
-static void read_rgb(struct glint_codes *c, const struct glint_layout *l,
-                     const struct glint_image *image, int x, int y, int n,
-                     int row)
+static void read_rgb_row(struct glint_codes *c, const struct glint_layout *l,
+                         const struct glint_image *image, int x, int y, int n,
+                         int row)
 {
     const uint8_t *const from[3] = {glint_layout_at(l, image, 0, x, y),
                                     glint_layout_at(l, image, 1, x, y),
@@ -96,12 +99,13 @@ static void read_rgb(struct glint_codes *c, const struct glint_layout *l,
     else
         split_pixels(c->sample, row, from, 4, n);
     for (int k = 0; k < 3; k++)
-        repeat_last(c->sample[k][row], n, 1);
+        repeat_last_group(c->sample[k][row], n, 1);
 }
 
-static void write_rgb(const struct glint_codes *c, const struct glint_layout *l,
-                      const struct glint_image *image, int x, int y, int n,
-                      int row)
+static void write_rgb_row(const struct glint_codes *c,
+                          const struct glint_layout *l,
+                          const struct glint_image *image, int x, int y, int n,
+                          int row)
 {
     uint8_t *const to[3] = {glint_layout_at(l, image, 0, x, y),
                             glint_layout_at(l, image, 1, x, y),
@@ -115,40 +119,40 @@ static void write_rgb(const struct glint_codes *c, const struct glint_layout *l,
 
 /* ------------------------------------------------------------------ chroma */
 
-/* Returns whether Cb and Cr alternate in memory, as in a row of pairs. */
-static int is_interleaved(const struct glint_layout *l)
+/* Returns whether Cb and Cr alternate in memory. */
+static int is_chroma_interleaved(const struct glint_layout *l)
 {
     return l->planes == 2 && l->sample[1].offset == 0;
 }
 
-static void read_chroma(const struct glint_layout *l,
-                        const struct glint_image *image, int x, int y, int n,
-                        uint8_t *to)
+static void read_chroma_row(const struct glint_layout *l,
+                            const struct glint_image *image, int x, int y,
+                            int n, uint8_t *to)
 {
     const uint8_t *cb = glint_layout_at(l, image, 1, x, y);
     const uint8_t *cr = glint_layout_at(l, image, 2, x, y);
 
     if (glint_layout_is_packed(l))
         copy_samples(to, 1, cb, 2, 2 * n);
-    else if (is_interleaved(l))
+    else if (is_chroma_interleaved(l))
         copy_samples(to, 1, cb, 1, 2 * n);
     else {
         copy_samples(to, 2, cb, l->sample[1].step, n);
         copy_samples(to + 1, 2, cr, l->sample[2].step, n);
     }
-    repeat_last(to, n, 2);
+    repeat_last_group(to, n, 2);
 }
 
-static void write_chroma(const struct glint_layout *l,
-                         const struct glint_image *image, int x, int y, int n,
-                         const uint8_t *from)
+static void write_chroma_row(const struct glint_layout *l,
+                             const struct glint_image *image, int x, int y,
+                             int n, const uint8_t *from)
 {
     uint8_t *cb = glint_layout_at(l, image, 1, x, y);
     uint8_t *cr = glint_layout_at(l, image, 2, x, y);
 
     if (glint_layout_is_packed(l))
         copy_samples(cb, 2, from, 1, 2 * n);
-    else if (is_interleaved(l))
+    else if (is_chroma_interleaved(l))
         copy_samples(cb, 1, from, 1, 2 * n);
     else {
         copy_samples(cb, l->sample[1].step, from, 2, n);
@@ -158,67 +162,69 @@ static void write_chroma(const struct glint_layout *l,
 
 /* -------------------------------------------------------------------- rows */
 
-/* Returns the number of channels that have a sample for each pixel, from the
- * first on. */
+/* Returns the number of channels that have one sample per pixel; these are the
+ * first channels. */
 static int count_whole_channels(const struct glint_layout *l)
 {
     return l->kind == GLINT_LAYOUT_GREY || l->log2_x ? 1 : 3;
 }
 
-static void read_row(struct glint_codes *c, const struct glint_layout *l,
-                     const struct glint_image *image, int x, int y, int n,
-                     int row)
+static void read_pixel_row(struct glint_codes *c, const struct glint_layout *l,
+                           const struct glint_image *image, int x, int y, int n,
+                           int row)
 {
     for (int i = 0; i < count_whole_channels(l); i++) {
         copy_samples(c->sample[i][row], 1, glint_layout_at(l, image, i, x, y),
                      l->sample[i].step, n);
-        repeat_last(c->sample[i][row], n, 1);
+        repeat_last_group(c->sample[i][row], n, 1);
     }
     if (l->kind == GLINT_LAYOUT_GREY)
         for (int i = 0; i < WIDTH; i++)
             c->sample[1][row][i] = c->sample[2][row][i] = 128;
     if (l->log2_x && (row == 0 || !l->log2_y))
-        read_chroma(l, image, x, y, (n + 1) / 2, c->chroma[row]);
+        read_chroma_row(l, image, x, y, (n + 1) / 2, c->chroma[row]);
 }
 
-static void write_row(const struct glint_codes *c, const struct glint_layout *l,
-                      const struct glint_image *image, int x, int y, int n,
-                      int row)
+static void write_pixel_row(const struct glint_codes *c,
+                            const struct glint_layout *l,
+                            const struct glint_image *image, int x, int y,
+                            int n, int row)
 {
     for (int i = 0; i < count_whole_channels(l); i++)
         copy_samples(glint_layout_at(l, image, i, x, y), l->sample[i].step,
                      c->sample[i][row], 1, n);
     if (l->log2_x && (row == 0 || !l->log2_y))
-        write_chroma(l, image, x, y, (n + 1) / 2, c->chroma[row]);
+        write_chroma_row(l, image, x, y, (n + 1) / 2, c->chroma[row]);
 }
 
-void glint_codes_read(struct glint_codes *codes,
-                      const struct glint_image *image, int x, int y, int n_x,
-                      int n_y)
+void glint_codes_read_pixels(struct glint_codes *codes,
+                             const struct glint_image *image, int x, int y,
+                             int n_x, int n_y)
 {
-    const struct glint_layout *l = glint_layout_of(image->format);
+    const struct glint_layout *l = glint_get_layout(image->format);
 
     for (int row = 0; row < n_y; row++)
         if (l->kind == GLINT_LAYOUT_565)
-            read_565(codes, glint_layout_at(l, image, 0, x, y + row), n_x, row);
+            read_565_row(codes, glint_layout_at(l, image, 0, x, y + row), n_x,
+                         row);
         else if (l->kind == GLINT_LAYOUT_RGB)
-            read_rgb(codes, l, image, x, y + row, n_x, row);
+            read_rgb_row(codes, l, image, x, y + row, n_x, row);
         else
-            read_row(codes, l, image, x, y + row, n_x, row);
+            read_pixel_row(codes, l, image, x, y + row, n_x, row);
 }
 
-void glint_codes_write(const struct glint_codes *codes,
-                       const struct glint_image *image, int x, int y, int n_x,
-                       int n_y)
+void glint_codes_write_pixels(const struct glint_codes *codes,
+                              const struct glint_image *image, int x, int y,
+                              int n_x, int n_y)
 {
-    const struct glint_layout *l = glint_layout_of(image->format);
+    const struct glint_layout *l = glint_get_layout(image->format);
 
     for (int row = 0; row < n_y; row++)
         if (l->kind == GLINT_LAYOUT_565)
-            write_565(codes, glint_layout_at(l, image, 0, x, y + row), n_x,
-                      row);
+            write_565_row(codes, glint_layout_at(l, image, 0, x, y + row), n_x,
+                          row);
         else if (l->kind == GLINT_LAYOUT_RGB)
-            write_rgb(codes, l, image, x, y + row, n_x, row);
+            write_rgb_row(codes, l, image, x, y + row, n_x, row);
         else
-            write_row(codes, l, image, x, y + row, n_x, row);
+            write_pixel_row(codes, l, image, x, y + row, n_x, row);
 }

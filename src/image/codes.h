@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A run of pixels of one or two rows of a picture of any format, with one byte
- * per sample as the kernels require. */
+ * The samples of a run of pixels, in one or two rows of a picture of any
+ * format, with one byte per sample as the kernels require. */
 #ifndef GLINT_IMAGE_CODES_H
 #define GLINT_IMAGE_CODES_H
 
@@ -21,14 +21,14 @@ struct glint_codes {
     uint8_t chroma[2][GLINT_CODES_WIDTH];
 };
 
-/* Read and write pixels X .. X + N_X - 1 of the N_Y rows from Y on. X must
- * be even; if N_Y is 2, Y must be even, too. Reading repeats the last pixel
- * beyond the end of the row. */
-void glint_codes_read(struct glint_codes *codes,
-                      const struct glint_image *image, int x, int y, int n_x,
-                      int n_y);
-void glint_codes_write(const struct glint_codes *codes,
-                       const struct glint_image *image, int x, int y, int n_x,
-                       int n_y);
+/* Read and write pixels X .. X + N_X - 1 of rows Y .. Y + N_Y - 1. X must be
+ * even; if N_Y is 2, Y must be even, too. After the end of a row, reading
+ * repeats the row's last pixel. */
+void glint_codes_read_pixels(struct glint_codes *codes,
+                             const struct glint_image *image, int x, int y,
+                             int n_x, int n_y);
+void glint_codes_write_pixels(const struct glint_codes *codes,
+                              const struct glint_image *image, int x, int y,
+                              int n_x, int n_y);
 
 #endif

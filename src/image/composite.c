@@ -12,9 +12,9 @@ struct glint_composite {
     struct glint_resolve_rows *rows;
 };
 
-/* Allocates a composite from A. Called twice: first to measure, when it
- * returns NULL, then to allocate. */
-static struct glint_composite *carve_composite(struct glint_arena *a)
+/* Allocates a composite from arena A. Called twice: first with an arena that
+ * only counts bytes, when it returns NULL, then to allocate. */
+static struct glint_composite *allocate_composite(struct glint_arena *a)
 {
     struct glint_composite measured = {0}, *placed;
     struct glint_composite *c;
@@ -31,7 +31,7 @@ size_t glint_composite_bytes(void)
 {
     struct glint_arena arena = glint_arena_measure();
 
-    carve_composite(&arena);
+    allocate_composite(&arena);
     return arena.used;
 }
 
@@ -47,14 +47,14 @@ enum glint_status glint_composite_init(struct glint_composite **composite,
         return GLINT_E_ARGUMENT;
     if (glint_composite_bytes() > bytes)
         return GLINT_E_MEMORY;
-    c = carve_composite(&arena);
+    c = allocate_composite(&arena);
     glint_resolve_init(c->resolve, image, dither, sets);
     *composite = c;
     return GLINT_OK;
 }
 
-/* Copies the light of N_Y rows of N_X pixels from LAYER; returns whether any
- * of it is nonzero. */
+/* Copies the light of N_X x N_Y pixels from LAYER; returns whether any of it is
+ * not 0. */
 static int copy_light(struct glint_composite *c,
                       const struct glint_layer *layer, int x, int y, int n_x,
                       int n_y)
@@ -84,7 +84,8 @@ void glint_composite_add(struct glint_composite *composite,
             const int n_x = x + WIDTH < image->width ? WIDTH : image->width - x;
 
             if (copy_light(composite, layer, x, y, n_x, n_y))
-                glint_resolve_stretch(composite->resolve, image, x, y, n_x, n_y,
-                                      composite->light, composite->rows);
+                glint_resolve_add_to_run(composite->resolve, image, x, y, n_x,
+                                         n_y, composite->light,
+                                         composite->rows);
         }
 }

@@ -15,7 +15,8 @@ struct stretch {
     int32_t sum_q7[WIDTH];
 };
 
-static void cover_rgb(const struct stretch *s, const struct glint_mix *mix)
+static void hide_rgb_pixels(const struct stretch *s,
+                            const struct glint_mix *mix)
 {
     for (int row = 0; row < s->n_y; row++)
         for (int c = 0; c < 3; c++)
@@ -23,17 +24,17 @@ static void cover_rgb(const struct stretch *s, const struct glint_mix *mix)
                                s->cover->cover_q8[row], s->n_x, &mix->tone);
 }
 
-/* Returns the row of interleaved chroma of pixel pairs that ROW uses. */
-static uint8_t *get_pair_row(const struct stretch *s, int row)
+/* Returns the row of interleaved Cb and Cr that the pixel pairs of ROW use. */
+static uint8_t *get_shared_chroma_row(const struct stretch *s, int row)
 {
     return s->codes->chroma[s->layout->log2_y ? 0 : row];
 }
 
 /* Sets YCC to Y', Cb and Cr of every pixel of a row. */
-static void expand_row(const struct stretch *s, int row,
-                       int16_t *const ycc_q7[3])
+static void expand_row_to_ycc(const struct stretch *s, int row,
+                              int16_t *const ycc_q7[3])
 {
-    const uint8_t *restrict pairs = get_pair_row(s, row);
+    const uint8_t *restrict pairs = get_shared_chroma_row(s, row);
 
     for (int c = 0; c < (s->layout->log2_x ? 1 : 3); c++) {
         const uint8_t *restrict code = s->codes->sample[c][row];
@@ -51,7 +52,7 @@ static void expand_row(const struct stretch *s, int row,
     }
 }
 
-static inline uint8_t round_mean(int32_t sum_q7, int log2)
+static inline uint8_t round_chroma_mean(int32_t sum_q7, int log2)
 {
     return (uint8_t)q_smaller(
         q_larger((sum_q7 + (1 << (6 + log2))) >> (7 + log2), 0), 255);
@@ -59,7 +60,7 @@ static inline uint8_t round_mean(int32_t sum_q7, int log2)
 
 /* Adds the chroma of a row to the sums of its pairs. If the width is odd,
  * the last pixel counts twice. */
-static void add_pairs(struct stretch *s, int16_t *const ycc_q7[3])
+static void add_pair_chroma(struct stretch *s, int16_t *const ycc_q7[3])
 {
     const int end = s->n_x & ~1;
 
@@ -74,31 +75,31 @@ static void add_pairs(struct stretch *s, int16_t *const ycc_q7[3])
     }
 }
 
-/* Writes the mean chroma of each pair, or of two pairs below each other if
- * the rows share chroma. */
-static void write_pairs(struct stretch *s, int row)
+/* Writes the chroma of each pixel pair, the mean over its two pixels, or over
+ * four pixels if two rows share chroma. */
+static void write_mean_chroma(struct stretch *s, int row)
 {
     const int log2 = s->layout->log2_y && row ? 2 : 1;
-    uint8_t *restrict pairs = get_pair_row(s, row);
+    uint8_t *restrict pairs = get_shared_chroma_row(s, row);
 
     for (int i = 0; i < ((s->n_x + 1) & ~1); i++)
-        pairs[i] = round_mean(s->sum_q7[i], log2);
+        pairs[i] = round_chroma_mean(s->sum_q7[i], log2);
 }
 
-static void write_row(const struct stretch *s, int row,
-                      int16_t *const ycc_q7[3])
+static void write_ycc_row(const struct stretch *s, int row,
+                          int16_t *const ycc_q7[3])
 {
     for (int c = 0; c < (s->layout->log2_x ? 1 : 3); c++) {
         const int16_t *restrict from_q7 = ycc_q7[c];
         uint8_t *restrict code = s->codes->sample[c][row];
 
         for (int i = 0; i < s->n_x; i++)
-            code[i] = round_mean(from_q7[i], 0);
+            code[i] = round_chroma_mean(from_q7[i], 0);
     }
 }
 
-static void cover_ycc(struct stretch *s, const struct glint_mix *mix,
-                      struct glint_resolve_rows *rows)
+static void hide_ycc_pixels(struct stretch *s, const struct glint_mix *mix,
+                            struct glint_resolve_rows *rows)
 {
     int16_t *const ycc_q7[3] = {rows->change[0], rows->change[1],
                                 rows->change[2]};
@@ -107,15 +108,15 @@ static void cover_ycc(struct stretch *s, const struct glint_mix *mix,
         if (row == 0 || !s->layout->log2_y)
             for (int i = 0; i < WIDTH; i++)
                 s->sum_q7[i] = 0;
-        expand_row(s, row, ycc_q7);
+        expand_row_to_ycc(s, row, ycc_q7);
         glint_cover_ycc_c(ycc_q7, s->cover->cover_q8[row], s->n_x, s->black,
                           mix);
-        write_row(s, row, ycc_q7);
+        write_ycc_row(s, row, ycc_q7);
         if (!s->layout->log2_x)
             continue;
-        add_pairs(s, ycc_q7);
+        add_pair_chroma(s, ycc_q7);
         if (row == s->n_y - 1 || !s->layout->log2_y)
-            write_pairs(s, row);
+            write_mean_chroma(s, row);
     }
 }
 
@@ -131,7 +132,7 @@ static int hides_all_pixels(const struct stretch *s)
 }
 
 /* Sets the codes of all pixels of the run to black. */
-static void set_black(const struct stretch *s, int is_rgb)
+static void set_run_black(const struct stretch *s, int is_rgb)
 {
     const uint8_t luma = (uint8_t)(is_rgb ? 0 : s->black);
     const uint8_t rest = is_rgb ? 0 : 128;
@@ -144,13 +145,14 @@ static void set_black(const struct stretch *s, int is_rgb)
         }
 }
 
-void glint_cover_stretch(const struct glint_resolve *resolve,
-                         const struct glint_image *image, int x, int y, int n_x,
-                         int n_y, const struct glint_cover_rows *cover,
-                         struct glint_light_rows *light,
-                         struct glint_resolve_rows *rows)
+void glint_hide_run_background(const struct glint_resolve *resolve,
+                               const struct glint_image *image, int x, int y,
+                               int n_x, int n_y,
+                               const struct glint_cover_rows *cover,
+                               struct glint_light_rows *light,
+                               struct glint_resolve_rows *rows)
 {
-    struct stretch s = {.layout = glint_layout_of(image->format),
+    struct stretch s = {.layout = glint_get_layout(image->format),
                         .n_x = n_x,
                         .n_y = n_y,
                         .black = image->range == GLINT_RANGE_LIMITED ? 16 : 0,
@@ -160,21 +162,21 @@ void glint_cover_stretch(const struct glint_resolve *resolve,
                        s.layout->kind == GLINT_LAYOUT_565;
 
     if (hides_all_pixels(&s)) {
-        set_black(&s, is_rgb);
+        set_run_black(&s, is_rgb);
     } else {
-        glint_codes_read(&rows->codes, image, x, y, n_x, n_y);
+        glint_codes_read_pixels(&rows->codes, image, x, y, n_x, n_y);
         if (is_rgb)
-            cover_rgb(&s, &resolve->mix);
+            hide_rgb_pixels(&s, &resolve->mix);
         else
-            cover_ycc(&s, &resolve->mix, rows);
+            hide_ycc_pixels(&s, &resolve->mix, rows);
     }
     if (light)
-        glint_resolve_codes(resolve, image, y, n_x, n_y, light, rows);
-    glint_codes_write(&rows->codes, image, x, y, n_x, n_y);
+        glint_resolve_add_to_codes(resolve, image, y, n_x, n_y, light, rows);
+    glint_codes_write_pixels(&rows->codes, image, x, y, n_x, n_y);
 }
 
-void glint_cover_linear(const struct glint_image *image, int x, int y, int n,
-                        const uint16_t *cover_q8)
+void glint_hide_linear_background(const struct glint_image *image, int x, int y,
+                                  int n, const uint16_t *cover_q8)
 {
     int32_t *px_q20 =
         (int32_t *)(void *)(image->plane[0] + y * image->stride_bytes[0]) +

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Hides the background before light is added.
+ * Hides the background where objects cover it, before light is added.
  *
- *   in   the fraction of each pixel that is hidden; light to add afterwards
- *   out  the picture's own codes, changed in place
+ *   in the fraction of each pixel that is hidden; light to add afterwards
+ *   out the picture's own codes, changed in place
  *
  *   code = encode(decode(code) (1 - cover) + light)
  *
- * A fully hidden pixel becomes the light alone. A pixel that is not hidden
- * preserves its code until light is added (resolve.h). Chroma that several
- * pixels share is the mean of their chroma. The remaining background is rounded
- * to codes before light is added. */
+ * A fully hidden pixel becomes the light alone. The code of a pixel that is not
+ * hidden does not change until light is added (resolve.h). Chroma that several
+ * pixels share becomes the mean of their chroma. The remaining background is
+ * rounded to codes before light is added. */
 #ifndef GLINT_IMAGE_COVER_H
 #define GLINT_IMAGE_COVER_H
 
@@ -18,7 +18,7 @@
 
 enum { GLINT_COVER_ALL = 256 };
 
-/* The cover of the pixels of two rows. */
+/* The cover of the pixels of two rows of a run. */
 struct glint_cover_rows {
     /* [row][pixel]: hidden fraction of the pixel, 0 .. 256 */
     ALIGNED(32) uint16_t cover_q8[2][GLINT_CODES_WIDTH];
@@ -26,16 +26,17 @@ struct glint_cover_rows {
 
 /* Hides the fraction COVER of each pixel of a run, then adds LIGHT unless
  * LIGHT is NULL. X, Y, N_X and N_Y have the meaning and limits of
- * glint_resolve_stretch(). */
-void glint_cover_stretch(const struct glint_resolve *resolve,
-                         const struct glint_image *image, int x, int y, int n_x,
-                         int n_y, const struct glint_cover_rows *cover,
-                         struct glint_light_rows *light,
-                         struct glint_resolve_rows *rows);
+ * glint_resolve_add_to_run(). */
+void glint_hide_run_background(const struct glint_resolve *resolve,
+                               const struct glint_image *image, int x, int y,
+                               int n_x, int n_y,
+                               const struct glint_cover_rows *cover,
+                               struct glint_light_rows *light,
+                               struct glint_resolve_rows *rows);
 
-/* Hides the fraction COVER of each of N pixels from (X, Y) on in a
- * LINEAR_Q20 picture. */
-void glint_cover_linear(const struct glint_image *image, int x, int y, int n,
-                        const uint16_t *cover_q8);
+/* Hides the fraction COVER of each of N pixels of a LINEAR_Q20 picture, from
+ * (X, Y) to the right. */
+void glint_hide_linear_background(const struct glint_image *image, int x, int y,
+                                  int n, const uint16_t *cover_q8);
 
 #endif

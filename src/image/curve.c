@@ -19,29 +19,29 @@ static const struct standard srgb = {10, 1292, 55, 5};
 /* toe below v = 0.081 */
 static const struct standard bt709 = {20, 450, 99, 9};
 
-static uint64_t mul_q30(uint64_t a_q30, uint64_t b_q30)
+static uint64_t multiply_q30(uint64_t a_q30, uint64_t b_q30)
 {
     return (a_q30 * b_q30 + (UINT64_C(1) << 29)) >> 30;
 }
 
 /* Returns x^N; N is 5 or 9, x is 0 .. 1. */
-static uint64_t power_q30(uint64_t x_q30, int n)
+static uint64_t raise_to_power_q30(uint64_t x_q30, int n)
 {
-    const uint64_t x2_q30 = mul_q30(x_q30, x_q30);
-    const uint64_t x4_q30 = mul_q30(x2_q30, x2_q30);
+    const uint64_t x2_q30 = multiply_q30(x_q30, x_q30);
+    const uint64_t x4_q30 = multiply_q30(x2_q30, x2_q30);
 
-    return mul_q30(n == 9 ? mul_q30(x4_q30, x4_q30) : x4_q30, x_q30);
+    return multiply_q30(n == 9 ? multiply_q30(x4_q30, x4_q30) : x4_q30, x_q30);
 }
 
 /* Returns the largest r with r^n <= x. Rounding moves r by at most 2^-27 in
  * the range in which it is used: r >= 0.38 for n = 5, r >= 0.67 for n = 9. */
-static uint64_t root_q30(uint64_t x_q30, int n)
+static uint64_t compute_root_q30(uint64_t x_q30, int n)
 {
     uint64_t r_q30 = 0;
 
     for (uint64_t bit = UINT64_C(1) << 30; bit; bit >>= 1)
         if ((r_q30 | bit) <= UINT64_C(1) << 30 &&
-            power_q30(r_q30 | bit, n) <= x_q30)
+            raise_to_power_q30(r_q30 | bit, n) <= x_q30)
             r_q30 |= bit;
     return r_q30;
 }
@@ -57,8 +57,9 @@ static int32_t compute_light_q20(const struct standard *s, int code)
                          toe_divisor);
     u_q30 = (((uint64_t)(1000 * code + 255 * s->a_1000) << 30) + divisor / 2) /
             divisor;
-    u2_q30 = mul_q30(u_q30, u_q30);
-    return (int32_t)((mul_q30(u2_q30, root_q30(u2_q30, s->root)) + (1 << 9)) >>
+    u2_q30 = multiply_q30(u_q30, u_q30);
+    return (int32_t)((multiply_q30(u2_q30, compute_root_q30(u2_q30, s->root)) +
+                      (1 << 9)) >>
                      10);
 }
 
@@ -71,8 +72,8 @@ void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer)
     curve->decode_q20[256] = 2 * LINEAR_WHITE_Q20;
 }
 
-/* Returns N / D * 2^FRAC, rounded; D > 0. */
-static int32_t compute_ratio(int64_t n, int64_t d, int frac)
+/* Returns N / D with FRAC fraction bits, rounded; D > 0. */
+static int32_t divide_to_fraction(int64_t n, int64_t d, int frac)
 {
     const int64_t twice = n * ((int64_t)2 << frac) + d;
 
@@ -80,42 +81,43 @@ static int32_t compute_ratio(int64_t n, int64_t d, int frac)
                                 : -((-twice + 2 * d - 1) / (2 * d)));
 }
 
-/* Sets the matrix from Y'CbCr to R'G'B': B' - Y' is 2 (1 - kb) Cb, R' - Y'
- * is 2 (1 - kr) Cr, and G' is such that the luma of the result is Y'. */
-static void fill_to_rgb(struct glint_ycc *ycc, int64_t kr, int64_t kb,
-                        int y_steps, int c_steps)
+/* Sets the matrix from Y'CbCr to R'G'B': B' - Y' is 2 (1 - kb) Cb, R' - Y' is 2
+ * (1 - kr) Cr, and G' is such that the luma of the result is Y'. */
+static void set_ycc_to_rgb_matrix(struct glint_ycc *ycc, int64_t kr, int64_t kb,
+                                  int y_steps, int c_steps)
 {
     const int64_t one = 10000, kg = one - kr - kb;
     int32_t(*m_q16)[3] = ycc->to_rgb_q16;
 
     for (int i = 0; i < 3; i++)
-        m_q16[i][0] = compute_ratio(255, y_steps, 16);
+        m_q16[i][0] = divide_to_fraction(255, y_steps, 16);
     m_q16[0][1] = 0;
-    m_q16[0][2] = compute_ratio(255 * 2 * (one - kr), one * c_steps, 16);
+    m_q16[0][2] = divide_to_fraction(255 * 2 * (one - kr), one * c_steps, 16);
     m_q16[1][1] =
-        compute_ratio(-255 * 2 * kb * (one - kb), kg * one * c_steps, 16);
+        divide_to_fraction(-255 * 2 * kb * (one - kb), kg * one * c_steps, 16);
     m_q16[1][2] =
-        compute_ratio(-255 * 2 * kr * (one - kr), kg * one * c_steps, 16);
-    m_q16[2][1] = compute_ratio(255 * 2 * (one - kb), one * c_steps, 16);
+        divide_to_fraction(-255 * 2 * kr * (one - kr), kg * one * c_steps, 16);
+    m_q16[2][1] = divide_to_fraction(255 * 2 * (one - kb), one * c_steps, 16);
     m_q16[2][2] = 0;
 }
 
 /* Sets the matrix from R'G'B' to Y'CbCr. The coefficient of green absorbs
  * the rounding errors, so that the sums of the rows are exact. */
-static void fill_to_ycc(struct glint_ycc *ycc, int64_t kr, int64_t kb,
-                        int y_steps, int c_steps)
+static void set_rgb_to_ycc_matrix(struct glint_ycc *ycc, int64_t kr, int64_t kb,
+                                  int y_steps, int c_steps)
 {
     const int64_t one = 10000;
     int32_t(*m_q15)[3] = ycc->to_ycc_q15;
 
-    m_q15[0][0] = compute_ratio(kr * y_steps, one * 255, 15);
-    m_q15[0][2] = compute_ratio(kb * y_steps, one * 255, 15);
-    m_q15[0][1] = compute_ratio(y_steps, 255, 15) - m_q15[0][0] - m_q15[0][2];
-    m_q15[1][0] = compute_ratio(-kr * c_steps, 2 * (one - kb) * 255, 15);
-    m_q15[1][2] = compute_ratio(c_steps, 2 * 255, 15);
+    m_q15[0][0] = divide_to_fraction(kr * y_steps, one * 255, 15);
+    m_q15[0][2] = divide_to_fraction(kb * y_steps, one * 255, 15);
+    m_q15[0][1] =
+        divide_to_fraction(y_steps, 255, 15) - m_q15[0][0] - m_q15[0][2];
+    m_q15[1][0] = divide_to_fraction(-kr * c_steps, 2 * (one - kb) * 255, 15);
+    m_q15[1][2] = divide_to_fraction(c_steps, 2 * 255, 15);
     m_q15[1][1] = -m_q15[1][0] - m_q15[1][2];
-    m_q15[2][0] = compute_ratio(c_steps, 2 * 255, 15);
-    m_q15[2][2] = compute_ratio(-kb * c_steps, 2 * (one - kr) * 255, 15);
+    m_q15[2][0] = divide_to_fraction(c_steps, 2 * 255, 15);
+    m_q15[2][2] = divide_to_fraction(-kb * c_steps, 2 * (one - kr) * 255, 15);
     m_q15[2][1] = -m_q15[2][0] - m_q15[2][2];
 }
 
@@ -130,6 +132,6 @@ void glint_ycc_init(struct glint_ycc *ycc, enum glint_matrix matrix,
     const int c_steps = range == GLINT_RANGE_FULL ? 255 : 224;
 
     ycc->black = range == GLINT_RANGE_FULL ? 0 : 16;
-    fill_to_rgb(ycc, kr, kb, y_steps, c_steps);
-    fill_to_ycc(ycc, kr, kb, y_steps, c_steps);
+    set_ycc_to_rgb_matrix(ycc, kr, kb, y_steps, c_steps);
+    set_rgb_to_ycc_matrix(ycc, kr, kb, y_steps, c_steps);
 }

@@ -22,11 +22,12 @@
 #define LINEAR_WHITE_Q20 (1 << 20)
 
 struct glint_curve {
-    int32_t decode_q20[257]; /* light of integer codes; [256] is the end of the
-                                last interval */
+    int32_t decode_q20[257]; /* linear light of integer codes; [256] is the end
+                                of the last interval */
 };
 
-/* Fills CURVE for TRANSFER; finds 256 roots by bisection over their bits. */
+/* Fills the table CURVE for transfer function TRANSFER; finds 256 roots by
+ * bisection over their bits. */
 void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer);
 
 /* Returns the linear light of CODE_Q7, which must be in 0 .. CODE_WHITE_Q7. */
@@ -52,8 +53,8 @@ struct glint_ycc {
 void glint_ycc_init(struct glint_ycc *ycc, enum glint_matrix matrix,
                     enum glint_range range);
 
-/* Sets RGB to the R'G'B' of 8-bit codes, not clamped: the range is -290 ..
- * 550 codes. */
+/* Sets RGB to the R'G'B' of 8-bit codes, not clamped: the range is -290 .. 550
+ * codes. */
 static inline void ycc_to_rgb(const struct glint_ycc *ycc, int y, int cb,
                               int cr, int32_t rgb_q7[3])
 {

@@ -33,7 +33,7 @@ static const struct glint_layout layouts[] = {
     [GLINT_XBGR8888] = {
         GLINT_LAYOUT_RGB, 1, 0, 0, {{0, 0, 4}, {0, 1, 4}, {0, 2, 4}}}};
 
-const struct glint_layout *glint_layout_of(enum glint_pixel_format format)
+const struct glint_layout *glint_get_layout(enum glint_pixel_format format)
 {
     return &layouts[format];
 }

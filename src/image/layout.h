@@ -17,8 +17,8 @@ enum glint_layout_kind {
 struct glint_layout {
     enum glint_layout_kind kind;
     int planes;
-    int log2_x, log2_y; /* 1: chroma has half as many samples as luma across or
-                           down; 0: as many */
+    int log2_x, log2_y; /* log2 of the number of pixels, across and down, that
+                           share a sample of chroma */
     /* For each of Y, Cb, Cr or R, G, B: the plane, the bytes from the row's
      * start to the first sample, and the bytes from one sample to the next. */
     struct glint_layout_sample {
@@ -26,7 +26,7 @@ struct glint_layout {
     } sample[3];
 };
 
-const struct glint_layout *glint_layout_of(enum glint_pixel_format format);
+const struct glint_layout *glint_get_layout(enum glint_pixel_format format);
 
 /* Returns whether luma and chroma share a plane, as in YUYV: every other byte
  * is luma, the bytes between alternate Cb and Cr. */
@@ -35,7 +35,7 @@ static inline int glint_layout_is_packed(const struct glint_layout *layout)
     return layout->planes == 1 && layout->log2_x;
 }
 
-/* Returns the address of the sample of channel I for pixel (X, Y). */
+/* Returns the address of the sample of channel I that pixel (X, Y) uses. */
 static inline uint8_t *glint_layout_at(const struct glint_layout *layout,
                                        const struct glint_image *image, int i,
                                        int x, int y)

@@ -23,7 +23,7 @@ void glint_light_sum_init(struct glint_light_sum *sum,
                           const struct glint_light_curve *curve)
 {
     *sum = (struct glint_light_sum){.image = image,
-                                    .layout = glint_layout_of(image->format),
+                                    .layout = glint_get_layout(image->format),
                                     .curve = curve};
     glint_ycc_init(&sum->ycc, image->matrix, image->range);
 }
@@ -36,7 +36,7 @@ void glint_light_sum_read(struct glint_light_sum *sum,
     sum->y = y;
     if (sum->layout->kind != GLINT_LAYOUT_LINEAR &&
         sum->layout->kind != GLINT_LAYOUT_RGB)
-        glint_codes_read(codes, sum->image, x, y, n_x, n_y);
+        glint_codes_read_pixels(codes, sum->image, x, y, n_x, n_y);
 }
 
 /* Clamps CODE to the range of the table and returns its linear light. */
@@ -49,13 +49,13 @@ static inline int32_t look_up_light(const struct glint_light_code *code,
     return at->light_q20 + ((at->rise_q20 * (code_q7 & 127) + 64) >> 7);
 }
 
-/* The contribution of Cb and Cr to each channel. */
+/* The contribution of Cb and Cr to R', G' and B'. */
 struct chroma {
     int32_t r_q16, g_q16, b_q16;
 };
 
-static inline struct chroma compute_chroma(const struct glint_ycc *ycc, int cb,
-                                           int cr)
+static inline struct chroma compute_chroma_offsets(const struct glint_ycc *ycc,
+                                                   int cb, int cr)
 {
     const int32_t(*by_q16)[3] = ycc->to_rgb_q16;
     const int u = cb - 128, v = cr - 128, half = 1 << 8;
@@ -68,9 +68,9 @@ static inline struct chroma compute_chroma(const struct glint_ycc *ycc, int cb,
 /* Adds the light of a row of a Y'CbCr picture to RGB. Sums stay below 2^27,
  * as a call adds at most GLINT_CODES_WIDTH pixels. The contribution of Cb
  * and Cr is computed once for all pixels that share them. */
-static void add_ycc(const struct glint_light_sum *s,
-                    const struct glint_codes *codes, int row, int from, int to,
-                    int64_t rgb_q20[3])
+static void add_ycc_light(const struct glint_light_sum *s,
+                          const struct glint_codes *codes, int row, int from,
+                          int to, int64_t rgb_q20[3])
 {
     const struct glint_light_code *code = s->curve->code;
     const uint8_t *shared = codes->chroma[s->layout->log2_y ? 0 : row];
@@ -83,9 +83,10 @@ static void add_ycc(const struct glint_light_sum *s,
 
     for (int x = from, next; x < to; x = next) {
         const struct chroma part =
-            is_shared ? compute_chroma(&s->ycc, shared[x & ~1], shared[x | 1])
-                      : compute_chroma(&s->ycc, codes->sample[1][row][x],
-                                       codes->sample[2][row][x]);
+            is_shared
+                ? compute_chroma_offsets(&s->ycc, shared[x & ~1], shared[x | 1])
+                : compute_chroma_offsets(&s->ycc, codes->sample[1][row][x],
+                                         codes->sample[2][row][x]);
 
         next = is_shared ? q_smaller((x | 1) + 1, to) : x + 1;
         for (int i = x; i < next; i++) {
@@ -101,9 +102,9 @@ static void add_ycc(const struct glint_light_sum *s,
     rgb_q20[2] += b_q20;
 }
 
-static void add_565(const struct glint_light_sum *s,
-                    const struct glint_codes *codes, int row, int from, int to,
-                    int64_t rgb_q20[3])
+static void add_565_light(const struct glint_light_sum *s,
+                          const struct glint_codes *codes, int row, int from,
+                          int to, int64_t rgb_q20[3])
 {
     for (int x = from; x < to; x++)
         for (int c = 0; c < 3; c++)
@@ -112,8 +113,8 @@ static void add_565(const struct glint_light_sum *s,
 
 /* Adds the light of a row of a picture in R, G, B to RGB. Sums stay below
  * 2^27, as a call adds at most GLINT_CODES_WIDTH pixels. */
-static void add_rgb(const struct glint_light_sum *s, int y, int from, int to,
-                    int64_t rgb_q20[3])
+static void add_rgb_light(const struct glint_light_sum *s, int y, int from,
+                          int to, int64_t rgb_q20[3])
 {
     const int32_t *decode_q20 = s->curve->curve.decode_q20;
     const uint8_t *r = glint_layout_at(s->layout, s->image, 0, from, y);
@@ -132,8 +133,8 @@ static void add_rgb(const struct glint_light_sum *s, int y, int from, int to,
     rgb_q20[2] += b_q20;
 }
 
-static void add_linear(const struct glint_light_sum *s, int y, int from, int to,
-                       int64_t rgb_q20[3])
+static void add_linear_light(const struct glint_light_sum *s, int y, int from,
+                             int to, int64_t rgb_q20[3])
 {
     for (int c = 0; c < 3; c++)
         for (int x = from; x < to; x++) {
@@ -151,17 +152,17 @@ void glint_light_sum_add(const struct glint_light_sum *sum,
 {
     switch (sum->layout->kind) {
     case GLINT_LAYOUT_LINEAR:
-        add_linear(sum, sum->y + row, from, to, rgb_q20);
+        add_linear_light(sum, sum->y + row, from, to, rgb_q20);
         break;
     case GLINT_LAYOUT_YCC:
     case GLINT_LAYOUT_GREY:
-        add_ycc(sum, codes, row, from - sum->x, to - sum->x, rgb_q20);
+        add_ycc_light(sum, codes, row, from - sum->x, to - sum->x, rgb_q20);
         break;
     case GLINT_LAYOUT_RGB:
-        add_rgb(sum, sum->y + row, from, to, rgb_q20);
+        add_rgb_light(sum, sum->y + row, from, to, rgb_q20);
         break;
     default:
-        add_565(sum, codes, row, from - sum->x, to - sum->x, rgb_q20);
+        add_565_light(sum, codes, row, from - sum->x, to - sum->x, rgb_q20);
         break;
     }
 }

@@ -49,25 +49,25 @@ static const struct glint_tone16 bt709 = {
     POWERS};
 /* clang-format on */
 
-const struct glint_tone16 *glint_tone16_of(enum glint_tone transfer)
+const struct glint_tone16 *glint_get_tone16(enum glint_tone transfer)
 {
     return transfer == GLINT_TONE_SRGB ? &srgb : &bt709;
 }
 
-static void fill_lanes(int16_t *lanes, int64_t x)
+static void repeat_in_lanes(int16_t *lanes, int64_t x)
 {
     for (int i = 0; i < GLINT_LANES; i++)
         lanes[i] = (int16_t)x;
 }
 
-static void set_factor(struct glint_factors *f, int i, int64_t x)
+static void set_lane_factor(struct glint_factors *f, int i, int64_t x)
 {
     f->one[i] = (int16_t)q_clamp_sat(x, -INT16_MAX, INT16_MAX);
-    fill_lanes(f->all[i], f->one[i]);
+    repeat_in_lanes(f->all[i], f->one[i]);
 }
 
 /* Returns N / D, rounded; D > 0. */
-static int64_t compute_ratio(int64_t n, int64_t d)
+static int64_t divide_and_round(int64_t n, int64_t d)
 {
     return (2 * n + (n < 0 ? -d : d)) / (2 * d);
 }
@@ -76,7 +76,8 @@ static int64_t compute_ratio(int64_t n, int64_t d)
  * (chroma), which are half of R'G'B' in _q15. A code of 8 bits is 128.5
  * units of R'G'B', so the factors are 257 / 512 of to_rgb; the factor of
  * blue is halved once more, to fit into 16 bits. */
-static void set_from_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
+static void set_ycc_to_rgb_factors(struct glint_mix *mix,
+                                   const struct glint_ycc *ycc)
 {
     static const uint8_t at[][2] = {[GLINT_MIX_BASE] = {0, 0},
                                     [GLINT_MIX_RED_CR] = {0, 2},
@@ -88,26 +89,27 @@ static void set_from_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
     for (int i = 0; i <= GLINT_MIX_BLUE_CB; i++) {
         const int64_t m_q16 = ycc->to_rgb_q16[at[i][0]][at[i][1]];
 
-        set_factor(
-            f, i,
-            compute_ratio(m_q16 * 257, i == GLINT_MIX_BLUE_CB ? 2048 : 1024));
+        set_lane_factor(f, i,
+                        divide_and_round(m_q16 * 257,
+                                         i == GLINT_MIX_BLUE_CB ? 2048 : 1024));
     }
-    fill_lanes(mix->black,
-               -q_mul(ycc->black * 128, f->one[GLINT_MIX_BASE], 15));
+    repeat_in_lanes(mix->black,
+                    -q_mul(ycc->black * 128, f->one[GLINT_MIX_BASE], 15));
 }
 
 /* Sets the factors from changes of R'G'B' to changes of Y'CbCr in _q7, which
  * are 256 / 257 of to_ycc. */
-static void set_to_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
+static void set_rgb_to_ycc_factors(struct glint_mix *mix,
+                                   const struct glint_ycc *ycc)
 {
     const int32_t(*m_q15)[3] = ycc->to_ycc_q15;
     const int32_t y_q15 = m_q15[0][0] + m_q15[0][1] + m_q15[0][2];
     struct glint_factors *f = &mix->to_ycc;
 
-    fill_lanes(mix->white, 128 * (ycc->black + q_mul(255, y_q15, 15)));
+    repeat_in_lanes(mix->white, 128 * (ycc->black + q_mul(255, y_q15, 15)));
     for (int c = 0; c < 3; c++)
-        set_factor(f, GLINT_MIX_LUMA + c,
-                   compute_ratio(m_q15[0][c] * 256, 257));
+        set_lane_factor(f, GLINT_MIX_LUMA + c,
+                        divide_and_round(m_q15[0][c] * 256, 257));
     /* Cb is PER (B' - Y'), Cr is PER (R' - Y'). Y' contains a fraction of B'
      * and R', so PER is larger than the factor of B' in Cb, or R' in Cr, alone.
      */
@@ -115,21 +117,22 @@ static void set_to_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
         const int own = k ? 0 : 2;
         const int64_t own_q15 = m_q15[k + 1][own];
         const int64_t per_q15 =
-            compute_ratio(own_q15 * y_q15, y_q15 - m_q15[0][own]);
+            divide_and_round(own_q15 * y_q15, y_q15 - m_q15[0][own]);
 
-        set_factor(f, k ? GLINT_MIX_CR_RED : GLINT_MIX_CB_BLUE,
-                   compute_ratio(per_q15 * 256, 257));
-        set_factor(f, k ? GLINT_MIX_CR_LUMA : GLINT_MIX_CB_LUMA,
-                   compute_ratio(per_q15 << 15, y_q15));
+        set_lane_factor(f, k ? GLINT_MIX_CR_RED : GLINT_MIX_CB_BLUE,
+                        divide_and_round(per_q15 * 256, 257));
+        set_lane_factor(f, k ? GLINT_MIX_CR_LUMA : GLINT_MIX_CB_LUMA,
+                        divide_and_round(per_q15 << 15, y_q15));
     }
 }
 
-void glint_mix_init(struct glint_mix *mix, const struct glint_image *image)
+void glint_mix_set_factors(struct glint_mix *mix,
+                           const struct glint_image *image)
 {
     struct glint_ycc ycc;
 
     glint_ycc_init(&ycc, image->matrix, image->range);
-    mix->tone = *glint_tone16_of(image->transfer);
-    set_from_ycc(mix, &ycc);
-    set_to_ycc(mix, &ycc);
+    mix->tone = *glint_get_tone16(image->transfer);
+    set_ycc_to_rgb_factors(mix, &ycc);
+    set_rgb_to_ycc_factors(mix, &ycc);
 }

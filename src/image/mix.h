@@ -9,10 +9,11 @@
 #include "glint/image.h"
 #include "kernels/tone.h"
 
-const struct glint_tone16 *glint_tone16_of(enum glint_tone transfer);
+const struct glint_tone16 *glint_get_tone16(enum glint_tone transfer);
 
 /* Fills MIX for pictures with the format, range, matrix and transfer of
  * IMAGE. */
-void glint_mix_init(struct glint_mix *mix, const struct glint_image *image);
+void glint_mix_set_factors(struct glint_mix *mix,
+                           const struct glint_image *image);
 
 #endif

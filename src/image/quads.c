@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "image/quads.h"
 
-enum { STEP = 2 * GLINT_LANES }; /* pixels that kernels process at a time */
+enum {
+    STEP = 2 * GLINT_LANES
+}; /* number of pixels that kernels process at a
+      time */
 
 /* A run of pixels of two rows of a picture, or of its last row alone. */
 struct stretch {
@@ -11,36 +14,38 @@ struct stretch {
     const uint16_t *const *light_q16;
 };
 
-static int round_up_to_step(int n)
+static int round_up_to_kernel_step(int n)
 {
     return (n + STEP - 1) & -STEP;
 }
 
 /* ---------------------------------------------------------- pixel by pixel */
 
-static void double_row(const uint16_t *restrict from, int n,
-                       uint16_t *restrict to)
+static void double_light_row(const uint16_t *restrict from, int n,
+                             uint16_t *restrict to)
 {
     for (int i = 0; i < n; i++)
         to[2 * i] = to[2 * i + 1] = from[i];
 }
 
-static void add_to_pixels(const struct glint_resolve *r,
-                          const struct stretch *s,
-                          struct glint_quads_rows *rows)
+static void add_light_per_pixel(const struct glint_resolve *r,
+                                const struct stretch *s,
+                                struct glint_quads_rows *rows)
 {
     for (int c = 0; c < 3; c++)
         for (int row = 0; row < s->n_y; row++)
-            double_row(s->light_q16[c], round_up_to_step(s->n_x) / 2,
-                       rows->light.rgb_q16[c][row]);
-    glint_resolve_stretch(r, s->image, s->x, s->y, s->n_x, s->n_y, &rows->light,
-                          &rows->rows);
+            double_light_row(s->light_q16[c],
+                             round_up_to_kernel_step(s->n_x) / 2,
+                             rows->light.rgb_q16[c][row]);
+    glint_resolve_add_to_run(r, s->image, s->x, s->y, s->n_x, s->n_y,
+                             &rows->light, &rows->rows);
 }
 
 /* ------------------------------------------------------------ shared chroma */
 
-static void add_to_pairs(const struct glint_resolve *r, const struct stretch *s,
-                         struct glint_codes *codes)
+static void add_light_to_pairs(const struct glint_resolve *r,
+                               const struct stretch *s,
+                               struct glint_codes *codes)
 {
     const int last = s->n_y - 1, c_last = s->layout->log2_y ? 0 : last;
     const int cy = s->y >> s->layout->log2_y;
@@ -51,19 +56,21 @@ static void add_to_pairs(const struct glint_resolve *r, const struct stretch *s,
     const int16_t *const round_chroma[2] = {r->round_q7[cy & 7],
                                             r->round_q7[(cy + c_last) & 7]};
 
-    glint_codes_read(codes, s->image, s->x, s->y, s->n_x, s->n_y);
-    glint_quad_kernels_of(r->sets)->add(luma, chroma, s->light_q16,
-                                        round_up_to_step(s->n_x), &r->mix,
-                                        round, round_chroma);
-    glint_codes_write(codes, s->image, s->x, s->y, s->n_x, s->n_y);
+    glint_codes_read_pixels(codes, s->image, s->x, s->y, s->n_x, s->n_y);
+    glint_choose_quad_kernels(r->sets)->add(luma, chroma, s->light_q16,
+                                            round_up_to_kernel_step(s->n_x),
+                                            &r->mix, round, round_chroma);
+    glint_codes_write_pixels(codes, s->image, s->x, s->y, s->n_x, s->n_y);
 }
 
-/* Adds light in place to packed pictures like YUYV. Pixels after the last
- * whole step of the kernels are copied, changed and copied back. */
-static void add_to_packed(const struct glint_resolve *r,
-                          const struct stretch *s, struct glint_codes *codes)
+/* Adds light in place to packed pictures like YUYV. The pixels of an incomplete
+ * last step are copied, changed and copied back. */
+static void add_light_to_packed(const struct glint_resolve *r,
+                                const struct stretch *s,
+                                struct glint_codes *codes)
 {
-    const struct glint_quad_kernels *kernels = glint_quad_kernels_of(r->sets);
+    const struct glint_quad_kernels *kernels =
+        glint_choose_quad_kernels(r->sets);
     const int luma_at = s->layout->sample[0].offset, last = s->n_y - 1;
     const int whole = s->n_x & -STEP, n_rest = 2 * (s->n_x - whole);
     const uint16_t *const light_rest[3] = {s->light_q16[0] + whole / 2,
@@ -96,14 +103,14 @@ void glint_resolve_quads(const struct glint_resolve *resolve,
                          struct glint_quads_rows *rows)
 {
     const struct stretch s = {
-        image, glint_layout_of(image->format), x, y, n_x, n_y, light_q16};
+        image, glint_get_layout(image->format), x, y, n_x, n_y, light_q16};
 
     if (glint_layout_is_packed(s.layout) && n_x % 2 == 0)
-        add_to_packed(resolve, &s, &rows->rows.codes);
+        add_light_to_packed(resolve, &s, &rows->rows.codes);
     else if (s.layout->log2_x)
-        add_to_pairs(resolve, &s, &rows->rows.codes);
+        add_light_to_pairs(resolve, &s, &rows->rows.codes);
     else
-        add_to_pixels(resolve, &s, rows);
+        add_light_per_pixel(resolve, &s, rows);
 }
 
 const struct glint_half glint_half = {glint_resolve_quads};

@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adds light that has one value for 2 x 2 pixels; resolve.h adds light per
+ * Adds light that has one value per 2 x 2 pixels; resolve.h adds light per
  * pixel.
  *
- *    in   linear light, _q16, one value for 2 x 2 pixels
- *    out  the picture's own codes, changed in place
+ *    in linear light, _q16, one value per 2 x 2 pixels
+ *    out the picture's own codes, changed in place
  *
- * In Y'CbCr whose chroma is shared by pairs, the change by the light is
- * computed once, for the mean of the four pixels, which is a quarter of the
- * work. Each pixel then changes in proportion to its distance from white. If
- * the four pixels are equal, the result equals that of resolve.h. In other
- * formats light is added pixel by pixel.
- */
+ * In Y'CbCr whose pixel pairs share chroma, the change by the light is computed
+ * once, for the mean of the four pixels, which is a quarter of the work. Each
+ * pixel then changes in proportion to its distance from white. If the four
+ * pixels are equal, the result equals that of resolve.h. In other formats light
+ * is added pixel by pixel. */
 #ifndef GLINT_IMAGE_QUADS_H
 #define GLINT_IMAGE_QUADS_H
 
@@ -38,8 +37,8 @@ typedef void glint_resolve_quads_fn(const struct glint_resolve *resolve,
                                     struct glint_quads_rows *rows);
 glint_resolve_quads_fn glint_resolve_quads;
 
-/* The function for half resolution, through a pointer, so that only programs
- * that use it link it. */
+/* The functions for light at half resolution, called through pointers so that
+ * only programs that use them link them. */
 struct glint_half {
     glint_resolve_quads_fn *resolve;
 };

@@ -6,7 +6,7 @@
 
 /* Returns the rank of (X, Y) among the 64 thresholds of the recursive ordered
  * dither: the bits of x ^ y and y, interleaved, lowest first. */
-static int bayer_rank(int x, int y)
+static int compute_bayer_rank(int x, int y)
 {
     int rank = 0;
 
@@ -19,13 +19,13 @@ void glint_resolve_init(struct glint_resolve *resolve,
                         const struct glint_image *image, int dither,
                         unsigned sets)
 {
-    glint_mix_init(&resolve->mix, image);
-    resolve->kernels = glint_kernels_of(sets);
+    glint_mix_set_factors(&resolve->mix, image);
+    resolve->kernels = glint_choose_kernels(sets);
     resolve->sets = sets;
     for (int y = 0; y < 8; y++)
         for (int x = 0; x < 8; x++)
             resolve->round_q7[y][x] =
-                (int16_t)(dither ? 2 * bayer_rank(x, y) + 1 : 64);
+                (int16_t)(dither ? 2 * compute_bayer_rank(x, y) + 1 : 64);
 }
 
 static int round_up_to_lanes(int n)
@@ -33,9 +33,9 @@ static int round_up_to_lanes(int n)
     return (n + GLINT_LANES - 1) & -GLINT_LANES;
 }
 
-static void resolve_rgb(const struct glint_resolve *r, int y, int n_x, int n_y,
-                        const struct glint_light_rows *light,
-                        struct glint_codes *codes)
+static void add_light_to_rgb(const struct glint_resolve *r, int y, int n_x,
+                             int n_y, const struct glint_light_rows *light,
+                             struct glint_codes *codes)
 {
     for (int row = 0; row < n_y; row++)
         for (int c = 0; c < 3; c++)
@@ -56,11 +56,12 @@ static void compute_luminance(const struct glint_light_rows *light, int row,
                                  16);
 }
 
-/* Adds light to one row of chroma that has a sample for each pixel. OWN is
- * the change of B' (for Cb) or R' (for Cr), LUMA the change of Y'; FACTOR
- * has the factors of OWN and LUMA. */
-static void add_chroma(uint8_t *code, const int16_t *own, const int16_t *luma,
-                       const int16_t *factor_q15, int n, const int16_t *round)
+/* Adds light to one row of chroma that has one sample per pixel. OWN is the
+ * change of B' (for Cb) or R' (for Cr), LUMA the change of Y'; FACTOR[2] are
+ * the factors of both. */
+static void add_change_to_chroma(uint8_t *code, const int16_t *own,
+                                 const int16_t *luma, const int16_t *factor_q15,
+                                 int n, const int16_t *round)
 {
     for (int i = 0; i < n; i++) {
         const int32_t change_q7 = q_mul(own[i], factor_q15[0], 15) -
@@ -71,12 +72,12 @@ static void add_chroma(uint8_t *code, const int16_t *own, const int16_t *luma,
     }
 }
 
-/* Adds light to a row without shared chroma: each pixel has its own chroma, or
- * the picture is grey. */
-static void resolve_whole(const struct glint_resolve *r,
-                          const struct glint_image *image, int y, int n,
-                          int row, const struct glint_light_rows *light,
-                          struct glint_resolve_rows *rows)
+/* Adds light to a row in which each pixel has its own chroma, or of a grey
+ * picture. */
+static void add_light_to_unpaired(const struct glint_resolve *r,
+                                  const struct glint_image *image, int y, int n,
+                                  int row, const struct glint_light_rows *light,
+                                  struct glint_resolve_rows *rows)
 {
     const int grey = image->format == GLINT_GREY;
     const uint16_t *rgb[3] = {light->rgb_q16[0][row], light->rgb_q16[1][row],
@@ -94,31 +95,31 @@ static void resolve_whole(const struct glint_resolve *r,
     r->kernels->add_luma(code[0], code[1], code[2], rgb, change,
                          round_up_to_lanes(n), &r->mix, round);
     for (int k = 0; k < 2 && !grey; k++)
-        add_chroma(code[1 + k], change[1 - k], change[2],
-                   r->mix.to_ycc.one +
-                       (k ? GLINT_MIX_CR_RED : GLINT_MIX_CB_BLUE),
-                   n, round);
+        add_change_to_chroma(code[1 + k], change[1 - k], change[2],
+                             r->mix.to_ycc.one +
+                                 (k ? GLINT_MIX_CR_RED : GLINT_MIX_CB_BLUE),
+                             n, round);
 }
 
-/* Completes the last pair of a run of odd width: the missing pixel gets the
- * light of its neighbour. */
-static void mirror_last(struct glint_light_rows *light, int n_x, int n_y)
+/* Completes the last pair of a run of odd width: copies the light of the last
+ * pixel to the missing pixel. */
+static void mirror_last_pixel(struct glint_light_rows *light, int n_x, int n_y)
 {
     for (int c = 0; c < 3; c++)
         for (int row = 0; row < n_y; row++)
             light->rgb_q16[c][row][n_x] = light->rgb_q16[c][row][n_x - 1];
 }
 
-static void resolve_pairs(const struct glint_resolve *r,
-                          const struct glint_layout *l, int y, int n_x, int n_y,
-                          struct glint_light_rows *light,
-                          struct glint_resolve_rows *rows)
+static void add_light_to_pairs(const struct glint_resolve *r,
+                               const struct glint_layout *l, int y, int n_x,
+                               int n_y, struct glint_light_rows *light,
+                               struct glint_resolve_rows *rows)
 {
     int16_t *const mean[3] = {rows->change[0], rows->change[1],
                               rows->change[2]};
 
     if (n_x & 1)
-        mirror_last(light, n_x, n_y);
+        mirror_last_pixel(light, n_x, n_y);
     for (int row = 0; row < n_y; row++) {
         const uint16_t *const rgb[3] = {light->rgb_q16[0][row],
                                         light->rgb_q16[1][row],
@@ -138,11 +139,11 @@ static void resolve_pairs(const struct glint_resolve *r,
 
 /* Adds light in place to packed pictures like YUYV. Pixels after the last
  * whole vector are copied, changed and copied back. */
-static void resolve_packed(const struct glint_resolve *r,
-                           const struct glint_layout *l,
-                           const struct glint_image *image, int x, int y, int n,
-                           int row, struct glint_light_rows *light,
-                           struct glint_resolve_rows *rows)
+static void add_light_to_packed(const struct glint_resolve *r,
+                                const struct glint_layout *l,
+                                const struct glint_image *image, int x, int y,
+                                int n, int row, struct glint_light_rows *light,
+                                struct glint_resolve_rows *rows)
 {
     uint8_t *px =
         image->plane[0] + y * image->stride_bytes[0] + 2 * (ptrdiff_t)x;
@@ -168,42 +169,43 @@ static void resolve_packed(const struct glint_resolve *r,
         px[2 * whole + i] = rest[i];
 }
 
-void glint_resolve_codes(const struct glint_resolve *resolve,
-                         const struct glint_image *image, int y, int n_x,
-                         int n_y, struct glint_light_rows *light,
-                         struct glint_resolve_rows *rows)
+void glint_resolve_add_to_codes(const struct glint_resolve *resolve,
+                                const struct glint_image *image, int y, int n_x,
+                                int n_y, struct glint_light_rows *light,
+                                struct glint_resolve_rows *rows)
 {
-    const struct glint_layout *l = glint_layout_of(image->format);
+    const struct glint_layout *l = glint_get_layout(image->format);
 
     if (l->kind == GLINT_LAYOUT_RGB || l->kind == GLINT_LAYOUT_565)
-        resolve_rgb(resolve, y, n_x, n_y, light, &rows->codes);
+        add_light_to_rgb(resolve, y, n_x, n_y, light, &rows->codes);
     else if (l->log2_x)
-        resolve_pairs(resolve, l, y, n_x, n_y, light, rows);
+        add_light_to_pairs(resolve, l, y, n_x, n_y, light, rows);
     else
         for (int row = 0; row < n_y; row++)
-            resolve_whole(resolve, image, y + row, n_x, row, light, rows);
+            add_light_to_unpaired(resolve, image, y + row, n_x, row, light,
+                                  rows);
 }
 
-void glint_resolve_stretch(const struct glint_resolve *resolve,
-                           const struct glint_image *image, int x, int y,
-                           int n_x, int n_y, struct glint_light_rows *light,
-                           struct glint_resolve_rows *rows)
+void glint_resolve_add_to_run(const struct glint_resolve *resolve,
+                              const struct glint_image *image, int x, int y,
+                              int n_x, int n_y, struct glint_light_rows *light,
+                              struct glint_resolve_rows *rows)
 {
-    const struct glint_layout *l = glint_layout_of(image->format);
+    const struct glint_layout *l = glint_get_layout(image->format);
 
     if (glint_layout_is_packed(l) && n_x % 2 == 0) {
         for (int row = 0; row < n_y; row++)
-            resolve_packed(resolve, l, image, x, y + row, n_x, row, light,
-                           rows);
+            add_light_to_packed(resolve, l, image, x, y + row, n_x, row, light,
+                                rows);
         return;
     }
-    glint_codes_read(&rows->codes, image, x, y, n_x, n_y);
-    glint_resolve_codes(resolve, image, y, n_x, n_y, light, rows);
-    glint_codes_write(&rows->codes, image, x, y, n_x, n_y);
+    glint_codes_read_pixels(&rows->codes, image, x, y, n_x, n_y);
+    glint_resolve_add_to_codes(resolve, image, y, n_x, n_y, light, rows);
+    glint_codes_write_pixels(&rows->codes, image, x, y, n_x, n_y);
 }
 
-int glint_resolve_linear(const struct glint_image *image, int x, int y, int n,
-                         const int32_t *const light_q20[3])
+int glint_resolve_add_to_linear(const struct glint_image *image, int x, int y,
+                                int n, const int32_t *const light_q20[3])
 {
     int32_t *px_q20 =
         (int32_t *)(void *)(image->plane[0] + y * image->stride_bytes[0]) +

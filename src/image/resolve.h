@@ -33,13 +33,13 @@ struct glint_resolve {
     struct glint_mix mix;
     const struct glint_kernels *kernels;
     unsigned sets;
-    /* Fraction of a code to add before rounding down: 1/2 everywhere, or an
-     * 8 x 8 dither pattern with that mean and all values below 1, so that
-     * integer codes stay unchanged. */
+    /* The fraction of a code that is added before rounding down: 1/2
+     * everywhere, or an 8 x 8 dither pattern with that mean, whose values are
+     * below 1, so that integer codes do not change. */
     int16_t round_q7[8][8];
 };
 
-/* Light of two rows of a run of pixels; resolve may write past the last
+/* Light of two rows of a run of pixels; functions may write past the last
  * pixel. */
 struct glint_light_rows {
     ALIGNED(32) uint16_t rgb_q16[3][2][GLINT_CODES_WIDTH];
@@ -54,9 +54,9 @@ struct glint_resolve_rows {
     ALIGNED(32) uint16_t grey_q16[GLINT_CODES_WIDTH];
 };
 
-/* Makes the tables for pictures with the format, range, matrix and transfer
- * of IMAGE. If DITHER is 1, an ordered dither pattern below one code is
- * added before rounding. SETS: instruction sets that may be used. */
+/* Prepares tables for pictures with the format, range, matrix and transfer of
+ * IMAGE. If DITHER is 1, an ordered dither pattern below one code is added
+ * before rounding. SETS: instruction sets that may be used. */
 void glint_resolve_init(struct glint_resolve *resolve,
                         const struct glint_image *image, int dither,
                         unsigned sets);
@@ -65,22 +65,22 @@ void glint_resolve_init(struct glint_resolve *resolve,
  * IMAGE, which is not LINEAR_Q20. X must be a multiple of 8 and Y even; N_X
  * must be even except at the picture's right side, N_Y 2 except at its lower
  * side. So calls share no sample and may run in any order, or concurrently. */
-void glint_resolve_stretch(const struct glint_resolve *resolve,
-                           const struct glint_image *image, int x, int y,
-                           int n_x, int n_y, struct glint_light_rows *light,
-                           struct glint_resolve_rows *rows);
+void glint_resolve_add_to_run(const struct glint_resolve *resolve,
+                              const struct glint_image *image, int x, int y,
+                              int n_x, int n_y, struct glint_light_rows *light,
+                              struct glint_resolve_rows *rows);
 
-/* Adds LIGHT to pixels that have been read to rows->codes; the result stays in
- * rows->codes. */
-void glint_resolve_codes(const struct glint_resolve *resolve,
-                         const struct glint_image *image, int y, int n_x,
-                         int n_y, struct glint_light_rows *light,
-                         struct glint_resolve_rows *rows);
+/* Adds LIGHT to the pixels that were read to rows->codes, without writing them
+ * to IMAGE. */
+void glint_resolve_add_to_codes(const struct glint_resolve *resolve,
+                                const struct glint_image *image, int y, int n_x,
+                                int n_y, struct glint_light_rows *light,
+                                struct glint_resolve_rows *rows);
 
-/* Adds N values of LIGHT per channel to a row of a LINEAR_Q20 picture
- * (4-byte aligned) from (X, Y) on, clamped to int32. Returns the number of
- * samples that were clamped. */
-int glint_resolve_linear(const struct glint_image *image, int x, int y, int n,
-                         const int32_t *const light_q20[3]);
+/* Adds LIGHT, N values per channel, to a row of a LINEAR_Q20 picture (4-byte
+ * aligned) from (X, Y) to the right. Sums are clamped to int32; returns the
+ * number of samples that were clamped. */
+int glint_resolve_add_to_linear(const struct glint_image *image, int x, int y,
+                                int n, const int32_t *const light_q20[3]);
 
 #endif

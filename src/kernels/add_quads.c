@@ -9,7 +9,7 @@
 
 PIXEL_SETS(QUADS)
 
-const struct glint_quad_kernels *glint_quad_kernels_of(unsigned sets)
+const struct glint_quad_kernels *glint_choose_quad_kernels(unsigned sets)
 {
     return BEST_OF_PIXELS(sets, &of_);
 }

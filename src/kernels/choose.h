@@ -2,12 +2,11 @@
  *
  * Chooses among the variants of a kernel.
  *
- * KERNEL_SETS(X) expands to X(c) and to X(set) for each instruction set that is
- * built. BEST_OF(sets, NAME_) is the best of NAME_c, NAME_sse41 and so on that
- * the GLINT_SET_ bits in SETS allow; NAME_c if no bit is set. PIXEL_SETS and
- * BEST_OF_PIXELS do the same for pixel kernels. These have no C variant where
- * every CPU of the target has NEON, to save memory.
- */
+ * KERNEL_SETS(X) expands to X(c), and to X(set) for each instruction set that
+ * the build includes. BEST_OF(sets, NAME_) is the fastest of NAME_c, NAME_sse41
+ * and so on that the GLINT_SET_ bits in SETS allow; NAME_c if no bit is set.
+ * PIXEL_SETS and BEST_OF_PIXELS do the same for pixel kernels. These have no C
+ * variant where every CPU of the target has NEON, to save memory. */
 #ifndef GLINT_KERNELS_CHOOSE_H
 #define GLINT_KERNELS_CHOOSE_H
 

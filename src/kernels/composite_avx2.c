@@ -14,15 +14,15 @@
     _mm256_broadcastsi128_si256( \
         _mm_load_si128((const __m128i *)(const void *)(p)))
 
-static inline void v_pairs_of(__m128i codes, V x[1]);
-static inline void v_chroma_of(__m128i codes, V c[2]);
-static inline __m128i b_of_pairs(const V x[1]);
-static inline __m128i b_of_chroma(const V c[2]);
+static inline void v_pairs_from_bytes(__m128i codes, V x[1]);
+static inline void v_chroma_from_bytes(__m128i codes, V c[2]);
+static inline __m128i b_pack_pairs(const V x[1]);
+static inline __m128i b_pack_chroma(const V c[2]);
 
 #include "kernels/composite_x86.inc"
 
-/* Loads eight values and repeats them in both halves. */
-static inline V v_repeat(const int16_t *p)
+/* Loads eight values and stores them in both halves of the vector. */
+static inline V v_load_repeated(const int16_t *p)
 {
     return _mm256_broadcastsi128_si256(b_load(p));
 }
@@ -39,8 +39,8 @@ static inline void v_store_codes(uint8_t *p, V x)
                                 _mm256_extracti128_si256(x, 1)));
 }
 
-/* Loads sixteen values: even-indexed values into the lower half, odd-indexed
- * values into the upper half. */
+/* Loads sixteen values: those of even index into the lower half, those of odd
+ * index into the upper half. */
 static inline void v_load_pairs(const uint16_t *p, V x[1])
 {
     x[0] = _mm256_permute4x64_epi64(
@@ -51,7 +51,7 @@ static inline void v_load_pairs(const uint16_t *p, V x[1])
 
 /* Returns, for each half, the bytes of CODES that the shuffle control PLACES
  * selects, converted to _q7. */
-static inline V spread_bytes(__m128i codes, V places)
+static inline V shuffle_codes_to_q7(__m128i codes, V places)
 {
     return v_right(v_shuffle(_mm256_broadcastsi128_si256(codes), places), 1);
 }
@@ -61,15 +61,15 @@ static inline V spread_bytes(__m128i codes, V places)
 #define EVENS 0x0e800c800a800880, 0x0680048002800080
 #define ODDS  0x0f800d800b800980, 0x0780058003800180
 
-static inline void v_pairs_of(__m128i codes, V x[1])
+static inline void v_pairs_from_bytes(__m128i codes, V x[1])
 {
-    x[0] = spread_bytes(codes, _mm256_set_epi64x(ODDS, EVENS));
+    x[0] = shuffle_codes_to_q7(codes, _mm256_set_epi64x(ODDS, EVENS));
 }
 
-static inline void v_chroma_of(__m128i codes, V c[2])
+static inline void v_chroma_from_bytes(__m128i codes, V c[2])
 {
-    c[0] = spread_bytes(codes, _mm256_set_epi64x(EVENS, EVENS));
-    c[1] = spread_bytes(codes, _mm256_set_epi64x(ODDS, ODDS));
+    c[0] = shuffle_codes_to_q7(codes, _mm256_set_epi64x(EVENS, EVENS));
+    c[1] = shuffle_codes_to_q7(codes, _mm256_set_epi64x(ODDS, ODDS));
 }
 
 /* Interleaves the codes in the lower halves of X and Y and packs them into
@@ -90,62 +90,62 @@ static inline V swap_halves(V x)
     return _mm256_permute2x128_si256(x, x, 1);
 }
 
-static inline __m128i b_of_pairs(const V x[1])
+static inline __m128i b_pack_pairs(const V x[1])
 {
     return interleave_codes(x[0], swap_halves(x[0]));
 }
 
-static inline __m128i b_of_chroma(const V c[2])
+static inline __m128i b_pack_chroma(const V c[2])
 {
     return interleave_codes(c[0], c[1]);
 }
 
 /* Load eight dither thresholds for sixteen pixels, and for their chroma, Cb
  * and Cr separately. */
-static inline void v_round_pairs(const int16_t *p, V x[1])
+static inline void v_load_pair_rounding(const int16_t *p, V x[1])
 {
-    x[0] = v_shuffle(v_repeat(p),
+    x[0] = v_shuffle(v_load_repeated(p),
                      _mm256_set_epi64x(0x0f0e0b0a07060302, 0x0f0e0b0a07060302,
                                        0x0d0c090805040100, 0x0d0c090805040100));
 }
 
-static inline void v_round_chroma(const int16_t *p, V c[2])
+static inline void v_load_chroma_rounding(const int16_t *p, V c[2])
 {
-    c[0] =
-        v_shuffle(v_repeat(p), v_bytes(0x0d0c090805040100, 0x0d0c090805040100));
-    c[1] =
-        v_shuffle(v_repeat(p), v_bytes(0x0f0e0b0a07060302, 0x0f0e0b0a07060302));
+    c[0] = v_shuffle(v_load_repeated(p),
+                     v_bytes(0x0d0c090805040100, 0x0d0c090805040100));
+    c[1] = v_shuffle(v_load_repeated(p),
+                     v_bytes(0x0f0e0b0a07060302, 0x0f0e0b0a07060302));
 }
 
-#define v_load_mean v_repeat
+#define v_load_mean v_load_repeated
 
 static inline void v_store_mean(int16_t *p, V x)
 {
     b_store(p, _mm256_castsi256_si128(x));
 }
 
-/* Averages each even pixel with the next odd pixel. Both halves receive the
- * means. */
-static inline V v_pair_mean(const V x[1])
+/* Returns the mean of each even pixel and the next odd pixel, in both
+ * halves. */
+static inline V v_average_pairs(const V x[1])
 {
     return v_mean(x[0], swap_halves(x[0]));
 }
 
-/* Join two blocks of quads, one in each half: the means of their pixel
- * pairs, or their chroma. v_quads_of_block() copies the values of block B to
- * both halves. */
-static inline V v_pairs_joined(V x[2][1])
+/* Combine two blocks of quads in one vector, one per half: the means of their
+ * pixel pairs, or their chroma. v_copy_quads_of_block() copies the values of
+ * block B to both halves. */
+static inline V v_join_pairs(V x[2][1])
 {
     return v_mean(_mm256_permute2x128_si256(x[0][0], x[1][0], 0x20),
                   _mm256_permute2x128_si256(x[0][0], x[1][0], 0x31));
 }
 
-static inline V v_chroma_joined(V c[2][2], int k)
+static inline V v_join_chroma(V c[2][2], int k)
 {
     return _mm256_permute2x128_si256(c[0][k], c[1][k], 0x20);
 }
 
-static inline V v_quads_of_block(V x, int b)
+static inline V v_copy_quads_of_block(V x, int b)
 {
     return b ? _mm256_permute2x128_si256(x, x, 0x11)
              : _mm256_permute2x128_si256(x, x, 0x00);
@@ -155,13 +155,13 @@ static inline V v_quads_of_block(V x, int b)
 
 /* -------------------------------------------------------------------- sums */
 
-static inline uint32_t w_first(V x)
+static inline uint32_t w_get_first_lane(V x)
 {
     return (uint32_t)_mm256_cvtsi256_si32(x);
 }
 
 /* Returns the prefix sums of the lanes of X. */
-static inline V w_sums(V x)
+static inline V w_prefix_sums(V x)
 {
     V low;
 
@@ -172,13 +172,13 @@ static inline V w_sums(V x)
     return OP(add_epi32)(x, _mm256_shuffle_epi32(low, 0xff));
 }
 
-static inline V w_last(V x)
+static inline V w_repeat_last_lane(V x)
 {
     return _mm256_permutevar8x32_epi32(x, _mm256_set1_epi32(7));
 }
 
 /* Returns A and B clamped to 0 .. 65535. */
-static inline V w_narrow(V a, V b)
+static inline V w_clamp_to_uint16(V a, V b)
 {
     return _mm256_permute4x64_epi64(_mm256_packus_epi32(a, b), 0xd8);
 }

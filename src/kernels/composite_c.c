@@ -46,7 +46,7 @@ static int16_t encode_light(const struct glint_tone16 *t, uint16_t light)
     return (int16_t)(t->level[zeros] + multiply_q15(z, x));
 }
 
-/* Returns the increase of CODE when LIGHT is added. */
+/* Returns the increase of CODE when LIGHT is added to its linear light. */
 static int16_t compute_change(const struct glint_tone16 *t, int16_t code,
                               uint16_t light_q16)
 {
@@ -56,12 +56,11 @@ static int16_t compute_change(const struct glint_tone16 *t, int16_t code,
     return lit > code ? (int16_t)(lit - code) : 0;
 }
 
-/* Indices, among the changes of R', G', B' and Y', of the three that chroma
+/* Indices of the three changes, among those of R', G', B' and Y', that chroma
  * depends on. */
 static const int chroma_changes[3] = {0, 2, 3};
 
-/* Sets RGB to the full-range R', G', B' of a pixel given by Y', Cb and Cr,
- * _q7. */
+/* Sets RGB to the full-range R', G', B' of a pixel with Y', Cb and Cr, _q7. */
 static WHOLLY_INLINE void convert_to_rgb(int luma_q7, int cb_q7, int cr_q7,
                                          int16_t rgb[3],
                                          const struct glint_mix *mix)
@@ -82,9 +81,9 @@ static WHOLLY_INLINE void convert_to_rgb(int luma_q7, int cb_q7, int cr_q7,
 
 /* Sets CHANGE to the changes of R', G', B' (_q15) and Y' (_q7) when LIGHT is
  * added to a pixel. */
-static void change_pixel(int luma_q7, int cb_q7, int cr_q7,
-                         const uint16_t light[3], int16_t change[4],
-                         const struct glint_mix *mix)
+static void compute_pixel_change(int luma_q7, int cb_q7, int cr_q7,
+                                 const uint16_t light[3], int16_t change[4],
+                                 const struct glint_mix *mix)
 {
     const int16_t *to = mix->to_ycc.one;
     int16_t rgb[3];
@@ -100,18 +99,18 @@ static void change_pixel(int luma_q7, int cb_q7, int cr_q7,
     }
 }
 
-static uint8_t add_luma(int code, int16_t change_q7, int16_t round_q7)
+static uint8_t add_light_to_luma(int code, int16_t change_q7, int16_t round_q7)
 {
     return (uint8_t)(add_saturating(code * 128 + round_q7, change_q7) >> 7);
 }
 
 /* Adds light to one pixel. Returns its new luma and sets CHANGE. */
-static uint8_t add_pixel(int luma, int cb, int cr, const uint16_t light[3],
-                         int16_t change[4], const struct glint_mix *mix,
-                         int16_t round_q7)
+static uint8_t add_light_to_pixel(int luma, int cb, int cr,
+                                  const uint16_t light[3], int16_t change[4],
+                                  const struct glint_mix *mix, int16_t round_q7)
 {
-    change_pixel(luma * 128, cb * 128, cr * 128, light, change, mix);
-    return add_luma(luma, change[3], round_q7);
+    compute_pixel_change(luma * 128, cb * 128, cr * 128, light, change, mix);
+    return add_light_to_luma(luma, change[3], round_q7);
 }
 
 void glint_add_luma_c(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
@@ -122,24 +121,25 @@ void glint_add_luma_c(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
         const uint16_t here[3] = {light[0][i], light[1][i], light[2][i]};
         int16_t changed[4];
 
-        luma[i] =
-            add_pixel(luma[i], cb[i], cr[i], here, changed, mix, round[i & 7]);
+        luma[i] = add_light_to_pixel(luma[i], cb[i], cr[i], here, changed, mix,
+                                     round[i & 7]);
         for (int c = 0; c < 3; c++)
             change[c][i] = changed[chroma_changes[c]];
     }
 }
 
 /* Returns the mean of A and B, rounded up. */
-static int16_t compute_mean(int a, int b)
+static int16_t average_rounded_up(int a, int b)
 {
     return (int16_t)((a + b + 1) >> 1);
 }
 
-/* Returns the new code of chroma after the mean B' (for Cb) or R' (for Cr)
- * of its pixels changed by OWN, and their mean Y' by LUMA. K is the index of
- * the first of its two factors in to_ycc. */
-static uint8_t add_chroma(int code, int own, int luma, int k,
-                          const struct glint_mix *mix, int16_t round_q7)
+/* Returns the new CODE of chroma, Cb or Cr, after the mean of its pixels
+ * changed: B' (for Cb) or R' (for Cr) by OWN, and Y' by LUMA. K is the index in
+ * to_ycc of the factor of OWN; the factor of LUMA follows. */
+static uint8_t add_change_to_chroma(int code, int own, int luma, int k,
+                                    const struct glint_mix *mix,
+                                    int16_t round_q7)
 {
     const int16_t *to = mix->to_ycc.one;
     const int change_q7 =
@@ -163,24 +163,26 @@ void glint_add_pairs_c(uint8_t *luma, uint8_t *chroma,
             const uint16_t here[3] = {light[0][i + k], light[1][i + k],
                                       light[2][i + k]};
 
-            luma[i + k] = add_pixel(luma[i + k], chroma[i], chroma[i + 1], here,
-                                    changed[k], mix, round[(i + k) & 7]);
+            luma[i + k] =
+                add_light_to_pixel(luma[i + k], chroma[i], chroma[i + 1], here,
+                                   changed[k], mix, round[(i + k) & 7]);
         }
         for (int c = 0; c < 3; c++) {
-            own[c] = compute_mean(changed[0][chroma_changes[c]],
-                                  changed[1][chroma_changes[c]]);
+            own[c] = average_rounded_up(changed[0][chroma_changes[c]],
+                                        changed[1][chroma_changes[c]]);
             if (step == GLINT_PAIRS_FIRST)
                 mean[c][i / 2] = own[c];
             if (step == GLINT_PAIRS_SECOND)
-                own[c] = compute_mean(own[c], mean[c][i / 2]);
+                own[c] = average_rounded_up(own[c], mean[c][i / 2]);
         }
         if (step == GLINT_PAIRS_FIRST)
             continue;
-        chroma[i] = add_chroma(chroma[i], own[1], own[2], GLINT_MIX_CB_BLUE,
-                               mix, round_chroma[i & 7]);
-        chroma[i + 1] =
-            add_chroma(chroma[i + 1], own[0], own[2], GLINT_MIX_CR_RED, mix,
-                       round_chroma[(i + 1) & 7]);
+        chroma[i] =
+            add_change_to_chroma(chroma[i], own[1], own[2], GLINT_MIX_CB_BLUE,
+                                 mix, round_chroma[i & 7]);
+        chroma[i + 1] = add_change_to_chroma(chroma[i + 1], own[0], own[2],
+                                             GLINT_MIX_CR_RED, mix,
+                                             round_chroma[(i + 1) & 7]);
     }
 }
 
@@ -208,8 +210,8 @@ void glint_add_packed_c(uint8_t *pixels, const uint16_t *const light[3], int n,
 }
 
 /* Returns PART / WHOLE, both 0 or more, as _q15. PART is clamped to WHOLE.
- * Uses Newton's method; the error is below 2^-12. */
-static int16_t divide_q15(int part, int whole)
+ * Newton's method; the error is below 2^-12. */
+static int16_t divide_clamped_q15(int part, int whole)
 {
     const int zeros = 16 - bit_length((uint32_t)whole);
     const int n_q15 = (uint16_t)((uint32_t)whole << zeros) >> 1;
@@ -231,10 +233,11 @@ static int16_t divide_q15(int part, int whole)
 
 /* Adds light to 2 x 2 pixels. Both rows are read before either is written, as
  * they may be the same row. */
-static void add_quad(uint8_t *const luma[2], uint8_t *const chroma[2],
-                     const uint16_t light[3], const struct glint_mix *mix,
-                     const int16_t *const round[2],
-                     const int16_t *const round_chroma[2])
+static void add_light_to_quad(uint8_t *const luma[2], uint8_t *const chroma[2],
+                              const uint16_t light[3],
+                              const struct glint_mix *mix,
+                              const int16_t *const round[2],
+                              const int16_t *const round_chroma[2])
 {
     const uint8_t y[2][2] = {{luma[0][0], luma[0][1]},
                              {luma[1][0], luma[1][1]}};
@@ -247,8 +250,8 @@ static void add_quad(uint8_t *const luma[2], uint8_t *const chroma[2],
     int16_t change[4], q;
     int change_c[2];
 
-    change_pixel(y_q7, c_q7[0], c_q7[1], light, change, mix);
-    q = divide_q15(change[3], headroom);
+    compute_pixel_change(y_q7, c_q7[0], c_q7[1], light, change, mix);
+    q = divide_clamped_q15(change[3], headroom);
     change_c[0] = multiply_q15(change[2], to[GLINT_MIX_CB_BLUE]) -
                   multiply_q15(change[3], to[GLINT_MIX_CB_LUMA]);
     change_c[1] = multiply_q15(change[0], to[GLINT_MIX_CR_RED]) -
@@ -260,8 +263,8 @@ static void add_quad(uint8_t *const luma[2], uint8_t *const chroma[2],
             const int16_t more_c = add_saturating(
                 change_c[k], multiply_q15(c_q7[k] - c[row][k] * 128, q));
 
-            luma[row][k] = add_luma(y[row][k], clamp_int16(more, 0, INT16_MAX),
-                                    round[row][k]);
+            luma[row][k] = add_light_to_luma(
+                y[row][k], clamp_int16(more, 0, INT16_MAX), round[row][k]);
             chroma[row][k] =
                 (uint8_t)(clamp_int16(c[row][k] * 128 + round_chroma[row][k] +
                                           more_c,
@@ -285,7 +288,7 @@ void glint_add_quads_c(uint8_t *const luma[2], uint8_t *const chroma[2],
         const int16_t *const rc[2] = {round_chroma[0] + (i & 7),
                                       round_chroma[1] + (i & 7)};
 
-        add_quad(y, c, here, mix, r, rc);
+        add_light_to_quad(y, c, here, mix, r, rc);
     }
 }
 
@@ -306,7 +309,7 @@ void glint_add_quads_packed_c(uint8_t *const pixels[2],
             for (int k = 0; k < 4; k++)
                 codes[row][k] =
                     pixels[row][2 * i + 2 * (k & 1) + ((k >> 1) ^ luma_at)];
-        add_quad(y, c, here, mix, r, r);
+        add_light_to_quad(y, c, here, mix, r, r);
         for (int row = 0; row < 2; row++)
             for (int k = 0; k < 4; k++)
                 pixels[row][2 * i + 2 * (k & 1) + ((k >> 1) ^ luma_at)] =
@@ -349,10 +352,10 @@ void glint_run_sum_c(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
     *carry = sum;
 }
 
-/* Returns the full-range CODE after the fraction COVER of its light is
+/* Returns the full-range CODE after the fraction COVER_Q8 of its light is
  * hidden. */
-static int16_t hide_light(const struct glint_tone16 *t, int16_t code,
-                          int cover_q8)
+static int16_t hide_code_light(const struct glint_tone16 *t, int16_t code,
+                               int cover_q8)
 {
     const uint32_t light = decode_code(t, code) * (uint32_t)(256 - cover_q8);
     const int16_t left = encode_light(t, (uint16_t)((light + 128) >> 8));
@@ -366,20 +369,20 @@ void glint_cover_code_c(uint8_t *code, const uint16_t *cover_q8, int n,
     for (int i = 0; i < n; i++) {
         const int16_t full = (int16_t)((code[i] * 257) >> 1);
         const int change_q7 =
-            multiply_q15(hide_light(tone, full, cover_q8[i]) - full,
+            multiply_q15(hide_code_light(tone, full, cover_q8[i]) - full,
                          tone->factor.one[GLINT_TONE_Q7]);
 
         if (cover_q8[i])
             code[i] = cover_q8[i] < 256
-                          ? add_luma(code[i], (int16_t)change_q7, 64)
+                          ? add_light_to_luma(code[i], (int16_t)change_q7, 64)
                           : 0;
     }
 }
 
 /* Hides the fraction COVER_Q8 of the light of one pixel, given as Y', Cb, Cr
  * in _q7. */
-static void cover_pixel(int16_t ycc_q7[3], int cover_q8,
-                        const struct glint_mix *mix)
+static void hide_pixel_light(int16_t ycc_q7[3], int cover_q8,
+                             const struct glint_mix *mix)
 {
     const int16_t *to = mix->to_ycc.one;
     int16_t rgb[3];
@@ -387,7 +390,7 @@ static void cover_pixel(int16_t ycc_q7[3], int cover_q8,
 
     convert_to_rgb(ycc_q7[0], ycc_q7[1], ycc_q7[2], rgb, mix);
     for (int c = 0; c < 3; c++) {
-        change[c] = hide_light(&mix->tone, rgb[c], cover_q8) - rgb[c];
+        change[c] = hide_code_light(&mix->tone, rgb[c], cover_q8) - rgb[c];
         change[3] += multiply_q15(change[c], to[GLINT_MIX_LUMA + c]);
     }
     ycc_q7[0] = clamp_int16(ycc_q7[0] + change[3], 0, INT16_MAX);
@@ -410,7 +413,7 @@ void glint_cover_ycc_c(int16_t *const ycc_q7[3], const uint16_t *cover_q8,
         if (cover_q8[i] == 0)
             continue;
         if (cover_q8[i] < 256)
-            cover_pixel(here_q7, cover_q8[i], mix);
+            hide_pixel_light(here_q7, cover_q8[i], mix);
         else {
             here_q7[0] = (int16_t)(black * 128);
             here_q7[1] = here_q7[2] = 1 << 14;

@@ -14,7 +14,7 @@
 #define v_set                    vdupq_n_s16
 #define v_load                   vld1q_s16
 #define v_store                  vst1q_s16
-#define v_repeat                 vld1q_s16
+#define v_load_repeated          vld1q_s16
 #define v_load_mean              vld1q_s16
 #define v_store_mean             vst1q_s16
 #define v_add                    vaddq_s16
@@ -28,8 +28,8 @@
 #define v_and_not(mask, x)       vbicq_s16(x, mask)
 #define v_equal(a, b)            S(vceqq_s16(a, b))
 
-/* Order X, or the load from P, after the computation of Y. The empty
- * assembly pretends to use both. */
+/* Make the compiler compute X, or load from P, after the computation of Y. The
+ * empty assembly pretends to use both. */
 #define AFTER(x, y)      __asm__("" : "+w"(x) : "w"(y))
 #define LOAD_AFTER(p, y) __asm__("" : "+r"(p) : "w"(y))
 
@@ -79,10 +79,10 @@ struct v_mix {
 /* 64-bit ARM loads the tables once, as it has enough registers; 32-bit ARM
  * loads them at each use. */
 #if defined(__aarch64__)
-#define TABLES(t, tone)                                     \
-    const uint8x16x2_t t##_level = table_at((tone)->level), \
-                       t##_slope = table_at((tone)->slope), \
-                       t##_curve = table_at((tone)->curve)
+#define TABLES(t, tone)                                       \
+    const uint8x16x2_t t##_level = load_table((tone)->level), \
+                       t##_slope = load_table((tone)->slope), \
+                       t##_curve = load_table((tone)->curve)
 #define TABLE(t, tone, name) &t##_##name
 #else
 #define TABLES(t, tone)      (void)0
@@ -111,7 +111,7 @@ struct v_mix {
     const struct v_mix *const m = &m##_here
 
 #if defined(__aarch64__)
-static inline uint8x16x2_t table_at(const int16_t *p)
+static inline uint8x16x2_t load_table(const int16_t *p)
 {
     return vld1q_u8_x2((const uint8_t *)p);
 }
@@ -126,7 +126,7 @@ static inline uint8x16x2_t table_at(const int16_t *p)
  * end give 0. */
 #define PLACES uint8x16_t
 
-static inline PLACES v_places_of(const TONE *t, V k)
+static inline PLACES v_table_offsets(const TONE *t, V k)
 {
 #if defined(__aarch64__)
     const V twice = vmulq_laneq_s16(k, t->factor, GLINT_TONE_ENTRY);
@@ -137,7 +137,7 @@ static inline PLACES v_places_of(const TONE *t, V k)
     return vreinterpretq_u8_s16(vorrq_s16(twice, v_set(0x0100)));
 }
 
-static inline V v_look(const uint8x16x2_t *table, PLACES at)
+static inline V v_look_up_entries(const uint8x16x2_t *table, PLACES at)
 {
 #if defined(__aarch64__)
     return vreinterpretq_s16_u8(vqtbl2q_u8(*table, at));
@@ -150,8 +150,8 @@ static inline V v_look(const uint8x16x2_t *table, PLACES at)
         vcombine_u8(vtbl4_u8(quarters, vget_low_u8(at)),
                     vtbl4_u8(quarters, vget_high_u8(at))));
 #else
-    /* Inline assembly, as GCC would copy the four registers through the
-     * stack */
+    /* Inline assembly, as GCC would copy the four table registers through the
+     * stack. */
     uint8x8x4_t quarters;
     uint8x16_t entry;
 
@@ -164,8 +164,8 @@ static inline V v_look(const uint8x16x2_t *table, PLACES at)
 #endif
 }
 
-/* Returns X times 2^ZEROS. */
-static inline V v_raise(const TONE *t, V x, V zeros, PLACES at)
+/* Returns X times 2^ZEROS, read from a table at the offsets AT. */
+static inline V v_shift_by_zeros(const TONE *t, V x, V zeros, PLACES at)
 {
     (void)t;
     (void)at;
@@ -174,7 +174,7 @@ static inline V v_raise(const TONE *t, V x, V zeros, PLACES at)
 
 /* ------------------------------------------------------------ codes to lanes
  *
- * Codes of 8 bits are loaded as _q7 and stored clamped to 0 .. 255. */
+ * Codes of 8 bits are loaded as _q7, and clamped to 0 .. 255 when stored. */
 
 static inline V v_load_codes(const uint8_t *p)
 {
@@ -242,7 +242,7 @@ static inline void v_store_packed(uint8_t *p, int luma_at, const V y[2],
 
 /* Loads eight dither thresholds for sixteen pixels: thresholds of even
  * pixels, then of odd pixels; for chroma, thresholds of Cb, then of Cr. */
-static inline void v_round_pairs(const int16_t *p, V x[2])
+static inline void v_load_pair_rounding(const int16_t *p, V x[2])
 {
     const int16x8x2_t pairs = vuzpq_s16(vld1q_s16(p), vld1q_s16(p));
 
@@ -250,10 +250,10 @@ static inline void v_round_pairs(const int16_t *p, V x[2])
     x[1] = pairs.val[1];
 }
 
-#define v_round_chroma v_round_pairs
+#define v_load_chroma_rounding v_load_pair_rounding
 
 /* Averages each even pixel with the next odd pixel. */
-static inline V v_pair_mean(const V x[2])
+static inline V v_average_pairs(const V x[2])
 {
     return v_mean(x[0], x[1]);
 }
@@ -262,9 +262,9 @@ static inline V v_pair_mean(const V x[2])
 
 /* -------------------------------------------------------------------- sums */
 
-/* Returns SUM rounded to _q16 and clamped to 0 .. 65535. FEWER is 16 minus
- * the number of fraction bits of SUM. */
-static inline uint16x4_t round_q16(uint32x4_t sum, int32x4_t fewer)
+/* Returns SUM rounded to _q16 and clamped to 0 .. 65535. SUM has 16 - FEWER
+ * fraction bits. */
+static inline uint16x4_t round_sum_to_q16(uint32x4_t sum, int32x4_t fewer)
 {
     return vqmovun_s32(vrshlq_s32(vreinterpretq_s32_u32(sum), fewer));
 }
@@ -291,7 +291,7 @@ void glint_run_sum_neon(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
         uint16x4x4_t light;
 
         if (v_is_zero(vreinterpretq_s16_u32(any))) {
-            const uint16x4_t same = round_q16(before, fewer);
+            const uint16x4_t same = round_sum_to_q16(before, fewer);
 
             vst1q_u16(light_q16 + i, vcombine_u16(same, same));
             vst1q_u16(light_q16 + i + 8, vcombine_u16(same, same));
@@ -303,10 +303,10 @@ void glint_run_sum_neon(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
         sum = vaddq_u32(sum, vextq_u32(zero, sum, 2));
         sum = vaddq_u32(sum, before);
         before = vextq_u32(before, sum, 3); /* total before each group */
-        light.val[0] = round_q16(vaddq_u32(x.val[0], before), fewer);
-        light.val[1] = round_q16(vaddq_u32(x01, before), fewer);
-        light.val[2] = round_q16(vaddq_u32(x012, before), fewer);
-        light.val[3] = round_q16(sum, fewer);
+        light.val[0] = round_sum_to_q16(vaddq_u32(x.val[0], before), fewer);
+        light.val[1] = round_sum_to_q16(vaddq_u32(x01, before), fewer);
+        light.val[2] = round_sum_to_q16(vaddq_u32(x012, before), fewer);
+        light.val[3] = round_sum_to_q16(sum, fewer);
         vst4_u16(light_q16 + i, light);
         before = vdupq_n_u32(vgetq_lane_u32(sum, 3));
     }

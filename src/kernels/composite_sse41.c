@@ -12,14 +12,14 @@
 #define v_bytes      _mm_set_epi64x
 #define v_half(p)    _mm_load_si128((const __m128i *)(const void *)(p))
 
-static inline void v_pairs_of(V codes, V x[2]);
-static inline V b_of_pairs(const V x[2]);
-#define v_chroma_of v_pairs_of
-#define b_of_chroma b_of_pairs
+static inline void v_pairs_from_bytes(V codes, V x[2]);
+static inline V b_pack_pairs(const V x[2]);
+#define v_chroma_from_bytes v_pairs_from_bytes
+#define b_pack_chroma       b_pack_pairs
 
 #include "kernels/composite_x86.inc"
 
-static inline V v_repeat(const int16_t *p)
+static inline V v_load_repeated(const int16_t *p)
 {
     return b_load(p);
 }
@@ -53,13 +53,13 @@ static inline void v_load_pairs(const uint16_t *p, V x[2])
     x[1] = _mm_unpackhi_epi64(a, b);
 }
 
-static inline void v_pairs_of(V codes, V x[2])
+static inline void v_pairs_from_bytes(V codes, V x[2])
 {
     x[0] = v_right(v_left(codes, 8), 1);
     x[1] = v_right(v_and(codes, v_set((int16_t)0xff00)), 1);
 }
 
-static inline V b_of_pairs(const V x[2])
+static inline V b_pack_pairs(const V x[2])
 {
     return v_shuffle(
         _mm_packus_epi16(v_right_signed(x[0], 7), v_right_signed(x[1], 7)),
@@ -68,7 +68,7 @@ static inline V b_of_pairs(const V x[2])
 
 /* Loads eight dither thresholds for sixteen pixels: thresholds of even
  * pixels, then of odd pixels; for chroma, thresholds of Cb, then of Cr. */
-static inline void v_round_pairs(const int16_t *p, V x[2])
+static inline void v_load_pair_rounding(const int16_t *p, V x[2])
 {
     const V both = separate_even_odd(b_load(p));
 
@@ -76,12 +76,12 @@ static inline void v_round_pairs(const int16_t *p, V x[2])
     x[1] = _mm_unpackhi_epi64(both, both);
 }
 
-#define v_round_chroma v_round_pairs
-#define v_load_mean    v_load
-#define v_store_mean   v_store
+#define v_load_chroma_rounding v_load_pair_rounding
+#define v_load_mean            v_load
+#define v_store_mean           v_store
 
 /* Averages each even pixel with the next odd pixel. */
-static inline V v_pair_mean(const V x[2])
+static inline V v_average_pairs(const V x[2])
 {
     return v_mean(x[0], x[1]);
 }
@@ -90,24 +90,24 @@ static inline V v_pair_mean(const V x[2])
 
 /* -------------------------------------------------------------------- sums */
 
-static inline uint32_t w_first(V x)
+static inline uint32_t w_get_first_lane(V x)
 {
     return (uint32_t)_mm_cvtsi128_si32(x);
 }
 
 /* Returns the prefix sums of the lanes of X. */
-static inline V w_sums(V x)
+static inline V w_prefix_sums(V x)
 {
     x = OP(add_epi32)(x, _mm_slli_si128(x, 4));
     return OP(add_epi32)(x, _mm_slli_si128(x, 8));
 }
 
-static inline V w_last(V x)
+static inline V w_repeat_last_lane(V x)
 {
     return _mm_shuffle_epi32(x, 0xff);
 }
 
 /* Packs the lanes of two vectors, clamped to 0 .. 65535. */
-#define w_narrow _mm_packus_epi32
+#define w_clamp_to_uint16 _mm_packus_epi32
 
 #include "kernels/run_sum_x86.inc"

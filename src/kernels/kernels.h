@@ -32,13 +32,14 @@ glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                   const uint16_t *const light[3], int16_t *const change[3],
                   int n, const struct glint_mix *mix, const int16_t *round);
 
-/* Role of a row in 4:2:2 or 4:2:0, whose pixel pairs share chroma. Chroma
- * changes with the mean changes of R', B' and Y' of its pixels. */
+/* How a row uses chroma in 4:2:2 or 4:2:0, where pixels share chroma by pairs.
+ * The mean changes of R', B' and Y' of the pixels that share it change
+ * chroma. */
 enum glint_pair_step {
     GLINT_PAIRS_ALONE, /* 4:2:2: the row's pairs have their own chroma */
     GLINT_PAIRS_FIRST, /* 4:2:0, first row: stores the mean changes of pairs */
     GLINT_PAIRS_SECOND /* 4:2:0, second row: changes chroma by the mean of both
-                          rows */
+                          rows' changes */
 };
 
 /* Adds light to N pixels of one row of Y'CbCr whose chroma is shared by
@@ -93,8 +94,8 @@ typedef void glint_add_quads_packed_fn(uint8_t *const pixels[2],
                                        int luma_at, const struct glint_mix *mix,
                                        const int16_t *const round[2]);
 
-/* Adds light to N codes of one channel of R'G'B'. LIGHT and ROUND are as for
- * glint_add_luma_fn, for one channel. */
+/* Adds light to N codes of one channel, R', G' or B'. LIGHT and ROUND are as
+ * for glint_add_luma_fn, for that channel. */
 typedef void glint_add_code_fn(uint8_t *code, const uint16_t *light, int n,
                                const struct glint_tone16 *tone,
                                const int16_t *round);
@@ -120,7 +121,7 @@ glint_cover_ycc_fn glint_cover_ycc_c;
 typedef void glint_run_sum_fn(uint32_t *change, uint32_t *carry,
                               uint16_t *light_q16, int n, int more);
 
-/* The kernels for pictures at full resolution. */
+/* The kernels that add one value of light per pixel. */
 struct glint_kernels {
     glint_add_luma_fn *add_luma;
     glint_add_pairs_fn *add_pairs;
@@ -129,8 +130,8 @@ struct glint_kernels {
     glint_run_sum_fn *run_sum;
 };
 
-/* The kernels for Y'CbCr pictures at half resolution of light (one value for
- * 2 x 2 pixels). */
+/* The kernels that add one value of light per 2 x 2 pixels of Y'CbCr
+ * pictures. */
 struct glint_quad_kernels {
     glint_add_quads_fn *add;
     glint_add_quads_packed_fn *add_packed;
@@ -138,8 +139,8 @@ struct glint_quad_kernels {
 
 /* Return the best kernels that the GLINT_SET_ bits SETS allow: kernels in C if
  * no bit is set, or NEON kernels where all CPUs have NEON (choose.h). */
-const struct glint_kernels *glint_kernels_of(unsigned sets);
-const struct glint_quad_kernels *glint_quad_kernels_of(unsigned sets);
+const struct glint_kernels *glint_choose_kernels(unsigned sets);
+const struct glint_quad_kernels *glint_choose_quad_kernels(unsigned sets);
 
 glint_add_luma_fn glint_add_luma_c, glint_add_luma_sse41, glint_add_luma_avx2,
     glint_add_luma_neon;

@@ -18,8 +18,8 @@ unsigned glint_sets_built(void)
 
 #include <cpuid.h>
 
-/* Returns whether the operating system saves the AVX registers. */
-static int saves_avx(void)
+/* Returns whether the operating system saves the AVX registers of threads. */
+static int does_system_save_avx(void)
 {
     unsigned low, high;
 
@@ -35,7 +35,7 @@ unsigned glint_sets_here(void)
     if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & bit_SSE4_1))
         return 0;
     sets = GLINT_SET_SSE41;
-    if ((c & bit_OSXSAVE) && saves_avx() &&
+    if ((c & bit_OSXSAVE) && does_system_save_avx() &&
         __get_cpuid_count(7, 0, &a, &b, &c, &d) && (b & bit_AVX2))
         sets |= GLINT_SET_AVX2;
     return sets;

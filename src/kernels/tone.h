@@ -45,13 +45,14 @@ struct glint_factors {
 };
 
 enum {
-    GLINT_TONE_TOE,  /* light per code below the toe's end */
+    GLINT_TONE_TOE,  /* light per unit of code in the toe, the linear part */
     GLINT_TONE_RISE, /* r2 of decode */
     GLINT_TONE_TURN, /* turn1 of encode */
-    GLINT_TONE_Q7,   /* factor from units of R'G'B', 1 / 128.5 code, to _q7 */
-    GLINT_TONE_ENTRY /* 2: bytes per entry of a table. A variable, as compilers
-                        would replace a product with a constant by slower
-                        additions */
+    GLINT_TONE_Q7,   /* factor that converts units of R'G'B', 1 / 128.5 code, to
+                        _q7 */
+    /* 2: bytes per entry of a table. A variable, as compilers would replace a
+     * product with a constant by slower additions. */
+    GLINT_TONE_ENTRY
 };
 
 struct glint_tone16 {

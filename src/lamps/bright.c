@@ -39,7 +39,7 @@ static void set_beyond(uint8_t beyond[256])
 void glint_bright_begin(struct glint_bright *b, const struct glint_image *image)
 {
     b->image = image;
-    b->layout = glint_layout_of(image->format);
+    b->layout = glint_get_layout(image->format);
     b->n_codes = b->layout->kind == GLINT_LAYOUT_GREY  ? 1
                  : b->layout->kind == GLINT_LAYOUT_565 ? 2
                                                        : 3;

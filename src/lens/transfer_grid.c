@@ -134,7 +134,7 @@ static void rotate_ray_positions(const struct glint_turn *turn, unsigned sets,
 {
     const int usual = turn->shift >= 1 && turn->shift <= 62;
 
-    glint_turn_of(usual ? sets : 0)(turn, x, y, out, invalid);
+    glint_choose_turn_kernel(usual ? sets : 0)(turn, x, y, out, invalid);
 }
 
 static void convert_ray_block(const struct glint_transfer *t,

@@ -95,7 +95,7 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
 {
     const struct glint_transfer *t = transfer;
     const int32_t v2_q30 = q_mul(v_q30, v_q30, 30);
-    const struct glint_horner *k = glint_horner_of(0);
+    const struct glint_horner *k = glint_choose_horner_kernels(0);
 
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
         int32_t of_u[GLINT_TABLE_WIDTH];
@@ -113,7 +113,7 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
                          const int32_t u_q30[GLINT_RAYS], int is_new,
                          int32_t out[GLINT_OUT_KINDS][GLINT_RAYS])
 {
-    const struct glint_horner *k = glint_horner_of(transfer->sets);
+    const struct glint_horner *k = glint_choose_horner_kernels(transfer->sets);
 
     if (is_new)
         set_row_polynomials(transfer, k, v_q30, transfer->of_u);

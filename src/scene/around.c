@@ -5,13 +5,14 @@
 
 enum { MOST_CELLS = 320, MOST_Q15 = 65535 };
 
-void glint_around_carve(struct glint_around *around, struct glint_arena *arena,
-                        int width, int height)
+void glint_background_allocate(struct glint_around *around,
+                               struct glint_arena *arena, int width, int height)
 {
     const int longer = q_larger(width, height);
 
     *around = (struct glint_around){.width = width, .height = height};
-    /* At least 2 x 2 pixels, as rows are read in pairs. */
+    /* Cells have at least 2 x 2 pixels, as the picture is read in pairs of
+     * rows. */
     around->cell_log2 = 1;
     while (longer >> around->cell_log2 > MOST_CELLS)
         around->cell_log2++;
@@ -30,10 +31,10 @@ struct look {
     struct glint_light_sum sum;
 };
 
-/* Returns the mean of N pixels, 1 .. 2^12, whose light sums to SUM. Complete
- * cells have 2^WHOLE_LOG2 pixels; only cells cut by the picture's edge need
- * a division. */
-static uint16_t compute_mean(int64_t sum_q20, int n, int whole_log2)
+/* Returns the mean of N pixels, 1 .. 2^12, whose light sums to SUM. A complete
+ * cell has 2^WHOLE_LOG2 pixels, so its mean is a shift; only cells cut by the
+ * picture's edge need a division. */
+static uint16_t compute_cell_mean(int64_t sum_q20, int n, int whole_log2)
 {
     const int64_t max_q20 = (int64_t)n << 21;
     const uint32_t sum_q15 =
@@ -45,11 +46,11 @@ static uint16_t compute_mean(int64_t sum_q20, int n, int whole_log2)
     return (uint16_t)(mean_q15 < MOST_Q15 ? mean_q15 : MOST_Q15);
 }
 
-/* Adds the light of N pixels from X0 on in rows Y0 .. Y1 - 1 to the sums of
- * their cells. Not inlined, as its codes and its caller's sums are too large
- * for one stack frame. */
-static NEVER_INLINE void add_stretch(const struct look *l, int x0, int n,
-                                     int y0, int y1, int64_t (*rgb_q20)[3])
+/* Adds the light of rows Y0 .. Y1 - 1, pixels X0 .. X0 + N - 1, to the sums RGB
+ * of the cells that the pixels lie in. Not inlined, as its local buffer and its
+ * caller's sums are too large for one stack frame. */
+static NEVER_INLINE void add_run_to_cells(const struct look *l, int x0, int n,
+                                          int y0, int y1, int64_t (*rgb_q20)[3])
 {
     const int side = 1 << l->around->cell_log2;
     struct glint_light_sum sum = l->sum;
@@ -67,8 +68,9 @@ static NEVER_INLINE void add_stretch(const struct look *l, int x0, int n,
     }
 }
 
-/* Fills row JOB of the grid of cells with the means of their pixels. */
-static void look_job(void *ctx, int job, int worker)
+/* Sets row JOB of the cells to the mean light of their pixels. Called by the
+ * worker pool. */
+static void average_cell_row(void *ctx, int job, int worker)
 {
     const struct look *l = ctx;
     const struct glint_around *a = l->around;
@@ -81,18 +83,18 @@ static void look_job(void *ctx, int job, int worker)
         const int n = q_smaller(GLINT_CODES_WIDTH, a->width - x0);
         int64_t rgb_q20[GLINT_CODES_WIDTH / 2][3] = {{0}};
 
-        add_stretch(l, x0, n, y0, y1, rgb_q20);
+        add_run_to_cells(l, x0, n, y0, y1, rgb_q20);
         for (int x = 0; x < n; x += side)
             for (int c = 0; c < 3; c++)
-                *to_q15++ = compute_mean(rgb_q20[x >> a->cell_log2][c],
-                                         q_smaller(side, n - x) * (y1 - y0),
-                                         2 * a->cell_log2);
+                *to_q15++ = compute_cell_mean(
+                    rgb_q20[x >> a->cell_log2][c],
+                    q_smaller(side, n - x) * (y1 - y0), 2 * a->cell_log2);
     }
 }
 
-void glint_around_look(struct glint_around *around,
-                       const struct glint_image *image,
-                       struct glint_workers *workers)
+void glint_background_store(struct glint_around *around,
+                            const struct glint_image *image,
+                            struct glint_workers *workers)
 {
     struct look l = {.around = around};
 
@@ -104,21 +106,23 @@ void glint_around_look(struct glint_around *around,
     around->has_curve = 1;
     around->transfer = image->transfer;
     glint_light_sum_init(&l.sum, image, around->curve);
-    glint_workers_run(workers, around->n_y, look_job, &l);
+    glint_workers_run(workers, around->n_y, average_cell_row, &l);
 }
 
 /* ------------------------------------------------------------------- light */
 
-/* The two cells around a position on one axis, for interpolation. */
+/* The two neighbouring cells between which light is interpolated on one
+ * axis. */
 struct between {
     int cell, next;
-    int32_t part_q15; /* weight of next */
+    int32_t part_q15; /* weight of the cell next; 1 minus it is that of the
+                         other */
 };
 
-static struct between find_cells(int32_t share_q16, int side, int n,
-                                 int cell_log2)
+static struct between find_neighbour_cells(int32_t share_q16, int side, int n,
+                                           int cell_log2)
 {
-    /* position in cells, from the middle of the first cell */
+    /* position in cells, measured from the middle of the first cell */
     const int64_t at_q15 =
         q_shift((int64_t)share_q16 * side, cell_log2 + 1) - (1 << 14);
     const int32_t held_q15 = q_clamp_sat(at_q15, 0, (n - 1) << 15);
@@ -127,13 +131,13 @@ static struct between find_cells(int32_t share_q16, int side, int n,
     return (struct between){cell, q_smaller(cell + 1, n - 1), held_q15 & 32767};
 }
 
-void glint_around_at(const struct glint_around *around, int32_t x_q16,
-                     int32_t y_q16, int32_t rgb_q15[3])
+void glint_background_sample(const struct glint_around *around, int32_t x_q16,
+                             int32_t y_q16, int32_t rgb_q15[3])
 {
-    const struct between x =
-        find_cells(x_q16, around->width, around->n_x, around->cell_log2);
-    const struct between y =
-        find_cells(y_q16, around->height, around->n_y, around->cell_log2);
+    const struct between x = find_neighbour_cells(
+        x_q16, around->width, around->n_x, around->cell_log2);
+    const struct between y = find_neighbour_cells(
+        y_q16, around->height, around->n_y, around->cell_log2);
     const uint16_t *upper_q15 =
         around->light_q15 + (ptrdiff_t)3 * around->n_x * y.cell;
     const uint16_t *lower_q15 =

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * The camera's picture as the background of rays that mirrors reflect or glass
+ * The camera's picture as the background that mirrors reflect and glass
  * refracts.
  *
- * It is stored as means of cells of 2^n x 2^n pixels, at most 320 cells on the
- * longer side, and interpolated linearly between their centres.
- */
+ * The picture is stored as the mean light of cells of 2^n x 2^n pixels, at most
+ * 320 cells on the longer side. Lookups interpolate linearly between the
+ * middles of cells. */
 #ifndef GLINT_SCENE_AROUND_H
 #define GLINT_SCENE_AROUND_H
 
@@ -18,26 +18,29 @@ struct glint_around {
     int cell_log2, n_x, n_y;
     int has_picture;
     int has_curve;
-    /* transfer function of curve, if has_curve is set */
+    /* transfer function that the table curve decodes, if has_curve is set */
     enum glint_tone transfer;
     struct glint_light_curve *curve;
-    uint16_t *light_q15; /* [n_y][n_x][3], display white = 32768 */
+    uint16_t *light_q15; /* mean light of the cells, [n_y][n_x][3]; display
+                            white is 32768 */
 };
 
-/* Allocates memory for pictures of WIDTH x HEIGHT, and starts without a
- * picture. */
-void glint_around_carve(struct glint_around *around, struct glint_arena *arena,
-                        int width, int height);
+/* Allocates the cells for pictures of WIDTH x HEIGHT pixels from ARENA; no
+ * picture is stored yet. */
+void glint_background_allocate(struct glint_around *around,
+                               struct glint_arena *arena, int width,
+                               int height);
 
-/* Stores a reduced copy of IMAGE, which must have the size given to
- * glint_around_carve(); NULL: no picture. */
-void glint_around_look(struct glint_around *around,
-                       const struct glint_image *image,
-                       struct glint_workers *workers);
+/* Stores the mean light of the cells of IMAGE, whose size must be that given to
+ * glint_background_allocate(). IMAGE NULL removes the picture. */
+void glint_background_store(struct glint_around *around,
+                            const struct glint_image *image,
+                            struct glint_workers *workers);
 
-/* Sets RGB_Q15, 0 .. 65535, to the light at (X, Y), fractions 0 .. 1 of the
- * picture's width from the left and of its height from the top. */
-void glint_around_at(const struct glint_around *around, int32_t x_q16,
-                     int32_t y_q16, int32_t rgb_q15[3]);
+/* Sets RGB_Q15, 0 .. 65535, to the light of the stored picture at (X, Y):
+ * fractions 0 .. 1 of its width from the left and of its height from the
+ * top. */
+void glint_background_sample(const struct glint_around *around, int32_t x_q16,
+                             int32_t y_q16, int32_t rgb_q15[3]);
 
 #endif

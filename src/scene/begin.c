@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Prepares a frame: positions of objects, the objects that may be visible, and
- * the data of lights.
- */
+ * Prepares a frame: moves objects to their positions, finds the objects that
+ * may be visible, and computes the direction and light of each light source. */
 #include "scene/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"
 
 enum { ONE_Q30 = 1 << 30 };
 
-/* Returns the box of pixels that a ball may touch: the projection of its
- * bounding box. SEEN: its centre in camera coordinates; REACH: its radius. */
+/* Returns the box of pixels that a ball may cover: the projection of the box
+ * around it. SEEN: its centre in camera coordinates; REACH: its radius,
+ * steps. */
 static struct glint_box compute_ball_box(const struct glint_scene *s,
                                          const int32_t seen[3], int32_t reach)
 {
@@ -19,20 +19,20 @@ static struct glint_box compute_ball_box(const struct glint_scene *s,
     for (int k = 0; k < 8; k++)
         for (int i = 0; i < 3; i++)
             v[k][i] = seen[i] + (k >> i & 1 ? reach : -reach);
-    return glint_view_box(&s->view, (const int32_t(*)[3])v, 8);
+    return glint_view_find_box(&s->view, (const int32_t(*)[3])v, 8);
 }
 
-/* Returns the distance, at the far side of a ball, between the ray through
- * the middle of a pixel and the rays of its samples, steps, rounded up. With
- * four samples, these are 104/256 of a pixel away. */
-static int32_t compute_margin(const struct glint_scene *s,
-                              const int32_t seen[3], int32_t reach)
+/* Returns how far apart, at the far side of a ball, the ray through the middle
+ * of a pixel is from the rays through its samples; steps, rounded up. With four
+ * samples, these are 104/256 of a pixel from the middle. */
+static int32_t compute_sample_margin(const struct glint_scene *s,
+                                     const int32_t seen[3], int32_t reach)
 {
     const struct glint_scene_view *v = &s->view;
     const int64_t step_q56 =
         v->step_q56[0] > v->step_q56[1] ? v->step_q56[0] : v->step_q56[1];
     const int64_t far =
-        (int64_t)glint_root((uint64_t)v3_dot(seen, seen)) + reach;
+        (int64_t)glint_square_root((uint64_t)v3_dot(seen, seen)) + reach;
     const int64_t off_q30 =
         (step_q56 >> 26) * (s->cfg.edge_samples > 4 ? 184 : 104);
 
@@ -41,7 +41,8 @@ static int32_t compute_margin(const struct glint_scene *s,
     return (int32_t)q_clamp_sat((far * off_q30 >> 30) + 2, 0, GLINT_SCENE_SPAN);
 }
 
-int32_t glint_scene_place(const struct glint_scene *s, struct glint_placed *p)
+int32_t glint_scene_find_object_box(const struct glint_scene *s,
+                                    struct glint_placed *p)
 {
     int32_t seen[3], off[3];
 
@@ -53,23 +54,23 @@ int32_t glint_scene_place(const struct glint_scene *s, struct glint_placed *p)
     if (!p->is_shown)
         return GLINT_FAR;
     if (p->object->kind == GLINT_OBJECT_PLANE) {
-        v3_minus(p->at, s->view.at, off);
+        v3_subtract(p->at, s->view.at, off);
         p->is_seen = 1;
         return (int32_t)(q_magnitude(q_shift(v3_dot(off, p->centre), 30)) / 4);
     }
-    glint_view_seen(&s->view, p->centre, seen);
+    glint_view_to_camera(&s->view, p->centre, seen);
     if (seen[2] + p->reach <= 0)
         return GLINT_FAR;
     p->z[0] = seen[2] - p->reach;
     p->z[1] = seen[2] + p->reach;
     p->box = compute_ball_box(s, seen, p->reach + 2);
-    p->margin = compute_margin(s, seen, p->reach);
+    p->margin = compute_sample_margin(s, seen, p->reach);
     p->is_seen = !glint_box_empty(p->box);
     return p->is_seen ? seen[2] - p->reach : GLINT_FAR;
 }
 
-/* Sets the depths of planes; s->nearest must be set. */
-static void place_planes(struct glint_scene *s)
+/* Sets the depth functions of all planes; s->nearest must be set before. */
+static void set_plane_depths(struct glint_scene *s)
 {
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
         struct glint_placed *p = &s->placed[i];
@@ -77,15 +78,15 @@ static void place_planes(struct glint_scene *s)
 
         if (p->object->kind != GLINT_OBJECT_PLANE || !p->is_seen)
             continue;
-        glint_view_seen(&s->view, p->at, seen);
-        v3_turn(&s->view.turn, p->centre, normal_q30);
-        p->is_seen =
-            glint_view_depth(&s->view, seen, normal_q30, s->nearest, &p->depth);
+        glint_view_to_camera(&s->view, p->at, seen);
+        v3_rotate(&s->view.turn, p->centre, normal_q30);
+        p->is_seen = glint_view_set_plane_depth(&s->view, seen, normal_q30,
+                                                s->nearest, &p->depth);
     }
 }
 
-/* Rebuilds the grids of shadows if anything has moved. */
-static void prepare_shadows(struct glint_scene *s)
+/* Rebuilds the shadow grids of all suns if any object has moved. */
+static void rebuild_shadow_grids(struct glint_scene *s)
 {
     s->n_planes = 0;
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
@@ -99,7 +100,7 @@ static void prepare_shadows(struct glint_scene *s)
     }
     for (uint32_t i = 0; i < s->n_lit; i++)
         if (s->lit[i].shadow && !s->lit[i].shadow->is_ready)
-            glint_shadow_prepare(s, &s->lit[i], s->lit[i].shadow);
+            glint_shadow_build_grid(s, &s->lit[i], s->lit[i].shadow);
 }
 
 void glint_scene_begin(struct glint_scene *scene,
@@ -110,29 +111,30 @@ void glint_scene_begin(struct glint_scene *scene,
 
     *stats = (struct glint_scene_stats){0};
     for (uint32_t i = 0; i < n; i++) {
-        const int32_t z = glint_scene_place(scene, &scene->placed[i]);
+        const int32_t z = glint_scene_find_object_box(scene, &scene->placed[i]);
 
         nearest = q_smaller(nearest, z);
         if (z < GLINT_FAR)
             farthest = q_larger(farthest, z + 2 * scene->placed[i].reach);
     }
-    if (scene->motion) /* lines of a motion may be nearer than all objects */
+    if (scene->motion) /* lines of a recorded motion may be nearer than all
+                          objects */
         nearest = q_smaller(nearest, farthest >> 13);
     /* All points nearer than 2^-14 of the max z get the same depth. */
     scene->nearest =
         q_clamp_sat(q_larger(nearest, farthest >> 14), 1, GLINT_SCENE_SPAN);
-    place_planes(scene);
-    glint_quick_begin(scene);
+    set_plane_depths(scene);
+    glint_quick_prepare_balls(scene);
     if (scene->motion)
         scene->cfg.parts.motions->project(scene);
-    else /* shells and lines need exact depths */
-        glint_scene_flatten(scene);
+    else /* shells and lines of a motion need exact depths */
+        glint_scene_set_flat_depths(scene);
     scene->has_triangles = scene->is_spread = 0;
     if (scene->bins.start)
         scene->cfg.parts.meshes->project(scene, stats);
     for (uint32_t i = 0; i < n; i++)
         stats->objects += scene->placed[i].is_seen;
     if (stats->objects > 0)
-        prepare_shadows(scene);
-    glint_scene_confine(scene);
+        rebuild_shadow_grids(scene);
+    glint_scene_confine_catchers(scene);
 }

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lights: the light that they cast on a point, and whether the point is in
- * their shadow.
- */
+ * Computes the light that lamps and suns cast on a point, and traces rays to
+ * find the fraction of it that is in shadow. */
 #include "base/divide.h"
 #include "scene/state.h"
 
@@ -34,8 +33,8 @@ static const int32_t log2_q30[(1 << STEPS_LOG2) + 2] = {
     1024560487, 1030794226, 1037002979, 1043186948, 1049346328, 1055481314,
     1061592099, 1067678873, 1073741824, 1079781138};
 
-/* Evenly distributed sample points of the unit disc: four, and sixteen along
- * a spiral. */
+/* Evenly distributed sample points of the unit disc, x and y: four, and sixteen
+ * along a spiral. */
 static const int32_t four_q15[4][2] = {
     {21773, 7925}, {-7925, 21773}, {-21773, -7925}, {7925, -21773}};
 static const int32_t sixteen_q15[16][2] = {
@@ -48,7 +47,7 @@ static const int32_t sixteen_q15[16][2] = {
 /* ------------------------------------------------------------------- power */
 
 /* Returns -log2(X), _q26, with an error of 2^-23, by a parabola through three
- * neighbours of the table. X_Q30 must be 1 .. 2^30. */
+ * neighbouring entries of the table. X_Q30 must be 1 .. 2^30. */
 static int32_t compute_minus_log2_q26(uint32_t x_q30)
 {
     const int up = 31 - bit_length(x_q30), low = 30 - STEPS_LOG2;
@@ -65,9 +64,9 @@ static int32_t compute_minus_log2_q26(uint32_t x_q30)
     return (int32_t)(((int64_t)up << 26) - q_shift(y_q30, 4));
 }
 
-/* 2^-f, f = 0 .. 1, is computed by six terms of its series, with a max error of
- * 2^-12.6. */
-int32_t glint_power_q15(int32_t x_q30, int32_t k_q8)
+/* The fractional power 2^-f, f = 0 .. 1, is a series of six terms, with a max
+ * error of 2^-12.6. */
+int32_t glint_compute_power_q15(int32_t x_q30, int32_t k_q8)
 {
     int64_t down_q26;
     int32_t f_q26, y_q30;
@@ -90,9 +89,10 @@ int32_t glint_power_q15(int32_t x_q30, int32_t k_q8)
 
 /* ------------------------------------------------------------------- level */
 
-/* Returns REAL * 4^UNIT_LOG2 / SQUARE, _q15, saturated. */
-static int32_t compute_level(struct glint_real real, int unit_log2,
-                             uint64_t square)
+/* Returns REAL * 4^UNIT_LOG2 / SQUARE, _q15, saturated: the light at a distance
+ * whose square is SQUARE. */
+static int32_t compute_light_level(struct glint_real real, int unit_log2,
+                                   uint64_t square)
 {
     const int up = q_up(square);
     /* quotient of the mantissa and SQUARE, times 2^63 / 2^UP; below 2^63 */
@@ -107,10 +107,11 @@ static int32_t compute_level(struct glint_real real, int unit_log2,
     return (int32_t)(over >> down);
 }
 
-int32_t glint_scene_light_at(const struct glint_scene *scene,
-                             const struct glint_lit *lit,
-                             const int32_t place[3], int32_t toward_q30[3],
-                             int32_t level_q15[3])
+int32_t glint_scene_compute_light_at(const struct glint_scene *scene,
+                                     const struct glint_lit *lit,
+                                     const int32_t place[3],
+                                     int32_t toward_q30[3],
+                                     int32_t level_q15[3])
 {
     int32_t off[3];
     int64_t wide[3];
@@ -123,65 +124,65 @@ int32_t glint_scene_light_at(const struct glint_scene *scene,
         }
         return GLINT_FAR;
     }
-    v3_minus(lit->at, place, off);
+    v3_subtract(lit->at, place, off);
     for (int k = 0; k < 3; k++)
         wide[k] = off[k];
-    if (!glint_unit(wide, toward_q30))
+    if (!glint_normalise_vector(wide, toward_q30))
         return 0;
     square = (uint64_t)v3_dot(off, off);
     for (int k = 0; k < 3; k++)
-        level_q15[k] = compute_level(lit->light->rgb[k],
-                                     scene->model.header->unit_log2, square);
-    return (int32_t)glint_root(square);
+        level_q15[k] = compute_light_level(
+            lit->light->rgb[k], scene->model.header->unit_log2, square);
+    return (int32_t)glint_square_root(square);
 }
 
 /* ------------------------------------------------------------------ shadows */
 
-void glint_scene_frame_of(const int32_t d_q30[3], int32_t u_q30[3],
-                          int32_t v_q30[3])
+void glint_scene_set_perpendiculars(const int32_t d_q30[3], int32_t u_q30[3],
+                                    int32_t v_q30[3])
 {
     int32_t axis_q30[3] = {0, 0, 0};
     int64_t cross[3];
 
     axis_q30[q_magnitude(d_q30[0]) > 1 << 29] = 1 << 30;
     v3_cross(d_q30, axis_q30, cross);
-    glint_unit(cross, u_q30);
+    glint_normalise_vector(cross, u_q30);
     v3_cross(d_q30, u_q30, cross);
-    glint_unit(cross, v_q30);
+    glint_normalise_vector(cross, v_q30);
 }
 
-/* Turns RAY to sample point I of the N points of a disc of radius RADIUS, at
- * distance T, in the plane of the unit vectors U and V. */
-static void aim_at_point(struct glint_scene_ray *ray, const int32_t u_q30[3],
-                         const int32_t v_q30[3], int32_t t, int32_t radius,
-                         int i, int n)
+/* Turns RAY to sample point I of N on a disc of radius RADIUS, in the plane of
+ * the unit vectors U and V, at distance T. */
+static void aim_at_disc_point(struct glint_scene_ray *ray,
+                              const int32_t u_q30[3], const int32_t v_q30[3],
+                              int32_t t, int32_t radius, int i, int n)
 {
     const int32_t *at_q15 = n == 4 ? four_q15[i] : sixteen_q15[i];
     int64_t to[3];
 
-    for (int k = 0; k < 3; k++) { /* at most 2^60, and 1.5 * 2^30 times 2^29 */
+    for (int k = 0; k < 3; k++) { /* at most 2^60, plus 1.5 * 2^30 times 2^29 */
         const int64_t aside_q30 = q_shift(
             (int64_t)u_q30[k] * at_q15[0] + (int64_t)v_q30[k] * at_q15[1], 15);
 
         to[k] = (int64_t)t * ray->toward_q30[k] + aside_q30 * radius;
     }
-    glint_unit(to, ray->toward_q30);
+    glint_normalise_vector(to, ray->toward_q30);
 }
 
-void glint_scene_point(struct glint_scene_ray *ray, int32_t t, int32_t radius,
-                       int i, int n)
+void glint_scene_aim_at_light_point(struct glint_scene_ray *ray, int32_t t,
+                                    int32_t radius, int i, int n)
 {
     int32_t u_q30[3] = {0}, v_q30[3] = {0};
 
     if (radius == 0 || n == 1)
         return;
-    glint_scene_frame_of(ray->toward_q30, u_q30, v_q30);
-    aim_at_point(ray, u_q30, v_q30, t, radius, i, n);
+    glint_scene_set_perpendiculars(ray->toward_q30, u_q30, v_q30);
+    aim_at_disc_point(ray, u_q30, v_q30, t, radius, i, n);
 }
 
-int32_t glint_rays_reach(const struct glint_scene *scene,
-                         const struct glint_met_surface *surface,
-                         const struct glint_lit *lit)
+int32_t glint_trace_shadow_rays(const struct glint_scene *scene,
+                                const struct glint_met_surface *surface,
+                                const struct glint_lit *lit)
 {
     const int32_t radius = lit->light->radius;
     const int n = radius ? scene->cfg.shadow_points : 1;
@@ -191,19 +192,19 @@ int32_t glint_rays_reach(const struct glint_scene *scene,
 
     if (!scene->model.header->shadow)
         return GLINT_SCENE_ONE_Q15;
-    glint_scene_leave(scene, surface, middle.at);
-    distance = glint_scene_light_at(scene, lit, middle.at, middle.toward_q30,
-                                    level_q15);
+    glint_scene_set_ray_start(scene, surface, middle.at);
+    distance = glint_scene_compute_light_at(scene, lit, middle.at,
+                                            middle.toward_q30, level_q15);
     if (n > 1)
-        glint_scene_frame_of(middle.toward_q30, u_q30, v_q30);
+        glint_scene_set_perpendiculars(middle.toward_q30, u_q30, v_q30);
     for (int i = 0; i < n; i++) {
         struct glint_scene_ray to = middle;
 
         if (n > 1)
-            aim_at_point(&to, u_q30, v_q30, distance, radius, i, n);
+            aim_at_disc_point(&to, u_q30, v_q30, distance, radius, i, n);
         reached += v3_dot(to.toward_q30, surface->face_q30) > 0 &&
-                   !glint_scene_blocks(scene, &to, surface->object,
-                                       surface->triangle, distance);
+                   !glint_scene_is_ray_blocked(scene, &to, surface->object,
+                                               surface->triangle, distance);
     }
     return reached << (n == 1 ? 15 : n == 4 ? 13 : 11);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lists the lights of the scene as lamps that the camera sees, which flare in
- * the lens; and the fraction of a region of the picture that the scene hides.
- */
+ * Returns the lights of the scene that the camera sees, as lamps for which the
+ * engine draws lens flares, and the fraction of a region of the picture that
+ * objects hide. */
 #include "base/real.h"
 #include "scene/state.h"
 
@@ -20,17 +20,18 @@ static int count_visible_points(const struct glint_scene *s,
     for (int i = 0; i < n; i++) {
         struct glint_scene_ray to = *ray;
 
-        glint_scene_point(&to, t, lit->light->radius, i, n);
-        seen += !glint_scene_blocks(s, &to, GLINT_NOTHING, GLINT_NOTHING, t);
+        glint_scene_aim_at_light_point(&to, t, lit->light->radius, i, n);
+        seen += !glint_scene_is_ray_blocked(s, &to, GLINT_NOTHING,
+                                            GLINT_NOTHING, t);
     }
     return seen * (POINTS / n);
 }
 
-/* Sets the power of LAMP, at distance T: pi times the light of a white
- * surface, times the pixels per solid angle, f^2 / cosine^3. */
-static void set_power(const struct glint_scene *s, const struct glint_lit *lit,
-                      int32_t t, int32_t cosine_q30,
-                      struct glint_scene_lamp *lamp)
+/* Sets the flux of LAMP at distance T: pi times the light of a white surface
+ * there, times the number of pixels per solid angle, f^2 / cosine^3. */
+static void set_lamp_power(const struct glint_scene *s,
+                           const struct glint_lit *lit, int32_t t,
+                           int32_t cosine_q30, struct glint_scene_lamp *lamp)
 {
     const struct glint_real cosine = real_of(cosine_q30, -30);
     const struct glint_real pi = {
@@ -51,8 +52,8 @@ static void set_power(const struct glint_scene *s, const struct glint_lit *lit,
         lamp->rgb[c] = real_times(lit->light->rgb[c], factor);
 }
 
-/* Sets LAMP to the light LIT. Returns 0 if LIT is not in front of the
- * camera. */
+/* Sets LAMP to the position, size and flux of light LIT in the picture. Returns
+ * 0 if LIT is behind the camera. */
 static int project_light(const struct glint_scene *s,
                          const struct glint_lit *lit,
                          struct glint_scene_lamp *lamp)
@@ -64,13 +65,13 @@ static int project_light(const struct glint_scene *s,
 
     for (int k = 0; k < 3; k++)
         ray.at[k] = s->view.at[k];
-    t = glint_scene_light_at(s, lit, ray.at, ray.toward_q30, level_q15);
+    t = glint_scene_compute_light_at(s, lit, ray.at, ray.toward_q30, level_q15);
     if (t == 0)
         return 0;
-    v3_turn(&s->view.turn, ray.toward_q30, seen_q30);
+    v3_rotate(&s->view.turn, ray.toward_q30, seen_q30);
     if (seen_q30[2] <= 0)
         return 0;
-    corner = glint_view_corner(&s->view, seen_q30);
+    corner = glint_view_project_vertex(&s->view, seen_q30);
     if (corner.w != 1)
         return 0;
     lamp->share = count_visible_points(s, lit, &ray, t);
@@ -82,7 +83,7 @@ static int project_light(const struct glint_scene *s,
     radius = real_over(real_times(radius, s->view.focal_q8[0]),
                        real_of(seen_q30[2], -30));
     lamp->radius_q8 = (int32_t)real_integer(radius, 0, 1 << 22);
-    set_power(s, lit, t, seen_q30[2], lamp);
+    set_lamp_power(s, lit, t, seen_q30[2], lamp);
     return 1;
 }
 
@@ -125,5 +126,5 @@ int glint_scene_cover(const struct glint_scene *scene, int32_t x_q8,
             sum += scene->cover[j * scene->cover_across + i];
             n += w * h;
         }
-    return n ? glint_ratio((uint64_t)sum, (uint64_t)n) : 0;
+    return n ? glint_divide_rounded((uint64_t)sum, (uint64_t)n) : 0;
 }

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Changes the appearance (materials, lights of the environment) from frame to
- * frame. A scene draws with its own copy of the model's tables.
- */
+ * Changes materials and environments between frames. A scene owns copies of the
+ * model's tables and draws with these. */
 #include "scene/valid.h"
 #include "scene/parts.h"
 #include "scene/state.h"
 
-void glint_scene_copy_looks(struct glint_scene *scene)
+void glint_scene_copy_materials(struct glint_scene *scene)
 {
     const struct glint_scene_header *h = scene->model.header;
 
@@ -19,10 +18,10 @@ void glint_scene_copy_looks(struct glint_scene *scene)
     scene->model.ward = scene->ward;
 }
 
-/* Returns the parameters of metal of material M, or NULL if M is not a
- * metal. */
-static struct glint_scene_ward *get_metal(const struct glint_scene *s,
-                                          const struct glint_scene_material *m)
+/* Returns the metal parameters of material M, or NULL if M is not a metal. */
+static struct glint_scene_ward *
+get_metal_parameters(const struct glint_scene *s,
+                     const struct glint_scene_material *m)
 {
     return m->ward == GLINT_SCENE_NONE ? NULL : &s->ward[m->ward];
 }
@@ -37,7 +36,7 @@ enum glint_status glint_scene_get_look(const struct glint_scene *scene,
     if (material < 0 || material >= (int)scene->model.header->n_materials)
         return GLINT_E_ARGUMENT;
     m = &scene->material[material];
-    ward = get_metal(scene, m);
+    ward = get_metal_parameters(scene, m);
     *look = (struct glint_scene_look){.rgb_q15 = {0}};
     for (int k = 0; k < 3; k++) {
         look->rgb_q15[k] = m->rgb_q15[k];
@@ -48,8 +47,8 @@ enum glint_status glint_scene_get_look(const struct glint_scene *scene,
     return GLINT_OK;
 }
 
-/* Returns whether all members of LOOK are in range; if IS_METAL is set, also
- * those of a metal, which are stored in WARD. */
+/* Returns whether all members of LOOK are in range. If IS_METAL is set, also
+ * checks the metal parameters and copies them to WARD. */
 static int is_valid_look(const struct glint_scene_look *look, int is_metal,
                          struct glint_scene_ward *ward)
 {
@@ -65,7 +64,7 @@ static int is_valid_look(const struct glint_scene_look *look, int is_metal,
         ward->alpha_q24[k] = look->alpha_q24[k];
         any |= look->alpha_q24[k];
     }
-    return is_metal ? glint_scene_ward_fault(ward) == NULL : any == 0;
+    return is_metal ? glint_scene_check_metal(ward) == NULL : any == 0;
 }
 
 enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
@@ -77,7 +76,7 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
     if (material < 0 || material >= (int)scene->model.header->n_materials)
         return GLINT_E_ARGUMENT;
     m = &scene->material[material];
-    ward = get_metal(scene, m);
+    ward = get_metal_parameters(scene, m);
     if (ward)
         changed.norm = ward->norm;
     if (!is_valid_look(look, ward != NULL, &changed))
@@ -91,10 +90,10 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
     return GLINT_OK;
 }
 
-/* Returns whether object P may have material MATERIAL: a translucent medium
- * needs a map for the object. */
-static int has_map(const struct glint_scene_model *m,
-                   const struct glint_placed *p, uint32_t material)
+/* Returns whether object P may get material MATERIAL: a translucent medium
+ * needs a map that was baked for the object. */
+static int has_translucency_map(const struct glint_scene_model *m,
+                                const struct glint_placed *p, uint32_t material)
 {
     for (uint32_t k = 0; k < m->header->n_stones; k++)
         if (m->stone[k].material == material && !p->is_catcher)
@@ -114,7 +113,7 @@ enum glint_status glint_scene_set_material(struct glint_scene *scene,
         return GLINT_E_ARGUMENT;
     m = &scene->model.material[material];
     p = &scene->placed[object];
-    if (!has_map(&scene->model, p, (uint32_t)material))
+    if (!has_translucency_map(&scene->model, p, (uint32_t)material))
         return GLINT_E_ARGUMENT;
     p->material = (uint32_t)material;
     p->is_split = m->reflect_q15 || m->pass_q15;
@@ -132,21 +131,21 @@ enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
     p = &scene->placed[object];
     if (p->object->kind != GLINT_OBJECT_SPHERE || radius < 1 ||
         radius > GLINT_SCENE_SPAN / 2 ||
-        !glint_scene_within(p->at, 3, GLINT_SCENE_SPAN - 1 - radius))
+        !glint_scene_is_vector_within(p->at, 3, GLINT_SCENE_SPAN - 1 - radius))
         return GLINT_E_ARGUMENT;
     p->radius = p->reach = radius;
-    glint_scene_forget_shadows(scene);
+    glint_scene_invalidate_shadows(scene);
     return GLINT_OK;
 }
 
 /* ------------------------------------------------------------- environments */
 
-/* Invalidates lighting that is cached for several frames. */
-static enum glint_status invalidate_light(struct glint_scene *scene)
+/* Discards the lighting that is cached for several frames. */
+static enum glint_status invalidate_cached_light(struct glint_scene *scene)
 {
     if (scene->stones)
         scene->cfg.parts.stones->relight(scene);
-    glint_scene_forget_shadows(scene);
+    glint_scene_invalidate_shadows(scene);
     return GLINT_OK;
 }
 
@@ -157,25 +156,25 @@ enum glint_status glint_scene_set_environment(struct glint_scene *scene,
         environment >= (int)scene->model.header->n_environments)
         return GLINT_E_ARGUMENT;
     scene->cfg.parts.wards->show(scene, (uint32_t)environment);
-    return invalidate_light(scene);
+    return invalidate_cached_light(scene);
 }
 
 enum glint_status glint_scene_scale_environment(struct glint_scene *scene,
                                                 struct glint_real scale)
 {
     if (!scene->model.header->n_environments || scale.mantissa == 0 ||
-        !glint_scene_is_light(&scale))
+        !glint_scene_is_valid_intensity(&scale))
         return GLINT_E_ARGUMENT;
     scene->cfg.parts.wards->scale(scene, scale);
-    return invalidate_light(scene);
+    return invalidate_cached_light(scene);
 }
 
 enum glint_status glint_scene_turn_environment(struct glint_scene *scene,
                                                const int32_t turn_q30[2])
 {
     if (!scene->model.header->n_environments ||
-        !glint_scene_is_unit(turn_q30, 2))
+        !glint_scene_is_unit_vector(turn_q30, 2))
         return GLINT_E_ARGUMENT;
     scene->cfg.parts.wards->turn(scene, turn_q30);
-    return invalidate_light(scene);
+    return invalidate_cached_light(scene);
 }

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
  * Rasterises triangles: vertices are transformed to camera coordinates once per
- * frame, triangles are sorted into tiles, and in a tile each has three exact
- * edge functions.
+ * frame, and triangles are sorted into tiles. In a tile, a sample is inside a
+ * triangle if three exact edge functions are not negative.
  *
- * Nothing is clipped. Edges are cross products of homogeneous corners (view.h):
- * with x, y within 2^22 and w 1, or all within 2^16, their elements stay below
- * 2^39, the last within +-2^40; samples are within 2^22, so sums are below
- * 2^62. A corner is rounded once, in the same way for all its triangles, so
- * that these neither leak nor overlap. A sample on an edge is assigned to a
- * side by the direction of the edge, which is opposite in two neighbours. */
+ * Nothing is clipped. Edges are cross products of homogeneous corners (view.h).
+ * With x, y within 2^22 and w 1, or all within 2^16, the elements of these
+ * products stay below 2^39, the last within +-2^40. Samples are within 2^22, so
+ * sums are below 2^62. A vertex is rounded once, in the same way for all its
+ * triangles, so that neighbouring triangles neither leave gaps nor overlap. A
+ * sample on an edge is assigned to a side by the direction of the edge, which
+ * is opposite in the two triangles that share it. */
 #include "scene/mesh.h"
 
 #include "base/compiler.h"
@@ -20,35 +21,36 @@
 
 /* -------------------------------------------------------------------- small */
 
-/* Small triangles in the picture: all samples of a pixel are tested at once,
- * in 32 bits, in loops that compilers vectorise. The inside test equals that
- * of large triangles; depths are interpolated linearly in the picture
- * between the corners' depths. */
+/* Small on-screen triangles: all samples of a pixel are tested at once, in 32
+ * bits, in loops that compilers vectorise. The inside test equals that of large
+ * triangles. Depths are interpolated linearly in the picture between the
+ * corners' depths. */
 
-/* The line through two corners, as a function of position: across x + down y
- * + at, positive on one side. */
+/* The edge function of two corners: across x + down y + at at position (x, y);
+ * positive on one side of the edge, 0 on it. */
 struct line {
     int64_t across, down, at;
 };
 
-static inline int64_t evaluate_line(const struct line *l, int64_t x, int64_t y)
+static inline int64_t evaluate_edge_line(const struct line *l, int64_t x,
+                                         int64_t y)
 {
     return l->across * x + l->down * y + l->at;
 }
 
-/* The lines of a small triangle, in 32 bits. */
+/* The edge functions and depth of a small triangle, in 32 bits. */
 struct small {
     uint32_t id;
-    int32_t across[3], down[3]; /* change of the line functions per pixel */
-    int32_t at[3]; /* line functions at the first pixel of the box */
+    int32_t across[3], down[3]; /* change of the edge functions per pixel */
+    int32_t at[3]; /* edge functions in the middle of the box's first pixel */
     struct glint_depth depth;
     int32_t off[3][GLINT_SCENE_SAMPLES], deeper[GLINT_SCENE_SAMPLES];
 };
 
 enum { DEPTH_BITS = 12, MOST_DEEPER = 1 << 28 };
 
-/* Sets DEPTH_Q30 to the depths of the corners of a triangle; returns 0 if a
- * depth is out of range. */
+/* Sets DEPTH_Q30 to the depths of the three corners of T; returns 0 if a depth
+ * is out of range. */
 static inline int compute_corner_depths(const struct glint_scene *s,
                                         uint32_t object,
                                         const struct glint_scene_triangle *t,
@@ -60,17 +62,17 @@ static inline int compute_corner_depths(const struct glint_scene *s,
     for (int k = 0; k < 3; k++) {
         const int32_t z = s->seen[first + t->vertex[k]][2];
 
-        depth_q30[k] =
-            glint_ratio((uint64_t)s->nearest << 30, (uint64_t)q_larger(1, z));
+        depth_q30[k] = glint_divide_rounded((uint64_t)s->nearest << 30,
+                                            (uint64_t)q_larger(1, z));
         fits &= depth_q30[k] < GLINT_FAR;
     }
     return fits;
 }
 
-/* Returns whether everything that the samples of B see so far is nearer than
- * DEPTH_Q30. */
-static int is_nearer(const struct glint_scene_worker *w, struct glint_box b,
-                     int32_t depth_q30)
+/* Returns whether, at all samples of box B, an object nearer than DEPTH_Q30 was
+ * drawn before. */
+static int are_samples_nearer(const struct glint_scene_worker *w,
+                              struct glint_box b, int32_t depth_q30)
 {
     const int n = w->scene->cfg.edge_samples * (b.x1 - b.x0);
 
@@ -86,14 +88,15 @@ static int is_nearer(const struct glint_scene_worker *w, struct glint_box b,
     return 1;
 }
 
-/* Returns whether triangle ID is behind everything that the samples of B see
- * so far. Samples inside lie between the corners, apart from rounding: each
- * of three lines may be 1 too low, together at most half of twice an area of
- * 6, and slopes of depth are truncated. Slopes, at most 2 * 2 * 48 * 256
- * range / area, are below 2^20, so that depths are set as in set_depths(). */
-static int is_all_hidden(const struct glint_scene_worker *w, uint32_t id,
-                         const struct glint_scene_triangle *t,
-                         struct glint_box b)
+/* Returns whether triangle ID is hidden, at all samples of box B, by objects
+ * drawn before. The depth of a sample inside lies between the corners' depths,
+ * apart from rounding: each of three edge functions may be 1 too low, together
+ * at most half of twice an area of 6, and slopes of depth are truncated.
+ * Slopes, at most 2 * 2 * 48 * 256 range / area, are below 2^20, so that depths
+ * are set as in set_depth_function(). */
+static int is_triangle_hidden(const struct glint_scene_worker *w, uint32_t id,
+                              const struct glint_scene_triangle *t,
+                              struct glint_box b)
 {
     enum { LEAST_AREA = 6, SLACK = 16, MOST_RANGE = 1 << 28 };
     const struct glint_scene *s = w->scene;
@@ -112,14 +115,15 @@ static int is_all_hidden(const struct glint_scene_worker *w, uint32_t id,
     range =
         most - q_smaller(depth_q30[0], q_smaller(depth_q30[1], depth_q30[2]));
     return range < MOST_RANGE && range <= 16 * area &&
-           is_nearer(w, b, most + range + SLACK);
+           are_samples_nearer(w, b, most + range + SLACK);
 }
 
-/* Sets the depth function from the corners' depths, with the lines as
- * barycentric weights. Returns 0 if slopes are too large for 32 bits. */
-static int set_depths(const struct glint_scene *s, uint32_t object,
-                      const struct glint_scene_triangle *t,
-                      const struct line line[3], struct small *small)
+/* Sets the triangle's depth as a function of position, interpolated between its
+ * corners; the edge functions are the barycentric weights. Returns 0 if slopes
+ * need more than 32 bits. */
+static int set_depth_function(const struct glint_scene *s, uint32_t object,
+                              const struct glint_scene_triangle *t,
+                              const struct line line[3], struct small *small)
 {
     const struct glint_corner *c =
         &s->corner[s->placed[object].first_vertex + t->vertex[0]];
@@ -129,7 +133,7 @@ static int set_depths(const struct glint_scene *s, uint32_t object,
     if (!compute_corner_depths(s, object, t, depth_q30))
         return 0;
     for (int k = 0; k < 3; k++)
-        all += evaluate_line(&line[k], c->x, c->y);
+        all += evaluate_edge_line(&line[k], c->x, c->y);
     if (all <= 0)
         return 0;
     for (int k = 1; k < 3; k++) { /* below 2^46 */
@@ -148,11 +152,11 @@ static int set_depths(const struct glint_scene *s, uint32_t object,
     return 1;
 }
 
-/* Sets the values that all pixels share: lines at the first pixel, whose
- * middle is at (X, Y), and the differences between samples. */
-static inline void set_small(const struct glint_scene *s, int n,
-                             const struct line line[3], int32_t x_q8,
-                             int32_t y_q8, struct small *small)
+/* Sets the values that all pixels of a small triangle share: edge functions in
+ * the middle (X, Y) of the first pixel, and the differences between samples. */
+static inline void set_small_triangle(const struct glint_scene *s, int n,
+                                      const struct line line[3], int32_t x_q8,
+                                      int32_t y_q8, struct small *small)
 {
     for (int i = 0; i < 3; i++) {
         const int32_t across = (int32_t)line[i].across;
@@ -160,29 +164,30 @@ static inline void set_small(const struct glint_scene *s, int n,
         int32_t most = INT32_MIN;
 
         for (int k = 0; k < n; k++) {
-            small->off[i][k] =
-                across * glint_sample(s, k, 0) + down * glint_sample(s, k, 1);
+            small->off[i][k] = across * glint_sample_offset_q8(s, k, 0) +
+                               down * glint_sample_offset_q8(s, k, 1);
             most = q_larger(most, small->off[i][k]);
         }
         for (int k = 0; k < n; k++)
             small->off[i][k] -= most;
         small->across[i] = 256 * across;
         small->down[i] = 256 * down;
-        small->at[i] = (int32_t)evaluate_line(&line[i], x_q8, y_q8) + most;
+        small->at[i] = (int32_t)evaluate_edge_line(&line[i], x_q8, y_q8) + most;
     }
     for (int k = 0; k < n; k++)
         small->deeper[k] =
-            (int32_t)((small->depth.across * glint_sample(s, k, 0) +
-                       small->depth.down * glint_sample(s, k, 1)) >>
+            (int32_t)((small->depth.across * glint_sample_offset_q8(s, k, 0) +
+                       small->depth.down * glint_sample_offset_q8(s, k, 1)) >>
                       DEPTH_BITS);
 }
 
-/* Draws the N samples of a pixel whose line functions AT and depth Z are
- * given at its middle. The loop is written so that compilers vectorise it
- * before they unroll it. */
-static inline void draw_samples(const struct small *small, int n,
-                                const int32_t at[3], int32_t z,
-                                int32_t *restrict depth, uint32_t *restrict id)
+/* Draws the N samples of a pixel in whose middle the edge functions are AT and
+ * the depth is Z. The loop is written so that compilers vectorise it before
+ * they unroll it. */
+static inline void draw_pixel_samples(const struct small *small, int n,
+                                      const int32_t at[3], int32_t z,
+                                      int32_t *restrict depth,
+                                      uint32_t *restrict id)
 {
     const uint32_t own = small->id;
 
@@ -200,23 +205,24 @@ static inline void draw_samples(const struct small *small, int n,
     }
 }
 
-static inline void draw_small_rows(struct glint_scene_worker *w, int n,
-                                   const struct small *small,
-                                   struct glint_box b)
+static inline void draw_small_triangle_rows(struct glint_scene_worker *w, int n,
+                                            const struct small *small,
+                                            struct glint_box b)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_depth d = small->depth;
-    const int32_t x_q8 = glint_place(s, b.x0, 0);
+    const int32_t x_q8 = glint_pixel_position_q8(s, b.x0, 0);
     int32_t first[3] = {small->at[0], small->at[1], small->at[2]};
 
     for (int y = b.y0; y < b.y1; y++) {
-        int64_t depth = d.across * x_q8 + d.down * glint_place(s, y, 1) + d.at;
+        int64_t depth =
+            d.across * x_q8 + d.down * glint_pixel_position_q8(s, y, 1) + d.at;
         int32_t at[3] = {first[0], first[1], first[2]};
         int k = glint_sample_index(w, b.x0, y, 0);
 
         for (int x = b.x0; x < b.x1; x++, k += n) {
             if ((at[0] | at[1] | at[2]) >= 0)
-                draw_samples(
+                draw_pixel_samples(
                     small, n, at,
                     q_clamp_sat(depth >> DEPTH_BITS, -(3 << 29), 3 << 29),
                     w->depth + k, w->id + k);
@@ -229,46 +235,46 @@ static inline void draw_small_rows(struct glint_scene_worker *w, int n,
     }
 }
 
-/* Draws triangle T, with id ID, in 32 bits. Returns 0 if its depths need
- * more bits. All corners must be in the picture or near it, and the line
- * functions below 2^30 in B. */
-static int draw_small(struct glint_scene_worker *w, uint32_t id,
-                      const struct glint_scene_triangle *t,
-                      const struct line line[3], struct glint_box b)
+/* Draws triangle T, with id ID, in 32 bits. Returns 0, and draws nothing, if
+ * its depths need more bits. All corners must be in the picture or near it, and
+ * the edge functions below 2^30 in box B. */
+static int draw_small_triangle(struct glint_scene_worker *w, uint32_t id,
+                               const struct glint_scene_triangle *t,
+                               const struct line line[3], struct glint_box b)
 {
     const struct glint_scene *s = w->scene;
     const int n = s->cfg.edge_samples;
-    const int32_t x_q8 = glint_place(s, b.x0, 0);
-    const int32_t y_q8 = glint_place(s, b.y0, 1);
+    const int32_t x_q8 = glint_pixel_position_q8(s, b.x0, 0);
+    const int32_t y_q8 = glint_pixel_position_q8(s, b.y0, 1);
     struct small small;
 
     small.id = id;
-    if (!set_depths(s, id >> 20, t, line, &small))
+    if (!set_depth_function(s, id >> 20, t, line, &small))
         return 0;
     if (n == 1) {
-        set_small(s, 1, line, x_q8, y_q8, &small);
-        draw_small_rows(w, 1, &small, b);
+        set_small_triangle(s, 1, line, x_q8, y_q8, &small);
+        draw_small_triangle_rows(w, 1, &small, b);
     } else if (n == 4) {
-        set_small(s, 4, line, x_q8, y_q8, &small);
-        draw_small_rows(w, 4, &small, b);
+        set_small_triangle(s, 4, line, x_q8, y_q8, &small);
+        draw_small_triangle_rows(w, 4, &small, b);
     } else {
-        set_small(s, n, line, x_q8, y_q8, &small);
-        draw_small_rows(w, n, &small, b);
+        set_small_triangle(s, n, line, x_q8, y_q8, &small);
+        draw_small_triangle_rows(w, n, &small, b);
     }
     return 1;
 }
 
 /* --------------------------------------------------------------------- rays */
 
-/* Rays through a mesh's grid, in the mesh's own space.
+/* Traces rays through a mesh's grid of cells, in the mesh's own space.
  *
  * A ray starts where it comes near the mesh, so that differences stay below
- * 2^29, and goes from cell to cell by comparing products: the side of the cell
- * that it leaves by, dx / |d.x| < dy / |d.y|, needs no division. Lists include
- * triangles up to 16 steps outside their cells, so that rounding of the start
+ * 2^29. It walks from cell to cell without division: comparing products, dx /
+ * |d.x| < dy / |d.y|, finds the side by which it leaves a cell. Lists of cells
+ * include triangles up to 16 steps outside, so that rounding of the ray's start
  * misses none. */
 
-/* A ray in a mesh's space. */
+/* A ray transformed to a mesh's own space. */
 struct inside {
     const struct glint_scene *scene;
     const struct glint_scene_mesh *mesh;
@@ -276,13 +282,14 @@ struct inside {
     struct glint_sheared sheared;
     /* distance along the original ray at which this ray begins */
     int32_t start;
-    uint32_t but; /* index of the triangle that is skipped */
+    uint32_t but; /* index of the triangle that the ray starts on, which is
+                     skipped */
 };
 
-/* Transforms RAY to the space of OBJECT, starting at distance T. */
-static int enter_space(const struct glint_scene *s, uint32_t object,
-                       const struct glint_scene_ray *ray, int32_t t,
-                       struct inside *in)
+/* Transforms RAY to the space of OBJECT; the new ray starts at distance T. */
+static int transform_ray_to_mesh(const struct glint_scene *s, uint32_t object,
+                                 const struct glint_scene_ray *ray, int32_t t,
+                                 struct inside *in)
 {
     const struct glint_placed *p = &s->placed[object];
     int32_t place[3], off[3];
@@ -290,29 +297,29 @@ static int enter_space(const struct glint_scene *s, uint32_t object,
     in->scene = s;
     in->mesh = glint_mesh_of(s, object);
     in->start = t;
-    if (!glint_ray_go(ray, t, place))
+    if (!glint_ray_point_at_distance(ray, t, place))
         return 0;
-    v3_minus(place, p->at, off);
-    v3_turn_back(&p->turn, off, in->ray.at);
-    v3_turn_back(&p->turn, ray->toward_q30, in->ray.toward_q30);
-    glint_shear(&in->ray, &in->sheared);
+    v3_subtract(place, p->at, off);
+    v3_rotate_back(&p->turn, off, in->ray.at);
+    v3_rotate_back(&p->turn, ray->toward_q30, in->ray.toward_q30);
+    glint_ray_shear_to_axis(&in->ray, &in->sheared);
     return 1;
 }
 
 /* --------------------------------------------------------------------- grid */
 
-/* The position of a ray in the grid. */
+/* The cell of the grid that a ray is in, and its distance to the next cells. */
 struct walk {
     int32_t cell[3], step[3];
-    int64_t away[3]; /* distance along the axis to the side of the cell at which
-                        the ray leaves, steps */
-    int64_t speed[3]; /* |direction|, q30 */
+    int64_t away[3];  /* distance along each axis to the side by which the ray
+                         leaves the cell, steps */
+    int64_t speed[3]; /* absolute value of the ray's direction, q30 */
 };
 
-/* Begins a walk at the point where the ray enters the grid. Returns 0 if the
- * ray misses the grid. A start that rounding has moved outside the grid is
+/* Starts a walk at the point where the ray enters the grid. Returns 0 if the
+ * ray misses the grid. A start that rounding has moved out of the grid is
  * clamped to the nearest cell. */
-static int begin_walk(struct inside *in, struct walk *w)
+static int begin_grid_walk(struct inside *in, struct walk *w)
 {
     enum { SLACK = GLINT_SCENE_MARGIN / 2 };
     const struct glint_scene_mesh *m = in->mesh;
@@ -331,10 +338,10 @@ static int begin_walk(struct inside *in, struct walk *w)
             continue;
         if (below > 0 ? d_q30[k] <= 0 : d_q30[k] >= 0)
             return 0;
-        t = q_larger(t,
-                     glint_ratio((uint64_t)off << 30, (uint64_t)w->speed[k]));
+        t = q_larger(t, glint_divide_rounded((uint64_t)off << 30,
+                                             (uint64_t)w->speed[k]));
     }
-    if (t == GLINT_FAR || !glint_ray_go(&in->ray, t, at))
+    if (t == GLINT_FAR || !glint_ray_point_at_distance(&in->ray, t, at))
         return 0;
     for (int k = 0; k < 3; k++) {
         const int64_t from = at[k] - (int64_t)m->origin[k];
@@ -350,21 +357,23 @@ static int begin_walk(struct inside *in, struct walk *w)
                          : (((int64_t)w->cell[k] + 1) << m->cell_log2) - from;
     }
     in->start += t;
-    /* Triangles in the side of the grid at which the ray enters are met. */
+    /* Includes triangles in the face of the grid by which the ray enters. */
     in->sheared.least = -q_smaller(t, SLACK);
     for (int k = 0; k < 3; k++)
         in->ray.at[k] = in->sheared.at[k] = at[k];
     return 1;
 }
 
-/* Moves to the next cell. Returns 0 at the end of the grid, or if the next
- * cell is farther from the start of the walk than LIMIT. */
-static int advance_walk(const struct inside *in, struct walk *w, int64_t limit)
+/* Moves to the next cell. Returns 0 at the end of the grid, or if the next cell
+ * is more than LIMIT steps from the start of the walk. */
+static int advance_to_next_cell(const struct inside *in, struct walk *w,
+                                int64_t limit)
 {
     const struct glint_scene_mesh *m = in->mesh;
     int next = 0;
 
-    for (int k = 1; k < 3; k++) /* the max speed is never 0 */
+    for (int k = 1; k < 3; k++) /* the direction's largest component is never
+                                   0 */
         next = w->speed[k] > w->speed[next] ? k : next;
     for (int k = 0; k < 3; k++)
         if (w->away[k] * w->speed[next] < w->away[next] * w->speed[k])
@@ -378,29 +387,30 @@ static int advance_walk(const struct inside *in, struct walk *w, int64_t limit)
     return w->cell[next] >= 0 && w->cell[next] < (int32_t)m->cells[next];
 }
 
-/* Tests the triangles of the current cell. Sets MET to the nearest
- * intersection within MET->t; returns whether there is one. */
-static int test_cell(const struct inside *in, const struct walk *w,
-                     struct glint_met *met)
+/* Intersects the ray with the triangles of the current cell. Sets MET to the
+ * nearest intersection before MET->t; returns 0 if there is none. */
+static int intersect_cell_triangles(const struct inside *in,
+                                    const struct walk *w, struct glint_met *met)
 {
     const struct glint_scene_mesh *m = in->mesh;
     const size_t cell =
         (size_t)((uint32_t)w->cell[2] * m->cells[1] + (uint32_t)w->cell[1]) *
             m->cells[0] +
         (uint32_t)w->cell[0];
-    const uint32_t *start = glint_mesh_table(in->scene, m->start_at);
-    const uint32_t *ref = glint_mesh_table(in->scene, m->ref_at);
+    const uint32_t *start = glint_mesh_get_table(in->scene, m->start_at);
+    const uint32_t *ref = glint_mesh_get_table(in->scene, m->ref_at);
     int any = 0;
 
-    glint_scene_count(in->scene, 1 + (int64_t)start[cell + 1] - start[cell]);
+    glint_scene_count_ray_tests(in->scene,
+                                1 + (int64_t)start[cell + 1] - start[cell]);
     for (uint32_t i = start[cell]; i < start[cell + 1]; i++) {
         const int32_t *vertex[3];
         struct glint_spot_on spot;
 
         if (ref[i] == in->but)
             continue;
-        glint_mesh_vertices(in->scene, m, ref[i], vertex);
-        if (!glint_ray_triangle(&in->sheared, vertex, &spot) ||
+        glint_mesh_get_vertices(in->scene, m, ref[i], vertex);
+        if (!glint_ray_intersect_triangle(&in->sheared, vertex, &spot) ||
             (int64_t)spot.t + in->start >= met->t)
             continue;
         met->t = spot.t + in->start;
@@ -423,20 +433,21 @@ static int intersect_mesh(const struct glint_scene *scene, uint32_t object,
     int found = 0;
 
     met->object = object;
-    if (!glint_ray_sphere(ray, p->centre, p->reach, &chord) ||
+    if (!glint_ray_intersect_sphere(ray, p->centre, p->reach, &chord) ||
         chord.t[1] <= 0 || chord.t[0] >= met->t ||
-        !enter_space(scene, object, ray, q_larger(0, chord.t[0]), &in) ||
-        !begin_walk(&in, &w))
+        !transform_ray_to_mesh(scene, object, ray, q_larger(0, chord.t[0]),
+                               &in) ||
+        !begin_grid_walk(&in, &w))
         return 0;
     do {
-        found |= test_cell(&in, &w, met);
+        found |= intersect_cell_triangles(&in, &w, met);
     } while (!(found && any) &&
-             advance_walk(&in, &w, (int64_t)met->t - in.start));
+             advance_to_next_cell(&in, &w, (int64_t)met->t - in.start));
     return found;
 }
 
 /* Intersects a primary ray with one triangle, using the vertices in camera
- * coordinates, which are computed once per frame. */
+ * coordinates that were computed once for the frame. */
 static int intersect_triangle(const struct glint_scene *scene, uint32_t object,
                               uint32_t triangle, const int32_t seen_q30[3],
                               struct glint_met *met)
@@ -452,8 +463,8 @@ static int intersect_triangle(const struct glint_scene *scene, uint32_t object,
         vertex[k] =
             scene->seen[scene->placed[object].first_vertex + t->vertex[k]];
     }
-    glint_shear(&ray, &sheared);
-    if (!glint_ray_hold(&sheared, vertex, &met->spot))
+    glint_ray_shear_to_axis(&ray, &sheared);
+    if (!glint_ray_clamp_to_triangle(&sheared, vertex, &met->spot))
         return 0;
     met->object = object;
     met->triangle = triangle;
@@ -463,10 +474,11 @@ static int intersect_triangle(const struct glint_scene *scene, uint32_t object,
 
 /* ----------------------------------------------------------------- surfaces */
 
-/* Sets TO to the mean of three rows of N numbers, weighted by the weights in
- * SPOT. */
-static void interpolate_rows(const struct glint_spot_on *spot,
-                             const int32_t *const row[3], int n, int32_t *to)
+/* Sets TO to the mean of the three vertices' rows of N numbers, weighted by the
+ * barycentric weights in SPOT. */
+static void interpolate_vertex_rows(const struct glint_spot_on *spot,
+                                    const int32_t *const row[3], int n,
+                                    int32_t *to)
 {
     for (int k = 0; k < n; k++) {
         int64_t sum = 0;
@@ -477,17 +489,17 @@ static void interpolate_rows(const struct glint_spot_on *spot,
     }
 }
 
-static void get_rows(const struct glint_scene *s,
-                     const struct glint_scene_triangle *t, uint32_t at, int n,
-                     const int32_t *row[3])
+static void get_vertex_rows(const struct glint_scene *s,
+                            const struct glint_scene_triangle *t, uint32_t at,
+                            int n, const int32_t *row[3])
 {
     for (int k = 0; k < 3; k++)
-        row[k] =
-            (const int32_t *)glint_mesh_table(s, at) + (size_t)n * t->vertex[k];
+        row[k] = (const int32_t *)glint_mesh_get_table(s, at) +
+                 (size_t)n * t->vertex[k];
 }
 
 /* Returns log2 of the length of V, _q16, or -2^24 if V is 0. */
-static int32_t log2_length_q16(const int64_t v[3])
+static int32_t compute_log2_length_q16(const int64_t v[3])
 {
     const uint64_t any =
         q_magnitude(v[0]) | q_magnitude(v[1]) | q_magnitude(v[2]);
@@ -499,33 +511,35 @@ static int32_t log2_length_q16(const int64_t v[3])
     return square ? q_log2_q16(square) / 2 + down * 65536 : -(1 << 24);
 }
 
-/* Sets u, v and the scale of SURFACE from the triangle's area in uv space. */
-static void set_uv(const struct glint_scene *s,
-                   const struct glint_scene_mesh *m,
-                   const struct glint_scene_triangle *t,
-                   const int32_t *const vertex[3], const struct glint_met *met,
-                   struct glint_met_surface *surface)
+/* Sets the texture coordinates of SURFACE, and the triangle's area in uv space
+ * per area. */
+static void set_surface_uv(const struct glint_scene *s,
+                           const struct glint_scene_mesh *m,
+                           const struct glint_scene_triangle *t,
+                           const int32_t *const vertex[3],
+                           const struct glint_met *met,
+                           struct glint_met_surface *surface)
 {
     const int32_t *uv_q16[3];
     int32_t first[3] = {0}, second[3] = {0}, uv[2][3] = {{0}};
     int64_t area[3], uv_area[3];
 
-    get_rows(s, t, m->uv_at, 2, uv_q16);
-    interpolate_rows(&met->spot, uv_q16, 2, surface->uv_q16);
-    v3_minus(vertex[1], vertex[0], first);
-    v3_minus(vertex[2], vertex[0], second);
+    get_vertex_rows(s, t, m->uv_at, 2, uv_q16);
+    interpolate_vertex_rows(&met->spot, uv_q16, 2, surface->uv_q16);
+    v3_subtract(vertex[1], vertex[0], first);
+    v3_subtract(vertex[2], vertex[0], second);
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 2; i++)
             uv[i][k] = uv_q16[i + 1][k] - uv_q16[0][k];
     v3_cross(first, second, area);
     v3_cross(uv[0], uv[1], uv_area);
-    surface->uv_log2_q16 =
-        log2_length_q16(uv_area) - (32 << 16) - log2_length_q16(area);
+    surface->uv_log2_q16 = compute_log2_length_q16(uv_area) - (32 << 16) -
+                           compute_log2_length_q16(area);
 }
 
-static int set_surface(const struct glint_scene *scene,
-                       const struct glint_met *met,
-                       struct glint_met_surface *surface)
+static int set_mesh_surface(const struct glint_scene *scene,
+                            const struct glint_met *met,
+                            struct glint_met_surface *surface)
 {
     const struct glint_placed *p = &scene->placed[met->object];
     const struct glint_scene_mesh *m = glint_mesh_of(scene, met->object);
@@ -534,35 +548,35 @@ static int set_surface(const struct glint_scene *scene,
     const int32_t *vertex[3], *row[3];
     int32_t place[3], normal_q30[3];
 
-    glint_mesh_vertices(scene, m, met->triangle, vertex);
-    interpolate_rows(&met->spot, vertex, 3, place);
-    v3_turn(&p->turn, place, surface->place);
+    glint_mesh_get_vertices(scene, m, met->triangle, vertex);
+    interpolate_vertex_rows(&met->spot, vertex, 3, place);
+    v3_rotate(&p->turn, place, surface->place);
     for (int k = 0; k < 3; k++)
         surface->place[k] += p->at[k];
-    if (!glint_triangle_normal(vertex, normal_q30))
+    if (!glint_set_triangle_normal(vertex, normal_q30))
         return 0;
-    v3_turn(&p->turn, normal_q30, surface->face_q30);
+    v3_rotate(&p->turn, normal_q30, surface->face_q30);
     if (m->normal_at) {
         int64_t sum[3];
 
-        get_rows(scene, t, m->normal_at, 3, row);
-        interpolate_rows(&met->spot, row, 3, normal_q30);
+        get_vertex_rows(scene, t, m->normal_at, 3, row);
+        interpolate_vertex_rows(&met->spot, row, 3, normal_q30);
         for (int k = 0; k < 3; k++)
             sum[k] = normal_q30[k];
-        if (!glint_unit(sum, normal_q30))
+        if (!glint_normalise_vector(sum, normal_q30))
             return 0;
     }
-    v3_turn(&p->turn, normal_q30, surface->normal_q30);
+    v3_rotate(&p->turn, normal_q30, surface->normal_q30);
     if (t->material != GLINT_SCENE_NONE)
         surface->material = &scene->model.material[t->material];
     if (m->uv_at &&
         (surface->material->texture != GLINT_SCENE_NONE || p->skin >= 0))
-        set_uv(scene, m, t, vertex, met, surface);
+        set_surface_uv(scene, m, t, vertex, met, surface);
     return 1;
 }
 
-static int is_smooth_pair(const struct glint_scene *scene, uint32_t a,
-                          uint32_t b)
+static int do_triangles_share_vertex(const struct glint_scene *scene,
+                                     uint32_t a, uint32_t b)
 {
     const struct glint_scene_mesh *m = glint_mesh_of(scene, a >> 20);
     const struct glint_scene_triangle *t =
@@ -579,66 +593,70 @@ static int is_smooth_pair(const struct glint_scene *scene, uint32_t a,
 
 /* ------------------------------------------------------------------ corners */
 
-static const struct glint_corner *get_corner(const struct glint_scene *s,
-                                             uint32_t object, uint32_t vertex)
+static const struct glint_corner *
+get_projected_vertex(const struct glint_scene *s, uint32_t object,
+                     uint32_t vertex)
 {
     return &s->corner[s->placed[object].first_vertex + vertex];
 }
 
-static void move_vertices(struct glint_scene *s, uint32_t object)
+static void transform_vertices(struct glint_scene *s, uint32_t object)
 {
     const struct glint_placed *p = &s->placed[object];
     const struct glint_scene_mesh *m = glint_mesh_of(s, object);
-    const int32_t *vertex = glint_mesh_table(s, m->vertex_at);
+    const int32_t *vertex = glint_mesh_get_table(s, m->vertex_at);
 
     for (uint32_t i = 0; i < m->n_vertices; i++) {
         int32_t *to = s->seen[p->first_vertex + i], place[3];
 
-        v3_turn(&p->turn, vertex + 3 * (size_t)i, place);
+        v3_rotate(&p->turn, vertex + 3 * (size_t)i, place);
         for (int k = 0; k < 3; k++)
             place[k] += p->at[k];
-        glint_view_seen(&s->view, place, to);
-        s->corner[p->first_vertex + i] = glint_view_corner(&s->view, to);
+        glint_view_to_camera(&s->view, place, to);
+        s->corner[p->first_vertex + i] =
+            glint_view_project_vertex(&s->view, to);
     }
 }
 
 /* Returns the max offset of a sample from the middle of its pixel, 1/256
  * pixel. */
-static int32_t max_off_q8(const struct glint_scene *s)
+static int32_t max_sample_offset_q8(const struct glint_scene *s)
 {
     return s->cfg.edge_samples > 4 ? 120 : 96;
 }
 
-/* Returns the first pixel that may have a sample at X or beyond. */
+/* Returns the first pixel that may have a sample at X or to the right of it. */
 static int find_first_pixel(int32_t x_q8, int side, int32_t off_q8)
 {
     return (x_q8 + 128 * (side - 1) - off_q8 + 255) >> 8;
 }
 
-/* Returns 1 + the last pixel that may have a sample at X or before. */
+/* Returns 1 + the last pixel that may have a sample at X or to the left of
+ * it. */
 static int find_end_pixel(int32_t x_q8, int side, int32_t off_q8)
 {
     return ((x_q8 + 128 * (side - 1) + off_q8) >> 8) + 1;
 }
 
-/* Max width and height of small triangles: their line functions are below
- * 2^30 within 256 pixels of the triangle, and so are sums of two of them. */
+/* Max width and height of small triangles, 1/256 pixel: their edge functions,
+ * and sums of two of these, are below 2^30 within 256 pixels of the
+ * triangle. */
 enum { SMALL_Q8 = 48 << 8 };
 
-/* Returns the box of pixels that a triangle may touch: the whole picture if
- * a corner is behind the camera or far off-screen. */
-static struct glint_box compute_box(const struct glint_scene *s,
-                                    uint32_t object,
-                                    const struct glint_scene_triangle *t,
-                                    int *is_small)
+/* Returns the box of pixels that a triangle may cover: the whole picture if a
+ * corner is behind the camera or far off-screen. */
+static struct glint_box
+compute_triangle_box(const struct glint_scene *s, uint32_t object,
+                     const struct glint_scene_triangle *t, int *is_small)
 {
     const struct glint_box all = {0, 0, s->view.width, s->view.height};
     int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
-    const int32_t off_q8 = max_off_q8(s);
+    const int32_t off_q8 = max_sample_offset_q8(s);
     int n_near = 0, n_behind = 0;
 
     for (int k = 0; k < 3; k++) {
-        const struct glint_corner *c = get_corner(s, object, t->vertex[k]);
+        const struct glint_corner *c =
+            get_projected_vertex(s, object, t->vertex[k]);
 
         n_near += c->w == 1;
         n_behind += c->w < 0;
@@ -662,8 +680,9 @@ static struct glint_box compute_box(const struct glint_scene *s,
 
 /* -------------------------------------------------------------------- lists */
 
-/* Returns the number of entries in the bins that an object's triangles need. */
-static int64_t count_entries(struct glint_scene *s, uint32_t object)
+/* Returns the number of entries in tile lists (bins) that the triangles of an
+ * object need. */
+static int64_t count_bin_entries(struct glint_scene *s, uint32_t object)
 {
     const struct glint_scene_mesh *m = glint_mesh_of(s, object);
     int64_t n = 0;
@@ -671,18 +690,21 @@ static int64_t count_entries(struct glint_scene *s, uint32_t object)
 
     for (uint32_t i = 0; i < m->n_triangles; i++)
         n += glint_bins_count_overlapped_tiles(
-            &s->bins,
-            compute_box(s, object, glint_mesh_triangle(s, m, i), &is_small));
+            &s->bins, compute_triangle_box(
+                          s, object, glint_mesh_triangle(s, m, i), &is_small));
     return n;
 }
 
-/* Returns whether a triangle may face the camera. */
-static int is_facing(const struct glint_scene *s, uint32_t object,
-                     const struct glint_scene_triangle *t)
+/* Returns whether triangle T may face the camera. */
+static int is_facing_camera(const struct glint_scene *s, uint32_t object,
+                            const struct glint_scene_triangle *t)
 {
-    const struct glint_corner *a = get_corner(s, object, t->vertex[0]);
-    const struct glint_corner *b = get_corner(s, object, t->vertex[1]);
-    const struct glint_corner *c = get_corner(s, object, t->vertex[2]);
+    const struct glint_corner *a =
+        get_projected_vertex(s, object, t->vertex[0]);
+    const struct glint_corner *b =
+        get_projected_vertex(s, object, t->vertex[1]);
+    const struct glint_corner *c =
+        get_projected_vertex(s, object, t->vertex[2]);
 
     return a->w != 1 || b->w != 1 || c->w != 1 ||
            (int64_t)(b->x - a->x) * (c->y - a->y) >
@@ -691,10 +713,10 @@ static int is_facing(const struct glint_scene *s, uint32_t object,
 
 enum { BOTH_SIDES = -1 };
 
-/* Counts the bin entries of the triangles of all meshes if FACING is
- * BOTH_SIDES; else lists in the bins the triangles that face the camera (1) or
- * those that do not (0). */
-static void list_triangles(struct glint_scene *s, int facing)
+/* If FACING is BOTH_SIDES, counts the entries in tile lists (bins) for the
+ * triangles of all meshes. Otherwise appends to these lists the triangles that
+ * face the camera (1) or those that face away (0). */
+static void bin_triangles(struct glint_scene *s, int facing)
 {
     for (uint32_t k = 0; k < s->model.header->n_objects; k++) {
         const struct glint_scene_triangle *t;
@@ -709,13 +731,14 @@ static void list_triangles(struct glint_scene *s, int facing)
             struct glint_box b;
             int is_small;
 
-            if (facing != BOTH_SIDES && facing != is_facing(s, k, t))
+            if (facing != BOTH_SIDES && facing != is_facing_camera(s, k, t))
                 continue;
-            b = compute_box(s, k, t, &is_small);
+            b = compute_triangle_box(s, k, t, &is_small);
             if (glint_box_empty(b))
                 continue;
             if (facing != BOTH_SIDES)
-                glint_bins_put_item(&s->bins, b, (int32_t)glint_id(k, i));
+                glint_bins_put_item(&s->bins, b,
+                                    (int32_t)glint_make_triangle_id(k, i));
             else
                 glint_bins_count_box(&s->bins, b);
         }
@@ -734,8 +757,8 @@ static void project_meshes(struct glint_scene *s,
 
         if (p->object->kind != GLINT_OBJECT_MESH || !p->is_seen)
             continue;
-        move_vertices(s, k);
-        span = count_entries(s, k);
+        transform_vertices(s, k);
+        span = count_bin_entries(s, k);
         need += span;
         if (stats->refs + span > s->cfg.max_refs) {
             p->is_seen = 0;
@@ -746,28 +769,29 @@ static void project_meshes(struct glint_scene *s,
         stats->triangles += (int)glint_mesh_of(s, k)->n_triangles;
     }
     stats->need_refs = q_clamp_sat(need, 0, INT32_MAX);
-    list_triangles(s, BOTH_SIDES);
+    bin_triangles(s, BOTH_SIDES);
     glint_bins_convert_counts_to_starts(&s->bins);
-    list_triangles(s, 1); /* facing triangles first, as they hide most others */
-    list_triangles(s, 0);
+    bin_triangles(s, 1); /* triangles that face the camera first, as they hide
+                            most others */
+    bin_triangles(s, 0);
     glint_bins_reset_starts(&s->bins);
     s->has_triangles = stats->refs > 0;
 }
 
 /* --------------------------------------------------------------------- tile */
 
-static struct line compute_line(const struct glint_corner *a,
-                                const struct glint_corner *b)
+static struct line compute_edge_line(const struct glint_corner *a,
+                                     const struct glint_corner *b)
 {
     return (struct line){(int64_t)a->y * b->w - (int64_t)b->y * a->w,
                          (int64_t)b->x * a->w - (int64_t)a->x * b->w,
                          (int64_t)a->x * b->y - (int64_t)b->x * a->y};
 }
 
-/* Adjusts a line so that samples exactly on it count as inside or outside
- * according to the sign of its first nonzero coefficient. Returns 0 if all
- * coefficients are 0. */
-static int settle_line(struct line *l)
+/* Decides on which side of an edge samples exactly on it lie, by the sign of
+ * the edge function's first nonzero coefficient. Returns 0 if all coefficients
+ * are 0. */
+static int apply_edge_rule(struct line *l)
 {
     const int is_out =
         l->across < 0 ||
@@ -779,19 +803,19 @@ static int settle_line(struct line *l)
     return 1;
 }
 
-/* Sets the three lines of a triangle, whose functions are 0 or more inside.
+/* Sets the three edge functions of a triangle, which are not negative inside.
  * Returns 0 if the triangle is edge-on or not visible. */
-static int compute_lines(const struct glint_scene *s, uint32_t object,
-                         const struct glint_scene_triangle *t,
-                         struct line line[3])
+static int compute_edge_lines(const struct glint_scene *s, uint32_t object,
+                              const struct glint_scene_triangle *t,
+                              struct line line[3])
 {
     const struct glint_corner *c[3];
     int64_t side;
 
     for (int k = 0; k < 3; k++)
-        c[k] = get_corner(s, object, t->vertex[k]);
+        c[k] = get_projected_vertex(s, object, t->vertex[k]);
     for (int k = 0; k < 3; k++)
-        line[k] = compute_line(c[(k + 1) % 3], c[(k + 2) % 3]);
+        line[k] = compute_edge_line(c[(k + 1) % 3], c[(k + 2) % 3]);
     side = line[0].across * c[0]->x + line[0].down * c[0]->y +
            line[0].at * c[0]->w;
     if (side == 0)
@@ -800,37 +824,38 @@ static int compute_lines(const struct glint_scene *s, uint32_t object,
         if (side < 0)
             line[k] =
                 (struct line){-line[k].across, -line[k].down, -line[k].at};
-        if (!settle_line(&line[k]))
+        if (!apply_edge_rule(&line[k]))
             return 0;
     }
     return 1;
 }
 
-static int compute_depth(const struct glint_scene *s, uint32_t object,
-                         const struct glint_scene_triangle *t,
-                         struct glint_depth *depth)
+static int compute_depth_function(const struct glint_scene *s, uint32_t object,
+                                  const struct glint_scene_triangle *t,
+                                  struct glint_depth *depth)
 {
     const int32_t *at[3];
     int32_t normal_q30[3];
 
     for (int k = 0; k < 3; k++)
         at[k] = s->seen[s->placed[object].first_vertex + t->vertex[k]];
-    return glint_triangle_normal(at, normal_q30) &&
-           glint_view_depth(&s->view, at[0], normal_q30, s->nearest, depth);
+    return glint_set_triangle_normal(at, normal_q30) &&
+           glint_view_set_plane_depth(&s->view, at[0], normal_q30, s->nearest,
+                                      depth);
 }
 
-/* A projected triangle of any size. */
+/* A projected triangle of any size: edge functions and depth, in 64 bits. */
 struct seen {
     uint32_t id;
     struct line line[3];
     struct glint_depth depth;
-    /* Differences of line functions and depth between a pixel's middle and
-     * its samples; for lines minus their max over the samples, which is
-     * stored in most. */
+    /* Differences of edge functions and depth between the middle of a pixel and
+     * its samples. For edge functions the max over the samples is subtracted,
+     * and stored in most. */
     int64_t off[GLINT_SCENE_SAMPLES][3], most[3], deeper[GLINT_SCENE_SAMPLES];
 };
 
-static void set_offsets(const struct glint_scene *s, struct seen *seen)
+static void set_sample_offsets(const struct glint_scene *s, struct seen *seen)
 {
     const int n = s->cfg.edge_samples;
 
@@ -839,8 +864,8 @@ static void set_offsets(const struct glint_scene *s, struct seen *seen)
 
         seen->most[i] = INT64_MIN;
         for (int k = 0; k < n; k++) {
-            seen->off[k][i] = l->across * glint_sample(s, k, 0) +
-                              l->down * glint_sample(s, k, 1);
+            seen->off[k][i] = l->across * glint_sample_offset_q8(s, k, 0) +
+                              l->down * glint_sample_offset_q8(s, k, 1);
             if (seen->off[k][i] > seen->most[i])
                 seen->most[i] = seen->off[k][i];
         }
@@ -848,15 +873,16 @@ static void set_offsets(const struct glint_scene *s, struct seen *seen)
             seen->off[k][i] -= seen->most[i];
     }
     for (int k = 0; k < n; k++)
-        seen->deeper[k] = seen->depth.across * glint_sample(s, k, 0) +
-                          seen->depth.down * glint_sample(s, k, 1);
+        seen->deeper[k] = seen->depth.across * glint_sample_offset_q8(s, k, 0) +
+                          seen->depth.down * glint_sample_offset_q8(s, k, 1);
 }
 
-/* Draws the samples of a pixel, which begin at index I. AT_0 .. AT_2: the
- * line functions at its middle plus most. */
-static inline void draw_pixel(const struct glint_scene_worker *w,
-                              const struct seen *seen, int64_t at_0,
-                              int64_t at_1, int64_t at_2, int64_t depth, int i)
+/* Draws the samples of a pixel, the first of which has index I. AT_0 .. AT_2:
+ * the edge functions in the pixel's middle, plus most. */
+static inline void draw_large_pixel(const struct glint_scene_worker *w,
+                                    const struct seen *seen, int64_t at_0,
+                                    int64_t at_1, int64_t at_2, int64_t depth,
+                                    int i)
 {
     const int n = w->scene->cfg.edge_samples, shift = seen->depth.shift;
 
@@ -878,29 +904,29 @@ static inline void draw_pixel(const struct glint_scene_worker *w,
     }
 }
 
-/* Draws the triangle in B row by row, updating the line functions
- * incrementally from pixel to pixel. */
-static void draw_box(struct glint_scene_worker *w, const struct seen *seen,
-                     struct glint_box b)
+/* Draws the triangle in box B row by row, adding constant differences to the
+ * edge functions from pixel to pixel. */
+static void draw_large_rows(struct glint_scene_worker *w,
+                            const struct seen *seen, struct glint_box b)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_depth d = seen->depth;
     const struct line *l = seen->line;
     const int n = s->cfg.edge_samples;
-    const int32_t x_q8 = glint_place(s, b.x0, 0);
+    const int32_t x_q8 = glint_pixel_position_q8(s, b.x0, 0);
 
     for (int y = b.y0; y < b.y1; y++) {
-        const int32_t y_q8 = glint_place(s, y, 1);
+        const int32_t y_q8 = glint_pixel_position_q8(s, y, 1);
         const int64_t depth = d.across * x_q8 + d.down * y_q8 + d.at;
-        int64_t at_0 = evaluate_line(&l[0], x_q8, y_q8) + seen->most[0];
-        int64_t at_1 = evaluate_line(&l[1], x_q8, y_q8) + seen->most[1];
-        int64_t at_2 = evaluate_line(&l[2], x_q8, y_q8) + seen->most[2];
+        int64_t at_0 = evaluate_edge_line(&l[0], x_q8, y_q8) + seen->most[0];
+        int64_t at_1 = evaluate_edge_line(&l[1], x_q8, y_q8) + seen->most[1];
+        int64_t at_2 = evaluate_edge_line(&l[2], x_q8, y_q8) + seen->most[2];
         int i = glint_sample_index(w, b.x0, y, 0);
 
         for (int x = 0; x < b.x1 - b.x0; x++, i += n) {
             if ((at_0 | at_1 | at_2) >= 0)
-                draw_pixel(w, seen, at_0, at_1, at_2,
-                           depth + 256 * x * d.across, i);
+                draw_large_pixel(w, seen, at_0, at_1, at_2,
+                                 depth + 256 * x * d.across, i);
             at_0 += 256 * l[0].across;
             at_1 += 256 * l[1].across;
             at_2 += 256 * l[2].across;
@@ -909,20 +935,20 @@ static void draw_box(struct glint_scene_worker *w, const struct seen *seen,
 }
 
 /* Draws a triangle of any size, in 64 bits. */
-static NEVER_INLINE void draw_large(struct glint_scene_worker *w, uint32_t id,
-                                    const struct glint_scene_triangle *t,
-                                    const struct line line[3],
-                                    struct glint_box b)
+static NEVER_INLINE void
+draw_large_triangle(struct glint_scene_worker *w, uint32_t id,
+                    const struct glint_scene_triangle *t,
+                    const struct line line[3], struct glint_box b)
 {
     struct seen seen;
 
     seen.id = id;
     for (int k = 0; k < 3; k++)
         seen.line[k] = line[k];
-    if (!compute_depth(w->scene, id >> 20, t, &seen.depth))
+    if (!compute_depth_function(w->scene, id >> 20, t, &seen.depth))
         return;
-    set_offsets(w->scene, &seen);
-    draw_box(w, &seen, b);
+    set_sample_offsets(w->scene, &seen);
+    draw_large_rows(w, &seen, b);
 }
 
 static void draw_triangle(struct glint_scene_worker *w, uint32_t id)
@@ -932,17 +958,22 @@ static void draw_triangle(struct glint_scene_worker *w, uint32_t id)
     const struct glint_scene_triangle *t =
         glint_mesh_triangle(s, glint_mesh_of(s, object), id & 0xfffff);
     int is_small;
-    const struct glint_box b =
-        glint_box_cut(w->touched, compute_box(s, object, t, &is_small));
+    const struct glint_box b = glint_box_cut(
+        w->touched, compute_triangle_box(s, object, t, &is_small));
     struct line line[3];
 
-    if (glint_box_empty(b) || (is_small && is_all_hidden(w, id, t, b)) ||
-        !compute_lines(s, object, t, line))
+    if (glint_box_empty(b) || (is_small && is_triangle_hidden(w, id, t, b)) ||
+        !compute_edge_lines(s, object, t, line))
         return;
-    if (!is_small || !draw_small(w, id, t, line, b))
-        draw_large(w, id, t, line, b);
+    if (!is_small || !draw_small_triangle(w, id, t, line, b))
+        draw_large_triangle(w, id, t, line, b);
 }
 
 const struct glint_scene_meshes glint_scene_meshes = {
-    project_meshes, draw_triangle,  intersect_mesh,       intersect_triangle,
-    set_surface,    is_smooth_pair, glint_quick_mesh_find};
+    project_meshes,
+    draw_triangle,
+    intersect_mesh,
+    intersect_triangle,
+    set_mesh_surface,
+    do_triangles_share_vertex,
+    glint_quick_find_mesh_surface};

@@ -39,17 +39,18 @@ static const char *check_vertices(struct check *c,
 
     if (!at)
         return OUTSIDE;
-    if (!glint_scene_within(m->centre, 3, SPAN / 2) || m->radius < 0 ||
-        glint_scene_length(m->centre) + m->radius > SPAN / 2)
-        return "a mesh is too large or too far out";
+    if (!glint_scene_is_vector_within(m->centre, 3, SPAN / 2) ||
+        m->radius < 0 ||
+        glint_scene_vector_length(m->centre) + m->radius > SPAN / 2)
+        return "a mesh is too large, or outside the scene's range";
     for (size_t i = 0; i < m->n_vertices; i++) {
         int32_t off[3];
 
-        if (!glint_scene_within(at + 3 * i, 3, SPAN))
-            return "a vertex is too far out";
+        if (!glint_scene_is_vector_within(at + 3 * i, 3, SPAN))
+            return "a vertex is outside the scene's range";
         for (int k = 0; k < 3; k++)
             off[k] = at[3 * i + (size_t)k] - m->centre[k];
-        if (glint_scene_length(off) > reach)
+        if (glint_scene_vector_length(off) > reach)
             return "a vertex is outside the bounding sphere of its mesh";
     }
     return NULL;
@@ -69,9 +70,10 @@ static const char *check_attributes(struct check *c,
                                           3 * sizeof *normal_q30)))
         return OUTSIDE;
     for (size_t i = 0; i < m->n_vertices; i++) {
-        if (uv_q16 && !glint_scene_within(uv_q16 + 2 * i, 2, UV_LIMIT))
+        if (uv_q16 &&
+            !glint_scene_is_vector_within(uv_q16 + 2 * i, 2, UV_LIMIT))
             return "a vertex's u or v is out of range";
-        if (normal_q30 && !glint_scene_is_unit(normal_q30 + 3 * i, 3))
+        if (normal_q30 && !glint_scene_is_unit_vector(normal_q30 + 3 * i, 3))
             return "a vertex's normal is not a unit vector";
     }
     return NULL;
@@ -96,11 +98,12 @@ static const char *check_triangles(struct check *c,
     return NULL;
 }
 
-/* Sets FIRST and LAST to the range of cells, along each axis, that the box of
- * triangle T overlaps. */
-static void find_cells(const struct glint_scene_mesh *m, const int32_t *vertex,
-                       const struct glint_scene_triangle *t, int32_t first[3],
-                       int32_t last[3])
+/* Sets FIRST and LAST, along each axis, to the first and last cell that the
+ * bounding box of triangle T overlaps. */
+static void find_overlapped_cells(const struct glint_scene_mesh *m,
+                                  const int32_t *vertex,
+                                  const struct glint_scene_triangle *t,
+                                  int32_t first[3], int32_t last[3])
 {
     for (size_t k = 0; k < 3; k++) {
         const int32_t a = vertex[3 * (size_t)t->vertex[0] + k];
@@ -117,27 +120,27 @@ static void find_cells(const struct glint_scene_mesh *m, const int32_t *vertex,
     }
 }
 
-/* Returns whether the box of T overlaps cell C. */
-static int overlaps_cell(const struct glint_scene_mesh *m,
-                         const int32_t *vertex,
-                         const struct glint_scene_triangle *t,
-                         const uint32_t c[3])
+/* Returns whether the bounding box of triangle T overlaps cell C. */
+static int triangle_overlaps_cell(const struct glint_scene_mesh *m,
+                                  const int32_t *vertex,
+                                  const struct glint_scene_triangle *t,
+                                  const uint32_t c[3])
 {
     int32_t first[3], last[3];
     int is = 1;
 
-    find_cells(m, vertex, t, first, last);
+    find_overlapped_cells(m, vertex, t, first, last);
     for (int k = 0; k < 3; k++)
         is &= (int32_t)c[k] >= first[k] && (int32_t)c[k] <= last[k];
     return is;
 }
 
-/* Checks that each triangle is in the list of each cell that it overlaps.
- * Lists are sorted without duplicates, so if the number of entries is right,
- * none is missing. */
-static const char *check_lists(const struct check *check,
-                               const struct glint_scene_mesh *m,
-                               const uint32_t *start, const uint32_t *ref)
+/* Checks that each triangle is in the list of each cell that its bounding box
+ * overlaps. Lists are sorted and have no duplicates, so if the number of
+ * entries is right, none is missing. */
+static const char *check_cell_lists(const struct check *check,
+                                    const struct glint_scene_mesh *m,
+                                    const uint32_t *start, const uint32_t *ref)
 {
     const unsigned char *data = (const unsigned char *)check->model.header;
     const int32_t *vertex = (const void *)(data + m->vertex_at);
@@ -149,7 +152,7 @@ static const char *check_lists(const struct check *check,
     for (uint32_t i = 0; i < m->n_triangles; i++) {
         int32_t first[3], last[3];
 
-        find_cells(m, vertex, &t[i], first, last);
+        find_overlapped_cells(m, vertex, &t[i], first, last);
         missing += (uint64_t)(last[0] - first[0] + 1) *
                    (uint64_t)(last[1] - first[1] + 1) *
                    (uint64_t)(last[2] - first[2] + 1);
@@ -157,8 +160,9 @@ static const char *check_lists(const struct check *check,
     for (; c[2] < m->cells[2]; start++) {
         for (uint32_t i = start[0]; i < start[1]; i++) {
             if (i > start[0] && ref[i] <= ref[i - 1])
-                return "a grid's list does not rise";
-            missing -= (uint64_t)overlaps_cell(m, vertex, &t[ref[i]], c);
+                return "a grid's list is not in rising order";
+            missing -=
+                (uint64_t)triangle_overlaps_cell(m, vertex, &t[ref[i]], c);
         }
         c[0]++;
         for (int k = 0; k < 2 && c[k] == m->cells[k]; k++) {
@@ -169,13 +173,14 @@ static const char *check_lists(const struct check *check,
     return missing ? "a grid's list lacks a triangle" : NULL;
 }
 
-static const char *check_grid(struct check *c, const struct glint_scene_mesh *m)
+static const char *check_mesh_grid(struct check *c,
+                                   const struct glint_scene_mesh *m)
 {
     const uint32_t *start, *ref;
     uint64_t cells = 1;
 
     if (m->cell_log2 < 2 || m->cell_log2 > 28 ||
-        !glint_scene_within(m->origin, 3, SPAN))
+        !glint_scene_is_vector_within(m->origin, 3, SPAN))
         return "a mesh's grid is out of range";
     for (int k = 0; k < 3; k++) {
         if (m->cells[k] < 1 || m->cells[k] > GLINT_SCENE_MAX_CELLS ||
@@ -187,17 +192,17 @@ static const char *check_grid(struct check *c, const struct glint_scene_mesh *m)
     if (!start)
         return OUTSIDE;
     if (start[0] != 0)
-        return "a grid's lists do not begin at 0";
+        return "a grid's lists do not begin at entry 0";
     for (uint64_t i = 0; i < cells; i++)
         if (start[i] > start[i + 1])
-            return "a grid's lists do not rise";
+            return "a grid's lists are not in rising order";
     ref = glint_blob_section(&c->blob, m->ref_at, start[cells], sizeof *ref);
     if (!ref)
         return OUTSIDE;
     for (uint32_t i = 0; i < start[cells]; i++)
         if (ref[i] >= m->n_triangles)
             return "a grid's triangle is out of range";
-    return check_lists(c, m, start, ref);
+    return check_cell_lists(c, m, start, ref);
 }
 
 /* Checks one mesh. Returns the text of an error, or NULL. */
@@ -210,7 +215,7 @@ static const char *check_mesh(struct check *check,
         wrong = check_attributes(check, mesh);
     if (!wrong)
         wrong = check_triangles(check, mesh);
-    return wrong ? wrong : check_grid(check, mesh);
+    return wrong ? wrong : check_mesh_grid(check, mesh);
 }
 
 /* ----------------------------------------------------------------- objects */
@@ -222,8 +227,8 @@ static const char *check_object(const struct check *check,
     const int is_sphere = o->kind == GLINT_OBJECT_SPHERE;
     const int is_plane = o->kind == GLINT_OBJECT_PLANE;
 
-    if (!glint_scene_name_fits(o->name))
-        return "an object's name is empty, endless or not printable";
+    if (!glint_scene_is_valid_name(o->name))
+        return "an object's name is empty, unterminated or not printable";
     if (o->kind > GLINT_OBJECT_MESH)
         return "an object's kind is unknown";
     if (o->material >= h->n_materials)
@@ -234,27 +239,27 @@ static const char *check_object(const struct check *check,
         return "a sphere's radius is out of range";
     if (o->catcher_q15 < 0 || o->catcher_q15 > (is_plane ? 1 << 15 : 0))
         return "a plane's fraction of shadow is out of range";
-    if (o->hidden > 1 || !glint_scene_is_unit(o->turn_q30, 4))
+    if (o->hidden > 1 || !glint_scene_is_unit_vector(o->turn_q30, 4))
         return "an object's pose is out of range";
-    return glint_scene_fits(&check->model, o, o->at)
+    return glint_scene_is_object_in_range(&check->model, o, o->at)
                ? NULL
-               : "an object is too far out";
+               : "an object is outside the scene's range";
 }
 
 /* ------------------------------------------------------------------
  * translucent media */
 
-static const char *check_stone(struct check *c,
-                               const struct glint_scene_stone *s)
+static const char *check_translucent_medium(struct check *c,
+                                            const struct glint_scene_stone *s)
 {
     const struct glint_scene_material *m;
 
     if (s->material >= c->model.header->n_materials || s->fresnel > 1)
-        return "a stone's material is out of range";
+        return "a translucent medium's material is out of range";
     m = &c->model.material[s->material];
     if (m->ambient_q15 || m->diffuse_q15 || m->specular_q15 || m->reflect_q15 ||
         m->pass_q15 || m->texture != GLINT_SCENE_NONE)
-        return "a translucent material is Phong's, too";
+        return "a translucent material has Phong weights";
     if (s->file_bytes < sizeof(struct glint_translucent_header) ||
         s->file_bytes % 4 ||
         !glint_blob_section(&c->blob, s->file_at, s->file_bytes / 4, 4))
@@ -262,10 +267,10 @@ static const char *check_stone(struct check *c,
     return NULL;
 }
 
-/* Returns log2 of the map's side in the translucent medium of SKIN, from its
- * unchecked header, or 0 if it is out of range. */
-static uint32_t read_side_log2(const struct glint_scene_model *m,
-                               const struct glint_scene_skin *skin)
+/* Returns log2 of the side, in texels, of the map for SKIN, read from the
+ * unchecked header of the translucent medium; 0 if it is out of range. */
+static uint32_t read_map_side_log2(const struct glint_scene_model *m,
+                                   const struct glint_scene_skin *skin)
 {
     const unsigned char *file = (const unsigned char *)m->header;
     const struct glint_translucent_header *h =
@@ -287,7 +292,7 @@ static const char *check_ball_map(struct check *c,
     if (!turn_q30)
         return OUTSIDE;
     for (uint32_t i = 0; i < 3 * side; i++)
-        if (!glint_scene_is_unit(turn_q30 + 2 * (size_t)i, 2))
+        if (!glint_scene_is_unit_vector(turn_q30 + 2 * (size_t)i, 2))
             return "a column or row of a ball's map is out of range";
     return NULL;
 }
@@ -303,14 +308,14 @@ static const char *check_mesh_map(struct check *c,
     if (!texel)
         return OUTSIDE;
     if (!mesh->uv_at)
-        return "a mesh of stone has no uv";
+        return "a translucent mesh has no u and v";
     for (uint32_t i = 0; i < side * side; i++)
         if (texel[i] != GLINT_SCENE_NONE && texel[i] >= mesh->n_triangles)
             return "a texel's triangle is out of range";
     return NULL;
 }
 
-static const char *check_skin(struct check *c, uint32_t i)
+static const char *check_translucency_map(struct check *c, uint32_t i)
 {
     const struct glint_scene_model *m = &c->model;
     const struct glint_scene_skin *skin = &m->skin[i];
@@ -319,14 +324,14 @@ static const char *check_skin(struct check *c, uint32_t i)
 
     if (skin->object >= m->header->n_objects ||
         skin->stone >= m->header->n_stones || skin->closed > 1)
-        return "a map's object or stone is out of range";
+        return "a map's object or translucent medium is out of range";
     for (uint32_t k = 0; k < i; k++)
         if (m->skin[k].object == skin->object)
             return "an object has two maps";
     o = &m->object[skin->object];
-    log2 = read_side_log2(m, skin);
+    log2 = read_map_side_log2(m, skin);
     if (log2 == 0)
-        return "the stone's side or kernel is out of range";
+        return "a translucent medium's side or kernel is out of range";
     if (o->kind == GLINT_OBJECT_PLANE)
         return "a plane has a map";
     return o->kind == GLINT_OBJECT_SPHERE
@@ -335,9 +340,8 @@ static const char *check_skin(struct check *c, uint32_t i)
                                 UINT32_C(1) << log2);
 }
 
-/* Returns whether object I has a map if its material is translucent, which
- * requires one. */
-static int has_map(const struct glint_scene_model *m, uint32_t i)
+/* Returns 0 if object I is translucent but has no map, which it needs. */
+static int has_required_map(const struct glint_scene_model *m, uint32_t i)
 {
     for (uint32_t k = 0; k < m->header->n_stones; k++) {
         int has = m->stone[k].material != m->object[i].material ||
@@ -352,25 +356,24 @@ static int has_map(const struct glint_scene_model *m, uint32_t i)
     return 1;
 }
 
-/* Checks the tables of translucent media and of their maps (skins), but not
- * the files of translucent media; their module checks those when it opens
- * them. */
-static const char *check_stones(struct check *c)
+/* Checks the tables of translucent media and of their maps (skins). The module
+ * that draws translucent media checks their files when it opens them. */
+static const char *check_translucent_tables(struct check *c)
 {
     const struct glint_scene_header *h = c->model.header;
     const char *wrong = NULL;
 
     for (uint32_t i = 0; !wrong && i < h->n_stones; i++)
-        wrong = check_stone(c, &c->model.stone[i]);
+        wrong = check_translucent_medium(c, &c->model.stone[i]);
     for (uint32_t i = 0; !wrong && i < h->n_skins; i++)
-        wrong = check_skin(c, i);
+        wrong = check_translucency_map(c, i);
     for (uint32_t i = 0; !wrong && i < h->n_objects; i++)
-        if (!has_map(&c->model, i))
-            wrong = "an object of stone has no map";
+        if (!has_required_map(&c->model, i))
+            wrong = "a translucent object has no map";
     return wrong;
 }
 
-/* The file is used in place: its layout is the layout of these structs. */
+/* The program reads the file in place: these structs are the file's layout. */
 STATIC_ASSERT(sizeof(struct glint_scene_camera) == 60);
 STATIC_ASSERT(sizeof(struct glint_scene_light) == 88);
 STATIC_ASSERT(sizeof(struct glint_scene_texture) == 12);
@@ -399,19 +402,20 @@ static const char *check_light(const struct glint_scene_light *light)
 {
     const int is_sun = light->kind == GLINT_LIGHT_SUN;
 
-    if (!glint_scene_name_fits(light->name))
-        return "a light's name is empty, endless or not printable";
+    if (!glint_scene_is_valid_name(light->name))
+        return "a light's name is empty, unterminated or not printable";
     if (light->kind > GLINT_LIGHT_LAMP)
         return "a light's kind is unknown";
-    if (!glint_scene_within(light->at, 3, is_sun ? 0 : GLINT_SCENE_SPAN - 1) ||
-        !glint_scene_between(light->radius, 0,
-                             is_sun ? 1 << 29 : GLINT_SCENE_SPAN))
-        return "a light is too far out, or too large";
-    if (is_sun ? !glint_scene_is_unit(light->toward_q30, 3)
-               : !glint_scene_within(light->toward_q30, 3, 0))
+    if (!glint_scene_is_vector_within(light->at, 3,
+                                      is_sun ? 0 : GLINT_SCENE_SPAN - 1) ||
+        !glint_scene_is_between(light->radius, 0,
+                                is_sun ? 1 << 29 : GLINT_SCENE_SPAN))
+        return "a light is outside the scene's range, or too large";
+    if (is_sun ? !glint_scene_is_unit_vector(light->toward_q30, 3)
+               : !glint_scene_is_vector_within(light->toward_q30, 3, 0))
         return "a light's direction is not a unit vector";
     for (int k = 0; k < 3; k++)
-        if (!glint_scene_is_light(&light->rgb[k]))
+        if (!glint_scene_is_valid_intensity(&light->rgb[k]))
             return "a light is negative or not normalised";
     return NULL;
 }
@@ -438,16 +442,16 @@ static const char *check_material(const struct check *c,
                               m->reflect_q15, m->pass_q15,    m->rgb_q15[0],
                               m->rgb_q15[1],  m->rgb_q15[2]};
 
-    if (!glint_scene_name_fits(m->name))
-        return "a material's name is empty, endless or not printable";
+    if (!glint_scene_is_valid_name(m->name))
+        return "a material's name is empty, unterminated or not printable";
     for (size_t k = 0; k < sizeof weight / sizeof *weight; k++)
-        if (!glint_scene_between(weight[k], 0, ONE_Q15))
+        if (!glint_scene_is_between(weight[k], 0, ONE_Q15))
             return "a material's weight or colour is not 0 .. 1";
     if (m->ambient_q15 + m->diffuse_q15 + m->specular_q15 > ONE_Q15 ||
         m->reflect_q15 + m->pass_q15 > ONE_Q15)
         return "a material's weights sum to more than 1";
-    if (!glint_scene_between(m->power_q8, 1 << 8, 1 << 20) ||
-        !glint_scene_between(m->index_q16, 1 << 14, 1 << 18))
+    if (!glint_scene_is_between(m->power_q8, 1 << 8, 1 << 20) ||
+        !glint_scene_is_between(m->index_q16, 1 << 14, 1 << 18))
         return "a material's power or index is out of range";
     if (m->texture != GLINT_SCENE_NONE &&
         m->texture >= c->model.header->n_textures)
@@ -455,19 +459,19 @@ static const char *check_material(const struct check *c,
     if (m->ward != GLINT_SCENE_NONE && m->ward >= c->model.header->n_wards)
         return "a material's brushed metal is out of range";
     if (m->ward != GLINT_SCENE_NONE && m->specular_q15)
-        return "a material is brushed metal and Phong's";
+        return "a brushed metal has a Phong highlight";
     return NULL;
 }
 
 /* Checks an entry of the table of environments. The module that draws
- * environments checks the environment's own file. */
+ * environments checks the files of environments. */
 static const char *check_environment(struct check *c,
                                      const struct glint_scene_environment *e)
 {
-    if (!glint_scene_name_fits(e->name))
-        return "an environment's name is empty, endless or not printable";
-    if (!glint_scene_is_unit(e->turn_q30, 2) || e->scale.mantissa == 0 ||
-        !glint_scene_is_light(&e->scale))
+    if (!glint_scene_is_valid_name(e->name))
+        return "an environment's name is empty, unterminated or not printable";
+    if (!glint_scene_is_unit_vector(e->turn_q30, 2) || e->scale.mantissa == 0 ||
+        !glint_scene_is_valid_intensity(&e->scale))
         return "the environment's turn or scale is out of range";
     return e->file_bytes % 4 == 0 && glint_blob_section(&c->blob, e->file_at,
                                                         e->file_bytes / 4, 4)
@@ -475,9 +479,9 @@ static const char *check_environment(struct check *c,
                : OUTSIDE;
 }
 
-/* Checks that the lights at the end of the list, which environments replace,
- * are suns. */
-static const char *check_suns(const struct glint_scene_model *m)
+/* Checks that the last lights of the table, whose values the environment
+ * replaces, are suns. */
+static const char *check_environment_suns(const struct glint_scene_model *m)
 {
     const struct glint_scene_header *h = m->header;
 
@@ -487,8 +491,8 @@ static const char *check_suns(const struct glint_scene_model *m)
     return NULL;
 }
 
-/* Checks the parameters of a motion. The module that plays motions checks
- * the motion's own file. */
+/* Checks the parameters of a motion. The module that plays motions checks the
+ * motion's file. */
 static const char *check_motion(const struct glint_scene_header *h,
                                 const struct glint_scene_motion *m)
 {
@@ -496,17 +500,17 @@ static const char *check_motion(const struct glint_scene_header *h,
     const uint32_t material[] = {m->shell_material, m->line_material,
                                  m->box_material};
 
-    if (!glint_scene_name_fits(m->name))
-        return "a motion's name is empty, endless or not printable";
+    if (!glint_scene_is_valid_name(m->name))
+        return "a motion's name is empty, unterminated or not printable";
     for (int k = 0; k < 4; k++)
-        if (!glint_scene_between(length[k], 0, GLINT_SCENE_SPAN / 4))
+        if (!glint_scene_is_between(length[k], 0, GLINT_SCENE_SPAN / 4))
             return "a size of the motion is out of range";
     for (int k = 0; k < 3; k++)
         if (material[k] >= h->n_materials)
             return "a material of the motion is out of range";
     if (m->detect > GLINT_DETECT_BOTH || m->least > 255 || m->bytes % 4 ||
         m->zero)
-        return "the motion's settings are unknown";
+        return "the motion's settings are out of range";
     return NULL;
 }
 
@@ -514,13 +518,13 @@ static const char *check_header(const struct glint_scene_header *h)
 {
     if (h->variant > GLINT_HAND_RIGHT)
         return "the scene's variant is unknown";
-    if (!glint_scene_between(h->unit_log2, -28, 60))
+    if (!glint_scene_is_between(h->unit_log2, -28, 60))
         return "the scene's unit is out of range";
     if (h->shadow > 1 || h->flare > 1 || h->highlights > MAX_HIGHLIGHTS ||
         h->background > GLINT_BACKGROUND_ENVIRONMENT)
-        return "the scene's settings are unknown";
+        return "the scene's settings are out of range";
     for (int k = 0; k < 3; k++)
-        if (!glint_scene_between(
+        if (!glint_scene_is_between(
                 h->background_q15[k], 0,
                 h->background == GLINT_BACKGROUND_COLOUR ? ONE_Q30 : 0))
             return "the background's colour is out of range";
@@ -536,13 +540,13 @@ static const char *check_header(const struct glint_scene_header *h)
         h->n_environment_lights > (h->n_environments ? h->n_lights : 0))
         return "the scene has too many objects of one type";
     if (h->background == GLINT_BACKGROUND_ENVIRONMENT && !h->n_environments)
-        return "the background's environment is not there";
-    return glint_scene_camera_fault(&h->camera);
+        return "the background needs an environment, but there is none";
+    return glint_scene_check_camera(&h->camera);
 }
 
 /* ------------------------------------------------------------------- whole */
 
-static const char *find_tables(struct check *c)
+static const char *locate_tables(struct check *c)
 {
     const struct glint_scene_header *h = c->model.header;
     struct glint_scene_model *m = &c->model;
@@ -576,7 +580,7 @@ static const char *find_tables(struct check *c)
                : OUTSIDE;
 }
 
-static const char *check_contents(struct check *c)
+static const char *check_all_tables(struct check *c)
 {
     const struct glint_scene_model *m = &c->model;
     const struct glint_scene_header *h = m->header;
@@ -586,17 +590,17 @@ static const char *check_contents(struct check *c)
     if (!wrong)
         wrong = check_header(h);
     if (!wrong)
-        wrong = find_tables(c);
+        wrong = locate_tables(c);
     for (uint32_t k = 0; !wrong && k < h->n_lights; k++)
         wrong = check_light(&m->light[k]);
     for (uint32_t k = 0; !wrong && k < h->n_environments; k++)
         wrong = check_environment(c, &m->environment[k]);
     if (!wrong)
-        wrong = check_suns(m);
+        wrong = check_environment_suns(m);
     for (uint32_t k = 0; !wrong && k < h->n_textures; k++)
         wrong = check_texture(c, &m->texture[k]);
     for (uint32_t k = 0; !wrong && k < h->n_wards; k++)
-        wrong = glint_scene_ward_fault(&m->ward[k]);
+        wrong = glint_scene_check_metal(&m->ward[k]);
     for (uint32_t k = 0; !wrong && k < h->n_materials; k++)
         wrong = check_material(c, &m->material[k]);
     for (uint32_t k = 0; !wrong && k < h->n_meshes; k++) {
@@ -613,7 +617,7 @@ static const char *check_contents(struct check *c)
         wrong = check_motion(h, m->motion);
     if (!wrong && triangles > GLINT_SCENE_MAX_TRIANGLES)
         wrong = "the objects have too many triangles";
-    return wrong ? wrong : check_stones(c);
+    return wrong ? wrong : check_translucent_tables(c);
 }
 
 enum glint_status glint_scene_open(struct glint_scene_model *model,
@@ -628,7 +632,7 @@ enum glint_status glint_scene_open(struct glint_scene_model *model,
         fault_text[glint_blob_open(&c.blob, &kind, data, bytes)];
 
     if (!wrong)
-        wrong = check_contents(&c);
+        wrong = check_all_tables(&c);
     if (wrong) {
         *reason = wrong;
         return GLINT_E_FORMAT;
@@ -637,7 +641,7 @@ enum glint_status glint_scene_open(struct glint_scene_model *model,
     return GLINT_OK;
 }
 
-static int is_same(const char *a, const char *b)
+static int is_same_name(const char *a, const char *b)
 {
     while (*a && *a == *b) {
         a++;
@@ -646,33 +650,33 @@ static int is_same(const char *a, const char *b)
     return *a == *b;
 }
 
-/* Returns the index of NAME among N names, STRIDE bytes apart from NAMES on, or
- * -1. */
-static int find_name(const char *names, size_t stride, uint32_t n,
-                     const char *name)
+/* Returns the index of NAME among N names that are STRIDE bytes apart, or -1 if
+ * it is not there. */
+static int find_name_index(const char *names, size_t stride, uint32_t n,
+                           const char *name)
 {
     for (uint32_t k = 0; k < n; k++, names += stride)
-        if (is_same(names, name))
+        if (is_same_name(names, name))
             return (int)k;
     return -1;
 }
 
 int glint_scene_find(const struct glint_scene_model *model, const char *name)
 {
-    return find_name(model->object->name, sizeof *model->object,
-                     model->header->n_objects, name);
+    return find_name_index(model->object->name, sizeof *model->object,
+                           model->header->n_objects, name);
 }
 
 int glint_scene_find_material(const struct glint_scene_model *model,
                               const char *name)
 {
-    return find_name(model->material->name, sizeof *model->material,
-                     model->header->n_materials, name);
+    return find_name_index(model->material->name, sizeof *model->material,
+                           model->header->n_materials, name);
 }
 
 int glint_scene_find_environment(const struct glint_scene_model *model,
                                  const char *name)
 {
-    return find_name(model->environment->name, sizeof *model->environment,
-                     model->header->n_environments, name);
+    return find_name_index(model->environment->name, sizeof *model->environment,
+                           model->header->n_environments, name);
 }

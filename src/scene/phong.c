@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reflection of ambient light and of lights, by the Phong model [Phong75].
- * Light is _q15 and saturates at 2^30; products with weights, _q15 up to 1, are
- * below 2^45.
- */
+ * Reflects ambient light and the light of lamps and suns by the Phong model
+ * [Phong75]. Light is _q15 and saturates at 2^30; products of light and
+ * weights, _q15 up to 1, are below 2^45. */
 #include "base/divide.h"
 #include "scene/parts.h"
 #include "scene/state.h"
 
-static inline void add_weighted(int32_t *to_q15, int64_t light_q15,
-                                int32_t weight_q15)
+static inline void add_weighted_light(int32_t *to_q15, int64_t light_q15,
+                                      int32_t weight_q15)
 {
     int64_t sum_q15 = light_q15 < GLINT_SCENE_MOST_LIGHT
                           ? light_q15
@@ -24,32 +23,34 @@ static inline void add_weighted(int32_t *to_q15, int64_t light_q15,
 
 /* ------------------------------------------------------------------- gloss */
 
-/* Values of x^k below 2^-17 count as 0: from y = 1 - 2^(-17 / k) on. */
-void glint_gloss_prepare(struct glint_gloss *gloss, int32_t power_q8)
+/* The table ends at y = 1 - 2^(-17 / k), where x^k falls below 2^-17; larger y
+ * give 0. */
+void glint_gloss_fill_table(struct glint_gloss *gloss, int32_t power_q8)
 {
     int32_t end_q30 = 1 << 30;
 
-    /* bisects for the min y with (1 - y)^k = 0 */
+    /* bisection for the smallest y with (1 - y)^k = 0 */
     for (int32_t step_q30 = 1 << 29; step_q30; step_q30 /= 2)
         if (end_q30 > step_q30 &&
-            glint_power_q15((1 << 30) - (end_q30 - step_q30), power_q8) == 0)
+            glint_compute_power_q15((1 << 30) - (end_q30 - step_q30),
+                                    power_q8) == 0)
             end_q30 -= step_q30;
     gloss->end_q30 = end_q30;
     gloss->scale_q30 = q_divide(INT64_C(1) << 60, end_q30);
     for (int i = 0; i <= GLINT_GLOSS_STEPS; i++)
-        gloss->at_q15[i] = (uint16_t)glint_power_q15(
+        gloss->at_q15[i] = (uint16_t)glint_compute_power_q15(
             (1 << 30) -
                 (int32_t)((int64_t)end_q30 * i >> GLINT_GLOSS_STEPS_LOG2),
             power_q8);
 }
 
 /* Returns the specular factor of a light: the power of the cosine between the
- * ray and the light's mirrored direction L - 2 (L.N) N. */
-static inline int32_t compute_gloss_q15(const struct glint_gloss *gloss,
-                                        const struct glint_scene_ray *ray,
-                                        const struct glint_met_surface *surface,
-                                        const int32_t toward_q30[3],
-                                        int32_t cosine_q30)
+ * ray and the reflected direction of the light, L - 2 (L.N) N. */
+static inline int32_t
+compute_specular_q15(const struct glint_gloss *gloss,
+                     const struct glint_scene_ray *ray,
+                     const struct glint_met_surface *surface,
+                     const int32_t toward_q30[3], int32_t cosine_q30)
 {
     const int64_t beside_q60 =
         v3_dot(toward_q30, ray->toward_q30) -
@@ -71,22 +72,20 @@ static inline int32_t compute_gloss_q15(const struct glint_gloss *gloss,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Adds the reflection, in a metal, of the fraction SHARE_Q15 of light LIT at
- * distance T. */
-static void add_shine(const struct glint_scene *s,
-                      const struct glint_scene_ray *ray,
-                      const struct glint_met_surface *surface,
-                      struct glint_brushed *brushed,
-                      const struct glint_lit *lit, int32_t t,
-                      const int32_t toward_q30[3], const int32_t level_q15[3],
-                      int32_t share_q15, int32_t rgb_q15[3])
+/* Adds the highlight of light LIT, at distance T, on a metal, times the
+ * fraction SHARE_Q15 of LIT that reaches it. */
+static void add_metal_highlight(
+    const struct glint_scene *s, const struct glint_scene_ray *ray,
+    const struct glint_met_surface *surface, struct glint_brushed *brushed,
+    const struct glint_lit *lit, int32_t t, const int32_t toward_q30[3],
+    const int32_t level_q15[3], int32_t share_q15, int32_t rgb_q15[3])
 {
     const int32_t radius = lit->light->radius;
     const int32_t radius_q30 =
-        t == GLINT_FAR
-            ? radius
-            : q_smaller(glint_ratio((uint64_t)radius << 30, (uint64_t)t),
-                        1 << 29);
+        t == GLINT_FAR ? radius
+                       : q_smaller(glint_divide_rounded((uint64_t)radius << 30,
+                                                        (uint64_t)t),
+                                   1 << 29);
     int32_t shine_q15[3];
 
     if (brushed->spread_q30 < 0)
@@ -95,16 +94,16 @@ static void add_shine(const struct glint_scene *s,
                                    level_q15, radius_q30, shine_q15))
         return;
     for (int c = 0; c < 3; c++)
-        add_weighted(&rgb_q15[c], shine_q15[c], share_q15);
+        add_weighted_light(&rgb_q15[c], shine_q15[c], share_q15);
 }
 
-/* Adds the reflection of one light. BRUSHED must be NULL if SURFACE is not a
- * metal. */
-static WHOLLY_INLINE void
-add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
-          const struct glint_met_surface *surface,
-          struct glint_brushed *brushed, const struct glint_lit *lit,
-          const int32_t colour_q15[3], int32_t weight_q15, int32_t rgb_q15[3])
+/* Adds the reflection of one light source. BRUSHED must be NULL if SURFACE is
+ * not a metal. */
+static WHOLLY_INLINE void add_light_reflection(
+    const struct glint_scene *s, const struct glint_scene_ray *ray,
+    const struct glint_met_surface *surface, struct glint_brushed *brushed,
+    const struct glint_lit *lit, const int32_t colour_q15[3],
+    int32_t weight_q15, int32_t rgb_q15[3])
 {
     const struct glint_scene_material *m = surface->material;
     const int is_sun = lit->light->kind == GLINT_LIGHT_SUN;
@@ -114,42 +113,45 @@ add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
     const int32_t *level_q15 = is_sun ? lit->rgb_q15 : lamp_q15;
 
     if (!is_sun)
-        t = glint_scene_light_at(s, lit, surface->place, lamp_q30, lamp_q15);
+        t = glint_scene_compute_light_at(s, lit, surface->place, lamp_q30,
+                                         lamp_q15);
     if (t == 0)
         return;
     cosine_q30 = v3_cosine_q30(toward_q30, surface->normal_q30);
     if (cosine_q30 <= 0)
         return;
-    share_q15 = glint_scene_reaches(s, surface, lit);
+    share_q15 = glint_scene_lit_fraction(s, surface, lit);
     if (share_q15 == 0)
         return;
     if (m->specular_q15)
-        gloss = compute_gloss_q15(&s->gloss[m - s->model.material], ray,
-                                  surface, toward_q30, cosine_q30);
+        gloss = compute_specular_q15(&s->gloss[m - s->model.material], ray,
+                                     surface, toward_q30, cosine_q30);
     share_q15 = q_mul(share_q15, weight_q15, 15);
     if (brushed)
-        add_shine(s, ray, surface, brushed, lit, t, toward_q30, level_q15,
-                  share_q15, rgb_q15);
+        add_metal_highlight(s, ray, surface, brushed, lit, t, toward_q30,
+                            level_q15, share_q15, rgb_q15);
     if (brushed && !(colour_q15[0] | colour_q15[1] | colour_q15[2]))
         return;
-    /* each below 2^30, and together below 2^32 */
+    /* each factor is below 2^30, and the product below 2^32 */
     gloss *= m->specular_q15;
     cosine_q30 = q_mul(m->diffuse_q15, cosine_q30, 15);
     for (int c = 0; c < 3; c++) {
         const int64_t white_q30 =
             ((int64_t)cosine_q30 * colour_q15[c] >> 15) + gloss;
 
-        add_weighted(&rgb_q15[c], (level_q15[c] * white_q30 + (1 << 29)) >> 30,
-                     share_q15);
+        add_weighted_light(&rgb_q15[c],
+                           (level_q15[c] * white_q30 + (1 << 29)) >> 30,
+                           share_q15);
     }
 }
 
 /* Inlined, so that compilers specialise it for weight 1, which most pixels
  * have. */
-static WHOLLY_INLINE void add_phong(const struct glint_scene *scene,
-                                    const struct glint_scene_ray *ray,
-                                    const struct glint_met_surface *surface,
-                                    int32_t weight_q15, int32_t rgb_q15[3])
+static WHOLLY_INLINE void
+add_phong_lights(const struct glint_scene *scene,
+                 const struct glint_scene_ray *ray,
+                 const struct glint_met_surface *surface, int32_t weight_q15,
+                 int32_t rgb_q15[3])
 {
     const struct glint_scene_material *m = surface->material;
     const struct glint_scene_wards *wards = scene->cfg.parts.wards;
@@ -171,31 +173,31 @@ static WHOLLY_INLINE void add_phong(const struct glint_scene *scene,
     if (m->texture != GLINT_SCENE_NONE)
         scene->cfg.parts.textures->colour(scene, ray, surface, colour_q15);
     for (int c = 0; c < 3; c++)
-        add_weighted(&rgb_q15[c], q_mul(m->ambient_q15, colour_q15[c], 15),
-                     weight_q15);
+        add_weighted_light(
+            &rgb_q15[c], q_mul(m->ambient_q15, colour_q15[c], 15), weight_q15);
     if (is_metal)
         wards->lie(scene, surface, &brushed);
     if (scene->wards)
         wards->reflect(scene, ray, surface, is_metal ? &brushed : NULL,
                        colour_q15, weight_q15, rgb_q15);
     for (uint32_t i = 0; i < scene->n_lit; i++)
-        add_light(scene, ray, surface, is_metal ? &brushed : NULL,
-                  &scene->lit[i], colour_q15, weight_q15, rgb_q15);
+        add_light_reflection(scene, ray, surface, is_metal ? &brushed : NULL,
+                             &scene->lit[i], colour_q15, weight_q15, rgb_q15);
 }
 
-void glint_scene_phong(const struct glint_scene *scene,
-                       const struct glint_scene_ray *ray,
-                       const struct glint_met_surface *surface,
-                       int32_t weight_q15, int32_t rgb_q15[3])
+void glint_scene_add_phong_light(const struct glint_scene *scene,
+                                 const struct glint_scene_ray *ray,
+                                 const struct glint_met_surface *surface,
+                                 int32_t weight_q15, int32_t rgb_q15[3])
 {
-    add_phong(scene, ray, surface, weight_q15, rgb_q15);
+    add_phong_lights(scene, ray, surface, weight_q15, rgb_q15);
 }
 
-/* Returns, for a plane that only receives shadows (a catcher), the fraction
- * of the lights' light that is shadowed. */
-static int compute_shadowed_q8(const struct glint_scene *s,
-                               const struct glint_met_surface *surface,
-                               int32_t catcher_q15)
+/* Returns, for a plane that only receives shadows (a catcher), the fraction of
+ * the lights' total light that is shadowed, q8. */
+static int compute_catcher_shadow_q8(const struct glint_scene *s,
+                                     const struct glint_met_surface *surface,
+                                     int32_t catcher_q15)
 {
     int64_t all = 0, gone = 0;
 
@@ -203,32 +205,32 @@ static int compute_shadowed_q8(const struct glint_scene *s,
         int32_t toward_q30[3], level_q15[3];
         int64_t light;
 
-        if (!glint_scene_light_at(s, &s->lit[i], surface->place, toward_q30,
-                                  level_q15))
+        if (!glint_scene_compute_light_at(s, &s->lit[i], surface->place,
+                                          toward_q30, level_q15))
             continue;
         light = q_larger(0, v3_cosine_q30(toward_q30, surface->normal_q30));
         light = light * ((int64_t)level_q15[0] + 2 * (int64_t)level_q15[1] +
                          level_q15[2]) >>
-                6; /* below 2^56; 32 lights sum to less than 2^61 */
+                6; /* below 2^56, so 32 lights sum to less than 2^61 */
         all += light;
         if (light > 0)
-            gone +=
-                (light >> 15) * (GLINT_SCENE_ONE_Q15 -
-                                 glint_scene_reaches(s, surface, &s->lit[i]));
+            gone += (light >> 15) *
+                    (GLINT_SCENE_ONE_Q15 -
+                     glint_scene_lit_fraction(s, surface, &s->lit[i]));
     }
     if (gone <= 0 || all <= 0)
         return 0;
-    return (int)q_shift((int64_t)glint_ratio(
+    return (int)q_shift((int64_t)glint_divide_rounded(
                             (uint64_t)gone << (all < INT64_C(1) << 48 ? 8 : 0),
                             (uint64_t)all >> (all < INT64_C(1) << 48 ? 0 : 8)) *
                             catcher_q15,
                         15);
 }
 
-void glint_scene_shade(const struct glint_scene *scene,
-                       const struct glint_scene_ray *ray,
-                       const struct glint_met_surface *surface,
-                       struct glint_met_shade *shade)
+void glint_scene_shade_surface(const struct glint_scene *scene,
+                               const struct glint_scene_ray *ray,
+                               const struct glint_met_surface *surface,
+                               struct glint_met_shade *shade)
 {
     const struct glint_scene_material *m = surface->material;
     const struct glint_placed *p = &scene->placed[surface->object];
@@ -236,11 +238,11 @@ void glint_scene_shade(const struct glint_scene *scene,
     *shade = (struct glint_met_shade){{0, 0, 0}, GLINT_COVER_ALL};
     if (scene->has_catchers && p->is_catcher) {
         shade->cover_q8 = q_smaller(
-            compute_shadowed_q8(scene, surface, p->object->catcher_q15),
+            compute_catcher_shadow_q8(scene, surface, p->object->catcher_q15),
             GLINT_COVER_ALL);
         return;
     }
-    add_phong(scene, ray, surface, GLINT_SCENE_ONE_Q15, shade->rgb_q15);
+    add_phong_lights(scene, ray, surface, GLINT_SCENE_ONE_Q15, shade->rgb_q15);
     if (m->reflect_q15 || m->pass_q15)
         scene->cfg.parts.bounces->follow(scene, ray, surface, shade);
 }

@@ -8,28 +8,30 @@ enum { ONE_Q30 = 1 << 30, LEAST_UP = 17 };
 
 /* -------------------------------------------------------------------- rays */
 
-/* Coordinates are scaled so that the farthest corner of the picture has
- * length 2^29 to 2^30, or the picture's plane is 2^28 away. */
-void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
-                     int32_t y_q8, struct glint_scene_ray *ray,
-                     int32_t seen_q30[3])
+/* Coordinates are scaled so that the vector to the picture's farthest corner
+ * has length 2^29 to 2^30, or so that the picture's plane is at distance
+ * 2^28. */
+void glint_quick_compute_ray(const struct glint_scene_view *view, int32_t x_q8,
+                             int32_t y_q8, struct glint_scene_ray *ray,
+                             int32_t seen_q30[3])
 {
     const int down = 28 + view->wide;
     const int32_t toward[3] = {(int32_t)((x_q8 * view->step_q56[0]) >> down),
                                -(int32_t)((y_q8 * view->step_q56[1]) >> down),
                                (1 << 28) >> view->wide};
 
-    glint_quick_unit(toward, seen_q30);
-    v3_turn_back(&view->turn, seen_q30, ray->toward_q30);
+    glint_quick_normalise(toward, seen_q30);
+    v3_rotate_back(&view->turn, seen_q30, ray->toward_q30);
     for (int k = 0; k < 3; k++)
         ray->at[k] = view->at[k];
 }
 
 /* ------------------------------------------------------------------- balls */
 
-/* Prepares a ball for the fast path, which computes in units of the ball's
- * radius. The camera must be outside the ball and at most 2^13 radii away. */
-static void begin_ball(const struct glint_scene *s, struct glint_placed *p)
+/* Prepares ball P for the fast path, which computes in units of the ball's
+ * radius. Balls with the camera inside, or more than 2^13 radii away, do not
+ * use it. */
+static void prepare_ball(const struct glint_scene *s, struct glint_placed *p)
 {
     int32_t to[3];
     uint64_t away;
@@ -38,8 +40,8 @@ static void begin_ball(const struct glint_scene *s, struct glint_placed *p)
     p->over_up = 0;
     if (!p->is_seen || p->object->kind != GLINT_OBJECT_SPHERE)
         return;
-    v3_minus(p->at, s->view.at, to);
-    away = glint_root((uint64_t)v3_dot(to, to));
+    v3_subtract(p->at, s->view.at, to);
+    away = glint_square_root((uint64_t)v3_dot(to, to));
     if (away < (uint64_t)p->radius + (uint64_t)p->radius / 16 + 16)
         return;
     up = 29 - bit_length((uint64_t)q_divide((int64_t)away, p->radius));
@@ -51,11 +53,12 @@ static void begin_ball(const struct glint_scene *s, struct glint_placed *p)
     p->over_up = up;
 }
 
-/* Prepares the row spans of a ball. With M the direction to the ball's
- * middle and C the squared cosine of the angle to its rim, position (X, Y)
- * of the picture, in tangents, is on the ball if (M.x X + M.y Y + M.z)^2 >=
- * C (1 + X^2 + Y^2). */
-static void begin_spans(const struct glint_scene *s, struct glint_placed *p)
+/* Prepares the computation of the pixels that ball P spans in each row. Let M
+ * be the direction to the ball's middle and C the squared cosine of the angle
+ * between M and the ball's rim. Position (X, Y) of the picture, in tangents, is
+ * on the ball if (M.x X + M.y Y + M.z)^2 >= C (1 + X^2 + Y^2). */
+static void prepare_ball_spans(const struct glint_scene *s,
+                               struct glint_placed *p)
 {
     int32_t seen[3], away;
     int64_t to[3], sine_q30;
@@ -63,21 +66,21 @@ static void begin_spans(const struct glint_scene *s, struct glint_placed *p)
     p->span.is_there = 0;
     if (p->over_up == 0 || s->view.wide > 1)
         return;
-    glint_view_seen(&s->view, p->at, seen);
+    glint_view_to_camera(&s->view, p->at, seen);
     for (int k = 0; k < 3; k++)
         to[k] = seen[k];
-    away = (int32_t)glint_root((uint64_t)v3_dot(seen, seen));
-    /* includes a margin for samples off the middles of rows */
-    sine_q30 = glint_ratio(
+    away = (int32_t)glint_square_root((uint64_t)v3_dot(seen, seen));
+    /* enlarged by a margin, as samples lie off the middles of rows */
+    sine_q30 = glint_divide_rounded(
         ((uint64_t)p->radius + 2 * (uint64_t)p->margin) << 30, (uint64_t)away);
-    if (!glint_unit(to, p->span.m_q30) || sine_q30 < 1 << 22 ||
+    if (!glint_normalise_vector(to, p->span.m_q30) || sine_q30 < 1 << 22 ||
         sine_q30 > 1 << 29)
         return;
     p->span.c_q30 = (int32_t)((1 << 30) - (sine_q30 * sine_q30 >> 30));
     p->span.a_q30 =
         (int32_t)(((int64_t)p->span.m_q30[0] * p->span.m_q30[0] >> 30) -
                   p->span.c_q30);
-    /* the rim must be an ellipse, and not too flat */
+    /* the ball's outline must be an ellipse, and not too flat */
     if (p->span.a_q30 > -(1 << 26))
         return;
     p->span.up = q_up((uint64_t)-p->span.a_q30);
@@ -85,10 +88,11 @@ static void begin_spans(const struct glint_scene *s, struct glint_placed *p)
     p->span.is_there = 1;
 }
 
-/* Solves (C - M.x^2) X^2 - 2 M.x h X + C (1 + Y^2) - h^2 <= 0 for X, where h
- * = M.y Y + M.z. */
-int glint_scene_span(const struct glint_scene *s, const struct glint_placed *p,
-                     int y, int32_t *x0, int32_t *x1)
+/* Solves the quadratic (C - M.x^2) X^2 - 2 M.x h X + C (1 + Y^2) - h^2 <= 0 for
+ * X, where h = M.y Y + M.z (see prepare_ball_spans()). */
+int glint_scene_find_ball_span(const struct glint_scene *s,
+                               const struct glint_placed *p, int y, int32_t *x0,
+                               int32_t *x1)
 {
     const int32_t y_q8 = 256 * y - 128 * (s->view.height - 1);
     const int64_t y_q28 = -(y_q8 * s->view.step_q56[1] >> 28);
@@ -103,7 +107,7 @@ int glint_scene_span(const struct glint_scene *s, const struct glint_placed *p,
     if (rest_q56 < -(INT64_C(1) << 36))
         return 0;
     rest_q56 = rest_q56 < 0 ? 0 : rest_q56;
-    half_q28 = glint_root((uint64_t)rest_q56) + (1 << 16);
+    half_q28 = glint_square_root((uint64_t)rest_q56) + (1 << 16);
     middle_q28 = p->span.m_q30[0] * h_q28 >> 30;
     for (int k = 0; k < 2; k++) {
         end_q28[k] =
@@ -117,24 +121,25 @@ int glint_scene_span(const struct glint_scene *s, const struct glint_placed *p,
     return *x0 < *x1;
 }
 
-void glint_quick_ball(const struct glint_scene *scene, struct glint_placed *p)
+void glint_quick_prepare_ball(const struct glint_scene *scene,
+                              struct glint_placed *p)
 {
-    begin_ball(scene, p);
-    begin_spans(scene, p);
+    prepare_ball(scene, p);
+    prepare_ball_spans(scene, p);
 }
 
-void glint_quick_begin(struct glint_scene *scene)
+void glint_quick_prepare_balls(struct glint_scene *scene)
 {
     for (uint32_t i = 0; i < scene->model.header->n_objects; i++)
-        glint_quick_ball(scene, &scene->placed[i]);
+        glint_quick_prepare_ball(scene, &scene->placed[i]);
 }
 
-/* The ray passes the ball's middle at the distance |A|, A = L x D, in radii.
- * The unit normal is A x D - sqrt(1 - A.A) D. Near the rim this is not
- * accurate enough. */
-int glint_quick_meet(const struct glint_placed *p,
-                     const struct glint_scene_ray *ray, int32_t across_q30[3],
-                     int32_t *cosine_q30)
+/* The ray passes the ball's middle at distance |A|, A = L x D, in radii. The
+ * unit normal is A x D - sqrt(1 - A.A) D, which is not accurate near the
+ * rim. */
+int glint_quick_intersect_ball(const struct glint_placed *p,
+                               const struct glint_scene_ray *ray,
+                               int32_t across_q30[3], int32_t *cosine_q30)
 {
     int64_t cross[3];
     uint64_t square_q60;
@@ -152,16 +157,18 @@ int glint_quick_meet(const struct glint_placed *p,
     square_q60 = (UINT64_C(1) << 60) - (uint64_t)v3_dot(across_q30, across_q30);
     if ((int64_t)square_q60 < INT64_C(1) << 44)
         return 0;
-    up = glint_quick_up(square_q60);
+    up = glint_quick_even_shift(square_q60);
     s_q32 = (uint32_t)(square_q60 << up >> 32);
-    *cosine_q30 = (int32_t)((uint64_t)s_q32 * glint_quick_root_q31(s_q32) >>
-                            (31 + up / 2));
+    *cosine_q30 =
+        (int32_t)((uint64_t)s_q32 * glint_quick_inverse_root_q31(s_q32) >>
+                  (31 + up / 2));
     return 1;
 }
 
-/* The distance is L.D - cosine, in radii. */
-int32_t glint_quick_away(const struct glint_placed *p,
-                         const struct glint_scene_ray *ray, int32_t cosine_q30)
+/* The distance to the intersection is L.D - cosine, in radii. */
+int32_t glint_quick_ball_distance(const struct glint_placed *p,
+                                  const struct glint_scene_ray *ray,
+                                  int32_t cosine_q30)
 {
     return q_clamp_sat((((v3_dot(p->over, ray->toward_q30) >> 30) -
                          (cosine_q30 >> (30 - p->over_up))) *
@@ -170,15 +177,15 @@ int32_t glint_quick_away(const struct glint_placed *p,
                        1, GLINT_FAR - 1);
 }
 
-static int find_ball(const struct glint_placed *p,
-                     const struct glint_scene_ray *ray,
-                     struct glint_met_surface *surface)
+static int find_ball_surface(const struct glint_placed *p,
+                             const struct glint_scene_ray *ray,
+                             struct glint_met_surface *surface)
 {
     const int32_t *d_q30 = ray->toward_q30;
     int64_t cross[3];
     int32_t across_q30[3], half_q30;
 
-    if (!glint_quick_meet(p, ray, across_q30, &half_q30))
+    if (!glint_quick_intersect_ball(p, ray, across_q30, &half_q30))
         return 0;
     v3_cross(across_q30, d_q30, cross);
     for (int k = 0; k < 3; k++) {
@@ -189,33 +196,36 @@ static int find_ball(const struct glint_placed *p,
         surface->place[k] =
             p->at[k] + (int32_t)q_shift((int64_t)n_q30 * p->radius, 30);
     }
-    surface->t = glint_quick_away(p, ray, half_q30);
+    surface->t = glint_quick_ball_distance(p, ray, half_q30);
     return 1;
 }
 
 /* ------------------------------------------------------------------ planes */
 
-/* Finds the point of plane P on RAY. A direction error of 2^-24 shifts the
- * point by as much in the picture, for any orientation of the plane. */
-static int find_plane(const struct glint_placed *p,
-                      const struct glint_scene_ray *ray,
-                      struct glint_met_surface *surface)
+/* Finds the point where RAY meets plane P. An error of 2^-24 in the ray's
+ * direction moves the point by 2^-24 in the picture, whatever the plane's
+ * orientation. */
+static int find_plane_surface(const struct glint_placed *p,
+                              const struct glint_scene_ray *ray,
+                              struct glint_met_surface *surface)
 {
     int32_t sign;
 
-    surface->t = glint_ray_plane(ray, p->at, p->centre);
+    surface->t = glint_ray_intersect_plane(ray, p->at, p->centre);
     surface->is_inside = v3_dot(ray->toward_q30, p->centre) > 0;
     sign = surface->is_inside ? -1 : 1;
     for (int k = 0; k < 3; k++)
         surface->normal_q30[k] = surface->face_q30[k] = sign * p->centre[k];
-    return surface->t > 0 && glint_ray_go(ray, surface->t, surface->place);
+    return surface->t > 0 &&
+           glint_ray_point_at_distance(ray, surface->t, surface->place);
 }
 
 /* ------------------------------------------------------------------- either */
 
-int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
-                     int32_t y_q8, struct glint_scene_ray *ray,
-                     struct glint_met_surface *surface)
+int glint_quick_find_surface(struct glint_scene_worker *w, uint32_t id,
+                             int32_t x_q8, int32_t y_q8,
+                             struct glint_scene_ray *ray,
+                             struct glint_met_surface *surface)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_placed *p = &s->placed[id >> 20];
@@ -226,15 +236,15 @@ int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
     if (p->object->kind == GLINT_OBJECT_MESH) {
         if (!s->cfg.parts.meshes->find(w, id, x_q8, y_q8, surface))
             return 0;
-        glint_quick_ray(&s->view, x_q8, y_q8, ray, seen_q30);
+        glint_quick_compute_ray(&s->view, x_q8, y_q8, ray, seen_q30);
         return 1;
     }
     if (p->object->kind == GLINT_OBJECT_SPHERE && !p->over_up)
         return 0;
-    glint_quick_ray(&s->view, x_q8, y_q8, ray, seen_q30);
+    glint_quick_compute_ray(&s->view, x_q8, y_q8, ray, seen_q30);
     surface->material = &s->model.material[p->material];
     if (p->object->kind == GLINT_OBJECT_PLANE)
-        return find_plane(p, ray, surface);
+        return find_plane_surface(p, ray, surface);
     surface->is_inside = 0;
-    return find_ball(p, ray, surface);
+    return find_ball_surface(p, ray, surface);
 }

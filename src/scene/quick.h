@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fast path for surfaces at the middle of pixels: uses 26 bits, which suffice
- * for shading, and shares work among all pixels of an object. Visibility has
- * been decided exactly before (visible.c).
- */
+ * Fast path for the surface in the middle of a pixel: computes with 26 bits,
+ * which suffice for shading, and precomputes what all pixels of an object
+ * share. visible.c has determined the visible object exactly before. */
 #ifndef GLINT_SCENE_QUICK_H
 #define GLINT_SCENE_QUICK_H
 
@@ -12,9 +11,9 @@
 /* ------------------------------------------------------------------- roots */
 
 /* Returns 2^31 / sqrt(S) for S = S_Q32 / 2^32, 1/4 <= S < 1. The relative error
- * is at most 2^-25.8, never above the true value: Newton's method from a table
- * of error 2^-6.9. */
-static inline uint32_t glint_quick_root_q31(uint32_t s_q32)
+ * is at most 2^-25.8, and the result is never above the true value: Newton's
+ * method from a table of error 2^-6.9. */
+static inline uint32_t glint_quick_inverse_root_q31(uint32_t s_q32)
 {
     uint32_t r_q31 = glint_inverse_root_start(s_q32 >> 25) << 24;
 
@@ -30,18 +29,20 @@ static inline uint32_t glint_quick_root_q31(uint32_t s_q32)
 
 /* Returns the even number of bits by which X must be shifted up to have 63 or
  * 64 bits. X must not be 0. */
-static inline int glint_quick_up(uint64_t x)
+static inline int glint_quick_even_shift(uint64_t x)
 {
     return (64 - bit_length(x | 1)) & ~1;
 }
 
-/* Sets UNIT_Q30 to V / |V|. Elements of V must be within +-2^30, and at least
- * one must have a magnitude of 2^20 or more. */
-static inline void glint_quick_unit(const int32_t v[3], int32_t unit_q30[3])
+/* Sets UNIT_Q30 to V / |V|. Components of V must be within +-2^30, and at least
+ * one of magnitude 2^20 or more. */
+static inline void glint_quick_normalise(const int32_t v[3],
+                                         int32_t unit_q30[3])
 {
     const uint64_t square = (uint64_t)v3_dot(v, v); /* below 3 * 2^60 */
-    const int up = glint_quick_up(square);
-    const int64_t r_q31 = glint_quick_root_q31((uint32_t)(square << up >> 32));
+    const int up = glint_quick_even_shift(square);
+    const int64_t r_q31 =
+        glint_quick_inverse_root_q31((uint32_t)(square << up >> 32));
     const int down = 33 - up / 2;
 
     for (int k = 0; k < 3; k++)
@@ -50,15 +51,17 @@ static inline void glint_quick_unit(const int32_t v[3], int32_t unit_q30[3])
 
 /* -------------------------------------------------------------------- find */
 
-/* Prepares the balls of a frame. */
-void glint_quick_begin(struct glint_scene *scene);
+/* Prepares all balls of a frame for the fast path. */
+void glint_quick_prepare_balls(struct glint_scene *scene);
 
-/* Sets RAY to the ray through (X, Y), with an error of 2^-24 per element,
- * and SURFACE to its intersection with object or triangle ID, clamped to the
- * triangle. Returns 0 if the fast path does not apply: near the rim of a
- * ball, and for triangles that come near the camera or have a texture. */
-int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
-                     int32_t y_q8, struct glint_scene_ray *ray,
-                     struct glint_met_surface *surface);
+/* Sets RAY to the ray through position (X, Y), with an error of 2^-24 per
+ * component, and SURFACE to its intersection with object or triangle ID; a ray
+ * that just misses a triangle is clamped to it. Returns 0 if the fast path does
+ * not apply: near the rim of a ball, and for triangles that come near the
+ * camera or have a texture. */
+int glint_quick_find_surface(struct glint_scene_worker *w, uint32_t id,
+                             int32_t x_q8, int32_t y_q8,
+                             struct glint_scene_ray *ray,
+                             struct glint_met_surface *surface);
 
 #endif

@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * The fast path (quick.h) for triangles. A worker caches a few prepared
- * triangles.
- */
+ * The fast path for shading (quick.h) of triangles. Each worker caches a few
+ * prepared triangles. */
 #include "base/divide.h"
 #include "scene/quick.h"
 #include "scene/mesh.h"
 
 /* --------------------------------------------------------------- triangles */
 
-/* Sets the corners of T in the picture; returns 0 if a corner cannot be
- * projected. */
-static int set_corners(const struct glint_scene *s, uint32_t object,
-                       const struct glint_scene_triangle *of,
-                       struct glint_quick_triangle *t)
+/* Sets the picture positions of the corners of triangle T; returns 0 if a
+ * corner cannot be projected. */
+static int set_triangle_corners(const struct glint_scene *s, uint32_t object,
+                                const struct glint_scene_triangle *of,
+                                struct glint_quick_triangle *t)
 {
     const struct glint_placed *p = &s->placed[object];
     const struct glint_corner *c[3];
@@ -51,36 +50,37 @@ static int set_corners(const struct glint_scene *s, uint32_t object,
     return 1;
 }
 
-/* Sets the vertices and normals of T; normals point to the camera's side. */
-static int set_surface(const struct glint_scene *s, uint32_t object,
-                       const struct glint_scene_triangle *of,
-                       struct glint_quick_triangle *t)
+/* Sets the vertices and normals of triangle T; normals are flipped to the
+ * camera's side. */
+static int set_triangle_surface(const struct glint_scene *s, uint32_t object,
+                                const struct glint_scene_triangle *of,
+                                struct glint_quick_triangle *t)
 {
     const struct glint_placed *p = &s->placed[object];
     const struct glint_scene_mesh *m = glint_mesh_of(s, object);
-    const int32_t *vertex = glint_mesh_table(s, m->vertex_at);
+    const int32_t *vertex = glint_mesh_get_table(s, m->vertex_at);
     const int32_t *normal =
-        m->normal_at ? glint_mesh_table(s, m->normal_at) : NULL;
+        m->normal_at ? glint_mesh_get_table(s, m->normal_at) : NULL;
     const int32_t *at[3];
     int32_t place[3], off[3], n_q30[3][3], sign;
 
     for (int k = 0; k < 3; k++)
         at[k] = vertex + 3 * (size_t)of->vertex[k];
-    if (!glint_triangle_normal(at, off))
+    if (!glint_set_triangle_normal(at, off))
         return 0;
-    v3_turn(&p->turn, off, t->face_q30);
+    v3_rotate(&p->turn, off, t->face_q30);
     for (int i = 0; i < 3; i++) {
-        v3_turn(&p->turn, at[i], place);
+        v3_rotate(&p->turn, at[i], place);
         for (int k = 0; k < 3; k++)
             t->place[i][k] =
                 i ? place[k] + p->at[k] - t->place[0][k] : place[k] + p->at[k];
         if (normal)
-            v3_turn(&p->turn, normal + 3 * (size_t)of->vertex[i], n_q30[i]);
+            v3_rotate(&p->turn, normal + 3 * (size_t)of->vertex[i], n_q30[i]);
         else
             for (int k = 0; k < 3; k++)
                 n_q30[i][k] = t->face_q30[k];
     }
-    v3_minus(t->place[0], s->view.at, off);
+    v3_subtract(t->place[0], s->view.at, off);
     t->is_inside = v3_dot(off, t->face_q30) > 0;
     sign = t->is_inside ? -1 : 1;
     for (int k = 0; k < 3; k++) {
@@ -94,8 +94,8 @@ static int set_surface(const struct glint_scene *s, uint32_t object,
     return 1;
 }
 
-/* Returns the prepared triangle ID from the worker's cache, preparing it if
- * necessary; NULL if it cannot be prepared. */
+/* Returns the prepared triangle ID from the worker's cache, prepares it on a
+ * miss. Returns NULL if it cannot be prepared. */
 static struct glint_quick_triangle *
 prepare_triangle(struct glint_scene_worker *w, uint32_t id)
 {
@@ -113,16 +113,16 @@ prepare_triangle(struct glint_scene_worker *w, uint32_t id)
                                          : of->material];
     t->is_there = t->material->texture == GLINT_SCENE_NONE &&
                   s->placed[id >> 20].skin < 0 &&
-                  set_corners(s, id >> 20, of, t) &&
-                  set_surface(s, id >> 20, of, t);
+                  set_triangle_corners(s, id >> 20, of, t) &&
+                  set_triangle_surface(s, id >> 20, of, t);
     return t->is_there ? t : NULL;
 }
 
-/* Sets PART to the weights of the second and third corner at a position of
- * the picture: perspective-correct fractions of the area, clamped to the
- * triangle. */
-static void compute_weights(const struct glint_quick_triangle *t, int32_t x_q8,
-                            int32_t y_q8, int64_t part_q30[2])
+/* Sets PART to the barycentric weights of the second and third corner at
+ * position (X, Y): perspective-correct, clamped to the triangle. */
+static void compute_vertex_weights(const struct glint_quick_triangle *t,
+                                   int32_t x_q8, int32_t y_q8,
+                                   int64_t part_q30[2])
 {
     const int64_t x = x_q8 - t->x_q8, y = y_q8 - t->y_q8;
     uint64_t weight_q30[3], sum = 0;
@@ -133,7 +133,7 @@ static void compute_weights(const struct glint_quick_triangle *t, int32_t x_q8,
         int64_t edge = t->at[k] + x * t->across[k] + y * t->down[k];
 
         edge = edge < 0 ? 0 : edge;
-        /* up scales the area to 2^31 .. 2^32 */
+        /* up scales the sum of the weights to 2^31 .. 2^32 */
         edge = t->up < 0 ? edge >> -t->up : edge * (INT64_C(1) << t->up);
         edge = edge > UINT32_MAX ? UINT32_MAX : edge;
         weight_q30[k] =
@@ -153,13 +153,14 @@ static void compute_weights(const struct glint_quick_triangle *t, int32_t x_q8,
                       33);
 }
 
-static int find_triangle(const struct glint_quick_triangle *t, int32_t x_q8,
-                         int32_t y_q8, struct glint_met_surface *surface)
+static int find_triangle_surface(const struct glint_quick_triangle *t,
+                                 int32_t x_q8, int32_t y_q8,
+                                 struct glint_met_surface *surface)
 {
     int64_t part_q30[2];
     int32_t normal_q29[3];
 
-    compute_weights(t, x_q8, y_q8, part_q30);
+    compute_vertex_weights(t, x_q8, y_q8, part_q30);
     for (int k = 0; k < 3; k++) {
         surface->place[k] =
             t->place[0][k] + (int32_t)q_shift(part_q30[0] * t->place[1][k] +
@@ -178,15 +179,15 @@ static int find_triangle(const struct glint_quick_triangle *t, int32_t x_q8,
                                   30);
     if (v3_dot(normal_q29, normal_q29) < INT64_C(1) << 44)
         return 0;
-    glint_quick_unit(normal_q29, surface->normal_q30);
+    glint_quick_normalise(normal_q29, surface->normal_q30);
     return 1;
 }
 
-int glint_quick_mesh_find(struct glint_scene_worker *w, uint32_t id,
-                          int32_t x_q8, int32_t y_q8,
-                          struct glint_met_surface *surface)
+int glint_quick_find_mesh_surface(struct glint_scene_worker *w, uint32_t id,
+                                  int32_t x_q8, int32_t y_q8,
+                                  struct glint_met_surface *surface)
 {
     const struct glint_quick_triangle *t = prepare_triangle(w, id);
 
-    return t && find_triangle(t, x_q8, y_q8, surface);
+    return t && find_triangle_surface(t, x_q8, y_q8, surface);
 }

@@ -5,7 +5,8 @@
 
 enum { ONE_Q30 = 1 << 30, REACH = 1 << 29 };
 
-int glint_ray_go(const struct glint_scene_ray *ray, int32_t t, int32_t to[3])
+int glint_ray_point_at_distance(const struct glint_scene_ray *ray, int32_t t,
+                                int32_t to[3])
 {
     int64_t place[3];
     int fits = 1;
@@ -21,19 +22,20 @@ int glint_ray_go(const struct glint_scene_ray *ray, int32_t t, int32_t to[3])
 
 /* ------------------------------------------------------------------ sphere */
 
-/* Elements of L are within 2^29 and |D| is 1: |L.D| and each element of L x D
- * are below 2^60 in _q30. Elements of L x D are truncated to UP fraction bits
- * once they are known to be below the radius, 2^30, so that their squares sum
- * to less than 3 * 2^60. */
-int glint_ray_sphere(const struct glint_scene_ray *ray, const int32_t centre[3],
-                     int32_t radius, struct glint_chord *chord)
+/* Components of L are within 2^29 and |D| is 1, so |L.D| and each component of
+ * L x D are below 2^60 in _q30. The components of L x D are truncated to UP
+ * fraction bits once they are known to be below the radius, 2^30, so that their
+ * squares sum to less than 3 * 2^60. */
+int glint_ray_intersect_sphere(const struct glint_scene_ray *ray,
+                               const int32_t centre[3], int32_t radius,
+                               struct glint_chord *chord)
 {
     const int up = 30 - bit_length((uint32_t)radius);
     const int64_t radius_up = (int64_t)radius << up;
     int64_t across_q30[3], rest = radius_up * radius_up, middle_q30;
     int32_t to[3], across[3];
 
-    v3_minus(centre, ray->at, to);
+    v3_subtract(centre, ray->at, to);
     v3_cross(to, ray->toward_q30, across_q30);
     for (int k = 0; k < 3; k++) {
         const int64_t x = q_shift(across_q30[k], 30 - up);
@@ -47,7 +49,7 @@ int glint_ray_sphere(const struct glint_scene_ray *ray, const int32_t centre[3],
         return 0;
     middle_q30 = v3_dot(to, ray->toward_q30);
     chord->up = up;
-    chord->half = (int32_t)glint_root((uint64_t)rest);
+    chord->half = (int32_t)glint_square_root((uint64_t)rest);
     v3_cross(across, ray->toward_q30, across_q30);
     for (int k = 0; k < 3; k++)
         chord->middle[k] = (int32_t)q_shift(across_q30[k], 30);
@@ -60,9 +62,10 @@ int glint_ray_sphere(const struct glint_scene_ray *ray, const int32_t centre[3],
     return 1;
 }
 
-void glint_chord_end(const struct glint_chord *chord,
-                     const struct glint_scene_ray *ray, const int32_t centre[3],
-                     int k, int32_t place[3], int32_t normal_q30[3])
+void glint_chord_find_end_surface(const struct glint_chord *chord,
+                                  const struct glint_scene_ray *ray,
+                                  const int32_t centre[3], int k,
+                                  int32_t place[3], int32_t normal_q30[3])
 {
     int64_t from[3];
 
@@ -73,32 +76,35 @@ void glint_chord_end(const struct glint_chord *chord,
         from[i] = chord->middle[i] + (k ? along : -along);
         place[i] = q_narrow(centre[i] + q_shift(from[i], chord->up));
     }
-    /* The length of from is the radius, so it is not 0. */
-    glint_unit(from, normal_q30);
+    /* The vector from the centre has the radius as length, so it is not 0. */
+    glint_normalise_vector(from, normal_q30);
 }
 
 /* ------------------------------------------------------------------- plane */
 
-int32_t glint_ray_plane(const struct glint_scene_ray *ray, const int32_t at[3],
-                        const int32_t normal_q30[3])
+int32_t glint_ray_intersect_plane(const struct glint_scene_ray *ray,
+                                  const int32_t at[3],
+                                  const int32_t normal_q30[3])
 {
     int64_t away_q30, along_q60;
     int32_t to[3], t;
 
-    v3_minus(at, ray->at, to);
+    v3_subtract(at, ray->at, to);
     away_q30 = v3_dot(to, normal_q30);
     along_q60 = v3_dot(ray->toward_q30, normal_q30);
     if (away_q30 == 0 || along_q60 == 0 || (away_q30 < 0) != (along_q60 < 0))
         return 0;
-    /* away is below 2^60 and is scaled up, as the divisor is at most 1. */
-    t = glint_ratio(q_magnitude(away_q30),
-                    (q_magnitude(along_q60) + (1 << 29)) >> 30);
+    /* The distance to the plane is below 2^60 and is scaled up, as the divisor
+     * is at most 1. */
+    t = glint_divide_rounded(q_magnitude(away_q30),
+                             (q_magnitude(along_q60) + (1 << 29)) >> 30);
     return q_smaller(t, GLINT_PLANE_END);
 }
 
 /* ---------------------------------------------------------------- triangle */
 
-void glint_shear(const struct glint_scene_ray *ray, struct glint_sheared *to)
+void glint_ray_shear_to_axis(const struct glint_scene_ray *ray,
+                             struct glint_sheared *to)
 {
     const int32_t *d_q30 = ray->toward_q30;
     /* starts at 1, not 0, although a direction has length 1 */
@@ -127,7 +133,7 @@ void glint_shear(const struct glint_scene_ray *ray, struct glint_sheared *to)
     to->least = 0;
 }
 
-/* A triangle in the space of a sheared ray: edge functions and depths. */
+/* A triangle in the sheared space of a ray: edge functions and depths. */
 struct seen {
     int64_t edge[3], sum;
     int32_t x[3], y[3], z[3];
@@ -151,13 +157,14 @@ static void shear_vertices(const struct glint_sheared *ray,
 }
 
 /* Returns whether three numbers are all positive or all negative. */
-static int is_aside(const int32_t x[3])
+static int have_same_sign(const int32_t x[3])
 {
     return (x[0] & x[1] & x[2]) < 0 || (-x[0] & -x[1] & -x[2]) < 0;
 }
 
-/* Sets the edge functions, below 2^61, and their sum, below 3 * 2^61. */
-static void set_edges(struct seen *s)
+/* Sets the three edge functions, each below 2^61, and their sum, below 3 *
+ * 2^61. */
+static void set_edge_functions(struct seen *s)
 {
     s->sum = 0;
     for (int i = 0; i < 3; i++) {
@@ -168,7 +175,8 @@ static void set_edges(struct seen *s)
     }
 }
 
-void glint_weigh(const int64_t edge[3], int64_t sum, int32_t part_q30[3])
+void glint_set_vertex_weights(const int64_t edge[3], int64_t sum,
+                              int32_t part_q30[3])
 {
     const uint64_t all = q_magnitude(sum);
     const int up = q_up(all);
@@ -182,40 +190,41 @@ void glint_weigh(const int64_t edge[3], int64_t sum, int32_t part_q30[3])
     part_q30[1] = ONE_Q30 - part_q30[0] - part_q30[2];
 }
 
-static void set_spot(const struct glint_sheared *ray, const struct seen *s,
-                     struct glint_spot_on *spot)
+static void set_triangle_spot(const struct glint_sheared *ray,
+                              const struct seen *s, struct glint_spot_on *spot)
 {
     spot->t = q_narrow(q_shift(
         q_shift(v3_dot(spot->part_q30, s->z), 30) * ray->along_q30, 30));
 }
 
-int glint_ray_triangle(const struct glint_sheared *ray,
-                       const int32_t *const vertex[3],
-                       struct glint_spot_on *spot)
+int glint_ray_intersect_triangle(const struct glint_sheared *ray,
+                                 const int32_t *const vertex[3],
+                                 struct glint_spot_on *spot)
 {
     struct seen s;
 
     shear_vertices(ray, vertex, &s);
-    if (is_aside(s.x) || is_aside(s.y))
+    if (have_same_sign(s.x) || have_same_sign(s.y))
         return 0;
-    set_edges(&s);
+    set_edge_functions(&s);
     if (((s.edge[0] | s.edge[1] | s.edge[2]) < 0 &&
          (s.edge[0] > 0 || s.edge[1] > 0 || s.edge[2] > 0)) ||
         s.sum == 0)
         return 0;
-    glint_weigh(s.edge, s.sum, spot->part_q30);
-    set_spot(ray, &s, spot);
+    glint_set_vertex_weights(s.edge, s.sum, spot->part_q30);
+    set_triangle_spot(ray, &s, spot);
     return spot->t > ray->least;
 }
 
-int glint_ray_hold(const struct glint_sheared *ray,
-                   const int32_t *const vertex[3], struct glint_spot_on *spot)
+int glint_ray_clamp_to_triangle(const struct glint_sheared *ray,
+                                const int32_t *const vertex[3],
+                                struct glint_spot_on *spot)
 {
     struct seen s;
     int64_t sum = 0;
 
     shear_vertices(ray, vertex, &s);
-    set_edges(&s);
+    set_edge_functions(&s);
     if (s.sum == 0)
         return 0;
     for (int k = 0; k < 3; k++) {
@@ -226,28 +235,29 @@ int glint_ray_hold(const struct glint_sheared *ray,
     if (sum == 0)
         return 0;
     s.sum = sum;
-    glint_weigh(s.edge, s.sum, spot->part_q30);
-    set_spot(ray, &s, spot);
+    glint_set_vertex_weights(s.edge, s.sum, spot->part_q30);
+    set_triangle_spot(ray, &s, spot);
     return 1;
 }
 
-int glint_triangle_normal(const int32_t *const vertex[3], int32_t normal_q30[3])
+int glint_set_triangle_normal(const int32_t *const vertex[3],
+                              int32_t normal_q30[3])
 {
     int32_t first[3], second[3];
     int64_t normal[3];
 
-    v3_minus(vertex[1], vertex[0], first);
-    v3_minus(vertex[2], vertex[0], second);
+    v3_subtract(vertex[1], vertex[0], first);
+    v3_subtract(vertex[2], vertex[0], second);
     v3_cross(first, second, normal);
-    return glint_unit(normal, normal_q30);
+    return glint_normalise_vector(normal, normal_q30);
 }
 
 /* ----------------------------------------------------------------- surfaces */
 
-/* |N| is 1 only to within rounding; the division by N.N, to first order,
- * preserves the length of D. */
-void glint_mirror(const int32_t d_q30[3], const int32_t n_q30[3],
-                  int32_t to_q30[3])
+/* N has length 1 up to rounding; the division by N.N, to first order, preserves
+ * the length of D. */
+void glint_reflect_direction(const int32_t d_q30[3], const int32_t n_q30[3],
+                             int32_t to_q30[3])
 {
     const int64_t over_q45 = (v3_dot(n_q30, n_q30) - (INT64_C(1) << 60)) >> 15;
     int64_t along_q30 = v3_cosine_q30(d_q30, n_q30);
@@ -257,27 +267,27 @@ void glint_mirror(const int32_t d_q30[3], const int32_t n_q30[3],
         to_q30[k] = (int32_t)(d_q30[k] - q_shift(along_q30 * n_q30[k], 29));
 }
 
-/* Sines are of the angles to the normal: sine before the surface; behind it
- * eta * sine, which is below 16. */
+/* Sines of the angles between ray and normal: s in front of the surface, eta s,
+ * below 16, behind it. */
 int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
                int32_t to_q30[3])
 {
     const int64_t along_q30 = v3_cosine_q30(d_q30, n_q30);
     const int64_t square_q60 = (INT64_C(1) << 60) - along_q30 * along_q30;
     const int64_t sine_q30 =
-        square_q60 > 0 ? glint_root((uint64_t)square_q60) : 0;
+        square_q60 > 0 ? glint_square_root((uint64_t)square_q60) : 0;
     const int64_t behind_q30 = q_shift(sine_q30 * eta_q28, 28);
     int64_t to[3], cosine_q30;
 
     if (behind_q30 > ONE_Q30)
         return 0;
-    cosine_q30 =
-        glint_root((uint64_t)((INT64_C(1) << 60) - behind_q30 * behind_q30));
+    cosine_q30 = glint_square_root(
+        (uint64_t)((INT64_C(1) << 60) - behind_q30 * behind_q30));
     /* eta d + (eta * cosine before - cosine behind) n */
     for (int k = 0; k < 3; k++)
         to[k] =
             q_shift(d_q30[k] * (int64_t)eta_q28, 28) -
             q_shift((q_shift(along_q30 * eta_q28, 28) + cosine_q30) * n_q30[k],
                     30);
-    return glint_unit(to, to_q30);
+    return glint_normalise_vector(to, to_q30);
 }

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Allocates a scene's memory, and changes its objects, camera and lights
- * between frames.
- */
+ * Allocates a scene's memory, and changes its objects, camera and lights from
+ * frame to frame. */
 #include "scene/visible.h"
 
 #include "base/compiler.h"
@@ -26,8 +25,9 @@ void glint_scene_defaults(struct glint_scene_config *cfg, int width, int height)
                                        .max_refs = 1 << 15};
 }
 
-/* Returns whether a scene has brushed metal or an environment. */
-static int has_wards(const struct glint_scene_header *h)
+/* Returns whether a scene has brushed metal or an environment, which need the
+ * ward module. */
+static int needs_ward_module(const struct glint_scene_header *h)
 {
     return h->n_wards > 0 || h->n_environments > 0;
 }
@@ -39,7 +39,7 @@ const char *glint_scene_lacks(const struct glint_scene_parts *parts,
 
     if (h->n_meshes > 0 && !parts->meshes)
         return "meshes";
-    if (has_wards(h) && !parts->wards)
+    if (needs_ward_module(h) && !parts->wards)
         return "wards";
     if (h->n_skins > 0 && !parts->stones)
         return "stones";
@@ -66,19 +66,19 @@ static size_t count_vertices(const struct glint_scene_model *m)
     return n;
 }
 
-/* Returns whether N is a power of two whose bit is set in ALL. */
-static int is_enum_value(int n, int all)
+/* Returns whether N is one of the powers of two that are set in ALL. */
+static int is_single_bit_of(int n, int all)
 {
     return n > 0 && (n & all) == n && (n & (n - 1)) == 0;
 }
 
-static int is_in_range(const struct glint_scene_config *c)
+static int is_config_in_range(const struct glint_scene_config *c)
 {
     return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
            c->height <= GLINT_MAX_SIDE && c->tile_log2 >= 3 &&
            c->tile_log2 <= 6 &&
-           is_enum_value(c->edge_samples, 1 | 4 | 8 | 16) &&
-           is_enum_value(c->shadow_points, 1 | 4 | 16) &&
+           is_single_bit_of(c->edge_samples, 1 | 4 | 8 | 16) &&
+           is_single_bit_of(c->shadow_points, 1 | 4 | 16) &&
            c->ward_samples >= 1 && c->ward_samples <= 32 &&
            (c->half_shading & ~1) == 0 && c->highlights >= -1 &&
            c->highlights <= 8 && c->max_refs >= 0 &&
@@ -87,7 +87,7 @@ static int is_in_range(const struct glint_scene_config *c)
 
 /* Returns the max number of shadow casters in a sun's grid: all triangles
  * and balls. */
-static size_t count_casters(const struct glint_scene_model *m)
+static size_t count_shadow_casters(const struct glint_scene_model *m)
 {
     size_t n = 0;
 
@@ -98,14 +98,14 @@ static size_t count_casters(const struct glint_scene_model *m)
     return n;
 }
 
-/* Allocates the shadow grids of suns. Not inlined, as the dummy for
- * measuring is large on the stack. */
-static NEVER_INLINE void carve_shadows(struct glint_scene *s,
-                                       struct glint_arena *a)
+/* Allocates the shadow grids of suns. Not inlined, as the dummy grid that is
+ * used to count bytes is large on the stack. */
+static NEVER_INLINE void allocate_shadow_grids(struct glint_scene *s,
+                                               struct glint_arena *a)
 {
     const size_t cells = (size_t)1 << 2 * GLINT_SHADOW_CELLS_LOG2;
     const size_t n_vertices = count_vertices(&s->model);
-    const size_t n_refs = 12 * count_casters(&s->model) + 64;
+    const size_t n_refs = 12 * count_shadow_casters(&s->model) + 64;
 
     for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
         struct glint_shadow measured, *m;
@@ -125,15 +125,15 @@ static NEVER_INLINE void carve_shadows(struct glint_scene *s,
         m->vertex = glint_arena_take(a, n_vertices, sizeof *m->vertex);
         m->bins.start = glint_arena_take(a, cells + 1, sizeof *m->bins.start);
         m->bins.ref = glint_arena_take(a, n_refs, sizeof *m->bins.ref);
-        m->thing =
-            glint_arena_take(a, count_casters(&s->model), sizeof *m->thing);
+        m->thing = glint_arena_take(a, count_shadow_casters(&s->model),
+                                    sizeof *m->thing);
     }
 }
 
-/* Allocates the memory of a worker. WORKER must be NULL while memory is only
- * measured. */
-static void carve_worker(struct glint_scene *s, struct glint_arena *a,
-                         struct glint_scene_worker *worker)
+/* Allocates the memory of one worker. WORKER must be NULL while the arena only
+ * counts bytes. */
+static void allocate_worker(struct glint_scene *s, struct glint_arena *a,
+                            struct glint_scene_worker *worker)
 {
     const size_t side = (size_t)1 << s->cfg.tile_log2;
     const size_t samples = side * side * (size_t)s->cfg.edge_samples;
@@ -157,9 +157,8 @@ static void carve_worker(struct glint_scene *s, struct glint_arena *a,
         *worker = w;
 }
 
-/* Returns whether any material reflects or refracts rays into the camera's
- * picture. */
-static int shows_picture(const struct glint_scene_model *model)
+/* Returns whether any material reflects or refracts the camera's picture. */
+static int needs_background_picture(const struct glint_scene_model *model)
 {
     const struct glint_scene_header *h = model->header;
     int any = 0;
@@ -171,11 +170,11 @@ static int shows_picture(const struct glint_scene_model *model)
     return any && h->background == GLINT_BACKGROUND_CAMERA;
 }
 
-/* Called twice: first with an arena that only measures, when it returns
+/* Called twice: first with an arena that only counts bytes, when it returns
  * NULL, then to allocate. */
-static struct glint_scene *carve_scene(struct glint_arena *a,
-                                       const struct glint_scene_config *cfg,
-                                       const struct glint_scene_model *model)
+static struct glint_scene *allocate_scene(struct glint_arena *a,
+                                          const struct glint_scene_config *cfg,
+                                          const struct glint_scene_model *model)
 {
     struct glint_scene measured = {.cfg = *cfg, .model = *model};
     struct glint_scene *placed = glint_arena_take(a, 1, sizeof *placed);
@@ -188,7 +187,7 @@ static struct glint_scene *carve_scene(struct glint_arena *a,
     s->placed =
         glint_arena_take(a, model->header->n_objects, sizeof *s->placed);
     s->lit = glint_arena_take(a, model->header->n_lights, sizeof *s->lit);
-    carve_shadows(s, a);
+    allocate_shadow_grids(s, a);
     s->seen = glint_arena_take(a, n_vertices, sizeof *s->seen);
     s->corner = glint_arena_take(a, n_vertices, sizeof *s->corner);
     glint_bins_init(&s->bins, all, cfg->tile_log2, NULL, NULL);
@@ -204,15 +203,16 @@ static struct glint_scene *carve_scene(struct glint_arena *a,
         glint_arena_take(a, model->header->n_materials, sizeof *s->gloss);
     if (model->header->n_textures > 0)
         s->curve = glint_arena_take(a, 1, sizeof *s->curve);
-    if (shows_picture(model))
+    if (needs_background_picture(model))
         cfg->parts.bounces->carve(s, a);
     s->material =
         glint_arena_take(a, model->header->n_materials, sizeof *s->material);
     s->ward = glint_arena_take(a, model->header->n_wards, sizeof *s->ward);
-    s->wards = has_wards(model->header) ? cfg->parts.wards->carve(s, a) : NULL;
+    s->wards =
+        needs_ward_module(model->header) ? cfg->parts.wards->carve(s, a) : NULL;
     s->stones =
         model->header->n_skins > 0 ? cfg->parts.stones->carve(s, a) : NULL;
-    s->bright = cfg->parts.highlights && glint_scene_wanted_highlights(s) > 0
+    s->bright = cfg->parts.highlights && glint_scene_max_highlights(s) > 0
                     ? cfg->parts.highlights->carve(s, a)
                     : NULL;
     s->motion = model->motion ? cfg->parts.motions->carve(s, a) : NULL;
@@ -222,7 +222,7 @@ static struct glint_scene *carve_scene(struct glint_arena *a,
         a, (size_t)s->cover_across * (size_t)s->cover_down, sizeof *s->cover);
     s->worker = glint_arena_take(a, (size_t)n_workers, sizeof *s->worker);
     for (int i = 0; i < n_workers; i++)
-        carve_worker(s, a, s->worker ? &s->worker[i] : NULL);
+        allocate_worker(s, a, s->worker ? &s->worker[i] : NULL);
     return placed;
 }
 
@@ -231,14 +231,15 @@ size_t glint_scene_bytes(const struct glint_scene_config *cfg,
 {
     struct glint_arena arena = glint_arena_measure();
 
-    if (!is_in_range(cfg) || glint_scene_lacks(&cfg->parts, model))
+    if (!is_config_in_range(cfg) || glint_scene_lacks(&cfg->parts, model))
         return 0;
-    carve_scene(&arena, cfg, model);
+    allocate_scene(&arena, cfg, model);
     return arena.used;
 }
 
-/* Returns the index of the map (skin) of object I, or -1. */
-static int find_map(const struct glint_scene_model *model, uint32_t i)
+/* Returns the index of the map (skin) of translucent object I, or -1. */
+static int find_translucency_map(const struct glint_scene_model *model,
+                                 uint32_t i)
 {
     for (uint32_t k = 0; k < model->header->n_skins; k++)
         if (model->skin[k].object == i)
@@ -246,8 +247,8 @@ static int find_map(const struct glint_scene_model *model, uint32_t i)
     return -1;
 }
 
-/* Sets all objects to their positions in the model. */
-static int place_objects(struct glint_scene *s)
+/* Moves all objects to the positions that the model states. */
+static int set_initial_poses(struct glint_scene *s)
 {
     const struct glint_scene_model *model = &s->model;
     uint32_t first = 0;
@@ -255,12 +256,13 @@ static int place_objects(struct glint_scene *s)
     for (uint32_t i = 0; i < model->header->n_objects; i++) {
         const struct glint_scene_object *o = &model->object[i];
 
-        s->placed[i] = (struct glint_placed){.object = o,
-                                             .radius = o->radius,
-                                             .is_shown = !o->hidden,
-                                             .is_catcher = o->catcher_q15 > 0,
-                                             .skin = find_map(model, i),
-                                             .first_vertex = first};
+        s->placed[i] =
+            (struct glint_placed){.object = o,
+                                  .radius = o->radius,
+                                  .is_shown = !o->hidden,
+                                  .is_catcher = o->catcher_q15 > 0,
+                                  .skin = find_translucency_map(model, i),
+                                  .first_vertex = first};
         if (glint_scene_set_material(s, (int)i, (int)o->material) != GLINT_OK)
             return 0;
         s->has_catchers |= s->placed[i].is_catcher;
@@ -272,7 +274,7 @@ static int place_objects(struct glint_scene *s)
     return 1;
 }
 
-static void set_lights(struct glint_scene *s)
+static void set_initial_lights(struct glint_scene *s)
 {
     const struct glint_scene_model *model = &s->model;
 
@@ -298,7 +300,7 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
     struct glint_scene_view view;
     struct glint_scene *s;
 
-    if (!is_in_range(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0 ||
+    if (!is_config_in_range(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0 ||
         !glint_view_init(&view, &model->header->camera, cfg->width, cfg->height,
                          cfg->focal_q16))
         return GLINT_E_ARGUMENT;
@@ -306,14 +308,14 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
         return GLINT_E_UNSUPPORTED;
     if (glint_scene_bytes(cfg, model) > bytes)
         return GLINT_E_MEMORY;
-    s = carve_scene(&arena, cfg, model);
+    s = allocate_scene(&arena, cfg, model);
     s->view = view;
     s->has_split = s->has_catchers = 0;
     s->moved = 0;
     s->is_spread = 0;
     s->sample_q8 = glint_scene_samples(cfg->edge_samples);
-    glint_scene_copy_looks(s);
-    set_lights(s);
+    glint_scene_copy_materials(s);
+    set_initial_lights(s);
     if (s->wards && cfg->parts.wards->open(s) != GLINT_OK)
         return GLINT_E_FORMAT;
     if (s->stones && cfg->parts.stones->open(s) != GLINT_OK)
@@ -321,9 +323,10 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
     if (s->curve)
         cfg->parts.textures->prepare(s->curve);
     for (uint32_t i = 0; i < model->header->n_materials; i++)
-        glint_gloss_prepare(&s->gloss[i], model->material[i].power_q8);
-    if (!place_objects(s))
-        return GLINT_E_ARGUMENT; /* the model was checked when it was opened */
+        glint_gloss_fill_table(&s->gloss[i], model->material[i].power_q8);
+    if (!set_initial_poses(s))
+        return GLINT_E_ARGUMENT; /* cannot happen, as the model was checked when
+                                    it was opened */
     if (s->motion && cfg->parts.motions->open(s) != GLINT_OK)
         return GLINT_E_FORMAT;
     *scene = s;
@@ -332,7 +335,8 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
 
 /* ------------------------------------------------------------------- poses */
 
-void glint_scene_turn_of(const int32_t q[4], struct glint_scene_turn *to)
+void glint_scene_quaternion_to_rotation(const int32_t q[4],
+                                        struct glint_scene_turn *to)
 {
     const int32_t w = q[0], *v = q + 1;
 
@@ -356,7 +360,7 @@ void glint_scene_turn_of(const int32_t q[4], struct glint_scene_turn *to)
         }
 }
 
-/* Returns whether P already has the position AT and the rotation TURN. */
+/* Returns whether object P already has position AT and rotation TURN. */
 static int is_same_pose(const struct glint_placed *p, const int32_t at[3],
                         const struct glint_scene_turn *turn)
 {
@@ -380,14 +384,14 @@ enum glint_status glint_scene_set_pose(struct glint_scene *scene, int object,
     if (object < 0 || object >= (int)scene->model.header->n_objects)
         return GLINT_E_ARGUMENT;
     p = &scene->placed[object];
-    if (!glint_scene_is_unit(turn_q30, 4) ||
-        !glint_scene_fits(&scene->model, p->object, at) ||
-        !glint_scene_within(at, 3, GLINT_SCENE_SPAN - 1 - p->radius))
+    if (!glint_scene_is_unit_vector(turn_q30, 4) ||
+        !glint_scene_is_object_in_range(&scene->model, p->object, at) ||
+        !glint_scene_is_vector_within(at, 3, GLINT_SCENE_SPAN - 1 - p->radius))
         return GLINT_E_ARGUMENT;
-    glint_scene_turn_of(turn_q30, &turn);
+    glint_scene_quaternion_to_rotation(turn_q30, &turn);
     if (is_same_pose(p, at, &turn))
         return GLINT_OK;
-    glint_scene_forget_shadows(scene);
+    glint_scene_invalidate_shadows(scene);
     p->turn = turn;
     for (int k = 0; k < 3; k++)
         p->at[k] = p->centre[k] = at[k];
@@ -396,12 +400,12 @@ enum glint_status glint_scene_set_pose(struct glint_scene *scene, int object,
         const int64_t up[3] = {p->turn.row_q30[0][1], p->turn.row_q30[1][1],
                                p->turn.row_q30[2][1]};
 
-        glint_unit(up, p->centre);
+        glint_normalise_vector(up, p->centre);
     } else if (p->object->kind == GLINT_OBJECT_MESH) {
         const struct glint_scene_mesh *m = &scene->model.mesh[p->object->mesh];
         int32_t centre[3];
 
-        v3_turn(&p->turn, m->centre, centre);
+        v3_rotate(&p->turn, m->centre, centre);
         for (int k = 0; k < 3; k++)
             p->centre[k] += centre[k];
         p->reach = m->radius + 4;
@@ -420,7 +424,7 @@ enum glint_status glint_scene_set_camera(struct glint_scene *scene,
         for (int i = 0; i < 3; i++)
             camera.axis_q30[k][i] = axis_q30[k][i];
     }
-    if (glint_scene_camera_fault(&camera))
+    if (glint_scene_check_camera(&camera))
         return GLINT_E_ARGUMENT;
     glint_view_init(&scene->view, &camera, scene->cfg.width, scene->cfg.height,
                     scene->cfg.focal_q16);
@@ -437,14 +441,14 @@ enum glint_status glint_scene_set_light(struct glint_scene *scene, int light,
         return GLINT_E_ARGUMENT;
     l = &scene->lit[light];
     is_sun = l->light->kind == GLINT_LIGHT_SUN;
-    if (is_sun ? !glint_scene_is_unit(at, 3)
-               : !glint_scene_within(at, 3, GLINT_SCENE_SPAN - 1))
+    if (is_sun ? !glint_scene_is_unit_vector(at, 3)
+               : !glint_scene_is_vector_within(at, 3, GLINT_SCENE_SPAN - 1))
         return GLINT_E_ARGUMENT;
     for (int k = 0; k < 3; k++) {
         l->at[k] = is_sun ? 0 : at[k];
         l->toward_q30[k] = is_sun ? at[k] : 0;
     }
-    glint_scene_forget_shadows(scene);
+    glint_scene_invalidate_shadows(scene);
     return GLINT_OK;
 }
 
@@ -455,7 +459,7 @@ void glint_scene_look_around(struct glint_scene *scene,
 
     for (uint32_t i = 0; i < scene->model.header->n_objects; i++)
         any |= scene->placed[i].is_seen;
-    if (shows_picture(&scene->model) && (any || !image))
+    if (needs_background_picture(&scene->model) && (any || !image))
         scene->cfg.parts.bounces->look(scene, image);
 }
 
@@ -474,5 +478,5 @@ void glint_scene_show(struct glint_scene *scene, int object, int is_shown)
     if (scene->placed[object].is_shown == (is_shown != 0))
         return;
     scene->placed[object].is_shown = is_shown != 0;
-    glint_scene_forget_shadows(scene);
+    glint_scene_invalidate_shadows(scene);
 }

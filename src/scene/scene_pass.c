@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * The pass of a scene: shades each pixel once, at its middle, per object that
- * its samples see; reflecting and transparent objects are shaded per sample.
- * The uncovered fraction of a pixel preserves its light.
- */
+ * The drawing pass of a scene: shades each object that the samples of a pixel
+ * see once, in the pixel's middle. Reflecting and transparent objects are
+ * shaded per sample. Where objects cover a fraction of a pixel, the picture's
+ * light shows through the rest. */
 #include "scene/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"
 
-enum { SUMMED = 4 /* number of samples in the sums of light and cover */ };
+enum {
+    SUMMED = 4 /* number of samples that a pixel's sums of light and cover
+                  are scaled to */
+};
 
-static void *begin_row(const void *self, struct glint_box row, int worker)
+static void *start_row(const void *self, struct glint_box row, int worker)
 {
     const struct glint_scene *scene = self;
 
@@ -21,73 +24,77 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     return &scene->worker[worker];
 }
 
-static int begin_tile(void *state, struct glint_box tile)
+static int start_tile(void *state, struct glint_box tile)
 {
     return glint_scene_look(state, tile);
 }
 
-/* Returns whether the samples of ID are shaded one by one, as reflections
- * and transmitted objects have edges inside ID. */
-static inline int is_split(const struct glint_scene *s, uint32_t id)
+/* Returns whether object ID is shaded per sample, as its reflections and
+ * transmitted objects have edges inside its outline. */
+static inline int is_shaded_per_sample(const struct glint_scene *s, uint32_t id)
 {
     return s->has_split && id != GLINT_NOTHING && s->placed[id >> 20].is_split;
 }
 
 enum {
     MIDDLE = -1,
-    QUAD = -2 /* special values of a sample index; see
-                 find_surface() */
+    QUAD = -2 /* special sample indices, see find_sample_surface() */
 };
 
-/* Returns the offset of sample K from its pixel's middle, 1/256 pixel; for
- * QUAD the corner shared with the right and lower neighbours. */
-static int32_t get_offset(const struct glint_scene *s, int k, int axis)
+/* Returns the offset of sample K from its pixel's middle along AXIS, 1/256
+ * pixel. For QUAD: the corner shared with the pixels to the right and below. */
+static int32_t get_sample_offset(const struct glint_scene *s, int k, int axis)
 {
-    return k >= 0 ? glint_sample(s, k, axis) : k == QUAD ? 128 : 0;
+    return k >= 0 ? glint_sample_offset_q8(s, k, axis) : k == QUAD ? 128 : 0;
 }
 
-/* Finds the surface of ID at pixel (X, Y): on the ray through its middle; or,
- * if that misses ID or samples are shaded one by one, on the ray through sample
- * K. */
-static NEVER_INLINE int find_at_length(struct glint_scene_worker *w,
-                                       uint32_t id, int x, int y, int k,
-                                       struct glint_scene_ray *ray,
-                                       struct glint_met_surface *surface)
+/* Finds the surface of object ID at pixel (X, Y), without the fast path: on the
+ * ray through the pixel's middle, or on the ray through sample K if the middle
+ * misses the object or its samples are shaded one by one. */
+static NEVER_INLINE int find_exact_surface(struct glint_scene_worker *w,
+                                           uint32_t id, int x, int y, int k,
+                                           struct glint_scene_ray *ray,
+                                           struct glint_met_surface *surface)
 {
     const struct glint_scene *s = w->scene;
 
-    for (int i = k == QUAD || is_split(s, id); i < 2; i++) {
+    for (int i = k == QUAD || is_shaded_per_sample(s, id); i < 2; i++) {
         const int at = i ? k : MIDDLE;
         struct glint_met met;
         int32_t seen_q30[3];
 
-        const int32_t x_q8 = glint_place(s, x, 0) + get_offset(s, at, 0);
-        const int32_t y_q8 = glint_place(s, y, 1) + get_offset(s, at, 1);
+        const int32_t x_q8 =
+            glint_pixel_position_q8(s, x, 0) + get_sample_offset(s, at, 0);
+        const int32_t y_q8 =
+            glint_pixel_position_q8(s, y, 1) + get_sample_offset(s, at, 1);
 
-        /* find_surface() has already tried the middle */
-        if (i > 0 && glint_quick_find(w, id, x_q8, y_q8, ray, surface))
+        /* find_sample_surface() has already tried the middle */
+        if (i > 0 && glint_quick_find_surface(w, id, x_q8, y_q8, ray, surface))
             return 1;
-        glint_view_ray(&s->view, x_q8, y_q8, ray, seen_q30);
-        if (glint_scene_meet_id(s, ray, seen_q30, id, &met))
-            return glint_scene_surface(s, ray, &met, surface);
+        glint_view_set_ray(&s->view, x_q8, y_q8, ray, seen_q30);
+        if (glint_scene_ray_hits_id(s, ray, seen_q30, id, &met))
+            return glint_scene_set_surface(s, ray, &met, surface);
     }
     return 0;
 }
 
-/* Finds the surface that sample K sees; most pixels use the fast path. */
-static inline int find_surface(struct glint_scene_worker *w, uint32_t id, int x,
-                               int y, int k, struct glint_scene_ray *ray,
-                               struct glint_met_surface *surface)
+/* Finds the surface that sample K of pixel (X, Y) sees; uses the fast path in
+ * most pixels. */
+static inline int find_sample_surface(struct glint_scene_worker *w, uint32_t id,
+                                      int x, int y, int k,
+                                      struct glint_scene_ray *ray,
+                                      struct glint_met_surface *surface)
 {
     const struct glint_scene *s = w->scene;
 
-    return (k != QUAD && !is_split(s, id) &&
-            glint_quick_find(w, id, glint_place(s, x, 0), glint_place(s, y, 1),
-                             ray, surface)) ||
-           find_at_length(w, id, x, y, k, ray, surface);
+    return (k != QUAD && !is_shaded_per_sample(s, id) &&
+            glint_quick_find_surface(w, id, glint_pixel_position_q8(s, x, 0),
+                                     glint_pixel_position_q8(s, y, 1), ray,
+                                     surface)) ||
+           find_exact_surface(w, id, x, y, k, ray, surface);
 }
 
-/* Sets RGB_Q15 to the background's light at pixel (X, Y). */
+/* Sets RGB_Q15 to the light of the background at pixel (X, Y). */
 static void compute_background(const struct glint_scene *s, int x, int y,
                                int32_t rgb_q15[3])
 {
@@ -95,15 +102,17 @@ static void compute_background(const struct glint_scene *s, int x, int y,
     int32_t seen_q30[3];
 
     if (s->model.header->background == GLINT_BACKGROUND_ENVIRONMENT)
-        glint_view_ray(&s->view, glint_place(s, x, 0), glint_place(s, y, 1),
-                       &ray, seen_q30);
-    glint_scene_behind(s, ray.toward_q30, glint_scene_pixel_q40(s), rgb_q15);
+        glint_view_set_ray(&s->view, glint_pixel_position_q8(s, x, 0),
+                           glint_pixel_position_q8(s, y, 1), &ray, seen_q30);
+    glint_scene_look_up_background(s, ray.toward_q30,
+                                   glint_scene_pixel_variance_q40(s), rgb_q15);
 }
 
-/* Shades the object or background that sample K of pixel (X, Y) sees; returns
- * whether it is an object. */
-static inline int shade_id(struct glint_scene_worker *w, uint32_t id, int x,
-                           int y, int k, struct glint_met_shade *shade)
+/* Shades what sample K of pixel (X, Y) sees, object ID or the background;
+ * returns whether it is an object. */
+static inline int shade_visible_id(struct glint_scene_worker *w, uint32_t id,
+                                   int x, int y, int k,
+                                   struct glint_met_shade *shade)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_scene_header *h = s->model.header;
@@ -111,8 +120,9 @@ static inline int shade_id(struct glint_scene_worker *w, uint32_t id, int x,
     struct glint_met_surface surface;
 
     *shade = (struct glint_met_shade){{0, 0, 0}, 0};
-    if (id != GLINT_NOTHING && find_surface(w, id, x, y, k, &ray, &surface)) {
-        glint_scene_shade(s, &ray, &surface, shade);
+    if (id != GLINT_NOTHING &&
+        find_sample_surface(w, id, x, y, k, &ray, &surface)) {
+        glint_scene_shade_surface(s, &ray, &surface, shade);
         return 1;
     }
     if (h->background != GLINT_BACKGROUND_CAMERA) {
@@ -123,7 +133,7 @@ static inline int shade_id(struct glint_scene_worker *w, uint32_t id, int x,
 }
 
 /* Returns whether none of the N samples of a pixel sees an object. */
-static inline int is_empty(const uint32_t *id, int n)
+static inline int is_pixel_empty(const uint32_t *id, int n)
 {
     uint32_t all = id[0];
 
@@ -132,16 +142,19 @@ static inline int is_empty(const uint32_t *id, int n)
     return all == GLINT_NOTHING;
 }
 
-/* Returns whether ID only receives shadows; such objects hide no lamps. */
-static inline int is_catcher(const struct glint_scene *s, uint32_t id)
+/* Returns whether object ID is a catcher: it only receives shadows and hides no
+ * lamps. */
+static inline int is_shadow_catcher(const struct glint_scene *s, uint32_t id)
 {
     return s->has_catchers && id != GLINT_NOTHING &&
            s->placed[id >> 20].is_catcher;
 }
 
-/* Returns whether two samples may be shaded as one: they see the same
- * object, or two triangles of a smooth surface that share a vertex. */
-static int is_joined(const struct glint_scene *s, uint32_t a, uint32_t b)
+/* Returns whether the samples that see A and B may share one shaded point: they
+ * see the same object, or two triangles of a smooth surface that share a
+ * vertex. */
+static int may_share_shading(const struct glint_scene *s, uint32_t a,
+                             uint32_t b)
 {
     return a == b ||
            ((a ^ b) >> 20 == 0 && a != GLINT_NOTHING && b != GLINT_NOTHING &&
@@ -149,31 +162,31 @@ static int is_joined(const struct glint_scene *s, uint32_t a, uint32_t b)
             s->cfg.parts.meshes->joins(s, a, b));
 }
 
-/* Sets TIMES to the number of samples that each sample is shaded for; 0 for
- * samples that use the result of another sample. */
-static inline void group_samples(const struct glint_scene *s,
-                                 const uint32_t *id, int n,
-                                 int times[GLINT_SCENE_SAMPLES])
+/* Sets TIMES to the number of samples that use the shading of each sample: 0
+ * for a sample that uses the shading of another one. */
+static inline void group_equal_samples(const struct glint_scene *s,
+                                       const uint32_t *id, int n,
+                                       int times[GLINT_SCENE_SAMPLES])
 {
     int first = 0;
 
     for (int k = 0; k < n; k++) {
         times[k] = 0;
-        if (is_split(s, id[k])) {
+        if (is_shaded_per_sample(s, id[k])) {
             first = k;
         } else if (k > 0 && id[k] != id[k - 1]) {
             first = 0;
-            while (first < k &&
-                   (times[first] == 0 || !is_joined(s, id[first], id[k])))
+            while (first < k && (times[first] == 0 ||
+                                 !may_share_shading(s, id[first], id[k])))
                 first++;
         }
         times[first]++;
     }
 }
 
-/* Records the light of SHADE above white as a highlight. SHARE_Q4: fraction
- * of a pixel. OFF_Q8: offset of that pixel's middle from the top left corner
- * of pixel (X, Y). */
+/* Records the light of SHADE above white as a highlight of object ID. SHARE_Q4:
+ * fraction of a pixel. OFF_Q8: offset of the pixel's middle from the top left
+ * corner of pixel (X, Y). */
 static inline void record_highlight(const struct glint_scene *s, uint32_t id,
                                     const struct glint_met_shade *shade, int x,
                                     int y, int32_t off_q8, int share_q4)
@@ -187,38 +200,38 @@ static inline void record_highlight(const struct glint_scene *s, uint32_t id,
                                       256 * y + off_q8, rgb_q15, share_q4);
 }
 
-/* Adds SHADE of object ID to SUM, for TIMES of N samples. */
-static inline void add_samples(const struct glint_scene *s, uint32_t id,
-                               const struct glint_met_shade *shade, int times,
-                               struct glint_scene_sum *sum)
+/* Adds SHADE, of object ID, to SUM for TIMES of N samples. */
+static inline void add_shaded_samples(const struct glint_scene *s, uint32_t id,
+                                      const struct glint_met_shade *shade,
+                                      int times, struct glint_scene_sum *sum)
 {
     sum->cover_q10 += times * shade->cover_q8;
-    if (is_catcher(s, id))
+    if (is_shadow_catcher(s, id))
         sum->shadow_q10 += times * shade->cover_q8;
     for (int c = 0; c < 3; c++)
         sum->rgb_q17[c] += (int64_t)times * shade->rgb_q15[c];
 }
 
-/* Shades the samples of pixel (X, Y) one by one, except those that can share a
- * result. */
-static NEVER_INLINE void shade_samples(struct glint_scene_worker *w,
-                                       const uint32_t *id, int n, int x, int y,
-                                       struct glint_scene_sum *sum)
+/* Shades the samples of pixel (X, Y) one by one, except samples that can share
+ * the shading of another one. */
+static NEVER_INLINE void shade_pixel_samples(struct glint_scene_worker *w,
+                                             const uint32_t *id, int n, int x,
+                                             int y, struct glint_scene_sum *sum)
 {
     const struct glint_scene *s = w->scene;
     const int down = n == 16 ? 2 : n == 8;
     int times[GLINT_SCENE_SAMPLES];
 
-    group_samples(s, id, n, times);
+    group_equal_samples(s, id, n, times);
     for (int k = 0; k < n; k++) {
         struct glint_met_shade shade;
 
         if (times[k] == 0)
             continue;
-        if (shade_id(w, id[k], x, y, k, &shade))
+        if (shade_visible_id(w, id[k], x, y, k, &shade))
             record_highlight(s, id[k], &shade, x, y, 128,
                              times[k] << (4 - glint_samples_log2(n)));
-        add_samples(s, id[k], &shade, times[k], sum);
+        add_shaded_samples(s, id[k], &shade, times[k], sum);
     }
     for (int c = 0; c < 3; c++)
         sum->rgb_q17[c] =
@@ -227,8 +240,8 @@ static NEVER_INLINE void shade_samples(struct glint_scene_worker *w,
     sum->shadow_q10 = (sum->shadow_q10 + down) >> down;
 }
 
-/* Returns whether all N samples from ID on see the object or triangle THING. */
-static inline int all_see(const uint32_t *id, int n, uint32_t thing)
+/* Returns whether all N samples at ID see the object or triangle THING. */
+static inline int do_all_samples_see(const uint32_t *id, int n, uint32_t thing)
 {
     uint32_t other = 0;
 
@@ -237,24 +250,25 @@ static inline int all_see(const uint32_t *id, int n, uint32_t thing)
     return other == 0;
 }
 
-/* Returns whether the N samples from ID on may use the shading result of
- * THING. */
-static int is_joined_to_all(const struct glint_scene *s, const uint32_t *id,
-                            int n, uint32_t thing)
+/* Returns whether all N samples at ID may share the shading of object or
+ * triangle THING. */
+static int may_all_share_shading(const struct glint_scene *s,
+                                 const uint32_t *id, int n, uint32_t thing)
 {
     uint32_t last = thing;
 
     for (int k = 0; k < n; k++) {
-        if (id[k] != last && !is_joined(s, id[k], thing))
+        if (id[k] != last && !may_share_shading(s, id[k], thing))
             return 0;
         last = id[k];
     }
     return 1;
 }
 
-/* Returns whether the 2 x 2 pixels around (X, Y) all see one object, or
- * adjacent triangles of one smooth surface. */
-static int is_quad(const struct glint_scene_worker *w, int n, int x, int y)
+/* Returns whether the aligned block of 2 x 2 pixels that contains (X, Y) sees
+ * one object, or adjacent triangles of one smooth surface. */
+static int is_shared_by_quad(const struct glint_scene_worker *w, int n, int x,
+                             int y)
 {
     const struct glint_box b = w->touched;
     const int x0 = x & ~1, y0 = y & ~1;
@@ -265,18 +279,18 @@ static int is_quad(const struct glint_scene_worker *w, int n, int x, int y)
     id = &w->id[glint_sample_index(w, x0, y0, 0)];
     if (id[0] == GLINT_NOTHING)
         return 0;
-    return is_joined_to_all(w->scene, id, 2 * n, id[0]) &&
-           is_joined_to_all(w->scene,
-                            &w->id[glint_sample_index(w, x0, y0 + 1, 0)], 2 * n,
-                            id[0]);
+    return may_all_share_shading(w->scene, id, 2 * n, id[0]) &&
+           may_all_share_shading(w->scene,
+                                 &w->id[glint_sample_index(w, x0, y0 + 1, 0)],
+                                 2 * n, id[0]);
 }
 
-/* Shades pixel (X, Y), whose N samples see ID. */
+/* Shades pixel (X, Y), whose N samples see the objects ID[N], and sets SUM. */
 static inline void shade_pixel(struct glint_scene_worker *w, const uint32_t *id,
                                int n, int x, int y, struct glint_scene_sum *sum)
 {
     const struct glint_scene *s = w->scene;
-    const int quad = w->quad && is_quad(w, n, x, y);
+    const int quad = w->quad && is_shared_by_quad(w, n, x, y);
     struct glint_scene_sum *kept =
         quad ? &w->quad[(x - w->tile.x0) >> 1] : NULL;
     struct glint_met_shade shade;
@@ -286,21 +300,23 @@ static inline void shade_pixel(struct glint_scene_worker *w, const uint32_t *id,
         return;
     }
     *sum = (struct glint_scene_sum){{0, 0, 0}, 0, 0};
-    if (quad || n == 1 || (all_see(id, n, id[0]) && !is_split(s, id[0]))) {
-        if (shade_id(w, id[0], x, y, quad ? QUAD : 0, &shade))
+    if (quad || n == 1 ||
+        (do_all_samples_see(id, n, id[0]) && !is_shaded_per_sample(s, id[0]))) {
+        if (shade_visible_id(w, id[0], x, y, quad ? QUAD : 0, &shade))
             record_highlight(s, id[0], &shade, x, y, quad ? 256 : 128,
                              quad ? 64 : 16);
-        add_samples(s, id[0], &shade, SUMMED, sum);
+        add_shaded_samples(s, id[0], &shade, SUMMED, sum);
     } else {
-        shade_samples(w, id, n, x, y, sum);
+        shade_pixel_samples(w, id, n, x, y, sum);
     }
     if (quad)
         *kept = *sum;
 }
 
-static inline void write_pixel(const struct glint_scene_worker *w,
-                               const struct glint_pass_rows *rows, int i,
-                               int row, const int64_t sum_q17[3], int cover_q10)
+static inline void write_pixel_sum(const struct glint_scene_worker *w,
+                                   const struct glint_pass_rows *rows, int i,
+                                   int row, const int64_t sum_q17[3],
+                                   int cover_q10)
 {
     rows->cover->cover_q8[row][i] = (uint16_t)((cover_q10 + 2) >> 2);
     for (int c = 0; c < 3; c++)
@@ -311,10 +327,11 @@ static inline void write_pixel(const struct glint_scene_worker *w,
                 (uint16_t)q_clamp_sat((sum_q17[c] + 1) >> 1, 0, 65535);
 }
 
-/* Sets N pixels of row ROW from X on to the same light and cover. */
-static void write_run(const struct glint_scene_worker *w,
-                      const struct glint_pass_rows *rows, int row, int x, int n,
-                      const int32_t rgb_q15[3], int cover_q8)
+/* Sets N pixels of row ROW, from X to the right, to the same light and
+ * cover. */
+static void write_pixel_run(const struct glint_scene_worker *w,
+                            const struct glint_pass_rows *rows, int row, int x,
+                            int n, const int32_t rgb_q15[3], int cover_q8)
 {
     const int first = x - w->tile.x0;
     uint16_t *to_q8 = &rows->cover->cover_q8[row][first];
@@ -339,7 +356,7 @@ static void write_run(const struct glint_scene_worker *w,
     }
 }
 
-/* Adds full cover to pixels X0 .. X1 - 1 of row Y. */
+/* Adds full cover to the stored cover of pixels X0 .. X1 - 1 of row Y. */
 static void add_full_cover(const struct glint_scene *s, int y, int x0, int x1)
 {
     enum { SIDE = 1 << GLINT_COVER_LOG2 };
@@ -352,7 +369,7 @@ static void add_full_cover(const struct glint_scene *s, int y, int x0, int x1)
     }
 }
 
-/* Sets pixels X0 .. X1 - 1 of row ROW to the background. */
+/* Sets pixels X0 .. X1 - 1 of row ROW to the background's light. */
 static void write_background(const struct glint_scene_worker *w,
                              const struct glint_pass_rows *rows, int row,
                              int x0, int x1)
@@ -361,28 +378,28 @@ static void write_background(const struct glint_scene_worker *w,
     const struct glint_scene_header *h = w->scene->model.header;
 
     if (h->background == GLINT_BACKGROUND_CAMERA) {
-        write_run(w, rows, row, x0, x1 - x0, none_q15, 0);
+        write_pixel_run(w, rows, row, x0, x1 - x0, none_q15, 0);
         return;
     }
     add_full_cover(w->scene, rows->y + row, x0, x1);
     if (h->background != GLINT_BACKGROUND_ENVIRONMENT) {
-        write_run(w, rows, row, x0, x1 - x0, h->background_q15,
-                  GLINT_COVER_ALL);
+        write_pixel_run(w, rows, row, x0, x1 - x0, h->background_q15,
+                        GLINT_COVER_ALL);
         return;
     }
     for (int x = x0; x < x1; x++) {
         int32_t rgb_q15[3];
 
         compute_background(w->scene, x, rows->y + row, rgb_q15);
-        write_run(w, rows, row, x, 1, rgb_q15, GLINT_COVER_ALL);
+        write_pixel_run(w, rows, row, x, 1, rgb_q15, GLINT_COVER_ALL);
     }
 }
 
-/* Draws pixel X of row ROW, whose N samples see ID; returns whether it is
- * visible. */
-static inline int draw_pixel(struct glint_scene_worker *w,
-                             const struct glint_pass_rows *rows, int row, int x,
-                             const uint32_t *id, int n)
+/* Draws pixel X of row ROW, whose N samples see the objects ID[N]; returns
+ * whether the pixel changes. */
+static inline int draw_row_pixel(struct glint_scene_worker *w,
+                                 const struct glint_pass_rows *rows, int row,
+                                 int x, const uint32_t *id, int n)
 {
     const struct glint_scene *s = w->scene;
     const int y = rows->y + row;
@@ -393,15 +410,15 @@ static inline int draw_pixel(struct glint_scene_worker *w,
     shade_pixel(w, id, n, x, y, &sum);
     if (w->n_over)
         s->cfg.parts.motions->over(w, x, y, &sum);
-    write_pixel(w, rows, x - w->tile.x0, row, sum.rgb_q17, sum.cover_q10);
+    write_pixel_sum(w, rows, x - w->tile.x0, row, sum.rgb_q17, sum.cover_q10);
     *cover = (uint16_t)(*cover + ((sum.cover_q10 - sum.shadow_q10 + 2) >> 2));
     return sum.cover_q10 || sum.rgb_q17[0] || sum.rgb_q17[1] || sum.rgb_q17[2];
 }
 
-/* Draws row ROW with N samples per pixel; returns whether any pixel is
- * visible. */
-static inline int draw_row(struct glint_scene_worker *w,
-                           const struct glint_pass_rows *rows, int row, int n)
+/* Draws row ROW with N samples per pixel; returns whether any pixel changes. */
+static inline int draw_pixel_row(struct glint_scene_worker *w,
+                                 const struct glint_pass_rows *rows, int row,
+                                 int n)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_box b = w->touched;
@@ -410,7 +427,7 @@ static inline int draw_row(struct glint_scene_worker *w,
     const int x0 = is_in ? b.x0 : w->tile.x1, x1 = is_in ? b.x1 : w->tile.x1;
     const uint32_t *id = &w->id[glint_sample_index(w, x0, y, 0)];
     int any = s->model.header->background != GLINT_BACKGROUND_CAMERA;
-    int same = x0; /* end of the run of pixels with the same layers */
+    int same = x0; /* end of the run of pixels that have the same overlays */
 
     w->n_spans = w->n_over = 0;
     if (s->motion && is_in)
@@ -420,13 +437,14 @@ static inline int draw_row(struct glint_scene_worker *w,
         if (x == same)
             same = w->n_spans ? q_smaller(s->cfg.parts.motions->next(w, x), x1)
                               : x1;
-        for (end = x; end < same && !w->n_over && is_empty(id, n); id += n)
+        for (end = x; end < same && !w->n_over && is_pixel_empty(id, n);
+             id += n)
             end++;
         if (end > x) {
             write_background(w, rows, row, x, end);
             continue;
         }
-        any |= draw_pixel(w, rows, row, x, id, n);
+        any |= draw_row_pixel(w, rows, row, x, id, n);
         id += n;
         end = x + 1;
     }
@@ -434,8 +452,8 @@ static inline int draw_row(struct glint_scene_worker *w,
     return any;
 }
 
-static enum glint_given draw_rows(void *state,
-                                  const struct glint_pass_rows *rows)
+static enum glint_given draw_pixel_rows(void *state,
+                                        const struct glint_pass_rows *rows)
 {
     struct glint_scene_worker *w = state;
     const int n = w->scene->cfg.edge_samples;
@@ -445,16 +463,16 @@ static enum glint_given draw_rows(void *state,
         (rows->y >= w->touched.y1 || rows->y + rows->n <= w->touched.y0))
         return GLINT_GIVES_NOTHING;
     for (int row = 0; row < rows->n; row++)
-        any |= n == 1   ? draw_row(w, rows, row, 1)
-               : n == 4 ? draw_row(w, rows, row, 4)
-                        : draw_row(w, rows, row, n);
+        any |= n == 1   ? draw_pixel_row(w, rows, row, 1)
+               : n == 4 ? draw_pixel_row(w, rows, row, 4)
+                        : draw_pixel_row(w, rows, row, n);
     return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
 }
 
-/* Returns the pass that draws the scene. */
-static struct glint_pass make_pass(const struct glint_scene *scene)
+/* Returns the engine pass that draws the scene. */
+static struct glint_pass get_scene_pass(const struct glint_scene *scene)
 {
-    return (struct glint_pass){scene, begin_row, begin_tile, draw_rows};
+    return (struct glint_pass){scene, start_row, start_tile, draw_pixel_rows};
 }
 
 /* ----------------------------------------------------------------- drawing */
@@ -465,7 +483,7 @@ struct draw {
     struct glint_pass pass;
 };
 
-static void row_job(void *ctx, int job, int worker)
+static void draw_tile_row_job(void *ctx, int job, int worker)
 {
     struct draw *d = ctx;
 
@@ -476,7 +494,7 @@ static void row_job(void *ctx, int job, int worker)
 void glint_scene_draw(struct glint_scene *scene,
                       const struct glint_image *image)
 {
-    struct draw d = {.scene = scene, .pass = make_pass(scene)};
+    struct draw d = {.scene = scene, .pass = get_scene_pass(scene)};
 
     glint_scene_spread(scene);
     glint_resolve_init(scene->resolve, image, 0, scene->cfg.sets);
@@ -494,5 +512,5 @@ void glint_scene_draw(struct glint_scene *scene,
     for (int i = 0; i < glint_workers_count(scene->cfg.workers); i++)
         scene->worker[i].is_linear = image->format == GLINT_LINEAR_Q20;
     glint_workers_run(scene->cfg.workers, glint_tiles_count_rows(&d.tiles),
-                      row_job, &d);
+                      draw_tile_row_job, &d);
 }

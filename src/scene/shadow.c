@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shadow casters as seen from a sun [Haines86]: a grid perpendicular to its
- * rays, whose cells list all objects that may lie between the sun and a point
- * in the cell. A point outside the grid, or in an empty cell, is lit.
+ * Shadow grid of a sun [Haines86]: a grid of cells perpendicular to its rays. A
+ * cell lists all objects that may lie between the sun and a point in the cell.
+ * A point outside the grid, or in an empty cell, is lit.
  *
- *   in   positions of objects; the directions to the points of a sun's disc
- *   out  whether a point of the scene sees a point of the disc
+ *   in positions of objects; the directions to the points of a sun's disc
+ *   out whether a point of the scene sees a point of the disc
  *
- * Coordinates are u, v across and h along the sun's middle ray, integer steps,
- * within +-2^29. Vertices are rotated once per frame and rounded in the same
- * way in all their triangles, so that no ray passes between two of these. Rays
- * to other points of the disc are slanted: footprints are enlarged by the slant
- * between the top of an object and the lowest point that the grid answers
- * for. */
+ * Grid coordinates are u and v across and h along the ray from the middle of
+ * the sun's disc, integer steps, within +-2^29. Vertices are rotated once per
+ * frame and rounded in the same way in all their triangles, so that no ray
+ * passes between two triangles that share an edge. Rays to other points of the
+ * disc are slanted: an object's footprint in the grid is enlarged by the slant
+ * between the object's top and the lowest point for which the grid is valid. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/mesh.h"
@@ -21,19 +21,19 @@
 enum {
     CELLS = 1 << GLINT_SHADOW_CELLS_LOG2,
     SLACK = 4,  /* tolerance for rounding, steps */
-    SORTED = 64 /* max length of lists that are sorted */
+    SORTED = 64 /* longest list of objects that is sorted by height */
 };
 
-/* Returns the max displacement across the grid of slanted rays over HEIGHT,
- * which must be below 2^32. */
-static inline int64_t compute_lean(const struct glint_shadow *shadow,
-                                   int64_t height)
+/* Returns the max offset across the grid of the sun's slanted rays over HEIGHT
+ * steps, which must be below 2^32. */
+static inline int64_t compute_slant_offset(const struct glint_shadow *shadow,
+                                           int64_t height)
 {
     return q_shift(height * shadow->lean_q30, 30);
 }
 
-/* Returns the position of X along AXIS of the grid, in 1/256 of a cell, within
- * +-2^15. X must be within +-2^33. A cell has at least SLACK steps. */
+/* Returns grid coordinate X along AXIS in 1/256 of a cell, within +-2^15. X
+ * must be within +-2^33. A cell is at least SLACK steps wide. */
 static inline int32_t convert_to_cells_q8(const struct glint_shadow *shadow,
                                           int64_t x, int axis)
 {
@@ -50,8 +50,8 @@ static int casts_shadow(const struct glint_placed *p)
 
 /* ------------------------------------------------------------------ extents */
 
-static void extend_bounds(struct glint_shadow *shadow, const int32_t at[3],
-                          int32_t reach)
+static void extend_bounding_box(struct glint_shadow *shadow,
+                                const int32_t at[3], int32_t reach)
 {
     for (int k = 0; k < 3; k++) {
         shadow->lo[k] = q_smaller(shadow->lo[k], at[k] - reach);
@@ -59,9 +59,10 @@ static void extend_bounds(struct glint_shadow *shadow, const int32_t at[3],
     }
 }
 
-/* Sets the bounding box of all objects that cast shadows; returns 0 if there
- * are none. */
-static int find_bounds(const struct glint_scene *s, struct glint_shadow *shadow)
+/* Sets the grid's bounding box to the box of all objects that cast shadows;
+ * returns 0 if there are none. */
+static int find_caster_bounds(const struct glint_scene *s,
+                              struct glint_shadow *shadow)
 {
     for (int k = 0; k < 3; k++) {
         shadow->lo[k] = INT32_MAX;
@@ -73,15 +74,15 @@ static int find_bounds(const struct glint_scene *s, struct glint_shadow *shadow)
 
         if (!casts_shadow(p))
             continue;
-        v3_turn(&shadow->turn, p->centre, at);
-        extend_bounds(shadow, at, p->reach + SLACK);
+        v3_rotate(&shadow->turn, p->centre, at);
+        extend_bounding_box(shadow, at, p->reach + SLACK);
     }
     return shadow->lo[0] <= shadow->hi[0];
 }
 
-/* Enlarges the grid for slanted rays, so that it is valid for points down to
- * one size of the objects below them. */
-static void enlarge_grid(struct glint_shadow *shadow)
+/* Enlarges the grid so that it is valid for slanted rays: to points as far
+ * below the objects as their bounding box is wide. */
+static void enlarge_grid_for_slant(struct glint_shadow *shadow)
 {
     const int32_t side =
         q_larger(shadow->hi[0] - shadow->lo[0], shadow->hi[1] - shadow->lo[1]);
@@ -92,7 +93,8 @@ static void enlarge_grid(struct glint_shadow *shadow)
         return;
     shadow->lowest = q_larger(shadow->lo[2] - side, -GLINT_FAR);
     lean =
-        compute_lean(shadow, (int64_t)shadow->hi[2] - shadow->lowest) + SLACK;
+        compute_slant_offset(shadow, (int64_t)shadow->hi[2] - shadow->lowest) +
+        SLACK;
     for (int k = 0; k < 2; k++) {
         shadow->lo[k] =
             q_clamp_sat(shadow->lo[k] - lean, -GLINT_FAR, GLINT_FAR);
@@ -103,8 +105,8 @@ static void enlarge_grid(struct glint_shadow *shadow)
 
 /* ------------------------------------------------------------------- lists */
 
-/* Returns the range of grid cells that T covers. */
-static struct glint_box find_cells(const struct glint_shadow_thing *t)
+/* Returns the range of grid cells that the footprint T covers. */
+static struct glint_box find_footprint_cells(const struct glint_shadow_thing *t)
 {
     return glint_box_cut((struct glint_box){0, 0, CELLS, CELLS},
                          (struct glint_box){t->lo[0] >> 8, t->lo[1] >> 8,
@@ -112,16 +114,17 @@ static struct glint_box find_cells(const struct glint_shadow_thing *t)
                                             (t->hi[1] >> 8) + 1});
 }
 
-/* Sets T to the footprint of the region that an object within LO .. HI can
- * shadow. */
-static void set_caster(const struct glint_shadow *shadow, const int32_t lo[3],
-                       const int32_t hi[3], uint32_t id,
-                       struct glint_shadow_thing *t)
+/* Sets T to the footprint of an object with bounds LO .. HI: the region that
+ * the object can shadow. */
+static void set_caster_footprint(const struct glint_shadow *shadow,
+                                 const int32_t lo[3], const int32_t hi[3],
+                                 uint32_t id, struct glint_shadow_thing *t)
 {
     const int64_t lean =
-        SLACK + (shadow->lean_q30
-                     ? compute_lean(shadow, (int64_t)hi[2] - shadow->lowest)
-                     : 0);
+        SLACK +
+        (shadow->lean_q30
+             ? compute_slant_offset(shadow, (int64_t)hi[2] - shadow->lowest)
+             : 0);
 
     t->id = id;
     t->top = hi[2];
@@ -131,10 +134,11 @@ static void set_caster(const struct glint_shadow *shadow, const int32_t lo[3],
     }
 }
 
-/* Writes the triangles of mesh I to THING; returns their number. */
-static int set_triangles(const struct glint_scene *s,
-                         const struct glint_shadow *shadow, uint32_t i,
-                         struct glint_shadow_thing *thing)
+/* Appends the triangles of mesh I to the casters THING; returns their
+ * number. */
+static int list_triangle_casters(const struct glint_scene *s,
+                                 const struct glint_shadow *shadow, uint32_t i,
+                                 struct glint_shadow_thing *thing)
 {
     const struct glint_scene_mesh *mesh = glint_mesh_of(s, i);
     const struct glint_scene_triangle *t = glint_mesh_triangle(s, mesh, 0);
@@ -150,15 +154,16 @@ static int set_triangles(const struct glint_scene *s,
             lo[k] = q_smaller(a, q_smaller(b, c));
             hi[k] = q_larger(a, q_larger(b, c));
         }
-        set_caster(shadow, lo, hi, glint_id(i, n), thing++);
+        set_caster_footprint(shadow, lo, hi, glint_make_triangle_id(i, n),
+                             thing++);
     }
     return (int)mesh->n_triangles;
 }
 
-/* Lists all shadow casters; returns the number of entries that they need in
- * all cells. */
-static int64_t set_casters(const struct glint_scene *s,
-                           struct glint_shadow *shadow)
+/* Lists all objects that cast shadows; returns the total number of entries that
+ * they need in the lists of all cells. */
+static int64_t list_shadow_casters(const struct glint_scene *s,
+                                   struct glint_shadow *shadow)
 {
     int64_t n = 0;
 
@@ -171,19 +176,19 @@ static int64_t set_casters(const struct glint_scene *s,
         if (!casts_shadow(p))
             continue;
         if (p->object->kind == GLINT_OBJECT_MESH) {
-            shadow->n_things += set_triangles(s, shadow, i, t);
+            shadow->n_things += list_triangle_casters(s, shadow, i, t);
             continue;
         }
-        v3_turn(&shadow->turn, p->at, at);
+        v3_rotate(&shadow->turn, p->at, at);
         for (int k = 0; k < 3; k++) {
             lo[k] = at[k] - p->radius;
             hi[k] = at[k] + p->radius;
         }
-        set_caster(shadow, lo, hi, glint_id(i, 0), t);
+        set_caster_footprint(shadow, lo, hi, glint_make_triangle_id(i, 0), t);
         shadow->n_things++;
     }
     for (int i = 0; i < shadow->n_things; i++) {
-        const struct glint_box b = find_cells(&shadow->thing[i]);
+        const struct glint_box b = find_footprint_cells(&shadow->thing[i]);
 
         if (!glint_box_empty(b))
             n += (int64_t)(b.x1 - b.x0) * (b.y1 - b.y0);
@@ -191,18 +196,18 @@ static int64_t set_casters(const struct glint_scene *s,
     return n;
 }
 
-static void list_by_cell(struct glint_shadow *shadow)
+static void list_casters_by_cell(struct glint_shadow *shadow)
 {
     glint_bins_clear_counts(&shadow->bins);
     for (int i = 0; i < shadow->n_things; i++) {
-        const struct glint_box b = find_cells(&shadow->thing[i]);
+        const struct glint_box b = find_footprint_cells(&shadow->thing[i]);
 
         if (!glint_box_empty(b))
             glint_bins_count_box(&shadow->bins, b);
     }
     glint_bins_convert_counts_to_starts(&shadow->bins);
     for (int i = 0; i < shadow->n_things; i++) {
-        const struct glint_box b = find_cells(&shadow->thing[i]);
+        const struct glint_box b = find_footprint_cells(&shadow->thing[i]);
 
         for (int y = b.y0; y < b.y1; y++)
             for (int x = b.x0; x < b.x1; x++)
@@ -211,8 +216,9 @@ static void list_by_cell(struct glint_shadow *shadow)
     glint_bins_reset_starts(&shadow->bins);
 }
 
-/* Sorts each list by height, the highest object first, except long lists. */
-static void sort_lists(struct glint_shadow *shadow)
+/* Sorts the list of each cell by height, the highest object first, except lists
+ * longer than SORTED. */
+static void sort_lists_by_height(struct glint_shadow *shadow)
 {
     for (int i = 0; i < CELLS * CELLS; i++) {
         int32_t *ref = shadow->bins.ref + shadow->bins.start[i];
@@ -229,11 +235,11 @@ static void sort_lists(struct glint_shadow *shadow)
     }
 }
 
-/* Returns whether CELL lists an object other than OWN that is above LOWEST
- * and can shadow points within LO .. HI. */
-static int can_shadow(const struct glint_shadow *shadow, int cell, uint32_t own,
-                      int32_t lowest, const int32_t lo_q8[2],
-                      const int32_t hi_q8[2])
+/* Returns whether CELL lists an object, other than OWN, that reaches above
+ * height LOWEST and can shadow points within LO .. HI. */
+static int can_cell_shadow_box(const struct glint_shadow *shadow, int cell,
+                               uint32_t own, int32_t lowest,
+                               const int32_t lo_q8[2], const int32_t hi_q8[2])
 {
     for (int i = shadow->bins.start[cell]; i < shadow->bins.start[cell + 1];
          i++) {
@@ -248,16 +254,16 @@ static int can_shadow(const struct glint_shadow *shadow, int cell, uint32_t own,
     return 0;
 }
 
-/* Returns whether no object can shadow ball I from the sun. Points on the
- * ball are accurate to 2^-20 of its radius (quick.c). */
-static int is_open(const struct glint_scene *s,
-                   const struct glint_shadow *shadow, uint32_t i)
+/* Returns whether no other object can shadow ball I. Points on the ball are
+ * accurate to 2^-20 of its radius (quick.c). */
+static int is_ball_unshadowed(const struct glint_scene *s,
+                              const struct glint_shadow *shadow, uint32_t i)
 {
     const struct glint_placed *p = &s->placed[i];
     const int32_t reach = p->radius + (p->radius >> 20) + SLACK;
     int32_t at[3], lo_q8[2], hi_q8[2];
 
-    v3_turn(&shadow->turn, p->at, at);
+    v3_rotate(&shadow->turn, p->at, at);
     for (int k = 0; k < 2; k++) {
         lo_q8[k] = convert_to_cells_q8(shadow, (int64_t)at[k] - reach, k);
         hi_q8[k] = convert_to_cells_q8(shadow, (int64_t)at[k] + reach, k);
@@ -266,15 +272,16 @@ static int is_open(const struct glint_scene *s,
     }
     for (int y = lo_q8[1] >> 8; y <= hi_q8[1] >> 8; y++)
         for (int x = lo_q8[0] >> 8; x <= hi_q8[0] >> 8; x++)
-            if (can_shadow(shadow, y * CELLS + x, glint_id(i, 0), at[2] - reach,
-                           lo_q8, hi_q8))
+            if (can_cell_shadow_box(shadow, y * CELLS + x,
+                                    glint_make_triangle_id(i, 0), at[2] - reach,
+                                    lo_q8, hi_q8))
                 return 0;
     return 1;
 }
 
-/* Marks the balls that no object can shadow. */
-static void mark_open(const struct glint_scene *s,
-                      const struct glint_shadow *shadow)
+/* Sets open_to of the balls that no object can shadow from this sun. */
+static void mark_unshadowed_balls(const struct glint_scene *s,
+                                  const struct glint_shadow *shadow)
 {
     const uint32_t bit = UINT32_C(1) << shadow->light;
 
@@ -283,13 +290,13 @@ static void mark_open(const struct glint_scene *s,
 
         p->open_to &= ~bit;
         if (p->is_shown && p->object->kind == GLINT_OBJECT_SPHERE &&
-            is_open(s, shadow, i))
+            is_ball_unshadowed(s, shadow, i))
             p->open_to |= bit;
     }
 }
 
-static void turn_vertices(const struct glint_scene *s,
-                          struct glint_shadow *shadow)
+static void rotate_vertices_to_sun(const struct glint_scene *s,
+                                   struct glint_shadow *shadow)
 {
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
         const struct glint_placed *p = &s->placed[i];
@@ -299,21 +306,24 @@ static void turn_vertices(const struct glint_scene *s,
         if (!casts_shadow(p) || p->object->kind != GLINT_OBJECT_MESH)
             continue;
         mesh = glint_mesh_of(s, i);
-        vertex = glint_mesh_table(s, mesh->vertex_at);
+        vertex = glint_mesh_get_table(s, mesh->vertex_at);
         for (uint32_t k = 0; k < mesh->n_vertices; k++) {
             int32_t place[3];
 
-            v3_turn(&p->turn, vertex + 3 * (size_t)k, place);
+            v3_rotate(&p->turn, vertex + 3 * (size_t)k, place);
             for (int j = 0; j < 3; j++)
                 place[j] += p->at[j];
-            v3_turn(&shadow->turn, place, shadow->vertex[p->first_vertex + k]);
+            v3_rotate(&shadow->turn, place,
+                      shadow->vertex[p->first_vertex + k]);
         }
     }
 }
 
-/* Sets the sample points of the sun's disc and the slopes of their rays. */
-static void set_points(const struct glint_scene *s, const struct glint_lit *lit,
-                       struct glint_shadow *shadow)
+/* Sets the directions of the sun's sample points, and the slopes of rays from
+ * these to the grid's axis. */
+static void set_disc_points(const struct glint_scene *s,
+                            const struct glint_lit *lit,
+                            struct glint_shadow *shadow)
 {
     shadow->n_points = lit->light->radius ? s->cfg.shadow_points : 1;
     for (int i = 0; i < shadow->n_points; i++) {
@@ -323,9 +333,9 @@ static void set_points(const struct glint_scene *s, const struct glint_lit *lit,
 
         for (int k = 0; k < 3; k++)
             to.toward_q30[k] = lit->toward_q30[k];
-        glint_scene_point(&to, GLINT_FAR, lit->light->radius, i,
-                          shadow->n_points);
-        v3_turn(&shadow->turn, to.toward_q30, at_q30);
+        glint_scene_aim_at_light_point(&to, GLINT_FAR, lit->light->radius, i,
+                                       shadow->n_points);
+        v3_rotate(&shadow->turn, to.toward_q30, at_q30);
         for (int k = 0; k < 3; k++)
             p->toward_q30[k] = to.toward_q30[k];
         for (int k = 0; k < 2; k++)
@@ -338,9 +348,9 @@ static void set_points(const struct glint_scene *s, const struct glint_lit *lit,
     }
 }
 
-void glint_shadow_prepare(const struct glint_scene *s,
-                          const struct glint_lit *lit,
-                          struct glint_shadow *shadow)
+void glint_shadow_build_grid(const struct glint_scene *s,
+                             const struct glint_lit *lit,
+                             struct glint_shadow *shadow)
 {
     int32_t *row_q30[3] = {shadow->turn.row_q30[0], shadow->turn.row_q30[1],
                            shadow->turn.row_q30[2]};
@@ -349,41 +359,41 @@ void glint_shadow_prepare(const struct glint_scene *s,
     shadow->lean_q30 = 0;
     for (int k = 0; k < 3; k++)
         row_q30[2][k] = lit->toward_q30[k];
-    glint_scene_frame_of(row_q30[2], row_q30[0], row_q30[1]);
-    set_points(s, lit, shadow);
-    shadow->is_empty = !find_bounds(s, shadow);
+    glint_scene_set_perpendiculars(row_q30[2], row_q30[0], row_q30[1]);
+    set_disc_points(s, lit, shadow);
+    shadow->is_empty = !find_caster_bounds(s, shadow);
     shadow->is_ready = 1;
     if (shadow->is_empty)
         return;
-    enlarge_grid(shadow);
+    enlarge_grid_for_slant(shadow);
     for (int k = 0; k < 2; k++)
         shadow->cells_q32[k] = (int32_t)q_divide(
             INT64_C(1) << (32 + GLINT_SHADOW_CELLS_LOG2),
             (int64_t)shadow->hi[k] - shadow->lo[k] + CELLS * SLACK);
     glint_bins_init(&shadow->bins, (struct glint_box){0, 0, CELLS, CELLS}, 0,
                     shadow->bins.start, shadow->bins.ref);
-    turn_vertices(s, shadow);
-    while (set_casters(s, shadow) > shadow->max_refs)
+    rotate_vertices_to_sun(s, shadow);
+    while (list_shadow_casters(s, shadow) > shadow->max_refs)
         for (int k = 0; k < 2; k++)
             shadow->cells_q32[k] -= (shadow->cells_q32[k] + 3) / 4;
-    list_by_cell(shadow);
-    sort_lists(shadow);
-    mark_open(s, shadow);
+    list_casters_by_cell(shadow);
+    sort_lists_by_height(shadow);
+    mark_unshadowed_balls(s, shadow);
 }
 
 /* -------------------------------------------------------------------- boxes */
 
-/* Sets PLACE to the point of plane P at (U, V) of the sun's grid; returns 0
- * if it is out of range. */
-static int find_plane_point(const struct glint_shadow *shadow,
-                            const struct glint_placed *p, int32_t u, int32_t v,
-                            int32_t place[3])
+/* Sets PLACE to the point of plane P at grid coordinates (U, V); returns 0 if
+ * it is out of range. */
+static int find_point_on_plane(const struct glint_shadow *shadow,
+                               const struct glint_placed *p, int32_t u,
+                               int32_t v, int32_t place[3])
 {
     int32_t at[3], n_q30[3], to[3] = {u, v, 0};
     int64_t off_q30, h;
 
-    v3_turn(&shadow->turn, p->at, at);
-    v3_turn(&shadow->turn, p->centre, n_q30);
+    v3_rotate(&shadow->turn, p->at, at);
+    v3_rotate(&shadow->turn, p->centre, n_q30);
     if (q_magnitude(n_q30[2]) < 1 << 20)
         return 0;
     off_q30 = ((int64_t)u - at[0]) * n_q30[0] + ((int64_t)v - at[1]) * n_q30[1];
@@ -392,13 +402,13 @@ static int find_plane_point(const struct glint_shadow *shadow,
         q_magnitude(u) >= 1 << 29 || q_magnitude(v) >= 1 << 29)
         return 0;
     to[2] = (int32_t)h;
-    v3_turn_back(&shadow->turn, to, place);
+    v3_rotate_back(&shadow->turn, to, place);
     return 1;
 }
 
-struct glint_box glint_shadow_box(const struct glint_scene *s,
-                                  const struct glint_shadow *shadow,
-                                  const struct glint_placed *p)
+struct glint_box glint_shadow_find_plane_box(const struct glint_scene *s,
+                                             const struct glint_shadow *shadow,
+                                             const struct glint_placed *p)
 {
     int32_t seen[4][3];
 
@@ -407,32 +417,33 @@ struct glint_box glint_shadow_box(const struct glint_scene *s,
     for (int k = 0; k < 4; k++) {
         int32_t place[3];
 
-        if (!find_plane_point(shadow, p, k & 1 ? shadow->lo[0] : shadow->hi[0],
-                              k & 2 ? shadow->lo[1] : shadow->hi[1], place))
+        if (!find_point_on_plane(shadow, p,
+                                 k & 1 ? shadow->lo[0] : shadow->hi[0],
+                                 k & 2 ? shadow->lo[1] : shadow->hi[1], place))
             return (struct glint_box){0, 0, s->view.width, s->view.height};
-        glint_view_seen(&s->view, place, seen[k]);
+        glint_view_to_camera(&s->view, place, seen[k]);
     }
-    return glint_view_box(&s->view, (const int32_t(*)[3])seen, 4);
+    return glint_view_find_box(&s->view, (const int32_t(*)[3])seen, 4);
 }
 
-/* special cell indices: no object is above; the point is outside the range
- * of the grid */
+/* Special cell indices. NONE: no object is above. BEYOND: the grid is not valid
+ * at the point. */
 enum { NONE = -1, BEYOND = -2 };
 
 /* -------------------------------------------------------------------- rays */
 
 /* Returns whether three numbers are all positive or all negative. */
-static int is_aside(const int32_t x[3])
+static int have_same_sign(const int32_t x[3])
 {
     return (x[0] & x[1] & x[2]) < 0 || (-x[0] & -x[1] & -x[2]) < 0;
 }
 
-/* Returns, by edge functions, whether a ray from AT of slope LEAN meets a
- * triangle above it. A triangle is at most 2^28 long, and AT, which is in
- * one of its cells, is as near; with the ray's displacement all elements are
- * below 2^30. */
-static int meets_triangle(const int32_t *const vertex[3], const int32_t at[3],
-                          const int32_t lean_q30[2])
+/* Returns whether a ray from point AT, of slope LEAN, hits a triangle above the
+ * point; tested by edge functions. A triangle is at most 2^28 long and AT,
+ * which is in one of its cells, is as near; with the ray's offset all
+ * coordinates are below 2^30. */
+static int ray_hits_triangle(const int32_t *const vertex[3],
+                             const int32_t at[3], const int32_t lean_q30[2])
 {
     int32_t x[3], y[3], up[3], part_q30[3];
     int64_t edge[3], sum = 0;
@@ -446,7 +457,7 @@ static int meets_triangle(const int32_t *const vertex[3], const int32_t at[3],
             y[i] -= (int32_t)q_shift((int64_t)up[i] * lean_q30[1], 30);
         }
     }
-    if (is_aside(x) || is_aside(y))
+    if (have_same_sign(x) || have_same_sign(y))
         return 0;
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -460,14 +471,14 @@ static int meets_triangle(const int32_t *const vertex[3], const int32_t at[3],
         return 0;
     if (up[0] > 0 && up[1] > 0 && up[2] > 0)
         return 1;
-    glint_weigh(edge, sum, part_q30);
+    glint_set_vertex_weights(edge, sum, part_q30);
     return q_shift(v3_dot(part_q30, up), 30) > 0;
 }
 
-static int meets_ball(const struct glint_shadow *shadow,
-                      const struct glint_placed *p, const int32_t at[3],
-                      const struct glint_shadow_point *point,
-                      const int32_t place[3])
+static int ray_hits_ball(const struct glint_shadow *shadow,
+                         const struct glint_placed *p, const int32_t at[3],
+                         const struct glint_shadow_point *point,
+                         const int32_t place[3])
 {
     struct glint_scene_ray ray;
     struct glint_chord chord;
@@ -476,7 +487,7 @@ static int meets_ball(const struct glint_shadow *shadow,
         int32_t centre[3] = {0, 0, 0};
         int64_t x, y, up, rest;
 
-        v3_turn(&shadow->turn, p->at, centre);
+        v3_rotate(&shadow->turn, p->at, centre);
         x = (int64_t)centre[0] - at[0];
         y = (int64_t)centre[1] - at[1];
         up = (int64_t)centre[2] - at[2];
@@ -487,31 +498,35 @@ static int meets_ball(const struct glint_shadow *shadow,
         ray.at[k] = place[k];
         ray.toward_q30[k] = point->toward_q30[k];
     }
-    return glint_ray_sphere(&ray, p->at, p->radius, &chord) && chord.t[1] > 0;
+    return glint_ray_intersect_sphere(&ray, p->at, p->radius, &chord) &&
+           chord.t[1] > 0;
 }
 
-/* A point in the coordinates of the sun's grid, and its cell. */
+/* A point in grid coordinates, and the cell that it lies in. */
 struct below {
     int32_t at[3];
     int cell;
     int32_t across_q8[2];
 };
 
-/* Returns whether the ray meets any object in the cell's list other than
- * SURFACE itself. */
-static int
-is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
-           const struct below *below, const struct glint_shadow_point *point,
-           const int32_t place[3], const struct glint_met_surface *surface)
+/* Returns whether the ray hits any object in the list of BELOW's cell, other
+ * than SURFACE itself. */
+static int is_ray_blocked_in_cell(const struct glint_scene *s,
+                                  const struct glint_shadow *shadow,
+                                  const struct below *below,
+                                  const struct glint_shadow_point *point,
+                                  const int32_t place[3],
+                                  const struct glint_met_surface *surface)
 {
-    const uint32_t own = glint_id(surface->object, surface->triangle);
+    const uint32_t own =
+        glint_make_triangle_id(surface->object, surface->triangle);
     const int32_t *ref = shadow->bins.ref + shadow->bins.start[below->cell];
     const int32_t *end = shadow->bins.ref + shadow->bins.start[below->cell + 1];
     const int32_t u = below->across_q8[0], v = below->across_q8[1];
     const int32_t height = below->at[2];
     const int is_sorted = end - ref <= SORTED;
 
-    glint_scene_count(s, end - ref);
+    glint_scene_count_ray_tests(s, end - ref);
     for (; ref < end; ref++) {
         const struct glint_shadow_thing *thing = &shadow->thing[*ref];
         const struct glint_placed *p;
@@ -528,7 +543,7 @@ is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
             continue;
         p = &s->placed[thing->id >> 20];
         if (p->object->kind == GLINT_OBJECT_SPHERE) {
-            if (meets_ball(shadow, p, below->at, point, place))
+            if (ray_hits_ball(shadow, p, below->at, point, place))
                 return 1;
             continue;
         }
@@ -536,16 +551,16 @@ is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
                                 thing->id & 0xfffff);
         for (int k = 0; k < 3; k++)
             vertex[k] = shadow->vertex[p->first_vertex + t->vertex[k]];
-        if (meets_triangle(vertex, below->at, point->lean_q30))
+        if (ray_hits_triangle(vertex, below->at, point->lean_q30))
             return 1;
     }
     return 0;
 }
 
-/* Sets BELOW to the grid coordinates and the cell of PLACE. */
-static WHOLLY_INLINE void project_place(const struct glint_shadow *shadow,
-                                        const int32_t place[3],
-                                        struct below *below)
+/* Sets BELOW to the grid coordinates and the cell of point PLACE. */
+static WHOLLY_INLINE void project_to_grid(const struct glint_shadow *shadow,
+                                          const int32_t place[3],
+                                          struct below *below)
 {
     int32_t *at = below->at;
     int64_t lean = 0;
@@ -553,9 +568,10 @@ static WHOLLY_INLINE void project_place(const struct glint_shadow *shadow,
     below->cell = NONE;
     if (shadow->is_empty)
         return;
-    v3_turn(&shadow->turn, place, at);
+    v3_rotate(&shadow->turn, place, at);
     if (at[2] < shadow->lowest)
-        lean = compute_lean(shadow, (int64_t)shadow->lowest - at[2]) + SLACK;
+        lean = compute_slant_offset(shadow, (int64_t)shadow->lowest - at[2]) +
+               SLACK;
     if (at[2] > shadow->hi[2] || at[0] < shadow->lo[0] - lean ||
         at[0] > shadow->hi[0] + lean || at[1] < shadow->lo[1] - lean ||
         at[1] > shadow->hi[1] + lean)
@@ -571,48 +587,52 @@ static WHOLLY_INLINE void project_place(const struct glint_shadow *shadow,
         below->cell = NONE;
 }
 
-/* Returns whether light of a point-like sun reaches SURFACE. No plane may
- * cast shadows on it, and the cell of BELOW must have a list. */
-static int is_lit(const struct glint_scene *s,
-                  const struct glint_shadow *shadow, const struct below *below,
-                  const int32_t place[3],
-                  const struct glint_met_surface *surface)
+/* Returns whether the light of a sun with a single sample point reaches
+ * SURFACE. No plane may cast shadows on it, and the cell of BELOW must have a
+ * list. */
+static int is_lit_by_point_sun(const struct glint_scene *s,
+                               const struct glint_shadow *shadow,
+                               const struct below *below,
+                               const int32_t place[3],
+                               const struct glint_met_surface *surface)
 {
     const struct glint_shadow_point *p = &shadow->point[0];
 
     return v3_dot(p->toward_q30, surface->face_q30) > 0 &&
-           !is_blocked(s, shadow, below, p, place, surface);
+           !is_ray_blocked_in_cell(s, shadow, below, p, place, surface);
 }
 
-/* Returns REACHED divided by the number of sample points (1, 4 or 16), _q15. */
-static int32_t compute_share(const struct glint_shadow *shadow, int reached)
+/* Returns REACHED / the number of the sun's sample points (1, 4 or 16),
+ * _q15. */
+static int32_t compute_point_fraction(const struct glint_shadow *shadow,
+                                      int reached)
 {
     return reached << (shadow->n_points == 1   ? 15
                        : shadow->n_points == 4 ? 13
                                                : 11);
 }
 
-/* Returns the fraction of the disc's sample points that are above the plane
- * of SURFACE. */
-static int32_t compute_share_above(const struct glint_shadow *shadow,
-                                   const struct glint_met_surface *surface)
+/* Returns the fraction, _q15, of the disc's sample points that are above the
+ * tangent plane of SURFACE. */
+static int32_t
+compute_fraction_above_surface(const struct glint_shadow *shadow,
+                               const struct glint_met_surface *surface)
 {
     int above = 0;
 
     for (int i = 0; i < shadow->n_points; i++)
         above += v3_dot(shadow->point[i].toward_q30, surface->face_q30) > 0;
-    return compute_share(shadow, above);
+    return compute_point_fraction(shadow, above);
 }
 
-/* Returns the fraction of the disc's sample points whose light reaches
- * SURFACE, by testing each. */
-static NEVER_INLINE int32_t test_points(const struct glint_scene *s,
-                                        const struct glint_shadow *shadow,
-                                        const struct glint_met_surface *surface,
-                                        const struct below *below,
-                                        const int32_t place[3])
+/* Returns the fraction, _q15, of the disc's sample points whose light reaches
+ * SURFACE, by tracing a ray to each. */
+static NEVER_INLINE int32_t compute_lit_fraction(
+    const struct glint_scene *s, const struct glint_shadow *shadow,
+    const struct glint_met_surface *surface, const struct below *below,
+    const int32_t place[3])
 {
-    const int asks_planes = glint_scene_other_planes(s, surface->object);
+    const int asks_planes = glint_scene_has_other_planes(s, surface->object);
     struct glint_scene_ray ray;
     int reached = 0;
 
@@ -626,39 +646,40 @@ static NEVER_INLINE int32_t test_points(const struct glint_scene *s,
         if (v3_dot(p->toward_q30, surface->face_q30) <= 0)
             continue;
         if (below->cell == BEYOND) {
-            reached += !glint_scene_blocks(s, &ray, surface->object,
-                                           surface->triangle, GLINT_FAR);
+            reached += !glint_scene_is_ray_blocked(
+                s, &ray, surface->object, surface->triangle, GLINT_FAR);
             continue;
         }
-        reached += !(asks_planes &&
-                     glint_scene_planes_block(s, &ray, surface->object)) &&
-                   (below->cell == NONE ||
-                    !is_blocked(s, shadow, below, p, place, surface));
+        reached +=
+            !(asks_planes &&
+              glint_scene_is_ray_blocked_by_plane(s, &ray, surface->object)) &&
+            (below->cell == NONE ||
+             !is_ray_blocked_in_cell(s, shadow, below, p, place, surface));
     }
-    return compute_share(shadow, reached);
+    return compute_point_fraction(shadow, reached);
 }
 
-int32_t glint_shadow_reaches(const struct glint_scene *s,
-                             const struct glint_shadow *shadow,
-                             const struct glint_met_surface *surface,
-                             const int32_t place[3])
+int32_t glint_shadow_compute_lit_fraction(
+    const struct glint_scene *s, const struct glint_shadow *shadow,
+    const struct glint_met_surface *surface, const int32_t place[3])
 {
     struct below below;
 
     if (s->placed[surface->object].open_to >> shadow->light & 1)
         below.cell = NONE;
     else
-        project_place(shadow, place, &below);
-    if (below.cell == BEYOND || glint_scene_other_planes(s, surface->object))
-        return test_points(s, shadow, surface, &below, place);
+        project_to_grid(shadow, place, &below);
+    if (below.cell == BEYOND ||
+        glint_scene_has_other_planes(s, surface->object))
+        return compute_lit_fraction(s, shadow, surface, &below, place);
     if (below.cell == NONE)
-        return compute_share_above(shadow, surface);
+        return compute_fraction_above_surface(shadow, surface);
     if (shadow->n_points == 1)
-        return is_lit(s, shadow, &below, place, surface) << 15;
-    return test_points(s, shadow, surface, &below, place);
+        return is_lit_by_point_sun(s, shadow, &below, place, surface) << 15;
+    return compute_lit_fraction(s, shadow, surface, &below, place);
 }
 
-void glint_scene_forget_shadows(struct glint_scene *s)
+void glint_scene_invalidate_shadows(struct glint_scene *s)
 {
     s->moved++;
     for (uint32_t i = 0; i < s->model.header->n_lights; i++)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * State of a scene, and the interfaces between its modules.
+ * State of a scene, and the interfaces between its files.
  *
- * visible -> surface -> shade: the object visible at a sample; the point and
- * normal where a ray meets the object; the light that the surface sends back
- * along the ray. */
+ * Drawing has three steps: visible.c finds the object at each sample, surface.c
+ * the point and normal where a ray hits the object, and phong.c the light that
+ * the surface sends along the ray. */
 #ifndef GLINT_SCENE_STATE_H
 #define GLINT_SCENE_STATE_H
 
@@ -19,53 +19,57 @@
 
 enum {
     GLINT_SCENE_ONE_Q15 = 1 << 15,
-    GLINT_SCENE_MOST_LIGHT = 1 << 30, /* max light, q15; larger light
-                                         saturates */
-    /* distance of the start of secondary rays from a mesh, steps */
+    GLINT_SCENE_MOST_LIGHT = 1 << 30, /* max light, q15; more is clamped to
+                                         it */
+    /* distance by which the start of secondary rays is moved off a mesh,
+     * steps */
     GLINT_SCENE_LIFT = 4,
     GLINT_SCENE_SAMPLES = 16, /* max samples per pixel */
-    GLINT_SCENE_PASSES = 8,   /* max surfaces that a ray passes through */
-    GLINT_COVER_LOG2 = 3 /* log2 of the side, in pixels, of the squares of the
-                            stored cover */
+    GLINT_SCENE_PASSES = 8,   /* max number of surfaces that transmit a ray */
+    GLINT_COVER_LOG2 = 3 /* log2 of the side, in pixels, of the squares in which
+                            cover is summed */
 };
 
 #define GLINT_NOTHING UINT32_C(0xffffffff)
 
-/* An object at its position in this frame. */
+/* An object with its position and derived values in this frame. */
 struct glint_placed {
     const struct glint_scene_object *object;
     int32_t at[3], radius;
     /* Rotation of the object: its point p is at position at + turn p. */
     struct glint_scene_turn turn;
-    /* Bounding sphere; for a plane, its normal, _q30, and 0. */
+    /* Bounding sphere, steps. For a plane: its normal, _q30, and 0. */
     int32_t centre[3], reach;
-    uint32_t material; /* material of the object's surfaces without their own
-                          material */
+    uint32_t material; /* index of the material of surfaces that have none of
+                          their own */
     int is_shown;
-    int is_split, is_catcher; /* is_split: samples are shaded one by one;
-                                 is_catcher: the object only receives shadows */
-    int skin;                 /* index of its map if it is translucent, else
-                                 -1 */
-    int is_seen;              /* may be visible in this frame */
-    struct glint_box box;     /* box of pixels that the object may touch */
-    uint32_t first_vertex;    /* mesh: index among the vertices of all
-                                 objects */
-    int32_t margin;           /* sphere: a pixel's diagonal at its far side,
-                                 steps, at least 1 */
-    struct glint_depth depth; /* plane: 1 / z over the picture */
-    int32_t z[2];             /* min and max z; not used for planes */
-    /* Sphere: depths, 2^30 nearest / z. flat_depth: a single depth for the
-     * whole sphere, if that orders it correctly against all balls that it
-     * may overlap, else 0. far_depth: depth of its far side. */
+    /* is_split: the object is shaded per sample; is_catcher: it only receives
+     * shadows. */
+    int is_split, is_catcher;
+    int skin;             /* index of the object's map if it is translucent,
+                             else -1 */
+    int is_seen;          /* 1: the object may be visible in this frame */
+    struct glint_box box; /* pixels that the object may cover */
+    /* Mesh: index of its first vertex in the table of all objects' vertices. */
+    uint32_t first_vertex;
+    /* Sphere: size of a pixel's diagonal at the sphere's far side, steps, at
+     * least 1. */
+    int32_t margin;
+    struct glint_depth depth; /* plane: its 1 / z as a function of the pixel */
+    int32_t z[2];             /* min and max z in camera coordinates, steps; not
+                                 set for planes */
+    /* Sphere: depths, 2^30 nearest / z. flat_depth: the depth of all samples of
+     * the sphere, if one depth orders it correctly against all balls that it
+     * may overlap, else 0. far_depth: the depth of its far side. */
     int32_t flat_depth, far_depth;
     /* Sphere: (vector from the camera to its middle) / radius, with over_up
      * fraction bits; over_up is 0 if the quotient is out of range (quick.c). */
     int32_t over[3];
     int over_up;
-    /* Sphere: a bit per light index of a sun, set if no object can shadow
-     * the side of the sphere that faces that sun. */
+    /* Sphere: bit mask over lights; bit i is set if light i is a sun and no
+     * object can shadow the side of the sphere that faces it. */
     uint32_t open_to;
-    /* Coefficients for the span of pixels in a row that a ball may touch
+    /* Sphere: coefficients for the range of pixels in a row that it may cover
      * (quick.c). */
     struct {
         int is_there;
@@ -82,88 +86,97 @@ struct glint_quick_triangle {
     uint32_t id;
     int is_there, is_inside, is_smooth;
     const struct glint_scene_material *material;
-    /* Twice the area opposite each corner, q16, at position (x, y) from the
-     * first corner: at + across x + down y. The sum of all three, times 2^up,
-     * is 2^63 / one_over. */
+    /* The area function of each corner k is twice the area of the triangle
+     * between position (x, y) and the edge opposite k, q16: at + across x +
+     * down y, with x and y relative to the first corner. The sum of all three,
+     * times 2^up, is 2^63 / one_over. */
     int32_t x_q8, y_q8, across[3], down[3];
     int64_t at[3];
     int up;
     uint32_t one_over;
-    int32_t nearer_q30[3]; /* min depth of the corners / depth of each corner */
-    /* The first corner, and the differences of the second and third corner
-     * from it. */
+    int32_t nearer_q30[3]; /* min depth of the corners divided by the depth of
+                              each corner */
+    /* The first corner's position and normal, and the differences of the second
+     * and third corner from them. */
     int32_t place[3][3], normal_q29[3][3];
     int32_t face_q30[3];
 };
 
 enum { GLINT_SHADOW_CELLS_LOG2 = 6, GLINT_SHADOW_POINTS = 16 };
 
-/* A sample point of a sun's disc: its direction, and the slope of its rays
- * relative to the rays from the disc's middle, as tangents. */
+/* A sample point of a sun's disc: its direction, and the slope of its rays, as
+ * tangents of the angle to the ray from the disc's middle. */
 struct glint_shadow_point {
     int32_t toward_q30[3], lean_q30[2];
 };
 
-/* The footprint of the region that an object can shadow, seen from a sun:
- * its extent across the rays, in 1/256 of a cell, rounded down, and its top
- * (max h). */
+/* The footprint of an object in a sun's shadow grid: bounds of the region that
+ * it can shadow, across the rays, in 1/256 of a cell, rounded down; and the
+ * object's top, max h. */
 struct glint_shadow_thing {
-    uint32_t id; /* object << 20 | triangle */
+    uint32_t id; /* object index << 20 | triangle index */
     int16_t lo[2], hi[2];
     int32_t top;
 };
 
-/* Objects that cast shadows, from the direction of a sun (shadow.c). */
+/* A sun's shadow grid: the objects that cast shadows, sorted into cells across
+ * its rays (shadow.c). */
 struct glint_shadow {
     int light;    /* index of the sun among the lights */
-    int is_ready; /* 1: nothing has moved since the grid was built */
+    int is_ready; /* 1: the grid is up to date, as nothing has moved since it
+                     was built */
     int is_empty; /* 1: no object casts shadows */
     struct glint_scene_turn turn; /* rotation to coordinates u and v across the
                                      rays and h along them */
-    int32_t lo[3], hi[3];         /* bounding box of the objects in the grid */
+    int32_t lo[3], hi[3];         /* bounds of the objects in the grid, in
+                                     coordinates u, v, h */
     int32_t lowest;       /* min h of points for which the grid is valid */
-    int32_t cells_q32[2]; /* cells per step, up to 2^30 */
+    int32_t cells_q32[2]; /* cells per step along u and v, up to 2^30 */
     int n_points;
     int32_t lean_q30; /* max slope of the rays of all sample points */
     struct glint_shadow_point point[GLINT_SHADOW_POINTS];
-    int32_t (*vertex)[3];   /* vertices of all meshes, rotated by
-                               turn */
-    struct glint_bins bins; /* per cell: indices of elements of thing */
-    struct glint_shadow_thing *thing; /* [n_things]: shadow casters */
+    int32_t (*vertex)[3];   /* vertices of all meshes, rotated by turn to u, v,
+                               h */
+    struct glint_bins bins; /* per cell: indices of the objects, elements of
+                               thing */
+    struct glint_shadow_thing *thing; /* [n_things]: objects that cast
+                                         shadows */
     int n_things;
-    int max_refs; /* max entries; at least the number of objects */
+    int max_refs; /* max number of entries in all cells; at least the number of
+                     objects */
 };
 
-/* A light at its position in this frame. */
+/* A light source with its position in this frame. */
 struct glint_lit {
-    struct glint_shadow *shadow; /* shadow grid of a sun; NULL: shadows are
-                                    found by tracing rays */
+    struct glint_shadow *shadow; /* shadow grid of a sun; NULL: shadow rays are
+                                    traced through the scene */
     const struct glint_scene_light *light;
-    int32_t at[3];         /* lamp: position */
-    int32_t toward_q30[3]; /* sun: direction to it */
-    int32_t rgb_q15[3];    /* sun: its light, 0 .. 2^30 */
+    int32_t at[3];         /* lamp: position, steps */
+    int32_t toward_q30[3]; /* sun: unit vector to it */
+    int32_t rgb_q15[3];    /* sun: its light on a white surface that faces it, 0
+                              .. 2^30 */
 };
 
 /* The intersection of a ray with an object. */
 struct glint_met {
     uint32_t object, triangle;
     int32_t t;
-    int end; /* end of a sphere's chord: 0 where the ray enters, 1 where it
-                leaves */
+    int end; /* for a sphere: 0 where the ray enters, 1 where it leaves */
     struct glint_chord chord;
     struct glint_spot_on spot;
 };
 
-/* The point where a ray meets a surface. Normals point to the side that the ray
- * comes from. */
+/* The point where a ray meets a surface. Normals point to the side from which
+ * the ray comes. */
 struct glint_met_surface {
     const struct glint_scene_material *material;
     uint32_t object, triangle;
     int32_t t, place[3];
-    int32_t normal_q30[3], face_q30[3]; /* shading normal; geometric normal */
+    int32_t normal_q30[3], face_q30[3]; /* shading normal, interpolated; normal
+                                           of the face */
     int is_inside; /* 1: the ray comes from inside the object */
     int32_t uv_q16[2];
-    /* log2 of the area in uv space per step^2; _q16 */
+    /* log2 of (area in uv space / area on the surface in steps^2), _q16 */
     int32_t uv_log2_q16;
 };
 
@@ -171,16 +184,16 @@ struct glint_met_surface {
 struct glint_brushed {
     int32_t frame_q30[3][3]; /* rows: tangent, bitangent, normal; unit
                                 vectors */
-    int32_t spread_q30;      /* term that the normal's variation within a pixel
-                                adds to the squared alphas: twice its variance;
-                                -1: not computed yet */
+    /* Term that the variation of the normal within a pixel adds to the squared
+     * alphas: twice its variance; -1: not computed yet. */
+    int32_t spread_q30;
 };
 
-/* Light and cover of a pixel, as sums over four samples. */
+/* Light and cover of a pixel, summed over four samples. */
 struct glint_scene_sum {
     int64_t rgb_q17[3];
-    int cover_q10, shadow_q10; /* cover_q10: cover of all objects; shadow_q10:
-                                  shadow on catchers */
+    /* cover_q10: cover by all objects; shadow_q10: shadow on catchers. */
+    int cover_q10, shadow_q10;
 };
 
 enum {
@@ -188,8 +201,8 @@ enum {
     GLINT_GLOSS_STEPS = 1 << GLINT_GLOSS_STEPS_LOG2
 };
 
-/* Table of (1 - y)^k of a material for y = 0 .. end, interpolated linearly; 0
- * for larger y. Max error 2^-11.5. */
+/* Table of the specular power (1 - y)^k of a material for y = 0 .. end,
+ * interpolated linearly; larger y give 0. Max error 2^-11.5. */
 struct glint_gloss {
     int32_t end_q30;
     int64_t scale_q30; /* 1 / end, 1 .. 2^13 */
@@ -198,21 +211,24 @@ struct glint_gloss {
 
 struct glint_scene_worker {
     /* [samples of a tile]: depth, 2^30 nearest / z, and id of the visible
-     * object: object << 20 | triangle, or GLINT_NOTHING */
+     * object, object << 20 | triangle, or GLINT_NOTHING. */
     int32_t *depth;
     uint32_t *id;
     struct glint_box tile;
-    struct glint_box touched; /* pixels of the tile that may see an object;
-                                 other pixels have no samples */
+    struct glint_box touched; /* pixels of the tile that may see an object; only
+                                 these have samples */
     const struct glint_scene *scene;
     struct glint_tile_scratch scratch;
-    /* [half a tile]: results for 2 x 2 pixels that see one object; they are
-     * shaded once, in the upper row. NULL: every pixel is shaded. */
+    /* [half a tile]: light and cover of 2 x 2 pixels that see one object: they
+     * are shaded once, with the upper row. NULL: every pixel is shaded. */
     struct glint_scene_sum *quad;
-    struct glint_quick_triangle *quick; /* [GLINT_QUICK_TRIANGLES] */
+    struct glint_quick_triangle *quick; /* [GLINT_QUICK_TRIANGLES]: cache of
+                                           prepared triangles */
     int is_linear;
-    struct glint_layer_span *span; /* [layers]: spans of the current row */
-    int *over;                     /* [layers]: layers over the current pixel */
+    struct glint_layer_span *span; /* [layers]: overlays in the current row,
+                                      with the pixels that they cover */
+    int *over;                     /* [layers]: indices of the overlays at the
+                                      current pixel */
     int n_spans, n_over;
 };
 
@@ -220,123 +236,135 @@ struct glint_scene {
     struct glint_scene_config cfg;
     struct glint_scene_model model;
     struct glint_scene_view view;
-    const int8_t (*sample_q8)[2]; /* positions of a pixel's samples, relative to
-                                     its middle */
+    const int8_t (*sample_q8)[2]; /* offsets of a pixel's samples from its
+                                     middle, q8 */
     struct glint_placed *placed;  /* [n_objects] */
-    struct glint_lit *lit;        /* [n_lights] */
-    uint32_t n_lit; /* number of lights that are on; they are the first ones */
-    int32_t (*seen)[3];          /* camera coordinates of all vertices */
-    struct glint_corner *corner; /* the vertices projected to the picture */
-    struct glint_bins bins; /* triangles by tile, as object << 20 | triangle */
-    int32_t nearest;        /* min z of all objects, at least 1 */
-    int has_triangles;      /* 1: bins are filled */
+    struct glint_lit *lit;        /* [n_lights]: the lights that are on come
+                                     first */
+    uint32_t n_lit;               /* number of lights that are on */
+    int32_t (*seen)[3];           /* camera coordinates of the vertices of all
+                                     meshes, steps */
+    struct glint_corner *corner;  /* the same vertices projected to the
+                                     picture */
+    struct glint_bins bins; /* list of triangles per tile, as object << 20 |
+                               triangle */
+    int32_t nearest;        /* min z of all visible objects, steps, at least
+                               1 */
+    int has_triangles;      /* 1: bins lists the triangles of this frame */
     int n_planes;           /* number of planes that cast shadows */
     uint32_t plane;         /* index of the last plane that casts shadows */
-    int has_split, has_catchers; /* 1: there are objects with is_split, or with
-                                    is_catcher */
+    /* 1: there are objects with is_split; with is_catcher. */
+    int has_split, has_catchers;
     struct glint_scene_worker *worker; /* [workers] */
     struct glint_blend_rows *rows;     /* [workers] */
     struct glint_resolve *resolve;
-    /* table that decodes texels; NULL: there are no textures */
+    /* table that decodes texels to linear light; NULL: no object has a
+     * texture */
     struct glint_curve *curve;
     struct glint_gloss *gloss; /* [n_materials] */
-    /* The camera's picture as background of mirrors and glass; not allocated
-     * if no material shows it. */
+    /* The camera's picture as background of mirrors and glass; not allocated if
+     * no material reflects or refracts it. */
     struct glint_around around;
-    struct glint_scene_material *material; /* [n_materials]: current
-                                              materials */
+    struct glint_scene_material *material; /* [n_materials]: materials as last
+                                              set */
     struct glint_scene_ward *ward;         /* [n_wards] */
-    /* metals and environments; NULL: there are none */
+    /* state of metals and environments; NULL: the scene has none */
     struct glint_ward_state *wards;
-    /* translucent media; NULL: there are none */
+    /* state of translucent media; NULL: the scene has none */
     struct glint_stone_state *stones;
-    uint32_t moved; /* number of changes of objects or lights */
-    int is_spread;  /* 1: maps of translucent objects are up to date for the
+    uint32_t moved; /* counter, incremented by changes of objects and lights */
+    int is_spread;  /* 1: the maps of translucent objects are computed for the
                        current frame */
     /* NULL: highlights are not requested */
     struct glint_highlight_state *bright;
     struct glint_motion_state *motion; /* NULL: there is no recorded motion */
     int cover_across, cover_down;
-    uint16_t *cover; /* [cover_down][cover_across]: sums of cover, _q8, over
+    uint16_t *cover; /* [cover_down][cover_across]: cover, _q8, summed over
                         squares of 8 x 8 pixels */
-    /* Counts tests of rays, see glint_scene_count_tests(); NULL: not counted */
+    /* number of ray tests, for glint_scene_count_tests(); NULL: not counted */
     int64_t *tests;
 };
 
-/* Counts N tests of a ray with an object, a cell of a grid or a triangle. */
-static inline void glint_scene_count(const struct glint_scene *scene, int64_t n)
+/* Adds N to the number of tests of a ray with an object, grid cell or
+ * triangle. */
+static inline void glint_scene_count_ray_tests(const struct glint_scene *scene,
+                                               int64_t n)
 {
     if (scene->tests)
         *scene->tests += n;
 }
 
-static inline uint32_t glint_id(uint32_t object, uint32_t triangle)
+static inline uint32_t glint_make_triangle_id(uint32_t object,
+                                              uint32_t triangle)
 {
     return object << 20 | triangle;
 }
 
 /* --------------------------------------------------------- visible, surface */
 
-/* Returns the positions of N samples of a pixel, q8 from its middle. N must be
- * 1, 4, 8 or 16. */
+/* Returns the offsets of N samples from the middle of their pixel, q8. N must
+ * be 1, 4, 8 or 16. */
 const int8_t (*glint_scene_samples(int n))[2];
 
-/* Finds the balls for which one depth suffices; called after all are placed. */
-void glint_scene_flatten(struct glint_scene *scene);
+/* Sets flat_depth of the balls for which one depth suffices. Called after the
+ * positions of all objects are set. */
+void glint_scene_set_flat_depths(struct glint_scene *scene);
 
-/* Restricts catchers to pixels that may have shadows; called after the
- * shadow grids are built. */
-void glint_scene_confine(struct glint_scene *scene);
+/* Restricts the box of each catcher to pixels that may have shadows. Called
+ * after the shadow grids are built. */
+void glint_scene_confine_catchers(struct glint_scene *scene);
 
-/* Narrows X0 .. X1 - 1 to the pixels of row Y that ball P may touch; returns 0
- * if there are no such pixels. */
-int glint_scene_span(const struct glint_scene *scene,
-                     const struct glint_placed *p, int y, int32_t *x0,
-                     int32_t *x1);
+/* Narrows the range X0 .. X1 - 1 to the pixels of row Y that ball P may cover;
+ * returns 0 if there are none. */
+int glint_scene_find_ball_span(const struct glint_scene *scene,
+                               const struct glint_placed *p, int y, int32_t *x0,
+                               int32_t *x1);
 
-/* Finds the visible objects at the samples of TILE; returns 0 if no object
- * is visible. */
+/* Finds the visible object at each sample of TILE; returns 0 if no object is
+ * visible in the tile. */
 int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile);
 
-/* Sets MET to the nearest intersection of RAY; returns 0 if there is none.
- * Skips catchers and OBJECT; of a mesh OBJECT only triangle TRIANGLE is
- * skipped. */
-int glint_scene_meet(const struct glint_scene *scene,
-                     const struct glint_scene_ray *ray, uint32_t object,
-                     uint32_t triangle, struct glint_met *met);
+/* Sets MET to the nearest intersection of RAY with an object; returns 0 if
+ * there is none. Skips catchers, and OBJECT, on which the ray starts: of a mesh
+ * only its triangle TRIANGLE. */
+int glint_scene_find_nearest_hit(const struct glint_scene *scene,
+                                 const struct glint_scene_ray *ray,
+                                 uint32_t object, uint32_t triangle,
+                                 struct glint_met *met);
 
-/* Returns whether RAY meets anything nearer than LIMIT. Skips the same
- * objects as glint_scene_meet(). */
-int glint_scene_blocks(const struct glint_scene *scene,
-                       const struct glint_scene_ray *ray, uint32_t object,
-                       uint32_t triangle, int32_t limit);
+/* Returns whether RAY hits any object nearer than LIMIT steps. Skips the same
+ * objects as glint_scene_find_nearest_hit(). */
+int glint_scene_is_ray_blocked(const struct glint_scene *scene,
+                               const struct glint_scene_ray *ray,
+                               uint32_t object, uint32_t triangle,
+                               int32_t limit);
 
-/* Returns whether RAY meets a plane other than OBJECT. */
-int glint_scene_planes_block(const struct glint_scene *scene,
-                             const struct glint_scene_ray *ray,
-                             uint32_t object);
+/* Returns whether RAY hits any plane other than OBJECT. */
+int glint_scene_is_ray_blocked_by_plane(const struct glint_scene *scene,
+                                        const struct glint_scene_ray *ray,
+                                        uint32_t object);
 
 /* Returns whether any plane other than OBJECT casts shadows. */
-static inline int glint_scene_other_planes(const struct glint_scene *s,
-                                           uint32_t object)
+static inline int glint_scene_has_other_planes(const struct glint_scene *s,
+                                               uint32_t object)
 {
     return s->n_planes > (s->n_planes > 0 && s->plane == object);
 }
 
-/* Sets MET to the intersection of the primary ray RAY with object ID, clamped
- * to the triangle if ID is a triangle; returns 0 if they do not meet. SEEN_Q30
- * is the ray's direction in camera coordinates. */
-int glint_scene_meet_id(const struct glint_scene *scene,
-                        const struct glint_scene_ray *ray,
-                        const int32_t seen_q30[3], uint32_t id,
-                        struct glint_met *met);
+/* Sets MET to the intersection of the primary ray RAY with object or triangle
+ * ID; a ray that just misses a triangle is clamped to it. Returns 0 if they do
+ * not meet. SEEN_Q30 is the ray's direction in camera coordinates. */
+int glint_scene_ray_hits_id(const struct glint_scene *scene,
+                            const struct glint_scene_ray *ray,
+                            const int32_t seen_q30[3], uint32_t id,
+                            struct glint_met *met);
 
-/* Sets SURFACE to the surface at the intersection MET of RAY. Returns 0 if the
- * point is out of range or the triangle has no area. */
-int glint_scene_surface(const struct glint_scene *scene,
-                        const struct glint_scene_ray *ray,
-                        const struct glint_met *met,
-                        struct glint_met_surface *surface);
+/* Sets SURFACE to position, normals and material at the intersection MET of
+ * RAY. Returns 0 if the point is out of range or the triangle has no area. */
+int glint_scene_set_surface(const struct glint_scene *scene,
+                            const struct glint_scene_ray *ray,
+                            const struct glint_met *met,
+                            struct glint_met_surface *surface);
 
 /* ------------------------------------------------------------------- shade */
 
@@ -347,48 +375,49 @@ struct glint_met_shade {
     int cover_q8;       /* 0 .. 256 */
 };
 
-/* Adds to RGB_Q15 the light that SURFACE reflects along RAY from all lights,
- * times WEIGHT_Q15. */
-void glint_scene_phong(const struct glint_scene *scene,
-                       const struct glint_scene_ray *ray,
-                       const struct glint_met_surface *surface,
-                       int32_t weight_q15, int32_t rgb_q15[3]);
+/* Adds to RGB_Q15 the light from all light sources that SURFACE reflects along
+ * RAY, times WEIGHT_Q15. */
+void glint_scene_add_phong_light(const struct glint_scene *scene,
+                                 const struct glint_scene_ray *ray,
+                                 const struct glint_met_surface *surface,
+                                 int32_t weight_q15, int32_t rgb_q15[3]);
 
-/* Sets SHADE to the light from SURFACE along the primary ray RAY. */
-void glint_scene_shade(const struct glint_scene *scene,
-                       const struct glint_scene_ray *ray,
-                       const struct glint_met_surface *surface,
-                       struct glint_met_shade *shade);
+/* Sets SHADE to the light that SURFACE sends along the primary ray RAY, and to
+ * its cover. */
+void glint_scene_shade_surface(const struct glint_scene *scene,
+                               const struct glint_scene_ray *ray,
+                               const struct glint_met_surface *surface,
+                               struct glint_met_shade *shade);
 
 /* Returns the fraction, 0 .. 32768, of light LIT that reaches SURFACE, by
- * tracing rays through the scene. */
-int32_t glint_rays_reach(const struct glint_scene *scene,
-                         const struct glint_met_surface *surface,
-                         const struct glint_lit *lit);
+ * tracing rays to sample points of LIT. */
+int32_t glint_trace_shadow_rays(const struct glint_scene *scene,
+                                const struct glint_met_surface *surface,
+                                const struct glint_lit *lit);
 
 /* Builds the shadow grid of LIT, which must be a sun. */
-void glint_shadow_prepare(const struct glint_scene *scene,
-                          const struct glint_lit *lit,
-                          struct glint_shadow *shadow);
+void glint_shadow_build_grid(const struct glint_scene *scene,
+                             const struct glint_lit *lit,
+                             struct glint_shadow *shadow);
 
-/* Returns the box of pixels in which plane P may have shadows from the sun
- * of SHADOW. */
-struct glint_box glint_shadow_box(const struct glint_scene *scene,
-                                  const struct glint_shadow *shadow,
-                                  const struct glint_placed *p);
+/* Returns the box of pixels in which shadows of the sun of SHADOW may fall on
+ * plane P. */
+struct glint_box glint_shadow_find_plane_box(const struct glint_scene *scene,
+                                             const struct glint_shadow *shadow,
+                                             const struct glint_placed *p);
 
 /* Returns the fraction, 0 .. 32768, of the light of the sun of SHADOW that
- * reaches PLACE, the start of rays from SURFACE. */
-int32_t glint_shadow_reaches(const struct glint_scene *scene,
-                             const struct glint_shadow *shadow,
-                             const struct glint_met_surface *surface,
-                             const int32_t place[3]);
+ * reaches SURFACE; PLACE is the start of shadow rays from SURFACE. */
+int32_t glint_shadow_compute_lit_fraction(
+    const struct glint_scene *scene, const struct glint_shadow *shadow,
+    const struct glint_met_surface *surface, const int32_t place[3]);
 
-/* Sets AT to the start of rays that leave SURFACE: its position, moved off a
- * mesh by GLINT_SCENE_LIFT along the normal of the face. */
-static inline void glint_scene_leave(const struct glint_scene *scene,
-                                     const struct glint_met_surface *surface,
-                                     int32_t at[3])
+/* Sets AT to the start of secondary rays from SURFACE: its position, moved off
+ * a mesh by GLINT_SCENE_LIFT along the face's normal. */
+static inline void
+glint_scene_set_ray_start(const struct glint_scene *scene,
+                          const struct glint_met_surface *surface,
+                          int32_t at[3])
 {
     const int32_t lift =
         scene->placed[surface->object].object->kind == GLINT_OBJECT_MESH
@@ -401,51 +430,53 @@ static inline void glint_scene_leave(const struct glint_scene *scene,
 
 /* Returns the fraction, 0 .. 32768, of light LIT that reaches SURFACE. */
 static inline int32_t
-glint_scene_reaches(const struct glint_scene *scene,
-                    const struct glint_met_surface *surface,
-                    const struct glint_lit *lit)
+glint_scene_lit_fraction(const struct glint_scene *scene,
+                         const struct glint_met_surface *surface,
+                         const struct glint_lit *lit)
 {
     int32_t at[3];
 
     if (!lit->shadow || !lit->shadow->is_ready)
-        return glint_rays_reach(scene, surface, lit);
-    glint_scene_leave(scene, surface, at);
-    return glint_shadow_reaches(scene, lit->shadow, surface, at);
+        return glint_trace_shadow_rays(scene, surface, lit);
+    glint_scene_set_ray_start(scene, surface, at);
+    return glint_shadow_compute_lit_fraction(scene, lit->shadow, surface, at);
 }
 
 /* Sets U and V to unit vectors perpendicular to D and to each other. */
-void glint_scene_frame_of(const int32_t d_q30[3], int32_t u_q30[3],
-                          int32_t v_q30[3]);
+void glint_scene_set_perpendiculars(const int32_t d_q30[3], int32_t u_q30[3],
+                                    int32_t v_q30[3]);
 
-/* Sets TOWARD_Q30 to the direction from PLACE to LIT and LEVEL_Q15 to the light
- * of a white surface at PLACE that faces LIT. Returns the distance, GLINT_FAR
- * for a sun, or 0 if PLACE is the position of LIT. */
-int32_t glint_scene_light_at(const struct glint_scene *scene,
-                             const struct glint_lit *lit,
-                             const int32_t place[3], int32_t toward_q30[3],
-                             int32_t level_q15[3]);
+/* Sets TOWARD_Q30 to the direction from PLACE to LIT, and LEVEL_Q15 to the
+ * light of a white surface at PLACE that faces LIT. Returns the distance of
+ * LIT, steps, GLINT_FAR for a sun, or 0 if PLACE is the position of LIT. */
+int32_t glint_scene_compute_light_at(const struct glint_scene *scene,
+                                     const struct glint_lit *lit,
+                                     const int32_t place[3],
+                                     int32_t toward_q30[3],
+                                     int32_t level_q15[3]);
 
-/* Prepares the table of powers of exponent POWER_Q8. */
-void glint_gloss_prepare(struct glint_gloss *gloss, int32_t power_q8);
+/* Fills the table GLOSS with powers of exponent POWER_Q8. */
+void glint_gloss_fill_table(struct glint_gloss *gloss, int32_t power_q8);
 
 /* Returns X^K, _q15, with an error below 1/512. X_Q30 must be 0 .. 2^30,
  * K_Q8 at least 1. */
-int32_t glint_power_q15(int32_t x_q30, int32_t k_q8);
+int32_t glint_compute_power_q15(int32_t x_q30, int32_t k_q8);
 
-/* Turns RAY, which points to the middle of a light T steps away, to point I of
- * the N (1, 4 or 16) points of the light's disc. RADIUS is in steps, or if T is
- * GLINT_FAR a sine, q30. */
-void glint_scene_point(struct glint_scene_ray *ray, int32_t t, int32_t radius,
-                       int i, int n);
+/* Turns RAY, which points to the middle of a light source T steps away, to
+ * sample point I of N (1, 4 or 16) on the light's disc. RADIUS is in steps, or,
+ * if T is GLINT_FAR, the sine of the angular radius, q30. */
+void glint_scene_aim_at_light_point(struct glint_scene_ray *ray, int32_t t,
+                                    int32_t radius, int i, int n);
 
-/* Sets RGB_Q15 to the background (not the picture) in direction TOWARD_Q30,
- * averaged over a spot of angular variance SPREAD_Q40. */
-void glint_scene_behind(const struct glint_scene *scene,
-                        const int32_t toward_q30[3], int64_t spread_q40,
-                        int32_t rgb_q15[3]);
+/* Sets RGB_Q15 to the background (not the camera's picture) in direction
+ * TOWARD_Q30, averaged over a spot of angular variance SPREAD_Q40,
+ * radians^2. */
+void glint_scene_look_up_background(const struct glint_scene *scene,
+                                    const int32_t toward_q30[3],
+                                    int64_t spread_q40, int32_t rgb_q15[3]);
 
 /* Returns the max number of highlights to find. */
-static inline int glint_scene_wanted_highlights(const struct glint_scene *s)
+static inline int glint_scene_max_highlights(const struct glint_scene *s)
 {
     const struct glint_scene_header *h = s->model.header;
 
@@ -454,26 +485,28 @@ static inline int glint_scene_wanted_highlights(const struct glint_scene *s)
                                   : 0;
 }
 
-/* Returns the angular variance of a pixel, radians^2. */
-static inline int64_t glint_scene_pixel_q40(const struct glint_scene *scene)
+/* Returns the angular variance of the rays of one pixel, radians^2. */
+static inline int64_t
+glint_scene_pixel_variance_q40(const struct glint_scene *scene)
 {
     const int64_t step_q30 = scene->view.step_q56[0] >> 18;
 
     return step_q30 < 1 << 30 ? step_q30 * step_q30 >> 22 : INT64_C(1) << 38;
 }
 
-/* Sets UV to the texture coordinates of SURFACE on ball P: u runs around the y
- * axis and is 1/2 where an unrotated camera sees the ball's middle; v runs from
- * top to bottom. */
-void glint_ball_uv(const struct glint_placed *p,
-                   const struct glint_met_surface *surface, int32_t uv_q16[2]);
+/* Sets UV to the texture coordinates of SURFACE on ball P. u increases around
+ * the y axis and is 1/2 where an unrotated camera sees the ball's middle; v
+ * runs from top to bottom. */
+void glint_compute_ball_uv(const struct glint_placed *p,
+                           const struct glint_met_surface *surface,
+                           int32_t uv_q16[2]);
 
-/* Copies materials and metals of the model; drawing uses the copies from now
- * on. */
-void glint_scene_copy_looks(struct glint_scene *scene);
+/* Copies the model's tables of materials and metals to SCENE, which draws with
+ * these copies. */
+void glint_scene_copy_materials(struct glint_scene *scene);
 
-/* Marks shadow grids and maps as outdated after objects have moved; the next
- * frame rebuilds them. */
-void glint_scene_forget_shadows(struct glint_scene *scene);
+/* Marks shadow grids and maps of translucent objects as outdated, after a
+ * change; the next frame rebuilds them. */
+void glint_scene_invalidate_shadows(struct glint_scene *scene);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Intersects rays with objects. All objects are tested in turn, as scenes have
- * few objects and meshes have grids. */
+ * Intersects rays with objects. Each ray is tested with all objects in turn, as
+ * scenes have few of them; meshes have grids of their triangles. */
 #include "scene/parts.h"
 #include "scene/state.h"
 
@@ -9,7 +9,7 @@ static int intersect_sphere(const struct glint_placed *p,
                             const struct glint_scene_ray *ray,
                             struct glint_met *met)
 {
-    if (!glint_ray_sphere(ray, p->at, p->radius, &met->chord))
+    if (!glint_ray_intersect_sphere(ray, p->at, p->radius, &met->chord))
         return 0;
     met->end = met->chord.t[0] <= 0;
     met->t = met->chord.t[met->end];
@@ -20,12 +20,12 @@ static int intersect_plane(const struct glint_placed *p,
                            const struct glint_scene_ray *ray,
                            struct glint_met *met)
 {
-    met->t = glint_ray_plane(ray, p->at, p->centre);
+    met->t = glint_ray_intersect_plane(ray, p->at, p->centre);
     return met->t > 0;
 }
 
-/* Intersects RAY with object I. On entry MET->t is the max distance. If ANY
- * is set, any intersection suffices. */
+/* Intersects RAY with object I. On entry MET->t is the max distance, steps. If
+ * ANY is set, stops at the first intersection found. */
 static int intersect_object(const struct glint_scene *s, uint32_t i,
                             const struct glint_scene_ray *ray,
                             uint32_t but_triangle, int any,
@@ -45,10 +45,11 @@ static int intersect_object(const struct glint_scene *s, uint32_t i,
     return does && met->t < limit;
 }
 
-/* Returns whether rays that start on OBJECT may meet object I: a shown object,
- * no catcher, and not the start itself unless it is a mesh, as spheres and
- * planes are convex. */
-static int may_be_met(const struct glint_scene *s, uint32_t i, uint32_t object)
+/* Returns whether rays that start on OBJECT may hit object I: I must be shown
+ * and not a catcher. OBJECT itself can be hit only if it is a mesh, as spheres
+ * and planes are convex. */
+static int can_ray_meet(const struct glint_scene *s, uint32_t i,
+                        uint32_t object)
 {
     const struct glint_scene_object *o = s->placed[i].object;
 
@@ -56,18 +57,19 @@ static int may_be_met(const struct glint_scene *s, uint32_t i, uint32_t object)
            (i != object || o->kind == GLINT_OBJECT_MESH);
 }
 
-int glint_scene_meet(const struct glint_scene *scene,
-                     const struct glint_scene_ray *ray, uint32_t object,
-                     uint32_t triangle, struct glint_met *met)
+int glint_scene_find_nearest_hit(const struct glint_scene *scene,
+                                 const struct glint_scene_ray *ray,
+                                 uint32_t object, uint32_t triangle,
+                                 struct glint_met *met)
 {
     int any = 0;
 
-    glint_scene_count(scene, scene->model.header->n_objects);
+    glint_scene_count_ray_tests(scene, scene->model.header->n_objects);
     met->t = GLINT_FAR;
     for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
         struct glint_met next = {.t = met->t};
 
-        if (may_be_met(scene, i, object) &&
+        if (can_ray_meet(scene, i, object) &&
             intersect_object(scene, i, ray,
                              i == object ? triangle : GLINT_NOTHING, 0,
                              &next)) {
@@ -78,43 +80,45 @@ int glint_scene_meet(const struct glint_scene *scene,
     return any;
 }
 
-int glint_scene_blocks(const struct glint_scene *scene,
-                       const struct glint_scene_ray *ray, uint32_t object,
-                       uint32_t triangle, int32_t limit)
+int glint_scene_is_ray_blocked(const struct glint_scene *scene,
+                               const struct glint_scene_ray *ray,
+                               uint32_t object, uint32_t triangle,
+                               int32_t limit)
 {
     const uint32_t n = scene->model.header->n_objects;
 
     for (uint32_t i = 0; i < n; i++) {
         struct glint_met met = {.t = limit};
 
-        if (may_be_met(scene, i, object) &&
+        if (can_ray_meet(scene, i, object) &&
             intersect_object(scene, i, ray,
                              i == object ? triangle : GLINT_NOTHING, 1, &met)) {
-            glint_scene_count(scene, i + 1);
+            glint_scene_count_ray_tests(scene, i + 1);
             return 1;
         }
     }
-    glint_scene_count(scene, n);
+    glint_scene_count_ray_tests(scene, n);
     return 0;
 }
 
-int glint_scene_planes_block(const struct glint_scene *scene,
-                             const struct glint_scene_ray *ray, uint32_t object)
+int glint_scene_is_ray_blocked_by_plane(const struct glint_scene *scene,
+                                        const struct glint_scene_ray *ray,
+                                        uint32_t object)
 {
     for (uint32_t i = 0; scene->n_planes && i <= scene->plane; i++) {
         struct glint_met met;
 
         if (scene->placed[i].object->kind == GLINT_OBJECT_PLANE &&
-            may_be_met(scene, i, object) &&
+            can_ray_meet(scene, i, object) &&
             intersect_plane(&scene->placed[i], ray, &met))
             return 1;
     }
     return 0;
 }
 
-void glint_scene_behind(const struct glint_scene *scene,
-                        const int32_t toward_q30[3], int64_t spread_q40,
-                        int32_t rgb_q15[3])
+void glint_scene_look_up_background(const struct glint_scene *scene,
+                                    const int32_t toward_q30[3],
+                                    int64_t spread_q40, int32_t rgb_q15[3])
 {
     const struct glint_scene_header *h = scene->model.header;
 
@@ -125,10 +129,10 @@ void glint_scene_behind(const struct glint_scene *scene,
             rgb_q15[c] = h->background_q15[c];
 }
 
-int glint_scene_meet_id(const struct glint_scene *scene,
-                        const struct glint_scene_ray *ray,
-                        const int32_t seen_q30[3], uint32_t id,
-                        struct glint_met *met)
+int glint_scene_ray_hits_id(const struct glint_scene *scene,
+                            const struct glint_scene_ray *ray,
+                            const int32_t seen_q30[3], uint32_t id,
+                            struct glint_met *met)
 {
     const uint32_t object = id >> 20, triangle = id & 0xfffff;
     const struct glint_placed *p = &scene->placed[object];
@@ -156,7 +160,7 @@ static int set_plane_surface(const struct glint_scene_ray *ray,
 {
     for (int k = 0; k < 3; k++)
         surface->normal_q30[k] = surface->face_q30[k] = p->centre[k];
-    return glint_ray_go(ray, met->t, surface->place);
+    return glint_ray_point_at_distance(ray, met->t, surface->place);
 }
 
 static int set_sphere_surface(const struct glint_scene_ray *ray,
@@ -164,17 +168,17 @@ static int set_sphere_surface(const struct glint_scene_ray *ray,
                               const struct glint_met *met,
                               struct glint_met_surface *surface)
 {
-    glint_chord_end(&met->chord, ray, p->at, met->end, surface->place,
-                    surface->normal_q30);
+    glint_chord_find_end_surface(&met->chord, ray, p->at, met->end,
+                                 surface->place, surface->normal_q30);
     for (int k = 0; k < 3; k++)
         surface->face_q30[k] = surface->normal_q30[k];
     return 1;
 }
 
-int glint_scene_surface(const struct glint_scene *scene,
-                        const struct glint_scene_ray *ray,
-                        const struct glint_met *met,
-                        struct glint_met_surface *surface)
+int glint_scene_set_surface(const struct glint_scene *scene,
+                            const struct glint_scene_ray *ray,
+                            const struct glint_met *met,
+                            struct glint_met_surface *surface)
 {
     const struct glint_placed *p = &scene->placed[met->object];
     int is;

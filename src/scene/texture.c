@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Samples textures: bilinear in linear light, blended between the two mip
- * levels whose texels are about as large as the longer side of a pixel on the
- * surface.
- */
+ * Samples textures: bilinear in linear light, blended between two mip levels.
+ * Texels of these are about as large as the longer side of a pixel on the
+ * surface. */
 #include "base/log2.h"
 #include "base/real.h"
 #include "scene/parts.h"
@@ -13,26 +12,28 @@ enum { LEAST_COSINE_Q30 = 1 << 22 };
 
 /* ------------------------------------------------------------------ u and v */
 
-static void map_ball(const struct glint_placed *p, struct glint_met_surface *s)
+static void set_ball_uv(const struct glint_placed *p,
+                        struct glint_met_surface *s)
 {
-    glint_ball_uv(p, s, s->uv_q16);
-    /* area in uv space per step^2: 1 / (4 pi radius^2) */
+    glint_compute_ball_uv(p, s, s->uv_q16);
+    /* area in uv space / area on the ball in steps^2: 1 / (4 pi radius^2) */
     s->uv_log2_q16 =
         -Q_CONST(3.6514961, 16) - 2 * q_log2_q16((uint64_t)p->radius);
 }
 
-static void map_plane(const struct glint_scene *scene,
-                      const struct glint_placed *p, struct glint_met_surface *s)
+static void set_plane_uv(const struct glint_scene *scene,
+                         const struct glint_placed *p,
+                         struct glint_met_surface *s)
 {
     const int unit_log2 = scene->model.header->unit_log2;
     int32_t off[3], at[3];
 
-    v3_minus(s->place, p->at, off);
-    v3_turn_back(&p->turn, off, at);
+    v3_subtract(s->place, p->at, off);
+    v3_rotate_back(&p->turn, off, at);
     for (int k = 0; k < 2; k++) {
         const struct glint_real uv = real_of(k ? -at[2] : at[0], -unit_log2);
 
-        /* Integer repeats are removed. */
+        /* Textures repeat, so the integer part of the coordinate is dropped. */
         s->uv_q16[k] =
             (int32_t)(real_integer(uv, 16, INT64_C(1) << 62) & ((1 << 24) - 1));
     }
@@ -41,12 +42,12 @@ static void map_plane(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------- texels */
 
-/* Returns the mip level, _q16, from the length in texels of the longer side
- * of a pixel on the surface. */
-static int32_t compute_level(const struct glint_scene *scene,
-                             const struct glint_scene_ray *ray,
-                             const struct glint_met_surface *s,
-                             const struct glint_scene_texture *t)
+/* Returns the mip level, _q16, from the length of a pixel's longer side on the
+ * surface, in texels. */
+static int32_t compute_mip_level(const struct glint_scene *scene,
+                                 const struct glint_scene_ray *ray,
+                                 const struct glint_met_surface *s,
+                                 const struct glint_scene_texture *t)
 {
     const int32_t cosine_q30 = q_larger(
         -v3_cosine_q30(ray->toward_q30, s->face_q30), LEAST_COSINE_Q30);
@@ -61,9 +62,9 @@ static int32_t compute_level(const struct glint_scene *scene,
     return q_clamp_sat(side_q16 + area_q16 / 2, 0, most << 16);
 }
 
-/* Sets I to the indices of the two texels around a coordinate; returns the
- * weight of the second. */
-static uint32_t find_texels(int32_t uv_q16, uint32_t log2, uint32_t i[2])
+/* Sets I to the indices of the two texels between which the coordinate lies;
+ * returns the weight of the second. */
+static uint32_t find_texel_pair(int32_t uv_q16, uint32_t log2, uint32_t i[2])
 {
     const int64_t at_q16 = (int64_t)uv_q16 * (1 << log2) - (1 << 15);
     const uint32_t mask = (1U << log2) - 1;
@@ -73,10 +74,12 @@ static uint32_t find_texels(int32_t uv_q16, uint32_t log2, uint32_t i[2])
     return (uint32_t)at_q16 & 0xffff;
 }
 
-/* Sets RGB_Q20 to the light of T at (U, V) in mip level LEVEL, interpolated. */
-static void sample_level(const struct glint_scene *scene,
-                         const struct glint_scene_texture *t,
-                         const int32_t uv_q16[2], int level, int32_t rgb_q20[3])
+/* Sets RGB_Q20 to the bilinear light of texture T at (U, V) in mip level
+ * LEVEL. */
+static void sample_mip_level(const struct glint_scene *scene,
+                             const struct glint_scene_texture *t,
+                             const int32_t uv_q16[2], int level,
+                             int32_t rgb_q20[3])
 {
     const uint8_t *texel = (const uint8_t *)scene->model.header + t->texel_at;
     const int32_t *light_q20 = scene->curve->decode_q20;
@@ -87,8 +90,8 @@ static void sample_level(const struct glint_scene *scene,
         w -= w > 0;
         h -= h > 0;
     }
-    fx = find_texels(uv_q16[0], w, x);
-    fy = find_texels(uv_q16[1], h, y);
+    fx = find_texel_pair(uv_q16[0], w, x);
+    fy = find_texel_pair(uv_q16[1], h, y);
     for (size_t c = 0; c < 3; c++) {
         int64_t row_q20[2];
 
@@ -115,13 +118,13 @@ static void multiply_by_texture(const struct glint_scene *scene,
     int32_t level_q16, fine_q20[3], coarse_q20[3];
 
     if (p->object->kind == GLINT_OBJECT_SPHERE)
-        map_ball(p, &s);
+        set_ball_uv(p, &s);
     else if (p->object->kind == GLINT_OBJECT_PLANE)
-        map_plane(scene, p, &s);
-    level_q16 = compute_level(scene, ray, &s, t);
-    sample_level(scene, t, s.uv_q16, level_q16 >> 16, fine_q20);
+        set_plane_uv(scene, p, &s);
+    level_q16 = compute_mip_level(scene, ray, &s, t);
+    sample_mip_level(scene, t, s.uv_q16, level_q16 >> 16, fine_q20);
     if (level_q16 & 0xffff)
-        sample_level(scene, t, s.uv_q16, (level_q16 >> 16) + 1, coarse_q20);
+        sample_mip_level(scene, t, s.uv_q16, (level_q16 >> 16) + 1, coarse_q20);
     for (int c = 0; c < 3; c++) {
         if (level_q16 & 0xffff)
             fine_q20[c] +=
@@ -130,10 +133,10 @@ static void multiply_by_texture(const struct glint_scene *scene,
     }
 }
 
-static void prepare_curve(struct glint_curve *curve)
+static void prepare_decoding_curve(struct glint_curve *curve)
 {
     glint_curve_init(curve, GLINT_TONE_SRGB);
 }
 
-const struct glint_scene_textures glint_scene_textures = {multiply_by_texture,
-                                                          prepare_curve};
+const struct glint_scene_textures glint_scene_textures = {
+    multiply_by_texture, prepare_decoding_curve};

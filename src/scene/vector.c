@@ -25,7 +25,7 @@ static uint32_t compute_inverse_root_q31(uint64_t s_q64)
                      << 24;
 
     for (int i = 0; i < 3; i++) {
-        /* sqrt(S) from the current r, _q32, at most 1.01; then a Newton
+        /* sqrt(S) = S r from the current r, _q32, at most 1.01; then a Newton
          * step, r (3 - S r^2) / 2. */
         const uint64_t root_q32 = (hi * r_q31 + (lo * r_q31 >> 32)) >> 31;
         const int64_t rest_q62 =
@@ -39,7 +39,7 @@ static uint32_t compute_inverse_root_q31(uint64_t s_q64)
     return (uint32_t)r_q31;
 }
 
-uint32_t glint_root(uint64_t x)
+uint32_t glint_square_root(uint64_t x)
 {
     const int down = (64 - bit_length(x | 1)) / 2;
     const uint64_t s_q64 = x << 2 * down;
@@ -57,7 +57,7 @@ uint32_t glint_root(uint64_t x)
     return (uint32_t)root;
 }
 
-int glint_unit(const int64_t v[3], int32_t unit_q30[3])
+int glint_normalise_vector(const int64_t v[3], int32_t unit_q30[3])
 {
     const uint64_t any =
         q_magnitude(v[0]) | q_magnitude(v[1]) | q_magnitude(v[2]);
@@ -85,7 +85,7 @@ int glint_unit(const int64_t v[3], int32_t unit_q30[3])
     return 1;
 }
 
-int32_t glint_ratio(uint64_t n, uint64_t d)
+int32_t glint_divide_rounded(uint64_t n, uint64_t d)
 {
     const int up_n = q_up(n), up_d = q_up(d);
     const int down = 62 - up_d + up_n;

@@ -5,10 +5,10 @@
 
 enum { NEAR_BITS = 22, FAR_BITS = 16 };
 
-/* Returns the tangent of 1/256 pixel, _q56, if TAN is the tangent of half of
- * SIDE pixels. TAN is at most 2^6, so 128 SIDE times the result is at most
- * 2^62. */
-static int64_t compute_step(int32_t tan_q24, int side)
+/* Returns the tangent of the angle of 1/256 pixel, _q56, if TAN is the tangent
+ * of the angle of SIDE / 2 pixels. TAN is at most 2^6, so 128 SIDE times the
+ * result is at most 2^62. */
+static int64_t compute_pixel_tangent(int32_t tan_q24, int side)
 {
     return q_divide((int64_t)tan_q24 << 25, side > 1 ? side : 1);
 }
@@ -27,15 +27,16 @@ int glint_view_init(struct glint_scene_view *view,
     view->width = width;
     view->height = height;
     if (camera->kind == GLINT_CAMERA_CORNERS) {
-        view->step_q56[0] = compute_step(camera->tan_x_q24, width - 1);
-        view->step_q56[1] = compute_step(camera->tan_y_q24, height - 1);
+        view->step_q56[0] = compute_pixel_tangent(camera->tan_x_q24, width - 1);
+        view->step_q56[1] =
+            compute_pixel_tangent(camera->tan_y_q24, height - 1);
     } else if (camera->kind == GLINT_CAMERA_FIELD) {
-        view->step_q56[0] = compute_step(camera->tan_x_q24, width);
+        view->step_q56[0] = compute_pixel_tangent(camera->tan_x_q24, width);
         view->step_q56[1] = view->step_q56[0];
     } else {
         if (focal_q16 < 1 << 10 || focal_q16 > INT64_C(1) << 40)
             return 0;
-        view->step_q56[0] = /* 2^64 / focal */
+        view->step_q56[0] = /* 2^64 / focal length */
             (int64_t)((uint64_t)q_divide(INT64_MAX, focal_q16) * 2);
         view->step_q56[1] = view->step_q56[0];
     }
@@ -55,33 +56,33 @@ int glint_view_init(struct glint_scene_view *view,
     return 1;
 }
 
-void glint_view_ray(const struct glint_scene_view *view, int32_t x_q8,
-                    int32_t y_q8, struct glint_scene_ray *ray,
-                    int32_t seen_q30[3])
+void glint_view_set_ray(const struct glint_scene_view *view, int32_t x_q8,
+                        int32_t y_q8, struct glint_scene_ray *ray,
+                        int32_t seen_q30[3])
 {
     const int64_t toward_q28[3] = {q_shift(x_q8 * view->step_q56[0], 28),
                                    -q_shift(y_q8 * view->step_q56[1], 28),
                                    1 << 28};
 
-    glint_unit(toward_q28, seen_q30);
-    v3_turn_back(&view->turn, seen_q30, ray->toward_q30);
+    glint_normalise_vector(toward_q28, seen_q30);
+    v3_rotate_back(&view->turn, seen_q30, ray->toward_q30);
     for (int k = 0; k < 3; k++)
         ray->at[k] = view->at[k];
 }
 
-void glint_view_seen(const struct glint_scene_view *view,
-                     const int32_t place[3], int32_t to[3])
+void glint_view_to_camera(const struct glint_scene_view *view,
+                          const int32_t place[3], int32_t to[3])
 {
     int32_t off[3];
 
-    v3_minus(place, view->at, off);
-    v3_turn(&view->turn, off, to);
+    v3_subtract(place, view->at, off);
+    v3_rotate(&view->turn, off, to);
 }
 
 /* ---------------------------------------------------------------- corners */
 
-/* Returns X / 2^DOWN, rounded. The result must fit into 32 bits; DOWN may be
- * negative. */
+/* Returns X / 2^DOWN, rounded; a negative DOWN multiplies. The result must fit
+ * into 32 bits. */
 static int32_t shift_rounded(int64_t x, int down)
 {
     if (down > 62)
@@ -92,9 +93,9 @@ static int32_t shift_rounded(int64_t x, int down)
 
 /* Returns X times the focal length / Z, where ONE_OVER must be 2^63 / (Z 2^UP);
  * sets *FITS to 0 if the result is too large. X is scaled up to 2^30 first, so
- * that small quotients keep 30 bits. */
-static int32_t project_q8(int32_t x, struct glint_real focal_q8,
-                          uint32_t one_over, int up, int *fits)
+ * that small quotients have 30 bits, too. */
+static int32_t project_to_picture_q8(int32_t x, struct glint_real focal_q8,
+                                     uint32_t one_over, int up, int *fits)
 {
     const int more = 30 - bit_length(q_magnitude(x));
     const int64_t over_z = (int64_t)shift_rounded(x, -more) * one_over >> 31;
@@ -110,7 +111,7 @@ static int32_t project_q8(int32_t x, struct glint_real focal_q8,
     return (int32_t)q_shift(product, down);
 }
 
-/* Returns the direction to V, in homogeneous picture coordinates of 16 bits. */
+/* Returns the direction to V in homogeneous picture coordinates of 16 bits. */
 static struct glint_corner
 compute_direction(const struct glint_scene_view *view, const int32_t v[3])
 {
@@ -127,8 +128,9 @@ compute_direction(const struct glint_scene_view *view, const int32_t v[3])
                                  shift_rounded(v[2], most)};
 }
 
-struct glint_corner glint_view_corner(const struct glint_scene_view *view,
-                                      const int32_t v[3])
+struct glint_corner
+glint_view_project_vertex(const struct glint_scene_view *view,
+                          const int32_t v[3])
 {
     struct glint_corner c = {0, 0, 1};
     int fits = v[2] > 0;
@@ -137,20 +139,22 @@ struct glint_corner glint_view_corner(const struct glint_scene_view *view,
         const int up = q_up((uint64_t)v[2]);
         const uint32_t one_over = q_reciprocal((uint32_t)v[2] << up);
 
-        c.x = project_q8(v[0], view->focal_q8[0], one_over, up, &fits);
-        c.y = -project_q8(v[1], view->focal_q8[1], one_over, up, &fits);
+        c.x =
+            project_to_picture_q8(v[0], view->focal_q8[0], one_over, up, &fits);
+        c.y = -project_to_picture_q8(v[1], view->focal_q8[1], one_over, up,
+                                     &fits);
     }
     return fits ? c : compute_direction(view, v);
 }
 
-struct glint_box glint_view_box(const struct glint_scene_view *view,
-                                const int32_t (*v)[3], int n)
+struct glint_box glint_view_find_box(const struct glint_scene_view *view,
+                                     const int32_t (*v)[3], int n)
 {
     const struct glint_box all = {0, 0, view->width, view->height};
     int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
 
     for (int k = 0; k < n; k++) {
-        const struct glint_corner c = glint_view_corner(view, v[k]);
+        const struct glint_corner c = glint_view_project_vertex(view, v[k]);
 
         if (v[k][2] <= 0 || c.w != 1)
             return all;
@@ -168,11 +172,12 @@ struct glint_box glint_view_box(const struct glint_scene_view *view,
 
 /* ------------------------------------------------------------------ depths */
 
-/* 1 / z = (n . r) / (n . v) for the ray r = (x step, -y step, 1).
- * Coefficients get as many fraction bits as keep each term below 2^60. */
-int glint_view_depth(const struct glint_scene_view *view, const int32_t v[3],
-                     const int32_t normal_q30[3], int32_t nearest,
-                     struct glint_depth *depth)
+/* 1 / z = (n . r) / (n . v) for the ray r = (x step, -y step, 1), normal n and
+ * point v of the plane. Coefficients have as many fraction bits as possible
+ * with each term below 2^60. */
+int glint_view_set_plane_depth(const struct glint_scene_view *view,
+                               const int32_t v[3], const int32_t normal_q30[3],
+                               int32_t nearest, struct glint_depth *depth)
 {
     const int64_t away_q30 = v3_dot(normal_q30, v);
     struct glint_real over, term[3];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The camera of a frame: maps pixels to rays and points to pixels.
+ * The camera of a frame: maps pixels to rays, and points to pixels.
  *
  * Positions in the picture are q8 pixels from its middle, x to the right, y
  * down, within +-2^22: the middle of pixel (i, j) of a picture W x H is at (256
@@ -15,24 +15,26 @@
 
 struct glint_scene_view {
     int32_t at[3];
-    struct glint_scene_turn turn; /* world to camera coordinates */
+    struct glint_scene_turn turn; /* rotation from world to camera
+                                     coordinates */
     int width, height;
-    /* tangents of 1/256 pixel, across and down */
+    /* tangents of the angles of 1/256 pixel, horizontally and vertically */
     int64_t step_q56[2];
-    int64_t per_tan_q8; /* 256 * number of pixels across per unit of tangent */
+    int64_t per_tan_q8; /* 1/256 pixels per unit of tangent, horizontally */
     int wide;           /* number of bits by which tangents exceed 2, or 0 */
     struct glint_real focal_q8[2];
 };
 
-/* A vertex in the picture, in homogeneous coordinates: at (x / w, y / w) if w >
- * 0. w is 1 if the vertex is in front of the camera and within 2^22 of the
- * middle; otherwise (x, y, w) is the direction to it, within 2^16. */
+/* A vertex in the picture, in homogeneous coordinates: its position is (x / w,
+ * y / w) if w > 0. w is 1 if the vertex is in front of the camera and within
+ * 2^22 of the picture's middle; otherwise (x, y, w) is the direction to the
+ * vertex, within 2^16. */
 struct glint_corner {
     int32_t x, y, w;
 };
 
-/* 1 / z of a plane as a function of position: at (x, y) of the picture, 2^30
- * * (min z of the frame) / z is (across x + down y + at) >> shift. */
+/* Depth of a plane as a function of position: at (x, y) of the picture, 2^30 *
+ * (min z of the frame) / z is (across x + down y + at) >> shift. */
 struct glint_depth {
     int64_t across, down, at;
     int shift;
@@ -45,30 +47,31 @@ int glint_view_init(struct glint_scene_view *view,
                     const struct glint_scene_camera *camera, int width,
                     int height, int64_t focal_q16);
 
-/* Sets RAY to the ray through (X, Y), and SEEN_Q30 to its direction in camera
- * coordinates. */
-void glint_view_ray(const struct glint_scene_view *view, int32_t x_q8,
-                    int32_t y_q8, struct glint_scene_ray *ray,
-                    int32_t seen_q30[3]);
+/* Sets RAY to the camera's ray through position (X, Y), and SEEN_Q30 to its
+ * direction in camera coordinates. */
+void glint_view_set_ray(const struct glint_scene_view *view, int32_t x_q8,
+                        int32_t y_q8, struct glint_scene_ray *ray,
+                        int32_t seen_q30[3]);
 
-/* Sets TO to the camera coordinates of point PLACE, within +-2^30. */
-void glint_view_seen(const struct glint_scene_view *view,
-                     const int32_t place[3], int32_t to[3]);
+/* Sets TO to the camera coordinates of point PLACE, steps, within +-2^30. */
+void glint_view_to_camera(const struct glint_scene_view *view,
+                          const int32_t place[3], int32_t to[3]);
 
-/* Projects the camera coordinates V to the picture. */
-struct glint_corner glint_view_corner(const struct glint_scene_view *view,
-                                      const int32_t v[3]);
+/* Returns point V, in camera coordinates, projected to the picture. */
+struct glint_corner
+glint_view_project_vertex(const struct glint_scene_view *view,
+                          const int32_t v[3]);
 
-/* Returns the bounding box, in pixels, of the N points V in camera coordinates;
- * the whole picture if a point is too near or behind the camera. */
-struct glint_box glint_view_box(const struct glint_scene_view *view,
-                                const int32_t (*v)[3], int n);
+/* Returns the pixels of the bounding box of N points V, in camera coordinates;
+ * the whole picture if a point is behind the camera or too near. */
+struct glint_box glint_view_find_box(const struct glint_scene_view *view,
+                                     const int32_t (*v)[3], int n);
 
-/* Sets DEPTH to the depth of the plane of NORMAL_Q30 through V, both in camera
- * coordinates. Returns 0 if the camera is in the plane. NEAREST is the min z of
- * the frame. */
-int glint_view_depth(const struct glint_scene_view *view, const int32_t v[3],
-                     const int32_t normal_q30[3], int32_t nearest,
-                     struct glint_depth *depth);
+/* Sets DEPTH to the depth function of the plane with normal NORMAL_Q30 through
+ * V, both in camera coordinates. Returns 0 if the camera is in the plane.
+ * NEAREST is the min z of the frame. */
+int glint_view_set_plane_depth(const struct glint_scene_view *view,
+                               const int32_t v[3], const int32_t normal_q30[3],
+                               int32_t nearest, struct glint_depth *depth);
 
 #endif

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Visibility at the samples of a tile: spheres by the ray of each sample,
- * planes by 1 / z, triangles by the module for meshes.
+ * Finds the visible object at each sample of a tile: spheres by the ray of each
+ * sample, planes by 1 / z, triangles by the module for meshes.
  *
- * If the rim of a sphere is farther from a pixel's middle than the samples, all
- * samples get the depth of the middle. Spheres are drawn last: a sphere that no
- * other ball can partly hide needs no depth where everything drawn so far is
- * farther than its far side. */
+ * If a sphere's rim is farther from a pixel's middle than the samples are, all
+ * samples get the depth in the middle. Spheres are drawn last: a sphere that no
+ * other ball can partly hide needs no exact depth where all objects drawn so
+ * far are behind its far side. */
 #include "scene/visible.h"
 #include "scene/parts.h"
 
-/* Sample positions, 1/256 pixel: four at the corners of a rotated square;
- * eight and sixteen, each in its own row and column, spread as evenly as
- * possible. */
+/* Sample positions, x and y, 1/256 pixel: four at the corners of a rotated
+ * square; eight and sixteen, each in its own row and column, spread as evenly
+ * as possible. */
 /* clang-format off */
 static const int8_t one_q8[1][2] = {{0, 0}};
 static const int8_t four_q8[4][2] = {
@@ -40,35 +40,38 @@ struct look {
     int32_t seen_q30[3]; /* the ray's direction in camera coordinates */
 };
 
-/* Sets LOOK to the ray through (X, Y) and its chord in the ball PLACED;
- * returns whether it meets the ball. */
+/* Sets LOOK to the ray through (X, Y) and its chord in the ball PLACED; returns
+ * whether the ray hits the ball. */
 static int trace_chord(const struct glint_scene *s,
                        const struct glint_placed *placed, int32_t x_q8,
                        int32_t y_q8, struct look *look)
 {
-    glint_view_ray(&s->view, x_q8, y_q8, &look->ray, look->seen_q30);
-    return glint_ray_sphere(&look->ray, placed->at, placed->radius,
-                            &look->chord);
+    glint_view_set_ray(&s->view, x_q8, y_q8, &look->ray, look->seen_q30);
+    return glint_ray_intersect_sphere(&look->ray, placed->at, placed->radius,
+                                      &look->chord);
 }
 
-static void put_sample(struct glint_scene_worker *w, const struct look *look,
-                       uint32_t id, int x, int y, int k)
+static void put_nearer_sample(struct glint_scene_worker *w,
+                              const struct look *look, uint32_t id, int x,
+                              int y, int k)
 {
     const int32_t t = look->chord.t[look->chord.t[0] <= 0];
     const int32_t z = q_larger(1, q_mul(t, look->seen_q30[2], 30));
 
     if (t <= 0)
         return;
-    glint_put_sample(w, x, y, k,
-                     q_larger(1, glint_ratio((uint64_t)w->scene->nearest << 30,
-                                             (uint64_t)z)),
-                     id);
+    glint_put_nearer_sample(
+        w, x, y, k,
+        q_larger(1, glint_divide_rounded((uint64_t)w->scene->nearest << 30,
+                                         (uint64_t)z)),
+        id);
 }
 
-/* Returns whether everything that samples FIRST .. END - 1 see so far is
- * farther than the far side of the ball. */
-static int is_nearer(const struct glint_scene_worker *w,
-                     const struct glint_placed *placed, int first, int end)
+/* Returns whether all objects drawn so far at samples FIRST .. END - 1 are
+ * behind the far side of the ball. */
+static int are_samples_behind_ball(const struct glint_scene_worker *w,
+                                   const struct glint_placed *placed, int first,
+                                   int end)
 {
     int32_t most = 0;
 
@@ -77,10 +80,10 @@ static int is_nearer(const struct glint_scene_worker *w,
     return placed->flat_depth && most < placed->far_depth;
 }
 
-/* Sets samples FIRST .. END - 1 to the ball's id and flat depth. */
-static void set_samples(struct glint_scene_worker *w,
-                        const struct glint_placed *placed, uint32_t id,
-                        int first, int end)
+/* Sets samples FIRST .. END - 1 to the ball's id and its flat depth. */
+static void set_ball_samples(struct glint_scene_worker *w,
+                             const struct glint_placed *placed, uint32_t id,
+                             int first, int end)
 {
     for (int i = first; i < end; i++) {
         w->depth[i] = placed->flat_depth;
@@ -88,10 +91,10 @@ static void set_samples(struct glint_scene_worker *w,
     }
 }
 
-/* Returns whether all samples of a pixel meet PLACED, given that LOOK, the ray
- * through its middle, does. */
-static int is_well_inside(const struct glint_placed *placed,
-                          const struct look *look)
+/* Returns whether the rays through all samples of a pixel hit PLACED, where
+ * LOOK is the ray through the pixel's middle, which hits it. */
+static int is_pixel_inside_ball(const struct glint_placed *placed,
+                                const struct look *look)
 {
     const int64_t within = ((int64_t)placed->radius - placed->margin) *
                            (INT64_C(1) << look->chord.up);
@@ -100,43 +103,44 @@ static int is_well_inside(const struct glint_placed *placed,
            v3_dot(look->chord.middle, look->chord.middle) <= within * within;
 }
 
-/* Draws the ball in a pixel; returns whether all samples of the pixel, and rays
- * slightly beside them, meet the ball. */
+/* Draws the ball in a pixel; returns whether the rays through all samples, with
+ * a margin, hit the ball. */
 static int draw_ball_pixel(struct glint_scene_worker *w,
                            const struct glint_placed *placed, uint32_t id,
                            int x, int y)
 {
     const struct glint_scene *s = w->scene;
-    const int32_t x_q8 = glint_place(s, x, 0), y_q8 = glint_place(s, y, 1);
+    const int32_t x_q8 = glint_pixel_position_q8(s, x, 0),
+                  y_q8 = glint_pixel_position_q8(s, y, 1);
     const int n = s->cfg.edge_samples;
     struct look look;
     const int meets = trace_chord(s, placed, x_q8, y_q8, &look);
-    const int is_inside = meets && is_well_inside(placed, &look);
+    const int is_inside = meets && is_pixel_inside_ball(placed, &look);
     const int first = glint_sample_index(w, x, y, 0);
 
-    if (is_inside && is_nearer(w, placed, first, first + n)) {
-        set_samples(w, placed, id, first, first + n);
+    if (is_inside && are_samples_behind_ball(w, placed, first, first + n)) {
+        set_ball_samples(w, placed, id, first, first + n);
         return 1;
     }
     if (is_inside || (meets && n == 1)) {
         for (int k = 0; k < n; k++)
-            put_sample(w, &look, id, x, y, k);
+            put_nearer_sample(w, &look, id, x, y, k);
         return is_inside;
     }
-    if (n == 1 || (!meets && !glint_ray_sphere(&look.ray, placed->at,
-                                               placed->radius + placed->margin,
-                                               &look.chord)))
+    if (n == 1 || (!meets && !glint_ray_intersect_sphere(
+                                 &look.ray, placed->at,
+                                 placed->radius + placed->margin, &look.chord)))
         return 0;
     for (int k = 0; k < n; k++)
-        if (trace_chord(s, placed, x_q8 + glint_sample(s, k, 0),
-                        y_q8 + glint_sample(s, k, 1), &look))
-            put_sample(w, &look, id, x, y, k);
+        if (trace_chord(s, placed, x_q8 + glint_sample_offset_q8(s, k, 0),
+                        y_q8 + glint_sample_offset_q8(s, k, 1), &look))
+            put_nearer_sample(w, &look, id, x, y, k);
     return 0;
 }
 
-/* Draws a ball in row Y. Pixels between two pixels well inside are inside, too:
- * if one depth suffices for the ball, rays are traced there only where the ball
- * may be hidden. */
+/* Draws a ball in row Y. Pixels between two pixels inside the ball are inside,
+ * too: if one depth suffices for the ball, rays are traced there only where the
+ * ball may be hidden. */
 static void draw_ball_row(struct glint_scene_worker *w,
                           const struct glint_placed *placed, uint32_t id,
                           struct glint_box b, int y)
@@ -151,8 +155,8 @@ static void draw_ball_row(struct glint_scene_worker *w,
     for (; x < end - is_in; x++) {
         const int first = glint_sample_index(w, x, y, 0);
 
-        if (is_nearer(w, placed, first, first + n))
-            set_samples(w, placed, id, first, first + n);
+        if (are_samples_behind_ball(w, placed, first, first + n))
+            set_ball_samples(w, placed, id, first, first + n);
         else
             draw_ball_pixel(w, placed, id, x, y);
     }
@@ -160,7 +164,7 @@ static void draw_ball_row(struct glint_scene_worker *w,
 
 /* ------------------------------------------------------------------ planes */
 
-/* Differences of a plane's 1 / z between a pixel's middle and its samples. */
+/* Differences of a plane's depth between a pixel's middle and its samples. */
 struct deeper {
     int64_t by[GLINT_SCENE_SAMPLES];
 };
@@ -174,8 +178,8 @@ static inline void draw_plane_row(struct glint_scene_worker *w,
     const int first = glint_sample_index(w, x0, y, 0);
     int32_t *at = w->depth + first;
     uint32_t *ids = w->id + first;
-    int64_t middle = depth->across * glint_place(s, x0, 0) +
-                     depth->down * glint_place(s, y, 1) + depth->at;
+    int64_t middle = depth->across * glint_pixel_position_q8(s, x0, 0) +
+                     depth->down * glint_pixel_position_q8(s, y, 1) + depth->at;
 
     for (int x = x0; x < x1; x++, at += n, ids += n) {
         for (int k = 0; k < n; k++) {
@@ -201,8 +205,8 @@ static void draw_plane(struct glint_scene_worker *w,
     struct deeper deeper;
 
     for (int k = 0; k < n; k++)
-        deeper.by[k] =
-            d->across * glint_sample(s, k, 0) + d->down * glint_sample(s, k, 1);
+        deeper.by[k] = d->across * glint_sample_offset_q8(s, k, 0) +
+                       d->down * glint_sample_offset_q8(s, k, 1);
     for (int y = b.y0; y < b.y1; y++)
         if (n == 4)
             draw_plane_row(w, d, &deeper, id, 4, b.x0, b.x1, y);
@@ -212,19 +216,22 @@ static void draw_plane(struct glint_scene_worker *w,
 
 /* ------------------------------------------------------------------- frame */
 
-enum { MOST_COMPARED = 64 /* max number of objects for comparing all pairs */ };
+enum {
+    MOST_COMPARED = 64 /* max number of objects for which all pairs are
+                          compared */
+};
 
-/* Returns whether A and B may partly hide each other, so that one depth per
- * ball does not order them. */
-static int is_tangled(const struct glint_placed *a,
-                      const struct glint_placed *b)
+/* Returns whether ball B overlaps A in the picture and in depth, so that one
+ * depth per ball may not order them. */
+static int can_partly_occlude(const struct glint_placed *a,
+                              const struct glint_placed *b)
 {
     return b->is_seen && b->object->kind == GLINT_OBJECT_SPHERE &&
            a->z[0] <= b->z[1] + 2 && b->z[0] <= a->z[1] + 2 &&
            !glint_box_empty(glint_box_cut(a->box, b->box));
 }
 
-void glint_scene_flatten(struct glint_scene *s)
+void glint_scene_set_flat_depths(struct glint_scene *s)
 {
     const uint32_t n = s->model.header->n_objects;
 
@@ -234,34 +241,36 @@ void glint_scene_flatten(struct glint_scene *s)
             p->is_seen && p->object->kind == GLINT_OBJECT_SPHERE && p->z[0] > 0;
 
         for (uint32_t k = 0; k < n && is; k++)
-            is = k == i || !is_tangled(p, &s->placed[k]);
+            is = k == i || !can_partly_occlude(p, &s->placed[k]);
         if (!is)
             continue;
-        p->far_depth =
-            glint_ratio((uint64_t)s->nearest << 30, (uint64_t)p->z[1] + 2);
-        p->flat_depth =
-            q_larger(1, glint_ratio((uint64_t)s->nearest << 30,
+        p->far_depth = glint_divide_rounded((uint64_t)s->nearest << 30,
+                                            (uint64_t)p->z[1] + 2);
+        p->flat_depth = q_larger(
+            1, glint_divide_rounded((uint64_t)s->nearest << 30,
                                     (uint64_t)p->z[0] + (uint64_t)p->reach));
     }
 }
 
-/* Returns whether all of P is in front of PLANE, on the camera's side. */
-static int is_before(const struct glint_scene *s, const struct glint_placed *p,
-                     const struct glint_placed *plane)
+/* Returns whether all of object P is in front of PLANE, on the camera's
+ * side. */
+static int is_in_front_of_plane(const struct glint_scene *s,
+                                const struct glint_placed *p,
+                                const struct glint_placed *plane)
 {
     int32_t off[3], camera[3];
     int64_t away, side;
 
-    v3_minus(p->centre, plane->at, off);
-    v3_minus(s->view.at, plane->at, camera);
+    v3_subtract(p->centre, plane->at, off);
+    v3_subtract(s->view.at, plane->at, camera);
     away = q_shift(v3_dot(off, plane->centre), 30);
     side = v3_dot(camera, plane->centre);
     return (away < 0) == (side < 0) &&
            q_magnitude(away) > (uint64_t)p->reach + 2;
 }
 
-/* Restricts a catcher to the pixels that may have shadows, or objects that
- * the catcher may hide. */
+/* Restricts the box of a catcher to the pixels that may have shadows, or
+ * objects that the catcher may hide. */
 static void confine_catcher(const struct glint_scene *s,
                             struct glint_placed *plane)
 {
@@ -272,7 +281,8 @@ static void confine_catcher(const struct glint_scene *s,
             break;
         if (!s->lit[i].shadow || s->n_planes)
             return;
-        box = glint_box_join(box, glint_shadow_box(s, s->lit[i].shadow, plane));
+        box = glint_box_join(
+            box, glint_shadow_find_plane_box(s, s->lit[i].shadow, plane));
     }
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
         const struct glint_placed *p = &s->placed[i];
@@ -281,14 +291,14 @@ static void confine_catcher(const struct glint_scene *s,
             continue;
         if (p->object->kind == GLINT_OBJECT_PLANE)
             return;
-        if (!is_before(s, p, plane))
+        if (!is_in_front_of_plane(s, p, plane))
             box = glint_box_join(box, p->box);
     }
     plane->box = box;
     plane->is_seen = !glint_box_empty(box);
 }
 
-void glint_scene_confine(struct glint_scene *s)
+void glint_scene_confine_catchers(struct glint_scene *s)
 {
     for (uint32_t i = 0; i < s->model.header->n_objects; i++)
         if (s->placed[i].is_seen && s->placed[i].object->catcher_q15)
@@ -297,10 +307,11 @@ void glint_scene_confine(struct glint_scene *s)
 
 /* -------------------------------------------------------------------- tile */
 
-/* Returns the box of pixels of a tile that may see an object. Meshes count
- * if the tile lists triangles. */
-static struct glint_box find_touched(const struct glint_scene *s,
-                                     struct glint_box tile, int has_triangles)
+/* Returns the box of pixels of TILE that may see an object. Meshes are included
+ * if the tile's list has triangles. */
+static struct glint_box find_touched_pixels(const struct glint_scene *s,
+                                            struct glint_box tile,
+                                            int has_triangles)
 {
     struct glint_box all = {0, 0, 0, 0};
 
@@ -314,7 +325,7 @@ static struct glint_box find_touched(const struct glint_scene *s,
     return all;
 }
 
-static void clear_samples(struct glint_scene_worker *w)
+static void clear_tile_samples(struct glint_scene_worker *w)
 {
     const struct glint_box b = w->touched;
     const int n = w->scene->cfg.edge_samples * (b.x1 - b.x0);
@@ -338,11 +349,11 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
         s->has_triangles && s->bins.start[at] < s->bins.start[at + 1];
 
     w->tile = tile;
-    w->touched = find_touched(s, tile, has_triangles);
+    w->touched = find_touched_pixels(s, tile, has_triangles);
     if (s->motion)
         w->touched =
             glint_box_join(w->touched, s->cfg.parts.motions->touch(s, tile));
-    clear_samples(w);
+    clear_tile_samples(w);
     if (glint_box_empty(w->touched))
         return s->model.header->background != GLINT_BACKGROUND_CAMERA;
     for (int32_t i = has_triangles ? s->bins.start[at] : 0;
@@ -351,7 +362,7 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
     for (uint32_t i = 0; i < s->model.header->n_objects; i++)
         if (s->placed[i].is_seen &&
             s->placed[i].object->kind == GLINT_OBJECT_PLANE)
-            draw_plane(w, &s->placed[i], glint_id(i, 0));
+            draw_plane(w, &s->placed[i], glint_make_triangle_id(i, 0));
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
         const struct glint_placed *placed = &s->placed[i];
         const struct glint_box b = glint_box_cut(tile, placed->box);
@@ -361,8 +372,8 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
         for (int y = b.y0; placed->radius > 0 && y < b.y1; y++) {
             struct glint_box row = b;
 
-            if (glint_scene_span(s, placed, y, &row.x0, &row.x1))
-                draw_ball_row(w, placed, glint_id(i, 0), row, y);
+            if (glint_scene_find_ball_span(s, placed, y, &row.x0, &row.x1))
+                draw_ball_row(w, placed, glint_make_triangle_id(i, 0), row, y);
         }
     }
     return 1;

@@ -1,24 +1,25 @@
 /* SPDX-License-Identifier: MIT
  *
- * Writes samples of a tile. Each sample keeps the nearest object, or the one
- * with the lower index of two equally near objects, so that the order of
- * drawing does not matter.
- */
+ * Writes the visible object to samples of a tile. A sample stores the nearest
+ * object; of two equally near objects the one of lower index, so that the order
+ * of drawing does not change the result. */
 #ifndef GLINT_SCENE_VISIBLE_H
 #define GLINT_SCENE_VISIBLE_H
 
 #include "scene/state.h"
 
-/* Returns the coordinate of pixel I, across (AXIS 0) or down (AXIS 1), q8 from
- * the picture's middle. */
-static inline int32_t glint_place(const struct glint_scene *s, int i, int axis)
+/* Returns the middle of pixel column I (AXIS 0) or row I (AXIS 1), q8 pixels
+ * from the picture's middle. */
+static inline int32_t glint_pixel_position_q8(const struct glint_scene *s,
+                                              int i, int axis)
 {
     return 256 * i - 128 * ((axis ? s->view.height : s->view.width) - 1);
 }
 
 /* Returns the offset of sample K from its pixel's middle along AXIS, q8, within
- * half a pixel. No two samples have the same x or the same y. */
-static inline int32_t glint_sample(const struct glint_scene *s, int k, int axis)
+ * half a pixel. No two samples of a pixel have the same x or the same y. */
+static inline int32_t glint_sample_offset_q8(const struct glint_scene *s, int k,
+                                             int axis)
 {
     return s->sample_q8[k][axis];
 }
@@ -39,8 +40,9 @@ static inline int glint_sample_index(const struct glint_scene_worker *w, int x,
            k;
 }
 
-static inline void glint_put_sample(struct glint_scene_worker *w, int x, int y,
-                                    int k, int32_t depth, uint32_t id)
+static inline void glint_put_nearer_sample(struct glint_scene_worker *w, int x,
+                                           int y, int k, int32_t depth,
+                                           uint32_t id)
 {
     const int i = glint_sample_index(w, x, y, k);
 
@@ -52,36 +54,34 @@ static inline void glint_put_sample(struct glint_scene_worker *w, int x, int y,
 
 /* ------------------------------------------------------------------- balls */
 
-/* Balls in the middle of pixels, by the fast path (quick.h). */
+/* Prepares ball P for the fast path (quick.h), after its position is set. */
+void glint_quick_prepare_ball(const struct glint_scene *scene,
+                              struct glint_placed *p);
 
-/* Prepares ball P after it is placed. */
-void glint_quick_ball(const struct glint_scene *scene, struct glint_placed *p);
+/* Sets RAY to the ray through position (X, Y), and SEEN_Q30 to its direction in
+ * camera coordinates; components have an error of 2^-24. */
+void glint_quick_compute_ray(const struct glint_scene_view *view, int32_t x_q8,
+                             int32_t y_q8, struct glint_scene_ray *ray,
+                             int32_t seen_q30[3]);
 
-/* Sets RAY to the ray through (X, Y), and SEEN_Q30 to its direction in camera
- * coordinates; elements have an error of 2^-24. */
-void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
-                     int32_t y_q8, struct glint_scene_ray *ray,
-                     int32_t seen_q30[3]);
+/* Sets COSINE_Q30 to the cosine between RAY and the normal of ball P, and
+ * ACROSS_Q30 to the shortest vector between the ball's middle and the ray, in
+ * radii, rotated by a right angle. P->over_up must not be 0. Returns 0 if the
+ * ray misses P or passes near its rim. */
+int glint_quick_intersect_ball(const struct glint_placed *p,
+                               const struct glint_scene_ray *ray,
+                               int32_t across_q30[3], int32_t *cosine_q30);
 
-/* Sets COSINE_Q30 to the cosine between RAY and the normal of P, and ACROSS_Q30
- * to the distance vector of the ball's middle from the ray, in radii, rotated
- * by a right angle. P->over_up must not be 0. Returns 0 if the ray misses P or
- * passes near its rim. */
-int glint_quick_meet(const struct glint_placed *p,
-                     const struct glint_scene_ray *ray, int32_t across_q30[3],
-                     int32_t *cosine_q30);
-
-/* Returns the distance along RAY of the intersection that glint_quick_meet()
- * found, steps, with an error of 2^-13 radii. */
-int32_t glint_quick_away(const struct glint_placed *p,
-                         const struct glint_scene_ray *ray, int32_t cosine_q30);
+/* Returns the distance along RAY of the intersection that
+ * glint_quick_intersect_ball() found, steps, with an error of 2^-13 radii. */
+int32_t glint_quick_ball_distance(const struct glint_placed *p,
+                                  const struct glint_scene_ray *ray,
+                                  int32_t cosine_q30);
 
 /* ------------------------------------------------------------------ layers */
 
-/* Overlays of a recorded motion.
- */
-
-/* A run of pixels in a row, X0 .. X1 - 1, that a layer may touch. */
+/* The pixels X0 .. X1 - 1 of a row that an overlay of a recorded motion may
+ * cover. */
 struct glint_layer_span {
     int layer;
     enum glint_scene_kind kind;
@@ -89,7 +89,7 @@ struct glint_layer_span {
 };
 
 struct glint_scene_motions {
-    /* carve allocates the state of motions from ARENA and returns NULL while
+    /* carve allocates the state of motions from ARENA, and returns NULL if
      * ARENA only counts bytes; carve_worker allocates the arrays of one
      * WORKER. */
     struct glint_motion_state *(*carve)(const struct glint_scene *scene,
@@ -97,32 +97,34 @@ struct glint_scene_motions {
     void (*carve_worker)(const struct glint_scene *scene,
                          struct glint_arena *arena,
                          struct glint_scene_worker *worker);
-    /* Opens the motion and seeks its frame 0. */
+    /* Opens the motion's file and seeks frame 0. */
     enum glint_status (*open)(struct glint_scene *scene);
-    /* Projects shells, lines and box to the picture. */
+    /* Projects all overlays to the picture: shells, lines and the box. */
     void (*project)(struct glint_scene *scene);
-    /* Returns the number of layers of KIND in the picture. */
+    /* Returns the number of overlays of kind KIND in the picture. */
     int (*count)(const struct glint_scene *scene, enum glint_scene_kind kind);
-    /* Returns the box of pixels of TILE that layers may touch. */
+    /* Returns the box of pixels of TILE that overlays may cover. */
     struct glint_box (*touch)(const struct glint_scene *scene,
                               struct glint_box tile);
-    /* Lists in W the layers that may touch row Y of its tile, from back to
+    /* Lists in W the overlays that may cover row Y of its tile, from back to
      * front. */
     void (*list)(struct glint_scene_worker *w, int y);
-    /* Sets W->over to those listed layers that cover pixel X. Returns the
-     * end of the run of pixels with the same layers. */
+    /* Sets W->over to the listed overlays that cover pixel X. Returns the end
+     * of the run of pixels that the same overlays cover. */
     int (*next)(struct glint_scene_worker *w, int x);
-    /* Composites W->over over pixel (X, Y), whose light so far is SUM. */
+    /* Composites the overlays W->over over pixel (X, Y), whose light so far is
+     * SUM. */
     void (*over)(const struct glint_scene_worker *w, int x, int y,
                  struct glint_scene_sum *sum);
 };
 
-/* Sets TO to the rotation by the unit quaternion Q_Q30. */
-void glint_scene_turn_of(const int32_t q_q30[4], struct glint_scene_turn *to);
+/* Sets TO to the rotation matrix of the unit quaternion Q_Q30. */
+void glint_scene_quaternion_to_rotation(const int32_t q_q30[4],
+                                        struct glint_scene_turn *to);
 
-/* Finds the pixels that P may touch; its centre and reach must be set. Returns
- * its min z, or GLINT_FAR if it is not visible. */
-int32_t glint_scene_place(const struct glint_scene *scene,
-                          struct glint_placed *p);
+/* Sets the box of pixels that object P may cover; its centre and reach must be
+ * set. Returns its min z, steps, or GLINT_FAR if it is not visible. */
+int32_t glint_scene_find_object_box(const struct glint_scene *scene,
+                                    struct glint_placed *p);
 
 #endif

@@ -75,7 +75,7 @@ static void draw_linear_tile(const struct visit *v)
         for (int c = 0; c < 3 && t->half; c++)
             double_row_values(rows.light_q20[c], n);
         for (int k = y; k < end; k++)
-            v->scratch->n_held += glint_resolve_linear(
+            v->scratch->n_held += glint_resolve_add_to_linear(
                 t->image, x, k, n_x, (const int32_t *const *)rows.light_q20);
     }
 }
@@ -92,8 +92,8 @@ static void resolve_code_rows(const struct visit *v, enum glint_given given,
         t->blend->stretch(t->resolve, t->image, x, rows->y, n_x, rows->n,
                           rows->cover, rows->light, &v->scratch->codes->rows);
     else
-        glint_resolve_stretch(t->resolve, t->image, x, rows->y, n_x, rows->n,
-                              rows->light, &v->scratch->codes->rows);
+        glint_resolve_add_to_run(t->resolve, t->image, x, rows->y, n_x, rows->n,
+                                 rows->light, &v->scratch->codes->rows);
 }
 
 /* Draws a tile of a picture in codes two rows at a time, as 4:2:0 rows share

@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 /* Packs two int16 into an int32, FIRST in the lower half. */
-static inline int32_t glint_pair(int32_t first, int32_t second)
+static inline int32_t glint_pack_pair(int32_t first, int32_t second)
 {
     return (int32_t)((uint32_t)(uint16_t)first | (uint32_t)second << 16);
 }

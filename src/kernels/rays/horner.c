@@ -9,7 +9,7 @@
 
 KERNEL_SETS(HORNER)
 
-const struct glint_horner *glint_horner_of(unsigned sets)
+const struct glint_horner *glint_choose_horner_kernels(unsigned sets)
 {
     return BEST_OF(sets, &of_);
 }

@@ -29,7 +29,7 @@ typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
  *           reaches LIMIT; else left unchanged
  * X and Y are below 2^30 in magnitude, cosine and sine below 2^31, LIMIT is
  * 2^30 at most. Shifts are 1 .. 62; the C variant accepts any shift. */
-enum { GLINT_TURNED = 8 }; /* number of rays per call */
+enum { GLINT_TURNED = 8 }; /* number of points per call */
 
 struct glint_turn {
     int32_t cos, sin;
@@ -48,8 +48,8 @@ struct glint_horner {
 
 /* Return the best kernels that the GLINT_SET_ bits SETS allow; the kernels in C
  * if no bit is set. */
-const struct glint_horner *glint_horner_of(unsigned sets);
-glint_turn_fn *glint_turn_of(unsigned sets);
+const struct glint_horner *glint_choose_horner_kernels(unsigned sets);
+glint_turn_fn *glint_choose_turn_kernel(unsigned sets);
 
 glint_horner_along_fn glint_horner_along_c, glint_horner_along_sse41,
     glint_horner_along_avx2, glint_horner_along_neon;

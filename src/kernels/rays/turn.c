@@ -3,7 +3,7 @@
 
 #include "kernels/choose.h"
 
-glint_turn_fn *glint_turn_of(unsigned sets)
+glint_turn_fn *glint_choose_turn_kernel(unsigned sets)
 {
     return BEST_OF(sets, glint_turn_);
 }

@@ -8,7 +8,7 @@ struct products {
     int64x2_t low, high;
 };
 
-static inline struct products multiply(int32x4_t x, int32x2_t factor)
+static inline struct products multiply_lanes(int32x4_t x, int32x2_t factor)
 {
     return (struct products){vmull_s32(vget_low_s32(x), factor),
                              vmull_s32(vget_high_s32(x), factor)};
@@ -27,17 +27,17 @@ static inline struct products subtract_products(struct products a,
                              vsubq_s64(a.high, b.high)};
 }
 
-/* Exponent of the factor applied to products (up), and the magnitude that
- * results must stay below. */
-struct scale {
+/* The shift to the left that scales products, and the limit of the magnitude of
+ * results, exclusive. */
+struct scale_products {
     int64x2_t up;
     int32x4_t limit;
 };
 
-/* Writes SUM, scaled, to OUT; lanes that reach the limit become 0. Returns a
- * mask of the lanes that fit. */
-static inline uint32x4_t scale(struct scale s, struct products sum,
-                               int32_t *out)
+/* Stores the scaled sums of products in OUT, 0 in lanes that reach the limit.
+ * Returns a mask of the lanes below the limit. */
+static inline uint32x4_t scale_products(struct scale_products s,
+                                        struct products sum, int32_t *out)
 {
     const int32x4_t x = vcombine_s32(vqmovn_s64(vrshlq_s64(sum.low, s.up)),
                                      vqmovn_s64(vrshlq_s64(sum.high, s.up)));
@@ -47,8 +47,8 @@ static inline uint32x4_t scale(struct scale s, struct products sum,
     return fits;
 }
 
-static inline void mark_lost(uint32x4_t x_fits, uint32x4_t y_fits,
-                             int32_t *lost)
+static inline void mark_lost_rays(uint32x4_t x_fits, uint32x4_t y_fits,
+                                  int32_t *lost)
 {
     const int32x4_t fit = vreinterpretq_s32_u32(vandq_u32(x_fits, y_fits));
 
@@ -60,18 +60,22 @@ void glint_turn_neon(const struct glint_turn *t, const int32_t *x,
                      int32_t (*lost)[GLINT_TURNED])
 {
     const int32x2_t c = vdup_n_s32(t->cos), s = vdup_n_s32(t->sin);
-    const struct scale to = {vdupq_n_s64(-(int64_t)t->shift),
-                             vdupq_n_s32(t->limit)};
+    const struct scale_products to = {vdupq_n_s64(-(int64_t)t->shift),
+                                      vdupq_n_s32(t->limit)};
 
     for (int i = 0; i < GLINT_TURNED; i += 4) {
         const int32x4_t a = vld1q_s32(x + i), b = vld1q_s32(y + i);
-        const struct products xc = multiply(a, c), xs = multiply(a, s);
-        const struct products yc = multiply(b, c), ys = multiply(b, s);
+        const struct products xc = multiply_lanes(a, c),
+                              xs = multiply_lanes(a, s);
+        const struct products yc = multiply_lanes(b, c),
+                              ys = multiply_lanes(b, s);
 
-        mark_lost(scale(to, subtract_products(xc, ys), out[0] + i),
-                  scale(to, add_products(xs, yc), out[1] + i), lost[0] + i);
-        mark_lost(scale(to, add_products(xc, ys), out[2] + i),
-                  scale(to, subtract_products(xs, yc), out[3] + i),
-                  lost[1] + i);
+        mark_lost_rays(
+            scale_products(to, subtract_products(xc, ys), out[0] + i),
+            scale_products(to, add_products(xs, yc), out[1] + i), lost[0] + i);
+        mark_lost_rays(
+            scale_products(to, add_products(xc, ys), out[2] + i),
+            scale_products(to, subtract_products(xs, yc), out[3] + i),
+            lost[1] + i);
     }
 }

@@ -3,7 +3,7 @@
 
 #include "kernels/choose.h"
 
-glint_ward_sum_fn *glint_ward_sum_of(unsigned sets)
+glint_ward_sum_fn *glint_choose_ward_kernel(unsigned sets)
 {
     return BEST_OF(sets, glint_ward_sum_);
 }

@@ -33,16 +33,17 @@ static uint32_t compute_root_q15(uint32_t x_q14)
     return (y_q14 * part_q14 >> 14 << 2) >> (up / 2);
 }
 
-/* A sample of the lobe: direction i to the light in the surface's frame, h.o
- * (half vector . direction to the eye), and whether the sample counts: h.o
- * and n.i are positive. */
+/* A sample of the lobe: the direction i to the light in the surface's frame,
+ * h.o (half vector . direction to the eye), and whether the sample has weight:
+ * h.o and n.i are positive. */
 struct sample {
     int32_t in_q14[3], ho_q14;
     int counts;
 };
 
-static struct sample compute_sample(const struct glint_ward_lobe *lobe, int k,
-                                    const struct glint_ward_place *place)
+static struct sample compute_lobe_sample(const struct glint_ward_lobe *lobe,
+                                         int k,
+                                         const struct glint_ward_place *place)
 {
     const int32_t *out_q14 = place->out_q14;
     struct sample s;
@@ -74,9 +75,9 @@ static int32_t compute_bounded_weight_q12(int32_t ho_q14, int32_t hn_q14,
     return q_larger((2 << 12) - (int32_t)q_q12, 0);
 }
 
-static int32_t compute_weight_q12(const struct glint_ward_lobe *lobe, int k,
-                                  const struct sample *s,
-                                  const struct glint_ward_place *place)
+static int32_t compute_norm_weight_q12(const struct glint_ward_lobe *lobe,
+                                       int k, const struct sample *s,
+                                       const struct glint_ward_place *place)
 {
     uint32_t root, part_q15;
 
@@ -91,8 +92,8 @@ static int32_t compute_weight_q12(const struct glint_ward_lobe *lobe, int k,
                      8 << 12);
 }
 
-/* Projects the light direction of sample S to the square of the octahedron
- * map. */
+/* Projects the light's direction of sample S to the square of the octahedral
+ * environment map. */
 static void project_to_square(const struct sample *s,
                               const struct glint_ward_place *place,
                               int32_t *u_q17, int32_t *v_q17)
@@ -121,12 +122,12 @@ static void project_to_square(const struct sample *s,
     *v_q17 = ONE_Q16 + (toward_q14[2] < 0 ? -q_q16 : q_q16);
 }
 
-/* Returns the blurriest mipmap level that is not blurrier than sample K.
- * *SHARE_Q8 receives the weight of the next level, which has four times the
- * variance, such that the blend of both levels has the variance of the
- * sample. */
-static int32_t choose_level(const struct glint_ward_lobe *lobe, int k,
-                            int32_t ho_q14, int32_t last, uint32_t *share_q8)
+/* Returns the blurriest mip level that is not blurrier than sample K. Sets
+ * *SHARE_Q8 to the weight of the next level, which has four times the variance,
+ * such that the blend of both levels has the variance of the sample. */
+static int32_t choose_mip_level(const struct glint_ward_lobe *lobe, int k,
+                                int32_t ho_q14, int32_t last,
+                                uint32_t *share_q8)
 {
     const int up = 15 - bit_length((uint32_t)ho_q14);
     const int32_t span_q28 = lobe->span_q14[k] * (ho_q14 << up);
@@ -150,7 +151,7 @@ void glint_ward_sum_c(const struct glint_ward_lobe *lobe,
     for (int j = 0; j < 3; j++)
         sum_q12[j] = 0;
     for (int k = 0; k < lobe->n; k++) {
-        const struct sample s = compute_sample(lobe, k, place);
+        const struct sample s = compute_lobe_sample(lobe, k, place);
         struct glint_reads reads;
         struct glint_found found;
         int32_t u_q17, v_q17, level;
@@ -159,13 +160,14 @@ void glint_ward_sum_c(const struct glint_ward_lobe *lobe,
         if (!s.counts)
             continue;
         project_to_square(&s, place, &u_q17, &v_q17);
-        level = choose_level(lobe, k, s.ho_q14, texels->last, &share_q8);
-        glint_reads_of(&texels->level[level], u_q17, v_q17, 256 - share_q8,
-                       reads.at, reads.weight_q22);
-        glint_reads_of(&texels->level[level + 1], u_q17, v_q17, share_q8,
-                       reads.at + 4, reads.weight_q22 + 4);
-        glint_find_light(texels->code, &reads, 8, &found);
-        glint_count_light(
-            &found, (uint32_t)compute_weight_q12(lobe, k, &s, place), sum_q12);
+        level = choose_mip_level(lobe, k, s.ho_q14, texels->last, &share_q8);
+        glint_set_texel_reads(&texels->level[level], u_q17, v_q17,
+                              256 - share_q8, reads.at, reads.weight_q22);
+        glint_set_texel_reads(&texels->level[level + 1], u_q17, v_q17, share_q8,
+                              reads.at + 4, reads.weight_q22 + 4);
+        glint_sum_texel_light(texels->code, &reads, 8, &found);
+        glint_add_weighted_light(
+            &found, (uint32_t)compute_norm_weight_q12(lobe, k, &s, place),
+            sum_q12);
     }
 }

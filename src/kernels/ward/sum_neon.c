@@ -36,7 +36,7 @@ static inline W w_log2(W x)
     return w_sub(w_set(31), vclzq_s32(x));
 }
 
-static inline int w_any(W mask)
+static inline int w_is_any_set(W mask)
 {
     const uint32x2_t half =
         vorr_u32(vget_low_u32(U(mask)), vget_high_u32(U(mask)));
@@ -44,7 +44,7 @@ static inline int w_any(W mask)
     return vget_lane_u64(vreinterpret_u64_u32(half), 0) != 0;
 }
 
-/* Loads lane I of TO from FROM[lane I of AT]. */
+/* Loads lane I of TO from element (lane I of AT) of FROM. */
 #define LOAD_LANE(to, from, at, i) \
     to = vld1q_lane_u32((from) + vgetq_lane_u32(at, i), to, i)
 
@@ -83,7 +83,7 @@ struct three {
     int32x2_t low, high;
 };
 
-static inline struct three load_three(const int32_t x[3])
+static inline struct three load_three_scalars(const int32_t x[3])
 {
     return (struct three){vld1_s32(x), vld1_dup_s32(x + 2)};
 }
@@ -99,20 +99,22 @@ static inline struct three load_three(const int32_t x[3])
      : (k) == 1 ? vdupq_lane_s32((x).low, 1) \
                 : vdupq_lane_s32((x).high, 0))
 
-/* Light of R, G, B; each of the two lanes sums half of the samples. */
+/* Sums of light in R, G, B; each of the two lanes sums half of the samples. */
 struct total {
     uint64x2_t rgb[3];
 };
 
-static inline struct total zero_total(void)
+static inline struct total clear_total_light(void)
 {
     return (struct total){{vdupq_n_u64(0), vdupq_n_u64(0), vdupq_n_u64(0)}};
 }
 
 struct lane_found;
-static inline void add_to_total(struct total *total,
-                                const struct lane_found *found, W weight_q12);
-static inline void store_total(const struct total *total, uint64_t sum_q12[3])
+static inline void add_light_to_total(struct total *total,
+                                      const struct lane_found *found,
+                                      W weight_q12);
+static inline void store_total_light(const struct total *total,
+                                     uint64_t sum_q12[3])
 {
     for (int j = 0; j < 3; j++)
         sum_q12[j] =
@@ -121,8 +123,9 @@ static inline void store_total(const struct total *total, uint64_t sum_q12[3])
 
 #include "kernels/ward/sum_v.inc"
 
-static inline void add_to_total(struct total *total,
-                                const struct lane_found *found, W weight_q12)
+static inline void add_light_to_total(struct total *total,
+                                      const struct lane_found *found,
+                                      W weight_q12)
 {
     const W by = w_sub(found->log2, w_set(34));
     const int64x2_t low = vmovl_s32(vget_low_s32(by));

@@ -1,37 +1,36 @@
 /* SPDX-License-Identifier: MIT
  *
- * Bilinear texel lookups in mipmap levels of an octahedron map.
- */
+ * Bilinear lookups in the mip levels of an octahedral environment map. */
 #ifndef GLINT_KERNELS_WARD_TEXELS_H
 #define GLINT_KERNELS_WARD_TEXELS_H
 
 #include "base/q.h"
 #include "glint/scene/lobe.h"
 
-/* Indices of the codes of four texels, or of four texels in each of two
- * levels, and their weights, which sum to 2^22. */
+/* The texels that one lookup reads, four or, in two levels, eight: indices of
+ * their codes, and weights, which sum to 2^22. */
 struct glint_reads {
     uint32_t at[8], weight_q22[8];
 };
 
-/* Light as RGB with a shared exponent: RGB 2^(log2 - 34) display white; RGB
- * is at most 2^31, log2 at most 31. */
+/* Light as RGB with a shared exponent. The unit of RGB is 2^(log2 - 34), where
+ * 1 is display white; RGB is at most 2^31, log2 at most 31. */
 struct glint_found {
     uint32_t rgb[3];
     int32_t log2;
 };
 
-/* Sets four entries of AT and WEIGHT_Q22 to the texels of LEVEL around (U,
- * V), 0 .. 1 across and down the square, with the total weight SHARE_Q8. A
- * texel beyond an edge is replaced by its mirror image about the middle of
- * that edge, as the octahedron folds. */
-static inline void glint_reads_of(const struct glint_texels_level *level,
-                                  int32_t u_q17, int32_t v_q17,
-                                  uint32_t share_q8, uint32_t at[4],
-                                  uint32_t weight_q22[4])
+/* Sets four entries of AT and WEIGHT_Q22 to the texels of LEVEL nearest to (U,
+ * V), 0 .. 1 across and down the square, with total weight SHARE_Q8. A texel
+ * beyond an edge is replaced by its mirror image about the middle of that edge,
+ * as the octahedron folds. */
+static inline void glint_set_texel_reads(const struct glint_texels_level *level,
+                                         int32_t u_q17, int32_t v_q17,
+                                         uint32_t share_q8, uint32_t at[4],
+                                         uint32_t weight_q22[4])
 {
     const int32_t last = (1 << level->side_log2) - 1;
-    /* distance from the centre of the first texel, -128 .. 2^18 */
+    /* distance from the middle of the first texel, -128 .. 2^18 */
     const int32_t x_q8 = (u_q17 << level->side_log2 >> 9) - 128;
     const int32_t y_q8 = (v_q17 << level->side_log2 >> 9) - 128;
     const int32_t x = x_q8 >> 8, y = y_q8 >> 8;
@@ -52,10 +51,10 @@ static inline void glint_reads_of(const struct glint_texels_level *level,
     }
 }
 
-/* Sets FOUND to the weighted sum of N texels of CODE. */
-static inline void glint_find_light(const uint32_t *code,
-                                    const struct glint_reads *reads, int n,
-                                    struct glint_found *found)
+/* Sets FOUND to the weighted sum of the light of N texels in CODE. */
+static inline void glint_sum_texel_light(const uint32_t *code,
+                                         const struct glint_reads *reads, int n,
+                                         struct glint_found *found)
 {
     uint32_t most = 0;
 
@@ -74,9 +73,10 @@ static inline void glint_find_light(const uint32_t *code,
     }
 }
 
-/* Adds FOUND times WEIGHT_Q12, 0 .. 2^15, to SUM. */
-static inline void glint_count_light(const struct glint_found *found,
-                                     uint32_t weight_q12, uint64_t sum_q12[3])
+/* Adds light FOUND times WEIGHT_Q12, 0 .. 2^15, to SUM. */
+static inline void glint_add_weighted_light(const struct glint_found *found,
+                                            uint32_t weight_q12,
+                                            uint64_t sum_q12[3])
 {
     for (int j = 0; j < 3; j++)
         sum_q12[j] +=

@@ -16,7 +16,7 @@
 
 /* Returns the best kernel that the GLINT_SET_ bits SETS allow; the kernel in C
  * if no bit is set. */
-glint_ward_sum_fn *glint_ward_sum_of(unsigned sets);
+glint_ward_sum_fn *glint_choose_ward_kernel(unsigned sets);
 
 glint_ward_sum_fn glint_ward_sum_c, glint_ward_sum_sse41, glint_ward_sum_avx2,
     glint_ward_sum_neon;

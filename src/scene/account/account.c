@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Statistics of each object of a frame: visibility and surfaces are computed as
- * for drawing, but surfaces are not shaded. */
+ * Counts the work that each object of a frame causes: samples, shaded points,
+ * shadow rays, texels and reflected rays. Visibility and surfaces are computed
+ * as for drawing, but no light is computed. */
 #include "glint/scene/account.h"
 
 #include "glint/scene/translucent.h"
@@ -10,12 +11,15 @@
 #include "scene/parts.h"
 
 enum {
-    TEXELS = 8,     /* texels per lookup: four of each of two levels */
-    MAP_TEXELS = 4, /* texels per lookup in the map of a translucent medium */
-    POINTS = 16,    /* points of a light's disc that are tested for
-                       visibility */
-    LIT_TESTS = 4,  /* tests of a ray that take as long as a light on a point,
-                       and as a pixel of a ball's box */
+    TEXELS = 8,     /* texels read per texture lookup: 4 in each of 2 mip
+                       levels */
+    MAP_TEXELS = 4, /* texels read per lookup in the map of a translucent
+                       medium */
+    POINTS = 16,    /* sample points of a light's disc that shadow rays are
+                       traced to */
+    /* Costs in tests of a ray with an object: LIT_TESTS for the light of one
+     * source at a point, BALL_TESTS for a pixel of a ball's box. */
+    LIT_TESTS = 4,
     BALL_TESTS = 3
 };
 
@@ -27,28 +31,29 @@ struct account {
 
 /* ---------------------------------------------------------------- surfaces */
 
-/* Counts the points of lights that face SURFACE. */
-static void count_shadows(const struct glint_scene *s,
-                          const struct glint_met_surface *surface,
-                          struct glint_scene_part *part)
+/* Counts the shadow rays from SURFACE, one per sample point of each light that
+ * faces it. */
+static void count_shadow_rays(const struct glint_scene *s,
+                              const struct glint_met_surface *surface,
+                              struct glint_scene_part *part)
 {
     for (uint32_t i = 0; s->model.header->shadow && i < s->n_lit; i++) {
         const struct glint_lit *lit = &s->lit[i];
         int32_t toward_q30[3], level_q15[3];
 
-        if (glint_scene_light_at(s, lit, surface->place, toward_q30,
-                                 level_q15) &&
+        if (glint_scene_compute_light_at(s, lit, surface->place, toward_q30,
+                                         level_q15) &&
             v3_dot(toward_q30, surface->normal_q30) > 0) {
             part->count[GLINT_SCENE_SHADOWS] +=
                 lit->light->radius ? s->cfg.shadow_points : 1;
             if (s->tests)
-                glint_scene_reaches(s, surface, lit);
+                glint_scene_lit_fraction(s, surface, lit);
         }
     }
 }
 
-static int is_stone(const struct glint_scene *s,
-                    const struct glint_met_surface *surface)
+static int is_translucent(const struct glint_scene *s,
+                          const struct glint_met_surface *surface)
 {
     const int skin = s->placed[surface->object].skin;
 
@@ -58,46 +63,49 @@ static int is_stone(const struct glint_scene *s,
                                       .material];
 }
 
-/* Counts a shaded point of SURFACE: its lights, and the environment on metal. A
- * translucent medium without a coat needs only its map. */
-static void count_lit(const struct glint_scene *s,
-                      const struct glint_met_surface *surface,
-                      struct glint_scene_part *part)
+/* Counts the work of lighting a point of SURFACE: all lights, and the
+ * environment if it is metal. A translucent medium without a coat only reads
+ * its map. */
+static void count_lit_point(const struct glint_scene *s,
+                            const struct glint_met_surface *surface,
+                            struct glint_scene_part *part)
 {
     const int is_metal = surface->material->ward != GLINT_SCENE_NONE;
 
-    glint_scene_count(s, LIT_TESTS * (int64_t)s->n_lit);
-    if (is_stone(s, surface)) {
+    glint_scene_count_ray_tests(s, LIT_TESTS * (int64_t)s->n_lit);
+    if (is_translucent(s, surface)) {
         part->count[GLINT_SCENE_TEXELS] += MAP_TEXELS;
         if (!is_metal)
             return;
     }
-    count_shadows(s, surface, part);
+    count_shadow_rays(s, surface, part);
     if (is_metal && s->model.header->n_environments > 0 &&
         !s->placed[surface->object].object->catcher_q15)
         part->count[GLINT_SCENE_LOOKUPS] += s->cfg.ward_samples;
 }
 
-/* Continues along RAY from SURFACE, and counts the surface that it meets and
- * shades. Returns 0 if it meets none. */
-static int follow_ray(const struct glint_scene *s, struct glint_scene_ray *ray,
-                      struct glint_met_surface *surface,
-                      struct glint_scene_part *part)
+/* Traces RAY from SURFACE to the next surface, and counts the work of shading
+ * that. Returns 0 if the ray meets no surface. */
+static int trace_next_surface(const struct glint_scene *s,
+                              struct glint_scene_ray *ray,
+                              struct glint_met_surface *surface,
+                              struct glint_scene_part *part)
 {
     const struct glint_met_surface from = *surface;
     struct glint_met met;
 
     part->count[GLINT_SCENE_BOUNCED]++;
-    glint_scene_leave(s, &from, ray->at);
-    if (!glint_scene_meet(s, ray, from.object, from.triangle, &met) ||
-        !glint_scene_surface(s, ray, &met, surface))
+    glint_scene_set_ray_start(s, &from, ray->at);
+    if (!glint_scene_find_nearest_hit(s, ray, from.object, from.triangle,
+                                      &met) ||
+        !glint_scene_set_surface(s, ray, &met, surface))
         return 0;
     part->count[GLINT_SCENE_SHADED]++;
-    count_lit(s, surface, part);
+    count_lit_point(s, surface, part);
     return 1;
 }
 
-/* Counts the reflections and transmissions of RAY after SURFACE. */
+/* Counts the reflected and transmitted rays that continue RAY at SURFACE. */
 static void count_bounces(const struct glint_scene *s,
                           const struct glint_scene_ray *ray,
                           const struct glint_met_surface *surface,
@@ -107,19 +115,21 @@ static void count_bounces(const struct glint_scene *s,
     struct glint_scene_ray on = *ray;
 
     if (surface->material->reflect_q15) {
-        glint_mirror(ray->toward_q30, surface->normal_q30, on.toward_q30);
-        follow_ray(s, &on, &at, part);
+        glint_reflect_direction(ray->toward_q30, surface->normal_q30,
+                                on.toward_q30);
+        trace_next_surface(s, &on, &at, part);
         at = *surface;
         on = *ray;
     }
     for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++)
-        if (!follow_ray(s, &on, &at, part))
+        if (!trace_next_surface(s, &on, &at, part))
             return;
 }
 
-/* Counts a shaded point of ID, at (X, Y), q8. */
-static void count_shade(const struct account *a, uint32_t id, int32_t x_q8,
-                        int32_t y_q8)
+/* Counts the work of shading object or triangle ID at position (X, Y), pixels
+ * q8 from the picture's middle. */
+static void count_shaded_point(const struct account *a, uint32_t id,
+                               int32_t x_q8, int32_t y_q8)
 {
     const struct glint_scene *s = a->scene;
     struct glint_scene_part *part = &a->objects[id >> 20];
@@ -131,11 +141,11 @@ static void count_shade(const struct account *a, uint32_t id, int32_t x_q8,
     int32_t seen_q30[3];
 
     part->count[GLINT_SCENE_SHADED]++;
-    glint_view_ray(&s->view, x_q8, y_q8, &ray, seen_q30);
-    if (!glint_scene_meet_id(s, &ray, seen_q30, id, &met) ||
-        !glint_scene_surface(s, &ray, &met, &surface))
+    glint_view_set_ray(&s->view, x_q8, y_q8, &ray, seen_q30);
+    if (!glint_scene_ray_hits_id(s, &ray, seen_q30, id, &met) ||
+        !glint_scene_set_surface(s, &ray, &met, &surface))
         return;
-    count_lit(s, &surface, part);
+    count_lit_point(s, &surface, part);
     if (s->placed[id >> 20].object->catcher_q15)
         return;
     if (m->texture != GLINT_SCENE_NONE)
@@ -144,8 +154,9 @@ static void count_shade(const struct account *a, uint32_t id, int32_t x_q8,
         count_bounces(s, &ray, &surface, part);
 }
 
-/* Returns whether samples of ID are shaded one by one. */
-static int is_split(const struct glint_scene *s, uint32_t id)
+/* Returns whether object or triangle ID is shaded at each sample, not once per
+ * pixel. */
+static int is_shaded_per_sample(const struct glint_scene *s, uint32_t id)
 {
     const struct glint_scene_material *m =
         &s->model.material[s->placed[id >> 20].material];
@@ -154,15 +165,15 @@ static int is_split(const struct glint_scene *s, uint32_t id)
 }
 
 /* Returns whether A and B belong to the same object. */
-static int is_same(uint32_t a, uint32_t b)
+static int is_same_object(uint32_t a, uint32_t b)
 {
     return a != GLINT_NOTHING && (a ^ b) >> 20 == 0;
 }
 
-/* Returns whether the 2 x 2 pixels around (X, Y) see one object and are shaded
- * once. */
-static int is_quad(const struct glint_scene_worker *w, int x, int y,
-                   uint32_t id)
+/* Returns whether the aligned block of 2 x 2 pixels that contains (X, Y) sees
+ * one object and is shaded by one point. */
+static int is_shared_by_quad(const struct glint_scene_worker *w, int x, int y,
+                             uint32_t id)
 {
     const struct glint_box b = w->touched;
     const int x0 = x & ~1, y0 = y & ~1, n = w->scene->cfg.edge_samples;
@@ -172,20 +183,22 @@ static int is_quad(const struct glint_scene_worker *w, int x, int y,
         return 0;
     for (int k = 0; k < 4; k++)
         for (int i = 0; i < n; i++)
-            if (!is_same(id, w->id[glint_sample_index(w, x0 + (k & 1),
-                                                      y0 + (k >> 1), i)]))
+            if (!is_same_object(id, w->id[glint_sample_index(
+                                        w, x0 + (k & 1), y0 + (k >> 1), i)]))
                 return 0;
     return 1;
 }
 
-/* Counts the objects that the samples of pixel (X, Y) see. */
-static void count_pixel(const struct account *a,
-                        const struct glint_scene_worker *w, int x, int y)
+/* Counts the work for the objects that the samples of pixel (X, Y) see. */
+static void count_pixel_objects(const struct account *a,
+                                const struct glint_scene_worker *w, int x,
+                                int y)
 {
     const struct glint_scene *s = a->scene;
     const uint32_t *id = &w->id[glint_sample_index(w, x, y, 0)];
-    const int32_t x_q8 = glint_place(s, x, 0), y_q8 = glint_place(s, y, 1);
-    const int quad = is_quad(w, x, y, id[0]);
+    const int32_t x_q8 = glint_pixel_position_q8(s, x, 0),
+                  y_q8 = glint_pixel_position_q8(s, y, 1);
+    const int quad = is_shared_by_quad(w, x, y, id[0]);
     int any = 0;
 
     if (a->seen && id[0] != GLINT_NOTHING)
@@ -197,34 +210,36 @@ static void count_pixel(const struct account *a,
             continue;
         any = 1;
         a->objects[id[k] >> 20].count[GLINT_SCENE_SAMPLED]++;
-        while (!is_same(id[i], id[k]))
+        while (!is_same_object(id[i], id[k]))
             i++;
         if (i == k)
             a->objects[id[k] >> 20].count[GLINT_SCENE_COVERING]++;
-        if (quad ? k > 0 || ((x | y) & 1) : i != k && !is_split(s, id[k]))
+        if (quad ? k > 0 || ((x | y) & 1)
+                 : i != k && !is_shaded_per_sample(s, id[k]))
             continue;
-        if (is_split(s, id[k]) && !quad)
-            count_shade(a, id[k], x_q8 + glint_sample(s, k, 0),
-                        y_q8 + glint_sample(s, k, 1));
+        if (is_shaded_per_sample(s, id[k]) && !quad)
+            count_shaded_point(a, id[k], x_q8 + glint_sample_offset_q8(s, k, 0),
+                               y_q8 + glint_sample_offset_q8(s, k, 1));
         else
-            count_shade(a, id[k], x_q8, y_q8);
+            count_shaded_point(a, id[k], x_q8, y_q8);
     }
     a->all->count[GLINT_SCENE_COVERING] += any;
 }
 
-static void count_tile(const struct account *a, struct glint_scene_worker *w,
-                       struct glint_box tile)
+static void count_tile_objects(const struct account *a,
+                               struct glint_scene_worker *w,
+                               struct glint_box tile)
 {
     if (!glint_scene_look(w, tile))
         return;
     for (int y = w->touched.y0; y < w->touched.y1; y++)
         for (int x = w->touched.x0; x < w->touched.x1; x++)
-            count_pixel(a, w, x, y);
+            count_pixel_objects(a, w, x, y);
 }
 
 /* ------------------------------------------------------------------- fates */
 
-static enum glint_scene_fate fate_unseen(const struct glint_placed *p)
+static enum glint_scene_fate find_unseen_fate(const struct glint_placed *p)
 {
     if (!p->is_shown)
         return GLINT_SCENE_OFF;
@@ -233,23 +248,25 @@ static enum glint_scene_fate fate_unseen(const struct glint_placed *p)
                : GLINT_SCENE_OUTSIDE;
 }
 
-/* Returns whether the ray through the middle of pixel (X, Y) meets object I. */
-static int meets_object(const struct glint_scene *s, uint32_t i, int x, int y)
+/* Returns whether the ray through the middle of pixel (X, Y) hits object I. */
+static int ray_hits_object(const struct glint_scene *s, uint32_t i, int x,
+                           int y)
 {
     struct glint_met met = {.t = GLINT_FAR};
     struct glint_scene_ray ray;
     int32_t seen_q30[3];
 
-    glint_view_ray(&s->view, glint_place(s, x, 0), glint_place(s, y, 1), &ray,
-                   seen_q30);
+    glint_view_set_ray(&s->view, glint_pixel_position_q8(s, x, 0),
+                       glint_pixel_position_q8(s, y, 1), &ray, seen_q30);
     if (s->placed[i].object->kind == GLINT_OBJECT_MESH)
         return s->cfg.parts.meshes->meet(s, i, GLINT_NOTHING, &ray, 1, &met);
-    return glint_scene_meet_id(s, &ray, seen_q30, glint_id(i, 0), &met);
+    return glint_scene_ray_hits_id(s, &ray, seen_q30,
+                                   glint_make_triangle_id(i, 0), &met);
 }
 
-/* Finds the object that covers most pixels of object I, which is in the picture
- * but visible at no sample, by majority vote [Boyer91]. */
-static void find_cover(const struct account *a, uint32_t i)
+/* Finds the object that hides most pixels of object I, which is in the picture
+ * but visible at no sample: a majority vote over its pixels [Boyer91]. */
+static void find_occluder(const struct account *a, uint32_t i)
 {
     const struct glint_scene *s = a->scene;
     const struct glint_box b = s->placed[i].box;
@@ -259,7 +276,7 @@ static void find_cover(const struct account *a, uint32_t i)
         for (int x = b.x0; x < b.x1; x++) {
             int other;
 
-            if (!meets_object(s, i, x, y))
+            if (!ray_hits_object(s, i, x, y))
                 continue;
             any = 1;
             other = a->seen ? a->seen[(ptrdiff_t)y * s->cfg.width + x] : -1;
@@ -270,21 +287,21 @@ static void find_cover(const struct account *a, uint32_t i)
     a->objects[i].by = any ? by : -1;
 }
 
-static void set_fate(const struct account *a, uint32_t i)
+static void set_object_fate(const struct account *a, uint32_t i)
 {
     struct glint_scene_part *part = &a->objects[i];
 
     if (!a->scene->placed[i].is_seen)
-        part->fate = fate_unseen(&a->scene->placed[i]);
+        part->fate = find_unseen_fate(&a->scene->placed[i]);
     else if (part->count[GLINT_SCENE_SAMPLED] > 0)
         part->fate = GLINT_SCENE_DRAWN;
     else
-        find_cover(a, i);
+        find_occluder(a, i);
 }
 
 /* ------------------------------------------------------------------- whole */
 
-static void clear_counts(const struct account *a)
+static void clear_object_counts(const struct account *a)
 {
     const struct glint_scene *s = a->scene;
     const ptrdiff_t n = (ptrdiff_t)s->cfg.width * s->cfg.height;
@@ -304,14 +321,14 @@ void glint_scene_account(struct glint_scene *scene,
     const struct glint_bins *bins = &scene->bins;
     const int n_tiles = bins->tiles_x * bins->tiles_y;
 
-    clear_counts(&a);
+    clear_object_counts(&a);
     for (int tile = 0; tile < n_tiles; tile++)
-        count_tile(&a, &scene->worker[0],
-                   glint_bins_compute_tile_box(bins, tile));
+        count_tile_objects(&a, &scene->worker[0],
+                           glint_bins_compute_tile_box(bins, tile));
     for (int32_t i = 0; scene->has_triangles && i < bins->start[n_tiles]; i++)
         objects[(uint32_t)bins->ref[i] >> 20].count[GLINT_SCENE_TRIANGLES]++;
     for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
-        set_fate(&a, i);
+        set_object_fate(&a, i);
         for (int k = 0; k < GLINT_SCENE_ITEMS; k++)
             if (k != GLINT_SCENE_COVERING)
                 all->count[k] += objects[i].count[k];
@@ -322,37 +339,39 @@ void glint_scene_account(struct glint_scene *scene,
 
 /* Finds the surface at the middle of pixel (X, Y), without counting; returns 0
  * if there is none. */
-static int find_surface(const struct glint_scene *s, int x, int y,
-                        struct glint_scene_ray *ray,
-                        struct glint_met_surface *surface)
+static int find_pixel_surface(const struct glint_scene *s, int x, int y,
+                              struct glint_scene_ray *ray,
+                              struct glint_met_surface *surface)
 {
     struct glint_met met;
     int32_t seen_q30[3];
 
-    glint_view_ray(&s->view, glint_place(s, x, 0), glint_place(s, y, 1), ray,
-                   seen_q30);
-    if (glint_scene_meet(s, ray, GLINT_NOTHING, GLINT_NOTHING, &met))
-        return glint_scene_surface(s, ray, &met, surface);
+    glint_view_set_ray(&s->view, glint_pixel_position_q8(s, x, 0),
+                       glint_pixel_position_q8(s, y, 1), ray, seen_q30);
+    if (glint_scene_find_nearest_hit(s, ray, GLINT_NOTHING, GLINT_NOTHING,
+                                     &met))
+        return glint_scene_set_surface(s, ray, &met, surface);
     for (uint32_t i = 0; i < s->model.header->n_objects; i++)
         if (s->placed[i].is_shown && s->placed[i].is_catcher &&
-            glint_scene_meet_id(s, ray, seen_q30, glint_id(i, 0), &met))
-            return glint_scene_surface(s, ray, &met, surface);
+            glint_scene_ray_hits_id(s, ray, seen_q30,
+                                    glint_make_triangle_id(i, 0), &met))
+            return glint_scene_set_surface(s, ray, &met, surface);
     return 0;
 }
 
-/* Adds the tests of the pixel (X, Y) to TESTS; returns whether it sees a
- * surface. */
-static int count_tests(struct glint_scene *s, int x, int y, int64_t *tests)
+/* Adds the number of ray tests for pixel (X, Y) to TESTS; returns whether the
+ * pixel sees a surface. */
+static int add_pixel_tests(struct glint_scene *s, int x, int y, int64_t *tests)
 {
     const int64_t before = *tests;
     struct glint_met_surface surface;
     struct glint_scene_ray ray;
     struct glint_scene_part part = {.by = -1};
 
-    if (!find_surface(s, x, y, &ray, &surface))
+    if (!find_pixel_surface(s, x, y, &ray, &surface))
         return 0;
     s->tests = tests;
-    count_lit(s, &surface, &part);
+    count_lit_point(s, &surface, &part);
     if (!s->placed[surface.object].is_catcher)
         count_bounces(s, &ray, &surface, &part);
     s->tests = NULL;
@@ -362,9 +381,9 @@ static int count_tests(struct glint_scene *s, int x, int y, int64_t *tests)
     return 1;
 }
 
-/* Returns a bound on the number of texels of all translucent maps; that of a
- * ball is twice as wide as high. */
-static int64_t count_map_texels(const struct glint_scene_model *m)
+/* Returns an upper bound of the number of texels in all maps of translucent
+ * objects. A ball's map is twice as wide as high. */
+static int64_t bound_map_texels(const struct glint_scene_model *m)
 {
     int64_t n = 0;
 
@@ -373,8 +392,9 @@ static int64_t count_map_texels(const struct glint_scene_model *m)
     return n;
 }
 
-/* Returns the work of finding the visible balls, in tests. */
-static int64_t count_balls(const struct glint_scene *s)
+/* Returns the cost of finding the visible balls, in tests of a ray with an
+ * object. */
+static int64_t count_ball_tests(const struct glint_scene *s)
 {
     int64_t px = 0;
 
@@ -390,20 +410,21 @@ static int64_t count_balls(const struct glint_scene *s)
 int64_t glint_scene_count_tests(struct glint_scene *scene, int64_t most)
 {
     const int width = scene->cfg.width, height = scene->cfg.height;
-    const int step = q_larger(
-        4, (int32_t)glint_root((uint64_t)width * (uint64_t)height / 2048));
-    const int64_t balls = count_balls(scene);
+    const int step =
+        q_larger(4, (int32_t)glint_square_root((uint64_t)width *
+                                               (uint64_t)height / 2048));
+    const int64_t balls = count_ball_tests(scene);
     int64_t tests = 0, n = 0;
 
     for (int y = step / 2; y < height; y += step)
         for (int x = step / 2; x < width; x += step) {
-            n += count_tests(scene, x, y, &tests);
+            n += add_pixel_tests(scene, x, y, &tests);
             if (tests > (most - balls) / (step * step))
                 return most + 1;
         }
     if (n > 0 && tests > 0)
         tests =
-            tests * step * step + tests / n * count_map_texels(&scene->model);
+            tests * step * step + tests / n * bound_map_texels(&scene->model);
     return tests + balls;
 }
 
@@ -416,14 +437,15 @@ int glint_scene_hider(const struct glint_scene *scene, int light)
 
     for (int k = 0; k < 3; k++)
         middle.at[k] = scene->view.at[k];
-    t = glint_scene_light_at(scene, lit, middle.at, middle.toward_q30,
-                             level_q15);
+    t = glint_scene_compute_light_at(scene, lit, middle.at, middle.toward_q30,
+                                     level_q15);
     for (int i = 0; t > 0 && i < POINTS; i++) {
         struct glint_scene_ray to = middle;
         struct glint_met met;
 
-        glint_scene_point(&to, t, lit->light->radius, i, POINTS);
-        if (!glint_scene_meet(scene, &to, GLINT_NOTHING, GLINT_NOTHING, &met) ||
+        glint_scene_aim_at_light_point(&to, t, lit->light->radius, i, POINTS);
+        if (!glint_scene_find_nearest_hit(scene, &to, GLINT_NOTHING,
+                                          GLINT_NOTHING, &met) ||
             met.t >= t)
             continue;
         by = votes == 0 ? (int)met.object : by;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds highlights on objects: light above white is summed in squares of the
- * picture during drawing; connected squares form one highlight.
+ * Finds highlights on objects. Drawing sums light above white in squares of 8 x
+ * 8 pixels; connected squares with light form one highlight.
  *
- * Results do not depend on workers, as a square belongs to one row of tiles,
- * drawn by one worker, and all sums are integers. */
+ * The number of workers does not change results, as a square belongs to one row
+ * of tiles, drawn by one worker, and all sums are integers. */
 #include "glint/scene/highlights.h"
 
 #include "base/divide.h"
@@ -14,25 +14,28 @@ enum {
     ONE_Q15 = GLINT_SCENE_ONE_Q15,
     SIDE_LOG2 = 3,
     SIDE_Q8 = 256 << SIDE_LOG2,
-    LEAST_Q19 = 8,   /* min light of a spot, 1 in _q16 */
-    KEPT = 64,       /* max number of highlights before near highlights are
-                        merged */
-    WEIGHT_LOG2 = 26 /* sums of weights are below 2^26 */
+    LEAST_Q19 = 8,   /* min luminance of a spot, 1 in _q16 */
+    KEPT = 64,       /* max number of highlights, before those near each other
+                        are merged */
+    WEIGHT_LOG2 = 26 /* log2 of a bound on sums of weights */
 };
 
-/* The sums of a square; a pixel has weight 16, which its samples share. Light
- * is below 2^30, sums over 64 pixels below 2^40, moments below 2^62. */
+/* The sums over one square's pixels. A pixel has weight 16, divided among its
+ * samples. Light is below 2^30, so sums over 64 pixels are below 2^40, and
+ * moments below 2^62. */
 struct glint_highlight_cell {
-    int64_t flux_q19;   /* sum of luminance above white */
-    int64_t at_q27[2];  /* sum of luminance times the position in the square */
-    int64_t square_q35; /* sum of luminance times the squared distance */
+    int64_t flux_q19;  /* sum of luminance above white */
+    int64_t at_q27[2]; /* luminance times position in the square, summed over
+                          pixels */
+    /* Half of luminance times squared distance from the square's corner. */
+    int64_t square_q35;
     int64_t red_q19, blue_q19;
-    int32_t peak_q15; /* light of the brightest pixel, and the object visible
-                         there */
+    /* Light of the brightest pixel, and the object that this pixel sees. */
+    int32_t peak_q15;
     uint32_t object;
 };
 
-/* A highlight: the list of its squares, and their sums. */
+/* A highlight: a linked list of squares, and the sums over them. */
 struct gathered {
     int first, n;
     int64_t flux_q19, red_q19, blue_q19;
@@ -44,8 +47,8 @@ struct gathered {
 struct glint_highlight_state {
     int across, down;
     struct glint_highlight_cell *cell; /* [down][across] */
-    /* Per square, while highlights are gathered: the next square of the same
-     * highlight, END for the last, or UNSEEN. */
+    /* Per square, while squares are gathered to highlights: index of the next
+     * square of the same highlight, END for the last, or UNSEEN. */
     int32_t *next;
     struct gathered *kept; /* [KEPT] */
 };
@@ -55,7 +58,7 @@ enum { UNSEEN = -2, END = -1 };
 /* ------------------------------------------------------------------- light */
 
 static struct glint_highlight_state *
-carve_highlights(const struct glint_scene *scene, struct glint_arena *arena)
+allocate_highlights(const struct glint_scene *scene, struct glint_arena *arena)
 {
     struct glint_highlight_state measured;
     struct glint_highlight_state *placed =
@@ -72,15 +75,15 @@ carve_highlights(const struct glint_scene *scene, struct glint_arena *arena)
     return placed;
 }
 
-static void clear_cells(struct glint_highlight_state *b)
+static void clear_highlight_cells(struct glint_highlight_state *b)
 {
     for (int i = 0; i < b->across * b->down; i++)
         b->cell[i] = (struct glint_highlight_cell){0};
 }
 
-static void add_sample(struct glint_highlight_state *b, uint32_t object,
-                       int32_t x_q8, int32_t y_q8, const int32_t rgb_q15[3],
-                       int share_q4)
+static void add_highlight_sample(struct glint_highlight_state *b,
+                                 uint32_t object, int32_t x_q8, int32_t y_q8,
+                                 const int32_t rgb_q15[3], int share_q4)
 {
     const int64_t light_q15 =
         q_shift(INT64_C(6966) * rgb_q15[0] + INT64_C(23436) * rgb_q15[1] +
@@ -106,7 +109,8 @@ static void add_sample(struct glint_highlight_state *b, uint32_t object,
 
 /* --------------------------------------------------------------- gathering */
 
-static void add_cell(const struct glint_highlight_cell *c, struct gathered *g)
+static void add_cell_to_highlight(const struct glint_highlight_cell *c,
+                                  struct gathered *g)
 {
     g->n++;
     g->flux_q19 += c->flux_q19;
@@ -118,9 +122,10 @@ static void add_cell(const struct glint_highlight_cell *c, struct gathered *g)
     }
 }
 
-/* Appends the neighbours of square I that have light and are in no list to the
- * list that ends with LAST; returns the new last square. */
-static int append_neighbours(struct glint_highlight_state *b, int i, int last)
+/* Appends the neighbours of square I that have light and belong to no highlight
+ * yet to the list that ends with square LAST; returns the new last square. */
+static int append_lit_neighbours(struct glint_highlight_state *b, int i,
+                                 int last)
 {
     const int x = i % b->across, y = i / b->across;
 
@@ -137,7 +142,7 @@ static int append_neighbours(struct glint_highlight_state *b, int i, int last)
     return last;
 }
 
-/* Sets AT to the middle of square I, pixels q8. */
+/* Sets AT to the middle of square I, pixels q8 from the picture's corner. */
 static void find_cell_middle(const struct glint_highlight_state *b, int i,
                              int32_t at[2])
 {
@@ -145,13 +150,14 @@ static void find_cell_middle(const struct glint_highlight_state *b, int i,
     const int corner[2] = {i % b->across * SIDE_Q8, i / b->across * SIDE_Q8};
 
     for (int k = 0; k < 2; k++)
-        at[k] = corner[k] +
-                glint_ratio((uint64_t)c->at_q27[k], (uint64_t)c->flux_q19);
+        at[k] = corner[k] + glint_divide_rounded((uint64_t)c->at_q27[k],
+                                                 (uint64_t)c->flux_q19);
 }
 
-/* Returns the weight of square C in a highlight of flux FLUX_Q19. */
-static uint64_t compute_weight(const struct glint_highlight_cell *c,
-                               int64_t flux_q19)
+/* Returns the flux of square C as a weight: the weights of all squares of a
+ * highlight of total flux FLUX_Q19 sum to less than 2^WEIGHT_LOG2. */
+static uint64_t compute_cell_weight(const struct glint_highlight_cell *c,
+                                    int64_t flux_q19)
 {
     const int up = q_up((uint64_t)flux_q19);
     const int down = q_larger(0, 32 - WEIGHT_LOG2 - up);
@@ -159,14 +165,14 @@ static uint64_t compute_weight(const struct glint_highlight_cell *c,
     return (uint64_t)c->flux_q19 >> down;
 }
 
-/* Sets the middle of G from its squares. */
-static void set_middle(const struct glint_highlight_state *b,
-                       struct gathered *g)
+/* Sets the middle of highlight G to the mean position of its light. */
+static void set_highlight_middle(const struct glint_highlight_state *b,
+                                 struct gathered *g)
 {
     uint64_t weight = 0, at[2] = {0, 0};
 
     for (int i = g->first; i != END; i = b->next[i]) {
-        const uint64_t w = compute_weight(&b->cell[i], g->flux_q19);
+        const uint64_t w = compute_cell_weight(&b->cell[i], g->flux_q19);
         int32_t middle[2];
 
         find_cell_middle(b, i, middle);
@@ -175,11 +181,11 @@ static void set_middle(const struct glint_highlight_state *b,
             at[k] += w * (uint64_t)middle[k];
     }
     for (int k = 0; k < 2; k++)
-        g->at_q8[k] = glint_ratio(at[k], weight);
+        g->at_q8[k] = glint_divide_rounded(at[k], weight);
 }
 
-/* Gathers the highlight that contains square I. The square must be in no
- * list. */
+/* Returns the highlight that contains square I, which must belong to no
+ * highlight yet. */
 static struct gathered gather_highlight(struct glint_highlight_state *b, int i)
 {
     struct gathered g = {.first = i};
@@ -187,17 +193,18 @@ static struct gathered gather_highlight(struct glint_highlight_state *b, int i)
 
     b->next[i] = END;
     for (int at = i; at != END; at = b->next[at]) {
-        add_cell(&b->cell[at], &g);
-        last = append_neighbours(b, at, last);
+        add_cell_to_highlight(&b->cell[at], &g);
+        last = append_lit_neighbours(b, at, last);
     }
-    set_middle(b, &g);
+    set_highlight_middle(b, &g);
     return g;
 }
 
 /* ----------------------------------------------------------------- choosing */
 
-/* Inserts G into the list of the N brightest so far, at most KEPT; returns the
- * new number. Equal highlights stay in the order in which they were found. */
+/* Inserts G into the list KEPT of the brightest highlights, which has N
+ * elements and holds at most KEPT; returns the new number. Equally bright
+ * highlights stay in the order in which they were found. */
 static int insert_brightest(struct gathered *kept, int n,
                             const struct gathered *g)
 {
@@ -211,7 +218,8 @@ static int insert_brightest(struct gathered *kept, int n,
     return n < KEPT ? n + 1 : n;
 }
 
-static int is_near(const struct gathered *a, const struct gathered *b)
+static int are_highlights_near(const struct gathered *a,
+                               const struct gathered *b)
 {
     const int64_t x = a->at_q8[0] - b->at_q8[0], y = a->at_q8[1] - b->at_q8[1];
     const int64_t most = 256 * GLINT_SCENE_HIGHLIGHT_APART;
@@ -219,7 +227,7 @@ static int is_near(const struct gathered *a, const struct gathered *b)
     return x * x + y * y < most * most;
 }
 
-/* Merges FROM and its list of squares into TO. */
+/* Merges highlight FROM and its list of squares into TO. */
 static void merge_highlights(struct glint_highlight_state *b,
                              struct gathered *to, const struct gathered *from)
 {
@@ -236,7 +244,7 @@ static void merge_highlights(struct glint_highlight_state *b,
         to->peak_q15 = from->peak_q15;
         to->object = from->object;
     }
-    set_middle(b, to);
+    set_highlight_middle(b, to);
 }
 
 static int remove_highlight(struct gathered *kept, int n, int i)
@@ -246,14 +254,15 @@ static int remove_highlight(struct gathered *kept, int n, int i)
     return n - 1;
 }
 
-/* Merges the first pair of the *N highlights that are near each other, and
- * sorts the result by brightness. Returns whether there was such a pair. */
-static int merge_first_pair(struct glint_highlight_state *b,
-                            struct gathered *kept, int *n)
+/* Merges the first pair of the *N highlights whose spots are near each other,
+ * and sorts the list by brightness again. Returns 0 if there is no such
+ * pair. */
+static int merge_first_near_pair(struct glint_highlight_state *b,
+                                 struct gathered *kept, int *n)
 {
     for (int i = 0; i < *n; i++)
         for (int k = i + 1; k < *n; k++)
-            if (is_near(&kept[i], &kept[k])) {
+            if (are_highlights_near(&kept[i], &kept[k])) {
                 struct gathered both = kept[i];
 
                 merge_highlights(b, &both, &kept[k]);
@@ -271,24 +280,27 @@ struct spread {
     int64_t x_q8, y_q8, xy_q8;
 };
 
-/* Returns the variances of the middles of G's squares, plus the mean variance
- * within squares, taken as isotropic. */
-static struct spread compute_spread(const struct glint_highlight_state *b,
-                                    const struct gathered *g)
+/* Returns the variance and covariance of the light of highlight G: of the
+ * middles of its squares, plus the mean variance within a square, assumed
+ * isotropic. */
+static struct spread
+compute_highlight_variance(const struct glint_highlight_state *b,
+                           const struct gathered *g)
 {
     int64_t x = 0, y = 0, xy = 0, within = 0;
     uint64_t weight = 0;
 
     for (int i = g->first; i != END; i = b->next[i]) {
         const struct glint_highlight_cell *c = &b->cell[i];
-        const int64_t w = (int64_t)compute_weight(c, g->flux_q19);
+        const int64_t w = (int64_t)compute_cell_weight(c, g->flux_q19);
         int32_t middle[2];
         int64_t off[2], own;
 
         find_cell_middle(b, i, middle);
         for (int k = 0; k < 2; k++) /* below 2^17, q4 */
             off[k] = (middle[k] - g->at_q8[k]) / 16;
-        own = glint_ratio((uint64_t)c->square_q35, (uint64_t)c->flux_q19);
+        own = glint_divide_rounded((uint64_t)c->square_q35,
+                                   (uint64_t)c->flux_q19);
         for (int k = 0; k < 2; k++) {
             const int64_t in = middle[k] % SIDE_Q8;
 
@@ -300,46 +312,51 @@ static struct spread compute_spread(const struct glint_highlight_state *b,
         within += w * q_clamp_sat(own, 0, SIDE_Q8 * SIDE_Q8);
         weight += (uint64_t)w;
     }
-    within = glint_ratio((uint64_t)within, weight << 8);
-    return (struct spread){glint_ratio((uint64_t)x, weight) + within,
-                           glint_ratio((uint64_t)y, weight) + within,
-                           (xy < 0 ? -1 : 1) *
-                               (int64_t)glint_ratio(q_magnitude(xy), weight)};
+    within = glint_divide_rounded((uint64_t)within, weight << 8);
+    return (struct spread){glint_divide_rounded((uint64_t)x, weight) + within,
+                           glint_divide_rounded((uint64_t)y, weight) + within,
+                           (xy < 0 ? -1 : 1) * (int64_t)glint_divide_rounded(
+                                                   q_magnitude(xy), weight)};
 }
 
-/* Returns the square root of a variance, pixels q8, at least half a pixel. */
-static int32_t root_q8(int64_t variance_q8)
+/* Returns the standard deviation of VARIANCE, pixels q8, at least half a
+ * pixel. */
+static int32_t sqrt_variance_q8(int64_t variance_q8)
 {
-    return q_larger(
-        128, (int32_t)glint_root((uint64_t)q_clamp_sat(variance_q8, 0, 1 << 30)
-                                 << 8));
+    return q_larger(128,
+                    (int32_t)glint_square_root(
+                        (uint64_t)q_clamp_sat(variance_q8, 0, 1 << 30) << 8));
 }
 
-static void set_extent(const struct spread *s, struct glint_spot *spot)
+static void set_spot_extent(const struct spread *s, struct glint_spot *spot)
 {
     const int64_t half = (s->x_q8 - s->y_q8) / 2;
     const int64_t middle = (s->x_q8 + s->y_q8) / 2;
-    const int64_t apart =
-        glint_root((uint64_t)(half * half) + (uint64_t)(s->xy_q8 * s->xy_q8));
+    const int64_t apart = glint_square_root((uint64_t)(half * half) +
+                                            (uint64_t)(s->xy_q8 * s->xy_q8));
     int64_t cos2_q15 = ONE_Q15;
 
-    spot->axis_q8[0] = root_q8(middle + apart);
-    spot->axis_q8[1] = root_q8(middle - apart);
-    spot->size_q8 = (int32_t)glint_root(
+    spot->axis_q8[0] = sqrt_variance_q8(middle + apart);
+    spot->axis_q8[1] = sqrt_variance_q8(middle - apart);
+    spot->size_q8 = (int32_t)glint_square_root(
         (uint64_t)((int64_t)spot->axis_q8[0] * spot->axis_q8[0] +
                    (int64_t)spot->axis_q8[1] * spot->axis_q8[1]));
     if (apart > 0)
-        cos2_q15 = (half < 0 ? -1 : 1) *
-                   q_smaller(ONE_Q15, glint_ratio(q_magnitude(half) << 15,
-                                                  (uint64_t)apart));
-    spot->cos_q15 = (int32_t)glint_root((uint64_t)(ONE_Q15 + cos2_q15) << 14);
-    spot->sin_q15 = (int32_t)glint_root((uint64_t)(ONE_Q15 - cos2_q15) << 14);
+        cos2_q15 =
+            (half < 0 ? -1 : 1) *
+            q_smaller(ONE_Q15, glint_divide_rounded(q_magnitude(half) << 15,
+                                                    (uint64_t)apart));
+    spot->cos_q15 =
+        (int32_t)glint_square_root((uint64_t)(ONE_Q15 + cos2_q15) << 14);
+    spot->sin_q15 =
+        (int32_t)glint_square_root((uint64_t)(ONE_Q15 - cos2_q15) << 14);
     if (s->xy_q8 < 0)
         spot->sin_q15 = -spot->sin_q15;
 }
 
-/* Sets the colour of SPOT to the colour of G at luminance 1. */
-static void set_colour(const struct gathered *g, struct glint_spot *spot)
+/* Sets the colour of SPOT to the colour of highlight G, scaled to luminance
+ * 1. */
+static void set_spot_colour(const struct gathered *g, struct glint_spot *spot)
 {
     const uint64_t flux = (uint64_t)g->flux_q19;
     /* Blue is at most 2^4 times the flux. */
@@ -347,20 +364,21 @@ static void set_colour(const struct gathered *g, struct glint_spot *spot)
     int64_t rest;
 
     spot->rgb_q15[0] =
-        glint_ratio((uint64_t)g->red_q19 << up, flux >> (15 - up));
+        glint_divide_rounded((uint64_t)g->red_q19 << up, flux >> (15 - up));
     spot->rgb_q15[2] =
-        glint_ratio((uint64_t)g->blue_q19 << up, flux >> (15 - up));
+        glint_divide_rounded((uint64_t)g->blue_q19 << up, flux >> (15 - up));
     rest = ((int64_t)ONE_Q15 << 15) - INT64_C(6966) * spot->rgb_q15[0] -
            INT64_C(2366) * spot->rgb_q15[2];
-    spot->rgb_q15[1] = rest > 0 ? glint_ratio((uint64_t)rest, 23436) : 0;
+    spot->rgb_q15[1] =
+        rest > 0 ? glint_divide_rounded((uint64_t)rest, 23436) : 0;
 }
 
-static void set_spot(const struct glint_highlight_state *b,
-                     const struct gathered *g,
-                     struct glint_scene_highlight *found)
+static void convert_highlight_to_spot(const struct glint_highlight_state *b,
+                                      const struct gathered *g,
+                                      struct glint_scene_highlight *found)
 {
     struct glint_spot *spot = &found->spot;
-    const struct spread spread = compute_spread(b, g);
+    const struct spread spread = compute_highlight_variance(b, g);
     const int64_t max_q16 = INT64_C(1) << 42;
 
     *spot = (struct glint_spot){.x_q8 = g->at_q8[0],
@@ -370,8 +388,8 @@ static void set_spot(const struct glint_highlight_state *b,
     if (spot->flux_q16 > max_q16)
         spot->flux_q16 = max_q16;
     spot->power_q16 = spot->flux_q16;
-    set_extent(&spread, spot);
-    set_colour(g, spot);
+    set_spot_extent(&spread, spot);
+    set_spot_colour(g, spot);
     found->object = (int)g->object;
 }
 
@@ -391,18 +409,18 @@ static int find_highlights(const struct glint_scene *scene,
             n = insert_brightest(kept, n, &g);
         }
     do
-        joined = merge_first_pair(b, kept, &n);
+        joined = merge_first_near_pair(b, kept, &n);
     while (joined);
-    n = q_smaller(n, glint_scene_wanted_highlights(scene));
+    n = q_smaller(n, glint_scene_max_highlights(scene));
     while (n > 0 && kept[n - 1].flux_q19 < LEAST_Q19)
         n--;
     for (int i = 0; i < n; i++)
-        set_spot(b, &kept[i], &found[i]);
+        convert_highlight_to_spot(b, &kept[i], &found[i]);
     return n;
 }
 
 const struct glint_scene_highlights glint_scene_highlights = {
-    carve_highlights, clear_cells, add_sample};
+    allocate_highlights, clear_highlight_cells, add_highlight_sample};
 
 int glint_scene_find_highlights(const struct glint_scene *scene,
                                 struct glint_scene_highlight *found)

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shells around visible foods, lines to the sensors that see them, and the box
- * of all frames: their positions in a picture, and their compositing over the
- * pixels of a tile.
+ * Draws the overlays of a recorded motion: shells around visible foods, lines
+ * from foods to the sensors that see them, and the box of all frames. Projects
+ * them to the picture, and composites them over the pixels of a tile.
  *
- * A line has a width in space: its cover of a pixel is the overlap of the pixel
- * with the width, at the distance of the pixel's middle, in q8. Widths are at
- * least 3/4 of a pixel. The cover of shells has an error of 2^-11 inside them;
- * their rims are found by exact rays. */
+ * A line has a width in space. Its cover of a pixel is the overlap of the pixel
+ * with that width, at the distance of the pixel's middle, in 1/256. Widths are
+ * at least 3/4 of a pixel. The cover of shells has an error of 2^-11 inside
+ * them; exact rays find their rims. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/motion/play.h"
@@ -15,29 +15,32 @@
 enum {
     ALL_Q8 = 256,
     SUMMED = 4,
-    MOST_HALF_Q8 = 1 << 16, /* max half width of a line */
-    LEAST_HALF_Q8 = 96      /* min half width of a line */
+    MOST_HALF_Q8 = 1 << 16, /* max half width of a line, 1/256 pixel */
+    LEAST_HALF_Q8 = 96      /* min half width of a line, 1/256 pixel */
 };
 
 /* ---------------------------------------------------------------- projection
  */
 
-/* A clipping plane: points whose dot product with BY is 0 or more are
- * inside. */
+/* A clipping plane: points whose dot product with the normal BY is 0 or more
+ * are inside. */
 struct side {
     int64_t by[3];
 };
 
-static int64_t find_distance_inside(const struct side *side, const int32_t v[3])
+static int64_t compute_distance_inside(const struct side *side,
+                                       const int32_t v[3])
 {
     return side->by[0] * v[0] + side->by[1] * v[1] + side->by[2] * v[2];
 }
 
-/* Clips A .. B to SIDE; returns 0 if nothing is left. */
-static int clip_line(const struct side *side, int32_t a[3], int32_t b[3])
+/* Clips the line from A to B to the inner side of plane SIDE; returns 0 if
+ * nothing is left. */
+static int clip_line_to_plane(const struct side *side, int32_t a[3],
+                              int32_t b[3])
 {
-    const int64_t in[2] = {find_distance_inside(side, a),
-                           find_distance_inside(side, b)};
+    const int64_t in[2] = {compute_distance_inside(side, a),
+                           compute_distance_inside(side, b)};
     int32_t part_q30;
 
     if (in[0] >= 0 && in[1] >= 0)
@@ -56,11 +59,12 @@ static int clip_line(const struct side *side, int32_t a[3], int32_t b[3])
     return 1;
 }
 
-/* Sets SIDE[2] to planes along axis K of the picture, outside its edges by the
- * max half width of a line plus two pixels. Coefficients are below 2^72, so
- * they are truncated to 30 bits, and coordinates are below 2^30. */
-static void set_sides(const struct glint_scene_view *v, int k,
-                      struct side side[2])
+/* Sets SIDE[2] to the clipping planes at both edges of the picture along axis
+ * K, moved outwards by the max half width of a line plus two pixels.
+ * Coefficients are below 2^72, so they are truncated to 30 bits; coordinates
+ * are below 2^30. */
+static void set_clip_planes(const struct glint_scene_view *v, int k,
+                            struct side side[2])
 {
     const int64_t far_q8 =
         128 * (k ? v->height : v->width) + MOST_HALF_Q8 + 512;
@@ -76,16 +80,16 @@ static void set_sides(const struct glint_scene_view *v, int k,
     }
 }
 
-/* Clips A .. B, camera coordinates, to the region in front of the camera and
- * near the picture. */
-static int clip_to_view(const struct glint_scene_view *v, int32_t near,
-                        int32_t a[3], int32_t b[3])
+/* Clips the line from A to B, in camera coordinates, to the region in front of
+ * the camera and near the picture. */
+static int clip_line_to_view(const struct glint_scene_view *v, int32_t near,
+                             int32_t a[3], int32_t b[3])
 {
     struct side side[4];
     const int32_t behind[2] = {a[2] - near, b[2] - near};
 
-    set_sides(v, 0, side);
-    set_sides(v, 1, side + 2);
+    set_clip_planes(v, 0, side);
+    set_clip_planes(v, 1, side + 2);
     if (behind[0] < 0 && behind[1] < 0)
         return 0;
     if (behind[0] < 0 || behind[1] < 0) {
@@ -100,19 +104,21 @@ static int clip_to_view(const struct glint_scene_view *v, int32_t near,
         out[2] = q_larger(out[2], near);
     }
     for (int k = 0; k < 4; k++)
-        if (!clip_line(&side[k], a, b))
+        if (!clip_line_to_plane(&side[k], a, b))
             return 0;
     return a[2] > 0 && b[2] > 0;
 }
 
-static struct glint_motion_layer *next_layer(struct glint_motion_state *m)
+static struct glint_motion_layer *append_layer(struct glint_motion_state *m)
 {
     return m->n_layers < m->max_layers ? &m->layer[m->n_layers] : NULL;
 }
 
-/* Sets the box of L to the pixels within FAR_Q8 of its two ends. */
-static void set_box(const struct glint_scene *s, struct glint_motion_layer *l,
-                    const struct glint_corner end[2], int32_t far_q8)
+/* Sets the box of line L to the pixels within FAR_Q8 of its ends and of the
+ * line between. */
+static void set_line_box(const struct glint_scene *s,
+                         struct glint_motion_layer *l,
+                         const struct glint_corner end[2], int32_t far_q8)
 {
     const struct glint_box all = {0, 0, s->view.width, s->view.height};
     const int32_t x_q8 = 128 * (s->view.width - 1);
@@ -126,36 +132,39 @@ static void set_box(const struct glint_scene *s, struct glint_motion_layer *l,
                  ((q_larger(end[0].y, end[1].y) + y_q8 + far_q8) >> 8) + 2});
 }
 
-/* Adds a line of KIND, WIDTH steps wide, from point A to point B. */
-static void add_line(struct glint_scene *s, const int32_t a[3],
-                     const int32_t b[3], int32_t width,
-                     enum glint_scene_kind kind)
+/* Adds a line of kind KIND, WIDTH steps wide, from point A to point B. */
+static void append_line(struct glint_scene *s, const int32_t a[3],
+                        const int32_t b[3], int32_t width,
+                        enum glint_scene_kind kind)
 {
-    struct glint_motion_layer *l = next_layer(s->motion);
+    struct glint_motion_layer *l = append_layer(s->motion);
     const int32_t near = s->nearest / 2 + 1; /* depths are below 2^31 */
     int32_t v[2][3];
     struct glint_corner end[2];
     int64_t along[3];
     int32_t unit_q30[3], most = 0;
 
-    glint_view_seen(&s->view, a, v[0]);
-    glint_view_seen(&s->view, b, v[1]);
-    if (!l || width < 1 || !clip_to_view(&s->view, near, v[0], v[1]))
+    glint_view_to_camera(&s->view, a, v[0]);
+    glint_view_to_camera(&s->view, b, v[1]);
+    if (!l || width < 1 || !clip_line_to_view(&s->view, near, v[0], v[1]))
         return;
     for (int k = 0; k < 2; k++) {
-        end[k] = glint_view_corner(&s->view, v[k]);
-        l->half_q8[k] = q_clamp_sat(
-            glint_ratio((uint64_t)width * (uint64_t)s->view.per_tan_q8 / 2,
-                        (uint64_t)v[k][2]),
-            LEAST_HALF_Q8, 1 << 30);
-        l->depth[k] = q_larger(
-            1, glint_ratio((uint64_t)s->nearest << 30, (uint64_t)v[k][2]));
+        end[k] = glint_view_project_vertex(&s->view, v[k]);
+        l->half_q8[k] =
+            q_clamp_sat(glint_divide_rounded(
+                            (uint64_t)width * (uint64_t)s->view.per_tan_q8 / 2,
+                            (uint64_t)v[k][2]),
+                        LEAST_HALF_Q8, 1 << 30);
+        l->depth[k] =
+            q_larger(1, glint_divide_rounded((uint64_t)s->nearest << 30,
+                                             (uint64_t)v[k][2]));
         most = q_larger(most, q_smaller(MOST_HALF_Q8, l->half_q8[k]));
     }
     along[0] = (int64_t)end[1].x - end[0].x;
     along[1] = (int64_t)end[1].y - end[0].y;
     along[2] = 0;
-    if (end[0].w != 1 || end[1].w != 1 || !glint_unit(along, unit_q30))
+    if (end[0].w != 1 || end[1].w != 1 ||
+        !glint_normalise_vector(along, unit_q30))
         return;
     l->ball = NULL;
     l->kind = kind;
@@ -163,25 +172,25 @@ static void add_line(struct glint_scene *s, const int32_t a[3],
                                          : s->motion->how->line_material;
     l->x_q8 = end[0].x;
     l->y_q8 = end[0].y;
-    l->length_q8 = (int32_t)glint_root(
+    l->length_q8 = (int32_t)glint_square_root(
         (uint64_t)(along[0] * along[0] + along[1] * along[1]));
     for (int k = 0; k < 2; k++)
         l->along_q14[k] = (int32_t)q_shift(unit_q30[k], 16);
     l->z = v[0][2] / 2 + v[1][2] / 2;
-    set_box(s, l, end, most + 128);
+    set_line_box(s, l, end, most + 128);
     s->motion->n_layers += !glint_box_empty(l->box) && l->length_q8 > 0;
 }
 
-/* Moves A towards B by STEPS; returns 0 if their distance is smaller. */
-static int move_towards(int32_t a[3], const int32_t b[3], int32_t steps)
+/* Moves point A by STEPS towards B; returns 0 if B is nearer than STEPS. */
+static int move_point_towards(int32_t a[3], const int32_t b[3], int32_t steps)
 {
     int64_t off[3];
     int32_t d[3], unit_q30[3];
 
-    v3_minus(b, a, d);
+    v3_subtract(b, a, d);
     for (int k = 0; k < 3; k++)
         off[k] = d[k];
-    if (!glint_unit(off, unit_q30) ||
+    if (!glint_normalise_vector(off, unit_q30) ||
         (uint64_t)v3_dot(d, d) <= (uint64_t)((int64_t)steps * steps))
         return 0;
     for (int k = 0; k < 3; k++)
@@ -189,16 +198,17 @@ static int move_towards(int32_t a[3], const int32_t b[3], int32_t steps)
     return 1;
 }
 
-/* Returns the radius of object FIRST + I, or 0 if there is no such object. */
-static int32_t find_radius(const struct glint_scene *s, uint32_t first,
-                           uint32_t i)
+/* Returns the radius of object FIRST + I, steps, or 0 if there is no such
+ * object. */
+static int32_t get_ball_radius(const struct glint_scene *s, uint32_t first,
+                               uint32_t i)
 {
     return first == GLINT_SCENE_NONE ? 0 : s->placed[first + i].radius;
 }
 
 /* Adds lines from the surface of food F to the surface of each sensor that sees
  * it. */
-static void add_lines(struct glint_scene *s, uint32_t f)
+static void append_sight_lines(struct glint_scene *s, uint32_t f)
 {
     const struct glint_motion_state *m = s->motion;
 
@@ -211,15 +221,15 @@ static void add_lines(struct glint_scene *s, uint32_t f)
             a[k] = m->food_at[f][k];
             b[k] = m->sensor_at[i][k];
         }
-        if (move_towards(a, b, find_radius(s, m->how->food, f)) &&
-            move_towards(b, a, find_radius(s, m->how->sensor, i)))
-            add_line(s, a, b, m->line, GLINT_KIND_LINES);
+        if (move_point_towards(a, b, get_ball_radius(s, m->how->food, f)) &&
+            move_point_towards(b, a, get_ball_radius(s, m->how->sensor, i)))
+            append_line(s, a, b, m->line, GLINT_KIND_LINES);
     }
 }
 
-/* Returns the min cosine between P's normal and a ray at which all samples of a
- * pixel meet P. */
-static int32_t inner_q30(const struct glint_placed *p)
+/* Returns the min cosine between ball P's normal and a ray at which all samples
+ * of a pixel hit P. */
+static int32_t compute_inner_cosine_q30(const struct glint_placed *p)
 {
     const int64_t within = (int64_t)p->radius - p->margin;
     int64_t sine_q30;
@@ -227,15 +237,15 @@ static int32_t inner_q30(const struct glint_placed *p)
     if (within <= 0)
         return INT32_MAX;
     sine_q30 = q_part_q30((uint64_t)within, (uint64_t)p->radius);
-    return (int32_t)glint_root((UINT64_C(1) << 60) -
-                               (uint64_t)(sine_q30 * sine_q30)) +
+    return (int32_t)glint_square_root((UINT64_C(1) << 60) -
+                                      (uint64_t)(sine_q30 * sine_q30)) +
            1;
 }
 
-static void add_shell(struct glint_scene *s, uint32_t f)
+static void append_shell(struct glint_scene *s, uint32_t f)
 {
     struct glint_motion_state *m = s->motion;
-    struct glint_motion_layer *l = next_layer(m);
+    struct glint_motion_layer *l = append_layer(m);
     struct glint_placed *p = &m->ball[f];
 
     if (!l || m->shell < 1 || m->how->food == GLINT_SCENE_NONE)
@@ -246,22 +256,23 @@ static void add_shell(struct glint_scene *s, uint32_t f)
                                .is_shown = 1};
     for (int k = 0; k < 3; k++)
         p->at[k] = p->centre[k] = m->food_at[f][k];
-    glint_scene_place(s, p);
+    glint_scene_find_object_box(s, p);
     if (!p->is_seen)
         return;
-    glint_quick_ball(s, p);
+    glint_quick_prepare_ball(s, p);
     l->ball = p;
     l->kind = GLINT_KIND_SHELLS;
-    l->depth[0] = q_larger(1, glint_ratio((uint64_t)s->nearest << 30,
-                                          (uint64_t)q_larger(p->z[1], 1)));
-    l->inner_q30 = inner_q30(p);
+    l->depth[0] =
+        q_larger(1, glint_divide_rounded((uint64_t)s->nearest << 30,
+                                         (uint64_t)q_larger(p->z[1], 1)));
+    l->inner_q30 = compute_inner_cosine_q30(p);
     l->material = m->how->shell_material;
     l->z = p->z[0] / 2 + p->z[1] / 2;
     l->box = p->box;
     m->n_layers++;
 }
 
-static void add_box(struct glint_scene *s)
+static void append_box_edges(struct glint_scene *s)
 {
     const struct glint_motion_state *m = s->motion;
     const int32_t *end[2] = {m->low, m->high};
@@ -275,7 +286,7 @@ static void add_box(struct glint_scene *s)
             a[j] = b[j] = end[k >> 1][j];
             a[axis] = m->low[axis];
             b[axis] = m->high[axis];
-            add_line(s, a, b, m->edge, GLINT_KIND_BOX);
+            append_line(s, a, b, m->edge, GLINT_KIND_BOX);
         }
 }
 
@@ -297,20 +308,21 @@ static void project_layers(struct glint_scene *s)
     struct glint_motion_state *m = s->motion;
 
     m->n_layers = 0;
-    if (glint_motion_shows(m, GLINT_KIND_BOX))
-        add_box(s);
+    if (glint_motion_is_kind_shown(m, GLINT_KIND_BOX))
+        append_box_edges(s);
     for (uint32_t f = 0; f < m->motion.header.n_foods; f++) {
         if (!m->seen_by[f])
             continue;
-        if (glint_motion_shows(m, GLINT_KIND_SHELLS))
-            add_shell(s, f);
-        if (glint_motion_shows(m, GLINT_KIND_LINES))
-            add_lines(s, f);
+        if (glint_motion_is_kind_shown(m, GLINT_KIND_SHELLS))
+            append_shell(s, f);
+        if (glint_motion_is_kind_shown(m, GLINT_KIND_LINES))
+            append_sight_lines(s, f);
     }
     sort_layers(m);
 }
 
-static int count_layers(const struct glint_scene *s, enum glint_scene_kind kind)
+static int count_kind_layers(const struct glint_scene *s,
+                             enum glint_scene_kind kind)
 {
     int n = 0;
 
@@ -322,8 +334,8 @@ static int count_layers(const struct glint_scene *s, enum glint_scene_kind kind)
 /* --------------------------------------------------------------------- tiles
  */
 
-static struct glint_box find_touched_box(const struct glint_scene *s,
-                                         struct glint_box tile)
+static struct glint_box find_layer_box(const struct glint_scene *s,
+                                       struct glint_box tile)
 {
     struct glint_box all = {0, 0, 0, 0};
 
@@ -332,12 +344,13 @@ static struct glint_box find_touched_box(const struct glint_scene *s,
     return all;
 }
 
-/* Narrows X0 .. X1 - 1 to the pixels of row Y that line L may touch. */
-static void narrow_columns(const struct glint_scene *s,
-                           const struct glint_motion_layer *l, int y, int *x0,
-                           int *x1)
+/* Narrows the range X0 .. X1 - 1 to the pixels of row Y that line L may
+ * cover. */
+static void narrow_columns_to_line(const struct glint_scene *s,
+                                   const struct glint_motion_layer *l, int y,
+                                   int *x0, int *x1)
 {
-    const int32_t down = glint_place(s, y, 1) - l->y_q8;
+    const int32_t down = glint_pixel_position_q8(s, y, 1) - l->y_q8;
     const int32_t *u = l->along_q14;
     const int64_t reach =
         (int64_t)(q_smaller(MOST_HALF_Q8,
@@ -361,7 +374,7 @@ static void narrow_columns(const struct glint_scene *s,
     *x1 = q_smaller(*x1, q_clamp_sat((at[1] >> 8) + 2, 0, INT32_MAX));
 }
 
-static void list_spans(struct glint_scene_worker *w, int y)
+static void list_row_spans(struct glint_scene_worker *w, int y)
 {
     const struct glint_motion_state *m = w->scene->motion;
 
@@ -373,19 +386,20 @@ static void list_spans(struct glint_scene_worker *w, int y)
         if (y < b.y0 || y >= b.y1)
             continue;
         if (!m->layer[i].ball)
-            narrow_columns(w->scene, &m->layer[i], y, &span.x0, &span.x1);
-        else if (!glint_scene_span(w->scene, m->layer[i].ball, y, &span.x0,
-                                   &span.x1))
+            narrow_columns_to_line(w->scene, &m->layer[i], y, &span.x0,
+                                   &span.x1);
+        else if (!glint_scene_find_ball_span(w->scene, m->layer[i].ball, y,
+                                             &span.x0, &span.x1))
             continue;
         if (span.x0 < span.x1)
             w->span[w->n_spans++] = span;
     }
 }
 
-/* Returns the fraction of the samples of a pixel that see nothing nearer than
- * DEPTH, q8. */
-static int seen_q8(const struct glint_scene_worker *w, int x, int y,
-                   int32_t depth)
+/* Returns the fraction of the samples of pixel (X, Y) at which no object is
+ * nearer than DEPTH, q8. */
+static int compute_unoccluded_q8(const struct glint_scene_worker *w, int x,
+                                 int y, int32_t depth)
 {
     const int n = w->scene->cfg.edge_samples;
     const int first = glint_sample_index(w, x, y, 0);
@@ -397,11 +411,12 @@ static int seen_q8(const struct glint_scene_worker *w, int x, int y,
 }
 
 /* Returns the fraction of pixel (X, Y) that line L covers, q8. */
-static int line_q8(const struct glint_scene_worker *w,
-                   const struct glint_motion_layer *l, int x, int y)
+static int compute_line_cover_q8(const struct glint_scene_worker *w,
+                                 const struct glint_motion_layer *l, int x,
+                                 int y)
 {
-    const int64_t dx = glint_place(w->scene, x, 0) - l->x_q8;
-    const int64_t dy = glint_place(w->scene, y, 1) - l->y_q8;
+    const int64_t dx = glint_pixel_position_q8(w->scene, x, 0) - l->x_q8;
+    const int64_t dy = glint_pixel_position_q8(w->scene, y, 1) - l->y_q8;
     const int32_t along =
         (int32_t)q_shift(dx * l->along_q14[0] + dy * l->along_q14[1], 14);
     const int32_t across = (int32_t)q_magnitude(
@@ -422,43 +437,47 @@ static int line_q8(const struct glint_scene_worker *w,
     if (cover <= 0)
         return 0;
     return (cover * end >> 8) *
-               seen_q8(w, x, y,
-                       l->depth[0] +
-                           q_mul(l->depth[1] - l->depth[0], part_q30, 30)) >>
+               compute_unoccluded_q8(
+                   w, x, y,
+                   l->depth[0] +
+                       q_mul(l->depth[1] - l->depth[0], part_q30, 30)) >>
            8;
 }
 
 /* Returns the depth of the point T steps away in direction SEEN_Q30. */
-static int32_t compute_depth(const struct glint_scene *s, int32_t t,
-                             const int32_t seen_q30[3])
+static int32_t compute_depth_at_distance(const struct glint_scene *s, int32_t t,
+                                         const int32_t seen_q30[3])
 {
     const int32_t z = t <= 0 ? 1 : q_larger(1, q_mul(t, seen_q30[2], 30));
 
-    return q_larger(1, glint_ratio((uint64_t)s->nearest << 30, (uint64_t)z));
+    return q_larger(
+        1, glint_divide_rounded((uint64_t)s->nearest << 30, (uint64_t)z));
 }
 
-/* Sets CHORD to the chord in BALL of the ray through (X, Y), and DEPTH to the
- * depth of the chord's start; returns 0 if the ray misses BALL. */
-static int find_entry(const struct glint_scene *s,
-                      const struct glint_placed *ball, int32_t x_q8,
-                      int32_t y_q8, struct glint_chord *chord, int32_t *depth)
+/* Sets CHORD to the chord of the ray through (X, Y) in BALL, and DEPTH to the
+ * depth at which the ray enters BALL; returns 0 if the ray misses BALL. */
+static int find_ball_entry(const struct glint_scene *s,
+                           const struct glint_placed *ball, int32_t x_q8,
+                           int32_t y_q8, struct glint_chord *chord,
+                           int32_t *depth)
 {
     struct glint_scene_ray ray;
     int32_t seen_q30[3];
 
-    glint_view_ray(&s->view, x_q8, y_q8, &ray, seen_q30);
-    if (!glint_ray_sphere(&ray, ball->at, ball->radius, chord) ||
+    glint_view_set_ray(&s->view, x_q8, y_q8, &ray, seen_q30);
+    if (!glint_ray_intersect_sphere(&ray, ball->at, ball->radius, chord) ||
         chord->t[1] <= 0)
         return 0;
-    *depth = compute_depth(s, chord->t[0], seen_q30);
+    *depth = compute_depth_at_distance(s, chord->t[0], seen_q30);
     return 1;
 }
 
-/* Returns the cover of a shell at COSINE_Q15 between normal and ray: 1 minus
- * the material's transmission at the rim, half of that in the middle. The
- * result is q31, as both q15 factors are doubled. */
-static int64_t shell_q31(const struct glint_scene *s,
-                         const struct glint_motion_layer *l, int32_t cosine_q15)
+/* Returns the opacity of a shell where COSINE_Q15 is the cosine between normal
+ * and ray: 1 minus the material's transmission at the rim, half of that in the
+ * middle. The result is q31, as both q15 factors are doubled. */
+static int64_t compute_shell_cover_q31(const struct glint_scene *s,
+                                       const struct glint_motion_layer *l,
+                                       int32_t cosine_q15)
 {
     const int32_t share_q15 =
         GLINT_SCENE_ONE_Q15 - s->material[l->material].pass_q15;
@@ -466,20 +485,22 @@ static int64_t shell_q31(const struct glint_scene *s,
     return (int64_t)share_q15 * (2 * GLINT_SCENE_ONE_Q15 - cosine_q15);
 }
 
-/* Returns the cover of pixel (X, Y) by a shell, q8, near the shell's rim, or if
- * the camera is inside it. */
-static NEVER_INLINE int rim_q8(const struct glint_scene_worker *w,
-                               const struct glint_motion_layer *l, int x, int y)
+/* Returns the opacity times cover of a shell in pixel (X, Y), q8, for pixels
+ * near the shell's rim, or if the camera is inside the shell. */
+static NEVER_INLINE int compute_rim_cover_q8(const struct glint_scene_worker *w,
+                                             const struct glint_motion_layer *l,
+                                             int x, int y)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_placed *ball = l->ball;
     const int n = s->cfg.edge_samples;
-    const int32_t x_q8 = glint_place(s, x, 0), y_q8 = glint_place(s, y, 1);
+    const int32_t x_q8 = glint_pixel_position_q8(s, x, 0),
+                  y_q8 = glint_pixel_position_q8(s, y, 1);
     struct glint_chord chord;
     int32_t depth = 0, cosine_q15 = 0;
     int hits = 0, is_inner = 0;
 
-    if (find_entry(s, ball, x_q8, y_q8, &chord, &depth)) {
+    if (find_ball_entry(s, ball, x_q8, y_q8, &chord, &depth)) {
         const int64_t radius = (int64_t)ball->radius * (INT64_C(1) << chord.up);
         const int64_t within =
             ((int64_t)ball->radius - ball->margin) * (INT64_C(1) << chord.up);
@@ -496,23 +517,25 @@ static NEVER_INLINE int rim_q8(const struct glint_scene_worker *w,
         struct glint_chord at;
         int32_t sample_depth;
 
-        if (!find_entry(s, ball, x_q8 + glint_sample(s, k, 0),
-                        y_q8 + glint_sample(s, k, 1), &at, &sample_depth))
+        if (!find_ball_entry(s, ball, x_q8 + glint_sample_offset_q8(s, k, 0),
+                             y_q8 + glint_sample_offset_q8(s, k, 1), &at,
+                             &sample_depth))
             continue;
         depth = q_larger(depth, sample_depth);
         hits++;
     }
     if (hits == 0)
         return 0;
-    return (int)q_shift(
-        (shell_q31(s, l, cosine_q15) * hits >> glint_samples_log2(n)) *
-            seen_q8(w, x, y, depth),
-        31);
+    return (int)q_shift((compute_shell_cover_q31(s, l, cosine_q15) * hits >>
+                         glint_samples_log2(n)) *
+                            compute_unoccluded_q8(w, x, y, depth),
+                        31);
 }
 
-/* Returns whether no sample of pixel (X, Y) sees anything nearer than DEPTH. */
-static int is_clear(const struct glint_scene_worker *w, int x, int y,
-                    int32_t depth)
+/* Returns whether no sample of pixel (X, Y) sees an object nearer than
+ * DEPTH. */
+static int is_pixel_unoccluded(const struct glint_scene_worker *w, int x, int y,
+                               int32_t depth)
 {
     const int32_t *at = &w->depth[glint_sample_index(w, x, y, 0)];
     int nearer = 0;
@@ -522,9 +545,10 @@ static int is_clear(const struct glint_scene_worker *w, int x, int y,
     return !nearer;
 }
 
-/* Returns the fraction of pixel (X, Y) that a shell covers, q8. */
-static int shell_q8(const struct glint_scene_worker *w,
-                    const struct glint_motion_layer *l, int x, int y)
+/* Returns the opacity times cover of a shell in pixel (X, Y), q8. */
+static int compute_shell_cover_q8(const struct glint_scene_worker *w,
+                                  const struct glint_motion_layer *l, int x,
+                                  int y)
 {
     const struct glint_scene *s = w->scene;
     struct glint_scene_ray ray;
@@ -532,21 +556,24 @@ static int shell_q8(const struct glint_scene_worker *w,
     int all_q8 = ALL_Q8;
 
     if (!l->ball->over_up)
-        return rim_q8(w, l, x, y);
-    glint_quick_ray(&s->view, glint_place(s, x, 0), glint_place(s, y, 1), &ray,
-                    seen_q30);
-    if (!glint_quick_meet(l->ball, &ray, across_q30, &cosine_q30) ||
+        return compute_rim_cover_q8(w, l, x, y);
+    glint_quick_compute_ray(&s->view, glint_pixel_position_q8(s, x, 0),
+                            glint_pixel_position_q8(s, y, 1), &ray, seen_q30);
+    if (!glint_quick_intersect_ball(l->ball, &ray, across_q30, &cosine_q30) ||
         cosine_q30 < l->inner_q30)
-        return rim_q8(w, l, x, y);
-    if (!is_clear(w, x, y, l->depth[0])) { /* compared with the shell's farthest
-                                              point */
-        t = glint_quick_away(l->ball, &ray, cosine_q30);
-        all_q8 = seen_q8(w, x, y, compute_depth(s, t, seen_q30));
+        return compute_rim_cover_q8(w, l, x, y);
+    if (!is_pixel_unoccluded(w, x, y, l->depth[0])) { /* compared with the depth
+                                                         of the shell's far
+                                                         side */
+        t = glint_quick_ball_distance(l->ball, &ray, cosine_q30);
+        all_q8 = compute_unoccluded_q8(
+            w, x, y, compute_depth_at_distance(s, t, seen_q30));
     }
-    return (int)q_shift(shell_q31(s, l, cosine_q30 >> 15) * all_q8, 31);
+    return (int)q_shift(
+        compute_shell_cover_q31(s, l, cosine_q30 >> 15) * all_q8, 31);
 }
 
-static int next_change(struct glint_scene_worker *w, int x)
+static int find_next_layer_change(struct glint_scene_worker *w, int x)
 {
     int end = w->tile.x1;
 
@@ -564,8 +591,8 @@ static int next_change(struct glint_scene_worker *w, int x)
     return end;
 }
 
-static void composite_layers(const struct glint_scene_worker *w, int x, int y,
-                             struct glint_scene_sum *sum)
+static void composite_pixel_layers(const struct glint_scene_worker *w, int x,
+                                   int y, struct glint_scene_sum *sum)
 {
     const struct glint_scene *s = w->scene;
 
@@ -574,7 +601,8 @@ static void composite_layers(const struct glint_scene_worker *w, int x, int y,
         const int32_t *rgb_q15 = s->material[l->material].rgb_q15;
         int a;
 
-        a = l->ball ? shell_q8(w, l, x, y) : line_q8(w, l, x, y);
+        a = l->ball ? compute_shell_cover_q8(w, l, x, y)
+                    : compute_line_cover_q8(w, l, x, y);
         if (a == 0)
             continue;
         for (int c = 0; c < 3; c++)
@@ -586,16 +614,17 @@ static void composite_layers(const struct glint_scene_worker *w, int x, int y,
     }
 }
 
-static void carve_worker(const struct glint_scene *s, struct glint_arena *arena,
-                         struct glint_scene_worker *worker)
+static void allocate_worker_layers(const struct glint_scene *s,
+                                   struct glint_arena *arena,
+                                   struct glint_scene_worker *worker)
 {
-    worker->span = glint_arena_take(arena, glint_motion_layers(s->model.motion),
-                                    sizeof *worker->span);
-    worker->over = glint_arena_take(arena, glint_motion_layers(s->model.motion),
-                                    sizeof *worker->over);
+    worker->span = glint_arena_take(
+        arena, glint_motion_max_layers(s->model.motion), sizeof *worker->span);
+    worker->over = glint_arena_take(
+        arena, glint_motion_max_layers(s->model.motion), sizeof *worker->over);
 }
 
 const struct glint_scene_motions glint_scene_motions = {
-    glint_motion_carve, carve_worker, glint_motion_begin,
-    project_layers,     count_layers, find_touched_box,
-    list_spans,         next_change,  composite_layers};
+    glint_motion_allocate, allocate_worker_layers, glint_motion_start_playback,
+    project_layers,        count_kind_layers,      find_layer_box,
+    list_row_spans,        find_next_layer_change, composite_pixel_layers};

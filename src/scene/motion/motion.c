@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads a recorded motion, block by block. A file in memory is checked
- * completely when it is opened; records of other files are checked when they
- * are read. */
+ * Reads a recorded motion block by block. A file in memory is checked
+ * completely when it is opened; the records of other files are checked each
+ * time that they are read. */
 #include "glint/scene/motion.h"
 
 #include "base/blob.h"
@@ -10,7 +10,7 @@
 #include "base/q.h"
 #include "scene/valid.h"
 
-/* The file is used in place: its layout is the layout of these structs. */
+/* The program reads the file in place: these structs are the file's layout. */
 STATIC_ASSERT(sizeof(struct glint_motion_pose) == 20);
 STATIC_ASSERT(sizeof(struct glint_motion_event) == 20);
 STATIC_ASSERT(sizeof(struct glint_motion_sensor) == 12);
@@ -36,7 +36,8 @@ uint32_t glint_motion_sum(const uint8_t *at, uint32_t block)
     return glint_blob_crc32(at + skipped, GLINT_MOTION_BLOCK - 4 - skipped);
 }
 
-/* Sets AT to block BLOCK. */
+/* Sets AT to the address of block BLOCK, which is read from the file if
+ * necessary. */
 static enum glint_status fetch_block(struct glint_motion *m, uint32_t block,
                                      const uint8_t **at)
 {
@@ -60,11 +61,11 @@ static enum glint_status fetch_block(struct glint_motion *m, uint32_t block,
     return GLINT_OK;
 }
 
-/* Sets RECORD to record I, of BYTES bytes, of the table that begins at
- * BLOCK. */
-static enum glint_status read_record(struct glint_motion *m, uint32_t block,
-                                     uint32_t i, size_t bytes,
-                                     const void **record)
+/* Sets RECORD to the address of record I, of BYTES bytes, in the table whose
+ * first block is BLOCK. */
+static enum glint_status read_table_record(struct glint_motion *m,
+                                           uint32_t block, uint32_t i,
+                                           size_t bytes, const void **record)
 {
     const uint32_t each = glint_motion_per_block(bytes);
     const uint8_t *at = NULL;
@@ -76,7 +77,7 @@ static enum glint_status read_record(struct glint_motion *m, uint32_t block,
 
 /* ------------------------------------------------------------------- checks */
 
-/* Returns the number of blocks of N records of BYTES bytes. */
+/* Returns the number of blocks that N records of BYTES bytes occupy. */
 static uint64_t count_blocks(uint64_t n, size_t bytes)
 {
     const uint64_t each = bytes ? glint_motion_per_block(bytes) : 1;
@@ -84,16 +85,16 @@ static uint64_t count_blocks(uint64_t n, size_t bytes)
     return bytes ? (n + each - 1) / each : 0;
 }
 
-static uint32_t n_index(const struct glint_motion_header *h)
+static uint32_t count_index_entries(const struct glint_motion_header *h)
 {
     return (uint32_t)count_blocks(h->n_frames,
                                   sizeof(struct glint_motion_pose));
 }
 
-static const char *check_counts(const struct glint_motion_header *h)
+static const char *check_record_counts(const struct glint_motion_header *h)
 {
     if (h->variant != 0)
-        return "the motion is of an unknown kind";
+        return "the motion's variant is unknown";
     if (h->n_frames < 1 || h->n_frames > GLINT_MOTION_MAX_FRAMES ||
         h->n_foods > GLINT_MOTION_MAX_FOODS ||
         h->n_sensors > GLINT_MOTION_MAX_SENSORS || h->n_events < h->n_foods ||
@@ -106,7 +107,7 @@ static const char *check_counts(const struct glint_motion_header *h)
         h->size >= GLINT_MOTION_SPAN || h->cos_half_q30 < -(1 << 30) ||
         h->cos_half_q30 > 1 << 30 || h->tan_half_q24 < 1 << 12 ||
         h->tan_half_q24 > 1 << 30 || h->residual_frame >= h->n_frames)
-        return "a number of the motion is out of range";
+        return "a parameter of the motion is out of range";
     for (int k = 0; k < 3; k++)
         if (h->low[k] <= -GLINT_MOTION_SPAN || h->high[k] < h->low[k] ||
             h->high[k] >= GLINT_MOTION_SPAN)
@@ -114,10 +115,10 @@ static const char *check_counts(const struct glint_motion_header *h)
     return NULL;
 }
 
-static const char *check_header(const struct glint_motion_header *h,
-                                uint64_t n_blocks)
+static const char *check_motion_header(const struct glint_motion_header *h,
+                                       uint64_t n_blocks)
 {
-    const char *const wrong = check_counts(h);
+    const char *const wrong = check_record_counts(h);
     uint64_t block = 1;
 
     if (wrong)
@@ -130,17 +131,19 @@ static const char *check_header(const struct glint_motion_header *h,
     block += count_blocks(h->n_events, sizeof(struct glint_motion_event));
     if (h->index_block != block)
         return outside;
-    block += count_blocks(n_index(h), sizeof(struct glint_motion_index));
+    block +=
+        count_blocks(count_index_entries(h), sizeof(struct glint_motion_index));
     if (h->pose_block != block)
         return outside;
-    block += n_index(h);
+    block += count_index_entries(h);
     if (h->intensity_block != block)
         return outside;
     block += count_blocks(h->n_frames, h->intensities);
     return block == n_blocks ? NULL : outside;
 }
 
-/* Returns whether AT lies in the box of the motion. */
+/* Returns whether position AT lies in the box that the header states for all
+ * positions. */
 static int is_in_motion_box(const struct glint_motion_header *h,
                             const int32_t at[3])
 {
@@ -150,20 +153,21 @@ static int is_in_motion_box(const struct glint_motion_header *h,
     return 1;
 }
 
-static int is_pose(const struct glint_motion_header *h,
-                   const struct glint_motion_pose *p)
+static int is_valid_pose(const struct glint_motion_header *h,
+                         const struct glint_motion_pose *p)
 {
     int64_t square_q28 = 0;
 
     for (int k = 0; k < 4; k++)
         square_q28 += (int64_t)p->turn_q14[k] * p->turn_q14[k];
-    /* the error is half a unit per element, up to 2^15 for the sum */
+    /* each element of the quaternion is off by at most half a unit, so the sum
+     * by 2^15 */
     return is_in_motion_box(h, p->at) && square_q28 >= (1 << 28) - (1 << 16) &&
            square_q28 <= (1 << 28) + (1 << 16);
 }
 
-static int is_event(const struct glint_motion_header *h,
-                    const struct glint_motion_event *e)
+static int is_valid_event(const struct glint_motion_header *h,
+                          const struct glint_motion_event *e)
 {
     return e->frame < h->n_frames && e->slot < h->n_foods &&
            is_in_motion_box(h, e->at);
@@ -177,12 +181,12 @@ static enum glint_status read_event(struct glint_motion *m, uint32_t i,
 {
     const void *record = NULL;
     const enum glint_status status =
-        read_record(m, m->header.event_block, i, sizeof **event, &record);
+        read_table_record(m, m->header.event_block, i, sizeof **event, &record);
 
     *event = record;
     if (status != GLINT_OK)
         return status;
-    return is_event(&m->header, *event) ? GLINT_OK : GLINT_E_FORMAT;
+    return is_valid_event(&m->header, *event) ? GLINT_OK : GLINT_E_FORMAT;
 }
 
 enum glint_status glint_motion_event(struct glint_motion *motion, uint32_t i,
@@ -205,8 +209,9 @@ enum glint_status glint_motion_index(struct glint_motion *motion, uint32_t i,
     const void *record = NULL;
     enum glint_status status = GLINT_E_ARGUMENT;
 
-    if (i < n_index(h))
-        status = read_record(motion, h->index_block, i, sizeof *index, &record);
+    if (i < count_index_entries(h))
+        status = read_table_record(motion, h->index_block, i, sizeof *index,
+                                   &record);
     if (status != GLINT_OK)
         return status;
     *index = *(const struct glint_motion_index *)record;
@@ -218,9 +223,9 @@ enum glint_status glint_motion_index(struct glint_motion *motion, uint32_t i,
     return GLINT_OK;
 }
 
-/* Sets the position of each food at frame K. */
-static enum glint_status place_foods(struct glint_motion *m, uint32_t k,
-                                     struct glint_motion_frame *frame)
+/* Sets the position of each food in frame K, from the events up to K. */
+static enum glint_status set_food_positions(struct glint_motion *m, uint32_t k,
+                                            struct glint_motion_frame *frame)
 {
     const uint32_t each =
         glint_motion_per_block(sizeof(struct glint_motion_pose));
@@ -248,8 +253,9 @@ static enum glint_status place_foods(struct glint_motion *m, uint32_t k,
     return status;
 }
 
-static enum glint_status set_intensities(struct glint_motion *m, uint32_t k,
-                                         struct glint_motion_frame *frame)
+static enum glint_status set_food_intensities(struct glint_motion *m,
+                                              uint32_t k,
+                                              struct glint_motion_frame *frame)
 {
     const struct glint_motion_header *h = &m->header;
     const int each = h->intensities == h->n_foods * h->n_sensors;
@@ -258,7 +264,8 @@ static enum glint_status set_intensities(struct glint_motion *m, uint32_t k,
     enum glint_status status = GLINT_OK;
 
     if (h->intensities)
-        status = read_record(m, h->intensity_block, k, h->intensities, &record);
+        status = read_table_record(m, h->intensity_block, k, h->intensities,
+                                   &record);
     from = record;
     for (uint32_t f = 0; status == GLINT_OK && f < h->n_foods; f++)
         for (uint32_t s = 0; s < h->n_sensors; s++)
@@ -277,29 +284,31 @@ enum glint_status glint_motion_frame(struct glint_motion *motion, uint32_t k,
 
     if (k >= h->n_frames)
         return GLINT_E_ARGUMENT;
-    status = read_record(motion, h->pose_block, k, sizeof frame->pose, &record);
+    status = read_table_record(motion, h->pose_block, k, sizeof frame->pose,
+                               &record);
     if (status == GLINT_OK) {
         frame->pose = *(const struct glint_motion_pose *)record;
-        status = is_pose(h, &frame->pose) ? GLINT_OK : GLINT_E_FORMAT;
+        status = is_valid_pose(h, &frame->pose) ? GLINT_OK : GLINT_E_FORMAT;
     }
     if (status == GLINT_OK)
-        status = place_foods(motion, k, frame);
-    return status == GLINT_OK ? set_intensities(motion, k, frame) : status;
+        status = set_food_positions(motion, k, frame);
+    return status == GLINT_OK ? set_food_intensities(motion, k, frame) : status;
 }
 
 /* --------------------------------------------------------------------- open */
 
-/* Copies the sensors. */
-static const char *take_sensors(struct glint_motion *m)
+/* Copies the sensors from the file to the motion. Returns the text of an error,
+ * or NULL. */
+static const char *copy_sensors(struct glint_motion *m)
 {
     for (uint32_t i = 0; i < m->header.n_sensors; i++) {
         const void *record = NULL;
 
-        if (read_record(m, m->header.sensor_block, i, sizeof *m->sensor,
-                        &record) != GLINT_OK)
+        if (read_table_record(m, m->header.sensor_block, i, sizeof *m->sensor,
+                              &record) != GLINT_OK)
             return "the motion's sensors cannot be read";
         m->sensor[i] = *(const struct glint_motion_sensor *)record;
-        if (!glint_scene_is_unit(m->sensor[i].axis_q30, 3))
+        if (!glint_scene_is_unit_vector(m->sensor[i].axis_q30, 3))
             return "a sensor's axis is not a unit vector";
     }
     return NULL;
@@ -310,15 +319,17 @@ static const char *check_poses(struct glint_motion *m)
     for (uint32_t i = 0; i < m->header.n_frames; i++) {
         const void *pose = NULL;
 
-        if (read_record(m, m->header.pose_block, i,
-                        sizeof(struct glint_motion_pose), &pose) != GLINT_OK ||
-            !is_pose(&m->header, pose))
+        if (read_table_record(m, m->header.pose_block, i,
+                              sizeof(struct glint_motion_pose),
+                              &pose) != GLINT_OK ||
+            !is_valid_pose(&m->header, pose))
             return "a pose is out of range";
     }
     return NULL;
 }
 
-/* Checks that events are sorted by frame, and begin with one event per food. */
+/* Checks that events are sorted by frame, and that the first events place each
+ * food. */
 static const char *check_events(struct glint_motion *m)
 {
     uint32_t last = 0;
@@ -328,21 +339,21 @@ static const char *check_events(struct glint_motion *m)
 
         if (read_event(m, i, &e) != GLINT_OK || e->frame < last ||
             (i < m->header.n_foods && (e->slot != i || e->frame)))
-            return "an event is out of range or order";
+            return "an event is out of range, or not in order";
         last = e->frame;
     }
     return NULL;
 }
 
-/* Checks that the index agrees with the events. */
-static const char *check_index(struct glint_motion *m)
+/* Checks that the index agrees with the events, which it locates by frame. */
+static const char *check_event_index(struct glint_motion *m)
 {
     const uint32_t each =
         glint_motion_per_block(sizeof(struct glint_motion_pose));
     uint32_t food[GLINT_MOTION_MAX_FOODS] = {0};
     uint32_t event = 0;
 
-    for (uint32_t block = 0; block < n_index(&m->header); block++) {
+    for (uint32_t block = 0; block < count_index_entries(&m->header); block++) {
         const struct glint_motion_event *e = NULL;
         struct glint_motion_index index;
         int fits;
@@ -356,7 +367,7 @@ static const char *check_index(struct glint_motion *m)
         for (uint32_t s = 0; fits && s < m->header.n_foods; s++)
             fits = index.food[s] == food[s];
         if (!fits)
-            return "the index does not fit the events";
+            return "the index disagrees with the events";
     }
     return NULL;
 }
@@ -378,17 +389,18 @@ enum glint_status glint_motion_open(struct glint_motion *motion,
     motion->header = *(const struct glint_motion_header *)data;
     motion->data = data;
     motion->held = 0;
-    *reason = bytes % GLINT_MOTION_BLOCK
-                  ? outside
-                  : check_header(&motion->header, bytes / GLINT_MOTION_BLOCK);
+    *reason =
+        bytes % GLINT_MOTION_BLOCK
+            ? outside
+            : check_motion_header(&motion->header, bytes / GLINT_MOTION_BLOCK);
     if (!*reason)
-        *reason = take_sensors(motion);
+        *reason = copy_sensors(motion);
     if (!*reason)
         *reason = check_poses(motion);
     if (!*reason)
         *reason = check_events(motion);
     if (!*reason)
-        *reason = check_index(motion);
+        *reason = check_event_index(motion);
     return *reason ? GLINT_E_FORMAT : GLINT_OK;
 }
 
@@ -416,7 +428,7 @@ enum glint_status glint_motion_over(struct glint_motion *motion,
                                  ? GLINT_BLOB_NEWER
                                  : GLINT_BLOB_OLDER];
     else
-        *reason = check_header(&motion->header, blocks->n_blocks);
+        *reason = check_motion_header(&motion->header, blocks->n_blocks);
     if (!*reason &&
         motion->header.bytes / GLINT_MOTION_BLOCK != blocks->n_blocks)
         *reason = fault_text[GLINT_BLOB_TRUNCATED];
@@ -424,6 +436,6 @@ enum glint_status glint_motion_over(struct glint_motion *motion,
         *reason = fault_text[glint_blob_check_name(
             &(struct glint_blob){.header = (const void *)&motion->header})];
     if (!*reason)
-        *reason = take_sensors(motion);
+        *reason = copy_sensors(motion);
     return *reason ? GLINT_E_FORMAT : GLINT_OK;
 }

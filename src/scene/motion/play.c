@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Moves the objects of a recorded motion, and finds which sensors see which
- * foods. A frame depends on no other frame. */
+ * Plays a recorded motion: moves the objects of a scene to their positions in a
+ * frame, and finds which sensors see which foods. Each frame is computed from
+ * the file alone, so frames can be played in any order. */
 #include "scene/motion/play.h"
 
 #include "base/divide.h"
@@ -10,10 +11,10 @@
 
 /* ------------------------------------------------------------------ opening */
 
-/* Sets N_FOODS and N_SENSORS from the file. They are clamped, as the file is
- * not checked before it is opened. */
-static void count_objects(const struct glint_scene_motion *how,
-                          uint32_t *n_foods, uint32_t *n_sensors)
+/* Sets N_FOODS and N_SENSORS to the numbers in the file's header, clamped to
+ * their max, as the file is not checked yet. */
+static void read_object_counts(const struct glint_scene_motion *how,
+                               uint32_t *n_foods, uint32_t *n_sensors)
 {
     const struct glint_motion_header *h = (const void *)(how + 1);
     const int is_there = how->bytes >= sizeof *h;
@@ -24,16 +25,17 @@ static void count_objects(const struct glint_scene_motion *how,
         is_there && h->n_sensors <= GLINT_MOTION_MAX_SENSORS ? h->n_sensors : 0;
 }
 
-size_t glint_motion_layers(const struct glint_scene_motion *how)
+size_t glint_motion_max_layers(const struct glint_scene_motion *how)
 {
     uint32_t n_foods, n_sensors;
 
-    count_objects(how, &n_foods, &n_sensors);
+    read_object_counts(how, &n_foods, &n_sensors);
     return (size_t)n_foods * (n_sensors + 1) + GLINT_BOX_EDGES;
 }
 
-struct glint_motion_state *glint_motion_carve(const struct glint_scene *scene,
-                                              struct glint_arena *arena)
+struct glint_motion_state *
+glint_motion_allocate(const struct glint_scene *scene,
+                      struct glint_arena *arena)
 {
     const struct glint_scene_motion *how = scene->model.motion;
     struct glint_motion_state *m = glint_arena_take(arena, 1, sizeof *m);
@@ -41,28 +43,29 @@ struct glint_motion_state *glint_motion_carve(const struct glint_scene *scene,
     struct glint_placed *ball;
     struct glint_motion_layer *layer;
 
-    count_objects(how, &n_foods, &n_sensors);
+    read_object_counts(how, &n_foods, &n_sensors);
     ball = glint_arena_take(arena, n_foods, sizeof *ball);
-    layer = glint_arena_take(arena, glint_motion_layers(how), sizeof *layer);
+    layer =
+        glint_arena_take(arena, glint_motion_max_layers(how), sizeof *layer);
     if (m) {
         m->ball = ball;
         m->layer = layer;
-        m->max_layers = (int)glint_motion_layers(how);
+        m->max_layers = (int)glint_motion_max_layers(how);
     }
     return m;
 }
 
-/* Returns log2 of the ratio of the motion's step to the scene's step. */
-static int find_scale_log2(const struct glint_scene *s)
+/* Returns log2 of (the motion's unit of length / the scene's step). */
+static int compute_scale_log2(const struct glint_scene *s)
 {
     return s->model.header->unit_log2 - s->motion->motion.header.unit_log2;
 }
 
-/* Converts point FROM of the motion to steps of the scene. */
-static void to_scene(const struct glint_scene *s, const int32_t from[3],
-                     int32_t to[3])
+/* Sets TO to point FROM of the motion, in steps of the scene. */
+static void convert_to_scene_steps(const struct glint_scene *s,
+                                   const int32_t from[3], int32_t to[3])
 {
-    const int up = find_scale_log2(s);
+    const int up = compute_scale_log2(s);
     const int mirrored = s->model.header->variant == GLINT_HAND_RIGHT;
 
     for (int k = 0; k < 3; k++) {
@@ -73,12 +76,12 @@ static void to_scene(const struct glint_scene *s, const int32_t from[3],
     }
 }
 
-/* Returns whether all points of the motion, with the objects around them, are
- * in the scene's range. */
+/* Returns whether all points of the motion, plus the size of the objects there,
+ * are in the range of scene coordinates. */
 static int fits_scene_range(const struct glint_scene *s)
 {
     const struct glint_motion_header *h = &s->motion->motion.header;
-    const int up = find_scale_log2(s);
+    const int up = compute_scale_log2(s);
 
     for (int k = 0; k < 3; k++) {
         const int64_t most = q_larger(h->high[k], -h->low[k]);
@@ -91,7 +94,8 @@ static int fits_scene_range(const struct glint_scene *s)
 }
 
 /* Returns whether objects FIRST .. FIRST + N - 1 are balls of the scene. */
-static int are_balls(const struct glint_scene *s, uint32_t first, uint32_t n)
+static int are_objects_balls(const struct glint_scene *s, uint32_t first,
+                             uint32_t n)
 {
     const uint32_t all = s->model.header->n_objects;
 
@@ -105,7 +109,7 @@ static int are_balls(const struct glint_scene *s, uint32_t first, uint32_t n)
     return 1;
 }
 
-static int rides_lamps(const struct glint_scene *s)
+static int are_riders_lamps(const struct glint_scene *s)
 {
     for (uint32_t i = 0; i < GLINT_SCENE_MAX_LIGHTS; i++)
         if (s->motion->how->riders >> i & 1 &&
@@ -115,7 +119,7 @@ static int rides_lamps(const struct glint_scene *s)
     return 1;
 }
 
-enum glint_status glint_motion_begin(struct glint_scene *scene)
+enum glint_status glint_motion_start_playback(struct glint_scene *scene)
 {
     const struct glint_scene_motion *how = scene->model.motion;
     struct glint_motion_state *m = scene->motion;
@@ -125,9 +129,10 @@ enum glint_status glint_motion_begin(struct glint_scene *scene)
     m->how = how;
     if (glint_motion_open(&m->motion, how + 1, how->bytes, &reason) !=
             GLINT_OK ||
-        !fits_scene_range(scene) || !are_balls(scene, how->body, 1) ||
-        !are_balls(scene, how->sensor, h->n_sensors) ||
-        !are_balls(scene, how->food, h->n_foods) || !rides_lamps(scene) ||
+        !fits_scene_range(scene) || !are_objects_balls(scene, how->body, 1) ||
+        !are_objects_balls(scene, how->sensor, h->n_sensors) ||
+        !are_objects_balls(scene, how->food, h->n_foods) ||
+        !are_riders_lamps(scene) ||
         (how->camera != GLINT_SCENE_NONE && how->camera >= h->n_sensors))
         return GLINT_E_FORMAT;
     m->sensor = -1;
@@ -137,8 +142,8 @@ enum glint_status glint_motion_begin(struct glint_scene *scene)
     m->line = how->line;
     m->edge = how->box;
     m->n_layers = 0;
-    to_scene(scene, h->low, m->low);
-    to_scene(scene, h->high, m->high);
+    convert_to_scene_steps(scene, h->low, m->low);
+    convert_to_scene_steps(scene, h->high, m->high);
     glint_scene_seek(scene, 0);
     return how->camera == GLINT_SCENE_NONE
                ? GLINT_OK
@@ -151,7 +156,7 @@ struct wide {
     uint64_t high, low;
 };
 
-/* Returns A B, both below 2^63. */
+/* Returns the 128-bit product A * B of two factors below 2^63. */
 static struct wide multiply_wide(uint64_t a, uint64_t b)
 {
     const uint64_t a1 = a >> 32, a0 = a & UINT32_MAX;
@@ -164,14 +169,14 @@ static struct wide multiply_wide(uint64_t a, uint64_t b)
                          other << 32 | (low & UINT32_MAX)};
 }
 
-static int is_less(struct wide a, struct wide b)
+static int is_wide_less(struct wide a, struct wide b)
 {
     return a.high != b.high ? a.high < b.high : a.low < b.low;
 }
 
-/* |axis| is 1, so the cosine is dot / |d|; squares are compared. */
-int glint_motion_sees(const int32_t axis_q30[3], int32_t cos_half_q30,
-                      const int32_t d[3])
+/* The axis has length 1, so the cosine is dot / |d|; squares are compared. */
+int glint_motion_is_in_view_cone(const int32_t axis_q30[3],
+                                 int32_t cos_half_q30, const int32_t d[3])
 {
     const int64_t dot_q30 = v3_dot(axis_q30, d);
     const uint64_t size = q_magnitude(dot_q30); /* below 2^61 */
@@ -182,11 +187,11 @@ int glint_motion_sees(const int32_t axis_q30[3], int32_t cos_half_q30,
         multiply_wide(cosine * cosine, (uint64_t)v3_dot(d, d));
 
     if (dot_q30 > 0)
-        return cos_half_q30 <= 0 || is_less(least, seen);
-    return cos_half_q30 < 0 && is_less(seen, least);
+        return cos_half_q30 <= 0 || is_wide_less(least, seen);
+    return cos_half_q30 < 0 && is_wide_less(seen, least);
 }
 
-static void detect_foods(struct glint_motion_state *m)
+static void detect_visible_foods(struct glint_motion_state *m)
 {
     const struct glint_motion_header *h = &m->motion.header;
 
@@ -195,8 +200,9 @@ static void detect_foods(struct glint_motion_state *m)
         for (uint32_t s = 0; s < h->n_sensors; s++) {
             int32_t d[3];
 
-            v3_minus(m->food_at[f], m->sensor_at[s], d);
-            if (glint_motion_sees(m->axis_q30[s], h->cos_half_q30, d) &&
+            v3_subtract(m->food_at[f], m->sensor_at[s], d);
+            if (glint_motion_is_in_view_cone(m->axis_q30[s], h->cos_half_q30,
+                                             d) &&
                 (m->how->detect == GLINT_DETECT_ANGLE ||
                  m->frame.intensity[f][s] > m->how->least))
                 m->seen_by[f] |= 1u << s;
@@ -213,9 +219,9 @@ uint32_t glint_scene_seen_by(const struct glint_scene *scene, uint32_t food)
 
 /* --------------------------------------------------------------------- seek */
 
-/* Sets TURN_Q30 to the unit quaternion of the body in the scene's
- * handedness. */
-static void set_turn(const struct glint_scene *s, int32_t turn_q30[4])
+/* Sets TURN_Q30 to the unit quaternion of the body's rotation, converted from
+ * the motion's handedness to the scene's. */
+static void set_body_rotation(const struct glint_scene *s, int32_t turn_q30[4])
 {
     const int16_t *q14 = s->motion->frame.pose.turn_q14;
     const int mirrored = s->model.header->variant == GLINT_HAND_RIGHT;
@@ -224,7 +230,7 @@ static void set_turn(const struct glint_scene *s, int32_t turn_q30[4])
 
     for (int k = 0; k < 4; k++)
         square_q28 += (uint64_t)(q14[k] * q14[k]);
-    length_q29 = (int64_t)glint_root(square_q28 << 30);
+    length_q29 = (int64_t)glint_square_root(square_q28 << 30);
     for (int k = 0; k < 4; k++) {
         const int32_t q =
             (int32_t)q_divide((int64_t)q14[k] * (INT64_C(1) << 45), length_q29);
@@ -233,11 +239,12 @@ static void set_turn(const struct glint_scene *s, int32_t turn_q30[4])
     }
 }
 
-/* Sets AT to the position of OFFSET, given in the body's axes. */
-static void on_body(const struct glint_motion_state *m, const int32_t offset[3],
-                    int32_t at[3])
+/* Sets AT to the scene position of a point with OFFSET in the body's
+ * coordinates. */
+static void convert_body_offset(const struct glint_motion_state *m,
+                                const int32_t offset[3], int32_t at[3])
 {
-    v3_turn(&m->turn, offset, at);
+    v3_rotate(&m->turn, offset, at);
     for (int k = 0; k < 3; k++)
         at[k] = q_narrow((int64_t)at[k] + m->body[k]);
 }
@@ -253,15 +260,15 @@ static void move_sensors(struct glint_scene *s)
                                      mirrored ? -from[2] : from[2]};
         int32_t out[3];
 
-        v3_turn(&m->turn, axis_q30, m->axis_q30[i]);
+        v3_rotate(&m->turn, axis_q30, m->axis_q30[i]);
         for (int k = 0; k < 3; k++)
             out[k] = q_mul(axis_q30[k], m->size, 30);
-        on_body(m, out, m->sensor_at[i]);
+        convert_body_offset(m, out, m->sensor_at[i]);
     }
 }
 
-/* Moves the camera to its sensor. */
-static enum glint_status move_camera(struct glint_scene *s)
+/* Moves the camera to the sensor that carries it. */
+static enum glint_status move_camera_to_sensor(struct glint_scene *s)
 {
     const struct glint_motion_state *m = s->motion;
     const int32_t *ahead = m->axis_q30[m->sensor];
@@ -271,7 +278,8 @@ static enum glint_status move_camera(struct glint_scene *s)
     int32_t body_up_q30[3];
     int axis = 1;
 
-    /* up is the body's y axis, or its z axis if the sensor looks along that */
+    /* the camera's up is the body's y axis, or its z axis if the sensor looks
+     * along y */
     for (int k = 0; k < 3; k++)
         body_up_q30[k] = m->turn.row_q30[k][axis];
     if (q_magnitude(v3_cosine_q30(body_up_q30, ahead)) > 1063004405)
@@ -279,15 +287,15 @@ static enum glint_status move_camera(struct glint_scene *s)
     for (int k = 0; k < 3; k++)
         body_up_q30[k] = m->turn.row_q30[k][axis];
     v3_cross(body_up_q30, ahead, right);
-    glint_unit(right, c.axis_q30[0]);
+    glint_normalise_vector(right, c.axis_q30[0]);
     v3_cross(ahead, c.axis_q30[0], up);
-    glint_unit(up, c.axis_q30[1]);
+    glint_normalise_vector(up, c.axis_q30[1]);
     for (int k = 0; k < 3; k++) {
         c.axis_q30[2][k] = ahead[k];
         c.at[k] = m->sensor_at[m->sensor][k];
     }
     c.tan_x_q24 = m->motion.header.tan_half_q24;
-    if (glint_scene_camera_fault(&c) ||
+    if (glint_scene_check_camera(&c) ||
         !glint_view_init(&view, &c, s->cfg.width, s->cfg.height,
                          s->cfg.focal_q16))
         return GLINT_E_ARGUMENT;
@@ -295,7 +303,8 @@ static enum glint_status move_camera(struct glint_scene *s)
     return GLINT_OK;
 }
 
-static void move_things(struct glint_scene *s, const int32_t turn_q30[4])
+static void move_objects_of_kind(struct glint_scene *s,
+                                 const int32_t turn_q30[4])
 {
     const struct glint_motion_state *m = s->motion;
     const struct glint_motion_header *h = &m->motion.header;
@@ -315,7 +324,7 @@ static void move_things(struct glint_scene *s, const int32_t turn_q30[4])
 
         if (!(how->riders >> i & 1))
             continue;
-        on_body(m, s->model.light[i].at, at);
+        convert_body_offset(m, s->model.light[i].at, at);
         glint_scene_set_light(s, (int)i, at);
     }
 }
@@ -326,16 +335,16 @@ static void move_objects(struct glint_scene *s)
     struct glint_motion_state *m = s->motion;
     int32_t turn_q30[4];
 
-    to_scene(s, m->frame.pose.at, m->body);
-    set_turn(s, turn_q30);
-    glint_scene_turn_of(turn_q30, &m->turn);
+    convert_to_scene_steps(s, m->frame.pose.at, m->body);
+    set_body_rotation(s, turn_q30);
+    glint_scene_quaternion_to_rotation(turn_q30, &m->turn);
     move_sensors(s);
     for (uint32_t i = 0; i < m->motion.header.n_foods; i++)
-        to_scene(s, m->frame.food[i], m->food_at[i]);
-    move_things(s, turn_q30);
-    detect_foods(m);
+        convert_to_scene_steps(s, m->frame.food[i], m->food_at[i]);
+    move_objects_of_kind(s, turn_q30);
+    detect_visible_foods(m);
     if (m->sensor >= 0)
-        move_camera(s);
+        move_camera_to_sensor(s);
 }
 
 void glint_scene_seek(struct glint_scene *scene, uint32_t frame)
@@ -357,9 +366,10 @@ uint32_t glint_scene_frames(const struct glint_scene *scene)
 
 /* -------------------------------------------------------------------- looks */
 
-/* Sets FIRST to the first object of KIND; returns their number. */
-static uint32_t find_objects(const struct glint_motion_state *m,
-                             enum glint_scene_kind kind, uint32_t *first)
+/* Sets FIRST to the index of the first object of kind KIND; returns the number
+ * of such objects. */
+static uint32_t find_kind_objects(const struct glint_motion_state *m,
+                                  enum glint_scene_kind kind, uint32_t *first)
 {
     const uint32_t of[3] = {m->how->body, m->how->sensor, m->how->food};
     const uint32_t n[3] = {1, m->motion.header.n_sensors,
@@ -378,7 +388,7 @@ void glint_scene_show_kind(struct glint_scene *scene,
     if (!m || kind >= GLINT_KINDS)
         return;
     m->shown = (m->shown & ~(1u << kind)) | (is_shown ? 1u << kind : 0);
-    n = find_objects(m, kind, &first);
+    n = find_kind_objects(m, kind, &first);
     for (uint32_t i = 0; i < n; i++)
         glint_scene_show(
             scene, (int)(first + i),
@@ -394,7 +404,7 @@ enum glint_status glint_scene_size_kind(struct glint_scene *scene,
 
     if (!m || kind >= GLINT_KINDS || steps < 1 || steps > GLINT_SCENE_SPAN / 4)
         return GLINT_E_ARGUMENT;
-    n = find_objects(m, kind, &first);
+    n = find_kind_objects(m, kind, &first);
     for (uint32_t i = 0; i < n; i++)
         glint_scene_set_radius(scene, (int)(first + i), steps);
     if (kind == GLINT_KIND_BODY) {
@@ -425,13 +435,13 @@ enum glint_status glint_scene_enter(struct glint_scene *scene, int sensor)
         return GLINT_OK;
     m->sensor = sensor;
     if (sensor >= 0)
-        status = move_camera(scene);
+        status = move_camera_to_sensor(scene);
     else
         glint_scene_set_camera(scene, c->at, (const int32_t(*)[3])c->axis_q30);
     if (status != GLINT_OK)
         m->sensor = before;
     /* the camera is inside the sensor's ball */
     glint_scene_show_kind(scene, GLINT_KIND_SENSORS,
-                          glint_motion_shows(m, GLINT_KIND_SENSORS));
+                          glint_motion_is_kind_shown(m, GLINT_KIND_SENSORS));
     return status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The maps of translucent objects: memory, updates per frame, and lookups. */
+ * Light maps of translucent objects: allocates them, recomputes them per frame,
+ * and looks light up. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/mesh.h"
@@ -11,14 +12,14 @@
 enum {
     GLINT_BLOCK_WIDTH = GLINT_STRIP,
     GLINT_BLOCK_HEIGHT = 16,
-    /* state of a block of the map */
+    /* Bits of the state of a block of texels in a map. */
     GLINT_BLOCK_SEEN = 1,  /* may be visible in this frame */
-    GLINT_BLOCK_LIT = 2,   /* its entering light is computed */
-    GLINT_BLOCK_READY = 4, /* its light has been spread */
-    GLINT_BLOCK_WANTED = 8 /* is to be lit or spread in this update */
+    GLINT_BLOCK_LIT = 2,   /* the light that enters its texels is computed */
+    GLINT_BLOCK_READY = 4, /* its map values are computed */
+    GLINT_BLOCK_WANTED = 8 /* is to be computed in this update */
 };
 
-/* The map of an object. */
+/* The light map of a translucent object. */
 struct glint_stone_skin {
     const struct glint_scene_skin *of;
     uint32_t material;
@@ -27,27 +28,32 @@ struct glint_stone_skin {
                              normal incidence; 0: there is no coat */
     struct glint_translucent stone;
     struct glint_spread spread;
-    const uint32_t *triangle;     /* mesh: [height][width] */
-    const int32_t (*turn_q30)[2]; /* ball: rotations of columns, then of rows */
-    int across, down;             /* blocks */
-    uint8_t *block;               /* [down][across] */
-    uint16_t *list;               /* [down][across]: blocks to be lit */
+    const uint32_t *triangle;     /* mesh: [height][width], index of each
+                                     texel's triangle */
+    const int32_t (*turn_q30)[2]; /* ball: cosine and sine of columns' and then
+                                     rows' angles */
+    int across, down;             /* number of blocks */
+    uint8_t *block;               /* [down][across]: states */
+    uint16_t *list;               /* [down][across]: indices of blocks to be
+                                     lit */
     int n_list;
-    int shift;      /* light, q15, is the map's value times 2^shift */
-    int is_lit;     /* the map was lit at least once */
-    uint32_t moved; /* moved of the scene at that time */
+    int shift;      /* the light of a texel, q15, is its map value times
+                       2^shift */
+    int is_lit;     /* 1: the map has been computed before */
+    uint32_t moved; /* value of the scene's counter moved when the map was
+                       computed */
 };
 
 struct glint_stone_state {
     struct glint_stone_skin *skin;        /* [n_skins] */
     struct glint_spread_scratch *scratch; /* [workers] */
-    int32_t around_q15; /* max irradiance by the environment */
+    int32_t around_q15; /* upper bound of the environment's irradiance */
 };
 
-/* Returns the fraction of light, q15, that passes the surface at COSINE to the
- * normal. */
-static inline int32_t glint_stone_passes(const struct glint_stone_skin *skin,
-                                         int32_t cosine_q30)
+/* Returns the fraction of light, q15, that the surface transmits at COSINE_Q30
+ * between ray and normal. */
+static inline int32_t transmittance_q15(const struct glint_stone_skin *skin,
+                                        int32_t cosine_q30)
 {
     enum { LOW = 23 }; /* log2 of 2^30 / GLINT_TRANSLUCENT_COSINES */
     const int32_t c_q30 = q_smaller(cosine_q30, 1 << 30);
@@ -73,7 +79,7 @@ enum {
 
 /* --------------------------------------------------------------------- seen */
 
-static void mark_all_visible(struct glint_stone_skin *skin)
+static void mark_all_blocks_visible(struct glint_stone_skin *skin)
 {
     for (int i = 0; i < skin->across * skin->down; i++)
         skin->block[i] |= GLINT_BLOCK_SEEN;
@@ -82,13 +88,14 @@ static void mark_all_visible(struct glint_stone_skin *skin)
 /* --------------------------------------------------------------------- balls
  */
 
-/* A quarter of a block of a ball's map extends 12.6 degrees from its middle if
- * the map is 256 wide, 25.2 degrees if it is 128 wide, plus a texel. */
+/* Max angle between a texel in the middle of a block's quarter and the points
+ * of the quarter: 12.6 degrees if a ball's map is 256 texels wide, 25.2 degrees
+ * if it is 128 wide, plus a texel. */
 struct reach {
     int32_t cosine_q30, sine_q30;
 };
 
-static struct reach find_block_reach(const struct glint_stone_skin *skin)
+static struct reach get_block_angle(const struct glint_stone_skin *skin)
 {
     const struct reach wide = {Q_CONST(.88, 30), Q_CONST(.475, 30)};
     const struct reach less = {Q_CONST(.97, 30), Q_CONST(.244, 30)};
@@ -97,10 +104,10 @@ static struct reach find_block_reach(const struct glint_stone_skin *skin)
 }
 
 /* Returns whether, at texel (X, Y) of ball P, the cosine between the normal and
- * the camera's direction is above LIMIT. */
-static int faces_camera(const struct glint_placed *p,
-                        const struct glint_stone_skin *skin, int x, int y,
-                        const int32_t toward_q30[3], int32_t limit_q30)
+ * the direction to the camera is above LIMIT. */
+static int texel_faces_camera(const struct glint_placed *p,
+                              const struct glint_stone_skin *skin, int x, int y,
+                              const int32_t toward_q30[3], int32_t limit_q30)
 {
     const int32_t *round_q30 = skin->turn_q30[x];
     const int32_t *down_q30 = skin->turn_q30[skin->spread.width + y];
@@ -108,29 +115,29 @@ static int faces_camera(const struct glint_placed *p,
                               -q_mul(round_q30[0], down_q30[1], 30)};
     int32_t turned_q30[3];
 
-    v3_turn(&p->turn, n_q30, turned_q30);
+    v3_rotate(&p->turn, n_q30, turned_q30);
     return v3_cosine_q30(turned_q30, toward_q30) > limit_q30;
 }
 
-/* Marks the blocks with points that face the camera: n.d > R / D, where d is
- * the unit vector to the camera at distance D. Marks all blocks if the camera
- * is inside. */
-static void mark_visible_ball(const struct glint_scene *s,
-                              const struct glint_placed *p,
-                              struct glint_stone_skin *skin)
+/* Marks the blocks with points that face the camera: n.d > R / D, where n is
+ * the normal, R the radius and d the unit vector to the camera at distance D
+ * from the centre. Marks all blocks if the camera is inside. */
+static void mark_visible_ball_blocks(const struct glint_scene *s,
+                                     const struct glint_placed *p,
+                                     struct glint_stone_skin *skin)
 {
-    const struct reach reach = find_block_reach(skin);
+    const struct reach reach = get_block_angle(skin);
     int32_t off[3], toward_q30[3], limit_q30;
     int64_t wide[3];
     uint32_t away;
 
-    v3_minus(s->view.at, p->at, off);
-    away = glint_root((uint64_t)v3_dot(off, off));
+    v3_subtract(s->view.at, p->at, off);
+    away = glint_square_root((uint64_t)v3_dot(off, off));
     for (int k = 0; k < 3; k++)
         wide[k] = off[k];
     if (skin->spread.width < 128 || away <= (uint32_t)p->radius ||
-        !glint_unit(wide, toward_q30)) {
-        mark_all_visible(skin);
+        !glint_normalise_vector(wide, toward_q30)) {
+        mark_all_blocks_visible(skin);
         return;
     }
     limit_q30 =
@@ -138,12 +145,12 @@ static void mark_visible_ball(const struct glint_scene *s,
         reach.sine_q30 - (1 << 20);
     for (int i = 0; i < skin->across * skin->down; i++)
         for (int k = 0; k < 4; k++)
-            if (faces_camera(p, skin,
-                             i % skin->across * GLINT_BLOCK_WIDTH +
-                                 (k & 1 ? 3 : 1) * GLINT_BLOCK_WIDTH / 4,
-                             i / skin->across * GLINT_BLOCK_HEIGHT +
-                                 (k & 2 ? 3 : 1) * GLINT_BLOCK_HEIGHT / 4,
-                             toward_q30, limit_q30))
+            if (texel_faces_camera(p, skin,
+                                   i % skin->across * GLINT_BLOCK_WIDTH +
+                                       (k & 1 ? 3 : 1) * GLINT_BLOCK_WIDTH / 4,
+                                   i / skin->across * GLINT_BLOCK_HEIGHT +
+                                       (k & 2 ? 3 : 1) * GLINT_BLOCK_HEIGHT / 4,
+                                   toward_q30, limit_q30))
                 skin->block[i] |= GLINT_BLOCK_SEEN;
 }
 
@@ -151,10 +158,11 @@ static void mark_visible_ball(const struct glint_scene *s,
  */
 
 /* Returns whether triangle T may be visible: it overlaps the picture and does
- * not face away. */
-static int is_seen(const struct glint_scene *s, const struct glint_placed *p,
-                   const struct glint_stone_skin *skin,
-                   const struct glint_scene_triangle *t)
+ * not face away from the camera. */
+static int is_triangle_visible(const struct glint_scene *s,
+                               const struct glint_placed *p,
+                               const struct glint_stone_skin *skin,
+                               const struct glint_scene_triangle *t)
 {
     const struct glint_box all = {-128 * s->view.width, -128 * s->view.height,
                                   128 * s->view.width, 128 * s->view.height};
@@ -178,10 +186,10 @@ static int is_seen(const struct glint_scene *s, const struct glint_placed *p,
            lo[1] <= all.y1 + 512;
 }
 
-/* Marks the blocks that the triangle of UV touches, with a margin of a
- * texel. */
-static void mark_visible_uv(struct glint_stone_skin *skin,
-                            const int32_t *const uv_q16[3])
+/* Marks the blocks that a triangle with texture coordinates UV overlaps, with a
+ * margin of one texel. */
+static void mark_triangle_blocks(struct glint_stone_skin *skin,
+                                 const int32_t *const uv_q16[3])
 {
     const int size_log2[2] = {bit_length(GLINT_BLOCK_WIDTH) - 1,
                               bit_length(GLINT_BLOCK_HEIGHT) - 1};
@@ -204,29 +212,29 @@ static void mark_visible_uv(struct glint_stone_skin *skin,
             skin->block[y * skin->across + x] |= GLINT_BLOCK_SEEN;
 }
 
-static void mark_visible_mesh(const struct glint_scene *s,
-                              const struct glint_placed *p,
-                              struct glint_stone_skin *skin)
+static void mark_visible_mesh_blocks(const struct glint_scene *s,
+                                     const struct glint_placed *p,
+                                     struct glint_stone_skin *skin)
 {
     const struct glint_scene_mesh *m = glint_mesh_of(s, skin->of->object);
-    const int32_t *uv_q16 = glint_mesh_table(s, m->uv_at);
+    const int32_t *uv_q16 = glint_mesh_get_table(s, m->uv_at);
 
     for (uint32_t i = 0; i < m->n_triangles; i++) {
         const struct glint_scene_triangle *t = glint_mesh_triangle(s, m, i);
         const int32_t *corner_q16[3];
 
-        if (!is_seen(s, p, skin, t))
+        if (!is_triangle_visible(s, p, skin, t))
             continue;
         for (int k = 0; k < 3; k++)
             corner_q16[k] = uv_q16 + 2 * (size_t)t->vertex[k];
-        mark_visible_uv(skin, corner_q16);
+        mark_triangle_blocks(skin, corner_q16);
     }
 }
 
-/* Marks the blocks of SKIN that may be visible. Superfluous blocks cost time; a
- * missing block would show as black. */
-static void mark_visible(const struct glint_scene *scene,
-                         struct glint_stone_skin *skin)
+/* Marks the blocks of SKIN that may be visible. A block marked without need
+ * costs time; a visible block that is not marked would be black. */
+static void mark_visible_blocks(const struct glint_scene *scene,
+                                struct glint_stone_skin *skin)
 {
     const struct glint_placed *p = &scene->placed[skin->of->object];
 
@@ -234,20 +242,22 @@ static void mark_visible(const struct glint_scene *scene,
         skin->block[i] &= (uint8_t)~GLINT_BLOCK_SEEN;
     if (scene->has_split) /* mirrors show points that face away from the
                              camera */
-        mark_all_visible(skin);
+        mark_all_blocks_visible(skin);
     else if (!p->is_seen)
         return;
     else if (skin->spread.is_ball)
-        mark_visible_ball(scene, p, skin);
+        mark_visible_ball_blocks(scene, p, skin);
     else
-        mark_visible_mesh(scene, p, skin);
+        mark_visible_mesh_blocks(scene, p, skin);
 }
 
 /* ------------------------------------------------------------------- around */
 
-/* Adds to RGB_Q15 the environment's light on a white surface of NORMAL_Q30. */
-static void add_around(const struct glint_scene *s, const int32_t normal_q30[3],
-                       int32_t weight_q15, int32_t rgb_q15[3])
+/* Adds to RGB_Q15 the environment's irradiance of a white surface of normal
+ * NORMAL_Q30, times WEIGHT_Q15. */
+static void add_environment_light(const struct glint_scene *s,
+                                  const int32_t normal_q30[3],
+                                  int32_t weight_q15, int32_t rgb_q15[3])
 {
     static const int32_t white_q15[3] = {1 << 15, 1 << 15, 1 << 15};
     static const struct glint_scene_material even = {.diffuse_q15 = 1 << 15};
@@ -260,9 +270,10 @@ static void add_around(const struct glint_scene *s, const int32_t normal_q30[3],
                                 rgb_q15);
 }
 
-/* Returns a bound on the environment's irradiance, sampled at normals over the
- * faces of a cube; between them irradiance is at most an eighth larger. */
-static int32_t max_around(const struct glint_scene *scene)
+/* Returns an upper bound of the environment's irradiance: the max over normals
+ * on the faces of a cube, plus an eighth, as irradiance between them is at most
+ * that much larger. */
+static int32_t bound_environment_light(const struct glint_scene *scene)
 {
     enum { STEPS = 8 };
     int32_t most = 0;
@@ -277,8 +288,8 @@ static int32_t max_around(const struct glint_scene *scene)
         to[axis] = face & 1 ? -STEPS : STEPS;
         to[(axis + 1) % 3] = 2 * (i % STEPS) + 1 - STEPS;
         to[(axis + 2) % 3] = 2 * (i / STEPS % STEPS) + 1 - STEPS;
-        glint_unit(to, n_q30);
-        add_around(scene, n_q30, 1 << 15, rgb_q15);
+        glint_normalise_vector(to, n_q30);
+        add_environment_light(scene, n_q30, 1 << 15, rgb_q15);
         for (int c = 0; c < CHANNELS; c++)
             most = q_larger(most, rgb_q15[c]);
     }
@@ -287,26 +298,27 @@ static int32_t max_around(const struct glint_scene *scene)
 
 /* ----------------------------------------------------------------- exposure */
 
-/* Returns the max light of LIT on a white surface of object P: for a lamp at
- * the nearest point, but at least a sixteenth of the object's size away. */
-static int32_t bound_light(const struct glint_scene *s,
-                           const struct glint_lit *lit,
-                           const struct glint_placed *p)
+/* Returns the max light of source LIT on a white surface of object P. For a
+ * lamp: at the nearest point of P, but not nearer than 1/16 of P's size. */
+static int32_t bound_light_level(const struct glint_scene *s,
+                                 const struct glint_lit *lit,
+                                 const struct glint_placed *p)
 {
     int32_t toward_q30[3] = {0}, level_q15[3] = {0}, place[3], off[3];
     int64_t away;
 
-    v3_minus(lit->at, p->centre, off);
-    away = (int64_t)glint_root((uint64_t)v3_dot(off, off)) - p->reach;
+    v3_subtract(lit->at, p->centre, off);
+    away = (int64_t)glint_square_root((uint64_t)v3_dot(off, off)) - p->reach;
     away = away > p->reach / 16 + 1 ? away : p->reach / 16 + 1;
     for (int k = 0; k < 3; k++)
         place[k] = lit->at[k];
     place[0] -= q_clamp_sat(away, 1, (1 << 29) - 1);
-    glint_scene_light_at(s, lit, place, toward_q30, level_q15);
+    glint_scene_compute_light_at(s, lit, place, toward_q30, level_q15);
     return q_larger(level_q15[0], q_larger(level_q15[1], level_q15[2]));
 }
 
-/* Sets the shift of SKIN from the max light that may fall on it. */
+/* Sets the exponent shift of SKIN's map values from the max light that may fall
+ * on the object. */
 static void set_exposure_shift(const struct glint_scene *scene,
                                struct glint_stone_skin *skin)
 {
@@ -314,7 +326,7 @@ static void set_exposure_shift(const struct glint_scene *scene,
     int64_t most = scene->stones->around_q15;
 
     for (uint32_t i = 0; i < scene->n_lit; i++)
-        most += bound_light(scene, &scene->lit[i], p);
+        most += bound_light_level(scene, &scene->lit[i], p);
     skin->shift = 0;
     while (most >> skin->shift > MOST_VALUE && skin->shift < 15)
         skin->shift++;
@@ -323,10 +335,10 @@ static void set_exposure_shift(const struct glint_scene *scene,
 /* ------------------------------------------------------------------ surfaces
  */
 
-/* Sets SURFACE to texel (X, Y) of a ball. */
-static void ball_surface(const struct glint_scene *s,
-                         const struct glint_stone_skin *skin, int x, int y,
-                         struct glint_met_surface *surface)
+/* Sets SURFACE to the point of a ball at texel (X, Y) of its map. */
+static void set_ball_texel_surface(const struct glint_scene *s,
+                                   const struct glint_stone_skin *skin, int x,
+                                   int y, struct glint_met_surface *surface)
 {
     const struct glint_placed *p = &s->placed[skin->of->object];
     const int32_t *round_q30 = skin->turn_q30[x];
@@ -334,7 +346,7 @@ static void ball_surface(const struct glint_scene *s,
     const int32_t n_q30[3] = {q_mul(round_q30[1], down_q30[1], 30), down_q30[0],
                               -q_mul(round_q30[0], down_q30[1], 30)};
 
-    v3_turn(&p->turn, n_q30, surface->normal_q30);
+    v3_rotate(&p->turn, n_q30, surface->normal_q30);
     surface->triangle = 0;
     for (int k = 0; k < 3; k++) {
         surface->face_q30[k] = surface->normal_q30[k];
@@ -343,11 +355,11 @@ static void ball_surface(const struct glint_scene *s,
     }
 }
 
-/* Sets weights of the corners of the triangle of UV at texel (X, Y), clamped to
- * the triangle; returns 0 if it has no area. Elements of UV must be within
- * +-2^24. */
-static int weigh_texel(const int32_t *const uv_q16[3], int32_t u_q16,
-                       int32_t v_q16, int32_t part_q30[3])
+/* Sets the barycentric weights, at texel (X, Y), of the corners of a triangle
+ * with texture coordinates UV, clamped to the triangle; returns 0 if it has no
+ * area. Coordinates must be within +-2^24. */
+static int compute_texel_weights(const int32_t *const uv_q16[3], int32_t u_q16,
+                                 int32_t v_q16, int32_t part_q30[3])
 {
     int64_t edge[3], sum = 0, all = 0;
 
@@ -365,15 +377,15 @@ static int weigh_texel(const int32_t *const uv_q16[3], int32_t u_q16,
     }
     if (all == 0 || sum == 0)
         return 0;
-    glint_weigh(edge, sum, part_q30);
+    glint_set_vertex_weights(edge, sum, part_q30);
     return 1;
 }
 
-/* Sets SURFACE to texel (X, Y) of a mesh; returns 0 if no triangle covers the
- * texel. */
-static int mesh_surface(const struct glint_scene *s,
-                        const struct glint_stone_skin *skin, int x, int y,
-                        struct glint_met_surface *surface)
+/* Sets SURFACE to the point of a mesh at texel (X, Y) of its map; returns 0 if
+ * no triangle covers the texel. */
+static int set_mesh_texel_surface(const struct glint_scene *s,
+                                  const struct glint_stone_skin *skin, int x,
+                                  int y, struct glint_met_surface *surface)
 {
     const struct glint_scene_object *o = s->placed[skin->of->object].object;
     const struct glint_scene_mesh *m = &s->model.mesh[o->mesh];
@@ -392,31 +404,32 @@ static int mesh_surface(const struct glint_scene *s,
     for (int k = 0; k < 3; k++)
         uv_q16[k] = (const int32_t *)(const void *)(file + m->uv_at) +
                     2 * (size_t)t->vertex[k];
-    if (!weigh_texel(uv_q16, (2 * x + 1) << down, (2 * y + 1) << down,
-                     met.spot.part_q30))
+    if (!compute_texel_weights(uv_q16, (2 * x + 1) << down, (2 * y + 1) << down,
+                               met.spot.part_q30))
         return 0;
     return s->cfg.parts.meshes->surface(s, &met, surface);
 }
 
 /* -------------------------------------------------------------------- light */
 
-/* Adds to RGB_Q15 the light of LIT that enters at SURFACE. */
-static void add_light(const struct glint_scene *s,
-                      const struct glint_stone_skin *skin,
-                      const struct glint_met_surface *surface,
-                      const struct glint_lit *lit, int32_t rgb_q15[3])
+/* Adds to RGB_Q15 the light of source LIT that enters the object at SURFACE. */
+static void add_entering_light(const struct glint_scene *s,
+                               const struct glint_stone_skin *skin,
+                               const struct glint_met_surface *surface,
+                               const struct glint_lit *lit, int32_t rgb_q15[3])
 {
     int32_t toward_q30[3] = {0}, level_q15[3] = {0}, cosine_q30, share_q15;
 
-    if (!glint_scene_light_at(s, lit, surface->place, toward_q30, level_q15))
+    if (!glint_scene_compute_light_at(s, lit, surface->place, toward_q30,
+                                      level_q15))
         return;
     cosine_q30 = v3_cosine_q30(toward_q30, surface->normal_q30);
     if (cosine_q30 <= 0)
         return;
-    share_q15 = glint_scene_reaches(s, surface, lit);
+    share_q15 = glint_scene_lit_fraction(s, surface, lit);
     if (share_q15 == 0)
         return;
-    share_q15 = q_mul(share_q15, glint_stone_passes(skin, cosine_q30), 15);
+    share_q15 = q_mul(share_q15, transmittance_q15(skin, cosine_q30), 15);
     for (int c = 0; c < CHANNELS; c++) {
         const int64_t light_q15 =
             ((int64_t)level_q15[c] * cosine_q30 >> 30) * share_q15 >> 15;
@@ -426,40 +439,41 @@ static void add_light(const struct glint_scene *s,
     }
 }
 
-/* Sets SURFACE to texel (X, Y); returns 0 if the texel is not on the object. */
-static int find_surface(const struct glint_scene *s,
-                        const struct glint_stone_skin *skin, int x, int y,
-                        struct glint_met_surface *surface)
+/* Sets SURFACE to the object's point at texel (X, Y) of its map; returns 0 if
+ * the texel is not on the object. */
+static int set_texel_surface(const struct glint_scene *s,
+                             const struct glint_stone_skin *skin, int x, int y,
+                             struct glint_met_surface *surface)
 {
     *surface = (struct glint_met_surface){
         .material = &s->model.material[skin->material],
         .object = skin->of->object};
     if (!skin->spread.is_ball)
-        return mesh_surface(s, skin, x, y, surface);
-    ball_surface(s, skin, x, y, surface);
+        return set_mesh_texel_surface(s, skin, x, y, surface);
+    set_ball_texel_surface(s, skin, x, y, surface);
     return 1;
 }
 
-static void light_texel(const struct glint_scene *s,
-                        const struct glint_stone_skin *skin, int x, int y,
-                        int32_t rgb_q15[3])
+static void light_map_texel(const struct glint_scene *s,
+                            const struct glint_stone_skin *skin, int x, int y,
+                            int32_t rgb_q15[3])
 {
     struct glint_met_surface surface;
 
-    if (!find_surface(s, skin, x, y, &surface))
+    if (!set_texel_surface(s, skin, x, y, &surface))
         return;
     for (uint32_t i = 0; i < s->n_lit; i++)
-        add_light(s, skin, &surface, &s->lit[i], rgb_q15);
+        add_entering_light(s, skin, &surface, &s->lit[i], rgb_q15);
     if (s->wards)
-        add_around(s, surface.normal_q30,
-                   skin->fresnel ? skin->stone.header->mean_transmit_q15
-                                 : 1 << 15,
-                   rgb_q15);
+        add_environment_light(
+            s, surface.normal_q30,
+            skin->fresnel ? skin->stone.header->mean_transmit_q15 : 1 << 15,
+            rgb_q15);
 }
 
-/* Lights block I of SKIN. */
-static void light_block(const struct glint_scene *scene,
-                        const struct glint_stone_skin *skin, int i)
+/* Computes the light that enters the object at the texels of block I. */
+static void light_map_block(const struct glint_scene *scene,
+                            const struct glint_stone_skin *skin, int i)
 {
     const int x0 = i % skin->across * GLINT_BLOCK_WIDTH;
     const int y0 = i / skin->across * GLINT_BLOCK_HEIGHT;
@@ -468,7 +482,7 @@ static void light_block(const struct glint_scene *scene,
         for (int x = x0; x < x0 + GLINT_BLOCK_WIDTH; x++) {
             int32_t rgb_q15[3] = {0, 0, 0};
 
-            light_texel(scene, skin, x, y, rgb_q15);
+            light_map_texel(scene, skin, x, y, rgb_q15);
             for (int c = 0; c < CHANNELS; c++)
                 skin->spread.light[c][y * skin->spread.width + x] =
                     (int16_t)q_clamp_sat(q_shift(rgb_q15[c], skin->shift), 0,
@@ -478,34 +492,34 @@ static void light_block(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------ opening */
 
-static const void *find_table(const struct glint_scene *s, uint32_t at)
+static const void *get_model_table(const struct glint_scene *s, uint32_t at)
 {
     return (const unsigned char *)s->model.header + at;
 }
 
-/* Returns the header of the translucent medium of skin I; its sides were
- * checked with the scene. */
+/* Returns the header of the translucent medium of map (skin) I; the scene's
+ * checks included the size of its map. */
 static const struct glint_translucent_header *
-find_header(const struct glint_scene *s, uint32_t i)
+get_medium_header(const struct glint_scene *s, uint32_t i)
 {
-    return find_table(s, s->model.stone[s->model.skin[i].stone].file_at);
+    return get_model_table(s, s->model.stone[s->model.skin[i].stone].file_at);
 }
 
-static int is_ball(const struct glint_scene *s, uint32_t i)
+static int is_skin_of_ball(const struct glint_scene *s, uint32_t i)
 {
     return s->model.object[s->model.skin[i].object].kind == GLINT_OBJECT_SPHERE;
 }
 
-static void carve_skin(const struct glint_scene *s, struct glint_arena *a,
-                       uint32_t i, struct glint_stone_skin *skin)
+static void allocate_map(const struct glint_scene *s, struct glint_arena *a,
+                         uint32_t i, struct glint_stone_skin *skin)
 {
-    const int side = 1 << find_header(s, i)->side_log2;
+    const int side = 1 << get_medium_header(s, i)->side_log2;
     const size_t texels = (size_t)side * (size_t)side
-                          << (is_ball(s, i) ? 1 : 0);
+                          << (is_skin_of_ball(s, i) ? 1 : 0);
     const size_t blocks = texels / (GLINT_BLOCK_WIDTH * GLINT_BLOCK_HEIGHT);
     struct glint_stone_skin k = {.of = &s->model.skin[i]};
 
-    k.spread.is_ball = is_ball(s, i);
+    k.spread.is_ball = is_skin_of_ball(s, i);
     k.spread.height = side;
     k.spread.width = side << k.spread.is_ball;
     k.across = k.spread.width / GLINT_BLOCK_WIDTH;
@@ -520,16 +534,17 @@ static void carve_skin(const struct glint_scene *s, struct glint_arena *a,
         *skin = k;
 }
 
-/* Allocates scratch for the largest of all translucent media. */
-static struct glint_spread_scratch carve_scratch(const struct glint_scene *s,
-                                                 struct glint_arena *a)
+/* Allocates scratch memory of one worker, enough for the largest translucent
+ * medium. */
+static struct glint_spread_scratch
+allocate_spread_scratch(const struct glint_scene *s, struct glint_arena *a)
 {
     struct glint_translucent_header largest = {.rank = 1, .kernel = 1};
     const struct glint_translucent stone = {.header = &largest};
     int height = 0;
 
     for (uint32_t i = 0; i < s->model.header->n_skins; i++) {
-        const struct glint_translucent_header *h = find_header(s, i);
+        const struct glint_translucent_header *h = get_medium_header(s, i);
 
         height = q_larger(height, 1 << h->side_log2);
         if (h->rank > largest.rank)
@@ -537,7 +552,7 @@ static struct glint_spread_scratch carve_scratch(const struct glint_scene *s,
         if (h->kernel > largest.kernel)
             largest.kernel = h->kernel;
     }
-    /* Clamped, as damaged files are only detected when they are opened. */
+    /* Clamped, as a damaged file is only detected when its medium is opened. */
     if (largest.rank > GLINT_TRANSLUCENT_MOST_RANK)
         largest.rank = GLINT_TRANSLUCENT_MOST_RANK;
     if (largest.kernel > GLINT_TRANSLUCENT_MOST_KERNEL)
@@ -545,8 +560,9 @@ static struct glint_spread_scratch carve_scratch(const struct glint_scene *s,
     return glint_spread_carve(a, &stone, height);
 }
 
-static struct glint_stone_state *carve_media(const struct glint_scene *scene,
-                                             struct glint_arena *arena)
+static struct glint_stone_state *
+allocate_translucency(const struct glint_scene *scene,
+                      struct glint_arena *arena)
 {
     const uint32_t n = scene->model.header->n_skins;
     const int workers = glint_workers_count(scene->cfg.workers);
@@ -557,9 +573,10 @@ static struct glint_stone_state *carve_media(const struct glint_scene *scene,
     w->skin = glint_arena_take(arena, n, sizeof *w->skin);
     w->scratch = glint_arena_take(arena, (size_t)workers, sizeof *w->scratch);
     for (uint32_t i = 0; i < n; i++)
-        carve_skin(scene, arena, i, placed ? &w->skin[i] : NULL);
+        allocate_map(scene, arena, i, placed ? &w->skin[i] : NULL);
     for (int i = 0; i < workers; i++) {
-        const struct glint_spread_scratch s = carve_scratch(scene, arena);
+        const struct glint_spread_scratch s =
+            allocate_spread_scratch(scene, arena);
 
         if (placed)
             w->scratch[i] = s;
@@ -567,14 +584,14 @@ static struct glint_stone_state *carve_media(const struct glint_scene *scene,
     return placed;
 }
 
-static enum glint_status open_skin(const struct glint_scene *s,
-                                   struct glint_stone_skin *skin)
+static enum glint_status open_medium_of_skin(const struct glint_scene *s,
+                                             struct glint_stone_skin *skin)
 {
     const struct glint_scene_stone *stone = &s->model.stone[skin->of->stone];
     const int n = skin->spread.width * skin->spread.height;
     const char *reason;
 
-    if (glint_translucent_open(&skin->stone, find_table(s, stone->file_at),
+    if (glint_translucent_open(&skin->stone, get_model_table(s, stone->file_at),
                                stone->file_bytes, &reason) != GLINT_OK)
         return GLINT_E_FORMAT;
     skin->material = stone->material;
@@ -582,9 +599,10 @@ static enum glint_status open_skin(const struct glint_scene *s,
     skin->spread.stone = &skin->stone;
     skin->spread.convolve = glint_convolve_of(s->cfg.sets);
     if (skin->spread.is_ball)
-        skin->turn_q30 = (const int32_t(*)[2])find_table(s, skin->of->texel_at);
+        skin->turn_q30 =
+            (const int32_t(*)[2])get_model_table(s, skin->of->texel_at);
     else
-        skin->triangle = find_table(s, skin->of->texel_at);
+        skin->triangle = get_model_table(s, skin->of->texel_at);
     for (int c = 0; c < CHANNELS; c++)
         for (int i = 0; i < n; i++)
             skin->spread.light[c][i] = skin->spread.map[c][i] = 0;
@@ -595,13 +613,13 @@ static enum glint_status open_skin(const struct glint_scene *s,
 
 static void update_environment_bound(struct glint_scene *scene)
 {
-    scene->stones->around_q15 = max_around(scene);
+    scene->stones->around_q15 = bound_environment_light(scene);
 }
 
-static enum glint_status open_stones(struct glint_scene *scene)
+static enum glint_status open_translucent_media(struct glint_scene *scene)
 {
     for (uint32_t i = 0; i < scene->model.header->n_skins; i++)
-        if (open_skin(scene, &scene->stones->skin[i]) != GLINT_OK)
+        if (open_medium_of_skin(scene, &scene->stones->skin[i]) != GLINT_OK)
             return GLINT_E_FORMAT;
     update_environment_bound(scene);
     return GLINT_OK;
@@ -610,8 +628,8 @@ static enum glint_status open_stones(struct glint_scene *scene)
 /* ------------------------------------------------------------------ updating
  */
 
-/* Clears the state of all blocks if objects have moved since the map was
- * lit. */
+/* Clears the states of all blocks if objects have moved since the map was
+ * computed. */
 static void clear_stale_blocks(const struct glint_scene *s,
                                struct glint_stone_skin *skin)
 {
@@ -624,8 +642,9 @@ static void clear_stale_blocks(const struct glint_scene *s,
     set_exposure_shift(s, skin);
 }
 
-/* Requests light for block (X, Y), which may lie outside the map. */
-static void want_light(struct glint_stone_skin *skin, int x, int y)
+/* Requests the computation of the light that enters at block (X, Y), unless the
+ * block lies outside the map. */
+static void request_block_light(struct glint_stone_skin *skin, int x, int y)
 {
     int i;
 
@@ -645,9 +664,10 @@ static void want_light(struct glint_stone_skin *skin, int x, int y)
     skin->list[skin->n_list++] = (uint16_t)i;
 }
 
-/* Lists the blocks whose light is needed: blocks to be spread, and blocks
- * within a kernel of them. Returns the number of blocks to be spread. */
-static int list_blocks(struct glint_stone_skin *skin)
+/* Lists the blocks whose entering light is needed: visible blocks that are not
+ * computed, and blocks within the kernel's size of them. Returns the number of
+ * visible blocks to be computed. */
+static int list_blocks_to_light(struct glint_stone_skin *skin)
 {
     const int radius = (int)skin->stone.header->kernel / 2;
     const int off[2] = {(radius + GLINT_BLOCK_WIDTH - 1) / GLINT_BLOCK_WIDTH,
@@ -664,7 +684,7 @@ static int list_blocks(struct glint_stone_skin *skin)
         n++;
         for (int dy = -off[1]; dy <= off[1]; dy++)
             for (int dx = -off[0]; dx <= off[0]; dx++)
-                want_light(skin, x + dx, y + dy);
+                request_block_light(skin, x + dx, y + dy);
     }
     return n;
 }
@@ -674,16 +694,17 @@ struct update {
     struct glint_stone_skin *skin;
 };
 
-static void light_job(void *ctx, int job, int worker)
+static void light_block_job(void *ctx, int job, int worker)
 {
     const struct update *u = ctx;
 
     (void)worker;
-    light_block(u->scene, u->skin, u->skin->list[job]);
+    light_map_block(u->scene, u->skin, u->skin->list[job]);
 }
 
-/* Spreads one channel of a column of blocks, run by run. */
-static void spread_job(void *ctx, int job, int worker)
+/* Computes the map values of one colour channel of a column of blocks, in runs
+ * of adjacent blocks. */
+static void spread_block_column_job(void *ctx, int job, int worker)
 {
     const struct update *u = ctx;
     const struct glint_stone_skin *skin = u->skin;
@@ -706,8 +727,8 @@ static void spread_job(void *ctx, int job, int worker)
     }
 }
 
-/* Marks the blocks that were lit and spread. */
-static void store_lit_state(struct glint_stone_skin *skin)
+/* Marks the blocks that have been computed in this update. */
+static void mark_blocks_done(struct glint_stone_skin *skin)
 {
     for (int i = 0; i < skin->n_list; i++) {
         uint8_t *block = &skin->block[skin->list[i]];
@@ -721,8 +742,8 @@ static void store_lit_state(struct glint_stone_skin *skin)
 
 /* Returns the max reflectance of the coat of SKIN / its reflectance at normal
  * incidence, q15; 0 if there is no coat. */
-static int32_t max_coat_q15(const struct glint_scene *scene,
-                            const struct glint_stone_skin *skin)
+static int32_t compute_max_coat_q15(const struct glint_scene *scene,
+                                    const struct glint_stone_skin *skin)
 {
     const uint32_t ward = scene->model.material[skin->material].ward;
     int32_t max_q15 = 1;
@@ -731,10 +752,10 @@ static int32_t max_coat_q15(const struct glint_scene *scene,
         return 0;
     for (int k = 0; k < 3; k++)
         max_q15 = q_larger(max_q15, scene->model.ward[ward].specular_q15[k]);
-    return glint_ratio(UINT64_C(1) << 30, (uint64_t)max_q15);
+    return glint_divide_rounded(UINT64_C(1) << 30, (uint64_t)max_q15);
 }
 
-static int update_maps(struct glint_scene *scene)
+static int update_translucency_maps(struct glint_scene *scene)
 {
     int n = 0;
 
@@ -743,18 +764,19 @@ static int update_maps(struct glint_scene *scene)
         const struct glint_placed *p = &scene->placed[u.skin->of->object];
         int blocks;
 
-        u.skin->max_coat_q15 = max_coat_q15(scene, u.skin);
+        u.skin->max_coat_q15 = compute_max_coat_q15(scene, u.skin);
         if (!p->is_shown || (!p->is_seen && !scene->has_split))
             continue;
         clear_stale_blocks(scene, u.skin);
-        mark_visible(scene, u.skin);
-        blocks = list_blocks(u.skin);
+        mark_visible_blocks(scene, u.skin);
+        blocks = list_blocks_to_light(u.skin);
         if (blocks == 0)
             continue;
-        glint_workers_run(scene->cfg.workers, u.skin->n_list, light_job, &u);
+        glint_workers_run(scene->cfg.workers, u.skin->n_list, light_block_job,
+                          &u);
         glint_workers_run(scene->cfg.workers, CHANNELS * u.skin->across,
-                          spread_job, &u);
-        store_lit_state(u.skin);
+                          spread_block_column_job, &u);
+        mark_blocks_done(u.skin);
         n += blocks * BLOCK_TEXELS;
     }
     return n;
@@ -763,13 +785,14 @@ static int update_maps(struct glint_scene *scene)
 /* ------------------------------------------------------------------- showing
  */
 
-/* A position between two texels of an axis. */
+/* A position between the middles of two neighbouring texels on one axis. */
 struct between {
     int first, second;
-    int32_t part_q16; /* weight of the second */
+    int32_t part_q16; /* weight of the second texel */
 };
 
-static struct between find_texels(int32_t uv_q16, int side_log2, int goes_round)
+static struct between find_texel_pair(int32_t uv_q16, int side_log2,
+                                      int goes_round)
 {
     const int side = 1 << side_log2;
     const int64_t at_q16 = ((int64_t)uv_q16 << side_log2) - (1 << 15);
@@ -784,14 +807,13 @@ static struct between find_texels(int32_t uv_q16, int side_log2, int goes_round)
                             (int32_t)(at_q16 & 0xffff)};
 }
 
-/* Returns the light of MAP interpolated between four texels, in units of the
- * map. */
+/* Returns the bilinear value of MAP between four texels, in the map's unit. */
 static int32_t sample_map(const int16_t *map, int width,
                           const struct between *x, const struct between *y)
 {
     const int16_t *upper = map + (ptrdiff_t)y->first * width;
     const int16_t *lower = map + (ptrdiff_t)y->second * width;
-    /* 7 additional bits: below 2^22, and products below 2^38 */
+    /* 7 more fraction bits: values are below 2^22, and products below 2^38 */
     const int64_t a =
         (upper[x->first] << 7) +
         ((int64_t)(upper[x->second] - upper[x->first]) * x->part_q16 >> 9);
@@ -802,25 +824,26 @@ static int32_t sample_map(const int16_t *map, int width,
     return (int32_t)(a + ((b - a) * y->part_q16 >> 16));
 }
 
-/* Returns the reflectance of the coat where it transmits PASSES_Q15 / its
- * reflectance at normal incidence, q15. Light that is not transmitted is
- * reflected. */
-static int32_t coat_q15(const struct glint_stone_skin *skin, int32_t passes_q15)
+/* Returns the coat's reflectance, 1 - transmission PASSES_Q15, divided by its
+ * reflectance at normal incidence, q15. */
+static int32_t compute_coat_q15(const struct glint_stone_skin *skin,
+                                int32_t passes_q15)
 {
     const uint16_t *at_q15 = skin->stone.transmit_q15;
     const int32_t ahead_q15 = ONE_Q15 - at_q15[GLINT_TRANSLUCENT_COSINES];
 
     if (!skin->fresnel || ahead_q15 <= 0 || !skin->max_coat_q15)
         return ONE_Q15;
-    return q_smaller(glint_ratio((uint64_t)(ONE_Q15 - passes_q15) << 15,
-                                 (uint64_t)ahead_q15),
-                     skin->max_coat_q15);
+    return q_smaller(
+        glint_divide_rounded((uint64_t)(ONE_Q15 - passes_q15) << 15,
+                             (uint64_t)ahead_q15),
+        skin->max_coat_q15);
 }
 
-static int32_t add_scattered(const struct glint_scene *scene,
-                             const struct glint_scene_ray *ray,
-                             const struct glint_met_surface *surface,
-                             int32_t weight_q15, int32_t rgb_q15[3])
+static int32_t add_scattered_light(const struct glint_scene *scene,
+                                   const struct glint_scene_ray *ray,
+                                   const struct glint_met_surface *surface,
+                                   int32_t weight_q15, int32_t rgb_q15[3])
 {
     const struct glint_placed *p = &scene->placed[surface->object];
     const struct glint_stone_skin *skin = &scene->stones->skin[p->skin];
@@ -832,13 +855,13 @@ static int32_t add_scattered(const struct glint_scene *scene,
     if (surface->material != &scene->model.material[skin->material])
         return 0;
     if (skin->spread.is_ball)
-        glint_ball_uv(p, surface, uv_q16);
-    x = find_texels(uv_q16[0], log2 + skin->spread.is_ball,
-                    skin->spread.is_ball);
-    y = find_texels(uv_q16[1], log2, 0);
-    passes_q15 = glint_stone_passes(
+        glint_compute_ball_uv(p, surface, uv_q16);
+    x = find_texel_pair(uv_q16[0], log2 + skin->spread.is_ball,
+                        skin->spread.is_ball);
+    y = find_texel_pair(uv_q16[1], log2, 0);
+    passes_q15 = transmittance_q15(
         skin, -v3_cosine_q30(ray->toward_q30, surface->normal_q30));
-    coat = coat_q15(skin, passes_q15);
+    coat = compute_coat_q15(skin, passes_q15);
     passes_q15 = q_mul(passes_q15, weight_q15, 15);
     for (int c = 0; c < CHANNELS; c++) {
         const int32_t part_q15 =
@@ -854,5 +877,5 @@ static int32_t add_scattered(const struct glint_scene *scene,
 }
 
 const struct glint_scene_stones glint_scene_stones = {
-    carve_media, open_stones, update_environment_bound, update_maps,
-    add_scattered};
+    allocate_translucency, open_translucent_media, update_environment_bound,
+    update_translucency_maps, add_scattered_light};

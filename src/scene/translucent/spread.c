@@ -29,14 +29,15 @@ glint_spread_carve(struct glint_arena *arena,
 
 /* ------------------------------------------------------------------- taps */
 
-/* Returns tap I of TAP[N], counted from the last; 0 if out of range. */
-static int32_t read_tap(const int16_t *tap, int n, int i)
+/* Returns tap I of TAP[N], counted backwards from the last; 0 if I is out of
+ * range. */
+static int32_t read_reversed_tap(const int16_t *tap, int n, int i)
 {
     return i < 0 || i >= n ? 0 : tap[n - 1 - i];
 }
 
-static void set_taps(const struct glint_translucent *t, uint32_t i,
-                     struct glint_spread_taps *taps)
+static void set_tap_pairs(const struct glint_translucent *t, uint32_t i,
+                          struct glint_spread_taps *taps)
 {
     const int n = (int)t->header->kernel;
     const int16_t *row = t->tap + 2 * (size_t)i * t->header->kernel;
@@ -45,27 +46,28 @@ static void set_taps(const struct glint_translucent *t, uint32_t i,
     taps->n = (n + 1) / 2;
     taps->shift = (int)t->shift[i];
     for (int k = 0; k < taps->n; k++) {
-        taps->row[k] =
-            glint_pair(read_tap(row, n, 2 * k), read_tap(row, n, 2 * k + 1));
-        taps->even[k] = glint_pair(read_tap(column, n, 2 * k),
-                                   read_tap(column, n, 2 * k + 1));
-        taps->odd[k] = glint_pair(read_tap(column, n, 2 * k - 1),
-                                  read_tap(column, n, 2 * k));
+        taps->row[k] = glint_pack_pair(read_reversed_tap(row, n, 2 * k),
+                                       read_reversed_tap(row, n, 2 * k + 1));
+        taps->even[k] =
+            glint_pack_pair(read_reversed_tap(column, n, 2 * k),
+                            read_reversed_tap(column, n, 2 * k + 1));
+        taps->odd[k] = glint_pack_pair(read_reversed_tap(column, n, 2 * k - 1),
+                                       read_reversed_tap(column, n, 2 * k));
     }
 }
 
 /* ------------------------------------------------------------------- codes */
 
-/* A row of a table's codes, from a texel on. */
+/* Codes of a row of a table, from one texel to the right. */
 struct codes {
     const uint8_t *at;
     int is_signed;
-    int bits; /* a factor is code / 2^bits */
+    int bits; /* a code stands for the factor code / 2^bits */
 };
 
-/* Returns codes of table TABLE, from texel (X, Y) of the map on. */
-static struct codes find_codes(const struct glint_translucent *t, size_t table,
-                               int x, int y)
+/* Returns the codes of table TABLE in row Y, from texel X to the right. */
+static struct codes find_table_codes(const struct glint_translucent *t,
+                                     size_t table, int x, int y)
 {
     const struct glint_translucent_header *h = t->header;
     const size_t log2 = h->side_log2, mask = ((size_t)1 << log2) - 1;
@@ -76,18 +78,18 @@ static struct codes find_codes(const struct glint_translucent *t, size_t table,
                           is_signed, GLINT_TRANSLUCENT_CODE_BITS - is_signed};
 }
 
-static inline int32_t read_code(const struct codes *f, int i)
+static inline int32_t read_factor_code(const struct codes *f, int i)
 {
     return f->is_signed ? (int8_t)f->at[i] : f->at[i];
 }
 
 /* ------------------------------------------------------------------- light */
 
-/* Sets VALUE to the light that enters at columns X .. X + N - 1 of row Y. The
- * columns must be in the map and within one tile of the translucent medium.
- * Light is below 2^15, and so is light * code / 2^bits. */
-static void set_piece(const struct glint_spread *s, int c, int x, int y, int n,
-                      int16_t *value)
+/* Sets VALUE to the light of channel C that enters at texels X .. X + N - 1 of
+ * row Y, which must be in the map and within one tile of the translucent
+ * medium. Light is below 2^15, and so is light * code / 2^bits. */
+static void set_entering_light(const struct glint_spread *s, int c, int x,
+                               int y, int n, int16_t *value)
 {
     const int16_t *light = s->light[c] + (ptrdiff_t)y * s->width + x;
     struct codes in;
@@ -97,17 +99,17 @@ static void set_piece(const struct glint_spread *s, int c, int x, int y, int n,
             value[i] = light[i];
         return;
     }
-    in = find_codes(s->stone, 3 + (size_t)c, x, y);
+    in = find_table_codes(s->stone, 3 + (size_t)c, x, y);
     for (int i = 0; i < n; i++)
-        value[i] =
-            (int16_t)((light[i] * read_code(&in, i) + (1 << (in.bits - 1))) >>
-                      in.bits);
+        value[i] = (int16_t)((light[i] * read_factor_code(&in, i) +
+                              (1 << (in.bits - 1))) >>
+                             in.bits);
 }
 
-/* Sets VALUE[N] to the light at columns from X on of row Y. Both may lie
- * outside the map. Returns 0 if all light is 0. */
-static int set_row(const struct glint_spread *s, int c, int x, int y, int n,
-                   int16_t *value)
+/* Sets VALUE[N] to the light that enters at texels X .. X + N - 1 of row Y;
+ * texels may lie outside the map. Returns 0 if all light is 0. */
+static int set_entering_light_row(const struct glint_spread *s, int c, int x,
+                                  int y, int n, int16_t *value)
 {
     const int side = 1 << s->stone->header->side_log2;
     int done = 0, any = 0;
@@ -125,9 +127,10 @@ static int set_row(const struct glint_spread *s, int c, int x, int y, int n,
         const int more = q_smaller(n - done, side - (at & (side - 1)));
 
         if (s->is_ball)
-            set_piece(s, c, at & (s->width - 1), y, more, value + done);
+            set_entering_light(s, c, at & (s->width - 1), y, more,
+                               value + done);
         else if (at >= 0 && at < s->width)
-            set_piece(s, c, at, y, more, value + done);
+            set_entering_light(s, c, at, y, more, value + done);
         done += more;
     }
     for (int i = 0; i < n; i++)
@@ -135,9 +138,11 @@ static int set_row(const struct glint_spread *s, int c, int x, int y, int n,
     return any;
 }
 
-/* Sets the pairs of N rows from Y on, for the strip that begins at X0. */
-static void pair_rows(const struct glint_spread *s, int c, int x0, int y,
-                      int n_rows, struct glint_spread_scratch *scratch)
+/* Stores the light of N rows, from Y down, as pairs of neighbouring texels, for
+ * the strip that begins at column X0. */
+static void interleave_light_rows(const struct glint_spread *s, int c, int x0,
+                                  int y, int n_rows,
+                                  struct glint_spread_scratch *scratch)
 {
     const int kernel = (int)s->stone->header->kernel;
     const int n = GLINT_STRIP + kernel - 1;
@@ -146,18 +151,19 @@ static void pair_rows(const struct glint_spread *s, int c, int x0, int y,
     for (int i = 0; i < n_rows; i++) {
         int32_t *pair = scratch->pair + (ptrdiff_t)i * (n + 1);
 
-        scratch->any[i] = set_row(s, c, x0 - kernel / 2, y + i, n, value);
+        scratch->any[i] =
+            set_entering_light_row(s, c, x0 - kernel / 2, y + i, n, value);
         if (!scratch->any[i])
             continue;
         value[n] = value[n + 1] = 0;
         for (int k = 0; k <= n; k++)
-            pair[k] = glint_pair(value[k], value[k + 1]);
+            pair[k] = glint_pack_pair(value[k], value[k + 1]);
     }
 }
 
 /* ------------------------------------------------------------ convolutions */
 
-/* Sets SUM to the convolution of row I. */
+/* Sets SUM to the horizontal convolution of the light of row I. */
 static void convolve_row(const struct glint_spread *s,
                          const struct glint_spread_scratch *scratch, int i,
                          const struct glint_spread_taps *taps,
@@ -172,11 +178,12 @@ static void convolve_row(const struct glint_spread *s,
                     taps->n, GLINT_STRIP);
 }
 
-/* Sets the values of N pairs of rows to their convolution with TAPS. */
-static void set_values(const struct glint_spread *s,
-                       const struct glint_spread_scratch *scratch,
-                       const struct glint_spread_taps *taps, int n,
-                       int32_t *value)
+/* Sets the values of N pairs of rows to their horizontal convolution with
+ * TAPS. */
+static void convolve_row_pairs(const struct glint_spread *s,
+                               const struct glint_spread_scratch *scratch,
+                               const struct glint_spread_taps *taps, int n,
+                               int32_t *value)
 {
     const int shift = taps->shift;
     const int32_t half = (1 << shift) >> 1;
@@ -187,15 +194,15 @@ static void set_values(const struct glint_spread *s,
         for (int k = 0; k < 2; k++)
             convolve_row(s, scratch, 2 * i + k, taps, sum[k]);
         for (int k = 0; k < GLINT_STRIP; k++)
-            value[k] = glint_pair((sum[0][k] + half) >> shift,
-                                  (sum[1][k] + half) >> shift);
+            value[k] = glint_pack_pair((sum[0][k] + half) >> shift,
+                                       (sum[1][k] + half) >> shift);
     }
 }
 
-/* Adds the convolved columns of VALUE to SUM[ROWS]. */
-static void add_columns(const struct glint_spread *s,
-                        const struct glint_spread_taps *taps,
-                        const int32_t *value, int rows, int32_t *sum)
+/* Adds the vertical convolution of VALUE to SUM, rows Y0 .. of the strip. */
+static void add_convolved_columns(const struct glint_spread *s,
+                                  const struct glint_spread_taps *taps,
+                                  const int32_t *value, int rows, int32_t *sum)
 {
     for (int y = 0; y < rows; y++)
         s->convolve(sum + (ptrdiff_t)y * GLINT_STRIP,
@@ -205,9 +212,9 @@ static void add_columns(const struct glint_spread *s,
 
 /* ------------------------------------------------------------------ planes */
 
-/* Returns whether any texel of the strip uses plane P. */
-static int has_plane(const struct glint_spread *s, uint32_t p, int x0, int y0,
-                     int y1)
+/* Returns whether any texel of the strip uses plane P of the kernel. */
+static int strip_uses_plane(const struct glint_spread *s, uint32_t p, int x0,
+                            int y0, int y1)
 {
     const int log2 = (int)s->stone->header->side_log2, mask = (1 << log2) - 1;
 
@@ -220,26 +227,28 @@ static int has_plane(const struct glint_spread *s, uint32_t p, int x0, int y0,
     return 0;
 }
 
-/* Adds SUM, of plane P in row Y, times the plane's f, to TOTAL. The magnitudes
- * of all planes' sums add up to less than 2^31, so TOTAL does not overflow. */
-static void add_plane(const struct glint_spread *s, int c, uint32_t p, int x0,
-                      int y, const int32_t *sum, int32_t *total)
+/* Adds SUM, of plane P in row Y, times the plane's weights, to TOTAL. The
+ * magnitudes of all planes' sums add up to less than 2^31, so TOTAL does not
+ * overflow. */
+static void add_weighted_plane(const struct glint_spread *s, int c, uint32_t p,
+                               int x0, int y, const int32_t *sum,
+                               int32_t *total)
 {
     const struct glint_translucent *t = s->stone;
     const int log2 = (int)t->header->side_log2, mask = (1 << log2) - 1;
     const size_t table = t->header->variant == GLINT_TRANSLUCENT_FACTORED
                              ? (size_t)c * t->header->n_planes + p
                              : (size_t)c;
-    const struct codes f = find_codes(t, table, x0, y);
+    const struct codes f = find_table_codes(t, table, x0, y);
     const int32_t half = 1 << (f.bits - 1);
 
     if (t->cluster) {
         const uint8_t *of = t->cluster + ((y & mask) << log2) + (x0 & mask);
 
         for (int i = 0; i < GLINT_STRIP; i++)
-            total[i] = of[i] == p
-                           ? ((sum[i] + half) >> f.bits) * read_code(&f, i)
-                           : total[i];
+            total[i] = of[i] == p ? ((sum[i] + half) >> f.bits) *
+                                        read_factor_code(&f, i)
+                                  : total[i];
     } else if (f.is_signed) {
         const int8_t *code = (const int8_t *)f.at;
 
@@ -247,14 +256,14 @@ static void add_plane(const struct glint_spread *s, int c, uint32_t p, int x0,
             total[i] += ((sum[i] + half) >> f.bits) * code[i];
     } else {
         for (int i = 0; i < GLINT_STRIP; i++)
-            total[i] += ((sum[i] + half) >> f.bits) * read_code(&f, i);
+            total[i] += ((sum[i] + half) >> f.bits) * read_factor_code(&f, i);
     }
 }
 
-/* Adds plane P to the total. */
-static void spread_plane(const struct glint_spread *s, int c, uint32_t p,
-                         int x0, int y0, int y1,
-                         struct glint_spread_scratch *scratch)
+/* Adds the light that plane P of the kernel spreads to the total. */
+static void spread_kernel_plane(const struct glint_spread *s, int c, uint32_t p,
+                                int x0, int y0, int y1,
+                                struct glint_spread_scratch *scratch)
 {
     const struct glint_translucent_header *h = s->stone->header;
     const int rows = y1 - y0, n = (rows + (int)h->kernel) / 2;
@@ -264,21 +273,23 @@ static void spread_plane(const struct glint_spread *s, int c, uint32_t p,
     for (uint32_t r = 0; r < h->rank; r++) {
         struct glint_spread_taps *taps = scratch->taps;
 
-        set_taps(s->stone, ((uint32_t)c * h->n_planes + p) * h->rank + r, taps);
-        set_values(s, scratch, taps, n, scratch->value);
-        add_columns(s, taps, scratch->value, rows, scratch->sum);
+        set_tap_pairs(s->stone, ((uint32_t)c * h->n_planes + p) * h->rank + r,
+                      taps);
+        convolve_row_pairs(s, scratch, taps, n, scratch->value);
+        add_convolved_columns(s, taps, scratch->value, rows, scratch->sum);
     }
     for (int y = 0; y < rows; y++)
-        add_plane(s, c, p, x0, y0 + y,
-                  scratch->sum + (ptrdiff_t)y * GLINT_STRIP,
-                  scratch->total + (ptrdiff_t)y * GLINT_STRIP);
+        add_weighted_plane(s, c, p, x0, y0 + y,
+                           scratch->sum + (ptrdiff_t)y * GLINT_STRIP,
+                           scratch->total + (ptrdiff_t)y * GLINT_STRIP);
 }
 
 /* ------------------------------------------------------------------ strips */
 
-/* Sets a row of the map to TOTAL times the gain, clamped to 0 or more. */
-static void finish_row(const struct glint_spread *s, int c, int x0, int y,
-                       const int32_t *total)
+/* Sets a row of the map to TOTAL times the medium's gain, clamped to 0 or
+ * more. */
+static void write_map_row(const struct glint_spread *s, int c, int x0, int y,
+                          const int32_t *total)
 {
     const struct glint_real gain = s->stone->header->gain[c];
     const int down = -gain.exponent;
@@ -301,11 +312,12 @@ void glint_spread_strip(const struct glint_spread *spread, int c, int x0,
 
     for (int i = 0; i < rows * GLINT_STRIP; i++)
         scratch->total[i] = 0;
-    pair_rows(spread, c, x0, y0 - kernel / 2, (rows + kernel) & ~1, scratch);
+    interleave_light_rows(spread, c, x0, y0 - kernel / 2, (rows + kernel) & ~1,
+                          scratch);
     for (uint32_t p = 0; p < h->n_planes; p++)
-        if (has_plane(spread, p, x0, y0, y1))
-            spread_plane(spread, c, p, x0, y0, y1, scratch);
+        if (strip_uses_plane(spread, p, x0, y0, y1))
+            spread_kernel_plane(spread, c, p, x0, y0, y1, scratch);
     for (int y = 0; y < rows; y++)
-        finish_row(spread, c, x0, y0 + y,
-                   scratch->total + (ptrdiff_t)y * GLINT_STRIP);
+        write_map_row(spread, c, x0, y0 + y,
+                      scratch->total + (ptrdiff_t)y * GLINT_STRIP);
 }

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Spreads the light on a map of texels as a baked translucent medium does
- * (glint/scene/translucent.h), strip by strip.
+ * Spreads the light that enters a translucent object over its map, by the
+ * kernel of a baked translucent medium (glint/scene/translucent.h), strip by
+ * strip.
  *
  *   in light that enters, 0 .. 32767 of any unit; the translucent medium
  *   out light that leaves, 0 .. 32767 of that unit, saturates
  *
- * A strip is GLINT_STRIP columns of one channel. For each plane of the kernel
- * the strip's rows are convolved, two at a time, and then its columns;
+ * A strip is GLINT_STRIP columns of one colour channel. For each plane of the
+ * kernel the strip's rows are convolved, two at a time, and then its columns;
  * intermediate values stay in the CPU's cache. */
 #ifndef GLINT_SCENE_TRANSLUCENT_SPREAD_H
 #define GLINT_SCENE_TRANSLUCENT_SPREAD_H
@@ -21,46 +22,48 @@ enum { GLINT_STRIP = 32 };
 struct glint_spread {
     const struct glint_translucent *stone;
     glint_convolve_fn *convolve;
-    /* Size of the map, powers of two; the translucent medium is tiled over it.
-     * If is_ball is set, columns wrap around and rows continue across the
-     * poles; otherwise there is no light outside the map. */
+    /* Size of the map in texels, powers of two; the translucent medium is tiled
+     * over it. If is_ball is set, columns wrap around and rows continue across
+     * the poles; otherwise no light enters outside the map. */
     int width, height;
     int is_ball;
-    int16_t *light[3]; /* [height][width] */
-    int16_t *map[3];   /* [height][width] */
+    int16_t *light[3]; /* [height][width]: light that enters */
+    int16_t *map[3];   /* [height][width]: light that leaves */
 };
 
 enum { GLINT_SPREAD_PAIRS = (GLINT_TRANSLUCENT_MOST_KERNEL + 1) / 2 };
 
-/* Taps of one rank of a plane, as pairs, from the last tap to the first;
- * padding is 0. */
+/* Filter taps of one rank of a plane, as pairs, from the last tap to the first,
+ * padded with 0. */
 struct glint_spread_taps {
     int n, shift;
     int32_t row[GLINT_SPREAD_PAIRS];
-    /* Taps of columns that begin at the first, or at the second row of a pair
-     * of rows. */
+    /* Taps for columns that begin with the first (even) or the second row (odd)
+     * of a pair of rows. */
     int32_t even[GLINT_SPREAD_PAIRS], odd[GLINT_SPREAD_PAIRS];
 };
 
-/* Scratch of one worker. */
+/* Scratch memory of one worker. */
 struct glint_spread_scratch {
-    struct glint_spread_taps *taps; /* of one rank */
-    int32_t *any;   /* [height + kernel]: nonzero if the row has light */
+    struct glint_spread_taps *taps; /* taps of one rank */
+    int32_t *any;   /* [height + kernel]: nonzero if light enters in the row */
     int32_t *pair;  /* [height + kernel][GLINT_STRIP + kernel]: light that
-                       enters, as pairs of neighbours */
-    int32_t *value; /* [(height + kernel) / 2][GLINT_STRIP] pairs of rows */
-    int32_t *sum;   /* [height][GLINT_STRIP]: sum of one plane */
-    int32_t *total; /* [height][GLINT_STRIP]: sum of all planes, weighted by
-                       f */
+                       enters, as pairs of neighbouring texels */
+    int32_t *value; /* [(height + kernel) / 2][GLINT_STRIP]: convolved rows, in
+                       pairs */
+    int32_t *sum;   /* [height][GLINT_STRIP]: result of one plane */
+    int32_t *total; /* [height][GLINT_STRIP]: sum of all planes' results,
+                       weighted per texel */
 };
 
-/* Allocates the scratch of one worker for STONE on maps of HEIGHT rows. */
+/* Allocates the scratch memory of one worker for translucent medium STONE and
+ * maps of HEIGHT rows. */
 struct glint_spread_scratch
 glint_spread_carve(struct glint_arena *arena,
                    const struct glint_translucent *stone, int height);
 
-/* Sets rows Y0 .. Y1 - 1 of the map of channel C in the strip from column X0
- * on. */
+/* Computes rows Y0 .. Y1 - 1 of the map of channel C in the strip that begins
+ * at column X0. */
 void glint_spread_strip(const struct glint_spread *spread, int c, int x0,
                         int y0, int y1, struct glint_spread_scratch *scratch);
 

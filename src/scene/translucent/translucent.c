@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks a baked translucent medium once, so that spreading light need not
- * check anything.
- */
+ * Checks a baked translucent medium once, so that drawing need not check its
+ * tables again. */
 #include "glint/scene/translucent.h"
 
 #include "base/blob.h"
 #include "base/compiler.h"
 #include "base/q.h"
 
-/* The file is used in place: its layout is the layout of this struct. */
+/* The program reads the file in place: this struct is the file's layout. */
 STATIC_ASSERT(sizeof(struct glint_translucent_header) == 172);
 
 /* The header begins like the header of every baked file. */
@@ -17,51 +16,51 @@ GLINT_BLOB_HEADER(struct glint_translucent_header, variant);
 
 enum { CHANNELS = 3, MOST_SHIFT = 16, LEAST_GAIN = -200 };
 
-static const char outside[] = "a table lies outside the stone";
+static const char outside[] = "a table lies outside the translucent medium";
 
 static const char *const fault_text[GLINT_BLOB_FAULTS] =
     GLINT_BLOB_FAULT_TEXT("stone", "stones", "baked");
 
-static int is_between(int64_t x, int64_t lo, int64_t hi)
+static int is_value_between(int64_t x, int64_t lo, int64_t hi)
 {
     return x >= lo && x <= hi;
 }
 
-static const char *check_header(const struct glint_translucent_header *h)
+static const char *check_medium_header(const struct glint_translucent_header *h)
 {
     if (h->variant > GLINT_TRANSLUCENT_ALBEDO)
-        return "the stone's model is unknown";
-    if (!is_between(h->side_log2, GLINT_TRANSLUCENT_LEAST_LOG2,
-                    GLINT_TRANSLUCENT_MOST_LOG2) ||
-        !is_between(h->kernel, 1, GLINT_TRANSLUCENT_MOST_KERNEL) ||
+        return "the translucent medium's model is unknown";
+    if (!is_value_between(h->side_log2, GLINT_TRANSLUCENT_LEAST_LOG2,
+                          GLINT_TRANSLUCENT_MOST_LOG2) ||
+        !is_value_between(h->kernel, 1, GLINT_TRANSLUCENT_MOST_KERNEL) ||
         h->kernel % 2 == 0)
-        return "the stone's side or kernel is out of range";
-    if (!is_between(h->n_planes, 1,
-                    h->variant == GLINT_TRANSLUCENT_ALBEDO
-                        ? 1
-                        : GLINT_TRANSLUCENT_MOST_PLANES) ||
-        !is_between(h->rank, 1, GLINT_TRANSLUCENT_MOST_RANK))
-        return "the stone has too many planes or ranks";
-    if (!is_between(h->texel_um, 1, 1000000) ||
-        !is_between(h->index_q16, 1 << 16, 3 << 16))
-        return "the stone's texel or index is out of range";
+        return "a translucent medium's side or kernel is out of range";
+    if (!is_value_between(h->n_planes, 1,
+                          h->variant == GLINT_TRANSLUCENT_ALBEDO
+                              ? 1
+                              : GLINT_TRANSLUCENT_MOST_PLANES) ||
+        !is_value_between(h->rank, 1, GLINT_TRANSLUCENT_MOST_RANK))
+        return "the translucent medium has too many planes or ranks";
+    if (!is_value_between(h->texel_um, 1, 1000000) ||
+        !is_value_between(h->index_q16, 1 << 16, 3 << 16))
+        return "the translucent medium's texel or index is out of range";
     if (h->code_bits != GLINT_TRANSLUCENT_CODE_BITS ||
         h->tap_bits != GLINT_TRANSLUCENT_TAP_BITS)
-        return "the stone's codes have too few or too many bits";
-    if (!is_between(h->mean_transmit_q15, 0, 1 << 15))
-        return "the stone's transmittance is not 0 .. 1";
+        return "the translucent medium's codes have too few or too many bits";
+    if (!is_value_between(h->mean_transmit_q15, 0, 1 << 15))
+        return "the translucent medium's transmittance is not 0 .. 1";
     for (int c = 0; c < CHANNELS; c++)
         if (h->gain[c].mantissa != 0 &&
             (h->gain[c].mantissa < 1 << 30 ||
-             !is_between(h->gain[c].exponent, LEAST_GAIN, -31)))
-            return "the stone's gain is not normalised, or not 0 .. 1";
+             !is_value_between(h->gain[c].exponent, LEAST_GAIN, -31)))
+            return "the translucent medium's gain is not normalised, or not 0 "
+                   ".. 1";
     return NULL;
 }
 
-/* Returns whether the magnitudes of N taps are below LIMIT; adds them to
- * SUM. */
-static int add_taps(const int16_t *tap, uint32_t n, int32_t limit,
-                    uint32_t *sum)
+/* Adds the magnitudes of N taps to SUM; returns whether each is below LIMIT. */
+static int add_tap_magnitudes(const int16_t *tap, uint32_t n, int32_t limit,
+                              uint32_t *sum)
 {
     int fits = 1;
 
@@ -74,9 +73,9 @@ static int add_taps(const int16_t *tap, uint32_t n, int32_t limit,
     return fits;
 }
 
-/* Checks by sums of taps that convolutions of values within +-32767 do not
- * overflow. */
-static const char *check_taps(const struct glint_translucent *t)
+/* Checks that sums of taps are so small that convolutions of values within
+ * +-32767 do not overflow. */
+static const char *check_tap_sums(const struct glint_translucent *t)
 {
     const struct glint_translucent_header *h = t->header;
     const uint32_t n = h->n_planes * h->rank;
@@ -90,20 +89,23 @@ static const char *check_taps(const struct glint_translucent *t)
             const uint32_t shift = t->shift[c * n + i];
             uint32_t row = 0;
 
-            if (!add_taps(tap, h->kernel, limit, &row) ||
-                !add_taps(tap + h->kernel, h->kernel, limit, &columns))
-                return "a tap of the stone has too many bits";
+            if (!add_tap_magnitudes(tap, h->kernel, limit, &row) ||
+                !add_tap_magnitudes(tap + h->kernel, h->kernel, limit,
+                                    &columns))
+                return "a tap of the translucent medium has too many bits";
             if (shift > MOST_SHIFT || row > UINT32_C(1) << shift ||
                 row > GLINT_TRANSLUCENT_MOST_TAPS)
-                return "the rows of a plane of the stone do not fit";
+                return "the row taps of a translucent medium's plane are too "
+                       "large";
         }
         if (columns > GLINT_TRANSLUCENT_MOST_TAPS)
-            return "the columns of a plane of the stone do not fit";
+            return "the column taps of a translucent medium's plane are too "
+                   "large";
     }
     return NULL;
 }
 
-static uint32_t count_codes(const struct glint_translucent_header *h)
+static uint32_t count_weight_codes(const struct glint_translucent_header *h)
 {
     const uint32_t texels = 1U << 2 * h->side_log2;
 
@@ -119,15 +121,15 @@ static uint64_t count_words(uint64_t n, uint64_t bytes)
     return (n * bytes + 3) / 4;
 }
 
-static const char *find_tables(struct glint_translucent *t,
-                               struct glint_blob *b)
+static const char *locate_tables(struct glint_translucent *t,
+                                 struct glint_blob *b)
 {
     const struct glint_translucent_header *h = t->header;
     const uint32_t n = CHANNELS * h->n_planes * h->rank;
     const uint32_t texels = 1U << 2 * h->side_log2;
 
-    t->code =
-        glint_blob_section(b, h->code_at, count_words(count_codes(h), 1), 4);
+    t->code = glint_blob_section(b, h->code_at,
+                                 count_words(count_weight_codes(h), 1), 4);
     t->tap =
         glint_blob_section(b, h->tap_at, count_words(2 * n * h->kernel, 2), 4);
     t->shift = glint_blob_section(b, h->shift_at, n, 4);
@@ -142,28 +144,28 @@ static const char *find_tables(struct glint_translucent *t,
     return t->cluster ? NULL : outside;
 }
 
-static const char *check_contents(struct glint_translucent *t,
-                                  struct glint_blob *blob)
+static const char *check_medium_contents(struct glint_translucent *t,
+                                         struct glint_blob *blob)
 {
     const struct glint_translucent_header *h = t->header;
     const char *wrong = fault_text[glint_blob_check_name(blob)];
 
     if (!wrong)
-        wrong = check_header(h);
+        wrong = check_medium_header(h);
     if (!wrong)
-        wrong = find_tables(t, blob);
+        wrong = locate_tables(t, blob);
     if (!wrong)
-        wrong = check_taps(t);
-    for (uint32_t i = 0; !wrong && i < count_codes(h); i++)
+        wrong = check_tap_sums(t);
+    for (uint32_t i = 0; !wrong && i < count_weight_codes(h); i++)
         if (h->variant == GLINT_TRANSLUCENT_FACTORED && t->code[i] == 128)
-            wrong = "a code of the stone is the least of its type";
+            wrong = "a signed code of the translucent medium is -128";
     for (uint32_t i = 0; !wrong && t->cluster && i < 1U << 2 * h->side_log2;
          i++)
         if (t->cluster[i] >= h->n_planes)
             wrong = "a texel's cluster is out of range";
     for (int i = 0; !wrong && i <= GLINT_TRANSLUCENT_COSINES; i++)
         if (t->transmit_q15[i] > 1 << 15)
-            wrong = "the stone's transmittance is not 0 .. 1";
+            wrong = "the translucent medium's transmittance is not 0 .. 1";
     return wrong;
 }
 
@@ -179,7 +181,7 @@ enum glint_status glint_translucent_open(struct glint_translucent *stone,
     const char *wrong = fault_text[glint_blob_open(&blob, &kind, data, bytes)];
 
     if (!wrong)
-        wrong = check_contents(&t, &blob);
+        wrong = check_medium_contents(&t, &blob);
     if (wrong) {
         *reason = wrong;
         return GLINT_E_FORMAT;

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks a baked environment once, so that lookups need not check anything. */
+ * Checks a baked environment once, so that lookups need not check its tables
+ * again. */
 #include "glint/scene/environment.h"
 
 #include "base/blob.h"
 #include "base/compiler.h"
 #include "scene/valid.h"
 
-/* The file is used in place: its layout is the layout of these structs. */
+/* The program reads the file in place: these structs are the file's layout. */
 STATIC_ASSERT(sizeof(struct glint_environment_level) == 16);
 STATIC_ASSERT(sizeof(struct glint_environment_light) == 40);
 STATIC_ASSERT(sizeof(struct glint_environment_header) == 124);
@@ -34,7 +35,8 @@ uint32_t glint_environment_side_log2(uint32_t levels, uint32_t side_log2,
     return side_log2 + 1 - level;
 }
 
-static const char *check_header(const struct glint_environment_header *h)
+static const char *
+check_environment_header(const struct glint_environment_header *h)
 {
     if (h->variant > GLINT_ENVIRONMENT_MIP || h->code != GLINT_ENVIRONMENT_9E5)
         return "the environment's levels or codes are unknown: bake it again";
@@ -48,8 +50,8 @@ static const char *check_header(const struct glint_environment_header *h)
     return NULL;
 }
 
-static const char *check_level(struct glint_environment *e,
-                               struct glint_blob *blob, uint32_t k)
+static const char *check_mip_level(struct glint_environment *e,
+                                   struct glint_blob *blob, uint32_t k)
 {
     const struct glint_environment_header *h = e->header;
     const struct glint_environment_level *l = &e->level[k];
@@ -63,8 +65,8 @@ static const char *check_level(struct glint_environment *e,
     return e->texel[k] ? NULL : outside;
 }
 
-/* Sets the address of level K. */
-static void place_level(struct glint_environment *e, uint32_t k)
+/* Sets the address of mip level K in E. */
+static void set_level_address(struct glint_environment *e, uint32_t k)
 {
     const struct glint_environment_level *l = &e->level[k];
 
@@ -73,26 +75,27 @@ static void place_level(struct glint_environment *e, uint32_t k)
     e->texels.level[k + 1] = e->texels.level[k];
 }
 
-static const char *check_light(const struct glint_environment_light *light)
+static const char *
+check_bright_light(const struct glint_environment_light *light)
 {
-    if (!glint_scene_is_unit(light->toward_q30, 3))
+    if (!glint_scene_is_unit_vector(light->toward_q30, 3))
         return "a light's direction is not a unit vector";
     if (light->radius_q30 < 0 || light->radius_q30 > 1 << 29)
         return "a light is too large";
     for (int c = 0; c < 3; c++)
-        if (!glint_scene_is_light(&light->rgb[c]))
+        if (!glint_scene_is_valid_intensity(&light->rgb[c]))
             return "a light is negative or not normalised";
     return NULL;
 }
 
-static const char *check_contents(struct glint_environment *e,
-                                  struct glint_blob *blob)
+static const char *check_environment_contents(struct glint_environment *e,
+                                              struct glint_blob *blob)
 {
     const struct glint_environment_header *h = e->header;
     const char *wrong = fault_text[glint_blob_check_name(blob)];
 
     if (!wrong)
-        wrong = check_header(h);
+        wrong = check_environment_header(h);
     if (wrong)
         return wrong;
     e->level =
@@ -107,12 +110,12 @@ static const char *check_contents(struct glint_environment *e,
     e->texels = (struct glint_texels){.code = (const uint32_t *)(const void *)h,
                                       .last = (int32_t)h->n_levels - 1};
     for (uint32_t k = 0; !wrong && k < h->n_levels; k++) {
-        wrong = check_level(e, blob, k);
+        wrong = check_mip_level(e, blob, k);
         if (!wrong)
-            place_level(e, k);
+            set_level_address(e, k);
     }
     for (uint32_t k = 0; !wrong && k < h->n_lights; k++)
-        wrong = check_light(&e->light[k]);
+        wrong = check_bright_light(&e->light[k]);
     return wrong;
 }
 
@@ -128,7 +131,7 @@ enum glint_status glint_environment_open(struct glint_environment *environment,
     const char *wrong = fault_text[glint_blob_open(&blob, &kind, data, bytes)];
 
     if (!wrong)
-        wrong = check_contents(&e, &blob);
+        wrong = check_environment_contents(&e, &blob);
     if (wrong) {
         *reason = wrong;
         return GLINT_E_FORMAT;

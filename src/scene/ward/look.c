@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Looks up the light of an environment: bilinear within a level, blended
- * between two levels. */
+ * Looks up the light of an environment map: bilinear within a mip level,
+ * blended between two levels. */
 #include "base/divide.h"
 #include "base/log2.h"
 #include "glint/scene/ward.h"
 #include "kernels/ward/texels.h"
 
-/* Sets U and V to the position of direction TOWARD in the square map. */
-static void find_texel_position(const int32_t toward[3], int32_t *u_q17,
-                                int32_t *v_q17)
+/* Sets U and V to the position of direction TOWARD in the square environment
+ * map. */
+static void compute_map_position(const int32_t toward[3], int32_t *u_q17,
+                                 int32_t *v_q17)
 {
     const uint32_t x = (uint32_t)q_magnitude(toward[0]);
     const uint32_t y = (uint32_t)q_magnitude(toward[1]);
@@ -28,7 +29,8 @@ static void find_texel_position(const int32_t toward[3], int32_t *u_q17,
     *v_q17 = 65536 + (toward[2] < 0 ? -q_q16 : q_q16);
 }
 
-static void set_light(const struct glint_found *found, int32_t rgb[3])
+static void convert_texel_to_light(const struct glint_found *found,
+                                   int32_t rgb[3])
 {
     for (int j = 0; j < 3; j++)
         rgb[j] = (int32_t)(found->rgb[j] >> (34 - found->log2));
@@ -43,14 +45,15 @@ void glint_environment_irradiance(const struct glint_environment *environment,
     struct glint_found found;
     int32_t u_q17, v_q17;
 
-    find_texel_position(normal, &u_q17, &v_q17);
-    glint_reads_of(&level, u_q17, v_q17, 256, reads.at, reads.weight_q22);
-    glint_find_light(environment->irradiance, &reads, 4, &found);
-    set_light(&found, rgb);
+    compute_map_position(normal, &u_q17, &v_q17);
+    glint_set_texel_reads(&level, u_q17, v_q17, 256, reads.at,
+                          reads.weight_q22);
+    glint_sum_texel_light(environment->irradiance, &reads, 4, &found);
+    convert_texel_to_light(&found, rgb);
 }
 
-/* Returns the weight of the next level, which has four times the variance, so
- * that the blend has the variance of a level OVER_Q8 above the first. */
+/* Returns the weight of the next mip level, which has four times the variance,
+ * so that the blend has the variance of a level OVER_Q8 above the first. */
 static uint32_t compute_level_weight(int32_t over_q8)
 {
     return (uint32_t)(q_exp2_q16(over_q8 * 512) - 65536) * 85 >> 16;
@@ -67,15 +70,15 @@ void glint_environment_look(const struct glint_environment *environment,
     int32_t u_q17, v_q17;
     uint32_t share_q8;
 
-    find_texel_position(toward, &u_q17, &v_q17);
+    compute_map_position(toward, &u_q17, &v_q17);
     level_q8 = q_smaller(q_larger(level_q8, 0), texels->last << 8);
     share_q8 = compute_level_weight(level_q8 & 255);
     level = &texels->level[level_q8 >> 8];
-    glint_reads_of(level, u_q17, v_q17, 256 - share_q8, reads.at,
-                   reads.weight_q22);
+    glint_set_texel_reads(level, u_q17, v_q17, 256 - share_q8, reads.at,
+                          reads.weight_q22);
     if (share_q8)
-        glint_reads_of(level + 1, u_q17, v_q17, share_q8, reads.at + 4,
-                       reads.weight_q22 + 4);
-    glint_find_light(texels->code, &reads, share_q8 ? 8 : 4, &found);
-    set_light(&found, rgb);
+        glint_set_texel_reads(level + 1, u_q17, v_q17, share_q8, reads.at + 4,
+                              reads.weight_q22 + 4);
+    glint_sum_texel_light(texels->code, &reads, share_q8 ? 8 : 4, &found);
+    convert_texel_to_light(&found, rgb);
 }

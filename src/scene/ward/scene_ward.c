@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Environment light on the surfaces of a scene: diffuse reflection by the
- * irradiance map, and Ward's lobe of brushed metal. */
+ * Environment light on the surfaces of a scene: diffuse reflection from the
+ * irradiance map, and reflection by Ward's lobe on brushed metal. */
 #include "base/log2.h"
 #include "base/real.h"
 #include "glint/scene/ward.h"
@@ -11,20 +11,26 @@
 #include "scene/ward/send.h"
 
 struct glint_ward_state {
-    struct glint_environment *opened; /* [n_environments] */
-    struct glint_scene_light *sun;    /* [n_environment_lights] */
+    struct glint_environment *opened; /* [n_environments]: all environments of
+                                         the scene */
+    struct glint_scene_light *sun;    /* [n_environment_lights]: bright lights
+                                         of the environment, as suns */
     int has_environment;
-    struct glint_environment environment; /* the current environment */
-    int32_t turn_q30[2];                  /* cosine and sine, to the right */
-    struct glint_real scale;              /* factor of all its light */
-    struct glint_real unit;               /* unit of its texels, times scale */
-    struct glint_ward_material *material; /* [n_wards], with clamped ratios */
-    struct glint_ward_lobe *lobe;         /* [n_wards] */
+    struct glint_environment environment; /* the environment that is shown */
+    int32_t turn_q30[2];                  /* cosine and sine of its rotation to
+                                             the right */
+    struct glint_real scale;              /* factor of all light of the
+                                             environment */
+    struct glint_real unit;               /* unit of the environment's texels,
+                                             times scale */
+    struct glint_ward_material *material; /* [n_wards]: metals, with ratios of
+                                             alphas clamped */
+    struct glint_ward_lobe *lobe;         /* [n_wards]: reflection lobes */
 };
 
 /* Sets TO to direction V, _q30, rotated to the environment's coordinates. */
-static inline void glint_ward_turn(const struct glint_ward_state *w,
-                                   const int32_t v[3], int32_t to[3])
+static inline void rotate_to_environment(const struct glint_ward_state *w,
+                                         const int32_t v[3], int32_t to[3])
 {
     const int64_t c = w->turn_q30[0], s = w->turn_q30[1];
 
@@ -35,16 +41,18 @@ static inline void glint_ward_turn(const struct glint_ward_state *w,
 
 /* ------------------------------------------------------------------- behind */
 
-/* An environment as background, behind objects and in mirrors: its levels and
- * the discs of its bright lights, blurred to the extent of a pixel. */
+/* An environment as background, behind objects and in mirrors: its mip levels
+ * and the discs of its bright lights, blurred to the size of a pixel. */
 enum {
     LOG2_PI_Q16 = 108232,
-    LEAST_SPREAD_Q40 = 1 << 14 /* so that point lights have a disc */
+    LEAST_SPREAD_Q40 = 1 << 14 /* min angular variance, so that point lights
+                                  have a disc */
 };
 
-/* Returns the level of variance SPREAD: level l has the variance 4^l pi /
- * side^2. */
-static int32_t level_q8(const struct glint_environment *e, int64_t spread_q40)
+/* Returns the mip level whose texels have variance SPREAD: level l has the
+ * variance 4^l pi / side^2. */
+static int32_t compute_level_of_variance_q8(const struct glint_environment *e,
+                                            int64_t spread_q40)
 {
     const int32_t octaves_q16 = q_log2_q16((uint64_t)spread_q40) - (40 << 16) +
                                 (int32_t)(e->header->side_log2 << 17) -
@@ -53,14 +61,16 @@ static int32_t level_q8(const struct glint_environment *e, int64_t spread_q40)
     return (int32_t)q_shift(octaves_q16, 9);
 }
 
-/* Adds the disc of LIGHT, enlarged to at least the pixel's spot; it fades
- * within half of the spot's size around its rim. */
-static void add_disc(const struct glint_ward_state *w,
-                     const struct glint_environment_light *light,
-                     const int32_t toward_q30[3], int64_t spread_q40,
-                     int32_t rgb_q15[3])
+/* Adds the disc of LIGHT to the background, enlarged to at least the pixel's
+ * size. Its edge is blurred: light fades within half of the pixel's size on
+ * both sides of the rim. */
+static void add_light_disc(const struct glint_ward_state *w,
+                           const struct glint_environment_light *light,
+                           const int32_t toward_q30[3], int64_t spread_q40,
+                           int32_t rgb_q15[3])
 {
-    const int32_t width_q30 = (int32_t)glint_root((uint64_t)spread_q40 << 22);
+    const int32_t width_q30 =
+        (int32_t)glint_square_root((uint64_t)spread_q40 << 22);
     const int32_t r_q30 = q_larger(light->radius_q30, width_q30);
     const struct glint_real r = real_of(r_q30, -30);
     int32_t off_q29[3], away_q30, share_q15;
@@ -68,9 +78,9 @@ static void add_disc(const struct glint_ward_state *w,
 
     for (int k = 0; k < 3; k++)
         off_q29[k] = toward_q30[k] / 2 - light->toward_q30[k] / 2;
-    away_q30 = 2 * (int32_t)q_smaller(
-                       (int32_t)glint_root((uint64_t)v3_dot(off_q29, off_q29)),
-                       (1 << 30) - 1);
+    away_q30 = 2 * (int32_t)q_smaller((int32_t)glint_square_root(
+                                          (uint64_t)v3_dot(off_q29, off_q29)),
+                                      (1 << 30) - 1);
     if (away_q30 >= r_q30 + width_q30 / 2)
         return;
     share_q15 = away_q30 <= r_q30 - width_q30 / 2
@@ -98,47 +108,49 @@ static void read_blurred_environment(const struct glint_scene *scene,
         INT64_C(1024);
     int32_t to_q30[3], to_q16[3], light[3];
 
-    glint_ward_turn(w, toward_q30, to_q30);
+    rotate_to_environment(w, toward_q30, to_q30);
     for (int k = 0; k < 3; k++)
         to_q16[k] = (int32_t)q_shift(to_q30[k], 14);
-    glint_environment_look(e, to_q16, level_q8(e, seen_q40), light);
+    glint_environment_look(e, to_q16, compute_level_of_variance_q8(e, seen_q40),
+                           light);
     for (int c = 0; c < 3; c++)
         rgb_q15[c] =
             (int32_t)real_integer(real_times(real_of(light[c], 0), w->unit), 15,
                                   GLINT_SCENE_MOST_LIGHT);
     for (uint32_t i = 0; i < e->header->n_lights; i++)
-        add_disc(w, &e->light[i], to_q30, seen_q40, rgb_q15);
+        add_light_disc(w, &e->light[i], to_q30, seen_q40, rgb_q15);
 }
 
 /* ------------------------------------------------------------------ shining */
 
 /* Highlight of one light on brushed metal: Ward's lobe, widened by the metal's
- * roughness, the light's disc and the curvature of the surface within a pixel.
- * Without the last term the highlight of a small ball would flicker as it moves
- * between pixels.
+ * roughness, the size of the light's disc and the curvature of the surface
+ * within a pixel. Without the last term the highlight on a small ball would
+ * flicker as it moves between pixels.
  *
  * Variances of slopes add up: alpha^2 / 2 of the metal, r^2 / 16 of the half
  * vector to a disc of angular radius r, and the variance of the normal within a
- * pixel. With h the half vector and o to the eye the light is
+ * pixel. With h the half vector and o the direction to the eye, the light is
  *
- *     level weight exp(-slope) / (4 ax ay (h.o) (h.n)^3)
+ *    level weight exp(-slope) / (4 ax ay (h.o) (h.n)^3)
  *
  * with the weight of ward.c, clamped to 8. */
 enum { MOST_SLOPE = 16, LOG2_E_Q16 = 94548 };
 
-/* The half vector relative to the surface; all q30 except slopes. */
+/* The half vector in the surface's tangent frame; all q30 except slopes. */
 struct half {
     int32_t ho_q30, hn_q30, ni_q30, no_q30;
-    uint64_t slope_q52[2]; /* squares of slopes along the two axes, up to
-                              2^60 */
+    uint64_t slope_q52[2]; /* squares of its slopes along the two tangents, up
+                              to 2^60 */
 };
 
-/* Returns whether the slope ALONG_Q30 / HN_Q30 is certainly so large that the
- * lobe with squared alpha ALPHA_Q40 is 0; a quick test without root or
+/* Returns whether the slope ALONG_Q30 / HN_Q30 is so large that the lobe with
+ * squared alpha ALPHA_Q40 is certainly 0: a quick test without root or
  * division. ALPHA_Q40 must be below 2^42. The left side is rounded down, to
  * 2^56, the right side up, to 2^63, and enlarged by 1/512, more than the error
  * of ratios. */
-static int is_beyond(uint32_t along_q30, int32_t hn_q30, int64_t alpha_q40)
+static int is_slope_outside_lobe(uint32_t along_q30, int32_t hn_q30,
+                                 int64_t alpha_q40)
 {
     const uint64_t along_q28 = along_q30 >> 2;
     const uint64_t hn_q28 = ((uint64_t)hn_q30 >> 2) + 1;
@@ -148,12 +160,13 @@ static int is_beyond(uint32_t along_q30, int32_t hn_q30, int64_t alpha_q40)
     return along_q28 * along_q28 > max_q56 + (max_q56 >> 9);
 }
 
-/* Finds the half vector. Returns 0 if the light or the eye is behind the
- * surface, or if the lobe with squared alphas ALPHA_Q40 is 0. */
-static int find_half(const struct glint_scene_ray *ray,
-                     const struct glint_brushed *brushed,
-                     const int32_t toward_q30[3], const int64_t alpha_q40[2],
-                     struct half *h)
+/* Computes the half vector of ray and light. Returns 0 if the light or the eye
+ * is behind the surface, or if the lobe with squared alphas ALPHA_Q40 is 0
+ * there. */
+static int compute_half_vector(const struct glint_scene_ray *ray,
+                               const struct glint_brushed *brushed,
+                               const int32_t toward_q30[3],
+                               const int64_t alpha_q40[2], struct half *h)
 {
     const int32_t *n_q30 = brushed->frame_q30[2];
     int32_t half_q30[3], hn_q30;
@@ -168,19 +181,20 @@ static int find_half(const struct glint_scene_ray *ray,
     for (int k = 0; k < 2; k++) {
         along_q30[k] = (uint32_t)q_magnitude(
             v3_cosine_q30(half_q30, brushed->frame_q30[k]));
-        if (is_beyond(along_q30[k], hn_q30, alpha_q40[k]))
+        if (is_slope_outside_lobe(along_q30[k], hn_q30, alpha_q40[k]))
             return 0;
     }
     h->ni_q30 = v3_cosine_q30(toward_q30, n_q30);
     h->no_q30 = -v3_cosine_q30(ray->toward_q30, n_q30);
     if (h->ni_q30 <= 0 || h->no_q30 <= 0)
         return 0;
-    h->ho_q30 = (int32_t)glint_root((uint64_t)v3_dot(half_q30, half_q30));
+    h->ho_q30 =
+        (int32_t)glint_square_root((uint64_t)v3_dot(half_q30, half_q30));
     if (h->ho_q30 < hn_q30)
         h->ho_q30 = hn_q30;
     h->hn_q30 = q_part_q30((uint64_t)hn_q30, (uint64_t)h->ho_q30);
     for (int k = 0; k < 2; k++) {
-        const uint64_t slope_q26 = (uint64_t)glint_ratio(
+        const uint64_t slope_q26 = (uint64_t)glint_divide_rounded(
             (uint64_t)along_q30[k] << 26, (uint64_t)hn_q30);
 
         h->slope_q52[k] = slope_q26 * slope_q26;
@@ -188,9 +202,10 @@ static int find_half(const struct glint_scene_ray *ray,
     return 1;
 }
 
-/* Returns the weight of the lobe by NORM, 0 .. 8, before its density. */
-static struct glint_real compute_weight(enum glint_ward_norm norm,
-                                        const struct half *h)
+/* Returns the weight of the lobe by norm NORM, 0 .. 8, without the density
+ * exp(-slope). */
+static struct glint_real compute_lobe_weight(enum glint_ward_norm norm,
+                                             const struct half *h)
 {
     const struct glint_real most = real_of(8, 0);
     const struct glint_real ho = real_of(h->ho_q30, -30);
@@ -201,9 +216,10 @@ static struct glint_real compute_weight(enum glint_ward_norm norm,
         weight = real_over(real_of(h->ni_q30, -30), real_times(ho, hn));
     else
         weight = real_over(
-            real_times(real_times(real_times(ho, hn), real_times(hn, hn)),
-                       real_of(glint_root((uint64_t)h->ni_q30 << 30), -30)),
-            real_of(glint_root((uint64_t)h->no_q30 << 30), -30));
+            real_times(
+                real_times(real_times(ho, hn), real_times(hn, hn)),
+                real_of(glint_square_root((uint64_t)h->ni_q30 << 30), -30)),
+            real_of(glint_square_root((uint64_t)h->no_q30 << 30), -30));
     return real_less(weight, most) ? weight : most;
 }
 
@@ -217,10 +233,9 @@ static int add_highlight_light(const struct glint_scene *scene,
 {
     const struct glint_ward_material *m =
         &scene->wards->material[surface->material->ward];
-    const int64_t wider_q40 =
-        ((int64_t)radius_q30 * radius_q30 >> 23) +
-        (int64_t)brushed->spread_q30 * 1024; /* r^2 / 8, and the term of the
-                                                normal */
+    /* 2 r^2 / 16 of the light's disc, plus the spread of the normal. */
+    const int64_t wider_q40 = ((int64_t)radius_q30 * radius_q30 >> 23) +
+                              (int64_t)brushed->spread_q30 * 1024;
     struct glint_real area = real_of(4, 0), gain;
     int64_t alpha_q40[2];
     int32_t slope_q16 = 0;
@@ -229,14 +244,16 @@ static int add_highlight_light(const struct glint_scene *scene,
     for (int k = 0; k < 2; k++)
         alpha_q40[k] =
             ((int64_t)m->alpha_q24[k] * m->alpha_q24[k] >> 8) + wider_q40;
-    if (!find_half(ray, brushed, toward_q30, alpha_q40, &h))
+    if (!compute_half_vector(ray, brushed, toward_q30, alpha_q40, &h))
         return 0;
     for (int k = 0; k < 2; k++) {
         if ((h.slope_q52[k] >> 12) >= (uint64_t)alpha_q40[k] * MOST_SLOPE)
             return 0;
-        slope_q16 += glint_ratio(h.slope_q52[k] << 4, (uint64_t)alpha_q40[k]);
+        slope_q16 +=
+            glint_divide_rounded(h.slope_q52[k] << 4, (uint64_t)alpha_q40[k]);
         area = real_times(
-            area, real_of(glint_root((uint64_t)alpha_q40[k] << 20), -30));
+            area,
+            real_of(glint_square_root((uint64_t)alpha_q40[k] << 20), -30));
     }
     if (slope_q16 >= MOST_SLOPE << 16)
         return 0;
@@ -247,7 +264,7 @@ static int add_highlight_light(const struct glint_scene *scene,
     gain = real_of(q_exp2_q16((14 << 16) -
                               (int32_t)((int64_t)slope_q16 * LOG2_E_Q16 >> 16)),
                    -30);
-    gain = real_over(real_times(gain, compute_weight(m->norm, &h)), area);
+    gain = real_over(real_times(gain, compute_lobe_weight(m->norm, &h)), area);
     for (int c = 0; c < 3; c++)
         rgb_q15[c] = (int32_t)real_integer(
             real_times(real_of((int64_t)level_q15[c] * m->specular_q15[c], -30),
@@ -259,13 +276,14 @@ static int add_highlight_light(const struct glint_scene *scene,
 enum {
     ONE_Q30 = 1 << 30,
     LEAST_COSINE_Q30 = 1 << 26,
-    LEAST_SUN_Q30 = 187404 /* sine of 0.01 degrees, for point lights */
+    LEAST_SUN_Q30 = 187404 /* sine of 0.01 degrees, the min angular radius of
+                              lights */
 };
 
 /* ------------------------------------------------------------------- memory */
 
-static struct glint_ward_state *carve_ward(const struct glint_scene *scene,
-                                           struct glint_arena *arena)
+static struct glint_ward_state *
+allocate_ward_state(const struct glint_scene *scene, struct glint_arena *arena)
 {
     const struct glint_scene_header *h = scene->model.header;
     const uint32_t n = h->n_wards;
@@ -281,9 +299,9 @@ static struct glint_ward_state *carve_ward(const struct glint_scene *scene,
     return placed;
 }
 
-/* Recomputes lobe I. The scale is split into a factor 1 .. 2 of colours and a
- * power of two. */
-static void set_lobe(const struct glint_scene *s, uint32_t i)
+/* Recomputes the lobe of metal I. The scale of its colours is split into a
+ * factor of 1 .. 2 and a power of two. */
+static void prepare_metal_lobe(const struct glint_scene *s, uint32_t i)
 {
     struct glint_ward_state *w = s->wards;
     const struct glint_scene_ward *from = &s->model.ward[i];
@@ -309,18 +327,18 @@ static void set_lobe(const struct glint_scene *s, uint32_t i)
     lobe->unit_log2 += w->scale.exponent + 30;
 }
 
-static void set_lobes(const struct glint_scene *scene)
+static void prepare_all_lobes(const struct glint_scene *scene)
 {
     for (uint32_t i = 0; i < scene->model.header->n_wards; i++)
-        set_lobe(scene, i);
+        prepare_metal_lobe(scene, i);
 }
 
 /* ------------------------------------------------------------- environment */
 
-/* Sets the rotation. The environment's lights are the last shining lights of
- * the scene. */
-static void turn_environment(struct glint_scene *scene,
-                             const int32_t turn_q30[2])
+/* Sets the rotation of the environment and of its lights, which are the last of
+ * the scene's lights that are on. */
+static void rotate_environment(struct glint_scene *scene,
+                               const int32_t turn_q30[2])
 {
     struct glint_ward_state *w = scene->wards;
     const uint32_t n = w->environment.header->n_lights;
@@ -334,7 +352,7 @@ static void turn_environment(struct glint_scene *scene,
                                q_shift(c * v[2] - s * v[0], 30)};
         int32_t toward_q30[3];
 
-        glint_unit(to, toward_q30);
+        glint_normalise_vector(to, toward_q30);
         glint_scene_set_light(scene, (int)(scene->n_lit - n + i), toward_q30);
     }
 }
@@ -357,7 +375,7 @@ static void scale_environment(struct glint_scene *scene,
                                                     GLINT_SCENE_MOST_LIGHT);
         }
     }
-    set_lobes(scene);
+    prepare_all_lobes(scene);
 }
 
 static void set_shown_environment(struct glint_scene *scene, uint32_t i)
@@ -377,13 +395,13 @@ static void set_shown_environment(struct glint_scene *scene, uint32_t i)
             q_larger(w->environment.light[k - first].radius_q30, LEAST_SUN_Q30);
         scene->lit[k].light = sun;
     }
-    turn_environment(scene, from->turn_q30);
+    rotate_environment(scene, from->turn_q30);
     scale_environment(scene, from->scale);
 }
 
 /* ------------------------------------------------------------------ opening */
 
-static enum glint_status open_wards(struct glint_scene *scene)
+static enum glint_status open_environments_and_lobes(struct glint_scene *scene)
 {
     const struct glint_scene_header *h = scene->model.header;
     struct glint_ward_state *w = scene->wards;
@@ -403,50 +421,51 @@ static enum glint_status open_wards(struct glint_scene *scene)
     if (w->has_environment)
         set_shown_environment(scene, 0);
     else
-        set_lobes(scene);
+        prepare_all_lobes(scene);
     return GLINT_OK;
 }
 
 /* -------------------------------------------------------------------- lying */
 
-/* Returns the distance between neighbouring pixels' rays at SURFACE, steps q8,
- * below 2^32. */
-static int64_t pixel_of_q8(const struct glint_scene *s,
-                           const struct glint_scene_ray *ray,
-                           const struct glint_met_surface *surface)
+/* Returns the distance, at SURFACE, between the rays of neighbouring pixels,
+ * steps q8, below 2^32. */
+static int64_t compute_pixel_size_q8(const struct glint_scene *s,
+                                     const struct glint_scene_ray *ray,
+                                     const struct glint_met_surface *surface)
 {
     const int64_t step_q30 = s->view.step_q56[0] >> 18;
     int32_t off[3];
     int64_t t;
 
-    v3_minus(surface->place, ray->at, off);
+    v3_subtract(surface->place, ray->at, off);
     t = v3_dot(off, ray->toward_q30) >> 30; /* below 2^30 */
     t = t < 0 ? 0 : t;
     t = t * (step_q30 < ONE_Q30 ? step_q30 : (int64_t)ONE_Q30) >> 22;
     return t < UINT32_MAX ? t : (int64_t)UINT32_MAX;
 }
 
-/* Returns the difference of the normals of vertices A and B over a distance of
- * PIXEL_Q8 between them. */
-static int32_t bend_between(const int32_t a[3], const int32_t b[3],
-                            const int32_t na_q30[3], const int32_t nb_q30[3],
-                            int64_t pixel_q8)
+/* Returns the difference between the normals of vertices A and B, scaled from
+ * their distance to the distance PIXEL_Q8. */
+static int32_t compute_normal_change(const int32_t a[3], const int32_t b[3],
+                                     const int32_t na_q30[3],
+                                     const int32_t nb_q30[3], int64_t pixel_q8)
 {
     int32_t way[3], turn_q29[3];
 
-    v3_minus(a, b, way);
+    v3_subtract(a, b, way);
     for (int k = 0; k < 3; k++)
         turn_q29[k] = na_q30[k] / 2 - nb_q30[k] / 2;
-    return glint_ratio(
-        (uint64_t)glint_root((uint64_t)v3_dot(turn_q29, turn_q29)) *
+    return glint_divide_rounded(
+        (uint64_t)glint_square_root((uint64_t)v3_dot(turn_q29, turn_q29)) *
             (uint64_t)pixel_q8,
-        (uint64_t)glint_root((uint64_t)v3_dot(way, way)) << 7);
+        (uint64_t)glint_square_root((uint64_t)v3_dot(way, way)) << 7);
 }
 
-/* Returns the max of bend_between() over the three edges of the triangle. */
-static int32_t mesh_bend_q30(const struct glint_scene *s,
-                             const struct glint_met_surface *surface,
-                             int64_t pixel)
+/* Returns the max change of the normal, per pixel, along the three edges of the
+ * triangle. */
+static int32_t max_normal_change_q30(const struct glint_scene *s,
+                                     const struct glint_met_surface *surface,
+                                     int64_t pixel)
 {
     const struct glint_scene_mesh *m = glint_mesh_of(s, surface->object);
     const struct glint_scene_triangle *t =
@@ -456,58 +475,63 @@ static int32_t mesh_bend_q30(const struct glint_scene *s,
 
     if (!m->normal_at)
         return 0;
-    glint_mesh_vertices(s, m, surface->triangle, at);
+    glint_mesh_get_vertices(s, m, surface->triangle, at);
     for (int k = 0; k < 3; k++)
-        normal[k] = (const int32_t *)glint_mesh_table(s, m->normal_at) +
+        normal[k] = (const int32_t *)glint_mesh_get_table(s, m->normal_at) +
                     3 * (size_t)t->vertex[k];
     for (int k = 0; k < 3; k++) {
         const int i = (k + 1) % 3;
 
-        most = q_larger(
-            most, bend_between(at[k], at[i], normal[k], normal[i], pixel));
+        most = q_larger(most, compute_normal_change(at[k], at[i], normal[k],
+                                                    normal[i], pixel));
     }
     return most;
 }
 
-/* Returns the change of the normal from pixel to pixel if the surface faces the
- * eye. */
-static int32_t bend_q30(const struct glint_scene *s,
-                        const struct glint_scene_ray *ray,
-                        const struct glint_met_surface *surface)
+/* Returns the change of SURFACE's normal from pixel to pixel, as if the surface
+ * faced the eye. */
+static int32_t compute_curvature_q30(const struct glint_scene *s,
+                                     const struct glint_scene_ray *ray,
+                                     const struct glint_met_surface *surface)
 {
     const struct glint_placed *p = &s->placed[surface->object];
 
     if (p->object->kind == GLINT_OBJECT_PLANE)
         return 0;
     if (p->object->kind == GLINT_OBJECT_MESH)
-        return mesh_bend_q30(s, surface, pixel_of_q8(s, ray, surface));
-    return glint_ratio((uint64_t)pixel_of_q8(s, ray, surface) << 22,
-                       (uint64_t)p->radius);
+        return max_normal_change_q30(s, surface,
+                                     compute_pixel_size_q8(s, ray, surface));
+    return glint_divide_rounded((uint64_t)compute_pixel_size_q8(s, ray, surface)
+                                    << 22,
+                                (uint64_t)p->radius);
 }
 
 /* On a surface of cosine n.o neighbouring pixels are 1 / n.o as far apart along
- * its tilt; rays turn by a pixel and half vectors by about half of that. Half
+ * its tilt. Rays turn by a pixel and half vectors by about half of that. Half
  * of the square makes a highlight, even if all else is sharp, a Gaussian of at
  * least half a pixel: samples a pixel apart then sum to the same light at any
  * position, to within +-1.5 %. */
-static int32_t spread_q30(const struct glint_scene *s,
+static int32_t
+compute_normal_spread_q30(const struct glint_scene *s,
                           const struct glint_scene_ray *ray,
                           const struct glint_met_surface *surface)
 {
     const int32_t no_q30 = q_larger(
         -v3_cosine_q30(surface->normal_q30, ray->toward_q30), LEAST_COSINE_Q30);
     const int64_t lean_q16 =
-        glint_ratio(UINT64_C(1) << 46, (uint64_t)no_q30); /* to 2^20 */
+        glint_divide_rounded(UINT64_C(1) << 46, (uint64_t)no_q30); /* up to
+                                                                      2^20 */
     const int64_t turn_q30 =
-        q_clamp_sat((bend_q30(s, ray, surface) * lean_q16 >> 16) +
+        q_clamp_sat((compute_curvature_q30(s, ray, surface) * lean_q16 >> 16) +
                         (s->view.step_q56[0] >> 18),
                     0, ONE_Q30);
 
     return (int32_t)(turn_q30 * turn_q30 >> 31);
 }
 
-/* Metal is brushed around the y axis of balls and meshes. Where the y axis is
- * the normal, as everywhere on planes, it is brushed along the x axis. */
+/* Metal is brushed along circles around the y axis of balls and meshes. Where
+ * the y axis is the normal, as everywhere on planes, it is brushed along the x
+ * axis. */
 static void set_brushed_frame(const struct glint_scene *scene,
                               const struct glint_met_surface *surface,
                               struct glint_brushed *brushed)
@@ -534,7 +558,7 @@ static void set_brushed_frame(const struct glint_scene *scene,
             brushed->frame_q30[1][k] = (int32_t)q_shift(along[k], 30);
         v3_cross(brushed->frame_q30[1], n_q30, across);
     }
-    glint_unit(across, brushed->frame_q30[0]);
+    glint_normalise_vector(across, brushed->frame_q30[0]);
     v3_cross(n_q30, brushed->frame_q30[0], across);
     for (int k = 0; k < 3; k++)
         brushed->frame_q30[1][k] = (int32_t)q_shift(across[k], 30);
@@ -544,7 +568,8 @@ static void set_brushed_frame(const struct glint_scene *scene,
 /* ---------------------------------------------------------------- reflecting
  */
 
-static void add_weighted(int32_t *to_q15, int64_t light_q15, int32_t weight_q15)
+static void add_weighted_light(int32_t *to_q15, int64_t light_q15,
+                               int32_t weight_q15)
 {
     const int64_t sum_q15 =
         *to_q15 + ((light_q15 * weight_q15 + (1 << 14)) >> 15);
@@ -552,42 +577,43 @@ static void add_weighted(int32_t *to_q15, int64_t light_q15, int32_t weight_q15)
     *to_q15 = q_clamp_sat(sum_q15, 0, GLINT_SCENE_MOST_LIGHT);
 }
 
-/* Sets TO_Q14 to direction V, _q30, in the environment's coordinates. */
-static void turn_q14(const struct glint_ward_state *w, const int32_t v_q30[3],
-                     int32_t to_q14[3])
+/* Sets TO_Q14 to direction V, _q30, rotated to the environment's
+ * coordinates. */
+static void rotate_to_environment_q14(const struct glint_ward_state *w,
+                                      const int32_t v_q30[3], int32_t to_q14[3])
 {
     int32_t to_q30[3];
 
-    glint_ward_turn(w, v_q30, to_q30);
+    rotate_to_environment(w, v_q30, to_q30);
     for (int k = 0; k < 3; k++)
         to_q14[k] = (int32_t)q_shift(to_q30[k], 16);
 }
 
-/* Adds the diffuse reflection of the irradiance map. */
-static void add_diffuse(const struct glint_ward_state *w,
-                        const struct glint_met_surface *surface,
-                        const int32_t colour_q15[3], int32_t weight_q15,
-                        int32_t rgb_q15[3])
+/* Adds the diffuse reflection at SURFACE, looked up in the irradiance map. */
+static void add_diffuse_reflection(const struct glint_ward_state *w,
+                                   const struct glint_met_surface *surface,
+                                   const int32_t colour_q15[3],
+                                   int32_t weight_q15, int32_t rgb_q15[3])
 {
     const int32_t diffuse_q15 = surface->material->diffuse_q15;
     int32_t normal_q14[3], light[3];
 
-    turn_q14(w, surface->normal_q30, normal_q14);
+    rotate_to_environment_q14(w, surface->normal_q30, normal_q14);
     glint_environment_irradiance(&w->environment, normal_q14, light);
     for (int c = 0; c < 3; c++)
-        add_weighted(
+        add_weighted_light(
             &rgb_q15[c],
             real_integer(real_times(real_of(light[c], 0), w->unit), 15,
                          GLINT_SCENE_MOST_LIGHT),
             q_mul(q_mul(diffuse_q15, colour_q15[c], 15), weight_q15, 15));
 }
 
-static void add_reflection(const struct glint_scene *scene,
-                           const struct glint_scene_ray *ray,
-                           const struct glint_met_surface *surface,
-                           const struct glint_brushed *brushed,
-                           const int32_t colour_q15[3], int32_t weight_q15,
-                           int32_t rgb_q15[3])
+static void add_environment_reflection(const struct glint_scene *scene,
+                                       const struct glint_scene_ray *ray,
+                                       const struct glint_met_surface *surface,
+                                       const struct glint_brushed *brushed,
+                                       const int32_t colour_q15[3],
+                                       int32_t weight_q15, int32_t rgb_q15[3])
 {
     const struct glint_ward_state *w = scene->wards;
     const struct glint_scene_material *m = surface->material;
@@ -597,27 +623,23 @@ static void add_reflection(const struct glint_scene *scene,
     if (!w->has_environment)
         return;
     if (m->diffuse_q15 && (colour_q15[0] | colour_q15[1] | colour_q15[2]))
-        add_diffuse(w, surface, colour_q15, weight_q15, rgb_q15);
+        add_diffuse_reflection(w, surface, colour_q15, weight_q15, rgb_q15);
     if (!brushed)
         return;
     for (int k = 0; k < 3; k++) {
-        turn_q14(w, brushed->frame_q30[k], place.frame_q14[k]);
+        rotate_to_environment_q14(w, brushed->frame_q30[k], place.frame_q14[k]);
         place.out_q14[k] = (int32_t)q_shift(
             -v3_dot(brushed->frame_q30[k], ray->toward_q30), 46);
     }
-    glint_ward_send(&w->lobe[m->ward], &w->environment, &place, light);
+    glint_ward_compute_light(&w->lobe[m->ward], &w->environment, &place, light);
     for (int c = 0; c < 3; c++)
-        add_weighted(&rgb_q15[c], light[c], weight_q15);
+        add_weighted_light(&rgb_q15[c], light[c], weight_q15);
 }
 
-const struct glint_scene_wards glint_scene_wards = {carve_ward,
-                                                    open_wards,
-                                                    set_lobe,
-                                                    set_shown_environment,
-                                                    scale_environment,
-                                                    turn_environment,
-                                                    spread_q30,
-                                                    set_brushed_frame,
-                                                    add_reflection,
-                                                    add_highlight_light,
-                                                    read_blurred_environment};
+const struct glint_scene_wards glint_scene_wards = {
+    allocate_ward_state,        open_environments_and_lobes,
+    prepare_metal_lobe,         set_shown_environment,
+    scale_environment,          rotate_environment,
+    compute_normal_spread_q30,  set_brushed_frame,
+    add_environment_reflection, add_highlight_light,
+    read_blurred_environment};

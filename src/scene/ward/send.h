@@ -4,9 +4,11 @@
 
 #include "glint/scene/ward.h"
 
-/* Like glint_ward_light() for PLACE; also sets the root of PLACE. */
-void glint_ward_send(const struct glint_ward_lobe *lobe,
-                     const struct glint_environment *environment,
-                     struct glint_ward_place *place, int32_t rgb_q15[3]);
+/* Sets the light that a metal reflects at PLACE, as glint_ward_light(); also
+ * sets the root of PLACE. */
+void glint_ward_compute_light(const struct glint_ward_lobe *lobe,
+                              const struct glint_environment *environment,
+                              struct glint_ward_place *place,
+                              int32_t rgb_q15[3]);
 
 #endif

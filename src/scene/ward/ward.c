@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Ward's lobe over an environment: the light of a point as the sum of lookups
- * by half vectors. */
+ * Evaluates Ward's reflection lobe over an environment: the light of a point is
+ * a sum of lookups in the environment's mip levels, one per sampled half
+ * vector. */
 #include "glint/scene/ward.h"
 #include "scene/vector.h"
 #include "scene/ward/send.h"
@@ -9,7 +10,7 @@
 enum { MOST_LIGHT = 1 << 30 };
 
 /* Returns X * 2^LOG2, clamped to 2^30. X must be 0 .. 2^61. */
-static int32_t scale_value(uint64_t x, int log2)
+static int32_t scale_by_power_of_two(uint64_t x, int log2)
 {
     if (log2 <= 0)
         return log2 < -62
@@ -21,20 +22,23 @@ static int32_t scale_value(uint64_t x, int log2)
                                              : (int32_t)(x << log2);
 }
 
-/* Sets the root of PLACE to 1 / sqrt(n.o). */
-static void set_root(struct glint_ward_place *place)
+/* Sets the root of PLACE to 1 / sqrt(n.o), n the normal, o the direction to the
+ * eye. */
+static void set_inverse_root(struct glint_ward_place *place)
 {
     const uint32_t root_q21 =
-        glint_root((uint64_t)(uint32_t)place->out_q14[2] << 28);
+        glint_square_root((uint64_t)(uint32_t)place->out_q14[2] << 28);
     const int bits = bit_length(root_q21); /* 15 .. 22 */
 
-    place->root_q14 = glint_ratio(UINT64_C(1) << (bits + 14), root_q21);
+    place->root_q14 =
+        glint_divide_rounded(UINT64_C(1) << (bits + 14), root_q21);
     place->root_log2 = 21 - bits;
 }
 
-void glint_ward_send(const struct glint_ward_lobe *lobe,
-                     const struct glint_environment *environment,
-                     struct glint_ward_place *place, int32_t rgb_q15[3])
+void glint_ward_compute_light(const struct glint_ward_lobe *lobe,
+                              const struct glint_environment *environment,
+                              struct glint_ward_place *place,
+                              int32_t rgb_q15[3])
 {
     uint64_t sum_q12[3]; /* below 32 * 8 * 2^12 * 2^28 = 2^48 */
 
@@ -44,7 +48,7 @@ void glint_ward_send(const struct glint_ward_lobe *lobe,
         return;
     }
     if (lobe->norm == GLINT_WARD_1992)
-        set_root(place);
+        set_inverse_root(place);
     lobe->sum(lobe, &environment->texels, place, sum_q12);
     for (int k = 0; k < 3; k++) {
         /* The mean, below 2^45, times a colour of 2^15. */
@@ -52,8 +56,8 @@ void glint_ward_send(const struct glint_ward_lobe *lobe,
             (sum_q12[k] >> 16) * (uint32_t)lobe->share_q16 +
             ((sum_q12[k] & 0xffff) * (uint32_t)lobe->share_q16 >> 16);
 
-        rgb_q15[k] = scale_value(mean_q12 * (uint32_t)lobe->specular_q15[k],
-                                 lobe->unit_log2 - 12);
+        rgb_q15[k] = scale_by_power_of_two(
+            mean_q12 * (uint32_t)lobe->specular_q15[k], lobe->unit_log2 - 12);
     }
 }
 
@@ -69,5 +73,5 @@ void glint_ward_light(const struct glint_ward_lobe *lobe,
             place.frame_q14[k][j] = frame_q14[k][j];
         place.out_q14[k] = (int32_t)q_shift(v3_dot(frame_q14[k], view_q14), 14);
     }
-    glint_ward_send(lobe, environment, &place, rgb_q15);
+    glint_ward_compute_light(lobe, environment, &place, rgb_q15);
 }

@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Half vectors of a material, and the levels that they read.
+ * Computes the half vectors that sample a material's lobe, and the
+ * environment's mip levels that each sample reads.
  *
- * Sample k of n has u = (k + 1/2) / n and v the bits of k in reverse: slopes
- * sqrt(-ln u) (ax cos 2 pi v, ay sin 2 pi v) [Ward92]. With constant footprints
- * the level read blurs by a part of the lobe, sigma^2 = 2 b (h.o) of the
- * reflected direction, b = f ax ay, f = kappa / n; slopes are centred and have
- * the rest of the variance. The blur of a level is isotropic: with a variance
- * of (alpha^2 - b) / 2 slopes would add up to the lobe along each axis, but
- * would lie on a line if one alpha is small; with (1 - f) alpha^2 / 2 they keep
- * the lobe's shape, blurred. The mean of both variances is used, which is more
- * accurate than either if alphas differ. As published a sample has the solid
- * angle 4 ax ay (h.o) (h.n)^3 pi / (n u). */
+ * Sample k of n has u = (k + 1/2) / n and v the bits of k in reverse. Its
+ * slopes are sqrt(-ln u) (ax cos 2 pi v, ay sin 2 pi v) [Ward92]. With constant
+ * footprints a mip level blurs the reflected direction by a part of the lobe,
+ * sigma^2 = 2 b (h.o), b = f ax ay, f = kappa / n. The slopes are centred and
+ * have the rest of the variance. The blur of a level is isotropic: with a
+ * variance of (alpha^2 - b) / 2 slopes would add up to the lobe along each
+ * axis, but would lie on a line if one alpha is small. With (1 - f) alpha^2 / 2
+ * they keep the lobe's shape, blurred. The mean of both variances is used,
+ * which is more accurate than either if alphas differ. As published a sample
+ * has the solid angle 4 ax ay (h.o) (h.n)^3 pi / (n u). */
 #include "base/divide.h"
 #include "base/log2.h"
 #include "glint/scene/ward.h"
@@ -26,7 +27,7 @@ static const int32_t sine_q30[9] = {0,         209476638,  410903207,
                                     596538995, 759250125,  892783698,
                                     992008094, 1053110176, 1073741824};
 
-static int32_t find_sine(unsigned k)
+static int32_t compute_sine(unsigned k)
 {
     const unsigned of_half = k & 15;
     const int32_t s = sine_q30[of_half > 8 ? 16 - of_half : of_half];
@@ -34,29 +35,31 @@ static int32_t find_sine(unsigned k)
     return k & 16 ? -s : s;
 }
 
-static unsigned reversed(unsigned k)
+static unsigned reverse_bits(unsigned k)
 {
     return (k & 1) << 4 | (k & 2) << 2 | (k & 4) | (k & 8) >> 2 | k >> 4;
 }
 
-/* Sets SLOPE_Q16 to the slopes of N samples for alphas of 1. */
-static void draw_slopes(int n, int32_t slope_q16[GLINT_WARD_SAMPLES][2])
+/* Sets SLOPE_Q16 to the slopes of N sampled half vectors for alphas of 1. */
+static void compute_sample_slopes(int n,
+                                  int32_t slope_q16[GLINT_WARD_SAMPLES][2])
 {
     for (int k = 0; k < n; k++) {
         const int32_t log2_q16 =
             q_log2_q16(2 * (uint64_t)n) - q_log2_q16(2 * (uint64_t)k + 1);
-        const int32_t length_q16 = (int32_t)glint_root(
+        const int32_t length_q16 = (int32_t)glint_square_root(
             (uint64_t)(uint32_t)log2_q16 * LN2_Q16); /* of a q32 */
-        const unsigned turn = reversed((unsigned)k);
+        const unsigned turn = reverse_bits((unsigned)k);
 
-        slope_q16[k][0] = q_mul(length_q16, find_sine((turn + 8) & 31), 30);
-        slope_q16[k][1] = q_mul(length_q16, find_sine(turn), 30);
+        slope_q16[k][0] = q_mul(length_q16, compute_sine((turn + 8) & 31), 30);
+        slope_q16[k][1] = q_mul(length_q16, compute_sine(turn), 30);
     }
 }
 
-/* Returns f of N samples, q16: kappa is 1, 1.4, 2, 2 and 3 for 1, 4, 8, 16 and
- * 32 samples, interpolated linearly between. */
-static int32_t footprint_q16(int n)
+/* Returns the footprint f of each of N samples, q16: kappa / N, where kappa is
+ * 1, 1.4, 2, 2 and 3 for 1, 4, 8, 16 and 32 samples, interpolated linearly
+ * between. */
+static int32_t compute_footprint_q16(int n)
 {
     static const int32_t at[5] = {1, 4, 8, 16, 32};
     static const int32_t kappa_q16[5] = {65536, 91750, 131072, 131072, 196608};
@@ -69,8 +72,8 @@ static int32_t footprint_q16(int n)
            n;
 }
 
-/* Shifts and scales the slopes along AXIS to mean 0 and mean square WANT,
- * q32. */
+/* Shifts and scales the slopes of N samples along AXIS to mean 0 and mean
+ * square WANT, q32. */
 static void normalise_slopes(int n, int axis, uint32_t want_q32,
                              int32_t slope_q16[GLINT_WARD_SAMPLES][2])
 {
@@ -86,18 +89,18 @@ static void normalise_slopes(int n, int axis, uint32_t want_q32,
             (uint64_t)((int64_t)slope_q16[k][axis] * slope_q16[k][axis]);
     }
     square_q32 /= (uint64_t)n;
-    /* A few samples may all lie on the other axis. */
-    by_q16 =
-        square_q32 >> 24
-            ? glint_root((uint64_t)want_q32 * (UINT64_C(1) << 32) / square_q32)
-            : 0;
+    /* With few samples all slopes may lie on the other axis. */
+    by_q16 = square_q32 >> 24
+                 ? glint_square_root((uint64_t)want_q32 * (UINT64_C(1) << 32) /
+                                     square_q32)
+                 : 0;
     for (int k = 0; k < n; k++)
         slope_q16[k][axis] = q_mul(slope_q16[k][axis], (int32_t)by_q16, 16);
 }
 
-/* Returns b of the constant footprint F_Q16, clamped to 3/4 of the square of
- * the smaller alpha. */
-static uint64_t blur_q48(const int32_t alpha_q24[2], int32_t f_q16)
+/* Returns b, the variance by which a constant footprint F_Q16 blurs slopes,
+ * clamped to 3/4 of the square of the smaller alpha. */
+static uint64_t compute_blur_q48(const int32_t alpha_q24[2], int32_t f_q16)
 {
     const uint64_t smaller = (uint64_t)q_smaller(alpha_q24[0], alpha_q24[1]);
     const uint64_t max_q48 = smaller * smaller / 4 * 3;
@@ -107,8 +110,9 @@ static uint64_t blur_q48(const int32_t alpha_q24[2], int32_t f_q16)
     return b_q48 < max_q48 ? b_q48 : max_q48;
 }
 
-/* Returns twice the variance of slopes, relative to alpha^2. */
-static int32_t spread_q16(int32_t alpha_q24, uint64_t b_q48, int32_t f_q16)
+/* Returns twice the variance of slopes along one axis, relative to alpha^2. */
+static int32_t slope_spread_q16(int32_t alpha_q24, uint64_t b_q48,
+                                int32_t f_q16)
 {
     const uint64_t square_q48 = (uint64_t)alpha_q24 * (uint64_t)alpha_q24;
     const int32_t matched_q16 =
@@ -118,10 +122,10 @@ static int32_t spread_q16(int32_t alpha_q24, uint64_t b_q48, int32_t f_q16)
     return (ONE_Q16 - f_q16 + matched_q16) / 2;
 }
 
-/* Sets the span of sample K to X * 2^LOG2, widened by BIAS_Q8 levels. X must be
- * at least 1. */
-static void set_span(struct glint_ward_lobe *lobe, int k, uint64_t x, int log2,
-                     int32_t bias_q8)
+/* Sets the span of sample K, which selects its mip level, to X * 2^LOG2,
+ * widened by BIAS_Q8 levels. X must be at least 1. */
+static void set_sample_span(struct glint_ward_lobe *lobe, int k, uint64_t x,
+                            int log2, int32_t bias_q8)
 {
     const int32_t more_q16 = bias_q8 * 512;
     const int cut = bit_length(x) - 31;
@@ -134,15 +138,16 @@ static void set_span(struct glint_ward_lobe *lobe, int k, uint64_t x, int log2,
     lobe->span_log2[k] = log2 + cut + bits - 1 + (more_q16 >> 16);
 }
 
-static void set_half(struct glint_ward_lobe *lobe, int k,
-                     const int32_t slope_q16[2], const int32_t alpha_q24[2])
+static void set_half_vector(struct glint_ward_lobe *lobe, int k,
+                            const int32_t slope_q16[2],
+                            const int32_t alpha_q24[2])
 {
     const int64_t v[3] = {(int64_t)alpha_q24[0] * slope_q16[0],
                           (int64_t)alpha_q24[1] * slope_q16[1],
                           INT64_C(1) << 40};
     int32_t half_q30[3];
 
-    glint_unit(v, half_q30);
+    glint_normalise_vector(v, half_q30);
     for (int j = 0; j < 3; j++)
         lobe->half_q14[j][k] = (int32_t)q_shift(half_q30[j], 16);
     lobe->factor_q14[k] =
@@ -150,25 +155,26 @@ static void set_half(struct glint_ward_lobe *lobe, int k,
               lobe->half_q14[2][k], 14);
 }
 
-/* Sets all spans. A texel of level 0 has a solid angle of 4 pi / side^2; light
- * of that level has a quarter of it as variance. */
-static void set_spans(struct glint_ward_lobe *lobe, int n,
-                      const int32_t alpha_q24[2], uint64_t b_q48,
-                      const struct glint_ward_options *options, int side_log2)
+/* Sets the spans of all samples. A texel of level 0 has a solid angle of 4 pi /
+ * side^2 and blurs light of that level by a variance of a quarter of it. */
+static void set_sample_spans(struct glint_ward_lobe *lobe, int n,
+                             const int32_t alpha_q24[2], uint64_t b_q48,
+                             const struct glint_ward_options *options,
+                             int side_log2)
 {
     const uint64_t even_q32 =
         (uint64_t)alpha_q24[0] * (uint64_t)alpha_q24[1] >> 16;
 
     for (int k = 0; k < n; k++) {
         if (options->rule == GLINT_WARD_CONSTANT)
-            set_span(lobe, k, (b_q48 >> 8) * TWO_OVER_PI_Q16,
-                     2 * side_log2 - 56, options->bias_q8);
+            set_sample_span(lobe, k, (b_q48 >> 8) * TWO_OVER_PI_Q16,
+                            2 * side_log2 - 56, options->bias_q8);
         else
-            set_span(lobe, k,
-                     (uint64_t)q_divide((int64_t)(even_q32 << 8) *
-                                            lobe->factor_q14[k],
-                                        2 * k + 1),
-                     2 * side_log2 + 1 - 54, options->bias_q8);
+            set_sample_span(lobe, k,
+                            (uint64_t)q_divide((int64_t)(even_q32 << 8) *
+                                                   lobe->factor_q14[k],
+                                               2 * k + 1),
+                            2 * side_log2 + 1 - 54, options->bias_q8);
     }
 }
 
@@ -199,28 +205,29 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
 {
     const struct glint_environment_header *h = environment->header;
     const int n = options->samples;
-    const int32_t f_q16 = footprint_q16(n);
+    const int32_t f_q16 = compute_footprint_q16(n);
     int32_t alpha_q24[2] = {material->alpha_q24[0], material->alpha_q24[1]};
     int32_t slope_q16[GLINT_WARD_SAMPLES][2];
     const int held = glint_ward_hold(alpha_q24);
-    const uint64_t b_q48 = blur_q48(alpha_q24, f_q16);
+    const uint64_t b_q48 = compute_blur_q48(alpha_q24, f_q16);
 
-    *lobe = (struct glint_ward_lobe){.sum = glint_ward_sum_of(options->sets),
-                                     .n = n,
-                                     .norm = material->norm,
-                                     .unit_log2 = h->unit_log2,
-                                     .share_q16 = ((1 << 16) + n / 2) / n};
-    draw_slopes(n, slope_q16);
+    *lobe =
+        (struct glint_ward_lobe){.sum = glint_choose_ward_kernel(options->sets),
+                                 .n = n,
+                                 .norm = material->norm,
+                                 .unit_log2 = h->unit_log2,
+                                 .share_q16 = ((1 << 16) + n / 2) / n};
+    compute_sample_slopes(n, slope_q16);
     for (int j = 0; j < 2 && options->rule == GLINT_WARD_CONSTANT; j++)
-        normalise_slopes(n, j,
-                         (uint32_t)spread_q16(alpha_q24[j], b_q48, f_q16) << 15,
-                         slope_q16);
+        normalise_slopes(
+            n, j, (uint32_t)slope_spread_q16(alpha_q24[j], b_q48, f_q16) << 15,
+            slope_q16);
     for (int k = 0; k < 3; k++)
         lobe->specular_q15[k] = material->specular_q15[k];
     for (int k = 0; k < n; k++)
-        set_half(lobe, k, slope_q16[k], alpha_q24);
+        set_half_vector(lobe, k, slope_q16[k], alpha_q24);
     for (int k = n; k < GLINT_WARD_SAMPLES; k++)
         lobe->half_q14[2][k] = -(1 << 14);
-    set_spans(lobe, n, alpha_q24, b_q48, options, (int)h->side_log2);
+    set_sample_spans(lobe, n, alpha_q24, b_q48, options, (int)h->side_log2);
     return held;
 }

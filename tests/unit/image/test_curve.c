@@ -94,8 +94,8 @@ static struct errors measure_curve_errors(enum glint_tone transfer)
                 light[i] = (uint16_t)(first + i < 65535 ? first + i : 65535);
                 lit[i] = (uint8_t)code;
             }
-            glint_add_code_c(lit, light, GLINT_LANES, glint_tone16_of(transfer),
-                             round);
+            glint_add_code_c(lit, light, GLINT_LANES,
+                             glint_get_tone16(transfer), round);
             for (int i = 0; i < GLINT_LANES; i++) {
                 const double sum =
                     decode_value(transfer, code / 255.0) + light[i] / 65535.0;

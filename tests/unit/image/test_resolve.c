@@ -124,8 +124,8 @@ static void add_light_in_strips(const struct glint_image *image, int dither,
                     for (int x = x0; x < x1; x++)
                         light.rgb_q16[i][y - y0][x - x0] = convert_light_to_q16(
                             fixture.light_q20[i][y * image->width + x]);
-            glint_resolve_stretch(&resolve, image, x0, y0, x1 - x0, y1 - y0,
-                                  &light, &rows);
+            glint_resolve_add_to_run(&resolve, image, x0, y0, x1 - x0, y1 - y0,
+                                     &light, &rows);
         }
 }
 
@@ -544,10 +544,10 @@ TEST(linear_light_adds_and_saturates)
     for (int k = 0; k < 18; k++)
         px_q20[k / 9][k % 9] = 10;
     for (int y = 0; y < 2; y++)
-        glint_resolve_linear(&image, 0, y, 2,
-                             (const int32_t *const[]){light_q20[0][y],
-                                                      light_q20[1][y],
-                                                      light_q20[2][y]});
+        glint_resolve_add_to_linear(&image, 0, y, 2,
+                                    (const int32_t *const[]){light_q20[0][y],
+                                                             light_q20[1][y],
+                                                             light_q20[2][y]});
     assert_memory_equal(px_q20, want_q20, sizeof px_q20);
 }
 
@@ -561,8 +561,8 @@ static const enum glint_pixel_format twins[][2] = {
 static void copy_image_codes(const struct glint_image *to,
                              const struct glint_image *from)
 {
-    const struct glint_layout *lt = glint_layout_of(to->format);
-    const struct glint_layout *lf = glint_layout_of(from->format);
+    const struct glint_layout *lt = glint_get_layout(to->format);
+    const struct glint_layout *lf = glint_get_layout(from->format);
 
     for (int i = 0; i < 3; i++)
         for (int y = 0; y < to->height; y++)
@@ -596,10 +596,10 @@ TEST(layouts_give_the_same_codes)
                 for (int y = 0; y < back.height; y++)
                     for (int x = 0; x < back.width; x++)
                         assert_int_equal(
-                            *glint_layout_at(glint_layout_of(back.format),
+                            *glint_layout_at(glint_get_layout(back.format),
                                              &back, i, x, y),
                             *glint_layout_at(
-                                glint_layout_of(fixture.image.format),
+                                glint_get_layout(fixture.image.format),
                                 &fixture.image, i, x, y));
             if (twin.format == GLINT_XRGB8888 || twin.format == GLINT_XBGR8888)
                 for (int k = 3; k < 4 * twin.width * twin.height; k += 4)
@@ -629,14 +629,16 @@ TEST(long_spans_equal_short_spans)
             glint_resolve_init(&resolve, &image, 0,
                                k & 2 ? glint_system_sets() : 0u);
             glint_image_place(&image, got);
-            glint_resolve_stretch(&resolve, &image, 0, 0, n, 1, &light, &rows);
+            glint_resolve_add_to_run(&resolve, &image, 0, 0, n, 1, &light,
+                                     &rows);
             glint_image_place(&image, want);
             for (int x = 0; x < n; x += 8) {
                 for (int i = 0; i < 3 * 8; i++)
                     part.rgb_q16[i / 8][0][i % 8] =
                         light.rgb_q16[i / 8][0][x + i % 8];
-                glint_resolve_stretch(&resolve, &image, x, 0,
-                                      n - x < 8 ? n - x : 8, 1, &part, &rows);
+                glint_resolve_add_to_run(&resolve, &image, x, 0,
+                                         n - x < 8 ? n - x : 8, 1, &part,
+                                         &rows);
             }
             assert_memory_equal(got, want, 2 * (size_t)n);
         }
@@ -646,7 +648,7 @@ TEST(long_spans_equal_short_spans)
 static void make_blocks_uniform(void)
 {
     const struct glint_image *image = &fixture.image;
-    const struct glint_layout *l = glint_layout_of(image->format);
+    const struct glint_layout *l = glint_get_layout(image->format);
     const int n_channels = l->kind == GLINT_LAYOUT_GREY ? 1 : 3;
 
     for (int i = 0; i < n_channels; i++)

@@ -145,7 +145,7 @@ static void init_random_mix(struct glint_mix *mix)
         .range = (enum glint_range)(random_bits() & 1),
         .transfer = (enum glint_tone)(random_bits() & 1)};
 
-    glint_mix_init(mix, &image);
+    glint_mix_set_factors(mix, &image);
 }
 
 static void add_luma_light(const struct glint_kernels *k, const struct rows *r,
@@ -388,7 +388,7 @@ static void check_code_kernel(const struct glint_kernels *k, const char *name)
         for (int code = 0; code < 256; code++)
             for (int first = 0; first < 65536; first += N) {
                 const struct glint_tone16 *tone =
-                    glint_tone16_of((enum glint_tone)transfer);
+                    glint_get_tone16((enum glint_tone)transfer);
 
                 for (int i = 0; i < N; i++) {
                     want[i] = got[i] = (uint8_t)code;
@@ -399,9 +399,9 @@ static void check_code_kernel(const struct glint_kernels *k, const char *name)
                 EXPECT_SAME(got, want, N);
             }
     BENCH("add_code", name,
-          plain->add_code(want, light, N, glint_tone16_of(GLINT_TONE_SRGB),
+          plain->add_code(want, light, N, glint_get_tone16(GLINT_TONE_SRGB),
                           round),
-          k->add_code(got, light, N, glint_tone16_of(GLINT_TONE_SRGB), round));
+          k->add_code(got, light, N, glint_get_tone16(GLINT_TONE_SRGB), round));
 }
 
 static void check_sum_kernel(const struct glint_kernels *k, const char *name)
@@ -442,7 +442,7 @@ static void check_sum_kernel(const struct glint_kernels *k, const char *name)
  * which the bake guarantees. */
 static void check_horner_kernel(const struct glint_horner *k, const char *name)
 {
-    const struct glint_horner *plain = glint_horner_of(0);
+    const struct glint_horner *plain = glint_choose_horner_kernels(0);
     int32_t *c = allocate_fenced(160 * sizeof *c),
             *x = allocate_fenced(N * sizeof *x);
     int32_t *want = allocate_fenced(N * sizeof *want),
@@ -538,10 +538,11 @@ static void check_convolution_kernel(glint_convolve_fn *convolve,
         const ptrdiff_t stride = 1 + turn % 2;
 
         for (int i = 0; i < VALUES; i++)
-            value[i] = glint_pair(random_signed_below(32768),
-                                  random_signed_below(32768));
+            value[i] = glint_pack_pair(random_signed_below(32768),
+                                       random_signed_below(32768));
         for (int k = 0; k < n_taps; k++)
-            tap[k] = glint_pair(random_signed_below(65536 / (2 * n_taps) < 32768
+            tap[k] =
+                glint_pack_pair(random_signed_below(65536 / (2 * n_taps) < 32768
                                                         ? 65536 / (2 * n_taps)
                                                         : 32768),
                                 random_signed_below(1024));
@@ -558,18 +559,20 @@ static void check_convolution_kernel(glint_convolve_fn *convolve,
 static void test_kernels_are_identical(void)
 {
     for (int v = 0; v < N_VARIANTS; v++) {
-        const struct glint_kernels *k = glint_kernels_of(variants[v].set);
+        const struct glint_kernels *k = glint_choose_kernels(variants[v].set);
 
         if (!(variants[v].set & glint_system_sets()))
             continue;
-        check_horner_kernel(glint_horner_of(variants[v].set), variants[v].name);
-        check_turn_kernel(glint_turn_of(variants[v].set), variants[v].name);
+        check_horner_kernel(glint_choose_horner_kernels(variants[v].set),
+                            variants[v].name);
+        check_turn_kernel(glint_choose_turn_kernel(variants[v].set),
+                          variants[v].name);
         check_convolution_kernel(glint_convolve_of(variants[v].set),
                                  variants[v].name);
         check_luma_kernel(k, variants[v].name);
         check_pair_kernel(k, variants[v].name);
         check_packed_kernel(k, variants[v].name);
-        check_quad_kernel(glint_quad_kernels_of(variants[v].set),
+        check_quad_kernel(glint_choose_quad_kernels(variants[v].set),
                           variants[v].name);
         check_code_kernel(k, variants[v].name);
         check_sum_kernel(k, variants[v].name);
@@ -593,7 +596,7 @@ static void test_code_kernel_in_c(void)
 
                 memset(lit, code, sizeof lit);
                 glint_add_code_c(lit, add, GLINT_LANES,
-                                 glint_tone16_of((enum glint_tone)transfer),
+                                 glint_get_tone16((enum glint_tone)transfer),
                                  round);
                 EXPECT(lit[0] >= before);
                 EXPECT(lit[1] == code);

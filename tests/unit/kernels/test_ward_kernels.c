@@ -198,12 +198,12 @@ static void check_kernel_variant(const char *name, glint_ward_sum_fn *sum)
 
 int main(void)
 {
-    check_kernel_variant("c", glint_ward_sum_of(0));
+    check_kernel_variant("c", glint_choose_ward_kernel(0));
     for (unsigned set = 1; set; set <<= 1)
         if (set & glint_system_sets())
             check_kernel_variant(set == GLINT_SET_SSE41  ? "sse41"
                                  : set == GLINT_SET_AVX2 ? "avx2"
                                                          : "neon",
-                                 glint_ward_sum_of(set));
+                                 glint_choose_ward_kernel(set));
     return 0;
 }

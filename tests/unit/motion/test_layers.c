@@ -41,15 +41,17 @@ static double compute_shell_coverage(const struct glint_scene *s,
 {
     const double share =
         1 - s->material[l->material].pass_q15 / (double)GLINT_SCENE_ONE_Q15;
-    const double x_q8 = glint_place(s, x, 0), y_q8 = glint_place(s, y, 1);
+    const double x_q8 = glint_pixel_position_q8(s, x, 0),
+                 y_q8 = glint_pixel_position_q8(s, y, 1);
     int32_t c[3];
     int hits = 0;
 
-    glint_view_seen(&s->view, l->ball->at, c);
+    glint_view_to_camera(&s->view, l->ball->at, c);
     for (int k = 0; k < SAMPLES; k++)
-        hits += compute_cosine_to_normal(s, c, l->ball->radius,
-                                         x_q8 + glint_sample(s, k, 0),
-                                         y_q8 + glint_sample(s, k, 1)) >= 0;
+        hits +=
+            compute_cosine_to_normal(
+                s, c, l->ball->radius, x_q8 + glint_sample_offset_q8(s, k, 0),
+                y_q8 + glint_sample_offset_q8(s, k, 1)) >= 0;
     return share * hits / SAMPLES *
            (1 - fmax(0, compute_cosine_to_normal(s, c, l->ball->radius, x_q8,
                                                  y_q8)) /
@@ -61,8 +63,8 @@ static double compute_line_coverage(const struct glint_scene *s,
                                     const struct glint_motion_layer *l, int x,
                                     int y)
 {
-    const double dx = (glint_place(s, x, 0) - l->x_q8) / 256.;
-    const double dy = (glint_place(s, y, 1) - l->y_q8) / 256.;
+    const double dx = (glint_pixel_position_q8(s, x, 0) - l->x_q8) / 256.;
+    const double dy = (glint_pixel_position_q8(s, y, 1) - l->y_q8) / 256.;
     const double u = l->along_q14[0] / 16384., v = l->along_q14[1] / 16384.;
     const double along = dx * u + dy * v, across = fabs(dx * v - dy * u);
     const double length = l->length_q8 / 256.;

@@ -232,11 +232,12 @@ TEST(grey_image_of_each_format_is_even)
             assert_true(glint_image_bytes(image.format, image.width,
                                           image.height) <= sizeof picture);
             glint_image_place(&image, picture);
-            glint_around_carve(&around, &arena, image.width, image.height);
+            glint_background_allocate(&around, &arena, image.width,
+                                      image.height);
             assert_true(around.n_x <= 320 && around.n_y <= 321);
-            glint_around_look(&around, &image, NULL);
+            glint_background_store(&around, &image, NULL);
             for (int32_t at = 0; at <= 1 << 16; at += 1 << 12) {
-                glint_around_at(&around, at, (1 << 16) - at, rgb_q15);
+                glint_background_sample(&around, at, (1 << 16) - at, rgb_q15);
                 for (int c = 0; c < 3; c++)
                     assert_in_range(rgb_q15[c], 6900, 7500);
             }

@@ -303,13 +303,15 @@ TEST(sample_shows_the_first_object)
 
                 if (px >= WIDTH || py >= HEIGHT)
                     continue;
-                glint_view_ray(&s->view, 256 * px - 128 * (WIDTH - 1) - 96,
-                               256 * py - 128 * (HEIGHT - 1) - 32, &ray,
-                               seen_q30);
-                is = glint_scene_meet(s, &ray, GLINT_NOTHING, 0, &met);
+                glint_view_set_ray(&s->view, 256 * px - 128 * (WIDTH - 1) - 96,
+                                   256 * py - 128 * (HEIGHT - 1) - 32, &ray,
+                                   seen_q30);
+                is = glint_scene_find_nearest_hit(s, &ray, GLINT_NOTHING, 0,
+                                                  &met);
                 n++;
-                other += w->id[i] != (is ? glint_id(met.object, met.triangle)
-                                         : GLINT_NOTHING);
+                other += w->id[i] !=
+                         (is ? glint_make_triangle_id(met.object, met.triangle)
+                             : GLINT_NOTHING);
             }
         }
     print_message("%d of %d samples see another thing than their rays\n", other,
@@ -429,7 +431,7 @@ TEST(changed_poses_equal_a_new_scene)
     assert_int_equal(glint_scene_set_pose(s, 4, at, turn), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_pose(s, 0, at, at), GLINT_E_ARGUMENT);
     /* Rotation about y by 2 atan(4/3): x becomes (-.28, 0, -.96). */
-    v3_turn(&s->placed[0].turn, x, to);
+    v3_rotate(&s->placed[0].turn, x, to);
     assert_true(abs(to[0] + 293601) <= 1 && to[1] == 0 &&
                 abs(to[2] + 1006633) <= 1);
     assert_int_equal(s->placed[0].at[2], 9 * UNIT);
@@ -481,9 +483,9 @@ TEST(shadow_grid_equals_brute_force)
 
             set_random_surface_point(&seed, &surface);
             s->lit[0].shadow->is_ready = 1;
-            by_grid = glint_scene_reaches(s, &surface, &s->lit[0]);
+            by_grid = glint_scene_lit_fraction(s, &surface, &s->lit[0]);
             s->lit[0].shadow->is_ready = 0;
-            by_rays = glint_scene_reaches(s, &surface, &s->lit[0]);
+            by_rays = glint_scene_lit_fraction(s, &surface, &s->lit[0]);
             n++;
             other += by_grid != by_rays;
             dark += by_rays == 0;
@@ -531,9 +533,10 @@ TEST(flat_mesh_shadows_a_lamp)
             surface.place[axis] = -side * UNIT;
             surface.place[u] = UNIT / 3;
             surface.face_q30[axis] = side < 0 ? -ONE_Q30 : ONE_Q30;
-            assert_int_equal(glint_scene_reaches(s, &surface, &s->lit[0]), 0);
+            assert_int_equal(glint_scene_lit_fraction(s, &surface, &s->lit[0]),
+                             0);
             surface.place[u] = 4 * UNIT;
-            assert_int_equal(glint_scene_reaches(s, &surface, &s->lit[0]),
+            assert_int_equal(glint_scene_lit_fraction(s, &surface, &s->lit[0]),
                              32768);
         }
 }

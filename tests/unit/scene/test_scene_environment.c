@@ -360,7 +360,7 @@ TEST(rejects_invalid_environment_tables)
     e = (void *)(d.data + d.model.header->environment_at);
     light = (void *)(d.data + d.model.header->light_at);
     REFUSES(e->name[0], '\0',
-            "an environment's name is empty, endless or not printable");
+            "an environment's name is empty, unterminated or not printable");
     REFUSES(e->turn_q30[0], 1 << 29, range);
     REFUSES(e->scale.mantissa, 0, range);
     REFUSES(e->scale.mantissa, -e->scale.mantissa, range);

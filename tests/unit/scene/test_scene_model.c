@@ -102,27 +102,32 @@ TEST(rejects_invalid_headers)
 {
     REFUSES(header.variant, 2, "the scene's variant is unknown");
     REFUSES(header.unit_log2, 61, "the scene's unit is out of range");
-    REFUSES(header.shadow, 2, "the scene's settings are unknown");
-    REFUSES(header.highlights, 9, "the scene's settings are unknown");
+    REFUSES(header.shadow, 2, "the scene's settings are out of range");
+    REFUSES(header.highlights, 9, "the scene's settings are out of range");
     REFUSES(header.background_q15[1], 1,
             "the background's colour is out of range");
     REFUSES(header.n_lights, 33, "the scene has too many objects of one type");
     REFUSES(header.name[0], 7, "the name has a control character");
     REFUSES(header.camera.kind, 3, "the camera's kind is unknown");
-    REFUSES(header.camera.at[2], GLINT_SCENE_SPAN, "the camera is too far out");
+    REFUSES(header.camera.at[2], GLINT_SCENE_SPAN,
+            "the camera is outside the scene's range");
     REFUSES(header.camera.axis_q30[0][1], 1 << 28,
             "the camera's axes are not orthogonal unit vectors");
-    REFUSES(header.camera.tan_x_q24, 0, "the camera's field is out of range");
-    REFUSES(header.camera.tan_y_q24, 1, "the camera's field is out of range");
+    REFUSES(header.camera.tan_x_q24, 0,
+            "the camera's field of view is out of range");
+    REFUSES(header.camera.tan_y_q24, 1,
+            "the camera's field of view is out of range");
 }
 
 TEST(rejects_invalid_lights)
 {
     REFUSES(light[0].kind, 2, "a light's kind is unknown");
     REFUSES(light[0].name[0], 0,
-            "a light's name is empty, endless or not printable");
-    REFUSES(light[0].at[0], 1, "a light is too far out, or too large");
-    REFUSES(light[1].radius, -1, "a light is too far out, or too large");
+            "a light's name is empty, unterminated or not printable");
+    REFUSES(light[0].at[0], 1,
+            "a light is outside the scene's range, or too large");
+    REFUSES(light[1].radius, -1,
+            "a light is outside the scene's range, or too large");
     REFUSES(light[0].toward_q30[0], 1 << 29,
             "a light's direction is not a unit vector");
     REFUSES(light[1].toward_q30[0], 1,
@@ -134,7 +139,7 @@ TEST(rejects_invalid_lights)
 TEST(rejects_invalid_materials)
 {
     REFUSES(material[0].name[2], ' ',
-            "a material's name is empty, endless or not printable");
+            "a material's name is empty, unterminated or not printable");
     REFUSES(material[0].ambient_q15, 1,
             "a material's weights sum to more than 1");
     REFUSES(material[0].pass_q15, 32769,
@@ -148,7 +153,7 @@ TEST(rejects_invalid_materials)
     REFUSES(header.n_wards, 1,
             "a brushed metal's roughness or norm is out of range");
     REFUSES(header.background, GLINT_BACKGROUND_ENVIRONMENT,
-            "the background's environment is not there");
+            "the background needs an environment, but there is none");
     REFUSES(header.n_environments, 17,
             "the scene has too many objects of one type");
     REFUSES(header.n_environment_lights, 1,
@@ -175,7 +180,7 @@ TEST(rejects_wrong_grid_lists)
     ref = file.data + m->ref_at / 4;
     assert_true(start[1] > 1);
     ref[0] = ref[1];
-    expect_scene_error(&file, "a grid's list does not rise");
+    expect_scene_error(&file, "a grid's list is not in rising order");
     make_scene_of_all_types();
     scene_seal_checksum(&file);
     assert_null(open_scene_error(&file));
@@ -186,14 +191,14 @@ TEST(rejects_invalid_meshes)
     REFUSES(mesh[0].radius, 2000,
             "a vertex is outside the bounding sphere of its mesh");
     REFUSES(mesh[0].radius, GLINT_SCENE_SPAN / 2,
-            "a mesh is too large or too far out");
+            "a mesh is too large, or outside the scene's range");
     REFUSES(mesh[0].n_vertices, 3, "a triangle's vertex is out of range");
     REFUSES(mesh[0].n_vertices, 1 << 30, "a table lies outside the file");
     REFUSES(mesh[0].cell_log2, 1, "a mesh's grid is out of range");
     REFUSES(mesh[0].cells[1], 0, "a mesh's grid is out of range");
     REFUSES(mesh[0].cells[1], 257, "a mesh's grid is out of range");
     REFUSES(mesh[0].start_at, file.mesh[0].start_at + 4,
-            "a grid's lists do not begin at 0");
+            "a grid's lists do not begin at entry 0");
     REFUSES(mesh[0].n_triangles, 3, "a grid's triangle is out of range");
     REFUSES(mesh[0].uv_at, file.mesh[0].normal_at,
             "a vertex's u or v is out of range");
@@ -217,7 +222,7 @@ TEST(rejects_invalid_objects)
             "a plane's fraction of shadow is out of range");
     REFUSES(object[0].turn_q30[1], 1 << 24, "an object's pose is out of range");
     REFUSES(object[0].at[0], GLINT_SCENE_SPAN - 1000,
-            "an object is too far out");
+            "an object is outside the scene's range");
     make_scene_of_all_types();
     file.object[0].at[0] = GLINT_SCENE_SPAN - 1001;
     scene_open_model(&file);

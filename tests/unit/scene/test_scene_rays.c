@@ -46,8 +46,8 @@ static int ray_hits_triangle(const struct glint_scene_ray *ray, int32_t v[3][3],
     const int32_t *const vertex[3] = {v[0], v[1], v[2]};
     struct glint_sheared sheared;
 
-    glint_shear(ray, &sheared);
-    return glint_ray_triangle(&sheared, vertex, spot);
+    glint_ray_shear_to_axis(ray, &sheared);
+    return glint_ray_intersect_triangle(&sheared, vertex, spot);
 }
 
 static const struct glint_scene_ray ahead = {{0}, {0, 0, ONE_Q30}};
@@ -76,10 +76,10 @@ TEST(a1_unit_vectors)
     uint32_t seed = 1;
     int32_t unit_q30[3];
 
-    assert_int_equal(glint_root(100), 10);
-    assert_true(glint_unit(v, unit_q30));
+    assert_int_equal(glint_square_root(100), 10);
+    assert_true(glint_normalise_vector(v, unit_q30));
     assert_near_vector(unit_q30, 0, .6, .8, 1);
-    assert_false(glint_unit(zero, unit_q30));
+    assert_false(glint_normalise_vector(zero, unit_q30));
     for (int i = 0; i < 200000; i++) {
         const int shift = rng_int_below(&seed, 60);
         double length = 0;
@@ -91,7 +91,7 @@ TEST(a1_unit_vectors)
                    2 >> shift;
             length += ldexp((double)w[k], -31) * ldexp((double)w[k], -31);
         }
-        if (!glint_unit(w, unit_q30))
+        if (!glint_normalise_vector(w, unit_q30))
             continue;
         for (int k = 0; k < 3; k++) {
             const double exact = ldexp((double)w[k] / sqrt(length), -1);
@@ -106,32 +106,32 @@ TEST(square_roots_are_exact)
     uint32_t seed = 1;
 
     for (uint64_t x = 0; x < 70000; x++)
-        assert_int_equal(glint_root(x), q_root(x));
+        assert_int_equal(glint_square_root(x), q_root(x));
     for (int i = 0; i < 300000; i++) {
         const uint64_t bits =
             (uint64_t)rng_bits32(&seed) << 32 | rng_bits32(&seed);
         const uint64_t x = bits >> (i % 64), r = q_root(x);
 
-        assert_int_equal(glint_root(x), r);
-        assert_int_equal(glint_root(r * r), r);
-        assert_int_equal(glint_root(r * r - (r > 0)), r ? r - 1 : 0);
+        assert_int_equal(glint_square_root(x), r);
+        assert_int_equal(glint_square_root(r * r), r);
+        assert_int_equal(glint_square_root(r * r - (r > 0)), r ? r - 1 : 0);
     }
-    assert_true(glint_root(UINT64_MAX) == UINT32_MAX);
+    assert_true(glint_square_root(UINT64_MAX) == UINT32_MAX);
 }
 
 TEST(ratios_saturate)
 {
     uint32_t seed = 1;
 
-    assert_int_equal(glint_ratio(5, 0), GLINT_FAR);
-    assert_int_equal(glint_ratio(0, 5), 0);
-    assert_int_equal(glint_ratio(UINT64_MAX >> 2, 1), GLINT_FAR);
-    assert_int_equal(glint_ratio(90, 1), 90);
+    assert_int_equal(glint_divide_rounded(5, 0), GLINT_FAR);
+    assert_int_equal(glint_divide_rounded(0, 5), 0);
+    assert_int_equal(glint_divide_rounded(UINT64_MAX >> 2, 1), GLINT_FAR);
+    assert_int_equal(glint_divide_rounded(90, 1), 90);
     for (int i = 0; i < 300000; i++) {
         const uint64_t n = ((uint64_t)rng_bits32(&seed) << 28) >> (i % 59);
         const uint64_t d = ((uint64_t)rng_bits32(&seed) << 28) >> (i / 59 % 60);
         const double exact = (double)n / (double)(d | 1);
-        const int32_t q = glint_ratio(n, d | 1);
+        const int32_t q = glint_divide_rounded(n, d | 1);
 
         if (exact < GLINT_FAR - 2)
             assert_true(fabs(q - exact) <= .5 + exact * 0x1p-29);
@@ -149,13 +149,13 @@ TEST(a2_triangle_normal)
 
     for (int i = 0; i < 9; i++)
         v[i / 3][i % 3] = (int32_t)first[i];
-    v3_minus(v[1], v[0], a);
-    v3_minus(v[2], v[0], b);
+    v3_subtract(v[1], v[0], a);
+    v3_subtract(v[2], v[0], b);
     v3_cross(a, b, n);
     assert_true(n[0] == 0 && n[1] == 3600 && n[2] == -4800);
-    assert_true(glint_triangle_normal(clockwise, normal_q30));
+    assert_true(glint_set_triangle_normal(clockwise, normal_q30));
     assert_near_vector(normal_q30, 0, .6, -.8, 1); /* towards the viewer */
-    assert_true(glint_triangle_normal(back, normal_q30));
+    assert_true(glint_set_triangle_normal(back, normal_q30));
     assert_near_vector(normal_q30, 0, -.6, .8, 1);
 }
 
@@ -168,11 +168,12 @@ TEST(a3_plane_intersection)
     set_scaled_triangle(v, first, 1);
     for (int k = 0; k < 3; k++)
         vertex[k] = v[k];
-    glint_triangle_normal(vertex, normal_q30);
+    glint_set_triangle_normal(vertex, normal_q30);
     assert_near_int(v3_dot(normal_q30, v[0]), -72 * (INT64_C(1) << 46),
                     1 << 27);
-    assert_int_equal(glint_ray_plane(&ahead, v[0], normal_q30), 90 * ONE);
-    assert_true(glint_ray_go(&ahead, 90 * ONE, hit));
+    assert_int_equal(glint_ray_intersect_plane(&ahead, v[0], normal_q30),
+                     90 * ONE);
+    assert_true(glint_ray_point_at_distance(&ahead, 90 * ONE, hit));
     assert_true(hit[0] == 0 && hit[1] == 0 && hit[2] == 90 * ONE);
     assert_true(ray_hits_triangle(&ahead, v, &spot));
     assert_int_equal(spot.t, 90 * ONE);
@@ -317,10 +318,10 @@ TEST(a9_mirrored_direction)
             v[k] = (int32_t)rng_bits32(&seed) >> 1;
             w[k] = (int32_t)rng_bits32(&seed) >> 1;
         }
-        if (!glint_unit(v, d) || !glint_unit(w, n))
+        if (!glint_normalise_vector(v, d) || !glint_normalise_vector(w, n))
             continue;
-        glint_mirror(d, n, r);
-        glint_mirror(r, n, back);
+        glint_reflect_direction(d, n, r);
+        glint_reflect_direction(r, n, back);
         for (int k = 0; k < 3; k++) {
             assert_near_int(back[k], d[k], 8);
             length += ldexp(r[k], -30) * ldexp(r[k], -30);
@@ -369,19 +370,21 @@ TEST(a14_degenerate_triangles_are_missed)
     struct glint_spot_on spot;
     int32_t v[3][3], n[3];
 
-    assert_int_equal(glint_ray_plane(&ahead, ground, up), 0); /* parallel */
-    assert_int_equal(glint_ray_plane(&falling, ground, up), GLINT_PLANE_END);
+    assert_int_equal(glint_ray_intersect_plane(&ahead, ground, up),
+                     0); /* parallel */
+    assert_int_equal(glint_ray_intersect_plane(&falling, ground, up),
+                     GLINT_PLANE_END);
     /* in the plane */
-    assert_int_equal(glint_ray_plane(&ahead, ahead.at, up), 0);
+    assert_int_equal(glint_ray_intersect_plane(&ahead, ahead.at, up), 0);
     for (int i = 0; i < 4; i++) {
         const int32_t *const vertex[3] = {v[0], v[1], v[2]};
         struct glint_sheared sheared;
 
         set_scaled_triangle(v, each[i], 1);
-        glint_shear(&ahead, &sheared);
-        assert_false(glint_ray_triangle(&sheared, vertex, &spot));
-        assert_false(glint_ray_hold(&sheared, vertex, &spot));
-        assert_int_equal(glint_triangle_normal(vertex, n), i == 0);
+        glint_ray_shear_to_axis(&ahead, &sheared);
+        assert_false(glint_ray_intersect_triangle(&sheared, vertex, &spot));
+        assert_false(glint_ray_clamp_to_triangle(&sheared, vertex, &spot));
+        assert_int_equal(glint_set_triangle_normal(vertex, n), i == 0);
     }
     set_scaled_triangle(v, first, -1); /* a triangle behind the ray's origin */
     assert_false(ray_hits_triangle(&ahead, v, &spot));
@@ -397,24 +400,23 @@ TEST(a15_sphere_intersections)
     int32_t place[3], n[3];
 
     /* both intersections */
-    assert_true(glint_ray_sphere(&ahead, centre, 2 * ONE, &c));
+    assert_true(glint_ray_intersect_sphere(&ahead, centre, 2 * ONE, &c));
     assert_true(c.t[0] == 8 * ONE && c.t[1] == 12 * ONE);
-    glint_chord_end(&c, &ahead, centre, 0, place, n);
+    glint_chord_find_end_surface(&c, &ahead, centre, 0, place, n);
     assert_true(place[0] == 0 && place[1] == 0 && place[2] == 8 * ONE);
     assert_near_vector(n, 0, 0, -1, 0);
-    glint_chord_end(&c, &ahead, centre, 1, place, n);
+    glint_chord_find_end_surface(&c, &ahead, centre, 1, place, n);
     assert_true(place[2] == 12 * ONE && n[2] == ONE_Q30);
-    /* a grazing ray, and a ray one step outside */
-    assert_true(glint_ray_sphere(&ahead, aside, 3 * ONE, &c));
+    /* grazing, and one step outside */
+    assert_true(glint_ray_intersect_sphere(&ahead, aside, 3 * ONE, &c));
     assert_true(c.t[0] == 10 * ONE && c.t[1] == 10 * ONE);
-    assert_false(glint_ray_sphere(&ahead, aside, 3 * ONE - 1, &c));
-    /* a ray from inside the ball, and a ball behind the ray's
-     * origin */
-    assert_true(glint_ray_sphere(&ahead, me, 2 * ONE, &c));
+    assert_false(glint_ray_intersect_sphere(&ahead, aside, 3 * ONE - 1, &c));
+    /* from inside, and behind the origin */
+    assert_true(glint_ray_intersect_sphere(&ahead, me, 2 * ONE, &c));
     assert_true(c.t[0] == -ONE && c.t[1] == 3 * ONE);
-    assert_true(glint_ray_sphere(&ahead, far, 2 * ONE, &c));
+    assert_true(glint_ray_intersect_sphere(&ahead, far, 2 * ONE, &c));
     assert_true(c.t[0] < 0 && c.t[1] < 0);
-    assert_true(glint_ray_sphere(&ahead, centre, 1, &c));
+    assert_true(glint_ray_intersect_sphere(&ahead, centre, 1, &c));
     assert_true(c.t[0] == 10 * ONE - 1 && c.t[1] == 10 * ONE + 1);
 }
 
@@ -451,7 +453,7 @@ static double count_errors_at_ball_rim(double distance)
         }
         for (int k = 0; k < 3; k++)
             square += (l[k] - dot * d[k]) * (l[k] - dot * d[k]);
-        wrong += glint_ray_sphere(&ray, centre, radius, &chord) !=
+        wrong += glint_ray_intersect_sphere(&ray, centre, radius, &chord) !=
                  (square <= (long double)radius * radius);
     }
     return (double)wrong / RAYS;
@@ -608,8 +610,8 @@ TEST(plain_q16_arithmetic_overflows)
     int64_t d = 0;
 
     set_scaled_triangle(v, first, 1);
-    v3_minus(v[1], v[0], a);
-    v3_minus(v[2], v[0], b);
+    v3_subtract(v[1], v[0], a);
+    v3_subtract(v[2], v[0], b);
     cross_q16(a, b, n);
     for (int k = 0; k < 3; k++)
         d += ((int64_t)n[k] * v[0][k]) >> 16;
@@ -638,8 +640,8 @@ TEST(barycentric_weights_reproduce_the_hit)
         }
         ray = make_ray_from_doubles(from, to);
         if (!ray_hits_triangle(&ray, v, &spot))
-            continue; /* rays at slivers may miss because of rounding */
-        assert_true(glint_ray_go(&ray, spot.t, hit));
+            continue; /* rounding: a sliver's ray */
+        assert_true(glint_ray_point_at_distance(&ray, spot.t, hit));
         assert_int_equal(spot.part_q30[0] + spot.part_q30[1] + spot.part_q30[2],
                          ONE_Q30);
         for (int k = 0; k < 3; k++) {

@@ -49,10 +49,10 @@ static int intersect_and_shade_ray(const struct glint_scene *s,
     struct glint_met_surface surface;
     struct glint_met met;
 
-    if (!glint_scene_meet(s, ray, GLINT_NOTHING, 0, &met) ||
-        !glint_scene_surface(s, ray, &met, &surface))
+    if (!glint_scene_find_nearest_hit(s, ray, GLINT_NOTHING, 0, &met) ||
+        !glint_scene_set_surface(s, ray, &met, &surface))
         return 0;
-    glint_scene_shade(s, ray, &surface, to);
+    glint_scene_shade_surface(s, ray, &surface, to);
     return 1;
 }
 
@@ -97,7 +97,8 @@ TEST(a5_nearest_triangle_is_visible)
                                             NULL, 3, t, 1));
         }
         s = start_renderer(1);
-        assert_true(glint_scene_meet(s, &ahead, GLINT_NOTHING, 0, &met));
+        assert_true(
+            glint_scene_find_nearest_hit(s, &ahead, GLINT_NOTHING, 0, &met));
         assert_int_equal(met.object, (6 - first) % 4);
         assert_in_range(met.t, 77 * UNIT - 1, 77 * UNIT + 1);
     }
@@ -121,8 +122,8 @@ TEST(a6_corner_rays)
             struct glint_scene_ray ray;
             int32_t seen_q30[3];
 
-            glint_view_ray(&view, 256 * x - 128 * 639, 256 * y - 128 * 359,
-                           &ray, seen_q30);
+            glint_view_set_ray(&view, 256 * x - 128 * 639, 256 * y - 128 * 359,
+                               &ray, seen_q30);
             for (int k = 0; k < 2; k++)
                 assert_true(fabs(10. * ray.toward_q30[k] / ray.toward_q30[2] -
                                  expected[k]) <= 0x1p-16);
@@ -147,10 +148,10 @@ TEST(projection_inverts_pixel_rays)
         file.header.camera.tan_x_q24 =
             (1 << 12) + rng_int_below(&seed, 1 << 24);
         assert_true(glint_view_init(&view, &file.header.camera, 256, 256, 0));
-        glint_view_ray(&view, x_q8, y_q8, &ray, seen_q30);
-        assert_true(glint_ray_go(&ray, (1 << 26), place));
-        glint_view_seen(&view, place, seen);
-        c = glint_view_corner(&view, seen);
+        glint_view_set_ray(&view, x_q8, y_q8, &ray, seen_q30);
+        assert_true(glint_ray_point_at_distance(&ray, (1 << 26), place));
+        glint_view_to_camera(&view, place, seen);
+        c = glint_view_project_vertex(&view, seen);
         assert_int_equal(c.w, 1);
         /* A step is 2^-26 of the distance. */
         assert_true(abs(c.x - x_q8) <= 2 + 32768. * 0x1p-26 * 0x1p24 * 2 /
@@ -192,14 +193,15 @@ TEST(phong_power_matches_double_precision)
                 i < 10000 ? ONE_Q30 - i * (1 << 12) : (i - 9999) * 107000;
             const double exact = pow(ldexp(x_q30, -30), k_q8 / 256.);
 
-            worst = fmax(worst,
-                         fabs(glint_power_q15(x_q30, k_q8) / 32768. - exact));
+            worst =
+                fmax(worst, fabs(glint_compute_power_q15(x_q30, k_q8) / 32768. -
+                                 exact));
         }
     print_message("powers are off by 1 / %.0f at most\n", 1 / worst);
     assert_true(worst < 1. / 512);
-    assert_int_equal(glint_power_q15(ONE_Q30, 1 << 20), 32768);
-    assert_int_equal(glint_power_q15(0, 256), 0);
-    assert_int_equal(glint_power_q15(-5, 256), 0);
+    assert_int_equal(glint_compute_power_q15(ONE_Q30, 1 << 20), 32768);
+    assert_int_equal(glint_compute_power_q15(0, 256), 0);
+    assert_int_equal(glint_compute_power_q15(-5, 256), 0);
 }
 
 /* Checks a ball under a sun at many points against Phong's formula in double
@@ -391,7 +393,8 @@ TEST(a11_transparent_ball_occludes_nothing)
         struct glint_chord chord;
         int is;
 
-        if (!glint_ray_sphere(&ray, s->placed[1].at, 2 * UNIT, &chord))
+        if (!glint_ray_intersect_sphere(&ray, s->placed[1].at, 2 * UNIT,
+                                        &chord))
             continue;
         within++;
         assert_true(intersect_and_shade_ray(s, &ray, &with));
@@ -613,11 +616,12 @@ TEST(a13_texture_coordinates)
                     uv[k] += w[j] * uv_q16[j][k];
             }
         ray = make_ray_from_doubles(0, 0, 0, place[0], place[1], place[2]);
-        assert_true(glint_scene_meet_id(s, &ray, ray.toward_q30, 0, &met) &&
-                    glint_scene_surface(s, &ray, &met, &surface));
+        assert_true(glint_scene_ray_hits_id(s, &ray, ray.toward_q30, 0, &met) &&
+                    glint_scene_set_surface(s, &ray, &met, &surface));
+        /* half a texel; 1/256 texel is 128 in Q15 */
         for (int k = 0; k < 2; k++)
             assert_true(fabs(surface.uv_q16[k] - uv[k]) < (i < 3 ? 8 : 16));
-        glint_scene_shade(s, &ray, &surface, &to);
+        glint_scene_shade_surface(s, &ray, &surface, &to);
         for (int c = 0; c < 3; c++) {
             const double u = 2 * uv[0] / 65536 - .5, v = 2 * uv[1] / 65536 - .5;
             const double fu = u - floor(u), fv = v - floor(v);

@@ -189,19 +189,25 @@ TEST(rejects_every_invalid_field)
         const char *reason;
     } row[] = {
         {set_too_large_column_taps,
-         "the columns of a plane of the stone do not fit"},
-        {set_too_large_row_taps, "the rows of a plane of the stone do not fit"},
-        {decrement_shift, "the rows of a plane of the stone do not fit"},
-        {set_shift_out_of_range, "the rows of a plane of the stone do not fit"},
-        {set_tap_out_of_range, "a tap of the stone has too many bits"},
+         "the column taps of a translucent medium's plane are too large"},
+        {set_too_large_row_taps,
+         "the row taps of a translucent medium's plane are too large"},
+        {decrement_shift,
+         "the row taps of a translucent medium's plane are too large"},
+        {set_shift_out_of_range,
+         "the row taps of a translucent medium's plane are too large"},
+        {set_tap_out_of_range,
+         "a tap of the translucent medium has too many bits"},
         {set_cluster_out_of_range, "a texel's cluster is out of range"},
         {set_transmittance_out_of_range,
-         "the stone's transmittance is not 0 .. 1"},
+         "the translucent medium's transmittance is not 0 .. 1"},
         {set_gain_out_of_range,
-         "the stone's gain is not normalised, or not 0 .. 1"},
-        {set_planes_out_of_range, "the stone has too many planes or ranks"},
-        {set_even_kernel_size, "the stone's side or kernel is out of range"},
-        {move_taps_beyond_end, "a table lies outside the stone"}};
+         "the translucent medium's gain is not normalised, or not 0 .. 1"},
+        {set_planes_out_of_range,
+         "the translucent medium has too many planes or ranks"},
+        {set_even_kernel_size,
+         "a translucent medium's side or kernel is out of range"},
+        {move_taps_beyond_end, "a table lies outside the translucent medium"}};
 
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         const char *reason = "nothing";
