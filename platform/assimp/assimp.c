@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The plug-in that implements assimp/assimp.h, using the C interface of Open
- * Asset Import.
- */
+ * The mesh plug-in: implements assimp/assimp.h with the C interface of Open
+ * Asset Import (Assimp). */
 #include "assimp/assimp.h"
 
 #include <math.h>
@@ -15,24 +14,24 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-/* The OBJ text that is being written. */
+/* State of the OBJ text that is being written. */
 struct writer {
     FILE *to;
-    int is_flat; /* 1: normals are not written, as each triangle has its own
-                    normal */
-    unsigned place, uv, normal; /* indices, from 1, at which the next mesh's
-                                   vertices, texture coordinates and normals
-                                   begin */
+    int is_flat; /* 1: normals are not written, as all faces are flat */
+    /* Indices, counted from 1, of the next mesh's first vertex, texture
+     * coordinate and normal. */
+    unsigned place, uv, normal;
 };
 
-static int is_finite(const struct aiVector3D *v)
+static int are_elements_finite(const struct aiVector3D *v)
 {
     return isfinite(v->x) && isfinite(v->y) && isfinite(v->z);
 }
 
 /* Writes a usemtl line with the name of material INDEX of SCENE, or with an
  * empty name. Characters that OBJ would misread become '_'. */
-static void write_name(FILE *to, const struct aiScene *scene, unsigned index)
+static void write_material_name(FILE *to, const struct aiScene *scene,
+                                unsigned index)
 {
     struct aiString name = {0, ""};
 
@@ -52,9 +51,9 @@ static int is_triangle(const struct aiFace *face)
     return face->mNumIndices == 3;
 }
 
-/* Returns whether the normals N of FACE's corners differ, so that they cannot
- * be computed from its corners. */
-static int is_smooth(const struct aiVector3D *n, const struct aiFace *face)
+/* Returns whether the vertex normals N of FACE differ, so that the face's plane
+ * does not determine them. */
+static int is_smooth_face(const struct aiVector3D *n, const struct aiFace *face)
 {
     for (int k = 1; n && is_triangle(face) && k < 3; k++)
         if (memcmp(&n[face->mIndices[0]], &n[face->mIndices[k]], sizeof *n))
@@ -63,23 +62,23 @@ static int is_smooth(const struct aiVector3D *n, const struct aiFace *face)
 }
 
 /* Returns the normals of MESH, or NULL if all of its faces are flat. */
-static const struct aiVector3D *find_normals(const struct writer *w,
-                                             const struct aiMesh *mesh)
+static const struct aiVector3D *get_smooth_normals(const struct writer *w,
+                                                   const struct aiMesh *mesh)
 {
     for (unsigned i = 0; !w->is_flat && i < mesh->mNumFaces; i++)
-        if (is_smooth(mesh->mNormals, &mesh->mFaces[i]))
+        if (is_smooth_face(mesh->mNormals, &mesh->mFaces[i]))
             return mesh->mNormals;
     return NULL;
 }
 
-static void write_faces(const struct writer *w, const struct aiMesh *mesh,
-                        const struct aiVector3D *normals)
+static void write_mesh_faces(const struct writer *w, const struct aiMesh *mesh,
+                             const struct aiVector3D *normals)
 {
     const int has_uv = mesh->mTextureCoords[0] != NULL;
 
     for (unsigned i = 0; i < mesh->mNumFaces; i++) {
         const struct aiFace *const face = &mesh->mFaces[i];
-        const int smooth = is_smooth(normals, face);
+        const int smooth = is_smooth_face(normals, face);
 
         if (!is_triangle(face))
             continue;
@@ -97,8 +96,8 @@ static void write_faces(const struct writer *w, const struct aiMesh *mesh,
     }
 }
 
-static void write_numbers(FILE *to, const char *word,
-                          const struct aiVector3D *v, int n)
+static void write_vertex_numbers(FILE *to, const char *word,
+                                 const struct aiVector3D *v, int n)
 {
     fprintf(to, "%s %.9g %.9g", word, (double)v->x, (double)v->y);
     if (n > 2)
@@ -106,36 +105,37 @@ static void write_numbers(FILE *to, const char *word,
     fputc('\n', to);
 }
 
-static void write_mesh(struct writer *w, const struct aiScene *scene,
-                       const struct aiMesh *mesh)
+static void write_mesh_as_obj(struct writer *w, const struct aiScene *scene,
+                              const struct aiMesh *mesh)
 {
     static const struct aiVector3D none = {0, 0, 0};
     const struct aiVector3D *const v = mesh->mVertices;
-    const struct aiVector3D *const n = find_normals(w, mesh);
+    const struct aiVector3D *const n = get_smooth_normals(w, mesh);
     const struct aiVector3D *const t = mesh->mTextureCoords[0];
 
-    write_name(w->to, scene, mesh->mMaterialIndex);
+    write_material_name(w->to, scene, mesh->mMaterialIndex);
     for (unsigned i = 0; i < mesh->mNumVertices; i++) {
-        write_numbers(w->to, "v", &v[i], 3);
+        write_vertex_numbers(w->to, "v", &v[i], 3);
         if (t)
-            write_numbers(w->to, "vt", &t[i], 2);
+            write_vertex_numbers(w->to, "vt", &t[i], 2);
         if (n)
-            write_numbers(w->to, "vn", is_finite(&n[i]) ? &n[i] : &none, 3);
+            write_vertex_numbers(w->to, "vn",
+                                 are_elements_finite(&n[i]) ? &n[i] : &none, 3);
     }
-    write_faces(w, mesh, n);
+    write_mesh_faces(w, mesh, n);
     w->place += mesh->mNumVertices;
     w->uv += t ? mesh->mNumVertices : 0;
     w->normal += n ? mesh->mNumVertices : 0;
 }
 
-/* Returns the reason why MESH cannot be written, or NULL, and adds the
- * number of its triangles to N. */
+/* Returns the reason why MESH cannot be written, or NULL. Adds the number of
+ * its triangles to N. */
 static const char *check_mesh(const struct aiMesh *mesh, size_t *n)
 {
     for (unsigned k = 0; k < mesh->mNumVertices; k++)
-        if (!is_finite(&mesh->mVertices[k]) ||
+        if (!are_elements_finite(&mesh->mVertices[k]) ||
             (mesh->mTextureCoords[0] &&
-             !is_finite(&mesh->mTextureCoords[0][k])))
+             !are_elements_finite(&mesh->mTextureCoords[0][k])))
             return "has coordinates that are not finite";
     for (unsigned k = 0; k < mesh->mNumFaces; k++) {
         const struct aiFace *const face = &mesh->mFaces[k];
@@ -150,8 +150,8 @@ static const char *check_mesh(const struct aiMesh *mesh, size_t *n)
     return NULL;
 }
 
-/* Returns the reason to refuse SCENE, or NULL if it is a mesh that glint
- * accepts. */
+/* Returns the reason why glint rejects SCENE, or NULL if it is a mesh that
+ * glint accepts. */
 static const char *check_scene(const struct aiScene *scene,
                                unsigned max_triangles)
 {
@@ -165,8 +165,8 @@ static const char *check_scene(const struct aiScene *scene,
     return refusal || n ? refusal : "has no triangles";
 }
 
-/* Reads PATH, cuts polygons into triangles, applies the transforms of the
- * file's nodes and merges identical corners. Returns NULL, with the cause in
+/* Reads the file PATH, cuts polygons into triangles, applies the transforms of
+ * the file's nodes and merges equal vertices. Returns NULL, with the cause in
  * REFUSAL, if glint does not accept the mesh. */
 static const struct aiScene *
 import_scene(const char *path, unsigned max_triangles, const char **refusal)
@@ -182,7 +182,7 @@ import_scene(const char *path, unsigned max_triangles, const char **refusal)
     return *refusal ? NULL : scene;
 }
 
-static void write_obj(int fd, const char *path, unsigned max_triangles)
+static void write_scene_as_obj(int fd, const char *path, unsigned max_triangles)
 {
     const char *const end = strrchr(path, '.');
     const int is_stl = end && strcasecmp(end, ".stl") == 0;
@@ -198,9 +198,10 @@ static void write_obj(int fd, const char *path, unsigned max_triangles)
     else
         fprintf(w.to, "x%s", *refusal ? refusal : "cannot be read");
     for (unsigned i = 0; scene && i < scene->mNumMeshes; i++)
-        write_mesh(&w, scene, scene->mMeshes[i]);
+        write_mesh_as_obj(&w, scene, scene->mMeshes[i]);
     fclose(w.to);
 }
 
 __attribute__((visibility("default")))
-const struct glint_assimp glint_assimp_face = {GLINT_ASSIMP_VERSION, write_obj};
+const struct glint_assimp glint_assimp_face = {GLINT_ASSIMP_VERSION,
+                                               write_scene_as_obj};

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * assimp/assimp.h - PLY, STL, glTF and other meshes, through Open Asset Import.
+ * assimp/assimp.h - reads PLY, STL, glTF and other meshes through Open Asset
+ * Import (Assimp).
  *
  *     if (!glint_assimp_read(&data, &bytes, "cup.ply", most, &error))
  *         ... the OBJ text data[bytes] ...; free(data);
  *
- * The library lives in a plug-in, glint-assimp.so, which is loaded when a mesh
- * first needs it. It reads some fifty formats and does not survive every file
- * that is damaged, so it runs in a child process, whose crash does no harm. The
- * child returns each mesh as an OBJ text, which glint's own reader of meshes
- * parses and checks.
- */
+ * Assimp lives in a plug-in, glint-assimp.so, which is loaded when a mesh first
+ * needs it. Assimp reads some fifty formats and crashes on some damaged files,
+ * so it runs in a child process. The child returns each mesh as an OBJ text,
+ * which glint's own reader of meshes parses and checks. */
 #ifndef GLINT_PLATFORM_ASSIMP_ASSIMP_H
 #define GLINT_PLATFORM_ASSIMP_ASSIMP_H
 
@@ -19,16 +18,17 @@
 
 #include "glint/status.h"
 
-/* Version of this interface. A plug-in of another version is refused. */
+/* Version of this interface. glint rejects plug-ins of other versions. */
 #define GLINT_ASSIMP_VERSION 1
 
 struct glint_assimp {
     int version;
 
-    /* Reads the mesh PATH and writes it to the descriptor FD, then closes FD:
-     * the letter m and an OBJ text of v, vt, vn, usemtl and f lines; or, if
-     * there is no mesh or it has more than MAX_TRIANGLES triangles, the letter
-     * x and a line with the cause. Called in a child process. */
+    /* Reads the mesh file PATH and writes it to the descriptor FD, then closes
+     * FD. Writes the letter m and an OBJ text of v, vt, vn, usemtl and f lines;
+     * or, if the file holds no mesh or one of more than MAX_TRIANGLES
+     * triangles, the letter x and a line with the cause. Called in a child
+     * process. */
     void (*write)(int fd, const char *path, unsigned max_triangles);
 };
 

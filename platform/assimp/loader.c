@@ -35,7 +35,7 @@ enum {
     "needs more than 60 s or 3 GiB to read: the mesh is too large " \
     "(or its parts refer to each other too many times)"
 
-static const struct glint_assimp *load_plugin(struct glint_error *error)
+static const struct glint_assimp *load_assimp_plugin(struct glint_error *error)
 {
     static const struct glint_plugin plugin = {
         "glint-assimp.so",    "GLINT_ASSIMP",
@@ -57,7 +57,7 @@ static const struct glint_assimp *load_plugin(struct glint_error *error)
 
 /* Returns the bytes of address space that this process has mapped; 0 if
  * unknown. */
-static rlim_t mapped_bytes(void)
+static rlim_t read_mapped_bytes(void)
 {
     char text[32] = "";
     const int fd = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
@@ -71,13 +71,13 @@ static rlim_t mapped_bytes(void)
 }
 
 /* Runs the child process until it exits. Restores the default actions of
- * signals and unblocks them: glint's handlers would remove the temporary files
- * of the parent, which lives on. */
-static void run_child(const struct glint_assimp *face, int fd, const char *path,
-                      unsigned max_triangles)
+ * signals and unblocks them, as glint's own handlers would remove the temporary
+ * files of the parent process. */
+static void run_import_process(const struct glint_assimp *face, int fd,
+                               const char *path, unsigned max_triangles)
 {
     const struct rlimit time = {SECONDS, SECONDS}, core = {0, 0};
-    const struct rlimit memory = {mapped_bytes() + (rlim_t)MIB * 1048576,
+    const struct rlimit memory = {read_mapped_bytes() + (rlim_t)MIB * 1048576,
                                   RLIM_INFINITY};
     const int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
     sigset_t all;
@@ -98,8 +98,9 @@ static void run_child(const struct glint_assimp *face, int fd, const char *path,
 
 /* Starts the child process, which writes to pipe_fd[1]. Returns its id, or -1
  * with errno set on failure. */
-static pid_t start_child(const struct glint_assimp *face, const int pipe_fd[2],
-                         const char *path, unsigned max_triangles)
+static pid_t start_import_process(const struct glint_assimp *face,
+                                  const int pipe_fd[2], const char *path,
+                                  unsigned max_triangles)
 {
     sigset_t all, before;
     pid_t child;
@@ -109,15 +110,15 @@ static pid_t start_child(const struct glint_assimp *face, const int pipe_fd[2],
     child = fork();
     if (child == 0) {
         close(pipe_fd[0]);
-        run_child(face, pipe_fd[1], path, max_triangles);
+        run_import_process(face, pipe_fd[1], path, max_triangles);
     }
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return child;
 }
 
-/* Waits for CHILD; kills it first unless IS_WANTED. Returns the reason why
- * it failed, or NULL. */
-static const char *end_child(pid_t child, int is_wanted)
+/* Waits until CHILD has ended; if IS_WANTED is 0, kills it first. Returns the
+ * reason why it failed, or NULL. */
+static const char *wait_for_import_process(pid_t child, int is_wanted)
 {
     int status = 0;
 
@@ -133,11 +134,13 @@ static const char *end_child(pid_t child, int is_wanted)
     return WEXITSTATUS(status) ? "cannot be read" : NULL;
 }
 
-/* Removes the status letter (m or x) from DATA[BYTES]. Returns GLINT_OK, or the
- * error that the letter, the text after it or FAILURE states. */
-static enum glint_status check_result(uint8_t *data, size_t *bytes,
-                                      const char *path, const char *failure,
-                                      struct glint_error *error)
+/* Removes the status letter (m or x) from the child's output DATA[BYTES].
+ * Returns GLINT_OK, or the error that the letter, the text after it, or FAILURE
+ * states. */
+static enum glint_status check_import_result(uint8_t *data, size_t *bytes,
+                                             const char *path,
+                                             const char *failure,
+                                             struct glint_error *error)
 {
     if (!failure && *bytes < 1)
         failure = "cannot be read";
@@ -155,14 +158,14 @@ static enum glint_status check_result(uint8_t *data, size_t *bytes,
     return GLINT_OK;
 }
 
-static size_t read_length(const uint8_t *b)
+static size_t read_little_endian_length(const uint8_t *b)
 {
     return b[0] | (size_t)b[1] << 8 | (size_t)b[2] << 16 | (size_t)b[3] << 24;
 }
 
-/* Returns whether a node of the glTF in TEXT[BYTES] is the child of two nodes.
- * The format forbids that, and Assimp copies shared nodes: ten levels of ten
- * shared children would become 10^10 nodes. */
+/* Returns whether two nodes of the glTF in TEXT[BYTES] have the same child
+ * node. The format forbids that, and Assimp copies shared nodes: ten levels of
+ * ten shared children would become 10^10 nodes. */
 static int has_shared_node(const char *text, size_t bytes)
 {
     static const char word[] = "\"children\"";
@@ -193,19 +196,19 @@ static int has_shared_node(const char *text, size_t bytes)
     return is_shared;
 }
 
-/* Returns what is wrong with the glTF in TEXT[BYTES], the beginning of a
- * file of ALL bytes, or NULL. A binary glTF begins with a magic number, a
- * version, the file's length, and length and type of the JSON chunk. */
+/* Returns an error in the glTF in TEXT[BYTES], the beginning of a file of ALL
+ * bytes, or NULL. A binary glTF begins with a magic number, a version, the
+ * file's length, and length and type of the JSON chunk. */
 static const char *check_gltf(const uint8_t *text, size_t bytes, uintmax_t all)
 {
     if (bytes >= 4 && memcmp(text, "glTF", 4) == 0) {
-        if (bytes < GLB_HEAD || all < read_length(text + 8) ||
-            all - GLB_HEAD < read_length(text + 12))
+        if (bytes < GLB_HEAD || all < read_little_endian_length(text + 8) ||
+            all - GLB_HEAD < read_little_endian_length(text + 12))
             return "is cut off: shorter than the length at its beginning";
         text += GLB_HEAD;
         bytes -= GLB_HEAD;
-        if (read_length(text - 8) < bytes)
-            bytes = read_length(text - 8);
+        if (read_little_endian_length(text - 8) < bytes)
+            bytes = read_little_endian_length(text - 8);
     }
     return has_shared_node((const char *)text, bytes)
                ? "has a node that is the child of two others, which glTF "
@@ -215,7 +218,8 @@ static const char *check_gltf(const uint8_t *text, size_t bytes, uintmax_t all)
 
 /* Checks PATH before Assimp reads it: it must be a regular file and, if it
  * is a glTF, must not be cut off and must have no shared nodes. */
-static enum glint_status check_file(const char *path, struct glint_error *error)
+static enum glint_status check_mesh_file(const char *path,
+                                         struct glint_error *error)
 {
     const char *const dot = strrchr(path, '.'), *cause = NULL;
     struct glint_input in;
@@ -237,7 +241,7 @@ static enum glint_status check_file(const char *path, struct glint_error *error)
 
         text = malloc(most + 1);
         while (text && got > 0 && n < most) {
-            got = glint_input_some(&in, text + n, most - n);
+            got = glint_input_read_available(&in, text + n, most - n);
             n += got > 0 ? (size_t)got : 0;
         }
         cause = text ? check_gltf(text, n, (uintmax_t)st.st_size) : NULL;
@@ -256,7 +260,7 @@ enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
                                     unsigned max_triangles,
                                     struct glint_error *error)
 {
-    const struct glint_assimp *const face = load_plugin(error);
+    const struct glint_assimp *const face = load_assimp_plugin(error);
     struct glint_input in = {.name = path};
     enum glint_status status;
     const char *failure;
@@ -267,12 +271,12 @@ enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
     *bytes = 0;
     if (!face)
         return GLINT_E_UNSUPPORTED;
-    status = check_file(path, error);
+    status = check_mesh_file(path, error);
     if (status != GLINT_OK)
         return status;
     if (pipe(pipe_fd) < 0)
-        return glint_error_errno(error, GLINT_E_IO, path, errno);
-    child = start_child(face, pipe_fd, path, max_triangles);
+        return glint_error_report_errno(error, GLINT_E_IO, path, errno);
+    child = start_import_process(face, pipe_fd, path, max_triangles);
     close(pipe_fd[1]);
     in.fd = pipe_fd[0];
     status = child < 0 ? glint_error_report(error, GLINT_E_MEMORY, path, "%s",
@@ -280,9 +284,9 @@ enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
                        : glint_input_append(&in, data, bytes, max, error);
     glint_input_close(&in);
     if (child > 0) {
-        failure = end_child(child, status == GLINT_OK);
+        failure = wait_for_import_process(child, status == GLINT_OK);
         if (status == GLINT_OK)
-            status = check_result(*data, bytes, path, failure, error);
+            status = check_import_result(*data, bytes, path, failure, error);
     }
     if (status != GLINT_OK) {
         free(*data);

@@ -15,7 +15,8 @@ enum glint_status glint_oiio_load(const struct glint_oiio **oiio,
         GLINT_OIIO_VERSION,   "",
         "libopenimageio-dev", "oiio"};
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-    static const struct glint_oiio *found; /* under LOCK; stays loaded */
+    static const struct glint_oiio *found; /* functions of the loaded plug-in,
+                                              or NULL; guarded by LOCK */
 
     pthread_mutex_lock(&lock);
     if (!found) {

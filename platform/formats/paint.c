@@ -29,13 +29,13 @@ void paint_colour(struct paint *p, uint8_t r, uint8_t g, uint8_t b)
 
 /* ------------------------------------------------------------------- pixels */
 
-static uint8_t *find_pixel(const struct glint_image *image, int plane, int x,
-                           int y)
+static uint8_t *get_pixel_address(const struct glint_image *image, int plane,
+                                  int x, int y)
 {
     return image->plane[plane] + y * image->stride_bytes[plane] + x;
 }
 
-static void put_565(uint8_t *px, const uint8_t rgb[3])
+static void put_pixel_565(uint8_t *px, const uint8_t rgb[3])
 {
     const int bits = rgb[0] >> 3 << 11 | rgb[1] >> 2 << 5 | rgb[2] >> 3;
 
@@ -44,7 +44,7 @@ static void put_565(uint8_t *px, const uint8_t rgb[3])
 }
 
 /* Sets the chroma of a pixel of I420, I422, I444, NV12 or NV21. */
-static void put_chroma(const struct paint *p, int x, int y)
+static void put_pixel_chroma(const struct paint *p, int x, int y)
 {
     const struct glint_image *image = p->image;
     const bool across = image->format != GLINT_I444;
@@ -54,66 +54,67 @@ static void put_chroma(const struct paint *p, int x, int y)
     if (image->format == GLINT_NV12 || image->format == GLINT_NV21) {
         const int swapped = image->format == GLINT_NV21;
 
-        *find_pixel(image, 1, 2 * cx + swapped, cy) = p->ycc[1];
-        *find_pixel(image, 1, 2 * cx + !swapped, cy) = p->ycc[2];
+        *get_pixel_address(image, 1, 2 * cx + swapped, cy) = p->ycc[1];
+        *get_pixel_address(image, 1, 2 * cx + !swapped, cy) = p->ycc[2];
     } else {
-        *find_pixel(image, 1, cx, cy) = p->ycc[1];
-        *find_pixel(image, 2, cx, cy) = p->ycc[2];
+        *get_pixel_address(image, 1, cx, cy) = p->ycc[1];
+        *get_pixel_address(image, 2, cx, cy) = p->ycc[2];
     }
 }
 
-/* Sets a pixel of YUYV or UYVY and the chroma that it shares with its
- * neighbour. */
-static void put_packed(const struct paint *p, int x, int y)
+/* Sets the luma of a pixel of YUYV or UYVY, and the chroma that it shares with
+ * its neighbour. */
+static void put_pixel_packed(const struct paint *p, int x, int y)
 {
     const int luma = p->image->format == GLINT_YUYV ? 0 : 1;
-    uint8_t *pair = find_pixel(p->image, 0, x / 2 * 4, y);
+    uint8_t *pair = get_pixel_address(p->image, 0, x / 2 * 4, y);
 
     pair[luma + x % 2 * 2] = p->ycc[0];
     pair[1 - luma] = p->ycc[1];
     pair[3 - luma] = p->ycc[2];
 }
 
-static void put_rgb(const struct paint *p, int x, int y, int bytes, bool is_bgr)
+static void put_pixel_rgb(const struct paint *p, int x, int y, int bytes,
+                          bool is_bgr)
 {
-    uint8_t *px = find_pixel(p->image, 0, bytes * x, y);
+    uint8_t *px = get_pixel_address(p->image, 0, bytes * x, y);
 
     for (int i = 0; i < 3; i++)
         px[is_bgr ? 2 - i : i] = p->rgb[i];
 }
 
-static void put(const struct paint *p, int x, int y)
+static void put_pixel(const struct paint *p, int x, int y)
 {
     if (x < 0 || y < 0 || x >= p->image->width || y >= p->image->height)
         return;
     switch (p->image->format) {
     case GLINT_RGB24:
-        put_rgb(p, x, y, 3, false);
+        put_pixel_rgb(p, x, y, 3, false);
         break;
     case GLINT_BGR24:
-        put_rgb(p, x, y, 3, true);
+        put_pixel_rgb(p, x, y, 3, true);
         break;
     case GLINT_XRGB8888:
-        put_rgb(p, x, y, 4, true);
+        put_pixel_rgb(p, x, y, 4, true);
         break;
     case GLINT_XBGR8888:
-        put_rgb(p, x, y, 4, false);
+        put_pixel_rgb(p, x, y, 4, false);
         break;
     case GLINT_RGB565:
-        put_565(find_pixel(p->image, 0, 2 * x, y), p->rgb);
+        put_pixel_565(get_pixel_address(p->image, 0, 2 * x, y), p->rgb);
         break;
     case GLINT_YUYV:
     case GLINT_UYVY:
-        put_packed(p, x, y);
+        put_pixel_packed(p, x, y);
         break;
     case GLINT_GREY:
-        *find_pixel(p->image, 0, x, y) = p->ycc[0];
+        *get_pixel_address(p->image, 0, x, y) = p->ycc[0];
         break;
     case GLINT_LINEAR_Q20:
         break;
     default:
-        *find_pixel(p->image, 0, x, y) = p->ycc[0];
-        put_chroma(p, x, y);
+        *get_pixel_address(p->image, 0, x, y) = p->ycc[0];
+        put_pixel_chroma(p, x, y);
     }
 }
 
@@ -123,7 +124,7 @@ void paint_fill(const struct paint *p, int x0, int y0, int x1, int y1)
 {
     for (int y = y0 < 0 ? 0 : y0; y < y1 && y < p->image->height; y++)
         for (int x = x0 < 0 ? 0 : x0; x < x1 && x < p->image->width; x++)
-            put(p, x, y);
+            put_pixel(p, x, y);
 }
 
 void paint_box(const struct paint *p, int x, int y, int half)
@@ -138,8 +139,8 @@ void paint_box(const struct paint *p, int x, int y, int half)
 
 /* --------------------------------------------------------------------- text */
 
-/* Returns the glyph of C: five rows of three pixels, the top left one in the
- * highest of 15 bits. */
+/* Returns the glyph of character C: five rows of three pixels in 15 bits, the
+ * top left pixel in the highest bit. */
 static uint16_t find_glyph(char c)
 {
     static const uint16_t digits[10] = {075557, 026227, 071747, 071717, 055711,
@@ -187,7 +188,8 @@ void paint_text(const struct paint *p, int x, int y, const char *text)
         draw_glyph(p, x + 4 * i * p->line, y, find_glyph(text[i]));
 }
 
-/* Sets CODE to the values that even and odd bytes of PLANE have in black. */
+/* Sets CODE[0] and CODE[1] to the values of the even and odd bytes of PLANE in
+ * a black picture. */
 static void set_black_code(const struct glint_image *image, int plane,
                            uint8_t code[2])
 {

@@ -27,13 +27,14 @@ void paint_colour(struct paint *p, uint8_t r, uint8_t g, uint8_t b);
 /* Fills the pixels X0 .. X1 - 1 of the rows Y0 .. Y1 - 1. */
 void paint_fill(const struct paint *p, int x0, int y0, int x1, int y1);
 
-/* Draws the outline of a square around (X, Y), 2 HALF pixels plus a line
- * wide. */
+/* Draws the outline of a square with its middle at (X, Y), 2 HALF pixels plus a
+ * line wide. */
 void paint_box(const struct paint *p, int x, int y, int half);
 
 /* Draws TEXT, five line widths high, with its top left corner at (X, Y).
- * Letters become capitals; signs other than % . , - + : and / are left blank.
- * paint_text_width() returns the width of TEXT in pixels. */
+ * Letters are drawn as capitals; characters other than letters, digits and % .
+ * , - + : / are left blank. paint_text_width() returns the width of TEXT in
+ * pixels. */
 void paint_text(const struct paint *p, int x, int y, const char *text);
 int paint_text_width(const struct paint *p, const char *text);
 

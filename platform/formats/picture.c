@@ -13,41 +13,42 @@
 #include "posix/error.h"
 #include "posix/input.h"
 
-/* Returns the offset at which the GIF sub-blocks that begin at AT end, or N if
+/* Returns the offset behind the GIF sub-blocks that begin at offset AT, or N if
  * the data end before. */
-static size_t skip_blocks(const uint8_t *d, size_t n, size_t at)
+static size_t skip_gif_blocks(const uint8_t *d, size_t n, size_t at)
 {
     while (at < n && d[at] != 0)
         at += (size_t)d[at] + 1;
     return at < n ? at + 1 : n;
 }
 
-static size_t colours(uint8_t packed)
+static size_t gif_colour_table_bytes(uint8_t packed)
 {
     return packed & 0x80 ? (size_t)3 << ((packed & 7) + 1) : 0;
 }
 
-static int count_frames(const uint8_t *d, size_t n)
+static int count_gif_frames(const uint8_t *d, size_t n)
 {
     int frames = 0;
     size_t at;
 
     if (n < 13 || memcmp(d, "GIF8", 4) != 0)
         return 0;
-    at = 13 + colours(d[10]);
+    at = 13 + gif_colour_table_bytes(d[10]);
     while (at < n && d[at] != 0x3b) {
         if (d[at] == 0x21 && at + 2 < n) {
-            at = skip_blocks(d, n, at + 2);
+            at = skip_gif_blocks(d, n, at + 2);
         } else if (d[at] == 0x2c && at + 11 < n) {
             frames++;
-            at = skip_blocks(d, n, at + 11 + colours(d[at + 9]));
+            at = skip_gif_blocks(d, n,
+                                 at + 11 + gif_colour_table_bytes(d[at + 9]));
         } else
             break;
     }
     return frames;
 }
 
-int glint_gif_frames(const char *name)
+int glint_gif_count_frames(const char *name)
 {
     struct glint_error error;
     uint8_t *data = NULL;
@@ -57,13 +58,13 @@ int glint_gif_frames(const char *name)
     if (!glint_ends_in(name, ".gif"))
         return 0;
     if (glint_input_slurp(&data, &bytes, name, 1 << 28, &error) == GLINT_OK)
-        n = count_frames(data, bytes);
+        n = count_gif_frames(data, bytes);
     free(data);
     return n;
 }
 
-/* Bytes of the largest file read: a PFM with its header. PNM files are
- * smaller. */
+/* Max bytes of a file that glint reads itself: a PFM with its header. PNM files
+ * are smaller. */
 #define MAX_FILE_BYTES                                             \
     (SIZE_MAX / 4 < UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE \
          ? SIZE_MAX / 4                                            \
@@ -74,21 +75,22 @@ int glint_gif_frames(const char *name)
 
 enum type_alpha { ALPHA_NONE, ALPHA_STRAIGHT, ALPHA_PREMULTIPLIED };
 
-/* What a type holds besides pixels. */
+/* Bits: content besides pixels that a file type can hold. */
 enum type_holds { HOLDS_METADATA = 1, HOLDS_ICC = 2, HOLDS_CICP = 4 };
 
 struct file_type {
     const char *extension;
-    bool is_native; /* glint writes the type itself, without the plug-in */
-    bool is_grey;   /* The type holds grey only. */
+    bool is_native; /* glint writes this type itself, without the plug-in */
+    bool is_grey;   /* The type can hold grey pictures only. */
     enum type_alpha alpha;
     bool takes_u8, takes_u16, takes_half, takes_float;
-    unsigned holds; /* of enum type_holds */
+    unsigned holds; /* bits of enum type_holds */
 };
 
 /* clang-format off */
 static const struct file_type types[] = {
-    /* extension, native, grey, alpha; takes 8 bits, 16, half, float; holds metadata 1, ICC 2, cICP 4 */
+    /* extension, is native, is grey only, alpha; can hold 8 bits, 16 bits,
+     * half, float; bits of content: metadata 1, ICC 2, cICP 4 */
     {".ppm",  true,  false, ALPHA_NONE,          true,  true,  false, false, 0},
     {".pnm",  true,  false, ALPHA_NONE,          true,  true,  false, false, 0},
     {".pgm",  true,  true,  ALPHA_NONE,          true,  true,  false, false, 0},
@@ -112,8 +114,8 @@ static const struct file_type types[] = {
 
 /* ----------------------------------------------------------------- loading */
 
-/* A loaded picture: image if it has 8 bits, floats if it has floats; the other
- * member is zero. */
+/* A loaded picture: either image, with 8 bits, or floats; the other member is
+ * zero. */
 struct loaded {
     struct glint_image image; /* GLINT_RGB24 or GLINT_GREY */
     struct glint_float_image floats;
@@ -135,9 +137,9 @@ static const struct magic {
     {"RIFF", 4, "WebP"},
 };
 
-/* Returns the name of the file type by HEAD, the first BYTES of a file, for
- * messages. */
-static const char *type_name(const uint8_t *head, size_t bytes)
+/* Returns, for messages, the name of the file type that HEAD, the first BYTES
+ * of a file, identify. */
+static const char *get_type_name(const uint8_t *head, size_t bytes)
 {
     for (size_t i = 0; i < sizeof magics / sizeof *magics; i++)
         if (bytes >= magics[i].n && !memcmp(head, magics[i].bytes, magics[i].n))
@@ -145,8 +147,9 @@ static const char *type_name(const uint8_t *head, size_t bytes)
     return "any file but PPM, PGM and PFM";
 }
 
-static enum glint_status needs_plugin(const char *path, const char *type,
-                                      struct glint_error *error)
+static enum glint_status does_type_need_plugin(const char *path,
+                                               const char *type,
+                                               struct glint_error *error)
 {
     const struct glint_error cause = *error;
 
@@ -155,16 +158,17 @@ static enum glint_status needs_plugin(const char *path, const char *type,
                               cause.text);
 }
 
-static enum glint_status load_by_plugin(struct loaded *loaded, const char *path,
-                                        const char *type,
-                                        struct glint_error *error)
+static enum glint_status load_picture_by_plugin(struct loaded *loaded,
+                                                const char *path,
+                                                const char *type,
+                                                struct glint_error *error)
 {
     const struct glint_oiio *oiio;
     struct glint_oiio_pixels pixels;
     enum glint_status status = glint_oiio_load(&oiio, error);
 
     if (status)
-        return needs_plugin(path, type, error);
+        return does_type_need_plugin(path, type, error);
     status = oiio->read(&pixels, path, error);
     if (status)
         return status;
@@ -186,9 +190,10 @@ static enum glint_status load_by_plugin(struct loaded *loaded, const char *path,
  * which the caller frees also on failure. NAME is for errors. Returns
  * GLINT_E_FORMAT if IN is empty, GLINT_E_UNSUPPORTED if it is a video or too
  * large, GLINT_E_IO or GLINT_E_MEMORY. */
-static enum glint_status read_file(struct glint_input *in, const char *name,
-                                   uint8_t **data, size_t *bytes,
-                                   struct glint_error *error)
+static enum glint_status read_picture_file(struct glint_input *in,
+                                           const char *name, uint8_t **data,
+                                           size_t *bytes,
+                                           struct glint_error *error)
 {
     ptrdiff_t n = 1;
 
@@ -198,7 +203,7 @@ static enum glint_status read_file(struct glint_input *in, const char *name,
         return glint_error_report(error, GLINT_E_MEMORY, name,
                                   "no memory for a buffer");
     while (n > 0 && *bytes < HEAD_BYTES) {
-        n = glint_input_some(in, *data + *bytes, HEAD_BYTES - *bytes);
+        n = glint_input_read_available(in, *data + *bytes, HEAD_BYTES - *bytes);
         *bytes += n > 0 ? (size_t)n : 0;
     }
     if (n < 0)
@@ -214,12 +219,14 @@ static enum glint_status read_file(struct glint_input *in, const char *name,
                : GLINT_OK;
 }
 
-static enum glint_status load_opened(struct loaded *loaded,
-                                     struct glint_input *in, uint8_t **data,
-                                     struct glint_error *error)
+static enum glint_status load_opened_picture(struct loaded *loaded,
+                                             struct glint_input *in,
+                                             uint8_t **data,
+                                             struct glint_error *error)
 {
     size_t bytes;
-    enum glint_status status = read_file(in, in->name, data, &bytes, error);
+    enum glint_status status =
+        read_picture_file(in, in->name, data, &bytes, error);
 
     if (status)
         return status;
@@ -232,11 +239,12 @@ static enum glint_status load_opened(struct loaded *loaded,
         return glint_error_report(
             error, GLINT_E_UNSUPPORTED, in->name,
             "only PPM, PGM and PFM can be read from a pipe");
-    return load_by_plugin(loaded, in->name, type_name(*data, bytes), error);
+    return load_picture_by_plugin(loaded, in->name, get_type_name(*data, bytes),
+                                  error);
 }
 
-static enum glint_status load(struct loaded *loaded, const char *path,
-                              struct glint_error *error)
+static enum glint_status load_picture(struct loaded *loaded, const char *path,
+                                      struct glint_error *error)
 {
     struct glint_input in;
     uint8_t *data = NULL;
@@ -245,7 +253,7 @@ static enum glint_status load(struct loaded *loaded, const char *path,
     memset(loaded, 0, sizeof *loaded);
     if (status)
         return status;
-    status = load_opened(loaded, &in, &data, error);
+    status = load_opened_picture(loaded, &in, &data, error);
     glint_input_close(&in);
     free(data);
     if (!status && !loaded->floats.rgb && !loaded->image.plane[0]) {
@@ -256,7 +264,7 @@ static enum glint_status load(struct loaded *loaded, const char *path,
     return status;
 }
 
-/* Encodes LINEAR light, 1 = white, to an sRGB code [IEC 61966-2-1]. NaN becomes
+/* Returns the sRGB code [IEC 61966-2-1] of LINEAR light, 1 = white. NaN becomes
  * 0. */
 static uint8_t encode_srgb(float linear)
 {
@@ -276,17 +284,19 @@ static float decode_srgb(int code)
     return v <= 0.04045F ? v / 12.92F : powf((v + 0.055F) / 1.055F, 2.4F);
 }
 
-static enum glint_status report_memory(struct glint_error *error,
-                                       const char *path, int width, int height)
+static enum glint_status report_memory_shortage(struct glint_error *error,
+                                                const char *path, int width,
+                                                int height)
 {
     return glint_error_report(error, GLINT_E_MEMORY, path,
                               "no memory for a %d x %d picture", width, height);
 }
 
-/* Makes an RGB24 image of FROM, a grey or float picture. */
-static enum glint_status to_rgb24(struct glint_image *image,
-                                  const struct loaded *from, const char *path,
-                                  struct glint_error *error)
+/* Sets IMAGE to FROM, a grey or float picture, converted to RGB24. */
+static enum glint_status convert_to_rgb24(struct glint_image *image,
+                                          const struct loaded *from,
+                                          const char *path,
+                                          struct glint_error *error)
 {
     const float *const rgb = from->floats.rgb;
     struct glint_image made = {
@@ -299,7 +309,7 @@ static enum glint_status to_rgb24(struct glint_image *image,
     uint8_t *const mem = malloc(n);
 
     if (!mem)
-        return report_memory(error, path, made.width, made.height);
+        return report_memory_shortage(error, path, made.width, made.height);
     for (size_t i = 0; i < n; i++)
         mem[i] = rgb ? encode_srgb(rgb[i]) : from->image.plane[0][i / 3];
     glint_image_place(&made, mem);
@@ -307,10 +317,11 @@ static enum glint_status to_rgb24(struct glint_image *image,
     return GLINT_OK;
 }
 
-/* Makes a float picture of FROM, an RGB24 or grey image. */
-static enum glint_status to_floats(struct glint_float_image *floats,
-                                   const struct glint_image *from,
-                                   const char *path, struct glint_error *error)
+/* Sets FLOATS to FROM, an RGB24 or grey image, converted to linear light. */
+static enum glint_status convert_to_floats(struct glint_float_image *floats,
+                                           const struct glint_image *from,
+                                           const char *path,
+                                           struct glint_error *error)
 {
     const size_t step = from->format == GLINT_RGB24 ? 1 : 3;
     const size_t n = glint_image_bytes(GLINT_RGB24, from->width, from->height);
@@ -318,7 +329,7 @@ static enum glint_status to_floats(struct glint_float_image *floats,
     float decoded[256];
 
     if (!rgb)
-        return report_memory(error, path, from->width, from->height);
+        return report_memory_shortage(error, path, from->width, from->height);
     for (int i = 0; i < 256; i++)
         decoded[i] = decode_srgb(i);
     for (size_t i = 0; i < n; i++)
@@ -332,7 +343,7 @@ enum glint_status glint_picture_load(const char *path,
                                      struct glint_error *error)
 {
     struct loaded loaded;
-    enum glint_status status = load(&loaded, path, error);
+    enum glint_status status = load_picture(&loaded, path, error);
 
     if (status)
         return status;
@@ -340,7 +351,7 @@ enum glint_status glint_picture_load(const char *path,
         *image = loaded.image;
         return GLINT_OK;
     }
-    status = to_rgb24(image, &loaded, path, error);
+    status = convert_to_rgb24(image, &loaded, path, error);
     glint_picture_free(&loaded.image);
     free(loaded.floats.rgb);
     return status;
@@ -357,7 +368,7 @@ enum glint_status glint_picture_load_float(const char *path,
                                            struct glint_error *error)
 {
     struct loaded loaded;
-    enum glint_status status = load(&loaded, path, error);
+    enum glint_status status = load_picture(&loaded, path, error);
 
     if (status)
         return status;
@@ -365,7 +376,7 @@ enum glint_status glint_picture_load_float(const char *path,
         *floats = loaded.floats;
         return GLINT_OK;
     }
-    status = to_floats(floats, &loaded.image, path, error);
+    status = convert_to_floats(floats, &loaded.image, path, error);
     glint_picture_free(&loaded.image);
     return status;
 }
@@ -373,7 +384,7 @@ enum glint_status glint_picture_load_float(const char *path,
 /* ------------------------------------------------------------------ saving */
 
 /* Returns the file type of PATH's extension, or NULL if it is unknown. */
-static const struct file_type *type_of(const char *path)
+static const struct file_type *find_extension_type(const char *path)
 {
     const char *const slash = strrchr(path, '/');
     const char *const extension = strrchr(slash ? slash : path, '.');
@@ -385,18 +396,19 @@ static const struct file_type *type_of(const char *path)
 }
 
 /* Returns the file type of PATH's extension, or NULL if it is unknown. For "-",
- * a pipe, returns PPM or PFM by KIND. */
-static const struct file_type *find_type(const char *path,
-                                         enum glint_picture_kind kind)
+ * a pipe, returns PPM for pictures of KIND 8 bits and PFM for floats. */
+static const struct file_type *find_output_type(const char *path,
+                                                enum glint_picture_kind kind)
 {
     if (!strcmp(path, "-"))
         path = kind == GLINT_PICTURE_FLOAT ? "-.pfm" : "-.ppm";
-    return type_of(path);
+    return find_extension_type(path);
 }
 
 bool glint_picture_is_float(const char *path)
 {
-    const struct file_type *const type = find_type(path, GLINT_PICTURE_8BIT);
+    const struct file_type *const type =
+        find_output_type(path, GLINT_PICTURE_8BIT);
 
     return type && !type->takes_u8;
 }
@@ -405,7 +417,7 @@ enum glint_status glint_picture_check(const char *path,
                                       enum glint_picture_kind kind,
                                       struct glint_error *error)
 {
-    const struct file_type *const type = find_type(path, kind);
+    const struct file_type *const type = find_output_type(path, kind);
     const struct glint_oiio *oiio;
 
     if (!type || type->is_grey)
@@ -424,14 +436,14 @@ enum glint_status glint_picture_check(const char *path,
                                   "linear light in floats",
                                   type->extension);
     if (!type->is_native && glint_oiio_load(&oiio, error))
-        return needs_plugin(path, type->extension, error);
+        return does_type_need_plugin(path, type->extension, error);
     return GLINT_OK;
 }
 
-static enum glint_status write_by_plugin(struct glint_output *out,
-                                         const struct glint_oiio_pixels *pixels,
-                                         ptrdiff_t stride_bytes,
-                                         struct glint_error *error)
+static enum glint_status
+write_picture_by_plugin(struct glint_output *out,
+                        const struct glint_oiio_pixels *pixels,
+                        ptrdiff_t stride_bytes, struct glint_error *error)
 {
     const struct glint_oiio *oiio;
     enum glint_status status = glint_oiio_load(&oiio, error);
@@ -448,10 +460,12 @@ static enum glint_status write_by_plugin(struct glint_output *out,
     return status;
 }
 
-/* Saves PIXELS; rows are STRIDE_BYTES apart, float rows have no gaps. */
-static enum glint_status save(const char *path,
-                              const struct glint_oiio_pixels *pixels,
-                              ptrdiff_t stride_bytes, struct glint_error *error)
+/* Writes PIXELS to the file PATH. Rows are STRIDE_BYTES apart; float rows have
+ * no gaps. */
+static enum glint_status save_pixels(const char *path,
+                                     const struct glint_oiio_pixels *pixels,
+                                     ptrdiff_t stride_bytes,
+                                     struct glint_error *error)
 {
     const enum glint_picture_kind kind =
         pixels->is_float ? GLINT_PICTURE_FLOAT : GLINT_PICTURE_8BIT;
@@ -469,23 +483,23 @@ static enum glint_status save(const char *path,
         status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
     if (status)
         return status;
-    if (!find_type(path, kind)->is_native)
-        status = write_by_plugin(&out, pixels, stride_bytes, error);
+    if (!find_output_type(path, kind)->is_native)
+        status = write_picture_by_plugin(&out, pixels, stride_bytes, error);
     else if (pixels->is_float)
         status = glint_pfm_write(&out, &floats, error);
     else
         status = glint_pnm_write(&out, &image, error);
-    return glint_output_end(&out, status, error);
+    return glint_output_commit_or_abort(&out, status, error);
 }
 
 enum glint_status glint_picture_save(const char *path,
                                      const struct glint_image *image,
                                      struct glint_error *error)
 {
-    return save(path,
-                &(struct glint_oiio_pixels){image->width, image->height, 0,
-                                            image->plane[0]},
-                image->stride_bytes[0], error);
+    return save_pixels(path,
+                       &(struct glint_oiio_pixels){image->width, image->height,
+                                                   0, image->plane[0]},
+                       image->stride_bytes[0], error);
 }
 
 enum glint_status
@@ -493,16 +507,17 @@ glint_picture_save_float(const char *path,
                          const struct glint_float_image *floats,
                          struct glint_error *error)
 {
-    return save(path,
-                &(struct glint_oiio_pixels){floats->width, floats->height, 1,
-                                            floats->rgb},
-                3 * (ptrdiff_t)sizeof *floats->rgb * floats->width, error);
+    return save_pixels(path,
+                       &(struct glint_oiio_pixels){
+                           floats->width, floats->height, 1, floats->rgb},
+                       3 * (ptrdiff_t)sizeof *floats->rgb * floats->width,
+                       error);
 }
 
-/* Sets S up for WIDTH x HEIGHT pixels of CHANNELS interleaved samples, 1 .. 4;
- * the last of 2 or 4 is alpha. Leaves s->mem NULL. */
-static void lay_out(struct glint_samples *s, int width, int height,
-                    enum glint_sample sample, int channels)
+/* Sets the layout of S to WIDTH x HEIGHT pixels of 1 .. 4 CHANNELS,
+ * interleaved; the last of 2 or 4 channels is alpha. Leaves s->mem NULL. */
+static void set_sample_layout(struct glint_samples *s, int width, int height,
+                              enum glint_sample sample, int channels)
 {
     const size_t bytes = glint_sample_bytes(sample);
 
@@ -529,7 +544,7 @@ static void lay_out(struct glint_samples *s, int width, int height,
         glint_colours_set(&s->colours, GLINT_TONE_IS_SRGB, 0, "sRGB");
 }
 
-static size_t samples_bytes(const struct glint_samples *s)
+static size_t count_sample_bytes(const struct glint_samples *s)
 {
     return (size_t)s->width * (size_t)s->height * s->pixel_bytes;
 }
@@ -538,7 +553,7 @@ static size_t samples_bytes(const struct glint_samples *s)
 
 /* Copies BYTES of 16-bit samples, from big-endian order to this machine's or
  * back. */
-static void swap_shorts(uint8_t *to, const uint8_t *from, size_t bytes)
+static void swap_short_bytes(uint8_t *to, const uint8_t *from, size_t bytes)
 {
     const uint16_t one = 1;
     const bool swap = *(const uint8_t *)&one == 1;
@@ -549,10 +564,10 @@ static void swap_shorts(uint8_t *to, const uint8_t *from, size_t bytes)
     }
 }
 
-/* Copies the float rows of S, last row first, and converts bytes between
- * little-endian (LITTLE) or big-endian order and this machine's order. */
-static void swap_rows(uint8_t *to, const uint8_t *from,
-                      const struct glint_samples *s, bool little)
+/* Copies the float rows of S in reverse order, and converts bytes between the
+ * file's order, little-endian if LITTLE is set, and this machine's order. */
+static void swap_float_rows(uint8_t *to, const uint8_t *from,
+                            const struct glint_samples *s, bool little)
 {
     const uint16_t one = 1;
     const bool swap = (*(const uint8_t *)&one == 1) != little;
@@ -565,8 +580,8 @@ static void swap_rows(uint8_t *to, const uint8_t *from,
 }
 
 /* Opens the PNM or PFM in k->native. */
-static enum glint_status open_native(struct glint_kept *k,
-                                     struct glint_error *error)
+static enum glint_status open_native_file(struct glint_kept *k,
+                                          struct glint_error *error)
 {
     struct glint_samples *const s = &k->samples;
     struct glint_pnm_header h;
@@ -578,40 +593,42 @@ static enum glint_status open_native(struct glint_kept *k,
     k->header_bytes = h.bytes;
     k->is_pfm = k->is_float = h.maximum == 0;
     k->is_little = h.little;
-    lay_out(s, h.width, h.height,
-            k->is_pfm         ? GLINT_SAMPLE_FLOAT
-            : h.maximum > 255 ? GLINT_SAMPLE_U16
-                              : GLINT_SAMPLE_U8,
-            h.channels);
+    set_sample_layout(s, h.width, h.height,
+                      k->is_pfm         ? GLINT_SAMPLE_FLOAT
+                      : h.maximum > 255 ? GLINT_SAMPLE_U16
+                                        : GLINT_SAMPLE_U8,
+                      h.channels);
     s->mem = k->native + h.bytes;
     if (!k->is_pfm)
         s->maximum = (uint32_t)h.maximum;
     if (!k->is_pfm && h.maximum <= 255)
         return GLINT_OK;
-    k->own = malloc(samples_bytes(s));
+    k->own = malloc(count_sample_bytes(s));
     if (!k->own)
-        return report_memory(error, k->path, s->width, s->height);
+        return report_memory_shortage(error, k->path, s->width, s->height);
     if (k->is_pfm)
-        swap_rows(k->own, s->mem, s, h.little);
+        swap_float_rows(k->own, s->mem, s, h.little);
     else
-        swap_shorts(k->own, s->mem, samples_bytes(s));
+        swap_short_bytes(k->own, s->mem, count_sample_bytes(s));
     s->mem = k->own;
     return GLINT_OK;
 }
 
-/* Copies the samples of K back into its PNM or PFM file, in the file's order.
- * If k->own is NULL, samples lie in the file already. */
-static void refill_native(struct glint_kept *k)
+/* Copies the samples of K back into the bytes of its PNM or PFM file, in the
+ * file's byte order. If k->own is NULL, the samples lie in these bytes
+ * already. */
+static void update_native_file(struct glint_kept *k)
 {
     uint8_t *const at = k->native + k->header_bytes;
 
     if (k->is_pfm)
-        swap_rows(at, k->own, &k->samples, k->is_little);
+        swap_float_rows(at, k->own, &k->samples, k->is_little);
     else if (k->own)
-        swap_shorts(at, k->own, samples_bytes(&k->samples));
+        swap_short_bytes(at, k->own, count_sample_bytes(&k->samples));
 }
 
-/* ----------------------------------------------------------------- colours */
+/* -----------------------------------------------------------------
+ * gif_colour_table_bytes */
 
 /* Appends TEXT to NOTES, after "; " if NOTES is not empty. */
 static void add_note(char notes[GLINT_KEPT_NOTES], const char *text)
@@ -622,9 +639,9 @@ static void add_note(char notes[GLINT_KEPT_NOTES], const char *text)
              text);
 }
 
-/* Sets C by CICP, the codes of primaries and transfer in ITU-T H.273. Returns
- * false if the transfer is unknown. */
-static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
+/* Sets the colours C from CICP, the codes of primaries and transfer in ITU-T
+ * H.273. Returns false if the transfer is unknown. */
+static bool set_colours_by_cicp(struct glint_colours *c, const int cicp[2])
 {
     static const double p3[4][2] = {
         {0.68, 0.32}, {0.265, 0.69}, {0.15, 0.06}, {0.3127, 0.329}};
@@ -647,13 +664,13 @@ static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
     else
         return false;
     if (cicp[0] == 9)
-        return glint_colours_primaries(c, bt2020);
-    return cicp[0] != 12 || glint_colours_primaries(c, p3);
+        return glint_colours_set_primaries(c, bt2020);
+    return cicp[0] != 12 || glint_colours_set_primaries(c, p3);
 }
 
-/* Sets C by NAME, OpenImageIO's name of a colour space. Returns false if NAME
- * is unknown. */
-static bool set_by_name(struct glint_colours *c, const char *name)
+/* Sets the colours C from NAME, OpenImageIO's name of a colour space. Returns
+ * false if NAME is unknown. */
+static bool set_colours_by_name(struct glint_colours *c, const char *name)
 {
     static const double adobe[4][2] = {
         {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, {0.3127, 0.329}};
@@ -669,7 +686,7 @@ static bool set_by_name(struct glint_colours *c, const char *name)
         glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
     else if (strcasecmp(name, "AdobeRGB") == 0) {
         glint_colours_set(c, GLINT_TONE_IS_GAMMA, 563 / 256.0, "Adobe RGB");
-        return glint_colours_primaries(c, adobe);
+        return glint_colours_set_primaries(c, adobe);
     } else if (strncmp(name, "Gamma", 5) == 0 &&
                (gamma = glint_option_number(name + 5, &end)) > 0.1 &&
                gamma < 10)
@@ -679,10 +696,10 @@ static bool set_by_name(struct glint_colours *c, const char *name)
     return true;
 }
 
-/* Sets the colours of K's samples by FACTS. A colour space that glint does not
- * know is treated as linear or sRGB, and k->note reports it. */
-static void set_colours(struct glint_kept *k,
-                        const struct glint_oiio_facts *facts)
+/* Sets the colours of K's samples from FACTS. A colour space that glint does
+ * not know is treated as linear or sRGB, and k->note reports that. */
+static void set_file_colours(struct glint_kept *k,
+                             const struct glint_oiio_facts *facts)
 {
     struct glint_samples *const s = &k->samples;
     struct glint_colours *const c = &s->colours;
@@ -694,15 +711,15 @@ static void set_colours(struct glint_kept *k,
     else
         glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
     if (facts->cicp[1])
-        known = k->has_cicp = set_by_cicp(c, facts->cicp);
+        known = k->has_cicp = set_colours_by_cicp(c, facts->cicp);
     else if (facts->icc)
         known = k->has_icc = glint_icc_read(c, facts->icc, facts->icc_bytes);
     else if (facts->gamma > 0.1 && facts->gamma < 10)
         glint_colours_set(c, GLINT_TONE_IS_GAMMA, facts->gamma, "gamma");
     else if (*facts->colour_space && !k->is_float)
-        known = set_by_name(c, facts->colour_space);
+        known = set_colours_by_name(c, facts->colour_space);
     if (!facts->icc && !facts->cicp[1] && facts->has_primaries)
-        glint_colours_primaries(c, (const double(*)[2])facts->primaries);
+        glint_colours_set_primaries(c, (const double(*)[2])facts->primaries);
     if (known)
         return;
     snprintf(text, sizeof text, "%.24s is unknown; treated as %s",
@@ -715,15 +732,16 @@ static void set_colours(struct glint_kept *k,
 
 /* --------------------------------------------------------------- plug-in */
 
-static enum glint_status open_by_plugin(struct glint_kept *k, const char *type,
-                                        struct glint_error *error)
+static enum glint_status open_file_by_plugin(struct glint_kept *k,
+                                             const char *type,
+                                             struct glint_error *error)
 {
     struct glint_oiio_facts facts;
     const struct glint_oiio *oiio;
     enum glint_status status = glint_oiio_load(&oiio, error);
 
     if (status)
-        return needs_plugin(k->path, type, error);
+        return does_type_need_plugin(k->path, type, error);
     status = oiio->open(&k->file, &k->samples, &facts, k->path, error);
     if (status)
         return status;
@@ -732,29 +750,30 @@ static enum glint_status open_by_plugin(struct glint_kept *k, const char *type,
     k->metadata = facts.metadata;
     if (*facts.note)
         add_note(k->note, facts.note);
-    set_colours(k, &facts);
+    set_file_colours(k, &facts);
     return GLINT_OK;
 }
 
 /* ----------------------------------------------------------------- opening */
 
-static enum glint_status open_any(struct glint_kept *k,
-                                  struct glint_error *error)
+static enum glint_status open_any_file(struct glint_kept *k,
+                                       struct glint_error *error)
 {
     struct glint_input in;
     enum glint_status status = glint_input_open_file(&in, k->path, error);
 
     if (status)
         return status;
-    status = read_file(&in, k->path, &k->native, &k->native_bytes, error);
+    status =
+        read_picture_file(&in, k->path, &k->native, &k->native_bytes, error);
     glint_input_close(&in);
     if (status)
         return status;
     return glint_pnm_matches(k->native, k->native_bytes) ||
                    glint_pfm_matches(k->native, k->native_bytes)
-               ? open_native(k, error)
-               : open_by_plugin(k, type_name(k->native, k->native_bytes),
-                                error);
+               ? open_native_file(k, error)
+               : open_file_by_plugin(
+                     k, get_type_name(k->native, k->native_bytes), error);
 }
 
 enum glint_status glint_kept_open(struct glint_kept *kept, const char *path,
@@ -764,7 +783,7 @@ enum glint_status glint_kept_open(struct glint_kept *kept, const char *path,
 
     memset(kept, 0, sizeof *kept);
     kept->path = path;
-    status = open_any(kept, error);
+    status = open_any_file(kept, error);
     if (status)
         glint_kept_close(kept);
     return status;
@@ -784,7 +803,7 @@ void glint_kept_close(struct glint_kept *kept)
 
 enum glint_status glint_kept_check(const char *path, struct glint_error *error)
 {
-    const struct file_type *const type = type_of(path);
+    const struct file_type *const type = find_extension_type(path);
     const struct glint_oiio *oiio;
 
     if (!type)
@@ -796,7 +815,7 @@ enum glint_status glint_kept_check(const char *path, struct glint_error *error)
     if (type->is_native)
         return GLINT_OK;
     if (glint_oiio_load(&oiio, error))
-        return needs_plugin(path, type->extension, error);
+        return does_type_need_plugin(path, type->extension, error);
     if (!oiio->can_write(path))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
                                   "the installed OpenImageIO does not write "
@@ -807,7 +826,7 @@ enum glint_status glint_kept_check(const char *path, struct glint_error *error)
 
 bool glint_kept_is_same_type(const struct glint_kept *kept, const char *path)
 {
-    const struct file_type *const type = type_of(path);
+    const struct file_type *const type = find_extension_type(path);
 
     if (!type)
         return false;
@@ -818,8 +837,9 @@ bool glint_kept_is_same_type(const struct glint_kept *kept, const char *path)
             strcasecmp(type->extension, ".pnm") == 0);
 }
 
-enum glint_status glint_kept_copy(const struct glint_kept *kept,
-                                  const char *path, struct glint_error *error)
+enum glint_status glint_kept_copy_file(const struct glint_kept *kept,
+                                       const char *path,
+                                       struct glint_error *error)
 {
     uint8_t *data;
     size_t bytes;
@@ -833,50 +853,50 @@ enum glint_status glint_kept_copy(const struct glint_kept *kept,
     return status;
 }
 
-enum glint_status glint_kept_blank(struct glint_samples *blank,
-                                   const struct glint_samples *from,
-                                   bool has_alpha)
+enum glint_status glint_kept_make_blank(struct glint_samples *blank,
+                                        const struct glint_samples *from,
+                                        bool has_alpha)
 {
     const enum glint_sample sample = from->colour[0].sample == GLINT_SAMPLE_U32
                                          ? GLINT_SAMPLE_FLOAT
                                          : from->colour[0].sample;
 
-    lay_out(blank, glint_samples_width(from), glint_samples_height(from),
-            sample, has_alpha ? 4 : 3);
+    set_sample_layout(blank, glint_samples_width(from),
+                      glint_samples_height(from), sample, has_alpha ? 4 : 3);
     blank->mem = calloc((size_t)blank->width * (size_t)blank->height,
                         blank->pixel_bytes);
     return blank->mem ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-/* Returns whether samples of S hold light above white. */
-static bool is_above_white(const struct glint_samples *s)
+/* Returns whether any sample of S is lighter than white. */
+static bool has_light_above_white(const struct glint_samples *s)
 {
     return glint_sample_is_float(s->colour[0].sample) ||
            glint_tone_curve_is_hdr(&s->colours.transfer[0]);
 }
 
-static void say_losses(struct glint_kept_options *options,
-                       const struct glint_samples *to,
-                       const struct glint_samples *from)
+static void report_losses(struct glint_kept_options *options,
+                          const struct glint_samples *to,
+                          const struct glint_samples *from)
 {
 
     if (from->has_alpha && !to->has_alpha)
         add_note(
             options->said,
             "the file type has no alpha: the picture is composited over black");
-    if (is_above_white(from) && !is_above_white(to))
+    if (has_light_above_white(from) && !has_light_above_white(to))
         add_note(options->said,
                  to->colour[0].sample == GLINT_SAMPLE_U8
                      ? "light above white is clipped, and 8 bits remain"
                      : "light above white is clipped, and 16 bits remain");
     else if (glint_sample_bytes(from->colour[0].sample) > 1 &&
              to->colour[0].sample == GLINT_SAMPLE_U8)
-        add_note(options->said, "8 bits are left");
+        add_note(options->said, "8 bits remain");
 }
 
-/* Returns the type of sample nearest to SAMPLE that files of TYPE hold. */
-static enum glint_sample sample_for(const struct file_type *type,
-                                    enum glint_sample sample)
+/* Returns the sample type nearest to SAMPLE that files of TYPE can hold. */
+static enum glint_sample choose_sample_type(const struct file_type *type,
+                                            enum glint_sample sample)
 {
     const bool is_float = glint_sample_is_float(sample);
 
@@ -893,11 +913,11 @@ static enum glint_sample sample_for(const struct file_type *type,
     return type->takes_u8 ? GLINT_SAMPLE_U8 : GLINT_SAMPLE_FLOAT;
 }
 
-/* Returns whether a file of TYPE holds samples TO in the colours of K, by its
- * ICC profile or cICP. */
-static bool holds_colours(const struct glint_kept *k,
-                          const struct file_type *type,
-                          const struct glint_samples *to)
+/* Returns whether a file of TYPE can describe the colours of K for samples TO,
+ * by its ICC profile or cICP. */
+static bool can_type_hold_colours(const struct glint_kept *k,
+                                  const struct file_type *type,
+                                  const struct glint_samples *to)
 {
     return !glint_sample_is_float(to->colour[0].sample) &&
            !glint_sample_is_float(k->samples.colour[0].sample) &&
@@ -906,39 +926,39 @@ static bool holds_colours(const struct glint_kept *k,
             (k->has_cicp && (type->holds & HOLDS_CICP)));
 }
 
-/* Converts FROM to samples that files of TYPE hold, in TO; the caller frees
- * to->mem. If FROM has the colours of K, TO has them, too, where TYPE holds
- * them, and KEEPS is set. */
-static enum glint_status convert(const struct glint_kept *k,
-                                 struct glint_samples *to,
-                                 const struct glint_samples *from,
-                                 const struct file_type *type, bool *keeps)
+/* Converts the samples FROM to samples TO that files of TYPE can hold; the
+ * caller frees to->mem. Sets *KEEPS if FROM has the colours of K and TYPE can
+ * describe these; TO then has them, too. */
+static enum glint_status
+convert_samples_for_type(const struct glint_kept *k, struct glint_samples *to,
+                         const struct glint_samples *from,
+                         const struct file_type *type, bool *keeps)
 {
     const bool has_alpha = from->has_alpha && type->alpha != ALPHA_NONE;
     const bool is_grey = type->is_grey ||
                          (from->n_colours == 1 && !type->is_native) ||
                          (from->n_colours == 1 && type->takes_float);
 
-    lay_out(to, glint_samples_width(from), glint_samples_height(from),
-            sample_for(type, from->colour[0].sample),
-            (is_grey ? 1 : 3) + has_alpha);
+    set_sample_layout(to, glint_samples_width(from), glint_samples_height(from),
+                      choose_sample_type(type, from->colour[0].sample),
+                      (is_grey ? 1 : 3) + has_alpha);
     to->is_premultiplied = type->alpha != ALPHA_STRAIGHT;
-    *keeps = from == &k->samples && holds_colours(k, type, to);
+    *keeps = from == &k->samples && can_type_hold_colours(k, type, to);
     if (*keeps)
         to->colours = from->colours;
-    to->mem = malloc(samples_bytes(to));
+    to->mem = malloc(count_sample_bytes(to));
     if (!to->mem)
         return GLINT_E_MEMORY;
     glint_samples_convert(to, from);
     return GLINT_OK;
 }
 
-static enum glint_status write_native(struct glint_output *out,
-                                      struct glint_samples *s,
-                                      const struct file_type *type,
-                                      struct glint_error *error)
+static enum glint_status write_native_file(struct glint_output *out,
+                                           struct glint_samples *s,
+                                           const struct file_type *type,
+                                           struct glint_error *error)
 {
-    const size_t bytes = samples_bytes(s);
+    const size_t bytes = count_sample_bytes(s);
     const bool is_wide = s->colour[0].sample == GLINT_SAMPLE_U16;
     const char *const kind = type->takes_float
                                  ? (s->n_colours == 1 ? "Pf" : "PF")
@@ -949,11 +969,11 @@ static enum glint_status write_native(struct glint_output *out,
     int n;
 
     if (!data)
-        return report_memory(error, out->name, s->width, s->height);
+        return report_memory_shortage(error, out->name, s->width, s->height);
     if (type->takes_float)
-        swap_rows(data, s->mem, s, true);
+        swap_float_rows(data, s->mem, s, true);
     else if (is_wide)
-        swap_shorts(data, s->mem, bytes);
+        swap_short_bytes(data, s->mem, bytes);
     else
         memcpy(data, s->mem, bytes);
     n = snprintf(header, sizeof header, "%s\n%d %d\n%s\n", kind, s->width,
@@ -992,15 +1012,16 @@ write_kept(struct glint_kept *k, struct glint_output *out,
     return status;
 }
 
-/* Writes FROM to OUT, converted to the file type of OUT's name, with the
- * metadata of K. Lists in options->said what the conversion loses. */
+/* Writes the samples FROM to OUT, converted to the file type of OUT's name,
+ * with the metadata of K. Lists in options->said the content that the
+ * conversion loses. */
 static enum glint_status save_converted(struct glint_kept *k,
                                         struct glint_output *out,
                                         const struct glint_samples *from,
                                         struct glint_kept_options *options,
                                         struct glint_error *error)
 {
-    const struct file_type *const type = type_of(out->name);
+    const struct file_type *const type = find_extension_type(out->name);
     struct glint_samples to;
     enum glint_status status;
     bool keeps_colours;
@@ -1009,17 +1030,17 @@ static enum glint_status save_converted(struct glint_kept *k,
     if (!type)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, out->name,
                                   "is of a type that glint cannot write");
-    status = convert(k, &to, from, type, &keeps_colours);
+    status = convert_samples_for_type(k, &to, from, type, &keeps_colours);
     if (status)
-        return report_memory(error, out->name, to.width, to.height);
-    say_losses(options, &to, from);
+        return report_memory_shortage(error, out->name, to.width, to.height);
+    report_losses(options, &to, from);
     if (k->metadata && *k->metadata && !(type->holds & HOLDS_METADATA)) {
         snprintf(text, sizeof text, "%s has no %s", type->extension,
                  k->metadata);
         add_note(options->said, text);
     }
     status = type->is_native
-                 ? write_native(out, &to, type, error)
+                 ? write_native_file(out, &to, type, error)
                  : write_kept(k, out, &to, keeps_colours, options, error);
     free(to.mem);
     return status;
@@ -1044,9 +1065,9 @@ enum glint_status glint_kept_save(struct glint_kept *kept, const char *path,
     } else if (kept->oiio) {
         status = write_kept(kept, &out, NULL, true, options, error);
     } else {
-        refill_native(kept);
+        update_native_file(kept);
         status =
             glint_output_write(&out, kept->native, kept->native_bytes, error);
     }
-    return glint_output_end(&out, status, error);
+    return glint_output_commit_or_abort(&out, status, error);
 }

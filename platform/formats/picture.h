@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/picture.h - any picture file, in and out.
+ * formats/picture.h - reads and writes picture files of any type.
  *
  *     glint_picture_load("x.png", &image, &error);
  *     ...
  *     glint_picture_save("y.ppm", &image, &error);
  *     glint_picture_free(&image);
  *
- * PPM, PGM and PFM are read and written by glint itself, everything else by its
- * image plug-in (formats/oiio.h). Loading detects the format by content, saving
+ * glint reads and writes PPM, PGM and PFM itself, all other types through its
+ * image plug-in (formats/oiio.h). Loading detects the type by content, saving
  * by extension. "-" is a pipe: reads PPM, PGM or PFM; writes PPM, or PFM for
  * floats.
  *
  * There are two kinds of picture. Loading converts between them by the sRGB
  * curve if needed; saving never does:
- *   8 bits   sRGB, struct glint_image, for .ppm .png .jpg .tif .bmp .tga .webp
- *   floats   linear light, struct glint_float_image, for .pfm .exr .hdr .tif
+ *   8 bits sRGB, struct glint_image, for .ppm .png .jpg .tif .bmp .tga .webp
+ *   floats linear light, struct glint_float_image, for .pfm .exr .hdr .tif
  *
  * To add light to a file and write it again with all of its content, samples,
  * metadata and profile:
@@ -28,8 +28,7 @@
  * An output of the input's type preserves depth, alpha, other channels, parts,
  * windows, profile and metadata. An output of another type has the colours,
  * upright, the depth, alpha and profile that the type can hold, Exif and XMP,
- * and other metadata that OpenImageIO translates.
- */
+ * and other metadata that OpenImageIO translates. */
 #ifndef GLINT_PLATFORM_FORMATS_PICTURE_H
 #define GLINT_PLATFORM_FORMATS_PICTURE_H
 
@@ -38,21 +37,23 @@
 
 enum glint_picture_kind { GLINT_PICTURE_8BIT, GLINT_PICTURE_FLOAT };
 
-enum { GLINT_KEPT_NOTES = 256 }; /* bytes */
+enum { GLINT_KEPT_NOTES = 256 }; /* max bytes of a text of notes */
 
 struct glint_kept {
     struct glint_samples samples;
-    /* true: the file holds floats, so light above white is not clipped */
+    /* true: the file stores floats, so light above white is not clipped */
     bool is_float;
-    char note[GLINT_KEPT_NOTES]; /* lists the content that glint cannot preserve
-                                    or does not know; "" if there is no such
-                                    content */
+    /* Text that lists the content that glint cannot preserve or does not know;
+     * "" if there is none. */
+    char note[GLINT_KEPT_NOTES];
 
     /* Private. */
     const char *path;
     const struct glint_oiio *oiio; /* NULL: the file is a PNM or PFM */
-    bool has_icc, has_cicp;        /* which of the two states the colours */
-    const char *metadata;          /* as in glint_oiio_facts; NULL: none */
+    bool has_icc, has_cicp;        /* true: the file states its colours by an
+                                      ICC profile; by cICP */
+    const char *metadata;          /* metadata of the file, as in
+                                      glint_oiio_facts; NULL: none */
     struct glint_oiio_file *file;
     /* all bytes of a PNM or PFM; of other files the first 12 */
     uint8_t *native;
@@ -62,17 +63,18 @@ struct glint_kept {
 };
 
 struct glint_kept_options {
-    int quality; /* quality of JPEG and WebP, 1 .. 100; 0: quality of the input,
-                    or 95 */
-    char said[GLINT_KEPT_NOTES]; /* output: lists lost content; "" if there is
-                                    none */
+    int quality; /* quality of JPEG and WebP, 1 .. 100; 0: the quality of the
+                    input file, or 95 */
+    /* Output: text that lists the content that was lost; "" if there is
+     * none. */
+    char said[GLINT_KEPT_NOTES];
 };
 
 /* Returns the number of frames of the GIF NAME, which it reads; 0 if NAME is
  * not a GIF. */
-int glint_gif_frames(const char *name);
+int glint_gif_count_frames(const char *name);
 
-/* Returns whether the extension of PATH stands for a type that holds floats
+/* Returns whether the extension of PATH stands for a type that can hold floats
  * only. Returns false for TIFF, which holds floats or integers, and for "-". */
 bool glint_picture_is_float(const char *path);
 
@@ -85,7 +87,7 @@ enum glint_status glint_picture_load(const char *path,
                                      struct glint_image *image,
                                      struct glint_error *error);
 
-/* Frees the pixels of IMAGE; does nothing if IMAGE is all zero. */
+/* Frees the pixels of IMAGE. Does nothing if all members of IMAGE are 0. */
 void glint_picture_free(struct glint_image *image);
 
 /* Loads PATH as linear light; the caller frees floats->rgb. Returns the errors
@@ -114,36 +116,39 @@ glint_picture_save_float(const char *path,
                          const struct glint_float_image *floats,
                          struct glint_error *error);
 
-/* Opens the file PATH; the string must outlive KEPT. Returns the errors of
- * glint_picture_load(). On failure KEPT is closed. */
+/* Opens the file PATH with all of its content; the string PATH must outlive
+ * KEPT. Returns the errors of glint_picture_load(). On failure KEPT is
+ * closed. */
 enum glint_status glint_kept_open(struct glint_kept *kept, const char *path,
                                   struct glint_error *error);
 
-/* Closes KEPT, unless it is closed already. */
+/* Frees the memory of KEPT, unless it is closed already. */
 void glint_kept_close(struct glint_kept *kept);
 
-/* Writes KEPT to PATH; if ALONE is not NULL, with the picture ALONE, of KEPT's
- * upright size, in place of KEPT's own. Returns GLINT_E_OUTPUT,
- * GLINT_E_UNSUPPORTED, GLINT_E_MEMORY or GLINT_E_CLOSED on failure. */
+/* Writes the file KEPT to PATH. If ALONE is not NULL, writes ALONE, a picture
+ * of KEPT's upright size, in place of KEPT's own pixels. Returns
+ * GLINT_E_OUTPUT, GLINT_E_UNSUPPORTED, GLINT_E_MEMORY or GLINT_E_CLOSED on
+ * failure. */
 enum glint_status glint_kept_save(struct glint_kept *kept, const char *path,
                                   const struct glint_samples *alone,
                                   struct glint_kept_options *options,
                                   struct glint_error *error);
 
 /* Returns whether PATH has the file type of KEPT. If so, an unchanged picture
- * can be saved by glint_kept_copy(), which copies the file. */
+ * can be saved by glint_kept_copy_file(), which copies the file. */
 bool glint_kept_is_same_type(const struct glint_kept *kept, const char *path);
 
-enum glint_status glint_kept_copy(const struct glint_kept *kept,
-                                  const char *path, struct glint_error *error);
+enum glint_status glint_kept_copy_file(const struct glint_kept *kept,
+                                       const char *path,
+                                       struct glint_error *error);
 
-/* Makes BLANK, a black picture of FROM's upright size, with R G B, and alpha 0
- * if HAS_ALPHA. Its samples have FROM's type, but floats replace 32-bit
- * integers; floats are linear, integers sRGB. The caller frees blank->mem.
- * Returns GLINT_E_MEMORY on failure. */
-enum glint_status glint_kept_blank(struct glint_samples *blank,
-                                   const struct glint_samples *from,
-                                   bool has_alpha);
+/* Sets BLANK to a black picture of FROM's upright size, with R G B, and with
+ * alpha 0 if HAS_ALPHA is set. Its samples have FROM's type, but floats replace
+ * 32-bit integers; floats are linear, integers sRGB. The caller frees
+ * blank->mem. Returns GLINT_E_MEMORY on failure. */
+enum glint_status glint_kept_make_blank(struct glint_samples *blank,
+                                        const struct glint_samples *from,
+                                        bool has_alpha);
 
 /* Checks, before a long computation, whether glint can write files of PATH's
  * extension. Returns GLINT_E_UNSUPPORTED if the extension is unknown or its

@@ -9,11 +9,11 @@
 #include "glint/options.h"
 #include "posix/error.h"
 
-/* max bytes of a word of the header, with the final 0 */
+/* max bytes of a word of the header, including the final 0 */
 #define TOKEN_CHARS 32
-#define CHUNK       256 /* floats encoded at a time */
+#define CHUNK       256 /* number of floats that are encoded at a time */
 
-static bool is_space(int c)
+static bool is_white_space(int c)
 {
     return c == ' ' || (c >= '\t' && c <= '\r');
 }
@@ -23,31 +23,31 @@ bool glint_pfm_matches(const void *data, size_t bytes)
     const uint8_t *const d = data;
 
     return bytes >= 3 && d[0] == 'P' && (d[1] == 'F' || d[1] == 'f') &&
-           is_space(d[2]);
+           is_white_space(d[2]);
 }
 
-/* Copies the first word of DATA[BYTES] from *AT on to TOKEN, and moves *AT past
+/* Copies the word of DATA[BYTES] at offset *AT to TOKEN, and moves *AT behind
  * the single white space that ends the word. Returns false if there is no such
  * word, or it is longer than TOKEN. */
-static bool take_token(char token[TOKEN_CHARS], const uint8_t *data,
-                       size_t bytes, size_t *at)
+static bool read_header_word(char token[TOKEN_CHARS], const uint8_t *data,
+                             size_t bytes, size_t *at)
 {
     size_t len = 0;
 
-    while (*at < bytes && is_space(data[*at]))
+    while (*at < bytes && is_white_space(data[*at]))
         (*at)++;
-    while (*at < bytes && !is_space(data[*at])) {
+    while (*at < bytes && !is_white_space(data[*at])) {
         if (len == TOKEN_CHARS - 1 || data[*at] == 0)
             return false;
         token[len++] = (char)data[(*at)++];
     }
     token[len] = 0;
-    return len > 0 && *at < bytes && is_space(data[(*at)++]);
+    return len > 0 && *at < bytes && is_white_space(data[(*at)++]);
 }
 
 /* Returns TOKEN as a number, at most 99999, or 0 if any character is not a
  * digit. */
-static int parse_side(const char *token)
+static int parse_side_length(const char *token)
 {
     int value = 0;
 
@@ -66,10 +66,10 @@ static bool read_pfm_header(struct glint_pnm_header *h, const uint8_t *data,
     h->channels = data[1] == 'F' ? 3 : 1;
     h->bytes = 2;
     for (int i = 0; i < 3; i++)
-        if (!take_token(token[i], data, bytes, &h->bytes))
+        if (!read_header_word(token[i], data, bytes, &h->bytes))
             return false;
-    h->width = parse_side(token[0]);
-    h->height = parse_side(token[1]);
+    h->width = parse_side_length(token[0]);
+    h->height = parse_side_length(token[1]);
     scale = glint_option_number(token[2], &end);
     h->little = scale < 0;
     return h->width > 0 && h->height > 0 && !*end && isfinite(scale) &&
@@ -82,29 +82,29 @@ struct cursor {
     const uint8_t *at, *end;
 };
 
-static void skip_comment(struct cursor *c)
+static void skip_header_comment(struct cursor *c)
 {
     while (c->at < c->end && *c->at != '\n')
         c->at++;
 }
 
-static void skip_space(struct cursor *c)
+static void skip_header_space(struct cursor *c)
 {
-    while (c->at < c->end && (is_space(*c->at) || *c->at == '#')) {
+    while (c->at < c->end && (is_white_space(*c->at) || *c->at == '#')) {
         if (*c->at == '#')
-            skip_comment(c);
+            skip_header_comment(c);
         else
             c->at++;
     }
 }
 
-/* Skips white space and comments and returns the number that follows, at most
- * MAX_NUMBER, or -1 if no number follows. */
-static int take_number(struct cursor *c)
+/* Skips white space and comments and returns the number that follows, clamped
+ * to MAX_NUMBER, or -1 if no number follows. */
+static int read_header_number(struct cursor *c)
 {
     int value = -1;
 
-    skip_space(c);
+    skip_header_space(c);
     while (c->at < c->end && *c->at >= '0' && *c->at <= '9') {
         value = (value < 0 ? 0 : value) * 10 + (*c->at++ - '0');
         if (value > MAX_NUMBER)
@@ -115,11 +115,11 @@ static int take_number(struct cursor *c)
 
 /* Skips the single white space that ends the header, and a comment before it.
  * Returns false if there is no white space. */
-static bool take_header_end(struct cursor *c)
+static bool skip_header_end(struct cursor *c)
 {
     if (c->at < c->end && *c->at == '#')
-        skip_comment(c);
-    return c->at < c->end && is_space(*c->at++);
+        skip_header_comment(c);
+    return c->at < c->end && is_white_space(*c->at++);
 }
 
 bool glint_pnm_matches(const void *data, size_t bytes)
@@ -127,7 +127,7 @@ bool glint_pnm_matches(const void *data, size_t bytes)
     const uint8_t *const d = data;
 
     return bytes >= 3 && d[0] == 'P' && (d[1] == '5' || d[1] == '6') &&
-           (is_space(d[2]) || d[2] == '#');
+           (is_white_space(d[2]) || d[2] == '#');
 }
 
 static bool read_pnm_header(struct glint_pnm_header *h, const uint8_t *data,
@@ -136,10 +136,10 @@ static bool read_pnm_header(struct glint_pnm_header *h, const uint8_t *data,
     struct cursor c = {data + 2, data + bytes};
 
     h->channels = data[1] == '6' ? 3 : 1;
-    h->width = take_number(&c);
-    h->height = take_number(&c);
-    h->maximum = take_number(&c);
-    if (h->width < 1 || h->height < 1 || !take_header_end(&c))
+    h->width = read_header_number(&c);
+    h->height = read_header_number(&c);
+    h->maximum = read_header_number(&c);
+    if (h->width < 1 || h->height < 1 || !skip_header_end(&c))
         return false;
     h->bytes = (size_t)(c.at - data);
     return true;
@@ -183,8 +183,8 @@ enum glint_status glint_pnm_header_read(struct glint_pnm_header *header,
 
 /* Scales N samples of SRC, 0 .. MAXIMUM, to 8 bits. A sample has 2 bytes if
  * MAXIMUM is above 255, else 1. */
-static void scale_samples(uint8_t *dst, const uint8_t *src, size_t n,
-                          int maximum)
+static void scale_samples_to_8_bits(uint8_t *dst, const uint8_t *src, size_t n,
+                                    int maximum)
 {
     if (maximum == 255) {
         memcpy(dst, src, n);
@@ -226,7 +226,8 @@ enum glint_status glint_pnm_read(struct glint_image *image, const void *data,
         return glint_error_report(error, GLINT_E_MEMORY, name,
                                   "no memory for a %d x %d picture", made.width,
                                   made.height);
-    scale_samples(mem, (const uint8_t *)data + h.bytes, n_samples, h.maximum);
+    scale_samples_to_8_bits(mem, (const uint8_t *)data + h.bytes, n_samples,
+                            h.maximum);
     glint_image_place(&made, mem);
     *image = made;
     return GLINT_OK;
@@ -250,7 +251,7 @@ enum glint_status glint_pnm_write(struct glint_output *out,
     return status;
 }
 
-static float decode_float(const uint8_t *b, bool little)
+static float decode_pfm_float(const uint8_t *b, bool little)
 {
     const uint32_t bits = little
                               ? b[0] | (uint32_t)b[1] << 8 |
@@ -263,8 +264,8 @@ static float decode_float(const uint8_t *b, bool little)
     return value;
 }
 
-static void decode_rows(float *rgb, const struct glint_pnm_header *h,
-                        const uint8_t *data)
+static void decode_pfm_rows(float *rgb, const struct glint_pnm_header *h,
+                            const uint8_t *data)
 {
     const size_t n = (size_t)h->width;
 
@@ -274,7 +275,7 @@ static void decode_rows(float *rgb, const struct glint_pnm_header *h,
         for (size_t i = 0; i < 3 * n; i++) {
             const size_t from = h->channels == 3 ? i : i / 3;
 
-            row[i] = decode_float(data + 4 * from, h->little);
+            row[i] = decode_pfm_float(data + 4 * from, h->little);
         }
         data += 4 * n * (size_t)h->channels;
     }
@@ -301,12 +302,12 @@ enum glint_status glint_pfm_read(struct glint_float_image *floats,
         return glint_error_report(error, GLINT_E_MEMORY, name,
                                   "no memory for a %d x %d picture", h.width,
                                   h.height);
-    decode_rows(rgb, &h, (const uint8_t *)data + h.bytes);
+    decode_pfm_rows(rgb, &h, (const uint8_t *)data + h.bytes);
     *floats = (struct glint_float_image){h.width, h.height, rgb};
     return GLINT_OK;
 }
 
-static void encode_float(uint8_t *b, float value)
+static void encode_pfm_float(uint8_t *b, float value)
 {
     uint32_t bits;
 
@@ -315,9 +316,9 @@ static void encode_float(uint8_t *b, float value)
         b[i] = (uint8_t)(bits >> (8 * i));
 }
 
-static enum glint_status write_floats(struct glint_output *out,
-                                      const float *values, size_t n,
-                                      struct glint_error *error)
+static enum glint_status write_pfm_floats(struct glint_output *out,
+                                          const float *values, size_t n,
+                                          struct glint_error *error)
 {
     uint8_t chunk[4 * CHUNK];
     enum glint_status status = GLINT_OK;
@@ -326,7 +327,7 @@ static enum glint_status write_floats(struct glint_output *out,
         const size_t now = n < CHUNK ? n : CHUNK;
 
         for (size_t i = 0; i < now; i++)
-            encode_float(chunk + 4 * i, values[i]);
+            encode_pfm_float(chunk + 4 * i, values[i]);
         status = glint_output_write(out, chunk, 4 * now, error);
         values += now;
         n -= now;
@@ -346,6 +347,6 @@ enum glint_status glint_pfm_write(struct glint_output *out,
         glint_output_write(out, header, (size_t)len, error);
 
     for (int y = floats->height - 1; y >= 0 && !status; y--)
-        status = write_floats(out, floats->rgb + n * (size_t)y, n, error);
+        status = write_pfm_floats(out, floats->rgb + n * (size_t)y, n, error);
     return status;
 }

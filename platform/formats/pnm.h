@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/pnm.h - PPM, PGM and PFM pictures without a library.
+ * formats/pnm.h - reads and writes PPM, PGM and PFM pictures without a library.
  *
  *     glint_pnm_read(&image, data, bytes, "x.ppm", &error);
  *     glint_pfm_read(&floats, data, bytes, "x.pfm", &error);
@@ -16,8 +16,7 @@
  * PFM, linear light in floats: "PF" holds R G B, "Pf" grey, which is read as R
  * = G = B. The sign of the header's third number gives the byte order
  * (negative: little-endian); its magnitude, on which writers disagree, is
- * ignored. Values are read unchanged, including NaN and infinity.
- */
+ * ignored. Values are read unchanged, including NaN and infinity. */
 #ifndef GLINT_PLATFORM_FORMATS_PNM_H
 #define GLINT_PLATFORM_FORMATS_PNM_H
 
@@ -34,7 +33,7 @@ struct glint_pnm_header {
     int maximum;       /* code of white, 1 .. 65535; above 255 samples have two
                           bytes, big-endian; 0: samples are floats */
     bool little;       /* floats are little-endian */
-    size_t bytes;      /* length of the header */
+    size_t bytes;      /* length of the header, bytes */
 };
 
 /* Returns whether DATA begins like a P5 or P6, or like a PFM. */

@@ -14,7 +14,7 @@ float glint_half_decode(uint16_t half)
     const uint32_t bits = (sign | (rest << 13)) + exponent;
     float value;
 
-    if (rest < 0x400) { /* 0 or subnormal: a multiple of 2^-24 */
+    if (rest < 0x400) { /* 0 or subnormal: the value is a multiple of 2^-24 */
         value = (float)rest * 0x1p-24F;
         return sign ? -value : value;
     }
@@ -68,28 +68,31 @@ bool glint_sample_is_float(enum glint_sample sample)
 
 /* ------------------------------------------------------------------- places */
 
-static bool is_turned(const struct glint_samples *s)
+static bool swaps_width_and_height(const struct glint_samples *s)
 {
     return s->orientation >= 5;
 }
 
 int glint_samples_width(const struct glint_samples *samples)
 {
-    return is_turned(samples) ? samples->window_height : samples->window_width;
+    return swaps_width_and_height(samples) ? samples->window_height
+                                           : samples->window_width;
 }
 
 int glint_samples_height(const struct glint_samples *samples)
 {
-    return is_turned(samples) ? samples->window_width : samples->window_height;
+    return swaps_width_and_height(samples) ? samples->window_width
+                                           : samples->window_height;
 }
 
-/* Returns the pixel that is seen at X, Y of the upright display window, or NULL
- * if the file has no pixel there. */
-static uint8_t *find_pixel(const struct glint_samples *s, int x, int y)
+/* Returns the address of the pixel at (X, Y) of the upright display window, or
+ * NULL if the file has no pixel there. */
+static uint8_t *find_upright_pixel(const struct glint_samples *s, int x, int y)
 {
     const int right = s->window_width - 1, bottom = s->window_height - 1;
-    /* 64 bits, as a file may place its window anywhere */
-    int64_t column = is_turned(s) ? y : x, row = is_turned(s) ? x : y;
+    /* 64 bits, as a file may place its window at any position */
+    int64_t column = swaps_width_and_height(s) ? y : x,
+            row = swaps_width_and_height(s) ? x : y;
 
     if (s->orientation == 2 || s->orientation == 3 || s->orientation == 7 ||
         s->orientation == 8)
@@ -105,8 +108,8 @@ static uint8_t *find_pixel(const struct glint_samples *s, int x, int y)
            ((size_t)row * (size_t)s->width + (size_t)column) * s->pixel_bytes;
 }
 
-bool glint_samples_image(const struct glint_samples *samples,
-                         struct glint_image *image)
+bool glint_samples_get_image(const struct glint_samples *samples,
+                             struct glint_image *image)
 {
     const struct glint_samples *const s = samples;
 
@@ -128,8 +131,8 @@ bool glint_samples_image(const struct glint_samples *samples,
 
 /* ----------------------------------------------------------------- samples */
 
-static uint32_t take_integer(const struct glint_sample_place *c,
-                             const uint8_t *pixel)
+static uint32_t read_integer_sample(const struct glint_sample_place *c,
+                                    const uint8_t *pixel)
 {
     uint16_t wide;
     uint32_t long_;
@@ -146,8 +149,8 @@ static uint32_t take_integer(const struct glint_sample_place *c,
     }
 }
 
-static void put_integer(const struct glint_sample_place *c, uint8_t *pixel,
-                        uint32_t code)
+static void write_integer_sample(const struct glint_sample_place *c,
+                                 uint8_t *pixel, uint32_t code)
 {
     const uint16_t wide = (uint16_t)code;
 
@@ -159,8 +162,8 @@ static void put_integer(const struct glint_sample_place *c, uint8_t *pixel,
         memcpy(pixel + c->offset, &code, sizeof code);
 }
 
-static double take_float(const struct glint_sample_place *c,
-                         const uint8_t *pixel)
+static double read_float_sample(const struct glint_sample_place *c,
+                                const uint8_t *pixel)
 {
     uint16_t half;
     float single;
@@ -179,12 +182,14 @@ static double take_float(const struct glint_sample_place *c,
     }
 }
 
-static void put_float(const struct glint_sample_place *c, uint8_t *pixel,
-                      double value)
+static void write_float_sample(const struct glint_sample_place *c,
+                               uint8_t *pixel, double value)
 {
     const float single = (float)value;
     const uint16_t half =
-        glint_half_encode(value > 65504 ? 65504.0F : single); /* clamped */
+        glint_half_encode(value > 65504 ? 65504.0F : single); /* clamped to the
+                                                                 largest finite
+                                                                 half */
 
     if (c->sample == GLINT_SAMPLE_HALF)
         memcpy(pixel + c->offset, &half, sizeof half);
@@ -194,7 +199,7 @@ static void put_float(const struct glint_sample_place *c, uint8_t *pixel,
         memcpy(pixel + c->offset, &value, sizeof value);
 }
 
-static uint32_t find_max_code(enum glint_sample sample)
+static uint32_t get_max_code(enum glint_sample sample)
 {
     return sample == GLINT_SAMPLE_U8    ? UINT8_MAX
            : sample == GLINT_SAMPLE_U16 ? UINT16_MAX
@@ -203,47 +208,50 @@ static uint32_t find_max_code(enum glint_sample sample)
 
 /* Returns sample C of PIXEL, an integer divided by MAXIMUM, a float
  * unchanged. */
-static double read_sample(const struct glint_sample_place *c, uint32_t maximum,
-                          const uint8_t *pixel)
+static double read_scaled_sample(const struct glint_sample_place *c,
+                                 uint32_t maximum, const uint8_t *pixel)
 {
     if (glint_sample_is_float(c->sample))
-        return take_float(c, pixel);
-    return (double)take_integer(c, pixel) / maximum;
+        return read_float_sample(c, pixel);
+    return (double)read_integer_sample(c, pixel) / maximum;
 }
 
-static void put(const struct glint_sample_place *c, uint32_t maximum,
-                uint8_t *pixel, double value)
+static void write_scaled_sample(const struct glint_sample_place *c,
+                                uint32_t maximum, uint8_t *pixel, double value)
 {
     if (glint_sample_is_float(c->sample))
-        put_float(c, pixel, value);
+        write_float_sample(c, pixel, value);
     else if (!(value > 0))
-        put_integer(c, pixel, 0);
+        write_integer_sample(c, pixel, 0);
     else
-        put_integer(c, pixel,
-                    value >= 1 ? maximum : (uint32_t)(value * maximum + 0.5));
+        write_integer_sample(
+            c, pixel, value >= 1 ? maximum : (uint32_t)(value * maximum + 0.5));
 }
 
-static double read_alpha(const struct glint_samples *s, const uint8_t *pixel)
+static double read_pixel_alpha(const struct glint_samples *s,
+                               const uint8_t *pixel)
 {
     const double alpha =
-        s->has_alpha
-            ? read_sample(&s->alpha, find_max_code(s->alpha.sample), pixel)
-            : 1;
+        s->has_alpha ? read_scaled_sample(&s->alpha,
+                                          get_max_code(s->alpha.sample), pixel)
+                     : 1;
 
     return alpha > 0 ? fmin(alpha, 1) : 0;
 }
 
 /* ------------------------------------------------------------ linear light */
 
-/* Decodes samples to linear light: entries[c] has the light of each code of
- * colour c. It is NULL if samples are floats, their maximum is above 65535 or
- * memory is short; then the curve is evaluated for each sample. */
+/* Decodes samples to linear light: entries[c] is a table from the codes of
+ * colour c to light. It is NULL if samples are floats, if their maximum is
+ * above 65535, or if the table could not be allocated; then the curve is
+ * evaluated for each sample. */
 struct decoder {
     const struct glint_samples *samples;
     float *entries[3];
 };
 
-static void decoder_open(struct decoder *d, const struct glint_samples *s)
+static void open_sample_decoder(struct decoder *d,
+                                const struct glint_samples *s)
 {
     const size_t n = (size_t)s->maximum + 1;
 
@@ -258,22 +266,24 @@ static void decoder_open(struct decoder *d, const struct glint_samples *s)
     }
 }
 
-static void decoder_close(struct decoder *d)
+static void close_sample_decoder(struct decoder *d)
 {
     for (int c = 0; c < 3; c++)
         free(d->entries[c]);
 }
 
-static double decode_pixel(const struct decoder *d, int c, const uint8_t *pixel)
+static double decode_pixel_colours(const struct decoder *d, int c,
+                                   const uint8_t *pixel)
 {
     const struct glint_samples *const s = d->samples;
     const struct glint_sample_place *const from = &s->colour[c];
     uint32_t code;
 
     if (!d->entries[c])
-        return glint_tone_curve_decode(&s->colours.transfer[c],
-                                       read_sample(from, s->maximum, pixel));
-    code = take_integer(from, pixel);
+        return glint_tone_curve_decode(
+            &s->colours.transfer[c],
+            read_scaled_sample(from, s->maximum, pixel));
+    code = read_integer_sample(from, pixel);
     return (double)d->entries[c][code < s->maximum ? code : s->maximum];
 }
 
@@ -291,13 +301,13 @@ static double clamp_to_finite(double value)
     return isnan(value) ? 0 : isinf(value) ? (value > 0 ? 65504 : 0) : value;
 }
 
-/* Sets RGB to the linear light of PIXEL, BT.709 primaries: without alpha if
- * STRAIGHT, else multiplied by alpha. */
-static void decode_light(const struct decoder *d, const uint8_t *pixel,
-                         bool straight, double rgb[3])
+/* Sets RGB to the linear light of PIXEL, BT.709 primaries: not multiplied by
+ * alpha if STRAIGHT is set, else multiplied. */
+static void decode_pixel_light(const struct decoder *d, const uint8_t *pixel,
+                               bool straight, double rgb[3])
 {
     const struct glint_samples *const s = d->samples;
-    const double alpha = read_alpha(s, pixel);
+    const double alpha = read_pixel_alpha(s, pixel);
     double own[3], factor = 1;
 
     if (s->has_alpha && s->is_premultiplied && straight)
@@ -305,30 +315,32 @@ static void decode_light(const struct decoder *d, const uint8_t *pixel,
     else if (s->has_alpha && !s->is_premultiplied && !straight)
         factor = alpha;
     for (int c = 0; c < 3; c++)
-        own[c] = clamp_to_finite(decode_pixel(d, c, pixel)) * factor;
+        own[c] = clamp_to_finite(decode_pixel_colours(d, c, pixel)) * factor;
     multiply_matrix(s->colours.to_bt709, own, rgb);
 }
 
-void glint_samples_light(const struct glint_samples *samples, int x, int y,
-                         float rgb[3])
+void glint_samples_get_light(const struct glint_samples *samples, int x, int y,
+                             float rgb[3])
 {
     const struct decoder by_formula = {.samples = samples};
-    const uint8_t *const pixel = find_pixel(samples, x, y);
+    const uint8_t *const pixel = find_upright_pixel(samples, x, y);
     double light[3] = {0, 0, 0};
 
     if (pixel)
-        decode_light(&by_formula, pixel, false, light);
+        decode_pixel_light(&by_formula, pixel, false, light);
     for (int c = 0; c < 3; c++)
         rgb[c] = (float)light[c];
 }
 
 /* ------------------------------------------------------------------- proxy */
 
-#define BINS 256 /* bins of light, eight an octave, from 2^-8 to 2^24 */
+/* number of histogram bins: eight per octave of light, from 2^-8 to 2^24 */
+#define BINS 256
 
-/* Returns the 99th percentile of the pixels' largest channel, rounded up to an
- * eighth of an octave, at least 1; 1 if samples are not floats. */
-static double find_white(const struct decoder *d)
+/* Returns the white level of D's picture: the 99th percentile over pixels of
+ * the largest channel, rounded up to an eighth of an octave, at least 1; 1 if
+ * samples are not floats. */
+static double find_white_level(const struct decoder *d)
 {
     const struct glint_samples *const s = d->samples;
     const size_t n = (size_t)s->width * (size_t)s->height;
@@ -341,7 +353,7 @@ static double find_white(const struct decoder *d)
     for (size_t i = 0; i < n; i++) {
         double rgb[3], most;
 
-        decode_light(d, s->mem + i * s->pixel_bytes, false, rgb);
+        decode_pixel_light(d, s->mem + i * s->pixel_bytes, false, rgb);
         most = fmax(rgb[0], fmax(rgb[1], rgb[2]));
         if (most > 1)
             bins[(int)fmin(log2(most) * 8 + 64, BINS - 1)]++;
@@ -353,7 +365,7 @@ static double find_white(const struct decoder *d)
 
 #define STEPS 65536
 
-static uint8_t *code_table(void)
+static uint8_t *fill_proxy_code_table(void)
 {
     struct glint_tone_curve srgb;
     uint8_t *const codes = malloc(STEPS);
@@ -366,18 +378,19 @@ static uint8_t *code_table(void)
     return codes;
 }
 
-static void fill_proxy(const struct decoder *d, const struct glint_image *proxy,
-                       double white, const uint8_t *codes)
+static void fill_proxy_pixels(const struct decoder *d,
+                              const struct glint_image *proxy, double white,
+                              const uint8_t *codes)
 {
     for (int y = 0; y < proxy->height; y++) {
         uint8_t *at = proxy->plane[0] + y * proxy->stride_bytes[0];
 
         for (int x = 0; x < proxy->width; x++, at += 3) {
-            const uint8_t *const pixel = find_pixel(d->samples, x, y);
+            const uint8_t *const pixel = find_upright_pixel(d->samples, x, y);
             double rgb[3] = {0, 0, 0};
 
             if (pixel)
-                decode_light(d, pixel, false, rgb);
+                decode_pixel_light(d, pixel, false, rgb);
             for (int c = 0; c < 3; c++) {
                 const double light = rgb[c] / white;
 
@@ -389,8 +402,9 @@ static void fill_proxy(const struct decoder *d, const struct glint_image *proxy,
     }
 }
 
-enum glint_status glint_samples_proxy(const struct glint_samples *samples,
-                                      struct glint_image *proxy, double *white)
+enum glint_status glint_samples_make_proxy(const struct glint_samples *samples,
+                                           struct glint_image *proxy,
+                                           double *white)
 {
     struct glint_image made = {.format = GLINT_RGB24,
                                .width = glint_samples_width(samples),
@@ -399,7 +413,7 @@ enum glint_status glint_samples_proxy(const struct glint_samples *samples,
                                .transfer = GLINT_TONE_SRGB};
     uint8_t *const mem =
         malloc(glint_image_bytes(GLINT_RGB24, made.width, made.height));
-    uint8_t *const codes = code_table();
+    uint8_t *const codes = fill_proxy_code_table();
     struct decoder d;
 
     if (!mem || !codes) {
@@ -408,10 +422,10 @@ enum glint_status glint_samples_proxy(const struct glint_samples *samples,
         return GLINT_E_MEMORY;
     }
     glint_image_place(&made, mem);
-    decoder_open(&d, samples);
-    *white = find_white(&d);
-    fill_proxy(&d, &made, *white, codes);
-    decoder_close(&d);
+    open_sample_decoder(&d, samples);
+    *white = find_white_level(&d);
+    fill_proxy_pixels(&d, &made, *white, codes);
+    close_sample_decoder(&d);
     free(codes);
     *proxy = made;
     return GLINT_OK;
@@ -425,25 +439,25 @@ static void add_light_to_channel(const struct decoder *d, int c, uint8_t *pixel,
     const struct glint_samples *const s = d->samples;
     const struct glint_sample_place *const at = &s->colour[c];
     const struct glint_tone_curve *const transfer = &s->colours.transfer[c];
-    const double sum = decode_pixel(d, c, pixel) + light;
+    const double sum = decode_pixel_colours(d, c, pixel) + light;
     uint32_t code, lit;
 
     if (!(light > 0) || !isfinite(sum))
         return;
     if (glint_sample_is_float(at->sample)) {
-        put_float(at, pixel, glint_tone_curve_encode(transfer, sum));
+        write_float_sample(at, pixel, glint_tone_curve_encode(transfer, sum));
         return;
     }
-    code = take_integer(at, pixel);
+    code = read_integer_sample(at, pixel);
     lit = (uint32_t)(fmin(glint_tone_curve_encode(transfer, sum), 1) *
                          s->maximum +
                      0.5);
     if (lit > code)
-        put_integer(at, pixel, lit);
+        write_integer_sample(at, pixel, lit);
 }
 
-static void add_pixel(const struct decoder *d, uint8_t *pixel,
-                      const float *layer)
+static void add_light_to_pixel(const struct decoder *d, uint8_t *pixel,
+                               const float *layer)
 {
     const struct glint_samples *const s = d->samples;
     const double light[3] = {(double)layer[0], (double)layer[1],
@@ -461,27 +475,28 @@ static void add_pixel(const struct decoder *d, uint8_t *pixel,
         add_light_to_channel(d, c, pixel, own[c]);
 }
 
-void glint_samples_add(struct glint_samples *samples, const float *layer)
+void glint_samples_add_light(struct glint_samples *samples, const float *layer)
 {
     const int width = glint_samples_width(samples);
     const int height = glint_samples_height(samples);
     struct decoder d;
 
-    decoder_open(&d, samples);
+    open_sample_decoder(&d, samples);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++, layer += 3) {
             const bool lit = layer[0] > 0 || layer[1] > 0 || layer[2] > 0;
-            uint8_t *const pixel = lit ? find_pixel(samples, x, y) : NULL;
+            uint8_t *const pixel =
+                lit ? find_upright_pixel(samples, x, y) : NULL;
 
             if (pixel)
-                add_pixel(&d, pixel, layer);
+                add_light_to_pixel(&d, pixel, layer);
         }
-    decoder_close(&d);
+    close_sample_decoder(&d);
 }
 
-/* Sets the colours of PIXEL to RGB / SHARE. */
-static void put_pixel(const struct glint_samples *s, uint8_t *pixel,
-                      const double rgb[3], double share)
+/* Sets the colours of PIXEL to light RGB divided by SHARE. */
+static void write_pixel_light(const struct glint_samples *s, uint8_t *pixel,
+                              const double rgb[3], double share)
 {
     double own[3] = {0, 0, 0};
 
@@ -489,24 +504,25 @@ static void put_pixel(const struct glint_samples *s, uint8_t *pixel,
     if (s->n_colours == 1)
         own[0] = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
     for (int c = 0; c < s->n_colours && c < 3; c++)
-        put(&s->colour[c], s->maximum, pixel,
+        write_scaled_sample(
+            &s->colour[c], s->maximum, pixel,
             glint_tone_curve_encode(&s->colours.transfer[c], own[c] / share));
 }
 
-void glint_samples_set(struct glint_samples *samples, int x, int y,
-                       const double rgb[3], double cover)
+void glint_samples_set_pixel(struct glint_samples *samples, int x, int y,
+                             const double rgb[3], double cover)
 {
-    uint8_t *const pixel = find_pixel(samples, x, y);
+    uint8_t *const pixel = find_upright_pixel(samples, x, y);
     double alpha;
 
     if (!pixel)
         return;
-    alpha = 1 - (1 - read_alpha(samples, pixel)) * (1 - cover);
-    put_pixel(samples, pixel, rgb,
-              samples->is_premultiplied || !(alpha > 0) ? 1 : alpha);
+    alpha = 1 - (1 - read_pixel_alpha(samples, pixel)) * (1 - cover);
+    write_pixel_light(samples, pixel, rgb,
+                      samples->is_premultiplied || !(alpha > 0) ? 1 : alpha);
     if (samples->has_alpha)
-        put(&samples->alpha, find_max_code(samples->alpha.sample), pixel,
-            alpha);
+        write_scaled_sample(&samples->alpha,
+                            get_max_code(samples->alpha.sample), pixel, alpha);
 }
 
 /* -------------------------------------------------------------- converting */
@@ -518,11 +534,11 @@ static void convert_pixel(const struct glint_samples *to, uint8_t *dst,
     double rgb[3] = {0, 0, 0};
 
     if (src)
-        decode_light(from, src, straight, rgb);
-    put_pixel(to, dst, rgb, 1);
+        decode_pixel_light(from, src, straight, rgb);
+    write_pixel_light(to, dst, rgb, 1);
     if (to->has_alpha)
-        put(&to->alpha, find_max_code(to->alpha.sample), dst,
-            src ? read_alpha(from->samples, src) : 0);
+        write_scaled_sample(&to->alpha, get_max_code(to->alpha.sample), dst,
+                            src ? read_pixel_alpha(from->samples, src) : 0);
 }
 
 void glint_samples_convert(struct glint_samples *to,
@@ -531,9 +547,9 @@ void glint_samples_convert(struct glint_samples *to,
     struct decoder d;
     uint8_t *dst = to->mem;
 
-    decoder_open(&d, from);
+    open_sample_decoder(&d, from);
     for (int y = 0; y < to->height; y++)
         for (int x = 0; x < to->width; x++, dst += to->pixel_bytes)
-            convert_pixel(to, dst, &d, find_pixel(from, x, y));
-    decoder_close(&d);
+            convert_pixel(to, dst, &d, find_upright_pixel(from, x, y));
+    close_sample_decoder(&d);
 }

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/samples.h - a picture's pixels as its file holds them, to be looked
- * at and lit without loss.
+ * formats/samples.h - the pixels of a picture file in the types in which the
+ * file stores them. Reads their light, and adds light without loss.
  *
- *     glint_samples_proxy(&samples, &proxy, &white);     as seen, in 8 bits
- *     glint_samples_light(&samples, x, y, rgb);          light of a pixel
- *     glint_samples_add(&samples, layer);                adds light
- *     glint_samples_convert(&to, &from);                 for another file type
+ *     glint_samples_make_proxy(&samples, &proxy, &white); as seen, in 8 bits
+ *     glint_samples_get_light(&samples, x, y, rgb); light of a pixel
+ *     glint_samples_add_light(&samples, layer); adds light
+ *     glint_samples_convert(&to, &from); for another file type
  *
- * "Upright" places are those of the picture as it is seen: its display window,
- * turned as its orientation says. The pixels themselves stay as stored. Adding
- * light keeps every bit of samples that it does not change, of other channels
- * (alpha, too) and of pixels outside the display window.
- */
+ * "Upright" positions are those of the picture as a viewer shows it: in its
+ * display window, rotated by the file's orientation. The pixels in memory are
+ * not rotated. Adding light preserves every bit of samples that it does not
+ * change, of other channels (alpha, too) and of pixels outside the display
+ * window. */
 #ifndef GLINT_PLATFORM_FORMATS_SAMPLES_H
 #define GLINT_PLATFORM_FORMATS_SAMPLES_H
 
@@ -31,72 +31,75 @@ enum glint_sample {
 
 struct glint_sample_place {
     enum glint_sample sample;
-    size_t offset; /* bytes from the start of a pixel */
+    size_t offset; /* position of the sample in its pixel, bytes */
 };
 
 struct glint_samples {
-    int width, height; /* size of the file's pixels */
+    int width, height; /* size of the stored picture, pixels */
     int x, y;          /* position of the first pixel in the display window */
     /* size of the display window, before orientation is applied */
     int window_width, window_height;
     int orientation;    /* EXIF orientation, 1 .. 8 */
-    size_t pixel_bytes; /* bytes of a pixel, all channels */
-    int n_colours;      /* 3, or 1: grey */
+    size_t pixel_bytes; /* bytes of one pixel with all channels */
+    int n_colours;      /* number of colours: 3, or 1 for grey */
     /* is_premultiplied has no effect unless has_alpha is set */
     bool has_alpha, is_premultiplied;
-    struct glint_sample_place colour[3], alpha; /* of grey all three are the
-                                                   same */
-    uint32_t maximum; /* code of white, unless floats */
+    /* Positions of the samples of R, G, B, and of alpha. In grey pictures all
+     * three colours are the same sample. */
+    struct glint_sample_place colour[3], alpha;
+    uint32_t maximum; /* code of white; not used if samples are floats */
     struct glint_colours colours;
     uint8_t *mem; /* [height][width] pixels, in the machine's byte order */
 };
 
-/* Decodes HALF without rounding. */
+/* Returns the value of HALF, exactly. */
 float glint_half_decode(uint16_t half);
 
-/* Encodes VALUE as the nearest half, ties to even; 65520 and more become
+/* Returns the half nearest to VALUE, ties to even; 65520 and more become
  * infinity. */
 uint16_t glint_half_encode(float value);
 
-/* Return the bytes of a sample, and whether it is a float. */
+/* Return the bytes of a sample of type SAMPLE, and whether it is a float. */
 size_t glint_sample_bytes(enum glint_sample sample);
 
 bool glint_sample_is_float(enum glint_sample sample);
 
-/* Return the size of the picture as it is seen, in pixels. */
+/* Return the width and height, pixels, of the picture as a viewer shows it. */
 int glint_samples_width(const struct glint_samples *samples);
 
 int glint_samples_height(const struct glint_samples *samples);
 
 /* Returns whether the pixels have the layout of GLINT_RGB24: opaque 8-bit sRGB,
  * upright, with three channels. If so, points IMAGE to them. */
-bool glint_samples_image(const struct glint_samples *samples,
-                         struct glint_image *image);
+bool glint_samples_get_image(const struct glint_samples *samples,
+                             struct glint_image *image);
 
-/* Sets RGB to the linear light of the upright pixel X, Y, BT.709 primaries,
+/* Sets RGB to the linear light of the upright pixel (X, Y), BT.709 primaries,
  * multiplied by alpha; to black if the file has no pixel there. NaN becomes
  * black, infinity 65504. */
-void glint_samples_light(const struct glint_samples *samples, int x, int y,
-                         float rgb[3]);
+void glint_samples_get_light(const struct glint_samples *samples, int x, int y,
+                             float rgb[3]);
 
-/* Makes PROXY, an upright sRGB copy of the picture, GLINT_RGB24; the caller
+/* Sets PROXY to an upright sRGB copy of the picture, GLINT_RGB24; the caller
  * frees plane[0]. Sets WHITE to the light of code 255: 1, or for floats the
  * light that 1 % of the pixels exceed, at least 1. Returns GLINT_E_MEMORY on
  * failure. */
-enum glint_status glint_samples_proxy(const struct glint_samples *samples,
-                                      struct glint_image *proxy, double *white);
+enum glint_status glint_samples_make_proxy(const struct glint_samples *samples,
+                                           struct glint_image *proxy,
+                                           double *white);
 
 /* Adds LAYER, upright R G B, linear light with BT.709 primaries, to the
- * colours. Straight colours get the light undivided by alpha, so compositing
- * multiplies it by alpha. Integer codes are clipped at the maximum. */
-void glint_samples_add(struct glint_samples *samples, const float *layer);
+ * colours. Straight (unmultiplied) colours get the light undivided by alpha, so
+ * compositing multiplies it by alpha. Integer codes are clipped at the
+ * maximum. */
+void glint_samples_add_light(struct glint_samples *samples, const float *layer);
 
-/* Sets the upright pixel X, Y to RGB, its linear light over black, BT.709
- * primaries, after an object covers the fraction COVER, 0 .. 1, of it: alpha
- * becomes 1 - (1 - alpha)(1 - COVER), and straight colours become RGB divided
- * by the new alpha. Does nothing if the file has no pixel there. */
-void glint_samples_set(struct glint_samples *samples, int x, int y,
-                       const double rgb[3], double cover);
+/* Sets the upright pixel (X, Y) to RGB, its linear light over black, BT.709
+ * primaries, after an object covers the fraction COVER, 0 .. 1, of it. Alpha
+ * becomes 1 - (1 - alpha)(1 - COVER); straight (unmultiplied) colours become
+ * RGB divided by the new alpha. Does nothing if the file has no pixel there. */
+void glint_samples_set_pixel(struct glint_samples *samples, int x, int y,
+                             const double rgb[3], double cover);
 
 /* Copies the pixels of FROM to TO, upright and converted. The caller must have
  * set size, channels, samples, colours, alpha and memory of TO. If TO has no

@@ -34,11 +34,11 @@ bool glint_tone_curve_is_hdr(const struct glint_tone_curve *transfer)
     return transfer->is_pq || transfer->is_hlg;
 }
 
-/* light of PQ's code 1, and of HLG's */
+/* light of code 1 of PQ, and of HLG */
 #define PQ_PEAK  (10000 / 203.0)
 #define HLG_PEAK 3.7741178
 
-/* Converts between code and light of PQ [SMPTE ST 2084], 0 .. 1 both. */
+/* Convert between code and light of PQ [SMPTE ST 2084], both 0 .. 1. */
 static double decode_pq(double code)
 {
     const double p = pow(code, 32 / 2523.0);
@@ -55,7 +55,7 @@ static double encode_pq(double light)
                2523 / 32.0);
 }
 
-/* The same of HLG [ITU-R BT.2100], scene light. */
+/* Convert between code and scene light of HLG [ITU-R BT.2100]. */
 static const double hlg_a = 0.17883277, hlg_b = 0.28466892, hlg_c = 0.55991073;
 
 static double decode_hlg(double code)
@@ -70,7 +70,8 @@ static double encode_hlg(double light)
                              : hlg_a * log(12 * light - hlg_b) + hlg_c;
 }
 
-static double interpolate_curve(const struct glint_tone_curve *t, double code)
+static double interpolate_tone_table(const struct glint_tone_curve *t,
+                                     double code)
 {
     const double at = code * (t->n_entries - 1);
     /* NaN, too, uses the last interval. */
@@ -87,7 +88,7 @@ double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
     if (code < 0)
         return -glint_tone_curve_decode(t, -code);
     if (t->n_entries)
-        return interpolate_curve(t, code);
+        return interpolate_tone_table(t, code);
     if (t->is_pq)
         return PQ_PEAK * decode_pq(fmin(code, 1));
     if (t->is_hlg)
@@ -99,9 +100,9 @@ double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
            t->e;
 }
 
-/* Returns the code, 0 .. 1, that T's table decodes to LIGHT; the table must
- * rise. */
-static double find_code(const struct glint_tone_curve *t, double light)
+/* Returns the code, 0 .. 1, that T's table decodes to LIGHT; the values of the
+ * table must increase. */
+static double find_code_of_light(const struct glint_tone_curve *t, double light)
 {
     const double level = light * 65535;
     int low = 0, high = t->n_entries - 1;
@@ -129,7 +130,7 @@ double glint_tone_curve_encode(const struct glint_tone_curve *transfer,
     if (light < 0)
         return -glint_tone_curve_encode(t, -light);
     if (t->n_entries)
-        return find_code(t, light);
+        return find_code_of_light(t, light);
     if (t->is_pq)
         return encode_pq(fmin(light / PQ_PEAK, 1));
     if (t->is_hlg)
@@ -173,9 +174,9 @@ static void multiply_matrices(double to[3][3], const double a[3][3],
 }
 
 /* Sets M to the matrix from R, G, B to X, Y, Z for the chromaticities XY of
- * red, green, blue and white; white has luminance 1. Returns false if there is
- * no such matrix. */
-static bool to_xyz(double m[3][3], const double xy[4][2])
+ * red, green, blue and white; white has luminance 1. Returns false if no matrix
+ * has these chromaticities. */
+static bool set_rgb_to_xyz_matrix(double m[3][3], const double xy[4][2])
 {
     double columns[3][3], back[3][3], white[3];
 
@@ -204,8 +205,9 @@ static bool to_xyz(double m[3][3], const double xy[4][2])
 
 /* Sets the matrices of COLOURS from FILE and BT709, the matrices from R, G, B
  * to X, Y, Z under one white point. Returns false if either has no inverse. */
-static bool set_matrices(struct glint_colours *colours, const double file[3][3],
-                         const double bt709[3][3])
+static bool set_colour_matrices(struct glint_colours *colours,
+                                const double file[3][3],
+                                const double bt709[3][3])
 {
     double back[3][3], to[3][3], from[3][3];
     bool is_same = true;
@@ -227,8 +229,8 @@ static bool set_matrices(struct glint_colours *colours, const double file[3][3],
     return true;
 }
 
-bool glint_colours_primaries(struct glint_colours *colours,
-                             const double xy[4][2])
+bool glint_colours_set_primaries(struct glint_colours *colours,
+                                 const double xy[4][2])
 {
     static const double bt709_xy[4][2] = {
         {0.64, 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3127, 0.329}};
@@ -237,9 +239,10 @@ bool glint_colours_primaries(struct glint_colours *colours,
     /* White stays white: the file's white point replaces D65. */
     memcpy(own, bt709_xy, sizeof own);
     memcpy(own[3], xy[3], sizeof own[3]);
-    return to_xyz(file, xy) && to_xyz(bt709, (const double(*)[2])own) &&
-           set_matrices(colours, (const double(*)[3])file,
-                        (const double(*)[3])bt709);
+    return set_rgb_to_xyz_matrix(file, xy) &&
+           set_rgb_to_xyz_matrix(bt709, (const double(*)[2])own) &&
+           set_colour_matrices(colours, (const double(*)[3])file,
+                               (const double(*)[3])bt709);
 }
 
 void glint_colours_set(struct glint_colours *colours, enum glint_tone_kind kind,
@@ -261,7 +264,7 @@ struct profile {
     size_t bytes;
 };
 
-static uint32_t read_u32(const uint8_t *at)
+static uint32_t read_big_endian_u32(const uint8_t *at)
 {
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 |
            (uint32_t)at[2] << 8 | at[3];
@@ -269,21 +272,21 @@ static uint32_t read_u32(const uint8_t *at)
 
 static double read_s15f16(const uint8_t *at)
 {
-    return (int32_t)read_u32(at) / 65536.0;
+    return (int32_t)read_big_endian_u32(at) / 65536.0;
 }
 
-/* Returns the data of tag NAME and sets *BYTES to their length; NULL if P has
- * no such tag or it is shorter than LEAST. */
-static const uint8_t *find_tag(const struct profile *p, const char *name,
-                               size_t least, size_t *bytes)
+/* Returns the data of tag NAME of profile P and sets *BYTES to their length;
+ * NULL if P has no such tag or it is shorter than LEAST bytes. */
+static const uint8_t *find_icc_tag(const struct profile *p, const char *name,
+                                   size_t least, size_t *bytes)
 {
-    const uint32_t n = p->bytes >= 132 ? read_u32(p->data + 128) : 0;
+    const uint32_t n = p->bytes >= 132 ? read_big_endian_u32(p->data + 128) : 0;
 
     for (uint32_t i = 0; i < n && 144 + (size_t)i * 12 <= p->bytes; i++) {
         const uint8_t *const entry = p->data + 132 + (size_t)i * 12;
-        const size_t at = read_u32(entry + 4);
+        const size_t at = read_big_endian_u32(entry + 4);
 
-        *bytes = read_u32(entry + 8);
+        *bytes = read_big_endian_u32(entry + 8);
         if (memcmp(entry, name, 4) == 0)
             return at <= p->bytes && *bytes <= p->bytes - at && *bytes >= least
                        ? p->data + at
@@ -292,7 +295,8 @@ static const uint8_t *find_tag(const struct profile *p, const char *name,
     return NULL;
 }
 
-static bool take_table(struct glint_tone_curve *t, const uint8_t *at, size_t n)
+static bool read_curve_table(struct glint_tone_curve *t, const uint8_t *at,
+                             size_t n)
 {
     const int n_entries = n < GLINT_TONE_ENTRIES ? (int)n : GLINT_TONE_ENTRIES;
 
@@ -310,8 +314,8 @@ static bool take_table(struct glint_tone_curve *t, const uint8_t *at, size_t n)
     return t->entry[n_entries - 1] > t->entry[0];
 }
 
-static bool take_formula(struct glint_tone_curve *t, const uint8_t *at,
-                         size_t bytes)
+static bool read_curve_formula(struct glint_tone_curve *t, const uint8_t *at,
+                               size_t bytes)
 {
     static const uint8_t n_values[] = {1, 3, 4, 5, 7};
     const int kind = at[8] << 8 | at[9];
@@ -335,29 +339,30 @@ static bool take_formula(struct glint_tone_curve *t, const uint8_t *at,
     return t->gamma > 0.1 && t->gamma < 10 && t->a > 0;
 }
 
-static bool take_curve(struct glint_tone_curve *t, const struct profile *p,
-                       const char *name)
+static bool read_tone_curve(struct glint_tone_curve *t, const struct profile *p,
+                            const char *name)
 {
     size_t bytes;
-    const uint8_t *const at = find_tag(p, name, 12, &bytes);
+    const uint8_t *const at = find_icc_tag(p, name, 12, &bytes);
     uint32_t n;
 
     memset(t, 0, sizeof *t);
     t->gamma = t->a = 1;
     if (at && memcmp(at, "para", 4) == 0)
-        return take_formula(t, at, bytes);
+        return read_curve_formula(t, at, bytes);
     if (!at || memcmp(at, "curv", 4) != 0)
         return false;
-    n = read_u32(at + 8);
+    n = read_big_endian_u32(at + 8);
     if (n > (bytes - 12) / 2)
         return false;
     if (n == 1)
         t->gamma = (at[12] << 8 | at[13]) / 256.0;
-    return n <= 1 ? t->gamma > 0.1 : take_table(t, at + 12, n);
+    return n <= 1 ? t->gamma > 0.1 : read_curve_table(t, at + 12, n);
 }
 
-/* Returns whether T is within a quarter of an 8-bit code of the sRGB curve. */
-static bool is_srgb(const struct glint_tone_curve *t)
+/* Returns whether curve T is within a quarter of an 8-bit code of the sRGB
+ * curve. */
+static bool is_srgb_curve(const struct glint_tone_curve *t)
 {
     struct glint_tone_curve srgb;
 
@@ -371,7 +376,8 @@ static bool is_srgb(const struct glint_tone_curve *t)
     return true;
 }
 
-static bool take_matrix(struct glint_colours *colours, const struct profile *p)
+static bool read_colour_matrix(struct glint_colours *colours,
+                               const struct profile *p)
 {
     /* BT.709 primaries in X, Y, Z under D50, the white point of ICC profiles */
     static const double bt709[3][3] = {{0.43607, 0.38515, 0.14307},
@@ -382,14 +388,14 @@ static bool take_matrix(struct glint_colours *colours, const struct profile *p)
 
     for (int c = 0; c < 3; c++) {
         size_t bytes;
-        const uint8_t *const at = find_tag(p, names[c], 20, &bytes);
+        const uint8_t *const at = find_icc_tag(p, names[c], 20, &bytes);
 
         for (int i = 0; at && i < 3; i++)
             file[i][c] = read_s15f16(at + 8 + 4 * i);
         if (!at)
             return false;
     }
-    return set_matrices(colours, (const double(*)[3])file, bt709);
+    return set_colour_matrices(colours, (const double(*)[3])file, bt709);
 }
 
 bool glint_icc_read(struct glint_colours *colours, const uint8_t *profile,
@@ -407,11 +413,12 @@ bool glint_icc_read(struct glint_colours *colours, const uint8_t *profile,
         return false;
     glint_colours_set(&made, GLINT_TONE_IS_SRGB, 0, "its ICC profile");
     for (int c = 0; c < 3; c++) {
-        if (!take_curve(&made.transfer[c], &p, is_grey ? "kTRC" : names[c]))
+        if (!read_tone_curve(&made.transfer[c], &p,
+                             is_grey ? "kTRC" : names[c]))
             return false;
-        made.is_srgb = made.is_srgb && is_srgb(&made.transfer[c]);
+        made.is_srgb = made.is_srgb && is_srgb_curve(&made.transfer[c]);
     }
-    if (!is_grey && !take_matrix(&made, &p))
+    if (!is_grey && !read_colour_matrix(&made, &p))
         return false;
     *colours = made;
     return true;

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/tones.h - from the codes of a picture file to linear light, as its
- * profile says, and between its primaries and BT.709.
+ * formats/tones.h - converts codes of a picture file to linear light and back,
+ * by its colour profile, and colours between its primaries and BT.709.
  *
- *     glint_tone_curve_set(&transfer, GLINT_TONE_IS_SRGB, 0);      or
+ *     glint_tone_curve_set(&transfer, GLINT_TONE_IS_SRGB, 0); or
  *     glint_icc_read(&colours, profile, bytes);
  *     light = glint_tone_curve_decode(&transfer, code / 65535.0);
  *
- * A code is 0 .. 1; floats go beyond, where a curve is continued by its own
- * formula and mirrored below 0. All is double, for pictures that are edited
- * once; frames of a video have tables of integers.
- */
+ * A code is 0 .. 1. Floats may exceed that: a curve continues by its own
+ * formula above 1, and is mirrored below 0. All computation is in double, for
+ * pictures that are edited once; video frames have tables of integers. */
 #ifndef GLINT_PLATFORM_FORMATS_TONES_H
 #define GLINT_PLATFORM_FORMATS_TONES_H
 
@@ -23,35 +22,38 @@ enum glint_tone_kind {
     GLINT_TONE_IS_SRGB,
     GLINT_TONE_IS_BT709,
     GLINT_TONE_IS_GAMMA,
-    GLINT_TONE_IS_PQ, /* light 1 is 203 cd/m2 [ITU-R BT.2408], 49.26 is code 1
-                       */
-    GLINT_TONE_IS_HLG /* light 1 is code 0.75, scene light; 3.774 is code 1 */
+    GLINT_TONE_IS_PQ, /* PQ; light 1 is 203 cd/m2 [ITU-R BT.2408], code 1 is
+                         light 49.26 */
+    GLINT_TONE_IS_HLG /* HLG; light 1 is code 0.75, scene light; code 1 is light
+                         3.774 */
 };
 
 #define GLINT_TONE_ENTRIES 1024
 
-/* light = (a code + b)^gamma + e from code = d on, c code + f below d. A table
- * replaces the formula: it is interpolated linearly between entries at equal
- * steps of code; an entry of 65535 is light 1. */
+/* A transfer curve: light = (a code + b)^gamma + e for codes of d and more, c
+ * code + f below. A table, if there is one, replaces the formula: it is
+ * interpolated linearly between entries at equal steps of code; an entry of
+ * 65535 is light 1. */
 struct glint_tone_curve {
     double gamma, a, b, c, d, e, f;
-    bool is_pq, is_hlg; /* their curves replace the formula, too */
-    int n_entries;      /* 0: no table */
+    bool is_pq, is_hlg; /* true: the curve of PQ or HLG replaces the formula */
+    int n_entries;      /* number of entries of the table; 0: no table */
     uint16_t entry[GLINT_TONE_ENTRIES];
 };
 
 /* Transfer curves and primaries of a file's three colours. */
 struct glint_colours {
     struct glint_tone_curve transfer[3];
-    double to_bt709[3][3]; /* from light of the file's primaries to BT.709's */
-    /* from light of BT.709's primaries to the file's */
+    double to_bt709[3][3]; /* matrix from light in the file's primaries to
+                              BT.709 */
+    /* matrix from light in BT.709 primaries to the file's */
     double from_bt709[3][3];
     bool is_srgb; /* sRGB curve and BT.709 primaries, as 8-bit pictures have */
     char name[48];
 };
 
 /* Sets TRANSFER to the curve KIND; GAMMA is used only by GLINT_TONE_IS_GAMMA.
- * The next two functions convert a code to linear light and back. */
+ * The next two functions convert a code to linear light, and back. */
 void glint_tone_curve_set(struct glint_tone_curve *transfer,
                           enum glint_tone_kind kind, double gamma);
 double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
@@ -59,22 +61,22 @@ double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
 double glint_tone_curve_encode(const struct glint_tone_curve *transfer,
                                double light);
 
-/* Returns whether codes up to 1 hold light above 1. */
+/* Returns whether codes of TRANSFER up to 1 stand for light above 1. */
 bool glint_tone_curve_is_hdr(const struct glint_tone_curve *transfer);
 
-/* Sets COLOURS to BT.709 primaries, with one curve for all three colours. */
+/* Sets COLOURS to BT.709 primaries, with the curve KIND for all three
+ * colours. */
 void glint_colours_set(struct glint_colours *colours, enum glint_tone_kind kind,
                        double gamma, const char *name);
 
-/* Sets the primaries of COLOURS by the chromaticities x, y of red, green, blue
- * and white. Returns false and changes nothing if no matrix has these
+/* Sets the primaries of COLOURS from the chromaticities x, y of red, green,
+ * blue and white. Returns false and changes nothing if no matrix has these
  * chromaticities. */
-bool glint_colours_primaries(struct glint_colours *colours,
-                             const double xy[4][2]);
+bool glint_colours_set_primaries(struct glint_colours *colours,
+                                 const double xy[4][2]);
 
-/* Sets COLOURS by an ICC profile of a grey or RGB picture that consists of
- * curves and a matrix. Returns false if the profile is malformed or of another
- * kind. */
+/* Sets COLOURS from the ICC profile of a grey or RGB picture. Returns false if
+ * the profile is malformed, or does not consist of curves and a matrix. */
 bool glint_icc_read(struct glint_colours *colours, const uint8_t *profile,
                     size_t bytes);
 

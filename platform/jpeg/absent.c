@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stands in for mjpeg.c where glint is built without libjpeg.
- */
+ * Replaces mjpeg.c in builds without libjpeg: opening a decoder fails. */
 #include "jpeg/mjpeg.h"
 
 #include "posix/error.h"

@@ -108,7 +108,7 @@ static void leave_with_message(j_common_ptr jpeg, enum glint_status status)
         d, glint_error_report(d->error, status, d->name, "MJPEG: %s", text));
 }
 
-static void on_error(j_common_ptr jpeg)
+static void on_libjpeg_error(j_common_ptr jpeg)
 {
     switch (jpeg->err->msg_code) {
     case JERR_OUT_OF_MEMORY:
@@ -122,10 +122,10 @@ static void on_error(j_common_ptr jpeg)
     leave_with_message(jpeg, GLINT_E_FORMAT);
 }
 
-/* Leaves libjpeg at the three warnings that mean wrong samples. After other
- * warnings samples are still right; messages with LEVEL >= 0 are not
+/* Leaves libjpeg at the three warnings after which samples are wrong. After
+ * other warnings samples are right; messages with LEVEL >= 0 are not
  * warnings. */
-static void on_message(j_common_ptr jpeg, int level)
+static void on_libjpeg_message(j_common_ptr jpeg, int level)
 {
     struct glint_mjpeg *const d = jpeg->client_data;
 
@@ -147,22 +147,22 @@ static void on_message(j_common_ptr jpeg, int level)
     }
 }
 
-static void on_output(j_common_ptr jpeg)
+static void on_libjpeg_output(j_common_ptr jpeg)
 {
     (void)jpeg;
 }
 
 /* ------------------------------------------------------- what libjpeg reads */
 
-static void on_source(j_decompress_ptr jpeg)
+static void on_source_start(j_decompress_ptr jpeg)
 {
     (void)jpeg;
 }
 
-/* Called when libjpeg has read all data. In the scan, supplies an
- * end-of-image marker, since libjpeg reads ahead and may have all samples
- * already; in the header, jumps out of libjpeg with an error. */
-static boolean on_end(j_decompress_ptr jpeg)
+/* Called when libjpeg has read all data. In the scan, supplies an end-of-image
+ * marker, since libjpeg reads ahead and may have decoded all samples; in the
+ * header, leaves libjpeg with an error. */
+static boolean on_data_end(j_decompress_ptr jpeg)
 {
     static const JOCTET end[] = {MARKER, EOI};
     struct glint_mjpeg *const d = jpeg->client_data;
@@ -176,7 +176,7 @@ static boolean on_end(j_decompress_ptr jpeg)
     return TRUE;
 }
 
-static void on_skip(j_decompress_ptr jpeg, long bytes)
+static void on_skip_bytes(j_decompress_ptr jpeg, long bytes)
 {
     struct glint_mjpeg *const d = jpeg->client_data;
     const size_t wanted = bytes > 0 ? (size_t)bytes : 0;
@@ -187,15 +187,15 @@ static void on_skip(j_decompress_ptr jpeg, long bytes)
     d->source.bytes_in_buffer -= n;
 }
 
-/* Returns whether MARKER has no length and data after it. */
-static bool is_bare(int marker)
+/* Returns whether MARKER is a JPEG marker without length and data. */
+static bool is_marker_without_data(int marker)
 {
     return marker == TEM || (marker >= RST_FIRST && marker <= EOI);
 }
 
 /* Returns the offset of the last start-of-image marker in the header. Cameras
  * may send several, and libjpeg accepts only one. */
-static size_t find_start(const uint8_t *data, size_t bytes)
+static size_t find_image_start(const uint8_t *data, size_t bytes)
 {
     size_t start = 0, at = 0;
 
@@ -204,9 +204,9 @@ static size_t find_start(const uint8_t *data, size_t bytes)
 
         if (marker == SOI)
             start = at;
-        if (marker == MARKER) /* a padding byte */
+        if (marker == MARKER) /* 0xff before a marker: padding */
             at++;
-        else if (is_bare(marker))
+        else if (is_marker_without_data(marker))
             at += 2;
         else
             at += 2 + ((size_t)data[at + 2] << 8 | data[at + 3]);
@@ -214,18 +214,19 @@ static size_t find_start(const uint8_t *data, size_t bytes)
     return start;
 }
 
-static void set_source(struct glint_mjpeg *d, const uint8_t *data, size_t bytes)
+static void set_libjpeg_source(struct glint_mjpeg *d, const uint8_t *data,
+                               size_t bytes)
 {
-    const size_t start = find_start(data, bytes);
+    const size_t start = find_image_start(data, bytes);
 
     d->source = (struct jpeg_source_mgr){
         .next_input_byte = data + start,
         .bytes_in_buffer = bytes - start,
-        .init_source = on_source,
-        .fill_input_buffer = on_end,
-        .skip_input_data = on_skip,
+        .init_source = on_source_start,
+        .fill_input_buffer = on_data_end,
+        .skip_input_data = on_skip_bytes,
         .resync_to_restart = jpeg_resync_to_restart,
-        .term_source = on_source,
+        .term_source = on_source_start,
     };
     d->jpeg.src = &d->source;
 }
@@ -238,10 +239,10 @@ static void reject_frame(struct glint_mjpeg *d, const char *cause)
                                         "MJPEG: %s", cause));
 }
 
-/* Returns the pixel format for the frame's chroma subsampling, and rejects
+/* Returns the pixel format for the frame's chroma subsampling; rejects
  * subsamplings that glint does not support. Only the ratios of Y's sampling
- * factors to Cb's and Cr's matter. */
-static enum glint_pixel_format choose_format(struct glint_mjpeg *d)
+ * factors to those of Cb and Cr matter. */
+static enum glint_pixel_format choose_pixel_format(struct glint_mjpeg *d)
 {
     const jpeg_component_info *const c = d->jpeg.comp_info;
     const int across = c[0].h_samp_factor, down = c[0].v_samp_factor;
@@ -267,8 +268,8 @@ static enum glint_pixel_format choose_format(struct glint_mjpeg *d)
 }
 
 /* Rejects frames that are too large, would cost too much memory or time, or
- * that glint cannot draw on. */
-static void check_header(struct glint_mjpeg *d)
+ * have colours that glint does not support. */
+static void check_jpeg_header(struct glint_mjpeg *d)
 {
     const struct jpeg_decompress_struct *const j = &d->jpeg;
 
@@ -292,9 +293,9 @@ static void check_header(struct glint_mjpeg *d)
 static void start_decoding(struct glint_mjpeg *d, struct glint_image *image)
 {
     jpeg_read_header(&d->jpeg, TRUE);
-    check_header(d);
+    check_jpeg_header(d);
     *image = (struct glint_image){
-        .format = choose_format(d),
+        .format = choose_pixel_format(d),
         .width = (int)d->jpeg.image_width,
         .height = (int)d->jpeg.image_height,
         .range = GLINT_RANGE_FULL,
@@ -313,9 +314,10 @@ static void start_decoding(struct glint_mjpeg *d, struct glint_image *image)
     jpeg_start_decompress(&d->jpeg);
 }
 
-/* Decodes to the planes of IMAGE, one row of MCUs at a time. The last rows may
- * reach below the picture; planes have MAX_ROWS spare rows there. */
-static void read_planes(struct glint_mjpeg *d, const struct glint_image *image)
+/* Decodes to the planes of IMAGE, one row of MCUs at a time. The last row of
+ * MCUs may reach below the picture; planes have MAX_ROWS spare rows there. */
+static void decode_planes(struct glint_mjpeg *d,
+                          const struct glint_image *image)
 {
     struct jpeg_decompress_struct *const j = &d->jpeg;
     const int lines = j->max_v_samp_factor * DCTSIZE;
@@ -334,7 +336,7 @@ static void read_planes(struct glint_mjpeg *d, const struct glint_image *image)
     }
 }
 
-/* Makes a libjpeg object per frame: a reused object would apply the last
+/* Uses a new libjpeg object per frame: a reused object would apply the last
  * frame's tables to the next frame. */
 enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
                                      const void *data, size_t bytes,
@@ -353,17 +355,17 @@ enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
         .err = jpeg_std_error(&d->errors),
         .client_data = d,
     };
-    d->errors.error_exit = on_error;
-    d->errors.emit_message = on_message;
-    d->errors.output_message = on_output;
+    d->errors.error_exit = on_libjpeg_error;
+    d->errors.emit_message = on_libjpeg_message;
+    d->errors.output_message = on_libjpeg_output;
     if (setjmp(d->escape)) {
         jpeg_destroy_decompress(&d->jpeg);
         return d->status;
     }
     jpeg_create_decompress(&d->jpeg);
-    set_source(d, data, bytes);
+    set_libjpeg_source(d, data, bytes);
     start_decoding(d, &frame);
-    read_planes(d, &frame);
+    decode_planes(d, &frame);
     jpeg_destroy_decompress(&d->jpeg);
     *image = frame;
     return GLINT_OK;

@@ -1,26 +1,25 @@
 /* SPDX-License-Identifier: MIT
  *
- * jpeg/mjpeg.h - frames of Motion JPEG cameras as planes Y, Cb, Cr.
+ * jpeg/mjpeg.h - decodes frames of Motion JPEG cameras to planes Y, Cb, Cr.
  *
- *     glint_mjpeg_open(&decoder, "/dev/video0", 1280, 720, &error);  once
+ *     glint_mjpeg_open(&decoder, "/dev/video0", 1280, 720, &error); once
  *     status = glint_mjpeg_decode(decoder, data, bytes, &image, &error);
  *     if (status == GLINT_E_FORMAT)
- *         n_corrupt++;                    ... and on to the next frame
+ *         n_corrupt++; ... and on to the next frame
  *     glint_mjpeg_close(decoder);
  *
  * A frame is one baseline JPEG in one scan, as cameras send it. Its samples are
  * returned as coded, without conversion to RGB and without upsampling of
  * chroma. They are the same bits on every machine (integer transform).
  *
- * Faults of cameras that are tolerated: no Huffman tables (the standard tables
- * are used), an AVI1 header, two start-of-image markers, stray bytes between
+ * Tolerated faults of cameras: no Huffman tables (the standard tables are
+ * used), an AVI1 header, two start-of-image markers, stray bytes between
  * markers, no end-of-image marker, bytes after it. No state passes from frame
  * to frame: pixels depend only on the bytes of their frame.
  *
  * libjpeg decodes. It allocates and frees some 30 KiB of heap per frame, in
  * blocks so small that they need no system call after the first frames. In
- * builds without libjpeg, open returns GLINT_E_UNSUPPORTED.
- */
+ * builds without libjpeg, glint_mjpeg_open() returns GLINT_E_UNSUPPORTED. */
 #ifndef GLINT_PLATFORM_JPEG_MJPEG_H
 #define GLINT_PLATFORM_JPEG_MJPEG_H
 

@@ -16,10 +16,11 @@
 #include "posix/at_death.h"
 #include "posix/error.h"
 
-/* restore_console() reads these variables when the process dies, so they are
- * atomic. */
+/* File descriptor of the console in graphics mode, or -1. restore_console()
+ * reads these variables when the process dies, so they are atomic. */
 static int held_fd = -1;
-static int held_mode; /* mode of the console before glint set graphics mode */
+static int held_mode; /* mode of the console before glint set it to graphics
+                         mode */
 /* id of the process that set graphics mode; its child processes must not
  * restore the mode */
 static pid_t holder;
@@ -40,13 +41,13 @@ static void restore_console(void)
  * nothing. Registered functions run from the latest to the earliest, so a
  * function that must run before the console is restored must be registered
  * after this call. */
-static void watch_console(void)
+static void register_console_restore(void)
 {
     glint_at_death(restore_console);
 }
 
-/* Opens the console PATH as *FD. Returns the mode to restore later, or -1 with
- * errno set. */
+/* Opens the console PATH and sets *FD to its descriptor. Returns the mode to
+ * restore later, or -1 with errno set. */
 static int open_console(const char *path, int *fd)
 {
     struct vt_mode switching;
@@ -63,7 +64,7 @@ static int open_console(const char *path, int *fd)
         return -1;
     }
     /* A program that draws on the console has set VT_PROCESS, so that the
-     * kernel asks it before it switches consoles. Graphics mode with VT_AUTO
+     * kernel notifies it before switching consoles. Graphics mode with VT_AUTO
      * was left behind by a program that was killed. */
     if (mode == KD_GRAPHICS && ioctl(*fd, VT_GETMODE, &switching) == 0 &&
         switching.mode == VT_AUTO)
@@ -71,7 +72,8 @@ static int open_console(const char *path, int *fd)
     return mode;
 }
 
-static bool refuse_console(int *fd, struct glint_error *note, const char *cause)
+static bool explain_console_refusal(int *fd, struct glint_error *note,
+                                    const char *cause)
 {
     if (*fd >= 0)
         close(*fd);
@@ -91,20 +93,20 @@ static bool acquire_console(int *fd, struct glint_error *note)
     if (mode < 0)
         mode = open_console("/dev/tty0", fd);
     if (mode < 0)
-        return refuse_console(fd, note,
-                              errno == ENOENT || errno == ENXIO ||
-                                      errno == ENODEV
-                                  ? "there is none"
-                                  : strerror(errno));
+        return explain_console_refusal(fd, note,
+                                       errno == ENOENT || errno == ENXIO ||
+                                               errno == ENODEV
+                                           ? "there is none"
+                                           : strerror(errno));
     if (mode == KD_GRAPHICS)
-        return refuse_console(fd, note, "another program draws on it");
+        return explain_console_refusal(fd, note, "another program draws on it");
     __atomic_store_n(&held_mode, mode, __ATOMIC_SEQ_CST);
     __atomic_store_n(&holder, getpid(), __ATOMIC_SEQ_CST);
     __atomic_store_n(&held_fd, *fd, __ATOMIC_SEQ_CST);
-    watch_console();
+    register_console_restore();
     if (ioctl(*fd, KDSETMODE, KD_GRAPHICS) < 0) {
         __atomic_store_n(&held_fd, -1, __ATOMIC_SEQ_CST);
-        return refuse_console(fd, note, strerror(errno));
+        return explain_console_refusal(fd, note, strerror(errno));
     }
     return true;
 }
@@ -126,30 +128,29 @@ static void release_console(int *fd)
 #endif
 
 /* Reports that the ioctl request WHAT failed, with the cause in errno. */
-static enum glint_status report_failure(const struct glint_fbdev *fb,
-                                        const char *what,
-                                        struct glint_error *error)
+static enum glint_status report_ioctl_failure(const struct glint_fbdev *fb,
+                                              const char *what,
+                                              struct glint_error *error)
 {
     if (errno == ENODEV)
         return glint_error_report(error, GLINT_E_DEVICE, fb->name,
-                                  "the framebuffer went away");
+                                  "the framebuffer was removed");
     return glint_error_report(error, GLINT_E_DEVICE, fb->name, "%s: %s", what,
                               strerror(errno));
 }
 
 /* -------------------------------------------------------------- when dying */
 
-/* The console draws at the offset to which the panel was panned last, so
- * glint pans the panel back when it ends. That must happen before the
- * console's mode is restored: the console then adopts the current offset,
- * and Linux 6.1 draws in a wrong position if the offset differs from the
- * original one. */
+/* The console draws at the offset to which the panel was panned last, so glint
+ * pans the panel back when it ends. That must happen before the console's mode
+ * is restored: the console then adopts the current offset, and Linux 6.1 draws
+ * at a wrong position if the offset differs from the original one. */
 static int panned_fd = -1; /* framebuffer to pan back, or -1; atomic */
 static struct fb_var_screeninfo panned_home;
 static pid_t panner; /* id of the process that panned the panel; atomic */
 
 /* Pans the panel back to its original offset. Async-signal-safe. */
-static void restore_pan(void)
+static void restore_pan_offset(void)
 {
     const int saved = errno;
     const int fd = __atomic_load_n(&panned_fd, __ATOMIC_SEQ_CST);
@@ -159,33 +160,35 @@ static void restore_pan(void)
     errno = saved;
 }
 
-static void watch_pan(const struct glint_fbdev *fb)
+static void register_pan_restore(const struct glint_fbdev *fb)
 {
     panned_home = fb->home;
     __atomic_store_n(&panner, getpid(), __ATOMIC_SEQ_CST);
     __atomic_store_n(&panned_fd, fb->fd, __ATOMIC_SEQ_CST);
-    watch_console();
-    glint_at_death(restore_pan);
+    register_console_restore();
+    glint_at_death(restore_pan_offset);
 }
 
-static void end_pan(const struct glint_fbdev *fb)
+static void restore_pan_at_close(const struct glint_fbdev *fb)
 {
     if (fb->fd < 0 || __atomic_load_n(&panned_fd, __ATOMIC_SEQ_CST) != fb->fd)
         return;
-    restore_pan();
+    restore_pan_offset();
     __atomic_store_n(&panned_fd, -1, __ATOMIC_SEQ_CST);
 }
 
 /* -------------------------------------------------------------------- mode */
 
-static struct glint_pixel_field convert_field(const struct fb_bitfield *bits)
+static struct glint_pixel_field
+convert_bit_field(const struct fb_bitfield *bits)
 {
     return (struct glint_pixel_field){(int)bits->offset, (int)bits->length};
 }
 
-/* Returns the layout of V's pixels; if the driver states no bit fields, RGB565
- * or XRGB8888. */
-static struct glint_pixel_layout read_layout(const struct fb_var_screeninfo *v)
+/* Returns the layout of pixels that V describes; RGB565 or XRGB8888 if the
+ * driver states no bit fields. */
+static struct glint_pixel_layout
+read_pixel_layout(const struct fb_var_screeninfo *v)
 {
     const int bytes =
         v->bits_per_pixel > 32 ? 0 : (int)(v->bits_per_pixel + 7) / 8;
@@ -199,8 +202,8 @@ static struct glint_pixel_layout read_layout(const struct fb_var_screeninfo *v)
                           : (struct glint_pixel_layout){
                                 bytes, {16, 8}, {8, 8}, {0, 8}, {0, 0}};
     return (struct glint_pixel_layout){
-        bytes, convert_field(&v->red), convert_field(&v->green),
-        convert_field(&v->blue), convert_field(&v->transp)};
+        bytes, convert_bit_field(&v->red), convert_bit_field(&v->green),
+        convert_bit_field(&v->blue), convert_bit_field(&v->transp)};
 }
 
 static bool is_true_colour(const struct fb_fix_screeninfo *fix,
@@ -211,18 +214,18 @@ static bool is_true_colour(const struct fb_fix_screeninfo *fix,
             fix->visual == FB_VISUAL_DIRECTCOLOR);
 }
 
-/* Sets size, layout and memory size of FB from the driver's data, or reports
- * why glint cannot draw on such a framebuffer. */
-static enum glint_status adopt_layout(struct glint_fbdev *fb,
-                                      const struct fb_fix_screeninfo *fix,
-                                      struct glint_error *error)
+/* Sets size, layout and memory size of FB from the driver's data. Reports an
+ * error if glint cannot draw on such a framebuffer. */
+static enum glint_status
+adopt_driver_layout(struct glint_fbdev *fb, const struct fb_fix_screeninfo *fix,
+                    struct glint_error *error)
 {
     const struct fb_var_screeninfo *const v = &fb->var;
     const uint64_t wanted =
         (uint64_t)fix->line_length *
         (v->yres_virtual > v->yres ? v->yres_virtual : v->yres);
 
-    fb->layout = read_layout(v);
+    fb->layout = read_pixel_layout(v);
     if (!is_true_colour(fix, v) || !glint_pixel_layout_is_valid(&fb->layout))
         return glint_error_report(
             error, GLINT_E_DEVICE, fb->name,
@@ -265,13 +268,13 @@ static enum glint_status map_panel(struct glint_fbdev *fb,
     at = mmap(NULL, fb->map_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fb->fd,
               0);
     if (at == MAP_FAILED)
-        return report_failure(fb, "mmap", error);
+        return report_ioctl_failure(fb, "mmap", error);
     fb->map = at;
     return GLINT_OK;
 }
 
 /* Returns row Y of the mapped memory. */
-static uint8_t *get_row(const struct glint_fbdev *fb, uint32_t y)
+static uint8_t *get_mapped_row(const struct glint_fbdev *fb, uint32_t y)
 {
     return fb->map + fb->skip_bytes + y * fb->stride_bytes;
 }
@@ -285,10 +288,10 @@ static bool pan_to_page(struct glint_fbdev *fb, int page)
     return glint_ioctl(fb->fd, FBIOPAN_DISPLAY, &to) == 0;
 }
 
-/* Returns whether the panel can pan between two screens of memory. Clears both
- * first, so that old contents of the second screen are not seen. */
-static bool try_pages(struct glint_fbdev *fb,
-                      const struct fb_fix_screeninfo *fix)
+/* Returns whether the panel can pan between two screens of its memory. Clears
+ * both first, so that old contents of the second screen are not visible. */
+static bool can_flip_pages(struct glint_fbdev *fb,
+                           const struct fb_fix_screeninfo *fix)
 {
     const uint32_t height = fb->var.yres;
 
@@ -296,15 +299,15 @@ static bool try_pages(struct glint_fbdev *fb,
         fb->var.yres_virtual / 2 < height ||
         fb->mem_bytes / fb->stride_bytes / 2 < height)
         return false;
-    memset(get_row(fb, 0), 0, 2 * (size_t)height * fb->stride_bytes);
-    watch_pan(fb);
+    memset(get_mapped_row(fb, 0), 0, 2 * (size_t)height * fb->stride_bytes);
+    register_pan_restore(fb);
     return pan_to_page(fb, 1) && pan_to_page(fb, 0);
 }
 
-/* Sets up layout, mapping and number of screens of FB for the mode in
+/* Sets FB's layout, memory mapping and number of screens for the mode in
  * fb->var. */
-static enum glint_status enter_mode(struct glint_fbdev *fb,
-                                    struct glint_error *error)
+static enum glint_status set_up_mode(struct glint_fbdev *fb,
+                                     struct glint_error *error)
 {
     struct fb_fix_screeninfo fix;
     enum glint_status status;
@@ -318,52 +321,54 @@ static enum glint_status enter_mode(struct glint_fbdev *fb,
              * screen visible. */
             0;
     if (glint_ioctl(fb->fd, FBIOGET_FSCREENINFO, &fix) < 0)
-        return report_failure(fb, "FBIOGET_FSCREENINFO", error);
-    status = adopt_layout(fb, &fix, error);
+        return report_ioctl_failure(fb, "FBIOGET_FSCREENINFO", error);
+    status = adopt_driver_layout(fb, &fix, error);
     if (!status)
         status = map_panel(fb, error);
     if (status)
         return status;
-    fb->n_pages = try_pages(fb, &fix) ? 2 : 1;
+    fb->n_pages = can_flip_pages(fb, &fix) ? 2 : 1;
     return GLINT_OK;
 }
 
-static bool is_same_field(const struct fb_bitfield *a,
-                          const struct fb_bitfield *b)
+static bool is_same_bit_field(const struct fb_bitfield *a,
+                              const struct fb_bitfield *b)
 {
     return a->offset == b->offset && a->length == b->length;
 }
 
-static bool is_same_mode(const struct fb_var_screeninfo *a,
-                         const struct fb_var_screeninfo *b)
+static bool is_same_video_mode(const struct fb_var_screeninfo *a,
+                               const struct fb_var_screeninfo *b)
 {
     return a->xres == b->xres && a->yres == b->yres &&
            a->yres_virtual == b->yres_virtual &&
            a->bits_per_pixel == b->bits_per_pixel &&
-           a->grayscale == b->grayscale && is_same_field(&a->red, &b->red) &&
-           is_same_field(&a->green, &b->green) &&
-           is_same_field(&a->blue, &b->blue) &&
-           is_same_field(&a->transp, &b->transp);
+           a->grayscale == b->grayscale &&
+           is_same_bit_field(&a->red, &b->red) &&
+           is_same_bit_field(&a->green, &b->green) &&
+           is_same_bit_field(&a->blue, &b->blue) &&
+           is_same_bit_field(&a->transp, &b->transp);
 }
 
-/* Sets FB up again if another program changed the mode. Fails if the device is
- * gone. */
-static enum glint_status follow_mode(struct glint_fbdev *fb,
-                                     struct glint_error *error)
+/* Adapts FB if another program has changed the video mode. Fails if the device
+ * was removed. */
+static enum glint_status follow_mode_change(struct glint_fbdev *fb,
+                                            struct glint_error *error)
 {
     const struct fb_var_screeninfo old = fb->var;
 
     if (glint_ioctl(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
-        return report_failure(fb, "FBIOGET_VSCREENINFO", error);
-    return fb->map && is_same_mode(&old, &fb->var) ? GLINT_OK
-                                                   : enter_mode(fb, error);
+        return report_ioctl_failure(fb, "FBIOGET_VSCREENINFO", error);
+    return fb->map && is_same_video_mode(&old, &fb->var)
+               ? GLINT_OK
+               : set_up_mode(fb, error);
 }
 
 /* ------------------------------------------------------------------ frames */
 
-static enum glint_status fit_panel(struct glint_fbdev *fb,
-                                   const struct glint_image *image,
-                                   struct glint_error *error)
+static enum glint_status open_panel_for_image(struct glint_fbdev *fb,
+                                              const struct glint_image *image,
+                                              struct glint_error *error)
 {
     const struct glint_panel_config cfg = {
         .width = fb->width,
@@ -382,8 +387,9 @@ static enum glint_status fit_panel(struct glint_fbdev *fb,
     return glint_panel_open(&fb->panel, &cfg, error);
 }
 
-static void draw_to_map(struct glint_fbdev *fb, const struct glint_image *image,
-                        uint8_t *mem, int page)
+static void draw_to_mapped_screen(struct glint_fbdev *fb,
+                                  const struct glint_image *image, uint8_t *mem,
+                                  int page)
 {
     const ptrdiff_t stride = (ptrdiff_t)fb->stride_bytes;
 
@@ -395,9 +401,9 @@ static void draw_to_map(struct glint_fbdev *fb, const struct glint_image *image,
 
 /* Draws IMAGE directly to the visible screen, for panels whose memory holds
  * only one screen. */
-static enum glint_status draw_visible(struct glint_fbdev *fb,
-                                      const struct glint_image *image,
-                                      struct glint_error *error)
+static enum glint_status draw_to_visible_screen(struct glint_fbdev *fb,
+                                                const struct glint_image *image,
+                                                struct glint_error *error)
 {
     const uint32_t first = fb->var.yoffset;
     const size_t left = fb->var.xoffset * (size_t)fb->layout.bytes;
@@ -412,45 +418,47 @@ static enum glint_status draw_visible(struct glint_fbdev *fb,
             fb->var.xoffset, first);
     if (fb->has_vsync && glint_ioctl(fb->fd, FBIO_WAITFORVSYNC, &screen) < 0)
         fb->has_vsync = false;
-    draw_to_map(fb, image, get_row(fb, first) + left, 0);
+    draw_to_mapped_screen(fb, image, get_mapped_row(fb, first) + left, 0);
     return GLINT_OK;
 }
 
-/* Draws IMAGE to the hidden one of two screens, then shows that screen. */
-static enum glint_status draw_hidden(struct glint_fbdev *fb,
-                                     const struct glint_image *image,
-                                     struct glint_error *error)
+/* Draws IMAGE to the hidden one of two screens, then pans the panel to that
+ * screen. */
+static enum glint_status draw_to_hidden_screen(struct glint_fbdev *fb,
+                                               const struct glint_image *image,
+                                               struct glint_error *error)
 {
     const int page = fb->var.yoffset < fb->var.yres ? 1 : 0;
 
-    draw_to_map(fb, image, get_row(fb, (uint32_t)page * fb->var.yres), page);
+    draw_to_mapped_screen(
+        fb, image, get_mapped_row(fb, (uint32_t)page * fb->var.yres), page);
     if (pan_to_page(fb, page))
         return GLINT_OK;
     if (errno == ENODEV)
-        return report_failure(fb, "FBIOPAN_DISPLAY", error);
+        return report_ioctl_failure(fb, "FBIOPAN_DISPLAY", error);
     fb->n_pages = 1;
-    return draw_visible(fb, image, error);
+    return draw_to_visible_screen(fb, image, error);
 }
 
-static enum glint_status show_frame(struct glint_sink *sink,
-                                    const struct glint_image *image,
-                                    struct glint_error *error)
+static enum glint_status show_panel_frame(struct glint_sink *sink,
+                                          const struct glint_image *image,
+                                          struct glint_error *error)
 {
     struct glint_fbdev *const fb = (struct glint_fbdev *)sink;
-    enum glint_status status = follow_mode(fb, error);
+    enum glint_status status = follow_mode_change(fb, error);
 
     if (!status)
-        status = fit_panel(fb, image, error);
+        status = open_panel_for_image(fb, image, error);
     if (status)
         return status;
-    return fb->n_pages == 2 ? draw_hidden(fb, image, error)
-                            : draw_visible(fb, image, error);
+    return fb->n_pages == 2 ? draw_to_hidden_screen(fb, image, error)
+                            : draw_to_visible_screen(fb, image, error);
 }
 
 /* -------------------------------------------------------- opening, closing */
 
-static enum glint_status report_open(const struct glint_fbdev *fb,
-                                     struct glint_error *error)
+static enum glint_status report_open_failure(const struct glint_fbdev *fb,
+                                             struct glint_error *error)
 {
     const int number = errno;
 
@@ -468,11 +476,11 @@ static enum glint_status report_open(const struct glint_fbdev *fb,
                               strerror(number));
 }
 
-static void close_fb(struct glint_sink *sink)
+static void close_framebuffer(struct glint_sink *sink)
 {
     struct glint_fbdev *const fb = (struct glint_fbdev *)sink;
 
-    end_pan(fb);
+    restore_pan_at_close(fb);
     release_console(&fb->console_fd);
     unmap_panel(fb);
     glint_panel_close(&fb->panel);
@@ -481,7 +489,7 @@ static void close_fb(struct glint_sink *sink)
     fb->fd = -1;
 }
 
-static const char *default_path(void)
+static const char *get_default_path(void)
 {
     const char *const path = getenv("FRAMEBUFFER");
 
@@ -489,18 +497,18 @@ static const char *default_path(void)
 }
 
 /* Opens the device and checks that it is a framebuffer. */
-static enum glint_status open_device(struct glint_fbdev *fb,
-                                     struct glint_error *error)
+static enum glint_status open_framebuffer(struct glint_fbdev *fb,
+                                          struct glint_error *error)
 {
     fb->fd = open(fb->name, O_RDWR | O_CLOEXEC);
     if (fb->fd < 0)
-        return report_open(fb, error);
+        return report_open_failure(fb, error);
     if (glint_ioctl(fb->fd, FBIOGET_VSCREENINFO, &fb->var) == 0)
         return GLINT_OK;
     if (errno == ENOTTY || errno == EINVAL)
         return glint_error_report(error, GLINT_E_DEVICE, fb->name,
                                   "is not a framebuffer");
-    return report_failure(fb, "FBIOGET_VSCREENINFO", error);
+    return report_ioctl_failure(fb, "FBIOGET_VSCREENINFO", error);
 }
 
 enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
@@ -510,25 +518,25 @@ enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
     enum glint_status status;
 
     *fb = (struct glint_fbdev){
-        .sink = {.put = show_frame, .close = close_fb},
+        .sink = {.put = show_panel_frame, .close = close_framebuffer},
         .options = *options,
-        .name = path ? path : default_path(),
+        .name = path ? path : get_default_path(),
         .fd = -1,
         .has_vsync = options->vsync,
         .console_fd = -1,
     };
-    status = open_device(fb, error);
+    status = open_framebuffer(fb, error);
     if (!status && options->console) {
         fb->has_note = !acquire_console(&fb->console_fd, &fb->note);
         /* Setting graphics mode may have changed the offset of the visible
          * screen, so the mode is read again. */
         if (glint_ioctl(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
-            status = report_failure(fb, "FBIOGET_VSCREENINFO", error);
+            status = report_ioctl_failure(fb, "FBIOGET_VSCREENINFO", error);
     }
     if (!status)
-        status = enter_mode(fb, error);
+        status = set_up_mode(fb, error);
     if (status)
-        close_fb(&fb->sink);
+        close_framebuffer(&fb->sink);
     else
         ioctl(fb->fd, FBIOBLANK, FB_BLANK_UNBLANK); /* few drivers support it,
                                                        so errors are ignored */

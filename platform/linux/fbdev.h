@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * linux/fbdev.h - a panel behind /dev/fb0, as a sink.
+ * linux/fbdev.h - a sink that draws frames to a panel behind /dev/fb0.
  *
  *     glint_fbdev_open(&fb, NULL, &options, &error);
- *     fb.sink.put(&fb.sink, &image, &error);       each frame
+ *     fb.sink.put(&fb.sink, &image, &error); each frame
  *     fb.sink.close(&fb.sink);
  *
- * The mode is never changed; the driver's row stride (line_length) and bit
- * fields are trusted. Any packed true-colour format of 16, 24 or 32 bits is
- * supported (panel/panel.h). If the driver offers memory for two screens and
- * panning, frames are double-buffered; else they are drawn to the visible
- * screen.
+ * glint never changes the video mode, and trusts the driver's row stride
+ * (line_length) and bit fields. Any packed true-colour format of 16, 24 or 32
+ * bits is supported (panel/panel.h). If the driver offers memory for two
+ * screens and panning, frames are double-buffered; else they are drawn to the
+ * visible screen.
  *
  * Each put() first reads the mode from the driver: another program may have
  * changed it, and glint adapts; or the device may have been removed, which
@@ -33,37 +33,42 @@
 
 struct glint_fbdev_options {
     enum glint_panel_fit fit;
-    bool vsync;   /* true: with only one screen of memory, wait for the panel's
-                     refresh if the driver can. Less tearing; costs up to one
-                     refresh period per frame. */
-    bool console; /* true: keep the console in graphics mode */
+    bool dither; /* true: dither pictures, see panel/panel.h */
+    /* true: with only one screen of memory, wait for the panel's refresh if the
+     * driver can. Less tearing; costs up to one refresh period per frame. */
+    bool vsync;
+    bool console; /* true: set the console to graphics mode while the sink is
+                     open */
 };
 
 struct glint_fbdev {
     struct glint_sink sink;
-    char id[17];       /* name that the driver gives itself */
-    int width, height; /* size of the panel */
+    char id[17];       /* name of the driver */
+    int width, height; /* size of the panel, pixels */
     struct glint_pixel_layout layout;
-    int n_pages;   /* screens in memory, 1 or 2; 2: each frame is drawn to the
-                      hidden screen */
+    int n_pages;   /* number of screens in memory, 1 or 2; with 2, each frame is
+                      drawn to the hidden screen */
     bool has_note; /* true: the console could not be set to graphics mode */
     /* why the console could not be set to graphics mode */
     struct glint_error note;
 
-    /* Private. */
+    /* Private members. */
     struct glint_fbdev_options options;
-    const char *name;                   /* path of the device; not owned */
-    int fd;                             /* -1: closed */
-    struct fb_var_screeninfo var, home; /* current mode, and mode and offset
-                                           before glint panned */
-    uint8_t *map;                       /* NULL: not mapped */
-    size_t map_bytes, skip_bytes;       /* Pixels begin at map + skip_bytes. */
+    const char *name; /* path of the device; not owned */
+    int fd;           /* -1: closed */
+    /* Current mode and offset, and those before glint panned. */
+    struct fb_var_screeninfo var, home;
+    uint8_t *map;                 /* mapped memory of the panel; NULL: not
+                                     mapped */
+    size_t map_bytes, skip_bytes; /* Bytes of mapped memory, and bytes
+                                     before the first pixel. */
     size_t stride_bytes, mem_bytes;
-    const uint8_t *cleared[2]; /* screens whose area around the picture is
-                                  already black */
+    const uint8_t *cleared[2]; /* start of each screen whose area around the
+                                  picture is already black */
     bool has_vsync;
     struct glint_panel panel;
-    int console_fd; /* -1: the console's mode is not changed */
+    int console_fd; /* descriptor of the console; -1: the console's mode is not
+                       changed */
 };
 
 /* Opens the framebuffer PATH; the string must outlive FB. NULL stands for

@@ -7,8 +7,8 @@
 
 #include <linux/videodev2.h>
 
-/* Pixel formats by FOURCC. glint_fourcc_of() returns the first entry of a
- * format whose planes lie in one block of memory. */
+/* Table of pixel formats by FOURCC. glint_fourcc_from_format() returns the
+ * first entry of a format whose planes lie in one block of memory. */
 static const struct {
     uint32_t fourcc;
     enum glint_pixel_format format;
@@ -36,7 +36,7 @@ static const struct {
     {V4L2_PIX_FMT_YUV444M, GLINT_I444, 3},
 };
 
-/* Names of pixel formats: those of ffmpeg, and a few common ones. */
+/* Table of names of pixel formats: those of ffmpeg, and a few common ones. */
 static const struct {
     const char *name;
     uint32_t fourcc;
@@ -67,7 +67,7 @@ bool glint_fourcc_to_format(uint32_t fourcc, enum glint_pixel_format *format)
     return false;
 }
 
-uint32_t glint_fourcc_of(enum glint_pixel_format format)
+uint32_t glint_fourcc_from_format(enum glint_pixel_format format)
 {
     for (size_t i = 0; i < N_FORMATS; i++)
         if (formats[i].format == format && formats[i].memory_planes == 1)
@@ -75,7 +75,7 @@ uint32_t glint_fourcc_of(enum glint_pixel_format format)
     return 0;
 }
 
-static bool is_printable(uint32_t character)
+static bool are_characters_printable(uint32_t character)
 {
     return character >= ' ' && character <= '~';
 }
@@ -85,12 +85,12 @@ void glint_fourcc_text(uint32_t fourcc, char text[5])
     for (int i = 0; i < 4; i++) {
         const uint32_t character = fourcc >> 8 * i & 255;
 
-        text[i] = is_printable(character) ? (char)character : '?';
+        text[i] = are_characters_printable(character) ? (char)character : '?';
     }
     text[4] = 0;
 }
 
-static bool parse_known(const char *text, uint32_t *fourcc)
+static bool parse_known_name(const char *text, uint32_t *fourcc)
 {
     char own[5];
 
@@ -113,12 +113,12 @@ bool glint_fourcc_parse(const char *text, uint32_t *fourcc)
 {
     uint32_t value = 0;
 
-    if (parse_known(text, fourcc))
+    if (parse_known_name(text, fourcc))
         return true;
     if (strlen(text) != 4)
         return false;
     for (int i = 0; i < 4; i++) {
-        if (!is_printable((unsigned char)text[i]))
+        if (!are_characters_printable((unsigned char)text[i]))
             return false;
         value |= (uint32_t)(unsigned char)text[i] << 8 * i;
     }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * linux/fourcc.h - V4L2's codes for the formats and colours of glint.
+ * linux/fourcc.h - converts between V4L2's codes of formats and colours and
+ * those of glint.
  *
  * A FOURCC is four characters in a word, the first in the lowest byte. V4L2 has
  * two codes for a format of several planes: NV12 has all planes in one block of
- * memory, NM12 each plane in its own block; both are GLINT_NV12 here.
- */
+ * memory, NM12 each plane in its own block; both are GLINT_NV12 here. */
 #ifndef GLINT_PLATFORM_LINUX_FOURCC_H
 #define GLINT_PLATFORM_LINUX_FOURCC_H
 
@@ -19,21 +19,22 @@
  * is unused. */
 bool glint_fourcc_to_format(uint32_t fourcc, enum glint_pixel_format *format);
 
-/* Returns the FOURCC of FORMAT in one block of memory, or 0 if V4L2 has none,
- * as for GLINT_LINEAR_Q20 and for GLINT_I444, which exists as YM24 only. */
-uint32_t glint_fourcc_of(enum glint_pixel_format format);
+/* Returns the FOURCC of FORMAT with all planes in one block of memory, or 0 if
+ * V4L2 has none, as for GLINT_LINEAR_Q20 and for GLINT_I444, which exists as
+ * YM24 only. */
+uint32_t glint_fourcc_from_format(enum glint_pixel_format format);
 
 /* Writes FOURCC as text, such as "YUYV", with '?' for unprintable
  * characters. */
 void glint_fourcc_text(uint32_t fourcc, char text[5]);
 
-/* Parses TEXT, a FOURCC or ffmpeg's name of a pixel format, in any case
- * ("YUYV", "yuyv422", "nv12", "mjpeg"). Any other 4 printable characters become
- * the FOURCC unchanged. Returns false for other texts. */
+/* Parses TEXT, a FOURCC or ffmpeg's name of a pixel format, in upper or lower
+ * case ("YUYV", "yuyv422", "nv12", "mjpeg"). Any other 4 printable characters
+ * become the FOURCC unchanged. Returns false for other texts. */
 bool glint_fourcc_parse(const char *text, uint32_t *fourcc);
 
-/* Colours of a format: values of enum v4l2_colorspace, v4l2_ycbcr_encoding and
- * so on. */
+/* Colours of a format, by V4L2's values: enum v4l2_colorspace,
+ * v4l2_ycbcr_encoding and so on. */
 struct glint_v4l2_colour {
     uint32_t colorspace, ycbcr_enc, quantization, xfer_func;
 };

@@ -11,12 +11,13 @@
 
 #include <stdint.h>
 
-/* Begins to count instructions and returns the counter's descriptor, or -1 if
+/* Starts counting instructions and returns the counter's descriptor, or -1 if
  * the processor has no such counter or the system does not allow it
  * (/proc/sys/kernel/perf_event_paranoid above 2). */
 int glint_instructions_open(void);
 
-/* Returns the instructions counted so far, or 0 if they cannot be read. */
+/* Returns the number of instructions counted so far, or 0 if the counter cannot
+ * be read. */
 uint64_t glint_instructions_read(int counter);
 
 void glint_instructions_close(int counter);

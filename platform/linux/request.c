@@ -17,7 +17,7 @@ int glint_ioctl(int fd, unsigned long request, void *arg)
     return r;
 }
 
-static const char *get_advice(int number)
+static const char *get_error_advice(int number)
 {
     switch (number) {
     case EACCES:
@@ -27,16 +27,17 @@ static const char *get_advice(int number)
         return "; another program is using it";
     case ENODEV:
     case ENXIO:
-        return "; the device is gone";
+        return "; the device was removed";
     }
     return "";
 }
 
-enum glint_status glint_ioctl_failed(struct glint_error *error,
-                                     const char *path, const char *request)
+enum glint_status glint_report_ioctl_error(struct glint_error *error,
+                                           const char *path,
+                                           const char *request)
 {
     const int number = errno;
 
     return glint_error_report(error, GLINT_E_DEVICE, path, "%s: %s%s", request,
-                              strerror(number), get_advice(number));
+                              strerror(number), get_error_advice(number));
 }

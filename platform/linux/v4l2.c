@@ -14,7 +14,7 @@
 #include "posix/clock.h"
 #include "posix/error.h"
 
-/* result of take_buffer() */
+/* results of take_filled_buffer() */
 enum glint_v4l2_outcome {
     GLINT_V4L2_TAKEN,
     GLINT_V4L2_NOTHING,
@@ -32,7 +32,7 @@ struct glint_v4l2_taken {
 };
 
 #define PAGE 4096
-/* max age of a time stamp of unknown clock, us; older time stamps are
+/* max age, us, of a time stamp of unknown clock; older time stamps are
  * ignored */
 #define MAX_AGE_US 5000000
 
@@ -43,7 +43,8 @@ static bool is_multiplanar(const struct glint_v4l2 *v)
 
 /* ----------------------------------------------------------------- requests */
 
-/* Returns a struct v4l2_buffer for buffer INDEX, which may point to PLANES. */
+/* Returns a struct v4l2_buffer that describes buffer INDEX. It may point to
+ * PLANES. */
 static struct v4l2_buffer describe_buffer(const struct glint_v4l2 *v, int index,
                                           struct v4l2_plane planes[3])
 {
@@ -61,7 +62,7 @@ static struct v4l2_buffer describe_buffer(const struct glint_v4l2 *v, int index,
     return b;
 }
 
-/* Gives buffer INDEX to the driver. Returns 0, or -1 with errno set. */
+/* Passes buffer INDEX to the driver. Returns 0, or -1 with errno set. */
 static int queue_buffer(struct glint_v4l2 *v, int index)
 {
     struct glint_v4l2_buffer *buffer = &v->buffer[index];
@@ -86,9 +87,9 @@ static int queue_buffer(struct glint_v4l2 *v, int index)
 
 /* Returns the capture time of B's frame on the monotonic clock, us. Uses the
  * driver's time stamp if it is on that clock, or if its clock is not stated
- * (v4l2loopback) and it is at most MAX_AGE_US old. Otherwise, or if the
- * stamp lies in the future, returns the current time. */
-static int64_t capture_time_us(const struct v4l2_buffer *b)
+ * (v4l2loopback) and it is at most MAX_AGE_US old. Otherwise, or if the stamp
+ * lies in the future, returns the current time. */
+static int64_t compute_capture_time_us(const struct v4l2_buffer *b)
 {
     const uint32_t clock = b->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK;
     const int64_t now_us = glint_now_us();
@@ -101,7 +102,7 @@ static int64_t capture_time_us(const struct v4l2_buffer *b)
     return is_it && stamp_us <= now_us ? stamp_us : now_us;
 }
 
-static enum glint_v4l2_outcome convert_errno(int number)
+static enum glint_v4l2_outcome convert_errno_to_outcome(int number)
 {
     return number == EAGAIN                      ? GLINT_V4L2_NOTHING
            : number == ENODEV || number == ENXIO ? GLINT_V4L2_GONE
@@ -115,13 +116,13 @@ static enum glint_v4l2_outcome dequeue_buffer(struct glint_v4l2 *v,
     struct v4l2_buffer b = describe_buffer(v, 0, planes);
 
     if (glint_ioctl(v->device.fd, VIDIOC_DQBUF, &b) < 0)
-        return convert_errno(errno);
+        return convert_errno_to_outcome(errno);
     if (b.index >= (uint32_t)v->n_buffers || !v->buffer[b.index].queued)
         return GLINT_V4L2_BROKEN;
     *t = (struct glint_v4l2_taken){.index = (int)b.index,
                                    .bytes = {b.bytesused},
                                    .sequence = b.sequence,
-                                   .time_us = capture_time_us(&b),
+                                   .time_us = compute_capture_time_us(&b),
                                    .damaged = b.flags & V4L2_BUF_FLAG_ERROR};
     if (is_multiplanar(v))
         for (int i = 0; i < v->device.format.n_blocks; i++) {
@@ -132,8 +133,8 @@ static enum glint_v4l2_outcome dequeue_buffer(struct glint_v4l2 *v,
     return GLINT_V4L2_TAKEN;
 }
 
-static enum glint_v4l2_outcome read_frame(struct glint_v4l2 *v,
-                                          struct glint_v4l2_taken *t)
+static enum glint_v4l2_outcome
+read_frame_into_buffer(struct glint_v4l2 *v, struct glint_v4l2_taken *t)
 {
     ssize_t got;
     int i = 0;
@@ -146,7 +147,7 @@ static enum glint_v4l2_outcome read_frame(struct glint_v4l2 *v,
         got = read(v->device.fd, v->buffer[i].mem[0], v->buffer[i].bytes[0]);
     while (got < 0 && errno == EINTR);
     if (got < 0)
-        return convert_errno(errno);
+        return convert_errno_to_outcome(errno);
     *t = (struct glint_v4l2_taken){.index = i,
                                    .bytes = {(size_t)got},
                                    .sequence = v->n_read++,
@@ -155,18 +156,19 @@ static enum glint_v4l2_outcome read_frame(struct glint_v4l2 *v,
     return GLINT_V4L2_TAKEN;
 }
 
-/* Dequeues a filled buffer from the driver, or reads one with read(2), and
+/* Dequeues a filled buffer from the driver, or reads a frame with read(2), and
  * describes it in T. */
-static enum glint_v4l2_outcome take_buffer(struct glint_v4l2 *v,
-                                           struct glint_v4l2_taken *t)
+static enum glint_v4l2_outcome take_filled_buffer(struct glint_v4l2 *v,
+                                                  struct glint_v4l2_taken *t)
 {
-    return v->io == GLINT_V4L2_READ ? read_frame(v, t) : dequeue_buffer(v, t);
+    return v->io == GLINT_V4L2_READ ? read_frame_into_buffer(v, t)
+                                    : dequeue_buffer(v, t);
 }
 
 /* ------------------------------------------------------------------ buffers */
 
 /* Requests N buffers of type MEMORY from the driver; N = 0 frees all buffers.
- * Returns the number granted, or 0 with errno set. */
+ * Returns the number that the driver granted, or 0 with errno set. */
 static uint32_t request_buffers(struct glint_v4l2 *v, enum v4l2_memory memory,
                                 int n)
 {
@@ -203,8 +205,8 @@ static void release_buffers(struct glint_v4l2 *v)
 
 /* Maps one block of buffer INDEX into memory. Returns NULL, or the name of
  * the call that failed. */
-static const char *map_block(struct glint_v4l2 *v, int index, int block,
-                             size_t bytes, size_t offset)
+static const char *map_buffer_block(struct glint_v4l2 *v, int index, int block,
+                                    size_t bytes, size_t offset)
 {
     struct glint_v4l2_buffer *b = &v->buffer[index];
     void *mem = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED,
@@ -228,10 +230,10 @@ static const char *map_buffer(struct glint_v4l2 *v, int index)
     if (glint_ioctl(v->device.fd, VIDIOC_QUERYBUF, &b) < 0)
         return "VIDIOC_QUERYBUF";
     if (!is_multiplanar(v))
-        return map_block(v, index, 0, b.length, b.m.offset);
+        return map_buffer_block(v, index, 0, b.length, b.m.offset);
     for (int i = 0; !failed && i < v->device.format.n_blocks; i++)
-        failed =
-            map_block(v, index, i, planes[i].length, planes[i].m.mem_offset);
+        failed = map_buffer_block(v, index, i, planes[i].length,
+                                  planes[i].m.mem_offset);
     return failed;
 }
 
@@ -253,9 +255,9 @@ static const char *allocate_buffer(struct glint_v4l2 *v, int index)
     return NULL;
 }
 
-/* Returns whether the driver can export buffers as DMABUF, which other
- * devices read without a copy; used in reports only. */
-static bool can_export(const struct glint_v4l2 *v)
+/* Returns whether the driver can export buffers as DMABUF, which other devices
+ * read without a copy. glint uses this in reports only. */
+static bool can_export_dmabuf(const struct glint_v4l2 *v)
 {
     struct v4l2_exportbuffer e = {.type = v->device.type};
 
@@ -266,9 +268,9 @@ static bool can_export(const struct glint_v4l2 *v)
     return true;
 }
 
-/* Returns the time of reading every other word of MEM[BYTES] twice, us.
+/* Returns the time, us, of reading every other word of MEM[BYTES] twice.
  * Uncached memory is as slow the second time as the first. */
-static int64_t read_time_us(const void *mem, size_t bytes)
+static int64_t measure_read_time_us(const void *mem, size_t bytes)
 {
     const volatile uint64_t *at = mem;
     const int64_t start = glint_now_us();
@@ -279,9 +281,9 @@ static int64_t read_time_us(const void *mem, size_t bytes)
     return glint_now_us() - start;
 }
 
-/* Returns whether buffers can be read about as fast as other memory. Measures
- * it, as no driver reports it. */
-static bool is_cached(const struct glint_v4l2 *v)
+/* Returns whether reading buffers is about as fast as reading other memory.
+ * Measures it, as no driver reports it. */
+static bool is_buffer_memory_cached(const struct glint_v4l2 *v)
 {
     static uint64_t own[8192];
     size_t bytes = v->buffer[0].bytes[0];
@@ -291,16 +293,16 @@ static bool is_cached(const struct glint_v4l2 *v)
         return true;
     bytes = bytes < sizeof own ? bytes : sizeof own;
     memset(own, 0, sizeof own);
-    own_us = read_time_us(own, bytes);
+    own_us = measure_read_time_us(own, bytes);
     for (int k = 0; k < 3; k++) {
-        const int64_t t = read_time_us(v->buffer[0].mem[0], bytes);
+        const int64_t t = measure_read_time_us(v->buffer[0].mem[0], bytes);
 
         best_us = t < best_us ? t : best_us;
     }
     return best_us <= 4 * own_us + 20;
 }
 
-static const char *fill_buffers(struct glint_v4l2 *v, uint32_t n)
+static const char *allocate_all_buffers(struct glint_v4l2 *v, uint32_t n)
 {
     const char *failed = NULL;
 
@@ -329,7 +331,7 @@ static const char *allocate_buffers(struct glint_v4l2 *v, enum glint_v4l2_io io)
         if (n == 0)
             return "VIDIOC_REQBUFS";
     }
-    failed = fill_buffers(v, n);
+    failed = allocate_all_buffers(v, n);
     if (failed) {
         const int number = errno;
 
@@ -340,15 +342,15 @@ static const char *allocate_buffers(struct glint_v4l2 *v, enum glint_v4l2_io io)
 }
 
 /* Returns whether the request for buffers failed because the driver does not
- * support their type of memory (EINVAL). */
-static bool is_lacking(const struct glint_v4l2 *v)
+ * support the requested type of memory (EINVAL). */
+static bool is_memory_type_unsupported(const struct glint_v4l2 *v)
 {
     return v->n_buffers == 0 && errno == EINVAL;
 }
 
 /* Allocates buffers of the first type that both the configuration and the
  * device allow. Returns NULL, or the name of the call that failed. */
-static const char *get_buffers(struct glint_v4l2 *v)
+static const char *allocate_supported_buffers(struct glint_v4l2 *v)
 {
     const uint32_t caps = v->device.caps;
     const enum glint_v4l2_io wish = v->wish_io;
@@ -359,11 +361,11 @@ static const char *get_buffers(struct glint_v4l2 *v)
     errno = EINVAL;
     if (may_stream && wish != GLINT_V4L2_USERPTR)
         failed = allocate_buffers(v, GLINT_V4L2_MMAP);
-    if (may_stream && wish != GLINT_V4L2_MMAP && is_lacking(v))
+    if (may_stream && wish != GLINT_V4L2_MMAP && is_memory_type_unsupported(v))
         failed = allocate_buffers(v, GLINT_V4L2_USERPTR);
     if ((wish == GLINT_V4L2_READ || wish == GLINT_V4L2_AUTO) &&
         caps & V4L2_CAP_READWRITE && v->device.format.n_blocks == 1 &&
-        is_lacking(v))
+        is_memory_type_unsupported(v))
         failed = allocate_buffers(v, GLINT_V4L2_READ);
     if (v->n_buffers || failed)
         return failed;
@@ -371,15 +373,15 @@ static const char *get_buffers(struct glint_v4l2 *v)
     return "streaming or reading, as --io allows";
 }
 
-/* us; time limit for restarting a broken stream */
+/* time limit for restarting a broken stream, us */
 #define PATIENCE_US 900000
-/* us; a stream without a frame for this time and for STALL_FRAMES frame times
- * has stalled */
+/* min time without a frame, us, after which a stream has stalled; also
+ * STALL_FRAMES frame times must have passed */
 #define STALL_US     2000000
 #define STALL_FRAMES 4
-/* largest gap of sequence numbers that counts as dropped frames */
+/* largest gap of sequence numbers that is counted as dropped frames */
 #define MAX_GAP 4096
-/* damaged frames in a row after which the stream restarts */
+/* number of damaged frames in a row after which the stream restarts */
 #define USELESS 30
 
 /* ------------------------------------------------------------------- stream */
@@ -405,8 +407,8 @@ static int start_stream(struct glint_v4l2 *v)
                            : -1;
 }
 
-static enum glint_status make_decoder(struct glint_v4l2 *v,
-                                      struct glint_error *error)
+static enum glint_status open_jpeg_decoder(struct glint_v4l2 *v,
+                                           struct glint_error *error)
 {
     const struct glint_v4l2_format *f = &v->device.format;
 
@@ -421,17 +423,17 @@ static enum glint_status make_decoder(struct glint_v4l2 *v,
 static enum glint_status prepare_stream(struct glint_v4l2 *v,
                                         struct glint_error *error)
 {
-    const char *const failed = get_buffers(v);
+    const char *const failed = allocate_supported_buffers(v);
 
     if (failed)
-        return glint_ioctl_failed(error, v->device.path, failed);
-    v->is_cached = is_cached(v);
-    v->exports_dmabuf = can_export(v);
-    return make_decoder(v, error);
+        return glint_report_ioctl_error(error, v->device.path, failed);
+    v->is_cached = is_buffer_memory_cached(v);
+    v->exports_dmabuf = can_export_dmabuf(v);
+    return open_jpeg_decoder(v, error);
 }
 
-static enum glint_status begin_stream(struct glint_v4l2 *v,
-                                      struct glint_error *error)
+static enum glint_status queue_and_start_stream(struct glint_v4l2 *v,
+                                                struct glint_error *error)
 {
     int n_queued = 0;
 
@@ -439,9 +441,10 @@ static enum glint_status begin_stream(struct glint_v4l2 *v,
         /* A buffer that the driver refuses is queued later. */
         n_queued += queue_buffer(v, i) == 0;
     if (n_queued == 0)
-        return glint_ioctl_failed(error, v->device.path, "VIDIOC_QBUF");
+        return glint_report_ioctl_error(error, v->device.path, "VIDIOC_QBUF");
     if (start_stream(v) < 0)
-        return glint_ioctl_failed(error, v->device.path, "VIDIOC_STREAMON");
+        return glint_report_ioctl_error(error, v->device.path,
+                                        "VIDIOC_STREAMON");
     v->streams = true;
     v->n_numbered = 0;
     v->n_useless = 0;
@@ -449,35 +452,36 @@ static enum glint_status begin_stream(struct glint_v4l2 *v,
     return GLINT_OK;
 }
 
-static bool is_patient(const struct glint_v4l2 *v)
+static bool is_restart_time_left(const struct glint_v4l2 *v)
 {
     return v->broken_us && glint_now_us() - v->broken_us <= PATIENCE_US;
 }
 
-/* Implements glint_source.start. Until a stream has started once, an error
- * is returned at once; after a restart read_next_frame() tries again for
- * PATIENCE_US. */
+/* Implements glint_source.start. Before the stream has started for the first
+ * time, failures are returned immediately; after a restart read_next_frame()
+ * tries again for PATIENCE_US. */
 static enum glint_status start_source(struct glint_source *source,
                                       struct glint_error *error)
 {
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
-    const enum glint_status status =
-        v->streams || v->n_buffers == 0 ? GLINT_OK : begin_stream(v, error);
+    const enum glint_status status = v->streams || v->n_buffers == 0
+                                         ? GLINT_OK
+                                         : queue_and_start_stream(v, error);
 
-    if (status == GLINT_OK || !is_patient(v))
+    if (status == GLINT_OK || !is_restart_time_left(v))
         return status;
     stop_stream(v);
     return GLINT_OK;
 }
 
-static enum glint_status report_gone(const struct glint_v4l2 *v,
-                                     struct glint_error *error)
+static enum glint_status report_device_removed(const struct glint_v4l2 *v,
+                                               struct glint_error *error)
 {
     return glint_error_report(error, GLINT_E_DEVICE, v->device.path,
-                              "the camera is gone");
+                              "the camera was removed");
 }
 
-static bool is_present(const struct glint_v4l2 *v)
+static bool is_device_present(const struct glint_v4l2 *v)
 {
     struct v4l2_capability cap;
 
@@ -487,8 +491,8 @@ static bool is_present(const struct glint_v4l2 *v)
 /* Negotiates the format again. A device that is read by read(2) is closed
  * and reopened first, as it streams until it is closed and accepts no other
  * format meanwhile. */
-static enum glint_status negotiate_again(struct glint_v4l2 *v,
-                                         struct glint_error *error)
+static enum glint_status renegotiate_format(struct glint_v4l2 *v,
+                                            struct glint_error *error)
 {
     const struct glint_v4l2_config wish = v->device.wish;
     enum glint_status status;
@@ -514,18 +518,18 @@ static enum glint_status restart_stream(struct glint_v4l2 *v, const char *why,
     bool is_late = false;
 
     stop_stream(v);
-    if (!is_present(v))
-        return report_gone(v, error);
+    if (!is_device_present(v))
+        return report_device_removed(v, error);
     if (v->broken_us == 0)
         v->broken_us = glint_now_us();
     else {
         nanosleep(&breath, NULL);
-        is_late = !is_patient(v);
+        is_late = !is_restart_time_left(v);
     }
     if (is_late && started)
         return glint_error_report(error, GLINT_E_DEVICE, v->device.path,
-                                  "%s, and restarting does not help", why);
-    status = negotiate_again(v, error);
+                                  "%s; restarting the stream failed", why);
+    status = renegotiate_format(v, error);
     if (status == GLINT_OK)
         status = prepare_stream(v, error);
     v->source.n_restarts += status == GLINT_OK;
@@ -538,7 +542,7 @@ static enum glint_status restart_stream(struct glint_v4l2 *v, const char *why,
 
 /* ------------------------------------------------------------------- frames */
 
-/* Restarts the time limits of STALL_US and PATIENCE_US, as the source changed
+/* Restarts the time limits STALL_US and PATIENCE_US, as the source has changed
  * or has no signal. */
 static void restart_time_limits(struct glint_v4l2 *v)
 {
@@ -547,23 +551,23 @@ static void restart_time_limits(struct glint_v4l2 *v)
         v->broken_us = v->heard_us;
 }
 
-/* Dequeues all events. Returns whether the source has changed. */
-static bool read_events(struct glint_v4l2 *v)
+/* Dequeues all events of the device. Returns whether the source has changed. */
+static bool dequeue_events(struct glint_v4l2 *v)
 {
     struct v4l2_event event;
     bool is_other = false;
 
     while (glint_ioctl(v->device.fd, VIDIOC_DQEVENT, &event) == 0)
         if (event.type == V4L2_EVENT_SOURCE_CHANGE) {
-            is_other |=
-                !v->device.is_dv || glint_v4l2_device_retimed(&v->device);
+            is_other |= !v->device.is_dv ||
+                        glint_v4l2_device_has_new_timings(&v->device);
             restart_time_limits(v);
         }
     return is_other;
 }
 
-static bool is_complete(const struct glint_v4l2 *v,
-                        const struct glint_v4l2_taken *t)
+static bool is_frame_complete(const struct glint_v4l2 *v,
+                              const struct glint_v4l2_taken *t)
 {
     const struct glint_v4l2_format *f = &v->device.format;
     const struct glint_v4l2_buffer *b = &v->buffer[t->index];
@@ -585,10 +589,10 @@ static bool is_complete(const struct glint_v4l2 *v,
 static void return_buffer(struct glint_v4l2 *v, int index)
 {
     v->buffer[index].lent = false;
-    queue_buffer(v, index); /* If this fails, a later call reports it. */
+    queue_buffer(v, index); /* A failure is reported by a later call. */
 }
 
-static void queue_idle(struct glint_v4l2 *v)
+static void queue_idle_buffers(struct glint_v4l2 *v)
 {
     for (int i = 0; i < v->n_buffers; i++)
         if (!v->buffer[i].queued && !v->buffer[i].lent)
@@ -609,23 +613,23 @@ static int count_missing_frames(struct glint_v4l2 *v, uint32_t sequence)
     return counts ? (int)missing : 0;
 }
 
-/* Dequeues all frames, returns the latest complete one in NEWEST and requeues
- * the others. Counts late, corrupt and dropped frames in FRAME. */
-static enum glint_v4l2_outcome take_newest(struct glint_v4l2 *v,
-                                           struct glint_v4l2_taken *newest,
-                                           struct glint_source_frame *frame)
+/* Dequeues all filled buffers, sets NEWEST to the latest complete frame and
+ * requeues the others. Counts late, corrupt and dropped frames in FRAME. */
+static enum glint_v4l2_outcome
+take_newest_frame(struct glint_v4l2 *v, struct glint_v4l2_taken *newest,
+                  struct glint_source_frame *frame)
 {
     enum glint_v4l2_outcome outcome = GLINT_V4L2_NOTHING;
     struct glint_v4l2_taken t;
 
     newest->index = -1;
     for (int k = 0; k <= v->n_buffers; k++) {
-        outcome = take_buffer(v, &t);
+        outcome = take_filled_buffer(v, &t);
         if (outcome != GLINT_V4L2_TAKEN)
             break;
         v->heard_us = glint_now_us();
         frame->n_dropped += count_missing_frames(v, t.sequence);
-        if (!is_complete(v, &t)) {
+        if (!is_frame_complete(v, &t)) {
             frame->n_corrupt++;
             v->n_useless++;
             return_buffer(v, t.index);
@@ -661,10 +665,11 @@ static void set_image_planes(const struct glint_v4l2 *v,
     }
 }
 
-/* Decodes the JPEG frame in T to the decoder's planes and returns T's buffer
+/* Decodes the JPEG frame in T to the decoder's planes, and returns T's buffer
  * to the driver. On failure returns false and leaves IMAGE without planes. */
-static bool decode_jpeg(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
-                        struct glint_image *image)
+static bool decode_jpeg_frame(struct glint_v4l2 *v,
+                              const struct glint_v4l2_taken *t,
+                              struct glint_image *image)
 {
     struct glint_error unsaid;
     const bool done =
@@ -678,12 +683,13 @@ static bool decode_jpeg(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
     return done;
 }
 
-static void set_frame(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
-                      struct glint_source_frame *frame)
+static void set_source_frame(struct glint_v4l2 *v,
+                             const struct glint_v4l2_taken *t,
+                             struct glint_source_frame *frame)
 {
     const struct glint_v4l2_format *f = &v->device.format;
 
-    if (f->is_jpeg && !decode_jpeg(v, t, &frame->image)) {
+    if (f->is_jpeg && !decode_jpeg_frame(v, t, &frame->image)) {
         frame->n_corrupt++;
         v->n_useless++;
         return;
@@ -703,9 +709,9 @@ static void set_frame(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
     v->broken_us = 0;
 }
 
-/* Returns whether no frame has come for too long. An HDMI input without a
- * signal never stalls. */
-static bool is_stalled(struct glint_v4l2 *v)
+/* Returns whether no frame has arrived within the time limits. An HDMI input
+ * without a signal never stalls. */
+static bool is_stream_stalled(struct glint_v4l2 *v)
 {
     const struct glint_v4l2_format *f = &v->device.format;
     const int64_t frame_us =
@@ -713,15 +719,15 @@ static bool is_stalled(struct glint_v4l2 *v)
 
     if (glint_now_us() - v->heard_us < STALL_US + STALL_FRAMES * frame_us)
         return false;
-    glint_v4l2_device_retimed(&v->device);
+    glint_v4l2_device_has_new_timings(&v->device);
     if (!v->device.has_signal)
         restart_time_limits(v);
     return v->device.has_signal;
 }
 
-static enum glint_status take_frame(struct glint_v4l2 *v,
-                                    struct glint_source_frame *frame,
-                                    struct glint_error *error)
+static enum glint_status take_next_frame(struct glint_v4l2 *v,
+                                         struct glint_source_frame *frame,
+                                         struct glint_error *error)
 {
     struct glint_v4l2_taken newest;
 
@@ -734,20 +740,20 @@ static enum glint_status take_frame(struct glint_v4l2 *v,
         if (!v->streams)
             return status;
     }
-    if (read_events(v))
+    if (dequeue_events(v))
         return restart_stream(v, "the source changed", error);
-    queue_idle(v);
-    switch (take_newest(v, &newest, frame)) {
+    queue_idle_buffers(v);
+    switch (take_newest_frame(v, &newest, frame)) {
     case GLINT_V4L2_TAKEN:
-        set_frame(v, &newest, frame);
+        set_source_frame(v, &newest, frame);
         if (frame->image.plane[0] || v->n_useless < USELESS)
             return GLINT_OK;
         break;
     case GLINT_V4L2_NOTHING:
-        return is_stalled(v) ? restart_stream(v, "no frames come", error)
-                             : GLINT_OK;
+        return is_stream_stalled(v) ? restart_stream(v, "no frames come", error)
+                                    : GLINT_OK;
     case GLINT_V4L2_GONE:
-        return report_gone(v, error);
+        return report_device_removed(v, error);
     case GLINT_V4L2_BROKEN:
         break;
     }
@@ -762,7 +768,7 @@ static enum glint_status read_next_frame(struct glint_source *source,
                                          struct glint_error *error)
 {
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
-    const enum glint_status status = take_frame(v, frame, error);
+    const enum glint_status status = take_next_frame(v, frame, error);
 
     source->has_signal = v->device.has_signal;
     return status;
@@ -774,8 +780,9 @@ static void return_frame(struct glint_source *source,
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
     struct glint_v4l2_buffer *b = frame->buffer;
 
-    if (b && b->lent) /* B is no longer lent if the stream was restarted
-                         meanwhile, which freed the buffer. */
+    /* Buffer B is no longer lent if the stream was restarted meanwhile, which
+     * freed the buffer. */
+    if (b && b->lent)
         return_buffer(v, (int)(b - v->buffer));
     frame->buffer = NULL;
     frame->image.plane[0] = NULL;

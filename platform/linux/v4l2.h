@@ -3,14 +3,14 @@
  * linux/v4l2.h - a V4L2 camera as a source of live frames.
  *
  *     glint_v4l2_open(&camera, &wish, GLINT_V4L2_AUTO, 4, &error);
- *     camera.source.start(&camera.source, &error);           when set up
- *     camera.source.next(&camera.source, &frame, &error);    when readable
+ *     camera.source.start(&camera.source, &error); when set up
+ *     camera.source.next(&camera.source, &frame, &error); when readable
  *     camera.source.done(&camera.source, &frame);
  *     camera.source.close(&camera.source);
  *
  * Only the latest frame is used: older frames that wait are returned to the
- * driver, so latency never grows. Frames that the driver marks as damaged or
- * that are too short are counted and not shown. Frames arrive in mapped
+ * driver, so latency never grows. Frames that the driver marks as damaged, or
+ * that are too short, are counted and not shown. Frames arrive in mapped
  * buffers; if the device does not support these, in buffers of the application
  * (USERPTR), else by read(2).
  *
@@ -18,8 +18,8 @@
  * requests, a fatal error of the driver, a change of the source, 30 damaged
  * frames in a row, or no frame for two seconds plus four frame times. The
  * caller starts the stream again; a call of next() does so, too. If that does
- * not help within a second, or the device is gone, start() and next() return
- * GLINT_E_DEVICE. */
+ * not help within a second, or the device was removed, start() and next()
+ * return GLINT_E_DEVICE. */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_H
 #define GLINT_PLATFORM_LINUX_V4L2_H
 
@@ -46,33 +46,33 @@ struct glint_v4l2 {
     struct glint_source source;
     struct glint_v4l2_device device;
 
-    /* Set when buffers have been allocated; for reports. */
+    /* type of the buffers, for reports; set when buffers have been allocated */
     enum glint_v4l2_io io;
     int n_buffers;
-    bool is_cached;      /* buffers lie in cached memory, so reading them is
-                            fast */
-    bool exports_dmabuf; /* the driver can export buffers as DMABUF */
+    /* true: buffers lie in cached memory, so reading them is fast. */
+    bool is_cached;
+    bool exports_dmabuf; /* true: the driver can export buffers as DMABUF */
 
-    /* Private. */
+    /* Private members. */
     enum glint_v4l2_io wish_io;
     int wish_buffers;
     struct glint_v4l2_buffer buffer[GLINT_V4L2_MAX_BUFFERS];
     struct glint_mjpeg *jpeg; /* decoder of JPEG streams */
     bool streams;
-    int n_numbered; /* frames since the stream was started, counted up to 2 */
-    uint32_t sequence; /* number of the last frame taken */
-    uint32_t n_read;   /* frames read by read(2), which gives no sequence
-                          number */
-    int64_t heard_us;  /* time of the last frame */
-    int64_t broken_us; /* time at which the stream failed, us; 0: the stream
-                          works */
-    int n_useless;     /* damaged frames in a row */
+    int n_numbered; /* number of frames since the stream was started, counted up
+                       to 2 */
+    uint32_t sequence; /* sequence number of the last frame that was dequeued */
+    uint32_t n_read;   /* number of frames read by read(2), which gives no
+                          sequence number */
+    int64_t heard_us;  /* arrival time of the last frame, us */
+    int64_t broken_us; /* time at which the stream failed, us; 0: it works */
+    int n_useless;     /* number of damaged frames in a row */
 };
 
 /* Opens the camera that WISH names, negotiates a format and allocates N_BUFFERS
- * buffers, 2 .. GLINT_V4L2_MAX_BUFFERS, for streaming by IO, or as many as the
- * driver grants. After that no other program can change the format. On failure
- * CAMERA is closed. */
+ * buffers, 2 .. GLINT_V4L2_MAX_BUFFERS, of type IO, or as many as the driver
+ * grants. Afterwards no other program can change the format. On failure CAMERA
+ * is closed. */
 enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
                                   const struct glint_v4l2_config *wish,
                                   enum glint_v4l2_io io, int n_buffers,

@@ -17,8 +17,8 @@
 #include "posix/error.h"
 
 /* Formats in order of preference: two bytes per pixel, in which flares are
- * drawn in place; planes; RGB; JPEG, which has to be decoded; and last grey,
- * which has no colours. */
+ * drawn in place; planes; RGB; JPEG, which has to be decoded; and grey, which
+ * has no colours. */
 static const uint32_t preferred[] = {
     V4L2_PIX_FMT_YUYV,   V4L2_PIX_FMT_UYVY,    V4L2_PIX_FMT_NV12,
     V4L2_PIX_FMT_NV21,   V4L2_PIX_FMT_YUV420,  V4L2_PIX_FMT_NV12M,
@@ -29,18 +29,18 @@ static const uint32_t preferred[] = {
 
 enum { N_PREFERRED = (int)(sizeof preferred / sizeof *preferred) };
 
-static bool is_jpeg(uint32_t fourcc)
+static bool is_jpeg_fourcc(uint32_t fourcc)
 {
     return fourcc == V4L2_PIX_FMT_MJPEG || fourcc == V4L2_PIX_FMT_JPEG;
 }
 
 /* Returns whether glint can read frames in FOURCC. */
-static bool can_read(uint32_t fourcc)
+static bool can_read_format(uint32_t fourcc)
 {
     enum glint_pixel_format unused;
 
-    return is_jpeg(fourcc) ? glint_mjpeg_available()
-                           : glint_fourcc_to_format(fourcc, &unused);
+    return is_jpeg_fourcc(fourcc) ? glint_mjpeg_available()
+                                  : glint_fourcc_to_format(fourcc, &unused);
 }
 
 static bool is_multiplanar(const struct glint_v4l2_device *d)
@@ -50,13 +50,13 @@ static bool is_multiplanar(const struct glint_v4l2_device *d)
 
 /* ----------------------------------------------------- the cheapest format */
 
-static bool has_size(const struct glint_v4l2_device *d, uint32_t fourcc,
-                     uint32_t w, uint32_t h)
+static bool has_device_size(const struct glint_v4l2_device *d, uint32_t fourcc,
+                            uint32_t w, uint32_t h)
 {
     struct v4l2_frmsizeenum size = {.pixel_format = fourcc};
 
     if (glint_ioctl(d->fd, VIDIOC_ENUM_FRAMESIZES, &size) < 0)
-        return true; /* The device does not list sizes; it may have this
+        return true; /* A device that does not list its sizes may have this
                         size. */
     if (size.type != V4L2_FRMSIZE_TYPE_DISCRETE)
         return w >= size.stepwise.min_width && w <= size.stepwise.max_width &&
@@ -73,14 +73,15 @@ static bool has_size(const struct glint_v4l2_device *d, uint32_t fourcc,
  * interval of the requested rate. The tolerance is needed as USB states
  * intervals in units of 100 ns, and 29.97 frames per second is also called
  * 30. */
-static bool is_fast(const struct glint_v4l2_device *d, struct v4l2_fract a)
+static bool is_interval_short_enough(const struct glint_v4l2_device *d,
+                                     struct v4l2_fract a)
 {
     return 200.0 * a.numerator * d->wish.fps_num <=
            201.0 * a.denominator * d->wish.fps_den;
 }
 
-static bool has_rate(const struct glint_v4l2_device *d, uint32_t fourcc,
-                     uint32_t w, uint32_t h)
+static bool has_requested_rate(const struct glint_v4l2_device *d,
+                               uint32_t fourcc, uint32_t w, uint32_t h)
 {
     struct v4l2_frmivalenum interval = {
         .pixel_format = fourcc, .width = w, .height = h};
@@ -89,17 +90,17 @@ static bool has_rate(const struct glint_v4l2_device *d, uint32_t fourcc,
         glint_ioctl(d->fd, VIDIOC_ENUM_FRAMEINTERVALS, &interval) < 0)
         return true;
     if (interval.type != V4L2_FRMIVAL_TYPE_DISCRETE)
-        return is_fast(d, interval.stepwise.min);
+        return is_interval_short_enough(d, interval.stepwise.min);
     do {
-        if (is_fast(d, interval.discrete))
+        if (is_interval_short_enough(d, interval.discrete))
             return true;
         interval.index++;
     } while (glint_ioctl(d->fd, VIDIOC_ENUM_FRAMEINTERVALS, &interval) == 0);
     return false;
 }
 
-/* Returns a mask whose bit i is set if the device has preferred[i] and glint
- * reads it. */
+/* Returns a mask whose bit i is set if the device has the format preferred[i]
+ * and glint can read it. */
 static uint32_t find_offered_formats(const struct glint_v4l2_device *d)
 {
     struct v4l2_fmtdesc f = {.type = d->type};
@@ -107,7 +108,7 @@ static uint32_t find_offered_formats(const struct glint_v4l2_device *d)
 
     for (; glint_ioctl(d->fd, VIDIOC_ENUM_FMT, &f) == 0; f.index++)
         for (int i = 0; i < N_PREFERRED; i++)
-            if (f.pixelformat == preferred[i] && can_read(f.pixelformat))
+            if (f.pixelformat == preferred[i] && can_read_format(f.pixelformat))
                 have |= UINT32_C(1) << i;
     return have;
 }
@@ -115,8 +116,8 @@ static uint32_t find_offered_formats(const struct glint_v4l2_device *d)
 /* Returns the first format of preferred[] that the device has in W x H at the
  * requested rate; if there is no such format, the first that the device has in
  * any size; 0 if glint reads none of its formats. */
-static uint32_t choose_format(const struct glint_v4l2_device *d, uint32_t w,
-                              uint32_t h)
+static uint32_t choose_offered_format(const struct glint_v4l2_device *d,
+                                      uint32_t w, uint32_t h)
 {
     const uint32_t have = find_offered_formats(d);
     uint32_t first = 0, sized = 0;
@@ -125,7 +126,8 @@ static uint32_t choose_format(const struct glint_v4l2_device *d, uint32_t w,
         if (!(have >> i & 1))
             continue;
         first = preferred[i];
-        if (has_size(d, first, w, h) && has_rate(d, first, w, h))
+        if (has_device_size(d, first, w, h) &&
+            has_requested_rate(d, first, w, h))
             sized = first;
     }
     return sized ? sized : first;
@@ -139,7 +141,8 @@ struct pix { /* members that the single-planar and multi-planar struct
     struct glint_v4l2_colour colour;
 };
 
-static struct pix read_pix(const struct v4l2_format *f, bool multiplanar)
+static struct pix read_format_members(const struct v4l2_format *f,
+                                      bool multiplanar)
 {
     const struct v4l2_pix_format *p = &f->fmt.pix;
     const struct v4l2_pix_format_mplane *m = &f->fmt.pix_mp;
@@ -167,8 +170,9 @@ static struct pix read_pix(const struct v4l2_format *f, bool multiplanar)
     return pix;
 }
 
-static void write_pix(struct v4l2_format *f, bool multiplanar, uint32_t fourcc,
-                      uint32_t width, uint32_t height)
+static void write_format_members(struct v4l2_format *f, bool multiplanar,
+                                 uint32_t fourcc, uint32_t width,
+                                 uint32_t height)
 {
     if (multiplanar) {
         f->fmt.pix_mp.pixelformat = fourcc;
@@ -186,7 +190,8 @@ static void write_pix(struct v4l2_format *f, bool multiplanar, uint32_t fourcc,
 /* Sets the planes of F from PIX. Returns false if the planes do not fit the
  * blocks of F. A single block holds the planes one after the other, and chroma
  * strides follow from the luma stride. */
-static bool set_planes(struct glint_v4l2_format *f, const struct pix *pix)
+static bool set_format_planes(struct glint_v4l2_format *f,
+                              const struct pix *pix)
 {
     const int n = glint_image_planes(f->pixels);
     uint64_t offset = 0; /* 64 bits, as a driver may state any size */
@@ -202,7 +207,7 @@ static bool set_planes(struct glint_v4l2_format *f, const struct pix *pix)
 
         if (f->n_blocks == 1 && p > 0 && n == 3)
             stride /= 2;
-        if (stride < row) /* some drivers leave the stride 0 */
+        if (stride < row) /* some drivers set the stride to 0 */
             stride = row;
         bytes = (rows - 1) * stride + row;
         if (offset + bytes > f->block_bytes[block])
@@ -216,8 +221,8 @@ static bool set_planes(struct glint_v4l2_format *f, const struct pix *pix)
     return true;
 }
 
-static void set_colour(struct glint_v4l2_device *d,
-                       const struct glint_v4l2_colour *colour)
+static void set_format_colour(struct glint_v4l2_device *d,
+                              const struct glint_v4l2_colour *colour)
 {
     struct glint_v4l2_format *f = &d->format;
     struct glint_image image = {.format = f->is_jpeg ? GLINT_I420 : f->pixels};
@@ -235,16 +240,16 @@ static void set_colour(struct glint_v4l2_device *d,
     f->transfer = image.transfer;
 }
 
-static enum glint_status adopt_format(struct glint_v4l2_device *d,
-                                      const struct pix *pix,
-                                      struct glint_error *error)
+static enum glint_status adopt_device_format(struct glint_v4l2_device *d,
+                                             const struct pix *pix,
+                                             struct glint_error *error)
 {
     struct glint_v4l2_format *f = &d->format;
     char name[5];
 
     glint_fourcc_text(pix->fourcc, name);
     *f = (struct glint_v4l2_format){.fourcc = pix->fourcc,
-                                    .is_jpeg = is_jpeg(pix->fourcc),
+                                    .is_jpeg = is_jpeg_fourcc(pix->fourcc),
                                     .width = (int)pix->width,
                                     .height = (int)pix->height,
                                     .n_blocks = (int)pix->n_blocks};
@@ -261,19 +266,19 @@ static enum glint_status adopt_format(struct glint_v4l2_device *d,
             "delivers pixel format %s, which glint does not support; "
             "--list-formats lists the formats of this camera",
             name);
-    if (!f->is_jpeg && !set_planes(f, pix))
+    if (!f->is_jpeg && !set_format_planes(f, pix))
         return glint_error_report(
             error, GLINT_E_DEVICE, d->path,
             "%ux%u %s needs more bytes than the %u that the driver reports",
             pix->width, pix->height, name, pix->bytes[0]);
-    set_colour(d, &pix->colour);
+    set_format_colour(d, &pix->colour);
     return GLINT_OK;
 }
 
-/* Requests the configured format and adopts the format that the device
+/* Requests the configured format, and adopts the format that the device
  * answers with. Returns the errors of glint_v4l2_device_open(). */
-static enum glint_status set_format(struct glint_v4l2_device *d,
-                                    struct glint_error *error)
+static enum glint_status request_format(struct glint_v4l2_device *d,
+                                        struct glint_error *error)
 {
     const bool multiplanar = is_multiplanar(d);
     struct v4l2_format f = {.type = d->type};
@@ -281,19 +286,19 @@ static enum glint_status set_format(struct glint_v4l2_device *d,
     struct pix pix;
 
     if (glint_ioctl(d->fd, VIDIOC_G_FMT, &f) < 0)
-        return glint_ioctl_failed(error, d->path, "VIDIOC_G_FMT");
-    pix = read_pix(&f, multiplanar);
+        return glint_report_ioctl_error(error, d->path, "VIDIOC_G_FMT");
+    pix = read_format_members(&f, multiplanar);
     if (d->wish.width) {
         pix.width = (uint32_t)d->wish.width;
         pix.height = (uint32_t)d->wish.height;
     }
     if (!fourcc)
-        fourcc = choose_format(d, pix.width, pix.height);
-    write_pix(&f, multiplanar, fourcc ? fourcc : pix.fourcc, pix.width,
-              pix.height);
+        fourcc = choose_offered_format(d, pix.width, pix.height);
+    write_format_members(&f, multiplanar, fourcc ? fourcc : pix.fourcc,
+                         pix.width, pix.height);
     if (glint_ioctl(d->fd, VIDIOC_S_FMT, &f) < 0)
-        return glint_ioctl_failed(error, d->path, "VIDIOC_S_FMT");
-    pix = read_pix(&f, multiplanar);
+        return glint_report_ioctl_error(error, d->path, "VIDIOC_S_FMT");
+    pix = read_format_members(&f, multiplanar);
     if (d->wish.fourcc && pix.fourcc != d->wish.fourcc) {
         char asked[5], got[5];
 
@@ -305,17 +310,17 @@ static enum glint_status set_format(struct glint_v4l2_device *d,
             "--list-formats lists the formats of this camera",
             asked, got);
     }
-    return adopt_format(d, &pix, error);
+    return adopt_device_format(d, &pix, error);
 }
 
-static bool is_count(uint32_t n)
+static bool is_fraction_positive(uint32_t n)
 {
     return n >= 1 && n <= INT32_MAX;
 }
 
-/* Requests d->wish's rate, if any, and stores the rate that the device reports;
- * some inputs have a fixed rate. */
-static void set_rate(struct glint_v4l2_device *d)
+/* Requests the frame rate d->wish, if there is one, and stores the rate that
+ * the device reports; some inputs have a fixed rate. */
+static void request_frame_rate(struct glint_v4l2_device *d)
 {
     struct v4l2_streamparm parm = {.type = d->type};
     struct v4l2_fract *t = &parm.parm.capture.timeperframe;
@@ -326,7 +331,8 @@ static void set_rate(struct glint_v4l2_device *d)
         glint_ioctl(d->fd, VIDIOC_S_PARM, &parm);
     }
     if (glint_ioctl(d->fd, VIDIOC_G_PARM, &parm) == 0 &&
-        is_count(t->numerator) && is_count(t->denominator)) {
+        is_fraction_positive(t->numerator) &&
+        is_fraction_positive(t->denominator)) {
         d->format.fps_num = (int)t->denominator;
         d->format.fps_den = (int)t->numerator;
     }
@@ -348,8 +354,8 @@ void glint_v4l2_format_text(const struct glint_v4l2_format *f, char text[96])
 
 /* ------------------------------------------------------------------- device */
 
-static enum glint_status open_node(struct glint_v4l2_device *d,
-                                   struct glint_error *error)
+static enum glint_status open_device_node(struct glint_v4l2_device *d,
+                                          struct glint_error *error)
 {
     struct stat st;
 
@@ -362,15 +368,16 @@ static enum glint_status open_node(struct glint_v4l2_device *d,
         return glint_error_report(error, GLINT_E_DEVICE, d->path,
                                   "not a device");
     d->fd = open(d->path, O_RDWR | O_NONBLOCK | O_CLOEXEC);
-    return d->fd < 0 ? glint_ioctl_failed(error, d->path, "cannot be opened")
-                     : GLINT_OK;
+    return d->fd < 0
+               ? glint_report_ioctl_error(error, d->path, "cannot be opened")
+               : GLINT_OK;
 }
 
-/* Opens NAME and reads its capabilities and name, without changing settings.
- * Returns GLINT_E_DEVICE on failure; D is closed then. */
-static enum glint_status open_by_name(struct glint_v4l2_device *d,
-                                      const char *name,
-                                      struct glint_error *error)
+/* Opens the device NAME and reads its capabilities and name, without changing
+ * settings. On failure returns GLINT_E_DEVICE, and D is closed. */
+static enum glint_status open_device_by_name(struct glint_v4l2_device *d,
+                                             const char *name,
+                                             struct glint_error *error)
 {
     struct v4l2_capability cap = {.driver = ""};
     enum glint_status status;
@@ -381,15 +388,16 @@ static enum glint_status open_by_name(struct glint_v4l2_device *d,
                  name) >= GLINT_V4L2_PATH)
         return glint_error_report(error, GLINT_E_DEVICE, name,
                                   "the name is too long");
-    status = open_node(d, error);
+    status = open_device_node(d, error);
     if (status != GLINT_OK)
         return status;
     if (glint_ioctl(d->fd, VIDIOC_QUERYCAP, &cap) < 0) {
-        status = errno == ENODEV
-                     ? glint_ioctl_failed(error, d->path, "VIDIOC_QUERYCAP")
-                     : glint_error_report(
-                           error, GLINT_E_DEVICE, d->path,
-                           "not a camera: the device does not support V4L2");
+        status =
+            errno == ENODEV
+                ? glint_report_ioctl_error(error, d->path, "VIDIOC_QUERYCAP")
+                : glint_error_report(
+                      error, GLINT_E_DEVICE, d->path,
+                      "not a camera: the device does not support V4L2");
         glint_v4l2_device_close(d);
         return status;
     }
@@ -418,7 +426,7 @@ void glint_v4l2_device_close(struct glint_v4l2_device *d)
 
 /* -------------------------------------------------------------------- input */
 
-static void read_input(struct glint_v4l2_device *d)
+static void read_current_input(struct glint_v4l2_device *d)
 {
     struct v4l2_input input = {.index = 0};
     int index = 0;
@@ -430,9 +438,9 @@ static void read_input(struct glint_v4l2_device *d)
         d->is_dv = input.capabilities & V4L2_IN_CAP_DV_TIMINGS;
 }
 
-/* Subscribes to changes of the source. Drivers whose source never changes
- * refuse with EINVAL, which is ignored. */
-static void subscribe_to_events(const struct glint_v4l2_device *d)
+/* Subscribes to events that report changes of the source. Drivers whose source
+ * never changes refuse with EINVAL, which is ignored. */
+static void subscribe_to_source_changes(const struct glint_v4l2_device *d)
 {
     struct v4l2_event_subscription wanted = {.type = V4L2_EVENT_SOURCE_CHANGE,
                                              .id = d->input};
@@ -440,7 +448,7 @@ static void subscribe_to_events(const struct glint_v4l2_device *d)
     glint_ioctl(d->fd, VIDIOC_SUBSCRIBE_EVENT, &wanted);
 }
 
-static enum glint_status choose_input(struct glint_v4l2_device *d,
+static enum glint_status select_input(struct glint_v4l2_device *d,
                                       struct glint_error *error)
 {
     int index = d->wish.input;
@@ -449,9 +457,9 @@ static enum glint_status choose_input(struct glint_v4l2_device *d,
         return errno == EINVAL
                    ? glint_error_report(error, GLINT_E_DEVICE, d->path,
                                         "has no input %d", d->wish.input)
-                   : glint_ioctl_failed(error, d->path, "VIDIOC_S_INPUT");
-    read_input(d);
-    subscribe_to_events(d);
+                   : glint_report_ioctl_error(error, d->path, "VIDIOC_S_INPUT");
+    read_current_input(d);
+    subscribe_to_source_changes(d);
     return GLINT_OK;
 }
 
@@ -462,7 +470,7 @@ static bool has_same_timings(const struct v4l2_bt_timings *a,
            a->pixelclock == b->pixelclock && a->interlaced == b->interlaced;
 }
 
-bool glint_v4l2_device_retimed(struct glint_v4l2_device *d)
+bool glint_v4l2_device_has_new_timings(struct glint_v4l2_device *d)
 {
     struct v4l2_dv_timings now, set;
 
@@ -474,10 +482,10 @@ bool glint_v4l2_device_retimed(struct glint_v4l2_device *d)
            !has_same_timings(&now.bt, &set.bt);
 }
 
-/* Sets an HDMI input to the timings it receives, as drivers do not adopt new
- * timings on their own. Sets d->has_signal. */
-static enum glint_status follow_timings(struct glint_v4l2_device *d,
-                                        struct glint_error *error)
+/* Sets an HDMI input to the timings that it receives, as drivers do not adopt
+ * new timings on their own. Sets d->has_signal. */
+static enum glint_status adopt_received_timings(struct glint_v4l2_device *d,
+                                                struct glint_error *error)
 {
     struct v4l2_dv_timings now;
 
@@ -485,19 +493,19 @@ static enum glint_status follow_timings(struct glint_v4l2_device *d,
         return GLINT_OK;
     d->has_signal = glint_ioctl(d->fd, VIDIOC_QUERY_DV_TIMINGS, &now) == 0;
     if (d->has_signal && glint_ioctl(d->fd, VIDIOC_S_DV_TIMINGS, &now) < 0)
-        return glint_ioctl_failed(error, d->path, "VIDIOC_S_DV_TIMINGS");
+        return glint_report_ioctl_error(error, d->path, "VIDIOC_S_DV_TIMINGS");
     return GLINT_OK;
 }
 
 enum glint_status glint_v4l2_device_negotiate(struct glint_v4l2_device *d,
                                               struct glint_error *error)
 {
-    enum glint_status status = follow_timings(d, error);
+    enum glint_status status = adopt_received_timings(d, error);
 
     if (status == GLINT_OK)
-        status = set_format(d, error);
+        status = request_format(d, error);
     if (status == GLINT_OK)
-        set_rate(d);
+        request_frame_rate(d);
     return status;
 }
 
@@ -505,12 +513,12 @@ enum glint_status glint_v4l2_device_open(struct glint_v4l2_device *d,
                                          const struct glint_v4l2_config *wish,
                                          struct glint_error *error)
 {
-    enum glint_status status = open_by_name(d, wish->device, error);
+    enum glint_status status = open_device_by_name(d, wish->device, error);
 
     if (status != GLINT_OK)
         return status;
     d->wish = *wish;
-    status = choose_input(d, error);
+    status = select_input(d, error);
     if (status == GLINT_OK)
         status = glint_v4l2_device_negotiate(d, error);
     if (status != GLINT_OK)
@@ -527,9 +535,9 @@ static int compare_numbers(const void *a, const void *b)
     return *(const int *)a - *(const int *)b;
 }
 
-/* Lists the numbers N of all device nodes /dev/videoN, rising. Returns their
- * count, at most MAX_NODES. */
-static int find_nodes(int number[MAX_NODES])
+/* Sets NUMBER to the numbers N of all device nodes /dev/videoN, in rising
+ * order. Returns how many there are, at most MAX_NODES. */
+static int list_device_numbers(int number[MAX_NODES])
 {
     DIR *dev = opendir("/dev");
     const struct dirent *entry;
@@ -550,7 +558,7 @@ static int find_nodes(int number[MAX_NODES])
     return n;
 }
 
-static void print_string(FILE *out, const char *text)
+static void print_json_string(FILE *out, const char *text)
 {
     putc('"', out);
     for (; *text; text++)
@@ -561,15 +569,15 @@ static void print_string(FILE *out, const char *text)
     putc('"', out);
 }
 
-static void print_inputs(FILE *out, const struct glint_v4l2_device *d,
-                         bool json)
+static void print_device_inputs(FILE *out, const struct glint_v4l2_device *d,
+                                bool json)
 {
     struct v4l2_input input = {.index = 0};
 
     for (; glint_ioctl(d->fd, VIDIOC_ENUMINPUT, &input) == 0; input.index++) {
         if (json) {
             fprintf(out, "%s", input.index ? ", " : "");
-            print_string(out, (const char *)input.name);
+            print_json_string(out, (const char *)input.name);
         } else
             fprintf(out, "    --input %u  %s\n", input.index,
                     (const char *)input.name);
@@ -581,22 +589,22 @@ static void print_device(FILE *out, const struct glint_v4l2_device *d,
 {
     if (!json) {
         fprintf(out, "%s  %s\n", d->path, d->card);
-        print_inputs(out, d, false);
+        print_device_inputs(out, d, false);
         return;
     }
     fprintf(out, "%s\n  {\"device\": ", n_before ? "," : "");
-    print_string(out, d->path);
+    print_json_string(out, d->path);
     fputs(", \"card\": ", out);
-    print_string(out, d->card);
+    print_json_string(out, d->card);
     fputs(", \"inputs\": [", out);
-    print_inputs(out, d, true);
+    print_device_inputs(out, d, true);
     fputs("]}", out);
 }
 
 enum glint_status glint_v4l2_list_devices(FILE *out, bool json)
 {
     int number[MAX_NODES], n_cameras = 0, n_refused = 0;
-    const int n = find_nodes(number);
+    const int n = list_device_numbers(number);
     struct glint_error why = {""}, error;
 
     fputs(json ? "{\"devices\": [" : "", out);
@@ -605,7 +613,7 @@ enum glint_status glint_v4l2_list_devices(FILE *out, bool json)
         char name[16];
 
         snprintf(name, sizeof name, "%d", number[i]);
-        if (open_by_name(&d, name, &error) != GLINT_OK) {
+        if (open_device_by_name(&d, name, &error) != GLINT_OK) {
             n_refused++;
             why = error;
             continue;
@@ -627,16 +635,16 @@ enum glint_status glint_v4l2_list_devices(FILE *out, bool json)
 
 /* ------------------------------------------------------------------ formats */
 
-static double compute_rate(struct v4l2_fract interval)
+static double compute_frame_rate(struct v4l2_fract interval)
 {
     return interval.numerator
                ? (double)interval.denominator / interval.numerator
                : 0;
 }
 
-static void print_rates(FILE *out, const struct glint_v4l2_device *d,
-                        uint32_t fourcc, uint32_t width, uint32_t height,
-                        bool json)
+static void print_frame_rates(FILE *out, const struct glint_v4l2_device *d,
+                              uint32_t fourcc, uint32_t width, uint32_t height,
+                              bool json)
 {
     struct v4l2_frmivalenum i = {
         .pixel_format = fourcc, .width = width, .height = height};
@@ -645,10 +653,11 @@ static void print_rates(FILE *out, const struct glint_v4l2_device *d,
     while (glint_ioctl(d->fd, VIDIOC_ENUM_FRAMEINTERVALS, &i) == 0) {
         if (i.type == V4L2_FRMIVAL_TYPE_DISCRETE)
             fprintf(out, json ? "%s%.5g" : "%s%.4g", i.index ? ", " : "",
-                    compute_rate(i.discrete));
+                    compute_frame_rate(i.discrete));
         else
             fprintf(out, json ? "%.5g, %.5g" : "%.4g to %.4g",
-                    compute_rate(i.stepwise.max), compute_rate(i.stepwise.min));
+                    compute_frame_rate(i.stepwise.max),
+                    compute_frame_rate(i.stepwise.min));
         i.index++;
         if (i.type != V4L2_FRMIVAL_TYPE_DISCRETE)
             break;
@@ -656,8 +665,8 @@ static void print_rates(FILE *out, const struct glint_v4l2_device *d,
     fputs(json ? "]" : i.index ? " fps\n" : "\n", out);
 }
 
-static void print_size(FILE *out, const struct glint_v4l2_device *d,
-                       const struct v4l2_frmsizeenum *size, bool json)
+static void print_frame_size(FILE *out, const struct glint_v4l2_device *d,
+                             const struct v4l2_frmsizeenum *size, bool json)
 {
     const bool discrete = size->type == V4L2_FRMSIZE_TYPE_DISCRETE;
     const uint32_t w =
@@ -670,40 +679,40 @@ static void print_size(FILE *out, const struct glint_v4l2_device *d,
                 size->index ? ", " : "", w, h);
     else
         fprintf(out, "    %s%ux%u  ", discrete ? "" : "up to ", w, h);
-    print_rates(out, d, size->pixel_format, w, h, json);
+    print_frame_rates(out, d, size->pixel_format, w, h, json);
     fputs(json ? "}" : "", out);
 }
 
-static void print_sizes(FILE *out, const struct glint_v4l2_device *d,
-                        uint32_t fourcc, bool json)
+static void print_frame_sizes(FILE *out, const struct glint_v4l2_device *d,
+                              uint32_t fourcc, bool json)
 {
     struct v4l2_frmsizeenum size = {.pixel_format = fourcc};
 
     for (; glint_ioctl(d->fd, VIDIOC_ENUM_FRAMESIZES, &size) == 0;
          size.index++) {
-        print_size(out, d, &size, json);
+        print_frame_size(out, d, &size, json);
         if (size.type != V4L2_FRMSIZE_TYPE_DISCRETE)
             return;
     }
 }
 
-static void print_format(FILE *out, const struct glint_v4l2_device *d,
-                         const struct v4l2_fmtdesc *f, bool json)
+static void print_pixel_format(FILE *out, const struct glint_v4l2_device *d,
+                               const struct v4l2_fmtdesc *f, bool json)
 {
-    const bool is_read = can_read(f->pixelformat);
+    const bool is_read = can_read_format(f->pixelformat);
     char name[5];
 
     glint_fourcc_text(f->pixelformat, name);
     if (json) {
         fprintf(out, "%s\n  {\"format\": ", f->index ? "," : "");
-        print_string(out, name);
+        print_json_string(out, name);
         fprintf(out, ", \"read\": %s, \"sizes\": [",
                 is_read ? "true" : "false");
-        print_sizes(out, d, f->pixelformat, true);
+        print_frame_sizes(out, d, f->pixelformat, true);
         fputs("]}", out);
     } else if (is_read) {
         fprintf(out, "%s  %s\n", name, (const char *)f->description);
-        print_sizes(out, d, f->pixelformat, false);
+        print_frame_sizes(out, d, f->pixelformat, false);
     }
 }
 
@@ -711,14 +720,14 @@ enum glint_status glint_v4l2_list_formats(FILE *out, const char *device,
                                           bool json, struct glint_error *error)
 {
     struct glint_v4l2_device d;
-    const enum glint_status status = open_by_name(&d, device, error);
+    const enum glint_status status = open_device_by_name(&d, device, error);
     struct v4l2_fmtdesc f = {.type = d.type};
 
     if (status != GLINT_OK)
         return status;
     fputs(json ? "{\"formats\": [" : "", out);
     for (; glint_ioctl(d.fd, VIDIOC_ENUM_FMT, &f) == 0; f.index++)
-        print_format(out, &d, &f, json);
+        print_pixel_format(out, &d, &f, json);
     fputs(json ? "\n]}\n" : "", out);
     glint_v4l2_device_close(&d);
     return GLINT_OK;

@@ -19,12 +19,13 @@
 #define GLINT_V4L2_PATH 256
 
 struct glint_v4l2_config {
-    const char *device;   /* "/dev/video0", or "0" for short */
+    const char *device;   /* path, "/dev/video0", or "0" for short */
     int width, height;    /* 0, 0: the device's current size */
     int fps_num, fps_den; /* frames per second; 0: the device's current rate */
     uint32_t fourcc;      /* 0: the cheapest format with this size and rate */
     int input;            /* -1: the currently selected input */
-    /* Range and matrix that override the device's; -1: the device's. */
+    /* range and matrix that override those of the device; -1: those of the
+     * device */
     int range, matrix;
 };
 
@@ -45,7 +46,7 @@ struct glint_v4l2_format {
     enum glint_range range;
     enum glint_matrix matrix;
     enum glint_tone transfer;
-    int fps_num, fps_den; /* frames per second; 0: not known */
+    int fps_num, fps_den; /* frames per second; 0: unknown */
 };
 
 struct glint_v4l2_device {
@@ -77,7 +78,7 @@ enum glint_status glint_v4l2_device_negotiate(struct glint_v4l2_device *device,
 
 /* Returns whether the timings that an HDMI input receives differ from its
  * settings; false for other inputs. Sets has_signal. */
-bool glint_v4l2_device_retimed(struct glint_v4l2_device *device);
+bool glint_v4l2_device_has_new_timings(struct glint_v4l2_device *device);
 
 void glint_v4l2_device_close(struct glint_v4l2_device *device);
 
@@ -86,8 +87,8 @@ void glint_v4l2_device_close(struct glint_v4l2_device *device);
 void glint_v4l2_format_text(const struct glint_v4l2_format *format,
                             char text[96]);
 
-/* Print all cameras, or the formats, sizes and rates of DEVICE, as JSON if
- * JSON. */
+/* Print to OUT all cameras, or the formats, sizes and rates of DEVICE; as JSON
+ * if JSON is set. */
 enum glint_status glint_v4l2_list_devices(FILE *out, bool json);
 
 enum glint_status glint_v4l2_list_formats(FILE *out, const char *device,

@@ -15,9 +15,9 @@
 #include "posix/error.h"
 
 /* Reports that the request WHAT failed, with the cause in errno. */
-static enum glint_status report_failure(const struct glint_v4l2_sink *out,
-                                        const char *what,
-                                        struct glint_error *error)
+static enum glint_status
+report_request_failure(const struct glint_v4l2_sink *out, const char *what,
+                       struct glint_error *error)
 {
     const int number = errno;
     const char *hint = "";
@@ -27,17 +27,17 @@ static enum glint_status report_failure(const struct glint_v4l2_sink *out,
     else if (number == EACCES)
         hint = "; join its group: usermod -aG video USER, then log in again";
     else if (number == ENOENT)
-        hint = "; modprobe v4l2loopback makes one";
+        hint = "; modprobe v4l2loopback creates one";
     else if (number == ENODEV)
-        hint = "; the device went away";
+        hint = "; the device was removed";
     return glint_error_report(error, GLINT_E_DEVICE, out->name, "%s: %s%s",
                               what, strerror(number), hint);
 }
 
 /* ----------------------------------------------------------------- opening */
 
-static enum glint_status check_node(struct glint_v4l2_sink *out,
-                                    struct glint_error *error)
+static enum glint_status check_output_node(struct glint_v4l2_sink *out,
+                                           struct glint_error *error)
 {
     struct v4l2_capability cap = {.capabilities = 0};
     uint32_t can;
@@ -46,7 +46,7 @@ static enum glint_status check_node(struct glint_v4l2_sink *out,
         return errno == ENOTTY || errno == EINVAL
                    ? glint_error_report(error, GLINT_E_DEVICE, out->name,
                                         "is not a video device")
-                   : report_failure(out, "VIDIOC_QUERYCAP", error);
+                   : report_request_failure(out, "VIDIOC_QUERYCAP", error);
     memcpy(out->card, cap.card, 32);
     can = cap.capabilities & V4L2_CAP_DEVICE_CAPS ? cap.device_caps
                                                   : cap.capabilities;
@@ -61,9 +61,10 @@ static enum glint_status check_node(struct glint_v4l2_sink *out,
     return GLINT_OK;
 }
 
-static enum glint_status set_format(struct glint_v4l2_sink *out,
-                                    uint32_t fourcc, struct v4l2_format *f,
-                                    struct glint_error *error)
+static enum glint_status set_output_format(struct glint_v4l2_sink *out,
+                                           uint32_t fourcc,
+                                           struct v4l2_format *f,
+                                           struct glint_error *error)
 {
     const struct glint_image *const like = &out->frame;
     struct v4l2_pix_format *const px = &f->fmt.pix;
@@ -84,7 +85,7 @@ static enum glint_status set_format(struct glint_v4l2_sink *out,
     px->priv = V4L2_PIX_FMT_PRIV_MAGIC; /* makes drivers read the last three
                                            members */
     if (glint_ioctl(out->fd, VIDIOC_S_FMT, f) < 0)
-        return report_failure(out, "VIDIOC_S_FMT", error);
+        return report_request_failure(out, "VIDIOC_S_FMT", error);
     if (glint_fourcc_to_format(px->pixelformat, &format) &&
         format == like->format && px->width == (uint32_t)like->width &&
         px->height == (uint32_t)like->height)
@@ -110,7 +111,7 @@ static void start_streaming(const struct glint_v4l2_sink *out)
 }
 
 /* Sets the rate that readers of the device see. Drivers may ignore it. */
-static void set_rate(const struct glint_v4l2_sink *out, int num, int den)
+static void set_frame_rate(const struct glint_v4l2_sink *out, int num, int den)
 {
     struct v4l2_streamparm parm = {.type = V4L2_BUF_TYPE_VIDEO_OUTPUT};
 
@@ -123,8 +124,9 @@ static void set_rate(const struct glint_v4l2_sink *out, int num, int den)
 
 /* Sets the frame's layout and allocates its memory: all planes in one block of
  * SIZE bytes, luma rows STRIDE bytes apart, chroma rows in proportion. */
-static enum glint_status set_layout(struct glint_v4l2_sink *out, size_t stride,
-                                    size_t size, struct glint_error *error)
+static enum glint_status set_frame_layout(struct glint_v4l2_sink *out,
+                                          size_t stride, size_t size,
+                                          struct glint_error *error)
 {
     struct glint_image *const f = &out->frame;
     const size_t least = glint_image_row_bytes(f->format, 0, f->width);
@@ -171,8 +173,8 @@ static uintptr_t compute_plane_offset(const struct glint_image *image,
 }
 
 /* Returns whether IMAGE has the memory layout that the device requires. */
-static bool is_laid_out(const struct glint_v4l2_sink *out,
-                        const struct glint_image *image)
+static bool has_device_layout(const struct glint_v4l2_sink *out,
+                              const struct glint_image *image)
 {
     const struct glint_image *const f = &out->frame;
 
@@ -183,8 +185,8 @@ static bool is_laid_out(const struct glint_v4l2_sink *out,
     return true;
 }
 
-static void copy_frame(const struct glint_v4l2_sink *out,
-                       const struct glint_image *image)
+static void copy_to_device_layout(const struct glint_v4l2_sink *out,
+                                  const struct glint_image *image)
 {
     const struct glint_image *const to = &out->frame;
 
@@ -210,8 +212,8 @@ static enum glint_status write_frame(struct glint_sink *sink,
                                   "was opened for another size or format than "
                                   "%d x %d",
                                   image->width, image->height);
-    if (!is_laid_out(out, image)) {
-        copy_frame(out, image);
+    if (!has_device_layout(out, image)) {
+        copy_to_device_layout(out, image);
         data = out->mem;
     }
     do
@@ -222,7 +224,7 @@ static enum glint_status write_frame(struct glint_sink *sink,
         return GLINT_OK;
     }
     if (n < 0)
-        return report_failure(out, "write", error);
+        return report_request_failure(out, "write", error);
     if ((size_t)n < out->bytes)
         return glint_error_report(error, GLINT_E_DEVICE, out->name,
                                   "accepted %zu of %zu bytes of a frame",
@@ -231,7 +233,7 @@ static enum glint_status write_frame(struct glint_sink *sink,
     return GLINT_OK;
 }
 
-static void close_sink(struct glint_sink *sink)
+static void close_v4l2_sink(struct glint_sink *sink)
 {
     struct glint_v4l2_sink *const out = (struct glint_v4l2_sink *)sink;
 
@@ -248,11 +250,11 @@ enum glint_status glint_v4l2_sink_open(struct glint_v4l2_sink *out,
                                        int fps_num, int fps_den,
                                        struct glint_error *error)
 {
-    const uint32_t fourcc = glint_fourcc_of(like->format);
+    const uint32_t fourcc = glint_fourcc_from_format(like->format);
     enum glint_status status = GLINT_OK;
     struct v4l2_format format;
 
-    *out = (struct glint_v4l2_sink){.sink = {write_frame, close_sink},
+    *out = (struct glint_v4l2_sink){.sink = {write_frame, close_v4l2_sink},
                                     .name = path,
                                     .fd = -1,
                                     .frame = *like};
@@ -261,19 +263,19 @@ enum glint_status glint_v4l2_sink_open(struct glint_v4l2_sink *out,
                                   "V4L2 has no such format");
     out->fd = open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC);
     if (out->fd < 0)
-        status = report_failure(out, "open", error);
+        status = report_request_failure(out, "open", error);
     if (!status)
-        status = check_node(out, error);
+        status = check_output_node(out, error);
     if (!status)
-        status = set_format(out, fourcc, &format, error);
+        status = set_output_format(out, fourcc, &format, error);
     if (!status)
-        status = set_layout(out, format.fmt.pix.bytesperline,
-                            format.fmt.pix.sizeimage, error);
+        status = set_frame_layout(out, format.fmt.pix.bytesperline,
+                                  format.fmt.pix.sizeimage, error);
     if (status) {
-        close_sink(&out->sink);
+        close_v4l2_sink(&out->sink);
         return status;
     }
-    set_rate(out, fps_num, fps_den);
+    set_frame_rate(out, fps_num, fps_den);
     start_streaming(out);
     return GLINT_OK;
 }

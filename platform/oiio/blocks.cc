@@ -13,22 +13,23 @@ namespace glint
 namespace
 {
 
-const char exif_head[] = "Exif\0"; /* and a zero */
+const char exif_head[] = "Exif\0"; /* "Exif" and two zero bytes */
 const char xmp_head[] = "http://ns.adobe.com/xap/1.0/";
-const char xmp_keyword[] = "XML:com.adobe.xmp"; /* of a PNG's iTXt */
+const char xmp_keyword[] = "XML:com.adobe.xmp"; /* keyword of XMP in an iTXt
+                                                   chunk of PNG */
 
-bytes data_of(const file_piece &p, size_t from)
+bytes copy_piece_data(const file_piece &p, size_t from)
 {
     return bytes(p.data + from, p.data + p.data_bytes);
 }
 
-std::string text_of(const file_piece &p, size_t from)
+std::string convert_bytes_to_text(const file_piece &p, size_t from)
 {
     return std::string(reinterpret_cast<const char *>(p.data) + from,
                        p.data_bytes - from);
 }
 
-const unsigned char *at_text(const std::string &text)
+const unsigned char *get_text_bytes(const std::string &text)
 {
     return reinterpret_cast<const unsigned char *>(text.data());
 }
@@ -36,12 +37,12 @@ const unsigned char *at_text(const std::string &text)
 bool is_png_xmp(const file_piece &chunk)
 {
     return chunk.name == "iTXt" &&
-           begins(chunk, xmp_keyword, sizeof xmp_keyword);
+           begins_with_text(chunk, xmp_keyword, sizeof xmp_keyword);
 }
 
-/* Returns the text of an iTXt that is not compressed: after keyword, flag and
- * method follow language and translated keyword, each with a zero. */
-std::string text_of_itxt(const file_piece &chunk)
+/* Returns the text of an uncompressed iTXt chunk of PNG, without its keyword,
+ * flag, method, language and translated keyword. */
+std::string get_itxt_text(const file_piece &chunk)
 {
     size_t at = sizeof xmp_keyword + 2;
 
@@ -49,12 +50,12 @@ std::string text_of_itxt(const file_piece &chunk)
         return "";
     for (int zeros = 0; zeros < 2 && at < chunk.data_bytes; at++)
         zeros += chunk.data[at] == 0;
-    return text_of(chunk, at);
+    return convert_bytes_to_text(chunk, at);
 }
 
 /* -------------------------------------------------------------------- PNG */
 
-uint32_t crc_of(const unsigned char *at, size_t n)
+uint32_t compute_crc(const unsigned char *at, size_t n)
 {
     uint32_t crc = ~UINT32_C(0);
 
@@ -66,7 +67,7 @@ uint32_t crc_of(const unsigned char *at, size_t n)
     return ~crc;
 }
 
-void put_big32(bytes &to, uint32_t value)
+void append_big32(bytes &to, uint32_t value)
 {
     for (int shift = 24; shift >= 0; shift -= 8)
         to.push_back(static_cast<unsigned char>(value >> shift));
@@ -75,10 +76,10 @@ void put_big32(bytes &to, uint32_t value)
 void append_png(bytes &to, const char *name, const unsigned char *data,
                 size_t n)
 {
-    put_big32(to, static_cast<uint32_t>(n));
-    append(to, reinterpret_cast<const unsigned char *>(name), 4);
-    append(to, data, n);
-    put_big32(to, crc_of(to.data() + to.size() - n - 4, n + 4));
+    append_big32(to, static_cast<uint32_t>(n));
+    append_bytes(to, reinterpret_cast<const unsigned char *>(name), 4);
+    append_bytes(to, data, n);
+    append_big32(to, compute_crc(to.data() + to.size() - n - 4, n + 4));
 }
 
 void append_png_blocks(bytes &file, const file_blocks &b)
@@ -94,12 +95,12 @@ void append_png_blocks(bytes &file, const file_blocks &b)
         append_png(file, "eXIf", b.exif.data(), b.exif.size());
     text += std::string(4, '\0') + b.xmp;
     if (!b.xmp.empty())
-        append_png(file, "iTXt", at_text(text), text.size());
+        append_png(file, "iTXt", get_text_bytes(text), text.size());
 }
 
-bytes carry_to_png(const bytes &made, const file_blocks &b)
+bytes replace_png_blocks(const bytes &made, const file_blocks &b)
 {
-    const std::vector<file_piece> chunks = chunks_of_png(made);
+    const std::vector<file_piece> chunks = split_png_chunks(made);
     bytes file(made.begin(), made.begin() + (chunks.empty() ? 0 : 8));
 
     for (const file_piece &chunk : chunks) {
@@ -109,7 +110,7 @@ bytes carry_to_png(const bytes &made, const file_blocks &b)
             (b.cicp[1] && is_one_of(chunk.name, {"gAMA", "cHRM", "sRGB"}));
 
         if (!goes)
-            append(file, chunk.whole, chunk.whole_bytes);
+            append_bytes(file, chunk.whole, chunk.whole_bytes);
         if (chunk.name == "IHDR")
             append_png_blocks(file, b);
     }
@@ -118,18 +119,19 @@ bytes carry_to_png(const bytes &made, const file_blocks &b)
 
 /* ------------------------------------------------------------ JPEG and WebP */
 
-void lose(std::string &lost, const char *what, size_t n)
+void report_lost_block(std::string &lost, const char *what, size_t n)
 {
     lost += std::string(lost.empty() ? "" : "; ") + "no " + what + ": its " +
             std::to_string((n + 1023) / 1024) +
             " KB are more than a JPEG's 64 KB";
 }
 
-/* Own Exif and XMP of MADE go even if those of B do not fit: OpenImageIO's would
- * be a part of it. */
-bytes carry_to_jpeg(const bytes &made, const file_blocks &b, std::string &lost)
+/* The Exif and XMP that OpenImageIO wrote to MADE are removed even if those of
+ * B do not fit into segments, as they are only a part of B's. */
+bytes replace_jpeg_blocks(const bytes &made, const file_blocks &b,
+                          std::string &lost)
 {
-    const std::vector<file_piece> segments = segments_of_jpeg(made);
+    const std::vector<file_piece> segments = split_jpeg_segments(made);
     bytes file = {0xff, 0xd8}, own;
 
     if (segments.empty())
@@ -137,20 +139,19 @@ bytes carry_to_jpeg(const bytes &made, const file_blocks &b, std::string &lost)
     if (!b.exif.empty() &&
         !append_segment(own, 0xe1, exif_head, exif_head_bytes, b.exif.data(),
                         b.exif.size()))
-        lose(lost, "Exif", b.exif.size());
-    if (!b.xmp.empty() &&
-        !append_segment(own, 0xe1, xmp_head, xmp_head_bytes, at_text(b.xmp),
-                        b.xmp.size()))
-        lose(lost, "XMP", b.xmp.size());
+        report_lost_block(lost, "Exif", b.exif.size());
+    if (!b.xmp.empty() && !append_segment(own, 0xe1, xmp_head, xmp_head_bytes,
+                                          get_text_bytes(b.xmp), b.xmp.size()))
+        report_lost_block(lost, "XMP", b.xmp.size());
     bool is_in = false;
     for (const file_piece &segment : segments) {
         if (!is_in && !is_marker(segment, 0xe0)) {
-            append(file, own.data(), own.size());
+            append_bytes(file, own.data(), own.size());
             is_in = true;
         }
         if (!(is_exif(segment) && !b.exif.empty()) &&
             !(is_xmp(segment) && !b.xmp.empty()))
-            append(file, segment.whole, segment.whole_bytes);
+            append_bytes(file, segment.whole, segment.whole_bytes);
     }
     return file;
 }
@@ -158,16 +159,17 @@ bytes carry_to_jpeg(const bytes &made, const file_blocks &b, std::string &lost)
 void append_webp(bytes &to, const char *name, const unsigned char *data,
                  size_t n)
 {
-    append(to, reinterpret_cast<const unsigned char *>(name), 4);
+    append_bytes(to, reinterpret_cast<const unsigned char *>(name), 4);
     for (int i = 0; i < 4; i++)
         to.push_back(static_cast<unsigned char>(n >> (8 * i)));
-    append(to, data, n);
+    append_bytes(to, data, n);
     if (n & 1)
         to.push_back(0);
 }
 
-/* Returns a WebP of the chunks of B alone, as carry_webp() takes them. */
-bytes webp_of(const file_blocks &b)
+/* Returns a WebP that consists only of the metadata chunks of B, as input for
+ * copy_webp_metadata(). */
+bytes build_metadata_webp(const file_blocks &b)
 {
     bytes file = {'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'};
 
@@ -176,49 +178,50 @@ bytes webp_of(const file_blocks &b)
     if (!b.exif.empty())
         append_webp(file, "EXIF", b.exif.data(), b.exif.size());
     if (!b.xmp.empty())
-        append_webp(file, "XMP ", at_text(b.xmp), b.xmp.size());
+        append_webp(file, "XMP ", get_text_bytes(b.xmp), b.xmp.size());
     return file;
 }
 
 } // namespace
 
-file_blocks blocks_of(const std::string &type, const bytes &whole)
+file_blocks read_metadata_blocks(const std::string &type, const bytes &whole)
 {
     file_blocks b = {};
 
     if (type == "tiff")
-        return blocks_of_tiff(whole);
+        return read_tiff_metadata(whole);
     if (type == "jpeg")
-        for (const file_piece &segment : segments_of_jpeg(whole)) {
+        for (const file_piece &segment : split_jpeg_segments(whole)) {
             if (is_exif(segment) && b.exif.empty())
-                b.exif = data_of(segment, exif_head_bytes);
+                b.exif = copy_piece_data(segment, exif_head_bytes);
             if (is_xmp(segment) && b.xmp.empty())
-                b.xmp = text_of(segment, xmp_head_bytes);
+                b.xmp = convert_bytes_to_text(segment, xmp_head_bytes);
         }
     if (type == "png")
-        for (const file_piece &chunk : chunks_of_png(whole)) {
+        for (const file_piece &chunk : split_png_chunks(whole)) {
             if (chunk.name == "eXIf" && b.exif.empty())
-                b.exif = data_of(chunk, 0);
+                b.exif = copy_piece_data(chunk, 0);
             if (chunk.name == "cICP" && chunk.data_bytes == 4)
                 std::memcpy(b.cicp, chunk.data, 4);
             if (is_png_xmp(chunk) && b.xmp.empty())
-                b.xmp = text_of_itxt(chunk);
+                b.xmp = get_itxt_text(chunk);
         }
     if (type == "webp")
-        for (const file_piece &chunk : chunks_of_webp(whole)) {
+        for (const file_piece &chunk : split_webp_chunks(whole)) {
             if (chunk.name == "EXIF" && b.exif.empty())
-                b.exif = data_of(chunk, begins(chunk, exif_head, 6) ? 6 : 0);
+                b.exif = copy_piece_data(
+                    chunk, begins_with_text(chunk, exif_head, 6) ? 6 : 0);
             if (chunk.name == "ICCP" && b.icc.empty())
-                b.icc = data_of(chunk, 0);
+                b.icc = copy_piece_data(chunk, 0);
             if (chunk.name == "XMP " && b.xmp.empty())
-                b.xmp = text_of(chunk, 0);
+                b.xmp = convert_bytes_to_text(chunk, 0);
         }
     return b;
 }
 
-void make_upright(file_blocks &b)
+void set_upright_orientation(file_blocks &b)
 {
-    remove_claims(b.xmp, true);
+    remove_xmp_claims(b.xmp, true);
     if (!is_classic_tiff(b.exif)) {
         b.exif.clear();
         return;
@@ -239,23 +242,24 @@ void make_upright(file_blocks &b)
             b.exif[at + 8] = little;
             b.exif[at + 9] = !little;
         }
-    if (end + 4 <= b.exif.size()) /* next directory: the thumbnail */
+    if (end + 4 <= b.exif.size()) /* Next directory: that of the thumbnail. */
         std::fill_n(b.exif.begin() + static_cast<std::ptrdiff_t>(end), 4, 0);
 }
 
-bytes carry_blocks(const std::string &type, const bytes &made, const file_blocks &b,
-                   std::string &lost)
+bytes replace_metadata_blocks(const std::string &type, const bytes &made,
+                              const file_blocks &b, std::string &lost)
 {
     const bytes tiff = {'I', 'I', '*', 0, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0};
 
     if (type == "png")
-        return carry_to_png(made, b);
+        return replace_png_blocks(made, b);
     if (type == "jpeg")
-        return carry_to_jpeg(made, b, lost);
+        return replace_jpeg_blocks(made, b, lost);
     if (type == "webp")
-        return carry_webp(made, webp_of(b), false);
+        return copy_webp_metadata(made, build_metadata_webp(b), false);
     if (type == "tiff" && (!b.exif.empty() || !b.xmp.empty()))
-        return add_to_tiff(made, b.exif.empty() ? tiff : b.exif, b.xmp);
+        return add_metadata_to_tiff(made, b.exif.empty() ? tiff : b.exif,
+                                    b.xmp);
     return made;
 }
 

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/blocks.h - Exif, XMP and colour codes of a picture, which go from files
- * of one type to files of another byte for byte.
+ * oiio/blocks.h - copies Exif, XMP and colour codes of a picture byte for byte
+ * to files of another type.
  *
- *     file_blocks b = blocks_of("jpeg", whole);
- *     make_upright(b);
- *     made = carry_blocks("png", made, b, lost);
- */
+ *     file_blocks b = read_metadata_blocks("jpeg", whole);
+ *     set_upright_orientation(b);
+ *     made = replace_metadata_blocks("png", made, b, lost); */
 #ifndef GLINT_PLATFORM_OIIO_BLOCKS_H
 #define GLINT_PLATFORM_OIIO_BLOCKS_H
 
@@ -18,28 +17,30 @@ namespace glint
 {
 
 struct file_blocks {
-    bytes exif;      /* a TIFF header and directories; empty: none */
-    std::string xmp; /* the packet; empty: none */
-    bytes icc;       /* of WebP, of which OpenImageIO 2.4 has none, and HEIF */
+    bytes exif;      /* Exif: a TIFF header and directories; empty: none */
+    std::string xmp; /* the XMP packet; empty: none */
+    bytes icc;       /* ICC profile of HEIF, and of WebP, for which OpenImageIO
+                        2.4 reads none */
     /* codes of primaries, transfer, matrix and full range [ITU-T H.273]; all 0:
      * none */
     unsigned char cicp[4];
 };
 
-/* Returns Exif and XMP of WHOLE, a file of OpenImageIO's TYPE; nothing if TYPE
- * has no blocks or they are malformed. */
-file_blocks blocks_of(const std::string &type, const bytes &whole);
-file_blocks blocks_of_tiff(const bytes &whole);
+/* Returns Exif and XMP of WHOLE, the bytes of a file of OpenImageIO's TYPE;
+ * empty if TYPE has no such blocks or they are malformed. */
+file_blocks read_metadata_blocks(const std::string &type, const bytes &whole);
+file_blocks read_tiff_metadata(const bytes &whole);
 
-/* Sets the orientation in B to 1, removes the thumbnail of its Exif and what
- * its XMP claims of other pictures. */
-void make_upright(file_blocks &b);
+/* Sets the orientation in B to 1, and removes its Exif thumbnail and the
+ * properties of its XMP that refer to other pictures in the file. */
+void set_upright_orientation(file_blocks &b);
 
-/* Returns MADE, a file of TYPE, with the blocks of B in place of its own, and
- * names in LOST those that do not fit. Does nothing for types without blocks.
- * CICP goes into a PNG, ICC into a WebP; other types have had them before. */
-bytes carry_blocks(const std::string &type, const bytes &made,
-                   const file_blocks &b, std::string &lost);
+/* Returns MADE, the bytes of a file of TYPE, with its own metadata blocks
+ * replaced by those of B. Appends to LOST the names of blocks that do not fit.
+ * Does nothing for types without such blocks. CICP is written to PNG, ICC to
+ * WebP; in other types OpenImageIO has written them already. */
+bytes replace_metadata_blocks(const std::string &type, const bytes &made,
+                              const file_blocks &b, std::string &lost);
 
 } // namespace glint
 

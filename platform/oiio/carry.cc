@@ -12,21 +12,22 @@ namespace glint
 namespace
 {
 
-/* Checks whether CHUNK goes into the new file. Chunks about the coding of
- * pixels need the SAME_CODING; those about colours do not go if DROP_ICC. */
-bool goes_along(const file_piece &chunk, bool same_coding, bool drop_icc)
+/* Returns whether CHUNK is copied to the new file. Chunks about the coding of
+ * pixels are copied only if SAME_CODING is set, chunks about colours only if
+ * DROP_ICC is not set. */
+bool is_chunk_copied(const file_piece &chunk, bool same_coding, bool drop_icc)
 {
     if (!(chunk.name[0] & 0x20) || is_one_of(chunk.name, {"tRNS", "hIST",
                                                          "acTL", "fcTL",
                                                          "fdAT"}))
-        return false; /* the last three: further frames */
+        return false; /* the last three names: further frames of an animation */
     if (is_one_of(chunk.name, {"sBIT", "bKGD"}))
         return same_coding;
     return !drop_icc || !is_one_of(chunk.name, {"iCCP", "gAMA", "cHRM", "sRGB",
                                                 "cICP", "mDCv", "cLLi"});
 }
 
-bool is_metadata(const file_piece &segment)
+bool is_metadata_segment(const file_piece &segment)
 {
     const int marker =
         segment.name.empty() ? 0 : static_cast<unsigned char>(segment.name[0]);
@@ -35,28 +36,31 @@ bool is_metadata(const file_piece &segment)
            marker == 0xfe;
 }
 
-/* Checks whether SEGMENT lists more pictures, by offsets in the old file. */
-bool is_index(const file_piece &segment)
+/* Returns whether SEGMENT is an index of several pictures, with offsets in the
+ * old file. */
+bool is_picture_index(const file_piece &segment)
 {
-    return is_marker(segment, 0xe2) && begins(segment, "MPF", 4);
+    return is_marker(segment, 0xe2) && begins_with_text(segment, "MPF", 4);
 }
 
-bool is_icc(const file_piece &segment)
+bool is_icc_segment(const file_piece &segment)
 {
-    return is_marker(segment, 0xe2) && begins(segment, "ICC_PROFILE", 12);
+    return is_marker(segment, 0xe2) &&
+           begins_with_text(segment, "ICC_PROFILE", 12);
 }
 
-void append_named(bytes &to, const std::vector<file_piece> &chunks,
-                  std::initializer_list<const char *> names)
+void append_named_segments(bytes &to, const std::vector<file_piece> &chunks,
+                           std::initializer_list<const char *> names)
 {
     for (const file_piece &chunk : chunks)
         if (is_one_of(chunk.name, names))
             append_chunk(to, chunk);
 }
 
-/* Sets SIDE to width and height less 1, as VP8X has them, and ALPHA, from the
- * only chunk of a simple file. Returns false if it cannot read CHUNK. */
-bool canvas_of(const file_piece &chunk, uint32_t side[2], bool &alpha)
+/* Sets SIDE to width - 1 and height - 1, as a VP8X chunk stores them, and
+ * ALPHA, from CHUNK, the only chunk of a simple WebP. Returns false if it
+ * cannot parse CHUNK. */
+bool read_webp_canvas(const file_piece &chunk, uint32_t side[2], bool &alpha)
 {
     const unsigned char *const d = chunk.data;
 
@@ -67,7 +71,7 @@ bool canvas_of(const file_piece &chunk, uint32_t side[2], bool &alpha)
         return true;
     }
     if (chunk.name == "VP8L" && chunk.data_bytes >= 5) {
-        const uint32_t bits = little32(d + 1);
+        const uint32_t bits = read_little32(d + 1);
 
         side[0] = bits & 0x3fff;
         side[1] = bits >> 14 & 0x3fff;
@@ -77,17 +81,17 @@ bool canvas_of(const file_piece &chunk, uint32_t side[2], bool &alpha)
     return false;
 }
 
-bytes vp8x_of(const std::vector<file_piece> &made)
+bytes build_vp8x_chunk(const std::vector<file_piece> &made)
 {
     uint32_t side[2] = {0, 0};
     bool alpha = false;
     bytes x;
 
     if (!made.empty() && made[0].name == "VP8X") {
-        append(x, made[0].whole, 18);
+        append_bytes(x, made[0].whole, 18);
         return x;
     }
-    if (made.empty() || !canvas_of(made[0], side, alpha))
+    if (made.empty() || !read_webp_canvas(made[0], side, alpha))
         return x;
     x = {'V', 'P', '8', 'X', 10, 0, 0, 0, 0, 0, 0, 0};
     x[8] = alpha ? 0x10 : 0;
@@ -99,60 +103,62 @@ bytes vp8x_of(const std::vector<file_piece> &made)
 
 } // namespace
 
-bytes carry_png(const bytes &made, const bytes &from, bool drop_icc)
+bytes copy_png_metadata(const bytes &made, const bytes &from, bool drop_icc)
 {
-    const std::vector<file_piece> ours = chunks_of_png(made);
-    const std::vector<file_piece> theirs = chunks_of_png(from);
+    const std::vector<file_piece> ours = split_png_chunks(made);
+    const std::vector<file_piece> theirs = split_png_chunks(from);
     bytes file;
 
     if (ours.empty() || theirs.empty() || ours[0].data_bytes != 13 ||
         theirs[0].data_bytes != 13)
         return made;
     const bool same = !std::memcmp(ours[0].data + 8, theirs[0].data + 8, 2);
-    append(file, made.data(), 8);
-    append(file, ours[0].whole, ours[0].whole_bytes);
+    append_bytes(file, made.data(), 8);
+    append_bytes(file, ours[0].whole, ours[0].whole_bytes);
     bool behind = false;
     for (const file_piece &chunk : theirs) {
         if (chunk.name == "IDAT" && !behind) {
             behind = true;
             for (const file_piece &data : ours)
                 if (data.name == "IDAT")
-                    append(file, data.whole, data.whole_bytes);
-        } else if (goes_along(chunk, same, drop_icc)) {
-            append(file, chunk.whole, chunk.whole_bytes);
+                    append_bytes(file, data.whole, data.whole_bytes);
+        } else if (is_chunk_copied(chunk, same, drop_icc)) {
+            append_bytes(file, chunk.whole, chunk.whole_bytes);
         }
     }
-    append(file, ours.back().whole, ours.back().whole_bytes);
+    append_bytes(file, ours.back().whole, ours.back().whole_bytes);
     return behind ? file : made;
 }
 
-/* ---------------------------------------------------- pictures behind a JPEG */
+/* --------------------------------------------------- pictures behind a JPEG */
 
 namespace
 {
 
-/* Returns whether SEGMENT describes the gain map of a file [ISO 21496-1]. */
+/* Returns whether SEGMENT describes the gain map of a JPEG [ISO 21496-1]. */
 bool is_gain_map(const file_piece &segment)
 {
     static const char name[] = "urn:iso:std:iso:ts:21496:-1";
 
-    return is_marker(segment, 0xe2) && begins(segment, name, sizeof name);
+    return is_marker(segment, 0xe2) &&
+           begins_with_text(segment, name, sizeof name);
 }
 
-std::string packet_of(const file_piece &xmp_segment)
+std::string get_xmp_packet(const file_piece &xmp_segment)
 {
     return std::string(
         reinterpret_cast<const char *>(xmp_segment.data) + xmp_head_bytes,
         xmp_segment.data_bytes - xmp_head_bytes);
 }
 
-/* Appends SEGMENT, XMP, without what it claims of pictures and videos that are
- * not there any more; appends nothing if it is malformed. */
-void append_xmp(bytes &to, const file_piece &segment)
+/* Appends the XMP of SEGMENT without the properties that refer to pictures and
+ * videos after the first picture, which are not copied; appends nothing if it
+ * is malformed. */
+void append_cleaned_xmp(bytes &to, const file_piece &segment)
 {
-    std::string xmp = packet_of(segment);
+    std::string xmp = get_xmp_packet(segment);
 
-    if (!remove_claims(xmp, false))
+    if (!remove_xmp_claims(xmp, false))
         return;
     append_segment(to, 0xe1, reinterpret_cast<const char *>(segment.data),
                    xmp_head_bytes,
@@ -160,11 +166,12 @@ void append_xmp(bytes &to, const file_piece &segment)
                    xmp.size());
 }
 
-/* Returns whether all pictures after the first that SEGMENT lists are previews
- * of it [CIPA DC-007]. */
-bool lists_previews(const file_piece &segment)
+/* Returns whether all pictures that the index SEGMENT lists, except the first,
+ * are previews of the first [CIPA DC-007]. */
+bool are_pictures_previews(const file_piece &segment)
 {
-    const unsigned char *const d = segment.data + 4; /* after "MPF", 0 */
+    const unsigned char *const d = segment.data + 4; /* data after the 4 bytes
+                                                        "MPF", 0 */
     const size_t n = segment.data_bytes - 4;
     const bool little = n > 0 && d[0] == 'I';
     const auto number = [&](size_t at, size_t bytes) {
@@ -181,7 +188,8 @@ bool lists_previews(const file_piece &segment)
         const uint32_t tag = first + 2 + 12 * i;
         const uint32_t place = number(tag + 8, 4), size = number(tag + 4, 4);
 
-        if (number(tag, 2) != 0xb002) /* entries of 16 bytes */
+        if (number(tag, 2) != 0xb002) /* tag of the list of pictures; its
+                                         entries have 16 bytes */
             continue;
         all = size > 16;
         for (uint32_t k = 16; k + 16 <= size && place + k + 16 <= n; k += 16)
@@ -192,26 +200,26 @@ bool lists_previews(const file_piece &segment)
 
 } // namespace
 
-std::string more_of_jpeg(const bytes &jpeg)
+std::string describe_extra_jpeg_data(const bytes &jpeg)
 {
     bool map = false, video = false, more = false, previews = false;
     bool malformed = false;
     std::string text;
 
-    for (const file_piece &segment : segments_of_jpeg(jpeg)) {
-        if (is_index(segment)) {
+    for (const file_piece &segment : split_jpeg_segments(jpeg)) {
+        if (is_picture_index(segment)) {
             more = true;
-            previews = lists_previews(segment);
+            previews = are_pictures_previews(segment);
         }
         map = map || is_gain_map(segment);
         if (!is_xmp(segment))
             continue;
-        std::string xmp = packet_of(segment);
+        std::string xmp = get_xmp_packet(segment);
 
         map = map || xmp.find("hdrgm:") != std::string::npos;
         video = video || xmp.find("Camera:MotionPhoto") != std::string::npos ||
                 xmp.find("Camera:MicroVideo") != std::string::npos;
-        malformed = malformed || !remove_claims(xmp, false);
+        malformed = malformed || !remove_xmp_claims(xmp, false);
     }
     if (map)
         text = "its gain map (Ultra HDR) is dropped";
@@ -220,39 +228,40 @@ std::string more_of_jpeg(const bytes &jpeg)
                              : ", so is its video";
     if (text.empty() && more)
         text = previews ? "its embedded preview is dropped"
-                        : "only the first of its pictures is kept";
+                        : "only its first picture is written";
     if (malformed)
         text += std::string(text.empty() ? "" : "; ") +
                 "its XMP is malformed and is dropped";
     return text;
 }
 
-bytes carry_jpeg(const bytes &made, const bytes &from, bool drop_icc)
+bytes copy_jpeg_metadata(const bytes &made, const bytes &from, bool drop_icc)
 {
-    const std::vector<file_piece> ours = segments_of_jpeg(made);
-    const std::vector<file_piece> theirs = segments_of_jpeg(from);
+    const std::vector<file_piece> ours = split_jpeg_segments(made);
+    const std::vector<file_piece> theirs = split_jpeg_segments(from);
     bytes file = {0xff, 0xd8};
 
     if (ours.empty() || theirs.empty())
         return made;
     for (const file_piece &segment : theirs)
         if (is_xmp(segment))
-            append_xmp(file, segment);
-        else if (is_metadata(segment) && !is_index(segment) &&
-                 !is_gain_map(segment) && !(drop_icc && is_icc(segment)))
-            append(file, segment.whole, segment.whole_bytes);
+            append_cleaned_xmp(file, segment);
+        else if (is_metadata_segment(segment) && !is_picture_index(segment) &&
+                 !is_gain_map(segment) &&
+                 !(drop_icc && is_icc_segment(segment)))
+            append_bytes(file, segment.whole, segment.whole_bytes);
     for (const file_piece &segment : ours)
-        if (!is_metadata(segment))
-            append(file, segment.whole, segment.whole_bytes);
+        if (!is_metadata_segment(segment))
+            append_bytes(file, segment.whole, segment.whole_bytes);
     return file;
 }
 
-bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc)
+bytes copy_webp_metadata(const bytes &made, const bytes &from, bool drop_icc)
 {
-    const std::vector<file_piece> ours = chunks_of_webp(made);
-    const std::vector<file_piece> theirs = chunks_of_webp(from);
+    const std::vector<file_piece> ours = split_webp_chunks(made);
+    const std::vector<file_piece> theirs = split_webp_chunks(from);
     bytes file = {'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'};
-    const bytes x = vp8x_of(ours);
+    const bytes x = build_vp8x_chunk(ours);
     unsigned flags = 0;
 
     for (const file_piece &chunk : theirs)
@@ -262,13 +271,13 @@ bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc)
                                                    : 0u;
     if (x.empty() || !flags)
         return made;
-    append(file, x.data(), x.size());
+    append_bytes(file, x.data(), x.size());
     file[20] = static_cast<unsigned char>((file[20] & ~0x2cu) | flags);
     if (!drop_icc)
-        append_named(file, theirs, {"ICCP"});
-    append_named(file, ours, {"ALPH", "VP8 ", "VP8L"});
-    append_named(file, theirs, {"EXIF"});
-    append_named(file, theirs, {"XMP "});
+        append_named_segments(file, theirs, {"ICCP"});
+    append_named_segments(file, ours, {"ALPH", "VP8 ", "VP8L"});
+    append_named_segments(file, theirs, {"EXIF"});
+    append_named_segments(file, theirs, {"XMP "});
     for (int i = 0; i < 4; i++)
         file[4 + i] = static_cast<unsigned char>((file.size() - 8) >> (8 * i));
     return file;
@@ -276,7 +285,7 @@ bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc)
 
 bool is_animated_webp(const bytes &webp)
 {
-    for (const file_piece &chunk : chunks_of_webp(webp))
+    for (const file_piece &chunk : split_webp_chunks(webp))
         if (chunk.name == "ANIM")
             return true;
     return false;
@@ -284,15 +293,15 @@ bool is_animated_webp(const bytes &webp)
 
 bool is_lossless(const bytes &webp)
 {
-    for (const file_piece &chunk : chunks_of_webp(webp))
+    for (const file_piece &chunk : split_webp_chunks(webp))
         if (chunk.name == "VP8L")
             return true;
     return false;
 }
 
-bytes chunk_of_png(const bytes &file, const char *name)
+bytes find_png_chunk(const bytes &file, const char *name)
 {
-    for (const file_piece &chunk : chunks_of_png(file))
+    for (const file_piece &chunk : split_png_chunks(file))
         if (chunk.name == name)
             return bytes(chunk.data, chunk.data + chunk.data_bytes);
     return {};
@@ -300,11 +309,11 @@ bytes chunk_of_png(const bytes &file, const char *name)
 
 /* ---------------------------------------------------------------- complete */
 
-/* Walks through the scans to the end of the image. In a scan 0xff stands only
- * before 0 and restart markers; any other marker ends the scan. */
-std::string missing_of_jpeg(const bytes &file)
+/* Finds the end of the image in the scans. In a scan the byte 0xff occurs only
+ * before 0 and in restart markers; any other marker ends the scan. */
+std::string describe_missing_jpeg_data(const bytes &file)
 {
-    const std::vector<file_piece> segments = segments_of_jpeg(file);
+    const std::vector<file_piece> segments = split_jpeg_segments(file);
 
     if (segments.empty())
         return "is cut off before its first scan";
@@ -328,17 +337,17 @@ std::string missing_of_jpeg(const bytes &file)
     return "is cut off: its end marker is missing";
 }
 
-bool is_progressive(const bytes &jpeg)
+bool is_progressive_jpeg(const bytes &jpeg)
 {
-    for (const file_piece &segment : segments_of_jpeg(jpeg))
+    for (const file_piece &segment : split_jpeg_segments(jpeg))
         if (is_marker(segment, 0xc2))
             return true;
     return false;
 }
 
-bool is_of_inks(const bytes &jpeg)
+bool is_cmyk_jpeg(const bytes &jpeg)
 {
-    for (const file_piece &segment : segments_of_jpeg(jpeg))
+    for (const file_piece &segment : split_jpeg_segments(jpeg))
         if ((is_marker(segment, 0xc0) || is_marker(segment, 0xc1) ||
              is_marker(segment, 0xc2)) &&
             segment.data_bytes > 5)
@@ -346,9 +355,10 @@ bool is_of_inks(const bytes &jpeg)
     return false;
 }
 
-int quality_of_jpeg(const bytes &file)
+int estimate_jpeg_quality(const bytes &file)
 {
-    /* ITU-T T.81 table K.1; its sum is all that is needed */
+    /* luma quantisation table K.1 of ITU-T T.81, which each quality scales; the
+     * sums of tables are compared */
     static const int luminance[64] = {
         16, 11, 10, 16, 24,  40,  51,  61,  12, 12, 14, 19, 26,  58,  60,  55,
         14, 13, 16, 24, 40,  57,  69,  56,  14, 17, 22, 29, 51,  87,  80,  62,
@@ -357,7 +367,7 @@ int quality_of_jpeg(const bytes &file)
     long stated = 0, nearest = 1L << 30;
     int best = 0;
 
-    for (const file_piece &segment : segments_of_jpeg(file)) {
+    for (const file_piece &segment : split_jpeg_segments(file)) {
         if (!is_marker(segment, 0xdb) || segment.data_bytes < 65)
             continue;
         const bool wide = segment.data[0] >> 4;
@@ -422,8 +432,9 @@ struct tiff {
 
 } // namespace
 
-/* States which strips or tiles the first picture lacks; "" if it has all. */
-std::string missing_of_tiff(const bytes &file)
+/* Returns a text that states which strips or tiles of the first picture are
+ * missing; "" if the file is complete. */
+std::string describe_missing_tiff_data(const bytes &file)
 {
     if (file.size() < 8)
         return "is cut off";
@@ -431,7 +442,8 @@ std::string missing_of_tiff(const bytes &file)
     const uint64_t first = t.big ? t.number(8, 8) : t.number(4, 4);
     const uint64_t n = t.number(first, t.big ? 8 : 2);
     const unsigned step = t.big ? 20 : 12;
-    /* size of the pixels in bits; tag 259, 1 = not packed; bytes as packed */
+    /* total bits of the pixels; packing: value of tag 259, 1: uncompressed;
+     * total: bytes as stored */
     uint64_t bits = 1, packing = 1, total = 0;
     uint64_t offsets = 0, counts = 0, entries = 0, missing = 0, present = 0;
 
@@ -458,12 +470,13 @@ std::string missing_of_tiff(const bytes &file)
         const uint64_t at = t.value(offsets, i), size = t.value(counts, i);
 
         total += size;
-        present += size > 0; /* Some writers leave out black tiles. */
+        present += size > 0; /* Some writers omit black tiles. */
         missing += at > file.size() || size > file.size() - at;
     }
     if (!present)
         return "has no pixels";
-    /* Only fax (2 .. 4) packs more than 4096 to 1; else data are cut off. */
+    /* Only fax codes (2 .. 4) compress by more than 4096 to 1; with other codes
+     * such a file was cut off. */
     if (missing == 0 && (packing >= 2 && packing <= 4 ? true
                          : packing == 1 ? total * 8 >= bits || present < entries
                                         : total * 8 * 4096 >= bits))
@@ -471,7 +484,7 @@ std::string missing_of_tiff(const bytes &file)
     if (missing == 0)
         return "is cut off: its strips or tiles are too short";
     return "is cut off: " + std::to_string(missing) + " of its " +
-           std::to_string(entries) + " strips or tiles are not all there";
+           std::to_string(entries) + " strips or tiles are incomplete";
 }
 
 } // namespace glint

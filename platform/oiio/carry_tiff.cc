@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tags of TIFF. The file that OpenImageIO has written keeps its tags on how
- * pixels lie in it; all other tags, with the directories of Exif and GPS, come
- * from the file that was read, whose byte order may be the other one. */
+ * Copies the tags of a TIFF to another. The file that OpenImageIO has written
+ * keeps its tags about the layout of its pixels; all other tags, and the
+ * directories of Exif and GPS, are copied from the file that was read, which
+ * may have the other byte order. */
 #include "oiio/blocks.h"
 
 #include <cstdint>
@@ -34,7 +35,8 @@ struct reader {
     }
 };
 
-/* An entry of a directory, its values as little-endian bytes. */
+/* An entry of a TIFF directory; its values are stored as little-endian
+ * bytes. */
 struct entry {
     unsigned type;
     uint32_t count;
@@ -43,8 +45,9 @@ struct entry {
 
 using directory = std::map<unsigned, entry>;
 
-/* Returns the bytes of a value of TYPE, 1 .. 13, or 0 if TYPE is unknown. */
-unsigned size_of(unsigned type)
+/* Returns the size in bytes of a value of TYPE, 1 .. 13, or 0 if TYPE is
+ * unknown. */
+unsigned get_value_bytes(unsigned type)
 {
     static const unsigned char sizes[] = {0, 1, 1, 2, 4, 8, 1,
                                           1, 2, 4, 8, 4, 8, 4};
@@ -52,20 +55,21 @@ unsigned size_of(unsigned type)
     return type < sizeof sizes ? sizes[type] : 0;
 }
 
-/* Returns the bytes of each number in a value of TYPE, for swapping their
- * order; a rational has two numbers. */
-unsigned unit_of(unsigned type)
+/* Returns the size in bytes of each number in a value of TYPE, for swapping
+ * byte order; a rational consists of two numbers. */
+unsigned get_number_bytes(unsigned type)
 {
-    return type == 5 || type == 10 ? 4 : size_of(type);
+    return type == 5 || type == 10 ? 4 : get_value_bytes(type);
 }
 
-/* Adds the entry at AT to TO and takes the bytes of its values from ROOM. Skips
- * an entry that is malformed or needs more than ROOM. */
+/* Reads the entry at offset AT, appends it to TO and subtracts the bytes of its
+ * values from ROOM. Skips an entry that is malformed or needs more than ROOM
+ * bytes. */
 void read_entry(const reader &r, uint64_t at, uint64_t &room, directory &to)
 {
-    const unsigned type = r.number(at + 2, 2), unit = unit_of(type);
+    const unsigned type = r.number(at + 2, 2), unit = get_number_bytes(type);
     const uint32_t count = r.number(at + 4, 4);
-    const uint64_t n = uint64_t(count) * size_of(type);
+    const uint64_t n = uint64_t(count) * get_value_bytes(type);
     const uint64_t from = n <= 4 ? at + 8 : r.number(at + 8, 4);
 
     if (n == 0 || n > room || !r.holds(from, n))
@@ -79,12 +83,13 @@ void read_entry(const reader &r, uint64_t at, uint64_t &room, directory &to)
     to[r.number(at, 2)] = e;
 }
 
-/* Returns the directory at AT, empty if it is malformed, and sets NEXT to the
- * offset of the directory after it. */
+/* Returns the directory at offset AT, empty if it is malformed, and sets NEXT
+ * to the offset of the directory after it. */
 directory read_directory(const reader &r, uint64_t at, uint32_t &next)
 {
     const unsigned n = r.number(at, 2);
-    /* a limit, as values that overlap may need far more than the file has */
+    /* limit of the bytes of all values, as values that overlap could need far
+     * more bytes than the file has */
     uint64_t room = r.file.size();
     directory read;
 
@@ -97,7 +102,7 @@ directory read_directory(const reader &r, uint64_t at, uint32_t &next)
     return read;
 }
 
-bool is_structure(unsigned tag)
+bool is_pixel_layout_tag(unsigned tag)
 {
     static const unsigned tags[] = {
         256, 257, 258, 259, 262, 263, 264, 265, 266, 273, 277, 278,
@@ -121,42 +126,42 @@ enum {
     INTEROPERABILITY = 40965
 };
 
-void put(bytes &to, uint32_t value, int n)
+void append_little_number(bytes &to, uint32_t value, int n)
 {
     for (int i = 0; i < n; i++)
         to.push_back(static_cast<unsigned char>(value >> (8 * i)));
 }
 
-/* Appends the values of D and D itself, with NEXT as the offset of the next
+/* Appends the values of directory D, and D with NEXT as the offset of the next
  * directory, to the file TO. Returns the offset of D. */
 uint32_t write_directory(bytes &to, const directory &d, uint32_t next)
 {
     bytes list;
 
-    put(list, static_cast<uint32_t>(d.size()), 2);
+    append_little_number(list, static_cast<uint32_t>(d.size()), 2);
     for (const auto &pair : d) {
         const struct entry &e = pair.second;
 
-        put(list, pair.first, 2);
-        put(list, e.type, 2);
-        put(list, e.count, 4);
+        append_little_number(list, pair.first, 2);
+        append_little_number(list, e.type, 2);
+        append_little_number(list, e.count, 4);
         if (e.values.size() > 4) {
             to.resize((to.size() + 1) & ~size_t(1));
-            put(list, static_cast<uint32_t>(to.size()), 4);
+            append_little_number(list, static_cast<uint32_t>(to.size()), 4);
             to.insert(to.end(), e.values.begin(), e.values.end());
         } else {
             list.insert(list.end(), e.values.begin(), e.values.end());
             list.resize(list.size() + 4 - e.values.size());
         }
     }
-    put(list, next, 4);
+    append_little_number(list, next, 4);
     to.resize((to.size() + 1) & ~size_t(1));
     const uint32_t at = static_cast<uint32_t>(to.size());
     to.insert(to.end(), list.begin(), list.end());
     return at;
 }
 
-uint32_t pointer_of(const struct entry &e)
+uint32_t read_directory_pointer(const struct entry &e)
 {
     return e.values.size() != 4
                ? 0
@@ -164,9 +169,10 @@ uint32_t pointer_of(const struct entry &e)
                      uint32_t(e.values[1]) << 8 | e.values[0];
 }
 
-/* Copies the directories of FROM that D points to into TO, and sets the
- * pointers to their new offsets. */
-void move_pointers(bytes &to, const reader &from, directory &d, int depth)
+/* Copies the directories of FROM to which D points (Exif, GPS) to TO, and sets
+ * the pointers in D to their new offsets. */
+void copy_pointed_directories(bytes &to, const reader &from, directory &d,
+                              int depth)
 {
     for (const unsigned tag : {EXIF, GPS, INTEROPERABILITY}) {
         const auto found = d.find(tag);
@@ -174,22 +180,24 @@ void move_pointers(bytes &to, const reader &from, directory &d, int depth)
 
         if (found == d.end())
             continue;
-        directory sub = read_directory(from, pointer_of(found->second), next);
+        directory sub =
+            read_directory(from, read_directory_pointer(found->second), next);
         if (sub.empty() || depth > 2) {
             d.erase(found);
             continue;
         }
-        move_pointers(to, from, sub, depth + 1);
+        copy_pointed_directories(to, from, sub, depth + 1);
         const uint32_t at = write_directory(to, sub, 0);
         found->second = {4, 1, {}};
-        put(found->second.values, at, 4);
+        append_little_number(found->second.values, at, 4);
     }
 }
 
-/* Puts directory D, to be followed by NEXT, at the end of FILE, a little-endian
- * TIFF, and its offset to LINK. Returns the offset of the link to NEXT. */
-uint64_t link_directory(bytes &file, uint64_t link, const directory &d,
-                        uint32_t next)
+/* Appends directory D to FILE, a little-endian TIFF, with NEXT as the offset of
+ * the next directory, and writes its offset to LINK. Returns the offset of the
+ * link to NEXT. */
+uint64_t append_linked_directory(bytes &file, uint64_t link, const directory &d,
+                                 uint32_t next)
 {
     const uint32_t now = write_directory(file, d, next);
 
@@ -207,7 +215,7 @@ bool is_classic_tiff(const bytes &file)
                                 !std::memcmp(file.data(), "MM\0*", 4));
 }
 
-bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc)
+bytes copy_tiff_metadata(const bytes &made, const bytes &from, bool drop_icc)
 {
     if (!is_classic_tiff(made) || !is_classic_tiff(from) || made[0] != 'I')
         return made;
@@ -222,17 +230,19 @@ bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc)
         directory other = read_directory(theirs, their_next, their_next);
 
         for (auto e = d.begin(); e != d.end();)
-            e = is_structure(e->first) ? std::next(e) : d.erase(e);
+            e = is_pixel_layout_tag(e->first) ? std::next(e) : d.erase(e);
         for (const auto &e : other)
-            if (!is_structure(e.first) && !(drop_icc && e.first == PROFILE))
+            if (!is_pixel_layout_tag(e.first) &&
+                !(drop_icc && e.first == PROFILE))
                 d[e.first] = e.second;
-        move_pointers(file, theirs, d, 0);
-        link = link_directory(file, link, d, our_next);
+        copy_pointed_directories(file, theirs, d, 0);
+        link = append_linked_directory(file, link, d, our_next);
     }
     return file.size() < UINT32_MAX ? file : made;
 }
 
-bytes add_to_tiff(const bytes &made, const bytes &exif, const std::string &xmp)
+bytes add_metadata_to_tiff(const bytes &made, const bytes &exif,
+                           const std::string &xmp)
 {
     if (!is_classic_tiff(made) || !is_classic_tiff(exif) || made[0] != 'I')
         return made;
@@ -243,17 +253,17 @@ bytes add_to_tiff(const bytes &made, const bytes &exif, const std::string &xmp)
 
     for (const auto &e :
          read_directory(theirs, theirs.number(4, 4), their_next))
-        if (!is_structure(e.first))
+        if (!is_pixel_layout_tag(e.first))
             d[e.first] = e.second;
     if (!xmp.empty())
         d[XMP] = {1, static_cast<uint32_t>(xmp.size()),
                   bytes(xmp.begin(), xmp.end())};
-    move_pointers(file, theirs, d, 0);
-    link_directory(file, 4, d, our_next);
+    copy_pointed_directories(file, theirs, d, 0);
+    append_linked_directory(file, 4, d, our_next);
     return file.size() < UINT32_MAX ? file : made;
 }
 
-file_blocks blocks_of_tiff(const bytes &whole)
+file_blocks read_tiff_metadata(const bytes &whole)
 {
     file_blocks b = {};
 
@@ -267,13 +277,14 @@ file_blocks blocks_of_tiff(const bytes &whole)
     if (xmp != d.end())
         b.xmp.assign(xmp->second.values.begin(), xmp->second.values.end());
     for (auto e = d.begin(); e != d.end();)
-        e = is_structure(e->first) || e->first == XMP || e->first == IPTC ||
-                    e->first == PHOTOSHOP || e->first == PROFILE
+        e = is_pixel_layout_tag(e->first) || e->first == XMP ||
+                    e->first == IPTC || e->first == PHOTOSHOP ||
+                    e->first == PROFILE
                 ? d.erase(e)
                 : std::next(e);
     b.exif = {'I', 'I', '*', 0, 0, 0, 0, 0};
-    move_pointers(b.exif, from, d, 0);
-    link_directory(b.exif, 4, d, 0);
+    copy_pointed_directories(b.exif, from, d, 0);
+    append_linked_directory(b.exif, 4, d, 0);
     if (d.empty())
         b.exif.clear();
     return b;

@@ -27,10 +27,10 @@
 namespace glint
 {
 
-/* Returns the bytes of the UTF-8 character at AT, or 0 if it is malformed or a
- * control character (U+0080 to U+009F, too). The text has LEFT bytes from AT
- * on. */
-inline size_t shown_bytes(const unsigned char *at, size_t left)
+/* Returns the length in bytes of the UTF-8 character at AT, or 0 if it is
+ * malformed or a control character (also U+0080 to U+009F). LEFT: bytes of text
+ * at AT. */
+inline size_t get_printable_bytes(const unsigned char *at, size_t left)
 {
     const size_t n = at[0] < 0x80    ? 1
                      : at[0] >= 0xf0 ? 4
@@ -50,12 +50,12 @@ inline size_t shown_bytes(const unsigned char *at, size_t left)
 
 /* Returns TEXT as one line that is safe to print on a terminal, with '?' for
  * control characters. */
-inline std::string printable(const std::string &text)
+inline std::string make_printable(const std::string &text)
 {
     std::string line;
 
     for (size_t i = 0; i < text.size();) {
-        const size_t n = shown_bytes(
+        const size_t n = get_printable_bytes(
             reinterpret_cast<const unsigned char *>(text.data()) + i,
             text.size() - i);
 
@@ -65,10 +65,10 @@ inline std::string printable(const std::string &text)
     return line;
 }
 
-/* Returns CAUSE, OpenImageIO's message, with "the file" in place of the file's
- * NAME, which glint prints first. Returns UNLESS if CAUSE is empty. */
-inline std::string without_name(std::string cause, const std::string &name,
-                                const char *unless)
+/* Returns CAUSE, a message of OpenImageIO, with "the file" in place of the
+ * file's NAME, as glint prints NAME first. Returns UNLESS if CAUSE is empty. */
+inline std::string remove_file_name(std::string cause, const std::string &name,
+                                    const char *unless)
 {
     const std::string quoted = '"' + name + '"';
 
@@ -84,20 +84,22 @@ struct failure {
     std::string cause;
 };
 
-/* Running calls of the plug-in, in all threads. */
+/* The calls of the plug-in that are running, in all threads. */
 struct calls {
     std::mutex lock;
     std::atomic<int> n{0};
-    std::atomic<int> err{-1}; /* duplicate of standard error while N > 0 */
-    char text[256] = "";      /* message to print on an abort; names the file of
-                                 the latest call */
+    std::atomic<int> err{-1}; /* duplicate of standard error while calls are
+                                 running */
+    /* Message to print on an abort, with the name of the file of the latest
+     * call. */
+    char text[256] = "";
 };
 
 inline calls under_way;
 
-/* A running call, for the file NAME. While it exists, standard error is
- * /dev/null, as the libraries that OpenImageIO uses print there the errors that
- * they also return. */
+/* A running call for the file NAME. While it exists, standard error is
+ * /dev/null, as OpenImageIO's libraries print errors there that they also
+ * return. */
 class call
 {
   public:
@@ -127,13 +129,14 @@ class call
     call(const call &) = delete;
     call &operator=(const call &) = delete;
 
-    /* Returns the end of NAME, safe to print. */
+    /* Returns the end of NAME that fits a message, with control characters
+     * replaced. */
     static std::string shorten(const char *name)
     {
         const size_t len = std::strlen(name), most = 120;
 
-        return len > most ? "..." + printable(name + len - most)
-                          : printable(name);
+        return len > most ? "..." + make_printable(name + len - most)
+                          : make_printable(name);
     }
 
   private:
@@ -151,7 +154,7 @@ class call
     }
 };
 
-/* If a call is running, prints to glint's standard error that OpenImageIO has
+/* Prints to glint's standard error, if a call is running, that OpenImageIO has
  * aborted, and returns 1; else returns 0. Async-signal-safe. */
 inline int report_abort()
 {
@@ -187,14 +190,15 @@ try {
         what = {unknown, "OpenImageIO failed"};
     }
     if (what.status)
-        std::snprintf(error->text, sizeof error->text, "%s: %s",
-                      call::shorten(name).c_str(),
-                      printable(without_name(what.cause, name,
-                                             unknown == GLINT_E_OUTPUT
-                                                 ? "cannot be written"
-                                                 : "cannot be read: damaged, "
-                                                   "or not what its name says"))
-                          .c_str());
+        std::snprintf(
+            error->text, sizeof error->text, "%s: %s",
+            call::shorten(name).c_str(),
+            make_printable(remove_file_name(what.cause, name,
+                                            unknown == GLINT_E_OUTPUT
+                                                ? "cannot be written"
+                                                : "cannot be read: damaged, "
+                                                  "or not of its name's type"))
+                .c_str());
     return what.status;
 } catch (...) {
     std::snprintf(error->text, sizeof error->text,
@@ -202,21 +206,21 @@ try {
     return GLINT_E_MEMORY;
 }
 
-/* Throws failure if IN reads videos: that reader opens the files that a text
- * with a video's name lists. */
+/* Throws failure if IN reads videos: OpenImageIO's video reader also opens the
+ * files that a playlist names. */
 inline void check_picture(const OIIO::ImageInput *in)
 {
     if (in && OIIO::Strutil::istarts_with(in->format_name(), "ffmpeg"))
         throw failure{GLINT_E_UNSUPPORTED, "is a video, not a picture"};
 }
 
-/* Opens the picture PATH as CONFIG requests. Throws failure. */
+/* Opens the picture PATH with the reader options CONFIG. Throws failure. */
 inline std::unique_ptr<OIIO::ImageInput>
 open_picture(const std::string &path, const OIIO::ImageSpec *config = nullptr)
 {
     std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(path);
 
-    (void)OIIO::geterror(); /* other readers may know the file */
+    (void)OIIO::geterror(); /* Other readers may support the file. */
     check_picture(in.get());
     in = OIIO::ImageInput::open(path, config);
     if (!in)
@@ -230,7 +234,7 @@ open_picture(const std::string &path, const OIIO::ImageSpec *config = nullptr)
 inline void check_spec(const OIIO::ImageSpec &spec)
 {
     if (spec.deep || spec.nchannels < 1 || spec.depth > 1)
-        throw failure{GLINT_E_UNSUPPORTED, "is not a flat picture"};
+        throw failure{GLINT_E_UNSUPPORTED, "is a deep or 3-D picture"};
     if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 ||
         spec.full_height < 1)
         throw failure{GLINT_E_FORMAT, "has no pixels"};

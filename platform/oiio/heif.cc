@@ -21,7 +21,7 @@ namespace glint
 namespace
 {
 
-/* Returns whether BRAND is among the brands of FILE's first box. */
+/* Returns whether the first box of FILE lists BRAND. */
 bool has_brand(const bytes &file, const char *brand)
 {
     const size_t end =
@@ -54,9 +54,9 @@ bool is_avif(const bytes &file)
     return has_brand(file, "avif") || has_brand(file, "avis");
 }
 
-int heif_bits(const heif_picture &picture)
+int get_heif_bits(const heif_picture &picture)
 {
-    /* libheif 1.15 has libaom abort on 10 bits of 4:2:0 and 4:4:4. */
+    /* libheif 1.15 makes libaom abort on 10 bits of 4:2:0 and 4:4:4. */
     return picture.bits <= 8                        ? 8
            : picture.is_avif || picture.bits == 12 ? 12
                                                     : 10;
@@ -74,8 +74,8 @@ using image = std::unique_ptr<heif_image, decltype(&heif_image_release)>;
 using nclx = std::unique_ptr<heif_color_profile_nclx,
                              decltype(&heif_nclx_color_profile_free)>;
 
-/* Throws failure of STATUS if E is an error. */
-void check(const struct heif_error &e, enum glint_status status)
+/* Throws failure of STATUS if E is an error of libheif. */
+void throw_on_heif_error(const struct heif_error &e, enum glint_status status)
 {
     if (e.code != heif_error_Ok)
         throw failure{e.code == heif_error_Memory_allocation_error
@@ -84,7 +84,7 @@ void check(const struct heif_error &e, enum glint_status status)
                       std::string("libheif: ") + e.message};
 }
 
-context new_context()
+context create_heif_context()
 {
     context made(heif_context_alloc(), heif_context_free);
 
@@ -111,7 +111,7 @@ void read_blocks(const heif_image_handle *from, file_blocks &to)
         if (data.empty() ||
             heif_image_handle_get_metadata(from, ids[i], data.data()).code)
             continue;
-        /* Exif begins with the distance of its TIFF header. */
+        /* Exif begins with the offset of its TIFF header. */
         const size_t skip =
             data.size() < 4 ? data.size()
                             : 4 + (size_t(data[0]) << 24 | data[1] << 16 |
@@ -135,7 +135,7 @@ void read_colours(const heif_image_handle *from, file_blocks &to)
     if (heif_image_handle_get_nclx_color_profile(from, &read).code || !read)
         return;
     const nclx held(read, heif_nclx_color_profile_free);
-    if (read->transfer_characteristics == 2) /* unspecified */
+    if (read->transfer_characteristics == 2) /* 2: unspecified */
         return;
     to.cicp[0] = static_cast<unsigned char>(read->color_primaries);
     to.cicp[1] = static_cast<unsigned char>(read->transfer_characteristics);
@@ -143,14 +143,14 @@ void read_colours(const heif_image_handle *from, file_blocks &to)
     to.cicp[3] = 1;
 }
 
-void add_lost(std::string &lost, const char *text)
+void append_lost_text(std::string &lost, const char *text)
 {
     lost += std::string(lost.empty() ? "" : "; ") + text;
 }
 
-/* Returns the pictures of FILE besides the main one, as text. */
-std::string lost_of(const bytes &file, heif_context *all,
-                    const heif_image_handle *from)
+/* Returns a text that lists the pictures of FILE besides the main one. */
+std::string describe_lost_pictures(const bytes &file, heif_context *all,
+                                   const heif_image_handle *from)
 {
     const int aux = LIBHEIF_AUX_IMAGE_FILTER_OMIT_ALPHA |
                     LIBHEIF_AUX_IMAGE_FILTER_OMIT_DEPTH;
@@ -176,19 +176,20 @@ std::string lost_of(const bytes &file, heif_context *all,
         heif_image_handle_free_auxiliary_types(other, &type);
     }
     if (map)
-        add_lost(lost, "its gain map is dropped");
+        append_lost_text(lost, "its gain map is dropped");
     if (heif_image_handle_has_depth_image(from))
-        add_lost(lost, "its depth map is dropped");
+        append_lost_text(lost, "its depth map is dropped");
     if (others)
-        add_lost(lost, "its auxiliary pictures are dropped");
+        append_lost_text(lost, "its auxiliary pictures are dropped");
     if (has_brand(file, "avis") || has_brand(file, "msf1"))
-        add_lost(lost, "only the first of its frames is kept");
+        append_lost_text(lost, "only its first frame is written");
     else if (heif_context_get_number_of_top_level_images(all) > 1)
-        add_lost(lost, "only the main one of its pictures is kept");
+        append_lost_text(lost, "only its main picture is written");
     return lost;
 }
 
-/* Copies the pixels of FROM to TO, 16 bits with white 65535 if deep. */
+/* Copies the pixels of FROM to TO: 16 bits with white 65535 if the picture has
+ * more than 8 bits, else 8 bits. */
 void copy_pixels(const heif_image *from, heif_picture &to)
 {
     int stride = 0;
@@ -223,29 +224,29 @@ void copy_pixels(const heif_image *from, heif_picture &to)
 
 } // namespace
 
-bool heif_reads()
+bool is_heif_readable()
 {
     return true;
 }
 
-bool heif_writes(bool avif)
+bool is_heif_writable(bool avif)
 {
     return heif_have_encoder_for_format(avif ? heif_compression_AV1
                                              : heif_compression_HEVC);
 }
 
-heif_picture heif_decode(const bytes &file)
+heif_picture decode_heif(const bytes &file)
 {
-    const context all = new_context();
+    const context all = create_heif_context();
     heif_picture made = {};
     heif_image_handle *main = nullptr;
     heif_image *decoded = nullptr;
 
-    check(heif_context_read_from_memory_without_copy(all.get(), file.data(),
-                                                     file.size(), nullptr),
-          GLINT_E_FORMAT);
-    check(heif_context_get_primary_image_handle(all.get(), &main),
-          GLINT_E_FORMAT);
+    throw_on_heif_error(heif_context_read_from_memory_without_copy(
+                            all.get(), file.data(), file.size(), nullptr),
+                        GLINT_E_FORMAT);
+    throw_on_heif_error(heif_context_get_primary_image_handle(all.get(), &main),
+                        GLINT_E_FORMAT);
     const handle held(main, heif_image_handle_release);
     made.width = heif_image_handle_get_width(main);
     made.height = heif_image_handle_get_height(main);
@@ -254,20 +255,21 @@ heif_picture heif_decode(const bytes &file)
     made.is_avif = is_avif(file);
     made.is_premultiplied = heif_image_handle_is_premultiplied_alpha(main);
     check_spec(OIIO::ImageSpec(made.width, made.height, made.channels));
-    check(heif_decode_image(main, &decoded, heif_colorspace_RGB,
-                            made.channels == 4
-                                ? made.bits > 8
-                                      ? heif_chroma_interleaved_RRGGBBAA_LE
-                                      : heif_chroma_interleaved_RGBA
-                            : made.bits > 8 ? heif_chroma_interleaved_RRGGBB_LE
-                                            : heif_chroma_interleaved_RGB,
-                            nullptr),
-          GLINT_E_FORMAT);
+    throw_on_heif_error(
+        heif_decode_image(main, &decoded, heif_colorspace_RGB,
+                          made.channels == 4
+                              ? made.bits > 8
+                                    ? heif_chroma_interleaved_RRGGBBAA_LE
+                                    : heif_chroma_interleaved_RGBA
+                          : made.bits > 8 ? heif_chroma_interleaved_RRGGBB_LE
+                                          : heif_chroma_interleaved_RGB,
+                          nullptr),
+        GLINT_E_FORMAT);
     const image pixels(decoded, heif_image_release);
     copy_pixels(decoded, made);
     read_blocks(main, made.meta);
     read_colours(main, made.meta);
-    made.lost = lost_of(file, all.get(), main);
+    made.lost = describe_lost_pictures(file, all.get(), main);
     return made;
 }
 
@@ -276,22 +278,22 @@ heif_picture heif_decode(const bytes &file)
 namespace
 {
 
-/* Weights of red and blue in luma by MATRIX [ITU-T H.273]. */
+/* Weights of red and blue in luma for a MATRIX of ITU-T H.273. */
 struct weights {
     double red, blue;
 };
 
-weights weights_of(int matrix)
+weights get_luma_weights(int matrix)
 {
     return matrix == 1   ? weights{0.2126, 0.0722}
            : matrix == 9 ? weights{0.2627, 0.0593}
                          : weights{0.299, 0.114};
 }
 
-/* The matrix that a file of P is written in: its own if that is one of these,
- * else by its primaries. A file with a profile has no codes, so that decoders
- * take 6. */
-int matrix_of(const heif_picture &p)
+/* Returns the matrix for writing P: its own if glint supports it, else one by
+ * its primaries. A file with an ICC profile has no code of the matrix, so
+ * decoders assume 6. */
+int choose_heif_matrix(const heif_picture &p)
 {
     const int own = p.meta.cicp[2];
 
@@ -300,7 +302,8 @@ int matrix_of(const heif_picture &p)
     return own == 1 || own == 9 ? own : p.meta.cicp[0] == 9 ? 9 : 6;
 }
 
-/* A picture's samples as Y, Cb, Cr and alpha, 0 .. 1; chroma about 0.5. */
+/* The samples of a picture as Y, Cb, Cr and alpha, 0 .. 1; neutral chroma is
+ * 0.5. */
 struct planes {
     const heif_picture &p;
     weights w;
@@ -331,7 +334,8 @@ struct planes {
                    ? 0.5 + (b - luma) / (2 * (1 - w.blue))
                    : 0.5 + (r - luma) / (2 * (1 - w.red));
     }
-    /* Returns the mean of the STEP x STEP pixels at X, Y times STEP. */
+    /* Returns the mean of CHANNEL over the STEP x STEP pixels at (X, Y) times
+     * STEP. */
     double mean(int x, int y, int step, heif_channel channel) const
     {
         double sum = 0;
@@ -343,18 +347,18 @@ struct planes {
     }
 };
 
-/* Adds CHANNEL of FROM, of one sample for STEP x STEP pixels, to TO. */
-void add_plane(heif_image *to, const planes &from, heif_channel channel,
-               int step)
+/* Adds CHANNEL of FROM to the image TO, one sample per STEP x STEP pixels. */
+void add_image_plane(heif_image *to, const planes &from, heif_channel channel,
+                     int step)
 {
     const int width = (from.p.width + step - 1) / step;
     const int height = (from.p.height + step - 1) / step;
-    const int bits = heif_bits(from.p);
+    const int bits = get_heif_bits(from.p);
     const int white = (1 << bits) - 1;
     int stride = 0;
 
-    check(heif_image_add_plane(to, channel, width, height, bits),
-          GLINT_E_OUTPUT);
+    throw_on_heif_error(heif_image_add_plane(to, channel, width, height, bits),
+                        GLINT_E_OUTPUT);
     uint8_t *const mem = heif_image_get_plane(to, channel, &stride);
     if (!mem)
         throw std::bad_alloc();
@@ -377,21 +381,21 @@ void add_plane(heif_image *to, const planes &from, heif_channel channel,
         }
 }
 
-image image_of(const heif_picture &p, heif_chroma chroma)
+image build_heif_image(const heif_picture &p, heif_chroma chroma)
 {
-    const planes from = {p, weights_of(matrix_of(p))};
+    const planes from = {p, get_luma_weights(choose_heif_matrix(p))};
     const int step = chroma == heif_chroma_420 ? 2 : 1;
     heif_image *made = nullptr;
 
-    check(heif_image_create(p.width, p.height, heif_colorspace_YCbCr, chroma,
-                            &made),
-          GLINT_E_OUTPUT);
+    throw_on_heif_error(heif_image_create(p.width, p.height,
+                                          heif_colorspace_YCbCr, chroma, &made),
+                        GLINT_E_OUTPUT);
     image held(made, heif_image_release);
-    add_plane(made, from, heif_channel_Y, 1);
-    add_plane(made, from, heif_channel_Cb, step);
-    add_plane(made, from, heif_channel_Cr, step);
+    add_image_plane(made, from, heif_channel_Y, 1);
+    add_image_plane(made, from, heif_channel_Cb, step);
+    add_image_plane(made, from, heif_channel_Cr, step);
     if (p.channels == 4) {
-        add_plane(made, from, heif_channel_Alpha, 1);
+        add_image_plane(made, from, heif_channel_Alpha, 1);
         heif_image_set_premultiplied_alpha(made, p.is_premultiplied);
     }
     return held;
@@ -402,33 +406,37 @@ void set_colours(heif_image *to, const heif_picture &p, heif_color_profile_nclx 
     const bool has = p.meta.cicp[1] != 0;
 
     if (!p.meta.icc.empty())
-        check(heif_image_set_raw_color_profile(to, "prof", p.meta.icc.data(),
-                                               p.meta.icc.size()),
-              GLINT_E_OUTPUT);
+        throw_on_heif_error(heif_image_set_raw_color_profile(to, "prof",
+                                                             p.meta.icc.data(),
+                                                             p.meta.icc.size()),
+                            GLINT_E_OUTPUT);
     heif_nclx_color_profile_set_color_primaries(&n, has ? p.meta.cicp[0] : 1);
     heif_nclx_color_profile_set_transfer_characteristics(
         &n, has ? p.meta.cicp[1] : 13);
     heif_nclx_color_profile_set_matrix_coefficients(
-        &n, static_cast<uint16_t>(matrix_of(p)));
+        &n, static_cast<uint16_t>(choose_heif_matrix(p)));
     n.full_range_flag = 1;
-    check(heif_image_set_nclx_color_profile(to, &n), GLINT_E_OUTPUT);
+    throw_on_heif_error(heif_image_set_nclx_color_profile(to, &n),
+                        GLINT_E_OUTPUT);
 }
 
-void add_blocks(heif_context *to, const heif_image_handle *main,
-                const file_blocks &b)
+void add_metadata_blocks(heif_context *to, const heif_image_handle *main,
+                         const file_blocks &b)
 {
     if (!b.exif.empty())
-        check(heif_context_add_exif_metadata(to, main, b.exif.data(),
-                                             static_cast<int>(b.exif.size())),
-              GLINT_E_OUTPUT);
+        throw_on_heif_error(
+            heif_context_add_exif_metadata(to, main, b.exif.data(),
+                                           static_cast<int>(b.exif.size())),
+            GLINT_E_OUTPUT);
     if (!b.xmp.empty())
-        check(heif_context_add_XMP_metadata(to, main, b.xmp.data(),
-                                            static_cast<int>(b.xmp.size())),
-              GLINT_E_OUTPUT);
+        throw_on_heif_error(
+            heif_context_add_XMP_metadata(to, main, b.xmp.data(),
+                                          static_cast<int>(b.xmp.size())),
+            GLINT_E_OUTPUT);
 }
 
-struct heif_error take_bytes(heif_context *, const void *data, size_t n,
-                             void *to)
+struct heif_error append_encoded_bytes(heif_context *, const void *data,
+                                       size_t n, void *to)
 {
     const auto *const at = static_cast<const unsigned char *>(data);
 
@@ -439,24 +447,25 @@ struct heif_error take_bytes(heif_context *, const void *data, size_t n,
 
 } // namespace
 
-bytes heif_encode(const heif_picture &picture, int quality)
+bytes encode_heif_picture(const heif_picture &picture, int quality)
 {
-    /* Phones decode HEIC of 4:2:0 only. */
+    /* Phones decode HEIC only with chroma of 4:2:0. */
     const heif_chroma chroma =
         picture.is_avif ? heif_chroma_444 : heif_chroma_420;
-    const context all = new_context();
+    const context all = create_heif_context();
     const nclx codes(heif_nclx_color_profile_alloc(),
                      heif_nclx_color_profile_free);
     heif_encoder *coder = nullptr;
     heif_image_handle *main = nullptr;
-    heif_writer writer = {1, take_bytes};
+    heif_writer writer = {1, append_encoded_bytes};
     bytes file;
 
-    check(heif_context_get_encoder_for_format(
-              all.get(),
-              picture.is_avif ? heif_compression_AV1 : heif_compression_HEVC,
-              &coder),
-          GLINT_E_UNSUPPORTED);
+    throw_on_heif_error(
+        heif_context_get_encoder_for_format(
+            all.get(),
+            picture.is_avif ? heif_compression_AV1 : heif_compression_HEVC,
+            &coder),
+        GLINT_E_UNSUPPORTED);
     const std::unique_ptr<heif_encoder, decltype(&heif_encoder_release)> held(
         coder, heif_encoder_release);
     if (!codes)
@@ -464,36 +473,37 @@ bytes heif_encode(const heif_picture &picture, int quality)
     heif_encoder_set_lossy_quality(coder, quality);
     heif_encoder_set_parameter_string(coder, "chroma",
                                       picture.is_avif ? "444" : "420");
-    const image pixels = image_of(picture, chroma);
+    const image pixels = build_heif_image(picture, chroma);
     set_colours(pixels.get(), picture, *codes);
-    check(heif_context_encode_image(all.get(), pixels.get(), coder, nullptr,
-                                    &main),
-          GLINT_E_OUTPUT);
+    throw_on_heif_error(heif_context_encode_image(all.get(), pixels.get(),
+                                                  coder, nullptr, &main),
+                        GLINT_E_OUTPUT);
     const handle kept(main, heif_image_handle_release);
-    add_blocks(all.get(), main, picture.meta);
-    check(heif_context_write(all.get(), &writer, &file), GLINT_E_OUTPUT);
+    add_metadata_blocks(all.get(), main, picture.meta);
+    throw_on_heif_error(heif_context_write(all.get(), &writer, &file),
+                        GLINT_E_OUTPUT);
     return file;
 }
 
 #else
 
-bool heif_reads()
+bool is_heif_readable()
 {
     return false;
 }
 
-bool heif_writes(bool)
+bool is_heif_writable(bool)
 {
     return false;
 }
 
-heif_picture heif_decode(const bytes &)
+heif_picture decode_heif(const bytes &)
 {
     throw failure{GLINT_E_UNSUPPORTED, "this plug-in was built without "
                                        "libheif-dev"};
 }
 
-bytes heif_encode(const heif_picture &, int)
+bytes encode_heif_picture(const heif_picture &, int)
 {
     throw failure{GLINT_E_UNSUPPORTED, "this plug-in was built without "
                                        "libheif-dev"};

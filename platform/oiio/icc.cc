@@ -23,15 +23,15 @@ namespace
 
 constexpr size_t max_profile_bytes = size_t(1) << 24;
 constexpr size_t block_pixels =
-    4096; /* pixels that encode() converts at once */
+    4096; /* number of pixels that encode() converts at a time */
 
 using profile_ptr = std::unique_ptr<void, decltype(&cmsCloseProfile)>;
 using transform_ptr = std::unique_ptr<void, decltype(&cmsDeleteTransform)>;
 
-/* Returns whether P is for N_COLOURS and is not of curves and a matrix. Refuses
- * tables of floats: their elements may share bytes, so that a small profile
- * may need any memory. */
-bool is_of_tables(cmsHPROFILE p, size_t n_colours)
+/* Returns whether profile P is for N_COLOURS colours and consists of tables,
+ * not of curves and a matrix. Rejects tables of floats: their elements may
+ * share bytes, so that a small profile could need unlimited memory. */
+bool is_table_profile(cmsHPROFILE p, size_t n_colours)
 {
     const cmsColorSpaceSignature space = cmsGetColorSpace(p);
     const cmsProfileClassSignature kind = cmsGetDeviceClass(p);
@@ -65,16 +65,18 @@ profile_ptr make_wide_profile()
     return made;
 }
 
-size_t pixel_bytes(const code_layout &layout)
+size_t get_pixel_bytes(const code_layout &layout)
 {
     return (layout.n_colours + layout.has_alpha) * layout.sample_bytes;
 }
 
-/* Returns the transform FROM one profile TO another. It evaluates the tables
- * for each pixel: with the grid that lcms2 can make of them, dark inks are off
- * by up to 20 codes of 8 bits. */
-transform_ptr join(const profile_ptr &from, const code_layout &of_from,
-                   const profile_ptr &to, const code_layout &of_to)
+/* Returns the transform from one profile to another. It evaluates the profiles'
+ * tables for each pixel: a grid of precomputed colours, as lcms2 makes by
+ * default, is wrong by up to 20 codes of 8 bits for dark inks. */
+transform_ptr create_icc_transform(const profile_ptr &from,
+                                   const code_layout &of_from,
+                                   const profile_ptr &to,
+                                   const code_layout &of_to)
 {
     const auto format = [](const code_layout &l) {
         return CHANNELS_SH(cmsUInt32Number(l.n_colours)) |
@@ -99,35 +101,35 @@ struct lcms_link : icc_link {
 
 bytes lcms_link::decode(const bytes &from) const
 {
-    const size_t n = from.size() / pixel_bytes(codes);
-    bytes made(n * pixel_bytes(rgb));
+    const size_t n = from.size() / get_pixel_bytes(codes);
+    bytes made(n * get_pixel_bytes(rgb));
 
     for (size_t i = 0; i < n; i += block_pixels)
-        cmsDoTransform(forward.get(), from.data() + i * pixel_bytes(codes),
-                       made.data() + i * pixel_bytes(rgb),
+        cmsDoTransform(forward.get(), from.data() + i * get_pixel_bytes(codes),
+                       made.data() + i * get_pixel_bytes(rgb),
                        cmsUInt32Number(std::min(block_pixels, n - i)));
     return made;
 }
 
-/* Pixels of a block: codes, and the RGB that they decode to. */
+/* A block of pixels: codes, and the RGB to which they decode. */
 struct block {
     bytes codes;
     std::vector<uint16_t> rgb;
 };
 
-/* Returns the sum of the differences of three colours. */
-int distance(const uint16_t *a, const uint16_t *b)
+/* Returns the sum over three colours of the absolute differences. */
+int compute_colour_distance(const uint16_t *a, const uint16_t *b)
 {
     return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) +
            std::abs(a[2] - b[2]);
 }
 
-/* Tables for encoding are not quite the inverse of those for decoding, so the
- * codes are decoded, and their error is taken from a second attempt. */
+/* Tables for encoding are not the exact inverse of those for decoding, so the
+ * codes are decoded again, and a second attempt subtracts their error. */
 void lcms_link::encode(const bytes &from, bytes &to) const
 {
-    const size_t n = to.size() / pixel_bytes(codes);
-    const size_t c_bytes = pixel_bytes(codes), step = 3 + rgb.has_alpha;
+    const size_t n = to.size() / get_pixel_bytes(codes);
+    const size_t c_bytes = get_pixel_bytes(codes), step = 3 + rgb.has_alpha;
     std::vector<uint16_t> want(block_pixels * step), was = want;
     block first = {bytes(block_pixels * c_bytes), want}, second = first;
 
@@ -154,8 +156,9 @@ void lcms_link::encode(const bytes &from, bytes &to) const
         attempt(second);
         for (size_t k = 0; k < n_here; k++) {
             const uint16_t *const at = want.data() + k * step;
-            const bool is_better = distance(second.rgb.data() + k * step, at) <
-                                   distance(first.rgb.data() + k * step, at);
+            const bool is_better =
+                compute_colour_distance(second.rgb.data() + k * step, at) <
+                compute_colour_distance(first.rgb.data() + k * step, at);
 
             if (!std::equal(at, at + step, was.data() + k * step))
                 std::memcpy(to.data() + (i + k) * c_bytes,
@@ -169,12 +172,12 @@ void lcms_link::encode(const bytes &from, bytes &to) const
 /* -------------------------------------------------------------------- JPEG */
 
 struct jpeg_errors {
-    jpeg_error_mgr base; /* first, as libjpeg has a pointer to it */
+    jpeg_error_mgr base; /* first member, as libjpeg has a pointer to it */
     std::jmp_buf escape;
     char cause[JMSG_LENGTH_MAX];
 };
 
-void leave_jpeg(j_common_ptr jpeg)
+void leave_libjpeg(j_common_ptr jpeg)
 {
     auto *const errors = reinterpret_cast<jpeg_errors *>(jpeg->err);
 
@@ -182,10 +185,10 @@ void leave_jpeg(j_common_ptr jpeg)
     std::longjmp(errors->escape, 1);
 }
 
-/* Fills PIXELS; returns false on an error. Has no object whose destructor a
- * jump would skip. */
-bool read_inks(jpeg_decompress_struct *jpeg, jpeg_errors *errors,
-               const bytes *file, bytes *pixels)
+/* Decodes the pixels of FILE to PIXELS; returns false on an error. Declares no
+ * object with a destructor, as errors leave it by longjmp(). */
+bool decode_cmyk_pixels(jpeg_decompress_struct *jpeg, jpeg_errors *errors,
+                        const bytes *file, bytes *pixels)
 {
     if (setjmp(errors->escape))
         return false;
@@ -207,20 +210,20 @@ bool read_inks(jpeg_decompress_struct *jpeg, jpeg_errors *errors,
 
 } // namespace
 
-bytes inks_of_jpeg(const bytes &file, int width, int height)
+bytes decode_cmyk_jpeg(const bytes &file, int width, int height)
 {
     jpeg_decompress_struct jpeg = {};
     jpeg_errors errors = {};
     bytes pixels(size_t(4) * size_t(width) * size_t(height));
 
     jpeg.err = jpeg_std_error(&errors.base);
-    errors.base.error_exit = leave_jpeg;
-    const bool done = read_inks(&jpeg, &errors, &file, &pixels);
+    errors.base.error_exit = leave_libjpeg;
+    const bool done = decode_cmyk_pixels(&jpeg, &errors, &file, &pixels);
     jpeg_destroy_decompress(&jpeg);
     if (!done)
         throw failure{GLINT_E_FORMAT, errors.cause};
     for (unsigned char &ink :
-         pixels) /* 255 is no ink in JPEG, as Adobe has it */
+         pixels) /* in Adobe's JPEGs 255 is no ink */
         ink = static_cast<unsigned char>(255 - ink);
     return pixels;
 }
@@ -233,7 +236,7 @@ open_icc_link(const bytes &profile, const code_layout &layout, bool may_encode)
     const profile_ptr file(
         cmsOpenProfileFromMem(profile.data(), cmsUInt32Number(profile.size())),
         &cmsCloseProfile);
-    if (!file || !is_of_tables(file.get(), layout.n_colours))
+    if (!file || !is_table_profile(file.get(), layout.n_colours))
         return nullptr;
     const profile_ptr wide = make_wide_profile();
     const profile_ptr srgb(cmsCreate_sRGBProfile(), &cmsCloseProfile);
@@ -243,12 +246,12 @@ open_icc_link(const bytes &profile, const code_layout &layout, bool may_encode)
     made->codes = layout;
     made->rgb = {3, layout.has_alpha, 2};
     if (may_encode)
-        made->backward = join(wide, made->rgb, file, layout);
+        made->backward = create_icc_transform(wide, made->rgb, file, layout);
     made->can_encode = made->backward != nullptr;
     if (!made->can_encode)
         made->rgb.sample_bytes = layout.sample_bytes;
-    made->forward =
-        join(file, layout, made->can_encode ? wide : srgb, made->rgb);
+    made->forward = create_icc_transform(
+        file, layout, made->can_encode ? wide : srgb, made->rgb);
     if (!made->forward)
         return nullptr;
     return made;
@@ -264,7 +267,7 @@ std::unique_ptr<glint::icc_link> glint::open_icc_link(const bytes &,
     return nullptr;
 }
 
-glint::bytes glint::inks_of_jpeg(const bytes &, int, int)
+glint::bytes glint::decode_cmyk_jpeg(const bytes &, int, int)
 {
     throw failure{GLINT_E_UNSUPPORTED,
                   "this plug-in was built without liblcms2-dev"};

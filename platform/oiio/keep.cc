@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads whole files: each part's pixels in the types they are stored in, and
- * metadata. Writes them: parts as they came, or other pixels with the metadata
- * of the file. */
+ * Reads picture files with all of their content: the pixels of each part in the
+ * types in which the file stores them, and metadata. Writes their parts
+ * unchanged or modified, or other pixels with the metadata of the file. */
 #include "oiio/keep.h"
 
 #include <algorithm>
@@ -43,12 +43,12 @@ namespace glint
 {
 
 struct kept_part {
-    OIIO::ImageSpec spec; /* the part as it is stored */
+    OIIO::ImageSpec spec; /* description of the part as the file stores it */
     std::vector<unsigned char> pixels;
 };
 
-/* Returns whether each channel of a part has a type of its own. */
-inline bool is_mixed(const OIIO::ImageSpec &spec)
+/* Returns whether the channels of a part have different types. */
+inline bool has_mixed_channel_types(const OIIO::ImageSpec &spec)
 {
     return !spec.channelformats.empty();
 }
@@ -59,20 +59,23 @@ using glint::kept_part;
 
 struct glint_oiio_file {
     std::string type;   /* OpenImageIO's name of the file type */
-    glint::bytes whole; /* bytes of the file if is_carried(type) */
+    glint::bytes whole; /* bytes of the file, if is_metadata_copied(type) */
     std::vector<glint::kept_part> parts;
     std::vector<unsigned char> icc;
-    glint::file_blocks meta; /* as they were read; of types that have blocks */
+    glint::file_blocks meta; /* metadata as read, for types that have metadata
+                                blocks */
     const char *metadata; /* as in glint_oiio_facts */
-    /* of HEIF: bits of its samples, or 0; what of it is not kept */
+    /* HEIF: bits of the file's samples, or 0; and a text that lists the content
+     * that is not preserved. */
     int bits;
     bool is_avif;
     std::string lost;
-    /* If the profile of parts[0] is a table and can encode: its pixels as RGB,
-     * to which light is added. */
+    /* Conversion by the profile of parts[0], if that is a table and can encode;
+     * and the pixels as RGB, to which light is added. */
     std::unique_ptr<glint::icc_link> link;
     glint::kept_part rgb;
-    bool drops_icc; /* pixels of parts[0] are not in the file's profile */
+    bool drops_icc; /* true: the pixels of parts[0] are no longer in the file's
+                       profile */
 };
 
 namespace
@@ -83,15 +86,15 @@ bool is_avif_name(const char *path)
     return OIIO::Strutil::iends_with(path, ".avif");
 }
 
-/* Returns whether metadata of files of TYPE, OpenImageIO's name of it, are
- * copied byte for byte. */
-bool is_carried(const std::string &type)
+/* Returns whether metadata of files of TYPE, a name of OpenImageIO, are copied
+ * byte for byte. */
+bool is_metadata_copied(const std::string &type)
 {
     return type == "png" || type == "jpeg" || type == "webp" || type == "tiff";
 }
 
 /* Returns all bytes of the file PATH; throws failure. */
-bytes read_whole(const char *path)
+bytes read_whole_file(const char *path)
 {
     FILE *const f = std::fopen(path, "rb");
     unsigned char block[65536];
@@ -105,13 +108,13 @@ bytes read_whole(const char *path)
     return all;
 }
 
-/* WebP by its own library: OpenImageIO 2.4 multiplies colours by alpha when it
- * reads one, and does not divide when it writes. */
+/* WebP is read and written by its own library: OpenImageIO 2.4 multiplies
+ * colours by alpha on reading, and does not divide on writing. */
 #if __has_include(<webp/encode.h>)
 
-/* Returns whether webp_decode() can decode FILE: a WebP without animation, if
- * this was built with libwebp. */
-bool webp_takes(const bytes &file)
+/* Returns whether decode_webp() can decode FILE: a WebP without animation, in a
+ * build with libwebp. */
+bool can_decode_webp(const bytes &file)
 {
     WebPBitstreamFeatures is;
 
@@ -121,7 +124,7 @@ bool webp_takes(const bytes &file)
 
 /* Returns the pixels of FILE in 8 bits: R G B A if CHANNELS is 4, else R G B.
  * Throws failure. */
-bytes webp_decode(const bytes &file, int channels)
+bytes decode_webp(const bytes &file, int channels)
 {
     int width = 0, height = 0;
     if (!WebPGetInfo(file.data(), file.size(), &width, &height))
@@ -140,9 +143,9 @@ bytes webp_decode(const bytes &file, int channels)
     return pixels;
 }
 
-/* Returns PIXELS, 8 bits, as a WebP of QUALITY 1 .. 100, or 0: without loss.
- * Throws failure. */
-bytes webp_encode(const unsigned char *pixels, int width, int height,
+/* Returns the file of PIXELS, 8 bits, encoded as WebP of QUALITY 1 .. 100, or
+ * lossless for 0. Throws failure. */
+bytes encode_webp(const unsigned char *pixels, int width, int height,
                   int channels, int quality)
 {
     WebPConfig config;
@@ -157,7 +160,7 @@ bytes webp_encode(const unsigned char *pixels, int width, int height,
         throw failure{GLINT_E_OUTPUT, "WebP has at most 16383 pixels a side"};
     if (!quality)
         WebPConfigLosslessPreset(&config, 6);
-    config.exact = 1; /* keeps colours where alpha is 0 */
+    config.exact = 1; /* preserve colours where alpha is 0 */
     config.thread_level = 1;
     picture.use_argb = quality == 0;
     picture.width = width;
@@ -176,23 +179,23 @@ bytes webp_encode(const unsigned char *pixels, int width, int height,
     if (!done)
         throw failure{code == VP8_ENC_ERROR_OUT_OF_MEMORY ? GLINT_E_MEMORY
                                                           : GLINT_E_OUTPUT,
-                      "libwebp gives up, error " + std::to_string(code)};
+                      "libwebp failed with error " + std::to_string(code)};
     return made;
 }
 
 #else
 
-bool webp_takes(const bytes &)
+bool can_decode_webp(const bytes &)
 {
     return false;
 }
 
-bytes webp_decode(const bytes &, int)
+bytes decode_webp(const bytes &, int)
 {
     return {};
 }
 
-bytes webp_encode(const unsigned char *, int, int, int, int)
+bytes encode_webp(const unsigned char *, int, int, int, int)
 {
     throw failure{GLINT_E_UNSUPPORTED,
                   "this plug-in was built without libwebp-dev"};
@@ -207,7 +210,7 @@ constexpr TypeDesc::BASETYPE types[] = {/* by enum glint_sample */
                                         TypeDesc::UINT32, TypeDesc::HALF,
                                         TypeDesc::FLOAT,  TypeDesc::DOUBLE};
 
-bool to_sample(TypeDesc type, enum glint_sample &sample)
+bool convert_to_sample_type(TypeDesc type, enum glint_sample &sample)
 {
     for (size_t i = 0; i < std::size(types); i++)
         if (type.basetype == types[i]) {
@@ -217,73 +220,75 @@ bool to_sample(TypeDesc type, enum glint_sample &sample)
     return false;
 }
 
-/* Has a part read as floats if glint has no arithmetic for one of its types. */
-void choose_types(ImageSpec &spec)
+/* Requests that a part is read as floats if glint cannot compute with one of
+ * its sample types. */
+void choose_sample_types(ImageSpec &spec)
 {
     enum glint_sample sample;
-    bool all = to_sample(spec.format, sample);
+    bool all = convert_to_sample_type(spec.format, sample);
 
     for (const TypeDesc &type : spec.channelformats)
-        all = all && to_sample(type, sample);
+        all = all && convert_to_sample_type(type, sample);
     if (!all)
         spec.set_format(TypeDesc::FLOAT);
 }
 
-/* Returns SPEC, of C M Y K or of the RGB that OpenImageIO makes of these, as
- * that of C M Y K. */
-ImageSpec inks_of(ImageSpec spec)
+/* Returns SPEC, of a C M Y K picture or of the RGB to which OpenImageIO
+ * converted one, changed to C M Y K. */
+ImageSpec convert_spec_to_cmyk(ImageSpec spec)
 {
     spec.nchannels = 4;
     spec.channelnames = {"C", "M", "Y", "K"};
-    spec.alpha_channel = -1; /* OpenImageIO 2.4: K of a TIFF */
+    spec.alpha_channel = -1; /* OpenImageIO 2.4 treats K of a TIFF as alpha. */
     return spec;
 }
 
-void read_part(ImageInput &in, int index, const struct glint_oiio_file &file,
-               kept_part &part)
+void read_picture_part(ImageInput &in, int index,
+                       const struct glint_oiio_file &file, kept_part &part)
 {
     part.spec = in.spec(index);
     if (part.spec.width < 1 || part.spec.nchannels < 1)
         throw failure{GLINT_E_FORMAT, in.geterror()};
     check_spec(part.spec);
-    choose_types(part.spec);
+    choose_sample_types(part.spec);
     if (file.link && index == 0) {
-        part.spec = inks_of(part.spec);
+        part.spec = convert_spec_to_cmyk(part.spec);
         if (file.type == "jpeg") {
-            part.pixels = glint::inks_of_jpeg(file.whole, part.spec.width,
-                                              part.spec.height);
+            part.pixels = glint::decode_cmyk_jpeg(file.whole, part.spec.width,
+                                                  part.spec.height);
             return;
         }
     }
-    if (file.type == "webp" && webp_takes(file.whole)) {
-        part.pixels = webp_decode(file.whole, part.spec.nchannels);
+    if (file.type == "webp" && can_decode_webp(file.whole)) {
+        part.pixels = decode_webp(file.whole, part.spec.nchannels);
         part.spec.attribute("oiio:UnassociatedAlpha", 1);
         return;
     }
     part.pixels.resize(part.spec.image_bytes(true));
     if (!in.read_image(index, 0, 0, part.spec.nchannels,
-                       glint::is_mixed(part.spec) ? TypeDesc::UNKNOWN
-                                                  : part.spec.format,
+                       glint::has_mixed_channel_types(part.spec)
+                           ? TypeDesc::UNKNOWN
+                           : part.spec.format,
                        part.pixels.data()))
         throw failure{GLINT_E_FORMAT, in.geterror()};
 }
 
-void check_whole(const struct glint_oiio_file &file)
+void check_file_complete(const struct glint_oiio_file &file)
 {
     std::string missing;
 
     if (file.type == "jpeg")
-        missing = glint::missing_of_jpeg(file.whole);
+        missing = glint::describe_missing_jpeg_data(file.whole);
     else if (file.type == "tiff")
-        missing = glint::missing_of_tiff(file.whole);
+        missing = glint::describe_missing_tiff_data(file.whole);
     if (!missing.empty())
         throw failure{GLINT_E_FORMAT, missing};
 }
 
-/* Reads the HEIF in FILE.whole by libheif. */
+/* Decodes the HEIF in FILE.whole by libheif. */
 void read_heif(struct glint_oiio_file &file)
 {
-    glint::heif_picture read = glint::heif_decode(file.whole);
+    glint::heif_picture read = glint::decode_heif(file.whole);
     ImageSpec spec(read.width, read.height, read.channels,
                    read.bits > 8 ? TypeDesc::UINT16 : TypeDesc::UINT8);
     const bytes &icc = read.meta.icc;
@@ -303,9 +308,9 @@ void read_heif(struct glint_oiio_file &file)
     file.parts.push_back({spec, std::move(read.pixels)});
 }
 
-/* Reads FILE by libheif if it is a HEIF, whatever its name, and libheif is
- * there. Returns false if it is not. */
-bool take_heif(struct glint_oiio_file &file, const char *path)
+/* Reads FILE by libheif if it is a HEIF by content and libheif is available.
+ * Otherwise returns false. */
+bool read_if_heif(struct glint_oiio_file &file, const char *path)
 {
     bytes head(16);
     FILE *const f = std::fopen(path, "rb");
@@ -316,18 +321,18 @@ bool take_heif(struct glint_oiio_file &file, const char *path)
     std::fclose(f);
     if (!glint::is_heif(head))
         return false;
-    if (!glint::heif_reads()) {
+    if (!glint::is_heif_readable()) {
         file.lost = "read as sRGB of 8 bits, as glint was built without "
                     "libheif-dev";
         return false;
     }
-    file.whole = read_whole(path);
+    file.whole = read_whole_file(path);
     read_heif(file);
     return true;
 }
 
 /* Returns the ICC profile of a part of FILE; empty if it has none. */
-bytes icc_of(const struct glint_oiio_file &file, const ImageSpec &spec)
+bytes get_icc_profile(const struct glint_oiio_file &file, const ImageSpec &spec)
 {
     const OIIO::ParamValue *const icc = spec.find_attribute("ICCProfile");
 
@@ -339,43 +344,47 @@ bytes icc_of(const struct glint_oiio_file &file, const ImageSpec &spec)
     return file.type == "webp" ? file.meta.icc : bytes();
 }
 
-/* Returns whether OpenImageIO has made RGB of C M Y K. */
-bool is_from_inks(const struct glint_oiio_file &file, const ImageSpec &spec)
+/* Returns whether OpenImageIO has converted C M Y K to RGB. */
+bool is_rgb_from_cmyk(const struct glint_oiio_file &file, const ImageSpec &spec)
 {
     return spec.nchannels == 3 &&
            (file.type == "jpeg"
-                ? glint::is_of_inks(file.whole)
+                ? glint::is_cmyk_jpeg(file.whole)
                 : spec.get_string_attribute("tiff:ColorSpace") == "CMYK");
 }
 
-/* Opens the link of PART, whose pixels are those of its profile. */
-void open_link(struct glint_oiio_file &file, const kept_part &part)
+/* Opens the conversion by the profile of PART, whose pixels are in that
+ * profile. */
+void open_icc_link_of_part(struct glint_oiio_file &file, const kept_part &part)
 {
     const ImageSpec &spec = part.spec;
     const bool alpha = spec.alpha_channel >= 0;
     const glint::code_layout layout = {size_t(spec.nchannels - alpha), alpha,
                                        spec.format.size()};
 
-    if (glint::is_mixed(spec) || file.meta.cicp[1] ||
+    if (glint::has_mixed_channel_types(spec) || file.meta.cicp[1] ||
         (spec.format != TypeDesc::UINT8 && spec.format != TypeDesc::UINT16) ||
         (alpha && (spec.alpha_channel != spec.nchannels - 1 ||
                    !spec.get_int_attribute("oiio:UnassociatedAlpha", 0))))
         return;
     /* OpenImageIO writes no JPEG of inks. */
     file.link =
-        glint::open_icc_link(icc_of(file, spec), layout,
+        glint::open_icc_link(get_icc_profile(file, spec), layout,
                              file.type != "jpeg" || layout.n_colours != 4);
 }
 
-/* Has the picture IN of PATH read as C M Y K if its profile is for that. */
-void choose_inks(struct glint_oiio_file &file, std::unique_ptr<ImageInput> &in,
-                 const char *path, ImageSpec &config)
+/* Requests that the picture IN, the file PATH, is read as C M Y K if its
+ * profile is for C M Y K. */
+void choose_cmyk_reading(struct glint_oiio_file &file,
+                         std::unique_ptr<ImageInput> &in, const char *path,
+                         ImageSpec &config)
 {
-    /* OpenImageIO 2.4 has RGB of inks alone if a TIFF is compressed as JPEG. */
-    if (!is_from_inks(file, in->spec()) ||
+    /* OpenImageIO 2.4 can return only RGB for C M Y K in a TIFF compressed as
+     * JPEG. */
+    if (!is_rgb_from_cmyk(file, in->spec()) ||
         in->spec().get_string_attribute("compression") == "jpeg")
         return;
-    open_link(file, {inks_of(in->spec()), {}});
+    open_icc_link_of_part(file, {convert_spec_to_cmyk(in->spec()), {}});
     if (!file.link || file.type == "jpeg")
         return;
     config.attribute("oiio:RawColor", 1);
@@ -386,15 +395,15 @@ void choose_inks(struct glint_oiio_file &file, std::unique_ptr<ImageInput> &in,
         file.link.reset();
 }
 
-/* Adds the RGB of the link, if FILE has one. If the link cannot encode, this
- * RGB takes the place of the pixels. */
-void link_colours(struct glint_oiio_file &file)
+/* Adds the RGB of the profile's conversion, if FILE has one. If the conversion
+ * cannot encode, this RGB replaces the pixels. */
+void add_linked_rgb(struct glint_oiio_file &file)
 {
     kept_part &part = file.parts.at(0);
     kept_part rgb;
 
-    if (!file.link && !is_from_inks(file, part.spec))
-        open_link(file, part);
+    if (!file.link && !is_rgb_from_cmyk(file, part.spec))
+        open_icc_link_of_part(file, part);
     if (!file.link)
         return;
     const bool alpha = file.link->rgb.has_alpha;
@@ -409,15 +418,16 @@ void link_colours(struct glint_oiio_file &file)
         rgb.spec.erase_attribute(name);
     if (file.link->can_encode) {
         file.rgb = std::move(rgb);
-        if (is_ink && part.spec.format != TypeDesc::UINT8) /* OpenImageIO 2.4 */
+        if (is_ink && part.spec.format != TypeDesc::UINT8) /* limitation of
+                                                              OpenImageIO 2.4 */
             file.lost += std::string(file.lost.empty() ? "" : "; ") +
                          "its CMYK is written in 8 bits";
         return;
     }
     file.lost += std::string(file.lost.empty() ? "" : "; ") +
                  (is_ink ? "its CMYK becomes sRGB"
-                         : "its profile has no table for writing: it becomes "
-                           "sRGB");
+                         : "its profile has no table for writing: colours "
+                           "become sRGB");
     part = std::move(rgb);
     file.meta.icc.clear();
     file.drops_icc = true;
@@ -428,20 +438,20 @@ void read_file(struct glint_oiio_file &file, const char *path)
 {
     ImageSpec as_stored;
 
-    if (take_heif(file, path))
+    if (read_if_heif(file, path))
         return;
     as_stored.attribute("oiio:UnassociatedAlpha", 1);
     std::unique_ptr<ImageInput> in = open_picture(path, &as_stored);
     check_spec(in->spec());
     file.type = in->format_name();
-    if (is_carried(file.type))
-        file.whole = read_whole(path);
-    check_whole(file);
-    file.meta = glint::blocks_of(file.type, file.whole);
-    choose_inks(file, in, path, as_stored);
+    if (is_metadata_copied(file.type))
+        file.whole = read_whole_file(path);
+    check_file_complete(file);
+    file.meta = glint::read_metadata_blocks(file.type, file.whole);
+    choose_cmyk_reading(file, in, path, as_stored);
     for (int i = 0; i < 64 && in->seek_subimage(i, 0); i++) {
         file.parts.emplace_back();
-        read_part(*in, i, file, file.parts.back());
+        read_picture_part(*in, i, file, file.parts.back());
         if (in->format_name() != std::string("openexr") &&
             in->format_name() != std::string("tiff"))
             break;
@@ -460,11 +470,11 @@ int find_channel(const ImageSpec &spec, const std::string &name)
 
 /* The colour channels and alpha of a part, by name. */
 struct choice {
-    int index[4]; /* R, G, B, alpha; -1: none */
-    int rank;     /* the higher the better, 1 .. 4; 0: nothing chosen */
+    int index[4]; /* indices of the channels of R, G, B, alpha; -1: none */
+    int rank;     /* preference, 1 .. 4, higher is better; 0: nothing chosen */
 };
 
-int rank_of(const std::string &prefix)
+int rank_channel_prefix(const std::string &prefix)
 {
     if (prefix.empty())
         return 4;
@@ -488,9 +498,9 @@ choice choose_channels(const ImageSpec &spec)
         const std::string prefix = name.substr(0, n - 1);
         const int g = find_channel(spec, prefix + "G");
         const int b = find_channel(spec, prefix + "B");
-        if (g >= 0 && b >= 0 && rank_of(prefix) > best.rank)
+        if (g >= 0 && b >= 0 && rank_channel_prefix(prefix) > best.rank)
             best = {{i, g, b, find_channel(spec, prefix + "A")},
-                    rank_of(prefix)};
+                    rank_channel_prefix(prefix)};
     }
     if (best.rank > 1)
         return best;
@@ -504,11 +514,11 @@ choice choose_channels(const ImageSpec &spec)
     return best;
 }
 
-struct glint_sample_place channel_of(const ImageSpec &spec, int index)
+struct glint_sample_place get_sample_place(const ImageSpec &spec, int index)
 {
     struct glint_sample_place channel = {GLINT_SAMPLE_FLOAT, 0};
 
-    to_sample(spec.channelformat(index), channel.sample);
+    convert_to_sample_type(spec.channelformat(index), channel.sample);
     channel.offset = 0;
     for (int i = 0; i < index; i++)
         channel.offset += spec.channelformat(i).size();
@@ -533,11 +543,11 @@ void fill_samples(struct glint_samples &s, kept_part &part,
     s.pixel_bytes = spec.pixel_bytes(true);
     s.n_colours = choice.index[1] == choice.index[0] ? 1 : 3;
     for (int c = 0; c < 3; c++)
-        s.colour[c] = channel_of(spec, choice.index[c]);
+        s.colour[c] = get_sample_place(spec, choice.index[c]);
     s.has_alpha = choice.index[3] >= 0;
     s.is_premultiplied = !spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
     if (s.has_alpha)
-        s.alpha = channel_of(spec, choice.index[3]);
+        s.alpha = get_sample_place(spec, choice.index[3]);
     s.maximum = s.colour[0].sample == GLINT_SAMPLE_U8    ? 0xffu
                 : s.colour[0].sample == GLINT_SAMPLE_U16 ? 0xffffu
                                                          : 0xffffffffu;
@@ -548,10 +558,10 @@ void fill_samples(struct glint_samples &s, kept_part &part,
 
 void fill_png_facts(struct glint_oiio_facts &facts, const bytes &whole)
 {
-    const bytes gamma = glint::chunk_of_png(whole, "gAMA");
-    const bytes srgb = glint::chunk_of_png(whole, "sRGB");
-    const bytes primaries = glint::chunk_of_png(whole, "cHRM");
-    const auto big32 = [](const bytes &b, size_t at) {
+    const bytes gamma = glint::find_png_chunk(whole, "gAMA");
+    const bytes srgb = glint::find_png_chunk(whole, "sRGB");
+    const bytes primaries = glint::find_png_chunk(whole, "cHRM");
+    const auto read_big32 = [](const bytes &b, size_t at) {
         return (unsigned(b[at]) << 24 | unsigned(b[at + 1]) << 16 |
                 unsigned(b[at + 2]) << 8 | b[at + 3]) *
                1e-5;
@@ -560,17 +570,17 @@ void fill_png_facts(struct glint_oiio_facts &facts, const bytes &whole)
     facts.colour_space[0] = 0;
     if (!srgb.empty())
         return;
-    if (gamma.size() == 4 && big32(gamma, 0) > 0)
-        facts.gamma = 1 / big32(gamma, 0);
+    if (gamma.size() == 4 && read_big32(gamma, 0) > 0)
+        facts.gamma = 1 / read_big32(gamma, 0);
     if (primaries.size() != 32)
         return;
     facts.has_primaries = 1;
-    for (size_t i = 0; i < 8; i++) /* cHRM has white first */
-        facts.primaries[(i / 2 + 3) % 4][i % 2] = big32(primaries, 4 * i);
+    for (size_t i = 0; i < 8; i++) /* the cHRM chunk begins with white */
+        facts.primaries[(i / 2 + 3) % 4][i % 2] = read_big32(primaries, 4 * i);
 }
 
-/* Appends TEXT to NOTES, of facts or options. */
-void say(char (&notes)[160], const char *text)
+/* Appends TEXT to the text NOTES. */
+void append_note(char (&notes)[160], const char *text)
 {
     const size_t used = std::strlen(notes);
 
@@ -591,7 +601,7 @@ void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
     facts.metadata = file.metadata;
     facts.cicp[0] = file.meta.cicp[0];
     facts.cicp[1] = file.meta.cicp[1];
-    file.icc = icc_of(file, spec);
+    file.icc = get_icc_profile(file, spec);
     if (!file.icc.empty()) {
         facts.icc = file.icc.data();
         facts.icc_bytes = file.icc.size();
@@ -607,31 +617,33 @@ void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
     if (file.type == "png")
         fill_png_facts(facts, file.whole);
     if (file.type == "jpeg") {
-        facts.quality = glint::quality_of_jpeg(file.whole);
-        const std::string more = glint::more_of_jpeg(file.whole);
+        facts.quality = glint::estimate_jpeg_quality(file.whole);
+        const std::string more = glint::describe_extra_jpeg_data(file.whole);
 
         if (!more.empty())
-            say(facts.note, more.c_str());
+            append_note(facts.note, more.c_str());
     }
-    if (is_from_inks(file, spec) && !file.drops_icc) {
-        say(facts.note, file.type == "jpeg"
-                            ? "its CMYK becomes RGB"
-                            : "its CMYK is read as RGB: all inks change");
+    if (is_rgb_from_cmyk(file, spec) && !file.drops_icc) {
+        append_note(facts.note,
+                    file.type == "jpeg"
+                        ? "its CMYK becomes RGB"
+                        : "its CMYK is read as RGB: all inks change");
         file.drops_icc = true;
     }
     if (!file.lost.empty())
-        say(facts.note, file.lost.c_str());
+        append_note(facts.note, file.lost.c_str());
     if (spec.get_int_attribute("oiio:Movie", 0) ||
         spec.get_int_attribute("gif:FrameCount", 0) > 1 ||
         (file.type == "png" &&
-         !glint::chunk_of_png(file.whole, "acTL").empty()) ||
+         !glint::find_png_chunk(file.whole, "acTL").empty()) ||
         (file.type == "webp" && glint::is_animated_webp(file.whole)))
-        say(facts.note, "only the first of its frames is kept");
+        append_note(facts.note, "only its first frame is written");
 }
 
-/* States in FACTS the colours of the RGB that a link of FILE has made. */
-void state_colours(struct glint_oiio_facts &facts,
-                   const struct glint_oiio_file &file)
+/* Describes in FACTS the colours of the RGB to which FILE's pixels were
+ * converted by its profile. */
+void state_linked_colours(struct glint_oiio_facts &facts,
+                          const struct glint_oiio_file &file)
 {
     facts.icc = nullptr;
     facts.colour_space[0] = 0;
@@ -643,7 +655,7 @@ void state_colours(struct glint_oiio_facts &facts,
 
 } // namespace
 
-void glint::give(void **data, size_t *n_bytes, const bytes &encoded)
+void glint::copy_to_malloc(void **data, size_t *n_bytes, const bytes &encoded)
 {
     void *const block = std::malloc(encoded.size() + 1);
 
@@ -672,7 +684,7 @@ std::string glint::memory_file::name() const
 
 bytes glint::memory_file::contents() const
 {
-    return read_whole(name().c_str());
+    return read_whole_file(name().c_str());
 }
 
 enum glint_status glint::open_file(struct glint_oiio_file **file,
@@ -686,8 +698,8 @@ enum glint_status glint::open_file(struct glint_oiio_file **file,
         size_t at = 0;
 
         read_file(*made, path);
-        link_colours(*made);
-        /* Of several parts only the first has a link. */
+        add_linked_rgb(*made);
+        /* Of several parts only the first is converted by its profile. */
         const bool linked = made->link || made->drops_icc;
         for (size_t i = 0; i < (linked ? 1 : made->parts.size()); i++) {
             const choice here = choose_channels(made->parts[i].spec);
@@ -699,7 +711,7 @@ enum glint_status glint::open_file(struct glint_oiio_file **file,
         }
         fill_facts(*facts, *made, made->parts.at(at).spec);
         if (linked)
-            state_colours(*facts, *made);
+            state_linked_colours(*facts, *made);
         if (made->link)
             fill_samples(*samples, made->rgb, choose_channels(made->rgb.spec));
         else
@@ -740,7 +752,7 @@ int glint::can_write(const char *path)
                     ImageOutput::create(path);
 
                 can = out && (out->format_name() != std::string("heif") ||
-                              heif_writes(is_avif_name(path)));
+                              is_heif_writable(is_avif_name(path)));
             });
     return can;
 }
@@ -750,7 +762,8 @@ int glint::can_write(const char *path)
 namespace
 {
 
-/* A file in memory. TIFF also reads what it has written. */
+/* A file in memory, for OpenImageIO's writers. The TIFF writer also reads what
+ * it has written. */
 class memory : public OIIO::Filesystem::IOProxy
 {
   public:
@@ -799,9 +812,9 @@ class memory : public OIIO::Filesystem::IOProxy
     bytes &data;
 };
 
-/* Removes the attributes that describe how the input was coded and not what it
- * shows. */
-void clear_coding(ImageSpec &spec)
+/* Removes the attributes that describe how the input file was coded, not its
+ * content. */
+void remove_coding_attributes(ImageSpec &spec)
 {
     for (const char *name : {"compression",
                              "oiio:BitsPerSample",
@@ -829,7 +842,7 @@ void clear_coding(ImageSpec &spec)
     spec.tile_width = spec.tile_height = spec.tile_depth = 0;
 }
 
-ImageSpec bare(const ImageSpec &spec)
+ImageSpec copy_basic_spec(const ImageSpec &spec)
 {
     ImageSpec to(spec.width, spec.height, spec.nchannels, spec.format);
 
@@ -848,9 +861,9 @@ ImageSpec bare(const ImageSpec &spec)
     return to;
 }
 
-/* Removes the attributes for which OpenImageIO 2.4 writes a TIFF's Exif
- * directory, which it spoils in memory. */
-void clear_exif(ImageSpec &spec)
+/* Removes the attributes for which OpenImageIO 2.4 writes an Exif directory to
+ * a TIFF, which is corrupt for files in memory. */
+void remove_exif_attributes(ImageSpec &spec)
 {
     const auto is_exif = [](const OIIO::ParamValue &p) {
         return OIIO::Strutil::starts_with(p.name(), "Exif:") ||
@@ -864,10 +877,11 @@ void clear_exif(ImageSpec &spec)
                              spec.extra_attribs.end());
 }
 
-/* Returns the quality for a file of TYPE, 1 .. 100, or 0: without loss. It is
- * that of OPTIONS, else FILE's own if that is of TYPE, else 95. */
-int quality_of(const std::string &type, const struct glint_oiio_file *file,
-               const struct glint_oiio_options &options)
+/* Returns the quality for writing a file of TYPE, 1 .. 100, or 0: lossless. It
+ * is the quality in OPTIONS, else FILE's own if FILE has the same TYPE, else
+ * 95. */
+int choose_quality(const std::string &type, const struct glint_oiio_file *file,
+                   const struct glint_oiio_options &options)
 {
     const bool same = file && file->type == type;
 
@@ -876,13 +890,14 @@ int quality_of(const std::string &type, const struct glint_oiio_file *file,
     if (same && type == "webp" && glint::is_lossless(file->whole))
         return 0;
     const int own =
-        same && type == "jpeg" ? glint::quality_of_jpeg(file->whole) : 0;
+        same && type == "jpeg" ? glint::estimate_jpeg_quality(file->whole) : 0;
     return own ? own : 95;
 }
 
-/* Returns SAMPLES as a part, with the metadata of FILE unless that is NULL. */
-kept_part part_of(const struct glint_samples &samples,
-                  const struct glint_oiio_file *file)
+/* Returns a part with the pixels SAMPLES, and with the metadata of FILE unless
+ * FILE is NULL. */
+kept_part create_part(const struct glint_samples &samples,
+                      const struct glint_oiio_file *file)
 {
     const int n = samples.n_colours + (samples.has_alpha ? 1 : 0);
     kept_part made;
@@ -892,7 +907,7 @@ kept_part part_of(const struct glint_samples &samples,
     if (file) {
         ImageSpec own = file->parts[0].spec;
 
-        clear_coding(own);
+        remove_coding_attributes(own);
         made.spec.extra_attribs = own.extra_attribs;
         made.spec.attribute("Orientation", 1);
     }
@@ -924,25 +939,25 @@ void write_parts(ImageOutput &out, const char *path,
             done = out.open(path, specs[i],
                             i == 0 ? ImageOutput::Create
                                    : ImageOutput::AppendSubimage);
-        done = done &&
-               out.write_image(glint::is_mixed(specs[i]) ? TypeDesc::UNKNOWN
-                                                         : specs[i].format,
-                               parts[i].pixels.data());
+        done = done && out.write_image(glint::has_mixed_channel_types(specs[i])
+                                           ? TypeDesc::UNKNOWN
+                                           : specs[i].format,
+                                       parts[i].pixels.data());
     }
     if (!done || !out.close())
         throw failure{GLINT_E_OUTPUT, out.geterror()};
 }
 
-/* Checks whether FILE's metadata are copied byte for byte. Those of BigTIFF are
- * not; OpenImageIO passes on what it knows of them. */
-bool is_carried_from(const struct glint_oiio_file &file)
+/* Returns whether FILE's metadata are copied byte for byte. Those of BigTIFF
+ * are not; OpenImageIO copies the metadata that it knows. */
+bool is_metadata_copied_from(const struct glint_oiio_file &file)
 {
-    return is_carried(file.type) &&
+    return is_metadata_copied(file.type) &&
            (file.type != "tiff" || glint::is_classic_tiff(file.whole));
 }
 
-/* Encodes an EXR of parts by way of a file: OpenImageIO 2.4 cannot write it
- * into memory, though it claims to. */
+/* Encodes an EXR of several parts through a temporary file: OpenImageIO 2.4
+ * cannot write it to memory, although it reports that it can. */
 bytes encode_exr(ImageOutput &out, std::vector<ImageSpec> &specs,
                      const std::vector<kept_part> &parts)
 {
@@ -974,9 +989,9 @@ bytes encode_by_oiio(ImageOutput &out, const char *path,
     return encoded;
 }
 
-/* Removes empty texts: OpenImageIO 2.4 aborts on an empty one that it copies
- * into the IPTC block of a JPEG or TIFF. */
-void clear_empty(ImageSpec &spec)
+/* Removes empty texts: OpenImageIO 2.4 aborts when it copies one into the IPTC
+ * block of a JPEG or TIFF. */
+void remove_empty_texts(ImageSpec &spec)
 {
     auto &all = spec.extra_attribs;
 
@@ -985,15 +1000,16 @@ void clear_empty(ImageSpec &spec)
             all.erase(all.begin() + static_cast<std::ptrdiff_t>(i));
 }
 
-/* Returns the blocks of FILE for another file, upright. */
-glint::file_blocks upright_blocks(const struct glint_oiio_file *file,
-                             const struct glint_oiio_options &options)
+/* Returns the metadata blocks of FILE, with upright orientation, for writing to
+ * another file. */
+glint::file_blocks get_upright_blocks(const struct glint_oiio_file *file,
+                                      const struct glint_oiio_options &options)
 {
     glint::file_blocks b = {};
 
     if (file)
         b = file->meta;
-    glint::make_upright(b);
+    glint::set_upright_orientation(b);
     if (file && !options.drop_colours)
         b.icc = file->icc;
     else
@@ -1001,7 +1017,8 @@ glint::file_blocks upright_blocks(const struct glint_oiio_file *file,
     return b;
 }
 
-/* Returns PART as a HEIF with the blocks of FILE; grey becomes R = G = B. */
+/* Returns PART encoded as HEIF, with the metadata blocks of FILE; grey is
+ * written as R = G = B. */
 bytes encode_heif(const char *path, const kept_part &part,
                   const struct glint_oiio_file *file, int quality,
                   struct glint_oiio_options &options)
@@ -1018,7 +1035,7 @@ bytes encode_heif(const char *path, const kept_part &part,
     p.is_avif = is_avif_name(path);
     p.is_premultiplied =
         !part.spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
-    p.meta = upright_blocks(file, options);
+    p.meta = get_upright_blocks(file, options);
     for (size_t at = 0; at < part.pixels.size(); at += n * sample)
         for (size_t c = 0; c < size_t(p.channels); c++) {
             const size_t from = n >= 3 ? c : c < 3 ? 0 : 1;
@@ -1028,23 +1045,24 @@ bytes encode_heif(const char *path, const kept_part &part,
                             part.pixels.begin() +
                                 long(at + (from + 1) * sample));
         }
-    if (glint::heif_bits(p) < p.bits)
-        std::snprintf(options.said, sizeof options.said, "%d bits are left",
-                      glint::heif_bits(p));
-    return glint::heif_encode(p, quality);
+    if (glint::get_heif_bits(p) < p.bits)
+        std::snprintf(options.said, sizeof options.said,
+                      "%d bits remain", glint::get_heif_bits(p));
+    return glint::encode_heif_picture(p, quality);
 }
 
-/* Returns ENCODED, a file of TYPE, with the blocks of FILE, which is of another
- * type. */
-bytes add_blocks(const std::string &type, const bytes &encoded,
-                 const struct glint_oiio_file *file,
-                 struct glint_oiio_options &options)
+/* Returns ENCODED, a file of TYPE, with the metadata blocks of FILE, which has
+ * another type. */
+bytes add_metadata_blocks(const std::string &type, const bytes &encoded,
+                          const struct glint_oiio_file *file,
+                          struct glint_oiio_options &options)
 {
     std::string lost;
-    const glint::file_blocks b = upright_blocks(file, options);
-    const bytes made = glint::carry_blocks(type, encoded, b, lost);
+    const glint::file_blocks b = get_upright_blocks(file, options);
+    const bytes made = glint::replace_metadata_blocks(type, encoded, b, lost);
 
-    /* OpenImageIO fills other headers, but not from what libheif has read. */
+    /* OpenImageIO translates the metadata of other types to EXR headers, but
+     * not those that libheif has read. */
     if (lost.empty() && file && file->type == "heif" && type == "openexr" &&
         *file->metadata)
         lost = std::string("no ") + file->metadata;
@@ -1065,35 +1083,40 @@ bytes encode_parts(const char *path, const std::vector<kept_part> &parts,
     if (!out)
         throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
     const std::string type = out->format_name();
-    const int quality = quality_of(type, file, options);
+    const int quality = choose_quality(type, file, options);
     if (type == "heif")
         return encode_heif(path, parts[0], file, quality, options);
     for (const kept_part &p : parts) {
-        specs.push_back(same && is_carried_from(*file) ? bare(p.spec) : p.spec);
+        specs.push_back(same && is_metadata_copied_from(*file)
+                            ? copy_basic_spec(p.spec)
+                            : p.spec);
         if (type == "tiff")
-            clear_exif(specs.back());
+            remove_exif_attributes(specs.back());
         if (type == "tiff" || type == "jpeg")
-            clear_empty(specs.back());
+            remove_empty_texts(specs.back());
         if (drop)
             specs.back().erase_attribute("ICCProfile");
         if (type == "jpeg" || type == "jpegxl")
             specs.back().attribute("Compression",
                                    type + ":" + std::to_string(quality));
-        if (same && type == "jpeg" && glint::is_progressive(file->whole))
+        if (same && type == "jpeg" && glint::is_progressive_jpeg(file->whole))
             specs.back().attribute("jpeg:progressive", 1);
     }
     if (type == "webp" && specs[0].nchannels >= 3)
-        encoded = webp_encode(parts[0].pixels.data(), specs[0].width,
+        encoded = encode_webp(parts[0].pixels.data(), specs[0].width,
                               specs[0].height, specs[0].nchannels, quality);
     else
         encoded = encode_by_oiio(*out, path, specs, parts);
     if (!same)
-        return add_blocks(type, encoded, file, options);
-    return type == "png"    ? glint::carry_png(encoded, file->whole, drop)
-           : type == "jpeg" ? glint::carry_jpeg(encoded, file->whole, drop)
-           : type == "webp" ? glint::carry_webp(encoded, file->whole, drop)
-           : type == "tiff" ? glint::carry_tiff(encoded, file->whole, drop)
-                            : encoded;
+        return add_metadata_blocks(type, encoded, file, options);
+    return type == "png" ? glint::copy_png_metadata(encoded, file->whole, drop)
+           : type == "jpeg"
+               ? glint::copy_jpeg_metadata(encoded, file->whole, drop)
+           : type == "webp"
+               ? glint::copy_webp_metadata(encoded, file->whole, drop)
+           : type == "tiff"
+               ? glint::copy_tiff_metadata(encoded, file->whole, drop)
+               : encoded;
 }
 
 } // namespace
@@ -1113,7 +1136,7 @@ enum glint_status glint::encode_file(void **data, size_t *n_bytes,
         if (file && file->drops_icc)
             options->drop_colours = 1;
         if (pixels)
-            made.push_back(part_of(*pixels, file));
+            made.push_back(create_part(*pixels, file));
         else if (file->link)
             file->link->encode(file->rgb.pixels, file->parts[0].pixels);
         const bytes encoded = encode_parts(path, pixels ? made : file->parts,
@@ -1121,7 +1144,8 @@ enum glint_status glint::encode_file(void **data, size_t *n_bytes,
 
         if (pixels && file && file->link && !same &&
             pixels->colour[0].sample < GLINT_SAMPLE_HALF)
-            say(options->said, "the colours of its profile become sRGB");
-        give(data, n_bytes, encoded);
+            append_note(options->said,
+                        "the colours of its profile become sRGB");
+        copy_to_malloc(data, n_bytes, encoded);
     });
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/keep.h - picture files with all that they hold.
+ * oiio/keep.h - reads and writes picture files with all of their content.
  *
- * Metadata that OpenImageIO does not carry from file to file (chunks of PNG and
- * WebP, segments of JPEG and tags of TIFF) are copied byte for byte; WebP is
- * decoded and encoded by its own library, so that alpha stays straight.
- */
+ * Metadata that OpenImageIO does not copy from file to file (chunks of PNG and
+ * WebP, segments of JPEG and tags of TIFF) are copied byte for byte. WebP is
+ * decoded and encoded by its own library, so that colours are not multiplied by
+ * alpha. */
 #ifndef GLINT_PLATFORM_OIIO_KEEP_H
 #define GLINT_PLATFORM_OIIO_KEEP_H
 
@@ -22,58 +22,62 @@ namespace glint
 
 using bytes = std::vector<unsigned char>;
 
-/* The carry functions return the file MADE with its metadata replaced by the
+/* The copy functions return the file MADE with its metadata replaced by the
  * metadata of FROM, a file of the same type; without FROM's ICC profile if
- * DROP_ICC. They return MADE unchanged if they cannot read either file. */
-bytes carry_png(const bytes &made, const bytes &from, bool drop_icc);
-bytes carry_jpeg(const bytes &made, const bytes &from, bool drop_icc);
-bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc);
-bool is_classic_tiff(const bytes &file); /* false for BigTIFF */
-bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc);
+ * DROP_ICC is set. They return MADE unchanged if they cannot parse either
+ * file. */
+bytes copy_png_metadata(const bytes &made, const bytes &from, bool drop_icc);
+bytes copy_jpeg_metadata(const bytes &made, const bytes &from, bool drop_icc);
+bytes copy_webp_metadata(const bytes &made, const bytes &from, bool drop_icc);
+bool is_classic_tiff(const bytes &file); /* Returns whether FILE is a TIFF, but
+                                            not a BigTIFF. */
+bytes copy_tiff_metadata(const bytes &made, const bytes &from, bool drop_icc);
 
-/* Returns MADE, a TIFF, with the tags of EXIF, a TIFF without pixels, and XMP
+/* Returns MADE, a TIFF, with the tags of EXIF (a TIFF without pixels) and XMP
  * added to its first directory. */
-bytes add_to_tiff(const bytes &made, const bytes &exif, const std::string &xmp);
+bytes add_metadata_to_tiff(const bytes &made, const bytes &exif,
+                           const std::string &xmp);
 
-/* Removes from XMP, a packet, the properties that claim pictures or a video
- * behind the first picture: gain map, motion photo, container; if UPRIGHT, also
- * the orientation. Returns false and clears XMP if it has such properties and
- * is malformed. The time is linear in the size of XMP. */
-bool remove_claims(std::string &xmp, bool upright);
+/* Removes from the packet XMP the properties that refer to pictures or a video
+ * after the first picture of the file: gain map, motion photo, container; if
+ * UPRIGHT is set, also the orientation. Returns false and clears XMP if it has
+ * such properties and is malformed. The time is linear in the size of XMP. */
+bool remove_xmp_claims(std::string &xmp, bool upright);
 
-/* Return as text what is missing in FILE, "" if it is complete. */
-std::string missing_of_jpeg(const bytes &file);
-std::string missing_of_tiff(const bytes &file);
+/* Return a text that states what is missing in a truncated FILE, "" if it is
+ * complete. */
+std::string describe_missing_jpeg_data(const bytes &file);
+std::string describe_missing_tiff_data(const bytes &file);
 
 /* Returns the quality, 1 .. 100 on libjpeg's scale, whose quantisation tables
  * are nearest to the tables of FILE; 0 if FILE has no tables. */
-int quality_of_jpeg(const bytes &file);
+int estimate_jpeg_quality(const bytes &file);
 
-bool is_progressive(const bytes &jpeg);
+bool is_progressive_jpeg(const bytes &jpeg);
 
 /* Returns whether the pixels of JPEG are CMYK, which glint converts to RGB. */
-bool is_of_inks(const bytes &jpeg);
+bool is_cmyk_jpeg(const bytes &jpeg);
 
-/* Returns as text the data after the first picture of JPEG, which glint loses;
- * "" if there are no such data. */
-std::string more_of_jpeg(const bytes &jpeg);
+/* Returns a text that describes the data after the first picture of JPEG, which
+ * glint does not preserve; "" if there are no such data. */
+std::string describe_extra_jpeg_data(const bytes &jpeg);
 
 /* Returns the data of the first chunk NAME of a PNG; empty if there is no such
  * chunk. */
-bytes chunk_of_png(const bytes &file, const char *name);
+bytes find_png_chunk(const bytes &file, const char *name);
 
-/* Returns whether WEBP has several frames. */
+/* Returns whether WEBP is an animation of several frames. */
 bool is_animated_webp(const bytes &webp);
 
-/* Returns whether WEBP is coded without loss. */
+/* Returns whether WEBP is coded losslessly. */
 bool is_lossless(const bytes &webp);
 
 /* ------------------------------------------------------------------- files */
 
 /* Sets DATA[N_BYTES] to a malloc'ed copy of ENCODED. */
-void give(void **data, size_t *n_bytes, const bytes &encoded);
+void copy_to_malloc(void **data, size_t *n_bytes, const bytes &encoded);
 
-/* A file in memory, for writers that need a file name. */
+/* A file in memory that has a file name, for writers that need one. */
 class memory_file
 {
   public:

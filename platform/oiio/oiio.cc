@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The plug-in behind formats/oiio.h. No exception leaves it: all that
+ * Implements formats/oiio.h. No exception leaves the plug-in: every error that
  * OpenImageIO throws or returns becomes a status and one line of text. */
 #include "formats/oiio.h"
 
@@ -30,17 +30,19 @@ using glint::failure;
 using glint::guarded;
 using glint::open_picture;
 
-/* Returns the channels for R, G, B: the first three, or the first for all. */
-std::vector<int> channel_order(int n_channels)
+/* Returns the channels to read as R, G, B: the first three, or three times the
+ * first. */
+std::vector<int> get_rgb_channels(int n_channels)
 {
     if (n_channels >= 3)
         return {0, 1, 2};
     return {0, 0, 0};
 }
 
-/* Reads PATH as bytes or floats and turns it upright. An ImageBuf opened by
- * file name would answer from a cache after the file has changed. */
-OIIO::ImageBuf load_upright(const char *path)
+/* Reads PATH as bytes or floats and rotates it upright. Does not open the
+ * ImageBuf by file name, as that would read from a cache after the file has
+ * changed. */
+OIIO::ImageBuf load_upright_image(const char *path)
 {
     const std::unique_ptr<OIIO::ImageInput> in = open_picture(path);
     OIIO::ImageSpec spec = in->spec();
@@ -60,12 +62,12 @@ OIIO::ImageBuf load_upright(const char *path)
     return upright;
 }
 
-void read_pixels(struct glint_oiio_pixels *pixels, const char *path)
+void read_upright_pixels(struct glint_oiio_pixels *pixels, const char *path)
 {
-    const OIIO::ImageBuf buf = load_upright(path);
+    const OIIO::ImageBuf buf = load_upright_image(path);
     const OIIO::TypeDesc type = buf.spec().format;
     const OIIO::ImageBuf rgb =
-        OIIO::ImageBufAlgo::channels(buf, 3, channel_order(buf.nchannels()));
+        OIIO::ImageBufAlgo::channels(buf, 3, get_rgb_channels(buf.nchannels()));
 
     if (rgb.has_error())
         throw failure{GLINT_E_FORMAT, rgb.geterror()};
@@ -84,8 +86,8 @@ void read_pixels(struct glint_oiio_pixels *pixels, const char *path)
     *pixels = made;
 }
 
-/* Encodes PIXELS into memory, as some writers of OpenImageIO do not notice a
- * full disk. */
+/* Encodes PIXELS to memory, as some writers of OpenImageIO do not report a full
+ * disk. */
 std::vector<unsigned char> encode_pixels(const char *path,
                                          const struct glint_oiio_pixels *pixels,
                                          ptrdiff_t stride_bytes)
@@ -103,8 +105,8 @@ std::vector<unsigned char> encode_pixels(const char *path,
     if (!out->supports("ioproxy") || !out->set_ioproxy(&file))
         throw failure{GLINT_E_UNSUPPORTED, "OpenImageIO cannot write this "
                                            "type into memory"};
-    /* A TIFF with a colour space would get an Exif directory, whose writing
-     * into memory OpenImageIO 2.4 spoils. */
+    /* A TIFF with a colour space would get an Exif directory, which OpenImageIO
+     * 2.4 corrupts when writing to memory. */
     if (std::strcmp(out->format_name(), "tiff") != 0)
         spec.attribute("oiio:ColorSpace", pixels->is_float ? "Linear" : "sRGB");
     if (!out->open(path, spec) ||
@@ -114,8 +116,8 @@ std::vector<unsigned char> encode_pixels(const char *path,
     return encoded;
 }
 
-/* Returns the description of layer K of LAYERS. */
-OIIO::ImageSpec layer_spec(const struct glint_oiio_layers *layers, int k)
+/* Returns OpenImageIO's description of layer K of LAYERS. */
+OIIO::ImageSpec describe_layer(const struct glint_oiio_layers *layers, int k)
 {
     OIIO::ImageSpec spec(layers->width, layers->height, 3,
                          layers->is_half ? OIIO::TypeDesc::HALF
@@ -128,7 +130,7 @@ OIIO::ImageSpec layer_spec(const struct glint_oiio_layers *layers, int k)
     return spec;
 }
 
-/* OpenImageIO 2.4 writes files of several parts by name only. */
+/* OpenImageIO 2.4 can write files of several parts only by file name. */
 std::vector<unsigned char> encode_parts(const char *path,
                                         const struct glint_oiio_layers *layers)
 {
@@ -143,7 +145,7 @@ std::vector<unsigned char> encode_parts(const char *path,
         throw failure{GLINT_E_UNSUPPORTED,
                       "this type cannot hold layers; name an .exr, or put %s into the name for a file per layer"};
     for (int k = 0; k < layers->n; k++)
-        specs.push_back(layer_spec(layers, k));
+        specs.push_back(describe_layer(layers, k));
     if (!(layers->n > 1 ? out->open(file.name(), layers->n, specs.data())
                         : out->open(file.name(), specs[0])))
         throw failure{GLINT_E_OUTPUT, out->geterror()};
@@ -157,29 +159,33 @@ std::vector<unsigned char> encode_parts(const char *path,
     return file.contents();
 }
 
-enum glint_status face_encode_layers(void **data, size_t *bytes,
-                                     const char *path,
-                                     const struct glint_oiio_layers *layers,
-                                     struct glint_error *error)
+enum glint_status encode_layers_guarded(void **data, size_t *bytes,
+                                        const char *path,
+                                        const struct glint_oiio_layers *layers,
+                                        struct glint_error *error)
 {
     return guarded(path, GLINT_E_OUTPUT, error, [&] {
-        glint::give(data, bytes, encode_parts(path, layers));
+        glint::copy_to_malloc(data, bytes, encode_parts(path, layers));
     });
 }
 
-enum glint_status face_read(struct glint_oiio_pixels *pixels, const char *path,
-                            struct glint_error *error)
+enum glint_status read_pixels_guarded(struct glint_oiio_pixels *pixels,
+                                      const char *path,
+                                      struct glint_error *error)
 {
     return guarded(path, GLINT_E_FORMAT, error,
-                   [&] { read_pixels(pixels, path); });
+                   [&] { read_upright_pixels(pixels, path); });
 }
 
-enum glint_status face_encode(void **data, size_t *bytes, const char *path,
-                              const struct glint_oiio_pixels *pixels,
-                              ptrdiff_t stride_bytes, struct glint_error *error)
+enum glint_status encode_pixels_guarded(void **data, size_t *bytes,
+                                        const char *path,
+                                        const struct glint_oiio_pixels *pixels,
+                                        ptrdiff_t stride_bytes,
+                                        struct glint_error *error)
 {
     return guarded(path, GLINT_E_OUTPUT, error, [&] {
-        glint::give(data, bytes, encode_pixels(path, pixels, stride_bytes));
+        glint::copy_to_malloc(data, bytes,
+                              encode_pixels(path, pixels, stride_bytes));
     });
 }
 
@@ -188,6 +194,7 @@ enum glint_status face_encode(void **data, size_t *bytes, const char *path,
 extern "C" __attribute__((visibility("default")))
 const struct glint_oiio glint_oiio_face;
 const struct glint_oiio glint_oiio_face = {
-    GLINT_OIIO_VERSION, face_read,          face_encode,
-    glint::open_file,   glint::close_file,  glint::can_write,
-    glint::is_same_type, glint::encode_file, face_encode_layers, glint::report_abort};
+    GLINT_OIIO_VERSION,  read_pixels_guarded, encode_pixels_guarded,
+    glint::open_file,    glint::close_file,   glint::can_write,
+    glint::is_same_type, glint::encode_file,  encode_layers_guarded,
+    glint::report_abort};

@@ -9,24 +9,26 @@ namespace glint
 namespace
 {
 
-const char xmp_head[] = "http://ns.adobe.com/xap/1.0/"; /* and a zero */
+const char xmp_head[] = "http://ns.adobe.com/xap/1.0/"; /* identifier of XMP
+                                                           segments, with its
+                                                           final zero byte */
 static_assert(sizeof xmp_head == xmp_head_bytes, "length of XMP's name");
 
 } // namespace
 
-uint32_t big32(const unsigned char *at)
+uint32_t read_big32(const unsigned char *at)
 {
     return uint32_t(at[0]) << 24 | uint32_t(at[1]) << 16 |
            uint32_t(at[2]) << 8 | at[3];
 }
 
-uint32_t little32(const unsigned char *at)
+uint32_t read_little32(const unsigned char *at)
 {
     return uint32_t(at[3]) << 24 | uint32_t(at[2]) << 16 |
            uint32_t(at[1]) << 8 | at[0];
 }
 
-void append(bytes &to, const unsigned char *at, size_t n)
+void append_bytes(bytes &to, const unsigned char *at, size_t n)
 {
     to.insert(to.end(), at, at + n);
 }
@@ -41,14 +43,14 @@ bool is_one_of(const std::string &name, std::initializer_list<const char *> of)
 
 /* ------------------------------------------------------------------- PNG */
 
-std::vector<file_piece> chunks_of_png(const bytes &file)
+std::vector<file_piece> split_png_chunks(const bytes &file)
 {
     std::vector<file_piece> chunks;
     size_t at = 8;
 
     while (file.size() - at >= 12 && at < file.size()) {
         const unsigned char *const p = file.data() + at;
-        const size_t n = big32(p);
+        const size_t n = read_big32(p);
 
         if (n > file.size() - at - 12)
             return {};
@@ -63,7 +65,7 @@ std::vector<file_piece> chunks_of_png(const bytes &file)
 
 /* -------------------------------------------------------------------- JPEG */
 
-std::vector<file_piece> segments_of_jpeg(const bytes &file)
+std::vector<file_piece> split_jpeg_segments(const bytes &file)
 {
     std::vector<file_piece> segments;
     size_t at = 2;
@@ -72,7 +74,7 @@ std::vector<file_piece> segments_of_jpeg(const bytes &file)
         const unsigned char *const p = file.data() + at;
         const size_t n = size_t(p[2]) << 8 | p[3];
 
-        if (p[1] == 0xff) { /* fill */
+        if (p[1] == 0xff) { /* 0xff before a marker: padding */
             at++;
             continue;
         }
@@ -95,7 +97,7 @@ bool is_marker(const file_piece &segment, int marker)
            static_cast<unsigned char>(segment.name[0]) == marker;
 }
 
-bool begins(const file_piece &segment, const char *text, size_t n)
+bool begins_with_text(const file_piece &segment, const char *text, size_t n)
 {
     return segment.data_bytes >= n && !std::memcmp(segment.data, text, n);
 }
@@ -103,12 +105,12 @@ bool begins(const file_piece &segment, const char *text, size_t n)
 bool is_xmp(const file_piece &segment)
 {
     return is_marker(segment, 0xe1) &&
-           begins(segment, xmp_head, sizeof xmp_head);
+           begins_with_text(segment, xmp_head, sizeof xmp_head);
 }
 
 bool is_exif(const file_piece &segment)
 {
-    return is_marker(segment, 0xe1) && begins(segment, "Exif\0", 6);
+    return is_marker(segment, 0xe1) && begins_with_text(segment, "Exif\0", 6);
 }
 
 bool append_segment(bytes &to, int marker, const char *head, size_t n_head,
@@ -121,15 +123,15 @@ bool append_segment(bytes &to, int marker, const char *head, size_t n_head,
 
     if (all > 0xffff)
         return false;
-    append(to, start, sizeof start);
-    append(to, reinterpret_cast<const unsigned char *>(head), n_head);
-    append(to, data, n);
+    append_bytes(to, start, sizeof start);
+    append_bytes(to, reinterpret_cast<const unsigned char *>(head), n_head);
+    append_bytes(to, data, n);
     return true;
 }
 
 /* -------------------------------------------------------------------- WebP */
 
-std::vector<file_piece> chunks_of_webp(const bytes &file)
+std::vector<file_piece> split_webp_chunks(const bytes &file)
 {
     std::vector<file_piece> chunks;
     size_t at = 12;
@@ -139,7 +141,7 @@ std::vector<file_piece> chunks_of_webp(const bytes &file)
         return {};
     while (at + 8 <= file.size()) {
         const unsigned char *const p = file.data() + at;
-        const size_t n = little32(p + 4);
+        const size_t n = read_little32(p + 4);
         const size_t whole = 8 + n + (n & 1);
 
         if (n > file.size() - at - 8)
@@ -153,7 +155,7 @@ std::vector<file_piece> chunks_of_webp(const bytes &file)
 
 void append_chunk(bytes &to, const file_piece &chunk)
 {
-    append(to, chunk.whole, 8 + chunk.data_bytes);
+    append_bytes(to, chunk.whole, 8 + chunk.data_bytes);
     if (chunk.data_bytes & 1)
         to.push_back(0);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/pieces.h - the chunks of PNG and WebP and the segments of JPEG.
- */
+ * oiio/pieces.h - splits PNG and WebP files into chunks and JPEG files into
+ * segments. */
 #ifndef GLINT_PLATFORM_OIIO_PIECES_H
 #define GLINT_PLATFORM_OIIO_PIECES_H
 
@@ -15,8 +15,8 @@
 namespace glint
 {
 
-/* A chunk of PNG or WebP, or a segment of JPEG: all of it, and its data. It
- * points into the file. */
+/* A chunk of PNG or WebP, or a segment of JPEG: the address of all its bytes,
+ * and of its data. Both point into the file. */
 struct file_piece {
     std::string name;
     const unsigned char *whole;
@@ -25,38 +25,42 @@ struct file_piece {
     size_t data_bytes;
 };
 
-uint32_t big32(const unsigned char *at);
-uint32_t little32(const unsigned char *at);
+uint32_t read_big32(const unsigned char *at);
+uint32_t read_little32(const unsigned char *at);
 
-void append(bytes &to, const unsigned char *at, size_t n);
+void append_bytes(bytes &to, const unsigned char *at, size_t n);
 
 bool is_one_of(const std::string &name, std::initializer_list<const char *> of);
 
-/* Return the pieces of FILE; none if it is malformed. The last segment of a
- * JPEG is named "" and has all bytes from the first scan on. */
-std::vector<file_piece> chunks_of_png(const bytes &file);
-std::vector<file_piece> segments_of_jpeg(const bytes &file);
-std::vector<file_piece> chunks_of_webp(const bytes &file);
+/* Return the chunks or segments of FILE; none if it is malformed. The last
+ * segment of a JPEG has the name "" and all bytes from the first scan to the
+ * end. */
+std::vector<file_piece> split_png_chunks(const bytes &file);
+std::vector<file_piece> split_jpeg_segments(const bytes &file);
+std::vector<file_piece> split_webp_chunks(const bytes &file);
 
-/* Returns whether SEGMENT of a JPEG has MARKER, 0xc0 .. 0xfe. */
+/* Returns whether SEGMENT of a JPEG has the marker byte MARKER, 0xc0 ..
+ * 0xfe. */
 bool is_marker(const file_piece &segment, int marker);
 
 /* Returns whether the data of SEGMENT begin with the N bytes at TEXT. */
-bool begins(const file_piece &segment, const char *text, size_t n);
+bool begins_with_text(const file_piece &segment, const char *text, size_t n);
 
-/* Returns whether SEGMENT of a JPEG is its XMP, or its Exif. */
+/* Return whether SEGMENT of a JPEG is XMP, and whether it is Exif. */
 bool is_xmp(const file_piece &segment);
 bool is_exif(const file_piece &segment);
 
-/* Bytes of a segment of XMP or Exif before the packet or the TIFF header. */
+/* number of bytes in a segment of XMP or Exif before the packet or the TIFF
+ * header */
 constexpr size_t xmp_head_bytes = 29, exif_head_bytes = 6;
 
-/* Appends a segment of JPEG with MARKER: the N_HEAD bytes at HEAD, then DATA.
- * Returns false and appends nothing if that is above 65533 bytes. */
+/* Appends a segment of JPEG to TO: the marker byte MARKER, N_HEAD bytes at
+ * HEAD, then DATA. Returns false and appends nothing if these are more than
+ * 65533 bytes. */
 bool append_segment(bytes &to, int marker, const char *head, size_t n_head,
                     const unsigned char *data, size_t n);
 
-/* Appends CHUNK of a WebP, padded to an even number of bytes. */
+/* Appends CHUNK of a WebP to TO, padded to an even number of bytes. */
 void append_chunk(bytes &to, const file_piece &chunk);
 
 } // namespace glint

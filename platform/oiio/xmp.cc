@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Removes properties from XMP in one pass over the packet, which may come from
- * anybody. */
+ * Removes properties from an XMP packet in one pass. Packets come from
+ * untrusted files. */
 #include "oiio/keep.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace glint
 namespace
 {
 
-/* beginnings of names of XMP's properties about the pictures and the video
- * behind the first picture [Ultra HDR; Motion Photo format 1.0; Apple] */
+/* beginnings of the names of XMP properties that refer to pictures and a video
+ * after the first picture [Ultra HDR; Motion Photo format 1.0; Apple] */
 const char *const claims[] = {"hdrgm:",
                               "HDRGainMap:",
                               "GCamera:MotionPhoto",
@@ -25,12 +25,12 @@ const char *const claims[] = {"hdrgm:",
                               "Container:Directory"};
 const char orientation[] = "tiff:Orientation";
 
-bool is_space(char c)
+bool is_white_space(char c)
 {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
-/* Copies a packet to OUT but for the properties. */
+/* Copies a packet to OUT without these properties. */
 struct cleaner {
     struct name {
         size_t at, n;
@@ -40,9 +40,10 @@ struct cleaner {
     bool upright;
     std::string out;
     size_t at = 0;
-    std::vector<name> open = {}; /* names of the elements around AT */
-    size_t skipped_at = 0; /* size of OPEN at which an element to be removed
-                              ends; 0: none */
+    std::vector<name> open = {}; /* names of the open elements at position AT */
+    size_t skipped_at = 0; /* number of open elements at which the end of a
+                              removed element is reached; 0: nothing is being
+                              removed */
 
     bool is_claim(const name &n) const
     {
@@ -68,13 +69,14 @@ struct cleaner {
     {
         size_t to = from;
 
-        while (to < in.size() && !is_space(in[to]) && in[to] != '=' &&
+        while (to < in.size() && !is_white_space(in[to]) && in[to] != '=' &&
                in[to] != '/' && in[to] != '>' && in[to] != '<')
             to++;
         return to;
     }
 
-    /* Copies a comment, an instruction or the like, which ends with END. */
+    /* Copies a comment, processing instruction or similar text that ends with
+     * END. */
     bool pass(const char *end)
     {
         const size_t found = in.find(end, at);
@@ -103,7 +105,8 @@ struct cleaner {
         return true;
     }
 
-    /* Copies the attribute at AT, with the space before it from SPACE on. */
+    /* Copies the attribute at position AT, with the white space before it,
+     * which begins at SPACE. */
     bool pass_attribute(size_t space)
     {
         const name n = {at, end_of_name(at) - at};
@@ -137,7 +140,7 @@ struct cleaner {
         for (at = n.at + n.n; at < in.size();) {
             const size_t space = at;
 
-            while (at < in.size() && is_space(in[at]))
+            while (at < in.size() && is_white_space(in[at]))
                 at++;
             const bool is_empty = in.compare(at, 2, "/>") == 0;
             if (is_empty || in[at] == '>') {
@@ -185,7 +188,7 @@ struct cleaner {
 
 } // namespace
 
-bool remove_claims(std::string &xmp, bool upright)
+bool remove_xmp_claims(std::string &xmp, bool upright)
 {
     bool has_claim = upright && xmp.find(orientation) != std::string::npos;
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The loops are simple so that compilers vectorise them: bytes in, products of
- * 16 bits summed in 32 bits, bytes out.
- */
+ * The loops are so simple that compilers vectorise them: they read bytes, sum
+ * products of 16 bits in 32 bits, and write bytes. */
 #include "panel/panel.h"
 
 #include <stdlib.h>
@@ -19,11 +18,13 @@ void glint_split_pairs(uint8_t *restrict a, uint8_t *restrict b,
     }
 }
 
-/* Splits N pairs of pixels whose first luma is byte LUMA_AT, 0 or 1. */
-static inline void split_packed(uint8_t *restrict luma, uint8_t *restrict cb,
-                                uint8_t *restrict cr,
-                                const uint8_t *restrict from, int n,
-                                int luma_at)
+/* Splits N pairs of pixels of four bytes into rows of luma, Cb and Cr. The
+ * first luma is byte LUMA_AT, 0 or 1. */
+static inline void split_packed_pairs(uint8_t *restrict luma,
+                                      uint8_t *restrict cb,
+                                      uint8_t *restrict cr,
+                                      const uint8_t *restrict from, int n,
+                                      int luma_at)
 {
     for (int i = 0; i < n; i++) {
         luma[2 * i] = from[4 * i + luma_at];
@@ -37,16 +38,17 @@ void glint_split_packed(enum glint_pixel_format format, uint8_t *luma,
                         uint8_t *cb, uint8_t *cr, const uint8_t *from, int n)
 {
     if (format == GLINT_YUYV)
-        split_packed(luma, cb, cr, from, n, 0);
+        split_packed_pairs(luma, cb, cr, from, n, 0);
     else
-        split_packed(luma, cb, cr, from, n, 1);
+        split_packed_pairs(luma, cb, cr, from, n, 1);
 }
 
-/* Splits N groups of BYTES bytes: the first three of a group go to A, B and
- * C. */
-static inline void split_groups(uint8_t *restrict a, uint8_t *restrict b,
-                                uint8_t *restrict c,
-                                const uint8_t *restrict from, int n, int bytes)
+/* Splits N groups of BYTES bytes: the first three bytes of each group are
+ * copied to A, B and C. */
+static inline void split_pixel_groups(uint8_t *restrict a, uint8_t *restrict b,
+                                      uint8_t *restrict c,
+                                      const uint8_t *restrict from, int n,
+                                      int bytes)
 {
     for (int i = 0; i < n; i++) {
         a[i] = from[bytes * i];
@@ -55,9 +57,10 @@ static inline void split_groups(uint8_t *restrict a, uint8_t *restrict b,
     }
 }
 
-/* Splits N pixels of GLINT_RGB565 into codes of 8 bits. */
-static void split_565(uint8_t *restrict r, uint8_t *restrict g,
-                      uint8_t *restrict b, const uint8_t *restrict from, int n)
+/* Splits N pixels of GLINT_RGB565 into 8-bit codes of R, G and B. */
+static void split_565_pixels(uint8_t *restrict r, uint8_t *restrict g,
+                             uint8_t *restrict b, const uint8_t *restrict from,
+                             int n)
 {
     for (int i = 0; i < n; i++) {
         const uint8_t low = from[2 * i], high = from[2 * i + 1];
@@ -94,13 +97,13 @@ static const struct mix mixes[2][2] = {
 };
 /* clang-format on */
 
-/* Terms to add to the products of codes and constants: minus the products of
- * the codes of zero (black, Cb = Cr = 0), plus a half for rounding. */
+/* Terms added to the products of codes and constants: minus the products of the
+ * codes of zero (black, Cb = Cr = 0), plus 1/2 for rounding. */
 struct bias {
     int32_t red, green, blue, grey;
 };
 
-static struct bias compute_bias(const struct mix *m)
+static struct bias compute_mix_bias(const struct mix *m)
 {
     const int32_t grey = HALF_Q13 - m->black * m->luma_q13;
 
@@ -113,8 +116,8 @@ static struct bias compute_bias(const struct mix *m)
 }
 
 /* Returns SUM as a code, clamped to 0 .. 255. |SUM| must be below 2^23, so that
- * the code fits 16 bits before it is clamped: twice as many fit a vector as
- * with 32 bits. */
+ * the code fits 16 bits before it is clamped; vectors then hold twice as many
+ * codes as with 32 bits. */
 static inline uint8_t convert_to_code(int32_t sum_q13)
 {
     const int16_t code = (int16_t)(sum_q13 >> 13);
@@ -123,15 +126,16 @@ static inline uint8_t convert_to_code(int32_t sum_q13)
 }
 
 /* Computes R', G', B' of N pixels that each have Y', Cb and Cr. */
-static void mix_pixels(const struct mix *m, uint8_t *restrict r,
-                       uint8_t *restrict g, uint8_t *restrict b,
-                       const uint8_t *restrict luma, const uint8_t *restrict cb,
-                       const uint8_t *restrict cr, int n)
+static void convert_pixels_to_rgb(const struct mix *m, uint8_t *restrict r,
+                                  uint8_t *restrict g, uint8_t *restrict b,
+                                  const uint8_t *restrict luma,
+                                  const uint8_t *restrict cb,
+                                  const uint8_t *restrict cr, int n)
 {
     const int16_t ky = m->luma_q13, r_cr = m->red_cr_q13,
                   g_cb = m->green_cb_q13, g_cr = m->green_cr_q13,
                   b_cb = m->blue_cb_q13;
-    const struct bias bias = compute_bias(m);
+    const struct bias bias = compute_mix_bias(m);
 
     for (int i = 0; i < n; i++) {
         const int32_t y = luma[i] * ky;
@@ -143,15 +147,16 @@ static void mix_pixels(const struct mix *m, uint8_t *restrict r,
 }
 
 /* Computes R', G', B' of N pairs of pixels that share Cb and Cr. */
-static void mix_pairs(const struct mix *m, uint8_t *restrict r,
-                      uint8_t *restrict g, uint8_t *restrict b,
-                      const uint8_t *restrict luma, const uint8_t *restrict cb,
-                      const uint8_t *restrict cr, int n)
+static void convert_pairs_to_rgb(const struct mix *m, uint8_t *restrict r,
+                                 uint8_t *restrict g, uint8_t *restrict b,
+                                 const uint8_t *restrict luma,
+                                 const uint8_t *restrict cb,
+                                 const uint8_t *restrict cr, int n)
 {
     const int16_t ky = m->luma_q13, r_cr = m->red_cr_q13,
                   g_cb = m->green_cb_q13, g_cr = m->green_cr_q13,
                   b_cb = m->blue_cb_q13;
-    const struct bias bias = compute_bias(m);
+    const struct bias bias = compute_mix_bias(m);
 
     for (int i = 0; i < n; i++) {
         const int32_t y0 = luma[2 * i] * ky, y1 = luma[2 * i + 1] * ky;
@@ -168,11 +173,11 @@ static void mix_pairs(const struct mix *m, uint8_t *restrict r,
     }
 }
 
-static void mix_greys(const struct mix *m, uint8_t *restrict grey,
-                      const uint8_t *restrict luma, int n)
+static void convert_greys_to_rgb(const struct mix *m, uint8_t *restrict grey,
+                                 const uint8_t *restrict luma, int n)
 {
     const int16_t ky = m->luma_q13;
-    const int32_t bias = compute_bias(m).grey;
+    const int32_t bias = compute_mix_bias(m).grey;
 
     for (int i = 0; i < n; i++)
         grey[i] = convert_to_code(luma[i] * ky + bias);
@@ -184,16 +189,17 @@ struct ycc {
     const uint8_t *luma, *cb, *cr;
 };
 
-static const uint8_t *get_row(const struct glint_image *image, int plane, int y)
+static const uint8_t *get_plane_row(const struct glint_image *image, int plane,
+                                    int y)
 {
     return image->plane[plane] + y * image->stride_bytes[plane];
 }
 
-/* Returns Y', Cb, Cr of N pixels of row Y from X on: pointers into the picture,
- * or into ROW, to which interleaved samples are split. */
-static struct ycc find_samples(struct glint_row_rgb *row,
-                               const struct glint_image *image, int x, int y,
-                               int n)
+/* Returns pointers to Y', Cb, Cr of N pixels of row Y, from X to the right:
+ * into the picture, or into ROW, to which interleaved samples are split. */
+static struct ycc get_ycc_samples(struct glint_row_rgb *row,
+                                  const struct glint_image *image, int x, int y,
+                                  int n)
 {
     const int half = (n + 1) / 2;
     const int cx = image->format == GLINT_I444 ? x : x / 2;
@@ -205,70 +211,74 @@ static struct ycc find_samples(struct glint_row_rgb *row,
     case GLINT_YUYV:
     case GLINT_UYVY:
         glint_split_packed(image->format, row->luma, row->cb, row->cr,
-                           get_row(image, 0, y) + 2 * x, half);
+                           get_plane_row(image, 0, y) + 2 * x, half);
         return moved;
     case GLINT_NV12:
-        glint_split_pairs(row->cb, row->cr, get_row(image, 1, cy) + x, half);
-        return (struct ycc){get_row(image, 0, y) + x, row->cb, row->cr};
+        glint_split_pairs(row->cb, row->cr, get_plane_row(image, 1, cy) + x,
+                          half);
+        return (struct ycc){get_plane_row(image, 0, y) + x, row->cb, row->cr};
     case GLINT_NV21:
-        glint_split_pairs(row->cr, row->cb, get_row(image, 1, cy) + x, half);
-        return (struct ycc){get_row(image, 0, y) + x, row->cb, row->cr};
+        glint_split_pairs(row->cr, row->cb, get_plane_row(image, 1, cy) + x,
+                          half);
+        return (struct ycc){get_plane_row(image, 0, y) + x, row->cb, row->cr};
     default:
-        return (struct ycc){get_row(image, 0, y) + x,
-                            get_row(image, 1, cy) + cx,
-                            get_row(image, 2, cy) + cx};
+        return (struct ycc){get_plane_row(image, 0, y) + x,
+                            get_plane_row(image, 1, cy) + cx,
+                            get_plane_row(image, 2, cy) + cx};
     }
 }
 
-static void read_ycc(struct glint_row_rgb *row, const struct glint_image *image,
-                     int x, int y, int n)
+static void read_ycc_row(struct glint_row_rgb *row,
+                         const struct glint_image *image, int x, int y, int n)
 {
     const struct mix *const m = &mixes[image->matrix][image->range];
-    const struct ycc s = find_samples(row, image, x, y, n);
+    const struct ycc s = get_ycc_samples(row, image, x, y, n);
     uint8_t *const r = row->rgb[0], *const g = row->rgb[1],
                    *const b = row->rgb[2];
     const int even = n & ~1;
 
     if (image->format == GLINT_I444) {
-        mix_pixels(m, r, g, b, s.luma, s.cb, s.cr, n);
+        convert_pixels_to_rgb(m, r, g, b, s.luma, s.cb, s.cr, n);
         return;
     }
-    mix_pairs(m, r, g, b, s.luma, s.cb, s.cr, n / 2);
-    if (n > even) /* The second pixel of the last pair may be missing. */
-        mix_pixels(m, r + even, g + even, b + even, s.luma + even,
-                   s.cb + even / 2, s.cr + even / 2, 1);
+    convert_pairs_to_rgb(m, r, g, b, s.luma, s.cb, s.cr, n / 2);
+    if (n > even) /* The last pair lacks its second pixel if the width is
+                     odd. */
+        convert_pixels_to_rgb(m, r + even, g + even, b + even, s.luma + even,
+                              s.cb + even / 2, s.cr + even / 2, 1);
 }
 
 void glint_row_rgb_read(struct glint_row_rgb *row,
                         const struct glint_image *image, int x, int y, int n)
 {
     uint8_t *const *const c = row->rgb;
-    const uint8_t *const from = get_row(image, 0, y);
+    const uint8_t *const from = get_plane_row(image, 0, y);
 
     for (int i = 0; i < 3; i++)
         row->channel[i] = c[i];
     switch (image->format) {
     case GLINT_GREY:
-        mix_greys(&mixes[GLINT_MATRIX_BT601][image->range], c[0], from + x, n);
+        convert_greys_to_rgb(&mixes[GLINT_MATRIX_BT601][image->range], c[0],
+                             from + x, n);
         row->channel[1] = row->channel[2] = c[0];
         return;
     case GLINT_RGB24:
-        split_groups(c[0], c[1], c[2], from + 3 * x, n, 3);
+        split_pixel_groups(c[0], c[1], c[2], from + 3 * x, n, 3);
         return;
     case GLINT_BGR24:
-        split_groups(c[2], c[1], c[0], from + 3 * x, n, 3);
+        split_pixel_groups(c[2], c[1], c[0], from + 3 * x, n, 3);
         return;
     case GLINT_XRGB8888:
-        split_groups(c[2], c[1], c[0], from + 4 * x, n, 4);
+        split_pixel_groups(c[2], c[1], c[0], from + 4 * x, n, 4);
         return;
     case GLINT_XBGR8888:
-        split_groups(c[0], c[1], c[2], from + 4 * x, n, 4);
+        split_pixel_groups(c[0], c[1], c[2], from + 4 * x, n, 4);
         return;
     case GLINT_RGB565:
-        split_565(c[0], c[1], c[2], from + 2 * x, n);
+        split_565_pixels(c[0], c[1], c[2], from + 2 * x, n);
         return;
     default:
-        read_ycc(row, image, x, y, n);
+        read_ycc_row(row, image, x, y, n);
     }
 }
 
@@ -281,7 +291,7 @@ size_t glint_row_rgb_bytes(int width)
 
 void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width)
 {
-    /* holds an even number of samples */
+    /* an even number of samples fits */
     const ptrdiff_t each = (ptrdiff_t)width + 1;
     uint8_t *const at = mem;
 
@@ -296,7 +306,8 @@ void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width)
 
 /* Returns the mask of FIELD in a word of N_BITS, or 0 if FIELD does not fit
  * into the word. */
-static uint64_t compute_mask(const struct glint_pixel_field *field, int n_bits)
+static uint64_t compute_field_mask(const struct glint_pixel_field *field,
+                                   int n_bits)
 {
     if (field->length < 1 || field->offset < 0 || field->length > 16 ||
         field->offset > n_bits - field->length)
@@ -313,7 +324,7 @@ bool glint_pixel_layout_is_valid(const struct glint_pixel_layout *layout)
     if (layout->bytes < 2 || layout->bytes > 4)
         return false;
     for (int i = 0; i < 4; i++) {
-        const uint64_t bits = compute_mask(field[i], 8 * layout->bytes);
+        const uint64_t bits = compute_field_mask(field[i], 8 * layout->bytes);
 
         if (i == 3 && field[i]->length == 0)
             continue;
@@ -324,15 +335,16 @@ bool glint_pixel_layout_is_valid(const struct glint_pixel_layout *layout)
     return true;
 }
 
-static bool is_whole_byte(const struct glint_pixel_field *field)
+static bool is_field_whole_byte(const struct glint_pixel_field *field)
 {
     return field->length == 8 && field->offset % 8 == 0;
 }
 
-static enum glint_pack_way choose_way(const struct glint_pixel_layout *l)
+static enum glint_pack_way
+choose_pack_method(const struct glint_pixel_layout *l)
 {
-    if (l->bytes > 2 && is_whole_byte(&l->red) && is_whole_byte(&l->green) &&
-        is_whole_byte(&l->blue))
+    if (l->bytes > 2 && is_field_whole_byte(&l->red) &&
+        is_field_whole_byte(&l->green) && is_field_whole_byte(&l->blue))
         return GLINT_PACK_BYTES;
     if (l->bytes == 2 && l->red.length <= 8 && l->green.length <= 8 &&
         l->blue.length <= 8)
@@ -342,7 +354,7 @@ static enum glint_pack_way choose_way(const struct glint_pixel_layout *l)
 
 /* ------------------------------------------------------------------ packing */
 
-static bool is_low_first(void)
+static bool is_little_endian(void)
 {
     const uint16_t one = 1;
     uint8_t first;
@@ -351,9 +363,9 @@ static bool is_low_first(void)
     return first == 1;
 }
 
-static void pack_fours(uint8_t *restrict dst, const uint8_t *a,
-                       const uint8_t *b, const uint8_t *c, const uint8_t *d,
-                       int n)
+static void pack_four_byte_pixels(uint8_t *restrict dst, const uint8_t *a,
+                                  const uint8_t *b, const uint8_t *c,
+                                  const uint8_t *d, int n)
 {
     for (int i = 0; i < n; i++) {
         dst[4 * i] = a[i];
@@ -363,8 +375,8 @@ static void pack_fours(uint8_t *restrict dst, const uint8_t *a,
     }
 }
 
-static void pack_threes(uint8_t *restrict dst, const uint8_t *a,
-                        const uint8_t *b, const uint8_t *c, int n)
+static void pack_three_byte_pixels(uint8_t *restrict dst, const uint8_t *a,
+                                   const uint8_t *b, const uint8_t *c, int n)
 {
     for (int i = 0; i < n; i++) {
         dst[3 * i] = a[i];
@@ -373,36 +385,38 @@ static void pack_threes(uint8_t *restrict dst, const uint8_t *a,
     }
 }
 
-static void pack_bytes(const struct glint_row_pack *p, uint8_t *dst,
-                       const uint8_t *const channel[3], int n)
+static void pack_byte_channels(const struct glint_row_pack *p, uint8_t *dst,
+                               const uint8_t *const channel[3], int n)
 {
     const uint8_t *byte[4];
 
     for (int i = 0; i < 4; i++)
         byte[i] = p->channel[i] < 3 ? channel[p->channel[i]] : p->rest;
     if (p->layout.bytes == 4)
-        pack_fours(dst, byte[0], byte[1], byte[2], byte[3], n);
+        pack_four_byte_pixels(dst, byte[0], byte[1], byte[2], byte[3], n);
     else
-        pack_threes(dst, byte[0], byte[1], byte[2], n);
+        pack_three_byte_pixels(dst, byte[0], byte[1], byte[2], n);
 }
 
-/* Returns (CODE * MOST + 127) / 255 without a division: exact for sums below
- * 65535. */
-static inline uint16_t scale_code(uint8_t code, uint16_t most)
+/* Returns (CODE * MOST + THRESHOLD) / 255, computed without a division: exact
+ * for sums below 65535; the max sum is 255 * 255 + 254. */
+static inline uint16_t scale_code_with_threshold(uint8_t code, uint16_t most,
+                                                 uint8_t threshold)
 {
     const uint16_t sum = (uint16_t)(code * most + 127);
 
     return (uint16_t)((uint16_t)(sum + 1 + (sum >> 8)) >> 8);
 }
 
-static inline uint16_t shift_bits(uint16_t bits, int offset)
+static inline uint16_t shift_left_or_right(uint16_t bits, int offset)
 {
     return (uint16_t)(bits << offset);
 }
 
-static void pack_halves(const struct glint_row_pack *p, uint16_t *restrict dst,
-                        const uint8_t *r, const uint8_t *g, const uint8_t *b,
-                        int n)
+static void pack_16_bit_pixels(const struct glint_row_pack *p,
+                               uint16_t *restrict dst, const uint8_t *r,
+                               const uint8_t *g, const uint8_t *b,
+                               const uint8_t *threshold, int n)
 {
     const struct glint_pixel_layout *const l = &p->layout;
     const uint16_t max_r = (uint16_t)((1 << l->red.length) - 1),
@@ -413,15 +427,24 @@ static void pack_halves(const struct glint_row_pack *p, uint16_t *restrict dst,
     const uint16_t opaque = (uint16_t)p->opaque;
 
     for (int i = 0; i < n; i++)
-        dst[i] = (uint16_t)(opaque | shift_bits(scale_code(r[i], max_r), to_r) |
-                            shift_bits(scale_code(g[i], max_g), to_g) |
-                            shift_bits(scale_code(b[i], max_b), to_b));
+        dst[i] =
+            (uint16_t)(opaque |
+                       shift_left_or_right(
+                           scale_code_with_threshold(r[i], max_r, threshold[i]),
+                           to_r) |
+                       shift_left_or_right(
+                           scale_code_with_threshold(g[i], max_g, threshold[i]),
+                           to_g) |
+                       shift_left_or_right(
+                           scale_code_with_threshold(b[i], max_b, threshold[i]),
+                           to_b));
 }
 
-static void pack_tables(const struct glint_row_pack *p, uint8_t *dst,
-                        const uint8_t *const channel[3], int n)
+static void pack_by_tables(const struct glint_row_pack *p, uint8_t *dst,
+                           const uint8_t *const channel[3], int n)
 {
-    const int bytes = p->layout.bytes, skip = is_low_first() ? 0 : 4 - bytes;
+    const int bytes = p->layout.bytes,
+              skip = is_little_endian() ? 0 : 4 - bytes;
 
     for (int i = 0; i < n; i++) {
         const uint32_t word = p->table[0][channel[0][i]] |
@@ -439,22 +462,24 @@ void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
 {
     switch (pack->way) {
     case GLINT_PACK_BYTES:
-        pack_bytes(pack, dst, channel, n);
+        pack_byte_channels(pack, dst, channel, n);
         return;
     case GLINT_PACK_HALVES:
-        pack_halves(pack, dst, channel[0], channel[1], channel[2], n);
+        pack_16_bit_pixels(pack, dst, channel[0], channel[1], channel[2],
+                           pack->threshold[pack->dither ? y & 7 : 0], n);
         return;
     case GLINT_PACK_TABLES:
-        pack_tables(pack, dst, channel, n);
+        pack_by_tables(pack, dst, channel, n);
         return;
     }
 }
 
 /* ------------------------------------------------------------------- tables */
 
-/* Sets p->channel to the channel that each byte of a pixel holds, in memory
- * order. */
-static void place_bytes(struct glint_row_pack *p, uint8_t *mem, int width)
+/* Sets p->channel to the index of the channel that each byte of a pixel holds,
+ * in memory order. */
+static void assign_byte_channels(struct glint_row_pack *p, uint8_t *mem,
+                                 int width)
 {
     const struct glint_pixel_layout *const l = &p->layout;
     int free_byte = 0 + 1 + 2 + 3;
@@ -466,14 +491,36 @@ static void place_bytes(struct glint_row_pack *p, uint8_t *mem, int width)
                                                          &l->blue};
         const int byte = field[i]->offset / 8;
 
-        p->channel[is_low_first() ? byte : l->bytes - 1 - byte] = i;
+        p->channel[is_little_endian() ? byte : l->bytes - 1 - byte] = i;
         free_byte -= byte;
     }
     p->rest = mem;
     memset(p->rest, (int)(p->opaque >> 8 * free_byte & 255), (size_t)width);
 }
 
-static void fill_tables(struct glint_row_pack *p, void *mem)
+/* Returns the dither threshold of pixel X, Y (0 .. 7): (2 i + 1) * 255 / 128
+ * for an i of 0 .. 63; the mean over all pixels is 127. */
+static int compute_dither_threshold(int x, int y)
+{
+    int bits = 0;
+
+    for (int i = 0; i < 3; i++)
+        bits = bits << 2 | (((x ^ y) >> i & 1) << 1) | (y >> i & 1);
+    return (2 * bits + 1) * 255 / 128;
+}
+
+static void fill_dither_thresholds(struct glint_row_pack *p, uint8_t *mem,
+                                   int width)
+{
+    for (int y = 0; y < 8; y++) {
+        p->threshold[y] = mem + (ptrdiff_t)y * width;
+        for (int x = 0; x < width; x++)
+            p->threshold[y][x] =
+                (uint8_t)(p->dither ? compute_dither_threshold(x & 7, y) : 127);
+    }
+}
+
+static void fill_channel_tables(struct glint_row_pack *p, void *mem)
 {
     const struct glint_pixel_layout *const l = &p->layout;
     const struct glint_pixel_field *const field[] = {&l->red, &l->green,
@@ -501,30 +548,33 @@ void glint_row_pack_init(struct glint_row_pack *pack,
 {
     *pack = (struct glint_row_pack){
         .layout = *layout,
-        .way = choose_way(layout),
-        .opaque =
-            (uint32_t)compute_mask(&layout->transparency, 8 * layout->bytes),
+        .way = choose_pack_method(layout),
+        .dither = dither,
+        .opaque = (uint32_t)compute_field_mask(&layout->transparency,
+                                               8 * layout->bytes),
     };
     switch (pack->way) {
     case GLINT_PACK_BYTES:
-        place_bytes(pack, mem, width);
+        assign_byte_channels(pack, mem, width);
         return;
     case GLINT_PACK_HALVES:
+        fill_dither_thresholds(pack, mem, width);
         return;
     case GLINT_PACK_TABLES:
-        fill_tables(pack, mem);
+        fill_channel_tables(pack, mem);
         return;
     }
 }
 
 /* ----------------------------------------------------------------- geometry */
 
-static int clamp_to_1(int side)
+static int clamp_side_to_min_1(int side)
 {
     return side < 1 ? 1 : side;
 }
 
-/* Shows all of the picture, scaled to fit the panel at its aspect ratio. */
+/* Sets the areas so that all of the picture is shown, scaled to fit the panel
+ * at its aspect ratio. */
 static void fit_picture(struct glint_panel *p)
 {
     const struct glint_panel_config *const c = &p->cfg;
@@ -533,15 +583,15 @@ static void fit_picture(struct glint_panel *p)
     p->shown.width = c->width;
     p->shown.height = c->height;
     if (c->width * c->image_height > c->height * c->image_width)
-        p->shown.width =
-            clamp_to_1((c->height * c->image_width + c->image_height / 2) /
-                       c->image_height);
+        p->shown.width = clamp_side_to_min_1(
+            (c->height * c->image_width + c->image_height / 2) /
+            c->image_height);
     else
-        p->shown.height = clamp_to_1(
+        p->shown.height = clamp_side_to_min_1(
             (c->width * c->image_height + c->image_width / 2) / c->image_width);
 }
 
-/* Shows the middle of the picture, unscaled. */
+/* Sets the areas so that the middle of the picture is shown, unscaled. */
 static void centre_picture(struct glint_panel *p)
 {
     const struct glint_panel_config *const c = &p->cfg;
@@ -568,7 +618,7 @@ static void place_picture(struct glint_panel *p)
 
 /* Returns the index, among FROM pixels, of the pixel whose centre is nearest
  * to the centre of pixel I of TO pixels that span the same length. */
-static int find_nearest(int i, int from, int to)
+static int find_nearest_pixel(int i, int from, int to)
 {
     return (2 * i + 1) * from / (2 * to);
 }
@@ -582,8 +632,8 @@ static size_t round_up_to_64(size_t bytes)
     return (bytes + 63) & ~(size_t)63;
 }
 
-static enum glint_status allocate_memory(struct glint_panel *p,
-                                         struct glint_error *error)
+static enum glint_status allocate_panel_memory(struct glint_panel *p,
+                                               struct glint_error *error)
 {
     const int widest =
         p->cfg.width > p->cfg.image_width ? p->cfg.width : p->cfg.image_width;
@@ -606,7 +656,7 @@ static enum glint_status allocate_memory(struct glint_panel *p,
     return GLINT_OK;
 }
 
-static bool is_side(int side)
+static bool is_side_in_range(int side)
 {
     return side >= 1 && side <= GLINT_PANEL_SIDE;
 }
@@ -618,8 +668,9 @@ enum glint_status glint_panel_open(struct glint_panel *panel,
     enum glint_status status;
 
     *panel = (struct glint_panel){.cfg = *cfg};
-    if (!is_side(cfg->width) || !is_side(cfg->height) ||
-        !is_side(cfg->image_width) || !is_side(cfg->image_height))
+    if (!is_side_in_range(cfg->width) || !is_side_in_range(cfg->height) ||
+        !is_side_in_range(cfg->image_width) ||
+        !is_side_in_range(cfg->image_height))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, "panel",
                                   "sides must be 1 to %d pixels",
                                   GLINT_PANEL_SIDE);
@@ -628,12 +679,12 @@ enum glint_status glint_panel_open(struct glint_panel *panel,
                                   "its pixels are not packed true colour of "
                                   "16, 24 or 32 bits");
     place_picture(panel);
-    status = allocate_memory(panel, error);
+    status = allocate_panel_memory(panel, error);
     if (status)
         return status;
     for (int x = 0; x < panel->shown.width; x++)
-        panel->from_x[x] =
-            (uint16_t)find_nearest(x, panel->seen.width, panel->shown.width);
+        panel->from_x[x] = (uint16_t)find_nearest_pixel(x, panel->seen.width,
+                                                        panel->shown.width);
     if (panel->shown.width == panel->seen.width)
         panel->from_x = NULL;
     return GLINT_OK;
@@ -661,15 +712,17 @@ void glint_panel_clear(struct glint_panel *panel, uint8_t *mem,
         memcpy(mem + y * stride, panel->line, bytes);
 }
 
-static void spread_2(uint16_t *restrict to, const uint16_t *restrict from,
-                     const uint16_t *restrict from_x, int n)
+static void scale_row_2_bytes(uint16_t *restrict to,
+                              const uint16_t *restrict from,
+                              const uint16_t *restrict from_x, int n)
 {
     for (int i = 0; i < n; i++)
         to[i] = from[from_x[i]];
 }
 
-static void spread_3(uint8_t *restrict to, const uint8_t *restrict from,
-                     const uint16_t *restrict from_x, int n)
+static void scale_row_3_bytes(uint8_t *restrict to,
+                              const uint8_t *restrict from,
+                              const uint16_t *restrict from_x, int n)
 {
     for (int i = 0; i < n; i++) {
         const uint8_t *const px = from + 3 * from_x[i];
@@ -680,16 +733,19 @@ static void spread_3(uint8_t *restrict to, const uint8_t *restrict from,
     }
 }
 
-static void spread_4(uint32_t *restrict to, const uint32_t *restrict from,
-                     const uint16_t *restrict from_x, int n)
+static void scale_row_4_bytes(uint32_t *restrict to,
+                              const uint32_t *restrict from,
+                              const uint16_t *restrict from_x, int n)
 {
     for (int i = 0; i < n; i++)
         to[i] = from[from_x[i]];
 }
 
-/* Returns row Y of the picture scaled and packed for the panel. */
-static const uint8_t *make_row(struct glint_panel *p,
-                               const struct glint_image *image, int y)
+/* Returns row Y of the picture, scaled and packed for the panel. TO_Y is the
+ * row's number on the panel, for dithering. */
+static const uint8_t *pack_panel_row(struct glint_panel *p,
+                                     const struct glint_image *image, int y,
+                                     int to_y)
 {
     const int from = p->seen.x & ~1, cut = p->seen.x - from;
     const int n = p->seen.width + cut, bytes = p->cfg.layout.bytes;
@@ -699,13 +755,13 @@ static const uint8_t *make_row(struct glint_panel *p,
     if (!p->from_x)
         return p->line + cut * bytes;
     if (bytes == 2)
-        spread_2((void *)p->scaled, (const void *)p->line, p->from_x,
-                 p->shown.width);
+        scale_row_2_bytes((void *)p->scaled, (const void *)p->line, p->from_x,
+                          p->shown.width);
     else if (bytes == 3)
-        spread_3(p->scaled, p->line, p->from_x, p->shown.width);
+        scale_row_3_bytes(p->scaled, p->line, p->from_x, p->shown.width);
     else
-        spread_4((void *)p->scaled, (const void *)p->line, p->from_x,
-                 p->shown.width);
+        scale_row_4_bytes((void *)p->scaled, (const void *)p->line, p->from_x,
+                          p->shown.width);
     return p->scaled;
 }
 
@@ -720,10 +776,11 @@ void glint_panel_draw(struct glint_panel *panel,
 
     for (int y = 0; y < to->height; y++) {
         const int from_y =
-            panel->seen.y + find_nearest(y, panel->seen.height, to->height);
+            panel->seen.y +
+            find_nearest_pixel(y, panel->seen.height, to->height);
 
-        if (!row || from_y != made)
-            row = make_row(panel, image, from_y);
+        if (!row || from_y != made || panel->pack.dither)
+            row = pack_panel_row(panel, image, from_y, y);
         made = from_y;
         memcpy(mem + (to->y + y) * stride + to->x * bytes, row,
                (size_t)to->width * (size_t)bytes);

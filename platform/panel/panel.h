@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: MIT
  *
- * panel/panel.h - pictures for a panel of packed true-colour pixels.
+ * panel/panel.h - draws pictures on a panel of packed true-colour pixels.
  *
- *     glint_panel_open(&panel, &cfg, &error);         allocates memory
- *     glint_panel_clear(&panel, mem, stride);         once: black everywhere
- *     glint_panel_draw(&panel, &image, mem, stride);  each frame
+ *     glint_panel_open(&panel, &cfg, &error); allocates memory
+ *     glint_panel_clear(&panel, mem, stride); once: black everywhere
+ *     glint_panel_draw(&panel, &image, mem, stride); each frame
  *     glint_panel_close(&panel);
  *
  * A picture of another size than the panel is scaled to fit at its aspect
  * ratio, by nearest-neighbour sampling; or it is centred unscaled and cropped.
- * Draw does not touch the panel around the picture.
+ * Drawing does not write to the panel outside the picture.
  *
- * Each row is made in cached memory and then copied, so the panel's own memory
- * is only written, and in order: it may be write-combining. Panel rows that
- * show the same row of the picture are computed once.
+ * Each row is computed in cached memory and then copied, so the panel's own
+ * memory is only written, and in order: it may be write-combining. Panel rows
+ * that show the same row of the picture are computed once.
  *
  * Packed pixels of any true-colour layout (glint_row_pack):
  *
- *     in   R', G', B' bytes, an array each
- *     out  words of 16, 24 or 32 bits, in the order of the machine's bytes,
+ *     in R', G', B' bytes, an array each
+ *     out words of 16, 24 or 32 bits, in the order of the machine's bytes,
  *          as Linux describes framebuffers: offset and length of each channel
  *
  * A channel of n bits gets code c as (c (2^n - 1) + 127) / 255: the nearest
@@ -32,28 +32,28 @@
  * 1 of exact arithmetic, and equal for 99.6 % of codes and for all greys.
  * Chroma of subsampled formats is repeated, as it is when flares are drawn
  * (src/image/codes.c). Channels may point into the picture itself if nothing
- * has to be computed.
- */
+ * has to be computed. */
 #ifndef GLINT_PLATFORM_PANEL_PANEL_H
 #define GLINT_PLATFORM_PANEL_PANEL_H
 
 #include "source_sink.h"
 
 struct glint_row_rgb {
-    const uint8_t *channel[3]; /* R', G', B' of the last read */
+    const uint8_t *channel[3]; /* R', G', B' of the pixels that were read
+                                  last */
 
-    /* Private. */
+    /* Private members. */
     uint8_t *rgb[3], *luma, *cb, *cr; /* rows in the caller's memory */
 };
 
-/* Position of a channel in a pixel's word, bits; length 0: there is no such
- * channel. */
+/* Position and length of a channel in the word of a pixel, bits; length 0: the
+ * channel does not exist. */
 struct glint_pixel_field {
     int offset, length;
 };
 
 struct glint_pixel_layout {
-    int bytes; /* bytes of a pixel: 2, 3 or 4 */
+    int bytes; /* number of bytes of a pixel: 2, 3 or 4 */
     struct glint_pixel_field red, green, blue, transparency;
 };
 
@@ -62,14 +62,18 @@ enum glint_pack_way { GLINT_PACK_BYTES, GLINT_PACK_HALVES, GLINT_PACK_TABLES };
 struct glint_row_pack {
     struct glint_pixel_layout layout;
 
-    /* Private. */
+    /* Private members. */
     enum glint_pack_way way;
-    int channel[4]; /* BYTES: index of the channel in each byte of a pixel; 3:
-                       no colour */
-    uint8_t *rest;  /* BYTES: a row of values for the byte that holds no
-                       colour */
-    uint32_t *table[3]; /* TABLES: bits of the pixel's word for each code of a
-                           colour */
+    bool dither;
+    /* BYTES: index of the channel in each byte of a pixel; 3: the byte holds no
+     * colour. */
+    int channel[4];
+    /* BYTES: a row of values for the byte that holds no colour. */
+    uint8_t *rest;
+    /* HALVES: dither thresholds for a row of pixels, for each row modulo 8. */
+    uint8_t *threshold[8];
+    /* TABLES: bits in the word of a pixel for each code of a colour. */
+    uint32_t *table[3];
     uint32_t opaque;
 };
 
@@ -81,6 +85,7 @@ struct glint_panel_config {
     struct glint_pixel_layout layout;
     int image_width, image_height;
     enum glint_panel_fit fit;
+    bool dither; /* true: 16-bit pixels are dithered */
 };
 
 struct glint_panel {
@@ -91,22 +96,23 @@ struct glint_panel {
         int x, y, width, height;
     } shown, seen;
 
-    /* Private. */
+    /* Private members. */
     struct glint_row_rgb rgb;
     struct glint_row_pack pack;
-    uint16_t *from_x; /* column in the seen area of each column shown; NULL: not
-                         scaled */
-    uint8_t *line;    /* a row of the seen area, packed */
-    uint8_t *scaled;  /* the same row, scaled */
-    void *mem;        /* memory of all private arrays; NULL: closed */
+    /* Picture column for each column of the shown area; NULL: not scaled. */
+    uint16_t *from_x;
+    uint8_t *line;   /* a row of the visible picture area, packed */
+    uint8_t *scaled; /* the same row, scaled to the panel */
+    void *mem;       /* memory of all private arrays; NULL: closed */
 };
 
-/* Splits N pairs of bytes. Arrays do not overlap. */
+/* Splits N pairs of bytes: the first byte of each pair is copied to A, the
+ * second to B. Arrays must not overlap. */
 void glint_split_pairs(uint8_t *restrict a, uint8_t *restrict b,
                        const uint8_t *restrict from, int n);
 
-/* Splits N pairs of pixels of FORMAT, GLINT_YUYV or GLINT_UYVY, each with two
- * samples of luma and one of Cb and Cr. */
+/* Splits N pairs of pixels of FORMAT, GLINT_YUYV or GLINT_UYVY, into rows of
+ * luma, Cb and Cr; a pair has two samples of luma and one each of Cb and Cr. */
 void glint_split_packed(enum glint_pixel_format format, uint8_t *luma,
                         uint8_t *cb, uint8_t *cr, const uint8_t *from, int n);
 
@@ -117,8 +123,8 @@ size_t glint_row_rgb_bytes(int width);
  * and must outlive ROW. */
 void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width);
 
-/* Sets row->channel to the pixels X .. X + N - 1 of row Y of IMAGE. X must be
- * even. */
+/* Points row->channel to R', G', B' of pixels X .. X + N - 1 in row Y of IMAGE.
+ * X must be even. */
 void glint_row_rgb_read(struct glint_row_rgb *row,
                         const struct glint_image *image, int x, int y, int n);
 
@@ -136,7 +142,8 @@ void glint_row_pack_init(struct glint_row_pack *pack,
                          const struct glint_pixel_layout *layout, void *mem,
                          int width);
 
-/* Packs N pixels of CHANNEL (R', G', B') into DST, aligned to 4 bytes. */
+/* Packs N pixels of CHANNEL (R', G', B') to DST, aligned to 4 bytes. Y is the
+ * pixels' row on the panel, for dithering. */
 void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
                           const uint8_t *const channel[3], int n);
 

@@ -7,26 +7,26 @@
 
 #include "posix/error.h"
 
-static enum glint_status put_null(struct glint_sink *sink,
-                                  const struct glint_image *image,
-                                  struct glint_error *error)
+static enum glint_status discard_frame(struct glint_sink *sink,
+                                       const struct glint_image *image,
+                                       struct glint_error *error)
 {
     (void)image, (void)error;
     ((struct glint_null_sink *)sink)->n_frames++;
     return GLINT_OK;
 }
 
-static void close_null(struct glint_sink *sink)
+static void close_null_sink(struct glint_sink *sink)
 {
     (void)sink;
 }
 
 void glint_null_sink_open(struct glint_null_sink *null)
 {
-    *null = (struct glint_null_sink){.sink = {put_null, close_null}};
+    *null = (struct glint_null_sink){.sink = {discard_frame, close_null_sink}};
 }
 
-enum glint_pixel_format glint_planar_format(enum glint_pixel_format format)
+enum glint_pixel_format glint_get_planar_format(enum glint_pixel_format format)
 {
     switch (format) {
     case GLINT_NV12:
@@ -44,51 +44,55 @@ enum glint_pixel_format glint_planar_format(enum glint_pixel_format format)
     }
 }
 
-static uint8_t *get_row(const struct glint_image *image, int plane, int y)
+static uint8_t *get_plane_row(const struct glint_image *image, int plane, int y)
 {
     return image->plane[plane] + y * image->stride_bytes[plane];
 }
 
-static void copy_plane(const struct glint_image *to,
-                       const struct glint_image *from, int plane)
+static void copy_plane_rows(const struct glint_image *to,
+                            const struct glint_image *from, int plane)
 {
     const size_t bytes = glint_image_row_bytes(to->format, plane, to->width);
     const int rows = glint_image_plane_height(to->format, plane, to->height);
 
     for (int y = 0; y < rows; y++)
-        memcpy(get_row(to, plane, y), get_row(from, plane, y), bytes);
+        memcpy(get_plane_row(to, plane, y), get_plane_row(from, plane, y),
+               bytes);
 }
 
 /* Splits row Y of FROM, YUYV or UYVY, into the planes of TO. If the width is
  * odd, the second pixel of the last pair is dropped. */
-static void split_row(const struct glint_image *to,
-                      const struct glint_image *from, struct glint_row_rgb *row,
-                      int y)
+static void split_packed_row(const struct glint_image *to,
+                             const struct glint_image *from,
+                             struct glint_row_rgb *row, int y)
 {
     const int half = (from->width + 1) / 2;
-    uint8_t *const cb = get_row(to, 1, y), *const cr = get_row(to, 2, y);
+    uint8_t *const cb = get_plane_row(to, 1, y), *const cr =
+                                                     get_plane_row(to, 2, y);
 
-    glint_split_packed(from->format, row->luma, cb, cr, get_row(from, 0, y),
-                       half);
-    memcpy(get_row(to, 0, y), row->luma, (size_t)from->width);
+    glint_split_packed(from->format, row->luma, cb, cr,
+                       get_plane_row(from, 0, y), half);
+    memcpy(get_plane_row(to, 0, y), row->luma, (size_t)from->width);
 }
 
-static void split_chroma(const struct glint_image *to,
-                         const struct glint_image *from)
+static void split_chroma_plane(const struct glint_image *to,
+                               const struct glint_image *from)
 {
     const int cb = from->format == GLINT_NV12 ? 1 : 2;
 
     for (int y = 0; y < (from->height + 1) / 2; y++)
-        glint_split_pairs(get_row(to, cb, y), get_row(to, 3 - cb, y),
-                          get_row(from, 1, y), (from->width + 1) / 2);
+        glint_split_pairs(get_plane_row(to, cb, y),
+                          get_plane_row(to, 3 - cb, y),
+                          get_plane_row(from, 1, y), (from->width + 1) / 2);
 }
 
 /* --------------------------------------------------------------- from RGB */
 
 enum { ONE_Q16 = 1 << 16, HALF_Q16 = 1 << 15 };
 
-/* Matrix by_q16 from R', G', B' (columns) to Y', Cb, Cr (rows); zero_q16:
- * code of zero of each row, plus a half for rounding. */
+/* Matrix by_q16 from R', G', B' (columns) to Y', Cb, Cr (rows), and the
+ * constants zero_q16 that are added to the rows: code of zero, plus 1/2 for
+ * rounding. */
 struct mix {
     int32_t by_q16[3][3], zero_q16[3];
 };
@@ -121,8 +125,9 @@ static uint8_t convert_to_code(int32_t sum_q16)
     return (uint8_t)(sum_q16 >= 256 * ONE_Q16 ? 255 : sum_q16 >> 16);
 }
 
-static void mix_row(const struct mix *m, uint8_t *restrict to, int i,
-                    const uint8_t *const channel[3], int n)
+static void convert_rgb_row_to_ycc(const struct mix *m, uint8_t *restrict to,
+                                   int i, const uint8_t *const channel[3],
+                                   int n)
 {
     const int32_t r = m->by_q16[i][0], g = m->by_q16[i][1], b = m->by_q16[i][2],
                   zero = m->zero_q16[i];
@@ -134,43 +139,45 @@ static void mix_row(const struct mix *m, uint8_t *restrict to, int i,
 
 /* ---------------------------------------------------------------- pictures */
 
-void glint_planar_write(const struct glint_image *to,
-                        const struct glint_image *from,
-                        struct glint_row_rgb *row)
+void glint_convert_to_planes(const struct glint_image *to,
+                             const struct glint_image *from,
+                             struct glint_row_rgb *row)
 {
     switch (from->format) {
     case GLINT_YUYV:
     case GLINT_UYVY:
         for (int y = 0; y < from->height; y++)
-            split_row(to, from, row, y);
+            split_packed_row(to, from, row, y);
         return;
     case GLINT_NV12:
     case GLINT_NV21:
-        copy_plane(to, from, 0);
-        split_chroma(to, from);
+        copy_plane_rows(to, from, 0);
+        split_chroma_plane(to, from);
         return;
     case GLINT_GREY:
     case GLINT_I420:
     case GLINT_I422:
     case GLINT_I444:
         for (int i = 0; i < glint_image_planes(to->format); i++)
-            copy_plane(to, from, i);
+            copy_plane_rows(to, from, i);
         return;
     default:
         for (int y = 0; y < from->height; y++) {
             glint_row_rgb_read(row, from, 0, y, from->width);
             for (int i = 0; i < 3; i++)
-                mix_row(&mixes[to->matrix][to->range], get_row(to, i, y), i,
-                        row->channel, from->width);
+                convert_rgb_row_to_ycc(&mixes[to->matrix][to->range],
+                                       get_plane_row(to, i, y), i, row->channel,
+                                       from->width);
         }
     }
 }
 
-/* Prepares the frame to write: allocates planes if Y4M does not support the
- * format of the images. */
-static enum glint_status prepare_planes(struct glint_y4m_sink *y,
-                                        const struct glint_y4m_header *header,
-                                        struct glint_error *error)
+/* Sets HEADER and the planes of the frame to write. Allocates planes if Y4M
+ * does not support the format of the images. */
+static enum glint_status
+prepare_output_planes(struct glint_y4m_sink *y,
+                      const struct glint_y4m_header *header,
+                      struct glint_error *error)
 {
     const size_t bytes =
         glint_image_bytes(header->format, header->width, header->height);
@@ -191,21 +198,21 @@ static enum glint_status prepare_planes(struct glint_y4m_sink *y,
     return GLINT_OK;
 }
 
-static enum glint_status open_stream(struct glint_y4m_sink *y,
-                                     const struct glint_image *image,
-                                     struct glint_error *error)
+static enum glint_status open_y4m_stream(struct glint_y4m_sink *y,
+                                         const struct glint_image *image,
+                                         struct glint_error *error)
 {
     struct glint_y4m_header header;
     enum glint_status status;
 
     y->like = *image;
     glint_y4m_header_init(&header, image->width, image->height,
-                          glint_planar_format(image->format), y->fps_num,
+                          glint_get_planar_format(image->format), y->fps_num,
                           y->fps_den);
     if (!glint_image_is_rgb(image->format))
         header.range = image->range;
     header.range_stated = true;
-    status = prepare_planes(y, &header, error);
+    status = prepare_output_planes(y, &header, error);
     if (!status)
         status = glint_y4m_writer_open(&y->writer, y->path, &header, error);
     if (status) {
@@ -216,12 +223,12 @@ static enum glint_status open_stream(struct glint_y4m_sink *y,
     return status;
 }
 
-static bool is_ready(const struct glint_y4m_sink *y)
+static bool is_reader_ready(const struct glint_y4m_sink *y)
 {
     struct pollfd writable = {.fd = y->writer.out.fd, .events = POLLOUT};
 
-    return poll(&writable, 1, 0) != 0; /* Errors of the descriptor are reported
-                                          by the next write. */
+    return poll(&writable, 1, 0) != 0; /* The next write reports errors of the
+                                          descriptor. */
 }
 
 static enum glint_status write_y4m_frame(struct glint_sink *sink,
@@ -232,7 +239,7 @@ static enum glint_status write_y4m_frame(struct glint_sink *sink,
     enum glint_status status = GLINT_OK;
 
     if (!y->is_open)
-        status = open_stream(y, image, error);
+        status = open_y4m_stream(y, image, error);
     if (status)
         return status;
     if (image->format != y->like.format || image->width != y->like.width ||
@@ -242,12 +249,12 @@ static enum glint_status write_y4m_frame(struct glint_sink *sink,
             "the size or format of the frames changed, to %d x %d; a stream "
             "has one size and format",
             image->width, image->height);
-    if (!is_ready(y)) {
+    if (!is_reader_ready(y)) {
         y->n_dropped++;
         return GLINT_OK;
     }
     if (y->mem)
-        glint_planar_write(&y->planes, image, &y->row);
+        glint_convert_to_planes(&y->planes, image, &y->row);
     status = glint_y4m_writer_put(&y->writer, y->mem ? &y->planes : image, "",
                                   error);
     if (!status)
@@ -266,7 +273,7 @@ enum glint_status glint_y4m_sink_finish(struct glint_y4m_sink *y4m,
     return was_open ? glint_y4m_writer_commit(&y4m->writer, error) : GLINT_OK;
 }
 
-static void close_y4m(struct glint_sink *sink)
+static void close_y4m_sink(struct glint_sink *sink)
 {
     struct glint_error error;
 
@@ -277,7 +284,7 @@ void glint_y4m_sink_open(struct glint_y4m_sink *y4m, const char *path,
                          int fps_num, int fps_den)
 {
     *y4m = (struct glint_y4m_sink){
-        .sink = {write_y4m_frame, close_y4m},
+        .sink = {write_y4m_frame, close_y4m_sink},
         .path = path,
         .fps_num = fps_num,
         .fps_den = fps_den,

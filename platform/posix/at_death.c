@@ -25,7 +25,7 @@ static const int deadly[] = {
 #endif
 };
 
-/* registered functions, NULL after the last; atomic */
+/* registered functions, NULL after the last one; atomic */
 static glint_at_death_fn *fns[MAX_FN];
 
 static void run_all_handlers(void)
@@ -42,9 +42,8 @@ static void run_all_handlers(void)
 /* function that reports an abort in a library, or NULL; atomic */
 static int (*library_report)(void);
 
-/* Returns true, after printing a message, if a library has ended the
- * process. */
-static bool report_library(void)
+/* Prints a message and returns true if a library has ended the process. */
+static bool report_library_abort(void)
 {
     int (*const report)(void) =
         __atomic_load_n(&library_report, __ATOMIC_SEQ_CST);
@@ -52,34 +51,36 @@ static bool report_library(void)
     return report && report();
 }
 
-static void run_at_exit(void)
+static void run_handlers_at_exit(void)
 {
     run_all_handlers();
-    report_library();
+    report_library_abort();
 }
 
-/* Returns whether libraries raise SIGNAL_NUMBER on files that they do not
- * expect. */
-static bool is_fault(int signal_number)
+/* Returns whether SIGNAL_NUMBER is a signal that libraries raise when they
+ * crash on a malformed file. */
+static bool is_library_fault(int signal_number)
 {
     return signal_number == SIGABRT || signal_number == SIGSEGV ||
            signal_number == SIGBUS;
 }
 
-/* Signal handler. Runs all functions, then lets the signal kill the process, or
- * exits with 1 after a fault in a library. SA_RESETHAND has restored the
- * default action, so the second signal, delivered on return, kills the process
- * with the status that its parent expects. */
+/* Signal handler. Runs all registered functions, then lets the signal kill the
+ * process, or exits with 1 after a fault in a library. SA_RESETHAND has
+ * restored the default action, so the second signal, delivered on return, kills
+ * the process with the status that its parent expects. */
 static void handle_signal(int signal_number)
 {
     run_all_handlers();
-    if (is_fault(signal_number) && report_library())
+    if (is_library_fault(signal_number) && report_library_abort())
         _exit(EXIT_FAILURE);
     raise(signal_number);
 }
 
-/* Sets the action of SIGNAL_NUMBER to ACT, if it has the default action. */
-static void replace_default(int signal_number, const struct sigaction *act)
+/* Sets the action of SIGNAL_NUMBER to ACT, unless the application has set an
+ * action. */
+static void replace_default_action(int signal_number,
+                                   const struct sigaction *act)
 {
     struct sigaction old;
 
@@ -94,16 +95,16 @@ static void install_signal_handlers(void)
 
     sigemptyset(&act.sa_mask);
     for (size_t i = 0; i < sizeof broken / sizeof *broken; i++)
-        replace_default(broken[i], &act);
+        replace_default_action(broken[i], &act);
     act.sa_handler = handle_signal;
     act.sa_flags = (int)SA_RESETHAND;
     for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
-        replace_default(deadly[i], &act);
+        replace_default_action(deadly[i], &act);
 #ifdef SIGRTMIN
     for (int i = SIGRTMIN; i <= SIGRTMAX; i++)
-        replace_default(i, &act);
+        replace_default_action(i, &act);
 #endif
-    atexit(run_at_exit);
+    atexit(run_handlers_at_exit);
 }
 
 static void install_signal_handlers_once(void)
@@ -133,7 +134,7 @@ bool glint_at_death(glint_at_death_fn *fn)
     return false;
 }
 
-void glint_at_death_by(int signal_number)
+void glint_at_death_end_by_signal(int signal_number)
 {
     struct sigaction act = {.sa_handler = SIG_DFL};
     sigset_t open;

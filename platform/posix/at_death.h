@@ -14,7 +14,7 @@
  * The first call changes the actions of signals that the application has left
  * at their default: SIGPIPE and SIGXFSZ are ignored, so that writing fails
  * instead, and signals that kill the process get a handler. An application with
- * handlers of its own must end by exit() or glint_at_death_by().
+ * handlers of its own must end by exit() or glint_at_death_end_by_signal().
  */
 #ifndef GLINT_PLATFORM_POSIX_AT_DEATH_H
 #define GLINT_PLATFORM_POSIX_AT_DEATH_H
@@ -40,6 +40,6 @@ void glint_at_death_in_library(int (*report)(void));
 /* Runs all functions, then ends the process by the default action of
  * SIGNAL_NUMBER; for an application's own signal handlers.
  * Async-signal-safe. */
-void glint_at_death_by(int signal_number);
+void glint_at_death_end_by_signal(int signal_number);
 
 #endif

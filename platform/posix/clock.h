@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/clock.h - the clock of the time stamps of frames.
- */
+ * posix/clock.h - the clock that is used for time stamps of frames. */
 #ifndef GLINT_PLATFORM_POSIX_CLOCK_H
 #define GLINT_PLATFORM_POSIX_CLOCK_H
 

@@ -12,7 +12,7 @@ bool glint_ends_in(const char *name, const char *ending)
     return n > m && strcasecmp(name + n - m, ending) == 0;
 }
 
-const char *glint_ending_of(const char *name)
+const char *glint_get_extension(const char *name)
 {
     const char *const slash = strrchr(name, '/');
     const char *const last = slash ? slash + 1 : name;

@@ -10,7 +10,7 @@
 
 /* Returns the length in bytes of a UTF-8 character by its FIRST byte, or 0
  * if no printable character begins with FIRST. */
-static size_t decode_length(unsigned char first)
+static size_t get_utf8_length(unsigned char first)
 {
     if (first < 0x80)
         return first >= ' ' && first != 0x7f;
@@ -23,14 +23,14 @@ size_t glint_utf8_length(const char *text)
 {
     static const uint32_t smallest[] = {0, 0, 0xa0, 0x800, 0x10000};
     const unsigned char *const byte = (const unsigned char *)text;
-    const size_t length = decode_length(byte[0]);
+    const size_t length = get_utf8_length(byte[0]);
     uint32_t code;
 
     if (length < 2)
         return length;
     code = byte[0] & (0x7fu >> length);
     for (size_t i = 1; i < length; i++) {
-        /* Also true for the zero byte at the end of TEXT. */
+        /* Fails also at the zero byte that ends TEXT. */
         if ((byte[i] & 0xc0) != 0x80)
             return 0;
         code = code << 6 | (byte[i] & 0x3fu);
@@ -52,7 +52,7 @@ void glint_utf8_clean(char *text)
     }
 }
 
-/* max characters of a file name in a message, to leave room for the cause */
+/* max characters of a file name in a message; the cause must fit behind it */
 #define FILE_CHARS 120
 
 enum glint_status glint_error_report(struct glint_error *error,
@@ -73,9 +73,9 @@ enum glint_status glint_error_report(struct glint_error *error,
     return status;
 }
 
-enum glint_status glint_error_errno(struct glint_error *error,
-                                    enum glint_status status, const char *file,
-                                    int number)
+enum glint_status glint_error_report_errno(struct glint_error *error,
+                                           enum glint_status status,
+                                           const char *file, int number)
 {
     const int is_short = number == EMFILE || number == ENFILE ||
                          number == EAGAIN || number == ENOMEM;

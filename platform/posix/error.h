@@ -15,9 +15,9 @@
 #define GLINT_PRINTF(text, first)
 #endif
 
-/* Returns the bytes of the character that TEXT begins with, 1 .. 4, or 0 for a
- * control character (C1, too, as U+009B begins a terminal command), malformed
- * UTF-8 or the end of TEXT. */
+/* Returns the length in bytes, 1 .. 4, of the UTF-8 character at the start of
+ * TEXT, or 0 for a control character (C1, too, as U+009B begins a terminal
+ * command), malformed UTF-8 or the end of TEXT. */
 size_t glint_utf8_length(const char *text);
 
 /* Replaces every byte of TEXT that glint_utf8_length() does not accept by
@@ -25,19 +25,19 @@ size_t glint_utf8_length(const char *text);
 void glint_utf8_clean(char *text);
 
 /* Sets ERROR to "FILE: cause" and returns STATUS, so that callers report and
- * return in one statement. The beginning of a long FILE is cut off, to leave
- * room for the cause. Control characters, which hostile files and names may
- * hold, become '?', so that the text is one line. */
+ * return in one statement. If FILE is long, its beginning is cut off, so that
+ * the cause fits. Control characters, which hostile files and names may
+ * contain, become '?', so that the text is one line. */
 enum glint_status glint_error_report(struct glint_error *error,
                                      enum glint_status status, const char *file,
                                      const char *format, ...)
     GLINT_PRINTF(4, 5);
 
-/* Sets ERROR to "FILE: cause" of errno value NUMBER. Returns STATUS, or
- * GLINT_E_MEMORY if the cause is not FILE but that the system is short of
- * descriptors, processes or memory. */
-enum glint_status glint_error_errno(struct glint_error *error,
-                                    enum glint_status status, const char *file,
-                                    int number);
+/* Sets ERROR to "FILE: cause", the cause being errno value NUMBER. Returns
+ * STATUS, or GLINT_E_MEMORY if the cause is that the system lacks descriptors,
+ * processes or memory. */
+enum glint_status glint_error_report_errno(struct glint_error *error,
+                                           enum glint_status status,
+                                           const char *file, int number);
 
 #endif

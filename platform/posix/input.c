@@ -11,7 +11,7 @@
 
 #include "posix/error.h"
 
-/* bytes to allocate at first if the size is unknown */
+/* first allocation, bytes, if the size of the input is unknown */
 #define FIRST_BYTES 65536
 
 static enum glint_status open_with_flags(struct glint_input *in,
@@ -26,7 +26,7 @@ static enum glint_status open_with_flags(struct glint_input *in,
     else
         in->fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | flags);
     if (in->fd < 0)
-        return glint_error_errno(error, GLINT_E_IO, in->name, errno);
+        return glint_error_report_errno(error, GLINT_E_IO, in->name, errno);
     if (is_stdin && isatty(in->fd)) {
         glint_input_close(in);
         return glint_error_report(error, GLINT_E_IO, in->name,
@@ -41,8 +41,8 @@ enum glint_status glint_input_open(struct glint_input *in, const char *path,
     return open_with_flags(in, path, 0, error);
 }
 
-/* Returns the reason why PATH, of status ST, is not accepted as a file, or
- * NULL if it is accepted. */
+/* Returns the reason why glint does not accept PATH, of status ST, as a file,
+ * or NULL if it does. */
 static const char *explain_rejection(const char *path, const struct stat *st)
 {
     struct stat null;
@@ -80,9 +80,9 @@ enum glint_status glint_input_open_file(struct glint_input *in,
     return glint_error_report(error, GLINT_E_IO, in->name, "%s", cause);
 }
 
-/* Returns whether a failed read is worth repeating; waits until FD is readable
- * if it would have blocked. */
-static int may_retry(int fd)
+/* Returns whether a failed read should be repeated. If the read would have
+ * blocked, waits until FD is readable. */
+static int is_read_retryable(int fd)
 {
     struct pollfd readable = {.fd = fd, .events = POLLIN};
 
@@ -91,19 +91,20 @@ static int may_retry(int fd)
     return errno == EINTR;
 }
 
-ptrdiff_t glint_input_some(struct glint_input *in, void *dst, size_t bytes)
+ptrdiff_t glint_input_read_available(struct glint_input *in, void *dst,
+                                     size_t bytes)
 {
     ssize_t n;
 
     do
         n = read(in->fd, dst, bytes);
-    while (n < 0 && may_retry(in->fd));
+    while (n < 0 && is_read_retryable(in->fd));
     return n;
 }
 
-/* Returns the bytes to allocate at first: the size of a regular file plus one,
- * so that the end is found without a larger block. */
-static size_t expected_bytes(const struct glint_input *in, size_t max)
+/* Returns the bytes of the first allocation: the size of a regular file plus
+ * one, so that the end of the file is detected without a larger block. */
+static size_t estimate_input_bytes(const struct glint_input *in, size_t max)
 {
     struct stat st;
 
@@ -128,12 +129,13 @@ enum glint_status glint_input_append(struct glint_input *in, uint8_t **data,
                                      size_t *bytes, size_t max,
                                      struct glint_error *error)
 {
-    size_t size = *bytes + expected_bytes(in, max);
+    size_t size = *bytes + estimate_input_bytes(in, max);
     ptrdiff_t n;
 
     if (grow_buffer(in, data, size, error))
         return GLINT_E_MEMORY;
-    while ((n = glint_input_some(in, *data + *bytes, size - *bytes)) > 0) {
+    while ((n = glint_input_read_available(in, *data + *bytes, size - *bytes)) >
+           0) {
         *bytes += (size_t)n;
         if (*bytes > max)
             return glint_error_report(error, GLINT_E_UNSUPPORTED, in->name,

@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/input.h - reading files and pipes; reads interrupted by signals are
- * repeated.
+ * posix/input.h - reads files and pipes; repeats reads that signals interrupt.
  *
- *     glint_input_open(&in, "x.ppm", &error);         "-" is standard input
+ *     glint_input_open(&in, "x.ppm", &error); "-" is standard input
  *     glint_input_append(&in, &data, &bytes, max, &error);
  *     glint_input_close(&in);
  *
- * Reads wait also on non-blocking descriptors. A terminal is refused as
- * standard input, as nobody types a picture.
- */
+ * Reads wait also on non-blocking descriptors. A terminal is rejected as
+ * standard input, as nobody types a picture. */
 #ifndef GLINT_PLATFORM_POSIX_INPUT_H
 #define GLINT_PLATFORM_POSIX_INPUT_H
 
@@ -36,10 +34,11 @@ enum glint_status glint_input_open_file(struct glint_input *in,
                                         const char *path,
                                         struct glint_error *error);
 
-/* Reads up to BYTES (>= 1) bytes that are available now, or waits for the
- * first. Returns the number of bytes read, 0 at the end, or -1 with errno
- * set. */
-ptrdiff_t glint_input_some(struct glint_input *in, void *dst, size_t bytes);
+/* Reads the bytes that are available now, at most BYTES (>= 1), or waits for
+ * the first byte. Returns the number of bytes read, 0 at the end, or -1 with
+ * errno set. */
+ptrdiff_t glint_input_read_available(struct glint_input *in, void *dst,
+                                     size_t bytes);
 
 /* Reads the rest of IN and appends it to the *BYTES bytes at *DATA, a malloc'ed
  * block (or NULL and 0). The block may move; the caller frees it, also on

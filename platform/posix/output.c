@@ -27,7 +27,7 @@
 
 /* Returns the length of PATH's folder with its slash, or 0 if PATH has no
  * slash. */
-static size_t folder_length(const char *path)
+static size_t get_folder_length(const char *path)
 {
     const char *const slash = strrchr(path, '/');
 
@@ -36,9 +36,9 @@ static size_t folder_length(const char *path)
 
 /* Sets FOLDER, PATH_BYTES long, to the folder of PATH, or "." if PATH has no
  * slash. */
-static void set_folder(char *folder, const char *path)
+static void copy_folder_of_path(char *folder, const char *path)
 {
-    const size_t n = folder_length(path);
+    const size_t n = get_folder_length(path);
 
     if (n == 0)
         snprintf(folder, PATH_BYTES, ".");
@@ -47,27 +47,27 @@ static void set_folder(char *folder, const char *path)
 }
 
 /* Returns whether the kernel would follow the symbolic link at PATH, whose
- * status is LINK. In a folder that everybody may write to, the kernel
- * follows only links of the user and of the folder's owner, but reports a
- * refusal only if the link leads to an existing file. */
-static bool may_follow(const char *path, const struct stat *link)
+ * status is LINK. In a folder that everybody may write to, the kernel follows
+ * only links of the user and of the folder's owner, but reports a refusal only
+ * if the link leads to an existing file. */
+static bool may_follow_link(const char *path, const struct stat *link)
 {
     char folder[PATH_BYTES];
     struct stat st;
 
-    set_folder(folder, path);
+    copy_folder_of_path(folder, path);
     return link->st_uid == geteuid() ||
            (stat(folder, &st) == 0 &&
             (!(st.st_mode & S_IWOTH) || st.st_uid == link->st_uid));
 }
 
-/* Replaces PATH, PATH_BYTES long, by the path that the link there points to.
- * Returns false with errno set on failure. */
+/* Replaces PATH, a buffer of PATH_BYTES, by the path to which the symbolic link
+ * PATH points. Returns false with errno set on failure. */
 static bool follow_link(char *path)
 {
     char text[PATH_BYTES];
     const ssize_t n = readlink(path, text, sizeof text - 1);
-    const size_t kept = n > 0 && text[0] == '/' ? 0 : folder_length(path);
+    const size_t kept = n > 0 && text[0] == '/' ? 0 : get_folder_length(path);
 
     if (n < 0)
         return false;
@@ -95,7 +95,7 @@ static char *find_new_target(const char *path)
     for (int i = 0; i < MAX_LINKS; i++) {
         if (lstat(at, &st) < 0)
             return errno == ENOENT ? strdup(at) : NULL;
-        if (!S_ISLNK(st.st_mode) || !may_follow(at, &st)) {
+        if (!S_ISLNK(st.st_mode) || !may_follow_link(at, &st)) {
             errno = S_ISLNK(st.st_mode) ? EACCES : ESTALE;
             return NULL;
         }
@@ -121,8 +121,8 @@ static char *resolve_target(const char *path, const struct stat *st)
     target = realpath(path, NULL);
     if (!target)
         return NULL;
-    /* If TARGET is another file than ST, somebody has changed a link since, and
-     * the kernel might refuse to follow the new link. */
+    /* If TARGET is another file than ST, another process has changed a link
+     * since, and the kernel might refuse to follow the new link. */
     if (lstat(target, &now) == 0 && now.st_dev == st->st_dev &&
         now.st_ino == st->st_ino)
         return target;
@@ -148,15 +148,15 @@ bool glint_target_is_same(const char *a, const char *b)
     char folder[PATH_BYTES];
     struct stat in_a, in_b;
 
-    if (strcmp(a + folder_length(a), b + folder_length(b)) != 0 ||
+    if (strcmp(a + get_folder_length(a), b + get_folder_length(b)) != 0 ||
         (stat(a, &in_a) == 0 && !S_ISREG(in_a.st_mode)))
         return false;
     if (strcmp(a, b) == 0)
         return true;
-    set_folder(folder, a);
+    copy_folder_of_path(folder, a);
     if (stat(folder, &in_a) != 0)
         return false;
-    set_folder(folder, b);
+    copy_folder_of_path(folder, b);
     return stat(folder, &in_b) == 0 && in_a.st_dev == in_b.st_dev &&
            in_a.st_ino == in_b.st_ino;
 }
@@ -167,7 +167,7 @@ bool glint_target_is_same(const char *a, const char *b)
  * DIR/NAME.EXT, which the caller frees, or NULL if memory is exhausted. */
 static char *make_temporary_name(const char *target, unsigned n)
 {
-    const char *const base = target + folder_length(target);
+    const char *const base = target + get_folder_length(target);
     const char *ext = strrchr(base, '.');
     const size_t size = strlen(target) + 64;
     char *const name = malloc(size);
@@ -199,8 +199,9 @@ static pid_t parse_maker(const char *name)
     return end > name && (*end == '.' || !*end) ? (pid_t)pid : 0;
 }
 
-/* Returns whether FD is a regular file of this user that nobody has locked. */
-static bool is_abandoned(int fd)
+/* Returns whether FD is a regular file of this user that no process has
+ * locked. */
+static bool is_file_abandoned(int fd)
 {
     struct stat st;
 
@@ -219,17 +220,17 @@ static void remove_if_abandoned(int folder, const char *name)
                 O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
     if (fd < 0)
         return;
-    if (is_abandoned(fd))
+    if (is_file_abandoned(fd))
         unlinkat(folder, name, 0);
     close(fd);
 }
 
 /* Removes temporary files that killed runs have left in TARGET's folder: files
- * of this user whose process has ended and that nobody on any machine has
+ * of this user whose process has ended and that no process on any machine has
  * locked. Does nothing if the last call cleaned the same folder. */
-static void clean_folder(const char *target)
+static void remove_abandoned_files(const char *target)
 {
-    /* hash of inode and device of the folder cleaned last */
+    /* hash of inode and device of the folder that was cleaned last */
     static unsigned long cleaned;
     unsigned long here;
     char folder[PATH_BYTES];
@@ -237,7 +238,7 @@ static void clean_folder(const char *target)
     struct stat st;
     DIR *dir;
 
-    set_folder(folder, target);
+    copy_folder_of_path(folder, target);
     if (stat(folder, &st) < 0)
         return;
     here = (unsigned long)st.st_ino * 31 + (unsigned long)st.st_dev;
@@ -252,15 +253,15 @@ static void clean_folder(const char *target)
 }
 
 #define BUFFER_BYTES 65536
-#define MAX_TMP      16 /* max open temporary files */
-/* max names to try, as files of some names may exist */
+#define MAX_TMP      16 /* max number of open temporary files */
+/* max number of names to try, as files of some names may exist */
 #define MAX_TRIES 1000
 
 /* ---------------------------------------------- files to remove when dying */
 
 /* names of temporary files, or NULL; atomic */
 static char *doomed[MAX_TMP];
-/* 1: the process dies, and remove_temporaries() may run; atomic */
+/* 1: the process is dying, and remove_temporaries() may run; atomic */
 static int dying;
 
 /* Removes all temporary files when the process dies. Async-signal-safe. */
@@ -290,9 +291,8 @@ static bool register_temporary(char *name)
     return false;
 }
 
-/* Removes NAME from the list of temporary files and frees it. If another
- * thread is in remove_temporaries(), which may use NAME, DYING is set, and
- * NAME is not freed. */
+/* Removes NAME from the list of temporary files and frees it. If DYING is set,
+ * NAME is not freed, as another thread may use it in remove_temporaries(). */
 static void unregister_temporary(char *name)
 {
     for (int i = 0; i < MAX_TMP; i++) {
@@ -307,8 +307,9 @@ static void unregister_temporary(char *name)
 
 /* ----------------------------------------------------------------- opening */
 
-static enum glint_status report_refusal(const struct glint_output *out,
-                                        struct glint_error *error, int number)
+static enum glint_status report_open_refusal(const struct glint_output *out,
+                                             struct glint_error *error,
+                                             int number)
 {
     return glint_error_report(error, GLINT_E_OUTPUT, out->name, "%s",
                               strerror(number));
@@ -338,9 +339,11 @@ static int create_temporary(char *name, mode_t mode)
 }
 
 /* Reports that no temporary file could be created, with the last 40 bytes of
- * its folder's name, from whole characters on: the cause must fit behind it. */
-static enum glint_status report_folder(const struct glint_output *out,
-                                       int number, struct glint_error *error)
+ * its folder's name, cut at a whole character, so that the cause fits behind
+ * the name. */
+static enum glint_status report_folder_failure(const struct glint_output *out,
+                                               int number,
+                                               struct glint_error *error)
 {
     const char *const slash = strrchr(out->target, '/');
     const char *folder = slash ? out->target : ".";
@@ -362,14 +365,15 @@ static enum glint_status report_folder(const struct glint_output *out,
 
 /* Opens a temporary file in the folder of out->target. MODE: its permission
  * bits, or (mode_t)-1 for the default by umask. */
-static enum glint_status open_temporary(struct glint_output *out, mode_t mode,
-                                        struct glint_error *error)
+static enum glint_status open_temporary_file(struct glint_output *out,
+                                             mode_t mode,
+                                             struct glint_error *error)
 {
     static unsigned counter; /* number for the next temporary name; atomic */
     const bool keep = mode != (mode_t)-1;
     int number = 0;
 
-    clean_folder(out->target);
+    remove_abandoned_files(out->target);
     for (int i = 0; i < MAX_TRIES; i++) {
         out->tmp = make_temporary_name(
             out->target, __atomic_fetch_add(&counter, 1, __ATOMIC_RELAXED));
@@ -386,20 +390,20 @@ static enum glint_status open_temporary(struct glint_output *out, mode_t mode,
             break;
     }
     if (out->fd < 0)
-        return report_folder(out, number, error);
-    /* The lock shows clean_folder() that the file is in use. */
+        return report_folder_failure(out, number, error);
+    /* The lock shows remove_abandoned_files() that the file is in use. */
     flock(out->fd, LOCK_EX | LOCK_NB);
     if (keep && fchmod(out->fd, mode) < 0)
-        return report_refusal(out, error, errno);
+        return report_open_refusal(out, error, errno);
     return GLINT_OK;
 }
 
-/* Resolves OUT's name and sets OUT's target, unless the file exists and is
- * not regular. Sets ST to the status of an existing file, else IS_THERE to
- * false. Tries again if another process replaces the file meanwhile, as jobs
- * that finish together may do. Returns 0 or an errno. */
-static int find_target(struct glint_output *out, struct stat *st,
-                       bool *is_there)
+/* Resolves the links of OUT's name and sets OUT's target, unless the file
+ * exists and is not regular. Sets ST to the status of an existing file, else
+ * IS_THERE to false. Tries again if another process replaces the file
+ * meanwhile, as jobs that finish together may do. Returns 0 or an errno. */
+static int find_output_target(struct glint_output *out, struct stat *st,
+                              bool *is_there)
 {
     for (int i = 0; i < MAX_TRIES; i++) {
         *is_there = stat(out->name, st) == 0;
@@ -418,16 +422,17 @@ static int find_target(struct glint_output *out, struct stat *st,
     return ESTALE;
 }
 
-static enum glint_status open_directly(struct glint_output *out, bool is_stdout,
-                                       enum glint_output_kind kind,
-                                       struct glint_error *error)
+static enum glint_status open_target_directly(struct glint_output *out,
+                                              bool is_stdout,
+                                              enum glint_output_kind kind,
+                                              struct glint_error *error)
 {
     if (is_stdout)
         out->fd = dup(STDOUT_FILENO);
     else
         out->fd = open(out->name, O_WRONLY | O_CLOEXEC | O_NOCTTY);
     if (out->fd < 0)
-        return report_refusal(out, error, errno);
+        return report_open_refusal(out, error, errno);
     if (kind == GLINT_OUTPUT_BINARY && isatty(out->fd))
         return glint_error_report(error, GLINT_E_OUTPUT, out->name,
                                   "is a terminal; redirect it or name a file");
@@ -452,14 +457,14 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
         status = glint_error_report(error, GLINT_E_MEMORY, out->name,
                                     "no memory for a buffer");
     else if (is_stdout)
-        status = open_directly(out, true, kind, error);
-    else if ((number = find_target(out, &st, &is_there)) != 0)
-        status = report_refusal(out, error, number);
+        status = open_target_directly(out, true, kind, error);
+    else if ((number = find_output_target(out, &st, &is_there)) != 0)
+        status = report_open_refusal(out, error, number);
     else if (!out->target)
-        status = open_directly(out, false, kind, error);
+        status = open_target_directly(out, false, kind, error);
     else
-        status = open_temporary(out, is_there ? st.st_mode & 0777 : (mode_t)-1,
-                                error);
+        status = open_temporary_file(
+            out, is_there ? st.st_mode & 0777 : (mode_t)-1, error);
     if (status)
         glint_output_abort(out);
     return status;
@@ -486,17 +491,17 @@ enum glint_status glint_output_check(const char *path,
 
 /* ----------------------------------------------------------------- writing */
 
-static enum glint_status report_failed(const struct glint_output *out,
-                                       struct glint_error *error)
+static enum glint_status report_write_failure(const struct glint_output *out,
+                                              struct glint_error *error)
 {
     return glint_error_report(
         error, out->failed == EPIPE ? GLINT_E_CLOSED : GLINT_E_OUTPUT,
         out->name, "%s", strerror(out->failed));
 }
 
-/* Returns whether a failed write is worth repeating; waits until FD is writable
- * if it would have blocked. */
-static bool may_retry(int fd)
+/* Returns whether a failed write should be repeated. If the write would have
+ * blocked, waits until FD is writable. */
+static bool is_write_retryable(int fd)
 {
     struct pollfd writable = {.fd = fd, .events = POLLOUT};
 
@@ -514,7 +519,7 @@ static void write_all_bytes(struct glint_output *out, const uint8_t *data,
         if (n >= 0) {
             data += n;
             bytes -= (size_t)n;
-        } else if (!may_retry(out->fd)) {
+        } else if (!is_write_retryable(out->fd)) {
             out->failed = errno;
         }
     }
@@ -525,17 +530,18 @@ enum glint_status glint_output_write(struct glint_output *out, const void *data,
 {
     if (bytes > BUFFER_BYTES - out->used) {
         write_all_bytes(out, out->buffer, out->used);
-        out->used = 0; /* NOLINT: glint_output_end() frees the buffer. */
+        out->used =
+            0; /* NOLINT: glint_output_commit_or_abort() frees the buffer. */
     }
     if (out->failed)
-        return report_failed(out, error);
+        return report_write_failure(out, error);
     if (bytes >= BUFFER_BYTES) {
         write_all_bytes(out, data, bytes);
     } else {
         memcpy(out->buffer + out->used, data, bytes);
         out->used += bytes;
     }
-    return out->failed ? report_failed(out, error) : GLINT_OK;
+    return out->failed ? report_write_failure(out, error) : GLINT_OK;
 }
 
 enum glint_status glint_output_flush(struct glint_output *out,
@@ -543,7 +549,7 @@ enum glint_status glint_output_flush(struct glint_output *out,
 {
     write_all_bytes(out, out->buffer, out->used);
     out->used = 0;
-    return out->failed ? report_failed(out, error) : GLINT_OK;
+    return out->failed ? report_write_failure(out, error) : GLINT_OK;
 }
 
 /* ----------------------------------------------------------------- closing */
@@ -554,12 +560,12 @@ enum glint_status glint_output_commit(struct glint_output *out,
     enum glint_status status = glint_output_flush(out, error);
 
     if (!status && close(out->fd) < 0 && errno != EINTR)
-        status = report_refusal(out, error, errno);
+        status = report_open_refusal(out, error, errno);
     else if (status)
         close(out->fd);
     out->fd = -1;
     if (!status && out->tmp && rename(out->tmp, out->target) < 0)
-        status = report_refusal(out, error, errno);
+        status = report_open_refusal(out, error, errno);
     if (!status && out->tmp) {
         unregister_temporary(out->tmp);
         out->tmp = NULL;
@@ -585,9 +591,9 @@ void glint_output_abort(struct glint_output *out)
     out->used = 0;
 }
 
-enum glint_status glint_output_end(struct glint_output *out,
-                                   enum glint_status status,
-                                   struct glint_error *error)
+enum glint_status glint_output_commit_or_abort(struct glint_output *out,
+                                               enum glint_status status,
+                                               struct glint_error *error)
 {
     if (status == GLINT_OK)
         return glint_output_commit(out, error);
@@ -595,12 +601,12 @@ enum glint_status glint_output_end(struct glint_output *out,
     return status;
 }
 
-enum glint_status glint_output_finish(struct glint_output *out,
-                                      const void *data, size_t bytes,
-                                      struct glint_error *error)
+enum glint_status glint_output_write_and_commit(struct glint_output *out,
+                                                const void *data, size_t bytes,
+                                                struct glint_error *error)
 {
-    return glint_output_end(out, glint_output_write(out, data, bytes, error),
-                            error);
+    return glint_output_commit_or_abort(
+        out, glint_output_write(out, data, bytes, error), error);
 }
 
 enum glint_status glint_output_save(const char *path,
@@ -611,8 +617,9 @@ enum glint_status glint_output_save(const char *path,
     struct glint_output out;
     const enum glint_status status = glint_output_open(&out, path, kind, error);
 
-    return status == GLINT_OK ? glint_output_finish(&out, data, bytes, error)
-                              : status;
+    return status == GLINT_OK
+               ? glint_output_write_and_commit(&out, data, bytes, error)
+               : status;
 }
 
 struct text_stream {
@@ -620,7 +627,7 @@ struct text_stream {
     size_t *bytes, room;
 };
 
-static ssize_t append_text(void *cookie, const char *data, size_t n)
+static ssize_t append_to_text(void *cookie, const char *data, size_t n)
 {
     struct text_stream *const t = cookie;
 
@@ -647,12 +654,13 @@ static int free_text_stream(void *cookie)
 
 FILE *glint_memory_file_open(char **text, size_t *bytes)
 {
-    static const cookie_io_functions_t calls = {.write = append_text,
+    static const cookie_io_functions_t calls = {.write = append_to_text,
                                                 .close = free_text_stream};
     struct text_stream *const t = malloc(sizeof *t);
     FILE *file;
 
-    *text = calloc(1, 1); /* empty text, in case nothing is written */
+    *text = calloc(1, 1); /* empty text, for streams to which nothing is
+                             written */
     *bytes = 0;
     if (!t || !*text) {
         free(t);

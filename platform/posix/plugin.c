@@ -23,16 +23,16 @@ static bool find_own_directory(char dir[PATH_BYTES])
 {
     char *slash;
 
-    if (!glint_process_own_file(dir, PATH_BYTES))
+    if (!glint_process_find_own_file(dir, PATH_BYTES))
         return false;
     slash = strrchr(dir, '/');
     slash[1] = 0;
     return true;
 }
 
-/* Returns whether DIR is outside a source tree. In a source tree DIR is
- * build/ or a folder in it, which have lenses/ beside or above them. */
-static bool is_installed(const char *dir)
+/* Returns whether DIR is outside a source tree. In a source tree DIR is build/
+ * or a folder in it, and lenses/ is beside build/. */
+static bool is_outside_source_tree(const char *dir)
 {
     char up[PATH_BYTES + FILE_BYTES], up_twice[PATH_BYTES + FILE_BYTES];
 
@@ -41,8 +41,8 @@ static bool is_installed(const char *dir)
     return access(up, F_OK) != 0 && access(up_twice, F_OK) != 0;
 }
 
-static void report_missing(const struct glint_plugin *plugin, bool installed,
-                           struct glint_error *error)
+static void report_missing_plugin(const struct glint_plugin *plugin,
+                                  bool installed, struct glint_error *error)
 {
     if (installed)
         glint_error_report(error, GLINT_E_UNSUPPORTED, plugin->file,
@@ -57,14 +57,15 @@ static void report_missing(const struct glint_plugin *plugin, bool installed,
             plugin->without, plugin->library, plugin->target);
 }
 
-static const void *load_file(const struct glint_plugin *plugin,
-                             const char *path, struct glint_error *error)
+static const void *load_plugin_file(const struct glint_plugin *plugin,
+                                    const char *path, struct glint_error *error)
 {
     void *const handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     const int *face;
 
     if (!handle) {
-        /* dlerror() names PATH, or a library that it needs. */
+        /* The text of dlerror() names PATH, or a library that the plug-in
+         * needs. */
         glint_error_report(error, GLINT_E_UNSUPPORTED, plugin->noun, "%s",
                            dlerror());
         return NULL;
@@ -90,21 +91,22 @@ static const void *load_from_directory(const struct glint_plugin *plugin,
     snprintf(path, sizeof path, "%s%s", dir, plugin->file);
     if (stat(dir, &st) < 0 || st.st_mode & S_IWOTH)
         return NULL;
-    return access(path, F_OK) == 0 ? load_file(plugin, path, error) : NULL;
+    return access(path, F_OK) == 0 ? load_plugin_file(plugin, path, error)
+                                   : NULL;
 }
 
 const void *glint_plugin_load(const struct glint_plugin *plugin,
                               struct glint_error *error)
 {
-    const char *const stated = glint_process_setting(plugin->setting);
+    const char *const stated = glint_process_get_setting(plugin->setting);
     const void *face = NULL;
     char own[PATH_BYTES];
 
     if (stated && *stated)
-        return load_file(plugin, stated, error);
+        return load_plugin_file(plugin, stated, error);
     if (!find_own_directory(own))
         *own = '\0';
-    report_missing(plugin, *own && is_installed(own), error);
+    report_missing_plugin(plugin, *own && is_outside_source_tree(own), error);
     if (*own) {
         face = load_from_directory(plugin, own, error);
         if (!face && strlen(own) + sizeof INSTALLED <= sizeof own) {

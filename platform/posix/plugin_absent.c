@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stands in for plugin.c in static programs, which cannot load a plug-in.
- */
+ * Replaces plugin.c in static programs, which cannot load plug-ins. */
 #include "posix/error.h"
 #include "posix/plugin.h"
 

@@ -22,13 +22,14 @@ struct pool {
     /* first member, so that a pool can be used as a glint_workers */
     struct glint_workers base;
     pthread_mutex_t lock; /* guards round, open, quit and busy */
-    pthread_cond_t wake;  /* signals that a round was opened, or quit set */
+    pthread_cond_t wake;  /* signals that a round was opened, or that quit was
+                             set */
     pthread_cond_t idle;  /* signals that busy became 0 */
-    unsigned round;       /* rounds opened so far; a round runs one set of
-                             jobs */
-    bool open;            /* true: helpers may still join the round */
+    unsigned round;       /* number of rounds opened so far; a round runs one
+                             set of jobs */
+    bool open;            /* true: more helpers may join the round */
     bool quit;
-    int busy; /* number of helpers that work in the round */
+    int busy; /* number of helpers that are working in the round */
 
     /* The members below are constant while a round is open or a helper is
      * busy. */
@@ -36,13 +37,14 @@ struct pool {
     void *ctx;
     unsigned n_jobs;
 
-    unsigned next; /* index of the next job; atomic. Unsigned, as every worker
-                      increments it once past the end */
+    /* Index of the next job; atomic. Unsigned, as every worker increments it
+     * once past the end. */
+    unsigned next;
     int n_helpers;
     struct helper helper[GLINT_MAX_WORKERS - 1];
 };
 
-static void do_jobs(struct pool *p, int worker)
+static void run_remaining_jobs(struct pool *p, int worker)
 {
     unsigned job;
 
@@ -51,7 +53,7 @@ static void do_jobs(struct pool *p, int worker)
         p->fn(p->ctx, (int)job, worker);
 }
 
-static void *run_helper(void *arg)
+static void *run_helper_thread(void *arg)
 {
     const struct helper *const h = arg;
     struct pool *const p = h->pool;
@@ -66,7 +68,7 @@ static void *run_helper(void *arg)
         seen = p->round;
         p->busy++;
         pthread_mutex_unlock(&p->lock);
-        do_jobs(p, h->worker);
+        run_remaining_jobs(p, h->worker);
         pthread_mutex_lock(&p->lock);
         if (--p->busy == 0)
             pthread_cond_signal(&p->idle);
@@ -95,7 +97,7 @@ static void run_jobs(struct glint_workers *workers, int n_jobs,
     pthread_cond_broadcast(&p->wake);
     pthread_mutex_unlock(&p->lock);
 
-    do_jobs(p, 0);
+    run_remaining_jobs(p, 0);
 
     pthread_mutex_lock(&p->lock);
     p->open = false; /* A helper that has not woken up yet would find no job. */
@@ -119,7 +121,7 @@ static void block_signals(sigset_t *old)
     pthread_sigmask(SIG_SETMASK, &held, old);
 }
 
-/* Starts N helpers, or as many as the system permits. */
+/* Starts N helper threads, or as many as the system permits. */
 static void start_helpers(struct pool *p, int n)
 {
     pthread_attr_t attr;
@@ -134,7 +136,7 @@ static void start_helpers(struct pool *p, int n)
 
         h->pool = p;
         h->worker = p->n_helpers + 1;
-        if (pthread_create(&h->thread, &attr, run_helper, h))
+        if (pthread_create(&h->thread, &attr, run_helper_thread, h))
             break;
         p->n_helpers++;
     }

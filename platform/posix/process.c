@@ -18,16 +18,18 @@ void glint_process_hold_streams(void)
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
         if (fcntl(fd, F_GETFD) < 0 && errno == EBADF &&
             open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
-            _exit(1); /* No stream is open to report the cause. */
+            _exit(1); /* No stream is open to which the cause could be
+                         printed. */
 }
 
-const char *glint_process_setting(const char *name)
+const char *glint_process_get_setting(const char *name)
 {
     return secure_getenv(name);
 }
 
-/* Returns the file of LINE of /proc/self/maps, "BEGIN-END ... FILE" with two
- * hexadecimal addresses, if it holds the address AT; else NULL. */
+/* Returns the file name in LINE of /proc/self/maps, "BEGIN-END ... FILE" with
+ * two hexadecimal addresses, if the range contains the address AT; else
+ * NULL. */
 static const char *find_mapped_file(const char *line, uintptr_t at)
 {
     char *rest;
@@ -37,11 +39,11 @@ static const char *find_mapped_file(const char *line, uintptr_t at)
     return begin <= at && at < end ? strchr(rest, '/') : NULL;
 }
 
-/* Reads /proc/self/maps, as dladdr() returns the path passed to dlopen(),
- * which may be relative to an earlier working directory, and argv[0] for a
- * program. Takes no memory: a file that is not found for want of it would be
- * taken for none. */
-bool glint_process_own_file(char *path, size_t bytes)
+/* Reads /proc/self/maps, as dladdr() returns the path passed to dlopen(), which
+ * may be relative to an earlier working directory, and argv[0] for a program.
+ * Allocates no memory: if an allocation failed, a file that exists would be
+ * reported as missing. */
+bool glint_process_find_own_file(char *path, size_t bytes)
 {
     static const char own = 0;
     const int maps = open("/proc/self/maps", O_RDONLY | O_CLOEXEC);
@@ -77,10 +79,10 @@ struct call {
     int (*fn)(void *ctx);
     void *ctx;
     int result;
-    sigset_t signals; /* signal mask of the thread that called */
+    sigset_t signals; /* signal mask of the calling thread */
 };
 
-static void *do_call(void *arg)
+static void *run_call_in_thread(void *arg)
 {
     struct call *const c = arg;
 
@@ -89,7 +91,7 @@ static void *do_call(void *arg)
     return NULL;
 }
 
-/* Runs C in a thread with a stack of BYTES; signals go to that thread
+/* Runs C in a thread with a stack of BYTES; that thread receives all signals
  * meanwhile. Returns false if the thread cannot be created. */
 static bool call_in_thread(size_t bytes, struct call *c)
 {
@@ -103,7 +105,7 @@ static bool call_in_thread(size_t bytes, struct call *c)
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &c->signals);
     started = !pthread_attr_setstacksize(&attr, bytes) &&
-              !pthread_create(&thread, &attr, do_call, c);
+              !pthread_create(&thread, &attr, run_call_in_thread, c);
     if (started)
         pthread_join(thread, NULL);
     pthread_sigmask(SIG_SETMASK, &c->signals, NULL);
@@ -111,7 +113,7 @@ static bool call_in_thread(size_t bytes, struct call *c)
     return started;
 }
 
-int glint_process_on_stack(size_t bytes, int (*fn)(void *ctx), void *ctx)
+int glint_process_run_on_stack(size_t bytes, int (*fn)(void *ctx), void *ctx)
 {
     struct call c = {.fn = fn, .ctx = ctx};
     struct rlimit stack;

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/process.h - preparations of a process, called first in main().
- */
+ * posix/process.h - prepares a process: descriptors, environment and stack.
+ * Called first in main(). */
 #ifndef GLINT_PLATFORM_POSIX_PROCESS_H
 #define GLINT_PLATFORM_POSIX_PROCESS_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Bytes of a stack for baking, whatever the system's default: baking needs
- * GLINT_BAKE_STACK_BYTES, and several times more under a sanitizer. */
+/* Stack size for baking, bytes, independent of the system's default: baking
+ * needs GLINT_BAKE_STACK_BYTES, and several times more under a sanitizer. */
 #ifdef GLINT_SANITIZED
 #define GLINT_WORKER_STACK_BYTES (16 << 20)
 #else
@@ -23,15 +23,15 @@ void glint_process_hold_streams(void);
 
 /* Returns the value of the environment variable NAME, or NULL if it is not set
  * or the program is setuid or setgid. */
-const char *glint_process_setting(const char *name);
+const char *glint_process_get_setting(const char *name);
 
 /* Sets PATH to the absolute path of the program, or of the plug-in of a host,
  * that this code is linked into. Returns false if it is unknown or too long. */
-bool glint_process_own_file(char *path, size_t bytes);
+bool glint_process_find_own_file(char *path, size_t bytes);
 
 /* Returns FN(CTX). If the stack limit is below BYTES, FN runs in a thread with
  * a stack of BYTES, which then receives all signals; if the thread cannot be
  * created, FN runs directly. For main(). */
-int glint_process_on_stack(size_t bytes, int (*fn)(void *ctx), void *ctx);
+int glint_process_run_on_stack(size_t bytes, int (*fn)(void *ctx), void *ctx);
 
 #endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The plug-in glint-sdl.so: the only file that uses SDL2.
- */
+ * The window plug-in glint-sdl.so: the only file that uses SDL2. */
 #include <SDL2/SDL.h>
 #include <stdlib.h>
 
@@ -13,7 +12,7 @@ struct view {
     SDL_Texture *texture;
 };
 
-static void close_view(void *window)
+static void close_sdl_window(void *window)
 {
     struct view *v = window;
 
@@ -29,8 +28,8 @@ static void close_view(void *window)
 
 /* Opens a window for pictures of WIDTH x HEIGHT, and halves its size until
  * it fits the desktop. On failure v->texture stays NULL. */
-static void make_window(struct view *v, const char *title, int width,
-                        int height)
+static void create_fitting_window(struct view *v, const char *title, int width,
+                                  int height)
 {
     SDL_Rect room = {0, 0, width, height};
     double scale = 1;
@@ -51,8 +50,8 @@ static void make_window(struct view *v, const char *title, int width,
                                    SDL_TEXTUREACCESS_STREAMING, width, height);
 }
 
-static void *open_view(const char *title, int width, int height,
-                       const char **cause)
+static void *open_sdl_window(const char *title, int width, int height,
+                             const char **cause)
 {
     struct view *v = calloc(1, sizeof *v);
 
@@ -61,11 +60,11 @@ static void *open_view(const char *title, int width, int height,
         return NULL;
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     if (SDL_Init(SDL_INIT_VIDEO) == 0)
-        make_window(v, title, width, height);
+        create_fitting_window(v, title, width, height);
     if (v->texture)
         return v;
     *cause = SDL_GetError();
-    close_view(v);
+    close_sdl_window(v);
     return NULL;
 }
 
@@ -93,4 +92,4 @@ static int show_pixels(void *window, const void *pixels, int stride)
 }
 
 __attribute__((visibility("default"))) const struct glint_sdl glint_sdl_face = {
-    GLINT_SDL_VERSION, open_view, show_pixels, close_view};
+    GLINT_SDL_VERSION, open_sdl_window, show_pixels, close_sdl_window};

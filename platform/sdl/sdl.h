@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * sdl/sdl.h - a window on the desktop, through SDL2.
+ * sdl/sdl.h - a sink that shows frames in a window on the desktop, through
+ * SDL2.
  *
  *     glint_window_open(&window, "glint", &error);
- *     window.sink.put(&window.sink, &image, &error);   first: opens it
+ *     window.sink.put(&window.sink, &image, &error); first: opens it
  *     window.sink.close(&window.sink);
  *
  * SDL2 lives in a plug-in, glint-sdl.so, which is loaded when a window is
  * requested, from $GLINT_SDL or the folders that posix/plugin.h lists. The
  * picture keeps its aspect ratio in a window of any size. Once the user closes
- * it or presses Escape or q, put returns GLINT_E_CLOSED.
- */
+ * it or presses Escape or q, put returns GLINT_E_CLOSED. */
 #ifndef GLINT_PLATFORM_SDL_SDL_H
 #define GLINT_PLATFORM_SDL_SDL_H
 
 #include "panel/panel.h"
 #include "source_sink.h"
 
-/* Version of this interface. A plug-in of another version is refused. */
+/* Version of this interface. glint rejects plug-ins of other versions. */
 #define GLINT_SDL_VERSION 1
 
 struct glint_sdl {
@@ -37,18 +37,18 @@ struct glint_sdl {
 struct glint_window {
     struct glint_sink sink;
 
-    /* Private. */
+    /* Private members. */
     const struct glint_sdl *sdl;
     void *window; /* NULL: not open */
     const char *title;
     struct glint_panel panel;
     uint8_t *pixels;
-    int width, height; /* pixels of the window's pictures */
+    int width, height; /* size of the pictures that the window shows, pixels */
 };
 
-/* Prepares WINDOW, which the first frame opens. TITLE must outlive WINDOW.
- * Returns GLINT_E_DEVICE if there is no plug-in; ERROR names another way to
- * show frames. */
+/* Prepares WINDOW; the first frame opens it on the desktop. TITLE must outlive
+ * WINDOW. Returns GLINT_E_DEVICE if there is no plug-in; ERROR names another
+ * way to show frames. */
 enum glint_status glint_window_open(struct glint_window *window,
                                     const char *title,
                                     struct glint_error *error);

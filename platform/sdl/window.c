@@ -12,7 +12,7 @@ static const struct glint_plugin plugin = {
 
 /* ------------------------------------------------------------------- frames */
 
-static void release_window(struct glint_window *w)
+static void release_sdl_window(struct glint_window *w)
 {
     if (w->window)
         w->sdl->close(w->window);
@@ -24,9 +24,9 @@ static void release_window(struct glint_window *w)
 
 /* Closes the window, if there is one, and opens a window for pictures of
  * IMAGE's size. */
-static enum glint_status open_for_image(struct glint_window *w,
-                                        const struct glint_image *image,
-                                        struct glint_error *error)
+static enum glint_status open_window_for_image(struct glint_window *w,
+                                               const struct glint_image *image,
+                                               struct glint_error *error)
 {
     const struct glint_panel_config cfg = {
         .width = image->width,
@@ -37,7 +37,7 @@ static enum glint_status open_for_image(struct glint_window *w,
     const char *cause = "no memory";
     enum glint_status status;
 
-    release_window(w);
+    release_sdl_window(w);
     w->width = image->width;
     w->height = image->height;
     status = glint_panel_open(&w->panel, &cfg, error);
@@ -49,7 +49,7 @@ static enum glint_status open_for_image(struct glint_window *w,
     if (w->window)
         return GLINT_OK;
     status = glint_error_report(error, GLINT_E_DEVICE, "window", "%s", cause);
-    release_window(w);
+    release_sdl_window(w);
     return status;
 }
 
@@ -62,7 +62,7 @@ static enum glint_status show_frame(struct glint_sink *sink,
     int shown;
 
     if (!w->window || image->width != w->width || image->height != w->height)
-        status = open_for_image(w, image, error);
+        status = open_window_for_image(w, image, error);
     if (status != GLINT_OK)
         return status;
     glint_panel_draw(&w->panel, image, w->pixels, 4 * (ptrdiff_t)w->width);
@@ -75,7 +75,7 @@ static enum glint_status show_frame(struct glint_sink *sink,
 
 static void close_window(struct glint_sink *sink)
 {
-    release_window((struct glint_window *)sink);
+    release_sdl_window((struct glint_window *)sink);
 }
 
 enum glint_status glint_window_open(struct glint_window *window,

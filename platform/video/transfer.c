@@ -7,8 +7,8 @@
 #define WHITE_Q24 (INT32_C(1) << 24)
 #define ONE_Q31   (UINT64_C(1) << 31)
 
-/* Parameters of a transfer curve: light(v) = ((v + a) / (1 + a))^(power /
- * 45) for v >= toe, v / divisor below the toe. */
+/* Parameters of a transfer curve: light(v) = ((v + a) / (1 + a))^(power / 45)
+ * for v >= toe, v / divisor below the toe. */
 struct power {
     int power;       /* 45 times the exponent */
     int a_10000;     /* 10000 times a */
@@ -33,14 +33,14 @@ struct tag {
     int value;
 };
 
-static int find_tag(const struct tag *tags, const char *name)
+static int find_tag_index(const struct tag *tags, const char *name)
 {
     while (tags->name && strcmp(tags->name, name) != 0)
         tags++;
     return tags->name ? tags->value : -1;
 }
 
-int glint_transfer_of_tag(const char *tag)
+int glint_transfer_from_tag(const char *tag)
 {
     static const struct tag tags[] = {{"bt709", GLINT_TRANSFER_BT709},
                                       {"smpte170m", GLINT_TRANSFER_BT709},
@@ -61,10 +61,10 @@ int glint_transfer_of_tag(const char *tag)
                                       {"log316", GLINT_TRANSFER_LOG316},
                                       {NULL, 0}};
 
-    return find_tag(tags, tag);
+    return find_tag_index(tags, tag);
 }
 
-int glint_primaries_of_tag(const char *tag)
+int glint_primaries_from_tag(const char *tag)
 {
     static const struct tag tags[] = {{"bt709", GLINT_PRIMARIES_BT709},
                                       {"smpte170m", GLINT_PRIMARIES_BT709},
@@ -76,7 +76,7 @@ int glint_primaries_of_tag(const char *tag)
                                       {"smpte432", GLINT_PRIMARIES_P3},
                                       {NULL, 0}};
 
-    return find_tag(tags, tag);
+    return find_tag_index(tags, tag);
 }
 
 const int32_t glint_primaries_from_bt709_q16[GLINT_PRIMARIES][3][3] = {
@@ -91,35 +91,35 @@ const int32_t glint_primaries_to_bt709_q16[GLINT_PRIMARIES][3][3] = {
 
 /* ------------------------------------------------------------------ BT.709 */
 
-static uint64_t mul_q30(uint64_t a_q30, uint64_t b_q30)
+static uint64_t multiply_q30(uint64_t a_q30, uint64_t b_q30)
 {
     return (a_q30 * b_q30 + (UINT64_C(1) << 29)) >> 30;
 }
 
 /* Returns x^9; X is 0 .. 1. */
-static uint64_t power_q30(uint64_t x_q30)
+static uint64_t compute_power_9_q30(uint64_t x_q30)
 {
-    const uint64_t x2_q30 = mul_q30(x_q30, x_q30);
-    const uint64_t x4_q30 = mul_q30(x2_q30, x2_q30);
+    const uint64_t x2_q30 = multiply_q30(x_q30, x_q30);
+    const uint64_t x4_q30 = multiply_q30(x2_q30, x2_q30);
 
-    return mul_q30(mul_q30(x4_q30, x4_q30), x_q30);
+    return multiply_q30(multiply_q30(x4_q30, x4_q30), x_q30);
 }
 
 /* Returns the largest r with r^9 <= x; X is 0 .. 1. */
-static uint64_t root_q30(uint64_t x_q30)
+static uint64_t compute_root_9_q30(uint64_t x_q30)
 {
     uint64_t r_q30 = 0;
 
     for (uint64_t bit = UINT64_C(1) << 30; bit; bit >>= 1)
         if ((r_q30 | bit) <= UINT64_C(1) << 30 &&
-            power_q30(r_q30 | bit) <= x_q30)
+            compute_power_9_q30(r_q30 | bit) <= x_q30)
             r_q30 |= bit;
     return r_q30;
 }
 
-/* Returns the light of v = STEP / STEPS by BT.709: v / 4.5 below 0.081, else
- * u^(20/9), u = (v + 0.099) / 1.099. */
-static int32_t bt709_light_q24(int step, int steps)
+/* Returns the light of code v = STEP / STEPS by BT.709: v / 4.5 below 0.081,
+ * else u^(20/9), u = (v + 0.099) / 1.099. */
+static int32_t decode_bt709_q24(int step, int steps)
 {
     const uint64_t divisor = UINT64_C(1099) * (uint64_t)steps;
     uint64_t u_q30, u2_q30;
@@ -131,15 +131,17 @@ static int32_t bt709_light_q24(int step, int steps)
     u_q30 =
         (((1000 * (uint64_t)step + 99 * (uint64_t)steps) << 30) + divisor / 2) /
         divisor;
-    u2_q30 = mul_q30(u_q30, u_q30);
-    return (int32_t)((mul_q30(u2_q30, root_q30(u2_q30)) + (1 << 5)) >> 6);
+    u2_q30 = multiply_q30(u_q30, u_q30);
+    return (int32_t)((multiply_q30(u2_q30, compute_root_9_q30(u2_q30)) +
+                      (1 << 5)) >>
+                     6);
 }
 
 /* ------------------------------------------------------------------ powers */
 
-/* Returns log2(N / D) of N, D from 1 to 2^32. The 32 fraction bits are computed
+/* Returns log2(N / D); N and D are 1 .. 2^32. The 32 fraction bits are computed
  * by repeated squaring; the error is below 2^-29. */
-static int64_t log2_q32(uint64_t n, uint64_t d)
+static int64_t compute_log2_q32(uint64_t n, uint64_t d)
 {
     int64_t whole = 31, bits = 0;
     uint64_t m_q31;
@@ -185,13 +187,13 @@ static int64_t compute_exp2(int64_t x_q32, int frac)
                : (int64_t)((sum_q31 + (UINT64_C(1) << down >> 1)) >> down);
 }
 
-static int64_t exp2_q24(int64_t x_q32)
+static int64_t compute_exp2_q24(int64_t x_q32)
 {
     return compute_exp2(x_q32, 24);
 }
 
-static int32_t power_light_q24(const struct power *p, int64_t step,
-                               int64_t steps)
+static int32_t decode_power_q24(const struct power *p, int64_t step,
+                                int64_t steps)
 {
     const int64_t n = 10000 * step + p->a_10000 * steps;
     const int64_t d = (10000 + p->a_10000) * steps;
@@ -199,15 +201,15 @@ static int32_t power_light_q24(const struct power *p, int64_t step,
     if (p->power == 45 || 10000 * step <= p->toe_10000 * steps)
         return (int32_t)((step * WHITE_Q24 * 100 + p->divisor_100 * steps / 2) /
                          (p->divisor_100 * steps));
-    return (int32_t)exp2_q24(log2_q32((uint64_t)n, (uint64_t)d) * p->power /
-                             45);
+    return (int32_t)compute_exp2_q24(
+        compute_log2_q32((uint64_t)n, (uint64_t)d) * p->power / 45);
 }
 
 /* --------------------------------------------------------------- HDR, logs */
 
 /* Returns the light of PQ [SMPTE ST 2084], 10000 cd/m2 at STEP = STEPS:
  *   (max(p - c1, 0) / (c2 - c3 p))^(8192 / 1305), p = v^(32 / 2523) */
-static int32_t pq_light_q24(int step, int steps)
+static int32_t decode_pq_q24(int step, int steps)
 {
     const int64_t c1_q30 = INT64_C(3424) << 18, c2_q30 = INT64_C(2413) << 23;
     const int64_t white_q32 = INT64_C(24147923032); /* log2(10000 / 203) */
@@ -215,19 +217,19 @@ static int32_t pq_light_q24(int step, int steps)
 
     if (step == 0)
         return 0;
-    p_q30 =
-        compute_exp2(log2_q32((uint64_t)step, (uint64_t)steps) * 32 / 2523, 30);
+    p_q30 = compute_exp2(
+        compute_log2_q32((uint64_t)step, (uint64_t)steps) * 32 / 2523, 30);
     if (p_q30 <= c1_q30)
         return 0;
     d_q30 = c2_q30 - ((2392 * p_q30) >> 7);
-    log_q32 = log2_q32((uint64_t)(p_q30 - c1_q30), (uint64_t)d_q30);
-    return (int32_t)exp2_q24(log_q32 * 8192 / 1305 + white_q32);
+    log_q32 = compute_log2_q32((uint64_t)(p_q30 - c1_q30), (uint64_t)d_q30);
+    return (int32_t)compute_exp2_q24(log_q32 * 8192 / 1305 + white_q32);
 }
 
-/* Returns the scene light by HLG [ITU-R BT.2100]: v^2 / 3 up to v = 1/2, else
- * (e^((v - c) / a) + b) / 12; scaled so that v = 0.75 is light 1 and the peak
- * 3.774118. */
-static int32_t hlg_light_q24(int64_t step, int64_t steps)
+/* Returns the scene light of HLG [ITU-R BT.2100] of code v = STEP / STEPS: v^2
+ * / 3 up to v = 1/2, else (e^((v - c) / a) + b) / 12; scaled so that v = 0.75
+ * is light 1 and the peak is 3.774118. */
+static int32_t decode_hlg_q24(int64_t step, int64_t steps)
 {
     /* log2(e) / a, c, b and the peak light */
     const int64_t slope_q24 = 135346594, c_q32 = 2404798274;
@@ -238,18 +240,20 @@ static int32_t hlg_light_q24(int64_t step, int64_t steps)
         light_q24 = step * step * 4 * WHITE_Q24 / (steps * steps);
     else {
         v_q32 = (step << 32) / steps;
-        light_q24 = exp2_q24(((v_q32 - c_q32) >> 8) * slope_q24 >> 16) + b_q24;
+        light_q24 =
+            compute_exp2_q24(((v_q32 - c_q32) >> 8) * slope_q24 >> 16) + b_q24;
     }
     return (int32_t)((light_q24 * peak_q24 / 12 + WHITE_Q24 / 2) / WHITE_Q24);
 }
 
-/* Returns 10^(DECADES_2 / 2 (v - 1)), and 0 at v = 0. */
-static int32_t log_light_q24(int64_t step, int64_t steps, int decades_2)
+/* Returns 10^(DECADES_2 / 2 (v - 1)), the light of code v = STEP / STEPS of a
+ * logarithmic curve, and 0 at v = 0. */
+static int32_t decode_log_q24(int64_t step, int64_t steps, int decades_2)
 {
     const int64_t log2_10_q32 = INT64_C(14267572527);
 
-    return step ? (int32_t)exp2_q24((step - steps) * (log2_10_q32 / 2) *
-                                    decades_2 / steps)
+    return step ? (int32_t)compute_exp2_q24((step - steps) * (log2_10_q32 / 2) *
+                                            decades_2 / steps)
                 : 0;
 }
 
@@ -258,16 +262,16 @@ int32_t glint_transfer_light_q24(enum glint_transfer_curve curve, int step,
 {
     switch (curve) {
     case GLINT_TRANSFER_BT709:
-        return bt709_light_q24(step, steps);
+        return decode_bt709_q24(step, steps);
     case GLINT_TRANSFER_PQ:
-        return pq_light_q24(step, steps);
+        return decode_pq_q24(step, steps);
     case GLINT_TRANSFER_HLG:
-        return hlg_light_q24(step, steps);
+        return decode_hlg_q24(step, steps);
     case GLINT_TRANSFER_LOG100:
-        return log_light_q24(step, steps, 4);
+        return decode_log_q24(step, steps, 4);
     case GLINT_TRANSFER_LOG316:
-        return log_light_q24(step, steps, 5);
+        return decode_log_q24(step, steps, 5);
     default:
-        return power_light_q24(&powers[curve], step, steps);
+        return decode_power_q24(&powers[curve], step, steps);
     }
 }

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * video/transfer.h - transfer curves and primaries of a video's tags [ITU-T
- * H.273], in integers, so that results are the same on every CPU.
+ * video/transfer.h - the transfer curves and primaries that tags of a video
+ * name [ITU-T H.273], in integers, so that results are the same on every CPU.
  *
  * Light 1 is diffuse white: code 1, but 203 cd/m2 by PQ and 0.265 of the peak
- * of the scene light by HLG [ITU-R BT.2408], so that PQ holds light up to 49.3
- * and HLG up to 3.77.
- */
+ * of the scene light by HLG [ITU-R BT.2408], so that PQ can represent light up
+ * to 49.3 and HLG up to 3.77. */
 #ifndef GLINT_PLATFORM_VIDEO_TRANSFER_H
 #define GLINT_PLATFORM_VIDEO_TRANSFER_H
 
@@ -35,16 +34,16 @@ enum glint_primaries {
     GLINT_PRIMARIES
 };
 
-/* Names of the curves as option values, in the order of the enum; ends with
- * NULL. */
+/* Names of the curves as values of options, in the order of the enum; NULL is
+ * the last. */
 extern const char *const glint_transfer_words[];
 
-/* Return the curve, or the primaries, that ffmpeg calls TAG; -1 if TAG is
- * unknown. */
-int glint_transfer_of_tag(const char *tag);
-int glint_primaries_of_tag(const char *tag);
+/* Return the curve, or the primaries, for which ffmpeg has the name TAG; -1 if
+ * TAG is unknown. */
+int glint_transfer_from_tag(const char *tag);
+int glint_primaries_from_tag(const char *tag);
 
-/* Returns the light of code V = STEP / STEPS, 0 <= STEP <= STEPS <= 2^16; 2^24
+/* Returns the light of code v = STEP / STEPS, 0 <= STEP <= STEPS <= 2^16; 2^24
  * is white. Light rises with STEP; light below 2^-24 is 0. The relative error
  * is below 1e-5 plus rounding. */
 int32_t glint_transfer_light_q24(enum glint_transfer_curve curve, int step,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The writing half of video/y4m.h.
- */
+ * Reads and writes YUV4MPEG2 streams, and adds light to their frames
+ * (video/y4m.h). */
 #include "video/y4m.h"
 
 #include <assert.h>
@@ -24,7 +24,8 @@ static const struct colour {
     enum glint_pixel_format format;
     bool has_alpha, is_411, may_be_deep;
 } colours[] = {
-    /* Formats by the tag C. find_tag() returns the first tag of each format. */
+    /* Formats by the value of the tag C. find_layout_tag() returns the first
+     * entry of each format. */
     {"420jpeg", GLINT_I420, false, false, false},
     {"420mpeg2", GLINT_I420, false, false, false},
     {"420paldv", GLINT_I420, false, false, false},
@@ -38,9 +39,9 @@ static const struct colour {
 
 #define N_COLOURS (sizeof colours / sizeof *colours)
 
-/* Returns the bits per sample that TEXT, the end of a tag, states: 9 .. 16;
- * 8 if TEXT is empty, 0 if it is malformed. */
-static int parse_bits(const char *text, bool is_grey)
+/* Returns the bits per sample, 9 .. 16, that TEXT, the end of a tag, states; 8
+ * if TEXT is empty, 0 if it is malformed. */
+static int parse_bits_per_sample(const char *text, bool is_grey)
 {
     static const char *const names[] = {"9", "10", "12", "14", "16"};
     static const int bits[] = {9, 10, 12, 14, 16};
@@ -55,18 +56,19 @@ static int parse_bits(const char *text, bool is_grey)
     return 0;
 }
 
-/* Sets LAYOUT by TAG; an empty TAG means 420jpeg. Returns false if TAG is
+/* Sets LAYOUT from TAG; an empty TAG means 420jpeg. Returns false if TAG is
  * unknown. */
-static bool parse_layout(struct glint_y4m_layout *layout, const char *tag)
+static bool parse_layout_tag(struct glint_y4m_layout *layout, const char *tag)
 {
     const char *const text = *tag ? tag : colours[0].tag;
 
     for (size_t i = 0; i < N_COLOURS; i++) {
         const struct colour *const c = &colours[i];
         const size_t n = strlen(c->tag);
-        const int bits = strncmp(text, c->tag, n) == 0
-                             ? parse_bits(text + n, c->format == GLINT_GREY)
-                             : 0;
+        const int bits =
+            strncmp(text, c->tag, n) == 0
+                ? parse_bits_per_sample(text + n, c->format == GLINT_GREY)
+                : 0;
 
         if (bits == 0 || (bits > 8 && !c->may_be_deep))
             continue;
@@ -77,9 +79,9 @@ static bool parse_layout(struct glint_y4m_layout *layout, const char *tag)
     return false;
 }
 
-/* Returns the tag C that glint writes for FORMAT: _GREY, _I420, _I422 or
- * _I444. */
-static const char *find_tag(enum glint_pixel_format format)
+/* Returns the value of tag C that glint writes for FORMAT: _GREY, _I420, _I422
+ * or _I444. */
+static const char *find_layout_tag(enum glint_pixel_format format)
 {
     size_t i = 0;
 
@@ -88,15 +90,15 @@ static const char *find_tag(enum glint_pixel_format format)
     return colours[i].tag;
 }
 
-bool glint_y4m_is_plain(const struct glint_y4m_header *header)
+bool glint_y4m_is_8_bit_bt709(const struct glint_y4m_header *header)
 {
     return header->layout.bits == 8 && !header->layout.is_411 &&
            header->transfer == GLINT_TRANSFER_BT709 &&
            header->primaries == GLINT_PRIMARIES_BT709;
 }
 
-/* Sets SIZE to the samples across and down PLANE, 0 .. 3, or to 0 and 0 if
- * there is no such plane. */
+/* Sets SIZE to the number of samples across and down in PLANE, 0 .. 3, or to 0
+ * and 0 if there is no such plane. */
 static void set_plane_size(const struct glint_y4m_layout *layout, int plane,
                            int width, int height, int size[2])
 {
@@ -134,8 +136,8 @@ struct plane {
     bool is_wide;
 };
 
-static void find_planes(const struct glint_y4m_layout *layout, int width,
-                        int height, uint8_t *planes, struct plane plane[4])
+static void locate_planes(const struct glint_y4m_layout *layout, int width,
+                          int height, uint8_t *planes, struct plane plane[4])
 {
     for (int p = 0; p < 4; p++) {
         set_plane_size(layout, p, width, height, plane[p].size);
@@ -146,14 +148,14 @@ static void find_planes(const struct glint_y4m_layout *layout, int width,
     }
 }
 
-static int32_t read_code(const struct plane *p, int x, int y)
+static int32_t read_sample_code(const struct plane *p, int x, int y)
 {
     const size_t i = (size_t)y * (size_t)p->size[0] + (size_t)x;
 
     return p->is_wide ? p->at[2 * i] | p->at[2 * i + 1] << 8 : p->at[i];
 }
 
-static void write_code(const struct plane *p, int x, int y, int32_t code)
+static void write_sample_code(const struct plane *p, int x, int y, int32_t code)
 {
     const size_t i = (size_t)y * (size_t)p->size[0] + (size_t)x;
 
@@ -165,14 +167,17 @@ static void write_code(const struct plane *p, int x, int y, int32_t code)
     }
 }
 
-/* Fills IMAGE, of LAYOUT's format, with PLANES reduced to 8 bits. */
-static void fill_proxy(const struct glint_y4m_layout *layout,
-                       const struct glint_image *image, const uint8_t *planes)
+/* Fills IMAGE, of LAYOUT's format, with the stored planes PLANES reduced to 8
+ * bits. */
+static void fill_8_bit_copy(const struct glint_y4m_layout *layout,
+                            const struct glint_image *image,
+                            const uint8_t *planes)
 {
     const int down = layout->bits - 8;
     struct plane plane[4];
 
-    find_planes(layout, image->width, image->height, (uint8_t *)planes, plane);
+    locate_planes(layout, image->width, image->height, (uint8_t *)planes,
+                  plane);
     for (int p = 0; p < glint_image_planes(image->format); p++) {
         const int width =
             (int)glint_image_row_bytes(image->format, p, image->width);
@@ -182,7 +187,8 @@ static void fill_proxy(const struct glint_y4m_layout *layout,
         for (int y = 0; y < height; y++)
             for (int x = 0; x < width; x++) {
                 const int from = layout->is_411 && p > 0 ? x / 2 : x;
-                const int32_t code = read_code(&plane[p], from, y) >> down;
+                const int32_t code =
+                    read_sample_code(&plane[p], from, y) >> down;
 
                 image->plane[p][y * image->stride_bytes[p] + x] =
                     (uint8_t)(code < 255 ? code : 255);
@@ -197,9 +203,9 @@ static enum glint_matrix choose_matrix(int height)
     return height < 720 ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
 }
 
-/* Returns whether the matrix is BT.601 in any size, as in JPEG [JFIF]: the
- * range is full, and the tag C is C420jpeg or missing. */
-static bool is_jpeg(const struct glint_y4m_header *h)
+/* Returns whether the matrix is BT.601 in pictures of any size, as in JPEG
+ * [JFIF]: the range is full, and the tag C is C420jpeg or missing. */
+static bool has_jpeg_colours(const struct glint_y4m_header *h)
 {
     return h->range == GLINT_RANGE_FULL &&
            (!*h->colour || !strcmp(h->colour, "420jpeg"));
@@ -225,8 +231,8 @@ void glint_y4m_header_init(struct glint_y4m_header *header, int width,
         .interlace = 'p',
         .aspect = "1:1",
     };
-    strcpy(header->colour, find_tag(format));
-    (void)parse_layout(&header->layout, header->colour);
+    strcpy(header->colour, find_layout_tag(format));
+    (void)parse_layout_tag(&header->layout, header->colour);
 }
 
 /* Returns the number at *AT, at most INT_MAX, and moves *AT past it. Returns -1
@@ -256,14 +262,14 @@ static bool parse_ratio(const char *text, int *num, int *den)
 }
 
 /* Returns TEXT as a number, or 0 if any character is not a digit. */
-static int parse_side(const char *text)
+static int parse_side_length(const char *text)
 {
     const int value = parse_number(&text);
 
     return *text || value < 0 ? 0 : value;
 }
 
-static bool copy_text(char *dst, size_t size, const char *text)
+static bool copy_tag_text(char *dst, size_t size, const char *text)
 {
     const bool fits = strlen(text) < size;
 
@@ -272,7 +278,7 @@ static bool copy_text(char *dst, size_t size, const char *text)
     return fits;
 }
 
-static bool parse_range(struct glint_y4m_header *h, const char *tag)
+static bool parse_colour_range(struct glint_y4m_header *h, const char *tag)
 {
     const bool full = !strcmp(tag, "XCOLORRANGE=FULL");
 
@@ -283,16 +289,17 @@ static bool parse_range(struct glint_y4m_header *h, const char *tag)
     return true;
 }
 
-/* Sets H by TAG of the header. Returns false if TAG is malformed. */
-static bool parse_tag(struct glint_y4m_header *h, const char *tag)
+/* Sets the member of H that TAG of the header line states. Returns false if TAG
+ * is malformed. */
+static bool parse_header_tag(struct glint_y4m_header *h, const char *tag)
 {
     int num, den;
 
     switch (tag[0]) {
     case 'W':
-        return (h->width = parse_side(tag + 1)) > 0;
+        return (h->width = parse_side_length(tag + 1)) > 0;
     case 'H':
-        return (h->height = parse_side(tag + 1)) > 0;
+        return (h->height = parse_side_length(tag + 1)) > 0;
     case 'F':
         return parse_ratio(tag + 1, &h->fps_num, &h->fps_den);
     case 'I':
@@ -300,21 +307,22 @@ static bool parse_tag(struct glint_y4m_header *h, const char *tag)
         return tag[1] && strchr("ptbm?", tag[1]) && !tag[2];
     case 'A':
         return parse_ratio(tag + 1, &num, &den) &&
-               copy_text(h->aspect, sizeof h->aspect, tag + 1);
+               copy_tag_text(h->aspect, sizeof h->aspect, tag + 1);
     case 'C':
-        return tag[1] && copy_text(h->colour, sizeof h->colour, tag + 1);
+        return tag[1] && copy_tag_text(h->colour, sizeof h->colour, tag + 1);
     }
-    if (!parse_range(h, tag)) {
-        /* All tags fit, as they come from a line no longer than EXTRA. */
+    if (!parse_colour_range(h, tag)) {
+        /* All tags fit into EXTRA, as they come from a line that is not
+         * longer. */
         strcat(h->extra, " ");
         strcat(h->extra, tag);
     }
     return true;
 }
 
-static enum glint_status check_header(struct glint_y4m_header *h,
-                                      const char *name,
-                                      struct glint_error *error)
+static enum glint_status check_stream_header(struct glint_y4m_header *h,
+                                             const char *name,
+                                             struct glint_error *error)
 {
     if (h->width < 1 || h->height < 1)
         return glint_error_report(error, GLINT_E_FORMAT, name,
@@ -323,7 +331,7 @@ static enum glint_status check_header(struct glint_y4m_header *h,
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "larger than %d pixels a side",
                                   GLINT_MAX_SIDE);
-    if (!parse_layout(&h->layout, h->colour))
+    if (!parse_layout_tag(&h->layout, h->colour))
         return glint_error_report(
             error, GLINT_E_UNSUPPORTED, name,
             "C%s is not a supported colour space: 420, 422, 444 (up to p16), "
@@ -352,19 +360,20 @@ enum glint_status glint_y4m_header_parse(struct glint_y4m_header *header,
         (line[strlen(MAGIC)] && line[strlen(MAGIC)] != ' '))
         return glint_error_report(error, GLINT_E_FORMAT, name,
                                   "is not a YUV4MPEG2 stream");
-    if (!is_plain_text(line) || !copy_text(copy, sizeof copy, line))
+    if (!is_plain_text(line) || !copy_tag_text(copy, sizeof copy, line))
         return glint_error_report(error, GLINT_E_FORMAT, name,
                                   "malformed Y4M header");
     for (char *tag = strtok_r(copy + strlen(MAGIC), " ", &rest); tag;
          tag = strtok_r(NULL, " ", &rest))
-        if (!parse_tag(&h, tag))
+        if (!parse_header_tag(&h, tag))
             return glint_error_report(error, GLINT_E_FORMAT, name,
                                       "malformed tag %s in the Y4M header",
                                       tag);
-    status = check_header(&h, name, error);
+    status = check_stream_header(&h, name, error);
     if (status)
         return status;
-    h.matrix = is_jpeg(&h) ? GLINT_MATRIX_BT601 : choose_matrix(h.height);
+    h.matrix =
+        has_jpeg_colours(&h) ? GLINT_MATRIX_BT601 : choose_matrix(h.height);
     strcpy(h.line, line); /* fits, as LINE fitted into COPY */
     h.line_range = h.range;
     *header = h;
@@ -394,22 +403,23 @@ size_t glint_y4m_header_print(char line[GLINT_Y4M_PRINTED],
 
 /* ----------------------------------------------------------------- reading */
 
-/* Tables that convert frames of a stream that is not BT.709 to the 8-bit
- * BT.709 copy. */
+/* Tables that convert frames of a stream that is not BT.709 to an 8-bit BT.709
+ * copy. */
 struct glint_y4m_seen {
     struct glint_y4m_light from, to;
 };
 
-static void fill_copy(const struct glint_y4m_reader *r);
+static void fill_bt709_copy(const struct glint_y4m_reader *r);
 
-static ptrdiff_t read_some(struct glint_y4m_reader *r, void *dst, size_t bytes)
+static ptrdiff_t read_available_bytes(struct glint_y4m_reader *r, void *dst,
+                                      size_t bytes)
 {
     return r->source ? r->source(r->ctx, dst, bytes)
-                     : glint_input_some(&r->in, dst, bytes);
+                     : glint_input_read_available(&r->in, dst, bytes);
 }
 
-static enum glint_status report_io(const struct glint_y4m_reader *r,
-                                   struct glint_error *error)
+static enum glint_status report_read_failure(const struct glint_y4m_reader *r,
+                                             struct glint_error *error)
 {
     return glint_error_report(error, GLINT_E_IO, r->name, "%s",
                               strerror(errno));
@@ -418,14 +428,15 @@ static enum glint_status report_io(const struct glint_y4m_reader *r,
 enum line_end { LINE_FEED, LINE_EOF, LINE_TOO_LONG, LINE_FAILED };
 
 /* Reads a line up to its line feed, which is not stored, or to the end of the
- * stream. Sets *LEN to the number of characters. */
-static enum line_end read_line(struct glint_y4m_reader *r, char *line,
-                               size_t size, size_t *len)
+ * stream. Sets *LEN to the number of characters stored. */
+static enum line_end read_stream_line(struct glint_y4m_reader *r, char *line,
+                                      size_t size, size_t *len)
 {
     *len = 0;
     for (;;) {
         if (r->ahead_at == r->ahead_end) {
-            const ptrdiff_t n = read_some(r, r->ahead, sizeof r->ahead);
+            const ptrdiff_t n =
+                read_available_bytes(r, r->ahead, sizeof r->ahead);
 
             r->ahead_at = 0;
             r->ahead_end = n > 0 ? (size_t)n : 0;
@@ -444,8 +455,8 @@ static enum line_end read_line(struct glint_y4m_reader *r, char *line,
 
 /* Reads BYTES, or fewer at the end of the stream. Returns the number of bytes
  * read, or -1 on failure. */
-static ptrdiff_t read_block(struct glint_y4m_reader *r, uint8_t *dst,
-                            size_t bytes)
+static ptrdiff_t read_stream_bytes(struct glint_y4m_reader *r, uint8_t *dst,
+                                   size_t bytes)
 {
     const size_t left = r->ahead_end - r->ahead_at;
     size_t got = left < bytes ? left : bytes;
@@ -453,7 +464,7 @@ static ptrdiff_t read_block(struct glint_y4m_reader *r, uint8_t *dst,
     memcpy(dst, r->ahead + r->ahead_at, got);
     r->ahead_at += got;
     while (got < bytes) {
-        const ptrdiff_t n = read_some(r, dst + got, bytes - got);
+        const ptrdiff_t n = read_available_bytes(r, dst + got, bytes - got);
 
         if (n < 0)
             return -1;
@@ -464,16 +475,16 @@ static ptrdiff_t read_block(struct glint_y4m_reader *r, uint8_t *dst,
     return (ptrdiff_t)got;
 }
 
-static enum glint_status read_header(struct glint_y4m_reader *r,
-                                     struct glint_error *error)
+static enum glint_status read_stream_header(struct glint_y4m_reader *r,
+                                            struct glint_error *error)
 {
     char line[GLINT_Y4M_LINE];
     size_t len;
-    const enum line_end end = read_line(r, line, sizeof line, &len);
+    const enum line_end end = read_stream_line(r, line, sizeof line, &len);
     const char *cause = "holds a zero byte in the Y4M header";
 
     if (end == LINE_FAILED)
-        return report_io(r, error);
+        return report_read_failure(r, error);
     if (end == LINE_FEED && strlen(line) == len)
         return glint_y4m_header_parse(&r->header, line, r->name, error);
     if (len == 0)
@@ -497,7 +508,7 @@ enum glint_status glint_y4m_reader_start(struct glint_y4m_reader *reader,
     reader->source = source;
     reader->ctx = ctx;
     reader->name = name;
-    return read_header(reader, error);
+    return read_stream_header(reader, error);
 }
 
 enum glint_status glint_y4m_reader_open(struct glint_y4m_reader *reader,
@@ -510,7 +521,7 @@ enum glint_status glint_y4m_reader_open(struct glint_y4m_reader *reader,
     status = glint_input_open(&reader->in, path, error);
     reader->name = reader->in.name;
     if (!status)
-        status = read_header(reader, error);
+        status = read_stream_header(reader, error);
     if (status)
         glint_y4m_reader_close(reader);
     return status;
@@ -535,14 +546,14 @@ glint_y4m_reader_open_raw(struct glint_y4m_reader *reader, const char *path,
 }
 
 /* Sets *MORE to whether a stream without FRAME lines continues. */
-static enum glint_status peek_frame(struct glint_y4m_reader *r, bool *more,
-                                    struct glint_error *error)
+static enum glint_status peek_raw_frame(struct glint_y4m_reader *r, bool *more,
+                                        struct glint_error *error)
 {
     if (r->ahead_at == r->ahead_end) {
-        const ptrdiff_t n = read_some(r, r->ahead, sizeof r->ahead);
+        const ptrdiff_t n = read_available_bytes(r, r->ahead, sizeof r->ahead);
 
         if (n < 0)
-            return report_io(r, error);
+            return report_read_failure(r, error);
         r->ahead_at = 0;
         r->ahead_end = (size_t)n;
     }
@@ -550,9 +561,10 @@ static enum glint_status peek_frame(struct glint_y4m_reader *r, bool *more,
     return GLINT_OK;
 }
 
-/* Reads a frame whose rows are padded to r->stride. Returns the bytes of pixels
- * read, fewer than a frame at the end of the stream, or -1 on failure. */
-static ptrdiff_t read_rows(struct glint_y4m_reader *r)
+/* Reads the rows of a frame that are padded to r->stride, without the padding.
+ * Returns the number of bytes of pixels read, fewer than a frame at the end of
+ * the stream, or -1 on failure. */
+static ptrdiff_t read_padded_rows(struct glint_y4m_reader *r)
 {
     uint8_t *to = r->planes;
     uint8_t padding[4096];
@@ -567,14 +579,14 @@ static ptrdiff_t read_rows(struct glint_y4m_reader *r)
             stride /= 2;
         for (int y = 0; y < size[1]; y++) {
             const size_t n = (size_t)size[0];
-            ptrdiff_t got = read_block(r, to, n);
+            ptrdiff_t got = read_stream_bytes(r, to, n);
 
             to += got > 0 ? got : 0;
             if (got < (ptrdiff_t)n)
                 return got < 0 ? -1 : to - r->planes;
             for (size_t left = stride - n; left > 0; left -= (size_t)got) {
-                got = read_block(r, padding,
-                                 left < sizeof padding ? left : sizeof padding);
+                got = read_stream_bytes(
+                    r, padding, left < sizeof padding ? left : sizeof padding);
                 if (got <= 0)
                     break;
             }
@@ -586,13 +598,14 @@ static ptrdiff_t read_rows(struct glint_y4m_reader *r)
 }
 
 /* Returns whether transfer or primaries of H differ from BT.709. */
-static bool is_graded(const struct glint_y4m_header *h)
+static bool is_not_bt709(const struct glint_y4m_header *h)
 {
     return h->transfer != GLINT_TRANSFER_BT709 ||
            h->primaries != GLINT_PRIMARIES_BT709;
 }
 
-static struct glint_y4m_seen *make_seen(const struct glint_y4m_header *h)
+static struct glint_y4m_seen *
+allocate_copy_tables(const struct glint_y4m_header *h)
 {
     struct glint_y4m_seen *const seen = malloc(sizeof *seen);
     struct glint_y4m_header to = *h;
@@ -607,14 +620,14 @@ static struct glint_y4m_seen *make_seen(const struct glint_y4m_header *h)
     return seen;
 }
 
-/* Prepares r->frame. Its memory is allocated with the first frame, so that
- * reading only the header needs none. */
-static enum glint_status place_frame(struct glint_y4m_reader *r,
-                                     struct glint_error *error)
+/* Sets r->frame. Its memory is allocated with the first frame, so that reading
+ * only the header needs none. */
+static enum glint_status allocate_frame(struct glint_y4m_reader *r,
+                                        struct glint_error *error)
 {
     const struct glint_y4m_header *const h = &r->header;
 
-    const bool is_plain = glint_y4m_is_plain(h);
+    const bool is_plain = glint_y4m_is_8_bit_bt709(h);
     const size_t bytes =
         glint_y4m_layout_bytes(&h->layout, h->width, h->height);
 
@@ -622,8 +635,8 @@ static enum glint_status place_frame(struct glint_y4m_reader *r,
         r->mem = malloc(
             bytes +
             (is_plain ? 0 : glint_image_bytes(h->format, h->width, h->height)));
-        r->seen = r->mem && is_graded(h) ? make_seen(h) : NULL;
-        if (!r->mem || (is_graded(h) && !r->seen))
+        r->seen = r->mem && is_not_bt709(h) ? allocate_copy_tables(h) : NULL;
+        if (!r->mem || (is_not_bt709(h) && !r->seen))
             return glint_error_report(error, GLINT_E_MEMORY, r->name,
                                       "no memory for a %d x %d frame", h->width,
                                       h->height);
@@ -648,13 +661,13 @@ static enum glint_status read_frame_line(struct glint_y4m_reader *r, bool *more,
 {
     char line[sizeof "FRAME" - 1 + GLINT_Y4M_FRAME_TAGS] = "";
     size_t len;
-    const enum line_end end = read_line(r, line, sizeof line, &len);
+    const enum line_end end = read_stream_line(r, line, sizeof line, &len);
 
     *more = false;
     if (end == LINE_EOF && len == 0)
         return GLINT_OK;
     if (end == LINE_FAILED)
-        return report_io(r, error);
+        return report_read_failure(r, error);
     if (end != LINE_FEED || strlen(line) != len || !is_plain_text(line) ||
         strncmp(line, "FRAME", 5) != 0 || (line[5] && line[5] != ' '))
         return glint_error_report(error, GLINT_E_FORMAT, r->name,
@@ -675,29 +688,29 @@ enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
     bool more = false;
     ptrdiff_t got;
     enum glint_status status = reader->is_raw
-                                   ? peek_frame(reader, &more, error)
+                                   ? peek_raw_frame(reader, &more, error)
                                    : read_frame_line(reader, &more, error);
 
     if (!status && more)
-        status = place_frame(reader, error);
+        status = allocate_frame(reader, error);
     if (status)
         return status;
     if (!more) {
         *frame = NULL;
         return GLINT_OK;
     }
-    got = reader->stride ? read_rows(reader)
-                         : read_block(reader, reader->planes, bytes);
+    got = reader->stride ? read_padded_rows(reader)
+                         : read_stream_bytes(reader, reader->planes, bytes);
     if (got < 0)
-        return report_io(reader, error);
+        return report_read_failure(reader, error);
     if ((size_t)got < bytes)
         return glint_error_report(error, GLINT_E_FORMAT, reader->name,
                                   "frame %ld: ends after %zu of %zu bytes",
                                   reader->n_frames, (size_t)got, bytes);
     if (reader->seen)
-        fill_copy(reader);
-    else if (!glint_y4m_is_plain(h))
-        fill_proxy(&h->layout, &reader->frame, reader->planes);
+        fill_bt709_copy(reader);
+    else if (!glint_y4m_is_8_bit_bt709(h))
+        fill_8_bit_copy(&h->layout, &reader->frame, reader->planes);
     reader->n_frames++;
     *frame = &reader->frame;
     return GLINT_OK;
@@ -730,9 +743,9 @@ enum glint_status glint_y4m_writer_open(struct glint_y4m_writer *writer,
     return status;
 }
 
-static enum glint_status put_plane(struct glint_output *out,
-                                   const struct glint_image *frame, int plane,
-                                   struct glint_error *error)
+static enum glint_status write_plane(struct glint_output *out,
+                                     const struct glint_image *frame, int plane,
+                                     struct glint_error *error)
 {
     const int across =
         (int)glint_image_row_bytes(frame->format, plane, frame->width);
@@ -764,7 +777,7 @@ enum glint_status glint_y4m_writer_put(struct glint_y4m_writer *writer,
     assert(strlen(tags) < GLINT_Y4M_FRAME_TAGS);
     status = glint_output_write(&writer->out, line, (size_t)len, error);
     for (int i = 0; i < glint_image_planes(frame->format) && !status; i++)
-        status = put_plane(&writer->out, frame, i, error);
+        status = write_plane(&writer->out, frame, i, error);
     if (!status)
         status = glint_output_flush(&writer->out, error);
     if (!status)
@@ -808,7 +821,7 @@ void glint_y4m_writer_abort(struct glint_y4m_writer *writer)
 
 /* Returns the R'G'B' code, _q20, at which the table DECODE, interpolated
  * linearly, reaches LIGHT, _q24. */
-static int32_t find_code_q20(const int32_t *decode_q24, int32_t light)
+static int32_t find_code_of_light_q20(const int32_t *decode_q24, int32_t light)
 {
     int low = 0, high = GLINT_Y4M_STEPS;
     int64_t over, step;
@@ -826,8 +839,8 @@ static int32_t find_code_q20(const int32_t *decode_q24, int32_t light)
     return (int32_t)(((int64_t)low << 8) + ((over << 8) + step / 2) / step);
 }
 
-static void fill_tables(struct glint_y4m_light *l,
-                        enum glint_transfer_curve curve)
+static void fill_light_tables(struct glint_y4m_light *l,
+                              enum glint_transfer_curve curve)
 {
     for (int i = 0; i <= GLINT_Y4M_STEPS; i++)
         l->decode_q24[i] = glint_transfer_light_q24(curve, i, GLINT_Y4M_STEPS);
@@ -839,7 +852,7 @@ static void fill_tables(struct glint_y4m_light *l,
             l->encode_q20[o][i] =
                 light >= l->decode_q24[GLINT_Y4M_STEPS]
                     ? WHITE_Q20
-                    : find_code_q20(l->decode_q24, (int32_t)light);
+                    : find_code_of_light_q20(l->decode_q24, (int32_t)light);
         }
 }
 
@@ -864,16 +877,17 @@ void glint_y4m_light_init(struct glint_y4m_light *light,
     l->kr_q16 = k_q16[header->matrix][0];
     l->kb_q16 = k_q16[header->matrix][1];
     l->kg_q16 = 65536 - l->kr_q16 - l->kb_q16;
-    l->y_factor = y4m_share_factor(20, l->y_span);
-    l->c_factor = y4m_share_factor(20, l->c_span);
-    l->cb_factor = y4m_share_factor(15, 65536 - l->kb_q16);
-    l->cr_factor = y4m_share_factor(15, 65536 - l->kr_q16);
-    l->g_factor = y4m_part_factor(l->kg_q16);
+    l->y_factor = y4m_scaled_quotient_factor(20, l->y_span);
+    l->c_factor = y4m_scaled_quotient_factor(20, l->c_span);
+    l->cb_factor = y4m_scaled_quotient_factor(15, 65536 - l->kb_q16);
+    l->cr_factor = y4m_scaled_quotient_factor(15, 65536 - l->kr_q16);
+    l->g_factor = y4m_fraction_factor(l->kg_q16);
     l->primaries = header->primaries;
-    fill_tables(l, header->transfer);
+    fill_light_tables(l, header->transfer);
 }
 
-static int32_t decode_code(const struct glint_y4m_light *l, int32_t v_q20)
+static int32_t decode_code_to_light(const struct glint_y4m_light *l,
+                                    int32_t v_q20)
 {
     const int32_t *const at = l->decode_q24 + (v_q20 >> 8);
 
@@ -883,10 +897,12 @@ static int32_t decode_code(const struct glint_y4m_light *l, int32_t v_q20)
            (int32_t)(((int64_t)(at[1] - at[0]) * (v_q20 & 255) + 128) >> 8);
 }
 
-static int32_t encode_light(const struct glint_y4m_light *l, int64_t light)
+static int32_t encode_light_to_code(const struct glint_y4m_light *l,
+                                    int64_t light)
 {
     int octave = 0;
-    int64_t place; /* position in the octave, entries with 16 fraction bits */
+    int64_t place; /* position of LIGHT in the octave, in entries, with 16
+                      fraction bits */
     const int32_t *at;
 
     if (light >= l->decode_q24[GLINT_Y4M_STEPS])
@@ -908,17 +924,18 @@ void glint_y4m_light_blacken(const struct glint_y4m_light *light,
 {
     struct plane plane[4];
 
-    find_planes(&light->layout, light->width, light->height, planes, plane);
+    locate_planes(&light->layout, light->width, light->height, planes, plane);
     for (int p = 0; p < 3; p++)
         for (int y = 0; y < plane[p].size[1]; y++)
             for (int x = 0; x < plane[p].size[0]; x++)
-                write_code(&plane[p], x, y,
-                           p ? 1 << (light->layout.bits - 1) : light->black);
+                write_sample_code(&plane[p], x, y,
+                                  p ? 1 << (light->layout.bits - 1)
+                                    : light->black);
 }
 
 /* ------------------------------------------------------------------- adding */
 
-static int32_t clamp_code(int64_t v, int32_t most)
+static int32_t clamp_to_code_range(int64_t v, int32_t most)
 {
     return v < 0 ? 0 : v > most ? most : (int32_t)v;
 }
@@ -928,20 +945,20 @@ static int32_t clamp_code(int64_t v, int32_t most)
 static void convert_to_rgb(const struct glint_y4m_light *l,
                            const int32_t ycc[3], int32_t rgb_q20[3])
 {
-    const int64_t y = y4m_share(ycc[0] - l->black, l->y_factor);
-    const int64_t cb = y4m_share(ycc[1], l->c_factor);
-    const int64_t cr = y4m_share(ycc[2], l->c_factor);
+    const int64_t y = y4m_scaled_quotient(ycc[0] - l->black, l->y_factor);
+    const int64_t cb = y4m_scaled_quotient(ycc[1], l->c_factor);
+    const int64_t cr = y4m_scaled_quotient(ycc[2], l->c_factor);
     const int64_t r = y + y4m_halve((65536 - l->kr_q16) * cr, 15);
     const int64_t b = y + y4m_halve((65536 - l->kb_q16) * cb, 15);
 
-    rgb_q20[0] = clamp_code(r, WHITE_Q20);
-    rgb_q20[1] = y4m_part(65536 * y - l->kr_q16 * r - l->kb_q16 * b, l->kg_q16,
-                          l->g_factor);
-    rgb_q20[2] = clamp_code(b, WHITE_Q20);
+    rgb_q20[0] = clamp_to_code_range(r, WHITE_Q20);
+    rgb_q20[1] = y4m_divide_fraction(65536 * y - l->kr_q16 * r - l->kb_q16 * b,
+                                     l->kg_q16, l->g_factor);
+    rgb_q20[2] = clamp_to_code_range(b, WHITE_Q20);
 }
 
 /* Multiplies LIGHT by the matrix M; each row of M sums up to 65536. */
-static void multiply_matrix(const int32_t m_q16[3][3], int64_t light[3])
+static void multiply_by_matrix(const int32_t m_q16[3][3], int64_t light[3])
 {
     const int64_t r = light[0], g = light[1], b = light[2];
 
@@ -950,7 +967,7 @@ static void multiply_matrix(const int32_t m_q16[3][3], int64_t light[3])
             y4m_halve(m_q16[c][0] * r + m_q16[c][1] * g + m_q16[c][2] * b, 16);
 }
 
-/* Sets Y', Cb and Cr, _q20, by R', G' and B'. */
+/* Sets Y', Cb and Cr, _q20, from R', G' and B'. */
 static void convert_to_ycc(const struct glint_y4m_light *l,
                            const int64_t rgb_q20[3], int64_t ycc_q20[3])
 {
@@ -960,16 +977,15 @@ static void convert_to_ycc(const struct glint_y4m_light *l,
                   16);
 
     ycc_q20[0] = y;
-    ycc_q20[1] = y4m_share((int32_t)(rgb_q20[2] - y), l->cb_factor);
-    ycc_q20[2] = y4m_share((int32_t)(rgb_q20[0] - y), l->cr_factor);
+    ycc_q20[1] = y4m_scaled_quotient((int32_t)(rgb_q20[2] - y), l->cb_factor);
+    ycc_q20[2] = y4m_scaled_quotient((int32_t)(rgb_q20[0] - y), l->cr_factor);
 }
 
-/* Sets the changes of Y', Cb and Cr, _q20, of a pixel with codes YCC when
- * the fraction COVER_Q8 of its light is hidden and the light of LAYER is
- * added. */
-static void compute_change(const struct glint_y4m_light *l,
-                           const int32_t ycc[3], const float *layer,
-                           int cover_q8, int64_t change_q20[3])
+/* Sets the changes of Y', Cb and Cr, _q20, of a pixel with codes YCC when the
+ * fraction COVER_Q8 of its light is hidden and the light of LAYER is added. */
+static void compute_code_change(const struct glint_y4m_light *l,
+                                const int32_t ycc[3], const float *layer,
+                                int cover_q8, int64_t change_q20[3])
 {
     int32_t rgb_q20[3];
     int64_t d[3], light[3];
@@ -982,27 +998,27 @@ static void compute_change(const struct glint_y4m_light *l,
         light[c] = (int64_t)(held * WHITE_Q24);
     }
     if (l->primaries != GLINT_PRIMARIES_BT709)
-        multiply_matrix(glint_primaries_from_bt709_q16[l->primaries], light);
+        multiply_by_matrix(glint_primaries_from_bt709_q16[l->primaries], light);
     for (int c = 0; c < 3; c++) {
-        const int32_t own = decode_code(l, rgb_q20[c]);
+        const int32_t own = decode_code_to_light(l, rgb_q20[c]);
         const int64_t left =
             cover_q8 ? ((int64_t)own * (256 - cover_q8) + 128) >> 8 : own;
 
-        d[c] = encode_light(l, left + light[c]) - rgb_q20[c];
+        d[c] = encode_light_to_code(l, left + light[c]) - rgb_q20[c];
         if (!cover_q8 && (d[c] < 0 || light[c] == 0))
             d[c] = 0;
     }
     convert_to_ycc(l, d, change_q20);
 }
 
-static bool is_lit(const float *layer)
+static bool has_block_light(const float *layer)
 {
     return layer[0] > 0 || layer[1] > 0 || layer[2] > 0;
 }
 
 /* Returns SUM_Q20 / COUNT, rounded to an integer. COUNT is 1 .. 4; 3 occurs
  * only at the right edge of 4:1:1. */
-static int64_t compute_mean(int64_t sum_q20, int count)
+static int64_t divide_by_pixel_count(int64_t sum_q20, int count)
 {
     const int64_t whole = 3 * (int64_t)WHITE_Q20;
 
@@ -1018,12 +1034,12 @@ struct block {
     int x0, y0, x1, y1;
 };
 
-/* Adds LAYER to the pixels of B after hiding the fraction COVER_Q8 of each.
- * LAYER and COVER_Q8 are arrays of the whole frame; if COVER_Q8 is NULL,
- * nothing is hidden. */
-static void add_to_block(const struct glint_y4m_light *l, struct plane plane[4],
-                         const struct block *b, const float *layer,
-                         const uint16_t *cover_q8)
+/* Adds the light of LAYER to the pixels of block B after hiding the fraction
+ * COVER_Q8 of each. LAYER and COVER_Q8 are arrays of the whole frame; if
+ * COVER_Q8 is NULL, nothing is hidden. */
+static void add_light_to_block(const struct glint_y4m_light *l,
+                               struct plane plane[4], const struct block *b,
+                               const float *layer, const uint16_t *cover_q8)
 {
     const bool is_grey = plane[1].size[0] == 0;
     const int32_t middle = 1 << (l->layout.bits - 1);
@@ -1032,7 +1048,7 @@ static void add_to_block(const struct glint_y4m_light *l, struct plane plane[4],
     int32_t ycc[3] = {0, 0, 0};
 
     for (int c = 1; c < 3 && !is_grey; c++)
-        ycc[c] = read_code(&plane[c], b->x, b->y) - middle;
+        ycc[c] = read_sample_code(&plane[c], b->x, b->y) - middle;
     for (int y = b->y0; y < b->y1; y++)
         for (int x = b->x0; x < b->x1; x++) {
             const size_t at = (size_t)y * (size_t)l->width + (size_t)x;
@@ -1040,32 +1056,35 @@ static void add_to_block(const struct glint_y4m_light *l, struct plane plane[4],
             const int cover = cover_q8 ? cover_q8[at] : 0;
             int64_t change[3];
 
-            if (!cover && !is_lit(light))
+            if (!cover && !has_block_light(light))
                 continue;
-            ycc[0] = read_code(&plane[0], x, y);
-            compute_change(l, ycc, light, cover, change);
-            write_code(&plane[0], x, y,
-                       clamp_code(ycc[0] + y4m_halve(change[0] * l->y_span, 20),
-                                  l->most));
+            ycc[0] = read_sample_code(&plane[0], x, y);
+            compute_code_change(l, ycc, light, cover, change);
+            write_sample_code(
+                &plane[0], x, y,
+                clamp_to_code_range(
+                    ycc[0] + y4m_halve(change[0] * l->y_span, 20), l->most));
             sum[0] += change[1];
             sum[1] += change[2];
         }
     for (int c = 1; c < 3 && !is_grey; c++)
-        write_code(&plane[c], b->x, b->y,
-                   clamp_code(middle + ycc[c] +
-                                  compute_mean(sum[c - 1] * l->c_span, count),
-                              l->most));
+        write_sample_code(
+            &plane[c], b->x, b->y,
+            clamp_to_code_range(
+                middle + ycc[c] +
+                    divide_by_pixel_count(sum[c - 1] * l->c_span, count),
+                l->most));
 }
 
-static int min_int(int a, int b)
+static int min_of_ints(int a, int b)
 {
     return a < b ? a : b;
 }
 
-/* Sets ACROSS and DOWN to the width and height, in pixels, of the block that
- * shares a chroma sample. */
-static void set_block_size(const struct glint_y4m_layout *layout, int *across,
-                           int *down)
+/* Sets ACROSS and DOWN to the width and height, in pixels, of the blocks that
+ * share a chroma sample. */
+static void get_chroma_block_size(const struct glint_y4m_layout *layout,
+                                  int *across, int *down)
 {
     const bool is_grey = layout->format == GLINT_GREY;
 
@@ -1075,28 +1094,30 @@ static void set_block_size(const struct glint_y4m_layout *layout, int *across,
     *down = layout->format == GLINT_I420 ? 2 : 1;
 }
 
-/* Converts YCC, codes of the stream FROM, to YCC_Q20, values of the stream
- * TO; light above white is clipped. */
-static void convert_ycc(const struct glint_y4m_light *from,
-                        const struct glint_y4m_light *to, const int32_t ycc[3],
-                        int64_t ycc_q20[3])
+/* Converts YCC, codes of the stream FROM, to YCC_Q20, values for the stream TO;
+ * light above white is clipped. */
+static void convert_ycc_between_streams(const struct glint_y4m_light *from,
+                                        const struct glint_y4m_light *to,
+                                        const int32_t ycc[3],
+                                        int64_t ycc_q20[3])
 {
     int32_t rgb_q20[3];
     int64_t rgb[3];
 
     convert_to_rgb(from, ycc, rgb_q20);
     for (int c = 0; c < 3; c++)
-        rgb[c] = decode_code(from, rgb_q20[c]);
+        rgb[c] = decode_code_to_light(from, rgb_q20[c]);
     if (from->primaries != GLINT_PRIMARIES_BT709)
-        multiply_matrix(glint_primaries_to_bt709_q16[from->primaries], rgb);
+        multiply_by_matrix(glint_primaries_to_bt709_q16[from->primaries], rgb);
     for (int c = 0; c < 3; c++)
-        rgb[c] = encode_light(to, rgb[c]);
+        rgb[c] = encode_light_to_code(to, rgb[c]);
     convert_to_ycc(to, rgb, ycc_q20);
 }
 
-static void convert_block(const struct glint_y4m_seen *seen,
-                          const struct plane from[4], const struct plane to[4],
-                          const struct block *b)
+static void convert_block_to_bt709(const struct glint_y4m_seen *seen,
+                                   const struct plane from[4],
+                                   const struct plane to[4],
+                                   const struct block *b)
 {
     const struct glint_y4m_light *const f = &seen->from, *const t = &seen->to;
     const int32_t middle = 1 << (f->layout.bits - 1);
@@ -1106,47 +1127,49 @@ static void convert_block(const struct glint_y4m_seen *seen,
     int64_t made[3], sum[2] = {0, 0};
 
     for (int c = 1; c < 3 && !is_grey; c++)
-        ycc[c] = read_code(&from[c], b->x, b->y) - middle;
+        ycc[c] = read_sample_code(&from[c], b->x, b->y) - middle;
     for (int y = b->y0; y < b->y1; y++)
         for (int x = b->x0; x < b->x1; x++) {
-            ycc[0] = read_code(&from[0], x, y);
-            convert_ycc(f, t, ycc, made);
-            write_code(
+            ycc[0] = read_sample_code(&from[0], x, y);
+            convert_ycc_between_streams(f, t, ycc, made);
+            write_sample_code(
                 &to[0], x, y,
-                clamp_code(t->black + y4m_halve(made[0] * t->y_span, 20), 255));
+                clamp_to_code_range(
+                    t->black + y4m_halve(made[0] * t->y_span, 20), 255));
             sum[0] += made[1];
             sum[1] += made[2];
         }
-    /* The copy of 4:1:1 is 4:2:2. */
+    /* The copy of a 4:1:1 frame is 4:2:2. */
     for (int c = 1; c < 3 && !is_grey; c++)
         for (int x = b->x0; x < b->x1; x += 2)
-            write_code(
+            write_sample_code(
                 &to[c], f->layout.is_411 ? x / 2 : b->x, b->y,
-                clamp_code(128 + compute_mean(sum[c - 1] * t->c_span, count),
-                           255));
+                clamp_to_code_range(
+                    128 + divide_by_pixel_count(sum[c - 1] * t->c_span, count),
+                    255));
 }
 
-/* Converts the last frame of R to its BT.709 copy, r->frame. */
-static void fill_copy(const struct glint_y4m_reader *r)
+/* Converts the last frame that R has read to its BT.709 copy, r->frame. */
+static void fill_bt709_copy(const struct glint_y4m_reader *r)
 {
     const struct glint_y4m_light *const f = &r->seen->from, *const t =
                                                                 &r->seen->to;
     struct plane from[4], to[4];
     int across, down;
 
-    set_block_size(&f->layout, &across, &down);
-    find_planes(&f->layout, f->width, f->height, r->planes, from);
-    find_planes(&t->layout, t->width, t->height, r->frame.plane[0], to);
+    get_chroma_block_size(&f->layout, &across, &down);
+    locate_planes(&f->layout, f->width, f->height, r->planes, from);
+    locate_planes(&t->layout, t->width, t->height, r->frame.plane[0], to);
     for (int y = 0; y < f->height; y += down)
         for (int x = 0; x < f->width; x += across) {
             const struct block block = {x / across,
                                         y / down,
                                         x,
                                         y,
-                                        min_int(x + across, f->width),
-                                        min_int(y + down, f->height)};
+                                        min_of_ints(x + across, f->width),
+                                        min_of_ints(y + down, f->height)};
 
-            convert_block(r->seen, from, to, &block);
+            convert_block_to_bt709(r->seen, from, to, &block);
         }
 }
 
@@ -1163,17 +1186,17 @@ void glint_y4m_light_cover(const struct glint_y4m_light *light, uint8_t *planes,
     struct plane plane[4];
     int across, down;
 
-    set_block_size(&l->layout, &across, &down);
-    find_planes(&l->layout, l->width, l->height, planes, plane);
+    get_chroma_block_size(&l->layout, &across, &down);
+    locate_planes(&l->layout, l->width, l->height, planes, plane);
     for (int y = 0; y < l->height; y += down)
         for (int x = 0; x < l->width; x += across) {
             const struct block block = {x / across,
                                         y / down,
                                         x,
                                         y,
-                                        min_int(x + across, l->width),
-                                        min_int(y + down, l->height)};
+                                        min_of_ints(x + across, l->width),
+                                        min_of_ints(y + down, l->height)};
 
-            add_to_block(l, plane, &block, layer, cover_q8);
+            add_light_to_block(l, plane, &block, layer, cover_q8);
         }
 }

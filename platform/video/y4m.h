@@ -53,9 +53,10 @@
 struct glint_y4m_seen;
 
 struct glint_y4m_layout {
-    enum glint_pixel_format format; /* _GREY, _I420, _I422 or _I444; _I422 for
-                                       4:1:1, the format of its copy */
-    int bits;                       /* bits per sample, 8 .. 16 */
+    /* GLINT_GREY, _I420, _I422 or _I444; _I422 for 4:1:1, as its copy is
+     * 4:2:2. */
+    enum glint_pixel_format format;
+    int bits;       /* bits per sample, 8 .. 16 */
     bool has_alpha; /* a fourth plane of full size, which is copied unchanged */
     bool is_411;    /* 4:1:1: chroma has a quarter of the width */
 };
@@ -66,7 +67,7 @@ struct glint_y4m_layout {
 
 #define GLINT_Y4M_FRAME_TAGS 128
 
-/* Parameters of a stream, as its first line states them. */
+/* Parameters of a stream, as its header line states them. */
 struct glint_y4m_header {
     int width, height;              /* 1 .. GLINT_MAX_SIDE */
     enum glint_pixel_format format; /* GLINT_GREY, _I420, _I422 or _I444 */
@@ -75,47 +76,53 @@ struct glint_y4m_header {
     enum glint_matrix matrix;
     enum glint_transfer_curve transfer;
     enum glint_primaries primaries;
-    int fps_num, fps_den;       /* frames per second; 0, 0: not known */
-    char interlace;             /* the tag I: p progressive, t or b
-                                   top or bottom field first, m mixed,
-                                   ? unknown; 0: not stated */
-    char aspect[24];            /* shape of a pixel, "1:1"; "": not stated */
-    char colour[16];            /* the tag C, "420mpeg2"; "": not stated */
+    int fps_num, fps_den; /* frames per second; 0, 0: not known */
+    /* Value of the tag I: p progressive, t or b top or bottom field first, m
+     * mixed, ? unknown; 0: not stated. */
+    char interlace;
+    char aspect[24];            /* aspect ratio of a pixel, "1:1"; "": not
+                                   stated */
+    char colour[16];            /* value of the tag C, "420mpeg2"; "": not
+                                   stated */
     bool range_stated;          /* the stream has the tag XCOLORRANGE */
-    char extra[GLINT_Y4M_LINE]; /* the other tags, each after a space */
-    char line[GLINT_Y4M_LINE];  /* the header line that was read, or ""; printed
-                                   again unchanged if range equals line_range */
+    char extra[GLINT_Y4M_LINE]; /* all other tags, each after a space */
+    /* The header line that was read, or "". Printed again unchanged if range
+     * equals line_range. */
+    char line[GLINT_Y4M_LINE];
     enum glint_range line_range;
 };
 
 /* ----------------------------------------------------------------- reading */
 
-/* Writes 1 .. BYTES bytes to DST and returns their number; returns 0 at the
- * end, or -1 with errno set on failure. */
+/* Reads 1 .. BYTES bytes of the stream to DST and returns their number; returns
+ * 0 at the end, or -1 with errno set on failure. */
 typedef ptrdiff_t glint_y4m_source_fn(void *ctx, void *dst, size_t bytes);
 
 struct glint_y4m_reader {
-    /* The caller may change range, matrix, transfer and primaries before the
-     * first frame. */
+    /* Parameters of the stream. The caller may change range, matrix, transfer
+     * and primaries before the first frame. */
     struct glint_y4m_header header;
-    char frame_tags[GLINT_Y4M_FRAME_TAGS]; /* tags of the last frame: the text
-                                              after FRAME, or "" */
-    long n_frames;                         /* frames delivered so far */
+    /* Tags of the last frame: the text after FRAME, or "". */
+    char frame_tags[GLINT_Y4M_FRAME_TAGS];
+    long n_frames; /* frames delivered so far */
 
-    /* Private. */
+    /* Private members. */
     const char *name;
-    bool is_raw;   /* The stream has no header and FRAME lines. */
-    size_t stride; /* bytes from row to row of luma; 0: rows without padding */
-    struct glint_input in; /* input, if source is NULL */
+    bool is_raw;   /* true: the stream has no header and no FRAME lines */
+    size_t stride; /* distance between rows of luma, bytes; 0: rows have no
+                      padding */
+    struct glint_input in; /* input file, if source is NULL */
     glint_y4m_source_fn *source;
     void *ctx;
     struct glint_image frame;
     uint8_t *planes; /* planes of the last frame, as they were stored */
     uint8_t *mem;    /* memory of planes, followed by the memory of frame */
-    struct glint_y4m_seen *seen; /* converts frames to the BT.709 copy; NULL:
-                                    frames are BT.709 already */
+    /* Tables that convert frames to the BT.709 copy; NULL: frames are BT.709
+     * already. */
+    struct glint_y4m_seen *seen;
     uint8_t ahead[4096];
-    /* bytes ahead_at .. ahead_end - 1 of ahead are still unread */
+    /* Bytes ahead_at .. ahead_end - 1 of ahead were read from the input, but
+     * not parsed yet. */
     size_t ahead_at, ahead_end;
 };
 
@@ -128,9 +135,9 @@ struct glint_y4m_writer {
 
 /* Returns whether stored frames have the layout of struct glint_image and need
  * no conversion: 8 bits, BT.709, not 4:1:1. An alpha plane may follow. */
-bool glint_y4m_is_plain(const struct glint_y4m_header *header);
+bool glint_y4m_is_8_bit_bt709(const struct glint_y4m_header *header);
 
-/* Returns the bytes of all planes of a frame. */
+/* Returns the number of bytes of all planes of a frame. */
 size_t glint_y4m_layout_bytes(const struct glint_y4m_layout *layout, int width,
                               int height);
 
@@ -174,17 +181,18 @@ glint_y4m_reader_open_raw(struct glint_y4m_reader *reader, const char *path,
                           const struct glint_y4m_header *header, size_t stride,
                           struct glint_error *error);
 
-/* Begins to read the stream that SOURCE delivers. NAME, SOURCE and CTX must
+/* Starts to read the stream that SOURCE delivers. NAME, SOURCE and CTX must
  * outlive READER. Returns the errors of glint_y4m_reader_open(). */
 enum glint_status glint_y4m_reader_start(struct glint_y4m_reader *reader,
                                          glint_y4m_source_fn *source, void *ctx,
                                          const char *name,
                                          struct glint_error *error);
 
-/* Points *FRAME at the next frame, or at NULL after the last. The frame belongs
- * to READER; its samples may be changed, and the next call overwrites them.
- * Returns GLINT_E_FORMAT if a FRAME line is missing or the stream ends inside a
- * frame (ERROR has the frame's number), GLINT_E_IO or GLINT_E_MEMORY. */
+/* Points *FRAME at the next frame, or sets it to NULL after the last. The frame
+ * belongs to READER; its samples may be changed, and the next call overwrites
+ * them. Returns GLINT_E_FORMAT if a FRAME line is missing or the stream ends
+ * inside a frame (ERROR has the frame's number), GLINT_E_IO or
+ * GLINT_E_MEMORY. */
 enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
                                         const struct glint_image **frame,
                                         struct glint_error *error);
@@ -208,7 +216,7 @@ enum glint_status glint_y4m_writer_put(struct glint_y4m_writer *writer,
                                        const char *tags,
                                        struct glint_error *error);
 
-/* Writes a frame in the stored layout: PLANES has all planes, BYTES must be
+/* Writes a frame in the stored layout: PLANES are all its planes, BYTES must be
  * glint_y4m_layout_bytes(). */
 enum glint_status glint_y4m_writer_put_planes(struct glint_y4m_writer *writer,
                                               const uint8_t *planes,
@@ -220,8 +228,8 @@ enum glint_status glint_y4m_writer_put_planes(struct glint_y4m_writer *writer,
 enum glint_status glint_y4m_writer_commit(struct glint_y4m_writer *writer,
                                           struct glint_error *error);
 
-/* Closes WRITER, unless it is closed already, and removes the file. Bytes that
- * went into a pipe stay written. */
+/* Closes WRITER, unless it is closed already, and removes the file. Bytes
+ * written to a pipe cannot be removed. */
 void glint_y4m_writer_abort(struct glint_y4m_writer *writer);
 
 /* -------------------------------------------------------------------- light
@@ -234,35 +242,36 @@ void glint_y4m_writer_abort(struct glint_y4m_writer *writer);
  * change. */
 
 enum {
-    GLINT_Y4M_STEPS = 4096,   /* steps of R'G'B' from black to white */
-    GLINT_Y4M_OCTAVES = 30,   /* octaves of light, from 2^-24 to 64 */
-    GLINT_Y4M_IN_OCTAVE = 128 /* entries per octave */
+    GLINT_Y4M_STEPS = 4096,   /* number of steps of R'G'B' from black to
+                                 white */
+    GLINT_Y4M_OCTAVES = 30,   /* number of octaves of light, from 2^-24 to 64 */
+    GLINT_Y4M_IN_OCTAVE = 128 /* number of table entries per octave */
 };
 
 struct glint_y4m_light {
     struct glint_y4m_layout layout;
     int width, height;
-    int32_t black, most;    /* code of Y' = 0, and the max code */
-    int32_t y_span, c_span; /* codes from Y' = 0 to 1, and from Cb = -1/2 to
-                               1/2 */
+    int32_t black, most; /* code of Y' = 0, and the max code */
+    /* Number of codes from Y' = 0 to 1, and from Cb = -1/2 to 1/2. */
+    int32_t y_span, c_span;
     int32_t kr_q16, kg_q16, kb_q16; /* weights of R', G', B' in Y' */
-    int64_t y_factor, c_factor; /* factors that replace divisions by y_span and
-                                   c_span (y4m_divide.h) */
+    /* Factors that replace divisions by y_span and c_span (y4m_divide.h). */
+    int64_t y_factor, c_factor;
     int64_t cb_factor, cr_factor,
         /* factors that replace divisions by 1 - kb, 1 - kr and kg */
         g_factor;
     enum glint_primaries primaries;
-    /* light of each step; 2^24: white */
+    /* linear light of each step of R'G'B'; 2^24: white */
     int32_t decode_q24[GLINT_Y4M_STEPS + 1];
     /* R'G'B' by octave of light and entry in the octave; 2^20: white */
     int32_t encode_q20[GLINT_Y4M_OCTAVES][GLINT_Y4M_IN_OCTAVE + 1];
 };
 
-/* Prepares LIGHT for the frames of HEADER. */
+/* Computes the tables LIGHT for the frames of a stream with HEADER. */
 void glint_y4m_light_init(struct glint_y4m_light *light,
                           const struct glint_y4m_header *header);
 
-/* Sets all colour codes of PLANES to black; alpha stays. */
+/* Sets all colour codes of PLANES to black; alpha does not change. */
 void glint_y4m_light_blacken(const struct glint_y4m_light *light,
                              uint8_t *planes);
 
@@ -271,7 +280,7 @@ void glint_y4m_light_add(const struct glint_y4m_light *light, uint8_t *planes,
                          const float *layer);
 
 /* Hides the fraction COVER_Q8, [height][width], 0 .. 256, of each pixel, then
- * does the same as glint_y4m_light_add(). */
+ * adds LAYER like glint_y4m_light_add(). */
 void glint_y4m_light_cover(const struct glint_y4m_light *light, uint8_t *planes,
                            const float *layer, const uint16_t *cover_q8);
 

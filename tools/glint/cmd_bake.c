@@ -234,7 +234,7 @@ static int write_model(struct glint_output *out, const struct tool *tool,
         glint_output_abort(out);
         return code;
     }
-    status = glint_output_finish(out, model, bytes, &error);
+    status = glint_output_write_and_commit(out, model, bytes, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (strcmp(b->output, "-") != 0)
@@ -335,7 +335,8 @@ static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
                                  "try more --positions");
     }
     if (status == GLINT_OK)
-        status = glint_output_finish(out, baked.data, baked.bytes, &error);
+        status =
+            glint_output_write_and_commit(out, baked.data, baked.bytes, &error);
     else
         glint_output_abort(out);
     free(baked.data);

@@ -351,7 +351,7 @@ static enum glint_status append_file_to_stream(struct glint_output *out,
     ptrdiff_t n = 0;
 
     while (status == GLINT_OK &&
-           (n = glint_input_some(&in, part, sizeof part)) > 0)
+           (n = glint_input_read_available(&in, part, sizeof part)) > 0)
         status = glint_output_write(out, part, (size_t)n, error);
     if (n < 0)
         status =
@@ -383,7 +383,7 @@ static int write_item_descriptions(const struct tool *tool,
         make_description_path(line, set, i);
         status = append_file_to_stream(&out, line, &error);
     }
-    status = glint_output_end(&out, status, &error);
+    status = glint_output_commit_or_abort(&out, status, &error);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 

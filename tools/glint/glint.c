@@ -160,6 +160,6 @@ int main(int argc, char **argv)
 
     glint_process_hold_streams();
     tool_watch_closed_pipe();
-    return tool_close_stdout(glint_process_on_stack(GLINT_WORKER_STACK_BYTES,
-                                                    run_command_words, &words));
+    return tool_close_stdout(glint_process_run_on_stack(
+        GLINT_WORKER_STACK_BYTES, run_command_words, &words));
 }

@@ -131,7 +131,7 @@ static void end_by_page_fault(int number)
 static void run_own_signal_handler(int number)
 {
     write_child_pipe('h');
-    glint_at_death_by(number);
+    glint_at_death_end_by_signal(number);
 }
 
 static void end_by_own_handler(int number)
@@ -186,7 +186,7 @@ TEST(functions_run_at_exit)
 }
 
 /* Checks that the functions run when a handler of the application ends the
- * process with glint_at_death_by(). */
+ * process with glint_at_death_end_by_signal(). */
 TEST(functions_run_from_own_handler)
 {
     expect_end_of_child(end_by_own_handler, SIGINT, 128 + SIGINT, "h21");

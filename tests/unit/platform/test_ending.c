@@ -22,13 +22,13 @@ TEST(endings_match_in_any_case)
 
 TEST(ending_is_that_of_the_last_path_component)
 {
-    assert_string_equal(glint_ending_of("a.b/flare.tar.gz"), ".gz");
-    assert_string_equal(glint_ending_of("X.BMP"), ".BMP");
-    assert_string_equal(glint_ending_of("x."), ".");
-    assert_string_equal(glint_ending_of("folder.d/x"), "");
-    assert_string_equal(glint_ending_of("/dev/stdout"), "");
-    assert_string_equal(glint_ending_of("a/.hidden"), "");
-    assert_string_equal(glint_ending_of("planar-f1.4"), "");
-    assert_string_equal(glint_ending_of("-"), "");
-    assert_string_equal(glint_ending_of(""), "");
+    assert_string_equal(glint_get_extension("a.b/flare.tar.gz"), ".gz");
+    assert_string_equal(glint_get_extension("X.BMP"), ".BMP");
+    assert_string_equal(glint_get_extension("x."), ".");
+    assert_string_equal(glint_get_extension("folder.d/x"), "");
+    assert_string_equal(glint_get_extension("/dev/stdout"), "");
+    assert_string_equal(glint_get_extension("a/.hidden"), "");
+    assert_string_equal(glint_get_extension("planar-f1.4"), "");
+    assert_string_equal(glint_get_extension("-"), "");
+    assert_string_equal(glint_get_extension(""), "");
 }

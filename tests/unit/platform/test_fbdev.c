@@ -362,7 +362,8 @@ TEST(reports_a_removed_framebuffer)
     struct glint_error error;
     char want[128];
 
-    snprintf(want, sizeof want, "%s: the framebuffer went away", fake_fb_path);
+    snprintf(want, sizeof want, "%s: the framebuffer was removed",
+             fake_fb_path);
     open_framebuffer_sink(&fb, NULL);
     draw_and_free_image(&fb, make_grey_image(8, 6, 5));
     fake_fb->gone = true;
@@ -481,7 +482,7 @@ TEST(reports_why_opening_fails)
     expect_open_fails("is 100000 x 6 pixels large");
     reset_fake_to_one_page();
     fake_fb->gone = true;
-    expect_open_fails("went away");
+    expect_open_fails("was removed");
     assert_int_equal(glint_fbdev_open(&fb, "/dev/null", &none, &error),
                      GLINT_E_DEVICE);
     assert_string_equal(error.text, "/dev/null: is not a framebuffer");

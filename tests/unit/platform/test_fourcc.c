@@ -55,11 +55,11 @@ TEST(names_give_their_formats)
  * byte. */
 TEST(fourccs_match_hand_computation)
 {
-    assert_int_equal(glint_fourcc_of(GLINT_YUYV), 0x56595559);
-    assert_int_equal(glint_fourcc_of(GLINT_I420), 0x32315559);
-    assert_int_equal(glint_fourcc_of(GLINT_XRGB8888), 0x34325258);
-    assert_int_equal(glint_fourcc_of(GLINT_I444), 0);
-    assert_int_equal(glint_fourcc_of(GLINT_LINEAR_Q20), 0);
+    assert_int_equal(glint_fourcc_from_format(GLINT_YUYV), 0x56595559);
+    assert_int_equal(glint_fourcc_from_format(GLINT_I420), 0x32315559);
+    assert_int_equal(glint_fourcc_from_format(GLINT_XRGB8888), 0x34325258);
+    assert_int_equal(glint_fourcc_from_format(GLINT_I444), 0);
+    assert_int_equal(glint_fourcc_from_format(GLINT_LINEAR_Q20), 0);
     assert_int_equal(parse_fourcc("MJPG"), 0x47504a4d);
     assert_int_equal(parse_fourcc("mjpeg"), 0x47504a4d);
     /* Unknown codes are returned unchanged. */
@@ -69,7 +69,8 @@ TEST(fourccs_match_hand_computation)
 TEST(formats_and_fourccs_are_inverse)
 {
     for (int i = GLINT_RGB24; i <= GLINT_XBGR8888; i++) {
-        const uint32_t fourcc = glint_fourcc_of((enum glint_pixel_format)i);
+        const uint32_t fourcc =
+            glint_fourcc_from_format((enum glint_pixel_format)i);
         enum glint_pixel_format format;
         char text[5];
 

@@ -40,7 +40,7 @@ static void add_light_to_file(const char *name, const char *to, float light)
     for (int i = 0; i < 36; i++)
         layer[i] = light;
     assert_ok(glint_kept_open(&kept, scratch_path_of(name), &error));
-    glint_samples_add(&kept.samples, layer);
+    glint_samples_add_light(&kept.samples, layer);
     if (glint_kept_save(&kept, scratch_path_of(to), NULL, &options, &error))
         fail_msg("%s", error.text);
     glint_kept_close(&kept);
@@ -121,7 +121,7 @@ TEST(copies_files_unchanged)
 
     scratch_write_file("x.ppm", BYTES("P6 1 1 255\nabc and more"));
     assert_ok(glint_kept_open(&kept, scratch_path_of("x.ppm"), &error));
-    assert_ok(glint_kept_copy(&kept, scratch_path_of("y.ppm"), &error));
+    assert_ok(glint_kept_copy_file(&kept, scratch_path_of("y.ppm"), &error));
     glint_kept_close(&kept);
     unlink(scratch_path_of("x.ppm"));
     expect_file_bytes("y.ppm", BYTES("P6 1 1 255\nabc and more"));

@@ -227,18 +227,17 @@ static int use_stack_in_large_thread(void)
 {
     int two = 2;
 
-    return glint_process_on_stack(GLINT_WORKER_STACK_BYTES, use_stack, &two) !=
-           3;
+    return glint_process_run_on_stack(GLINT_WORKER_STACK_BYTES, use_stack,
+                                      &two) != 3;
 }
 
 TEST(threads_have_enough_stack)
 {
     run_with_small_stack(use_stack_in_pool_thread);
     run_with_small_stack(use_stack_in_large_thread);
-    /* If no thread can start, use_stack() is called directly. */
-    threads_left = 0;
-    assert_int_equal(glint_process_on_stack(SIZE_MAX / 4, use_stack, &(int){4}),
-                     5);
+    threads_left = 0; /* If no thread can start, dig() is called directly. */
+    assert_int_equal(
+        glint_process_run_on_stack(SIZE_MAX / 4, use_stack, &(int){4}), 5);
     threads_left = -1;
 }
 

@@ -170,10 +170,10 @@ TEST(light_is_added)
     float layer[6] = {0};
 
     memcpy(before, mem, sizeof mem);
-    glint_samples_add(&s, layer);
+    glint_samples_add_light(&s, layer);
     assert_memory_equal(mem, before, sizeof mem);
     layer[0] = layer[2] = 0.5F;
-    glint_samples_add(&s, layer);
+    glint_samples_add_light(&s, layer);
     assert_int_equal(mem[0], 48192); /* 65535 * 0.735358 */
     assert_int_equal(mem[1], 1000);
     assert_int_equal(mem[2], 65535);
@@ -190,12 +190,12 @@ TEST(floats_keep_their_range)
     struct glint_image proxy;
     double white;
 
-    assert_ok(glint_samples_proxy(&s, &proxy, &white));
-    assert_true(white >= 2); /* this pixel is the brightest 1 % */
+    assert_ok(glint_samples_make_proxy(&s, &proxy, &white));
+    assert_true(white >= 2); /* the brightest 1 % is this pixel */
     assert_int_equal(proxy.plane[0][1], 0);
     assert_int_equal(proxy.plane[0][2], 0);
     free(proxy.plane[0]);
-    glint_samples_add(&s, layer);
+    glint_samples_add_light(&s, layer);
     assert_true(mem[0] >= 2.5F && mem[0] <= 2.5F);
     assert_true(mem[1] >= 0.25F && mem[1] <= 0.25F);
     assert_true(isnan(mem[2]));
@@ -211,15 +211,15 @@ TEST(transparent_pixels_count_as_dark)
     struct glint_image proxy;
     double white;
 
-    assert_ok(glint_samples_proxy(&s, &proxy, &white));
+    assert_ok(glint_samples_make_proxy(&s, &proxy, &white));
     assert_int_equal(proxy.plane[0][0], 0);
     assert_int_equal(proxy.plane[0][3], 200);
     free(proxy.plane[0]);
     s.is_premultiplied = true;
-    assert_ok(glint_samples_proxy(&s, &proxy, &white));
+    assert_ok(glint_samples_make_proxy(&s, &proxy, &white));
     assert_int_equal(proxy.plane[0][0], 255);
     free(proxy.plane[0]);
-    glint_samples_add(&s, layer);
+    glint_samples_add_light(&s, layer);
     assert_int_equal(mem[3], 0);
     assert_int_equal(mem[7], 255);
     assert_in_range(mem[4], 201, 203);
@@ -245,21 +245,24 @@ TEST(alpha_after_compositing)
 
         s.is_premultiplied = premultiplied;
         mem[0] = mem[1] = mem[2] = premultiplied ? 0.05F : 0.2F;
-        glint_samples_light(&s, 0, 0, seen);
+        glint_samples_get_light(&s, 0, 0, seen);
         expect_float_near(seen[0], behind);
-        glint_samples_set(&s, 0, 0, rgb, 0.5);
-        expect_float_near(mem[3], alpha);
-        expect_float_near(mem[0], premultiplied ? light : light / alpha);
-        glint_samples_light(&s, 0, 0, seen);
+        glint_samples_set_pixel(&s, 0, 0, rgb, 0.5);
+        expect_float_near(mem[3], transparent_pixels_count_as_dark);
+        expect_float_near(
+            mem[0],
+            premultiplied ? light : light / transparent_pixels_count_as_dark);
+        glint_samples_get_light(&s, 0, 0, seen);
         expect_float_near(seen[0], light);
         expect_float_near(mem[7], 0.5);
-        /* Light with coverage 0 changes neither alpha nor the colour of a
-         * fully transparent pixel. */
+        /* Light with coverage 0 changes neither
+         * transparent_pixels_count_as_dark nor the colour of a fully
+         * transparent pixel. */
         mem[3] = 0;
-        glint_samples_set(&s, 0, 0, rgb, 0);
+        glint_samples_set_pixel(&s, 0, 0, rgb, 0);
         expect_float_near(mem[3], 0);
         expect_float_near(mem[0], light);
-        glint_samples_set(&s, 0, 0, rgb, 1);
+        glint_samples_set_pixel(&s, 0, 0, rgb, 1);
         expect_float_near(mem[3], 1);
     }
 }
@@ -282,7 +285,7 @@ TEST(every_exif_orientation_is_upright)
         double white;
 
         s.orientation = o;
-        assert_ok(glint_samples_proxy(&s, &proxy, &white));
+        assert_ok(glint_samples_make_proxy(&s, &proxy, &white));
         assert_int_equal(proxy.width, o < 5 ? 2 : 3);
         for (int i = 0; i < 6; i++)
             assert_int_equal(proxy.plane[0][3 * i], upright[o - 1][i]);
@@ -304,12 +307,12 @@ TEST(exr_data_window_may_differ)
     s.x = -1; /* The second pixel is the first inside the display window. */
     s.window_width = 1;
     s.window_height = 2;
-    glint_samples_light(&s, 0, 0, rgb);
+    glint_samples_get_light(&s, 0, 0, rgb);
     assert_true(rgb[0] >= 0.5F && rgb[0] <= 0.5F);
-    glint_samples_light(&s, 0, 1, rgb);
+    glint_samples_get_light(&s, 0, 1, rgb);
     assert_true(rgb[0] <= 0);
-    assert_false(glint_samples_image(&s, &image));
-    glint_samples_add(&s, layer);
+    assert_false(glint_samples_get_image(&s, &image));
+    glint_samples_add_light(&s, layer);
     assert_true(mem[0] <= 1 && mem[3] >= 4.5F);
 }
 

@@ -52,13 +52,13 @@ static void expect_converted_planes(enum glint_pixel_format format,
     uint8_t mem[64], work[64];
     const size_t n = glint_image_bytes(planar, 3, 3);
 
-    assert_int_equal(glint_planar_format(format), planar);
+    assert_int_equal(glint_get_planar_format(format), planar);
     assert_int_equal(strlen(want), n);
     memset(mem, '-', sizeof mem);
     to = make_image_over_memory(planar, 3, 3, mem);
     assert_true(glint_row_rgb_bytes(3) <= sizeof work);
     glint_row_rgb_init(&row, work, 3);
-    glint_planar_write(&to, &image, &row);
+    glint_convert_to_planes(&to, &image, &row);
     mem[sizeof mem - 1] = 0;
     if (memcmp(mem, want, n) != 0)
         fail_msg("format %d: %s", format, (char *)mem);
@@ -119,7 +119,7 @@ static void check_rgb_to_ycc_colours(enum glint_matrix matrix,
             rgb[3 * x + 1] = (uint8_t)i;
             rgb[3 * x + 2] = (uint8_t)(7 * i + 13 * x);
         }
-        glint_planar_write(&to, &from, &row);
+        glint_convert_to_planes(&to, &from, &row);
         for (int x = 0; x < 256; x++) {
             const int px[] = {rgb[3 * x], rgb[3 * x + 1], rgb[3 * x + 2]};
             int want[3];
@@ -147,7 +147,7 @@ static void check_clamped_chroma_codes(void)
 
     to.range = GLINT_RANGE_FULL;
     glint_row_rgb_init(&row, work, 2);
-    glint_planar_write(&to, &from, &row);
+    glint_convert_to_planes(&to, &from, &row);
     assert_int_equal(ycc[2], 255);
     assert_int_equal(ycc[5], 255);
 }

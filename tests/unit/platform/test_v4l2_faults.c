@@ -71,8 +71,8 @@ TEST(reports_failed_requests)
         {VIDIOC_G_FMT, EINVAL, ": VIDIOC_G_FMT: Invalid argument"},
         {VIDIOC_QUERYCAP, ENOTTY,
          ": not a camera: the device does not support V4L2"},
-        {VIDIOC_QUERYCAP, ENODEV, "; the device is gone"},
-        {VIDIOC_S_FMT, ENODEV, "; the device is gone"},
+        {VIDIOC_QUERYCAP, ENODEV, "; the device was removed"},
+        {VIDIOC_S_FMT, ENODEV, "; the device was removed"},
     };
 
     for (size_t i = 0; i < sizeof failure / sizeof *failure; i++) {
@@ -195,9 +195,9 @@ TEST(failed_restart_ends_with_a_message)
         {VIDIOC_QBUF, EIO, ": VIDIOC_QBUF: Input/output error"},
         {VIDIOC_S_FMT, EBUSY, ": VIDIOC_S_FMT: Device or resource busy; "},
         {VIDIOC_DQBUF, EIO,
-         ": the stream is broken, and restarting does "
-         "not help"},
-        {VIDIOC_DQBUF, EPIPE, "restarting does not help"},
+         ": the stream is broken; restarting the stream "
+         "failed"},
+        {VIDIOC_DQBUF, EPIPE, "restarting the stream failed"},
     };
 
     for (size_t i = 0; i < sizeof failure / sizeof *failure; i++) {
@@ -242,7 +242,7 @@ TEST(reports_an_unplugged_camera)
     camera.is_gone = true; /* while a frame is lent */
     done();
     assert_int_equal(next(), GLINT_E_DEVICE);
-    assert_string_equal(said.text, FAKE_PATH ": the camera is gone");
+    assert_string_equal(said.text, FAKE_PATH ": the camera was removed");
     must_close_camera();
     must_refuse_to_open(NULL, GLINT_E_DEVICE, "no such device; --list-devices");
 
@@ -254,7 +254,7 @@ TEST(reports_an_unplugged_camera)
         fake_camera_fail_request(request[i], ENODEV, -1);
         assert_int_equal(get_frames_during_ms(100, &failed_ms), GLINT_E_DEVICE);
         assert_int_equal(failed_ms, 0);
-        assert_non_null(strstr(said.text, "the camera is gone"));
+        assert_non_null(strstr(said.text, "the camera was removed"));
         must_close_camera();
     }
 }
@@ -286,8 +286,8 @@ static void check_stream_of_damaged_frames(bool as_jpeg)
         fake_camera_advance_clock(33333);
     }
     assert_int_equal(status, GLINT_E_DEVICE);
-    assert_string_equal(said.text, FAKE_PATH ": all frames are damaged, and "
-                                             "restarting does not help");
+    assert_string_equal(said.text, FAKE_PATH ": all frames are damaged; "
+                                             "restarting the stream failed");
     assert_int_equal(n_frames, 60); /* two seconds at 30 frames per second */
     assert_int_equal(n_corrupt, 60);
     must_close_camera();
@@ -366,8 +366,8 @@ TEST(missing_frames_cause_a_restart)
     assert_int_equal(get_frames_during_ms(10000, &failed_ms), GLINT_E_DEVICE);
     /* The restart has no effect. */
     assert_in_range(failed_ms, 4200, 4400);
-    assert_string_equal(said.text, FAKE_PATH ": no frames come, and restarting "
-                                             "does not help");
+    assert_string_equal(said.text, FAKE_PATH ": no frames come; restarting "
+                                             "the stream failed");
     must_close_camera();
 }
 

@@ -563,10 +563,12 @@ TEST(transfer_tables_match_the_standards)
             assert_true(fabs(ldexp(light_q24, -24) - want) <=
                         2e-5 * want + 1e-7);
         }
-    assert_int_equal(glint_transfer_of_tag("arib-std-b67"), GLINT_TRANSFER_HLG);
-    assert_int_equal(glint_transfer_of_tag("hlg"), -1);
-    assert_int_equal(glint_primaries_of_tag("bt2020"), GLINT_PRIMARIES_BT2020);
-    assert_int_equal(glint_primaries_of_tag("film"), -1);
+    assert_int_equal(glint_transfer_from_tag("arib-std-b67"),
+                     GLINT_TRANSFER_HLG);
+    assert_int_equal(glint_transfer_from_tag("hlg"), -1);
+    assert_int_equal(glint_primaries_from_tag("bt2020"),
+                     GLINT_PRIMARIES_BT2020);
+    assert_int_equal(glint_primaries_from_tag("film"), -1);
 }
 
 /* Returns the code V, 0 .. 1, of LIGHT, by bisection. */

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares division by multiplication with exact quotients: y4m_share() for
- * every numerator, y4m_part() at both ends of each run of numerators with the
- * same quotient, which suffices because the quotient is monotonic.
+ * Compares division by multiplication with exact quotients:
+ * y4m_scaled_quotient() for every numerator, y4m_divide_fraction() at both ends
+ * of each run of numerators with the same quotient, which suffices because the
+ * quotient is monotonic.
  */
 
 #include "support/test.h"
@@ -17,12 +18,12 @@ static int64_t divide_rounded(int64_t n, int64_t d)
 /* Returns the number of K in -MOST .. MOST for which K 2^UP / D is wrong. */
 static long count_wrong_quotients(int32_t most, int up, int32_t d)
 {
-    const int64_t factor = y4m_share_factor(up, d);
+    const int64_t factor = y4m_scaled_quotient_factor(up, d);
     long wrong = 0;
 
     for (int32_t k = -most; k <= most; k++)
-        wrong +=
-            y4m_share(k, factor) != divide_rounded(k * (INT64_C(1) << up), d);
+        wrong += y4m_scaled_quotient(k, factor) !=
+                 divide_rounded(k * (INT64_C(1) << up), d);
     return wrong;
 }
 
@@ -62,18 +63,18 @@ TEST(divides_green_exactly)
 
     for (int m = 0; m < 2; m++) {
         const int32_t d = 65536 - kr_q16[m] - kb_q16[m];
-        const int64_t factor = y4m_part_factor(d);
+        const int64_t factor = y4m_fraction_factor(d);
 
         for (int64_t q = -2; q <= (1 << 20) + 2; q++) {
             /* first numerator with quotient Q */
             const int64_t first = q * d - d / 2;
 
             for (int64_t n = first - 2; n <= first + 2; n++)
-                wrong += y4m_part(n, d, factor) !=
+                wrong += y4m_divide_fraction(n, d, factor) !=
                          clamp_quotient(divide_rounded(n, d));
         }
-        wrong += y4m_part(-(INT64_C(1) << 40), d, factor) != 0;
-        wrong += y4m_part(INT64_C(1) << 40, d, factor) != 1 << 20;
+        wrong += y4m_divide_fraction(-(INT64_C(1) << 40), d, factor) != 0;
+        wrong += y4m_divide_fraction(INT64_C(1) << 40, d, factor) != 1 << 20;
     }
     assert_int_equal(wrong, 0);
 }

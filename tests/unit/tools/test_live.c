@@ -378,7 +378,7 @@ TEST(unplugged_camera_ends_the_run)
     script = unplug_camera_during_wait;
     assert_int_equal(run_live_command("--count 100"), EXIT_DEVICE);
     expect_camera_closed_without_leaks();
-    assert_int_equal(count_stderr_messages("the camera is gone\n"), 1);
+    assert_int_equal(count_stderr_messages("the camera was removed\n"), 1);
     assert_true(n_waits <= 21);
 }
 

@@ -218,7 +218,7 @@ static enum glint_status report_start_failure(const char *name, int number,
     if (number == ENOENT)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "is not installed");
-    return glint_error_errno(error, GLINT_E_IO, name, number);
+    return glint_error_report_errno(error, GLINT_E_IO, name, number);
 }
 
 static enum glint_status start_program(struct child *child,
@@ -672,8 +672,8 @@ void ffmpeg_set_colours(const struct ffmpeg_video *video,
                        : strcmp(space, "bt709") == 0    ? GLINT_MATRIX_BT709
                        : strcmp(space, "bt2020nc") == 0 ? GLINT_MATRIX_BT2020
                                                         : -1;
-    const int transfer = glint_transfer_of_tag(video->transfer);
-    const int primaries = glint_primaries_of_tag(video->primaries);
+    const int transfer = glint_transfer_from_tag(video->transfer);
+    const int primaries = glint_primaries_from_tag(video->primaries);
 
     *report = '\0';
     if (!is_word_in_list(space, rgb))

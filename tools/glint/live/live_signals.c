@@ -29,7 +29,7 @@ static void handle_signal(int number)
     for (int i = 0; i < N_TAKEN; i++)
         if (taken[i].number == number) {
             if (taken[i].meaning == LIVE_STOP && asked[LIVE_STOP])
-                glint_at_death_by(number);
+                glint_at_death_end_by_signal(number);
             asked[taken[i].meaning] = 1;
         }
 }

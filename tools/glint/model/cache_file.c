@@ -18,8 +18,8 @@
 
 bool cache_file_find_folder(char *path, size_t bytes)
 {
-    const char *cache = glint_process_setting("XDG_CACHE_HOME");
-    const char *home = glint_process_setting("HOME");
+    const char *cache = glint_process_get_setting("XDG_CACHE_HOME");
+    const char *home = glint_process_get_setting("HOME");
     int n = 0;
 
     if (cache && cache[0] == '/')

@@ -26,7 +26,7 @@ static bool find_folder_above_program(int up, char *path, size_t bytes)
 {
     struct stat st;
 
-    if (!glint_process_own_file(path, bytes))
+    if (!glint_process_find_own_file(path, bytes))
         return false;
     while (up-- > 0) {
         char *slash = strrchr(path, '/');
@@ -41,7 +41,7 @@ static bool find_folder_above_program(int up, char *path, size_t bytes)
 bool lens_find_folder(int i, const char *kind, char *path, size_t bytes)
 {
     const char *given = strcmp(kind, "lenses") == 0
-                            ? glint_process_setting("GLINT_LENSES")
+                            ? glint_process_get_setting("GLINT_LENSES")
                             : NULL;
     size_t used;
     int n = 0;
@@ -146,7 +146,7 @@ static int compare_lens_names(const void *a, const void *b)
  * lenses would be missing silently. */
 static void check_user_folder(void)
 {
-    const char *own = glint_process_setting("GLINT_LENSES");
+    const char *own = glint_process_get_setting("GLINT_LENSES");
     DIR *folder = own && *own ? opendir(own) : NULL;
 
     if (own && *own && !folder)

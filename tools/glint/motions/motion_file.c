@@ -32,7 +32,7 @@ struct reading {
 static long read_motion_bytes(void *ctx, char *to, size_t n)
 {
     struct reading *reading = ctx;
-    const ptrdiff_t some = glint_input_some(&reading->in, to, n);
+    const ptrdiff_t some = glint_input_read_available(&reading->in, to, n);
 
     if (some > 0)
         tool_hash_into_key(&reading->key, to, (size_t)some);

@@ -252,7 +252,7 @@ int tool_check_output(const struct tool *tool, const char *path)
 int tool_check_ending(struct tool *tool, const char *path, const char *ending,
                       const char *what)
 {
-    return !*glint_ending_of(path) || glint_ends_in(path, ending)
+    return !*glint_get_extension(path) || glint_ends_in(path, ending)
                ? EXIT_OK
                : tool_usage(tool, "%s is a %s, not '%s'", what, ending, path);
 }

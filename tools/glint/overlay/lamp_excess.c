@@ -83,7 +83,7 @@ static void add_excess_light(struct sum *sum,
             double over[3];
             float rgb[3];
 
-            glint_samples_light(samples, x, y, rgb);
+            glint_samples_get_light(samples, x, y, rgb);
             for (int c = 0; c < 3; c++)
                 over[c] = fmax((double)rgb[c] - white, 0);
             if ((over[0] > 0 || over[1] > 0 || over[2] > 0) &&

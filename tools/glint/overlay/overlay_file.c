@@ -56,7 +56,7 @@ static enum glint_status convert_input_to_float(struct overlay_file *f)
     enum glint_status status;
 
     like.colour[0].sample = GLINT_SAMPLE_FLOAT;
-    status = glint_kept_blank(&f->work, &like, from->has_alpha);
+    status = glint_kept_make_blank(&f->work, &like, from->has_alpha);
     if (status == GLINT_OK)
         glint_samples_convert(&f->work, from);
     f->is_copied = status == GLINT_OK;
@@ -74,14 +74,14 @@ static enum glint_status choose_drawing_method(struct overlay_file *f,
          to_float);
 
     f->is_direct = !to_float && !has_own_layer &&
-                   glint_samples_image(&f->kept.samples, &f->image);
+                   glint_samples_get_image(&f->kept.samples, &f->image);
     if (f->is_direct)
         return GLINT_OK;
     if (to_float &&
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
         convert_input_to_float(f) != GLINT_OK)
         return GLINT_E_MEMORY;
-    return glint_samples_proxy(&f->kept.samples, &f->image, &f->white);
+    return glint_samples_make_proxy(&f->kept.samples, &f->image, &f->white);
 }
 
 static void close_picture_file(struct overlay_file *file)
@@ -253,7 +253,7 @@ static void copy_marks_to_samples(struct glint_samples *s,
                 continue;
             for (int c = 0; c < 3; c++)
                 rgb[c] = glint_tone_curve_decode(&srgb, at[c] / 255.0);
-            glint_samples_set(s, x, y, rgb, 1);
+            glint_samples_set_pixel(s, x, y, rgb, 1);
         }
 }
 
@@ -281,10 +281,10 @@ static void composite_scene_pixel(struct glint_samples *s, int x, int y,
     double sum[3];
     float own[3];
 
-    glint_samples_light(s, x, y, own);
+    glint_samples_get_light(s, x, y, own);
     for (int c = 0; c < 3; c++)
         sum[c] = (double)own[c] * (1 - hidden) + rgb[c];
-    glint_samples_set(s, x, y, sum, hidden);
+    glint_samples_set_pixel(s, x, y, sum, hidden);
 }
 
 /* Composites the scene, which was drawn on the proxy, over the samples.
@@ -358,7 +358,7 @@ static enum glint_status draw_flare_layer(struct overlay_file *file,
     if (is_grey)
         remove_colour(file->layer, n);
     if (is_composite && is_lit)
-        glint_samples_add(samples_to_draw_on(file), file->layer);
+        glint_samples_add_light(samples_to_draw_on(file), file->layer);
     return is_composite && drawing_has_marks(&drawing->line)
                ? draw_marks_on_proxy(file, drawing)
                : GLINT_OK;
@@ -427,13 +427,13 @@ static enum glint_status make_flare_only_picture(const struct overlay_file *f,
     if (drawing->line.settings.options.layer == GLINT_LAYER_FLARE_ALPHA ||
         glint_picture_is_float(f->to))
         like.colour[0].sample = GLINT_SAMPLE_FLOAT;
-    status = glint_kept_blank(alone, &like,
-                              drawing->line.settings.options.layer ==
-                                  GLINT_LAYER_FLARE_ALPHA);
+    status = glint_kept_make_blank(alone, &like,
+                                   drawing->line.settings.options.layer ==
+                                       GLINT_LAYER_FLARE_ALPHA);
     if (status != GLINT_OK)
         return status;
     if (drawing->line.settings.options.layer != GLINT_LAYER_FLARE_ALPHA) {
-        glint_samples_add(alone, f->layer);
+        glint_samples_add_light(alone, f->layer);
         return GLINT_OK;
     }
     to = (float *)(void *)alone->mem;
@@ -471,7 +471,7 @@ static enum glint_status write_picture(struct overlay_file *f,
         !drawing_has_marks(&drawing->line) && !options->quality &&
         glint_kept_is_same_type(&f->kept, f->to);
     if (*is_copied)
-        return glint_kept_copy(&f->kept, f->to, error);
+        return glint_kept_copy_file(&f->kept, f->to, error);
     if (!own_layer)
         return glint_kept_save(&f->kept, f->to, f->is_copied ? &f->work : NULL,
                                options, error);

@@ -51,7 +51,7 @@ bool overlay_is_video(const char *name)
 
 int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video)
 {
-    const int n = glint_gif_frames(o->input);
+    const int n = glint_gif_count_frames(o->input);
     const bool moves =
         overlay_is_video(o->output) || glint_ends_in(o->output, ".gif");
 

@@ -92,7 +92,7 @@ int overlay_y4m_draw(struct tool *tool, struct overlay *o,
                      struct glint_y4m_reader *in,
                      const struct glint_image *image)
 {
-    if (glint_y4m_is_plain(&in->header))
+    if (glint_y4m_is_8_bit_bt709(&in->header))
         return overlay_draw_frame(tool, o, image);
     if (drawing_has_marks(&o->drawing.line))
         return tool_usage(tool,
