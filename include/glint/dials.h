@@ -55,9 +55,6 @@ struct glint_dials {
      * one of the three wavelengths, and merged with ghosts of near-by lights,
      * see dimmest of struct glint_flare_frame. */
     double dim_codes;
-    /* Factor on cull_codes for stars: their ends are smooth and faint, unlike
-     * edges of ghosts. */
-    double star_cull;
     /* Tolerance, pixels, for reusing rays in a video: a light that moved less
      * reuses its traced rays; 0: rays are always traced. */
     double still_px;

@@ -190,7 +190,6 @@ struct glint_engine_drawing {
     double apart_px; /* merge distance, pixels: lights whose images are closer
                         are merged */
     int tile_log2;   /* log2 of the side of tiles, 3 .. 6 */
-    int dither;      /* not 0: ordered dither in pictures of 8 bits */
     /* Bits of enum glint_engine_part: the components that are drawn. */
     unsigned parts;
     int only_ghost; /* index of the only ghost that is drawn; -1: all

@@ -33,7 +33,6 @@
 
 struct glint_fbdev_options {
     enum glint_panel_fit fit;
-    bool dither; /* true: dither pictures, see panel/panel.h */
     /* true: with only one screen of memory, wait for the panel's refresh if the
      * driver can. Less tearing; costs up to one refresh period per frame. */
     bool vsync;

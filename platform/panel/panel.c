@@ -398,25 +398,23 @@ static void pack_byte_channels(const struct glint_row_pack *p, uint8_t *dst,
         pack_three_byte_pixels(dst, byte[0], byte[1], byte[2], n);
 }
 
-/* Returns (CODE * MOST + THRESHOLD) / 255, computed without a division: exact
- * for sums below 65535; the max sum is 255 * 255 + 254. */
-static inline uint16_t scale_code_with_threshold(uint8_t code, uint16_t most,
-                                                 uint8_t threshold)
+/* Returns (CODE * MOST + 127) / 255, computed without a division: exact for
+ * sums below 65535. */
+static inline uint16_t scale_code(uint8_t code, uint16_t most)
 {
     const uint16_t sum = (uint16_t)(code * most + 127);
 
     return (uint16_t)((uint16_t)(sum + 1 + (sum >> 8)) >> 8);
 }
 
-static inline uint16_t shift_left_or_right(uint16_t bits, int offset)
+static inline uint16_t shift_left(uint16_t bits, int offset)
 {
     return (uint16_t)(bits << offset);
 }
 
 static void pack_16_bit_pixels(const struct glint_row_pack *p,
                                uint16_t *restrict dst, const uint8_t *r,
-                               const uint8_t *g, const uint8_t *b,
-                               const uint8_t *threshold, int n)
+                               const uint8_t *g, const uint8_t *b, int n)
 {
     const struct glint_pixel_layout *const l = &p->layout;
     const uint16_t max_r = (uint16_t)((1 << l->red.length) - 1),
@@ -427,17 +425,9 @@ static void pack_16_bit_pixels(const struct glint_row_pack *p,
     const uint16_t opaque = (uint16_t)p->opaque;
 
     for (int i = 0; i < n; i++)
-        dst[i] =
-            (uint16_t)(opaque |
-                       shift_left_or_right(
-                           scale_code_with_threshold(r[i], max_r, threshold[i]),
-                           to_r) |
-                       shift_left_or_right(
-                           scale_code_with_threshold(g[i], max_g, threshold[i]),
-                           to_g) |
-                       shift_left_or_right(
-                           scale_code_with_threshold(b[i], max_b, threshold[i]),
-                           to_b));
+        dst[i] = (uint16_t)(opaque | shift_left(scale_code(r[i], max_r), to_r) |
+                            shift_left(scale_code(g[i], max_g), to_g) |
+                            shift_left(scale_code(b[i], max_b), to_b));
 }
 
 static void pack_by_tables(const struct glint_row_pack *p, uint8_t *dst,
@@ -465,8 +455,7 @@ void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
         pack_byte_channels(pack, dst, channel, n);
         return;
     case GLINT_PACK_HALVES:
-        pack_16_bit_pixels(pack, dst, channel[0], channel[1], channel[2],
-                           pack->threshold[pack->dither ? y & 7 : 0], n);
+        pack_16_bit_pixels(pack, dst, channel[0], channel[1], channel[2], n);
         return;
     case GLINT_PACK_TABLES:
         pack_by_tables(pack, dst, channel, n);
@@ -498,28 +487,6 @@ static void assign_byte_channels(struct glint_row_pack *p, uint8_t *mem,
     memset(p->rest, (int)(p->opaque >> 8 * free_byte & 255), (size_t)width);
 }
 
-/* Returns the dither threshold of pixel X, Y (0 .. 7): (2 i + 1) * 255 / 128
- * for an i of 0 .. 63; the mean over all pixels is 127. */
-static int compute_dither_threshold(int x, int y)
-{
-    int bits = 0;
-
-    for (int i = 0; i < 3; i++)
-        bits = bits << 2 | (((x ^ y) >> i & 1) << 1) | (y >> i & 1);
-    return (2 * bits + 1) * 255 / 128;
-}
-
-static void fill_dither_thresholds(struct glint_row_pack *p, uint8_t *mem,
-                                   int width)
-{
-    for (int y = 0; y < 8; y++) {
-        p->threshold[y] = mem + (ptrdiff_t)y * width;
-        for (int x = 0; x < width; x++)
-            p->threshold[y][x] =
-                (uint8_t)(p->dither ? compute_dither_threshold(x & 7, y) : 127);
-    }
-}
-
 static void fill_channel_tables(struct glint_row_pack *p, void *mem)
 {
     const struct glint_pixel_layout *const l = &p->layout;
@@ -549,7 +516,6 @@ void glint_row_pack_init(struct glint_row_pack *pack,
     *pack = (struct glint_row_pack){
         .layout = *layout,
         .way = choose_pack_method(layout),
-        .dither = dither,
         .opaque = (uint32_t)compute_field_mask(&layout->transparency,
                                                8 * layout->bytes),
     };
@@ -558,7 +524,6 @@ void glint_row_pack_init(struct glint_row_pack *pack,
         assign_byte_channels(pack, mem, width);
         return;
     case GLINT_PACK_HALVES:
-        fill_dither_thresholds(pack, mem, width);
         return;
     case GLINT_PACK_TABLES:
         fill_channel_tables(pack, mem);
@@ -741,11 +706,9 @@ static void scale_row_4_bytes(uint32_t *restrict to,
         to[i] = from[from_x[i]];
 }
 
-/* Returns row Y of the picture, scaled and packed for the panel. TO_Y is the
- * row's number on the panel, for dithering. */
+/* Returns row Y of the picture, scaled and packed for the panel. */
 static const uint8_t *pack_panel_row(struct glint_panel *p,
-                                     const struct glint_image *image, int y,
-                                     int to_y)
+                                     const struct glint_image *image, int y)
 {
     const int from = p->seen.x & ~1, cut = p->seen.x - from;
     const int n = p->seen.width + cut, bytes = p->cfg.layout.bytes;
@@ -779,8 +742,8 @@ void glint_panel_draw(struct glint_panel *panel,
             panel->seen.y +
             find_nearest_pixel(y, panel->seen.height, to->height);
 
-        if (!row || from_y != made || panel->pack.dither)
-            row = pack_panel_row(panel, image, from_y, y);
+        if (!row || from_y != made)
+            row = pack_panel_row(panel, image, from_y);
         made = from_y;
         memcpy(mem + (to->y + y) * stride + to->x * bytes, row,
                (size_t)to->width * (size_t)bytes);

@@ -64,14 +64,11 @@ struct glint_row_pack {
 
     /* Private members. */
     enum glint_pack_way way;
-    bool dither;
     /* BYTES: index of the channel in each byte of a pixel; 3: the byte holds no
      * colour. */
     int channel[4];
     /* BYTES: a row of values for the byte that holds no colour. */
     uint8_t *rest;
-    /* HALVES: dither thresholds for a row of pixels, for each row modulo 8. */
-    uint8_t *threshold[8];
     /* TABLES: bits in the word of a pixel for each code of a colour. */
     uint32_t *table[3];
     uint32_t opaque;
@@ -85,7 +82,6 @@ struct glint_panel_config {
     struct glint_pixel_layout layout;
     int image_width, image_height;
     enum glint_panel_fit fit;
-    bool dither; /* true: 16-bit pixels are dithered */
 };
 
 struct glint_panel {
@@ -137,13 +133,12 @@ size_t glint_row_pack_bytes(int width);
 
 /* Prepares PACK for rows of up to WIDTH pixels in LAYOUT, which must be valid.
  * MEM has glint_row_pack_bytes(width) bytes, must be aligned as by malloc and
- * outlive PACK. DITHER affects 16-bit pixels only. */
+ * outlive PACK. */
 void glint_row_pack_init(struct glint_row_pack *pack,
                          const struct glint_pixel_layout *layout, void *mem,
                          int width);
 
-/* Packs N pixels of CHANNEL (R', G', B') to DST, aligned to 4 bytes. Y is the
- * pixels' row on the panel, for dithering. */
+/* Packs N pixels of CHANNEL (R', G', B') to DST, aligned to 4 bytes. */
 void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
                           const uint8_t *const channel[3], int n);
 

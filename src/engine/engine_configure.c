@@ -49,7 +49,6 @@ make_drawing_config(const struct glint_options *o)
             has_grid && !GLINT_OPTION_GIVEN(o, work) ? 0 : 1000 * o->work,
         .apart_px = o->apart,
         .tile_log2 = 3 + o->tile,
-        .dither = o->dither,
         .parts = select_flare_parts(o->only),
         .only_ghost = GLINT_OPTION_GIVEN(o, ghost) ? o->ghost : -1,
         .keep_points = o->area_samples != 0,

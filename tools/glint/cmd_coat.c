@@ -241,12 +241,7 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     else if (c == 'g')
         good = tool_parse_numbers(value, o->glass, 2) > 0 &&
                o->glass[0] >= 1.01 && o->glass[0] <= 4 && o->glass[1] >= 0;
-    else if (c == 'a') {
-        o->n_angles = tool_parse_numbers(value, o->angle_deg, ANGLES);
-        good = o->n_angles > 0;
-        for (int k = 0; k < o->n_angles; k++)
-            good = good && o->angle_deg[k] >= 0 && o->angle_deg[k] < 90;
-    } else
+    else
         return tool_apply_option(tool, c, value);
     return good ? -1 : -2;
 }

@@ -86,7 +86,6 @@ struct glint_scene_config {
     /* Max number of highlights that are found, 0 .. 8; -1: the number in the
      * model. */
     int highlights;
-    int dither; /* 1: 8-bit output is dithered, deterministically */
     /* For GLINT_CAMERA_LENS: the focal length in pixels, 2^10 .. 2^40 _q16. */
     int64_t focal_q16;
     /* Max entries in the lists of all tiles, one entry for each triangle and

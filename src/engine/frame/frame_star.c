@@ -9,6 +9,12 @@
 #include "engine/setup/dirt.h"
 #include "engine/frame/frame_parts.h"
 
+/* Factor on cull_codes for stars, whose ends are smooth and faint, unlike edges
+ * of ghosts. Half or an eighth as much comes no nearer to all of their light;
+ * four times as much costs 0.2 dB and saves 2 of 9 million instructions (a lamp
+ * of 12 stops, 1920x1080). */
+#define STAR_CULL 2
+
 /* Max distance of a starburst's lamp from the picture's top left corner,
  * pixels, along x and y; lamps farther away are skipped. */
 static const double most_px = 1 << 16;
@@ -317,7 +323,7 @@ enum glint_status glint_frame_star_set_lamps(struct glint_frame *f,
         qsort(s->light, (size_t)n_lights, sizeof *s->light, compare_star_power);
     set_star_lights_within_budget(
         f, n_lights,
-        f->dials.star_cull *
+        STAR_CULL *
             glint_frame_convert_codes_to_light(f, image, f->dials.cull_codes));
     s->n_lights = n_lights;
     s->is_set = true;
