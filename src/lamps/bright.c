@@ -21,10 +21,15 @@ void glint_bright_carve(struct glint_bright *b, struct glint_arena *arena,
     b->marked = glint_arena_take(arena, count_blocks(width), sizeof *b->marked);
 }
 
+/* Clears the padding of the last block, which is read in whole words. */
 void glint_bright_init(struct glint_bright *b, int width)
 {
+    const int padded = (int)count_blocks(width) * BRIGHT_BLOCK;
+
     b->width = width;
     b->curve_tone = -1;
+    for (int x = width; x < padded; x++)
+        b->value[x] = 0;
 }
 
 /* Fills the table BEYOND, the brightness of clipped pixels by luma: 250

@@ -223,6 +223,27 @@ TEST(scan_matches_a_test_of_every_pixel)
     }
 }
 
+/* Checks that the padding of the last block is set, as the runs of a row are
+ * searched in whole words. new_bright() fills all memory with 0x5a. */
+TEST(padding_is_cleared)
+{
+    for (int width = 1; width <= 2 * BRIGHT_BLOCK; width++) {
+        struct glint_image image = canvas_new(GLINT_RGB24, width, HEIGHT);
+        void *mem;
+        struct glint_bright *b = new_bright(width, &mem);
+
+        fill_random(&image, 1);
+        glint_bright_begin(b, &image);
+        glint_bright_set_low(b, 1);
+        glint_bright_scan(b, 0);
+        for (int x = width; x % BRIGHT_BLOCK; x++)
+            assert_int_equal(b->value[x], 0);
+        free(b);
+        free(mem);
+        free(image.plane[0]);
+    }
+}
+
 /* Checks that a single pixel of exactly the threshold is found anywhere, and
  * one a code below it is not. */
 TEST(finds_a_pixel_at_the_threshold)
