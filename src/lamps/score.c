@@ -510,7 +510,11 @@ void glint_score_all(const struct glint_score *score,
 
 /* Chooses the regions that are lamps, by their scores, and for nested regions
  * the one that represents the lamp. */
-enum { SURE_Q8 = 384 }; /* higher scores are clamped to this score */
+enum {
+    SURE_Q8 = 384,          /* higher scores are clamped to this score */
+    FAINT_COST_Q8 = 1 << 14 /* above all costs of levels: no faint region
+                               replaces a lamp */
+};
 
 static int compare_ranks(const void *ctx, int32_t a, int32_t b)
 {
@@ -542,7 +546,8 @@ void glint_score_choose(const struct glint_score *score,
         struct glint_candidate *c = &candidate[order[i]];
 
         c->rank_q8 = (c->score_q8 < SURE_Q8 ? c->score_q8 : SURE_Q8) -
-                     score->level[c->level].cost_q8;
+                     score->level[c->level].cost_q8 -
+                     (c->faint ? FAINT_COST_Q8 : 0);
     }
     glint_sort(order, n, compare_ranks, candidate);
     for (int i = 0; i < n; i++) {

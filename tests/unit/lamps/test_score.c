@@ -462,6 +462,22 @@ TEST(video_needs_a_higher_score)
     assert_in_range(n_of_video, 1, n_alone - 1);
 }
 
+/* Checks that a faint region does not replace the lamp that contains it, not
+ * even a lamp of a level with a high cost. */
+TEST(faint_regions_replace_no_lamp)
+{
+    static const struct glint_level level[2] = {{.cost_q8 = 4096}, {0}};
+    const struct glint_score score = {.level = level};
+    struct glint_candidate c[2] = {make_candidate(10, 0, 50),
+                                   make_candidate(10, 1, -50)};
+    int32_t order[2] = {0, 1};
+
+    c[1].faint = 1;
+    glint_score_choose(&score, c, order, 2);
+    assert_int_equal(c[0].gone, 0);
+    assert_int_equal(c[1].gone, 1);
+}
+
 /* Checks that a region which differs from a lamp in a single measure is
  * doubted for that measure. */
 TEST(differing_measure_is_doubted)
