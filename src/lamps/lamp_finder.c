@@ -17,6 +17,9 @@
 #define MAX_SPOTS 1024
 #define EV_MIN_Q8 (-20 * 256)
 
+/* The default thresholds, stops from white. */
+enum { DEFAULT_HIGH_Q8 = -26, DEFAULT_LOW_Q8 = -38 };
+
 /* --------------------------------------------------------------------- list
  */
 
@@ -223,41 +226,72 @@ static void limit_lamps(struct glint_lamp_finder *f, int max)
 /* Costs of levels, subtracted from the scores of their regions when one of
  * several nested regions is chosen. A lamp gets its width at the thresholds,
  * unless its clipped core is clearly more like a lamp. A region of a level
- * whose white is below clipping is chosen only if it contains no other lamp.
+ * whose white is below clipping is chosen only if it contains no other lamp;
+ * so is a region at thresholds below the defaults.
  * DARK_SHARE: max fraction of the picture at the lower threshold for which
  * such levels are searched. */
 #define COST_CLIPPED_Q8 64
 #define COST_WHITE_Q8   32
 #define COST_DARK_Q8    1024
+#define COST_LOWER_Q8   4096
 #define DARK_SHARE_Q15  Q_CONST(0.125, 15)
 
-/* Adds the level of regions at the thresholds, relative to LIGHT as white. */
-static void add_level(struct glint_lamp_finder *f, int32_t light_q20)
+/* Thresholds, stops from white. */
+struct thresholds {
+    int32_t high_q8, low_q8;
+};
+
+static int is_below_default(const struct glint_lamp_finder_config *c)
+{
+    return c->judge && (c->threshold_high_q8 < DEFAULT_HIGH_Q8 ||
+                        c->threshold_low_q8 < DEFAULT_LOW_Q8);
+}
+
+/* Adds the level of regions at the thresholds T, relative to LIGHT as white. */
+static void add_level(struct glint_lamp_finder *f, int32_t light_q20,
+                      struct thresholds t, int32_t cost_q8)
 {
     const struct glint_bright *b = &f->bright;
     struct glint_level *level = &f->level[f->n_levels++];
 
-    level->low = glint_white_code(b, light_q20, f->cfg.threshold_low_q8);
-    level->seed = glint_white_code(b, light_q20, f->cfg.threshold_high_q8);
+    level->low = glint_white_code(b, light_q20, t.low_q8);
+    level->seed = glint_white_code(b, light_q20, t.high_q8);
     level->clipped = glint_white_code(b, light_q20, 0);
-    level->cost_q8 = 0;
+    level->cost_q8 = cost_q8;
 }
 
 /* Adds two levels for a picture darker than white: regions at both thresholds,
  * and at the upper threshold alone. Adds no level if more than DARK_SHARE of
  * the picture reaches the lower threshold. */
-static void add_dark_level(struct glint_lamp_finder *f)
+static void add_dark_level(struct glint_lamp_finder *f, struct thresholds t,
+                           int32_t cost_q8)
 {
+    struct glint_level *level = &f->level[f->n_levels];
+
     if (!f->cfg.judge || f->white->light_q20 >= LINEAR_WHITE_Q20)
         return;
-    add_level(f, f->white->light_q20);
-    f->level[0].cost_q8 = COST_DARK_Q8;
-    f->level[1] = f->level[0];
-    f->level[1].low = f->level[1].seed;
-    f->level[1].cost_q8 += COST_CLIPPED_Q8;
-    f->n_levels = 2;
-    if (glint_white_share_q15(f->white, f->level[0].low) > DARK_SHARE_Q15)
-        f->n_levels = 0;
+    add_level(f, f->white->light_q20, t, cost_q8 + COST_DARK_Q8);
+    level[1] = level[0];
+    level[1].low = level[1].seed;
+    level[1].cost_q8 += COST_CLIPPED_Q8;
+    f->n_levels++;
+    if (glint_white_share_q15(f->white, level->low) > DARK_SHARE_Q15)
+        f->n_levels -= 2;
+}
+
+/* Adds the levels at the thresholds T. In a picture whose white is below
+ * clipping, lamps may be clipped or not, so both levels are added. */
+static void add_levels(struct glint_lamp_finder *f, struct thresholds t,
+                       int32_t cost_q8)
+{
+    const int white_code = f->cfg.white_code;
+
+    if (white_code) {
+        add_level(f, f->bright.curve->decode_q20[white_code], t, cost_q8);
+    } else {
+        add_dark_level(f, t, cost_q8);
+        add_level(f, LINEAR_WHITE_Q20, t, cost_q8);
+    }
 }
 
 /* Adds the level of clipped regions, of brightness LOW and above. */
@@ -268,11 +302,26 @@ static void add_core_level(struct glint_lamp_finder *f, int low,
         (struct glint_level){low, BRIGHT_CLIPPED, BRIGHT_CLIPPED, cost_q8};
 }
 
-/* Measures white and sets the levels. In a picture whose white is below
- * clipping, lamps may be clipped or not, so both levels are searched. */
+/* Sorts the levels by rising brightness. */
+static void sort_levels(struct glint_lamp_finder *f)
+{
+    for (int i = 1; i < f->n_levels; i++)
+        for (int j = i; j > 0 && f->level[j].low < f->level[j - 1].low; j--) {
+            const struct glint_level old = f->level[j];
+
+            f->level[j] = f->level[j - 1];
+            f->level[j - 1] = old;
+        }
+}
+
+/* Measures white and sets the levels. Thresholds below the defaults add levels
+ * to those at the defaults, so that they find all lamps that the defaults
+ * find. */
 static void set_levels(struct glint_lamp_finder *f)
 {
-    const int white_code = f->cfg.white_code;
+    const struct thresholds t = {f->cfg.threshold_high_q8,
+                                 f->cfg.threshold_low_q8};
+    struct thresholds held = t;
     struct glint_bright *b = &f->bright;
 
     glint_white_measure(f->white, b, f->cfg.height);
@@ -280,17 +329,19 @@ static void set_levels(struct glint_lamp_finder *f)
         f->white->light_q20 = f->least_white_q20;
     f->least_white_q20 = 0;
     f->n_levels = 0;
-    if (white_code) {
-        add_level(f, b->curve->decode_q20[white_code]);
-    } else {
-        add_dark_level(f);
-        add_level(f, LINEAR_WHITE_Q20);
+    if (is_below_default(&f->cfg)) {
+        held.high_q8 = q_larger(t.high_q8, DEFAULT_HIGH_Q8);
+        held.low_q8 = q_larger(t.low_q8, DEFAULT_LOW_Q8);
+        add_levels(f, t, COST_LOWER_Q8);
     }
+    add_levels(f, held, 0);
     if (f->cfg.judge) {
         add_core_level(f, BRIGHT_CLIPPED, COST_CLIPPED_Q8);
         add_core_level(f, BRIGHT_WHITE, COST_WHITE_Q8);
         add_core_level(f, BRIGHT_HOT, 0);
     }
+    if (is_below_default(&f->cfg))
+        sort_levels(f);
     glint_bright_set_low(b, f->level[0].low);
 }
 
@@ -488,11 +539,16 @@ static struct glint_lamp_finder *carve(struct glint_arena *a,
 {
     struct glint_lamp_finder *placed = glint_arena_take(a, 1, sizeof *placed);
     struct glint_lamp_finder measured;
+    struct glint_regions measured_level;
     struct glint_lamp_finder *f = placed ? placed : &measured;
+    const int n_levels =
+        is_below_default(c) ? LIGHT_LEVELS : LIGHT_LEVELS - LIGHT_LEVELS_LOWER;
 
     glint_bright_carve(&f->bright, a, c->width);
-    for (int i = 0; i < LIGHT_LEVELS; i++)
-        glint_regions_carve(&f->regions[i], a, c->width);
+    f->regions = glint_arena_take(a, (size_t)n_levels, sizeof *f->regions);
+    for (int i = 0; i < n_levels; i++)
+        glint_regions_carve(f->regions ? &f->regions[i] : &measured_level, a,
+                            c->width);
     glint_row_light_carve(&f->row, a, c->width);
     f->white = glint_arena_take(a, 1, sizeof *f->white);
     f->candidate =
@@ -509,8 +565,8 @@ void glint_lamp_finder_defaults(struct glint_lamp_finder_config *cfg, int width,
     *cfg = (struct glint_lamp_finder_config){
         .width = width,
         .height = height,
-        .threshold_high_q8 = -26,
-        .threshold_low_q8 = -38,
+        .threshold_high_q8 = DEFAULT_HIGH_Q8,
+        .threshold_low_q8 = DEFAULT_LOW_Q8,
         .judge = 1,
         .min_area = pixels < 1 << 19 ? 2 : pixels >> 18,
         .max_share_q15 = Q_CONST(0.25, 15),
@@ -556,6 +612,29 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
 
 /* -------------------------------------------------------------------- score */
 
+/* Returns the min score of a lamp. Regions at thresholds below the defaults
+ * can lower it, but not raise it. */
+static int32_t find_least_score(struct glint_lamp_finder *f,
+                                const struct glint_score *score)
+{
+    int32_t least_q8, default_q8;
+    int n = 0;
+
+    for (int i = 0; i < f->n; i++) {
+        const int32_t at = f->order[i];
+
+        if (f->level[f->candidate[at].level].cost_q8 < COST_LOWER_Q8) {
+            f->order[i] = f->order[n];
+            f->order[n++] = at;
+        }
+    }
+    default_q8 = glint_score_least(score, f->candidate, f->order, n);
+    if (n == f->n)
+        return default_q8;
+    least_q8 = glint_score_least(score, f->candidate, f->order, f->n);
+    return q_smaller(least_q8, default_q8);
+}
+
 /* Keeps candidates whose score is that of a lamp. If keep_faint is set,
  * candidates with a slightly lower score are kept, too, and marked faint. */
 static void score_candidates(struct glint_lamp_finder *f)
@@ -567,7 +646,7 @@ static void score_candidates(struct glint_lamp_finder *f)
     int32_t least_q8;
 
     glint_score_all(&score, f->candidate, f->order, n);
-    least_q8 = glint_score_least(&score, f->candidate, f->order, n);
+    least_q8 = find_least_score(f, &score);
     f->n = 0;
     for (int i = 0; i < n; i++) {
         struct glint_candidate *c = &f->candidate[f->order[i]];

@@ -15,7 +15,8 @@
 enum {
     LIGHT_CANDIDATES = 2048, /* max number of candidates, more than the max of
                                 1024 lamps per picture */
-    LIGHT_LEVELS = 6
+    LIGHT_LEVELS_LOWER = 3,  /* levels that thresholds below the defaults add */
+    LIGHT_LEVELS = 6 + LIGHT_LEVELS_LOWER
 };
 
 struct glint_lamp_finder {
@@ -27,7 +28,7 @@ struct glint_lamp_finder {
     int32_t least_white_q20; /* min white of the next picture, linear light */
     int32_t alone_q8; /* alone_q8 of struct glint_score for the next picture */
     struct glint_row_light row;
-    struct glint_regions regions[LIGHT_LEVELS];
+    struct glint_regions *regions;          /* one per level */
     struct glint_level level[LIGHT_LEVELS]; /* levels, by rising brightness */
     int n_levels;
     int at; /* index of the level that is being processed */

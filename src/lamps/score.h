@@ -42,7 +42,7 @@ enum {
     SCORE_COMPANY = 96,
     SCORE_ALONE = 48, /* for still pictures; see tests/figures/finder.md */
     SCORE_ALONE_VIDEO = 32,
-    SCORE_LEVELS = 8
+    SCORE_LEVELS = 9
 };
 
 /* Measures of a region from which its score is computed, _q8. */

@@ -25,6 +25,7 @@ static uint32_t seed;
 /* number of video frames that draw_and_find_lamps() passes before the image */
 static int n_before;
 static int n_video; /* number of lamps in the last of these frames */
+static int n_lower; /* stops by which find() lowers the thresholds, _q8 */
 
 static struct settings make_settings(int width, int height, double light)
 {
@@ -134,6 +135,8 @@ static int draw_and_find_lamps(const struct settings *s,
             write_pixel_of_format(&image, x, y, rgb);
         }
     glint_lamp_finder_defaults(&cfg, s->width, s->height);
+    cfg.threshold_high_q8 -= n_lower;
+    cfg.threshold_low_q8 -= n_lower;
     assert_int_equal(posix_memalign(&mem, 64, glint_lamp_finder_bytes(&cfg)),
                      0);
     assert_ok(glint_lamp_finder_init(&finder, &cfg, mem,
@@ -460,6 +463,27 @@ TEST(video_needs_a_higher_score)
     n_before = 0;
     assert_int_equal(n_after, n_alone);
     assert_in_range(n_of_video, 1, n_alone - 1);
+}
+
+/* Checks that lower thresholds add a dim lamp to two lamps, whose glow they
+ * would otherwise unite to one region. */
+TEST(lower_thresholds_find_more)
+{
+    static const double white[3] = {4, 4, 4}, dim[3] = {0.7, 0.7, 0.7};
+    struct settings s = new_settings(400, 260, 0.002);
+
+    add_lamp(&s, 0.3, 0.3, 0.05, 0.002, dim);
+    add_lamp(&s, 0.27, 0.3, 0.012, 0.001, white);
+    add_lamp(&s, 0.33, 0.3, 0.012, 0.001, white);
+    add_lamp(&s, 0.8, 0.4, 0.02, 0.002, dim);
+    assert_int_equal(find_lamps(&s, GLINT_RGB24, 0), 2);
+    n_lower = 128;
+    assert_int_equal(find_lamps(&s, GLINT_RGB24, 0), 3);
+    n_lower = 0;
+    assert_spot_near(&s, 0.27, 0.3);
+    assert_spot_near(&s, 0.33, 0.3);
+    assert_spot_near(&s, 0.8, 0.4);
+    free(s.light);
 }
 
 /* Checks that a faint region does not replace the lamp that contains it, not
