@@ -605,9 +605,8 @@ TEST(a13_texture_coordinates)
         if (i >= 3) {
             w[1] = rng_unit(&seed);
             w[2] = rng_unit(&seed) * (1 - w[1]);
-        } else {
+        } else
             w[i] = 1;
-        }
         w[0] = 1 - w[1] - w[2];
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++) {
