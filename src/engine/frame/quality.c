@@ -9,12 +9,6 @@
 /* Max number of lights; 128 lights cost less than three times as much as 64. */
 enum { MAX_LIGHTS = 128 };
 
-/* Default light below which starbursts are not drawn / cull_codes; at the
- * default quality a quarter of a code. Half or an eighth of this changes the
- * PSNR little; four times as much costs 0.2 dB and saves 2 of 9 million
- * instructions (tests/figures/cost/stars.md: a lamp of 12 stops). */
-#define STAR_CULL 2
-
 /* Quality levels, the coarsest first: points on the Pareto front of time and
  * error that glint sweep measures over five lenses at 1280x720. Coarser models
  * are not on the front: they save no time and cost 6 dB. Finer models cost only
