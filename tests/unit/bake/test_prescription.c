@@ -445,7 +445,7 @@ TEST(rejects_invalid_bytes)
 
     expect_parse_error(NULL, 0, "x.lens:1:1: the line 'name' is missing");
     expect_parse_error("\n\n", 2, "x.lens:3:1: the line 'name' is missing");
-    rejects_invalid_bytes = compose_table_with_line(text, 0, NULL, "\n");
+    bytes = compose_table_with_line(text, 0, NULL, "\n");
     text[5] = 0;
     expect_parse_error(text, bytes,
                        "x.lens:1:6: byte 0x00 is not text (UTF-8)");
