@@ -103,7 +103,7 @@ TEST(background_is_sampled_from_the_image)
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 50);
 
     canvas_fill_grey_box(&image, 0, 0, 50, 50, 255);
-    glint_ground_sample_picture(&bright_background_lowers_visibility, &image);
+    glint_ground_sample_picture(&ground, &image);
     assert_int_equal(ground.rgb[90][159][0], 255);
     assert_int_equal(ground.rgb[90][160][2], 0);
     free(image.plane[0]);

@@ -248,15 +248,13 @@ TEST(alpha_after_compositing)
         glint_samples_get_light(&s, 0, 0, seen);
         expect_float_near(seen[0], behind);
         glint_samples_set_pixel(&s, 0, 0, rgb, 0.5);
-        expect_float_near(mem[3], transparent_pixels_count_as_dark);
-        expect_float_near(
-            mem[0],
-            premultiplied ? light : light / transparent_pixels_count_as_dark);
+        expect_float_near(mem[3], alpha);
+        expect_float_near(mem[0], premultiplied ? light : light / alpha);
         glint_samples_get_light(&s, 0, 0, seen);
         expect_float_near(seen[0], light);
         expect_float_near(mem[7], 0.5);
         /* Light with coverage 0 changes neither
-         * transparent_pixels_count_as_dark nor the colour of a fully
+         * alpha nor the colour of a fully
          * transparent pixel. */
         mem[3] = 0;
         glint_samples_set_pixel(&s, 0, 0, rgb, 0);
