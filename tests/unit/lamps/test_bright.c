@@ -224,15 +224,17 @@ TEST(scan_matches_a_test_of_every_pixel)
 }
 
 /* Checks that the padding of the last block is set, as the runs of a row are
- * searched in whole words. new_bright() fills all memory with 0x5a. */
+ * searched in whole words. create_bright_scanner() fills all memory with 0x5a.
+ */
 TEST(padding_is_cleared)
 {
     for (int width = 1; width <= 2 * BRIGHT_BLOCK; width++) {
-        struct glint_image image = canvas_new(GLINT_RGB24, width, HEIGHT);
+        struct glint_image image =
+            canvas_allocate_image(GLINT_RGB24, width, HEIGHT);
         void *mem;
-        struct glint_bright *b = new_bright(width, &mem);
+        struct glint_bright *b = create_bright_scanner(width, &mem);
 
-        fill_random(&image, 1);
+        fill_with_random_bytes(&image, 1);
         glint_bright_begin(b, &image);
         glint_bright_set_low(b, 1);
         glint_bright_scan(b, 0);

@@ -470,15 +470,15 @@ TEST(video_needs_a_higher_score)
 TEST(lower_thresholds_find_more)
 {
     static const double white[3] = {4, 4, 4}, dim[3] = {0.7, 0.7, 0.7};
-    struct settings s = new_settings(400, 260, 0.002);
+    struct settings s = make_settings(400, 260, 0.002);
 
-    add_lamp(&s, 0.3, 0.3, 0.05, 0.002, dim);
-    add_lamp(&s, 0.27, 0.3, 0.012, 0.001, white);
-    add_lamp(&s, 0.33, 0.3, 0.012, 0.001, white);
-    add_lamp(&s, 0.8, 0.4, 0.02, 0.002, dim);
-    assert_int_equal(find_lamps(&s, GLINT_RGB24, 0), 2);
+    add_lamp_with_glare(&s, 0.3, 0.3, 0.05, 0.002, dim);
+    add_lamp_with_glare(&s, 0.27, 0.3, 0.012, 0.001, white);
+    add_lamp_with_glare(&s, 0.33, 0.3, 0.012, 0.001, white);
+    add_lamp_with_glare(&s, 0.8, 0.4, 0.02, 0.002, dim);
+    assert_int_equal(draw_and_find_lamps(&s, GLINT_RGB24, 0), 2);
     n_lower = 128;
-    assert_int_equal(find_lamps(&s, GLINT_RGB24, 0), 3);
+    assert_int_equal(draw_and_find_lamps(&s, GLINT_RGB24, 0), 3);
     n_lower = 0;
     assert_spot_near(&s, 0.27, 0.3);
     assert_spot_near(&s, 0.33, 0.3);
@@ -492,8 +492,8 @@ TEST(faint_regions_replace_no_lamp)
 {
     static const struct glint_level level[2] = {{.cost_q8 = 4096}, {0}};
     const struct glint_score score = {.level = level};
-    struct glint_candidate c[2] = {make_candidate(10, 0, 50),
-                                   make_candidate(10, 1, -50)};
+    struct glint_candidate c[2] = {make_scored_candidate(10, 0, 50),
+                                   make_scored_candidate(10, 1, -50)};
     int32_t order[2] = {0, 1};
 
     c[1].faint = 1;
