@@ -14,7 +14,7 @@
  * regions are also sought relative to the white of the picture: the code that
  * one of 2048 of its pixels reaches, but at least code 64, as noise would
  * otherwise be lamps. Thresholds below the defaults add lamps to those that the
- * defaults find, whose extent they do not change, unless JUDGE is 0.
+ * defaults find, unless JUDGE is 0.
  *
  * Skies, clouds, snow, paper and flowers are as bright as lamps. Regions are
  * therefore scored by their appearance and surroundings: contrast, light that

@@ -182,7 +182,7 @@ class Package(unittest.TestCase):
         engine.set(f_number=16, exposure=2, gain=2)
         engine.overlay(turned)
         self.assertTrue((made == turned).all())
-        for text, options in [("fixed", {"veil": 0.1}), ("no option", {"strenght": 1}), ("gain is a factor, from 0", {"gain": -1})]:
+        for text, options in [("only when the engine is created", {"veil": 0.1}), ("no option", {"strenght": 1}), ("gain accepts: a factor, from 0", {"gain": -1})]:
             with self.subTest(text=text), self.assertRaisesRegex(ValueError, text):
                 engine.set(**options)
 

@@ -178,8 +178,8 @@ expect "and why" one_line two "another program"
 for name in disconnect unplugged panel; do
     expect "$name: ends with 4, console restored" is $name "code 4" text
 done
-expect "disconnect: one line" one_line disconnect "/dev/video0: .*gone"
-expect "unplugged: one line" one_line unplugged "/dev/video0: .*gone"
+expect "disconnect: one line" one_line disconnect "/dev/video0: .*removed"
+expect "unplugged: one line" one_line unplugged "/dev/video0: .*removed"
 expect "panel: one line" one_line panel "/dev/fb0: "
 expect "reconnect waits" is reconnect waits
 bright() { # NAME - the panel has many colours

@@ -63,7 +63,7 @@ expect "1 GIPS: at full quality" between 1 "$(value gips quality)" 1
 
 run_at default 0
 expect "1 GIPS, default: the quality is lowered, and that is said" \
-    says default/err 'quality lowered to hold the rate: step [1-3] '
+    says default/err 'quality lowered to keep the frame rate: step [1-3] '
 expect "1 GIPS, default: 30 fps at the end" \
     between 29 "$(at_end default fps)" 31
 expect "1 GIPS, default: no frame is lost at the end" \
@@ -72,7 +72,7 @@ expect "1 GIPS, default: no frame is lost at the end" \
 run_at low 2
 expect "250 MIPS: nothing queues" between 1 "$(value low latency_ms_p99)" 100
 expect "250 MIPS: quality is lowered, and that is said" \
-    says low/err 'quality lowered to hold the rate: step [1-9]'
+    says low/err 'quality lowered to keep the frame rate: step [1-9]'
 expect "250 MIPS: lights and ghosts are still drawn" \
     says low/stats '"lights":1,"ghosts":[1-9]'
 run_at plain 2 --no-adaptive

@@ -53,9 +53,9 @@ static const char help[] =
     "  --tolerance T     scale of the tolerances (default 1)\n"
     "  --strict          write nothing and exit with 5 if a picture of the "
     "model has\n"
-    "                    less than 50 dB against exact rays (--halfway DB "
-    "between\n"
-    "                    positions)\n"
+    "                    less than 50 dB against exact rays; with "
+    "--positions,\n"
+    "                    less than --halfway between positions\n"
     "  -j, --threads N   default: all processors; never changes the model\n"
     "  --json   -q   -v   --help   --help-all   --version\n";
 
@@ -157,6 +157,9 @@ static int parse_options(struct tool *tool, int argc, char **argv,
             tool, "--positions bakes the whole zoom range and excludes --zoom");
     if (!b->positions && b->halfway_db >= 0)
         return tool_usage(tool, "--halfway needs --positions");
+    if (b->is_strict && b->halfway_db == 0)
+        return tool_usage(tool, "--strict needs the check between positions, "
+                                "which --halfway 0 turns off");
     if (b->halfway_db < 0)
         b->halfway_db = ZOOM_BAKE_DB;
     return -1;
@@ -177,33 +180,21 @@ static int refuse_inaccurate(const struct tool *tool, double psnr_db,
     return tool_fail(tool, GLINT_E_LENS, text);
 }
 
-/* Returns whether pictures of the model are reported or decide whether it is
- * written. */
-static bool needs_pictures(const struct tool *tool, const struct bake *b)
-{
-    return b->is_strict ||
-           (strcmp(b->output, "-") != 0 && (tool->json || !tool->quiet));
-}
-
-/* Compares pictures of MODEL with exact rays if they are needed. Returns an
- * exit code. */
-static int check_pictures(const struct tool *tool, const struct bake *b,
+/* Compares pictures of MODEL with exact rays. Returns an exit code: not 0 if
+ * they are less accurate than --strict accepts, or on failure. */
+static int check_strictly(const struct tool *tool, const struct bake *b,
                           const struct glint_prescription *lens,
                           const struct glint_lens *model,
                           struct picture_check *check)
 {
     struct glint_error error = {""};
-    enum glint_status status;
+    const enum glint_status status =
+        picture_check_run(tool, lens, model, &b->options, check, &error);
     char where[64];
 
-    *check = (struct picture_check){.n = 0};
-    if (!needs_pictures(tool, b))
-        return EXIT_OK;
-    status =
-        picture_check_run(tool, lens, model, b->options.max_deg, check, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (!b->is_strict || check->psnr_db >= PICTURE_CHECK_DB)
+    if (check->psnr_db >= PICTURE_CHECK_DB)
         return EXIT_OK;
     snprintf(where, sizeof where, "with the light %.1f degrees off the axis",
              check->angle_deg);
@@ -211,25 +202,47 @@ static int check_pictures(const struct tool *tool, const struct bake *b,
                              "try a smaller --tolerance");
 }
 
-/* Checks MODEL[BYTES] and writes it to OUT, which it commits or aborts, and
- * reports. Returns an exit code. */
+/* Compares pictures of MODEL, which is written, with exact rays for the report.
+ * Prints a warning on failure. */
+static void check_for_report(const struct tool *tool, const struct bake *b,
+                             const struct glint_prescription *lens,
+                             const struct glint_lens *model,
+                             struct picture_check *check)
+{
+    struct glint_error error = {""};
+    const enum glint_status status =
+        picture_check_run(tool, lens, model, &b->options, check, &error);
+
+    if (status == GLINT_OK)
+        return;
+    check->n = 0;
+    fprintf(stderr,
+            "glint bake: %s is written, but its pictures could not be compared "
+            "with exact rays: %s\n",
+            b->output, error.text[0] ? error.text : glint_status_text(status));
+}
+
+/* Checks MODEL[BYTES], which took SECONDS to bake, writes it to OUT, which it
+ * commits or aborts, and reports. Returns an exit code. */
 static int write_model(struct glint_output *out, const struct tool *tool,
                        const struct bake *b,
                        const struct glint_prescription *lens,
-                       const unsigned char *model, size_t bytes, double start,
+                       const unsigned char *model, size_t bytes, double seconds,
                        const struct glint_bake_report *report)
 {
+    const bool reports =
+        strcmp(b->output, "-") != 0 && (tool->json || !tool->quiet);
+    struct picture_check check = {.n = 0};
     struct glint_error error = {""};
-    struct picture_check check;
-    enum glint_status status;
     struct glint_lens opened;
+    enum glint_status status;
     const char *reason;
     int code = EXIT_OK;
 
     if (glint_lens_open(&opened, model, bytes, &reason) != GLINT_OK)
         code = tool_fail(tool, GLINT_E_LENS, reason);
-    else
-        code = check_pictures(tool, b, lens, &opened, &check);
+    else if (b->is_strict)
+        code = check_strictly(tool, b, lens, &opened, &check);
     if (code != EXIT_OK) {
         glint_output_abort(out);
         return code;
@@ -237,9 +250,10 @@ static int write_model(struct glint_output *out, const struct tool *tool,
     status = glint_output_write_and_commit(out, model, bytes, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (strcmp(b->output, "-") != 0)
-        model_report_print_bake(tool, &opened, tool_clock_s() - start, report,
-                                &check);
+    if (reports && !b->is_strict)
+        check_for_report(tool, b, lens, &opened, &check);
+    if (reports)
+        model_report_print_bake(tool, &opened, seconds, report, &check);
     return EXIT_OK;
 }
 
@@ -265,7 +279,8 @@ static int bake_lens_to_output(struct glint_output *out, struct tool *tool,
     status = glint_bake(lens, &b->options, &model, &bytes, &r, &error);
     tool_progress_end(&b->progress);
     if (status == GLINT_OK) {
-        code = write_model(out, tool, b, lens, model, bytes, start, &r);
+        code = write_model(out, tool, b, lens, model, bytes,
+                           tool_clock_s() - start, &r);
     } else {
         glint_output_abort(out);
         code = tool_fail(tool, status, error.text[0] ? error.text : NULL);

@@ -6,6 +6,9 @@
 #include "model/model_summary.h"
 #include "options/json_writer.h"
 
+/* PSNR of identical pictures, as in glint/measure.h. */
+#define IDENTICAL_DB 999
+
 /* --------------------------------------------------------------------- JSON
  */
 
@@ -168,8 +171,10 @@ static void write_bake_json(const struct glint_lens *lens, double seconds,
                seconds, h->bytes, model_count_ghosts(lens), h->n_ghosts,
                h->n_systems, model_compute_mean_terms(&sum), report->unmet,
                report->rays, report->intruders);
-    json_write(&json, "pictures: %d, worst_db: %.2f, worst_deg: %.4f", check->n,
-               check->psnr_db, check->angle_deg);
+    json_write(&json, "pictures: %d", check->n);
+    if (check->n > 0 && check->psnr_db < IDENTICAL_DB)
+        json_write(&json, "worst_db: %.2f, worst_deg: %.4f", check->psnr_db,
+                   check->angle_deg);
     write_errors_json(&json, &sum);
     write_misses_json(&json, lens);
     json_write(&json, "by_ghost: [");
@@ -409,9 +414,15 @@ static void print_bake_statistics(const struct tool *tool,
 /* Prints the worst picture, and what to do if it is not accurate. */
 static void print_picture_check(const struct picture_check *check)
 {
-    printf("%d pictures of the model against exact rays: worst PSNR %.1f dB, "
-           "with the light %.1f degrees off the axis\n",
-           check->n, check->psnr_db, check->angle_deg);
+    if (check->n == 0)
+        return;
+    if (check->psnr_db >= IDENTICAL_DB)
+        printf("%d pictures of the model are identical with exact rays\n",
+               check->n);
+    else
+        printf("%d pictures of the model against exact rays: worst PSNR %.1f "
+               "dB, with the light %.1f degrees off the axis\n",
+               check->n, check->psnr_db, check->angle_deg);
     if (check->psnr_db < PICTURE_CHECK_DB)
         printf("less than %g dB: bake with a smaller --tolerance, or draw "
                "stills with --rays exact\n",

@@ -117,7 +117,7 @@ static void compare_light(void *ctx, int i, int worker)
 static void list_lights(struct job *job, double most)
 {
     for (int i = 0; i < NEAR; i++)
-        if (near_deg[i] <= most)
+        if (near_deg[i] < most)
             job->light[job->n++].angle_deg = near_deg[i];
     for (int i = 1; i <= STEPS; i++)
         job->light[job->n++].angle_deg = most * i / STEPS;
@@ -145,28 +145,42 @@ static enum glint_status choose_worst(const struct job *job,
     return GLINT_OK;
 }
 
+/* Returns the fraction of the half diagonal CORNER_MM of a film within which a
+ * model baked with FIELD_MM, 0: the default, has light. */
+static double compute_field_fraction(double field_mm, double corner_mm)
+{
+    return field_mm > 0 ? fmin(1, field_mm / corner_mm) : 1;
+}
+
 enum glint_status picture_check_run(const struct tool *tool,
                                     const struct glint_prescription *lens,
                                     const struct glint_lens *model,
-                                    double max_deg, struct picture_check *check,
+                                    const struct glint_bake_options *baked,
+                                    struct picture_check *check,
                                     struct glint_error *error)
 {
-    static const double wave_nm[] = {620, 540, 460};
+    const double *const band = baked->band_nm, span = band[1] - band[0];
+    /* of the default band: near 620, 540 and 460 nm */
+    const double wave_nm[] = {band[0] + 0.73 * span, band[0] + 0.47 * span,
+                              band[0] + 0.2 * span};
+    const double diagonal_mm = hypot(lens->film_width_mm, lens->film_height_mm);
+    const double part =
+        compute_field_fraction(baked->field_mm, 0.5 * diagonal_mm);
     const double high = ceil(WIDE * lens->film_height_mm / lens->film_width_mm);
-    const double corner_mm =
-        0.5 * hypot(lens->film_width_mm, lens->film_height_mm);
     struct glint_setup *const setup = malloc(sizeof *setup);
     struct job job = {
         .setup = setup,
         .model = model,
         .view = glint_view_fit(WIDE, (int)fmin(fmax(high, 8), MOST_HIGH),
-                               lens->film_width_mm, lens->film_height_mm)};
+                               part * lens->film_width_mm,
+                               part * lens->film_height_mm)};
     enum glint_status status = GLINT_E_MEMORY;
     struct glint_optics optics;
 
     glint_optics_of(lens, &optics);
-    list_lights(&job, fmin(max_deg,
-                           180 / GLINT_PI * atan(corner_mm / optics.focal_mm)));
+    list_lights(&job, fmin(baked->max_deg, 180 / GLINT_PI *
+                                               atan(0.5 * part * diagonal_mm /
+                                                    optics.focal_mm)));
     if (setup)
         status = glint_setup_init(setup, lens, 0, 0, wave_nm,
                                   sizeof wave_nm / sizeof *wave_nm, error);

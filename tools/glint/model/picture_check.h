@@ -5,6 +5,7 @@
 #ifndef GLINT_TOOLS_MODEL_PICTURE_CHECK_H
 #define GLINT_TOOLS_MODEL_PICTURE_CHECK_H
 
+#include "glint/bake.h"
 #include "glint/engine.h"
 #include "glint/model.h"
 #include "options/tool.h"
@@ -28,18 +29,21 @@ void picture_pair_close(struct picture_pair *pair);
 
 /* The largest difference between model and exact rays. */
 struct picture_check {
-    double psnr_db;   /* of sRGB codes, exposed as by glint compare */
+    double psnr_db;   /* of sRGB codes, exposed as by glint compare; 999: all
+                         pictures are identical */
     double angle_deg; /* angle of the light off the axis */
     int n;            /* compared pictures; 0: none */
 };
 
-/* Draws the ghosts of single lights on the axis, near it and up to the corner
- * of the film of LENS, at most MAX_DEG off the axis, by MODEL and by exact
- * rays, and sets CHECK to the picture with the smallest PSNR. */
+/* Draws the ghosts of up to ten single lights on the axis, near it and up to
+ * the corner of the film of LENS, by MODEL and by exact rays, and sets CHECK to
+ * the picture with the smallest PSNR. Wavelengths, angles and film lie within
+ * those of BAKED, the options of the model. */
 enum glint_status picture_check_run(const struct tool *tool,
                                     const struct glint_prescription *lens,
                                     const struct glint_lens *model,
-                                    double max_deg, struct picture_check *check,
+                                    const struct glint_bake_options *baked,
+                                    struct picture_check *check,
                                     struct glint_error *error);
 
 #endif

@@ -673,6 +673,7 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
 {
     struct drawing_run *const run = &drawing->run;
     struct glint_engine_config cfg;
+    enum glint_status status;
 
     save_frame_lamps(&drawing->files.save, run, lens_focal_mm(drawing));
     glint_engine_configure(&cfg, &drawing->line.settings.options);
@@ -686,8 +687,11 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
         run->progress.least_s = 3;
         run->progress.waits = true;
     }
-    return glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
-                               run->white);
+    status = glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
+                                 run->white);
+    if (status != GLINT_OK && run->is_progressing)
+        tool_progress_end(&run->progress);
+    return status;
 }
 
 /* Records the time of a flare whose drawing began at START, seconds. */
