@@ -10,8 +10,8 @@ static size_t count_blocks(int width)
     return ((size_t)width + BRIGHT_BLOCK - 1) / BRIGHT_BLOCK;
 }
 
-void glint_bright_carve(struct glint_bright *b, struct glint_arena *arena,
-                        int width)
+void glint_bright_allocate(struct glint_bright *b, struct glint_arena *arena,
+                           int width)
 {
     b->curve = glint_arena_take(arena, 1, sizeof *b->curve);
     b->full_luma = glint_arena_take(arena, 256, 1);
@@ -21,8 +21,9 @@ void glint_bright_carve(struct glint_bright *b, struct glint_arena *arena,
     b->marked = glint_arena_take(arena, count_blocks(width), sizeof *b->marked);
 }
 
-/* Clears the padding of the last block, which is read in whole words. */
-void glint_bright_init(struct glint_bright *b, int width)
+/* Clears the brightness values beyond WIDTH in the last block, as whole words
+ * are read there. */
+void glint_bright_clear_padding(struct glint_bright *b, int width)
 {
     const int padded = (int)count_blocks(width) * BRIGHT_BLOCK;
 
@@ -32,16 +33,18 @@ void glint_bright_init(struct glint_bright *b, int width)
         b->value[x] = 0;
 }
 
-/* Fills the table BEYOND, the brightness of clipped pixels by luma: 250
- * below luma 192, then 1 more per 15 of luma, up to 255 from luma 252 on. */
-static void set_beyond(uint8_t beyond[256])
+/* Fills BEYOND, a table from the luma of a clipped pixel to its brightness: 250
+ * for luma below 192, then 1 more per 15 of luma, up to 255 for luma of 252 or
+ * more. */
+static void fill_clipped_brightness_table(uint8_t beyond[256])
 {
     for (int luma = 0; luma < 256; luma++)
         beyond[luma] =
             (uint8_t)(BRIGHT_CLIPPED + (luma > 177 ? (luma - 177) / 15 : 0));
 }
 
-void glint_bright_begin(struct glint_bright *b, const struct glint_image *image)
+void glint_bright_begin_picture(struct glint_bright *b,
+                                const struct glint_image *image)
 {
     b->image = image;
     b->layout = glint_get_layout(image->format);
@@ -57,12 +60,12 @@ void glint_bright_begin(struct glint_bright *b, const struct glint_image *image)
             q_shift((int64_t)(code - b->ycc.black) * b->ycc.to_rgb_q16[0][0],
                     16),
             0, 255);
-    set_beyond(b->beyond);
+    fill_clipped_brightness_table(b->beyond);
 }
 
-/* Returns the min Y code whose full-range luma is at least LUMA, or 256 if
- * there is no such code. */
-static int find_min_code(const struct glint_bright *b, int luma)
+/* Returns the min Y code whose full-range luma is at least LUMA; 256 if there
+ * is none. */
+static int find_min_luma_code(const struct glint_bright *b, int luma)
 {
     int code = luma > 0 ? 1 : 0;
 
@@ -71,18 +74,18 @@ static int find_min_code(const struct glint_bright *b, int luma)
     return code;
 }
 
-void glint_bright_set_low(struct glint_bright *b, int low)
+void glint_bright_set_min_brightness(struct glint_bright *b, int low)
 {
     const int channel = low < BRIGHT_CLIPPED ? low : BRIGHT_CLIPPED;
 
     b->low = low;
-    b->low_code = bright_is_rgb(b) ? channel : find_min_code(b, channel);
+    b->low_code = bright_is_rgb(b) ? channel : find_min_luma_code(b, channel);
     b->low_sum_q16 = (channel - 1) * 65536;
 }
 
 /* -------------------------------------------------------------------- value */
 
-void glint_bright_seek_row(struct glint_bright *b, int y)
+void glint_bright_select_row(struct glint_bright *b, int y)
 {
     const struct glint_layout *layout = b->layout;
 
@@ -98,13 +101,14 @@ void glint_bright_seek_row(struct glint_bright *b, int y)
 
 /* -------------------------------------------------------------------- light */
 
-void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3])
+void glint_bright_read_pixel_light(const struct glint_bright *b, int x,
+                                   int32_t rgb_q20[3])
 {
-    bright_read(b, x, rgb_q20);
+    bright_read_pixel_light(b, x, rgb_q20);
 }
 
-int32_t glint_bright_step_q20(const struct glint_bright *b, int c,
-                              int32_t light_q20)
+int32_t glint_bright_compute_code_step_q20(const struct glint_bright *b, int c,
+                                           int32_t light_q20)
 {
     const int lost = b->layout->kind != GLINT_LAYOUT_565 ? 0 : c == 1 ? 2 : 3;
     const int step_q7 = 128 << lost;

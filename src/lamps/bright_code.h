@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads single pixels. The functions are inlined in loops over rows.
+ * Reads single pixels of a row. The functions are inlined into loops over rows.
  */
 #ifndef GLINT_LAMPS_BRIGHT_CODE_H
 #define GLINT_LAMPS_BRIGHT_CODE_H
@@ -23,8 +23,8 @@ static inline int bright_is_rgb(const struct glint_bright *b)
 }
 
 /* Sets RGB to the codes of pixel X of a picture in RGB. */
-static WHOLLY_INLINE void bright_read_rgb(const struct glint_bright *b, int x,
-                                          int rgb[3])
+static WHOLLY_INLINE void bright_read_rgb_codes(const struct glint_bright *b,
+                                                int x, int rgb[3])
 {
     if (b->layout->kind == GLINT_LAYOUT_565) {
         const int bits = code_at(b, 0, x) | code_at(b, 1, x) << 8;
@@ -39,8 +39,8 @@ static WHOLLY_INLINE void bright_read_rgb(const struct glint_bright *b, int x,
     }
 }
 
-static WHOLLY_INLINE void bright_decode_ycc(const struct glint_bright *b, int x,
-                                            int32_t rgb_q20[3])
+static WHOLLY_INLINE void bright_decode_ycc_pixel(const struct glint_bright *b,
+                                                  int x, int32_t rgb_q20[3])
 {
     int32_t rgb_q7[3];
 
@@ -52,17 +52,17 @@ static WHOLLY_INLINE void bright_decode_ycc(const struct glint_bright *b, int x,
 }
 
 /* Sets RGB to the linear light of pixel X, 0 .. white. */
-static WHOLLY_INLINE void bright_read(const struct glint_bright *b, int x,
-                                      int32_t rgb_q20[3])
+static WHOLLY_INLINE void bright_read_pixel_light(const struct glint_bright *b,
+                                                  int x, int32_t rgb_q20[3])
 {
     int rgb[3];
 
     if (b->layout->kind == GLINT_LAYOUT_YCC) {
-        bright_decode_ycc(b, x, rgb_q20);
+        bright_decode_ycc_pixel(b, x, rgb_q20);
         return;
     }
     if (bright_is_rgb(b))
-        bright_read_rgb(b, x, rgb);
+        bright_read_rgb_codes(b, x, rgb);
     else
         rgb[0] = rgb[1] = rgb[2] = b->full_luma[code_at(b, 0, x)];
     for (int i = 0; i < 3; i++)
@@ -70,7 +70,7 @@ static WHOLLY_INLINE void bright_read(const struct glint_bright *b, int x,
 }
 
 /* Returns the luma of RGB, by the weights of BT.709 in 256ths. */
-static WHOLLY_INLINE int bright_luma(const int rgb[3])
+static WHOLLY_INLINE int bright_compute_luma(const int rgb[3])
 {
     return (54 * rgb[0] + 183 * rgb[1] + 19 * rgb[2] + 128) >> 8;
 }
@@ -80,20 +80,21 @@ static WHOLLY_INLINE int bright_larger(int a, int b)
     return a > b ? a : b;
 }
 
-static WHOLLY_INLINE int bright_value_of_rgb(const struct glint_bright *b,
-                                             int x)
+static WHOLLY_INLINE int
+bright_compute_rgb_brightness(const struct glint_bright *b, int x)
 {
     int rgb[3], largest;
 
-    bright_read_rgb(b, x, rgb);
+    bright_read_rgb_codes(b, x, rgb);
     largest = bright_larger(rgb[0], bright_larger(rgb[1], rgb[2]));
-    return largest < BRIGHT_CLIPPED ? largest : b->beyond[bright_luma(rgb)];
+    return largest < BRIGHT_CLIPPED ? largest
+                                    : b->beyond[bright_compute_luma(rgb)];
 }
 
-/* Returns the contribution of chroma to the max channel of pixel X, in
- * full-range codes. */
-static WHOLLY_INLINE int32_t bright_chroma_q16(const struct glint_bright *b,
-                                               int x)
+/* Returns what Cb and Cr of pixel X add to its luma in the largest of R, G and
+ * B, in full-range codes. */
+static WHOLLY_INLINE int32_t
+bright_compute_max_chroma_term_q16(const struct glint_bright *b, int x)
 {
     const int cb = code_at(b, 1, x) - 128, cr = code_at(b, 2, x) - 128;
     const int32_t(*m_q16)[3] = b->ycc.to_rgb_q16;
@@ -103,8 +104,9 @@ static WHOLLY_INLINE int32_t bright_chroma_q16(const struct glint_bright *b,
     return bright_larger(red_q16, bright_larger(green_q16, blue_q16));
 }
 
-static WHOLLY_INLINE int bright_value_of_luma(const struct glint_bright *b,
-                                              int code, int32_t added_q16)
+static WHOLLY_INLINE int
+bright_compute_ycc_brightness(const struct glint_bright *b, int code,
+                              int32_t added_q16)
 {
     const int32_t sum_q16 =
         (code - b->ycc.black) * b->ycc.to_rgb_q16[0][0] + added_q16;
@@ -116,13 +118,16 @@ static WHOLLY_INLINE int bright_value_of_luma(const struct glint_bright *b,
 }
 
 /* Returns the brightness of pixel X of B's current row. */
-static WHOLLY_INLINE int bright_value_at(const struct glint_bright *b, int x)
+static WHOLLY_INLINE int
+bright_compute_pixel_brightness(const struct glint_bright *b, int x)
 {
     if (bright_is_rgb(b))
-        return bright_value_of_rgb(b, x);
-    return bright_value_of_luma(
+        return bright_compute_rgb_brightness(b, x);
+    return bright_compute_ycc_brightness(
         b, code_at(b, 0, x),
-        b->layout->kind == GLINT_LAYOUT_YCC ? bright_chroma_q16(b, x) : 0);
+        b->layout->kind == GLINT_LAYOUT_YCC
+            ? bright_compute_max_chroma_term_q16(b, x)
+            : 0);
 }
 
 #endif

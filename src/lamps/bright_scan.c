@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Computes the brightness of the blocks of a row, and skips dark blocks.
+ * Computes the brightness of a row's pixels, block by block; dark blocks are
+ * skipped.
  */
 #include "base/compiler.h"
 
@@ -10,10 +11,11 @@
 
 /* ------------------------------------------------------------ one threshold */
 
-/* Returns the OR over N words at P of masks with the high bit of each byte
- * that is CODE or more. */
-static WHOLLY_INLINE uint64_t find_high_codes(const uint8_t *p, int n, int code,
-                                              int is_above_128)
+/* Finds bytes of CODE or more among N words at P. Returns the OR of one mask
+ * per word, with the high bit of each such byte set. */
+static WHOLLY_INLINE uint64_t find_bytes_at_or_above_code(const uint8_t *p,
+                                                          int n, int code,
+                                                          int is_above_128)
 {
     uint64_t found = 0;
 
@@ -22,9 +24,9 @@ static WHOLLY_INLINE uint64_t find_high_codes(const uint8_t *p, int n, int code,
     return found;
 }
 
-/* Returns the min number of N_BITS bits that expands to CODE or more; the
- * expansion to 8 bits repeats its highest bits below it. */
-static int find_min_565(int code, int n_bits)
+/* Returns the min RGB565 sample of N_BITS bits whose 8-bit code is CODE or
+ * more. The 8-bit code repeats the sample's highest bits below it. */
+static int find_min_rgb565_sample(int code, int n_bits)
 {
     int v = 0;
 
@@ -34,13 +36,17 @@ static int find_min_565(int code, int n_bits)
     return v;
 }
 
-/* Returns the OR over N words of four pixels at P of masks that have a bit
- * for each pixel with a sample of CODE or more. */
-static uint64_t find_high_565(const uint8_t *p, int n, int code)
+/* Finds pixels with a sample of CODE or more among N words of four RGB565
+ * pixels at P. Returns the OR of one mask per word, with a bit set for each
+ * such pixel. */
+static uint64_t find_rgb565_samples_at_or_above_code(const uint8_t *p, int n,
+                                                     int code)
 {
     const uint64_t each = UINT64_C(0x0001000100010001);
-    const uint64_t add_5 = (uint64_t)(32 - find_min_565(code, 5)) * each;
-    const uint64_t add_6 = (uint64_t)(64 - find_min_565(code, 6)) * each;
+    const uint64_t add_5 =
+        (uint64_t)(32 - find_min_rgb565_sample(code, 5)) * each;
+    const uint64_t add_6 =
+        (uint64_t)(64 - find_min_rgb565_sample(code, 6)) * each;
     uint64_t found = 0;
 
     for (int i = 0; i < n; i++) {
@@ -66,22 +72,22 @@ static uint64_t compute_sample_mask(const struct glint_layout *layout)
 
 static WHOLLY_INLINE uint64_t find_high_bytes(const uint8_t *p, int n, int code)
 {
-    return code > 128 ? find_high_codes(p, n, code, 1)
-                      : find_high_codes(p, n, code, 0);
+    return code > 128 ? find_bytes_at_or_above_code(p, n, code, 1)
+                      : find_bytes_at_or_above_code(p, n, code, 0);
 }
 
-/* Returns a mask, repeated in each byte of a word: a byte that is CODE or
- * more has at least one bit of the mask. */
-static uint64_t compute_code_mask(int code)
+/* Returns a mask for a quick test of bytes: bytes of CODE or more have a bit in
+ * common with it. All bytes of the mask are equal. */
+static uint64_t compute_bright_byte_mask(int code)
 {
     const int highest = (1 << bit_length((uint64_t)code)) >> 1;
 
     return (uint64_t)(256 - (highest < 128 ? highest : 128)) * BYTES_EACH;
 }
 
-/* Returns the OR of N words at P. Loading and OR are separate statements, as
- * gcc would otherwise load single bytes. */
-static WHOLLY_INLINE uint64_t or_words(const uint8_t *p, int n)
+/* Returns the OR of N words at P. Load and OR are separate statements, as gcc
+ * loads single bytes otherwise. */
+static WHOLLY_INLINE uint64_t or_together_words(const uint8_t *p, int n)
 {
     uint64_t bits = 0;
 
@@ -94,20 +100,21 @@ static WHOLLY_INLINE uint64_t or_words(const uint8_t *p, int n)
     return bits;
 }
 
-/* Marks those complete blocks of a row without chroma at PX that may be
- * bright. STEP: bytes per pixel. Most blocks are dark, which the OR of their
- * bytes proves. */
-static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
-                                     int step)
+/* Marks those complete blocks of a row without chroma at PX that may be bright.
+ * STEP: bytes per pixel. If the OR of a block's bytes has none of the bits of a
+ * bright byte, the block is dark; most blocks are. */
+static WHOLLY_INLINE int
+mark_bright_blocks_without_chroma(struct glint_bright *b, const uint8_t *px,
+                                  int step)
 {
     const uint64_t bytes = compute_sample_mask(b->layout);
     const int n = b->width / BRIGHT_BLOCK, code = b->low_code;
-    const uint64_t bits = compute_code_mask(code) & bytes;
+    const uint64_t bits = compute_bright_byte_mask(code) & bytes;
     const int n_words = BRIGHT_BLOCK / 8 * step;
     int any = 0;
 
     for (int i = 0; i < n; i++) {
-        b->block[i] = (or_words(px, n_words) & bits) &&
+        b->block[i] = (or_together_words(px, n_words) & bits) &&
                       (find_high_bytes(px, n_words, code) & bytes);
         any |= b->block[i];
         px += BRIGHT_BLOCK * step;
@@ -115,27 +122,29 @@ static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
     return any;
 }
 
-/* Calls mark_blocks() with a constant step, so that its inner loops have
- * constant bounds. */
-static int mark_row(struct glint_bright *b, const uint8_t *px)
+/* Calls mark_bright_blocks_without_chroma() with a constant step, so that its
+ * inner loops have constant bounds. */
+static int mark_bright_blocks_by_pixel_bytes(struct glint_bright *b,
+                                             const uint8_t *px)
 {
     switch (b->layout->sample[0].step) {
     case 1:
-        return mark_blocks(b, px, 1);
+        return mark_bright_blocks_without_chroma(b, px, 1);
     case 3:
-        return mark_blocks(b, px, 3);
+        return mark_bright_blocks_without_chroma(b, px, 3);
     default:
-        return mark_blocks(b, px, 4);
+        return mark_bright_blocks_without_chroma(b, px, 4);
     }
 }
 
-static int mark_row_565(struct glint_bright *b, const uint8_t *px)
+static int mark_bright_rgb565_blocks(struct glint_bright *b, const uint8_t *px)
 {
     int any = 0;
 
     for (int i = 0; i < b->width / BRIGHT_BLOCK; i++) {
-        b->block[i] = find_high_565(px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 4,
-                                    b->low_code) != 0;
+        b->block[i] =
+            find_rgb565_samples_at_or_above_code(
+                px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 4, b->low_code) != 0;
         any |= b->block[i];
     }
     return any;
@@ -143,7 +152,8 @@ static int mark_row_565(struct glint_bright *b, const uint8_t *px)
 
 /* ------------------------------------------------------------- Y, Cb and Cr */
 
-/* The max and min of bytes, per index modulo 4. */
+/* Max and min of bytes: element i is over all bytes whose index modulo 4 is i.
+ */
 struct extremes {
     uint8_t most[4], least[4];
 };
@@ -158,11 +168,12 @@ static WHOLLY_INLINE uint8_t min_u8(uint8_t a, uint8_t b)
     return a < b ? a : b;
 }
 
-/* Sets HALF[0 .. 7] to the max byte v, per index modulo 8, of 16 N bytes at P,
- * and HALF[8 .. 15] to the max of 255 - v. N must be 1, 2 or 4; if it is below
- * 4, some bytes are read twice. Compilers vectorize these loops as long as no
- * other loop is around them. */
-static NEVER_INLINE void find_halves(uint8_t half[16], const uint8_t *p, int n)
+/* Sets HALF[i] (i below 8) to the max, and HALF[8 + i] to 255 minus the min, of
+ * those of the 16 N bytes at P whose index modulo 8 is i. N must be 1, 2 or 4;
+ * if it is below 4, some bytes are read twice. Compilers vectorize these loops
+ * only if they are not nested in another loop. */
+static NEVER_INLINE void find_byte_max_and_inverted_min(uint8_t half[16],
+                                                        const uint8_t *p, int n)
 {
     const uint8_t *q = n > 1 ? p + 16 : p;
     const uint8_t *r = n > 2 ? p + 32 : p, *s = n > 2 ? p + 48 : q;
@@ -179,8 +190,8 @@ static NEVER_INLINE void find_halves(uint8_t half[16], const uint8_t *p, int n)
         half[8 + i] = max_u8(most[16 + i], most[24 + i]);
 }
 
-static WHOLLY_INLINE void unite_halves(struct extremes *e,
-                                       const uint8_t half[16])
+static WHOLLY_INLINE void compute_extremes_modulo_4(struct extremes *e,
+                                                    const uint8_t half[16])
 {
     for (int i = 0; i < 4; i++)
         e->most[i] = max_u8(half[i], half[i + 4]);
@@ -188,31 +199,31 @@ static WHOLLY_INLINE void unite_halves(struct extremes *e,
         e->least[i] = (uint8_t)(255 - max_u8(half[8 + i], half[12 + i]));
 }
 
-static WHOLLY_INLINE void find_extremes(struct extremes *e, const uint8_t *p,
-                                        int n)
+static WHOLLY_INLINE void find_byte_extremes(struct extremes *e,
+                                             const uint8_t *p, int n)
 {
     uint8_t half[16];
 
-    find_halves(half, p, n);
-    unite_halves(e, half);
+    find_byte_max_and_inverted_min(half, p, n);
+    compute_extremes_modulo_4(e, half);
 }
 
-/* Returns the max over all four indices. */
-static WHOLLY_INLINE int get_max(const struct extremes *e)
+/* Returns the max over the four elements. */
+static WHOLLY_INLINE int get_largest_byte(const struct extremes *e)
 {
     return bright_larger(bright_larger(e->most[0], e->most[1]),
                          bright_larger(e->most[2], e->most[3]));
 }
 
-static WHOLLY_INLINE int get_min(const struct extremes *e)
+static WHOLLY_INLINE int get_smallest_byte(const struct extremes *e)
 {
     return min_u8(min_u8(e->least[0], e->least[1]),
                   min_u8(e->least[2], e->least[3]));
 }
 
-/* Returns the max contribution to any channel of chroma in the range LEAST
- * .. MOST. */
-static WHOLLY_INLINE int32_t compute_max_chroma_q16(
+/* Returns the max that chroma in the range LEAST .. MOST adds to luma in any of
+ * R, G and B. */
+static WHOLLY_INLINE int32_t compute_max_chroma_term_q16(
     const struct glint_bright *b, const int most[2], const int least[2])
 {
     const int32_t(*m_q16)[3] = b->ycc.to_rgb_q16;
@@ -224,61 +235,63 @@ static WHOLLY_INLINE int32_t compute_max_chroma_q16(
     return bright_larger(red_q16, bright_larger(green_q16, blue_q16));
 }
 
-/* Returns whether a pixel with luma up to LUMA and chroma in LEAST .. MOST
- * may be bright. No channel can exceed the channels of these extremes; one
- * code is allowed for rounding. */
-static WHOLLY_INLINE int may_be_bright(const struct glint_bright *b, int luma,
-                                       const int most[2], const int least[2])
+/* Returns whether a pixel with luma up to LUMA and chroma in LEAST .. MOST can
+ * be bright. These limits bound its R, G and B; one code is allowed for
+ * rounding. */
+static WHOLLY_INLINE int can_pixel_be_bright(const struct glint_bright *b,
+                                             int luma, const int most[2],
+                                             const int least[2])
 {
     return (luma - b->ycc.black) * b->ycc.to_rgb_q16[0][0] +
-               compute_max_chroma_q16(b, most, least) >=
+               compute_max_chroma_term_q16(b, most, least) >=
            b->low_sum_q16;
 }
 
-/* Returns whether a block of YUYV or UYVY may be bright, from the extremes of
- * its bytes. */
-static int may_be_bright_packed(const struct glint_bright *b,
-                                const uint8_t half[16])
+/* Returns whether a block of YUYV or UYVY can have bright pixels. HALF:
+ * extremes of its bytes from find_byte_max_and_inverted_min(). */
+static int can_packed_block_be_bright(const struct glint_bright *b,
+                                      const uint8_t half[16])
 {
     const int y = b->layout->sample[0].offset;
     const int cb = b->layout->sample[1].offset;
     const int cr = b->layout->sample[2].offset;
     struct extremes e;
 
-    unite_halves(&e, half);
-    return may_be_bright(b, bright_larger(e.most[y], e.most[y + 2]),
-                         (const int[]){e.most[cb], e.most[cr]},
-                         (const int[]){e.least[cb], e.least[cr]});
+    compute_extremes_modulo_4(&e, half);
+    return can_pixel_be_bright(b, bright_larger(e.most[y], e.most[y + 2]),
+                               (const int[]){e.most[cb], e.most[cr]},
+                               (const int[]){e.least[cb], e.least[cr]});
 }
 
-/* max distance of chroma from grey, in codes, of quiet blocks */
+/* max distance of the chroma of quiet blocks from grey, in codes */
 enum { QUIET_CHROMA = 24 };
 
 /* Returns the min luma code, 0 .. 256, at which a pixel with chroma within
- * QUIET_CHROMA may be bright. Blocks from this luma on are loud. */
-static int find_loud_luma(const struct glint_bright *b)
+ * QUIET_CHROMA of grey can be bright. Blocks that reach this luma are loud. */
+static int find_min_loud_luma(const struct glint_bright *b)
 {
     const int most[2] = {128 + QUIET_CHROMA, 128 + QUIET_CHROMA};
     const int least[2] = {127 - QUIET_CHROMA, 127 - QUIET_CHROMA};
     const int32_t left_q16 =
-        b->low_sum_q16 - compute_max_chroma_q16(b, most, least);
+        b->low_sum_q16 - compute_max_chroma_term_q16(b, most, least);
     const int luma = b->ycc.black + left_q16 / b->ycc.to_rgb_q16[0][0];
 
     return q_clamp_sat(left_q16 > 0 ? luma : 0, 0, 256);
 }
 
-/* Returns a number that, added to bytes in 16-bit lanes, sets bit 8 of each
- * lane whose byte is CODE or more. */
-static uint64_t compute_carry(int code)
+/* Returns a number for testing four bytes at once, each in a lane of 16 bits:
+ * its sum with them has bit 8 of a lane set if the byte is CODE or more. */
+static uint64_t compute_threshold_carry(int code)
 {
     return (uint64_t)(256 - code) * UINT64_C(0x0001000100010001);
 }
 
-/* Returns whether any luma, or any chroma in MOST or INVERSE, exceeds the
- * limits of quiet blocks. Luma is in the low bytes of pairs if Y is 0, else
- * in the high bytes. */
-static WHOLLY_INLINE int is_loud(uint64_t most, uint64_t inverse, int y,
-                                 uint64_t luma_carry, uint64_t chroma_carry)
+/* Returns whether a block exceeds the limits of quiet blocks. MOST and INVERSE
+ * have the max v and the max 255 - v of its bytes v. Luma is in the low bytes
+ * of pairs if Y is 0, else in the high bytes. */
+static WHOLLY_INLINE int is_block_loud(uint64_t most, uint64_t inverse, int y,
+                                       uint64_t luma_carry,
+                                       uint64_t chroma_carry)
 {
     const uint64_t low = UINT64_C(0x00ff00ff00ff00ff);
     const uint64_t luma = (y ? most >> 8 : most) & low;
@@ -290,17 +303,17 @@ static WHOLLY_INLINE int is_loud(uint64_t most, uint64_t inverse, int y,
     return (sum & ~low) != 0;
 }
 
-/* number of blocks of YUYV or UYVY that are tested together first */
+/* number of blocks of YUYV or UYVY per common test */
 enum { TOGETHER = 4 };
 
-/* Limits of quiet blocks, per index modulo 16: the max byte v and the max 255 -
- * v of pixels with chroma within QUIET_CHROMA and luma below find_loud_luma().
+/* The limits of quiet blocks (QUIET_CHROMA and find_min_loud_luma()): at each
+ * index modulo 16 the max allowed v and the max allowed 255 - v of a byte v.
  */
 struct quiet {
     uint8_t most[16], inverse[16];
 };
 
-static void set_quiet(struct quiet *quiet, int y, int loud)
+static void set_quiet_limits(struct quiet *quiet, int y, int loud)
 {
     for (int i = 0; i < 16; i++) {
         const int is_luma = (i & 1) == y;
@@ -310,31 +323,34 @@ static void set_quiet(struct quiet *quiet, int y, int loud)
     }
 }
 
-static WHOLLY_INLINE uint8_t find_max_of_8(const uint8_t *p)
+static WHOLLY_INLINE uint8_t find_max_of_8_strided_bytes(const uint8_t *p)
 {
     return max_u8(max_u8(max_u8(p[0], p[16]), max_u8(p[32], p[48])),
                   max_u8(max_u8(p[64], p[80]), max_u8(p[96], p[112])));
 }
 
-static WHOLLY_INLINE uint8_t find_min_of_8(const uint8_t *p)
+static WHOLLY_INLINE uint8_t find_min_of_8_strided_bytes(const uint8_t *p)
 {
     return min_u8(min_u8(min_u8(p[0], p[16]), min_u8(p[32], p[48])),
                   min_u8(min_u8(p[64], p[80]), min_u8(p[96], p[112])));
 }
 
-/* Sets ABOVE[i] to nonzero if any byte, of index i modulo 16, of TOGETHER
- * blocks at P exceeds QUIET. Compilers vectorise it like find_halves(). */
-static NEVER_INLINE void find_above(uint8_t above[restrict 16],
-                                    const uint8_t *restrict p,
-                                    const struct quiet *restrict quiet)
+/* Sets ABOVE[i] to nonzero if a byte of TOGETHER blocks at P, at an index that
+ * is i modulo 16, exceeds QUIET. Compilers vectorise it like
+ * find_byte_max_and_inverted_min(). */
+static NEVER_INLINE void
+find_bytes_above_limits(uint8_t above[restrict 16], const uint8_t *restrict p,
+                        const struct quiet *restrict quiet)
 {
     uint8_t most[16], inverse[16];
 
     for (int i = 0; i < 16; i++)
-        most[i] = max_u8(find_max_of_8(p + i), find_max_of_8(p + 128 + i));
+        most[i] = max_u8(find_max_of_8_strided_bytes(p + i),
+                         find_max_of_8_strided_bytes(p + 128 + i));
     for (int i = 0; i < 16; i++)
-        inverse[i] = (uint8_t)(255 - min_u8(find_min_of_8(p + i),
-                                            find_min_of_8(p + 128 + i)));
+        inverse[i] =
+            (uint8_t)(255 - min_u8(find_min_of_8_strided_bytes(p + i),
+                                   find_min_of_8_strided_bytes(p + 128 + i)));
     for (int i = 0; i < 16; i++)
         above[i] =
             (uint8_t)((max_u8(most[i], quiet->most[i]) ^ quiet->most[i]) |
@@ -342,37 +358,38 @@ static NEVER_INLINE void find_above(uint8_t above[restrict 16],
                        quiet->inverse[i]));
 }
 
-static WHOLLY_INLINE int are_quiet(const uint8_t *p, const struct quiet *quiet)
+static WHOLLY_INLINE int are_blocks_quiet(const uint8_t *p,
+                                          const struct quiet *quiet)
 {
     uint8_t above[16];
 
-    find_above(above, p, quiet);
-    return or_words(above, 2) == 0;
+    find_bytes_above_limits(above, p, quiet);
+    return or_together_words(above, 2) == 0;
 }
 
-/* Marks the complete blocks of a row of YUYV or UYVY at PX that may be
- * bright; Y is the offset of the first luma byte. Most blocks are quiet:
- * neither bright nor strongly coloured. This is tested for TOGETHER blocks
- * at once, else for single blocks, by the max luma and the extremes of all
- * chroma; only the other (loud) blocks are then tested by their extremes of
- * Cb and of Cr. Loud blocks usually follow each other, so blocks after a
- * loud block are tested one by one. If find_loud_luma() is 0, no block is
- * quiet. */
-static WHOLLY_INLINE int mark_pairs(struct glint_bright *b, const uint8_t *px,
-                                    int y)
+/* Marks the complete blocks of a row of YUYV or UYVY at PX that can have bright
+ * pixels; Y is the offset of the first luma byte. Most blocks are quiet:
+ * neither bright nor strongly coloured. First TOGETHER blocks are tested for
+ * this at once, by their max luma and the extremes of all their chroma; if they
+ * are not quiet, each block is. Blocks that are not quiet (loud) are tested
+ * again, by the extremes of Cb and of Cr. Loud blocks are usually neighbours,
+ * so the TOGETHER blocks after a loud block are tested one by one. If
+ * find_min_loud_luma() is 0, no block is quiet. */
+static WHOLLY_INLINE int mark_bright_yuyv_blocks(struct glint_bright *b,
+                                                 const uint8_t *px, int y)
 {
-    const int n = b->width / BRIGHT_BLOCK, loud_from = find_loud_luma(b);
-    const uint64_t luma_carry = compute_carry(loud_from);
-    const uint64_t chroma_carry = compute_carry(129 + QUIET_CHROMA);
+    const int n = b->width / BRIGHT_BLOCK, loud_from = find_min_loud_luma(b);
+    const uint64_t luma_carry = compute_threshold_carry(loud_from);
+    const uint64_t chroma_carry = compute_threshold_carry(129 + QUIET_CHROMA);
     struct quiet quiet;
     int any = 0, loud = loud_from == 0;
 
-    set_quiet(&quiet, y, loud_from > 0 ? loud_from : 1);
+    set_quiet_limits(&quiet, y, loud_from > 0 ? loud_from : 1);
     for (int i = 0; i < n;) {
         const int end = i + TOGETHER < n ? i + TOGETHER : n;
 
         if (!loud && end - i == TOGETHER &&
-            are_quiet(px + i * 2 * BRIGHT_BLOCK, &quiet)) {
+            are_blocks_quiet(px + i * 2 * BRIGHT_BLOCK, &quiet)) {
             for (; i < end; i++)
                 b->block[i] = 0;
             continue;
@@ -382,10 +399,11 @@ static WHOLLY_INLINE int mark_pairs(struct glint_bright *b, const uint8_t *px,
             uint8_t half[16];
             int is_one;
 
-            find_halves(half, px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 8);
-            is_one = is_loud(bytes_load(half), bytes_load(half + 8), y,
-                             luma_carry, chroma_carry);
-            b->block[i] = is_one && may_be_bright_packed(b, half);
+            find_byte_max_and_inverted_min(half, px + i * 2 * BRIGHT_BLOCK,
+                                           BRIGHT_BLOCK / 8);
+            is_one = is_block_loud(bytes_load(half), bytes_load(half + 8), y,
+                                   luma_carry, chroma_carry);
+            b->block[i] = is_one && can_packed_block_be_bright(b, half);
             loud |= is_one;
             any |= b->block[i];
         }
@@ -393,49 +411,49 @@ static WHOLLY_INLINE int mark_pairs(struct glint_bright *b, const uint8_t *px,
     return any;
 }
 
-static int mark_row_packed(struct glint_bright *b, const uint8_t *px)
+static int mark_bright_packed_blocks(struct glint_bright *b, const uint8_t *px)
 {
-    return b->layout->sample[0].offset ? mark_pairs(b, px, 1)
-                                       : mark_pairs(b, px, 0);
+    return b->layout->sample[0].offset ? mark_bright_yuyv_blocks(b, px, 1)
+                                       : mark_bright_yuyv_blocks(b, px, 0);
 }
 
-/* Returns whether a block of a planar picture may be bright. Its Y is at PX,
- * and 16 N bytes of Cb and Cr are at C[0] and C[1]. */
-static WHOLLY_INLINE int may_be_bright_in_planes(const struct glint_bright *b,
-                                                 const uint8_t *px,
-                                                 const uint8_t *const c[2],
-                                                 int n)
+/* Returns whether a block of a planar picture can have bright pixels. Its Y is
+ * at PX; its Cb and Cr, 16 N bytes each, are at C[0] and C[1]. */
+static WHOLLY_INLINE int
+can_planar_block_be_bright(const struct glint_bright *b, const uint8_t *px,
+                           const uint8_t *const c[2], int n)
 {
     struct extremes luma, cb, cr;
 
-    find_extremes(&luma, px, BRIGHT_BLOCK / 16);
-    find_extremes(&cb, c[0], n);
-    find_extremes(&cr, c[1], n);
-    return may_be_bright(b, get_max(&luma),
-                         (const int[]){get_max(&cb), get_max(&cr)},
-                         (const int[]){get_min(&cb), get_min(&cr)});
+    find_byte_extremes(&luma, px, BRIGHT_BLOCK / 16);
+    find_byte_extremes(&cb, c[0], n);
+    find_byte_extremes(&cr, c[1], n);
+    return can_pixel_be_bright(
+        b, get_largest_byte(&luma),
+        (const int[]){get_largest_byte(&cb), get_largest_byte(&cr)},
+        (const int[]){get_smallest_byte(&cb), get_smallest_byte(&cr)});
 }
 
-/* Returns whether a block with interleaved chroma at C may be bright; CB is the
- * offset of the first Cb, 0 or 1. */
-static WHOLLY_INLINE int may_be_bright_shared(const struct glint_bright *b,
-                                              const uint8_t *px,
-                                              const uint8_t *c, int cb)
+/* Returns whether a block with interleaved chroma at C can have bright pixels.
+ * CB is the offset of the first Cb, 0 or 1. */
+static WHOLLY_INLINE int
+can_semiplanar_block_be_bright(const struct glint_bright *b, const uint8_t *px,
+                               const uint8_t *c, int cb)
 {
     struct extremes luma, e;
     const int cr = 1 - cb;
 
-    find_extremes(&luma, px, BRIGHT_BLOCK / 16);
-    find_extremes(&e, c, BRIGHT_BLOCK / 16);
-    return may_be_bright(
-        b, get_max(&luma),
+    find_byte_extremes(&luma, px, BRIGHT_BLOCK / 16);
+    find_byte_extremes(&e, c, BRIGHT_BLOCK / 16);
+    return can_pixel_be_bright(
+        b, get_largest_byte(&luma),
         (const int[]){bright_larger(e.most[cb], e.most[cb + 2]),
                       bright_larger(e.most[cr], e.most[cr + 2])},
         (const int[]){min_u8(e.least[cb], e.least[cb + 2]),
                       min_u8(e.least[cr], e.least[cr + 2])});
 }
 
-static int mark_row_shared(struct glint_bright *b)
+static int mark_bright_semiplanar_blocks(struct glint_bright *b)
 {
     const struct glint_bright_code *code = b->code;
     const int cb = code[2].first < code[1].first;
@@ -443,14 +461,14 @@ static int mark_row_shared(struct glint_bright *b)
     int any = 0;
 
     for (int i = 0; i < b->width / BRIGHT_BLOCK; i++) {
-        b->block[i] = (uint8_t)may_be_bright_shared(
+        b->block[i] = (uint8_t)can_semiplanar_block_be_bright(
             b, code[0].first + i * BRIGHT_BLOCK, first + i * BRIGHT_BLOCK, cb);
         any |= b->block[i];
     }
     return any;
 }
 
-static int mark_row_planes(struct glint_bright *b)
+static int mark_bright_planar_blocks(struct glint_bright *b)
 {
     const struct glint_bright_code *code = b->code;
     const int bytes = BRIGHT_BLOCK >> code[1].shift;
@@ -462,8 +480,8 @@ static int mark_row_planes(struct glint_bright *b)
         const uint8_t *px = code[0].first + i * BRIGHT_BLOCK;
 
         b->block[i] =
-            (uint8_t)(bytes == 16 ? may_be_bright_in_planes(b, px, c, 1)
-                                  : may_be_bright_in_planes(b, px, c, 2));
+            (uint8_t)(bytes == 16 ? can_planar_block_be_bright(b, px, c, 1)
+                                  : can_planar_block_be_bright(b, px, c, 2));
         any |= b->block[i];
     }
     return any;
@@ -472,42 +490,46 @@ static int mark_row_planes(struct glint_bright *b)
 /* Sets block[i] to 1 if block i may have a pixel of brightness low or more,
  * else 0; an incomplete last block is not tested. Returns 0 if no block may
  * have such a pixel. */
-static int mark_row_blocks(struct glint_bright *b)
+static int mark_bright_blocks_of_row(struct glint_bright *b)
 {
     const uint8_t *first = b->code[0].first;
 
     if (b->layout->kind == GLINT_LAYOUT_565)
-        return mark_row_565(b, first);
+        return mark_bright_rgb565_blocks(b, first);
     if (b->layout->kind != GLINT_LAYOUT_YCC)
-        return mark_row(b, first - b->layout->sample[0].offset);
+        return mark_bright_blocks_by_pixel_bytes(
+            b, first - b->layout->sample[0].offset);
     if (glint_layout_is_packed(b->layout))
-        return mark_row_packed(b, first - b->layout->sample[0].offset);
-    return b->layout->planes == 2 ? mark_row_shared(b) : mark_row_planes(b);
+        return mark_bright_packed_blocks(b,
+                                         first - b->layout->sample[0].offset);
+    return b->layout->planes == 2 ? mark_bright_semiplanar_blocks(b)
+                                  : mark_bright_planar_blocks(b);
 }
 
 /* --------------------------------------------------------------- R, G and B */
 
-/* Returns the brightness of pixel X, which must be clipped. */
-static WHOLLY_INLINE uint8_t look_up_beyond(const struct glint_bright *b, int x)
+/* Returns the brightness of pixel X, one of whose channels must be clipped. */
+static WHOLLY_INLINE uint8_t
+look_up_clipped_brightness(const struct glint_bright *b, int x)
 {
     int rgb[3];
 
-    bright_read_rgb(b, x, rgb);
-    return b->beyond[bright_luma(rgb)];
+    bright_read_rgb_codes(b, x, rgb);
+    return b->beyond[bright_compute_luma(rgb)];
 }
 
 /* Sets the brightness of pixels X .. END - 1; returns the max. */
-static int read_values_rgb(struct glint_bright *b, int x, int end)
+static int compute_rgb_brightness_range(struct glint_bright *b, int x, int end)
 {
     int greatest = 0;
 
     for (; x < end; x++) {
         int rgb[3], value;
 
-        bright_read_rgb(b, x, rgb);
+        bright_read_rgb_codes(b, x, rgb);
         value = bright_larger(rgb[0], bright_larger(rgb[1], rgb[2]));
         if (value >= BRIGHT_CLIPPED)
-            value = b->beyond[bright_luma(rgb)];
+            value = b->beyond[bright_compute_luma(rgb)];
         b->value[x] = (uint8_t)value;
         greatest = bright_larger(greatest, value);
     }
@@ -516,11 +538,10 @@ static int read_values_rgb(struct glint_bright *b, int x, int end)
 
 enum { RGB_BYTES = 3 * BRIGHT_BLOCK };
 
-/* Sets LARGEST[I] to the max of bytes P[I .. I + 2], for each I up to
- * RGB_BYTES - 3; returns the max of all bytes. The last vector overlaps the
- * one before it. */
-static NEVER_INLINE int find_largest(const uint8_t *p,
-                                     uint8_t largest[RGB_BYTES])
+/* Sets LARGEST[I] to the max of bytes P[I .. I + 2], for I up to RGB_BYTES - 3.
+ * Returns the max of all bytes. The last vector overlaps the one before it. */
+static NEVER_INLINE int find_max_of_next_3_bytes(const uint8_t *p,
+                                                 uint8_t largest[RGB_BYTES])
 {
     uint8_t greatest = 0;
 
@@ -541,13 +562,13 @@ static NEVER_INLINE int find_largest(const uint8_t *p,
     return greatest;
 }
 
-/* Like read_values_rgb(), for a whole block from X with three bytes per
- * pixel. */
-static int read_block_rgb24(struct glint_bright *b, int x)
+/* Like compute_rgb_brightness_range(), for the whole block from pixel X in a
+ * format with three bytes per pixel. */
+static int compute_rgb24_block_brightness(struct glint_bright *b, int x)
 {
     const ptrdiff_t at = (ptrdiff_t)3 * x - b->layout->sample[0].offset;
     uint8_t largest[RGB_BYTES], *value = b->value + x;
-    int greatest = find_largest(b->code[0].first + at, largest);
+    int greatest = find_max_of_next_3_bytes(b->code[0].first + at, largest);
 
     for (int i = 0; i < BRIGHT_BLOCK; i++)
         value[i] = largest[3 * i];
@@ -556,7 +577,7 @@ static int read_block_rgb24(struct glint_bright *b, int x)
     greatest = 0;
     for (int i = 0; i < BRIGHT_BLOCK; i++) {
         if (value[i] >= BRIGHT_CLIPPED)
-            value[i] = look_up_beyond(b, x + i);
+            value[i] = look_up_clipped_brightness(b, x + i);
         greatest = bright_larger(greatest, value[i]);
     }
     return greatest;
@@ -570,15 +591,14 @@ static WHOLLY_INLINE int16_t multiply_high(int16_t a, int16_t b)
     return (int16_t)((int32_t)a * b >> 16);
 }
 
-/* Sets VALUE to the max channel of each pixel with LUMA, CB and CR, clamped
- * to 0 .. 255, within a fifth of a code before rounding. Written such that
- * compilers vectorise it in 16 bits: codes have 7 fraction bits,
- * coefficients 13 and products 4, at most 2.12 * 255 * 16 < 2^14. */
-static WHOLLY_INLINE void mix_block(const struct glint_bright *b,
-                                    uint8_t value[BRIGHT_BLOCK],
-                                    const uint8_t luma[BRIGHT_BLOCK],
-                                    const uint8_t cb[BRIGHT_BLOCK],
-                                    const uint8_t cr[BRIGHT_BLOCK])
+/* Sets VALUE to max(R, G, B) of each pixel, computed from LUMA, CB and CR and
+ * clamped to 0 .. 255; the error before rounding is at most 1/5 code. Compilers
+ * vectorise it in 16 bits: codes have 7 fraction bits, coefficients 13 and
+ * products 4, at most 2.12 * 255 * 16 < 2^14. */
+static WHOLLY_INLINE void compute_block_max_channels(
+    const struct glint_bright *b, uint8_t value[BRIGHT_BLOCK],
+    const uint8_t luma[BRIGHT_BLOCK], const uint8_t cb[BRIGHT_BLOCK],
+    const uint8_t cr[BRIGHT_BLOCK])
 {
     const int32_t(*m_q16)[3] = b->ycc.to_rgb_q16;
     const int16_t white = (int16_t)q_shift(m_q16[0][0], 3);
@@ -604,28 +624,28 @@ static WHOLLY_INLINE void mix_block(const struct glint_bright *b,
     }
 }
 
-/* Copies the codes of a block, which are STEP bytes apart. */
-static WHOLLY_INLINE void copy_codes(uint8_t code[BRIGHT_BLOCK],
-                                     const uint8_t *px, int step)
+/* Copies one channel of a block, whose codes are STEP bytes apart. */
+static WHOLLY_INLINE void copy_block_codes(uint8_t code[BRIGHT_BLOCK],
+                                           const uint8_t *px, int step)
 {
     for (int k = 0; k < BRIGHT_BLOCK; k++)
         code[k] = px[k * step];
 }
 
-/* Copies the codes of a block, which are STEP bytes apart, twice each, as
- * each is shared by two pixels. */
-static WHOLLY_INLINE void copy_codes_twice(uint8_t code[BRIGHT_BLOCK],
-                                           const uint8_t *px, int step)
+/* Copies one channel of a block, whose codes are STEP bytes apart and are each
+ * shared by two pixels: writes each code twice. */
+static WHOLLY_INLINE void copy_block_codes_twice(uint8_t code[BRIGHT_BLOCK],
+                                                 const uint8_t *px, int step)
 {
     for (int k = 0; k < BRIGHT_BLOCK / 2; k++)
         code[2 * k] = code[2 * k + 1] = px[k * step];
 }
 
-/* Copies code I of the pixels of a block from X on; beyond the end of the
- * row the code of the last pixel is repeated. Steps and bounds are constant
- * in the common cases, so that compilers vectorise these. */
-static void copy_block(const struct glint_bright *b, int i, int x,
-                       uint8_t code[BRIGHT_BLOCK])
+/* Copies channel I of a block from pixel X on; past the end of the row it
+ * repeats the code of the last pixel. Steps and bounds are constant in the
+ * common cases, so that compilers vectorise the loops. */
+static void copy_block_channel(const struct glint_bright *b, int i, int x,
+                               uint8_t code[BRIGHT_BLOCK])
 {
     const struct glint_bright_code *c = &b->code[i];
     const int n = b->width - x < BRIGHT_BLOCK ? b->width - x : BRIGHT_BLOCK;
@@ -636,36 +656,37 @@ static void copy_block(const struct glint_bright *b, int i, int x,
             code[k] = px[((k < n ? k : n - 1) >> c->shift) * c->step];
     } else if (c->shift == 0) {
         if (c->step == 1)
-            copy_codes(code, px, 1);
+            copy_block_codes(code, px, 1);
         else
-            copy_codes(code, px, 2);
+            copy_block_codes(code, px, 2);
     } else {
         if (c->step == 1)
-            copy_codes_twice(code, px, 1);
+            copy_block_codes_twice(code, px, 1);
         else if (c->step == 2)
-            copy_codes_twice(code, px, 2);
+            copy_block_codes_twice(code, px, 2);
         else
-            copy_codes_twice(code, px, 4);
+            copy_block_codes_twice(code, px, 4);
     }
 }
 
 /* Sets the brightness of the block from pixel X on, from luma and chroma or
- * from luma alone. Returns the max; or 0 without setting any value if all
- * are below low and no pixel is clipped. */
-static NEVER_INLINE int read_values_ycc(struct glint_bright *b, int x)
+ * from luma alone. Returns the max; if all pixels are below low and unclipped,
+ * returns 0 and sets nothing. */
+static NEVER_INLINE int compute_ycc_block_brightness(struct glint_bright *b,
+                                                     int x)
 {
     uint8_t luma[BRIGHT_BLOCK], cb[BRIGHT_BLOCK], cr[BRIGHT_BLOCK];
     uint8_t value[BRIGHT_BLOCK];
     uint8_t greatest_code = 0, greatest = 0, *row = b->value + x;
 
-    copy_block(b, 0, x, luma);
+    copy_block_channel(b, 0, x, luma);
     if (b->layout->kind == GLINT_LAYOUT_GREY) {
         for (int i = 0; i < BRIGHT_BLOCK; i++)
             value[i] = b->full_luma[luma[i]];
     } else {
-        copy_block(b, 1, x, cb);
-        copy_block(b, 2, x, cr);
-        mix_block(b, value, luma, cb, cr);
+        copy_block_channel(b, 1, x, cb);
+        copy_block_channel(b, 2, x, cr);
+        compute_block_max_channels(b, value, luma, cb, cr);
     }
     for (int i = 0; i < BRIGHT_BLOCK; i++)
         greatest_code = value[i] > greatest_code ? value[i] : greatest_code;
@@ -681,9 +702,9 @@ static NEVER_INLINE int read_values_ycc(struct glint_bright *b, int x)
     return greatest;
 }
 
-/* Sets the brightness of block I, which was marked. Returns the max, or 0 if
- * it is below low. */
-static int read_block(struct glint_bright *b, int i)
+/* Sets the brightness of the marked block I. Returns the max, or 0 if it is
+ * below low. */
+static int compute_block_brightness(struct glint_bright *b, int i)
 {
     const int x = i * BRIGHT_BLOCK;
     const int end = x + BRIGHT_BLOCK < b->width ? x + BRIGHT_BLOCK : b->width;
@@ -691,29 +712,29 @@ static int read_block(struct glint_bright *b, int i)
     int greatest;
 
     if (!bright_is_rgb(b))
-        greatest = read_values_ycc(b, x);
+        greatest = compute_ycc_block_brightness(b, x);
     else if (is_whole && b->layout->kind == GLINT_LAYOUT_RGB &&
              b->code[0].step == 3)
-        greatest = read_block_rgb24(b, x);
+        greatest = compute_rgb24_block_brightness(b, x);
     else
-        greatest = read_values_rgb(b, x, end);
+        greatest = compute_rgb_brightness_range(b, x, end);
     return greatest < b->low ? 0 : greatest;
 }
 
-int glint_bright_scan(struct glint_bright *b, int y)
+int glint_bright_scan_row(struct glint_bright *b, int y)
 {
     const int n_blocks = (b->width + BRIGHT_BLOCK - 1) / BRIGHT_BLOCK;
     int any, greatest = 0;
 
     b->n_marked = 0;
-    glint_bright_seek_row(b, y);
-    any = mark_row_blocks(b);
-    /* An incomplete last block is always read. */
+    glint_bright_select_row(b, y);
+    any = mark_bright_blocks_of_row(b);
+    /* An incomplete last block is always marked, as it is not tested. */
     if (n_blocks * BRIGHT_BLOCK > b->width)
         any = b->block[n_blocks - 1] = 1;
     for (int i = 0; any && i < n_blocks; i++)
         if (b->block[i]) {
-            b->block[i] = (uint8_t)read_block(b, i);
+            b->block[i] = (uint8_t)compute_block_brightness(b, i);
             b->marked[b->n_marked] = i;
             b->n_marked += b->block[i] > 0;
             greatest = bright_larger(greatest, b->block[i]);

@@ -2,10 +2,11 @@
  *
  * Finds lamps among the bright regions of a picture.
  *
- * Regions of all levels are linked first, by brightness alone. Then the light
- * of a row is summed, only for regions that may still be lamps. A region that
- * qualifies becomes a candidate. The brightest LIGHT_CANDIDATES of these are
- * kept; they are merged after all regions have been found. */
+ * For each row, the regions of all brightness levels are first continued into
+ * the row, by brightness alone. Then the light of the row's pixels is summed,
+ * only for regions that are still small enough for a lamp. A finished region
+ * that qualifies becomes a candidate. The brightest LIGHT_CANDIDATES candidates
+ * are kept; they are merged after all regions have been found. */
 #include "glint/lamps.h"
 
 #include "base/arena.h"
@@ -17,17 +18,18 @@
 #define MAX_SPOTS 1024
 #define EV_MIN_Q8 (-20 * 256)
 
-/* The default thresholds, stops from white. */
+/* Default thresholds of brightness, log2 of light / white in 1/256. */
 enum { DEFAULT_HIGH_Q8 = -26, DEFAULT_LOW_Q8 = -38 };
 
 /* --------------------------------------------------------------------- list
  */
 
-/* Max distance, in merge distances, at which a lamp in excess of MAX is
- * merged into a kept lamp. */
+/* If more than MAX lamps are found, each excess lamp is merged into the nearest
+ * kept lamp that is within JOIN_REACH merge distances. */
 #define JOIN_REACH 4
 
-static int is_brighter(const struct glint_lamp_finder *f, int32_t a, int32_t b)
+static int is_candidate_brighter(const struct glint_lamp_finder *f, int32_t a,
+                                 int32_t b)
 {
     const struct glint_candidate *p = &f->candidate[a], *q = &f->candidate[b];
 
@@ -37,11 +39,11 @@ static int is_brighter(const struct glint_lamp_finder *f, int32_t a, int32_t b)
                                         : p->sum.first < q->sum.first;
 }
 
-static int is_before(const void *finder, int a, int b)
+static int is_before_in_flux_order(const void *finder, int a, int b)
 {
     const struct glint_lamp_finder *const f = finder;
 
-    return is_brighter(f, f->order[a], f->order[b]);
+    return is_candidate_brighter(f, f->order[a], f->order[b]);
 }
 
 static void swap_candidates(void *finder, int a, int b)
@@ -53,25 +55,25 @@ static void swap_candidates(void *finder, int a, int b)
     f->order[b] = old;
 }
 
-/* Returns a heap of the candidates whose root is the faintest candidate. */
-static struct glint_heap make_heap(struct glint_lamp_finder *f)
+/* Returns a heap of candidates with the faintest candidate at its root. */
+static struct glint_heap make_candidate_heap(struct glint_lamp_finder *f)
 {
-    return (struct glint_heap){is_before, swap_candidates, f};
+    return (struct glint_heap){is_before_in_flux_order, swap_candidates, f};
 }
 
-static void sort_by_flux(struct glint_lamp_finder *f)
+static void sort_candidates_by_flux(struct glint_lamp_finder *f)
 {
-    const struct glint_heap heap = make_heap(f);
+    const struct glint_heap heap = make_candidate_heap(f);
 
     glint_heap_sort(&heap, f->n);
 }
 
-/* Adds CANDIDATE; drops the faintest candidate if there were LIGHT_CANDIDATES
- * already. */
+/* Adds CANDIDATE. If there are LIGHT_CANDIDATES candidates already, drops the
+ * faintest. */
 static void add_candidate(struct glint_lamp_finder *f,
                           const struct glint_candidate *candidate)
 {
-    const struct glint_heap heap = make_heap(f);
+    const struct glint_heap heap = make_candidate_heap(f);
     struct glint_candidate *last = &f->candidate[LIGHT_CANDIDATES];
 
     if (f->n < LIGHT_CANDIDATES) {
@@ -83,7 +85,7 @@ static void add_candidate(struct glint_lamp_finder *f,
         return;
     }
     *last = *candidate;
-    if (is_brighter(f, LIGHT_CANDIDATES, f->order[0])) {
+    if (is_candidate_brighter(f, LIGHT_CANDIDATES, f->order[0])) {
         const struct glint_candidate out = f->candidate[f->order[0]];
 
         f->candidate[f->order[0]] = *last;
@@ -93,8 +95,8 @@ static void add_candidate(struct glint_lamp_finder *f,
     f->dropped += !last->faint;
 }
 
-/* Removes candidates whose member gone is set from f->order. */
-static void remove_gone(struct glint_lamp_finder *f)
+/* Removes from f->order the candidates that are marked as gone. */
+static void remove_gone_candidates(struct glint_lamp_finder *f)
 {
     const int n_before = f->n;
 
@@ -106,18 +108,19 @@ static void remove_gone(struct glint_lamp_finder *f)
 
 /* ------------------------------------------------------------------ merging */
 
-static void locate_all(struct glint_lamp_finder *f)
+static void compute_candidate_positions(struct glint_lamp_finder *f)
 {
     for (int i = 0; i < f->n; i++) {
         struct glint_candidate *c = &f->candidate[f->order[i]];
 
-        glint_region_centroid(&c->sum, &c->x_q8, &c->y_q8);
+        glint_region_compute_centroid(&c->sum, &c->x_q8, &c->y_q8);
         c->gone = 0;
     }
 }
 
-/* Returns the number of lamps; they come first among the sorted candidates. */
-static int count_lights(const struct glint_lamp_finder *f)
+/* Returns the number of candidates that are not faint; they come first, as
+ * candidates are sorted. */
+static int count_certain_lamps(const struct glint_lamp_finder *f)
 {
     int n = f->n;
 
@@ -126,68 +129,68 @@ static int count_lights(const struct glint_lamp_finder *f)
     return n;
 }
 
-static int64_t distance2_q16(const struct glint_candidate *a,
-                             const struct glint_candidate *b)
+static int64_t compute_squared_distance_q16(const struct glint_candidate *a,
+                                            const struct glint_candidate *b)
 {
     const int64_t dx_q8 = a->x_q8 - b->x_q8, dy_q8 = a->y_q8 - b->y_q8;
 
     return dx_q8 * dx_q8 + dy_q8 * dy_q8;
 }
 
-/* Merges CANDIDATE into INTO. The position of INTO is updated by the next
- * locate_all(). */
+/* Merges CANDIDATE into INTO, whose position compute_candidate_positions() has
+ * to update. */
 static void merge_candidate(struct glint_candidate *candidate,
                             struct glint_candidate *into)
 {
-    glint_region_absorb(&into->sum, &candidate->sum);
+    glint_region_add_region(&into->sum, &candidate->sum);
     candidate->gone = 1;
 }
 
-/* Merges once: each lamp, the brightest first, absorbs the lamps within the
- * merge distance of its position. Returns whether any lamps were merged. */
-static int merge_once(struct glint_lamp_finder *f)
+/* Merges each lamp, the brightest first, with the fainter lamps within the
+ * merge distance. Returns whether any lamps were merged. */
+static int merge_near_lamps_once(struct glint_lamp_finder *f)
 {
     const int n_before = f->n;
     int n_lights;
 
-    sort_by_flux(f);
-    locate_all(f);
-    n_lights = count_lights(f);
+    sort_candidates_by_flux(f);
+    compute_candidate_positions(f);
+    n_lights = count_certain_lamps(f);
     for (int i = 0; i < n_lights; i++) {
         struct glint_candidate *c = &f->candidate[f->order[i]];
 
         for (int j = i + 1; j < n_lights && !c->gone; j++) {
             struct glint_candidate *other = &f->candidate[f->order[j]];
 
-            if (!other->gone && distance2_q16(c, other) < f->merge2_q16)
+            if (!other->gone &&
+                compute_squared_distance_q16(c, other) < f->merge2_q16)
                 merge_candidate(other, c);
         }
     }
-    remove_gone(f);
+    remove_gone_candidates(f);
     return f->n < n_before;
 }
 
-/* Sorts the candidates by descending flux and merges lamps nearer than the
- * merge distance until no such pair is left. Faint candidates are not
- * merged. */
-static void merge_near(struct glint_lamp_finder *f)
+/* Sorts the candidates by descending flux, and merges lamps until no two are
+ * within the merge distance of each other. Faint candidates are not merged. */
+static void merge_all_near_lamps(struct glint_lamp_finder *f)
 {
-    while (merge_once(f))
+    while (merge_near_lamps_once(f))
         ;
 }
 
-/* Returns the candidate nearest to C among the first MAX, or NULL if no
- * candidate is within JOIN_REACH. */
+/* Returns the candidate nearest to C among the first MAX, or NULL if none is
+ * within JOIN_REACH merge distances. */
 static struct glint_candidate *
-find_nearest_kept(const struct glint_lamp_finder *f,
-                  const struct glint_candidate *c, int max)
+find_nearest_kept_lamp(const struct glint_lamp_finder *f,
+                       const struct glint_candidate *c, int max)
 {
     int64_t best_q16 = JOIN_REACH * JOIN_REACH * f->merge2_q16;
     struct glint_candidate *best = NULL;
 
     for (int i = 0; i < max; i++) {
         struct glint_candidate *kept = &f->candidate[f->order[i]];
-        const int64_t d_q16 = distance2_q16(c, kept);
+        const int64_t d_q16 = compute_squared_distance_q16(c, kept);
 
         if (d_q16 < best_q16) {
             best_q16 = d_q16;
@@ -197,15 +200,15 @@ find_nearest_kept(const struct glint_lamp_finder *f,
     return best;
 }
 
-/* Leaves at most MAX candidates: each lamp in excess is merged into the
- * nearest kept lamp within JOIN_REACH, or is dropped. */
-static void limit_lamps(struct glint_lamp_finder *f, int max)
+/* Reduces the candidates to MAX: each excess lamp is merged into the nearest
+ * kept lamp within JOIN_REACH merge distances, or is dropped. */
+static void reduce_lamps_to_max(struct glint_lamp_finder *f, int max)
 {
-    const int n_lights = count_lights(f);
+    const int n_lights = count_certain_lamps(f);
 
     for (int i = max; i < n_lights; i++) {
         struct glint_candidate *c = &f->candidate[f->order[i]];
-        struct glint_candidate *kept = find_nearest_kept(f, c, max);
+        struct glint_candidate *kept = find_nearest_kept_lamp(f, c, max);
 
         if (kept)
             merge_candidate(c, kept);
@@ -214,96 +217,99 @@ static void limit_lamps(struct glint_lamp_finder *f, int max)
     }
     if (f->n > max)
         f->n = max;
-    sort_by_flux(f);
+    sort_candidates_by_flux(f);
 }
 
 /* ------------------------------------------------------------------- levels */
 
-/* Regions are lit surfaces, not lamps, if less than 1 / 2^SEED_LOG2 of their
- * pixels reach the upper threshold. */
+/* A region is taken for a lit surface, not a lamp, if less than 1 / 2^SEED_LOG2
+ * of its pixels reach the upper threshold. */
 #define SEED_LOG2 3
 
-/* Costs of levels, subtracted from the scores of their regions when one of
- * several nested regions is chosen. A lamp gets its width at the thresholds,
- * unless its clipped core is clearly more like a lamp. A region of a level
- * whose white is below clipping is chosen only if it contains no other lamp;
- * so is a region at thresholds below the defaults.
- * DARK_SHARE: max fraction of the picture at the lower threshold for which
- * such levels are searched. */
+/* Of several nested regions, the one with the highest score minus the cost of
+ * its level is chosen. These costs make regions at the thresholds, which have
+ * the lamp's full width, win over the lamp's clipped core unless the core's
+ * score is clearly higher. Regions of a level whose white is below clipping,
+ * and regions at thresholds below the defaults, win only if they contain no
+ * other lamp. DARK_SHARE: levels with a white below clipping are only used if
+ * the lower threshold is reached by at most this fraction of the picture. */
 #define COST_CLIPPED_Q8 64
 #define COST_WHITE_Q8   32
 #define COST_DARK_Q8    1024
 #define COST_LOWER_Q8   4096
 #define DARK_SHARE_Q15  Q_CONST(0.125, 15)
 
-/* Thresholds, stops from white. */
+/* Thresholds of brightness, log2 of light / white in 1/256. */
 struct thresholds {
     int32_t high_q8, low_q8;
 };
 
-static int is_below_default(const struct glint_lamp_finder_config *c)
+static int is_threshold_below_default(const struct glint_lamp_finder_config *c)
 {
     return c->judge && (c->threshold_high_q8 < DEFAULT_HIGH_Q8 ||
                         c->threshold_low_q8 < DEFAULT_LOW_Q8);
 }
 
-/* Adds the level of regions at the thresholds T, relative to LIGHT as white. */
-static void add_level(struct glint_lamp_finder *f, int32_t light_q20,
-                      struct thresholds t, int32_t cost_q8)
+/* Adds a level for regions of pixels above the thresholds T, where LIGHT counts
+ * as white. */
+static void add_threshold_level(struct glint_lamp_finder *f, int32_t light_q20,
+                                struct thresholds t, int32_t cost_q8)
 {
     const struct glint_bright *b = &f->bright;
     struct glint_level *level = &f->level[f->n_levels++];
 
-    level->low = glint_white_code(b, light_q20, t.low_q8);
-    level->seed = glint_white_code(b, light_q20, t.high_q8);
-    level->clipped = glint_white_code(b, light_q20, 0);
+    level->low = glint_white_find_code(b, light_q20, t.low_q8);
+    level->seed = glint_white_find_code(b, light_q20, t.high_q8);
+    level->clipped = glint_white_find_code(b, light_q20, 0);
     level->cost_q8 = cost_q8;
 }
 
-/* Adds two levels for a picture darker than white: regions at both thresholds,
- * and at the upper threshold alone. Adds no level if more than DARK_SHARE of
- * the picture reaches the lower threshold. */
-static void add_dark_level(struct glint_lamp_finder *f, struct thresholds t,
-                           int32_t cost_q8)
+/* Adds two levels for a picture whose white is below clipping: one of regions
+ * above the lower threshold, one of regions above the upper threshold. Adds
+ * none if more than DARK_SHARE of the picture reaches the lower threshold. */
+static void add_dark_picture_levels(struct glint_lamp_finder *f,
+                                    struct thresholds t, int32_t cost_q8)
 {
     struct glint_level *level = &f->level[f->n_levels];
 
     if (!f->cfg.judge || f->white->light_q20 >= LINEAR_WHITE_Q20)
         return;
-    add_level(f, f->white->light_q20, t, cost_q8 + COST_DARK_Q8);
+    add_threshold_level(f, f->white->light_q20, t, cost_q8 + COST_DARK_Q8);
     level[1] = level[0];
     level[1].low = level[1].seed;
     level[1].cost_q8 += COST_CLIPPED_Q8;
     f->n_levels++;
-    if (glint_white_share_q15(f->white, level->low) > DARK_SHARE_Q15)
+    if (glint_white_compute_fraction_q15(f->white, level->low) > DARK_SHARE_Q15)
         f->n_levels -= 2;
 }
 
-/* Adds the levels at the thresholds T. In a picture whose white is below
- * clipping, lamps may be clipped or not, so both levels are added. */
-static void add_levels(struct glint_lamp_finder *f, struct thresholds t,
-                       int32_t cost_q8)
+/* Adds the levels for the thresholds T: relative to clipping and, if the
+ * picture's white is below clipping, also relative to its white, as its lamps
+ * may or may not be clipped. */
+static void add_all_threshold_levels(struct glint_lamp_finder *f,
+                                     struct thresholds t, int32_t cost_q8)
 {
     const int white_code = f->cfg.white_code;
 
     if (white_code) {
-        add_level(f, f->bright.curve->decode_q20[white_code], t, cost_q8);
+        add_threshold_level(f, f->bright.curve->decode_q20[white_code], t,
+                            cost_q8);
     } else {
-        add_dark_level(f, t, cost_q8);
-        add_level(f, LINEAR_WHITE_Q20, t, cost_q8);
+        add_dark_picture_levels(f, t, cost_q8);
+        add_threshold_level(f, LINEAR_WHITE_Q20, t, cost_q8);
     }
 }
 
-/* Adds the level of clipped regions, of brightness LOW and above. */
-static void add_core_level(struct glint_lamp_finder *f, int low,
-                           int32_t cost_q8)
+/* Adds a level for regions of clipped pixels, of brightness LOW or more. */
+static void add_clipped_level(struct glint_lamp_finder *f, int low,
+                              int32_t cost_q8)
 {
     f->level[f->n_levels++] =
         (struct glint_level){low, BRIGHT_CLIPPED, BRIGHT_CLIPPED, cost_q8};
 }
 
 /* Sorts the levels by rising brightness. */
-static void sort_levels(struct glint_lamp_finder *f)
+static void sort_levels_by_brightness(struct glint_lamp_finder *f)
 {
     for (int i = 1; i < f->n_levels; i++)
         for (int j = i; j > 0 && f->level[j].low < f->level[j - 1].low; j--) {
@@ -314,60 +320,64 @@ static void sort_levels(struct glint_lamp_finder *f)
         }
 }
 
-/* Measures white and sets the levels. Thresholds below the defaults add levels
- * to those at the defaults, so that they find all lamps that the defaults
- * find. */
-static void set_levels(struct glint_lamp_finder *f)
+/* Measures the picture's white, and sets the brightness levels at which regions
+ * are searched. Thresholds below the defaults add levels to those of the
+ * defaults, so that every lamp found with the defaults is found with them, too.
+ */
+static void choose_brightness_levels(struct glint_lamp_finder *f)
 {
     const struct thresholds t = {f->cfg.threshold_high_q8,
                                  f->cfg.threshold_low_q8};
     struct thresholds held = t;
     struct glint_bright *b = &f->bright;
 
-    glint_white_measure(f->white, b, f->cfg.height);
+    glint_white_measure_picture(f->white, b, f->cfg.height);
     if (f->white->light_q20 < f->least_white_q20)
         f->white->light_q20 = f->least_white_q20;
     f->least_white_q20 = 0;
     f->n_levels = 0;
-    if (is_below_default(&f->cfg)) {
+    if (is_threshold_below_default(&f->cfg)) {
         held.high_q8 = q_larger(t.high_q8, DEFAULT_HIGH_Q8);
         held.low_q8 = q_larger(t.low_q8, DEFAULT_LOW_Q8);
-        add_levels(f, t, COST_LOWER_Q8);
+        add_all_threshold_levels(f, t, COST_LOWER_Q8);
     }
-    add_levels(f, held, 0);
+    add_all_threshold_levels(f, held, 0);
     if (f->cfg.judge) {
-        add_core_level(f, BRIGHT_CLIPPED, COST_CLIPPED_Q8);
-        add_core_level(f, BRIGHT_WHITE, COST_WHITE_Q8);
-        add_core_level(f, BRIGHT_HOT, 0);
+        add_clipped_level(f, BRIGHT_CLIPPED, COST_CLIPPED_Q8);
+        add_clipped_level(f, BRIGHT_WHITE, COST_WHITE_Q8);
+        add_clipped_level(f, BRIGHT_HOT, 0);
     }
-    if (is_below_default(&f->cfg))
-        sort_levels(f);
-    glint_bright_set_low(b, f->level[0].low);
+    if (is_threshold_below_default(&f->cfg))
+        sort_levels_by_brightness(f);
+    glint_bright_set_min_brightness(b, f->level[0].low);
 }
 
 /* --------------------------------------------------------------- candidates */
 
-static int is_light(const struct glint_lamp_finder *f,
-                    const struct glint_region *sum)
+static int is_region_bright_enough(const struct glint_lamp_finder *f,
+                                   const struct glint_region *sum)
 {
     return sum->area >= f->cfg.min_area && sum->n_seeds > 0 &&
            sum->n_seeds >= sum->area >> SEED_LOG2;
 }
 
-/* Returns whether SUM is large enough to be a faded lamp. */
-static int is_faint(const struct glint_lamp_finder *f,
-                    const struct glint_region *sum)
+/* Returns whether region SUM is large enough to be a known lamp that has faded.
+ */
+static int can_region_be_faded_lamp(const struct glint_lamp_finder *f,
+                                    const struct glint_region *sum)
 {
     return f->cfg.keep_faint && sum->area >= (f->cfg.min_area + 1) / 2;
 }
 
-/* Keeps SUM as a candidate if it qualifies. */
-static void add_if_qualified(void *finder, const struct glint_region *sum)
+/* Adds the finished region SUM to the candidates if it may be a lamp or a faded
+ * lamp. */
+static void add_region_if_qualified(void *finder,
+                                    const struct glint_region *sum)
 {
     struct glint_lamp_finder *f = finder;
-    const int light = is_light(f, sum);
+    const int light = is_region_bright_enough(f, sum);
 
-    if (sum->area <= f->max_area && (light || is_faint(f, sum)))
+    if (sum->area <= f->max_area && (light || can_region_be_faded_lamp(f, sum)))
         add_candidate(f,
                       &(struct glint_candidate){
                           .sum = *sum,
@@ -378,9 +388,9 @@ static void add_if_qualified(void *finder, const struct glint_region *sum)
 
 /* --------------------------------------------------------------------- rows */
 
-/* Returns how many of N values are CODE or more. */
-static WHOLLY_INLINE int count_high(const uint8_t *value, int n, int code,
-                                    int is_above_128)
+/* Returns how many of the N brightness values are CODE or more. */
+static WHOLLY_INLINE int count_codes_at_least(const uint8_t *value, int n,
+                                              int code, int is_above_128)
 {
     uint32_t found = 0;
 
@@ -392,36 +402,41 @@ static WHOLLY_INLINE int count_high(const uint8_t *value, int n, int code,
     return (int)found;
 }
 
-/* Returns how many pixels of RUN are CODE or more. All its pixels must be
- * LEAST or more. */
-static int count_high_in_run(const uint8_t *value, const struct glint_run *run,
-                             int least, int code)
+/* Returns how many pixels of RUN have brightness CODE or more. All pixels of
+ * RUN must have LEAST or more. */
+static int count_run_pixels_at_least(const uint8_t *value,
+                                     const struct glint_run *run, int least,
+                                     int code)
 {
     const int all = run->x1 - run->x0;
 
     if (code <= least)
         return all;
-    return code > 128 ? count_high(value + run->x0, all, code, 1)
-                      : count_high(value + run->x0, all, code, 0);
+    return code > 128 ? count_codes_at_least(value + run->x0, all, code, 1)
+                      : count_codes_at_least(value + run->x0, all, code, 0);
 }
 
-/* Adds RUN of row Y to the area, the box and the counts of SUM, without its
+/* Adds RUN of row Y to SUM's area, bounding box and pixel counts, but not its
  * light. */
-static void count_run(struct glint_region *sum,
-                      const struct glint_lamp_finder *f,
-                      const struct glint_run *run, int y)
+static void add_run_to_region_counts(struct glint_region *sum,
+                                     const struct glint_lamp_finder *f,
+                                     const struct glint_run *run, int y)
 {
     const struct glint_level *level = &f->level[f->at];
     const uint8_t *value = f->bright.value;
 
     glint_region_add_run(sum, run->x0, run->x1, y);
-    sum->n_seeds += count_high_in_run(value, run, level->low, level->seed);
-    sum->n_clipped += count_high_in_run(value, run, level->low, level->clipped);
+    sum->n_seeds +=
+        count_run_pixels_at_least(value, run, level->low, level->seed);
+    sum->n_clipped +=
+        count_run_pixels_at_least(value, run, level->low, level->clipped);
 }
 
-/* Marks the light of RUN as needed in the run of the first level that contains
- * it: *OUTER or a later run. */
-static void mark_needed(struct glint_run **outer, const struct glint_run *run)
+/* Marks the pixels of RUN as needed for sums of light. The mark is stored in
+ * the run of the first level that contains RUN, which is *OUTER or follows it;
+ * sets *OUTER to that run. */
+static void mark_needed_pixels(struct glint_run **outer,
+                               const struct glint_run *run)
 {
     while ((*outer)->x1 <= run->x0)
         ++*outer;
@@ -431,15 +446,15 @@ static void mark_needed(struct glint_run **outer, const struct glint_run *run)
         (*outer)->want1 = run->x1;
 }
 
-/* Returns whether the region may be a lamp: it must not be larger than
- * max_area. */
-static int may_be_light(const struct glint_lamp_finder *f,
-                        const struct glint_region *sum)
+/* Returns whether the region is at most max_area, the max size of a lamp. */
+static int is_region_small_enough(const struct glint_lamp_finder *f,
+                                  const struct glint_region *sum)
 {
     return sum->area <= f->max_area;
 }
 
-static void link_level(struct glint_lamp_finder *f, int greatest, int y)
+static void link_row_regions_of_level(struct glint_lamp_finder *f, int greatest,
+                                      int y)
 {
     struct glint_regions *r = &f->regions[f->at];
     const int low = f->level[f->at].low;
@@ -449,78 +464,79 @@ static void link_level(struct glint_lamp_finder *f, int greatest, int y)
         return;
     glint_regions_link_row(r, &f->bright, low, y);
     for (int i = 0; i < r->here.n_runs; i++) {
-        struct glint_region *sum = glint_regions_of_run(r, i);
+        struct glint_region *sum = glint_regions_find_region_of_run(r, i);
 
-        count_run(sum, f, &r->here.run[i], y);
-        if (may_be_light(f, sum))
-            mark_needed(&outer, &r->here.run[i]);
+        add_run_to_region_counts(sum, f, &r->here.run[i], y);
+        if (is_region_small_enough(f, sum))
+            mark_needed_pixels(&outer, &r->here.run[i]);
     }
 }
 
-/* Sums the light of the pixels of the row that regions of any level need. */
-static void sum_row(struct glint_lamp_finder *f)
+/* Computes the prefix sums of light over those pixels of the row that are
+ * marked as needed. */
+static void sum_needed_row_light(struct glint_lamp_finder *f)
 {
     const struct glint_run_row *row = &f->regions[0].here;
     const int last = f->cfg.width - ROW_LIGHT_RIM;
 
-    glint_row_light_begin(&f->row);
+    glint_row_light_begin_row(&f->row);
     for (int i = 0; i < row->n_runs; i++) {
         const struct glint_run *run = &row->run[i];
         const int x0 = run->want0, x1 = run->want1;
 
         if (x1 > 0)
-            glint_row_light_extend(&f->row, &f->bright,
-                                   x0 > ROW_LIGHT_RIM ? x0 - ROW_LIGHT_RIM : 0,
-                                   x1 < last ? x1 + ROW_LIGHT_RIM
-                                             : f->cfg.width);
+            glint_row_light_sum_pixels(
+                &f->row, &f->bright,
+                x0 > ROW_LIGHT_RIM ? x0 - ROW_LIGHT_RIM : 0,
+                x1 < last ? x1 + ROW_LIGHT_RIM : f->cfg.width);
     }
 }
 
-static void add_light_of_level(struct glint_lamp_finder *f, int y)
+static void add_row_light_to_level_regions(struct glint_lamp_finder *f, int y)
 {
     struct glint_regions *r = &f->regions[f->at];
 
     for (int i = 0; i < r->here.n_runs; i++) {
-        struct glint_region *sum = glint_regions_of_run(r, i);
+        struct glint_region *sum = glint_regions_find_region_of_run(r, i);
         const struct glint_run *run = &r->here.run[i];
 
-        if (may_be_light(f, sum))
-            glint_row_light_add(&f->row, sum, run->x0, run->x1, f->cfg.width,
-                                y);
+        if (is_region_small_enough(f, sum))
+            glint_row_light_add_run_to_region(&f->row, sum, run->x0, run->x1,
+                                              f->cfg.width, y);
     }
     if (r->n_active > 0)
-        glint_regions_end_row(r, add_if_qualified, f, y);
+        glint_regions_report_finished(r, add_region_if_qualified, f, y);
 }
 
-static void process_row(struct glint_lamp_finder *f, int y)
+static void add_picture_row(struct glint_lamp_finder *f, int y)
 {
-    const int greatest = glint_bright_scan(&f->bright, y);
+    const int greatest = glint_bright_scan_row(&f->bright, y);
 
     for (f->at = 0; f->at < f->n_levels; f->at++)
-        link_level(f, greatest, y);
-    sum_row(f);
+        link_row_regions_of_level(f, greatest, y);
+    sum_needed_row_light(f);
     for (f->at = 0; f->at < f->n_levels; f->at++)
-        add_light_of_level(f, y);
+        add_row_light_to_level_regions(f, y);
 }
 
-void glint_lamps_collect(struct glint_lamp_finder *f,
-                         const struct glint_image *image)
+void glint_lamps_collect_candidates(struct glint_lamp_finder *f,
+                                    const struct glint_image *image)
 {
     f->n = f->dropped = 0;
-    glint_bright_begin(&f->bright, image);
-    set_levels(f);
+    glint_bright_begin_picture(&f->bright, image);
+    choose_brightness_levels(f);
     for (f->at = 0; f->at < f->n_levels; f->at++)
-        glint_regions_begin(&f->regions[f->at]);
+        glint_regions_begin_picture(&f->regions[f->at]);
     for (int y = 0; y < f->cfg.height; y++)
-        process_row(f, y);
+        add_picture_row(f, y);
     for (f->at = 0; f->at < f->n_levels; f->at++)
-        glint_regions_end_row(&f->regions[f->at], add_if_qualified, f,
-                              f->cfg.height);
+        glint_regions_report_finished(
+            &f->regions[f->at], add_region_if_qualified, f, f->cfg.height);
 }
 
 /* ------------------------------------------------------------------- memory */
 
-static int is_valid(const struct glint_lamp_finder_config *c)
+static int is_valid_config(const struct glint_lamp_finder_config *c)
 {
     return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
            c->height <= GLINT_MAX_SIDE && c->threshold_low_q8 >= EV_MIN_Q8 &&
@@ -533,23 +549,24 @@ static int is_valid(const struct glint_lamp_finder_config *c)
 }
 
 /* Allocates a finder and its tables from A. Returns NULL if A only measures or
- * is full. */
-static struct glint_lamp_finder *carve(struct glint_arena *a,
-                                       const struct glint_lamp_finder_config *c)
+ * has too little memory. */
+static struct glint_lamp_finder *
+allocate_finder(struct glint_arena *a, const struct glint_lamp_finder_config *c)
 {
     struct glint_lamp_finder *placed = glint_arena_take(a, 1, sizeof *placed);
     struct glint_lamp_finder measured;
     struct glint_regions measured_level;
     struct glint_lamp_finder *f = placed ? placed : &measured;
-    const int n_levels =
-        is_below_default(c) ? LIGHT_LEVELS : LIGHT_LEVELS - LIGHT_LEVELS_LOWER;
+    const int n_levels = is_threshold_below_default(c)
+                             ? LIGHT_LEVELS
+                             : LIGHT_LEVELS - LIGHT_LEVELS_LOWER;
 
-    glint_bright_carve(&f->bright, a, c->width);
+    glint_bright_allocate(&f->bright, a, c->width);
     f->regions = glint_arena_take(a, (size_t)n_levels, sizeof *f->regions);
     for (int i = 0; i < n_levels; i++)
-        glint_regions_carve(f->regions ? &f->regions[i] : &measured_level, a,
-                            c->width);
-    glint_row_light_carve(&f->row, a, c->width);
+        glint_regions_allocate(f->regions ? &f->regions[i] : &measured_level, a,
+                               c->width);
+    glint_row_light_allocate(&f->row, a, c->width);
     f->white = glint_arena_take(a, 1, sizeof *f->white);
     f->candidate =
         glint_arena_take(a, LIGHT_CANDIDATES + 1, sizeof *f->candidate);
@@ -577,9 +594,9 @@ size_t glint_lamp_finder_bytes(const struct glint_lamp_finder_config *cfg)
 {
     struct glint_arena measured = glint_arena_measure();
 
-    if (!is_valid(cfg))
+    if (!is_valid_config(cfg))
         return 0;
-    carve(&measured, cfg);
+    allocate_finder(&measured, cfg);
     return measured.used;
 }
 
@@ -592,13 +609,13 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
     struct glint_lamp_finder *f;
     int64_t merge_q8;
 
-    if (!is_valid(cfg) || (uintptr_t)mem % GLINT_ALIGN)
+    if (!is_valid_config(cfg) || (uintptr_t)mem % GLINT_ALIGN)
         return GLINT_E_ARGUMENT;
-    f = carve(&arena, cfg);
+    f = allocate_finder(&arena, cfg);
     if (!f)
         return GLINT_E_MEMORY;
     f->cfg = *cfg;
-    glint_bright_init(&f->bright, cfg->width);
+    glint_bright_clear_padding(&f->bright, cfg->width);
     f->n = f->dropped = 0;
     f->white->light_q20 = f->least_white_q20 = 0;
     f->alone_q8 = SCORE_ALONE;
@@ -612,10 +629,10 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
 
 /* -------------------------------------------------------------------- score */
 
-/* Returns the min score of a lamp. Regions at thresholds below the defaults
- * can lower it, but not raise it. */
-static int32_t find_least_score(struct glint_lamp_finder *f,
-                                const struct glint_score *score)
+/* Returns the min score of a lamp. Regions at thresholds below the defaults can
+ * lower this min, but not raise it. */
+static int32_t find_min_lamp_score(struct glint_lamp_finder *f,
+                                   const struct glint_score *score)
 {
     int32_t least_q8, default_q8;
     int n = 0;
@@ -628,16 +645,19 @@ static int32_t find_least_score(struct glint_lamp_finder *f,
             f->order[n++] = at;
         }
     }
-    default_q8 = glint_score_least(score, f->candidate, f->order, n);
+    default_q8 =
+        glint_score_find_min_lamp_score(score, f->candidate, f->order, n);
     if (n == f->n)
         return default_q8;
-    least_q8 = glint_score_least(score, f->candidate, f->order, f->n);
+    least_q8 =
+        glint_score_find_min_lamp_score(score, f->candidate, f->order, f->n);
     return q_smaller(least_q8, default_q8);
 }
 
-/* Keeps candidates whose score is that of a lamp. If keep_faint is set,
- * candidates with a slightly lower score are kept, too, and marked faint. */
-static void score_candidates(struct glint_lamp_finder *f)
+/* Scores the candidates, and removes those whose score is too low for a lamp.
+ * If keep_faint is set, candidates with a slightly lower score stay and are
+ * marked faint. */
+static void score_and_select_candidates(struct glint_lamp_finder *f)
 {
     const struct glint_score score = {&f->bright,    f->white, f->cfg.width,
                                       f->cfg.height, f->level, 1,
@@ -645,30 +665,31 @@ static void score_candidates(struct glint_lamp_finder *f)
     const int n = f->n;
     int32_t least_q8;
 
-    glint_score_all(&score, f->candidate, f->order, n);
-    least_q8 = find_least_score(f, &score);
+    glint_score_score_candidates(&score, f->candidate, f->order, n);
+    least_q8 = find_min_lamp_score(f, &score);
     f->n = 0;
     for (int i = 0; i < n; i++) {
         struct glint_candidate *c = &f->candidate[f->order[i]];
 
         if (c->score_q8 < least_q8)
-            c->doubt = (uint8_t)glint_score_doubt(c);
+            c->doubt = (uint8_t)glint_score_choose_doubt(c);
         c->faint |= c->score_q8 < least_q8;
         if (c->score_q8 >= (f->cfg.keep_faint ? -SCORE_DOUBT : least_q8))
             f->order[f->n++] = f->order[i];
     }
-    glint_score_choose(&score, f->candidate, f->order, f->n);
-    remove_gone(f);
+    glint_score_choose_among_nested(&score, f->candidate, f->order, f->n);
+    remove_gone_candidates(f);
 }
 
 /* ------------------------------------------------------------------- result */
 
-/* Returns the spot of CANDIDATE. Coordinates of spots are relative to the
- * corner of the first pixel, coordinates of regions to its centre. */
-static struct glint_spot make_spot(const struct glint_candidate *candidate)
+/* Converts CANDIDATE to a spot. The origin of spots is the corner of the
+ * picture's first pixel, that of regions the pixel's centre. */
+static struct glint_spot
+convert_candidate_to_spot(const struct glint_candidate *candidate)
 {
     const struct glint_region *sum = &candidate->sum;
-    struct glint_spot s = {.size_q8 = glint_region_radius_q8(sum),
+    struct glint_spot s = {.size_q8 = glint_region_compute_rms_radius_q8(sum),
                            .area = sum->area,
                            .n_clipped = sum->n_clipped,
                            .flux_q16 = sum->w_q14 * 4,
@@ -677,10 +698,10 @@ static struct glint_spot make_spot(const struct glint_candidate *candidate)
                            .power_q16 = sum->w_q14 * 4,
                            .cos_q15 = 1 << 15};
 
-    glint_region_centroid(sum, &s.x_q8, &s.y_q8);
+    glint_region_compute_centroid(sum, &s.x_q8, &s.y_q8);
     s.x_q8 += 128;
     s.y_q8 += 128;
-    glint_region_colour(sum, s.rgb_q15);
+    glint_region_compute_colour(sum, s.rgb_q15);
     s.axis_q8[0] = s.axis_q8[1] = q_mul(s.size_q8, Q_CONST(0.70711, 15), 15);
     return s;
 }
@@ -689,14 +710,15 @@ int glint_lamp_finder_find(struct glint_lamp_finder *finder,
                            const struct glint_image *image,
                            struct glint_spot *spots, int max)
 {
-    glint_lamps_collect(finder, image);
+    glint_lamps_collect_candidates(finder, image);
     if (finder->cfg.judge)
-        score_candidates(finder);
+        score_and_select_candidates(finder);
     finder->alone_q8 = SCORE_ALONE;
-    merge_near(finder);
-    limit_lamps(finder, max < MAX_SPOTS ? max : MAX_SPOTS);
+    merge_all_near_lamps(finder);
+    reduce_lamps_to_max(finder, max < MAX_SPOTS ? max : MAX_SPOTS);
     for (int i = 0; i < finder->n; i++)
-        spots[i] = make_spot(&finder->candidate[finder->order[i]]);
+        spots[i] =
+            convert_candidate_to_spot(&finder->candidate[finder->order[i]]);
     return finder->n;
 }
 

@@ -4,14 +4,14 @@
 #include "base/arena.h"
 #include "lamps/unclip.h"
 
-/* Allocates a profile from A. Returns NULL if A only measures or is full. No
- * row is scanned, so tables for one pixel are enough. */
-static struct glint_profile *carve(struct glint_arena *a)
+/* Allocates a profile from A. Returns NULL if A only measures or has too little
+ * memory. No row is scanned, so tables for a width of one pixel are enough. */
+static struct glint_profile *allocate_profile(struct glint_arena *a)
 {
     struct glint_profile *placed = glint_arena_take(a, 1, sizeof *placed);
     struct glint_bright measured;
 
-    glint_bright_carve(placed ? &placed->rings.bright : &measured, a, 1);
+    glint_bright_allocate(placed ? &placed->rings.bright : &measured, a, 1);
     return a->used <= a->size ? placed : NULL;
 }
 
@@ -19,7 +19,7 @@ size_t glint_profile_bytes(void)
 {
     struct glint_arena measured = glint_arena_measure();
 
-    carve(&measured);
+    allocate_profile(&measured);
     return measured.used;
 }
 
@@ -31,26 +31,26 @@ enum glint_status glint_profile_init(struct glint_profile **profile, void *mem,
 
     if ((uintptr_t)mem % GLINT_ALIGN)
         return GLINT_E_ARGUMENT;
-    p = carve(&arena);
+    p = allocate_profile(&arena);
     if (!p)
         return GLINT_E_MEMORY;
-    glint_bright_init(&p->rings.bright, 1);
+    glint_bright_clear_padding(&p->rings.bright, 1);
     *profile = p;
     return GLINT_OK;
 }
 
-/* Measures the spots in place: measuring a spot preserves its position and
- * size_q8, the only members on which the measurement of other spots depends. */
+/* Measures the spots in place. This changes neither position nor size_q8 of a
+ * spot, the only members of it that the measurement of other spots reads. */
 void glint_profile_measure(struct glint_profile *profile,
                            const struct glint_image *image,
                            struct glint_spot *spots, int n)
 {
     n = n < GLINT_PROFILE_SPOTS ? n : GLINT_PROFILE_SPOTS;
-    glint_rings_begin(&profile->rings, image, spots, n);
+    glint_rings_begin_picture(&profile->rings, image, spots, n);
     for (int i = 0; i < n; i++) {
         struct glint_profile_sums sums;
 
-        glint_rings_sum(&sums, &profile->rings, spots, n, i);
-        glint_unclip(&spots[profile->rings.by_x[i]], &sums);
+        glint_rings_sum_spot_light(&sums, &profile->rings, spots, n, i);
+        glint_unclip_estimate_lamp(&spots[profile->rings.by_x[i]], &sums);
     }
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The struct of glint/profile.h, which measures the light around spots. */
+ * The definition of struct glint_profile (glint/profile.h), which measures the
+ * light around spots. */
 #ifndef GLINT_LAMPS_PROFILE_H
 #define GLINT_LAMPS_PROFILE_H
 

@@ -17,8 +17,8 @@ void glint_region_add_run(struct glint_region *sum, int x0, int x1, int y)
     sum->y1 = q_larger(sum->y1, y + 1);
 }
 
-void glint_region_absorb(struct glint_region *sum,
-                         const struct glint_region *other)
+void glint_region_add_region(struct glint_region *sum,
+                             const struct glint_region *other)
 {
     if (other->first < sum->first)
         sum->first = other->first;
@@ -39,42 +39,42 @@ void glint_region_absorb(struct glint_region *sum,
     }
 }
 
-/* Returns A / B * 2^FRAC, rounded; 0 <= A / B < 2^(62 - FRAC), 0 < B < 2^(62 -
- * FRAC). */
-static int64_t compute_quotient(uint64_t a, int64_t b, int frac)
+/* Returns A / B with FRAC fraction bits, rounded; 0 <= A / B < 2^(62 - FRAC), 0
+ * < B < 2^(62 - FRAC). */
+static int64_t divide_to_fixed_point(uint64_t a, int64_t b, int frac)
 {
     const uint64_t d = (uint64_t)b;
 
     return (int64_t)((a / d << frac) + (((a % d) << frac) + d / 2) / d);
 }
 
-static int32_t compute_mean_q8(int64_t wx_q14, int64_t w_q14)
+static int32_t compute_mean_coordinate_q8(int64_t wx_q14, int64_t w_q14)
 {
-    return q_narrow(compute_quotient((uint64_t)wx_q14, w_q14, 8));
+    return q_narrow(divide_to_fixed_point((uint64_t)wx_q14, w_q14, 8));
 }
 
-void glint_region_centroid(const struct glint_region *sum, int32_t *x_q8,
-                           int32_t *y_q8)
+void glint_region_compute_centroid(const struct glint_region *sum,
+                                   int32_t *x_q8, int32_t *y_q8)
 {
-    *x_q8 = compute_mean_q8(sum->wx_q14, sum->w_q14);
-    *y_q8 = compute_mean_q8(sum->wy_q14, sum->w_q14);
+    *x_q8 = compute_mean_coordinate_q8(sum->wx_q14, sum->w_q14);
+    *y_q8 = compute_mean_coordinate_q8(sum->wy_q14, sum->w_q14);
 }
 
-/* Returns the RMS radius of a box of uniform light whose squared diagonal is
- * DIAGONAL2. */
+/* Returns the RMS distance from the centre in a uniformly lit box whose squared
+ * diagonal is DIAGONAL2. */
 static int32_t compute_box_radius_q8(uint64_t diagonal2)
 {
     return (int32_t)q_root((diagonal2 << 16) / 12);
 }
 
-/* First moves the origin of the sums to the pixel nearest to the centroid,
- * which is exact modulo 2^64. */
-int32_t glint_region_radius_q8(const struct glint_region *sum)
+/* First moves the origin of the sums to the pixel nearest to the centroid. This
+ * is exact although sums may have wrapped, as it is done modulo 2^64. */
+int32_t glint_region_compute_rms_radius_q8(const struct glint_region *sum)
 {
     const int64_t across = sum->x1 - sum->x0, down = sum->y1 - sum->y0;
     const uint64_t diagonal2 = (uint64_t)(across * across + down * down);
-    const int32_t x_q8 = compute_mean_q8(sum->wx_q14, sum->w_q14);
-    const int32_t y_q8 = compute_mean_q8(sum->wy_q14, sum->w_q14);
+    const int32_t x_q8 = compute_mean_coordinate_q8(sum->wx_q14, sum->w_q14);
+    const int32_t y_q8 = compute_mean_coordinate_q8(sum->wy_q14, sum->w_q14);
     const int32_t x = (x_q8 + 128) >> 8, y = (y_q8 + 128) >> 8;
     const int64_t fx_q8 = x_q8 - x * 256, fy_q8 = y_q8 - y * 256;
     const uint64_t about =
@@ -82,18 +82,20 @@ int32_t glint_region_radius_q8(const struct glint_region *sum)
         2 * (uint64_t)y * (uint64_t)sum->wy_q14 +
         ((uint64_t)x * (uint64_t)x + (uint64_t)y * (uint64_t)y) *
             (uint64_t)sum->w_q14;
-    const int64_t mean_q16 =
-        compute_quotient(about, sum->w_q14, 16) - fx_q8 * fx_q8 - fy_q8 * fy_q8;
+    const int64_t mean_q16 = divide_to_fixed_point(about, sum->w_q14, 16) -
+                             fx_q8 * fx_q8 - fy_q8 * fy_q8;
 
     if ((uint64_t)sum->w_q14 > (UINT64_C(1) << 63) / (diagonal2 / 4 + 1))
         return compute_box_radius_q8(diagonal2);
     return (int32_t)q_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
 }
 
-/* Clipped pixels have little colour information, so their weight is 1/64 of a
- * rim pixel's. So a large rim determines the colour, a region clipped to white
- * becomes white, and the transition is continuous. */
-void glint_region_colour(const struct glint_region *sum, int32_t rgb_q15[3])
+/* Clipped pixels have little colour information, so their weight is 1/64 of
+ * that of the unclipped pixels in and beside the region. A large rim of those
+ * determines the colour, a region without them becomes white, and the
+ * transition is continuous. */
+void glint_region_compute_colour(const struct glint_region *sum,
+                                 int32_t rgb_q15[3])
 {
     int64_t c[3], y;
 
@@ -102,13 +104,14 @@ void glint_region_colour(const struct glint_region *sum, int32_t rgb_q15[3])
     y = region_luminance(c[0], c[1], c[2]);
     for (int i = 0; i < 3; i++)
         rgb_q15[i] =
-            y > 0 ? q_narrow(compute_quotient((uint64_t)c[i], y, 15)) : 1 << 15;
+            y > 0 ? q_narrow(divide_to_fixed_point((uint64_t)c[i], y, 15))
+                  : 1 << 15;
 }
 
 /* ---------------------------------------------------------------- labelling */
 
-void glint_regions_carve(struct glint_regions *r, struct glint_arena *arena,
-                         int width)
+void glint_regions_allocate(struct glint_regions *r, struct glint_arena *arena,
+                            int width)
 {
     const size_t n_runs = ((size_t)width + 1) / 2;
 
@@ -120,7 +123,7 @@ void glint_regions_carve(struct glint_regions *r, struct glint_arena *arena,
     r->idle = glint_arena_take(arena, 2 * n_runs, sizeof *r->idle);
 }
 
-void glint_regions_begin(struct glint_regions *r)
+void glint_regions_begin_picture(struct glint_regions *r)
 {
     r->n_active = r->n_idle = 0;
     r->above.n_runs = r->here.n_runs = 0;
@@ -128,7 +131,7 @@ void glint_regions_begin(struct glint_regions *r)
         r->idle[r->n_idle++] = label - 1;
 }
 
-static int32_t find_root(struct glint_component *c, int32_t label)
+static int32_t find_root_label(struct glint_component *c, int32_t label)
 {
     while (c[label].parent != label) {
         c[label].parent = c[c[label].parent].parent;
@@ -137,18 +140,18 @@ static int32_t find_root(struct glint_component *c, int32_t label)
     return label;
 }
 
-static int32_t unite_labels(struct glint_component *c, int32_t a, int32_t b)
+static int32_t unite_regions(struct glint_component *c, int32_t a, int32_t b)
 {
-    a = find_root(c, a);
-    b = find_root(c, b);
+    a = find_root_label(c, a);
+    b = find_root_label(c, b);
     if (a == b)
         return a;
-    glint_region_absorb(&c[a].sum, &c[b].sum);
+    glint_region_add_region(&c[a].sum, &c[b].sum);
     c[b].parent = a;
     return a;
 }
 
-static int32_t make_label(struct glint_regions *r, int32_t first)
+static int32_t begin_region(struct glint_regions *r, int32_t first)
 {
     const int32_t label = r->idle[--r->n_idle];
 
@@ -159,10 +162,10 @@ static int32_t make_label(struct glint_regions *r, int32_t first)
     return label;
 }
 
-/* Returns a mask with a bit for each pixel of a block that is LOW or more;
- * bit 0 is the first pixel. */
-static WHOLLY_INLINE uint32_t
-find_high_pixels(const uint8_t value[BRIGHT_BLOCK], int low, int is_above_128)
+/* Returns a mask whose bit i is set if pixel i of a block has brightness LOW or
+ * more. */
+static WHOLLY_INLINE uint32_t make_bright_pixel_mask(
+    const uint8_t value[BRIGHT_BLOCK], int low, int is_above_128)
 {
     uint32_t bits = 0;
 
@@ -173,36 +176,39 @@ find_high_pixels(const uint8_t value[BRIGHT_BLOCK], int low, int is_above_128)
     return bits;
 }
 
-/* Adds the run BEGIN .. END - 1 to ROW, unless BEGIN is -1. */
-static WHOLLY_INLINE void end_run(struct glint_run_row *row, int begin, int end)
+/* Appends the run of pixels BEGIN .. END - 1 to ROW, unless BEGIN is -1. */
+static WHOLLY_INLINE void append_run(struct glint_run_row *row, int begin,
+                                     int end)
 {
     if (begin >= 0)
         row->run[row->n_runs++] =
             (struct glint_run){.x0 = begin, .x1 = end, .label = -1};
 }
 
-/* Adds the runs of set bits of BITS, a block from X, to ROW. BEGIN is the start
- * of a run that is open before the block, or -1. Returns the start of the run
- * that is open after the block, or -1. */
-static int find_runs(struct glint_run_row *row, uint32_t bits, int x, int begin)
+/* Appends to ROW the runs of set bits in BITS, the mask of the block from pixel
+ * X. BEGIN is the first pixel of a run that the block before left open, or -1.
+ * Returns the first pixel of the run that this block leaves open, or -1. */
+static int find_runs_in_block(struct glint_run_row *row, uint32_t bits, int x,
+                              int begin)
 {
     uint32_t edges = bits ^ (bits << 1 | (begin >= 0));
 
     for (; edges; edges &= edges - 1) {
         const int at = x + bit_length(edges & -edges) - 1;
 
-        end_run(row, begin, at);
+        append_run(row, begin, at);
         begin = begin < 0 ? at : -1;
     }
     return begin;
 }
 
-static void find_all_runs(struct glint_run_row *row,
+static void find_row_runs(struct glint_run_row *row,
                           const struct glint_bright *b, int low)
 {
     const int last = (b->width - 1) / BRIGHT_BLOCK;
     const int past = (last + 1) * BRIGHT_BLOCK - b->width;
-    int begin = -1, next = 0; /* next: index after the last block read */
+    int begin = -1, next = 0; /* next: index of the block after the last block
+                                 read */
 
     row->n_runs = 0;
     for (int k = 0; k < b->n_marked; k++) {
@@ -211,28 +217,28 @@ static void find_all_runs(struct glint_run_row *row,
 
         if (b->block[i] < low)
             continue;
-        bits = low > 128 ? find_high_pixels(b->value + x, low, 1)
-                         : find_high_pixels(b->value + x, low, 0);
+        bits = low > 128 ? make_bright_pixel_mask(b->value + x, low, 1)
+                         : make_bright_pixel_mask(b->value + x, low, 0);
         if (i == last)
             bits &= UINT32_MAX >> past;
         if (i > next) {
-            end_run(row, begin, next * BRIGHT_BLOCK);
+            append_run(row, begin, next * BRIGHT_BLOCK);
             begin = -1;
         }
-        begin = find_runs(row, bits, x, begin);
+        begin = find_runs_in_block(row, bits, x, begin);
         next = i + 1;
     }
     next *= BRIGHT_BLOCK;
-    end_run(row, begin, next < b->width ? next : b->width);
+    append_run(row, begin, next < b->width ? next : b->width);
 }
 
-/* Labels each run of row Y: unites the regions of all runs that it touches
- * in the row above, or makes a new label if it touches none. */
-static void link_runs(struct glint_regions *r, int y)
+/* Labels each run of row Y: the run unites the regions of all runs that it
+ * touches in the row above, or begins a new region if it touches none. */
+static void link_runs_to_row_above(struct glint_regions *r, int y)
 {
     const struct glint_run_row *above = &r->above;
-    int first = 0; /* index of the first run above that may touch run i or a
-                      later run */
+    int first = 0; /* index of the first run of the row above that may touch run
+                      i or a later run */
 
     for (int i = 0; i < r->here.n_runs; i++) {
         struct glint_run *run = &r->here.run[i];
@@ -242,11 +248,12 @@ static void link_runs(struct glint_regions *r, int y)
             first++;
         for (int j = first; j < above->n_runs && above->run[j].x0 <= run->x1;
              j++)
-            label = label < 0 ? find_root(r->component, above->run[j].label)
-                              : unite_labels(r->component, label,
-                                             above->run[j].label);
+            label =
+                label < 0
+                    ? find_root_label(r->component, above->run[j].label)
+                    : unite_regions(r->component, label, above->run[j].label);
         if (label < 0)
-            label = make_label(r, y * r->width + run->x0);
+            label = begin_region(r, y * r->width + run->x0);
         r->component[label].last_row = y;
         run->label = label;
     }
@@ -255,16 +262,18 @@ static void link_runs(struct glint_regions *r, int y)
 void glint_regions_link_row(struct glint_regions *r,
                             const struct glint_bright *bright, int low, int y)
 {
-    find_all_runs(&r->here, bright, low);
-    link_runs(r, y);
+    find_row_runs(&r->here, bright, low);
+    link_runs_to_row_above(r, y);
 }
 
-struct glint_region *glint_regions_of_run(struct glint_regions *r, int i)
+struct glint_region *glint_regions_find_region_of_run(struct glint_regions *r,
+                                                      int i)
 {
-    return &r->component[find_root(r->component, r->here.run[i].label)].sum;
+    return &r->component[find_root_label(r->component, r->here.run[i].label)]
+                .sum;
 }
 
-static void swap_rows(struct glint_regions *r)
+static void swap_run_rows(struct glint_regions *r)
 {
     const struct glint_run_row here = r->here;
 
@@ -273,13 +282,14 @@ static void swap_rows(struct glint_regions *r)
     r->here.n_runs = 0;
 }
 
-void glint_regions_end_row(struct glint_regions *r, glint_region_fn *done,
-                           void *ctx, int y)
+void glint_regions_report_finished(struct glint_regions *r,
+                                   glint_region_fn *done, void *ctx, int y)
 {
     const int n_before = r->n_active;
 
     for (int i = 0; i < r->here.n_runs; i++)
-        r->here.run[i].label = find_root(r->component, r->here.run[i].label);
+        r->here.run[i].label =
+            find_root_label(r->component, r->here.run[i].label);
     r->n_active = 0;
     for (int i = 0; i < n_before; i++) {
         const int32_t label = r->active[i];
@@ -293,5 +303,5 @@ void glint_regions_end_row(struct glint_regions *r, glint_region_fn *done,
             done(ctx, &c->sum);
         r->idle[r->n_idle++] = label;
     }
-    swap_rows(r);
+    swap_run_rows(r);
 }

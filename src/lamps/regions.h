@@ -6,26 +6,27 @@
  *   in   brightness of one row after the other, and the light of its pixels
  *   out  each region once, after the rows have passed it: area, moments, colour
  *
- *     glint_regions_begin(r);
+ *     glint_regions_begin_picture(r);
  *     for each row y:
  *         glint_regions_link_row(r, bright, low, y);
  *         for each i below r->here.n_runs: add the pixels of r->here.run[i]
- *                 to *glint_regions_of_run(r, i);
- *         glint_regions_end_row(r, done, ctx, y);
- *     glint_regions_end_row(r, done, ctx, height);
+ *                 to *glint_regions_find_region_of_run(r, i);
+ *         glint_regions_report_finished(r, done, ctx, y);
+ *     glint_regions_report_finished(r, done, ctx, height);
  *
- * Regions are found in one pass. The runs of pixels above the threshold in a
- * row are united with the runs that they touch in the row above (union-find). A
- * component that the next row does not continue is finished, and its label is
- * freed. So twice the max number of runs per row is enough labels for any
- * shape.
+ * Regions are found in one pass. A run is a maximal sequence of pixels above
+ * the threshold in a row. It is united with the runs that it touches in the row
+ * above (union-find). A region that has no run in the next row is finished, and
+ * its label is freed. So twice the max number of runs per row is enough labels
+ * for any shape.
  *
- * Limits: weights w are linear luminance, _q14, 1 .. 2^14. With at most 2^30
- * pixels of coordinates below 2^15, the sums of w and of w x reach 2^44 and
- * 2^59 at most. The sum of w (x^2 + y^2) may wrap, in unsigned; only its value
- * about the centroid is needed, which is at most the sum of w times a quarter
- * of the box's squared diagonal. If that might be 2^63 or more, as for a square
- * of 5800 x 5800 white pixels, the radius of the box is returned. */
+ * Limits: the weight w of a pixel is its linear luminance, _q14, 1 .. 2^14.
+ * With at most 2^30 pixels of coordinates below 2^15, the sums of w and of w x
+ * reach 2^44 and 2^59 at most. The sum of w (x^2 + y^2) is unsigned and may
+ * wrap. Only its value relative to the centroid is used, which is at most the
+ * sum of w times a quarter of the squared diagonal of the bounding box. If that
+ * limit is 2^63 or more, as for a square of 5800 x 5800 white pixels, the RMS
+ * radius of the uniformly lit box is returned instead. */
 #ifndef GLINT_LAMPS_REGIONS_H
 #define GLINT_LAMPS_REGIONS_H
 
@@ -47,10 +48,10 @@ struct glint_region {
     int32_t x0, y0, x1, y1;
     int64_t w_q14, wx_q14, wy_q14;
     uint64_t wr2_q14;
-    int64_t rgb_q14[3];     /* sums of linear colour over all pixels */
-    int64_t rim_rgb_q14[3]; /* sums over pixels without a clipped channel, in
-                               the region and up to ROW_LIGHT_RIM pixels beside
-                               its runs */
+    int64_t rgb_q14[3];     /* sums of linear R, G, B over all pixels */
+    int64_t rim_rgb_q14[3]; /* sums of linear R, G, B over pixels without a
+                               clipped channel, both in the region and up to
+                               ROW_LIGHT_RIM pixels beside its runs */
 };
 
 /* The light of one pixel, as added to a region. */
@@ -59,9 +60,10 @@ struct glint_region_light {
     int32_t rgb_q14[3];
 };
 
-/* Returns the linear luminance, BT.709, of R, G, B times 2^15;
- * region_luminance() returns it without the factor. */
-static inline int64_t region_wide_luminance(int64_t r, int64_t g, int64_t b)
+/* Returns the linear luminance (BT.709) of linear R, G, B, times 2^15;
+ * region_luminance() returns it without this factor. */
+static inline int64_t region_luminance_times_2_15(int64_t r, int64_t g,
+                                                  int64_t b)
 {
     return r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
            b * Q_CONST(0.0722, 15);
@@ -69,18 +71,19 @@ static inline int64_t region_wide_luminance(int64_t r, int64_t g, int64_t b)
 
 static inline int64_t region_luminance(int64_t r, int64_t g, int64_t b)
 {
-    return q_shift(region_wide_luminance(r, g, b), 15);
+    return q_shift(region_luminance_times_2_15(r, g, b), 15);
 }
 
-/* Returns the light of a pixel from linear light RGB, 0 .. white. */
+/* Converts linear light RGB, 0 .. white, of a pixel to the light that is added
+ * to regions. */
 static inline struct glint_region_light
-region_light_of(const int32_t rgb_q20[3])
+region_compute_pixel_light(const int32_t rgb_q20[3])
 {
     struct glint_region_light light;
     /* rounded to _q20, then to _q14 */
     const int64_t seen_q14 =
-        (region_wide_luminance(rgb_q20[0], rgb_q20[1], rgb_q20[2]) + (1 << 14) +
-         (1 << 20)) >>
+        (region_luminance_times_2_15(rgb_q20[0], rgb_q20[1], rgb_q20[2]) +
+         (1 << 14) + (1 << 20)) >>
         21;
 
     light.w_q14 = seen_q14 > 1 ? seen_q14 : 1;
@@ -90,7 +93,7 @@ region_light_of(const int32_t rgb_q20[3])
 }
 
 /* Returns 0 + 1 + 4 + ... + (n - 1)^2. */
-static inline int64_t region_squares_below(int64_t n)
+static inline int64_t region_sum_squares_below(int64_t n)
 {
     return (n - 1) * n * (2 * n - 1) / 6;
 }
@@ -98,31 +101,33 @@ static inline int64_t region_squares_below(int64_t n)
 /* Adds the pixels of a run of row Y to the area and the box. */
 void glint_region_add_run(struct glint_region *sum, int x0, int x1, int y);
 
-void glint_region_absorb(struct glint_region *sum,
-                         const struct glint_region *other);
+void glint_region_add_region(struct glint_region *sum,
+                             const struct glint_region *other);
 
 /* Sets X and Y to the flux-weighted centroid in pixel indices: the centre of
  * the first pixel is 0. */
-void glint_region_centroid(const struct glint_region *sum, int32_t *x_q8,
-                           int32_t *y_q8);
+void glint_region_compute_centroid(const struct glint_region *sum,
+                                   int32_t *x_q8, int32_t *y_q8);
 
 /* Returns the RMS distance from the centroid, pixels; 0 for a single pixel. */
-int32_t glint_region_radius_q8(const struct glint_region *sum);
+int32_t glint_region_compute_rms_radius_q8(const struct glint_region *sum);
 
 /* Sets RGB to the mean colour at luminance 1. */
-void glint_region_colour(const struct glint_region *sum, int32_t rgb_q15[3]);
+void glint_region_compute_colour(const struct glint_region *sum,
+                                 int32_t rgb_q15[3]);
 
 struct glint_component {
     struct glint_region sum;
-    int32_t parent; /* label of the parent; a root has its own label */
+    int32_t parent; /* label of the parent in the union-find tree; a root is its
+                       own parent */
     int32_t last_row;
 };
 
 struct glint_run {
-    int32_t x0, x1; /* first pixel, and last pixel + 1 */
+    int32_t x0, x1; /* first pixel of the run, and last pixel + 1 */
     int32_t label;
-    int32_t want0, want1; /* range of pixels, want0 .. want1 - 1, whose light
-                             the caller needs; 0, 0: none */
+    int32_t want0, want1; /* range of pixels of the row, want0 .. want1 - 1,
+                             whose light the caller needs; 0, 0: none */
 };
 
 struct glint_run_row {
@@ -134,32 +139,32 @@ struct glint_regions {
     int width;
     struct glint_run_row above, here;
     struct glint_component *component;
-    int32_t *active, *idle; /* labels in use, and free labels */
+    int32_t *active, *idle; /* labels in use; free labels */
     int n_active, n_idle;
 };
 
-/* Allocates the tables for rows of WIDTH pixels from ARENA, or only measures
- * them. */
-void glint_regions_carve(struct glint_regions *r, struct glint_arena *arena,
-                         int width);
+/* Allocates the tables for rows of WIDTH pixels from ARENA. If ARENA only
+ * measures, only adds up their size. */
+void glint_regions_allocate(struct glint_regions *r, struct glint_arena *arena,
+                            int width);
 
-void glint_regions_begin(struct glint_regions *r);
+void glint_regions_begin_picture(struct glint_regions *r);
 
-/* Fills r->here with the runs of pixels of row Y that are LOW or above, and
- * labels each by the runs that it touches in the row above. LOW must be at
- * least the low of BRIGHT. */
+/* Fills r->here with the runs of pixels of row Y that have brightness LOW or
+ * more, and assigns each run to the region of the runs that it touches in the
+ * row above. LOW must be at least the min brightness set for BRIGHT. */
 void glint_regions_link_row(struct glint_regions *r,
                             const struct glint_bright *bright, int low, int y);
 
 /* Returns the sums so far of the region to which run I of r->here belongs. */
-struct glint_region *glint_regions_of_run(struct glint_regions *r, int i);
+struct glint_region *glint_regions_find_region_of_run(struct glint_regions *r,
+                                                      int i);
 
 /* Receives a finished REGION, which is valid only during the call. */
 typedef void glint_region_fn(void *ctx, const struct glint_region *region);
 
-/* Calls DONE for each region that does not continue in row Y, and frees its
- * labels. */
-void glint_regions_end_row(struct glint_regions *r, glint_region_fn *done,
-                           void *ctx, int y);
+/* Calls DONE for each region that has no run in row Y, and frees its labels. */
+void glint_regions_report_finished(struct glint_regions *r,
+                                   glint_region_fn *done, void *ctx, int y);
 
 #endif

@@ -7,9 +7,9 @@
 
 #define WHITE_Q20 LINEAR_WHITE_Q20
 #define ONE_Q16   (1 << 16)
-/* about code 231: brighter pixels count as partly clipped */
+/* linear light of about code 231: brighter pixels count as partly clipped */
 #define CLIP_FIRST Q_CONST(0.80, 20)
-/* about code 253: brighter pixels count as clipped */
+/* linear light of about code 253: brighter pixels count as clipped */
 #define CLIP_LAST     Q_CONST(0.98, 20)
 #define RIM_LIGHT     Q_CONST(0.95, 20)
 #define MAX_BLACK_Q20 Q_CONST(15.0 / 16, 20)
@@ -17,10 +17,11 @@
 enum {
     SECTORS = 8,
     BORDERS = 4,
-    SAMPLES = 32, /* max samples along the radius of the inner disc */
+    SAMPLES = 32, /* max number of samples along the radius of the inner disc */
     RAYS = 16,
-    RAY_SAMPLES = 64, /* number of steps of a ray along the core's radius */
-    RIM_RADIUS = 32,  /* min radius of a core whose rim is measured, pixels: an
+    RAY_SAMPLES = 64, /* number of steps of a ray along the radius of the core
+                       */
+    RIM_RADIUS = 32,  /* min radius, pixels, of a core whose rim is measured; an
                          eighth of it exceeds the blur of a lens */
     RINGS = GLINT_PROFILE_RINGS,
     LEVELS = GLINT_PROFILE_LEVELS,
@@ -29,10 +30,10 @@ enum {
 
 /* ------------------------------------------------------------------- window */
 
-/* The line between a spot and its neighbour: pixels beyond it belong to the
- * neighbour. */
+/* The border line between a spot and a neighbour: pixels beyond it belong to
+ * the neighbour. */
 struct border {
-    int x, y;      /* vector to the neighbour, pixels */
+    int x, y;      /* vector from the spot to the neighbour, pixels */
     int64_t limit; /* pixels whose dot product with (x, y) is larger lie beyond
                       the line */
     /* distance of the line from the middle of the spot, pixels */
@@ -41,16 +42,18 @@ struct border {
 
 struct window {
     struct glint_bright *bright;
-    struct border border[BORDERS]; /* the nearest borders, sorted by distance */
+    struct border border[BORDERS]; /* the borders nearest to the spot, sorted by
+                                      distance */
     int n_borders;
     int width, height;
     int x, y;   /* pixel in the middle of the window */
-    int radius; /* radius of the inner disc; ring i ends at radius << i */
-    int step; /* distance of samples in the inner disc, pixels; in ring i it is
-                 step << i */
+    int radius; /* radius of the inner disc, pixels; ring i has the outer radius
+                   radius << i */
+    int step;   /* distance between samples in the inner disc, pixels; in ring i
+                   it is step << i */
 };
 
-/* A sampled pixel; it represents SHARE pixels. DX, DY: its offset from the
+/* A sampled pixel, which represents SHARE pixels. DX, DY: its offset from the
  * middle of the window, pixels. */
 struct sample {
     int32_t rgb_q20[3];
@@ -59,11 +62,12 @@ struct sample {
 
 typedef void sample_fn(void *ctx, const struct sample *sample);
 
-/* Returns the window of SPOT, without borders. The inner disc has twice the RMS
- * radius, which covers a disc or a tube, and 3 pixels for the blur of the lens.
+/* Returns the window around SPOT, without borders. The inner disc has twice the
+ * spot's RMS radius, which covers a disc or a tube, plus 3 pixels for the blur
+ * of the lens.
  */
-static struct window make_window(const struct glint_image *image,
-                                 const struct glint_spot *spot)
+static struct window make_spot_window(const struct glint_image *image,
+                                      const struct glint_spot *spot)
 {
     const int most =
         image->width > image->height ? image->width : image->height;
@@ -78,7 +82,7 @@ static struct window make_window(const struct glint_image *image,
     return w;
 }
 
-static int is_in_window(const struct window *w, int dx, int dy)
+static int is_inside_borders(const struct window *w, int dx, int dy)
 {
     for (int i = 0; i < w->n_borders; i++) {
         const struct border *b = &w->border[i];
@@ -89,66 +93,68 @@ static int is_in_window(const struct window *w, int dx, int dy)
     return 1;
 }
 
-/* Calls SEE for the samples X0, X0 + STEP ... X1 of a row that are in the
- * picture and within the borders. */
-static void visit_run(const struct window *w, int x0, int x1, struct sample *at,
-                      int step, sample_fn *see, void *ctx)
+/* Calls SEE for those samples at the x offsets X0, X0 + STEP ... X1 of a row
+ * that lie in the picture and within the borders. */
+static void visit_row_samples(const struct window *w, int x0, int x1,
+                              struct sample *at, int step, sample_fn *see,
+                              void *ctx)
 {
     for (int dx = x0; dx <= x1; dx += step) {
         const int x = w->x + dx;
 
-        if (x < 0 || x >= w->width || !is_in_window(w, dx, at->dy))
+        if (x < 0 || x >= w->width || !is_inside_borders(w, dx, at->dy))
             continue;
-        glint_bright_read(w->bright, x, at->rgb_q20);
+        glint_bright_read_pixel_light(w->bright, x, at->rgb_q20);
         at->dx = dx;
         see(ctx, at);
     }
 }
 
-/* Returns the largest multiple of STEP that is the x offset of a pixel
- * inside a disc of radius RADIUS, in the row DY below its middle; -1 if the
- * row misses the disc. */
-static int find_last_offset(int radius, int dy, int step)
+/* Returns the largest x offset from the centre, a multiple of STEP, that lies
+ * within a disc of radius RADIUS in the row DY pixels below its centre; -1 if
+ * the row misses the disc. */
+static int find_last_sample_offset(int radius, int dy, int step)
 {
     const int64_t left = (int64_t)radius * radius - (int64_t)dy * dy;
 
     return left < 0 ? -1 : (int)q_root((uint64_t)left) / step * step;
 }
 
-/* Calls SEE for the samples of ring RING; ring 0 is the disc in the middle. */
-static void visit_ring(const struct window *w, int ring, sample_fn *see,
-                       void *ctx)
+/* Calls SEE for each sample of ring RING; ring 0 is the inner disc. */
+static void visit_ring_samples(const struct window *w, int ring, sample_fn *see,
+                               void *ctx)
 {
     const int step = w->step << ring, outer = w->radius << ring;
     const int inner = ring ? w->radius << (ring - 1) : -1;
     struct sample at = {.share = step * step, .ring = ring};
 
     for (int dy = -(outer / step * step); dy <= outer; dy += step) {
-        const int end = find_last_offset(outer, dy, step);
-        const int gap = inner < 0 ? -1 : find_last_offset(inner, dy, step);
+        const int end = find_last_sample_offset(outer, dy, step);
+        const int gap =
+            inner < 0 ? -1 : find_last_sample_offset(inner, dy, step);
 
         if (w->y + dy < 0 || w->y + dy >= w->height)
             continue;
-        glint_bright_seek_row(w->bright, w->y + dy);
+        glint_bright_select_row(w->bright, w->y + dy);
         at.dy = dy;
         if (gap < 0) {
-            visit_run(w, -end, end, &at, step, see, ctx);
+            visit_row_samples(w, -end, end, &at, step, see, ctx);
         } else {
-            visit_run(w, -end, -gap - step, &at, step, see, ctx);
-            visit_run(w, gap + step, end, &at, step, see, ctx);
+            visit_row_samples(w, -end, -gap - step, &at, step, see, ctx);
+            visit_row_samples(w, gap + step, end, &at, step, see, ctx);
         }
     }
 }
 
 /* --------------------------------------------------------------- neighbours */
 
-static int32_t compute_reach_q8(const struct glint_spot *spot)
+static int32_t compute_spot_rim_radius_q8(const struct glint_spot *spot)
 {
     return q_clamp_sat(spot->size_q8, 0, GLINT_MAX_SIDE << 8) * 3 / 2 + 256;
 }
 
-/* Adds BORDER to W if it is among the BORDERS nearest ones. */
-static void add_border(struct window *w, struct border border)
+/* Adds BORDER to W if it is among the nearest BORDERS borders. */
+static void insert_border_if_near(struct window *w, struct border border)
 {
     int at = w->n_borders;
 
@@ -160,10 +166,11 @@ static void add_border(struct window *w, struct border border)
     w->n_borders += w->n_borders < BORDERS;
 }
 
-/* Adds the border between SPOT and OTHER, half way between their rims, if it is
- * in the window. */
-static void add_border_between(struct window *w, const struct glint_spot *spot,
-                               const struct glint_spot *other)
+/* Adds to W the border line between SPOT and OTHER, half way between their
+ * rims, if it crosses the window. */
+static void add_border_to_neighbour(struct window *w,
+                                    const struct glint_spot *spot,
+                                    const struct glint_spot *other)
 {
     const int x = (other->x_q8 >> 8) - w->x, y = (other->y_q8 >> 8) - w->y;
     const int64_t d2 = (int64_t)x * x + (int64_t)y * y;
@@ -173,14 +180,16 @@ static void add_border_between(struct window *w, const struct glint_spot *spot,
     if (other->faint || d2 == 0 || d2 >= 4 * far * far)
         return;
     d_q8 = q_root((uint64_t)d2 << 16);
-    at_q8 = (d_q8 + compute_reach_q8(spot) - compute_reach_q8(other)) / 2;
+    at_q8 = (d_q8 + compute_spot_rim_radius_q8(spot) -
+             compute_spot_rim_radius_q8(other)) /
+            2;
     at_q8 = at_q8 < 256 ? 256 : at_q8 > d_q8 ? d_q8 : at_q8;
     if (at_q8 < far << 8)
-        add_border(w,
-                   (struct border){x, y, at_q8 * d_q8 >> 16, (int32_t)at_q8});
+        insert_border_if_near(
+            w, (struct border){x, y, at_q8 * d_q8 >> 16, (int32_t)at_q8});
 }
 
-static int is_left(const void *ctx, int32_t a, int32_t b)
+static int is_spot_left_of(const void *ctx, int32_t a, int32_t b)
 {
     const struct glint_spot *spots = ctx;
 
@@ -188,9 +197,10 @@ static int is_left(const void *ctx, int32_t a, int32_t b)
                                           : a < b;
 }
 
-/* Adds the borders between the I-th spot from the left and its neighbours. */
-static void find_borders(struct window *w, const struct glint_rings *rings,
-                         const struct glint_spot *spots, int n, int i)
+/* Adds to W the borders between the I-th spot from the left and its neighbours.
+ */
+static void find_spot_borders(struct window *w, const struct glint_rings *rings,
+                              const struct glint_spot *spots, int n, int i)
 {
     const struct glint_spot *spot = &spots[rings->by_x[i]];
     const int64_t far_q8 = (int64_t)w->radius << (RINGS + 9);
@@ -200,14 +210,14 @@ static void find_borders(struct window *w, const struct glint_rings *rings,
 
         if ((int64_t)spot->x_q8 - other->x_q8 > far_q8)
             break;
-        add_border_between(w, spot, other);
+        add_border_to_neighbour(w, spot, other);
     }
     for (int j = i + 1; j < n; j++) {
         const struct glint_spot *other = &spots[rings->by_x[j]];
 
         if ((int64_t)other->x_q8 - spot->x_q8 > far_q8)
             break;
-        add_border_between(w, spot, other);
+        add_border_to_neighbour(w, spot, other);
     }
 }
 
@@ -218,7 +228,7 @@ struct sectors {
     int64_t n[SECTORS];
 };
 
-static void add_to_background(void *ctx, const struct sample *s)
+static void add_sample_to_sector(void *ctx, const struct sample *s)
 {
     struct sectors *sectors = ctx;
     const int x = s->dx < 0 ? -s->dx : s->dx, y = s->dy < 0 ? -s->dy : s->dy;
@@ -235,7 +245,7 @@ struct part {
     int64_t n;
 };
 
-static void sort_parts(struct part *part, int n)
+static void sort_sectors_by_light(struct part *part, int n)
 {
     for (int i = 1; i < n; i++)
         for (int j = i; j > 0 && part[j - 1].mean_q20 > part[j].mean_q20; j--) {
@@ -246,10 +256,11 @@ static void sort_parts(struct part *part, int n)
         }
 }
 
-/* Returns the mean light of a range of a ring, from FROM to TO eighths of
- * its samples, with the sectors PART sorted by light. */
-static int32_t compute_mean_between(const struct part *part, int n, int64_t all,
-                                    int from, int to)
+/* Returns the mean light of a ring's samples from FROM eighths to TO eighths of
+ * their number, in order of light. PART: the N sectors sorted by mean light;
+ * ALL: number of samples. */
+static int32_t compute_mean_of_quantiles(const struct part *part, int n,
+                                         int64_t all, int from, int to)
 {
     int64_t sum = 0, at = 0;
 
@@ -265,11 +276,11 @@ static int32_t compute_mean_between(const struct part *part, int n, int64_t all,
     return all ? (int32_t)q_divide(sum, (to - from) * all) : 0;
 }
 
-/* Sets the background: the mean of the middle half of the ring, with its
- * sectors sorted by light. The spread is the difference between the means of
- * the last and the first quarter of that half. */
-static void set_background(struct glint_profile_channel *of,
-                           const struct sectors *sectors, int c)
+/* Sets the background light of channel C from the ring's sectors in order of
+ * their light: its mean is that of the middle half, its spread the difference
+ * between the means of the last and the first quarter of that half. */
+static void set_channel_background(struct glint_profile_channel *of,
+                                   const struct sectors *sectors, int c)
 {
     struct part part[SECTORS];
     int64_t all = 0, apart_q20;
@@ -282,20 +293,20 @@ static void set_background(struct glint_profile_channel *of,
             part[n++].n = sectors->n[i];
             all += sectors->n[i];
         }
-    sort_parts(part, n);
-    of->black_q20 = compute_mean_between(part, n, all, 2, 6);
+    sort_sectors_by_light(part, n);
+    of->black_q20 = compute_mean_of_quantiles(part, n, all, 2, 6);
     if (of->black_q20 > MAX_BLACK_Q20)
         of->black_q20 = MAX_BLACK_Q20;
     of->scale_q16 =
         (int32_t)q_divide(INT64_C(1) << 36, WHITE_Q20 - of->black_q20);
-    apart_q20 = compute_mean_between(part, n, all, 5, 6) -
-                compute_mean_between(part, n, all, 2, 3);
+    apart_q20 = compute_mean_of_quantiles(part, n, all, 5, 6) -
+                compute_mean_of_quantiles(part, n, all, 2, 3);
     of->spread_q16 = (int32_t)(apart_q20 * of->scale_q16 >> 20);
 }
 
 /* --------------------------------------------------------------------- sums */
 
-static int32_t compute_clipped_q8(int32_t light_q20)
+static int32_t compute_clipped_fraction_q8(int32_t light_q20)
 {
     if (light_q20 <= CLIP_FIRST)
         return 0;
@@ -304,11 +315,12 @@ static int32_t compute_clipped_q8(int32_t light_q20)
                                         ((CLIP_LAST - CLIP_FIRST) >> 4);
 }
 
-/* Adds SHARE pixels of light U to the number of pixels of their level, and a
- * fraction of them to the level's area. add_up() adds all of them to the
- * areas of the darker levels. */
-static void add_levels(struct glint_profile_channel *of, int32_t u_q16,
-                       int share, int ring)
+/* Counts a sample of light U, which represents SHARE pixels: adds SHARE to the
+ * pixels of its level, and a fraction of SHARE to the level's area.
+ * add_brighter_levels_to_areas() later adds all pixels of a level to the areas
+ * of darker levels. */
+static void count_sample_in_level(struct glint_profile_channel *of,
+                                  int32_t u_q16, int share, int ring)
 {
     const int level = u_q16 >= ONE_Q16 ? 0 : 17 - bit_length((uint64_t)u_q16);
 
@@ -320,10 +332,10 @@ static void add_levels(struct glint_profile_channel *of, int32_t u_q16,
             ((((int64_t)u_q16 << level) - ONE_Q16) >> 8) * share;
 }
 
-/* Adds S to the moments of the core, in units of steps: all samples of the
- * inner disc are one step apart. */
-static void add_moments(struct glint_profile_sums *sums, int32_t u_q16,
-                        const struct sample *s)
+/* Adds sample S to the moments of the core, in steps: samples of the inner disc
+ * are one step apart. */
+static void add_sample_to_core_moments(struct glint_profile_sums *sums,
+                                       int32_t u_q16, const struct sample *s)
 {
     const int64_t w_q16 = ((int64_t)u_q16 * u_q16) >> 16;
     const int dx = s->dx / sums->step, dy = s->dy / sums->step;
@@ -338,25 +350,27 @@ static void add_moments(struct glint_profile_sums *sums, int32_t u_q16,
 
 /* ---------------------------------------------------------------------- rim */
 
-/* Returns the max channel of the pixel at offset (X, Y) from the middle; -1
- * if it belongs to another spot or lies outside the picture. */
-static int32_t read_light(const struct window *w, int32_t x_q8, int32_t y_q8)
+/* Returns the max channel, linear light, of the pixel at offset (X, Y) from the
+ * window's middle; -1 if the pixel belongs to another spot or is off-screen. */
+static int32_t read_max_channel(const struct window *w, int32_t x_q8,
+                                int32_t y_q8)
 {
     const int dx = (x_q8 + 128) >> 8, dy = (y_q8 + 128) >> 8;
     int32_t rgb_q20[3];
 
     if (w->x + dx < 0 || w->x + dx >= w->width || w->y + dy < 0 ||
-        w->y + dy >= w->height || !is_in_window(w, dx, dy))
+        w->y + dy >= w->height || !is_inside_borders(w, dx, dy))
         return -1;
-    glint_bright_seek_row(w->bright, w->y + dy);
-    glint_bright_read(w->bright, w->x + dx, rgb_q20);
+    glint_bright_select_row(w->bright, w->y + dy);
+    glint_bright_read_pixel_light(w->bright, w->x + dx, rgb_q20);
     return q_larger(q_larger(rgb_q20[0], rgb_q20[1]), rgb_q20[2]);
 }
 
-/* Returns the drop of light along ray I at the rim of a core of radius
- * RADIUS, as a fraction of white; -1 if it cannot be measured. Returns 0 if
- * the rim is near the middle, as such a core is a ring. */
-static int32_t measure_drop(const struct window *w, int i, int32_t radius_q8)
+/* Returns the drop of light along ray I at the rim of a core of radius RADIUS,
+ * as a fraction of white; 0 if the rim is near the middle, as such a core is a
+ * ring; -1 if the drop cannot be measured. */
+static int32_t measure_light_drop_at_rim(const struct window *w, int i,
+                                         int32_t radius_q8)
 {
     static const int16_t sine_q14[RAYS + RAYS / 4] = {
         0,      6270,  11585, 15137,  16384,  15137,  11585,
@@ -367,21 +381,22 @@ static int32_t measure_drop(const struct window *w, int i, int32_t radius_q8)
 
     do {
         at_q8 += radius_q8 / RAY_SAMPLES;
-        light_q20 =
-            read_light(w, q_mul(at_q8, x_q14, 14), q_mul(at_q8, y_q14, 14));
+        light_q20 = read_max_channel(w, q_mul(at_q8, x_q14, 14),
+                                     q_mul(at_q8, y_q14, 14));
     } while (light_q20 >= RIM_LIGHT && at_q8 < 3 * radius_q8);
     if (light_q20 < 0 || light_q20 >= RIM_LIGHT)
         return -1;
     if (at_q8 < radius_q8 / 4)
         return 0;
     at_q8 += q_larger(at_q8, radius_q8 / 2) / 8;
-    light_q20 = read_light(w, q_mul(at_q8, x_q14, 14), q_mul(at_q8, y_q14, 14));
+    light_q20 =
+        read_max_channel(w, q_mul(at_q8, x_q14, 14), q_mul(at_q8, y_q14, 14));
     return light_q20 < 0 ? -1
                          : q_clamp_sat(WHITE_Q20 - light_q20, 0, WHITE_Q20);
 }
 
-/* Returns the radius of a disc whose area is the largest clipped area of a
- * channel. */
+/* Returns the radius of a disc with the area of the core: the max over the
+ * channels of the clipped area. */
 static int32_t compute_core_radius_q8(const struct glint_profile_sums *sums)
 {
     int64_t area_q8 = 0;
@@ -392,8 +407,9 @@ static int32_t compute_core_radius_q8(const struct glint_profile_sums *sums)
     return (int32_t)q_root((uint64_t)(area_q8 * Q_CONST(0.31831, 8)));
 }
 
-static int32_t measure_rim_q15(const struct window *w,
-                               const struct glint_profile_sums *sums)
+static int32_t
+compute_median_rim_drop_q15(const struct window *w,
+                            const struct glint_profile_sums *sums)
 {
     const int32_t radius_q8 = compute_core_radius_q8(sums);
     int32_t lost_q20[RAYS];
@@ -402,7 +418,7 @@ static int32_t measure_rim_q15(const struct window *w,
     if (radius_q8 < RIM_RADIUS << 8)
         return 0;
     for (int i = 0; i < RAYS; i++) {
-        const int32_t lost = measure_drop(w, i, radius_q8);
+        const int32_t lost = measure_light_drop_at_rim(w, i, radius_q8);
         int at = n;
 
         if (lost < 0)
@@ -416,7 +432,7 @@ static int32_t measure_rim_q15(const struct window *w,
 
 /* -------------------------------------------------------------------- light */
 
-static void add_to_sums(void *ctx, const struct sample *s)
+static void add_sample_to_sums(void *ctx, const struct sample *s)
 {
     struct glint_profile_sums *sums = ctx;
     int32_t u_q16[3], most_q16 = 0, clip_q8 = 0;
@@ -424,13 +440,13 @@ static void add_to_sums(void *ctx, const struct sample *s)
     for (int c = 0; c < 3; c++) {
         struct glint_profile_channel *of = &sums->of[c];
         const int32_t over_q20 = s->rgb_q20[c] - of->black_q20;
-        const int32_t clipped = compute_clipped_q8(s->rgb_q20[c]);
+        const int32_t clipped = compute_clipped_fraction_q8(s->rgb_q20[c]);
 
         u_q16[c] = (int32_t)((int64_t)over_q20 * of->scale_q16 >> 20);
         if (s->ring == 0)
             of->area_q8[0] += (int64_t)clipped * s->share;
         if (u_q16[c] > 0)
-            add_levels(of, u_q16[c], s->share, s->ring);
+            count_sample_in_level(of, u_q16[c], s->share, s->ring);
         clip_q8 = clipped > clip_q8 ? clipped : clip_q8;
         most_q16 = u_q16[c] > most_q16 ? u_q16[c] : most_q16;
     }
@@ -445,11 +461,11 @@ static void add_to_sums(void *ctx, const struct sample *s)
         of->white_q16 += weighed_q16 * clip_q8 * s->share >> 8;
     }
     if (s->ring == 0)
-        add_moments(sums, most_q16, s);
+        add_sample_to_core_moments(sums, most_q16, s);
 }
 
-/* Adds to the area of each level all pixels of the brighter levels. */
-static void add_up(struct glint_profile_channel *of)
+/* Adds to the area of each level the pixels of all brighter levels. */
+static void add_brighter_levels_to_areas(struct glint_profile_channel *of)
 {
     int64_t n = 0;
 
@@ -459,38 +475,39 @@ static void add_up(struct glint_profile_channel *of)
     }
 }
 
-void glint_rings_begin(struct glint_rings *rings,
-                       const struct glint_image *image,
-                       const struct glint_spot *spots, int n)
+void glint_rings_begin_picture(struct glint_rings *rings,
+                               const struct glint_image *image,
+                               const struct glint_spot *spots, int n)
 {
-    glint_bright_begin(&rings->bright, image);
+    glint_bright_begin_picture(&rings->bright, image);
     for (int i = 0; i < n; i++)
         rings->by_x[i] = i;
-    glint_sort(rings->by_x, n, is_left, spots);
+    glint_sort(rings->by_x, n, is_spot_left_of, spots);
 }
 
-void glint_rings_sum(struct glint_profile_sums *sums, struct glint_rings *rings,
-                     const struct glint_spot *spots, int n, int i)
+void glint_rings_sum_spot_light(struct glint_profile_sums *sums,
+                                struct glint_rings *rings,
+                                const struct glint_spot *spots, int n, int i)
 {
     struct glint_bright *bright = &rings->bright;
-    struct window w = make_window(bright->image, &spots[rings->by_x[i]]);
+    struct window w = make_spot_window(bright->image, &spots[rings->by_x[i]]);
     struct sectors sectors = {{{0}}, {0}};
 
     w.bright = bright;
-    find_borders(&w, rings, spots, n, i);
+    find_spot_borders(&w, rings, spots, n, i);
     *sums = (struct glint_profile_sums){.step = w.step};
-    visit_ring(&w, RINGS, add_to_background, &sectors);
+    visit_ring_samples(&w, RINGS, add_sample_to_sector, &sectors);
     for (int c = 0; c < 3; c++) {
         struct glint_profile_channel *of = &sums->of[c];
         int64_t step_q20;
 
-        set_background(of, &sectors, c);
-        step_q20 = glint_bright_step_q20(bright, c, of->black_q20);
+        set_channel_background(of, &sectors, c);
+        step_q20 = glint_bright_compute_code_step_q20(bright, c, of->black_q20);
         of->step_q16 = (int32_t)(step_q20 * of->scale_q16 >> 20);
     }
     for (int ring = 0; ring <= RINGS; ring++)
-        visit_ring(&w, ring, add_to_sums, sums);
-    sums->rim_q15 = measure_rim_q15(&w, sums);
+        visit_ring_samples(&w, ring, add_sample_to_sums, sums);
+    sums->rim_q15 = compute_median_rim_drop_q15(&w, sums);
     for (int c = 0; c < 3; c++)
-        add_up(&sums->of[c]);
+        add_brighter_levels_to_areas(&sums->of[c]);
 }

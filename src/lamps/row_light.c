@@ -5,25 +5,25 @@
 #include "base/q.h"
 #include "lamps/bright_code.h"
 
-void glint_row_light_carve(struct glint_row_light *row,
-                           struct glint_arena *arena, int width)
+void glint_row_light_allocate(struct glint_row_light *row,
+                              struct glint_arena *arena, int width)
 {
     row->sum = glint_arena_take(arena, (size_t)width + 1, sizeof *row->sum);
     row->from = glint_arena_take(arena, (size_t)width + 1, sizeof *row->from);
 }
 
-void glint_row_light_begin(struct glint_row_light *row)
+void glint_row_light_begin_row(struct glint_row_light *row)
 {
     row->end = -1;
 }
 
-/* Sets OF to the sums of one pixel of linear light RGB. The pixel counts to the
- * rim only if all channels are below CLIPPED. */
-static WHOLLY_INLINE void set_sums(int32_t of[ROW_LIGHT_SUMS],
-                                   const int32_t rgb_q20[3],
-                                   int32_t clipped_q20)
+/* Sets OF to what a pixel of linear light RGB adds to the sums. It adds to the
+ * sums for the rim only if all its channels are below CLIPPED. */
+static WHOLLY_INLINE void compute_pixel_sums(int32_t of[ROW_LIGHT_SUMS],
+                                             const int32_t rgb_q20[3],
+                                             int32_t clipped_q20)
 {
-    const struct glint_region_light light = region_light_of(rgb_q20);
+    const struct glint_region_light light = region_compute_pixel_light(rgb_q20);
     const int is_clipped = rgb_q20[0] >= clipped_q20 ||
                            rgb_q20[1] >= clipped_q20 ||
                            rgb_q20[2] >= clipped_q20;
@@ -35,10 +35,12 @@ static WHOLLY_INLINE void set_sums(int32_t of[ROW_LIGHT_SUMS],
     }
 }
 
-/* Sets *NEXT to SUM plus a pixel of column X, whose sums are OF. */
-static WHOLLY_INLINE void add_pixel(struct glint_row_sum *restrict next,
-                                    const struct glint_row_sum *restrict sum,
-                                    const int32_t of[ROW_LIGHT_SUMS], int x)
+/* Sets *NEXT to the prefix sum *SUM plus the pixel in column X, which adds OF.
+ */
+static WHOLLY_INLINE void
+add_pixel_to_prefix_sum(struct glint_row_sum *restrict next,
+                        const struct glint_row_sum *restrict sum,
+                        const int32_t of[ROW_LIGHT_SUMS], int x)
 {
     const int64_t wx_q14 = (int64_t)of[ROW_LIGHT_W] * x;
 
@@ -54,12 +56,12 @@ static int64_t sum_integers_below(int64_t n)
     return n * (n - 1) / 2;
 }
 
-/* Sets *AT to the prefix sum N pixels further: SUM, over the pixels left of
- * X, plus N pixels equal to pixel X. SUM[1] is the prefix sum that includes
- * pixel X. */
-static void add_equal_pixels(struct glint_row_sum *at,
-                             const struct glint_row_sum *restrict sum, int x,
-                             int n)
+/* Sets *AT to the prefix sum over the pixels left of X + N, of which the last N
+ * are equal. SUM[0] is the prefix sum over the pixels left of X, SUM[1] that
+ * over the pixels left of X + 1. */
+static void extend_sum_by_equal_pixels(struct glint_row_sum *at,
+                                       const struct glint_row_sum *restrict sum,
+                                       int x, int n)
 {
     const struct glint_row_sum *one = sum + 1;
     const int64_t w_q14 = one->of[ROW_LIGHT_W] - sum->of[ROW_LIGHT_W];
@@ -68,14 +70,16 @@ static void add_equal_pixels(struct glint_row_sum *at,
         at->of[i] = sum->of[i] + n * (one->of[i] - sum->of[i]);
     at->wx_q14 = sum->wx_q14 +
                  w_q14 * (sum_integers_below(x + n) - sum_integers_below(x));
-    at->wx2_q14 = sum->wx2_q14 + w_q14 * (region_squares_below(x + n) -
-                                          region_squares_below(x));
+    at->wx2_q14 = sum->wx2_q14 + w_q14 * (region_sum_squares_below(x + n) -
+                                          region_sum_squares_below(x));
 }
 
-/* Sets CHROMA to the contribution of chroma in CODES to each channel, in
- * full-range codes, plus half a unit for the rounding in decode_ycc(). */
-static WHOLLY_INLINE void set_chroma(const struct glint_ycc *ycc, int32_t codes,
-                                     int32_t chroma_q16[3])
+/* Sets CHROMA to what Cb and Cr, bits 8 .. 23 of CODES, add to R, G and B, in
+ * full-range codes, plus half a unit for the rounding in
+ * decode_ycc_to_linear(). */
+static WHOLLY_INLINE void compute_chroma_terms(const struct glint_ycc *ycc,
+                                               int32_t codes,
+                                               int32_t chroma_q16[3])
 {
     const int32_t(*m_q16)[3] = ycc->to_rgb_q16;
     const int cb = (codes >> 8 & 255) - 128, cr = (codes >> 16) - 128;
@@ -84,12 +88,13 @@ static WHOLLY_INLINE void set_chroma(const struct glint_ycc *ycc, int32_t codes,
         chroma_q16[i] = cb * m_q16[i][1] + cr * m_q16[i][2] + (1 << 8);
 }
 
-/* Sets RGB to the linear light of luma Y and CHROMA. Equals curve_decode()
- * of ycc_to_rgb(). The first column of the matrix has the same value in all
- * rows. */
-static WHOLLY_INLINE void decode_ycc(const struct glint_bright *b, int y,
-                                     const int32_t chroma_q16[3],
-                                     int32_t rgb_q20[3])
+/* Sets RGB to the linear light of luma Y and CHROMA. The result equals that of
+ * curve_decode() after ycc_to_rgb(). The factor of luma is the same for R, G
+ * and B. */
+static WHOLLY_INLINE void decode_ycc_to_linear(const struct glint_bright *b,
+                                               int y,
+                                               const int32_t chroma_q16[3],
+                                               int32_t rgb_q20[3])
 {
     const int32_t luma_q16 = (y - b->ycc.black) * b->ycc.to_rgb_q16[0][0];
 
@@ -102,16 +107,16 @@ static WHOLLY_INLINE void decode_ycc(const struct glint_bright *b, int y,
     }
 }
 
-/* The memory layout of a row: the codes of the first channel are STEP bytes
- * apart; those of the second and third channel STEP_C bytes, each for 1 <<
- * SHIFT pixels. */
+/* The memory layout of a row: codes of the first channel are STEP bytes apart;
+ * those of the second and third channel are STEP_C bytes apart, and each
+ * belongs to 1 << SHIFT pixels. */
 struct packing {
     enum glint_layout_kind kind;
     int step, step_c, shift;
 };
 
-static WHOLLY_INLINE int32_t read_codes(const struct glint_bright *b,
-                                        struct packing p, int x)
+static WHOLLY_INLINE int32_t read_pixel_codes(const struct glint_bright *b,
+                                              struct packing p, int x)
 {
     const ptrdiff_t at = (ptrdiff_t)x * p.step;
     const ptrdiff_t at_c = (ptrdiff_t)(x >> p.shift) * p.step_c;
@@ -120,42 +125,42 @@ static WHOLLY_INLINE int32_t read_codes(const struct glint_bright *b,
            b->code[2].first[at_c] << 16;
 }
 
-/* Sets the sums of pixels X0 .. X1 - 1. For a run of equal pixels only the sums
- * after the first and the last pixel are stored. */
-static WHOLLY_INLINE void sum_pixels(struct glint_row_light *row,
-                                     const struct glint_bright *b, int x0,
-                                     int x1, struct packing p)
+/* Computes the prefix sums after each of the pixels X0 .. X1 - 1. In a run of
+ * equal pixels, only those after the first and the last pixel are stored. */
+static WHOLLY_INLINE void compute_prefix_sums(struct glint_row_light *row,
+                                              const struct glint_bright *b,
+                                              int x0, int x1, struct packing p)
 {
     const int32_t clipped_q20 = b->curve->decode_q20[BRIGHT_CLIPPED];
     struct glint_row_sum *sum = row->sum;
     int32_t of[ROW_LIGHT_SUMS] = {0}, rgb_q20[3], chroma_q16[3] = {0};
-    int32_t here = x0 < x1 ? read_codes(b, p, x0) : 0, chroma = -1;
+    int32_t here = x0 < x1 ? read_pixel_codes(b, p, x0) : 0, chroma = -1;
 
     for (int x = x0; x < x1;) {
         int next = x + 1;
 
         if (p.kind == GLINT_LAYOUT_YCC) {
             if (here >> 8 != chroma)
-                set_chroma(&b->ycc, here, chroma_q16);
+                compute_chroma_terms(&b->ycc, here, chroma_q16);
             chroma = here >> 8;
-            decode_ycc(b, here & 255, chroma_q16, rgb_q20);
+            decode_ycc_to_linear(b, here & 255, chroma_q16, rgb_q20);
         } else if (p.kind == GLINT_LAYOUT_RGB) {
             for (int i = 0; i < 3; i++)
                 rgb_q20[i] = b->curve->decode_q20[here >> 8 * i & 255];
         } else {
-            bright_read(b, x, rgb_q20);
+            bright_read_pixel_light(b, x, rgb_q20);
         }
-        set_sums(of, rgb_q20, clipped_q20);
-        add_pixel(&sum[next], &sum[x], of, x);
+        compute_pixel_sums(of, rgb_q20, clipped_q20);
+        add_pixel_to_prefix_sum(&sum[next], &sum[x], of, x);
         row->from[next] = (uint16_t)next;
         for (int32_t last = here; next < x1; next++) {
-            here = read_codes(b, p, next);
+            here = read_pixel_codes(b, p, next);
             if (here != last)
                 break;
             row->from[next] = (uint16_t)x;
         }
         if (next > x + 1) {
-            add_equal_pixels(&sum[next], &sum[x], x, next - x);
+            extend_sum_by_equal_pixels(&sum[next], &sum[x], x, next - x);
             row->from[x + 1] = (uint16_t)(x + 1);
             row->from[next] = (uint16_t)next;
         }
@@ -163,24 +168,29 @@ static WHOLLY_INLINE void sum_pixels(struct glint_row_light *row,
     }
 }
 
-/* Calls sum_pixels(), with a constant layout for the common formats. */
-static void sum_stretch(struct glint_row_light *row,
-                        const struct glint_bright *b, int x0, int x1)
+/* Calls compute_prefix_sums(), for the common formats with a constant layout.
+ */
+static void compute_prefix_sums_by_layout(struct glint_row_light *row,
+                                          const struct glint_bright *b, int x0,
+                                          int x1)
 {
     const struct glint_bright_code *c = b->code;
     const struct packing p = {b->layout->kind, c[0].step, c[1].step,
                               c[1].shift};
 
     if (p.kind == GLINT_LAYOUT_RGB && p.step == 3)
-        sum_pixels(row, b, x0, x1, (struct packing){GLINT_LAYOUT_RGB, 3, 3, 0});
+        compute_prefix_sums(row, b, x0, x1,
+                            (struct packing){GLINT_LAYOUT_RGB, 3, 3, 0});
     else if (p.kind == GLINT_LAYOUT_YCC && p.step == 2)
-        sum_pixels(row, b, x0, x1, (struct packing){GLINT_LAYOUT_YCC, 2, 4, 1});
+        compute_prefix_sums(row, b, x0, x1,
+                            (struct packing){GLINT_LAYOUT_YCC, 2, 4, 1});
     else
-        sum_pixels(row, b, x0, x1, p);
+        compute_prefix_sums(row, b, x0, x1, p);
 }
 
-void glint_row_light_extend(struct glint_row_light *row,
-                            const struct glint_bright *bright, int x0, int x1)
+void glint_row_light_sum_pixels(struct glint_row_light *row,
+                                const struct glint_bright *bright, int x0,
+                                int x1)
 {
     if (x0 <= row->end) {
         x0 = row->end;
@@ -188,35 +198,36 @@ void glint_row_light_extend(struct glint_row_light *row,
         row->sum[x0] = (struct glint_row_sum){.wx_q14 = 0};
         row->from[x0] = (uint16_t)x0;
     }
-    sum_stretch(row, bright, x0, x1);
+    compute_prefix_sums_by_layout(row, bright, x0, x1);
     if (x1 > row->end)
         row->end = x1;
 }
 
-/* Returns the prefix sum over the pixels left of X. If it is not stored, it
- * is computed in *ROOM. */
-static const struct glint_row_sum *get_sum(const struct glint_row_light *row,
-                                           int x, struct glint_row_sum *room)
+/* Returns the prefix sum over the pixels left of X. If it is not stored,
+ * computes it in *ROOM. */
+static const struct glint_row_sum *
+get_prefix_sum(const struct glint_row_light *row, int x,
+               struct glint_row_sum *room)
 {
     const int from = row->from[x];
 
     if (from == x)
         return &row->sum[x];
-    add_equal_pixels(room, &row->sum[from], from, x - from);
+    extend_sum_by_equal_pixels(room, &row->sum[from], from, x - from);
     return room;
 }
 
-void glint_row_light_add(const struct glint_row_light *row,
-                         struct glint_region *region, int x0, int x1, int width,
-                         int y)
+void glint_row_light_add_run_to_region(const struct glint_row_light *row,
+                                       struct glint_region *region, int x0,
+                                       int x1, int width, int y)
 {
     struct glint_row_sum room[4];
-    const struct glint_row_sum *a = get_sum(row, x0, &room[0]);
-    const struct glint_row_sum *b = get_sum(row, x1, &room[1]);
+    const struct glint_row_sum *a = get_prefix_sum(row, x0, &room[0]);
+    const struct glint_row_sum *b = get_prefix_sum(row, x1, &room[1]);
     const int rim0 = x0 > ROW_LIGHT_RIM ? x0 - ROW_LIGHT_RIM : 0;
     const int rim1 = x1 < width - ROW_LIGHT_RIM ? x1 + ROW_LIGHT_RIM : width;
-    const struct glint_row_sum *c = get_sum(row, rim0, &room[2]);
-    const struct glint_row_sum *d = get_sum(row, rim1, &room[3]);
+    const struct glint_row_sum *c = get_prefix_sum(row, rim0, &room[2]);
+    const struct glint_row_sum *d = get_prefix_sum(row, rim1, &room[3]);
     const int64_t w_q14 = b->of[ROW_LIGHT_W] - a->of[ROW_LIGHT_W];
 
     region->w_q14 += w_q14;

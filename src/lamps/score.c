@@ -5,31 +5,34 @@
 #include "base/sort.h"
 
 enum {
-    FLOOR_Q20 = 1 << 12, /* added to light, so that noise in the dark is not
-                            contrast */
+    FLOOR_Q20 = 1 << 12, /* added to linear light before log2, so that noise in
+                            the dark is not taken for contrast */
     LEAST_Q8 = -256,     /* contrasts are clamped to -1 .. 6 stops */
     MOST_Q8 = 6 * 256,
-    SMALL_Q8 = -2424, /* log2 of 1/709 of the picture: up to this size the
-                         weight of colour is 1 */
-    LARGE_Q8 = -1400, /* log2 of 1/44 of the picture: from this size on the
-                         weight of colour is 0 */
+    SMALL_Q8 = -2424, /* log2 of the area of small regions / picture area
+                         (1/709): up to this size the weight of colour is 1 */
+    LARGE_Q8 = -1400, /* log2 of the area of large regions / picture area
+                         (1/44): from this size on the weight of colour is 0 */
     HALO_MOST_Q8 = 512,
-    WIDE_Q8 = 1400,  /* log2 span over which a region becomes large: from 1/1960
-                        of the picture to 1/44 */
-    DRAWN_AREA = 36, /* min area, pixels; smaller squares may be round lamps */
+    WIDE_Q8 = 1400,  /* range of log2 of the area over which a region changes
+                        from small to large: from 1/1960 to 1/44 of the picture
+                        */
+    DRAWN_AREA = 36, /* min area, pixels, for EVIDENCE_DRAWN; smaller squares
+                        may be round lamps */
     DRAWN_BOX_Q8 = 250,
     SCORE_PARTS = EVIDENCE_DARK_32 - EVIDENCE_DARK_2 + 1
 };
 
-/* A term of the score: WEIGHT * (MEASURE clamped to LEAST .. MOST - LEAST). */
+/* A term of the score: WEIGHT * (EVIDENCE clamped to LEAST .. MOST, minus
+ * LEAST). EVIDENCE is the value of MEASURE. */
 struct term {
     int8_t measure;
     int16_t least_q8, most_q8, weight_q8;
 };
 
 /* Weights from a logistic regression, each constrained to the sign that is
- * plausible for its measure; tests/corpus/fit prints them. A step of 64 is a
- * factor e of the odds. The last weight is set by hand: no lamp of the
+ * plausible for its measure; tests/corpus/fit prints them. A score higher by 64
+ * multiplies the odds by e. The last weight is set by hand: no lamp of the
  * corpus fills its box, but a bright box in the dark is a lamp nevertheless. */
 enum { BIAS_Q8 = -1438 };
 
@@ -55,39 +58,40 @@ static int64_t max_of_3(const int64_t v[3])
     return most > v[2] ? most : v[2];
 }
 
-/* Sets STOPS to log2 of the max channel and of the luminance of RGB, 1/256
- * stops. */
-static void compute_stops(const int64_t rgb_q20[3], int32_t stops_q8[2])
+/* Sets STOPS[0] to log2 of the max channel of RGB, and STOPS[1] to log2 of its
+ * luminance, 1/256 stops. */
+static void compute_log2_of_light(const int64_t rgb_q20[3], int32_t stops_q8[2])
 {
     const int64_t y_q20 =
         (rgb_q20[0] * 54 + rgb_q20[1] * 183 + rgb_q20[2] * 19) >> 8;
 
-    stops_q8[0] = glint_stops_q8(max_of_3(rgb_q20) + FLOOR_Q20);
-    stops_q8[1] = glint_stops_q8(y_q20 + FLOOR_Q20);
+    stops_q8[0] = glint_compute_light_log2_q8(max_of_3(rgb_q20) + FLOOR_Q20);
+    stops_q8[1] = glint_compute_light_log2_q8(y_q20 + FLOOR_Q20);
 }
 
-/* Returns the stops by which IN exceeds pixel X of the row: the larger of
- * the differences of the max channel and of the luminance. */
-static int32_t measure_contrast(const struct glint_score *s,
-                                const int32_t in_q8[2], int x)
+/* Returns the contrast between the region, whose log2 light is IN, and pixel X
+ * of the current row, 1/256 stops: the max of the differences of the max
+ * channel and of the luminance. */
+static int32_t compute_contrast_to_pixel(const struct glint_score *s,
+                                         const int32_t in_q8[2], int x)
 {
     int32_t rgb_q20[3], out_q8[2];
     int64_t wide_q20[3];
 
-    glint_bright_read(s->bright, x, rgb_q20);
+    glint_bright_read_pixel_light(s->bright, x, rgb_q20);
     for (int i = 0; i < 3; i++)
         wide_q20[i] = rgb_q20[i];
-    compute_stops(wide_q20, out_q8);
+    compute_log2_of_light(wide_q20, out_q8);
     for (int i = 0; i < 2; i++)
         out_q8[i] = in_q8[i] - out_q8[i];
     return q_clamp_sat(out_q8[0] > out_q8[1] ? out_q8[0] : out_q8[1], LEAST_Q8,
                        MOST_Q8);
 }
 
-/* Sets (X, Y) to point I of the ellipse inscribed in SUM's box enlarged by D on
- * all sides. */
-static void compute_point(const struct glint_region *sum, int32_t d, int i,
-                          int32_t *x, int32_t *y)
+/* Sets (X, Y) to point I of an ellipse: the one inscribed in SUM's bounding box
+ * after the box has been enlarged by D on all sides. */
+static void compute_ellipse_point(const struct glint_region *sum, int32_t d,
+                                  int i, int32_t *x, int32_t *y)
 {
     static const int16_t sine_q14[SCORE_POINTS + SCORE_POINTS / 4] = {
         0,      6270,  11585, 15137,  16384,  15137,  11585,
@@ -101,28 +105,28 @@ static void compute_point(const struct glint_region *sum, int32_t d, int i,
     *y = q_narrow(sum->y0 - d + q_shift(h * (16384 + sine_q14[i]), 15));
 }
 
-/* Sets FOUND to the contrasts at those points of an ellipse that lie within
- * the picture; returns their number. */
-static int measure_ellipse(const struct glint_score *s,
-                           const struct glint_region *sum, int32_t d,
-                           const int32_t in_q8[2],
-                           int32_t found_q8[SCORE_POINTS])
+/* Sets FOUND to the contrasts at those points of the ellipse at distance D from
+ * SUM's box that lie within the picture. Returns their number. */
+static int list_ellipse_contrasts(const struct glint_score *s,
+                                  const struct glint_region *sum, int32_t d,
+                                  const int32_t in_q8[2],
+                                  int32_t found_q8[SCORE_POINTS])
 {
     int n = 0;
 
     for (int i = 0; i < SCORE_POINTS; i++) {
         int32_t x, y;
 
-        compute_point(sum, d, i, &x, &y);
+        compute_ellipse_point(sum, d, i, &x, &y);
         if (x < 0 || y < 0 || x >= s->width || y >= s->height)
             continue;
-        glint_bright_seek_row(s->bright, y);
-        found_q8[n++] = measure_contrast(s, in_q8, x);
+        glint_bright_select_row(s->bright, y);
+        found_q8[n++] = compute_contrast_to_pixel(s, in_q8, x);
     }
     return n;
 }
 
-static int32_t compute_mean(const int32_t *v, int n)
+static int32_t compute_mean_contrast(const int32_t *v, int n)
 {
     int32_t sum = 0;
 
@@ -131,7 +135,7 @@ static int32_t compute_mean(const int32_t *v, int n)
     return n ? sum / n : 0;
 }
 
-static void sort_values(int32_t *v, int n)
+static void sort_contrasts(int32_t *v, int n)
 {
     for (int i = 1; i < n; i++)
         for (int j = i; j > 0 && v[j] < v[j - 1]; j--) {
@@ -142,10 +146,10 @@ static void sort_values(int32_t *v, int n)
         }
 }
 
-/* Returns the distance of ring I from the box of SUM, pixels: one term is
- * proportional to the side of the picture, one to the side of the box. */
-static int32_t compute_distance(const struct glint_score *s,
-                                const struct glint_region *sum, int i)
+/* Returns the distance of ring I from SUM's bounding box, pixels: a fraction of
+ * the picture's side plus a fraction of the box's side. */
+static int32_t compute_ring_distance(const struct glint_score *s,
+                                     const struct glint_region *sum, int i)
 {
     static const int16_t in_q8[SCORE_RINGS][2] = {
         {320, 64}, {768, 192}, {2048, 512}};
@@ -157,41 +161,44 @@ static int32_t compute_distance(const struct glint_score *s,
                      (in_q8[i][0] * side / 800 + in_q8[i][1] * box / 2) / 256);
 }
 
-/* Contrast around a region, at one distance. */
+/* The contrast of a region with the points of one ring around it. */
 struct ring {
-    int32_t mean_q8, lower_q8, upper_q8; /* mean and quartiles, 1/256 stops */
+    int32_t mean_q8, lower_q8, upper_q8; /* mean and quartiles over the points,
+                                            1/256 stops */
 };
 
-/* Sets RING to the contrasts at distance D; leaves it unchanged if no point is
- * in the picture. */
-static void measure_ring(struct ring *ring, const struct glint_score *s,
-                         const struct glint_region *sum, int32_t d,
-                         const int32_t in_q8[2])
+/* Sets RING to the contrasts at distance D pixels; leaves RING unchanged if no
+ * point is in the picture. */
+static void measure_ring_contrast(struct ring *ring,
+                                  const struct glint_score *s,
+                                  const struct glint_region *sum, int32_t d,
+                                  const int32_t in_q8[2])
 {
     int32_t found_q8[SCORE_POINTS];
-    const int n = measure_ellipse(s, sum, d, in_q8, found_q8);
+    const int n = list_ellipse_contrasts(s, sum, d, in_q8, found_q8);
 
     if (n == 0)
         return;
-    sort_values(found_q8, n);
-    ring->mean_q8 = compute_mean(found_q8, n);
+    sort_contrasts(found_q8, n);
+    ring->mean_q8 = compute_mean_contrast(found_q8, n);
     ring->lower_q8 = found_q8[n / 4];
     ring->upper_q8 = found_q8[n - 1 - n / 4];
 }
 
-static void compute_mean_stops(const struct glint_region *sum,
-                               int32_t stops_q8[2])
+static void compute_mean_log2_of_light(const struct glint_region *sum,
+                                       int32_t stops_q8[2])
 {
     int64_t mean_q20[3];
 
     for (int i = 0; i < 3; i++)
         mean_q20[i] = sum->rgb_q14[i] * 64 / sum->area;
-    compute_stops(mean_q20, stops_q8);
+    compute_log2_of_light(mean_q20, stops_q8);
 }
 
-/* Returns VALUE times the degree, 0 .. 1, to which C is a large region. */
-static int32_t compute_wide_q8(const struct glint_candidate *c,
-                               int32_t value_q8)
+/* Returns VALUE times the degree to which C is a large region: 0 for small, 1
+ * for large regions. */
+static int32_t scale_by_largeness_q8(const struct glint_candidate *c,
+                                     int32_t value_q8)
 {
     const int64_t size_q8 = (int64_t)c->evidence_q8[EVIDENCE_SIZE];
 
@@ -200,26 +207,28 @@ static int32_t compute_wide_q8(const struct glint_candidate *c,
 
 /* -------------------------------------------------------------------- shape */
 
-/* Returns area / (2 pi r^2) of SUM, at most 2: 256 for a disc. r is the RMS
- * radius; 1/6, the value of a single pixel, is added to r^2. */
-static int32_t compute_fill_q8(const struct glint_region *sum)
+/* Returns area / (2 pi r^2) of region SUM, at most 2; it is 1 for a disc. r is
+ * the RMS radius; 1/6, the r^2 of a single pixel, is added to r^2. */
+static int32_t compute_disc_fill_q8(const struct glint_region *sum)
 {
-    const int64_t r_q8 = glint_region_radius_q8(sum);
+    const int64_t r_q8 = glint_region_compute_rms_radius_q8(sum);
     const int64_t disc_q16 = q_shift(
         (r_q8 * r_q8 + Q_CONST(1.0 / 6, 16)) * Q_CONST(6.2831853, 8), 8);
 
     return q_clamp_sat(((int64_t)sum->area << 24) / disc_q16, 0, 512);
 }
 
-/* Returns EVIDENCE_DRAWN of a region that fills the fraction BOX of its box. */
-static int32_t compute_drawn_q8(const struct glint_region *sum, int32_t box_q8)
+/* Returns EVIDENCE_DRAWN of region SUM, which fills the fraction BOX of its
+ * bounding box. */
+static int32_t compute_box_filling_degree_q8(const struct glint_region *sum,
+                                             int32_t box_q8)
 {
     return sum->area < DRAWN_AREA
                ? 0
                : q_clamp_sat((int64_t)(box_q8 - DRAWN_BOX_Q8) * 64, 0, 256);
 }
 
-static int32_t compute_colour_q8(const struct glint_region *sum)
+static int32_t compute_saturation_q8(const struct glint_region *sum)
 {
     int64_t rim[3], least;
 
@@ -230,49 +239,52 @@ static int32_t compute_colour_q8(const struct glint_region *sum)
     return 256 - (int32_t)(least / (max_of_3(rim) / 256 + 1));
 }
 
-/* Returns PIXELS as a fraction of the picture, 2^20 for all of it. */
-static int64_t compute_share_q20(const struct glint_score *s, int64_t pixels)
+/* Returns PIXELS / number of pixels of the picture. */
+static int64_t compute_picture_fraction_q20(const struct glint_score *s,
+                                            int64_t pixels)
 {
     return (pixels << 20) / ((int64_t)s->width * s->height);
 }
 
-/* Returns 5 stops minus the stops from the picture's median to the white of
- * LEVEL, 0 .. 5 stops; 0 if that white is where codes clip. An underexposed
- * night picture has lamps that do not clip; a picture that is grey overall has
- * grey objects. */
-static int32_t compute_dim_q8(const struct glint_score *s,
-                              const struct glint_level *level)
+/* Returns EVIDENCE_DIM: 5 stops minus log2 of the white of LEVEL / the median
+ * of the picture, clamped to 0 .. 5 stops; 0 if the white of LEVEL is where
+ * codes clip. An underexposed night picture has lamps that do not clip; a
+ * picture that is grey overall has grey objects. */
+static int32_t compute_dim_white_evidence_q8(const struct glint_score *s,
+                                             const struct glint_level *level)
 {
     const int32_t *light_q20 = s->bright->curve->decode_q20;
     int half;
 
     if (level->clipped >= BRIGHT_CLIPPED)
         return 0;
-    half = glint_white_reached_by(s->white, 1);
-    return q_clamp_sat(glint_stops_q8(light_q20[half] + FLOOR_Q20) -
-                           glint_stops_q8(light_q20[level->clipped]) + 5 * 256,
-                       0, 5 * 256);
+    half = glint_white_find_brightness_of_rank(s->white, 1);
+    return q_clamp_sat(
+        glint_compute_light_log2_q8(light_q20[half] + FLOOR_Q20) -
+            glint_compute_light_log2_q8(light_q20[level->clipped]) + 5 * 256,
+        0, 5 * 256);
 }
 
-/* Returns how far below white the brightness is that 1 / 2^PART_LOG2 of the
- * picture reaches, 1/256 stops. */
+/* Finds the brightness that 1 / 2^PART_LOG2 of the picture's pixels reach, and
+ * returns how far it is below white, 1/256 stops. */
 static int32_t compute_below_white_q8(const struct glint_score *s,
                                       int part_log2)
 {
     const int32_t *light_q20 = s->bright->curve->decode_q20;
-    const int code = glint_white_reached_by(s->white, part_log2);
+    const int code = glint_white_find_brightness_of_rank(s->white, part_log2);
 
-    return -glint_stops_q8(
+    return -glint_compute_light_log2_q8(
         light_q20[code < BRIGHT_CLIPPED ? code : BRIGHT_CLIPPED] + FLOOR_Q20);
 }
 
-/* The measures EVIDENCE_DARK_2, EVIDENCE_DARK_4 and EVIDENCE_DARK_32 of the
- * picture. */
+/* The values of EVIDENCE_DARK_2, EVIDENCE_DARK_4 and EVIDENCE_DARK_32, which
+ * are equal for all regions of a picture. */
 struct dark {
     int32_t part_q8[SCORE_PARTS];
 };
 
-static void measure_dark(struct dark *dark, const struct glint_score *s)
+static void measure_picture_darkness(struct dark *dark,
+                                     const struct glint_score *s)
 {
     static const int8_t part_log2[SCORE_PARTS] = {1, 2, 5};
 
@@ -280,39 +292,41 @@ static void measure_dark(struct dark *dark, const struct glint_score *s)
         dark->part_q8[i] = compute_below_white_q8(s, part_log2[i]);
 }
 
-static void measure_shape(struct glint_candidate *c,
-                          const struct glint_score *s)
+static void measure_region_without_rings(struct glint_candidate *c,
+                                         const struct glint_score *s)
 {
     const struct glint_region *sum = &c->sum;
     const int64_t box = (int64_t)(sum->x1 - sum->x0) * (sum->y1 - sum->y0);
-    const int32_t size_q8 = glint_stops_q8(compute_share_q20(s, sum->area));
+    const int32_t size_q8 =
+        glint_compute_light_log2_q8(compute_picture_fraction_q20(s, sum->area));
     const int32_t large_q8 =
         q_clamp_sat((int64_t)size_q8 - SMALL_Q8, 0, LARGE_Q8 - SMALL_Q8);
     const int32_t tint_q8 =
-        compute_colour_q8(sum) * large_q8 / (LARGE_Q8 - SMALL_Q8);
+        compute_saturation_q8(sum) * large_q8 / (LARGE_Q8 - SMALL_Q8);
     int32_t *e_q8 = c->evidence_q8;
     int32_t in_q8[2], x_q8, y_q8;
 
-    compute_mean_stops(sum, in_q8);
+    compute_mean_log2_of_light(sum, in_q8);
     e_q8[EVIDENCE_WHITE] =
         in_q8[1] -
-        glint_stops_q8(
+        glint_compute_light_log2_q8(
             s->bright->curve->decode_q20[s->level[c->level].clipped]);
-    e_q8[EVIDENCE_DIM] = compute_dim_q8(s, &s->level[c->level]);
-    e_q8[EVIDENCE_FILL] = compute_fill_q8(sum);
+    e_q8[EVIDENCE_DIM] = compute_dim_white_evidence_q8(s, &s->level[c->level]);
+    e_q8[EVIDENCE_FILL] = compute_disc_fill_q8(sum);
     e_q8[EVIDENCE_BOX] = (int32_t)(((int64_t)sum->area << 8) / box);
-    e_q8[EVIDENCE_DRAWN] = compute_drawn_q8(sum, e_q8[EVIDENCE_BOX]);
+    e_q8[EVIDENCE_DRAWN] =
+        compute_box_filling_degree_q8(sum, e_q8[EVIDENCE_BOX]);
     e_q8[EVIDENCE_SIZE] = size_q8;
-    e_q8[EVIDENCE_COLOUR] = compute_colour_q8(sum) - tint_q8;
+    e_q8[EVIDENCE_COLOUR] = compute_saturation_q8(sum) - tint_q8;
     e_q8[EVIDENCE_WIDE_HOT] =
-        compute_wide_q8(c, e_q8[EVIDENCE_WHITE] >= -2 ? 256 : 0);
-    glint_region_centroid(sum, &x_q8, &y_q8);
+        scale_by_largeness_q8(c, e_q8[EVIDENCE_WHITE] >= -2 ? 256 : 0);
+    glint_region_compute_centroid(sum, &x_q8, &y_q8);
     e_q8[EVIDENCE_HIGH] = 256 - y_q8 / s->height;
 }
 
 /* -------------------------------------------------------------------- score */
 
-static int32_t compute_score(const int32_t evidence_q8[EVIDENCES])
+static int32_t compute_score_from_evidence(const int32_t evidence_q8[EVIDENCES])
 {
     int32_t sum_q16 = BIAS_Q8 * 256;
 
@@ -326,9 +340,10 @@ static int32_t compute_score(const int32_t evidence_q8[EVIDENCES])
     return sum_q16 >> 8;
 }
 
-/* Returns the doubt (see glint_score_doubt()) that a low MEASURE causes, or
- * no doubt for measures that are high only for some lamps. */
-static enum glint_doubt choose_doubt(int measure)
+/* Returns the doubt that a low value of MEASURE causes
+ * (glint_score_choose_doubt()); no doubt for measures that only some lamps have
+ * high values of. */
+static enum glint_doubt get_doubt_of_evidence(int measure)
 {
     switch (measure) {
     case EVIDENCE_AROUND:
@@ -359,7 +374,7 @@ static enum glint_doubt choose_doubt(int measure)
     }
 }
 
-enum glint_doubt glint_score_doubt(const struct glint_candidate *c)
+enum glint_doubt glint_score_choose_doubt(const struct glint_candidate *c)
 {
     int32_t loss_q16[EVIDENCES] = {0};
     int worst = EVIDENCE_AROUND;
@@ -373,15 +388,15 @@ enum glint_doubt glint_score_doubt(const struct glint_candidate *c)
             ((t->least_q8 + t->most_q8) / 2 - v_q8) * t->weight_q8;
     }
     for (int i = worst; i < EVIDENCES; i++)
-        if (choose_doubt(i) != GLINT_DOUBT_NONE &&
+        if (get_doubt_of_evidence(i) != GLINT_DOUBT_NONE &&
             loss_q16[i] > loss_q16[worst])
             worst = i;
-    return choose_doubt(worst);
+    return get_doubt_of_evidence(worst);
 }
 
-/* Returns the first ring that MEASURE depends on, or SCORE_RINGS if it depends
- * on no ring. */
-static int find_first_ring(int measure)
+/* Returns the ring after whose measurement MEASURE is known; SCORE_RINGS if
+ * MEASURE does not depend on rings. */
+static int find_last_ring_of_evidence(int measure)
 {
     switch (measure) {
     case EVIDENCE_CLOSE:
@@ -396,14 +411,15 @@ static int find_first_ring(int measure)
     }
 }
 
-/* Returns the max that ring FIRST and later rings can add to a score. */
-static int32_t max_of_rings(int first)
+/* Returns the max that the measures of ring FIRST and of later rings can add to
+ * a score. */
+static int32_t compute_max_score_from_rings(int first)
 {
     int32_t sum_q16 = 0;
 
     for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
         const struct term *t = &terms[i];
-        const int ring = find_first_ring(t->measure);
+        const int ring = find_last_ring_of_evidence(t->measure);
 
         if (ring >= first && ring < SCORE_RINGS && t->weight_q8 > 0)
             sum_q16 += (t->most_q8 - t->least_q8) * t->weight_q8;
@@ -411,20 +427,21 @@ static int32_t max_of_rings(int first)
     return (sum_q16 >> 8) + 1;
 }
 
-/* Sets the measures of the rings so low that they add nothing, as their max
- * is added by max_of_rings(). EVIDENCE_WIDE_HALO, which max_of_rings()
- * leaves out, is set to its max. */
-static void assume_best_rings(struct glint_candidate *c)
+/* Prepares the measures of C for an upper bound of its score before rings are
+ * read: those of rings are so low that they add nothing, as
+ * compute_max_score_from_rings() adds their max. That function leaves out
+ * EVIDENCE_WIDE_HALO, which is therefore set to its max. */
+static void assume_best_ring_evidence(struct glint_candidate *c)
 {
     for (int i = 0; i < EVIDENCES; i++)
-        if (find_first_ring(i) < SCORE_RINGS)
+        if (find_last_ring_of_evidence(i) < SCORE_RINGS)
             c->evidence_q8[i] = INT16_MIN; /* below all terms: adds 0 */
-    c->evidence_q8[EVIDENCE_WIDE_HALO] = compute_wide_q8(c, HALO_MOST_Q8);
+    c->evidence_q8[EVIDENCE_WIDE_HALO] = scale_by_largeness_q8(c, HALO_MOST_Q8);
 }
 
-/* Sets the measures of C that are known after ring I. */
-static void set_ring_measures(struct glint_candidate *c,
-                              const struct ring *ring, int i)
+/* Sets those measures of C that are known after ring I has been measured. */
+static void set_evidence_of_ring(struct glint_candidate *c,
+                                 const struct ring *ring, int i)
 {
     int32_t *e_q8 = c->evidence_q8;
     const int64_t halo_q8 = (int64_t)ring[i].mean_q8 - ring[0].mean_q8;
@@ -440,38 +457,39 @@ static void set_ring_measures(struct glint_candidate *c,
     default:
         e_q8[EVIDENCE_HALO] = q_narrow(halo_q8);
         e_q8[EVIDENCE_WIDE_HALO] =
-            compute_wide_q8(c, q_clamp_sat(halo_q8, 0, HALO_MOST_Q8));
+            scale_by_largeness_q8(c, q_clamp_sat(halo_q8, 0, HALO_MOST_Q8));
     }
 }
 
-/* Returns the score of C. If is_brief of S is set, rings are read only as
- * long as they may raise the score to -SCORE_DOUBT. MOST[I]: the max that
- * ring I and later rings can add. */
-static int32_t score_by_rings(struct glint_candidate *c,
-                              const struct glint_score *s,
-                              const int32_t most_q8[SCORE_RINGS])
+/* Returns the score of C. If is_brief of S is set, stops reading rings once
+ * they cannot raise the score to -SCORE_DOUBT any more. MOST[I]: the max that
+ * ring I and later rings can add to the score. */
+static int32_t score_candidate_ring_by_ring(struct glint_candidate *c,
+                                            const struct glint_score *s,
+                                            const int32_t most_q8[SCORE_RINGS])
 {
     struct ring ring[SCORE_RINGS] = {{0, 0, 0}};
     int32_t in_q8[2];
 
-    assume_best_rings(c);
-    compute_mean_stops(&c->sum, in_q8);
+    assume_best_ring_evidence(c);
+    compute_mean_log2_of_light(&c->sum, in_q8);
     for (int i = 0; i < SCORE_RINGS; i++) {
-        const int32_t hoped_q8 = compute_score(c->evidence_q8) + most_q8[i];
+        const int32_t hoped_q8 =
+            compute_score_from_evidence(c->evidence_q8) + most_q8[i];
 
         if (s->is_brief && hoped_q8 < -SCORE_DOUBT)
             return hoped_q8;
         if (i > 0)
             ring[i] = ring[i - 1];
-        measure_ring(&ring[i], s, &c->sum, compute_distance(s, &c->sum, i),
-                     in_q8);
-        set_ring_measures(c, ring, i);
+        measure_ring_contrast(&ring[i], s, &c->sum,
+                              compute_ring_distance(s, &c->sum, i), in_q8);
+        set_evidence_of_ring(c, ring, i);
     }
-    return compute_score(c->evidence_q8);
+    return compute_score_from_evidence(c->evidence_q8);
 }
 
-static void count_crowd(struct glint_candidate *candidate, const int32_t *order,
-                        int n)
+static void set_crowd_evidence(struct glint_candidate *candidate,
+                               const int32_t *order, int n)
 {
     int32_t n_at[SCORE_LEVELS] = {0};
 
@@ -481,42 +499,42 @@ static void count_crowd(struct glint_candidate *candidate, const int32_t *order,
         struct glint_candidate *c = &candidate[order[i]];
 
         c->evidence_q8[EVIDENCE_CROWD] =
-            glint_stops_q8((int64_t)n_at[c->level] << 20);
+            glint_compute_light_log2_q8((int64_t)n_at[c->level] << 20);
     }
 }
 
-void glint_score_all(const struct glint_score *score,
-                     struct glint_candidate *candidate, const int32_t *order,
-                     int n)
+void glint_score_score_candidates(const struct glint_score *score,
+                                  struct glint_candidate *candidate,
+                                  const int32_t *order, int n)
 {
     int32_t most_q8[SCORE_RINGS];
     struct dark dark;
 
     for (int i = 0; i < SCORE_RINGS; i++)
-        most_q8[i] = max_of_rings(i);
-    count_crowd(candidate, order, n);
-    measure_dark(&dark, score);
+        most_q8[i] = compute_max_score_from_rings(i);
+    set_crowd_evidence(candidate, order, n);
+    measure_picture_darkness(&dark, score);
     for (int i = 0; i < n; i++) {
         struct glint_candidate *c = &candidate[order[i]];
 
         for (int part = 0; part < SCORE_PARTS; part++)
             c->evidence_q8[EVIDENCE_DARK_2 + part] = dark.part_q8[part];
-        measure_shape(c, score);
-        c->score_q8 = score_by_rings(c, score, most_q8);
+        measure_region_without_rings(c, score);
+        c->score_q8 = score_candidate_ring_by_ring(c, score, most_q8);
     }
 }
 
 /* ------------------------------------------------------------------- choice */
 
-/* Chooses the regions that are lamps, by their scores, and for nested regions
- * the one that represents the lamp. */
+/* The limits of ranks, by which the lamp is chosen among nested regions
+ * (glint_score_choose_among_nested()). */
 enum {
     SURE_Q8 = 384,          /* higher scores are clamped to this score */
-    FAINT_COST_Q8 = 1 << 14 /* above all costs of levels: no faint region
-                               replaces a lamp */
+    FAINT_COST_Q8 = 1 << 14 /* exceeds the costs of all levels, so that no faint
+                               region replaces a lamp */
 };
 
-static int compare_ranks(const void *ctx, int32_t a, int32_t b)
+static int is_rank_higher(const void *ctx, int32_t a, int32_t b)
 {
     const struct glint_candidate *p = (const struct glint_candidate *)ctx + a;
     const struct glint_candidate *q = (const struct glint_candidate *)ctx + b;
@@ -528,9 +546,10 @@ static int compare_ranks(const void *ctx, int32_t a, int32_t b)
     return p->sum.first < q->sum.first;
 }
 
-/* Returns whether INNER is of a higher level than OUTER and lies in its box. */
-static int is_within(const struct glint_candidate *inner,
-                     const struct glint_candidate *outer)
+/* Returns whether INNER is of a brighter level than OUTER, and its bounding box
+ * lies in that of OUTER. */
+static int is_region_within(const struct glint_candidate *inner,
+                            const struct glint_candidate *outer)
 {
     const struct glint_region *in = &inner->sum, *out = &outer->sum;
 
@@ -538,9 +557,9 @@ static int is_within(const struct glint_candidate *inner,
            in->x1 <= out->x1 && in->y0 >= out->y0 && in->y1 <= out->y1;
 }
 
-void glint_score_choose(const struct glint_score *score,
-                        struct glint_candidate *candidate, int32_t *order,
-                        int n)
+void glint_score_choose_among_nested(const struct glint_score *score,
+                                     struct glint_candidate *candidate,
+                                     int32_t *order, int n)
 {
     for (int i = 0; i < n; i++) {
         struct glint_candidate *c = &candidate[order[i]];
@@ -549,22 +568,22 @@ void glint_score_choose(const struct glint_score *score,
                      score->level[c->level].cost_q8 -
                      (c->faint ? FAINT_COST_Q8 : 0);
     }
-    glint_sort(order, n, compare_ranks, candidate);
+    glint_sort(order, n, is_rank_higher, candidate);
     for (int i = 0; i < n; i++) {
         const struct glint_candidate *c = &candidate[order[i]];
 
         for (int j = i + 1; j < n && !c->gone; j++) {
             struct glint_candidate *other = &candidate[order[j]];
 
-            other->gone |=
-                (uint8_t)(is_within(other, c) || is_within(c, other));
+            other->gone |= (uint8_t)(is_region_within(other, c) ||
+                                     is_region_within(c, other));
         }
     }
 }
 
-int32_t glint_score_least(const struct glint_score *score,
-                          struct glint_candidate *candidate, int32_t *order,
-                          int n)
+int32_t glint_score_find_min_lamp_score(const struct glint_score *score,
+                                        struct glint_candidate *candidate,
+                                        int32_t *order, int n)
 {
     int32_t best_q8 = INT32_MIN;
     int n_over = 0, n_lamps = 0;
@@ -583,7 +602,7 @@ int32_t glint_score_least(const struct glint_score *score,
     }
     if (n_over == 0)
         return best_q8 >= -score->alone_q8 ? best_q8 : 0;
-    glint_score_choose(score, candidate, order, n_over);
+    glint_score_choose_among_nested(score, candidate, order, n_over);
     for (int i = 0; i < n_over; i++) {
         n_lamps += !candidate[order[i]].gone;
         candidate[order[i]].gone = 0;

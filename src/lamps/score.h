@@ -8,17 +8,18 @@
  *        e of the odds; below -SCORE_DOUBT it is not a lamp, even if it was
  *        a lamp in the previous frame
  *
- * Lamps are seldom alone: in a picture with SCORE_SEVERAL lamps, the threshold
- * is -SCORE_COMPANY. In a picture without any, the best region is accepted if
- * its score is not far below 0, since a picture for a flare usually has a lamp:
- * from -SCORE_ALONE in a still picture. A region of a video is scored again in
- * each frame, which gives false lamps more chances, so it must reach
- * -SCORE_ALONE_VIDEO.
+ * A picture with one lamp often has more: in a picture with SCORE_SEVERAL
+ * lamps, the min score of a lamp falls from 0 to -SCORE_COMPANY. If no score
+ * reaches 0, the best region is accepted if its score is -SCORE_ALONE or more
+ * in a still picture, since a picture for a flare usually has a lamp. In a
+ * video it must reach -SCORE_ALONE_VIDEO, as a region is scored again in each
+ * frame, which gives false lamps more chances.
  *
- * The score is a sum of terms, each a measure clamped to a range and weighted,
- * so that small changes of the picture change it little. Regions of different
- * levels are nested, like a lamp in its glow in the sky; among nested regions
- * the one with the highest score is chosen.
+ * The score is a sum of terms. Each is a measure of the region, clamped to a
+ * range and multiplied by a weight, so that small changes of the picture change
+ * the score little. Regions of different levels are nested, like a lamp in its
+ * glow in the sky; among nested regions the one with the highest score minus
+ * the level's cost is chosen.
  *
  * Around a region SCORE_POINTS pixels are read on each of SCORE_RINGS ellipses.
  * Their distances grow with the region and with the picture, so that the same
@@ -47,45 +48,45 @@ enum {
 
 /* Measures of a region from which its score is computed, _q8. */
 enum glint_evidence {
-    EVIDENCE_AROUND, /* lower quartile of the contrast at the middle ellipse,
+    EVIDENCE_AROUND, /* lower quartile of the contrast with the middle ellipse,
                         stops */
-    EVIDENCE_HALO,   /* contrast at the farthest ellipse minus contrast at the
-                        nearest, stops: fall-off of light */
-    EVIDENCE_SPREAD, /* difference between the quartiles of the contrast at the
-                        nearest ellipse, stops: large if light falls off
-                        differently by direction */
-    EVIDENCE_FILL,   /* area / area of a disc of the same RMS radius: 256 for a
-                        disc */
-    EVIDENCE_BOX,    /* area / area of its bounding box: 256 if the box is
-                        full */
-    EVIDENCE_SIZE,   /* log2 of the region's fraction of the picture, 0 or
-                        less */
+    EVIDENCE_HALO,   /* fall-off of light: mean contrast with the farthest
+                        ellipse minus that with the nearest ellipse, stops */
+    EVIDENCE_SPREAD, /* upper minus lower quartile of the contrast with the
+                        nearest ellipse, stops; large if the fall-off of light
+                        depends on the direction */
+    EVIDENCE_FILL,   /* area of the region / area of a disc of the same RMS
+                        radius: 256 for a disc */
+    EVIDENCE_BOX,    /* area of the region / area of its bounding box: 256 if
+                        the box is full */
+    EVIDENCE_SIZE,   /* log2 of region area / picture area, 0 or less */
     EVIDENCE_COLOUR, /* saturation, 256 for a single channel; reduced for large
                         regions */
     EVIDENCE_DIM,   /* if the level's white is below clipping: 5 minus the stops
                        from the picture's median to that white, at least 0; else
                        0 */
-    EVIDENCE_CLOSE, /* lower quartile of the contrast close to the edge, stops:
-                       lamps have steep edges */
-    EVIDENCE_WHITE, /* mean luminance of the region over its level's white,
+    EVIDENCE_CLOSE, /* lower quartile of the contrast with the nearest ellipse,
+                       stops: lamps have steep edges */
+    EVIDENCE_WHITE, /* log2 of the region's mean luminance / its level's white,
                        stops */
-    EVIDENCE_CROWD, /* log2 of the number of regions of the same level: lamps
+    EVIDENCE_CROWD, /* log2 of the number of regions of the same level; lamps
                        are few */
-    EVIDENCE_HIGH,  /* height above the picture's lower edge: 256 is the top */
+    EVIDENCE_HIGH,  /* height of the centroid above the picture's lower edge;
+                       256 at the top */
     /* EVIDENCE_HALO of a large region (the sun or a lampshade); 0 for a small
      * region. */
     EVIDENCE_WIDE_HALO,
     EVIDENCE_WIDE_HOT, /* 256 for a large region as bright as its level's white;
                           0 for a small or darker region */
-    /* Stops below white of the brightness that one pixel in 2, 4, 32 of the
-     * picture reaches: if nearly all of it is dark, bright objects are light
-     * sources. */
+    /* For one pixel in 2, 4, 32 of the picture: how far below white the
+     * brightness is that so many pixels reach, stops. If nearly all of the
+     * picture is dark, bright objects are light sources. */
     EVIDENCE_DARK_2,
     EVIDENCE_DARK_4,
     EVIDENCE_DARK_32,
-    /* Degree to which a region of 36 pixels or more fills its upright box: 0 up
-     * to 250/256 of the box, 256 from 254/256 on. Bars, cursors and windows of
-     * a screen fill their boxes. */
+    /* Degree to which a region of 36 pixels or more fills its bounding box: 0
+     * if it fills up to 250/256 of the box, 256 from 254/256 on. Bars, cursors
+     * and windows of a screen fill their boxes. */
     EVIDENCE_DRAWN,
     EVIDENCES
 };
@@ -95,7 +96,7 @@ struct glint_candidate {
     struct glint_region sum;
     int32_t x_q8, y_q8;
     int32_t score_q8;
-    /* index of the level at which it was found; 0 is the darkest */
+    /* index of the brightness level of the region; 0 is the darkest */
     int16_t level;
     int32_t rank_q8;
     uint8_t faint;
@@ -105,11 +106,11 @@ struct glint_candidate {
     int32_t evidence_q8[EVIDENCES];
 };
 
-/* A level of brightness at which regions are searched for. */
+/* A brightness level at which regions are searched. */
 struct glint_level {
     int low;           /* min brightness of pixels of its regions */
-    int seed, clipped; /* min brightness of pixels that count as seeds, and of
-                          pixels that count as clipped */
+    int seed, clipped; /* min brightness of seeds (pixels at the upper
+                          threshold), and of pixels that count as clipped */
     int32_t cost_q8;   /* subtracted from the score when nested regions are
                           compared */
 };
@@ -119,34 +120,34 @@ struct glint_score {
     const struct glint_white *white;
     int width, height;
     const struct glint_level *level;
-    int is_brief;     /* 1: the rings of a region are not read once its score is
-                         certain to be below -SCORE_DOUBT; the score returned is
-                         then an upper bound below -SCORE_DOUBT */
-    int32_t alone_q8; /* how far below 0 the best score may be for a lamp if no
-                         score reaches 0 */
+    int is_brief;     /* 1: stop reading the rings of a region once its score is
+                         certain to be below -SCORE_DOUBT, and return an upper
+                         bound of the score that is below -SCORE_DOUBT */
+    int32_t alone_q8; /* if no score reaches 0, the best region is a lamp if its
+                         score is at least -alone_q8 */
 };
 
 /* Sets the scores of the N candidates that ORDER lists. */
-void glint_score_all(const struct glint_score *score,
-                     struct glint_candidate *candidate, const int32_t *order,
-                     int n);
+void glint_score_score_candidates(const struct glint_score *score,
+                                  struct glint_candidate *candidate,
+                                  const int32_t *order, int n);
 
-/* Returns the measure that lowers the score of C most, compared with the middle
- * of its range. */
-enum glint_doubt glint_score_doubt(const struct glint_candidate *c);
+/* Returns the main reason for which C may not be a lamp: the measure whose term
+ * is farthest below the middle of its range. */
+enum glint_doubt glint_score_choose_doubt(const struct glint_candidate *c);
 
 /* Returns the min score of a lamp: 0; -SCORE_COMPANY in a picture with
- * SCORE_SEVERAL lamps; or, if no score reaches 0, the best score if that is
- * at least -alone_q8. Reorders ORDER. */
-int32_t glint_score_least(const struct glint_score *score,
-                          struct glint_candidate *candidate, int32_t *order,
-                          int n);
+ * SCORE_SEVERAL lamps; or, if no score reaches 0 and the best score is at least
+ * -alone_q8, the best score. Reorders ORDER. */
+int32_t glint_score_find_min_lamp_score(const struct glint_score *score,
+                                        struct glint_candidate *candidate,
+                                        int32_t *order, int n);
 
-/* Sorts ORDER by descending rank (the score minus the cost of the level), and
- * marks each candidate gone that lies within or around a candidate of higher
- * rank. */
-void glint_score_choose(const struct glint_score *score,
-                        struct glint_candidate *candidate, int32_t *order,
-                        int n);
+/* Sorts ORDER by descending rank (score minus cost of the level). Of candidates
+ * that lie in each other's boxes, marks all but the one of highest rank as
+ * gone. */
+void glint_score_choose_among_nested(const struct glint_score *score,
+                                     struct glint_candidate *candidate,
+                                     int32_t *order, int n);
 
 #endif

@@ -14,7 +14,8 @@ enum {
     LEVELS = GLINT_PROFILE_LEVELS,
     FEATURES = GLINT_UNCLIP_FEATURES,
     UNITS = GLINT_UNCLIP_UNITS,
-    SHOWN = 5 /* darkest level whose light counts as shown by the picture */
+    SHOWN = 5 /* darkest level whose pixels count as light that the picture
+                 shows */
 };
 
 /* ------------------------------------------------------------------- colour */
@@ -26,11 +27,11 @@ static int64_t compute_luminance(const int64_t v[3])
            15;
 }
 
-/* Sets the colour. The weight of clipped light is 1/63 of the fringe's: a large
- * fringe determines the colour, a spot clipped to white becomes white, and the
- * transition is continuous. */
-static void set_colour(struct glint_spot *spot,
-                       const struct glint_profile_sums *sums)
+/* Sets the colour of SPOT. Clipped light has 1/63 of the weight of the
+ * unclipped light around it (fringe): a large fringe determines the colour, a
+ * spot clipped to white becomes white, and the transition is continuous. */
+static void set_spot_colour(struct glint_spot *spot,
+                            const struct glint_profile_sums *sums)
 {
     int64_t v[3], y;
     int down = 0;
@@ -51,15 +52,15 @@ static void set_colour(struct glint_spot *spot,
 
 /* ------------------------------------------------------------------- extent */
 
-static int32_t compute_root_q8(int64_t square_q16, int step)
+static int32_t compute_axis_from_moment_q8(int64_t square_q16, int step)
 {
     return square_q16 > 0 ? (int32_t)q_root((uint64_t)square_q16) * step : 0;
 }
 
-/* Sets M to the second moments about the centroid, in squared steps: xx, yy,
- * xy. */
-static void list_moments(const struct glint_profile_sums *sums,
-                         int64_t m_q16[3])
+/* Sets M to the second moments xx, yy, xy of the core about its centroid, in
+ * squared steps. */
+static void compute_central_moments(const struct glint_profile_sums *sums,
+                                    int64_t m_q16[3])
 {
     const int64_t w = sums->w_q16 > 0 ? sums->w_q16 : 1;
     int64_t mean_q16[2];
@@ -73,11 +74,12 @@ static void list_moments(const struct glint_profile_sums *sums,
     }
 }
 
-/* Returns the radius of the lamp as a fraction of the radius of its clipped
- * core, 0 .. 1. The glare of a small lamp far over white is clipped, too, and
- * falls off over half of the core's radius or more; a large lamp has a sharp
- * rim, one pixel wide. */
-static int32_t compute_lamp_share_q15(const struct glint_profile_sums *sums)
+/* Returns the radius of the lamp / the radius of its clipped core, 0 .. 1,
+ * estimated from the width of the fall-off around the core. The glare of a
+ * small lamp far over white is clipped, too, and falls off over half of the
+ * core's radius or more; a large lamp has a sharp rim, one pixel wide. */
+static int32_t
+estimate_lamp_radius_by_glare_q15(const struct glint_profile_sums *sums)
 {
     const struct glint_profile_channel *of = &sums->of[0];
     int64_t inner_q8, outer_q8, rim_q8;
@@ -95,18 +97,19 @@ static int32_t compute_lamp_share_q15(const struct glint_profile_sums *sums)
            q_clamp_sat(q_divide(rim_q8 << 16, inner_q8), 0, 1 << 15);
 }
 
-/* Returns the radius of the lamp as a fraction of the core's radius, 0 .. 1,
- * from the rim of a large core: the whole core is the lamp if light drops more
- * at the rim than glare can drop. Returns 0 for a small core. */
-static int32_t compute_face_share_q15(const struct glint_profile_sums *sums)
+/* Returns the radius of the lamp / the radius of its clipped core, 0 .. 1,
+ * estimated from the rim of a large core: if light drops more at the rim than
+ * glare can drop, the whole core is the lamp. Returns 0 for a small core. */
+static int32_t
+estimate_lamp_radius_by_rim_q15(const struct glint_profile_sums *sums)
 {
     const int32_t over_q15 = sums->rim_q15 - RIM_GLARE;
 
     return q_clamp_sat(over_q15 * 32768 / (RIM_FACE - RIM_GLARE), 0, 1 << 15);
 }
 
-/* Semi-axes of the spot from the second moments of its pixels, including the
- * lamp's glare. */
+/* Semi-axes of the spot, which includes the lamp's glare, from the second
+ * moments of its pixels. */
 struct axes {
     int32_t major_q8, minor_q8;
     int64_t half, apart; /* half of xx - yy, and half of the difference between
@@ -114,27 +117,27 @@ struct axes {
     int is_down;
 };
 
-/* Returns the semi-axes: the square roots of the eigenvalues of the second
- * moments. */
-static struct axes compute_axes(const struct glint_profile_sums *sums)
+/* Returns the semi-axes of the spot: the square roots of the eigenvalues of its
+ * second moments. */
+static struct axes compute_spot_axes(const struct glint_profile_sums *sums)
 {
     int64_t m_q16[3], half, mid, apart;
 
-    list_moments(sums, m_q16);
+    compute_central_moments(sums, m_q16);
     half = (m_q16[0] - m_q16[1]) / 2;
     mid = (m_q16[0] + m_q16[1]) / 2;
     apart = (int64_t)q_root((uint64_t)(half * half + m_q16[2] * m_q16[2]));
-    return (struct axes){compute_root_q8(mid + apart, sums->step),
-                         compute_root_q8(mid - apart, sums->step), half, apart,
-                         m_q16[2] < 0};
+    return (struct axes){compute_axis_from_moment_q8(mid + apart, sums->step),
+                         compute_axis_from_moment_q8(mid - apart, sums->step),
+                         half, apart, m_q16[2] < 0};
 }
 
-static void set_extent(struct glint_spot *spot,
-                       const struct glint_profile_sums *sums)
+static void set_lamp_extent(struct glint_spot *spot,
+                            const struct glint_profile_sums *sums)
 {
-    const struct axes axes = compute_axes(sums);
-    const int32_t share_q15 =
-        q_larger(compute_lamp_share_q15(sums), compute_face_share_q15(sums));
+    const struct axes axes = compute_spot_axes(sums);
+    const int32_t share_q15 = q_larger(estimate_lamp_radius_by_glare_q15(sums),
+                                       estimate_lamp_radius_by_rim_q15(sums));
     int64_t cos2_q15 = 32768;
 
     spot->axis_q8[0] = q_mul(axes.major_q8, share_q15, 15);
@@ -150,16 +153,17 @@ static void set_extent(struct glint_spot *spot,
 
 /* -------------------------------------------------------------------- power */
 
-static int32_t compute_log2(int64_t area_q8)
+static int32_t compute_area_log2(int64_t area_q8)
 {
     return q_log2_q16((uint64_t)(area_q8 > 0 ? area_q8 : 0) + 128) -
            8 * ONE_Q16;
 }
 
-/* Returns the weight of level K. It is 1 for levels 1 and 2; for other
- * levels it is 1 if the background's spread is at most half of the level's
- * min light, and falls to 0 where the spread equals that light. */
-static int32_t compute_weight_q16(const struct glint_profile_channel *of, int k)
+/* Returns the weight of level K's area as a feature: 1 for levels 1 and 2; for
+ * other levels 1 if the background's spread is at most half of the level's min
+ * light, falling to 0 where the spread equals that light. */
+static int32_t compute_level_weight_q16(const struct glint_profile_channel *of,
+                                        int k)
 {
     const int32_t spread_q16 =
         q_log2_q16((uint64_t)of->spread_q16 + 66) - 16 * ONE_Q16;
@@ -168,24 +172,25 @@ static int32_t compute_weight_q16(const struct glint_profile_channel *of, int k)
                   : q_clamp_sat(-k * ONE_Q16 - spread_q16, 0, ONE_Q16);
 }
 
-/* Returns the sum of u over the pixels of levels up to SHOWN. Level k ranges
- * from 2^-k to 2^(1 - k), so that areas times these ranges sum up to u -
- * 2^-SHOWN; the last area adds the missing 2^-SHOWN. */
-static int64_t compute_flux_q16(const struct glint_profile_channel *of)
+/* Returns the sum of u over the pixels of levels up to SHOWN. Level k covers u
+ * from 2^-k to 2^(1 - k). The sum of its area times 2^-k over all levels is the
+ * sum of u - 2^-SHOWN; the area of level SHOWN adds the missing 2^-SHOWN. */
+static int64_t compute_shown_flux_q16(const struct glint_profile_channel *of)
 {
     int64_t sum_q16 = 0;
 
     for (int k = 1; k <= SHOWN; k++)
-        sum_q16 += q_shift(
-            (of->area_q8[k] << (8 - k)) * (compute_weight_q16(of, k) >> 8), 8);
+        sum_q16 += q_shift((of->area_q8[k] << (8 - k)) *
+                               (compute_level_weight_q16(of, k) >> 8),
+                           8);
     return sum_q16 + q_shift((of->area_q8[SHOWN] << (8 - SHOWN)) *
-                                 (compute_weight_q16(of, SHOWN) >> 8),
+                                 (compute_level_weight_q16(of, SHOWN) >> 8),
                              8);
 }
 
-/* Returns the max of the areas of LEVEL over the channels. */
-static int64_t find_max_area_q8(const struct glint_profile_sums *sums,
-                                int level)
+/* Returns the max over the channels of the area of LEVEL. */
+static int64_t find_max_channel_area_q8(const struct glint_profile_sums *sums,
+                                        int level)
 {
     int64_t area_q8 = sums->of[0].area_q8[level];
 
@@ -195,8 +200,8 @@ static int64_t find_max_area_q8(const struct glint_profile_sums *sums,
     return area_q8;
 }
 
-/* Returns the min of the clipped areas over the channels. */
-static int64_t find_min_area_q8(const struct glint_profile_sums *sums)
+/* Returns the min over the channels of the clipped area. */
+static int64_t find_min_clipped_area_q8(const struct glint_profile_sums *sums)
 {
     int64_t area_q8 = sums->of[0].area_q8[0];
 
@@ -206,9 +211,9 @@ static int64_t find_min_area_q8(const struct glint_profile_sums *sums)
     return area_q8;
 }
 
-/* Returns the max channel of the spot's colour at luminance 1, or 0.5 if it
- * has no colour. */
-static int32_t find_max_channel_q15(const struct glint_spot *spot)
+/* Returns the max channel of the spot's colour, which has luminance 1; 0.5 if
+ * it has no colour. */
+static int32_t find_max_colour_channel_q15(const struct glint_spot *spot)
 {
     int32_t most = Q_CONST(0.5, 15);
 
@@ -217,10 +222,11 @@ static int32_t find_max_channel_q15(const struct glint_spot *spot)
     return most;
 }
 
-/* Returns the degree to which the picture's codes resolve LEVEL: 1 if its
- * min light is two code steps above the background, 0 if it is one step. */
-static int32_t compute_shown_q16(const struct glint_profile_sums *sums,
-                                 int level)
+/* Returns the degree to which the picture's codes resolve LEVEL: 1 if the
+ * level's min light is two code steps above the background, 0 if it is one step
+ * above. */
+static int32_t
+compute_level_resolution_q16(const struct glint_profile_sums *sums, int level)
 {
     int32_t step_q16 = 1;
 
@@ -231,22 +237,24 @@ static int32_t compute_shown_q16(const struct glint_profile_sums *sums,
                        0, ONE_Q16);
 }
 
-/* Sets GROWTH to log2 of the area of each level / the area of the core. With
- * codes as coarse as RGB565, the area of a low level only reflects the border
- * between two codes; such a level is assumed to grow like the level before it.
- * Levels are an octave apart, so at most one level is partly resolved. Sums are
- * below 2^26. */
-static void list_growth(int32_t growth_q16[LEVELS],
-                        const struct glint_profile_sums *sums, int32_t core_q16)
+/* Sets GROWTH to log2 of area / area of the core, per level. With codes as
+ * coarse as RGB565, the area of a dark level only reflects where the picture
+ * steps from one code to the next; such a level is assumed to grow like the
+ * level before it. Levels are an octave apart, so at most one level is partly
+ * resolved. Sums are below 2^26. */
+static void compute_level_growth(int32_t growth_q16[LEVELS],
+                                 const struct glint_profile_sums *sums,
+                                 int32_t core_q16)
 {
     int32_t at_q16 = 0, by_q16 = 0;
 
     for (int k = 1; k <= LEVELS; k++) {
         const int32_t seen_q16 =
-            compute_log2(find_max_area_q8(sums, k)) - core_q16;
+            compute_area_log2(find_max_channel_area_q8(sums, k)) - core_q16;
         const int32_t on_q16 = at_q16 + by_q16;
         const int32_t next_q16 =
-            on_q16 + q_mul(seen_q16 - on_q16, compute_shown_q16(sums, k), 16);
+            on_q16 +
+            q_mul(seen_q16 - on_q16, compute_level_resolution_q16(sums, k), 16);
 
         by_q16 = next_q16 - at_q16;
         at_q16 = next_q16;
@@ -254,11 +262,12 @@ static void list_growth(int32_t growth_q16[LEVELS],
     }
 }
 
-void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
-                           const struct glint_spot *spot,
-                           const struct glint_profile_sums *sums)
+void glint_unclip_compute_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
+                                   const struct glint_spot *spot,
+                                   const struct glint_profile_sums *sums)
 {
-    const int32_t core_q16 = compute_log2(find_max_area_q8(sums, 0));
+    const int32_t core_q16 =
+        compute_area_log2(find_max_channel_area_q8(sums, 0));
     int64_t spread_q16 = 0, black_q20 = 0;
 
     for (int c = 0; c < 3; c++) {
@@ -266,24 +275,26 @@ void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
         black_q20 += sums->of[c].black_q20;
     }
     feature_q16[0] = core_q16;
-    feature_q16[1] = core_q16 - compute_log2(find_min_area_q8(sums));
-    list_growth(feature_q16 + 2, sums, core_q16);
-    /* means over the channels, plus 0.001 and 0.002 */
+    feature_q16[1] =
+        core_q16 - compute_area_log2(find_min_clipped_area_q8(sums));
+    compute_level_growth(feature_q16 + 2, sums, core_q16);
+    /* means over the channels, plus 0.001 (spread) and 0.002 (light) */
     feature_q16[2 + LEVELS] =
         q_log2_q16((uint64_t)spread_q16 + 197) - Q_CONST(17.585, 16);
     feature_q16[3 + LEVELS] =
         q_log2_q16((uint64_t)black_q20 + 6291) - Q_CONST(21.585, 16);
     feature_q16[4 + LEVELS] =
-        q_log2_q16((uint64_t)find_max_channel_q15(spot)) - 15 * ONE_Q16;
-    feature_q16[5 + LEVELS] = compute_log2(
-        q_mul(compute_axes(sums).minor_q8, compute_lamp_share_q15(sums), 15));
+        q_log2_q16((uint64_t)find_max_colour_channel_q15(spot)) - 15 * ONE_Q16;
+    feature_q16[5 + LEVELS] =
+        compute_area_log2(q_mul(compute_spot_axes(sums).minor_q8,
+                                estimate_lamp_radius_by_glare_q15(sums), 15));
 }
 
 /* Returns the weighted sum of features, each clamped to its range, plus the
  * bias. A feature is below 2^23 and a weight below 2^15, so that the sum of 14
  * products is below 2^42. */
-static int64_t sum_weighted_q26(const int16_t weight_q10[FEATURES + 1],
-                                const int32_t feature_q16[FEATURES])
+static int64_t sum_weighted_features_q26(const int16_t weight_q10[FEATURES + 1],
+                                         const int32_t feature_q16[FEATURES])
 {
     int64_t sum_q26 = (int64_t)weight_q10[FEATURES] * ONE_Q16;
 
@@ -294,18 +305,19 @@ static int64_t sum_weighted_q26(const int16_t weight_q10[FEATURES + 1],
     return sum_q26;
 }
 
-/* Returns log2 of core light / white, -6 .. 14: a linear term plus a
- * perceptron with one layer of rectified units. The units model interactions
- * of features: a halo around a core of three pixels has another cause than
- * one around a core of a hundred, and so has a halo on a uniform background
- * or among windows. A unit is below 2^32 in _q16; times a weight, 2^47; and
- * there are six. */
-static int32_t compute_stops_q16(const int32_t feature_q16[FEATURES])
+/* Returns log2 of the core's light / white, -6 .. 14: a linear term plus a
+ * perceptron with one layer of rectified units. The units model interactions of
+ * features: a halo has another cause around a core of three pixels than around
+ * one of a hundred, and on a uniform background than among windows. A unit is
+ * below 2^32 in _q16, its product with a weight below 2^47; there are six
+ * units. */
+static int32_t predict_core_log2_q16(const int32_t feature_q16[FEATURES])
 {
-    int64_t sum_q26 = sum_weighted_q26(linear_q10, feature_q16);
+    int64_t sum_q26 = sum_weighted_features_q26(linear_q10, feature_q16);
 
     for (int i = 0; i < UNITS; i++) {
-        const int64_t unit_q26 = sum_weighted_q26(unit_q10[i], feature_q16);
+        const int64_t unit_q26 =
+            sum_weighted_features_q26(unit_q10[i], feature_q16);
 
         if (unit_q26 > 0)
             sum_q26 += q_shift(unit_q26, 10) * out_q10[i];
@@ -313,45 +325,45 @@ static int32_t compute_stops_q16(const int32_t feature_q16[FEATURES])
     return q_clamp_sat(q_shift(sum_q26, 10), -6 * ONE_Q16, 14 * ONE_Q16);
 }
 
-void glint_unclip_light(int64_t *seen_q16, int64_t *core_q16,
-                        const struct glint_spot *spot,
-                        const struct glint_profile_sums *sums)
+void glint_unclip_compute_shown_light(int64_t *seen_q16, int64_t *core_q16,
+                                      const struct glint_spot *spot,
+                                      const struct glint_profile_sums *sums)
 {
     int64_t flux[3];
 
     for (int c = 0; c < 3; c++)
-        flux[c] = q_divide(compute_flux_q16(&sums->of[c]) << 16,
+        flux[c] = q_divide(compute_shown_flux_q16(&sums->of[c]) << 16,
                            sums->of[c].scale_q16);
     *seen_q16 = compute_luminance(flux);
-    *core_q16 =
-        q_divide(find_max_area_q8(sums, 0) << 23, find_max_channel_q15(spot));
+    *core_q16 = q_divide(find_max_channel_area_q8(sums, 0) << 23,
+                         find_max_colour_channel_q15(spot));
 }
 
-/* Sets the power: the light shown by the picture plus the light lost to
- * clipping in the core, estimated from features. The lost light is clamped to
- * 2^27 white pixels, the sum to MAX_POWER. */
-static void set_power(struct glint_spot *spot,
-                      const struct glint_profile_sums *sums)
+/* Sets the power of SPOT: the light that the picture shows plus the light of
+ * the core that is lost to clipping, which is estimated from features and
+ * clamped to 2^27 white pixels. The sum is clamped to MAX_POWER. */
+static void set_spot_power(struct glint_spot *spot,
+                           const struct glint_profile_sums *sums)
 {
     int64_t seen_q16, core_q16, hidden_q16 = 0;
     int32_t feature_q16[FEATURES];
 
-    glint_unclip_light(&seen_q16, &core_q16, spot, sums);
-    glint_unclip_features(feature_q16, spot, sums);
+    glint_unclip_compute_shown_light(&seen_q16, &core_q16, spot, sums);
+    glint_unclip_compute_features(feature_q16, spot, sums);
     if (core_q16 > 0)
-        hidden_q16 = q_exp2_q16(q_clamp_sat(q_log2_q16((uint64_t)core_q16) +
-                                                compute_stops_q16(feature_q16) -
-                                                16 * ONE_Q16,
-                                            -16 * ONE_Q16, 27 * ONE_Q16));
+        hidden_q16 = q_exp2_q16(
+            q_clamp_sat(q_log2_q16((uint64_t)core_q16) +
+                            predict_core_log2_q16(feature_q16) - 16 * ONE_Q16,
+                        -16 * ONE_Q16, 27 * ONE_Q16));
     spot->power_q16 = seen_q16 + hidden_q16 < MAX_POWER_Q16
                           ? seen_q16 + hidden_q16
                           : MAX_POWER_Q16;
 }
 
-void glint_unclip(struct glint_spot *spot,
-                  const struct glint_profile_sums *sums)
+void glint_unclip_estimate_lamp(struct glint_spot *spot,
+                                const struct glint_profile_sums *sums)
 {
-    set_colour(spot, sums);
-    set_extent(spot, sums);
-    set_power(spot, sums);
+    set_spot_colour(spot, sums);
+    set_lamp_extent(spot, sums);
+    set_spot_power(spot, sums);
 }

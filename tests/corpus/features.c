@@ -15,7 +15,7 @@ static void print_lamp_candidate(const char *name,
     const struct glint_region *sum = &c->sum;
     int32_t x_q8, y_q8;
 
-    glint_region_centroid(sum, &x_q8, &y_q8);
+    glint_region_compute_centroid(sum, &x_q8, &y_q8);
     printf("%s,%d,%d,%d,%d,%d,%d,%d,%d,%.2f,%.2f,%d", name, f->cfg.width,
            f->cfg.height, c->level, (int)f->level[c->level].cost_q8,
            (int)sum->x0, (int)sum->y0, (int)sum->x1, (int)sum->y1, x_q8 / 256.0,
@@ -30,7 +30,7 @@ static void score_lamp_candidates(struct glint_lamp_finder *f)
     const struct glint_score all = {
         &f->bright, f->white, f->cfg.width, f->cfg.height, f->level, 0, 0};
 
-    glint_score_all(&all, f->candidate, f->order, f->n);
+    glint_score_score_candidates(&all, f->candidate, f->order, f->n);
 }
 
 static int print_lamp_candidates(const char *name,
@@ -49,7 +49,7 @@ static int print_lamp_candidates(const char *name,
         free(mem);
         return 1;
     }
-    glint_lamps_collect(f, image);
+    glint_lamps_collect_candidates(f, image);
     score_lamp_candidates(f);
     for (int i = 0; i < f->n; i++)
         print_lamp_candidate(name, f, &f->candidate[f->order[i]]);

@@ -157,10 +157,10 @@ static void print_spot_features(struct camera *c, int id, double power,
     int32_t feature_q16[GLINT_UNCLIP_FEATURES];
     int64_t seen_q16, core_q16;
 
-    glint_rings_sum(&sums, &c->profile->rings, c->spot, c->n,
-                    find_spot_rank(c, spot));
-    glint_unclip_light(&seen_q16, &core_q16, spot, &sums);
-    glint_unclip_features(feature_q16, spot, &sums);
+    glint_rings_sum_spot_light(&sums, &c->profile->rings, c->spot, c->n,
+                               find_spot_rank(c, spot));
+    glint_unclip_compute_shown_light(&seen_q16, &core_q16, spot, &sums);
+    glint_unclip_compute_features(feature_q16, spot, &sums);
     printf("%d %.6g %.6g %.6g", id, power, (double)seen_q16 / 65536,
            (double)core_q16 / 65536);
     for (int i = 0; i < GLINT_UNCLIP_FEATURES; i++)

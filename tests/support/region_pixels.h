@@ -14,8 +14,8 @@ static inline void region_add_pixels(struct glint_region *sum,
                                      int x0, int x1, int y)
 {
     const int64_t n = x1 - x0, w_q14 = light->w_q14;
-    const int64_t r2 = region_squares_below(x1) - region_squares_below(x0) +
-                       n * ((int64_t)y * y);
+    const int64_t r2 = region_sum_squares_below(x1) -
+                       region_sum_squares_below(x0) + n * ((int64_t)y * y);
 
     sum->w_q14 += w_q14 * n;
     sum->wx_q14 += w_q14 * (n * (x0 + x1 - 1) / 2);

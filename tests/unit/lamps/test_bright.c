@@ -38,12 +38,12 @@ static struct glint_bright *create_bright_scanner(int width, void **mem)
     struct glint_bright *b = malloc(sizeof *b);
 
     assert_non_null(b);
-    glint_bright_carve(b, &arena, width);
+    glint_bright_allocate(b, &arena, width);
     assert_int_equal(posix_memalign(mem, 64, arena.used), 0);
     memset(*mem, 0x5a, arena.used);
     arena = glint_arena_over(*mem, arena.used);
-    glint_bright_carve(b, &arena, width);
-    glint_bright_init(b, width);
+    glint_bright_allocate(b, &arena, width);
+    glint_bright_clear_padding(b, width);
     return b;
 }
 
@@ -173,10 +173,10 @@ static void check_scan_of_image(struct glint_bright *b,
 {
     int n_bright = 0, n_marked = 0;
 
-    glint_bright_begin(b, image);
-    glint_bright_set_low(b, low);
+    glint_bright_begin_picture(b, image);
+    glint_bright_set_min_brightness(b, low);
     for (int y = 0; y < HEIGHT; y++) {
-        const int any = glint_bright_scan(b, y);
+        const int any = glint_bright_scan_row(b, y);
 
         for (int x = 0; x < image->width; x++) {
             const int is_marked = any && b->block[x / BRIGHT_BLOCK];
@@ -191,7 +191,7 @@ static void check_scan_of_image(struct glint_bright *b,
                 assert_true(least < low);
             if (is_marked)
                 assert_in_range(b->block[x / BRIGHT_BLOCK], b->value[x], 255);
-            assert_in_range(bright_value_at(b, x), least, most);
+            assert_in_range(bright_compute_pixel_brightness(b, x), least, most);
         }
     }
     if (n_bright == 0)
@@ -235,9 +235,9 @@ TEST(padding_is_cleared)
         struct glint_bright *b = create_bright_scanner(width, &mem);
 
         fill_with_random_bytes(&image, 1);
-        glint_bright_begin(b, &image);
-        glint_bright_set_low(b, 1);
-        glint_bright_scan(b, 0);
+        glint_bright_begin_picture(b, &image);
+        glint_bright_set_min_brightness(b, 1);
+        glint_bright_scan_row(b, 0);
         for (int x = width; x % BRIGHT_BLOCK; x++)
             assert_int_equal(b->value[x], 0);
         free(b);
@@ -259,16 +259,16 @@ TEST(finds_a_pixel_at_the_threshold)
         for (int x = 0; x < 96; x++) {
             const int value = low < 250 ? low : 254;
 
-            glint_bright_begin(b, &image);
-            glint_bright_set_low(b, low);
+            glint_bright_begin_picture(b, &image);
+            glint_bright_set_min_brightness(b, low);
             memset(image.plane[0], 0, 96);
             image.plane[0][x] = (uint8_t)low;
-            assert_int_equal(glint_bright_scan(b, 0), value);
+            assert_int_equal(glint_bright_scan_row(b, 0), value);
             for (int i = 0; i < 3; i++)
                 assert_int_equal(b->block[i],
                                  i == x / BRIGHT_BLOCK ? value : 0);
             image.plane[0][x] = (uint8_t)(low - 1);
-            assert_int_equal(glint_bright_scan(b, 0), 0);
+            assert_int_equal(glint_bright_scan_row(b, 0), 0);
         }
     free(b);
     free(mem);

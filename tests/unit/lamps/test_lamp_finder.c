@@ -366,14 +366,14 @@ TEST(largest_regions_are_measured_right)
         const struct glint_region r = make_white_region(b[0], b[1], b[2], b[3]);
         int32_t x_q8, y_q8, rgb_q15[3];
 
-        glint_region_centroid(&r, &x_q8, &y_q8);
-        glint_region_colour(&r, rgb_q15);
+        glint_region_compute_centroid(&r, &x_q8, &y_q8);
+        glint_region_compute_colour(&r, rgb_q15);
         assert_int_equal(x_q8, (b[0] + b[2] - 1) * 128);
         assert_int_equal(y_q8, (b[1] + b[3] - 1) * 128);
         assert_int_equal(r.area, (int)(w * h));
         assert_true(r.w_q14 == (int64_t)(w * h) << 14);
         assert_int_equal(rgb_q15[1], 32768);
-        assert_true(fabs(glint_region_radius_q8(&r) / 256.0 -
+        assert_true(fabs(glint_region_compute_rms_radius_q8(&r) / 256.0 -
                          sqrt((w * w + h * h - 2) / 12)) < 1.0 / 128);
     }
 }

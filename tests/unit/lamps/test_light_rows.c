@@ -54,16 +54,16 @@ static void make_random_image(struct fixture *f, enum glint_pixel_format format)
         .image = {.format = format, .width = WIDTH, .height = HEIGHT}};
     glint_image_place(&f->image, codes);
     for (int pass = 0; pass < 2; pass++) {
-        glint_bright_carve(&f->bright, &arena, WIDTH);
-        glint_row_light_carve(&f->row, &arena, WIDTH);
+        glint_bright_allocate(&f->bright, &arena, WIDTH);
+        glint_row_light_allocate(&f->row, &arena, WIDTH);
         if (pass == 0) {
             assert_int_equal(posix_memalign(&f->mem, 64, arena.used), 0);
             memset(f->mem, 0x5a, arena.used);
             arena = glint_arena_over(f->mem, arena.used);
         }
     }
-    glint_bright_init(&f->bright, WIDTH);
-    glint_bright_begin(&f->bright, &f->image);
+    glint_bright_clear_padding(&f->bright, WIDTH);
+    glint_bright_begin_picture(&f->bright, &f->image);
 }
 
 static void free_random_image(struct fixture *f)
@@ -72,7 +72,8 @@ static void free_random_image(struct fixture *f)
     free(f->mem);
 }
 
-/* The reference of glint_row_light_add(): adds the pixels one by one. */
+/* The reference of glint_row_light_add_run_to_region(): adds the pixels one by
+ * one. */
 static void add_light_by_pixel(const struct fixture *f,
                                struct glint_region *region, int x0, int x1,
                                int y)
@@ -86,8 +87,8 @@ static void add_light_by_pixel(const struct fixture *f,
 
         if (x < 0 || x >= WIDTH)
             continue;
-        glint_bright_read(&f->bright, x, rgb_q20);
-        light = region_light_of(rgb_q20);
+        glint_bright_read_pixel_light(&f->bright, x, rgb_q20);
+        light = region_compute_pixel_light(rgb_q20);
         if (x >= x0 && x < x1)
             region_add_pixels(region, &light, x, x + 1, y);
         for (int i = 0; i < 3; i++)
@@ -109,10 +110,10 @@ static void check_runs_of_row(struct fixture *f, int y)
 
     memset(&sum, 0, sizeof sum);
     memset(&plain, 0, sizeof plain);
-    glint_bright_seek_row(&f->bright, y);
-    glint_row_light_begin(&f->row);
+    glint_bright_select_row(&f->bright, y);
+    glint_row_light_begin_row(&f->row);
     for (int i = 0; i < 2; i++)
-        glint_row_light_extend(&f->row, &f->bright, ends[i][0], ends[i][1]);
+        glint_row_light_sum_pixels(&f->row, &f->bright, ends[i][0], ends[i][1]);
     for (int i = 0; i < 2; i++) {
         const int x0 = ends[i][0] > 0 ? ends[i][0] + ROW_LIGHT_RIM : ends[i][0];
         const int x1 =
@@ -127,7 +128,8 @@ static void check_runs_of_row(struct fixture *f, int y)
             const int end =
                 j ? begin + 1 + rng_int_below(&seed, x1 - begin) : x1;
 
-            glint_row_light_add(&f->row, &sum, begin, end, WIDTH, y + 1000);
+            glint_row_light_add_run_to_region(&f->row, &sum, begin, end, WIDTH,
+                                              y + 1000);
             add_light_by_pixel(f, &plain, begin, end, y + 1000);
         }
     }
@@ -160,7 +162,7 @@ static struct glint_candidate make_random_candidate(void)
     const int32_t rgb_q20[3] = {(1 << 20) - rng_int_below(&seed, 1 << hidden),
                                 (1 << 20) - rng_int_below(&seed, 1 << hidden),
                                 (1 << 20) - rng_int_below(&seed, 1 << hidden)};
-    const struct glint_region_light light = region_light_of(rgb_q20);
+    const struct glint_region_light light = region_compute_pixel_light(rgb_q20);
 
     for (int y = y0; y < y1; y++) {
         glint_region_add_run(&c.sum, x0, x1, y);
@@ -189,13 +191,13 @@ TEST(brief_score_bounds_the_full_score)
         struct fixture f;
 
         make_random_image(&f, canvas_format[round % CANVAS_FORMATS]);
-        glint_white_measure(&white, &f.bright, HEIGHT);
+        glint_white_measure_picture(&white, &f.bright, HEIGHT);
         c[0] = c[1] = make_random_candidate();
         for (int brief = 0; brief < 2; brief++) {
             const struct glint_score score = {&f.bright, &white, WIDTH, HEIGHT,
                                               &level,    brief,  0};
 
-            glint_score_all(&score, &c[brief], &order, 1);
+            glint_score_score_candidates(&score, &c[brief], &order, 1);
         }
         if (c[0].score_q8 >= -SCORE_DOUBT)
             assert_int_equal(c[1].score_q8, c[0].score_q8);

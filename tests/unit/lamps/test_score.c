@@ -396,7 +396,8 @@ static int32_t find_score_limit(struct glint_candidate *candidate, int n)
     const struct glint_level level[2] = {{.low = 1}, {.low = 2}};
     const struct glint_score score = {.level = level, .alone_q8 = ALONE};
     int32_t order[4] = {0, 1, 2, 3};
-    const int32_t least_q8 = glint_score_least(&score, candidate, order, n);
+    const int32_t least_q8 =
+        glint_score_find_min_lamp_score(&score, candidate, order, n);
 
     for (int i = 0; i < n; i++)
         assert_int_equal(candidate[i].gone, 0);
@@ -497,7 +498,7 @@ TEST(faint_regions_replace_no_lamp)
     int32_t order[2] = {0, 1};
 
     c[1].faint = 1;
-    glint_score_choose(&score, c, order, 2);
+    glint_score_choose_among_nested(&score, c, order, 2);
     assert_int_equal(c[0].gone, 0);
     assert_int_equal(c[1].gone, 1);
 }
@@ -532,6 +533,6 @@ TEST(differing_measure_is_doubted)
 
         memcpy(c.evidence_q8, lamp_q8, sizeof lamp_q8);
         c.evidence_q8[poor[i].measure] = poor[i].value_q8;
-        assert_int_equal(glint_score_doubt(&c), poor[i].doubt);
+        assert_int_equal(glint_score_choose_doubt(&c), poor[i].doubt);
     }
 }
