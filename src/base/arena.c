@@ -17,7 +17,7 @@ void *glint_arena_take(struct glint_arena *arena, size_t count, size_t bytes)
     const size_t at = arena->used;
 
     if (bytes > 0 && count > (room - GLINT_ALIGN) / bytes) {
-        /* Makes all later allocations fail. */
+        /* Makes all later allocations from the arena fail. */
         arena->used = SIZE_MAX - GLINT_ALIGN;
         return NULL;
     }

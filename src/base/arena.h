@@ -2,7 +2,7 @@
  *
  * Bump allocator in one block that the caller owns; nothing is freed.
  *
- * With base == NULL the arena only counts bytes. Each object has one function
+ * If base is NULL, the arena only counts bytes. Each object has one function
  * that allocates its buffers. The function runs twice: first to measure the
  * size, then to place the buffers. So the reported size is always the size that
  * init needs.
@@ -13,19 +13,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define GLINT_ALIGN 64 /* alignment of base and of every block, bytes */
+#define GLINT_ALIGN 64 /* alignment of base and of every allocation, bytes */
 
 struct glint_arena {
     uint8_t *base; /* GLINT_ALIGN-aligned, or NULL to measure */
-    size_t size;   /* bytes at base; SIZE_MAX while measuring */
-    size_t used;   /* bytes allocated so far; a value above size means that an
-                      allocation failed */
+    size_t size;   /* number of bytes at base; SIZE_MAX while measuring */
+    size_t used;   /* number of bytes allocated so far; if it exceeds SIZE, an
+                      allocation has failed */
 };
 
 /* Returns an arena that only counts bytes: base is NULL. */
 struct glint_arena glint_arena_measure(void);
 
-/* Returns an arena over MEM[BYTES]; MEM is aligned to GLINT_ALIGN. */
+/* Returns an arena that allocates from MEM[BYTES]; MEM is aligned to
+ * GLINT_ALIGN. */
 struct glint_arena glint_arena_over(void *mem, size_t bytes);
 
 /* Allocates COUNT items of BYTES bytes each and returns the uninitialised

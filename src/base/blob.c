@@ -7,9 +7,10 @@ STATIC_ASSERT(sizeof(struct glint_blob_header) == 92);
 
 /* ---------------------------------------------------------------------- CRC */
 
-/* Updates the checksum CRC with N bytes. Processes half a byte at a
- * time, which needs a table of only 16 words. */
-static uint32_t update_crc32(uint32_t crc, const unsigned char *byte, size_t n)
+/* Updates the checksum CRC with N bytes. Processes 4 bits at a time, so that a
+ * table of 16 words is enough. */
+static uint32_t add_bytes_to_crc32(uint32_t crc, const unsigned char *byte,
+                                   size_t n)
 {
     static const uint32_t table[16] = {
         0x00000000, 0x1db71064, 0x3b6e20c8, 0x26d930ac, 0x76dc4190, 0x6b6b51f4,
@@ -25,7 +26,7 @@ static uint32_t update_crc32(uint32_t crc, const unsigned char *byte, size_t n)
 
 uint32_t glint_blob_crc32(const void *data, size_t bytes)
 {
-    return ~update_crc32(UINT32_MAX, data, bytes);
+    return ~add_bytes_to_crc32(UINT32_MAX, data, bytes);
 }
 
 static uint32_t compute_file_checksum(const void *data, size_t bytes)

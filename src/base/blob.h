@@ -34,7 +34,7 @@ struct glint_blob_header {
 
 struct glint_blob_kind {
     uint32_t magic, version;
-    /* size of the header including the fields of the file type, bytes */
+    /* size of the header, including the fields of the file type, bytes */
     size_t header_bytes;
 };
 
@@ -55,9 +55,10 @@ enum glint_blob_fault {
     GLINT_BLOB_FAULTS
 };
 
-/* Initialiser of an array of error messages, indexed by fault. THING is the
- * name of the file type, THINGS its plural, DONE the participle of the
- * operation that makes it ("baked"). The message of GLINT_BLOB_OK is NULL. */
+/* Initialiser of an array of error messages, indexed by enum glint_blob_fault.
+ * THING is the name of the file type, THINGS its plural, DONE the participle of
+ * the operation that makes it ("baked"). The message of GLINT_BLOB_OK is NULL.
+ */
 #define GLINT_BLOB_FAULT_TEXT(thing, things, done)                            \
     {                                                                         \
         [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes",   \
@@ -94,8 +95,9 @@ enum glint_blob_fault {
 struct glint_blob {
     const struct glint_blob_header *header;
     size_t bytes, header_bytes;
-    /* sum of the sizes of all requested sections, bytes; a section that is
-     * requested twice counts twice */
+    /* sum of the sizes of all sections that were requested with
+     * glint_blob_section(), bytes; a section that is requested twice counts
+     * twice */
     uint64_t referred;
 };
 
@@ -110,9 +112,10 @@ enum glint_blob_fault glint_blob_open(struct glint_blob *blob,
  * print on a terminal. */
 enum glint_blob_fault glint_blob_check_name(const struct glint_blob *blob);
 
-/* Returns the section of COUNT items of ITEM_BYTES each at AT; NULL if it does
- * not lie between the header and the end of the file. COUNT is below 2^38 and
- * ITEM_BYTES below 2^26, so that nothing overflows. */
+/* Returns the section of COUNT items of ITEM_BYTES each, AT bytes from the
+ * start of the file; NULL if it does not lie between the header and the end of
+ * the file. COUNT is below 2^38 and ITEM_BYTES below 2^26, so that nothing
+ * overflows. */
 const void *glint_blob_section(struct glint_blob *blob, uint32_t at,
                                uint64_t count, size_t item_bytes);
 

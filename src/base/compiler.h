@@ -5,7 +5,7 @@
 #define GLINT_BASE_COMPILER_H
 
 #if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
-#error "glint runs on little-endian machines: models are used where they lie"
+#error "glint needs a little-endian CPU: it reads model files in place"
 #endif
 
 #include <stdint.h>

@@ -34,9 +34,10 @@ uint32_t glint_reciprocal(uint32_t x)
     return r;
 }
 
-/* Long division: each step computes up to 30 bits of the quotient from the
- * upper 32 bits of the remainder and of D, rounded such that they are never too
- * large. The loop ends when the remainder is less than four times D. */
+/* Long division: each step divides the upper 32 bits of the remainder by the
+ * upper 32 bits of D, which gives up to 30 bits of the quotient. Both are
+ * rounded such that these bits are never too large. The loop ends when the
+ * remainder is less than four times D. */
 int64_t glint_divide(int64_t n, int64_t d)
 {
     const uint64_t by = q_magnitude(d);

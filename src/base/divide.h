@@ -55,8 +55,8 @@ static inline int q_up(uint64_t x)
     return 32 - bit_length(x | 1);
 }
 
-/* Returns N / D for 0 <= N <= D, D not 0. The result is at most 2^-30 too high
- * or 2^-29 too low, and within 0 .. 1. */
+/* Returns N / D for 0 <= N <= D, D not 0. The result is in 0 .. 1, at most
+ * 2^-30 too high or 2^-29 too low. */
 static inline int32_t q_part_q30(uint64_t n, uint64_t d)
 {
     const int up = q_up(d);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Arithmetic with struct glint_real (glint/real.h), a floating-point number of
- * integers: a mantissa, which is 0 or has a magnitude of 2^30 .. 2^31 - 1,
- * times a power of two. Products and quotients are truncated, with a relative
- * error of at most 2^-30. */
+ * Arithmetic with struct glint_real (glint/real.h), a floating-point number
+ * made of integers: a mantissa, which is 0 or has a magnitude of 2^30 .. 2^31 -
+ * 1, times a power of two. Products and quotients are truncated, with a
+ * relative error of at most 2^-30. */
 #ifndef GLINT_BASE_REAL_H
 #define GLINT_BASE_REAL_H
 

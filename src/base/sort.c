@@ -49,7 +49,7 @@ static int is_number_before(const void *things, int a, int b)
     return n->before(n->ctx, n->order[a], n->order[b]);
 }
 
-static void swap_numbers(void *things, int a, int b)
+static void swap_sorted_numbers(void *things, int a, int b)
 {
     const struct numbers *const n = things;
     const int32_t old = n->order[a];
@@ -61,7 +61,8 @@ static void swap_numbers(void *things, int a, int b)
 void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx)
 {
     struct numbers numbers = {order, before, ctx};
-    const struct glint_heap heap = {is_number_before, swap_numbers, &numbers};
+    const struct glint_heap heap = {is_number_before, swap_sorted_numbers,
+                                    &numbers};
 
     glint_heap_sort(&heap, n);
 }

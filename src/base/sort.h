@@ -16,8 +16,8 @@ typedef int glint_sort_fn(const void *ctx, int32_t a, int32_t b);
 
 void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx);
 
-/* Objects at indices 0 .. n - 1. In a heap the object at index i does not
- * come after the object at index (i - 1) / 2, so that the last object in
+/* A heap of objects at indices 0 .. n - 1: the object at index i does not come
+ * after the object at index (i - 1) / 2. So the object that comes last in
  * sorting order is at index 0. */
 struct glint_heap {
     int (*before)(const void *things, int a,

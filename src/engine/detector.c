@@ -7,12 +7,12 @@
 
 #include "engine/frame/block.h"
 
-/* Min number of spots of a still picture whose power is measured before the
- * strongest are selected. */
+/* In a still picture at least this many spots are measured; the strongest of
+ * these are selected. */
 enum { MEASURED = 16 };
 
-/* Returns the max number of tracks for MAX lamps that are shown. It exceeds
- * MAX, so that a lamp that becomes strong has been tracked before. */
+/* Returns the max number of tracks if MAX lamps are shown. It exceeds MAX, so
+ * that a lamp that becomes strong has been tracked before. */
 static int choose_max_tracks(int max)
 {
     const int wanted = max < 64 ? 128 : 2 * max;
@@ -27,8 +27,8 @@ static size_t round_bytes_up_to_64(size_t bytes)
     return (bytes + 63) & ~(size_t)63;
 }
 
-/* Allocates one block of memory and initialises the finder, tracker, profile
- * and arrays in it. */
+/* Allocates one block of memory, and initialises the finder, tracker, profile
+ * and arrays of F in it. */
 static enum glint_status
 allocate_detector_memory(struct glint_lamp_detector *f,
                          const struct glint_lamp_finder_config *lights,
@@ -114,9 +114,9 @@ static int32_t max_i32(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-/* Returns the min semi-axis, pixels, of the lamp of SPOT in a still picture.
- * Glare around the core of a lamp hides the true size of a smaller one; without
- * a minimum such a lamp would be drawn as a point, whose ghosts have
+/* Returns the min semi-axis, pixels, of the lamp that shows as SPOT in a still
+ * picture. Glare around a clipped core hides how small the lamp in it is.
+ * Without this minimum such a lamp would be drawn as a point, whose ghosts have
  * unrealistically sharp outlines. */
 static int32_t compute_min_axis_q8(const struct glint_spot *spot)
 {
@@ -176,8 +176,8 @@ static int find_and_measure_spots(struct glint_lamp_detector *f,
     return n;
 }
 
-/* Sorts the MAX of N spots with the highest power to the beginning of the
- * array, the strongest first; equal spots stay in order. */
+/* Sorts the MAX strongest of N spots to the beginning of the array, the
+ * strongest first; spots of equal power stay in order. */
 static void move_strongest_spots_to_front(struct glint_spot *spot, int n,
                                           int max)
 {
@@ -265,7 +265,7 @@ int glint_lamp_detector_find_lamps(struct glint_lamp_detector *detector,
 }
 
 /* Returns whether a spot is about as compact as a disc: its area is at least 60
- * % of 2 pi times its squared RMS radius, the area of a disc of the same RMS
+ * % of the area of a disc with the same RMS radius, 2 pi times the squared RMS
  * radius. */
 static int is_spot_disc_shaped(const struct glint_spot *spot)
 {

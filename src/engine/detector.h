@@ -14,9 +14,9 @@
 enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* equal to GLINT_ENGINE_MAX_LAMPS */
 
 struct glint_lamp_detector {
-    double headroom_ev; /* assumed brightness of clipped pixels, stops above
-                           white; below 0: estimated from the profile of each
-                           lamp */
+    double headroom_ev; /* assumed light of clipped pixels, stops above white;
+                           below 0: the light of each lamp is estimated from its
+                           profile */
     int max; /* max number of lamps per picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
 
     /* Lamps of the last frame in picture coordinates, the strongest first. The
@@ -28,7 +28,7 @@ struct glint_lamp_detector {
     struct glint_lamp_finder *lights;
     struct glint_lamp_tracker *tracks;
     struct glint_profile *profile;
-    double scale; /* factor from powers of tracks to powers of lamps */
+    double scale;            /* power of a lamp / power of its track */
     struct glint_spot *spot; /* [GLINT_LAMP_DETECTOR_MAX] */
     int n_spots; /* number of spots of the last frame, including those rejected
                     as lamps */
@@ -62,10 +62,10 @@ int glint_lamp_detector_find_lamps(struct glint_lamp_detector *detector,
                                    const struct glint_view *view,
                                    double focal_mm, struct glint_lamp *lamps);
 
-/* Returns the light of LAMP beyond what the picture shows (its flux), in white
- * times pixels, at least 0. TRACK is the lamp's track, LEVEL its fade level 0
- * .. 1, SHARE the visible fraction of the lamp, WHITE the linear light of the
- * picture's white. */
+/* Returns the light of LAMP that clipping removed from the picture: its power
+ * minus its flux in the picture, in white times pixels, at least 0. TRACK is
+ * the lamp's track, LEVEL its fade level 0 .. 1, SHARE the visible fraction of
+ * the lamp, WHITE the linear light of the picture's white. */
 double glint_lamp_compute_excess_light(const struct glint_lamp *lamp,
                                        const struct glint_lamp_track *track,
                                        double level, double share,

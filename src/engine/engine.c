@@ -62,13 +62,14 @@ static const char *check_engine_config(const struct glint_engine_config *c)
         return "width and height must be 1 to 32768 pixels";
     if (!c->model &&
         !(c->camera.setup && c->camera.rays && c->camera.sensor_width_mm > 0))
-        return "model is NULL, and camera has no setup, rays and "
-               "sensor_width_mm";
+        return "set model, or camera.setup, camera.rays and "
+               "camera.sensor_width_mm";
     if (s->max_found < 0 || s->max_found > GLINT_ENGINE_MAX_LAMPS)
         return "max_found must be 0 to 1024";
     if (s->more_lamps < 0 || s->more_lamps > 1 << 24 || s->max_drawn < 0 ||
         isnan(s->headroom_ev))
-        return "more_lamps, max_drawn or headroom_ev is out of range";
+        return "more_lamps must be 0 to 16777216, max_drawn at least 0, and "
+               "headroom_ev a number";
     if (!(l->strength >= 0 && l->strength <= 100) ||
         !(l->gain >= 0 && isfinite(l->gain)) || !(fabs(l->exposure_ev) <= 100))
         return "strength must be 0 to 100, gain at least 0, exposure_ev -100 "
@@ -84,7 +85,8 @@ static const char *check_engine_config(const struct glint_engine_config *c)
     if (!(s->threshold_ev[0] <= 0 && s->threshold_ev[0] >= -20 &&
           s->threshold_ev[1] >= -20 &&
           s->threshold_ev[1] <= s->threshold_ev[0]))
-        return "threshold_ev must be -20 to 0, the second not above the first";
+        return "threshold_ev[0] must be -20 to 0, and threshold_ev[1] -20 to "
+               "threshold_ev[0]";
     return NULL;
 }
 
@@ -299,7 +301,7 @@ static enum glint_status init_engine(struct glint_engine *e,
     if (status == GLINT_OK &&
         c->drawing.only_ghost >= o->setup->n_ghosts - o->setup->n_parts) {
         snprintf(error->text, sizeof error->text,
-                 "only_ghost is too high: the lens has %d ghosts",
+                 "only_ghost must be less than %d, the lens's number of ghosts",
                  o->setup->n_ghosts - o->setup->n_parts);
         status = GLINT_E_ARGUMENT;
     }

@@ -5,8 +5,8 @@
 #include "engine/engine_parts.h"
 #include "glint/options.h"
 
-/* Default max number of lamps per picture; most pictures have many more that
- * are barely visible. */
+/* Default max number of lamps per picture; most pictures have many more, but
+ * those are barely visible. */
 enum { FOUND = 16 };
 
 static unsigned select_flare_parts(int only)
@@ -25,7 +25,7 @@ static unsigned select_flare_parts(int only)
 
 /* Returns the factor on the brightness of starbursts: 0 if a single ghost is
  * drawn, unless option starburst is set. */
-static double choose_starburst_factor(const struct glint_options *o)
+static double choose_starburst_brightness_factor(const struct glint_options *o)
 {
     if (GLINT_OPTION_GIVEN(o, starburst))
         return o->starburst;
@@ -43,8 +43,8 @@ make_drawing_config(const struct glint_options *o)
     struct glint_engine_drawing d = {
         .dials = glint_options_quality(o).dials,
         .budget_ms = o->budget,
-        /* 0, no limit, if a grid was requested, as a limit of work would make
-         * it coarser */
+        /* 0 (no limit) if the fineness of grids was requested, as a limit of
+         * work could make grids coarser */
         .most_minsn =
             has_grid && !GLINT_OPTION_GIVEN(o, work) ? 0 : 1000 * o->work,
         .apart_px = o->apart,
@@ -103,14 +103,14 @@ void glint_engine_configure(struct glint_engine_config *cfg,
     const struct glint_options *const o = &whole;
     const int found = o->max_lights ? o->max_lights : FOUND;
 
-    cfg->light =
-        (struct glint_engine_light){.strength = o->strength,
-                                    .exposure_ev = o->exposure,
-                                    .gain = o->gain,
-                                    .by_hand = GLINT_OPTION_GIVEN(o, exposure),
-                                    .starburst = choose_starburst_factor(o),
-                                    .veil = o->veil,
-                                    .haze = o->haze};
+    cfg->light = (struct glint_engine_light){
+        .strength = o->strength,
+        .exposure_ev = o->exposure,
+        .gain = o->gain,
+        .by_hand = GLINT_OPTION_GIVEN(o, exposure),
+        .starburst = choose_starburst_brightness_factor(o),
+        .veil = o->veil,
+        .haze = o->haze};
     glint_option_threshold(o->threshold, cfg->search.threshold_ev);
     cfg->search.headroom_ev =
         GLINT_OPTION_GIVEN(o, headroom) ? o->headroom : -1;

@@ -36,10 +36,10 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
 
 /* Draws the selected parts into RGB, linear light, with the plan and the
  * quality that a picture of 8-bit codes would get. */
-static enum glint_status draw_with_8bit_plan(struct glint_frame *f,
-                                             const struct glint_lamp *lamps,
-                                             int n, double scale, float *rgb,
-                                             struct glint_engine_report *report)
+static enum glint_status
+draw_linear_with_8bit_plan(struct glint_frame *f,
+                           const struct glint_lamp *lamps, int n, double scale,
+                           float *rgb, struct glint_engine_report *report)
 {
     const size_t samples = 3 * (size_t)f->view.width * (size_t)f->view.height;
     struct glint_image layer =
@@ -97,7 +97,7 @@ enum glint_status glint_engine_draw_layer(struct glint_engine *engine,
                               star, engine->expose.light.gain > 0);
     f->known = lamps;
     if (parts & GLINT_ENGINE_CODES || n == 0)
-        status = draw_with_8bit_plan(f, plain, n, scale, rgb, report);
+        status = draw_linear_with_8bit_plan(f, plain, n, scale, rgb, report);
     else if (drawn & (GLINT_ENGINE_GHOSTS | GLINT_ENGINE_VEIL) || star > 0)
         status = glint_frame_draw_flare_alone(f, plain, n, scale, rgb, report);
     f->known = NULL;
@@ -144,7 +144,7 @@ enum glint_status glint_engine_render(struct glint_engine *engine,
         memset(rgb, 0,
                3 * (size_t)f->view.width * (size_t)f->view.height *
                    sizeof *rgb);
-        status = draw_with_8bit_plan(f, lamps, n, gain, rgb, report);
+        status = draw_linear_with_8bit_plan(f, lamps, n, gain, rgb, report);
     } else
         status = glint_frame_draw_flare_alone(f, lamps, n, gain, rgb, report);
     f->progress = NULL;

@@ -27,11 +27,11 @@ bool glint_engine_can_draw(const struct glint_engine *engine,
            n >= 0 && n <= engine->most_lamps;
 }
 
-/* Returns the factor on the ghosts of the lamp with number ID, from the last
- * exposure; 1 if that had no such lamp. I: index at which the lamp probably is,
- * which is wrong if only some lamps of the picture are drawn. */
-static double find_ghost_factor(const struct glint_engine_exposing *x,
-                                uint32_t id, int i)
+/* Returns the factor on the ghosts of the lamp with number ID that the last
+ * exposure chose; 1 if it had no such lamp. I: index at which the lamp probably
+ * is; it is elsewhere if only some lamps of the picture are drawn. */
+static double find_ghost_exposure_factor(const struct glint_engine_exposing *x,
+                                         uint32_t id, int i)
 {
     if (i < x->n_before && x->before[i].id == id)
         return x->part[i];
@@ -49,7 +49,8 @@ glint_engine_copy_ghost_lamps(struct glint_engine *engine,
 
     for (int i = 0; i < n; i++) {
         engine->paint.lamp[i] = lamps[i].lamp;
-        engine->paint.lamp[i].power *= find_ghost_factor(x, lamps[i].id, i);
+        engine->paint.lamp[i].power *=
+            find_ghost_exposure_factor(x, lamps[i].id, i);
     }
     return engine->paint.lamp;
 }
@@ -93,10 +94,10 @@ expose_by_drawing_flare(struct glint_engine *e, int n,
     return status;
 }
 
-/* Returns the light of LAMP, found in the picture, beyond what the picture
- * shows, as if the lamp were not occluded; white times pixels. In a video it is
- * smoothed over a third of a second, as the estimate for a clipped lamp may
- * jump from picture to picture.
+/* Returns the light of LAMP, found in the picture, that clipping removed from
+ * the picture (glint_lamp_compute_excess_light()), without occlusion; white
+ * times pixels. In a video it is smoothed over a third of a second, as the
+ * estimate for a clipped lamp may jump from picture to picture.
  */
 static double compute_smoothed_excess(const struct glint_engine_exposing *x,
                                       const struct glint_engine_lamp *lamp,
@@ -145,8 +146,8 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
         find->is_cut || (find->is_searched && elapsed_us > 0 &&
                          glint_lamp_tracker_was_cut(find->detector.tracks));
     const bool is_drawn = elapsed_us == 0 && f->budget.ms <= 0 && x->by_drawing;
-    /* placeholder for the response of a picture whose flare is drawn, which
-     * replaces the exposure by the response */
+    /* placeholder for the response, which is not needed: drawing the flare
+     * replaces the exposure that is computed from it */
     const struct glint_response any = {.n = 1};
     enum glint_status status = GLINT_OK;
 

@@ -28,28 +28,28 @@ struct glint_engine_stops {
 };
 
 struct glint_engine_optics {
-    /* OWN, or the caller's setup */
+    /* &own, or the caller's setup */
     const struct glint_setup *setup;
     struct glint_setup own;
     struct glint_engine_camera camera; /* camera for which OWN was made */
     struct glint_dirt *dirt; /* dust and masks in the stop of OWN, or NULL */
     struct glint_front_dirt *own_front;
-    /* dirt on the front element: OWN_FRONT, the caller's, or NULL */
+    /* dirt on the front element: the engine's own, the caller's, or NULL */
     const struct glint_front_dirt *front;
 };
 
 struct glint_engine_finding {
     struct glint_lamp_detector detector;
     struct glint_lamp found[GLINT_LAMP_DETECTOR_MAX];
-    int32_t elapsed_us; /* time from the last picture to the next, us; 0:
+    int32_t elapsed_us; /* time between the last picture and the next, us; 0:
                            unknown, or a still picture */
     bool is_searched;   /* true: the lamps of the next picture have been
                            searched */
     bool is_cut; /* true: the next picture is unrelated to the last one */
 };
 
-/* The light of one lamp of the last picture beyond what that picture showed,
- * white times pixels. */
+/* The light of one lamp that clipping removed from the last picture, white
+ * times pixels. */
 struct glint_engine_before {
     uint32_t id;
     double excess;
@@ -62,7 +62,7 @@ struct glint_engine_exposing {
     struct glint_engine_exposure last;
     bool by_drawing; /* true: still pictures are exposed by drawing their flare
                         at reduced size and measuring it */
-    bool is_done;    /* true: the exposure of the next picture is set */
+    bool is_done;    /* true: the next picture has been exposed */
     struct glint_engine_before *before;
     double *part; /* [n_before]: factor on the ghosts of each lamp of the last
                      picture (engine/strength.h) */

@@ -8,13 +8,13 @@
 #include "glint/area.h"
 #include "glint/scene/scene.h"
 
-/* First number of the lamps that are lights of scenes. */
+/* Lamps that are lights of a scene have ids from this number on. */
 #define SCENE_IDS UINT32_C(0xffffff00)
 
-/* Multiplies the power of LAMP by the visible fraction SEEN, and increments
- * HIDDEN if that is 0. */
-static void attenuate_lamp(struct glint_engine_lamp *lamp, double seen,
-                           int *hidden)
+/* Multiplies the power of LAMP by its visible fraction SEEN; if SEEN is 0,
+ * increments HIDDEN. */
+static void attenuate_occluded_lamp(struct glint_engine_lamp *lamp, double seen,
+                                    int *hidden)
 {
     lamp->share = fmax(seen, GLINT_ENGINE_HIDDEN);
     lamp->lamp.power *= lamp->share;
@@ -41,7 +41,7 @@ static int occlude_lamps(const struct glint_engine *e,
             continue;
         cover = glint_scene_cover(scene, (int32_t)(256 * x), (int32_t)(256 * y),
                                   (int32_t)(256 * fmin(radius, 1 << 14)));
-        attenuate_lamp(&lamps[i], 1 - cover / 256.0, &hidden);
+        attenuate_occluded_lamp(&lamps[i], 1 - cover / 256.0, &hidden);
     }
     return hidden;
 }
@@ -90,7 +90,7 @@ int glint_engine_add_scene(const struct glint_engine *engine,
         lamps[n] =
             glint_engine_lamp_of(&lamp, SCENE_IDS + (uint32_t)(n - before));
         lamps[n].seen_px = -1;
-        attenuate_lamp(&lamps[n++], light[i].share / 16.0, hidden);
+        attenuate_occluded_lamp(&lamps[n++], light[i].share / 16.0, hidden);
     }
     return n;
 }
@@ -101,8 +101,8 @@ void glint_engine_apply_shares(struct glint_engine_lamp *lamps, int n,
     for (int i = 0; i < n; i++)
         if (lamps[i].share > GLINT_ENGINE_HIDDEN || !is_still)
             lamps[i].level *= lamps[i].share;
-        else /* removed, as the exposure of a still picture would raise the rest
-                until it is visible */
+        else /* removed, as the exposure of a still picture would otherwise
+                raise the remaining light until it is visible */
             lamps[i].lamp.power = 0;
 }
 

@@ -50,8 +50,8 @@ int glint_explain_bundles(const struct glint_explain_part *p)
 
 /* ---------------------------------------------------------------- accounts */
 
-static void add_bundle_account(struct glint_explain_part *p,
-                               const struct glint_account *a)
+static void add_bundle_statistics(struct glint_explain_part *p,
+                                  const struct glint_account *a)
 {
     p->probed += a->probed;
     if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* another set of waves was
@@ -70,9 +70,9 @@ static void add_bundle_account(struct glint_explain_part *p,
     p->refs += a->refs;
 }
 
-/* Returns the index in e->wave of the part that contains wave WAVE: its wave
- * set, or the wave itself if there are no sets. */
-static int find_wave_part(const struct glint_explain *e, int wave)
+/* Returns the index in e->wave of the statistics for wave WAVE: those of its
+ * wave set, or of the wave itself if there are no sets. */
+static int find_part_of_wave(const struct glint_explain *e, int wave)
 {
     const struct glint_wave_sets *sets = e->frame->plan.rays.sets;
     int part = wave;
@@ -83,7 +83,7 @@ static int find_wave_part(const struct glint_explain *e, int wave)
     return part;
 }
 
-static void collect_bundle_accounts(struct glint_explain *e)
+static void collect_bundle_statistics(struct glint_explain *e)
 {
     const int n_ghosts = (int)e->frame->lens->header->n_ghosts;
     const int n_waves = e->frame->plan.rays.n_waves;
@@ -95,12 +95,12 @@ static void collect_bundle_accounts(struct glint_explain *e)
 
                 glint_flare_account(e->frame->memory.flare, ghost, light, wave,
                                     &a);
-                add_bundle_account(&e->all, &a);
+                add_bundle_statistics(&e->all, &a);
                 /* NOLINTNEXTLINE: set_ghost_numbers() has set all elements of
                  * ghost_of */
-                add_bundle_account(&e->ghost[e->ghost_of[ghost]], &a);
-                add_bundle_account(&e->light[light], &a);
-                add_bundle_account(&e->wave[find_wave_part(e, wave)], &a);
+                add_bundle_statistics(&e->ghost[e->ghost_of[ghost]], &a);
+                add_bundle_statistics(&e->light[light], &a);
+                add_bundle_statistics(&e->wave[find_part_of_wave(e, wave)], &a);
                 if (a.outcome == GLINT_OUTCOME_DRAWN ||
                     a.outcome == GLINT_OUTCOME_EMPTY)
                     e->barrels[a.barrels]++;
@@ -128,8 +128,8 @@ void glint_explain_draw(struct glint_explain *explain, int ghost)
     draw_flare_part(explain, ghost, -1, -1);
 }
 
-/* Measures the picture of PART, which must have been drawn last: flux, max,
- * number of lit pixels and of tiles. */
+/* Measures the light of PART of the flare, which must have been drawn last:
+ * flux, max, number of lit pixels and of lit tiles. */
 static void measure_part_light(struct glint_explain *e,
                                struct glint_explain_part *part)
 {
@@ -173,8 +173,8 @@ static void draw_and_measure_parts(struct glint_explain *e)
     }
 }
 
-static void set_part_shares(const struct glint_explain *e,
-                            struct glint_explain_part *part, int n)
+static void set_part_fractions_of_total(const struct glint_explain *e,
+                                        struct glint_explain_part *part, int n)
 {
     double stage[GLINT_COST_KINDS];
 
@@ -236,7 +236,7 @@ enum glint_status glint_explain_frame(struct glint_explain *e,
     if (!e->ghost_of || !e->ghost || !e->light || !e->wave || !e->linear_q20)
         return GLINT_E_MEMORY;
     set_ghost_numbers(e);
-    collect_bundle_accounts(e);
+    collect_bundle_statistics(e);
     draw_and_measure_parts(e);
     e->stage[GLINT_COST_PARTS] = compute_item_cost(
         GLINT_COST_PARTS,
@@ -252,9 +252,9 @@ enum glint_status glint_explain_frame(struct glint_explain *e,
         e->all.work += e->stage[k];
     e->all.share = e->all.flux > 0;
     e->all.cost = 1;
-    set_part_shares(e, e->ghost, e->n_ghosts);
-    set_part_shares(e, e->light, e->n_lights);
-    set_part_shares(e, e->wave, e->n_waves);
+    set_part_fractions_of_total(e, e->ghost, e->n_ghosts);
+    set_part_fractions_of_total(e, e->light, e->n_lights);
+    set_part_fractions_of_total(e, e->wave, e->n_waves);
     return GLINT_OK;
 }
 

@@ -84,8 +84,8 @@ uint8_t *glint_measure_encode(const struct glint_float_image *image,
     return codes;
 }
 
-static double fit_brightness_factor(const struct glint_float_image *a,
-                                    const struct glint_float_image *b)
+static double fit_factor_between_pictures(const struct glint_float_image *a,
+                                          const struct glint_float_image *b)
 {
     double ab = 0, bb = 0;
 
@@ -204,7 +204,7 @@ bool glint_measure_at(const struct glint_float_image *reference,
     uint8_t *a, *b;
 
     result->exposure = exposure;
-    result->factor = fit ? fit_brightness_factor(reference, test) : 1;
+    result->factor = fit ? fit_factor_between_pictures(reference, test) : 1;
     result->flux =
         total > 0 ? result->factor * sum_rgb_samples(test) / total : 1;
     a = glint_measure_encode(reference, result->exposure);

@@ -13,8 +13,9 @@ enum { TOP_MAX = GLINT_RESPONSE_FINE / 5000 };
 
 static const double none_log2 = -100;
 
-/* Number of angles measured, and fineness of grids. Exact rays use fewer angles
- * and coarser grids, as they cost fifty times as much as a model. */
+/* Number of measured angles and fineness of grids with exact rays, and fineness
+ * with a model. Exact rays have fewer angles and coarser grids, as they cost
+ * fifty times as much as a model. */
 enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
 
 /* The powers of lamps are scaled until the brightest pixels are 2^AIM_LOG2
@@ -26,7 +27,7 @@ enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
 
 /* Replaces the smallest of the N values TOP, which are sorted in falling order,
  * by VALUE. Returns the new smallest. */
-static float insert_into_largest(float *top, int n, float value)
+static float insert_into_largest_values(float *top, int n, float value)
 {
     int i = n - 1;
 
@@ -46,10 +47,12 @@ static void find_largest_values(const float *rgb, size_t pixels, int channel,
     memset(top, 0, (size_t)n * sizeof *top);
     for (size_t i = 0; i < pixels; i++)
         if (rgb[3 * i + (size_t)channel] > least)
-            least = insert_into_largest(top, n, rgb[3 * i + (size_t)channel]);
+            least = insert_into_largest_values(top, n,
+                                               rgb[3 * i + (size_t)channel]);
 }
 
-/* Returns how many pixels 1 / PARTS of N pixels are, clamped to 1 .. TOP_MAX.
+/* Returns N / PARTS, the number of the brightest pixels to average, clamped to
+ * 1 .. TOP_MAX.
  */
 static int count_brightest_pixels(size_t n, int parts)
 {
@@ -215,9 +218,8 @@ static void convert_light_to_log2(struct glint_response_light *light)
     }
 }
 
-/* Measures by how much the brightest part of the flare gets fainter if LAMP is
- * a disc instead of a point, for radii up to an eighth of the picture's
- * diagonal. */
+/* Measures the ratio of the flare's peak if LAMP is a disc to the peak if it is
+ * a point, for radii up to an eighth of the picture's diagonal. */
 static enum glint_status measure_extent_softening(struct proxy *p,
                                                   struct glint_response *r,
                                                   struct glint_lamp lamp)
@@ -336,7 +338,7 @@ double glint_response_compute_softening(const struct glint_response *r,
 /* ---------------------------------------------------------- what was drawn */
 
 /* Sets the peak of LIGHT to the value that the brightest 1/10000 of the pixels
- * drawn last reach. */
+ * of the last drawing reach. */
 static void set_peak_from_brightest_pixels(const struct proxy *p,
                                            struct glint_response_light *light)
 {
@@ -350,9 +352,10 @@ static void set_peak_from_brightest_pixels(const struct proxy *p,
     }
 }
 
-/* Reports progress of FRAME while its small picture finds the ghosts of both.
+/* Reports progress of FRAME while its small picture finds the ghosts, which are
+ * the same in both.
  */
-static void report_finding(void *frame, double done)
+static void report_ghost_search_progress(void *frame, double done)
 {
     const struct glint_frame *const f = frame;
 
@@ -382,7 +385,8 @@ enum glint_status glint_response_draw_and_measure(
             small[i].power *= by;
         if (frame->trace)
             frame->trace->adopt(&p.frame, frame);
-        p.frame.progress = frame->progress ? report_finding : NULL;
+        p.frame.progress =
+            frame->progress ? report_ghost_search_progress : NULL;
         p.frame.progress_ctx = frame;
         if (status == GLINT_OK)
             status = draw_at_measurable_scale(&p, small, n, &peak_log2, light);

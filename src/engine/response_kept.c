@@ -13,8 +13,9 @@
 #include "engine/response.h"
 #include "glint/glint.h"
 
-/* Part of the key. Must be raised when glint_response_measure() returns other
- * values for the same lens, because frames are drawn or measured differently.
+/* Part of the cache key. Must be increased when glint_response_measure()
+ * returns other values for the same lens, because frames are drawn or measured
+ * differently.
  */
 enum { REVISION = 2 };
 

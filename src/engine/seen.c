@@ -21,14 +21,14 @@ static double decode_srgb(int code)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-/* For each 8-bit code: 1 / the linear light that must be added to be visible
- * (visible), and 1 / the linear light that must be added to turn the code white
+/* For each 8-bit code: 1 / the linear light whose addition is just visible
+ * (visible), and 1 / the linear light whose addition turns the code white
  * (white). 0 if that is impossible, or if the code is not considered. */
 struct slopes {
     double visible[256], white[256];
 };
 
-static void compute_code_slopes(struct slopes *slope)
+static void tabulate_inverse_light_steps(struct slopes *slope)
 {
     *slope = (struct slopes){{0}, {0}};
     for (int code = 0; code + GLINT_SEEN_CODES <= 255; code++)
@@ -38,8 +38,7 @@ static void compute_code_slopes(struct slopes *slope)
         slope->white[code] = 1 / (1 - decode_srgb(code));
 }
 
-/* Returns a pixel's added light divided by the min visible light, max over the
- * channels. */
+/* Returns added light / min visible light of a pixel, max over the channels. */
 static double compute_pixel_visibility(const float light[3],
                                        const uint8_t code[3],
                                        const struct slopes *slope)
@@ -51,9 +50,9 @@ static double compute_pixel_visibility(const float light[3],
     return most;
 }
 
-/* Returns a pixel's added light divided by the light that turns the channel
- * white, min over the channels. Returns 0 if a channel is below
- * GLINT_SEEN_BRIGHT; channels from GLINT_SEEN_WHITE on are ignored. */
+/* Returns added light / light that turns the channel white of a pixel, min over
+ * the channels. Returns 0 if a channel is below GLINT_SEEN_BRIGHT; channels
+ * from GLINT_SEEN_WHITE on are ignored. */
 static double compute_pixel_white_ratio(const float light[3],
                                         const uint8_t code[3],
                                         const struct slopes *slope)
@@ -68,14 +67,14 @@ static double compute_pixel_white_ratio(const float light[3],
     return least < HUGE_VAL ? least : 0;
 }
 
-static void add_to_histogram(int count[BINS], double x)
+static void add_value_to_histogram(int count[BINS], double x)
 {
     if (x > 0)
         count[(int)fmin(fmax((log2(x) + OCTAVES) * STEPS, 0), BINS - 1)]++;
 }
 
-/* Returns the max value that at least N pixels of the histogram reach, or 0 if
- * it has fewer than N pixels. */
+/* Returns the max value that at least N pixels of the histogram have or exceed;
+ * 0 if the histogram has fewer than N pixels. */
 static double find_value_reached_by_pixels(const int count[BINS], int n)
 {
     for (int bin = BINS - 1, sum = 0; bin >= 0; bin--) {
@@ -93,17 +92,17 @@ void glint_seen_measure_visibility(struct glint_seen *seen,
     int visible[BINS] = {0}, white[BINS] = {0};
     struct slopes slope;
 
-    compute_code_slopes(&slope);
+    tabulate_inverse_light_steps(&slope);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++, rgb += 3) {
             const uint8_t *const code =
                 ground->rgb[y * GLINT_GROUND_ROWS / height]
                            [x * GLINT_GROUND_COLUMNS / width];
 
-            add_to_histogram(visible,
-                             compute_pixel_visibility(rgb, code, &slope));
-            add_to_histogram(white,
-                             compute_pixel_white_ratio(rgb, code, &slope));
+            add_value_to_histogram(visible,
+                                   compute_pixel_visibility(rgb, code, &slope));
+            add_value_to_histogram(
+                white, compute_pixel_white_ratio(rgb, code, &slope));
         }
     seen->few = find_value_reached_by_pixels(
         visible, width * height / GLINT_SEEN_FEW + 1);

@@ -29,8 +29,8 @@ static const double compression = 0.15;
  */
 static const double seen_peak = 0.6, seen_mean = 0.04, veil_peak = 0.1;
 
-/* target light of a veiling flare in a quarter of the picture / min visible
- * light */
+/* target for a flare that veils a quarter of the picture: its light there / min
+ * visible light */
 static const double veil_light = 0.5;
 
 /* target light of the brightest ghosts on bright ground / light that turns the
@@ -100,7 +100,7 @@ void glint_strength_compute_light(const struct glint_response *response,
     convert_sums_to_peaks(light);
 }
 
-static double combine_norm(double a, double b)
+static double combine_peaks_by_norm(double a, double b)
 {
     return pow(pow(a, norm) + pow(b, norm), 1 / norm);
 }
@@ -121,15 +121,15 @@ static double compute_exposure_log2(const struct glint_response_light *light)
     const double light_mean = fmax(glint_largest_channel(light->mean), 1e-60);
     const double mean = light_mean / mean_most;
     const double more =
-        compression * (log2(combine_norm(peak, mean)) - common_log2);
+        compression * (log2(combine_peaks_by_norm(peak, mean)) - common_log2);
 
-    return fmin(-log2(combine_norm(peak * exp2(-tanh(more)), mean)),
+    return fmin(-log2(combine_peaks_by_norm(peak * exp2(-tanh(more)), mean)),
                 log2(fog_most / light_mean));
 }
 
 /* --------------------------------------------------------------- over time */
 
-static double limit_exposure_step(double towards, double elapsed_s)
+static double limit_exposure_change(double towards, double elapsed_s)
 {
     const double part = 1 - exp(-elapsed_s / settle_s);
     const double most = fmin(
@@ -147,8 +147,8 @@ static double compute_exposure_limit(double times)
                       : (1 + overshoot * tanh((times - 1) / overshoot)) / times;
 }
 
-/* Lowers LIGHT, the light of a lamp's ghosts, if it is brighter than the lamp's
- * exposure alone would make it. Returns the factor. */
+/* Lowers LIGHT, the light of a lamp's ghosts, if it is brighter than if the
+ * lamp were exposed alone. Returns the factor. */
 static double limit_lamp_light(const struct glint_strength *s,
                                struct glint_response_light *light)
 {
@@ -167,7 +167,7 @@ static void follow_exposure_target(struct glint_strength *s, double target,
 {
     if (elapsed_us > 0 && s->follows)
         s->factor_log2 +=
-            limit_exposure_step(target - s->factor_log2, 1e-6 * elapsed_us);
+            limit_exposure_change(target - s->factor_log2, 1e-6 * elapsed_us);
     else
         s->factor_log2 = target;
     s->follows = true;
@@ -192,10 +192,10 @@ compute_full_level_exposure_log2(const struct glint_response *response,
     return compute_exposure_log2(&light);
 }
 
-static void expose_lamps(struct glint_strength *s,
-                         const struct glint_response *response,
-                         const struct glint_strength_lamps *lamps,
-                         int32_t elapsed_us)
+static void expose_lamps_of_frame(struct glint_strength *s,
+                                  const struct glint_response *response,
+                                  const struct glint_strength_lamps *lamps,
+                                  int32_t elapsed_us)
 {
     follow_exposure_target(s, compute_full_level_exposure_log2(response, lamps),
                            elapsed_us);
@@ -238,12 +238,12 @@ void glint_strength_expose_frame(struct glint_strength *strength,
         glint_strength_compute_light(response, lamps, &s->light);
         s->scale = s->gain * exp2(s->exposure_ev);
     } else {
-        expose_lamps(s, response, lamps, elapsed_us);
+        expose_lamps_of_frame(s, response, lamps, elapsed_us);
     }
     scale_flare_light(s);
 }
 
-/* Returns the stops by which the exposure of the flare DRAWN is raised until it
+/* Returns by how many stops the exposure of the flare DRAWN is raised until it
  * is visible, or lowered until it neither veils the picture nor turns bright
  * ground white, within the limits of its peak and mean. BASE: log2 of the
  * flare's factor at strength 0.5. */

@@ -75,7 +75,7 @@ struct glint_strength {
 
     /* Results for the last frame: */
     double scale; /* factor on the powers of lamps; 0: nothing to draw */
-    /* light of the flare, including the factor scale */
+    /* light of the flare after multiplication by scale */
     struct glint_response_light light;
     bool is_drawn; /* true: LIGHT was measured by drawing the flare of this
                       picture */

@@ -9,8 +9,8 @@
 #include "flare/dim.h"
 #include "flare/wave_sets.h"
 
-/* Returns the number of the bundle of GHOST, LIGHT and WAVE, counted over all
- * combinations of these. */
+/* Returns the number of a bundle, counted over all combinations of ghost, light
+ * and wave. */
 static int64_t compute_bundle_number(const struct glint_flare *f, int ghost,
                                      int light, int wave)
 {
@@ -56,7 +56,7 @@ static int find_planned_bundle(const struct glint_flare *f, int64_t number)
 }
 
 /* Returns the index of the wave set that the plan chose for GHOST and LIGHT; 0
- * if no bundle of both was planned. */
+ * if it planned no bundle of them. */
 static int find_chosen_wave_set(const struct glint_flare *f, int ghost,
                                 int light)
 {
@@ -69,11 +69,11 @@ static int find_chosen_wave_set(const struct glint_flare *f, int ghost,
                : 0;
 }
 
-/* Returns the index of the bundle slot (of max_bundles) that must exist for the
- * plan to consider this bundle. Without wave sets the index is the bundle's
- * number. With wave sets the plan first considers all waves of the first set,
- * for each ghost and light, and then chooses a set; the index is that of the
- * last of these waves. */
+/* Returns the index of the bundle slot (of max_bundles) without which the plan
+ * does not consider this bundle. Without wave sets it is the bundle's number.
+ * With wave sets the plan first considers all waves of the first set, for each
+ * ghost and light, and then chooses a set; the index is that of the last of
+ * these waves. */
 static int64_t compute_bundle_slot_index(const struct glint_flare *f, int ghost,
                                          int light, int wave)
 {
@@ -127,8 +127,8 @@ static void count_bundle_edges(const struct glint_flare *f,
     }
 }
 
-/* Returns whether, for GHOST, light LIGHT was merged completely into another
- * light. */
+/* Returns whether LIGHT was merged completely into another light when GHOST was
+ * planned. */
 static int is_light_merged(const struct glint_flare *f, int ghost, int light)
 {
     const struct glint_flare_frame *r = f->plan.frame;

@@ -20,22 +20,22 @@ struct glint_real glint_flare_pixels_per_mm(const struct glint_lens *lens,
 }
 
 /* Returns SMALL / LARGE, clamped to 1; 0 if SMALL is 0, whatever LARGE is. */
-static int32_t compute_ratio_q30(struct glint_real small,
-                                 struct glint_real large)
+static int32_t compute_clamped_ratio_q30(struct glint_real small,
+                                         struct glint_real large)
 {
     if (small.mantissa == 0)
         return 0;
     return (int32_t)real_integer(real_over(small, large), 30, 1 << 30);
 }
 
-/* Computes COSINE and SINE of the angle between the x axis and (X, Y), both 0
- * or more. For (0, 0) the angle is 0. */
+/* Computes COSINE and SINE of the angle between the x axis and the vector (X,
+ * Y), whose components are 0 or more. For (0, 0) the angle is 0. */
 static void compute_unit_direction(struct glint_real x, struct glint_real y,
                                    int32_t *cosine_q30, int32_t *sine_q30)
 {
     const int steep = real_less(x, y);
-    const int64_t ratio_q30 =
-        steep ? compute_ratio_q30(x, y) : compute_ratio_q30(y, x);
+    const int64_t ratio_q30 = steep ? compute_clamped_ratio_q30(x, y)
+                                    : compute_clamped_ratio_q30(y, x);
     const int64_t length_q30 =
         q_root((UINT64_C(1) << 60) + (uint64_t)(ratio_q30 * ratio_q30));
     const int32_t large_q30 = q_narrow(q_divide(INT64_C(1) << 60, length_q30));

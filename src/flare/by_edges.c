@@ -9,8 +9,8 @@
 
 /* ------------------------------------------------------------------ memory */
 
-/* Returns the max number of jobs of a parallel step: the max number of bundles,
- * or the number of rows of tiles if that is larger. */
+/* Returns the max number of jobs of a parallel step: max number of bundles or
+ * number of rows of tiles, whichever is larger. */
 static size_t count_max_jobs(const struct glint_flare_config *c)
 {
     const size_t rows = glint_flare_count_tiles(1, c->height, c->tile_log2);
@@ -76,9 +76,9 @@ void glint_edges_clear_sums(struct glint_flare *f)
 
 typedef int weight_fn(const struct glint_flare *f, int job);
 
-/* Sorts N jobs by falling log2 of their weight (their work), so that no worker
- * begins a long job when the others have finished. The order does not change
- * the picture. */
+/* Sorts N jobs by falling log2 of WEIGHT (their work), so that no worker begins
+ * a long job when the others have finished. The order does not change the
+ * picture. */
 static void sort_jobs_by_weight(struct glint_flare *f, int n, weight_fn *weight)
 {
     int32_t *order = glint_flare_get_edges(f)->order;
@@ -125,11 +125,11 @@ static int64_t compute_bundle_flux(const struct glint_bundle *b)
     return ((up < 0 ? flux >> -up : flux << up) >> 8) + 1;
 }
 
-/* Returns the max light that one cell may give a pixel, display white, so
- * that sums do not overflow: sums of _q36 in colours up to 4 stay below 2^63
- * as long as no pixel gets more than 2^24. No cell can give a pixel more
- * than its flux; if the flux of all bundles reaches 2^24, each cell is
- * limited to 2^23 / the number of cells. */
+/* Returns the max light that one cell may give a pixel, display white, so that
+ * sums do not overflow. Sums of _q36 in colours up to 4 stay below 2^63 as long
+ * as no pixel gets more than 2^24. A cell cannot give a pixel more than the
+ * cell's flux. If the flux of all bundles reaches 2^24, each cell is limited to
+ * 2^23 / number of cells. */
 static int32_t compute_cell_light_limit_q8(const struct glint_flare *f)
 {
     const int64_t most = INT64_C(1) << 24;
@@ -156,10 +156,10 @@ static int add_bin_entries(const struct glint_flare *f, int refs, int first,
     return refs;
 }
 
-/* Converts bundle BUNDLE to edges, stored after those that worker WORKER has
- * already made. If not all edges fit into the worker's range, all are dropped;
- * then, unless BINS is NULL, the slot's refs is set to the number of entries in
- * BINS that the edges would need. */
+/* Converts bundle BUNDLE to edges, which are stored after the earlier edges of
+ * worker WORKER. If not all fit into the worker's range, none is stored; then,
+ * unless BINS is NULL, member refs of the bundle's slot is set to the number of
+ * entries in BINS that the edges would need. */
 static void emit_bundle_edges(struct glint_flare *f, int bundle, int worker,
                               const struct glint_bins *bins)
 {
@@ -216,8 +216,8 @@ static void emit_bundle_edges(struct glint_flare *f, int bundle, int worker,
     w->n_edges += ghost.n_edges;
 }
 
-/* Returns a copy of the flare's bins whose start indices are those of WORKER's
- * own entries. */
+/* Returns a copy of the flare's bins in which each tile begins at WORKER's own
+ * entries. */
 static struct glint_bins make_worker_bins(const struct glint_flare *f,
                                           int worker)
 {
@@ -249,7 +249,7 @@ static void emit_bundle_job(void *ctx, int job, int worker)
 }
 
 /* Divides the edge array into equal ranges, one for each of N workers. */
-static void split_edge_array(struct glint_flare *f, int n)
+static void divide_edge_array_among_workers(struct glint_flare *f, int n)
 {
     const int part = f->cfg.max_primitives / n;
 
@@ -281,7 +281,7 @@ static int are_all_bundles_placed(const struct glint_flare *f)
 
 /* Converts the bundles whose edges did not fit into the range of their worker;
  * their edges go to the range of any worker with enough space left. */
-static void emit_leftover_bundles(struct glint_flare *f)
+static void emit_bundles_without_space(struct glint_flare *f)
 {
     const int n_workers = glint_workers_count(f->cfg.workers);
 
@@ -298,14 +298,14 @@ static void emit_leftover_bundles(struct glint_flare *f)
         }
 }
 
-/* Converts all bundles to edges again, one after the other into one list, so
- * that it does not depend on the timing of workers which bundles are dropped.
+/* Converts all bundles to edges again, one after the other into one array, so
+ * that the bundles that do not fit do not depend on the timing of workers.
  * After the first bundle that does not fit, all are dropped. */
 static void emit_bundles_in_order(struct glint_flare *f)
 {
     int full = 0;
 
-    split_edge_array(f, 1);
+    divide_edge_array_among_workers(f, 1);
     clear_bin_counts(f);
     for (int i = 0; i < f->n_bundles; i++) {
         struct glint_bundle_slot *slot = &f->slot[i];
@@ -323,12 +323,12 @@ static void emit_bundles_in_order(struct glint_flare *f)
 
 static void emit_all_bundles(struct glint_flare *f)
 {
-    split_edge_array(f, glint_workers_count(f->cfg.workers));
+    divide_edge_array_among_workers(f, glint_workers_count(f->cfg.workers));
     clear_bin_counts(f);
     sort_jobs_by_weight(f, f->n_bundles, get_bundle_cells);
     glint_workers_run(f->cfg.workers, f->n_bundles, emit_bundle_job, f);
     if (!are_all_bundles_placed(f))
-        emit_leftover_bundles(f);
+        emit_bundles_without_space(f);
     if (!are_all_bundles_placed(f))
         emit_bundles_in_order(f);
     for (int i = 0; i < f->n_bundles; i++) {
@@ -343,8 +343,8 @@ static void emit_all_bundles(struct glint_flare *f)
 
 /* -------------------------------------------------------------------- bins */
 
-/* Reduces n_drawn to the number of bundles, counted from the first, whose
- * entries fit into the bins. The counts in the bins are undefined afterwards.
+/* Reduces n_drawn to the bundles, counted from the first, whose entries fit
+ * into the bins. The counts in the bins are undefined afterwards.
  */
 static void drop_bundles_that_overflow_bins(struct glint_flare *f)
 {
@@ -364,8 +364,8 @@ static void drop_bundles_that_overflow_bins(struct glint_flare *f)
     f->n_drawn = n_kept;
 }
 
-/* Converts the workers' counts of entries per tile to start indices. In each
- * tile the entries are ordered by worker. Returns the total number of entries.
+/* Converts the workers' counts of entries per tile to start indices; a tile's
+ * entries are in the order of workers. Returns the total number of entries.
  */
 static int assign_bin_indices(struct glint_flare *f)
 {

@@ -12,8 +12,8 @@
 struct glint_by_edges {
     struct glint_edge *edge;
     int32_t *order; /* order in which jobs are run: indices of bundles while
-                       bundles are converted to edges, then indices of rows of
-                       tiles */
+                       bundles are converted to edges, indices of rows of tiles
+                       while these are drawn */
     /* max light that one cell may add to a pixel, 1 = display white */
     int32_t limit_q8;
     int linear; /* 1: the target picture is in linear light */
@@ -51,7 +51,7 @@ glint_flare_get_edges_worker(const struct glint_flare *f, int i)
 enum { GLINT_EDGES_MAX_BUNDLES = 1 << 20 };
 
 /* Allocate from arena A the memory for the edges of a flare, and for the edge
- * sums of one worker. Return NULL while A only measures. */
+ * sums of one worker. Return NULL if A only measures. */
 struct glint_by_edges *glint_edges_allocate(struct glint_arena *a,
                                             const struct glint_flare_config *c);
 struct glint_edges_worker *
@@ -66,8 +66,9 @@ void glint_edges_clear_sums(struct glint_flare *f);
  * n_drawn, the bins, and the statistics of primitives and references. */
 void glint_edges_bin(struct glint_flare *flare);
 
-/* Draws the edges in front of the passes PASS[0 .. N_BELOW - 1]. PASS must have
- * space for one more: the pass of the edges is written to PASS[N_BELOW]. */
+/* Draws the passes PASS[0 .. N_BELOW - 1], and the edges in front of them. PASS
+ * must have space for one more pass: that of the edges is written to
+ * PASS[N_BELOW]. */
 void glint_edges_draw(struct glint_flare *flare,
                       const struct glint_tiles *tiles, struct glint_pass *pass,
                       int n_below);

@@ -26,8 +26,8 @@ void glint_flare_waves(struct glint_wave wave[GLINT_FLARE_WAVES],
         Q_CONST(1 / (0.650 * 0.650), 24), Q_CONST(1 / (0.532 * 0.532), 24),
         Q_CONST(1 / (0.450 * 0.450), 24)};
     const struct glint_model_header *h = lens->header;
-    /* Number of fraction bits with which the polynomial's constant term has 27
-     * bits. */
+    /* number of fraction bits that gives the polynomial's constant term 27 bits
+     */
     const int frac = -4 - h->direct_flux[0].exponent;
     const int32_t band_q24 = h->wave_hi_q24 - h->wave_lo_q24;
 

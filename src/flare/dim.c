@@ -10,9 +10,9 @@
 
 enum { BRIGHT_Q8 = 1 << 16 };
 
-/* Returns logarithm K (see glint_dim_get_values()) of ghost GHOST, interpolated
- * at the angle whose sine is SINE; GLINT_DIM_DARK if a node next to that angle
- * has this value. */
+/* Returns value K of the table (glint_dim_get_values()) for GHOST, a logarithm,
+ * interpolated at the angle whose sine is SINE; GLINT_DIM_DARK if one of the
+ * two nodes around that angle has this value. */
 static int32_t interpolate_dim_value(const struct glint_flare_frame *frame,
                                      int32_t sine_q30, int ghost, int k)
 {
@@ -26,8 +26,8 @@ static int32_t interpolate_dim_value(const struct glint_flare_frame *frame,
     return a + q_narrow(q_shift((int64_t)(b - a) * (at_q16 & 65535), 16));
 }
 
-/* Returns whether the table has the brightness of all waves of GHOST at node
- * NODE, so that none of them is blocked there. Returns 1 if NODE is out of
+/* Returns whether the table has the brightness of GHOST for all waves at node
+ * NODE, which means that no wave is blocked there. Returns 1 if NODE is out of
  * range. */
 static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
                                      int ghost, int node)
@@ -43,10 +43,10 @@ static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
     return 1;
 }
 
-/* If the ghost counts as bright in the interval before or after this one, the
- * result falls continuously from 1, at the node that both intervals share, to
- * the interpolated value, which it reaches halfway to the other node at the
- * latest. */
+/* If the ghost counts as bright in the interval before or after the current
+ * interval of nodes, the result falls continuously, from 1 at the node that
+ * both intervals share to the interpolated value, which it reaches halfway to
+ * the other node at the latest. */
 int32_t glint_dim_brightness_log2_q8(const struct glint_flare_frame *frame,
                                      const struct glint_light *light, int ghost)
 {

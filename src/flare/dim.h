@@ -13,10 +13,10 @@
 #include "glint/flare.h"
 
 enum {
-    GLINT_DIM_WAVE = 1,  /* index of the wave whose rays draw the other waves of
-                            a dim ghost, too */
-    GLINT_DIM_WAVES = 3, /* number of waves; with any other number ghosts never
-                            share rays */
+    GLINT_DIM_WAVE = 1,  /* index of the wave whose rays also draw the other
+                            waves of a dim ghost */
+    GLINT_DIM_WAVES = 3, /* number of waves with which dim ghosts share rays;
+                            with any other number they never do */
     GLINT_DIM_WHOLE_Q8 = 256,
     GLINT_DIM_LAST = GLINT_DIM_NODES - 1,
     GLINT_DIM_DARK = INT16_MIN, /* table value of a wave that does not pass
@@ -45,7 +45,7 @@ struct glint_dim_method {
     struct glint_light *(*gathered)(struct glint_flare *flare, int ghost,
                                     int light);
     /* Returns the fraction of light I that is not merged into another light for
-     * GHOST, 0 .. GLINT_DIM_WHOLE_Q8. LIGHT is light I including what has been
+     * GHOST, 0 .. GLINT_DIM_WHOLE_Q8. LIGHT is light I plus all light that was
      * merged into it. */
     int (*kept_q8)(const struct glint_flare_frame *frame,
                    const struct glint_light *light, int i, int ghost);
@@ -57,9 +57,9 @@ struct glint_dim_method {
                          int32_t sine_q30, int ghost, int wave);
 };
 
-/* Returns log2 of the mean light of GHOST from LIGHT, divided by the frame's
- * parameter dimmest, below which ghosts count as dim; 256, far above any ratio,
- * if the table does not have the mean light. */
+/* Returns log2 of the mean light of GHOST from LIGHT / the frame's parameter
+ * dimmest, below which ghosts count as dim. If the table does not have the mean
+ * light, returns 256, which is far above any ratio. */
 int32_t glint_dim_brightness_log2_q8(const struct glint_flare_frame *frame,
                                      const struct glint_light *light,
                                      int ghost);
@@ -70,9 +70,8 @@ int32_t glint_dim_brightness_log2_q8(const struct glint_flare_frame *frame,
 int glint_dim_own_rays_fraction_q8(const struct glint_flare_frame *frame,
                                    const struct glint_light *light, int ghost);
 
-/* Returns the light of GHOST in wave WAVE divided by its light in
- * GLINT_DIM_WAVE, at the angle whose sine is SINE and before the colours of the
- * waves are applied; at most 2^11. */
+/* Returns the light of GHOST in wave WAVE / its light in GLINT_DIM_WAVE, at the
+ * angle whose sine is SINE, without the colours of the waves; at most 2^11. */
 int64_t glint_dim_wave_ratio_q16(const struct glint_flare_frame *frame,
                                  int32_t sine_q30, int ghost, int wave);
 

@@ -15,9 +15,9 @@ struct glint_flare_under {
     struct glint_blend_rows *rows; /* [number of workers of the flare] */
 };
 
-/* Like glint_flare_draw(), with the passes of UNDER behind the flare. The
- * passes are called with the flare's tiles: at half resolution the pixels of
- * these are twice as wide and high as those of the picture. */
+/* Like glint_flare_draw(), with the passes of UNDER behind the flare. These are
+ * called with the flare's tiles: at half resolution the pixels of a tile are 2
+ * x 2 pixels of the picture. */
 void glint_flare_draw_over_passes(struct glint_flare *flare,
                                   const struct glint_image *image,
                                   const struct glint_flare_under *under);

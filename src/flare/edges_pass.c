@@ -44,8 +44,8 @@ static void *begin_tile_row(const void *self, struct glint_box row, int worker)
     w->at_tile = ((row.y0 - f->bins.region.y0) >> log2) * f->bins.tiles_x;
     s->shade = f->cfg.stop.shade;
     s->patch = s->shade ? s->shade->method->draw : NULL;
-    s->scratch = w->rows; /* used only while edges are made, so free as scratch
-                             memory now */
+    s->scratch = w->rows; /* the rows are used only while edges are made, so now
+                             they are free as scratch memory */
     s->linear = glint_flare_get_edges(f)->linear;
     s->fine = are_fine_sums_needed(f);
     s->lit = 0;

@@ -8,7 +8,7 @@
 #include "flare/wave_sets.h"
 
 enum {
-    /* the stop's radius equals that of the model */
+    /* opening at which the stop's radius equals that of the model */
     WHOLE_OPENING_Q30 = 1 << 30,
     LEAST_OPENING_Q30 = 1 << 20
 };
@@ -213,9 +213,9 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 
 /* -------------------------------------------------------------------- plan */
 
-/* Returns the number of LIGHTS without those at the end of the list that lie
- * outside the model's range of angles, so that a frame with only such lights
- * costs nothing. */
+/* Returns the number of LIGHTS after removing those at the end of the list that
+ * lie outside the model's range of angles, so that a frame with only such
+ * lights costs nothing. */
 static int count_lights_in_range(const struct glint_lens *lens,
                                  const struct glint_light *lights, int n)
 {
@@ -253,9 +253,9 @@ static void plan_ghost_and_light_job(void *ctx, int job, int worker)
 }
 
 /* Marks the bundles of invisible ghosts among the first N bundles by n_cells =
- * 0. For each ghost and wave the peaks of all lights are summed, as the sum may
- * be visible although no summand is; so a ghost is removed, in a wave, for all
- * lights or for none. Sums are integers, so their order does not matter. */
+ * 0. The peaks of a ghost in a wave are summed over all lights, as the sum may
+ * be visible although no single peak is; so a ghost is removed, in a wave, for
+ * all lights or for none. Sums are integers, so their order does not matter. */
 static void remove_invisible_ghosts(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;

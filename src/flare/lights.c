@@ -23,10 +23,10 @@
  *
  * Lights are merged in place, in O(n log n) for all rounds together, as each
  * round leaves fewer lights. The result does not depend on the order of the
- * input, as the sort compares all members of a light. Between prepare_lights()
- * and finish_lights(), rgb_q14 of a light has HELD additional fraction bits;
- * otherwise the colour of a faint light would be lost in rounding when it
- * merges with a bright light. */
+ * input, as the sort compares all members of a light. Between
+ * prepare_lights_for_merging() and finish_merged_lights(), rgb_q14 of a light
+ * has HELD additional fraction bits; otherwise the colour of a faint light
+ * would be lost in rounding when it merges with a bright light. */
 #include "base/q.h"
 #include "base/real.h"
 #include "base/sort.h"
@@ -34,12 +34,13 @@
 #include "glint/flare.h"
 
 enum {
-    CURVES = 3, /* number of curves along which lights too close to be
-                   distinguished are searched */
+    CURVES = 3, /* number of curves (rounds) by which lights too close to be
+                   distinguished are found */
     PART = 4,   /* a round merges 1 / PART of the surplus lights */
-    BINS = 64,  /* number of bins of the histogram of costs */
+    BINS = 64,  /* number of bins of the histogram of merge costs */
     HELD = GLINT_LIGHT_HELD,
-    WORDS = 10 /* number of 32-bit words of a light */
+    WORDS = 10 /* number of 32-bit words of struct glint_light that determine
+                  the sort order */
 };
 
 #define ONE_Q30 (INT32_C(1) << 30)
@@ -98,7 +99,7 @@ static void set_light_direction(struct glint_light *b,
     const int64_t off = set_light_azimuth(b, d->x_q30, d->y_q30), z = d->z_q30;
     const int64_t length = q_root((uint64_t)(off * off + z * z));
 
-    /* The length is 0 for the mean of two lights in opposite directions. */
+    /* The length of the mean direction of two opposite lights is 0. */
     b->sine_q30 =
         length ? q_clamp_sat(off * ONE_Q30 / length, 0, ONE_Q30) : ONE_Q30;
     b->cosine_q30 = length ? q_clamp_sat(z * ONE_Q30 / length, 0, ONE_Q30) : 0;
@@ -110,12 +111,13 @@ static void set_light_direction(struct glint_light *b,
 struct order {
     struct glint_light *light;
     int by_power; /* 1: the brightest first; 0: along a curve */
-    /* Corner of the plane at which the curve begins, as offsets below (-1, -1),
-     * _q30. */
+    /* Corner of the plane of direction sines at which the curve begins, as
+     * offsets below (-1, -1), _q30. */
     uint32_t x0, y0;
 };
 
-static void list_light_words(const struct glint_light *b, int32_t *word)
+static void list_light_members_as_words(const struct glint_light *b,
+                                        int32_t *word)
 {
     word[0] = b->power.exponent;
     word[1] = b->power.mantissa;
@@ -135,22 +137,22 @@ static int is_brighter_light(const struct glint_light *a,
 {
     int32_t p[WORDS], q[WORDS];
 
-    list_light_words(a, p);
-    list_light_words(b, q);
+    list_light_members_as_words(a, p);
+    list_light_members_as_words(b, q);
     for (int i = 0; i < WORDS; i++)
         if (p[i] != q[i])
             return p[i] > q[i];
     return 0;
 }
 
-/* Returns coordinate V, -1 .. 1, relative to the corner -1 - ZERO at which the
- * curve begins, _q30. */
+/* Returns V - (-1 - ZERO): the coordinate V, -1 .. 1, relative to the corner at
+ * which the curve begins, _q30. */
 static uint32_t compute_curve_offset(int32_t v_q30, uint32_t zero)
 {
     return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;
 }
 
-static int is_before_in_light_order(const void *order, int i, int j)
+static int is_light_before_in_order(const void *order, int i, int j)
 {
     const struct order *const o = order;
     const struct glint_light *const a = &o->light[i], *const b = &o->light[j];
@@ -181,7 +183,7 @@ static void swap_lights(void *order, int i, int j)
 
 static void sort_lights(struct order *o, int n)
 {
-    const struct glint_heap heap = {is_before_in_light_order, swap_lights, o};
+    const struct glint_heap heap = {is_light_before_in_order, swap_lights, o};
 
     glint_heap_sort(&heap, n);
 }
@@ -276,7 +278,8 @@ static int merge_neighbouring_lights(struct glint_light *b, int n,
 
 /* Returns the cost limit at which one round merges 1 / PART of the N - MOST
  * surplus lights, with a resolution of 1 / BINS of the range of costs. */
-static int find_next_cost_limit(const struct glint_light *b, int n, int most)
+static int find_next_merge_cost_limit(const struct glint_light *b, int n,
+                                      int most)
 {
     int count[BINS] = {0}, low = INT32_MAX, high = INT32_MIN, width, bin = 0;
     int wanted = (n - most + PART - 1) / PART;
@@ -297,7 +300,7 @@ static int find_next_cost_limit(const struct glint_light *b, int n, int most)
 
 /* Removes lights without power or colour, and adds HELD fraction bits to the
  * colours of the others. Returns the number of lights left. */
-static int prepare_lights(struct glint_light *b, int n)
+static int prepare_lights_for_merging(struct glint_light *b, int n)
 {
     int kept = 0;
 
@@ -314,7 +317,7 @@ static int prepare_lights(struct glint_light *b, int n)
     return kept;
 }
 
-static void finish_lights(struct glint_light *b, int n)
+static void finish_merged_lights(struct glint_light *b, int n)
 {
     struct order brightest_first = {.light = b, .by_power = 1};
 
@@ -329,7 +332,7 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
 {
     struct rule rule = {
         .near2_q60 = (uint64_t)near_q30 * (uint64_t)near_q30 + 1, .most = 1};
-    int n = prepare_lights(lights, n_lights), round = 0;
+    int n = prepare_lights_for_merging(lights, n_lights), round = 0;
 
     for (; round < CURVES && n > 1; round++) {
         sort_lights_along_curve(lights, n, round);
@@ -339,9 +342,9 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
     rule = (struct rule){.most = most > 1 ? most : 1};
     for (; n > rule.most; round++) {
         sort_lights_along_curve(lights, n, round);
-        rule.cost = find_next_cost_limit(lights, n, rule.most);
+        rule.cost = find_next_merge_cost_limit(lights, n, rule.most);
         n = merge_neighbouring_lights(lights, n, &rule);
     }
-    finish_lights(lights, n);
+    finish_merged_lights(lights, n);
     return n;
 }

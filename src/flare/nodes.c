@@ -10,8 +10,8 @@
 
 enum {
     MOST_Q8 = 1 << 14,
-    FOLD_Q8 = 3 << 8 /* log2 of the light at a fold of a ghost / mean light of
-                        the ghost */
+    FOLD_Q8 = 3 << 8 /* log2 of light at a fold of a ghost / mean light of the
+                        ghost */
 };
 
 struct fill {
@@ -51,7 +51,7 @@ static void fill_ghost_entry_job(void *ctx, int ghost, int worker)
     for (int wave = 0; wave < GLINT_DIM_WAVES; wave++) {
         struct glint_bundle_plan planned = {.ghost = ghost, .wave = wave};
         struct glint_bundle bundle;
-        /* light of the wave if all its rays had energy 1 */
+        /* total light of the wave if all its rays had energy 1 */
         struct glint_real light;
 
         value[1 + wave] = GLINT_DIM_DARK;
@@ -130,7 +130,8 @@ enum {
 };
 
 /* Returns the merged light that replaces LIGHT for GHOST. It is stored in the
- * memory of the first bundle of both; NULL if that exceeds max_bundles. */
+ * memory of the first bundle of this ghost and light; NULL if that bundle
+ * exceeds max_bundles. */
 static struct glint_light *get_merged_light(struct glint_flare *f, int ghost,
                                             int light)
 {
@@ -194,11 +195,12 @@ static int compute_unmerged_fraction_q8(const struct glint_flare_frame *frame,
                        0, GLINT_DIM_WHOLE_Q8);
 }
 
-/* Divides B, which is light I for GHOST, into the fraction that is drawn
- * separately, and the rest, which is merged into the nearest preceding light.
+/* Divides B, which is light I for GHOST, into a fraction that is drawn
+ * separately and a rest that is merged into the nearest preceding light.
  */
-static void merge_shared_fraction(struct glint_flare *f, struct glint_light *b,
-                                  int ghost, int i)
+static void merge_fraction_into_nearest_light(struct glint_flare *f,
+                                              struct glint_light *b, int ghost,
+                                              int i)
 {
     struct glint_light part = *b;
     const int left_q8 =
@@ -219,7 +221,8 @@ struct gather {
 };
 
 /* Worker function: merges the lights of GHOST, from the last to the first, so
- * that what has been merged into a light can be merged further with it. */
+ * that light that was merged into a light can be merged again together with it.
+ */
 static void merge_ghost_lights_job(void *ctx, int ghost, int worker)
 {
     const struct gather *g = ctx;
@@ -239,13 +242,13 @@ static void merge_ghost_lights_job(void *ctx, int ghost, int worker)
         b = get_merged_light(g->flare, ghost, i);
         if (!b)
             continue;
-        merge_shared_fraction(g->flare, b, ghost, i);
+        merge_fraction_into_nearest_light(g->flare, b, ghost, i);
         for (int c = 0; c < 3; c++)
             b->rgb_q14[c] = q_narrow(q_shift(b->rgb_q14[c], GLINT_LIGHT_HELD));
     }
 }
 
-static void merge_near_lights(struct glint_flare *flare, int n_lights)
+static void merge_near_lights_per_ghost(struct glint_flare *flare, int n_lights)
 {
     struct gather gather = {flare, n_lights};
 
@@ -257,7 +260,7 @@ static void merge_near_lights(struct glint_flare *flare, int n_lights)
 
 const struct glint_dim_method glint_dim_method = {
     fill_brightness_nodes,
-    merge_near_lights,
+    merge_near_lights_per_ghost,
     get_merged_light,
     compute_unmerged_fraction_q8,
     glint_dim_own_rays_fraction_q8,

@@ -8,8 +8,8 @@
 #include "flare/plan_cells.h"
 
 enum {
-    /* number of cells across the small probe, whose rows have GLINT_RAYS rays,
-     * as many as are computed at once */
+    /* number of cells across the small probe; its rows have GLINT_RAYS rays, as
+     * many as are computed at once */
     FEW_ACROSS = GLINT_RAYS - 1,
     FEW_DOWN = 4,
     FEW_INSIDE = 6,
@@ -29,7 +29,7 @@ static int64_t convert_to_pixels_q8(const struct glint_plan *p,
                         8, INT64_C(1) << 31);
 }
 
-/* Returns the length X within a ghost, pixels, multiplied by the ghost's
+/* Returns X, a length within a ghost in pixels, multiplied by the ghost's
  * enlargement. */
 static int64_t scale_by_enlargement(const struct glint_bundle_plan *s,
                                     int64_t x_q8)
@@ -88,7 +88,7 @@ static int is_box_in_picture(const struct glint_plan *p,
 }
 
 /* Returns the fraction of the interval MIDDLE +- WIDE that lies within -HALF ..
- * HALF, 0 .. 255. */
+ * HALF, in 1/255. */
 static int64_t compute_interval_overlap_q8(int64_t middle, int64_t wide,
                                            int64_t half)
 {
@@ -98,8 +98,8 @@ static int64_t compute_interval_overlap_q8(int64_t middle, int64_t wide,
     return high > low && wide > 0 ? q_divide(255 * (high - low), 2 * wide) : 0;
 }
 
-/* Returns the fraction, 0 .. 255, of the axis-parallel bounding box of E,
- * rotated by TURN, that lies in the picture. */
+/* Returns the fraction, in 1/255, of a bundle's bounding box that lies in the
+ * picture: the axis-parallel bounding box of E rotated by TURN. */
 static uint8_t compute_visible_fraction_q8(const struct glint_plan *p,
                                            struct glint_azimuth turn,
                                            const struct reach *e)
@@ -234,8 +234,7 @@ compute_max_light(const struct glint_plan *p,
 }
 
 /* Returns BRIGHTEST, the max light of a pixel, in units of the min visible
- * light. Returns 2^20 units if BRIGHTEST is 0 (not known), and for linear
- * pictures. */
+ * light; 2^20 units if BRIGHTEST is 0 (not known) or the picture is linear. */
 static int64_t compute_peak_in_visible_units_q20(const struct glint_plan *p,
                                                  struct glint_real brightest)
 {
@@ -246,9 +245,9 @@ static int64_t compute_peak_in_visible_units_q20(const struct glint_plan *p,
     return real_integer(real_over(brightest, p->frame->faintest), 20, most);
 }
 
-/* Sets inside_q8, the fraction of probed rays that are not blocked, and
- * contrast_q4, log2 of BRIGHTEST / mean irradiance, of PLANNED.
- * glint_flare_planned() returns both. */
+/* Sets two members of PLANNED that glint_flare_planned() returns: inside_q8,
+ * the fraction of probed rays that are not blocked, and contrast_q4, log2 of
+ * BRIGHTEST / mean irradiance. */
 static void set_inside_and_contrast(const struct glint_probe *s,
                                     struct glint_real brightest,
                                     struct glint_bundle_plan *planned)

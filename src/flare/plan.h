@@ -36,10 +36,10 @@ struct glint_bundle_plan {
     /* sags: for barrel 0, barrel 1 and a round stop, the mean height of the
      * straight lines between grid rays above the function (1 + r^2) / 2 */
     uint16_t sag_q16[3];
-    /* flux of the bundle if all rays had the max energy of the probed rays,
+    /* flux of the bundle if all its rays had the max energy of the probed rays,
      * display white times pixels */
     struct glint_real flux;
-    /* wider: enlargement of the ghost, above 1, or 0 if the ghost is drawn at
+    /* wider: factor by which the ghost is enlarged, above 1; 0: the ghost has
      * its own size. centre: fixed point of the enlargement, in pixels from the
      * picture's middle, along the light's azimuth and perpendicular to it. */
     int32_t wider_q16, centre_q8[2];

@@ -55,7 +55,7 @@ static int64_t compute_sensor_position_change(const struct glint_probe *s)
 
 static int64_t compute_stop_radius(const struct glint_probe *s)
 {
-    /* the probe's limit is 1.05 stop radii */
+    /* the limit for inside rays of the probe is 1.05 stop radii */
     const int64_t radius =
         q_divide(s->limit[GLINT_OUT_STOP_X] * 20, 21) >> GLINT_PROBE_FINE_LOG2;
 
@@ -107,8 +107,8 @@ static int choose_outline_tolerance_ratio(const struct glint_plan *p,
     return p->round_q16 || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
 }
 
-/* Returns the number of cells per side that a stop with a shade needs, so that
- * dust and masks within cells (edges/ghost_shade.h) are resolved to a pixel. */
+/* Returns the number of cells per side that is needed to resolve the dust and
+ * masks of a stop's shade within cells to a pixel (edges/ghost_shade.h). */
 static int compute_cells_for_shade(const struct glint_plan *p,
                                    const struct glint_probe *s,
                                    const struct glint_transfer *t)

@@ -26,8 +26,8 @@ struct glint_probe_node {
                    by at most 5 % of their radius */
 };
 
-/* Change of one output from ray to ray: sums of the squares of first and of
- * second differences in both directions, and the sum of second differences per
+/* Changes of one output from ray to ray: sums of the squared first and second
+ * differences in both directions; and the sum of second differences in each
  * direction (bent: across, down). */
 struct glint_probe_change {
     uint64_t first, second;
@@ -57,11 +57,11 @@ struct glint_probe {
     struct glint_probe_extent reach;
     int64_t energy;
     uint64_t least_area;            /* min area on the sensor of half a cell */
-    int64_t limit[GLINT_OUT_KINDS]; /* per output, the magnitude below which a
-                                       ray counts as inside */
+    int64_t limit[GLINT_OUT_KINDS]; /* for each output, the magnitude below
+                                       which a ray counts as inside */
 };
 
-/* Right shift of differences before they are squared. */
+/* Differences are shifted right by this before they are squared. */
 enum { GLINT_PROBE_FINE_LOG2 = 6 };
 
 /* Traces the rays of a grid of ACROSS x DOWN cells over half the window of T,

@@ -31,7 +31,8 @@ struct glint_bundle_slot {
                    the edges did not fit */
 };
 
-/* State of the plan and the bins, for reuse in the next frame. */
+/* Whether the plan and the bins of this frame can be reused in the next frame.
+ */
 enum glint_reusable {
     GLINT_REUSABLE_NOT,
     GLINT_REUSABLE_PLANNED, /* a plan has been made, but its edges have not been

@@ -214,8 +214,9 @@ static void plan_chosen_set_job(void *ctx, int number, int worker)
         plan_waves_of_set(f, job, job->first, job->set, f->worker[worker].plan);
 }
 
-/* Marks as UNSEEN the jobs of each ghost that would be invisible even if its
- * brightest pixels of all lights coincided. */
+/* Sets the wave set of the jobs of invisible ghosts to UNSEEN: those of ghosts
+ * that would be invisible even if their brightest pixels of all lights
+ * coincided. */
 static void remove_invisible_ghosts(struct glint_flare *f, int n)
 {
     const int n_ghosts = (int)f->plan.frame->lens->header->n_ghosts;
@@ -243,8 +244,8 @@ static void move_planned_bundles(struct glint_flare *f, int from, int to, int n)
     }
 }
 
-/* Removes the UNSEEN jobs of N jobs, with their bundles, and closes the gaps.
- * Returns the number of jobs left. */
+/* Removes the jobs of invisible ghosts (set UNSEEN) from N jobs, with their
+ * bundles, and closes the gaps. Returns the number of jobs left. */
 static int compact_visible_jobs(struct glint_flare *f, int n)
 {
     const int size = f->plan.frame->sets->size[0];

@@ -63,9 +63,9 @@ static void trace_window_nodes(struct glint_window_nodes *n,
     n->n_rays += ACROSS * DOWN;
 }
 
-/* Returns the second difference of output K around node (I, J), divided by 4:
- * twice the distance by which the output may deviate from a straight line
- * between nodes. At most about 2^31, as values are below 2^30. */
+/* Returns 1/4 of the second difference of output K around node (I, J): twice
+ * the distance by which the output may deviate from a straight line between
+ * nodes. At most about 2^31, as values are below 2^30. */
 static int64_t compute_second_difference(const struct glint_window_nodes *n,
                                          int k, int i, int j)
 {
@@ -178,7 +178,8 @@ static void extend_extent_to_circle(struct extent *e,
 
 /* Returns whether the cell at (I, J) is small compared with the stop and nearly
  * flat, so that the circle of the stop can be located within it. */
-static int is_cell_fine(const struct glint_window_nodes *n, int i, int j)
+static int is_cell_small_and_flat(const struct glint_window_nodes *n, int i,
+                                  int j)
 {
     int64_t size = 0, bend = 0;
 
@@ -204,7 +205,7 @@ static void extend_extent_by_cell(struct extent *e,
     if (n->beyond[j][i] & n->beyond[j][i + 1] & n->beyond[j + 1][i] &
         n->beyond[j + 1][i + 1])
         return;
-    if (!is_cell_fine(n, i, j)) {
+    if (!is_cell_small_and_flat(n, i, j)) {
         extend_extent_to_point(e, i * ONE_NODE_Q16, j * ONE_NODE_Q16);
         extend_extent_to_point(e, (i + 1) * ONE_NODE_Q16,
                                (j + 1) * ONE_NODE_Q16);
@@ -242,9 +243,9 @@ static struct extent find_transmitted_extent(struct glint_window_nodes *n,
 
 /* ------------------------------------------------------------------- window */
 
-/* Extends E along axis K (0 across, 1 down) by 1 / PART of its size on either
- * side, within 0 .. STEPS. Needed because between the lines of the grid a
- * circle that spans six or more cells bulges by a hundredth of its size. */
+/* Extends E along axis K (0 across, 1 down) by 1 / PART of its size at both
+ * ends, within 0 .. STEPS. Needed because a circle that spans six or more cells
+ * bulges by 1/100 of its size between the lines of the grid. */
 static void enlarge_extent_along_axis(struct extent *e, int k, int steps,
                                       int part)
 {
@@ -297,8 +298,8 @@ int glint_window_narrow_to_stop(struct glint_window_nodes *nodes,
             return 0;
         enlarge_extent_along_axis(&e, 0, ACROSS - 1, 48);
         enlarge_extent_along_axis(
-            &e, 1, DOWN - 1, 24); /* E covers half the height, so 1/24 of
-                                     its height is 1/48 of the full height */
+            &e, 1, DOWN - 1, 24); /* E covers half of the window's height, so
+                                     1/24 of E is 1/48 of the full height */
         more =
             narrow_window_to_extent(t, &e) &&
             t->window.u_half_q30 > LEAST_HALF_Q30 &&

@@ -23,11 +23,12 @@ enum {
 };
 
 #define MAX_ELAPSED_US 10000000
-/* Time in which the search radius of a lost lamp grows by reach_q8, us; the
- * radius is at most MAX_REACHES times reach_q8. */
+/* The search radius of a lost lamp grows by reach_q8 in this time, us, up to
+ * MAX_REACHES times reach_q8. */
 #define REACH_US    1000000
 #define MAX_REACHES 3
-/* time in which the white level falls to 1/e, us: one stop per second */
+/* time in which the remembered white level falls to 1/e, us: one stop per
+ * second */
 #define WHITE_US 1442695
 
 struct glint_lamp_tracker {
@@ -38,8 +39,8 @@ struct glint_lamp_tracker {
     struct glint_record_step step;
     struct glint_record *record; /* [max_tracks] */
     struct glint_match match;
-    int32_t *owner; /* [max_tracks]: index of the record that each element of
-                       match.seeker belongs to */
+    int32_t *owner; /* [max_tracks]: for each element of match.seeker, the index
+                       of its record */
     int32_t *order; /* [MAX_SPOTS]: indices of spots or records */
 };
 
@@ -173,7 +174,7 @@ static int32_t compute_search_radius_q8(const struct glint_lamp_tracker *t,
 
 /* Sets up the input of the matcher: one seeker per track, at the track's
  * predicted position. */
-static void make_seekers_for_tracks(struct glint_lamp_tracker *t)
+static void set_matcher_input_from_tracks(struct glint_lamp_tracker *t)
 {
     struct glint_match *m = &t->match;
 
@@ -195,9 +196,9 @@ static void make_seekers_for_tracks(struct glint_lamp_tracker *t)
     }
 }
 
-/* Returns the squared distance, in pixels^2, up to which a matched spot counts
- * as the same lamp in a picture of N spots. It shrinks with N, because among
- * many spots one lies within reach by chance. */
+/* Returns the max squared distance, pixels^2, of a matched spot from the
+ * predicted position for it to count as the same lamp in a picture of N spots.
+ * It shrinks with N: among many spots one is near by chance. */
 static int64_t
 compute_same_lamp_distance2_q16(const struct glint_lamp_tracker *t, int n)
 {
@@ -224,8 +225,9 @@ static int64_t compute_common_flux(const struct glint_seeker *s,
     return p_q16 < q_q16 ? p_q16 : q_q16;
 }
 
-/* The lamps of the picture before or after a possible cut: their total flux,
- * the flux that also occurs in the other picture (kept), and their number n. */
+/* All lamps of the picture before or of the picture after a possible cut: their
+ * total flux, the part of it that also occurs in the other picture (kept), and
+ * their number n. */
 struct side {
     int64_t flux, kept;
     int n;
@@ -241,8 +243,8 @@ static int is_flux_mostly_unmatched(const struct glint_lamp_tracker *t,
                        : b->n >= MANY_LIGHTS;
 }
 
-/* Returns whether the picture follows a cut: most flux of the previous picture
- * has vanished, and most flux of this one is new. */
+/* Returns whether the picture is the first after a cut: most flux of the
+ * previous picture has vanished, and most flux of this one is new. */
 static int is_scene_cut(const struct glint_lamp_tracker *t,
                         const struct glint_spot *spots, int n)
 {
@@ -277,11 +279,11 @@ static int is_scene_cut(const struct glint_lamp_tracker *t,
 static void match_spots_to_tracks(struct glint_lamp_tracker *t,
                                   const struct glint_spot *spots, int n)
 {
-    make_seekers_for_tracks(t);
+    set_matcher_input_from_tracks(t);
     glint_match_assign_spots(&t->match, spots, n);
     if (is_scene_cut(t, spots, n)) {
         glint_lamp_tracker_restart(t);
-        make_seekers_for_tracks(t);
+        set_matcher_input_from_tracks(t);
         glint_match_assign_spots(&t->match, spots, n);
     }
     t->was_cut = t->step.is_fresh;
@@ -289,8 +291,9 @@ static void match_spots_to_tracks(struct glint_lamp_tracker *t,
 
 /* --------------------------------------------------------------------- new */
 
-/* Returns whether record P is to be reused for a new lamp rather than record Q:
- * lost lamps first, then the fainter, then the younger. */
+/* Returns whether a new lamp gets the record P rather than the record Q.
+ * Records of lost lamps are replaced first, then those of fainter lamps, then
+ * those of younger ones. */
 static int is_record_replaced_before(const struct glint_record *p,
                                      const struct glint_record *q)
 {

@@ -6,15 +6,16 @@
 
 enum {
     NEAREST_SPOTS = 8,
-    FAR_LOG2 = 2, /* log2 of the factor on the squared distance of a faint spot,
-                     and again on that of a lost lamp */
+    FAR_LOG2 = 2, /* log2 of the factor by which the squared distance of a faint
+                     spot is multiplied, and, again, that of a spot from a lost
+                     lamp */
     PIXEL2_Q16 = 1 << 16
 };
 
 struct glint_pair {
     int64_t cost_q16; /* squared pixels */
     int32_t seeker, spot;
-    int32_t rank; /* the spot's rank in by_x */
+    int32_t rank; /* index of the spot in by_x */
 };
 
 void glint_match_allocate(struct glint_match *m, struct glint_arena *arena,

@@ -13,39 +13,40 @@
 /* ---------------------------------------------------------------- one number
  */
 
-/* Filters one number of a lamp (position, power, colour ...) over time: noise
- * is averaged, change is followed at once.
+/* Filters one number of a lamp (position, power, colour ...) over time:
+ * averages noise, but follows changes at once.
  *
  *   in   the number measured in each picture, at any frame rate
  *   out  a number that does not fluctuate, lag or jump
  *
- * Method: errors of the number are averaged with their signs (drift) and
- * without (spread). The drift of noise is a small fraction of its spread; the
- * number then moves only a small fraction of the error, like an average over
- * the pace's time. The errors of a change have one sign, or are far larger than
- * the spread; the number then follows at once. So the filter adapts to the
- * noise of each lamp, and lags behind steady change by at most five times the
- * tolerated error (floor).
+ * Method: the error of a picture is the measured number minus the filter's
+ * value. Errors are averaged with their signs (drift) and without (spread). The
+ * drift of noise is a small fraction of its spread; the value then moves only
+ * by a small fraction of the error, like an average over the pace's time. The
+ * errors of a change have one sign, or are far larger than the spread; the
+ * value then follows at once. So the filter adapts to the noise of each lamp,
+ * and lags behind steady change by at most five times the tolerated error
+ * (floor).
  *
  * A change that must not show as a jump is blended: the value changes at once,
  * and the shown number approaches it at a bounded speed.
  *
- * A number that repeats bit for bit has no noise; the filter reaches it soon
- * and exactly.
+ * A number that is bit-identical in successive pictures has no noise; the
+ * filter reaches it soon and exactly.
  *
  * Limits: numbers are below 2^43 in magnitude, times below 2^26 us. */
 #define SETTLE_US 60000
 
-/* Up to a ratio drift / spread of NOISE errors count as noise, from CHANGE on
- * as change, in between as a mixture. A single error of more than SUDDEN times
- * the spread also counts as change. Gaussian noise exceeds NOISE in one picture
- * of 100, and SUDDEN in one of 1000. */
+/* Errors are noise if drift / spread is at most NOISE, change if it is CHANGE
+ * or more, and a mixture in between. A single error of more than SUDDEN times
+ * the spread is also a change. Gaussian noise exceeds NOISE in one picture of
+ * 100, and SUDDEN in one of 1000. */
 #define NOISE_Q15  Q_CONST(0.8, 15)
 #define CHANGE_Q15 Q_CONST(0.95, 15)
 #define SUDDEN     6
 
-/* Returns X times GAIN, rounded away from 0, so that an error that is corrected
- * repeatedly reaches 0. */
+/* Returns X times GAIN, rounded away from 0, so that an error reaches 0 after
+ * repeated corrections. */
 static int64_t multiply_rounding_away(int64_t x, int32_t gain_q15)
 {
     return x < 0 ? -((-x * gain_q15 + ONE_Q15 - 1) >> 15)
@@ -95,8 +96,8 @@ static void start_filter(struct glint_follow *f, int64_t value, int64_t spread)
     *f = (struct glint_follow){.value = value, .spread = spread};
 }
 
-/* Moves the shown number towards the value: by one stride in TIME_US, so by
- * stride ELAPSED_US / TIME_US now. */
+/* Moves the shown number towards the filter's value by stride ELAPSED_US /
+ * TIME_US. */
 static void blend_filter_offset(struct glint_follow *f, int32_t elapsed_us,
                                 int32_t time_us)
 {
@@ -109,7 +110,7 @@ static void blend_filter_offset(struct glint_follow *f, int32_t elapsed_us,
         f->offset -= f->offset < 0 ? -step : step;
 }
 
-/* Returns to what degree the averaged errors are a change, 0 .. 1: 0 is noise.
+/* Returns to what degree the averaged errors are a change: 0 (noise) .. 1.
  */
 static int32_t compute_change_degree_q15(const struct glint_follow *f,
                                          int64_t floor)
@@ -123,7 +124,7 @@ static int32_t compute_change_degree_q15(const struct glint_follow *f,
 }
 
 /* Adds ERROR to the averages drift and spread. Returns to what degree ERROR is
- * a change, 0 .. 1. */
+ * a change: 0 (noise) .. 1. */
 static int32_t add_filter_error_q15(struct glint_follow *f, int64_t error,
                                     int64_t floor, int32_t smooth_q15,
                                     enum follow_as as)
@@ -141,9 +142,9 @@ static int32_t add_filter_error_q15(struct glint_follow *f, int64_t error,
     return compute_change_degree_q15(f, floor);
 }
 
-/* Moves the value towards TARGET, the measured number: slowly if the error is
- * noise, at once if it is change. FLOOR is the tolerated error, at least 1.
- * Returns to what degree the error is a change, 0 .. 1. */
+/* Moves the filter's value towards TARGET, the measured number: slowly if the
+ * error is noise, at once if it is a change. FLOOR is the tolerated error, at
+ * least 1. Returns to what degree the error is a change, 0 .. 1. */
 static int32_t step_filter_q15(struct glint_follow *f, int64_t target,
                                int64_t floor, const struct glint_pace *pace,
                                enum follow_as as)
@@ -162,8 +163,8 @@ static int32_t step_filter_q15(struct glint_follow *f, int64_t target,
     return change_q15;
 }
 
-/* Moves the value from AHEAD, the prediction, towards TARGET as if the error
- * were noise of magnitude SPREAD or more. */
+/* Moves the filter's value from AHEAD, the prediction, towards TARGET as if the
+ * error were noise of magnitude SPREAD or more. */
 static void step_filter_as_noise(struct glint_follow *f, int64_t ahead,
                                  int64_t target, int64_t spread,
                                  const struct glint_pace *pace)
@@ -179,9 +180,9 @@ static int64_t get_shown_value(const struct glint_follow *f)
     return f->value + f->offset;
 }
 
-/* Sets the value at once, but continues to show SHOWN. blend_filter_offset()
- * then moves the shown number to the value within its time, unless more changes
- * follow. */
+/* Sets the filter's value at once, but continues to show SHOWN.
+ * blend_filter_offset() then moves the shown number to the value within the
+ * blend time, unless more changes follow. */
 static void set_value_and_blend(struct glint_follow *f, int64_t value,
                                 int64_t shown)
 {
@@ -193,8 +194,8 @@ static void set_value_and_blend(struct glint_follow *f, int64_t value,
 
 /* ----------------------------------------------------------------- one lamp */
 
-/* Number of consecutive repetitions from which a spot counts as noise-free; a
- * single repetition may be chance. */
+/* A spot that is repeated in this many consecutive pictures counts as
+ * noise-free; a single repetition may be chance. */
 enum { REPEATS = 2 };
 
 enum {
@@ -232,7 +233,7 @@ static void compute_double_angle(const struct glint_spot *s, int64_t *cos2_q15,
     *sin2_q15 = (2 * c * d) >> 15;
 }
 
-/* Writes the numbers of a spot to TARGET, indexed by channel and clamped to the
+/* Writes the numbers of spot S to TARGET, indexed by channel and clamped to the
  * range that a picture allows. */
 static void list_spot_channels(const struct glint_spot *s,
                                int64_t target[GLINT_CHANNELS])
@@ -285,7 +286,8 @@ static int are_spots_equal(const struct glint_spot *a,
 }
 
 /* Returns whether spots A and B of one lamp differ in flux by more than a
- * quarter of the larger: lamps have merged, separated, or been partly covered.
+ * quarter of the larger flux. Then lamps have merged or separated, or the lamp
+ * has been partly covered.
  */
 static int has_lamp_shape_changed(const struct glint_spot *a,
                                   const struct glint_spot *b)
@@ -316,10 +318,10 @@ static void slow_unseen_lamp(struct glint_record *r,
     r->velocity_q16[axis] -= r->velocity_q16[axis] * part_q15 / (1 << 15);
 }
 
-/* Averages the lamp's velocity along AXIS with that of the step from position
- * BEFORE. A step that is noise has half the weight of a change; the first
- * change of a new lamp sets the velocity. Velocities are clamped to 16 picture
- * widths per second. */
+/* Updates the lamp's velocity along AXIS, an average, with the motion from
+ * position BEFORE. Motion that is noise has half the weight of a change; the
+ * first change of a new lamp sets the velocity. Velocities are clamped to 16
+ * picture widths per second. */
 static void update_velocity(struct glint_record *r,
                             const struct glint_record_step *step, int axis,
                             int64_t before_q16, int32_t change_q15)
@@ -363,8 +365,8 @@ follow_position_after_shape_change(struct glint_record *r,
                             r->is_new ? target_q16 : ahead_q16 + f->offset);
 }
 
-/* Returns whether the lamp moves along AXIS by more than half a pixel plus a
- * sixteenth of its radius per picture. All its errors then count as change,
+/* Returns whether the lamp moves along AXIS by more than half a pixel plus 1/16
+ * of its radius per picture. All its position errors then count as change,
  * because the drift has the wrong sign for some pictures after the motion turns
  * or ends. */
 static int is_lamp_moving(const struct glint_record *r, int axis)

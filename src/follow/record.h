@@ -18,7 +18,7 @@ struct glint_follow {
     /* averages of the errors: signed (drift), and of their magnitudes (spread)
      */
     int64_t drift, spread;
-    int64_t offset; /* the number shown is value + offset */
+    int64_t offset; /* shown number minus value */
     int64_t stride; /* max change of offset in one attack or release time */
 };
 
@@ -63,7 +63,7 @@ struct glint_record {
     int n_same; /* number of consecutive pictures whose spot equals the one
                    before */
     int is_new; /* number of further pictures in which the first motion sets the
-                   velocity; 0: the velocity is known, or the lamp does not move
+                 * velocity; 0: the velocity is known or 0
                  */
     int64_t velocity_q16[2]; /* pixels per second */
     int64_t ahead_q16[2];    /* predicted position of the lamp, pixels, _q16 */
@@ -78,7 +78,7 @@ struct glint_record {
 struct glint_record_step {
     const struct glint_lamp_tracker_config *cfg;
     struct glint_pace pace;
-    int is_fresh; /* 1: new lamps start at full level */
+    int is_fresh; /* 1: new lamps are shown at full fade level at once */
 };
 
 /* Returns the flux of a spot, clamped to 0 .. 2^42, the flux of the largest

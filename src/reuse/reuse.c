@@ -8,14 +8,15 @@
 #include "flare/state.h"
 
 struct reuse {
-    int n_lights; /* number of lights stored; -1: the frame had more lights than
-                     reuse_lights */
+    int n_lights; /* number of lights stored; -1: none, as the frame had more
+                     than reuse_lights lights */
     struct glint_flare_frame frame;
     uint64_t digest; /* digest of the waves, wave sets and tints that FRAME
                         points to */
     struct glint_light *light;
-    /* [max_bundles], NULL unless cfg.reuse_gains: colours of the bundles before
-     * they are multiplied by gain_q14; set in the first frame that has gains */
+    /* [max_bundles], NULL unless cfg.reuse_gains is set: colours of the bundles
+     * before the multiplication by gain_q14; set in the first frame that has
+     * gains */
     int32_t (*rgb_q14)[3];
     int has_rgb;
 };

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Static lights: assigns each light of a frame to a light that was planned in
- * an earlier frame, so that its rays are reused. A change of brightness becomes
- * a factor on the colours of the light's bundles. */
+ * Static lights: each light of a frame is assigned to a light that was planned
+ * in an earlier frame, whose rays are drawn again. A change of brightness
+ * becomes a factor on the colours of the light's bundles. */
 #include "flare/dim.h"
 #include "flare/state.h"
 
 enum {
     ONE_Q14 = 1 << 14,
     MOST_GAIN_Q14 = ONE_Q14 + ONE_Q14 / 2,
-    LEAST_PART = 64 /* reciprocal of the max error of a colour channel, as a
-                       fraction of the largest channel */
+    LEAST_PART = 64 /* max error of a colour channel is 1 / LEAST_PART of the
+                       largest channel */
 };
 
 /* Returns the index of the planned light nearest to LIGHT, or -1 if no planned
@@ -36,8 +36,7 @@ static int find_nearest_planned_light(const struct glint_still *s,
     return at;
 }
 
-/* Returns the power of light B in channel C divided by the power UNIT; at most
- * 2^4. */
+/* Returns the power of light B in channel C / the power UNIT; at most 2^4. */
 static int64_t compute_channel_over_power_q20(const struct glint_light *b,
                                               int c, struct glint_real unit)
 {

@@ -13,7 +13,8 @@ enum {
     /* number of distance zones around a light; each zone ends at four times the
      * distance of the previous one */
     GLINT_STAR_ZONES = 8,
-    GLINT_STAR_INVERSES = 128 /* steps of the table of 1 / x over x = 1 .. 2 */
+    GLINT_STAR_INVERSES = 128 /* number of steps of the table of 1 / x, x = 1 ..
+                                 2 */
 };
 
 /* A light that is drawn: its position, its power in units of the tables, and
@@ -21,13 +22,14 @@ enum {
 struct glint_star_lamp {
     int32_t x_q8, y_q8;
     uint64_t inner_q16; /* min r^2 in the factor 1 / r^2, pixels^2 */
-    int is_bare;        /* 1: draw the lamp's core as well */
-    /* Power per channel in three forms. line: light of the profile value 1, a
-     * mantissa of 15 bits times 2^line_exponent; core: power of the lamp, a
-     * mantissa of 15 bits times 2^core_exponent; halo: log2 of the power. */
+    int is_bare;        /* 1: the picture does not show the lamp, so its core is
+                           drawn, too */
+    /* Power per channel in three forms. line: light where the line profile is
+     * 1, a mantissa of 15 bits times 2^line_exponent; core: power of the lamp,
+     * a mantissa of 15 bits times 2^core_exponent; halo: log2 of the power. */
     int32_t line[3], line_exponent, core[3], core_exponent, halo_log2_q16[3];
-    /* Scale of the line profiles, widened by the lamp's radius: profile steps
-     * per pixel, and pixels per profile step. */
+    /* Scale of the line profiles after widening by the lamp's radius: profile
+     * steps per pixel, and pixels per profile step. */
     int32_t per_pixel_q16, pixels_q16;
     /* Halo tables, [GLINT_STAR_HALO_ROWS] each, for the tabulated lamp radii
      * below (halo) and above (next_halo) the lamp's radius, and the weight of
@@ -76,7 +78,8 @@ struct glint_star {
     struct glint_star_row *worker; /* [n_workers] */
     struct glint_blend_rows *rows; /* [n_workers] */
     uint32_t
-        inverse_q31[GLINT_STAR_INVERSES + 2]; /* 2^31 / (2^15 (1 + i / n)) */
+        inverse_q31[GLINT_STAR_INVERSES + 2]; /* [i]: 2^31 / (2^15 (1 + i / n)),
+                                                 n = GLINT_STAR_INVERSES */
 };
 
 glint_star_part_fn glint_star_add_lines_row, glint_star_add_halo_row,

@@ -15,9 +15,9 @@
 
 enum {
     GLINT_STAR_SMEAR_RINGS = 9,
-    GLINT_STAR_SMEAR_HALF = 32, /* table steps from the centre of a square to
-                                   its side */
-    /* pixels from the centre to a side of the first square */
+    GLINT_STAR_SMEAR_HALF = 32, /* number of table steps from the centre of a
+                                   square to its side */
+    /* distance from the centre to a side of the first square, pixels */
     GLINT_STAR_SMEAR_PX = 8
 };
 
@@ -34,8 +34,8 @@ glint_star_part_fn glint_star_add_smear_row;
 
 struct glint_star_smear {
     glint_star_part_fn *part; /* glint_star_add_smear_row() */
-    struct glint_real step[GLINT_STAR_SMEAR_RINGS]; /* for each square, the
-                                                       light of table value 1 */
+    /* for each square, the light of a table value of 1 */
+    struct glint_real step[GLINT_STAR_SMEAR_RINGS];
     /* [square][row][column][channel], rows for y >= 0 only. The half with y < 0
      * is its point reflection through the centre. */
     uint16_t light[GLINT_STAR_SMEAR_RINGS][GLINT_STAR_SMEAR_HALF + 1]

@@ -81,8 +81,8 @@ enum glint_status glint_star_init(struct glint_star **star,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Sets PART to the mantissas, of 15 bits, of X times each channel of RGB.
- * Returns the exponent that they have in common. */
+/* Multiplies each channel of RGB by X: sets PART to mantissas of 15 bits.
+ * Returns their common exponent. */
 static int multiply_rgb_by_real(const int32_t rgb_q14[3], struct glint_real x,
                                 int32_t part[3])
 {
@@ -108,8 +108,8 @@ static int compute_exp2_ceil(int32_t log2_of_q16)
     return (int)(far_q16 >> 16) + 1;
 }
 
-/* Returns 1 + the index of the last step of the line profiles whose light
- * exceeds 2^MIN_LOG2; 0 if none does. */
+/* Returns the number of steps of the line profiles, counted from the line's
+ * centre, up to the last one whose light exceeds 2^MIN_LOG2; 0 if none does. */
 static int count_visible_profile_steps(const struct glint_star_tables *t,
                                        int32_t min_log2_q16)
 {
@@ -124,11 +124,11 @@ static int count_visible_profile_steps(const struct glint_star_tables *t,
 }
 
 /* Divides the distances 0 .. reach around LAMP into zones, and sets the number
- * of visible profile steps in each zone. OVER: log2 of the ratio of the light
- * of profile value 1 at a distance of 1 pixel to the min visible light. */
-static void set_distance_zones(struct glint_star_lamp *lamp,
-                               const struct glint_star_tables *t,
-                               int32_t over_log2_q16)
+ * of visible profile steps in each zone. OVER: log2 of the light at a distance
+ * of 1 pixel where the profile is 1 / the min visible light. */
+static void divide_distances_into_zones(struct glint_star_lamp *lamp,
+                                        const struct glint_star_tables *t,
+                                        int32_t over_log2_q16)
 {
     const int32_t inner_log2_q16 = q_log2_q16(lamp->inner_q16) - 16 * 65536;
     int n = 1;
@@ -148,7 +148,7 @@ static void set_distance_zones(struct glint_star_lamp *lamp,
 }
 
 /* Returns the distance in pixels up to which the halo of a light of power
- * 2^POWER_LOG2 is brighter than 2^MIN_LOG2; 0 if it is nowhere. */
+ * 2^POWER_LOG2 is brighter than 2^MIN_LOG2; 0 if it is brighter nowhere. */
 static int compute_halo_reach(const struct glint_star_tables *t,
                               int32_t power_log2_q16, int32_t min_log2_q16)
 {
@@ -190,9 +190,9 @@ static struct glint_real clamp_lamp_power(struct glint_real power)
     return real_less(most, power) ? most : power;
 }
 
-/* Returns the factor by which the disc of a lamp of RADIUS pixels widens its
- * lines, and by which it dims them; at most 2^10. The profile of a uniform disc
- * is 1.73 radii wide at half its brightness. */
+/* Returns the factor by which the disc of a lamp of RADIUS pixels makes its
+ * lines wider and dimmer; at most 2^10. The profile of a uniform disc is 1.73
+ * radii wide at half its brightness. */
 static int64_t compute_line_widening_q8(const struct glint_star_tables *t,
                                         int32_t radius_q8)
 {
@@ -275,7 +275,8 @@ static int set_star_lamp(struct glint_star_lamp *lamp,
             ? compute_exp2_ceil(
                   (compute_real_log2_q16(line) + 16 * 65536 - min_log2_q16) / 2)
             : 0;
-    set_distance_zones(lamp, t, compute_real_log2_q16(line) - min_log2_q16);
+    divide_distances_into_zones(lamp, t,
+                                compute_real_log2_q16(line) - min_log2_q16);
     lamp->halo_reach =
         compute_halo_reach(t, compute_real_log2_q16(power), min_log2_q16);
     lamp->smear_reach = compute_smear_reach(

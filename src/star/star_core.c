@@ -33,9 +33,10 @@ static int64_t shift_right_clamped(int64_t x, int shift)
     return x * (INT64_C(1) << -shift);
 }
 
-static void add_core_pixel(const struct glint_star *star,
-                           const struct glint_star_lamp *lamp, int64_t i_q8,
-                           int64_t j_q8, int64_t *const light_q20[3])
+static void add_core_light_to_pixel(const struct glint_star *star,
+                                    const struct glint_star_lamp *lamp,
+                                    int64_t i_q8, int64_t j_q8,
+                                    int64_t *const light_q20[3])
 {
     const struct glint_star_tables *t = star->tables;
     const int i = (int)(i_q8 >> 8), j = (int)(j_q8 >> 8);
@@ -77,6 +78,6 @@ void glint_star_add_core_row(const struct glint_star *star,
         if (i_q8 < -end_q8 || i_q8 > end_q8)
             continue;
         glint_star_mark_lit_columns(row, x, x + 1);
-        add_core_pixel(star, lamp, i_q8, j_q8, light_q20);
+        add_core_light_to_pixel(star, lamp, i_q8, j_q8, light_q20);
     }
 }

@@ -15,13 +15,14 @@ struct span {
     struct glint_star_stretch *row;
 };
 
-/* A fractional index into a table: an entry AT, and the weight of entry AT + 1.
+/* A fractional index into a table: the integer index AT, and the weight of
+ * entry AT + 1.
  */
 struct place {
     int at, part_q15;
 };
 
-/* Splits X into index and weight, clamped such that the index is below LAST. */
+/* Splits X into index and weight, clamped so that the index is below LAST. */
 static struct place compute_table_index(int32_t x_q16, int last)
 {
     const int32_t held_q16 = q_clamp_sat(x_q16, 0, (last << 16) - 1);
@@ -95,8 +96,8 @@ static void compute_node_light(const struct span *s, struct node *n)
     }
 }
 
-/* Adds light to the STEP pixels from A up to, not including, B, interpolated
- * linearly between A and B, which are STEP pixels apart. */
+/* Adds light to the STEP pixels from A to the pixel before B, interpolated
+ * linearly between the light at A and at B. */
 static void add_interpolated_run(const struct span *s, const struct node *a,
                                  const struct node *b, int step)
 {
@@ -111,7 +112,7 @@ static void add_interpolated_run(const struct span *s, const struct node *a,
     }
 }
 
-static int64_t compute_min_magnitude(int64_t a, int64_t b)
+static int64_t compute_min_magnitude_in_interval(int64_t a, int64_t b)
 {
     const int64_t p = a < 0 ? -a : a, q = b < 0 ? -b : b;
 
@@ -127,19 +128,18 @@ static int is_halo_nearly_linear(const struct span *s, const struct node *a,
                                  const struct node *b)
 {
     const int64_t far_q8 = (int64_t)(b->x - a->x) << 8;
-    const int64_t dx_q8 = compute_min_magnitude(a->dx_q8, b->dx_q8);
+    const int64_t dx_q8 = compute_min_magnitude_in_interval(a->dx_q8, b->dx_q8);
 
-    return compute_min_magnitude(a->v_q8, b->v_q8) >= 6 * far_q8 &&
+    return compute_min_magnitude_in_interval(a->v_q8, b->v_q8) >= 6 * far_q8 &&
            dx_q8 * dx_q8 + s->dy_q8 * s->dy_q8 >= 144 * far_q8 * far_q8;
 }
 
-/* Returns the length of the run of pixels that begins at FROM and ends at X1 at
- * the latest, over which the halo is interpolated linearly: 8, 4 or 1. Runs
- * begin at multiples of their length, so that pictures do not depend on tile
- * borders. */
-static int choose_run_length(const struct span *s,
-                             const struct glint_star_line *line,
-                             const struct node *from, int x1)
+/* Returns the length of the run of pixels from FROM, up to X1 at most, over
+ * which the halo is interpolated linearly: 8, 4 or 1 pixels. Runs begin at
+ * multiples of their length, so that pictures do not depend on tile borders. */
+static int choose_interpolated_run_length(const struct span *s,
+                                          const struct glint_star_line *line,
+                                          const struct node *from, int x1)
 {
     for (int n = 8; n >= 4; n >>= 1) {
         struct node to;
@@ -154,8 +154,9 @@ static int choose_run_length(const struct span *s,
 }
 
 /* Adds the halo to pixels X0 .. X1 - 1, all of which are nearest to LINE. */
-static void add_sector_light(const struct span *s,
-                             const struct glint_star_line *line, int x0, int x1)
+static void add_halo_of_sector(const struct span *s,
+                               const struct glint_star_line *line, int x0,
+                               int x1)
 {
     struct node at = make_halo_node(s, line, x0);
 
@@ -164,7 +165,7 @@ static void add_sector_light(const struct span *s,
     for (int n; at.x < x1;) {
         struct node next;
 
-        n = choose_run_length(s, line, &at, x1);
+        n = choose_interpolated_run_length(s, line, &at, x1);
         next = make_halo_node(s, line, at.x + n);
         if (next.x < x1 || n > 1)
             compute_node_light(s, &next);
@@ -174,9 +175,10 @@ static void add_sector_light(const struct span *s,
 }
 
 /* Adds the halo to pixels X0 .. X1 - 1, sector by sector; a sector is the set
- * of pixels nearest to one line. Lines are sorted by angle, so their sectors
- * follow from right to left below the lamp, and from left to right above it. */
-static void add_light_of_all_sectors(const struct span *s, int x0, int x1)
+ * of pixels that are nearest to one line. Lines are sorted by angle, so in a
+ * row below the lamp their sectors follow each other from right to left, above
+ * it from left to right. */
+static void add_halo_of_all_sectors(const struct span *s, int x0, int x1)
 {
     const struct glint_star_tables *t = s->star->tables;
     const int below = s->dy_q8 >= 0;
@@ -188,18 +190,18 @@ static void add_light_of_all_sectors(const struct span *s, int x0, int x1)
         const int here = q_clamp_sat((border_q8 + 127) >> 8, x0, x1);
 
         if (below && here < at) {
-            add_sector_light(s, &t->line[line], here, at);
+            add_halo_of_sector(s, &t->line[line], here, at);
             at = here;
         } else if (!below && here > at) {
-            add_sector_light(s, &t->line[line], at, here);
+            add_halo_of_sector(s, &t->line[line], at, here);
             at = here;
         }
         line = line + 1 < t->n_lines ? line + 1 : 0;
     }
     if (below)
-        add_sector_light(s, &t->line[line], x0, at);
+        add_halo_of_sector(s, &t->line[line], x0, at);
     else
-        add_sector_light(s, &t->line[line], at, x1);
+        add_halo_of_sector(s, &t->line[line], at, x1);
 }
 
 void glint_star_add_halo_row(const struct glint_star *star,
@@ -221,5 +223,5 @@ void glint_star_add_halo_row(const struct glint_star *star,
     if (x0 >= x1)
         return;
     glint_star_mark_lit_columns(row, x0, x1);
-    add_light_of_all_sectors(&s, x0, x1);
+    add_halo_of_all_sectors(&s, x0, x1);
 }

@@ -33,7 +33,7 @@ static struct stretch intersect_pixel_ranges(struct stretch a, struct stretch b)
     return (struct stretch){q_larger(a.x0, b.x0), q_smaller(a.x1, b.x1)};
 }
 
-/* What is needed to draw one line of one lamp in one row of pixels. */
+/* State for drawing one line of one lamp in one row of pixels. */
 struct strip {
     const struct glint_star *star;
     const struct glint_star_lamp *lamp;
@@ -42,7 +42,7 @@ struct strip {
     struct glint_star_stretch *row;
 };
 
-/* Looks up 1 / R2, pixels^-2: it is the returned value times 2^(1 - BITS). */
+/* Looks up 1 / R2 in pixels^-2. The result times 2^(1 - BITS) is 1 / R2. */
 static uint32_t look_up_inverse_square(const struct glint_star *star,
                                        uint64_t r2_q16, int *bits)
 {
@@ -57,7 +57,7 @@ static uint32_t look_up_inverse_square(const struct glint_star *star,
     return v[0] - ((v[0] - v[1]) * part >> 8);
 }
 
-static void add_line_pixel(const struct strip *s, int x, int64_t v_q16)
+static void add_line_light_to_pixel(const struct strip *s, int x, int64_t v_q16)
 {
     const int at = (int)(v_q16 >> 16), part_q8 = (int)(v_q16 >> 8 & 255);
     const int64_t dx_q8 = (int64_t)x * 256 + 128 - s->lamp->x_q8;
@@ -84,9 +84,9 @@ static void add_line_pixel(const struct strip *s, int x, int64_t v_q16)
 }
 
 /* Adds the line's light to those pixels of HERE that are less than SEEN profile
- * steps from its centre. */
-static void add_line_pixel_range(const struct strip *s, struct stretch here,
-                                 int seen)
+ * steps from the line's centre. */
+static void add_line_light_to_pixel_range(const struct strip *s,
+                                          struct stretch here, int seen)
 {
     const int64_t step_q16 = s->lamp->per_pixel_q16;
     const int64_t dx_q8 = (int64_t)here.x0 * 256 + 128 - s->lamp->x_q8;
@@ -104,13 +104,13 @@ static void add_line_pixel_range(const struct strip *s, struct stretch here,
         const int64_t size_q16 = v_q16 < 0 ? -v_q16 : v_q16;
 
         if (size_q16 < end_q16)
-            add_line_pixel(s, x, size_q16);
+            add_line_light_to_pixel(s, x, size_q16);
     }
 }
 
 /* Returns the range of pixels of the row that lie within SEEN profile steps of
  * the line's centre. */
-static struct stretch find_strip_pixels(const struct strip *s, int seen)
+static struct stretch find_pixels_near_line(const struct strip *s, int seen)
 {
     const int64_t middle_q8 = (int64_t)s->dy_q8 * s->line->cot_q16 >> 16;
     const int64_t v_q8 = ((int64_t)seen * s->lamp->pixels_q16 >> 8) + 1;
@@ -135,25 +135,27 @@ static void add_line_strip(const struct strip *s, struct stretch here)
 
         if (lamp->seen[i] == 0)
             continue;
-        row = intersect_pixel_ranges(here, find_strip_pixels(s, lamp->seen[i]));
+        row = intersect_pixel_ranges(here,
+                                     find_pixels_near_line(s, lamp->seen[i]));
         if (row.x0 >= row.x1)
             continue;
         if (down >= near) {
-            add_line_pixel_range(
+            add_line_light_to_pixel_range(
                 s,
                 intersect_pixel_ranges(row,
                                        (struct stretch){x - far + 1, x + far}),
                 lamp->seen[i]);
         } else {
-            add_line_pixel_range(
+            add_line_light_to_pixel_range(
                 s,
                 intersect_pixel_ranges(
                     row, (struct stretch){x - far + 1, x - near + 1}),
                 lamp->seen[i]);
-            add_line_pixel_range(s,
-                                 intersect_pixel_ranges(
-                                     row, (struct stretch){x + near, x + far}),
-                                 lamp->seen[i]);
+            add_line_light_to_pixel_range(
+                s,
+                intersect_pixel_ranges(row,
+                                       (struct stretch){x + near, x + far}),
+                lamp->seen[i]);
         }
     }
 }

@@ -12,22 +12,22 @@
 enum {
     HALF = GLINT_STAR_SMEAR_HALF,
     RINGS = GLINT_STAR_SMEAR_RINGS,
-    /* log2 of the table steps per pixel in the first square, and log2 of half
-     * its side, pixels _q8 */
+    /* log2 of the number of table steps per pixel in the first square, and log2
+     * of half the first square's side in pixels, _q8 */
     STEPS_LOG2 = 2,
     FIRST_LOG2 = 11
 };
 
-/* What is needed to draw one ring, the area between two nested squares, in one
- * row of pixels. */
+/* State for drawing one ring (the area between two nested squares) in one row
+ * of pixels. */
 struct span {
     const struct glint_star_smear *table;
     const struct glint_star_lamp *lamp;
     int64_t (*light_q20)[GLINT_CODES_WIDTH];
     int ring;
-    int32_t share[3]; /* light of table value 1 per channel, before the shift */
-    int shift;        /* the light of table value 1 is share times 2^-shift,
+    int32_t share[3]; /* light of a table value of 1 per channel, times 2^shift,
                          _q20 */
+    int shift;        /* right shift for SHARE times a table value */
 };
 
 static void set_smear_ring(struct span *s, int ring)
@@ -43,8 +43,8 @@ static void set_smear_ring(struct span *s, int ring)
 
 /* Adds the smear to the pixel at index AT of the row, whose middle lies at (DX,
  * DY) pixels from the lamp. */
-static void add_smear_pixel(const struct span *s, int at, int64_t dx_q8,
-                            int64_t dy_q8)
+static void add_smear_light_to_pixel(const struct span *s, int at,
+                                     int64_t dx_q8, int64_t dy_q8)
 {
     const int turn = dy_q8 < 0 ? -1 : 1, down = s->ring;
     /* position in the table, in table steps */
@@ -88,8 +88,8 @@ void glint_star_add_smear_row(const struct glint_star *star,
     struct span s = {.table = star->tables->smear,
                      .lamp = lamp,
                      .light_q20 = row->light_q20,
-                     .ring = RINGS}; /* no valid ring, so that the first pixel
-                                        sets one */
+                     .ring = RINGS}; /* an invalid ring, so that the first pixel
+                                        sets a valid one */
     const int64_t dy_q8 = (int64_t)row->y * 256 + 128 - lamp->y_q8;
     const int64_t high_q8 = dy_q8 < 0 ? -dy_q8 : dy_q8;
     const int middle = lamp->x_q8 >> 8;
@@ -112,6 +112,6 @@ void glint_star_add_smear_row(const struct glint_star *star,
             continue;
         if (ring != s.ring)
             set_smear_ring(&s, ring);
-        add_smear_pixel(&s, x - row->x0, dx_q8, dy_q8);
+        add_smear_light_to_pixel(&s, x - row->x0, dx_q8, dy_q8);
     }
 }

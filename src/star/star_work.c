@@ -29,8 +29,8 @@ static int64_t count_square_pixels(const struct glint_star *star,
  * each distance zone a line has two pieces, each as long as the zone and as
  * wide as the line is visible. The on-screen fraction of the pieces is assumed
  * to equal that of the zone's area. */
-static int64_t count_line_pixels(const struct glint_star *star,
-                                 const struct glint_star_lamp *lamp)
+static int64_t count_pixels_lit_by_lines(const struct glint_star *star,
+                                         const struct glint_star_lamp *lamp)
 {
     int64_t sum = 0;
 
@@ -54,7 +54,7 @@ int64_t glint_star_estimate_pixels(const struct glint_star *star)
     for (int i = 0; i < star->n_lamps; i++) {
         const struct glint_star_lamp *lamp = &star->lamp[i];
 
-        sum += count_line_pixels(star, lamp);
+        sum += count_pixels_lit_by_lines(star, lamp);
         /* a circle covers pi / 4, about 201 / 256, of its bounding square */
         sum += count_square_pixels(star, lamp, lamp->halo_reach) * 201 >> 8;
         sum += count_square_pixels(star, lamp, lamp->smear_reach);

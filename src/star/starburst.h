@@ -12,12 +12,13 @@
  * integrated over the spectrum and over each pixel. It is drawn as the sum of
  * three components from tables:
  *
- *   lines   light that a pair of parallel edges diffracts to both sides, at
- * right angles to the edges: a profile across the line / distance^2 halo    the
- * far field minus the lines, which is smooth: tails of the profiles and light
- * from the corners; for a circular stop, all of the light core    the exact
- * pattern minus lines and halo, near the light, on a lattice finer than pixels;
- * not drawn for lamps whose own image is in the picture
+ *   lines   light that a pair of parallel edges diffracts at right angles to
+ *           both edges, to either side: a profile across the line / distance^2
+ *   halo    the smooth rest of the far field: tails of the profiles, and light
+ *           from the corners; for a circular stop, the whole far field
+ *   core    the exact pattern minus lines and halo, near the light, on a
+ *           lattice finer than pixels; not drawn for lamps that the picture
+ *           itself shows
  *
  * Only pixels where a fraction of a code is visible are drawn. The caller owns
  * all memory. Drawing cannot fail and is bit-identical for any number of
@@ -37,9 +38,9 @@
 #include "tile/pass.h"
 
 enum {
-    GLINT_STAR_PROFILE = 128, /* steps of a profile */
-    GLINT_STAR_CORE = 48, /* lattice steps from the centre of the core table to
-                             its rim */
+    GLINT_STAR_PROFILE = 128, /* number of steps of a line profile */
+    GLINT_STAR_CORE = 48, /* number of lattice steps from the centre of the core
+                             table to its rim */
     /* rows of a halo table: two per octave of r^2, beginning at r^2 = 2^4
      * pixels^2 */
     GLINT_STAR_HALO_ROWS = 45,
@@ -61,10 +62,11 @@ struct glint_star_line {
     int32_t cos_q30, sin_q30;
     int32_t cot_q16;    /* cos / sin of the angle, clamped to +-2^12 */
     int32_t across_q16; /* 1 / sin of the angle, at most 2^12 */
-    /* cotangent of the angle half-way between this line and the next */
+    /* cotangent of the angle midway between this line and the next */
     int32_t border_q16;
-    /* [i]: light at v = i reach / 128, multiplied by r^2 / (1 - (v / r)^2), in
-     * units of the tables' member step. Entries from 128 on are 0. */
+    /* [i]: light at the distance v = i reach / 128 from the line, multiplied by
+     * r^2 / (1 - (v / r)^2), where r is the distance from the lamp; in units of
+     * the tables' member step. Entries from 128 on are 0. */
     uint16_t profile[GLINT_STAR_PROFILE + 2][3];
 };
 
@@ -77,11 +79,12 @@ struct glint_star_tables {
     int n_lines; /* 1 .. GLINT_MAX_BLADES, sorted by angle */
     const struct glint_star_line *line;
     int first; /* index of the line nearest to angle 0: 0 or n_lines - 1 */
-    /* light of profile value 1 */
+    /* light where the line profile is 1 */
     struct glint_real step;
     uint16_t line_max[GLINT_STAR_PROFILE]; /* for each profile step, the max
                                               over all lines and channels */
-    int32_t reach_q8;           /* largest |v| of a profile, 1 .. 2^14 pixels */
+    int32_t reach_q8;           /* distance from the line at which profiles end,
+                                   1 .. 2^14 pixels */
     int32_t reach_log2_q16;     /* log2 of reach_q8 */
     int32_t per_pixel_q16;      /* profile steps per pixel, at most 128 */
     int32_t pixels_q16;         /* pixels per profile step */
@@ -91,8 +94,9 @@ struct glint_star_tables {
     int32_t width_q8;
     int32_t inner_q8; /* distance from the lamp, pixels, within which the factor
                          1 / r^2 is constant */
-    /* Halo of a point light: log2 of light times r^2 is halo_log2_q16 plus
-     * halo, _q11. halo_max: the max of each row. */
+    /* Halo of a point light: log2 of light times r^2 (r: distance from the
+     * lamp, pixels) is halo_log2_q16 plus the entry of HALO, _q11. halo_max:
+     * the max of each row. */
     int32_t halo_log2_q16;
     uint16_t halo[GLINT_STAR_HALO_ROWS][GLINT_STAR_HALO_COLUMNS][3];
     uint16_t halo_max[GLINT_STAR_HALO_ROWS];

@@ -3,10 +3,11 @@
  * Sorts items into tiles by their bounding boxes in pixels: the list of a tile
  * has the indices of all items whose boxes overlap the tile.
  *
- * Three steps: count, prefix sum, scatter. So every list has exactly the length
- * that it needs, and is sorted by item whatever the order in which workers add
- * items. The same code serves both levels: a frame is binned into large tiles,
- * and a large tile into small tiles. */
+ * Three steps: entries per tile are counted, a prefix sum converts counts to
+ * the beginnings of the lists, items are added to the lists. So lists need no
+ * spare memory, and they are sorted by item whatever the order in which workers
+ * add items. The same code serves both levels: a frame is binned into large
+ * tiles, and a large tile into small tiles. */
 #ifndef GLINT_TILE_BINS_H
 #define GLINT_TILE_BINS_H
 
@@ -18,10 +19,11 @@ struct glint_bins {
     struct glint_box region; /* pixels that the tiles cover */
     int tile_log2;
     int tiles_x, tiles_y;
-    /* [tiles_x * tiles_y + 1]: index in ref of each tile's first entry; before
-     * the prefix sum, the number of entries of each tile */
+    /* [tiles_x * tiles_y + 1]: for each tile, the index in ref at which its
+     * list begins; before the prefix sum, the length of its list */
     int32_t *start;
-    int32_t *ref; /* indices of items, rising within a tile */
+    int32_t *ref; /* lists of all tiles, one after the other: indices of items,
+                     rising within a list */
 };
 
 /* Initialises BINS for tiles of 2^TILE_LOG2 x 2^TILE_LOG2 pixels that cover

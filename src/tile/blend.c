@@ -3,7 +3,8 @@
 
 #include "base/q.h"
 
-/* Returns the light that is seen past a partial cover: LIGHT (1 - COVER). */
+/* Returns the light that a layer with COVER lets through from behind it: LIGHT
+ * (1 - COVER). */
 static int64_t attenuate_light(int64_t light, int cover_q8)
 {
     return q_shift(light * (GLINT_COVER_ALL - cover_q8), 8);
@@ -47,8 +48,8 @@ static void blend_linear_light(const struct glint_pass_rows *rows, int n_x,
 /* Combines the cover of the current pass with the total cover of the passes
  * behind it: 1 - (1 - cover) (1 - cover of this pass). COVERED is 0 if no
  * earlier pass gave cover; the total is then not yet initialised. */
-static void blend_cover(struct glint_blend_rows *s, int row, int n_x,
-                        int covered)
+static void add_pass_cover_to_total(struct glint_blend_rows *s, int row,
+                                    int n_x, int covered)
 {
     uint16_t *to_q8 = s->cover.cover_q8[row];
 
@@ -83,24 +84,26 @@ static enum glint_given blend_pass(const struct glint_pass *pass, void *state,
             blend_code_light(rows, row, n_x, scratch,
                              more == GLINT_GIVES_COVER);
         if (more == GLINT_GIVES_COVER)
-            blend_cover(scratch, row, n_x, given == GLINT_GIVES_COVER);
+            add_pass_cover_to_total(scratch, row, n_x,
+                                    given == GLINT_GIVES_COVER);
     }
     return more > given ? more : given;
 }
 
 /* ------------------------------------------------------------------- cover */
 
-/* Copies each of PART cover values at half resolution to 2 x 2 pixels. */
-static void double_cover_pixels(const uint16_t *from_q8, int part,
-                                struct glint_cover_rows *to)
+/* Copies each of the PART cover values of a row at half resolution to 2 x 2
+ * pixels. */
+static void upsample_cover_row(const uint16_t *from_q8, int part,
+                               struct glint_cover_rows *to)
 {
     for (int i = 0; i < 2 * part; i++)
         to->cover_q8[0][i] = to->cover_q8[1][i] = from_q8[i / 2];
 }
 
-static void hide_picture_row(const struct glint_tiles *tiles,
-                             struct glint_box tile, int y,
-                             struct glint_tile_scratch *scratch)
+static void attenuate_picture_row(const struct glint_tiles *tiles,
+                                  struct glint_box tile, int y,
+                                  struct glint_tile_scratch *scratch)
 {
     enum { PART = GLINT_CODES_WIDTH / 2 };
     struct glint_cover_rows *wide = &scratch->blend->next;
@@ -114,7 +117,7 @@ static void hide_picture_row(const struct glint_tiles *tiles,
             scratch->blend->cover.cover_q8[0] + at - tile.x0;
 
         if (tiles->half) {
-            double_cover_pixels(from_q8, part, wide);
+            upsample_cover_row(from_q8, part, wide);
             from_q8 = wide->cover_q8[0];
         }
         if (tiles->image->format != GLINT_LINEAR_Q20)
@@ -128,4 +131,4 @@ static void hide_picture_row(const struct glint_tiles *tiles,
 }
 
 const struct glint_blend glint_blend = {blend_pass, glint_hide_run_background,
-                                        hide_picture_row};
+                                        attenuate_picture_row};

@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Blends several passes, and hides parts of the picture behind them.
+ * Blends several passes, from back to front, and hides the picture behind them.
+ * Light and cover accumulate from pass to pass:
  *
- *    light = light (1 - cover of the next) + light of the next
- *    cover = 1 - (1 - cover) (1 - cover of the next)
+ *    light = light (1 - cover of the pass) + light of the pass
+ *    cover = 1 - (1 - cover) (1 - cover of the pass)
  */
 #ifndef GLINT_TILE_BLEND_H
 #define GLINT_TILE_BLEND_H
 
 #include "tile/pass.h"
 
-/* The functions that draw several passes: set tiles->blend to its address. */
+/* The functions that blend several passes: set the member blend of struct
+ * glint_tiles to the address of this variable. */
 extern const struct glint_blend glint_blend;
 
 #endif

@@ -9,7 +9,7 @@ struct visit {
     const struct glint_pass *pass;
     int n_passes;
     void *state[GLINT_MAX_PASSES];
-    unsigned awake; /* bit i: pass i draws in this tile */
+    unsigned awake; /* bit i is set if pass i draws in this tile */
     struct glint_box tile;
     struct glint_tile_scratch *scratch;
 };
@@ -34,11 +34,11 @@ static enum glint_given call_active_passes(const struct visit *v,
     return given;
 }
 
-/* Hides the covered fraction of row Y of the picture if the passes gave cover.
- * Used for linear pictures and at half resolution, where cover and light are
- * applied in separate steps. */
-static void hide_picture_row(const struct visit *v, enum glint_given given,
-                             int y)
+/* Hides the covered fraction of the pixels in row Y of the picture if the
+ * passes gave cover. Used for linear pictures and at half resolution, where
+ * cover and light are applied in separate steps. */
+static void attenuate_picture_row(const struct visit *v, enum glint_given given,
+                                  int y)
 {
     if (given == GLINT_GIVES_COVER)
         v->tiles->blend->hide(v->tiles, v->tile, y, v->scratch);
@@ -47,7 +47,7 @@ static void hide_picture_row(const struct visit *v, enum glint_given given,
 /* ------------------------------------------------------------------ linear */
 
 /* Expands N values to 2 N in place by repeating each value. */
-static void double_row_values(int32_t *row, int n)
+static void repeat_each_row_value(int32_t *row, int n)
 {
     for (int i = n - 1; i >= 0; i--)
         row[2 * i] = row[2 * i + 1] = row[i];
@@ -71,9 +71,9 @@ static void draw_linear_tile(const struct visit *v)
         given = call_active_passes(v, &rows);
         if (given == GLINT_GIVES_NOTHING)
             continue;
-        hide_picture_row(v, given, rows.y);
+        attenuate_picture_row(v, given, rows.y);
         for (int c = 0; c < 3 && t->half; c++)
-            double_row_values(rows.light_q20[c], n);
+            repeat_each_row_value(rows.light_q20[c], n);
         for (int k = y; k < end; k++)
             v->scratch->n_held += glint_resolve_add_to_linear(
                 t->image, x, k, n_x, (const int32_t *const *)rows.light_q20);
@@ -145,7 +145,7 @@ static void draw_half_resolution_tile(const struct visit *v)
 
         if (given == GLINT_GIVES_NOTHING || !v->tiles->image)
             continue;
-        hide_picture_row(v, given, rows.y);
+        attenuate_picture_row(v, given, rows.y);
         resolve_half_resolution_row(v, &rows);
     }
 }

@@ -27,17 +27,19 @@
 
 enum { GLINT_MAX_PASSES = 4 };
 
-/* Output of a pass: rows Y .. Y + N - 1 of the picture within the current tile,
- * beginning at the tile's left side. For a linear picture a pass writes
+/* Where a pass writes its output: rows Y .. Y + N - 1 of the picture, from the
+ * left side of the current tile on. For a linear picture a pass writes
  * light_q20, and N is 1; otherwise it writes LIGHT. */
 struct glint_pass_rows {
     int y, n;
-    struct glint_light_rows *light; /* _q16, padded to GLINT_LANES */
-    int32_t *light_q20[3];          /* R, G, B: one value per pixel */
+    struct glint_light_rows *light; /* light, _q16; rows padded to GLINT_LANES
+                                     */
+    int32_t *light_q20[3];          /* R, G and B: one value per pixel of the
+                                       row */
     struct glint_cover_rows *cover; /* if NULL, passes must not give cover */
 };
 
-/* Type of the output of a pass for its rows. */
+/* What a pass has written for its rows. */
 enum glint_given {
     GLINT_GIVES_NOTHING,
     GLINT_GIVES_LIGHT, /* light in all three channels */
@@ -46,8 +48,8 @@ enum glint_given {
 
 struct glint_pass {
     const void *self;
-    /* Begins row ROW of tiles on worker WORKER. Returns the STATE that is
-     * passed to the functions below. */
+    /* Begins row ROW of tiles on worker WORKER. Returns the STATE that the
+     * functions below get. */
     void *(*begin)(const void *self, struct glint_box row, int worker);
     /* Begins tile TILE. Returns 0 if the pass draws nothing in it; rows is
      * not called then. */
@@ -61,7 +63,7 @@ struct glint_pass {
 struct glint_tiles {
     /* The whole picture, in pixels of the drawing resolution. */
     struct glint_box region;
-    int tile_log2; /* 3 .. 6 */
+    int tile_log2; /* log2 of the side of a tile, 3 .. 6 */
     int half; /* 1: half resolution: each pixel drawn is 2 x 2 pixels of the
                  picture */
     int width, height;               /* size of the picture */
@@ -79,7 +81,7 @@ struct glint_tiles {
 struct glint_tile_scratch {
     struct glint_light_rows *light;
     int32_t
-        *light_q20; /* [3][2 * width of a tile]: light, for linear pictures */
+        *light_q20; /* [3][2 * width of a tile]: light for linear pictures */
     struct glint_quads_rows *codes;
     int n_tiles; /* number of tiles in which at least one pass drew */
     int n_held;  /* number of samples of a linear picture that were clamped */

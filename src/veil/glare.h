@@ -5,10 +5,10 @@
  *
  *     bytes = glint_veil_bytes(&cfg);                         once
  *     glint_veil_init(&veil, &cfg, mem, bytes);
- *     glint_veil_read_picture(veil, &image, white, workers);          each
- * frame glint_veil_add_lamp(veil, x_q8, y_q8, power, rgb_q14);      light above
- * white glint_veil_spread_light(veil, spreads, n); glint_veil_draw(veil, NULL,
- * flare, &image);   instead of glint_flare_draw()
+ *     glint_veil_read_picture(veil, &image, white, workers);  each frame
+ *     glint_veil_add_lamp(veil, x_q8, y_q8, power, rgb_q14);  light above white
+ *     glint_veil_spread_light(veil, spreads, n);
+ *     glint_veil_draw(veil, NULL, flare, &image);  not glint_flare_draw()
  *
  * Lens, barrel and camera body scatter light far away from its image point. ISO
  * 9358 measures the veiling glare index V: the fraction of white light in the
@@ -45,15 +45,16 @@
 enum {
     GLINT_VEIL_CELLS = 64,  /* max number of cells along the picture's longer
                                side */
-    GLINT_VEIL_SPREADS = 8, /* max number of Gaussians */
+    GLINT_VEIL_SPREADS = 8, /* max number of Gaussian kernels */
     GLINT_VEIL_LEAST_PX = 4 /* min side of a cell, pixels */
 };
 
 /* A Gaussian kernel over cells, separable in x and y. */
 struct glint_veil_spread {
-    /* [D]: the fraction of a cell's light that a cell at a distance of D cells
-     * receives, D = 0 .. n, in a row of n cells that is continued by mirroring
-     * with period 2 n. Entry 0 plus entry n plus twice all others is 2^30. */
+    /* [D], D = 0 .. n: the fraction of its light that a cell scatters to a cell
+     * at a distance of D cells, in a row of n cells that is continued by
+     * mirroring with period 2 n. Entry 0 plus entry n plus twice all others is
+     * 2^30. */
     int32_t across_q30[GLINT_VEIL_CELLS + 1], down_q30[GLINT_VEIL_CELLS + 1];
     /* fraction of all light that this kernel scatters, above 0 */
     struct glint_real share;
@@ -79,14 +80,14 @@ typedef void glint_veil_front_fn(const struct glint_veil_row *row,
                                  const struct glint_pass_rows *rows, int k);
 glint_veil_front_fn glint_veil_add_front_row;
 
-/* Table of the fraction of the front element that is covered by dirt in the
- * beam of each pixel. A program links the drawing code only if it refers to
+/* Table of cover: the fraction of the beam of each pixel that dirt on the front
+ * element covers. A program links the drawing code only if it refers to
  * glint_veil_add_front_row. */
 struct glint_veil_front {
     glint_veil_front_fn *row; /* glint_veil_add_front_row() */
     int n_x, n_y;             /* GLINT_VEIL_FRONT_NODES() of width and height */
-    /* [n_y][n_x]: cover divided by max cover, at the top left corner of every
-     * fourth pixel. Must stay valid while the veil is drawn. */
+    /* [n_y][n_x]: cover / max cover, at the top left corner of every fourth
+     * pixel in every fourth row. Must stay valid while the veil is drawn. */
     const uint16_t *part_q16;
 };
 
@@ -128,9 +129,9 @@ void glint_veil_spread_light(struct glint_veil *veil,
                              const struct glint_veil_spread *spreads, int n);
 
 /* Computes the light that dirt on the front element scatters: convolves the
- * light of the cells with N Gaussians, whose shares apply at the max cover.
- * FRONT must stay valid while the veil is drawn; NULL, the initial state: no
- * dirt. Requires has_front in the configuration. */
+ * light of the cells with N Gaussians, whose shares apply where the cover is at
+ * its max. FRONT must stay valid while the veil is drawn; NULL, the initial
+ * state: no dirt. Requires has_front in the configuration. */
 void glint_veil_front(struct glint_veil *veil,
                       const struct glint_veil_front *front,
                       const struct glint_veil_spread *spreads, int n);

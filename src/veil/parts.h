@@ -22,8 +22,8 @@ struct glint_veil_axis {
      * pixel's cell and the next cell: (1 - t)^2 / 2, 1 minus both others,
      * t^2 / 2, where t = 0 .. 1 is the position in the cell. */
     uint16_t *share_q16[3];
-    /* For each cell, width in pixels / number of pixels summed, so that a
-     * uniform picture gives uniform cells. */
+    /* for each cell: its exact width in pixels / number of pixels summed, so
+     * that a uniform picture gives uniform cells */
     uint32_t *fill_q16;
 };
 
@@ -42,18 +42,18 @@ struct glint_veil {
     int n_x, n_y; /* number of cells across (n_x) and down (n_y) */
     struct glint_veil_axis across, down;
     /* Light of the cells, [3][n_y][n_x], white times pixels, in three stages:
-     * the sum (light); scaled to 31 bits (narrow); convolved along x (along).
+     * summed (light), scaled to 31 bits (narrow), convolved along x (along).
      */
     int64_t *light_q16;
     int32_t *narrow, *along;
     int64_t *sum_q30;   /* veil of each cell, 1 = white */
     int32_t *cell_q20;  /* veil of each cell, 1 = white, clamped to 0 .. 2^28 */
     int is_linear, any; /* is_linear: 1 if the picture is linear; any: 1 if the
-                           veil has light */
-    const struct glint_veil_front *front; /* cover of the front element, or
-                                             NULL */
-    int32_t *front_q20; /* light of each cell that dirt on the front element
-                           scatters, as cell_q20; NULL without has_front */
+                           veil is not dark */
+    const struct glint_veil_front *front; /* cover table of the front element,
+                                             or NULL */
+    int32_t *front_q20; /* light that dirt on the front element scatters to each
+                           cell, in units of cell_q20; NULL without has_front */
     int any_front;      /* 1: dirt on the front element scatters light */
     int front_down;     /* right shift from front_q20 to the 16-bit light of
                            pictures in codes, at least 4 */
@@ -66,7 +66,7 @@ struct glint_veil {
 };
 
 /* Sets CELL to the light of all cells convolved with the sum of N Gaussians.
- * Returns whether there is any light. */
+ * Returns whether any cell has light. */
 int glint_veil_spread_light_to(struct glint_veil *veil,
                                const struct glint_veil_spread *spreads, int n,
                                int32_t *cell_q20);

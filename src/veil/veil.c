@@ -90,8 +90,8 @@ size_t glint_veil_bytes(const struct glint_veil_config *cfg)
 /* Sets fill_q16 of each of N cells along SIDE pixels: the cell's exact width /
  * number of pixels summed in it. Pixels are read in groups of STEP, and a group
  * belongs to the cell of its first pixel. */
-static void set_cell_fill_factors(struct glint_veil_axis *axis, int side, int n,
-                                  int step)
+static void compute_cell_fill_factors(struct glint_veil_axis *axis, int side,
+                                      int n, int step)
 {
     for (int k = 0; k < n; k++)
         axis->fill_q16[k] = 0;
@@ -150,8 +150,8 @@ enum glint_status glint_veil_init(struct glint_veil **veil,
     v->front = NULL;
     set_axis_weights(&v->across, cfg->width, v->n_x);
     set_axis_weights(&v->down, cfg->height, v->n_y);
-    set_cell_fill_factors(&v->across, cfg->width, v->n_x, 1);
-    set_cell_fill_factors(&v->down, cfg->height, v->n_y, 2);
+    compute_cell_fill_factors(&v->across, cfg->width, v->n_x, 1);
+    compute_cell_fill_factors(&v->down, cfg->height, v->n_y, 2);
     for (int i = 0; i < cfg->n_workers; i++)
         v->worker[i].veil = v;
     for (int i = 0; i < 3 * v->n_x * v->n_y; i++) {
@@ -168,8 +168,9 @@ enum glint_status glint_veil_init(struct glint_veil **veil,
  * fit into 63 bits. */
 enum { MOST_Q20 = 1 << 28 };
 
-/* Returns the right shift that makes the largest of N sums fit into 30 bits. */
-static int count_excess_bits(const int64_t *light_q16, int n)
+/* Returns the right shift after which the largest of N sums fits into 30 bits.
+ */
+static int compute_shift_to_30_bits(const int64_t *light_q16, int n)
 {
     uint64_t all = 0;
     int over = 0;
@@ -181,10 +182,11 @@ static int count_excess_bits(const int64_t *light_q16, int n)
     return over;
 }
 
-/* Sets SHARE[i], for each of N cells in a row, to the fraction of the light of
- * cell i that reaches cell TO, directly or mirrored at a border. */
-static void set_spread_shares(const int32_t *table_q30, int n, int to,
-                              int32_t share_q30[GLINT_VEIL_CELLS])
+/* Sets SHARE[i], for each of N cells in a row, to the fraction of its light
+ * that cell i scatters to cell TO, directly or mirrored at a border. */
+static void
+compute_spread_fractions_to_cell(const int32_t *table_q30, int n, int to,
+                                 int32_t share_q30[GLINT_VEIL_CELLS])
 {
     for (int from = 0; from < n; from++) {
         const int direct = to > from ? to - from : from - to;
@@ -214,7 +216,7 @@ static void spread_light_across(struct glint_veil *v,
     int32_t share_q30[GLINT_VEIL_CELLS];
 
     for (int x = 0; x < v->n_x; x++) {
-        set_spread_shares(s->across_q30, v->n_x, x, share_q30);
+        compute_spread_fractions_to_cell(s->across_q30, v->n_x, x, share_q30);
         for (int row = 0; row < 3 * v->n_y; row++)
             v->along[row * v->n_x + x] = sum_weighted_cells(
                 v->narrow + row * v->n_x, 1, share_q30, v->n_x);
@@ -245,7 +247,7 @@ static void spread_light_down(struct glint_veil *v,
     int32_t share_q30[GLINT_VEIL_CELLS];
 
     for (int y = 0; y < v->n_y; y++) {
-        set_spread_shares(s->down_q30, v->n_y, y, share_q30);
+        compute_spread_fractions_to_cell(s->down_q30, v->n_y, y, share_q30);
         for (int c = 0; c < 3; c++)
             for (int x = 0; x < v->n_x; x++) {
                 const int first = c * v->n_y * v->n_x + x;
@@ -263,7 +265,7 @@ int glint_veil_spread_light_to(struct glint_veil *v,
                                int32_t *cell_q20)
 {
     const int cells = v->n_x * v->n_y;
-    const int over = count_excess_bits(v->light_q16, 3 * cells);
+    const int over = compute_shift_to_30_bits(v->light_q16, 3 * cells);
     int any = 0;
 
     for (int i = 0; i < 3 * cells; i++) {

@@ -20,7 +20,7 @@ void glint_veil_front(struct glint_veil *veil,
         glint_veil_spread_light_to(veil, spreads, n, veil->front_q20);
     for (int i = 0; i < 3 * veil->n_x * veil->n_y && veil->any_front; i++)
         max_q20 = q_larger(max_q20, veil->front_q20[i]);
-    /* shift such that the brightest cell fits 16 bits */
+    /* shift after which the brightest cell fits into 16 bits */
     veil->front_down = 4;
     while (max_q20 >> veil->front_down > 65534)
         veil->front_down++;
@@ -48,7 +48,7 @@ static void interpolate_front_cover(const struct glint_veil_front *front, int y,
                            (4 * PX * PX));
 }
 
-/* Adds LIGHT times PART to N pixels. LIGHT is in units of white 2^(DOWN - 16).
+/* Adds LIGHT times PART to N pixels. The unit of LIGHT is white 2^(DOWN - 16).
  */
 static void add_covered_code_light(const uint16_t *restrict light,
                                    const uint16_t *restrict part_q16, int down,

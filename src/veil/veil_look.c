@@ -39,8 +39,9 @@ static void add_light_to_cell(const struct look *l, int x, int y,
 
 /* Adds the light of pixel rows Y .. Y + N_Y - 1, N_Y at most 2, to SUM, the
  * cells of one row of cells. */
-static void sum_row_pair_light(const struct look *l, struct glint_codes *codes,
-                               int y, int n_y, int64_t (*sum_q20)[3])
+static void add_pixel_rows_to_cell_sums(const struct look *l,
+                                        struct glint_codes *codes, int y,
+                                        int n_y, int64_t (*sum_q20)[3])
 {
     const struct glint_veil *v = l->veil;
     const int width = l->sum.image->width;
@@ -60,8 +61,8 @@ static void sum_row_pair_light(const struct look *l, struct glint_codes *codes,
     }
 }
 
-/* Worker function: sums the light of row JOB of cells, to which every pair of
- * pixel rows belongs whose first row lies in it. */
+/* Worker function: sums the light of row JOB of cells. A pair of pixel rows
+ * belongs to the row of cells that contains its first row. */
 static void sum_cell_row_job(void *ctx, int job, int worker)
 {
     const struct look *l = ctx;
@@ -72,8 +73,9 @@ static void sum_cell_row_job(void *ctx, int job, int worker)
         sum_q20[x][0] = sum_q20[x][1] = sum_q20[x][2] = 0;
     for (int y = 0; y < l->sum.image->height; y += 2)
         if (v->down.cell[y] == job)
-            sum_row_pair_light(l, &v->worker[worker].codes, y,
-                               q_smaller(2, l->sum.image->height - y), sum_q20);
+            add_pixel_rows_to_cell_sums(l, &v->worker[worker].codes, y,
+                                        q_smaller(2, l->sum.image->height - y),
+                                        sum_q20);
     for (int x = 0; x < v->n_x; x++)
         add_light_to_cell(l, x, job, sum_q20[x]);
 }
@@ -99,8 +101,8 @@ void glint_veil_read_picture(struct glint_veil *veil,
 
 /* ------------------------------------------------------------------- lamps */
 
-/* The cell of a position along one axis, and the spline weights of the previous
- * cell, this cell and the next. */
+/* The cell that contains a position along one axis, and the spline weights of
+ * the previous cell, this cell and the next. */
 struct place {
     int cell;
     int32_t weight_q15[3];
@@ -109,8 +111,8 @@ struct place {
 static struct place find_cell_and_weights(int32_t at_q8, int side, int n)
 {
     const int32_t along_q15 =
-        (int32_t)((((int64_t)at_q8 * n) << 7) / side); /* position in units of
-                                                          cells */
+        (int32_t)((((int64_t)at_q8 * n) << 7) / side); /* position along the
+                                                          axis in cells */
     struct place p = {.cell = q_smaller(along_q15 >> 15, n - 1)};
     const int32_t t_q15 = along_q15 - p.cell * 32768, rest_q15 = 32768 - t_q15;
 

@@ -24,12 +24,13 @@ static int begin_veil_tile(void *state, struct glint_box tile)
     return r->veil->any || r->veil->any_front;
 }
 
-/* Interpolates channel C of the N cells from column FIRST on vertically to
- * pixel row Y. LIGHT is in units of white 2^(DOWN - 20), clamped to MOST. */
-static void interpolate_cell_rows(const struct glint_veil *v,
-                                  const int32_t *cell_q20, int c, int y,
-                                  int first, int n, int down, int32_t most,
-                                  int32_t light[GLINT_VEIL_CELLS])
+/* Interpolates channel C of N cells, from column FIRST on, vertically to pixel
+ * row Y. The unit of LIGHT is white 2^(DOWN - 20); it is clamped to MOST. */
+static void interpolate_cells_vertically(const struct glint_veil *v,
+                                         const int32_t *cell_q20, int c, int y,
+                                         int first, int n, int down,
+                                         int32_t most,
+                                         int32_t light[GLINT_VEIL_CELLS])
 {
     const struct glint_veil_axis *axis = &v->down;
     const int cell = axis->cell[y];
@@ -59,10 +60,10 @@ static inline uint16_t multiply_high(uint16_t a, uint16_t b)
     return (uint16_t)((uint32_t)a * b >> 16);
 }
 
-/* Interpolates LIGHT of three neighbouring cells, 0 .. 65534, for the N pixels
- * from X on; also writes the pixels up to the end of the last vector. Each
- * product is truncated and loses 2^-17 on average; adding 2^-16 where there is
- * light compensates for a part of the loss. */
+/* Interpolates LIGHT of three neighbouring cells, 0 .. 65534, to the N pixels
+ * from X on; also writes pixels up to the end of the last vector. Each product
+ * is truncated and loses 2^-17 on average; adding 2^-16 where there is light
+ * compensates for part of the loss. */
 static void interpolate_code_pixels(const struct glint_veil_axis *axis, int x,
                                     int n, const int32_t light_q16[3],
                                     uint16_t *restrict to_q16)
@@ -112,8 +113,8 @@ void glint_veil_interpolate_row(const struct glint_veil_row *r,
     int32_t light[GLINT_VEIL_CELLS];
     uint16_t row[GLINT_CODES_WIDTH + GLINT_VEIL_LANES] = {0};
 
-    interpolate_cell_rows(v, cell_q20, c, y, first, last - first + 1, down,
-                          to ? 65534 : 1 << 28, light);
+    interpolate_cells_vertically(v, cell_q20, c, y, first, last - first + 1,
+                                 down, to ? 65534 : 1 << 28, light);
     for (int x = x0, next; x < x1; x = next) {
         const int cell = axis->cell[x];
         const int32_t *at = light + cell - first;

@@ -13,8 +13,8 @@ static double compute_max_channel_power(const struct glint_lamp *lamp)
 /* Returns the number of points by which LAMP, an ellipse, is sampled before
  * thinning: by its area and its brightness. The semi-axes of a uniform ellipse
  * are twice its RMS semi-axes. */
-static double count_lamp_points(const struct glint_lamp *lamp,
-                                const struct glint_area_rule *rule)
+static double count_lamp_sample_points(const struct glint_lamp *lamp,
+                                       const struct glint_area_rule *rule)
 {
     const double spacing = GLINT_AREA_SPACING_PX / rule->pixels_per_tangent;
     const double area = 180 * degree * 4 * lamp->axis[0] * lamp->axis[1];
@@ -38,10 +38,10 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
         rule.brightest =
             fmax(rule.brightest, compute_max_channel_power(&lamps[i]));
     for (int i = 0; i < n; i++) {
-        const double points = count_lamp_points(&lamps[i], &rule);
+        const double points = count_lamp_sample_points(&lamps[i], &rule);
 
         more += points - 1;
-        /* each of these rounds its number of points up */
+        /* each of these lamps rounds its number of points up */
         n_wide += points > 1;
     }
     if (n_wide && more > room - n - n_wide)
@@ -66,10 +66,11 @@ static double set_sunflower_point(const struct glint_area *a, int i,
     return weight / a->points;
 }
 
-/* Computes the centre of N points and the factor that spreads them, because few
- * points of the pattern are off-centre and too close together. For one point
- * there is no correction; from two to four points it is blended in. */
-static void measure_point_pattern(struct glint_area *a, int n)
+/* Computes two corrections for a pattern of N points: the offset of its centre,
+ * and the factor that spreads its points, as few points are off-centre and too
+ * close together. One point needs no correction; from two to four points the
+ * correction is blended in. */
+static void measure_sample_point_pattern(struct glint_area *a, int n)
 {
     const double part = fmin((a->points - 1) / 3, 1);
     double square = 0, place[2];
@@ -97,11 +98,11 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     int n;
 
     *area = (struct glint_area){.lamp = *lamp, .points = 1};
-    area->points += rule->thinning * (count_lamp_points(lamp, rule) - 1);
+    area->points += rule->thinning * (count_lamp_sample_points(lamp, rule) - 1);
     n = (int)ceil(area->points);
     if (n == 1)
         return 1;
-    measure_point_pattern(area, n);
+    measure_sample_point_pattern(area, n);
     area->u = t * cos(lamp->phi_deg * degree);
     area->v = t * sin(lamp->phi_deg * degree);
     area->stretch[0] = 2 * (a * c * c + b * s * s);
@@ -110,11 +111,11 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     return n;
 }
 
-/* Returns the distance between neighbouring points, as a tangent: the size of
- * the part of the ellipse that one point represents. For a tube it is limited
- * to twice that of a circle of equal area, so that the ghosts of seven points
- * are not as wide as the tube is long. From one to four points it is blended
- * in, as the spread is, so that it changes continuously. */
+/* Returns the distance between neighbouring sample points as a tangent: the
+ * size of the piece of the ellipse that one point represents. For a tube it is
+ * at most twice that of a circle of equal area, so that the ghosts of seven
+ * points are not as wide as the tube is long. From one to four points it is
+ * blended in, as the spread is, so that it changes continuously. */
 double glint_area_apart(const struct glint_area *area)
 {
     const double major = 2 * area->lamp.axis[0];

@@ -5,7 +5,7 @@
 
 #include "glint/light.h"
 
-/* log2 of the factor by which the first frame is slower than later ones, as it
+/* log2 of (time of the first frame / time of later frames); the first frame
  * allocates memory */
 #define FIRST 1
 /* predicted time for which frames are planned / budget */
@@ -50,9 +50,9 @@ void glint_budget_begin_frame(struct glint_budget *b,
     b->n_frames += b->n_frames < 2;
 }
 
-/* Cuts: reductions of work in addition to a lower quality, ordered by
- * visibility; each cut includes those before it. LOSS: PSNR against a frame
- * without cuts, dB; estimates, as no sweep has measured dust and veil yet. */
+/* Cuts: reductions of work beyond a lower quality, ordered by visibility; each
+ * cut includes the ones before it. LOSS: PSNR against a frame without cuts, dB;
+ * estimated, as no sweep has measured dust and veil yet. */
 static const struct cut {
     double dim;    /* min dim_codes */
     int dust_log2; /* max dust_log2 */
@@ -75,11 +75,13 @@ enum { N_CUTS = sizeof cuts / sizeof *cuts, BUNDLES = 256 };
 static const double level_db[GLINT_QUALITY_LEVELS] = {39, 44, 49, 53.5, 54.5,
                                                       56, 59, 62, 64,   65};
 
-/* Returns the quality parameters of quality STEP with CUT. Parameters that do
- * not depend on quality are those of ASKED. The cost model does not cover sets
- * of wavelengths, so frames with a budget are drawn with three wavelengths. */
-static struct glint_dials make_dials_at_step(int step, int cut,
-                                             const struct glint_dials *asked)
+/* Returns the quality parameters at quality step STEP, reduced by cut CUT.
+ * Parameters that do not depend on quality are those of ASKED. The cost model
+ * does not cover wave sets, so frames with a budget are drawn with three
+ * wavelengths. */
+static struct glint_dials
+make_quality_parameters_at_step(int step, int cut,
+                                const struct glint_dials *asked)
 {
     struct glint_dials d =
         glint_quality_at((double)step / GLINT_BUDGET_STEPS).dials;
@@ -97,17 +99,18 @@ static struct glint_dials make_dials_at_step(int step, int cut,
 struct glint_dials glint_budget_current_dials(const struct glint_budget *b,
                                               const struct glint_dials *asked)
 {
-    return make_dials_at_step(b->step, b->cut, asked);
+    return make_quality_parameters_at_step(b->step, b->cut, asked);
 }
 
-static double convert_step_to_level(int step)
+static double convert_quality_step_to_level(int step)
 {
     return glint_quality_place((double)step / GLINT_BUDGET_STEPS);
 }
 
-static double interpolate_learned_error(const struct glint_budget *b, int step)
+static double interpolate_learned_correction(const struct glint_budget *b,
+                                             int step)
 {
-    const double at = convert_step_to_level(step);
+    const double at = convert_quality_step_to_level(step);
     const int below =
         at < GLINT_QUALITY_LEVELS - 1 ? (int)at : GLINT_QUALITY_LEVELS - 2;
 
@@ -115,21 +118,22 @@ static double interpolate_learned_error(const struct glint_budget *b, int step)
            (at - below) * (b->octaves[below + 1] - b->octaves[below]);
 }
 
-/* Predicts the time of drawing PLAN at quality STEP with CUT, ms. */
+/* Predicts the time of drawing PLAN at quality step STEP with cut CUT, ms. */
 static double predict_frame_ms(const struct glint_budget *b,
                                const struct glint_cost_plan *plan, int step,
                                int cut)
 {
-    const struct glint_dials then = make_dials_at_step(step, cut, &b->asked);
+    const struct glint_dials then =
+        make_quality_parameters_at_step(step, cut, &b->asked);
     const struct glint_cost cost = glint_cost_of(plan, &then);
 
     return b->ms_per_minsn * glint_cost_to_minsn(&cost) *
-           exp2(interpolate_learned_error(b, step) +
+           exp2(interpolate_learned_correction(b, step) +
                 (b->n_frames > 1 ? 0 : FIRST));
 }
 
-/* Returns the best quality step that fits the budget with CUT, or 0 if none
- * fits; by binary search. */
+/* Returns the best quality step whose predicted time with cut CUT fits the
+ * budget, or 0 if none does; by binary search. */
 static int find_best_affordable_step(const struct glint_budget *b,
                                      const struct glint_cost_plan *plan,
                                      int cut)
@@ -153,14 +157,14 @@ static double convert_db_to_mse(double db)
     return pow(10, -db / 10);
 }
 
-/* Estimates the mean square error of a frame at quality STEP with CUT. If even
- * quality 0 does not fit the budget, the result is above 1 and rises with the
- * predicted time. */
+/* Estimates the mean square error of a frame at quality step STEP with cut CUT.
+ * If even step 0 does not fit the budget, the result is above 1 and rises with
+ * the predicted time. */
 static double estimate_picture_error(const struct glint_budget *b,
                                      const struct glint_cost_plan *plan,
                                      int step, int cut)
 {
-    const double at = convert_step_to_level(step);
+    const double at = convert_quality_step_to_level(step);
     const int below =
         at < GLINT_QUALITY_LEVELS - 1 ? (int)at : GLINT_QUALITY_LEVELS - 2;
     const double db = level_db[below] +
@@ -175,7 +179,7 @@ static double estimate_picture_error(const struct glint_budget *b,
 /* Returns whether CUT reduces the work of PLAN by more than the cut before it
  * does.
  * */
-static bool is_cut_useful(const struct glint_cost_plan *plan, int cut)
+static bool does_cut_reduce_work(const struct glint_cost_plan *plan, int cut)
 {
     const struct cut *c = &cuts[cut];
 
@@ -185,11 +189,11 @@ static bool is_cut_useful(const struct glint_cost_plan *plan, int cut)
            (plan->n_veil > 0 && c->no_veil);
 }
 
-/* Chooses cut and quality step with the smallest estimated error that fit the
- * budget. Sets b->cut and returns the step. Of many bundles only a sample is
- * evaluated. */
-static int choose_step_and_cut(struct glint_budget *b,
-                               const struct glint_cost_plan *plan)
+/* Chooses the cut and the quality step with the smallest estimated error among
+ * those that fit the budget. Sets b->cut and returns the step. If there are
+ * many bundles, only a sample of them is evaluated. */
+static int choose_quality_step_and_cut(struct glint_budget *b,
+                                       const struct glint_cost_plan *plan)
 {
     struct glint_cost_plan some = *plan;
     struct glint_planned last;
@@ -200,7 +204,7 @@ static int choose_step_and_cut(struct glint_budget *b,
         n++;
     some.every = n;
     for (int cut = 0; cut < N_CUTS; cut++) {
-        const int here = cut == 0 || is_cut_useful(plan, cut)
+        const int here = cut == 0 || does_cut_reduce_work(plan, cut)
                              ? find_best_affordable_step(b, &some, cut)
                              : -1;
         const double error =
@@ -215,23 +219,24 @@ static int choose_step_and_cut(struct glint_budget *b,
     return step;
 }
 
-/* Returns STEP + 1 for a trial, else STEP. A trial is made, at most TRIALS
- * times in total, if the quality jumps between both steps, STEP leaves much of
- * the budget unused, and STEP + 1 is predicted to exceed it by little: that
- * prediction may be too high. */
+/* Returns STEP + 1 if that quality is to be tried in this frame, else STEP. It
+ * is tried, at most TRIALS times in total, if STEP leaves much of the budget
+ * unused and STEP + 1 is predicted to exceed it by little: that prediction may
+ * be too high. */
 static int try_next_quality_step(struct glint_budget *b,
                                  const struct glint_cost_plan *plan, int step)
 {
-    const int is_gap =
-        convert_step_to_level(step + 1) - convert_step_to_level(step) >= 1;
+    const int is_gap = convert_quality_step_to_level(step + 1) -
+                           convert_quality_step_to_level(step) >=
+                       1;
 
     if (step == GLINT_BUDGET_STEPS || !is_gap || b->n_trials == TRIALS ||
         predict_frame_ms(b, plan, step, b->cut) >= SPARE * b->ms ||
         predict_frame_ms(b, plan, step + 1, b->cut) > TRY * b->ms)
         return step;
     b->n_trials++;
-    b->n_tries = MAX_TRIES; /* prevents another plan, whose prediction would
-                               reject this quality again */
+    b->n_tries = MAX_TRIES; /* prevents another plan of this frame, whose
+                               prediction would reject the trial */
     return step + 1;
 }
 
@@ -248,29 +253,29 @@ bool glint_budget_choose_dials(struct glint_budget *b,
          (b->predicted_ms >= SPARE * b->ms ||
           (b->step == GLINT_BUDGET_STEPS && cut == 0))))
         return false;
-    step = try_next_quality_step(b, plan, choose_step_and_cut(b, plan));
+    step = try_next_quality_step(b, plan, choose_quality_step_and_cut(b, plan));
     if (step == b->step && cut == b->cut)
         return false;
     b->step = step;
-    *dials = make_dials_at_step(step, b->cut, &b->asked);
+    *dials = make_quality_parameters_at_step(step, b->cut, &b->asked);
     return true;
 }
 
-/* Corrects the predictions by the fraction LEARNING of the error of the last
- * one, in octaves; MS is the measured time of the frame. Neighbouring quality
- * levels are corrected, too. A large error corrects all levels, as the machine
- * may have become slower. Corrections of other levels decay, so that one slow
- * frame does not exclude a quality forever. */
+/* Corrects later predictions by the fraction LEARNING of the error of the last
+ * prediction, in octaves; MS is the measured time of the frame. Neighbouring
+ * quality levels are corrected, too. A large error corrects all levels, as the
+ * machine may have become slower. Corrections of other levels decay, so that
+ * one slow frame does not exclude a quality forever. */
 void glint_budget_learn_from_frame(struct glint_budget *b, double ms)
 {
-    const double at = convert_step_to_level(b->step);
+    const double at = convert_quality_step_to_level(b->step);
     const double part = at - floor(at);
     const double both = part * part + (1 - part) * (1 - part);
     /* clamped, as the frame may have waited for other programs */
     const double wrong =
         fmax(-MOST_WRONG, fmin(MOST_WRONG, log2(ms / b->predicted_ms)));
     const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));
-    const double here = interpolate_learned_error(b, b->step);
+    const double here = interpolate_learned_correction(b, b->step);
 
     for (int i = 0; i < GLINT_QUALITY_LEVELS && ms > 0 && b->n_frames > 1;
          i++) {

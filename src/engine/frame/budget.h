@@ -28,8 +28,8 @@ struct glint_budget {
     struct glint_dials asked;             /* requested quality parameters of
                                              this frame */
     int step;     /* quality step of the last frame, 0 .. GLINT_BUDGET_STEPS */
-    int cut;      /* index of the cut, by which parameters other than quality
-                     are reduced; 0: none */
+    int cut;      /* index of the cut (a reduction of work beyond a lower
+                     quality) in use; 0: none */
     int n_tries;  /* number of plans made for this frame */
     int n_frames; /* number of frames begun, counted up to 2 */
     int n_trials; /* number of trial frames, drawn although predicted to exceed
@@ -39,8 +39,8 @@ struct glint_budget {
 
 void glint_budget_init(struct glint_budget *budget, double ms);
 
-/* Begins a frame with the requested quality parameters ASKED, of which only
- * those are used that do not depend on quality. */
+/* Begins a frame for which the quality parameters ASKED were requested. Only
+ * those of them are used that do not depend on quality. */
 void glint_budget_begin_frame(struct glint_budget *budget,
                               const struct glint_dials *asked);
 

@@ -6,10 +6,10 @@
 
 /* Draws a few frames with one lamp, and lowers *LEAST_MS to the time of the
  * fastest one, ms. */
-static enum glint_status time_test_frames(struct glint_frame *frame,
-                                          const struct glint_image *image,
-                                          struct glint_engine_report *report,
-                                          double *least_ms)
+static enum glint_status
+measure_test_frame_time(struct glint_frame *frame,
+                        const struct glint_image *image,
+                        struct glint_engine_report *report, double *least_ms)
 {
     const struct glint_lamp lamp = {fmin(12, glint_frame_max_angle_deg(frame)),
                                     33,
@@ -46,7 +46,7 @@ enum glint_status glint_frame_calibrate_budget(struct glint_frame *frame)
     plain.dials.dispersion_q8 = 0;
     if (mem) {
         glint_image_place(&image, mem);
-        status = time_test_frames(&plain, &image, &report, &least_ms);
+        status = measure_test_frame_time(&plain, &image, &report, &least_ms);
     }
     if (status == GLINT_OK && report.stats.bundles > 0) {
         const struct glint_cost_plan plan = glint_frame_make_cost_plan(&plain);

@@ -6,22 +6,23 @@
 #include "glint/quality.h"
 #include "glint/bake.h"
 
-/* Cost of adding light to four pixels at half resolution / cost of one pixel.
+/* Cost of adding light to four pixels of the picture at half resolution / cost
+ * of adding it to one pixel.
  */
 #define QUAD 2
 
 /* steps per octave in the cost model for light that is not rounded */
 #define MOST_STEPS 4096
 
-/* log2 of the max number of parts into which a cell is divided per side; number
- * of sample positions per side of the stop at which parts are counted */
+/* log2 of the max number of subdivisions of a cell per side; number of sample
+ * positions per side of the stop at which subdivisions are counted */
 enum { MOST_LOG2 = 4, SAMPLES = 24 };
 
-/* By make cost-fit: least squares of the relative errors of random frames, each
- * of which callgrind counts the second time that it is drawn, so that none is
- * binned twice. tests/figures/cost/plans.md states how far they are off.
- * Planned: for the counts that glint_cost_of() expects; counted: for
- * those that were drawn.
+/* Weights by make cost-fit: least squares of the relative errors over random
+ * frames. callgrind counts the instructions of the second drawing of each
+ * frame, so that none is binned twice. tests/figures/cost/plans.md has the
+ * errors. Column planned: for the counts that glint_cost_of() predicts; column
+ * counted: for the counts of a drawn frame.
  */
 /* clang-format off */
 const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS] = {
@@ -48,12 +49,12 @@ double glint_cost_to_minsn(const struct glint_cost *cost)
     return 1e-3 * sum;
 }
 
-/* Estimated number of cells per side that a grid with GLINT_LEAST_CELLS, the
- * minimum, would need without that minimum. */
+/* Number of cells per side that grids clamped to the minimum GLINT_LEAST_CELLS
+ * would otherwise need, estimated. */
 enum { LESS_CELLS = 6 };
 
-/* Predicts the number of grid cells per side for a fineness of FINER times that
- * of the plan, in which it is PLANNED. */
+/* Predicts the number of grid cells per side if the fineness is FINER times
+ * that of the plan, with which it is PLANNED. */
 static double predict_cells_per_side(int planned, double finer)
 {
     const double free =
@@ -105,8 +106,9 @@ static double count_soft_edge_outlines(const struct glint_cost_plan *p,
     return exp2(fmax(most, 0));
 }
 
-/* Returns the number of bundles per planned bundle B if ghosts dimmer than DIM
- * codes share rays, whereas in the plan ghosts dimmer than WAS codes do. */
+/* Returns the expected number of bundles per planned bundle B if ghosts dimmer
+ * than DIM codes share rays; when B was planned, ghosts dimmer than WAS codes
+ * did. */
 static double estimate_drawn_fraction(const struct glint_cost_plan *p,
                                       const struct glint_planned *b,
                                       double light, double was, double dim)
@@ -125,10 +127,10 @@ static double estimate_drawn_fraction(const struct glint_cost_plan *p,
 
 /* ------------------------------------------------------------------- counts */
 
-/* This function and the next estimate the number of edges of a bundle, and of
- * the pixel rows that they cross, as products of powers, fitted to the bundles
- * of 48 random frames of four lenses (Poisson regression). Sums over a frame
- * have a median error of 15 percent. */
+/* This function and the next estimate the number of edges of a bundle, and the
+ * number of pixel rows that these cross, as products of powers, fitted to the
+ * bundles of 48 random frames of four lenses (Poisson regression). Sums over a
+ * frame have a median error of 15 percent. */
 static double estimate_edge_count(const struct bundle *b, double log_steps)
 {
     const double n = log(b->cells);
@@ -146,12 +148,12 @@ static double estimate_edge_row_count(const struct bundle *b, double log_steps,
                0.293 * b->log_bright);
 }
 
-/* Predicts planned bundle B for the quality parameters THEN. LARGER: factor on
- * the number of pixels. */
-static struct bundle predict_bundle(const struct glint_cost_plan *p,
-                                    const struct glint_planned *b,
-                                    const struct glint_dials *then,
-                                    double larger)
+/* Predicts how planned bundle B would be drawn with the quality parameters
+ * THEN. LARGER: factor on the number of pixels. */
+static struct bundle predict_bundle_at_quality(const struct glint_cost_plan *p,
+                                               const struct glint_planned *b,
+                                               const struct glint_dials *then,
+                                               double larger)
 {
     enum { FOLD = 255 };
     const double light = glint_real_value(b->irradiance);
@@ -196,19 +198,19 @@ static int clamp_int(int x, int low, int high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* Returns the mean number of parts into which a cell is divided because of dust
- * or masks, over SAMPLES^2 positions in the stop. LEVEL: level of the shade's
- * tables; STEP: visible difference; MOST: max log2 of the parts per side; CUT:
- * fraction of the cells that the stop's outline cuts. */
-static double compute_mean_parts_per_cell(const struct glint_shade *s,
-                                          int level, double step, int most,
-                                          double cut)
+/* Returns the mean number of subdivisions of a cell because of dust or masks,
+ * over SAMPLES^2 positions in the stop. LEVEL: level of the shade's tables;
+ * STEP: smallest visible difference; MOST: max log2 of the subdivisions per
+ * side; CUT: fraction of the cells that the stop's outline cuts. */
+static double compute_mean_subdivisions_per_cell(const struct glint_shade *s,
+                                                 int level, double step,
+                                                 int most, double cut)
 {
     enum {
         CUT_LOG2 = 3,
         ALONE = 4
-    }; /* factor for cut cells, whose parts share
-          no edges */
+    }; /* factor for cells cut by the outline, whose subdivisions share no edges
+        */
     const int side = (1 << (s->log2 - level)) + 1;
     double sum = 0;
     int n = 0;
@@ -225,7 +227,7 @@ static double compute_mean_parts_per_cell(const struct glint_shade *s,
         if (x * x + y * y > 1)
             continue;
         n++;
-        /* computes log2 of the number of visible differences, rounded up */
+        /* rounds log2 of the number of visible differences up */
         for (; d >= 1 && log2_parts < most; log2_parts++)
             d /= 2;
         if (log2_parts)
@@ -235,11 +237,13 @@ static double compute_mean_parts_per_cell(const struct glint_shade *s,
     return n ? sum / n : 0;
 }
 
-/* Estimates the number of parts into which the cells G are divided by the shade
- * of PLAN, if only its tables with at most 2^LOG2_USED cells per side are used.
+/* Estimates the number of subdivisions of the cells G by the shade of PLAN, if
+ * only those tables of the shade are used that have at most 2^LOG2_USED cells
+ * per side.
  */
-static double estimate_shaded_part_count(const struct glint_cost_plan *plan,
-                                         const struct cells *g, int log2_used)
+static double estimate_subdivided_cell_count(const struct glint_cost_plan *plan,
+                                             const struct cells *g,
+                                             int log2_used)
 {
     const struct glint_shade *s = plan->shade;
     const int skipped =
@@ -256,9 +260,9 @@ static double estimate_shaded_part_count(const struct glint_cost_plan *plan,
         return 0;
     most = clamp_int((int)floor(log2(px)), 0, most);
     return n2 * g->inside * g->view *
-           compute_mean_parts_per_cell(s, level,
-                                       compute_visible_step(plan, g->light),
-                                       most, fmin(1, 4 / sqrt(n2 * g->inside)));
+           compute_mean_subdivisions_per_cell(
+               s, level, compute_visible_step(plan, g->light), most,
+               fmin(1, 4 / sqrt(n2 * g->inside)));
 }
 
 static void add_bundle_cost(struct glint_cost *cost,
@@ -280,22 +284,24 @@ static void add_bundle_cost(struct glint_cost *cost,
         drawn * estimate_edge_row_count(b, log_steps, height);
     if (p->shade && p->shade->log2)
         cost->count[GLINT_COST_PARTS] +=
-            drawn * estimate_shaded_part_count(
+            drawn * estimate_subdivided_cell_count(
                         p,
                         &(struct cells){b->cells, b->light / b->rings, b->area,
                                         b->inside, b->view},
                         then->dust_log2);
 }
 
-/* Total area that ghosts cover; the wavelengths of one ghost count once. */
+/* The total area that ghosts cover; a ghost counts once for all its
+ * wavelengths. */
 struct covered {
     int ghost, light;
-    double most, all; /* pixels: max area over the wavelengths of the current
-                         ghost; total of all ghosts before it */
+    double most, all; /* pixels: area of the current ghost, max over its
+                         wavelengths; total area of all ghosts before it */
 };
 
-static void add_covered_area(struct covered *c, const struct glint_planned *p,
-                             const struct bundle *b)
+static void add_ghost_covered_area(struct covered *c,
+                                   const struct glint_planned *p,
+                                   const struct bundle *b)
 {
     const double here = b->share * b->area * b->inside * b->view;
 
@@ -325,13 +331,13 @@ struct glint_cost glint_cost_of(const struct glint_cost_plan *p,
 
     for (int i = 0; p->flare && glint_flare_planned(p->flare, i, &b);
          i += every) {
-        struct bundle here = predict_bundle(p, &b, then, larger);
+        struct bundle here = predict_bundle_at_quality(p, &b, then, larger);
 
         here.share *= every;
         if (!(here.light > 0) || !(here.share > 0))
             continue;
         add_bundle_cost(&cost, p, then, &here, height);
-        add_covered_area(&covered, &b, &here);
+        add_ghost_covered_area(&covered, &b, &here);
     }
     covered.all += covered.most;
     cost.count[GLINT_COST_LIT] = width * height *

@@ -16,18 +16,19 @@ struct glint_cost {
     double count[GLINT_COST_KINDS];
 };
 
-/* A frame that has been planned, but not binned. */
+/* A frame that has been planned, but whose edges have not been binned. */
 struct glint_cost_plan {
     const struct glint_flare *flare;
     int width, height;  /* size of the picture */
     double n_looked_at; /* number of rays that the plan probed */
-    int every;     /* only every EVERY-th bundle is evaluated, as a sample; 0,
-                      1: all bundles */
+    int every;     /* evaluate only every EVERY-th bundle, as a sample; 0, 1:
+                      all bundles */
     bool can_half; /* true: half resolution is possible, as the picture is in
                       codes */
     bool can_dim;  /* true: dim ghosts may share rays, as three wavelengths are
                       drawn */
-    double code;   /* light of one code near black; 0: linear picture */
+    double code;   /* linear light of one code near black; 0: the picture is
+                      linear */
     double n_star; /* number of pixels lit by stars */
     double n_veil; /* cost of the veil, in pixels */
     /* shade of the stop with all its tables, or NULL */

@@ -67,7 +67,7 @@ void glint_frame_finish(struct glint_frame *frame)
 }
 
 /* Returns the total number of waves of all wave sets. */
-static int count_all_waves(const struct glint_setup *s)
+static int count_waves_of_all_sets(const struct glint_setup *s)
 {
     int n = 0;
 
@@ -88,7 +88,7 @@ static void set_frame_waves(struct glint_frame *f)
     for (int i = 0; i < s->n_sets; i++)
         f->lights.sets.size[i] = s->set_size[i];
     if (glint_frame_has_wave_sets(f))
-        for (int i = 0; i < count_all_waves(s); i++)
+        for (int i = 0; i < count_waves_of_all_sets(s); i++)
             f->lights.wave[i] =
                 glint_wave_from_nm(w[i].nm, w[i].rgb, w[i].unit_flux);
     else
@@ -114,7 +114,7 @@ bool glint_frame_is_lamp_outside_model(const struct glint_frame *frame,
     return glint_light_is_outside_model(frame->lens, &b);
 }
 
-/* Uses atan2(), as asin() would add 25 KB to glint-live. */
+/* Uses atan2(), as asin() would make glint-live 25 KB larger. */
 double glint_frame_max_angle_deg(const struct glint_frame *frame)
 {
     const double degree = GLINT_PI / 180;
@@ -126,10 +126,10 @@ double glint_frame_max_angle_deg(const struct glint_frame *frame)
     return atan2(sine, sqrt(1 - sine * sine)) / degree * (1 - 1e-6);
 }
 
-/* Appends the points by which LAMP is sampled to the frame's lights, of which
- * there are WITHIN; returns the new number. Points outside the model's range of
- * angles are dropped here, before merging, as they must not be merged with
- * lights that are drawn. */
+/* Appends the points by which LAMP is sampled to the WITHIN lights that the
+ * frame has already; returns the new number of lights. Points outside the
+ * model's range of angles are dropped here, before merging, as they must not be
+ * merged with lights that are drawn. */
 static int add_lamp_lights(struct glint_frame *f, const struct glint_lamp *lamp,
                            const struct glint_area_rule *rule, double scale,
                            int within)
@@ -160,8 +160,9 @@ static int compute_max_lights(const struct glint_frame *f, int n)
     return n <= most ? max_int(most, f->picture.point_room) : most;
 }
 
-/* Converts N LAMPS to lights of the frame, with powers times SCALE, and merges
- * lights that are too close or too many. */
+/* Converts N LAMPS to lights of the frame, with powers times SCALE. Merges
+ * lights that are too close to each other, and, if there are too many, more of
+ * them. */
 static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
                                                  const struct glint_lamp *lamps,
                                                  int n, double scale)
@@ -186,8 +187,8 @@ static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
     f->lights.n = glint_lights_merge(
         f->lights.light, within, convert_px_to_chord_q30(f, f->apart_px),
         max_int(room, f->dials.max_lights), &f->lights.n_apart);
-    if (!f->limits.is_held) /* if a limit has reduced the lights of this frame,
-                               the fraction for all its lights still applies */
+    if (!f->limits.is_held) /* else a limit has reduced the number of lights,
+                               and the share for all lights still applies */
         f->limits.share =
             1 + max_int(f->lights.n - 1, 0) / (double)GLINT_FRAME_PER_LIGHT;
     if (f->star.is_alone)
@@ -207,8 +208,9 @@ make_flare_frame(struct glint_frame *f, const struct glint_image *image)
     return (struct glint_flare_frame){
         .lens = f->lens,
         .wave = f->lights.wave,
-        .n_waves = glint_frame_has_wave_sets(f) ? count_all_waves(f->setup)
-                                                : f->setup->n_wavelengths,
+        .n_waves = glint_frame_has_wave_sets(f)
+                       ? count_waves_of_all_sets(f->setup)
+                       : f->setup->n_wavelengths,
         .sets = glint_frame_has_wave_sets(f) ? &f->lights.sets : NULL,
         .pixels_per_mm = glint_real_of(f->view.width / f->view.sensor_width_mm),
         .fineness = f->dials.fineness,
@@ -236,7 +238,7 @@ void glint_frame_apply_config(struct glint_frame *f)
 
 /* Applies the quality parameters that are part of the flare's configuration:
  * steps of irradiance, and tables of dust. */
-static void apply_dials_to_flare(struct glint_frame *f)
+static void apply_quality_to_flare_config(struct glint_frame *f)
 {
     const bool is_other = f->cfg.irradiance_steps != f->dials.irradiance_steps;
 
@@ -250,7 +252,7 @@ static enum glint_status plan_frame(struct glint_frame *f,
 {
     enum glint_status status;
 
-    apply_dials_to_flare(f);
+    apply_quality_to_flare_config(f);
     status = glint_frame_ensure_plan_capacity(f);
     if (status != GLINT_OK)
         return status;
@@ -263,7 +265,7 @@ static enum glint_status plan_frame(struct glint_frame *f,
 /* Lets the budget choose quality parameters. Returns whether they changed, so
  * that the frame must be planned again.
  */
-static bool choose_budget_dials(struct glint_frame *f)
+static bool choose_quality_by_budget(struct glint_frame *f)
 {
     const struct glint_cost_plan plan = glint_frame_make_cost_plan(f);
 
@@ -298,7 +300,7 @@ draw_flare_by_model(struct glint_frame *f, const struct glint_lamp *lamps,
         status = plan_frame(f, &f->plan.rays);
         if (status != GLINT_OK)
             break;
-        if (f->budget.ms > 0 && choose_budget_dials(f))
+        if (f->budget.ms > 0 && choose_quality_by_budget(f))
             continue;
         if (f->budget.ms <= 0 && glint_frame_limit_work(f)) {
             status = convert_lamps_to_lights(f, lamps, n_lamps, scale);
@@ -354,7 +356,7 @@ draw_flare_by_exact_rays(struct glint_frame *f, const struct glint_lamp *lamps,
 {
     const struct glint_lamp *merged = merge_exact_lamps(f, lamps, &n_lamps);
 
-    apply_dials_to_flare(f);
+    apply_quality_to_flare_config(f);
     return merged
                ? f->trace->draw(f, merged, n_lamps, scale, image, stats, times)
                : GLINT_E_MEMORY;

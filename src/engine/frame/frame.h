@@ -22,8 +22,8 @@
 #include "glint/engine.h"
 #include "glint/flare.h"
 
-/* Distance of the images of two lights, pixels, below which they are merged;
- * the error of a model is larger. */
+/* Lights whose images are nearer than this, pixels, are merged; the error of a
+ * model is larger. */
 #define GLINT_FRAME_APART_PX 0.125
 /* Max invisible step of brightness between wavelengths, codes. */
 #define GLINT_FRAME_STEP_CODES 2.0
@@ -41,10 +41,11 @@ struct glint_frame;
 /* Factors by which a flare is scaled before it is drawn in fixed point, as
  * log2. */
 struct glint_frame_scale {
-    int likely; /* factor that brings the mean of the brightest ghost to about
-                   32 times display white; single pixels may reach 2048 */
-    int most;   /* max factor at which no light can be clamped: the sum of all
-                   light stays below 2^24 */
+    int likely; /* log2 of the factor that brings the mean of the brightest
+                   ghost to about 32 times display white; single pixels may
+                   reach 2048 times white */
+    int most;   /* log2 of the max factor at which no light can be clamped: the
+                   sum of all light stays below 2^24 times white */
 };
 
 /* Computes the scales from log2 of the brightest ghost's mean light and log2 of
@@ -82,12 +83,12 @@ struct glint_frame_picture {
                           was in codes */
     bool is_still;     /* true: glint_frame_set_area_sampling() has raised the
                           number of points for a still picture */
-    bool uniform;      /* true: all ghosts get the same grid */
+    bool uniform;      /* true: all ghosts get grids of the same fineness */
     double code_light; /* linear light of one code near black; 0: the picture is
                           linear */
-    int point_room;    /* max number of lights, including points of area lamps;
-                          replaces max_lights if larger, for up to max_lights
-                          lamps */
+    int point_room;    /* max number of lights including the sample points of
+                          area lamps; replaces max_lights if larger, for up to
+                          max_lights lamps */
 };
 
 /* Limits of the memory and the work of a frame. */
@@ -102,11 +103,12 @@ struct glint_frame_limits {
                             light, bytes; 0: no limit */
     double most_minsn;   /* max cost of a frame with one light, millions of
                             instructions; 0: no limit */
-    double share;        /* factor by which the limits for one light are
-                            multiplied for the lights of the frame */
-    double tight; /* memory that the grids of the last frame would have needed
+    double share;        /* factor from the limits for one light to the limits
+                            for all lights of the frame */
+    double tight; /* memory that the last frame would have needed with the grids
                      before they were last made coarser, in bytes, or in
-                     primitives if reserved; 0: they were not made coarser */
+                     primitives if memory is reserved; 0: they were not made
+                     coarser */
     size_t tight_bytes; /* bytes that the last frame would have needed with its
                            original grids */
 };
@@ -117,15 +119,15 @@ struct glint_frame_lights {
     struct glint_wave_sets sets;
     struct glint_light *light; /* [capacity] */
     int n, capacity;
-    int n_apart;  /* number of lights after those too close to be distinguished
+    int n_apart;  /* number of lights after lights too close to be distinguished
                      were merged */
     int n_beyond; /* number of lamps skipped because they lie outside the
                      model's range of angles */
     int n_more;   /* number of additional points of area lamps */
     /* [n]: factors on the colours of the lights, or NULL */
     const int32_t (*gain_q14)[3];
-    struct glint_lamp *merged; /* [n]: lamps for exact rays, if lamps were
-                                  sampled or merged */
+    struct glint_lamp *merged; /* [n]: the lamps that exact rays are traced for,
+                                  if lamps were sampled or merged */
     /* [n_given]: the lamps before sampling and merging; valid while exact rays
      * are drawn */
     const struct glint_lamp *given;
@@ -138,8 +140,8 @@ struct glint_frame_lights {
 struct glint_frame_plan {
     struct glint_flare_frame rays;
     double scale; /* factor on the powers of the lights */
-    /* number of plans of this frame (n_plans), number of these whose edges were
-     * binned (n_binned), and number of rays that they probed (n_looked) */
+    /* number of plans of this frame (n_plans), number of plans whose edges were
+     * binned (n_binned), and number of rays that all plans probed (n_looked) */
     int n_plans, n_binned;
     long long n_looked;
 };
@@ -161,7 +163,7 @@ struct glint_frame_memory {
     size_t bytes;      /* size of BLOCK, bytes */
 };
 
-/* Progress at which the ghosts of a picture by exact rays are found, 0 to 1. */
+/* Progress, 0 to 1, at which exact rays have found the ghosts of a picture. */
 #define GLINT_FRAME_FOUND 0.5
 
 struct glint_frame {
@@ -187,10 +189,11 @@ struct glint_frame {
     /* tints of ghosts, as in struct glint_flare_frame, owned by the caller;
      * ignored when the exposure is chosen */
     const struct glint_tint *tints;
-    /* the lamps as the engine has them, with track and visibility, in the order
-     * of those drawn; or NULL */
+    /* the lamps with the engine's data (track, visibility), in the order in
+     * which they are drawn; or NULL */
     const struct glint_engine_lamp *known;
-    struct glint_shade shade; /* shade of the stop without its finest tables */
+    struct glint_shade shade; /* shade of the stop without its finest levels,
+                                 which the quality does not need */
     struct glint_frame_picture picture;
     struct glint_frame_star star;
     struct glint_frame_veil veil;

@@ -20,10 +20,11 @@ static uint32_t find_max_magnitude(const int32_t *linear_q20, size_t n)
 }
 
 /* Returns log2 of the factor by which a picture whose brightest pixel is PEAK
- * should be scaled up before it is drawn again. Returns 0, draw no more,
- * instead of 1, as one octave gains too little; and a negative value if light
- * was clamped, so that the true peak is unknown. */
-static int choose_scale_octaves(uint32_t peak, struct glint_frame_scale scale)
+ * should be scaled up and drawn again. Returns 0 (do not draw again) instead of
+ * 1, as one octave gains too little; and a negative value if light was clamped,
+ * so that the true peak is unknown. */
+static int choose_picture_scale_log2(uint32_t peak,
+                                     struct glint_frame_scale scale)
 {
     const int room = scale.most - scale.likely;
     int up = 0;
@@ -61,7 +62,8 @@ enum glint_status glint_frame_draw_flare_alone(
         memset(linear_q20, 0, n * sizeof *linear_q20);
         status = glint_frame_draw(frame, lamps, n_lamps, exp2(scale.likely),
                                   &layer, report);
-        up = choose_scale_octaves(find_max_magnitude(linear_q20, n), scale);
+        up =
+            choose_picture_scale_log2(find_max_magnitude(linear_q20, n), scale);
         scale.likely += i < 3 ? up : 0;
     }
     for (size_t i = 0; i < n && status == GLINT_OK; i++)

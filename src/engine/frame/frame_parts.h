@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shared by the files of a frame: memory, lights, the block for the run-time
- * half that grows as frames need it (frame_room.c), and the parts of the plan
- * that drawing alone uses (frame_alone.c).
+ * Functions shared by the files of a frame: memory, lights, the memory block of
+ * the run-time half (frame_room.c), and steps of the plan that frame_alone.c
+ * also uses.
  */
 #ifndef GLINT_ENGINE_FRAME_FRAME_PARTS_H
 #define GLINT_ENGINE_FRAME_FRAME_PARTS_H
@@ -25,8 +25,8 @@ static inline double read_frame_clock(const struct glint_frame *f)
     return f->clock ? f->clock() : 0;
 }
 
-/* Returns whether the flare is planned for codes: IMAGE is in codes, or its
- * light will be added to codes later. */
+/* Returns whether the flare is planned for a picture in codes: IMAGE is in
+ * codes, or the flare will be added to codes later. */
 static inline bool is_planned_for_codes(const struct glint_frame *f,
                                         const struct glint_image *image)
 {

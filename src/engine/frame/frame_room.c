@@ -11,18 +11,18 @@
 
 /* max number of bundles of a frame */
 enum { MAX_BUNDLES = 1 << 20 };
-/* min fineness of grids to which limits of memory and work reduce them */
+/* min fineness to which limits of memory and work reduce grids */
 enum { LEAST_FINENESS = 8 };
-/* Factor on the capacity for primitives, because workers do not fill their
- * ranges evenly. Memory limits include it even for one worker, so that pictures
- * do not depend on the number of workers; with one worker this overestimates
- * the memory. */
+/* Factor on the capacity for primitives, because workers fill their ranges
+ * unevenly. Memory limits include it even for one worker, so that pictures do
+ * not depend on the number of workers; for one worker this overestimates the
+ * memory. */
 #define UNEVEN 1.5
-/* Target size of a frame whose grids are made coarser / memory limit; below 1,
- * as grids have integer numbers of cells. */
+/* Grids are made coarser until the frame needs this fraction of the memory
+ * limit; below 1, as grids have integer numbers of cells. */
 #define ROOM_SHARE 0.9
-/* Grids are not made coarser again if the last time left more than this
- * fraction of the memory needed. */
+/* If coarser grids still needed more than this fraction of the memory before,
+ * grids are not made coarser again. */
 #define NO_GAIN 0.98
 
 bool glint_frame_has_wave_sets(const struct glint_frame *f)
@@ -50,9 +50,10 @@ static int clamp_bundle_count(double n)
     return n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 }
 
-/* Returns the number of bundles of N_LIGHTS lights in the first set of
- * wavelengths, or in all wavelengths if there are no sets. */
-static int count_first_set_bundles(const struct glint_frame *f, int n_lights)
+/* Returns the number of bundles of N_LIGHTS lights in the waves of the first
+ * wave set, or in all waves if there are no sets. */
+static int count_bundles_of_first_wave_set(const struct glint_frame *f,
+                                           int n_lights)
 {
     const struct glint_setup *s = f->setup;
 
@@ -61,7 +62,7 @@ static int count_first_set_bundles(const struct glint_frame *f, int n_lights)
         (glint_frame_has_wave_sets(f) ? s->set_size[0] : s->n_wavelengths));
 }
 
-static size_t compute_max_bytes(const struct glint_frame *f)
+static size_t compute_frame_memory_limit(const struct glint_frame *f)
 {
     return (size_t)((double)f->limits.most_bytes * f->limits.share);
 }
@@ -81,10 +82,10 @@ make_needed_config(const struct glint_frame *f,
     return needed;
 }
 
-/* Returns the bytes that the configuration of make_needed_config() takes with
+/* Returns the bytes that the configuration of make_needed_config() needs with
  * one worker and UNEVEN times the primitives, so that the result does not
- * depend on the number of workers. Sets FIXED to the bytes that coarser grids
- * do not save. */
+ * depend on the number of workers. Sets FIXED to the part of these bytes that
+ * coarser grids do not save. */
 static double estimate_flare_bytes(const struct glint_frame *f,
                                    const struct glint_flare_stats *s,
                                    double *fixed)
@@ -100,8 +101,8 @@ static double estimate_flare_bytes(const struct glint_frame *f,
     return bytes;
 }
 
-/* Sets the capacities of the frame's configuration for a number of primitives
- * and twice as many references to them. Returns the bytes that it then takes.
+/* Sets the capacities of the frame's configuration to PRIMITIVES and twice as
+ * many references to them. Returns the bytes that the configuration then needs.
  */
 static size_t set_primitive_capacity(struct glint_frame *f, int primitives)
 {
@@ -110,8 +111,8 @@ static size_t set_primitive_capacity(struct glint_frame *f, int primitives)
     return glint_flare_bytes(&f->cfg);
 }
 
-/* Sets the capacities to the max that fits into BYTES, by binary search.
- * Returns false if not even one primitive fits.
+/* Sets the capacities of the frame's configuration to the max that fits into
+ * BYTES, by binary search. Returns false if not even one primitive fits.
  */
 static bool fit_capacity_to_bytes(struct glint_frame *f, size_t bytes)
 {
@@ -140,8 +141,9 @@ static double count_needed_primitives(const struct glint_flare_stats *s)
 static bool coarsen_grids_to_memory(struct glint_frame *f,
                                     const struct glint_flare_stats *s)
 {
-    const double most = f->limits.reserved ? f->limits.most_primitives
-                                           : (double)compute_max_bytes(f);
+    const double most = f->limits.reserved
+                            ? f->limits.most_primitives
+                            : (double)compute_frame_memory_limit(f);
     const int fineness = f->dials.fineness;
     double fixed = 0;
     const double need = f->limits.reserved ? count_needed_primitives(s)
@@ -191,7 +193,7 @@ bool glint_frame_fit_capacity(struct glint_frame *f,
 
 enum glint_status glint_frame_reallocate_flare(struct glint_frame *f)
 {
-    const size_t most = compute_max_bytes(f);
+    const size_t most = compute_frame_memory_limit(f);
     size_t bytes = glint_flare_bytes(&f->cfg);
 
     if (f->lens && !f->limits.reserved && most && bytes > most) {
@@ -269,7 +271,7 @@ static bool has_plan_capacity(const struct glint_frame *f, int n)
 
 enum glint_status glint_frame_ensure_plan_capacity(struct glint_frame *f)
 {
-    const int bundles = count_first_set_bundles(f, f->lights.n);
+    const int bundles = count_bundles_of_first_wave_set(f, f->lights.n);
 
     if (f->limits.reserved || has_plan_capacity(f, bundles))
         return GLINT_OK;
@@ -293,11 +295,11 @@ enum glint_status glint_frame_reserve_memory(struct glint_frame *f, void *mem,
 
     f->dials.max_lights =
         min_int(f->dials.max_lights, min_int(n_drawn, n_lamps));
-    /* twice the first set suffices, as not all ghosts are visible, and few need
-     * a larger set */
-    f->cfg.max_bundles =
-        clamp_bundle_count((glint_frame_has_wave_sets(f) ? 2. : 1) *
-                           count_first_set_bundles(f, f->dials.max_lights));
+    /* twice the bundles of the first wave set suffice, as not all ghosts are
+     * visible, and few need a larger set */
+    f->cfg.max_bundles = clamp_bundle_count(
+        (glint_frame_has_wave_sets(f) ? 2. : 1) *
+        count_bundles_of_first_wave_set(f, f->dials.max_lights));
     if (f->cfg.reuse)
         f->cfg.reuse_lights = f->dials.max_lights;
     f->cfg.reuse_gains = f->cfg.reuse && f->dials.still_px > 0;
@@ -350,7 +352,7 @@ static double estimate_probe_minsn(double n_rays)
     return 1e-3 * glint_cost_weight[GLINT_COST_LOOKED_AT].counted * n_rays;
 }
 
-static double compute_minsn_limit(const struct glint_frame *f)
+static double compute_frame_work_limit_minsn(const struct glint_frame *f)
 {
     return f->limits.most_minsn * f->limits.share;
 }
@@ -359,7 +361,7 @@ bool glint_frame_limit_probing(struct glint_frame *f)
 {
     enum {
         RAYS = 200
-    }; /* number of rays of a coarse and a fine probe together */
+    }; /* number of rays of a small and a large probe together */
     const int waves = glint_frame_has_wave_sets(f) ? f->setup->set_size[0]
                                                    : f->setup->n_wavelengths;
     const double light =
@@ -368,7 +370,8 @@ bool glint_frame_limit_probing(struct glint_frame *f)
 
     if (f->limits.most_minsn <= 0)
         return false;
-    while (f->lights.n > 1 && f->lights.n * light > compute_minsn_limit(f) / 2)
+    while (f->lights.n > 1 &&
+           f->lights.n * light > compute_frame_work_limit_minsn(f) / 2)
         f->lights.n--;
     if (f->lights.n == n)
         return false;
@@ -388,9 +391,9 @@ static bool is_cost_mostly_dust(const struct glint_frame *f,
                glint_cost_to_minsn(cost);
 }
 
-/* Reduces the fineness of dust tables and grids step by step until PLAN costs
- * at most MINSN, or they are the coarsest. Returns the resulting cost, millions
- * of instructions. */
+/* Makes dust tables and grids coarser step by step until PLAN costs at most
+ * MINSN, or they are the coarsest. Returns the resulting cost, millions of
+ * instructions. */
 static double coarsen_grids_to_minsn(struct glint_frame *f,
                                      const struct glint_cost_plan *plan,
                                      double minsn)
@@ -414,8 +417,9 @@ static double coarsen_grids_to_minsn(struct glint_frame *f,
     return glint_cost_to_minsn(&cost);
 }
 
-/* Limits ghosts to three wavelengths each. MINSN is the cost of the plan
- * before; returns the estimated cost after, millions of instructions. */
+/* Limits each ghost to three wavelengths. MINSN is the cost of the plan;
+ * returns the estimated cost with three wavelengths, both millions of
+ * instructions. */
 static double limit_ghost_wavelengths(struct glint_frame *f, double minsn)
 {
     enum { WAVES = 3 };
@@ -429,7 +433,7 @@ static double limit_ghost_wavelengths(struct glint_frame *f, double minsn)
     return minsn * fmin(1, WAVES * jobs / fmax(1, n));
 }
 
-/* Also valid before the plan is drawn, so that its cost can be predicted.
+/* Also works before the plan is drawn, so that its cost can be predicted.
  */
 struct glint_cost_plan glint_frame_make_cost_plan(const struct glint_frame *f)
 {
@@ -455,7 +459,7 @@ bool glint_frame_limit_work(struct glint_frame *f)
     const struct glint_cost cost = glint_cost_of(&plan, &f->dials);
     const double spent = estimate_probe_minsn((double)f->plan.n_looked);
     const double again = spent / f->plan.n_plans;
-    const double left = compute_minsn_limit(f) - spent;
+    const double left = compute_frame_work_limit_minsn(f) - spent;
     const struct glint_dials before = f->dials;
     double then;
 

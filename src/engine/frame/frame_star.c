@@ -9,10 +9,10 @@
 #include "engine/setup/dirt.h"
 #include "engine/frame/frame_parts.h"
 
-/* Factor on cull_codes for stars, whose ends are smooth and faint, unlike edges
- * of ghosts. Half or an eighth as much comes no nearer to all of their light;
- * four times as much costs 0.2 dB and saves 2 of 9 million instructions (a lamp
- * of 12 stops, 1920x1080). */
+/* Factor on cull_codes for starbursts, which fade out smoothly, unlike the
+ * edges of ghosts. With half or an eighth of it pictures come no nearer to
+ * those with all light; four times as much costs 0.2 dB and saves 2 of 9
+ * million instructions (a lamp of 12 stops, 1920x1080). */
 #define STAR_CULL 2
 
 /* Max distance of a starburst's lamp from the picture's top left corner,
@@ -186,7 +186,7 @@ static struct seen find_lamp_appearance(const struct glint_frame *f, int i)
 }
 
 /* Returns POWER, in white times pixels of the brightest channel; if the picture
- * clips the lamp, a higher estimate of its true power. */
+ * clips the lamp, returns a higher estimate of its true power. */
 static double estimate_unclipped_power(const struct glint_frame *f,
                                        const struct seen *seen, double power)
 {
@@ -226,12 +226,12 @@ static double compute_lamp_disc_radius(const struct glint_frame *f,
     return fmax(least, rest_px + glare * (least - rest_px));
 }
 
-/* Converts LAMP, its power times SCALE, to LIGHT. Returns false if it is too
- * far from the picture or has no light. */
-static bool set_star_light(const struct glint_frame *f,
-                           const struct glint_lamp *lamp, double scale,
-                           const struct seen *seen,
-                           struct glint_star_light *light)
+/* Converts LAMP, with its power times SCALE, to LIGHT. Returns false if LAMP is
+ * too far from the picture or has no light. */
+static bool convert_lamp_to_star_light(const struct glint_frame *f,
+                                       const struct glint_lamp *lamp,
+                                       double scale, const struct seen *seen,
+                                       struct glint_star_light *light)
 {
     const double focal_mm = f->setup->optics.focal_mm;
     const double pixels = glint_frame_pixels_per_tangent(f);
@@ -258,7 +258,7 @@ static bool set_star_light(const struct glint_frame *f,
     return true;
 }
 
-static int compare_star_power(const void *a, const void *b)
+static int is_star_power_higher(const void *a, const void *b)
 {
     const struct glint_star_light *p = a, *q = b;
 
@@ -271,9 +271,9 @@ static int compare_star_power(const void *a, const void *b)
     return p->y_q8 < q->y_q8 ? -1 : p->y_q8 > q->y_q8;
 }
 
-/* Sets the starburst of N_LIGHTS lights, leaving out light below FAINTEST, or
- * below the smallest higher limit at which the cost stays within budget_share
- * of the budget. */
+/* Sets the starbursts of N_LIGHTS lights. Light below FAINTEST is left out, or,
+ * if the cost exceeds budget_share of the budget, below the smallest higher
+ * limit with which it does not. */
 static void set_star_lights_within_budget(struct glint_frame *f, int n_lights,
                                           double faintest)
 {
@@ -315,12 +315,13 @@ enum glint_status glint_frame_star_set_lamps(struct glint_frame *f,
     for (int i = 0; i < n; i++) {
         const struct seen seen = find_lamp_appearance(f, i);
 
-        n_lights +=
-            set_star_light(f, get_star_lamp(f, lamps, i), scale * s->share,
-                           &seen, &s->light[n_lights]);
+        n_lights += convert_lamp_to_star_light(f, get_star_lamp(f, lamps, i),
+                                               scale * s->share, &seen,
+                                               &s->light[n_lights]);
     }
     if (n_lights > GLINT_STAR_MAX_LIGHTS)
-        qsort(s->light, (size_t)n_lights, sizeof *s->light, compare_star_power);
+        qsort(s->light, (size_t)n_lights, sizeof *s->light,
+              is_star_power_higher);
     set_star_lights_within_budget(
         f, n_lights,
         STAR_CULL *
@@ -346,7 +347,8 @@ void glint_frame_draw_passes(struct glint_frame *frame,
         glint_flare_draw(frame->memory.flare, image);
 }
 
-/* Returns the max power of a lamp in any channel, for starbursts. */
+/* Returns the power of the strongest lamp in its brightest channel, as used for
+ * starbursts. */
 static double find_max_star_power(const struct glint_frame *f,
                                   const struct glint_lamp *lamps, int n)
 {

@@ -16,22 +16,22 @@ struct glint_frame_star {
     /* factor on the starburst: the powers of lamps are multiplied by the
      * frame's scale and by this; 0: no starburst */
     double share;
-    /* See also seen_px of the lamps frame->known: above 0, the power is an
-     * estimate that may be raised for the starburst; below 0, the lamp's core
-     * is drawn. */
+    /* For lamps in frame->known, seen_px applies instead: above 0, the power is
+     * an estimate that may be raised for the starburst; below 0, the lamp's
+     * core is drawn. */
     bool is_bare;  /* true: the lamps are not visible in a picture, so the cores
                       of their starbursts are drawn, too */
     bool is_alone; /* true: the starburst is drawn without ghosts */
 
     /* Private. */
-    struct glint_star_optics optics; /* optics for which the tables were made */
+    struct glint_star_optics optics; /* the optics for which TABLES were made */
     struct glint_star_tables *tables;
     /* diffraction by dirt in the stop, if any, and the digest of that dirt */
     struct glint_smear smear;
     uint64_t smear_mark;
     struct glint_star *star; /* NULL until the first starburst is drawn */
-    /* [max_lights]; of more than GLINT_STAR_MAX_LIGHTS lights, the brightest
-     * are drawn */
+    /* [max_lights]: lights to draw; of more than GLINT_STAR_MAX_LIGHTS lights,
+     * only the brightest */
     struct glint_star_light *light;
     void *mem;
     size_t bytes;             /* size of MEM, bytes */

@@ -118,7 +118,7 @@ enum glint_status glint_frame_veil_read_picture(struct glint_frame *f,
 
 /* Sets TABLE to a Gaussian kernel of SIGMA cells (0: uniform) over N cells and
  * their mirror images; see struct glint_veil_spread. */
-static void set_gaussian_table(int32_t *table_q30, int n, double sigma)
+static void compute_gaussian_table(int32_t *table_q30, int n, double sigma)
 {
     double at[GLINT_VEIL_CELLS + 1], sum = 0;
     int32_t rest = INT32_C(1) << 30;
@@ -154,8 +154,8 @@ make_gaussian_spread(const struct glint_frame *f, double sigma, double share)
         /* a Gaussian wider than this is treated as uniform */
         const bool is_even = !(sigma > 0) || in_cells > 2 * cells[k];
 
-        set_gaussian_table(k ? s.down_q30 : s.across_q30, cells[k],
-                           is_even ? 0 : in_cells);
+        compute_gaussian_table(k ? s.down_q30 : s.across_q30, cells[k],
+                               is_even ? 0 : in_cells);
     }
     s.share = glint_real_of(share * cells[0] * cells[1] / (size[0] * size[1]));
     return s;
@@ -168,7 +168,7 @@ static double get_front_scattered_fraction(const struct glint_frame_veil *v)
     return v->front && v->table ? v->table->mean : 0;
 }
 
-/* Returns the ratio of all light to the light that is not scattered. */
+/* Returns all light / light that is not scattered by glare, haze and dirt. */
 static double compute_total_over_direct_light(const struct glint_frame_veil *v)
 {
     return 1 / (1 - fmin(v->glare + v->haze + get_front_scattered_fraction(v),
@@ -221,8 +221,8 @@ static void spread_front_dirt_light(const struct glint_frame *f)
                 spreads));
 }
 
-/* Sigma, a fraction of the diagonal, that replaces the uniform part of the
- * glare for off-screen lamps. */
+/* For off-screen lamps, a Gaussian with this sigma, a fraction of the picture's
+ * diagonal, replaces the uniform part of the glare. */
 static const double even_sigma = 0.5;
 
 /* Returns the value of a Gaussian at distance FAR divided by its value at the
@@ -232,8 +232,8 @@ static double compute_gaussian_falloff(double far, double sigma)
     return exp(-0.5 * far * far / (sigma * sigma));
 }
 
-/* Returns the veil of a lamp FAR pixels off-screen, divided by its veil if it
- * were at the border of the picture: each kernel falls by its own Gaussian. */
+/* Returns the veil of a lamp FAR pixels off-screen / its veil if it were at the
+ * border of the picture. Each kernel falls by its own Gaussian. */
 static double compute_offscreen_fraction(const struct glint_frame *f,
                                          double far)
 {
@@ -255,10 +255,11 @@ static double compute_offscreen_fraction(const struct glint_frame *f,
     return sum / fmax(v->glare + haze, 1e-9);
 }
 
-/* Additional cost per pixel of dirt on the front element / cost of a pixel. */
+/* Additional cost of a pixel for dirt on the front element / cost of a pixel
+ * without. */
 static const double front_pixels = 0.4;
 
-/* Drawing costs one unit per pixel; convolving the light of one cell with
+/* The unit of cost is drawing one pixel; convolving the light of one cell with
  * another costs 1 / SPREADING. */
 double glint_frame_veil_cost_in_pixels(const struct glint_frame *f)
 {

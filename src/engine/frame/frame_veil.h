@@ -23,8 +23,8 @@ struct glint_frame_veil {
      * caller: scatters light like haze, but only in the out-of-focus discs of
      * the dirt. */
     const struct glint_front_dirt *front;
-    /* factor on the veil when the flare is drawn without a picture; 0: the
-     * factor on the flare */
+    /* factor on the veil if the flare is drawn without a picture; 0: the same
+     * factor as on the flare */
     double alone_gain;
 
     /* Private. */
@@ -37,8 +37,7 @@ struct glint_frame_veil {
     struct glint_front_table *table;
     const struct glint_front_dirt *table_of;
     struct glint_front_optics table_for;
-    bool has_look; /* true: the light of the picture has been read for this
-                      frame */
+    bool has_look; /* true: the light of this frame's picture has been read */
     bool is_set;   /* true: the veil has been computed for this frame */
 };
 

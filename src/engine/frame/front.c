@@ -15,7 +15,8 @@ enum { SIDE = GLINT_FRONT_SIDE, LEAST_CHORDS = 24, MOST_CHORDS = 96 };
 
 /* Returns the fraction of the front element that the mask covers at (X, Y), in
  * front radii: the value of the nearest pixel; 0 without a mask. */
-static double read_mask_cover(const struct glint_front *f, double x, double y)
+static double read_mask_covered_fraction(const struct glint_front *f, double x,
+                                         double y)
 {
     const int i = (int)(0.5 * (x + 1) * f->mask_width);
     const int j = (int)(0.5 * (1 - y) * f->mask_height);
@@ -23,8 +24,8 @@ static double read_mask_cover(const struct glint_front *f, double x, double y)
     return f->mask ? 1 - f->mask[(ptrdiff_t)j * f->mask_width + i] / 255. : 0;
 }
 
-/* Sets the running sums of the covered fraction along the rows of DIRT. Outside
- * the rim the cover is 0. */
+/* Sets the running sums, along the rows of DIRT, of the fraction of each cell
+ * that is covered. Outside the rim the cover is 0. */
 static void sum_cover_along_rows(struct glint_front_dirt *dirt,
                                  const struct glint_front *f,
                                  const struct glint_dust *dust)
@@ -40,7 +41,7 @@ static void sum_cover_along_rows(struct glint_front_dirt *dirt,
 
             if (x * x + y * y < 1)
                 sum += 1 - glint_dust_compute_transmission(dust, x, y) *
-                               (1 - read_mask_cover(f, x, y));
+                               (1 - read_mask_covered_fraction(f, x, y));
             row[i + 1] = (float)sum;
         }
     }
@@ -102,10 +103,12 @@ struct chords {
     double all; /* sum of the lengths of all chords, stop radii */
 };
 
-/* Divides the stop of SETUP, whose radius is RADIUS front radii, into chords:
- * one per row of cells of the front element, up to the max number. */
-static void set_stop_chords(struct chords *c, const struct glint_setup *setup,
-                            double radius)
+/* Divides the stop of SETUP, whose image on the front element has the radius
+ * RADIUS in front radii, into chords: one per row of cells of the front
+ * element, up to the max number. */
+static void divide_stop_into_chords(struct chords *c,
+                                    const struct glint_setup *setup,
+                                    double radius)
 {
     enum { STEPS = 512 };
     struct glint_iris_sides sides;
@@ -129,9 +132,9 @@ static void set_stop_chords(struct chords *c, const struct glint_setup *setup,
     }
 }
 
-/* Returns the integral of the cover along a row of cells from its left end to
- * X, in cells. */
-static double sum_row_cover_to(const float *row, double x)
+/* Returns the integral of the covered fraction along a row of cells, from the
+ * row's left end to X, in cells. */
+static double integrate_cover_along_row(const float *row, double x)
 {
     const double at = fmin(fmax(x, 0), SIDE);
     const int i = (int)fmin(at, SIDE - 1);
@@ -139,18 +142,19 @@ static double sum_row_cover_to(const float *row, double x)
     return (double)row[i] + (at - i) * (double)(row[i + 1] - row[i]);
 }
 
-/* Returns the integral of the cover of row J along chord K of a stop centred at
- * MIDDLE, in cells. SCALE: cells per stop radius. */
-static double sum_chord_cover(const struct glint_front_dirt *d,
-                              const struct chords *c, int k, double scale,
-                              double middle, int j)
+/* Returns the integral of the covered fraction of row J along chord K of a stop
+ * centred at MIDDLE, in cells. SCALE: cells per stop radius. */
+static double integrate_cover_along_chord(const struct glint_front_dirt *d,
+                                          const struct chords *c, int k,
+                                          double scale, double middle, int j)
 {
     const float *row = d->along + (ptrdiff_t)j * (SIDE + 1);
 
     return j < 0 || j >= SIDE
                ? 0
-               : sum_row_cover_to(row, middle + scale * c->to[k]) -
-                     sum_row_cover_to(row, middle + scale * c->from[k]);
+               : integrate_cover_along_row(row, middle + scale * c->to[k]) -
+                     integrate_cover_along_row(row,
+                                               middle + scale * c->from[k]);
 }
 
 /* Returns the mean cover over the beam of a pixel, which crosses the front
@@ -167,8 +171,10 @@ static double compute_mean_stop_cover(const struct glint_front_dirt *d,
     for (int k = 0; k < c->n; k++) {
         const double at = (y + radius * c->y[k] + 1) * half - 0.5;
         const int j = (int)floor(fmin(fmax(at, -2), SIDE));
-        const double low = sum_chord_cover(d, c, k, scale, middle, j);
-        const double high = sum_chord_cover(d, c, k, scale, middle, j + 1);
+        const double low =
+            integrate_cover_along_chord(d, c, k, scale, middle, j);
+        const double high =
+            integrate_cover_along_chord(d, c, k, scale, middle, j + 1);
 
         sum += low + (fmin(fmax(at, -2), SIDE) - j) * (high - low);
     }
@@ -197,17 +203,18 @@ static void set_front_optics(struct glint_front_optics *o,
         .roundness = setup->iris.roundness};
 }
 
-/* Returns the coordinate on the front element, in front radii, at which the
- * chief ray of pixel AT of N crosses it. */
+/* Returns the coordinate, in front radii, at which the chief ray of pixel AT
+ * (of N pixels along the axis) crosses the front element. */
 static double map_pixel_to_front(const struct glint_front_optics *o, double at,
                                  int n)
 {
     return -o->z * o->tangent * (at - 0.5 * n);
 }
 
-/* Returns the distance, in nodes, between the nodes at which the cover is
- * computed: a power of two; 16 per radius of an out-of-focus disc suffice. */
-static int choose_node_step(const struct glint_front_optics *o)
+/* Returns the distance between the nodes at which the cover is computed, in
+ * nodes of the table: a power of two. 16 computed nodes per radius of an
+ * out-of-focus disc suffice. */
+static int choose_cover_node_distance(const struct glint_front_optics *o)
 {
     const double disc =
         o->radius / (fabs(o->z * o->tangent) * GLINT_VEIL_FRONT_PX * 16 + 1e-9);
@@ -218,17 +225,17 @@ static int choose_node_step(const struct glint_front_optics *o)
     return n;
 }
 
-/* Computes the cover at every STEP-th node of the table, and interpolates the
- * nodes between them. */
-static void compute_node_covers(double *covered, int n_x, int n_y,
-                                const struct glint_front_dirt *dirt,
-                                const struct glint_front_optics *o,
-                                const struct glint_setup *setup)
+/* Computes the cover at every STEP-th node of the table, and interpolates it at
+ * the nodes between them. */
+static void compute_cover_at_nodes(double *covered, int n_x, int n_y,
+                                   const struct glint_front_dirt *dirt,
+                                   const struct glint_front_optics *o,
+                                   const struct glint_setup *setup)
 {
-    const int step = choose_node_step(o);
+    const int step = choose_cover_node_distance(o);
     struct chords chords;
 
-    set_stop_chords(&chords, setup, o->radius);
+    divide_stop_into_chords(&chords, setup, o->radius);
     for (int j = 0; j < n_y; j += step)
         for (int i = 0; i < n_x; i += step)
             covered[j * n_x + i] = compute_mean_stop_cover(
@@ -257,8 +264,8 @@ static void compute_node_covers(double *covered, int n_x, int n_y,
         }
 }
 
-static void encode_node_covers(struct glint_front_table *t,
-                               const double *covered, uint16_t *part_q16)
+static void encode_cover_at_nodes(struct glint_front_table *t,
+                                  const double *covered, uint16_t *part_q16)
 {
     const int n = t->front.n_x * t->front.n_y;
     double sum = 0;
@@ -294,8 +301,8 @@ static enum glint_status make_front_table(
     t->front =
         (struct glint_veil_front){glint_veil_add_front_row, n_x, n_y,
                                   (const uint16_t *)(const void *)(t + 1)};
-    compute_node_covers(covered, n_x, n_y, dirt, optics, setup);
-    encode_node_covers(t, covered, (uint16_t *)(void *)(t + 1));
+    compute_cover_at_nodes(covered, n_x, n_y, dirt, optics, setup);
+    encode_cover_at_nodes(t, covered, (uint16_t *)(void *)(t + 1));
     free(covered);
     return GLINT_OK;
 }

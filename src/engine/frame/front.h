@@ -39,7 +39,7 @@ struct glint_front_table {
     struct glint_veil_front front; /* its nodes follow this struct in the same
                                       memory block */
     size_t bytes;
-    /* covered fraction: mean and max over the picture */
+    /* covered fraction of a pixel's beam: mean and max over the picture */
     double mean, most;
 };
 
@@ -77,7 +77,7 @@ enum {
 struct glint_front_dirt {
     const struct glint_front_method *method;
     /* [SIDE][SIDE + 1]: sum of the covered fractions of all cells to the left
-     * in the same row; row 0 has the lowest y */
+     * in the row; row 0 has the lowest y */
     float *along;
 };
 

@@ -60,7 +60,8 @@ static double compute_stop_transmission(const struct glint_dirt *d, double x,
 
 /* Returns the mean transmission around node (I, J) of the finest level, over a
  * square as wide as the distance between nodes. */
-static double compute_mean_around_node(const struct glint_dirt *d, int i, int j)
+static double compute_mean_transmission_around_node(const struct glint_dirt *d,
+                                                    int i, int j)
 {
     enum { N = 2 };
     const double cell = 2.0 / (NODES - 1);
@@ -76,12 +77,12 @@ static double compute_mean_around_node(const struct glint_dirt *d, int i, int j)
     return sum / (N * N);
 }
 
-static void set_finest_level(struct glint_dirt *d)
+static void compute_finest_shade_level(struct glint_dirt *d)
 {
     for (int j = 0; j < NODES; j++)
         for (int i = 0; i < NODES; i++)
-            d->node_q15[j * NODES + i] =
-                (uint16_t)lrint(compute_mean_around_node(d, i, j) * 32768);
+            d->node_q15[j * NODES + i] = (uint16_t)lrint(
+                compute_mean_transmission_around_node(d, i, j) * 32768);
 }
 
 static void set_mean_transmission(struct glint_dirt *d)
@@ -107,8 +108,8 @@ static void set_mean_transmission(struct glint_dirt *d)
 /* Computes LEVEL, with COARSER nodes per side, from the next finer level, with
  * SIDE nodes per side: each node is the mean of the 3 x 3 finer nodes around
  * it, with weights 1/4, 1/2, 1/4 across and down. */
-static void downsample_level(const uint16_t *finer, int side, uint16_t *level,
-                             int coarser)
+static void downsample_shade_level(const uint16_t *finer, int side,
+                                   uint16_t *level, int coarser)
 {
     static const int weight[3] = {1, 2, 1};
 
@@ -128,7 +129,7 @@ static void downsample_level(const uint16_t *finer, int side, uint16_t *level,
         }
 }
 
-static size_t count_nodes_of_all_levels(void)
+static size_t count_shade_table_nodes(void)
 {
     size_t n = 0;
 
@@ -188,12 +189,12 @@ static void make_shade_table(struct glint_dirt *d)
         .method = &glint_shade_method,
         .log2 = d->dust.n || d->iris.mask ? GLINT_DIRT_LOG2 : 0};
     set_mean_transmission(d);
-    /* The table, if there is one, includes the soft edge. */
+    /* If there is a table, it includes the soft edge. */
     if (!d->shade.log2) {
         d->shade.soft_q16 = (int32_t)lrint(d->iris.softness * 65536);
         return;
     }
-    set_finest_level(d);
+    compute_finest_shade_level(d);
     d->mark = compute_shade_digest(d, side * side);
     for (int i = 0; i < side * side; i++)
         rough[i] = (uint8_t)find_node_roughness(light, NULL, side, i % side,
@@ -205,7 +206,7 @@ static void make_shade_table(struct glint_dirt *d)
         d->shade.rough_q8[k] = rough;
         if (k + 1 == GLINT_DIRT_LOG2)
             break;
-        downsample_level(light, side, light + n, coarser);
+        downsample_shade_level(light, side, light + n, coarser);
         for (int i = 0; i < coarser * coarser; i++)
             rough[n + i] = (uint8_t)find_node_roughness(
                 light, rough, side, 2 * (i % coarser), 2 * (i / coarser), 3,
@@ -247,8 +248,8 @@ static struct glint_dirt *make_stop_dirt(const struct glint_setup *setup)
     d->through = compute_stop_transmission;
     d->cos_turn = glint_cos_deg(setup->blade_rotation_deg);
     d->sin_turn = glint_sin_deg(setup->blade_rotation_deg);
-    d->node_q15 = malloc(count_nodes_of_all_levels() * sizeof *d->node_q15);
-    d->rough_q8 = malloc(count_nodes_of_all_levels() * sizeof *d->rough_q8);
+    d->node_q15 = malloc(count_shade_table_nodes() * sizeof *d->node_q15);
+    d->rough_q8 = malloc(count_shade_table_nodes() * sizeof *d->rough_q8);
     if (!d->node_q15 || !d->rough_q8) {
         glint_dirt_free(d);
         return NULL;

@@ -65,7 +65,7 @@ static void add_scratch(struct glint_dust *dust, struct draw *d)
 }
 
 /* Sets centre and half side of the bounding square of speck S. */
-static void set_bounding_square(struct glint_speck *s)
+static void set_speck_bounding_square(struct glint_speck *s)
 {
     double half = 0;
 
@@ -79,8 +79,8 @@ static void set_bounding_square(struct glint_speck *s)
 void glint_dust_generate_specks(struct glint_dust *dust, double amount,
                                 int seed)
 {
-    /* A disc covers the square of its radius, as a fraction of the stop's
-     * circle. */
+    /* A disc covers a fraction of the stop's circle that is the square of its
+     * radius. */
     const int n_lines = (int)ceil(fmin(8, 40 * amount));
     const int n_smudges = (int)ceil(fmin(4, 20 * amount));
     struct draw d = {(uint64_t)(uint32_t)seed * UINT64_C(0x9e3779b97f4a7c15)};
@@ -109,7 +109,7 @@ void glint_dust_generate_specks(struct glint_dust *dust, double amount,
         left -= radius * radius;
     }
     for (int i = 0; i < dust->n; i++)
-        set_bounding_square(&dust->speck[i]);
+        set_speck_bounding_square(&dust->speck[i]);
 }
 
 static double square_number(double x)

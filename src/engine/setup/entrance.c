@@ -64,8 +64,8 @@ static double compute_pupil_z_from_model(const struct glint_setup *setup,
             fabs(fabs(on.radii_per_mm) * radius - 1) < 0.05 &&
             find_chief_ray(lens, k, sine, &off))
             return (on.x_mm - off.x_mm) / tangent;
-    /* if no ghost serves: a distance at which the picture's corner is just
-     * visible past the rim of the front element */
+    /* if there is no such ghost: the distance at which the picture's corner is
+     * just visible past the rim of the front element */
     return fmax(front - radius, 0.1 * radius) * fabs(setup->optics.focal_mm) /
            fmax(field, 1e-6);
 }

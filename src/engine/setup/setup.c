@@ -152,8 +152,9 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
     if (status != GLINT_OK)
         return status;
     if (h->n_ghosts > GLINT_MAX_GHOSTS) {
-        snprintf(error->text, sizeof error->text, "%s has too many ghosts: %lu",
-                 h->name, (unsigned long)h->n_ghosts);
+        snprintf(error->text, sizeof error->text,
+                 "model %s has too many ghosts: %lu", h->name,
+                 (unsigned long)h->n_ghosts);
         return GLINT_E_LENS;
     }
     setup->lens = NULL;
@@ -183,7 +184,7 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
 {
     const struct glint_model_header *h = lens->header;
     const double widest = glint_real_value(h->f_number);
-    /* tolerates that F_NUMBER is the rounded f-number of the full opening */
+    /* F_NUMBER may be the rounded f-number of the fully open stop */
     const double by =
         fabs(widest / f_number - 1) < 1e-6 ? 1 : widest / f_number;
 

@@ -100,11 +100,12 @@ static double compute_wavelength_density(double nm)
     glint_observer_compute_rgb(nm, rgb);
     for (int c = 0; c < 3; c++)
         squares += rgb[c] * rgb[c];
-    return cbrt(squares / (nm * nm * nm)); /* d (1 / nm^2) ~ nm^-3 */
+    return cbrt(squares / (nm * nm * nm)); /* the derivative of 1 / nm^2 is
+                                              proportional to nm^-3 */
 }
 
-/* Places N wavelengths such that each lies in the middle of 1 / N of the
- * integral of the density. */
+/* Places N wavelengths: the integral of the density is divided into N equal
+ * pieces, and each wavelength lies in the middle of one. */
 static void place_wavelengths(int n, double *wavelength_nm)
 {
     double sum = 0, passed = 0;

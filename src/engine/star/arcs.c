@@ -71,8 +71,9 @@ static double complex compute_fresnel_integral(double x)
     return x < 0 ? -value : value;
 }
 
-/* Returns the correction to the Fresnel integral at the end of an arc at W: the
- * slowly varying factor there differs from that at w = 0. */
+/* Returns the correction to the Fresnel integral at an end of an arc, where the
+ * sine of half the angle to q is W: the slowly varying factor differs there
+ * from that at w = 0. */
 static double complex compute_arc_end_correction(double w, double kappa)
 {
     const double g = 2 * (1 - 2 * w * w) / sqrt(1 - w * w) - 2;
@@ -85,8 +86,8 @@ static double complex compute_arc_end_correction(double w, double kappa)
 
 /* Returns the integral along one arc by its far-field approximation, without
  * the phase of the arc's middle. TO: angle between the arc's normal and the
- * direction of q, radians; Q: |q|. For an arc on the far side of the stop it is
- * the complex conjugate. */
+ * direction of q, radians; Q: |q|. For an arc on the far side of the stop the
+ * integral is the complex conjugate. */
 static double complex integrate_arc_asymptotically(const struct glint_arcs *a,
                                                    double q, double to)
 {
@@ -130,7 +131,8 @@ static double complex integrate_arc_numerically(const struct glint_arcs *a,
     return sum * (q * radius * a->turn / steps / 3);
 }
 
-/* Returns the same integral by its far-field approximation, for large Q. */
+/* Returns the integral along one arc, including its phase, by its far-field
+ * approximation, which is valid for large Q. */
 static double complex integrate_arc_far_from_centre(const struct glint_arcs *a,
                                                     double normal, double q,
                                                     double direction)

@@ -35,8 +35,8 @@ void glint_arcs_init(struct glint_arcs *arcs, int n, double rotation_deg,
 double glint_arcs_compute_pattern(const struct glint_arcs *arcs, double qx,
                                   double qy);
 
-/* Returns the same far from the lamp, without the fringes between different
- * arcs. */
+/* Like glint_arcs_compute_pattern(), for q far from the centre, and without the
+ * fringes between different arcs. */
 double glint_arcs_compute_far_pattern(const struct glint_arcs *arcs, double qx,
                                       double qy);
 

@@ -29,8 +29,8 @@ struct cells {
         *smear;       /* diffraction by dirt in the stop, or NULL */
     double airy_px;   /* airy_px (550 nm times the f-number,
                          pixels) for the smear */
-    int half, side;   /* number of cells from the middle to a side (half), and
-                         per side (side) */
+    int half, side;   /* number of cells from the middle to a side of the square
+                         (half), and per side of the square (side) */
     double (*sum)[3]; /* [side + 1][side + 1] */
 };
 

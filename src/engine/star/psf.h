@@ -57,8 +57,8 @@ struct glint_psf {
     double scale[GLINT_PSF_WAVES];     /* wavelength / 550 nm */
     double weight[GLINT_PSF_WAVES][3]; /* colour of each wavelength; each
                                           channel sums to 1 */
-    /* sums over the wavelengths of weight * scale (mean), and of weight *
-     * scale^2 (square) */
+    /* sums over the wavelengths: of weight * scale (mean), of weight * scale^2
+     * (square) */
     double mean[3], square[3];
     /* profile of a line: mean of sinc^2 over the spectrum at v = 32 width_px i
      * / GLINT_PSF_PROFILE */

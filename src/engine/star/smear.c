@@ -11,8 +11,9 @@ enum { N = GLINT_SMEAR_SIDE, HALF = N / 2 };
 
 static const double cell = (double)GLINT_SMEAR_SPAN / N;
 
-/* In cycles per stop radius: the step between elements of the transform
- * (step_q), and where D is measured to extrapolate it (edge_q). */
+/* Frequencies in cycles per stop radius: the step between elements of the
+ * transform (step_q), and the frequency at which D is measured to be
+ * extrapolated (edge_q). */
 static const double step_q = 1.0 / GLINT_SMEAR_SPAN, edge_q = 112;
 
 /* Sums over the cells of a stop. */
@@ -41,8 +42,9 @@ static double compute_soft_edge_transmission(double soft, double depth)
     return in * in * (3 - 2 * in);
 }
 
-/* Sets AT[i] to the amplitudes in row J of cells of the stop: real part g with
- * dirt, imaginary part o without. Row 0 has the lowest y. Adds to the sums T.
+/* Sets AT[i] to the amplitudes in row J of cells of the stop: the real part is
+ * g, with dirt, the imaginary part is o, without. Row 0 has the lowest y. Adds
+ * to the sums T.
  */
 static void set_amplitude_row(const struct glint_dirt *d, int j,
                               double (*at)[2], struct totals *t)

@@ -14,12 +14,13 @@
  * made; values outside are clamped. */
 static const double least_airy_px = 1.0 / 64, most_airy_px = 16;
 
-/* Half width of the tabulated line profiles, in widths of a profile, or in
- * pixels if these are larger. In the outer half, profiles fade into the halo.
+/* Half width of the tabulated line profiles, in multiples of the profile's
+ * width, or in pixels if a pixel is wider. In the outer half, profiles fade
+ * into the halo.
  */
 static const double widths = 4;
 
-/* Half the diagonal of a pixel, pixels. */
+/* Half the length of a pixel's diagonal, pixels. */
 static const double filter_px = 0.7072;
 
 /* Size of the halo tables of extended lamps, bytes. */

@@ -6,8 +6,7 @@
 #include "base/q.h"
 #include "flare/edges/outline.h"
 
-/* Numbering of cuts: side K of the stop has number K, barrel K has number
- * BARREL + K. */
+/* Numbers of cuts: side K of the stop is cut K, barrel K is cut BARREL + K. */
 enum { BARREL = 64, NOTHING = GLINT_CUT_NOTHING };
 
 /* ------------------------------------------------------------------- nodes */
@@ -31,9 +30,9 @@ static int count_parallel_side_pairs(const struct glint_stop *stop)
     return stop->n_blades % 2 ? 0 : half;
 }
 
-/* Returns 1 - (1 + r^2) / 2 at V minus the inset of a round stop, where r is
- * the distance from the stop's centre in stop radii: positive inside. Clamped
- * far outside. */
+/* Returns the function of a round stop at V, positive inside: 1 - (1 + r^2) / 2
+ * minus the inset, where r is the distance from the stop's centre in stop
+ * radii. Clamped far outside. */
 static int64_t evaluate_round_stop_q16(const struct glint_stop *stop,
                                        const struct glint_vertex *v)
 {
@@ -45,10 +44,10 @@ static int64_t evaluate_round_stop_q16(const struct glint_stop *stop,
 }
 
 /* Returns a mask with a bit set for each straight side of the stop on or
- * outside of which V lies, so that glint_side_distance_q16() is 0 or less.
- * LEAST is the apothem minus half a unit of _q16, because
- * glint_side_distance_q16() rounds. HALF is the number of pairs of parallel
- * sides, which are tested together; 0: sides are tested one by one. */
+ * outside of which V lies (glint_side_distance_q16() is 0 or less). LEAST is
+ * the apothem minus half a unit of _q16, because that function rounds. HALF is
+ * the number of pairs of parallel sides, which are tested together; 0: sides
+ * are tested one by one. */
 static inline uint64_t find_outside_sides(const struct glint_stop *stop,
                                           int half,
                                           const struct glint_vertex *v,
@@ -121,7 +120,8 @@ int glint_cuts_count_crossed(struct glint_outside o)
 
 /* ------------------------------------------------------------------- parts */
 
-/* Returns the function of cut CUT at V, which is positive inside. */
+/* Returns the value of the function of cut CUT at V, which is positive inside.
+ */
 static int64_t evaluate_cut_function_q16(const struct glint_stop *stop, int cut,
                                          const struct glint_vertex *v)
 {
@@ -202,9 +202,9 @@ void glint_cuts_find_visible_part(const struct glint_stop *stop,
 /* ----------------------------------------------------------------- corners */
 
 /* A plane fitted to the values at the four corners of a cell: middle + u
- * slope_u + v slope_v, with u and v from -1/2 to 1/2 across the cell. */
+ * slope_u + v slope_v, where u and v run from -1/2 to 1/2 across the cell. */
 struct plane {
-    /* four times the middle, and twice the slopes, which are integers */
+    /* 4 middle, 2 slope_u, 2 slope_v, which are integers */
     int64_t middle4, u2, v2;
 };
 
@@ -215,8 +215,8 @@ static struct plane fit_plane_to_corners(const int64_t value[4])
                           value[3] - value[0] + value[2] - value[1]};
 }
 
-/* Sets *Q16 to X / Y, a coordinate u or v. Returns 0 if it is outside -3/4 ..
- * 3/4, so not in the cell or near it. */
+/* Sets *Q16 to X / Y, a coordinate u or v in the cell. Returns 0 if it is
+ * outside -3/4 .. 3/4, so not in the cell or near it. */
 static int divide_in_cell_q16(int64_t x, int64_t y, int64_t *q16)
 {
     const int wide = bit_length(q_magnitude(x));

@@ -51,16 +51,17 @@ void glint_edge_snap_to_pixels(struct glint_edge *edge)
 
 enum visit { COUNT, PUT, SPAN };
 
-/* Returns the index, in a row of tiles, of the tile that contains column X,
- * clamped to 0 .. LAST. LAST is the last column of the region. */
+/* Returns the index in its row of tiles of the tile that contains column X,
+ * clamped to LAST, the last column of the region. */
 static inline int find_tile_column(int x, int last, int log2)
 {
     return (x < 0 ? 0 : x > last ? last : x) >> log2;
 }
 
 /* Counts or stores INDEX in the tiles that edge E crosses, or that the bounding
- * box of patch E overlaps, one row of tiles after the other. Pieces left of the
- * region belong to its first column. Returns the number of tiles visited. */
+ * box of patch E overlaps, one row of tiles after the other. The part of E left
+ * of the region counts to the region's first column. Returns the number of
+ * tiles visited. */
 static WHOLLY_INLINE int visit_crossed_tiles(const struct glint_edge *e,
                                              const struct glint_bins *bins,
                                              enum visit visit, int32_t index)

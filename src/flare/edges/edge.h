@@ -42,13 +42,13 @@ struct glint_edge {     /* 32 bytes */
      * for a mirrored ghost
      */
     int32_t left, right;
-    /* patch: 1 if this struct is not an edge but one slot of a patch (patch.h);
-     * WHOLE is then 0 for the patch's first slot, else 1. For edges, WHOLE is 1
-     * if the edge is pixel-snapped. */
+    /* patch: 1 if this struct is not an edge but one slot of a patch (patch.h).
+     * whole: for edges, 1 if the edge is pixel-snapped; for patches, 0 in the
+     * patch's first slot, 1 in the others. */
     unsigned bundle : 30, patch : 1, whole : 1;
 };
 
-/* Packs light (1 = display white) into a floating-point number of 32 bits: a
+/* Packs light, 1 = display white, into a 32-bit floating-point number with a
  * mantissa of 25 bits above an exponent of 5 bits. Every packed value is an
  * integer in units of 2^-20, so that sums that should cancel do so exactly. */
 static inline int32_t glint_light_pack(int64_t light_q20)
@@ -69,8 +69,8 @@ static inline int64_t glint_light_unpack_q20(int32_t packed)
 enum { GLINT_PATCH_SCRATCH = 8192 };
 
 /* Adds the part of patch E that lies in the tile of SUMS to the narrow or wide
- * sums. LIGHT is the light through a clear stop, per channel, in the units of
- * the sums. */
+ * sums. LIGHT: the patch's light through a clear stop, per channel, in the
+ * units of the sums. */
 struct glint_edge_sums;
 typedef void glint_patch_fn(const struct glint_edge_sums *sums, int narrow,
                             const struct glint_edge *e, const int64_t light[3]);
@@ -84,8 +84,8 @@ struct glint_edge_sums {
     int tile_log2, stride;
     int linear; /* nonzero: the picture is in linear light */
     int fine;   /* 1: light is _q20 even if the picture is in codes */
-    int lit;    /* nonzero: light may be carried in from the left; set by the
-                   pass (edges_pass.c) */
+    int lit;    /* nonzero: light may be carried in from the tile on the left;
+                   set by the pass (edges_pass.c) */
     /* For patches (patch.h): the function that draws a patch, the shade of the
      * stop, and scratch memory of GLINT_PATCH_SCRATCH bytes. */
     glint_patch_fn *patch;
@@ -120,9 +120,9 @@ static inline int64_t compute_edge_x_q40(const struct glint_edge *e,
     return e->x_q8 * (INT64_C(1) << 32) + e->slope_q40 * (y_q8 - e->y_q8);
 }
 
-/* Snaps EDGE to the nearest pixel boundary in each row. This costs a fraction
- * of a smooth edge, and is meant for changes of light that are barely visible.
- * Closed outlines still cancel, as heights are unchanged. */
+/* Snaps EDGE to the nearest pixel boundary in each row. A snapped edge costs a
+ * fraction of a smooth one, and is meant for changes of light that are barely
+ * visible. Closed outlines still cancel, as heights are unchanged. */
 void glint_edge_snap_to_pixels(struct glint_edge *edge);
 
 /* glint_edge_count_into_bins() increments the counts of the tiles that EDGE

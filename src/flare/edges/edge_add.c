@@ -33,11 +33,11 @@ struct run {
         uint64_t *wide;
         uint32_t *narrow;
     } row;      /* the mode selects the member */
-    int less;   /* number of low bits of areas (_q16) that are dropped: 8; 0 for
-                   linear pictures */
+    int less;   /* number of low bits of areas (_q16) that are dropped: 0 for
+                   linear pictures, else 8 */
     int x0, x1; /* the tile's columns */
     int64_t light;
-    int64_t rise_q32; /* rise of the covered area per pixel of x, see
+    int64_t rise_q32; /* increase of the covered area per pixel of x, see
                          compute_area_rise() */
 };
 
@@ -60,9 +60,9 @@ static inline fast convert_area_to_sum_units(const struct run *r,
 }
 
 /* Adds a piece of an edge that lies in one row and spans several pixels: from x
- * = A to B (A <= B) over HEIGHT. The covered area rises from pixel to pixel
- * from 0 to HEIGHT; what is added to each pixel of the tile is the difference
- * from the pixel before. */
+ * = A to B (A <= B), HEIGHT high. From pixel to pixel the covered area rises
+ * from 0 to HEIGHT; the difference from the pixel before is added to each pixel
+ * of the tile. */
 static void add_piece_over_many_pixels(const struct run *r, enum mode mode,
                                        int64_t a_q40, int64_t b_q40,
                                        fast height_q16)
@@ -101,9 +101,9 @@ static void add_piece_over_many_pixels(const struct run *r, enum mode mode,
                              before);
 }
 
-/* Returns the height of an edge divided by its width, both _q16, with 32
- * fraction bits. The result is limited for edges so steep that x moves by less
- * than 2^-16 pixels per 1/256 pixel of y. */
+/* Returns height / width of an edge, both _q16, with 32 fraction bits. The
+ * result is limited for edges so steep that x moves by less than 2^-16 pixels
+ * per 1/256 pixel of y. */
 static int64_t compute_area_rise(int64_t slope_q40)
 {
     const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
@@ -118,7 +118,7 @@ static int64_t compute_area_rise(int64_t slope_q40)
 }
 
 /* Adds a piece of an edge that lies in one row and in one or two pixels of the
- * tile: from x = A to B (A <= B) over HEIGHT. */
+ * tile: from x = A to B (A <= B), HEIGHT high. */
 static inline void add_piece_in_two_pixels(const struct run *r, enum mode mode,
                                            fast a_q16, fast b_q16,
                                            fast height_q16)
@@ -150,7 +150,7 @@ static inline void add_piece_in_two_pixels(const struct run *r, enum mode mode,
     }
 }
 
-/* Adds a piece of an edge that lies in one row, from x = A to B over HEIGHT. A
+/* Adds a piece of an edge that lies in one row, from x = A to B, HEIGHT high. A
  * may be larger than B. */
 static inline void add_edge_piece(const struct run *r, enum mode mode,
                                   int64_t a_q40, int64_t b_q40, fast height_q16)
@@ -175,9 +175,10 @@ static inline void add_edge_piece(const struct run *r, enum mode mode,
     }
 }
 
-/* Moves R down by N array elements, which is the stride times a number of rows.
+/* Moves R down by N array elements; N is the stride times the number of rows.
  */
-static inline void move_run_down(struct run *r, enum mode mode, ptrdiff_t n)
+static inline void advance_run_by_rows(struct run *r, enum mode mode,
+                                       ptrdiff_t n)
 {
     if (mode == NARROW)
         r->row.narrow += n;
@@ -185,14 +186,16 @@ static inline void move_run_down(struct run *r, enum mode mode, ptrdiff_t n)
         r->row.wide += n;
 }
 
-/* Returns a mask of 64 bits with bits A .. B - 1 set: the rows between A and B.
+/* Returns a mask of 64 bits, one per row of the tile, with the bits of rows A
+ * .. B - 1 set.
  */
 static uint64_t make_row_mask(int a, int b)
 {
     return (UINT64_MAX << a) & (UINT64_MAX >> (64 - b));
 }
 
-/* Adds an edge over N complete rows; it begins at X and moves by STEP per row.
+/* Adds the part of an edge that crosses N complete rows; it begins at X and
+ * moves by STEP per row.
  */
 static inline void add_complete_rows(struct run r, enum mode mode, int n,
                                      int64_t x_q40, int64_t step_q40,
@@ -200,16 +203,16 @@ static inline void add_complete_rows(struct run r, enum mode mode, int n,
 {
     for (; n > 0; n--) {
         add_edge_piece(&r, mode, x_q40, x_q40 + step_q40, ONE_Q16);
-        move_run_down(&r, mode, stride);
+        advance_run_by_rows(&r, mode, stride);
         x_q40 += step_q40;
     }
 }
 
 /* Like add_complete_rows(), for an edge that crosses only one or two pixels of
  * the tile in each row. */
-static inline void add_rows_in_two_pixels(struct run r, enum mode mode, int n,
-                                          int64_t x_q40, int64_t step_q40,
-                                          int stride)
+static inline void add_complete_rows_in_two_pixels(struct run r, enum mode mode,
+                                                   int n, int64_t x_q40,
+                                                   int64_t step_q40, int stride)
 {
     for (; n > 0; n--) {
         const fast a_q16 = (fast)(x_q40 >> 24);
@@ -217,7 +220,7 @@ static inline void add_rows_in_two_pixels(struct run r, enum mode mode, int n,
 
         add_piece_in_two_pixels(&r, mode, a_q16 < b_q16 ? a_q16 : b_q16,
                                 a_q16 < b_q16 ? b_q16 : a_q16, ONE_Q16);
-        move_run_down(&r, mode, stride);
+        advance_run_by_rows(&r, mode, stride);
     }
 }
 
@@ -252,14 +255,14 @@ static inline struct part clip_edge_to_tile(const struct glint_edge_sums *s,
     return p;
 }
 
-/* Returns the height of P within its first row, in 1/256 pixel. */
+/* Returns the height of edge part P within its first row, 1/256 pixel. */
 static inline int32_t compute_first_row_height(const struct part *p)
 {
     return q_smaller((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
 }
 
-/* Adds P as a smooth edge: pixels that the edge crosses get the exact covered
- * area. */
+/* Adds edge part P as a smooth edge: the pixels that it crosses get the exact
+ * covered area. */
 static inline void add_smooth_edge(const struct glint_edge_sums *s,
                                    enum mode mode, const struct glint_edge *e,
                                    struct part p)
@@ -276,7 +279,7 @@ static inline void add_smooth_edge(const struct glint_edge_sums *s,
         const int64_t next_q40 = p.x_q40 + e->slope_q40 * height_q8;
 
         add_edge_piece(&p.run, mode, p.x_q40, next_q40, height_q8 * 256);
-        move_run_down(&p.run, mode, s->stride);
+        advance_run_by_rows(&p.run, mode, s->stride);
         p.x_q40 = next_q40;
         p.y_q8 += height_q8;
     }
@@ -290,9 +293,9 @@ static inline void add_smooth_edge(const struct glint_edge_sums *s,
             !is_narrow)
             add_complete_rows(p.run, mode, n, p.x_q40, step_q40, s->stride);
         else
-            add_rows_in_two_pixels(p.run, mode, n, p.x_q40, step_q40,
-                                   s->stride);
-        move_run_down(&p.run, mode, (ptrdiff_t)n * s->stride);
+            add_complete_rows_in_two_pixels(p.run, mode, n, p.x_q40, step_q40,
+                                            s->stride);
+        advance_run_by_rows(&p.run, mode, (ptrdiff_t)n * s->stride);
         p.x_q40 += n * step_q40;
         p.y_q8 += n * 256;
     }
@@ -329,30 +332,31 @@ static inline void add_complete_snapped_rows(struct run r, enum mode mode,
     if (r.x0 == 0 && (x_q40 < 0 || x_q40 + (n - 1) * step_q40 < 0)) {
         for (; n > 0; n--, x_q40 += step_q40) {
             add_snapped_row(&r, mode, x_q40, full);
-            move_run_down(&r, mode, stride);
+            advance_run_by_rows(&r, mode, stride);
         }
         return;
     }
-    /* skips the rows in which the edge is outside the tile, then adds rows
-     * until the edge leaves the tile; it does not return */
+    /* Skips the rows in which the edge is outside the tile, then adds rows
+     * until the edge leaves the tile, to which it does not return. */
     for (; n > 0 && (uint64_t)x_q40 >= end_q40; n--, x_q40 += step_q40)
-        move_run_down(&r, mode, stride);
+        advance_run_by_rows(&r, mode, stride);
     for (; n > 0 && (uint64_t)x_q40 < end_q40; n--, x_q40 += step_q40) {
         add_light_change(&r, mode, (int)(x_q40 >> 40), full);
-        move_run_down(&r, mode, stride);
+        advance_run_by_rows(&r, mode, stride);
     }
 }
 
-/* Adds P as a pixel-snapped edge: in each row the light changes at the pixel
- * boundary nearest to the edge. */
+/* Adds edge part P as a pixel-snapped edge: in each row the light changes at
+ * the pixel boundary nearest to the edge. */
 static inline void add_snapped_edge(const struct glint_edge_sums *s,
                                     enum mode mode, const struct glint_edge *e,
                                     struct part p)
 {
     int n;
 
-    move_run_down(&p.run, mode, p.run.x0); /* From here on columns are counted
-                                              from the tile's left side. */
+    advance_run_by_rows(&p.run, mode,
+                        p.run.x0); /* From here on columns are counted
+                                from the tile's left side. */
     p.x_q40 -= p.run.x0 * ONE_Q40;
     p.run.x1 -= p.run.x0;
     if (p.y_q8 & 255) {
@@ -362,7 +366,7 @@ static inline void add_snapped_edge(const struct glint_edge_sums *s,
         add_snapped_row(
             &p.run, mode, p.x_q40 + step_q40 / 2,
             convert_area_to_sum_units(&p.run, mode, height_q8 * 256));
-        move_run_down(&p.run, mode, s->stride);
+        advance_run_by_rows(&p.run, mode, s->stride);
         p.x_q40 += step_q40;
         p.y_q8 += height_q8;
     }
@@ -371,7 +375,7 @@ static inline void add_snapped_edge(const struct glint_edge_sums *s,
     if (n > 0) {
         add_complete_snapped_rows(p.run, mode, n, p.x_q40, e->slope_q40 * 256,
                                   s->stride);
-        move_run_down(&p.run, mode, (ptrdiff_t)n * s->stride);
+        advance_run_by_rows(&p.run, mode, (ptrdiff_t)n * s->stride);
         p.x_q40 += n * (e->slope_q40 * 256);
         p.y_q8 += n * 256;
     }
@@ -389,8 +393,9 @@ static int64_t multiply_by_colour_q20(int32_t light, int32_t colour_q14)
                                  : q_shift(light_q20 * colour_q14, 14);
 }
 
-/* Returns the light on the right of E minus that on its left, in a channel of
- * colour COLOUR, with LESS of the 20 fraction bits dropped. */
+/* Returns the light on the right of E minus that on its left, in a channel in
+ * which the bundle has the colour COLOUR, with LESS of the 20 fraction bits
+ * dropped. */
 static int64_t compute_light_change(const struct glint_edge *e,
                                     int32_t colour_q14, int less)
 {
@@ -414,10 +419,10 @@ static int64_t add_patch_light(const struct glint_edge_sums *s, enum mode mode,
     return most;
 }
 
-/* Adds the edges to the wide or narrow sums. Returns the sum of the magnitudes
- * of all changes of light in the channel in which it is largest: a bound on how
- * far a running sum can deviate from its start. Stops early in mode NARROW if
- * that could overflow. */
+/* Adds the edges to the wide or narrow sums. Returns an upper bound of how far
+ * a running sum can deviate from its start: the sum of the magnitudes of all
+ * changes of light, max over the channels. Stops early in mode NARROW if sums
+ * could overflow. */
 static WHOLLY_INLINE int64_t add_edges_to_sums(
     const struct glint_edge_sums *s, enum mode mode,
     const struct glint_edge *edge, const struct glint_bundle *bundle,
@@ -462,7 +467,7 @@ static WHOLLY_INLINE int64_t add_edges_to_sums(
     return most > far[2] ? most : far[2];
 }
 
-static int64_t find_max_carry(const struct glint_edge_sums *s)
+static int64_t find_max_carried_light(const struct glint_edge_sums *s)
 {
     int64_t most = 0;
 
@@ -484,7 +489,7 @@ void glint_edges_add_to_sums(struct glint_edge_sums *sums,
 
     sums->in_narrow = 0;
     if (!sums->linear)
-        far = find_max_carry(sums);
+        far = find_max_carried_light(sums);
     if (!sums->linear && far < most) {
         far += add_edges_to_sums(sums, NARROW, edge, bundle, ref, n_refs) *
                INT64_C(256);

@@ -41,8 +41,8 @@ static void make_ghost_edge(const struct glint_ghost_edges *g,
         glint_edge_snap_to_pixels(edge);
 }
 
-/* Adds to more_refs the number of bin entries that an edge needs for which
- * there is no space in the edge array. */
+/* Adds to more_refs the number of bin entries that an edge needs which does not
+ * fit into the edge array. */
 static void count_edge_bin_entries(struct glint_ghost_edges *g,
                                    const int32_t a_q8[2], const int32_t b_q8[2],
                                    int32_t light, int32_t other)
@@ -178,9 +178,9 @@ int32_t glint_ghost_pack_cell_light(struct glint_ghost_edges *g,
                    q_shift(irradiance_q22 * energy_q16, 18), g->rows->steps));
 }
 
-/* Returns the packed irradiance of a primitive that has 2^SHARE_LOG2 times the
- * flux of a cell and covers AREA2 / 2^FRAC pixels. SIGN is -1 for a mirrored
- * cell, else 1. */
+/* Returns the packed irradiance of a primitive that covers AREA2 / 2^FRAC
+ * pixels and has 2^SHARE_LOG2 times the flux of a cell. SIGN is -1 for a
+ * mirrored cell, else 1. */
 static int32_t compute_packed_cell_light(struct glint_ghost_edges *g,
                                          int64_t area2, int frac,
                                          int share_log2, int64_t energy_q16,
@@ -321,8 +321,8 @@ static void find_visible_side_part(const struct glint_ghost_edges *g,
     }
 }
 
-/* Adds the chords of a cell that is cut by the stop or a barrel: edges that
- * connect the visible parts of its sides to a closed outline. */
+/* Adds the chords of a cell that is cut by the stop or a barrel: the edges that
+ * connect the visible parts of its sides, which closes its outline. */
 static void add_cell_chords(struct glint_ghost_edges *g,
                             const struct glint_ghost_cell *c, int32_t light)
 {
@@ -366,8 +366,9 @@ static void set_grid_cell_corners(const struct glint_ghost_edges *g, int i,
     glint_corners_set(corners, at, 4);
 }
 
-/* Returns whether row J of cells lies in the hole of an annular pupil box: it
- * touches the middle row of nodes, which has no rays, and has no light. */
+/* Returns whether row J of cells lies in the hole of an annular pupil box. Such
+ * a row touches the middle row of nodes, which has no rays, and has no light.
+ */
 static int is_row_in_annulus_hole(const struct glint_ghost_edges *g, int j)
 {
     const int middle = g->bundle->n_cells / 2;
@@ -471,8 +472,8 @@ add_shared_edge(struct glint_ghost_edges *g, const struct glint_vertex *a,
         add_ghost_edge(g, part.end_q8[0], part.end_q8[1], light, other);
 }
 
-static struct glint_outside get_outside_bits(const struct glint_ghost_edges *g,
-                                             int i, int j)
+static struct glint_outside
+get_outside_bits_of_node(const struct glint_ghost_edges *g, int i, int j)
 {
     return (struct glint_outside){g->rows->sides[j & 1][i],
                                   g->rows->barrels[j & 1][i] & NODE_BARRELS};
@@ -485,10 +486,10 @@ static void add_horizontal_edges(struct glint_ghost_edges *g, int j,
 {
     for (int i = 0; i < g->bundle->n_cells; i++)
         if (above[i] != below[i])
-            add_shared_edge(g, get_ghost_node(g, i, j),
-                            get_outside_bits(g, i, j),
-                            get_ghost_node(g, i + 1, j),
-                            get_outside_bits(g, i + 1, j), below[i], above[i]);
+            add_shared_edge(
+                g, get_ghost_node(g, i, j), get_outside_bits_of_node(g, i, j),
+                get_ghost_node(g, i + 1, j),
+                get_outside_bits_of_node(g, i + 1, j), below[i], above[i]);
 }
 
 /* Adds the edges between neighbouring cells within row J of cells, whose light
@@ -503,10 +504,10 @@ static void add_vertical_edges(struct glint_ghost_edges *g, int j,
         const int32_t behind = i < n ? light[i] : 0;
 
         if (before != behind)
-            add_shared_edge(g, get_ghost_node(g, i, j),
-                            get_outside_bits(g, i, j),
-                            get_ghost_node(g, i, j + 1),
-                            get_outside_bits(g, i, j + 1), before, behind);
+            add_shared_edge(
+                g, get_ghost_node(g, i, j), get_outside_bits_of_node(g, i, j),
+                get_ghost_node(g, i, j + 1),
+                get_outside_bits_of_node(g, i, j + 1), before, behind);
     }
 }
 

@@ -43,8 +43,8 @@ enum {
 struct glint_ghost_rows {
     struct glint_outline outline;
     struct glint_vertex vertex[2][GLINT_MAX_CELLS + 1];
-    /* [j]: the mirror image of row j of nodes, which is one of the rows after
-     * the middle row; in small grids it is computed together with row j */
+    /* [j]: the mirror image of row j of nodes, a row after the middle row; in
+     * small grids it is computed together with row j */
     struct glint_vertex held[GLINT_HELD_CELLS / 2][GLINT_HELD_CELLS + 1];
     uint64_t sides[2][GLINT_MAX_CELLS + 1]; /* for each node, a bit mask of the
                                                stop's sides outside of which it
@@ -52,7 +52,7 @@ struct glint_ghost_rows {
     /* for each node, a bit mask of the barrels outside of which it lies, and
      * NODE_ bits (ghost_parts.h) */
     uint8_t barrels[2][GLINT_MAX_CELLS + 1];
-    int32_t light[2][GLINT_MAX_CELLS]; /* packed irradiance of the cells of two
+    int32_t light[2][GLINT_MAX_CELLS]; /* packed irradiance of the cells in two
                                           rows */
     /* for each octave, the number of steps to which irradiance is rounded */
     uint16_t steps[GLINT_LIGHT_OCTAVES];
@@ -73,13 +73,13 @@ struct glint_ghost_edges {
     const uint16_t *sag_q16; /* see struct glint_bundle_plan */
     const struct glint_bundle *bundle;
     uint32_t number; /* number of the bundle */
-    /* as in struct glint_bundle_plan; 0: the bundle was not planned
+    /* members of struct glint_bundle_plan; 0 if the bundle was not planned
      */
     struct glint_real flux, irradiance;
     const struct glint_stop *stop;
     int width, top, height; /* range of pixels that is drawn: columns 0 .. width
                                - 1, rows top .. height - 1 */
-    int32_t limit_q8; /* max light that a cell may add to a pixel at energy 1, 1
+    int32_t limit_q8; /* max light that a cell of energy 1 may add to a pixel, 1
                          = display white */
     int steps;        /* steps per octave of irradiance; 0: irradiance is not
                          rounded */
@@ -100,7 +100,8 @@ struct glint_ghost_edges {
     /* Results. */
     int n_edges; /* number of edges of the bundle, of which the first max_edges
                     are stored */
-    int more_refs; /* bin entries that the edges beyond max_edges need */
+    int more_refs; /* number of bin entries needed by the edges after the first
+                      max_edges */
     int n_dropped; /* number of cells with an invalid corner, which are drawn as
                       a triangle or not at all */
     int n_held;    /* number of cells, or halves of cells, whose light was

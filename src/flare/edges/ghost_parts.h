@@ -9,10 +9,10 @@
 #include "flare/edges/cuts.h"
 #include "flare/edges/ghost_edges.h"
 
-/* Bits of struct glint_ghost_rows, member barrels, for one node: NODE_BARRELS
- * masks the bits of the barrels; NODE_LOST: the ray is invalid; the others: the
- * node lies off-screen beyond that side of the picture. There is no bit for the
- * left side, as edges there still add light to the picture. */
+/* Bits of a node in member barrels of struct glint_ghost_rows. NODE_BARRELS:
+ * mask of the bits of the barrels; NODE_LOST: the ray is invalid; the others:
+ * the node lies off-screen beyond that side of the picture. There is no bit for
+ * the left side, as edges there still add light to the picture. */
 enum {
     NODE_BARRELS = 3,
     NODE_LOST = 4,
@@ -41,8 +41,8 @@ void glint_ghost_emit_hard_outline(struct glint_ghost_edges *g);
 /* Computes row J of nodes, which is valid until row J + 2 is computed. */
 void glint_ghost_fill_node_row(struct glint_ghost_edges *g, int j);
 
-/* Returns the light of a cell, rounded to steps and packed: IRRADIANCE, that at
- * energy 1, times ENERGY times SIGN. */
+/* Returns the light of a cell, rounded to steps and packed: its IRRADIANCE at
+ * energy 1, times ENERGY, times SIGN. */
 int32_t glint_ghost_pack_cell_light(struct glint_ghost_edges *g,
                                     int64_t irradiance_q22, int64_t energy_q16,
                                     int sign);

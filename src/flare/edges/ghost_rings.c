@@ -31,7 +31,7 @@ static int choose_rings_log2(const struct glint_ghost_edges *g)
     int log2 = MOST_LOG2;
 
     if (g->irradiance.mantissa && g->coded) {
-        /* the light of a code falls by 2^(7/12) per octave */
+        /* the light of one code falls to 2^(-7/12) per octave of light */
         const int octaves = -(g->irradiance.exponent + 31);
         const int codes_log2 = 8 - (octaves > 0 ? octaves * 5 / 12 : 0);
 

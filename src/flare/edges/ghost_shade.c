@@ -106,8 +106,8 @@ static int64_t compute_visible_difference_q20(const struct glint_ghost_edges *g,
 
 /* ----------------------------------------------------------------- patches */
 
-/* Sum over two opposite sides of a cell of the changes along the side: of the
- * position in the picture, pixels, and of the position in the stop, stop radii.
+/* The change of two quantities along a side of a cell, summed over two opposite
+ * sides: position in the picture, pixels, and position in the stop, stop radii.
  */
 struct span {
     int64_t x_q8, y_q8, stop_q16[2];
@@ -127,8 +127,8 @@ static struct span sum_side_changes(const struct glint_vertex *const *at, int a,
              at[d]->stop_y_q16}};
 }
 
-/* Returns (A B - C D) / DET, a slope, as _q24, clamped to +-2^32. A and C are
- * _q16, B and D _q8, DET _q16. */
+/* Returns (A B - C D) / DET, a coefficient of the map from pixels to the stop,
+ * as _q24, clamped to +-2^32. A and C are _q16, B and D _q8, DET _q16. */
 static int64_t compute_slope_q24(int64_t a, int64_t b, int64_t c, int64_t d,
                                  struct glint_real det)
 {
@@ -257,8 +257,8 @@ static void add_outline_patch(struct glint_ghost_edges *g, int32_t light)
 
 /* ------------------------------------------------------------------- cells */
 
-/* Returns log2 of the size of a cell, the larger of width and height in pixels,
- * rounded down. */
+/* Returns log2 of the size of a cell (width or height in pixels, whichever is
+ * larger), rounded down. */
 static int compute_cell_size_log2(const struct glint_vertex *const *corner)
 {
     int64_t far = 0;

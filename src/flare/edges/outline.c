@@ -16,8 +16,8 @@ int64_t glint_disc_function_q16(const struct glint_vertex *v)
                        -(1 << 30), 1 << 30);
 }
 
-/* A point at a distance of 2^14 stop radii has a value of 2^31; times 2^30 it
- * fits into 64 bits. */
+/* A point 2^14 stop radii away has a function value of 2^31; times 2^30 it fits
+ * into 64 bits. */
 int64_t glint_arc_distance_q16(const struct glint_stop *stop,
                                int64_t straight_q16, int64_t disc_q16)
 {
@@ -243,8 +243,8 @@ static void convert_corners_to_pixels(struct glint_outline *o,
     }
 }
 
-/* Sets share_q28, the area of O as a fraction of the triangle, whose area is
- * 1/2 in u and v; and energy_q16, the mean energy. */
+/* Sets share_q28, the area of O / the area of the triangle, which is 1/2 in u
+ * and v; and energy_q16, the mean energy. */
 static void set_share_and_energy(struct glint_outline *o,
                                  const struct glint_vertex *const *at)
 {

@@ -91,9 +91,9 @@ struct glint_outline {
     } uv[GLINT_OUTLINE_CORNERS], kept[GLINT_OUTLINE_CORNERS];
 };
 
-/* Returns the GLINT_CUT_ flags of what may cut the primitive, 0 if it is
- * completely visible, or -1 if it is completely outside. Masks of the stop are
- * ignored. */
+/* Returns the GLINT_CUT_ flags of the boundaries that may cut the primitive, 0
+ * if it is completely visible, or -1 if it is completely outside. Masks of the
+ * stop are ignored. */
 int glint_outline_classify(const struct glint_corners *corners,
                            const struct glint_stop *stop);
 
@@ -102,7 +102,7 @@ void glint_outline_set_unclipped(struct glint_outline *outline,
                                  const struct glint_corners *corners);
 
 /* Sets OUTLINE to the triangle of the corners 0, K + 1 and K + 2, clipped by
- * what the GLINT_CUT_ flags CUT name. */
+ * the stop and the barrels that the GLINT_CUT_ flags CUT name. */
 void glint_outline_clip_triangle(struct glint_outline *outline,
                                  const struct glint_corners *corners, int k,
                                  const struct glint_stop *stop, int cut);

@@ -13,23 +13,23 @@ enum {
     ONE_Q16 = 1 << 16,
     HALF_Q16 = 1 << 15,
     MOST_TILE = 64,
-    RUN_LOG2 = 3, /* log2 of the pixels of a run */
+    RUN_LOG2 = 3, /* log2 of the number of pixels of a run */
     RUN = 1 << RUN_LOG2,
     STEEP_Q16 = 1 << 10 /* min magnitude of across_q16; sides below it are
                            nearly horizontal and do not limit the columns of a
                            row */
 };
 
-/* A side of a patch, as a linear function of the pixel: the distance of the
- * pixel's middle from the side, positive inside, in pixels divided by |x| + |y|
- * of the side's unit normal (x, y). */
+/* A side of a patch as a linear function of the pixel: distance of the pixel's
+ * middle from the side, positive inside, in pixels / (|x| + |y|), where (x, y)
+ * is the side's unit normal. */
 struct side {
     int64_t at_q24; /* value of the function at the middle of the box's first
                        pixel */
     int32_t across_q16, down_q16;
-    /* Coefficients for the covered fraction of a pixel: if p and q are the
-     * smaller and the larger component of the scaled normal, less is p, square
-     * is 1 / (2 p q), larger is 1 / q. */
+    /* Coefficients for the covered fraction of a pixel. With p <= q, the
+     * magnitudes of the components of the scaled normal: less is p, square is 1
+     * / (2 p q), larger is 1 / q. */
     int32_t less_q16, square_q16, larger_q16;
     /* The column at which the function is -1/2 in row 0 (column), and its
      * change per row (step); not set if the side is nearly horizontal. */
@@ -110,8 +110,8 @@ static int32_t compute_inside_fraction_q16(const struct side *s,
                                            int64_t distance_q16)
 {
     const int upper = distance_q16 > 0;
-    /* distance from the side to the outermost corner of the pixel beyond it,
-     * seen from the pixel's middle */
+    /* distance from the side to the corner of the pixel that is farthest beyond
+     * it */
     const int64_t t_q16 = HALF_Q16 - (upper ? distance_q16 : -distance_q16);
     int64_t part_q16;
 
@@ -185,8 +185,8 @@ static struct place find_stop_position(const struct draw *d, int y, int x)
     return at;
 }
 
-/* Returns LIGHT minus the light that edges draw (1 or 0), in the units of areas
- * in the sums. */
+/* Returns LIGHT minus the light that edges draw (1 if they draw the clear stop,
+ * else 0), in the units of areas in the sums. */
 static inline int32_t convert_light_to_area(const struct draw *d,
                                             int32_t light_q15)
 {

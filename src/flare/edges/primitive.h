@@ -13,7 +13,7 @@
 enum {
     GLINT_CUT_STOP = 1,   /* the outline of the stop may cross the cell */
     GLINT_CUT_BARREL = 2, /* a barrel may cross the cell */
-    /* the functions of round cuts have been corrected by their sag already */
+    /* the functions of round cuts have already been corrected by their sags */
     GLINT_CUT_LOWERED = 16
 };
 
@@ -27,7 +27,7 @@ enum { GLINT_VERTEX_FRAC = 8 };
 struct glint_corners {
     int n; /* 3 or 4 */
     const struct glint_vertex *at[4];
-    int64_t area2_q16; /* twice the signed area, pixels^2 */
+    int64_t area2_q16; /* twice the signed area of the primitive, pixels^2 */
 };
 
 /* Returns the cross product (B - A) x (P - A): positive if the triangle A, B, P
