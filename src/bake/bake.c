@@ -405,7 +405,7 @@ static enum glint_status bake_model(struct bake_run *run)
     status = run_jobs_for_ghosts(run, run_measure_job, QUANTISED, 1);
     if (status != GLINT_OK)
         return status;
-    glint_blob_seal(run->draft.data, run->draft.bytes);
+    glint_blob_set_size_and_checksum(run->draft.data, run->draft.bytes);
     return check_model_opens(run);
 }
 

@@ -210,7 +210,7 @@ static double measure_direct_flux(const struct glint_setup *whole, double area,
     if (whole->lens->f_number < GLINT_WIDE)
         setup.n_blades = BLADES;
     return glint_direct_flux(&setup, nm) / area /
-           glint_iris_area_fraction(&setup);
+           glint_iris_compute_area_fraction(&setup);
 }
 
 /* Sets the flux of the direct image per stop area, for the full stop and for

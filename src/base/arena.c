@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/arena.h"
 
-struct glint_arena glint_arena_measure(void)
+struct glint_arena glint_arena_begin_measuring(void)
 {
     return (struct glint_arena){.base = NULL, .size = SIZE_MAX, .used = 0};
 }
 
-struct glint_arena glint_arena_over(void *mem, size_t bytes)
+struct glint_arena glint_arena_init_in_memory(void *mem, size_t bytes)
 {
     return (struct glint_arena){.base = mem, .size = bytes, .used = 0};
 }
 
-void *glint_arena_take(struct glint_arena *arena, size_t count, size_t bytes)
+void *glint_arena_allocate(struct glint_arena *arena, size_t count,
+                           size_t bytes)
 {
     const size_t room = SIZE_MAX - arena->used;
     const size_t at = arena->used;

@@ -23,15 +23,16 @@ struct glint_arena {
 };
 
 /* Returns an arena that only counts bytes: base is NULL. */
-struct glint_arena glint_arena_measure(void);
+struct glint_arena glint_arena_begin_measuring(void);
 
 /* Returns an arena that allocates from MEM[BYTES]; MEM is aligned to
  * GLINT_ALIGN. */
-struct glint_arena glint_arena_over(void *mem, size_t bytes);
+struct glint_arena glint_arena_init_in_memory(void *mem, size_t bytes);
 
 /* Allocates COUNT items of BYTES bytes each and returns the uninitialised
  * memory. Returns NULL if the arena only measures or is full. If COUNT times
  * BYTES overflows, the arena is full afterwards. */
-void *glint_arena_take(struct glint_arena *arena, size_t count, size_t bytes);
+void *glint_arena_allocate(struct glint_arena *arena, size_t count,
+                           size_t bytes);
 
 #endif

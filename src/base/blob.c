@@ -24,7 +24,7 @@ static uint32_t add_bytes_to_crc32(uint32_t crc, const unsigned char *byte,
     return crc;
 }
 
-uint32_t glint_blob_crc32(const void *data, size_t bytes)
+uint32_t glint_blob_compute_crc32(const void *data, size_t bytes)
 {
     return ~add_bytes_to_crc32(UINT32_MAX, data, bytes);
 }
@@ -33,7 +33,8 @@ static uint32_t compute_file_checksum(const void *data, size_t bytes)
 {
     const size_t from = offsetof(struct glint_blob_header, variant);
 
-    return glint_blob_crc32((const unsigned char *)data + from, bytes - from);
+    return glint_blob_compute_crc32((const unsigned char *)data + from,
+                                    bytes - from);
 }
 
 /* ------------------------------------------------------------------ reading */
@@ -83,8 +84,8 @@ enum glint_blob_fault glint_blob_check_name(const struct glint_blob *blob)
     return n ? GLINT_BLOB_OK : GLINT_BLOB_NAME_EMPTY;
 }
 
-const void *glint_blob_section(struct glint_blob *blob, uint32_t at,
-                               uint64_t count, size_t item_bytes)
+const void *glint_blob_find_section(struct glint_blob *blob, uint32_t at,
+                                    uint64_t count, size_t item_bytes)
 {
     const uint64_t all = count * item_bytes;
 
@@ -97,7 +98,7 @@ const void *glint_blob_section(struct glint_blob *blob, uint32_t at,
 
 /* ------------------------------------------------------------------ writing */
 
-void glint_blob_seal(void *data, size_t bytes)
+void glint_blob_set_size_and_checksum(void *data, size_t bytes)
 {
     struct glint_blob_header *h = data;
 

@@ -4,7 +4,7 @@
  * validated once and then used in place, in ROM or in a mapped file.
  *
  *     fault = glint_blob_open(&blob, &kind, data, bytes);
- *     table = glint_blob_section(&blob, at, n, sizeof *table);
+ *     table = glint_blob_find_section(&blob, at, n, sizeof *table);
  *
  * The header of every file type begins with struct glint_blob_header and
  * continues with fields of its own type. The sections follow: tables in any
@@ -96,8 +96,8 @@ struct glint_blob {
     const struct glint_blob_header *header;
     size_t bytes, header_bytes;
     /* sum of the sizes of all sections that were requested with
-     * glint_blob_section(), bytes; a section that is requested twice counts
-     * twice */
+     * glint_blob_find_section(), bytes; a section that is requested twice
+     * counts twice */
     uint64_t referred;
 };
 
@@ -116,13 +116,13 @@ enum glint_blob_fault glint_blob_check_name(const struct glint_blob *blob);
  * start of the file; NULL if it does not lie between the header and the end of
  * the file. COUNT is below 2^38 and ITEM_BYTES below 2^26, so that nothing
  * overflows. */
-const void *glint_blob_section(struct glint_blob *blob, uint32_t at,
-                               uint64_t count, size_t item_bytes);
+const void *glint_blob_find_section(struct glint_blob *blob, uint32_t at,
+                                    uint64_t count, size_t item_bytes);
 
 /* Sets size and checksum in the header of the finished file DATA[BYTES]. BYTES
  * must be at least the size of a header. */
-void glint_blob_seal(void *data, size_t bytes);
+void glint_blob_set_size_and_checksum(void *data, size_t bytes);
 
-uint32_t glint_blob_crc32(const void *data, size_t bytes);
+uint32_t glint_blob_compute_crc32(const void *data, size_t bytes);
 
 #endif

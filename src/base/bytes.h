@@ -24,8 +24,8 @@ static WHOLLY_INLINE uint64_t bytes_load(const uint8_t *p)
  * of each byte is set if that byte of V is at least CODE. CODE must be 1 ..
  * 128, or 129 .. 256 if IS_ABOVE_128. No byte carries into the next, as both
  * addends are below 128. */
-static WHOLLY_INLINE uint64_t bytes_reach(uint64_t v, int code,
-                                          int is_above_128)
+static WHOLLY_INLINE uint64_t bytes_find_at_or_above(uint64_t v, int code,
+                                                     int is_above_128)
 {
     const uint64_t add =
         (uint64_t)((is_above_128 ? 256 : 128) - code) * BYTES_EACH;
@@ -36,13 +36,13 @@ static WHOLLY_INLINE uint64_t bytes_reach(uint64_t v, int code,
 
 /* Packs the high bits of the eight bytes of HIGH into bits 0 .. 7 of the
  * result; bit 0 is that of the lowest byte. */
-static WHOLLY_INLINE uint32_t bytes_high_bits(uint64_t high)
+static WHOLLY_INLINE uint32_t bytes_pack_high_bits(uint64_t high)
 {
     return (uint32_t)((high >> 7) * UINT64_C(0x0102040810204080) >> 56);
 }
 
 /* Returns the number of bytes of HIGH whose high bit is set. */
-static WHOLLY_INLINE uint32_t bytes_count(uint64_t high)
+static WHOLLY_INLINE uint32_t bytes_count_high_bits(uint64_t high)
 {
     return (uint32_t)((high >> 7) * BYTES_EACH >> 56);
 }

@@ -24,7 +24,7 @@ static uint32_t approximate_reciprocal(uint32_t x)
     return r_q31;
 }
 
-uint32_t glint_reciprocal(uint32_t x)
+uint32_t glint_compute_reciprocal(uint32_t x)
 {
     uint32_t r = approximate_reciprocal(x);
     uint64_t rest = (UINT64_MAX >> 1) - (uint64_t)r * x;

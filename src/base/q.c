@@ -5,7 +5,7 @@
 /* Stops the program when a fixed-point operation overflows in a build with
  * CONFIG=qcheck; a debugger then shows the operation on the stack. Prints
  * nothing, since the run-time half has no stdio. */
-void glint_q_overflow(const char *operation, int64_t exact)
+void glint_q_abort_on_overflow(const char *operation, int64_t exact)
 {
     (void)operation;
     (void)exact;

@@ -21,9 +21,9 @@ static inline uint64_t q_magnitude(int64_t x)
 }
 
 #ifdef GLINT_Q_CHECK
-void glint_q_overflow(const char *operation, int64_t exact);
+void glint_q_abort_on_overflow(const char *operation, int64_t exact);
 #define Q_FITS(op, r, lo, hi) \
-    ((r) < (lo) || (r) > (hi) ? glint_q_overflow(op, r) : (void)0)
+    ((r) < (lo) || (r) > (hi) ? glint_q_abort_on_overflow(op, r) : (void)0)
 #else
 #define Q_FITS(op, r, lo, hi) ((void)0)
 #endif

@@ -219,7 +219,7 @@ static enum glint_status init_drawing_frame(struct glint_engine *e,
     if (d->budget_ms <= 0 || !c->clock || !f->lens)
         return GLINT_OK;
     glint_budget_init(&f->budget, d->budget_ms);
-    f->dials = glint_budget_current_dials(&f->budget, &f->dials);
+    f->dials = glint_budget_get_quality_parameters(&f->budget, &f->dials);
     return glint_frame_calibrate_budget(f);
 }
 
@@ -315,7 +315,7 @@ static enum glint_status init_engine(struct glint_engine *e,
     e->expose.part =
         malloc(((size_t)e->most_lamps + 1) * sizeof *e->expose.part);
     e->expose.by_drawing = !c->arena_bytes || c->arena_has_all;
-    glint_strength_defaults(&e->expose.strength);
+    glint_strength_set_defaults(&e->expose.strength);
     glint_engine_set_light(e, &c->light);
     if (!e->paint.lamp || !e->expose.before || !e->expose.part)
         status = GLINT_E_MEMORY;
@@ -417,7 +417,7 @@ void glint_engine_set_dials(struct glint_engine *engine,
 
     f->dials = f->asked = dials;
     if (f->budget.ms > 0)
-        f->dials = glint_budget_current_dials(&f->budget, &dials);
+        f->dials = glint_budget_get_quality_parameters(&f->budget, &dials);
 }
 
 struct glint_dials glint_engine_dials(const struct glint_engine *engine)

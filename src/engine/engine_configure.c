@@ -99,7 +99,8 @@ static void set_camera_config(struct glint_engine_camera *camera,
 void glint_engine_configure(struct glint_engine_config *cfg,
                             const struct glint_options *options)
 {
-    const struct glint_options whole = glint_options_complete(options);
+    const struct glint_options whole =
+        glint_options_complete_with_defaults(options);
     const struct glint_options *const o = &whole;
     const int found = o->max_lights ? o->max_lights : FOUND;
 

@@ -15,7 +15,7 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     enum glint_status status = GLINT_OK;
     double scale;
 
-    if (!glint_engine_can_draw(engine, image, n))
+    if (!glint_engine_can_draw_on_image(engine, image, n))
         return GLINT_E_ARGUMENT;
     if (!engine->expose.is_done)
         status = glint_engine_expose(engine, lamps, n, image, 1);
@@ -118,7 +118,7 @@ enum glint_status glint_engine_draw_at(struct glint_engine *engine,
     struct glint_frame *const f = &engine->paint.frame;
     enum glint_status status;
 
-    if (!glint_engine_can_draw(engine, image, 0))
+    if (!glint_engine_can_draw_on_image(engine, image, 0))
         return GLINT_E_ARGUMENT;
     glint_engine_select_parts(engine, engine->paint.parts,
                               engine->expose.light.starburst, true);

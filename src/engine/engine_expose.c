@@ -18,8 +18,8 @@ int glint_engine_has_veil(const struct glint_engine *engine)
     return glint_frame_has_veil(&engine->paint.frame);
 }
 
-bool glint_engine_can_draw(const struct glint_engine *engine,
-                           const struct glint_image *image, int n)
+bool glint_engine_can_draw_on_image(const struct glint_engine *engine,
+                                    const struct glint_image *image, int n)
 {
     const struct glint_view *const view = &engine->paint.frame.view;
 
@@ -151,7 +151,7 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
     const struct glint_response any = {.n = 1};
     enum glint_status status = GLINT_OK;
 
-    if (!glint_engine_can_draw(engine, image, n))
+    if (!glint_engine_can_draw_on_image(engine, image, n))
         return GLINT_E_ARGUMENT;
     if (!x->light.by_hand && x->response.n == 0 && n > 0 && !is_drawn)
         status = glint_response_measure(f, 0, &x->response);

@@ -106,8 +106,8 @@ void glint_engine_select_parts(struct glint_engine *engine, unsigned parts,
 
 /* Returns whether ENGINE can draw N lamps on IMAGE: N is in range, and IMAGE
  * has the size of the engine's pictures. */
-bool glint_engine_can_draw(const struct glint_engine *engine,
-                           const struct glint_image *image, int n);
+bool glint_engine_can_draw_on_image(const struct glint_engine *engine,
+                                    const struct glint_image *image, int n);
 
 /* Copies N LAMPS to the array from which ghosts are drawn, and returns that
  * array. Powers are multiplied by the factors of the exposure on ghosts. */

@@ -204,8 +204,9 @@ static int count_picture_tiles(const struct glint_frame *f)
            ((f->view.height + side - 1) / side);
 }
 
-enum glint_status glint_explain_frame(struct glint_explain *e,
-                                      struct glint_frame *frame, double unit)
+enum glint_status glint_explain_open_for_frame(struct glint_explain *e,
+                                               struct glint_frame *frame,
+                                               double unit)
 {
     const size_t n_all = (size_t)frame->setup->n_ghosts + 1;
     const struct glint_cost_plan plan = glint_frame_make_cost_plan(frame);
@@ -246,7 +247,7 @@ enum glint_status glint_explain_frame(struct glint_explain *e,
         GLINT_COST_STAR, frame->star.is_set ? frame->star.pixels : 0);
     e->stage[GLINT_COST_VEIL] = compute_item_cost(
         GLINT_COST_VEIL,
-        frame->veil.is_set ? glint_frame_veil_cost_in_pixels(frame) : 0);
+        frame->veil.is_set ? glint_frame_veil_estimate_cost_px(frame) : 0);
     e->all.work = compute_part_cost(&e->all, e->stage);
     for (int k = GLINT_COST_PARTS; k < GLINT_COST_KINDS; k++)
         e->all.work += e->stage[k];
@@ -263,7 +264,7 @@ enum glint_status glint_explain_open(struct glint_explain *explain,
 {
     struct glint_frame *const f = &engine->paint.frame;
 
-    return glint_explain_frame(
+    return glint_explain_open_for_frame(
         explain, f, gain > 0 && f->plan.scale > 0 ? gain / f->plan.scale : 1);
 }
 
@@ -302,7 +303,7 @@ enum glint_status glint_explain_at(struct glint_explain *explain,
             &codes, &report);
     free(mem);
     if (status == GLINT_OK && own->lights.n > 0)
-        status = glint_explain_frame(explain, own, 1);
+        status = glint_explain_open_for_frame(explain, own, 1);
     explain->own = own;
     return status;
 }

@@ -11,7 +11,8 @@
 
 /* Like glint_explain_open(), for the last picture that FRAME drew. UNIT:
  * factor from the frame's light to the light of the report. */
-enum glint_status glint_explain_frame(struct glint_explain *explain,
-                                      struct glint_frame *frame, double unit);
+enum glint_status glint_explain_open_for_frame(struct glint_explain *explain,
+                                               struct glint_frame *frame,
+                                               double unit);
 
 #endif

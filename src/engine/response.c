@@ -260,7 +260,7 @@ static enum glint_status measure_light_at_angles(struct proxy *p,
     set_measured_angles(
         r, p->frame.lens ? GLINT_RESPONSE_ANGLES : EXACT_ANGLES,
         compute_corner_angle_deg(p->view, p->frame.setup->optics.focal_mm),
-        glint_frame_max_angle_deg(&p->frame));
+        glint_frame_get_max_angle_deg(&p->frame));
     for (int i = 0; i < r->n; i++) {
         enum glint_status status;
 

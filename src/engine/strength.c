@@ -46,7 +46,7 @@ static const double settle_s = 0.3;
  * lamp were exposed alone. */
 static const double overshoot = 0.5;
 
-void glint_strength_defaults(struct glint_strength *strength)
+void glint_strength_set_defaults(struct glint_strength *strength)
 {
     *strength = (struct glint_strength){.asked = 0.5, .gain = 1};
 }

@@ -87,7 +87,7 @@ struct glint_strength {
 };
 
 /* Initialises STRENGTH with strength 0.5 and gain 1. */
-void glint_strength_defaults(struct glint_strength *strength);
+void glint_strength_set_defaults(struct glint_strength *strength);
 
 /* Returns the factor on the brightness of starbursts, in addition to scale.
  * STARBURST: requested brightness / physical brightness. The factor times scale

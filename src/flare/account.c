@@ -65,7 +65,7 @@ static int find_chosen_wave_set(const struct glint_flare *f, int ghost,
     const struct glint_bundle_plan *s = &f->planned[at];
 
     return at < f->n_bundles && s->ghost == ghost && s->light == light
-               ? glint_wave_sets_find_set(f->plan.frame->sets, s->wave)
+               ? glint_wave_sets_find_set_of_wave(f->plan.frame->sets, s->wave)
                : 0;
 }
 
@@ -133,8 +133,8 @@ static int is_light_merged(const struct glint_flare *f, int ghost, int light)
 {
     const struct glint_flare_frame *r = f->plan.frame;
 
-    return f->plan.dims &&
-           !r->dim->method->kept_q8(r, &f->plan.light[light], light, ghost);
+    return f->plan.dims && !r->dim->method->unmerged_fraction_q8(
+                               r, &f->plan.light[light], light, ghost);
 }
 
 void glint_flare_account(struct glint_flare *flare, int ghost, int light,
@@ -153,7 +153,7 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
     account->outcome = glint_plan_bundle(
         &flare->plan, &flare->plan.light[light], &planned, &bundle, scratch);
     account->probed = scratch->probe.n_rays;
-    if (sets && glint_wave_sets_find_set(sets, wave) !=
+    if (sets && glint_wave_sets_find_set_of_wave(sets, wave) !=
                     find_chosen_wave_set(flare, ghost, light)) {
         account->outcome = GLINT_OUTCOME_OTHER_SET;
         account->probed *= wave < sets->size[0];
@@ -195,8 +195,8 @@ static int is_bundle_selected(const struct glint_flare *f,
 
     return (ghost < 0 || (here->i == of[ghost].i && here->j == of[ghost].j)) &&
            (light < 0 || s->light == light) &&
-           (wave < 0 ||
-            (sets ? glint_wave_sets_find_set(sets, s->wave) : s->wave) == wave);
+           (wave < 0 || (sets ? glint_wave_sets_find_set_of_wave(sets, s->wave)
+                              : s->wave) == wave);
 }
 
 void glint_flare_keep(struct glint_flare *flare, int ghost, int light, int wave)

@@ -25,11 +25,11 @@ struct glint_by_edges *glint_edges_allocate(struct glint_arena *a,
 {
     struct glint_by_edges measured, *placed, *own;
 
-    placed = glint_arena_take(a, 1, sizeof *placed);
+    placed = glint_arena_allocate(a, 1, sizeof *placed);
     own = placed ? placed : &measured;
     own->edge =
-        glint_arena_take(a, (size_t)c->max_primitives, sizeof *own->edge);
-    own->order = glint_arena_take(a, count_max_jobs(c), sizeof *own->order);
+        glint_arena_allocate(a, (size_t)c->max_primitives, sizeof *own->edge);
+    own->order = glint_arena_allocate(a, count_max_jobs(c), sizeof *own->order);
     return placed;
 }
 
@@ -42,17 +42,17 @@ glint_edges_allocate_worker(struct glint_arena *a,
     struct glint_edges_worker measured, *placed, *w;
     struct glint_edge_sums *s;
 
-    placed = glint_arena_take(a, 1, sizeof *placed);
+    placed = glint_arena_allocate(a, 1, sizeof *placed);
     w = placed ? placed : &measured;
-    w->rows = glint_arena_take(a, 1, sizeof *w->rows);
-    w->at = glint_arena_take(
+    w->rows = glint_arena_allocate(a, 1, sizeof *w->rows);
+    w->at = glint_arena_allocate(
         a, glint_flare_count_tiles(c->width, c->height, c->tile_log2) + 1,
         sizeof *w->at);
     s = &w->sums;
-    s->wide = glint_arena_take(a, n_sums, sizeof *s->wide);
-    s->narrow = glint_arena_take(a, n_sums, sizeof *s->narrow);
-    s->carry = glint_arena_take(a, 3 * side, sizeof *s->carry);
-    s->touched = glint_arena_take(a, 3, sizeof *s->touched);
+    s->wide = glint_arena_allocate(a, n_sums, sizeof *s->wide);
+    s->narrow = glint_arena_allocate(a, n_sums, sizeof *s->narrow);
+    s->carry = glint_arena_allocate(a, 3 * side, sizeof *s->carry);
+    s->touched = glint_arena_allocate(a, 3, sizeof *s->touched);
     return placed;
 }
 

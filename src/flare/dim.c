@@ -47,7 +47,8 @@ static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
  * interval of nodes, the result falls continuously, from 1 at the node that
  * both intervals share to the interpolated value, which it reaches halfway to
  * the other node at the latest. */
-int32_t glint_dim_brightness_log2_q8(const struct glint_flare_frame *frame,
+int32_t
+glint_dim_compute_brightness_log2_q8(const struct glint_flare_frame *frame,
                                      const struct glint_light *light, int ghost)
 {
     const int32_t at_q16 = glint_dim_find_node_q16(frame, light->sine_q30);
@@ -72,15 +73,17 @@ int32_t glint_dim_brightness_log2_q8(const struct glint_flare_frame *frame,
     return share_q8;
 }
 
-int glint_dim_own_rays_fraction_q8(const struct glint_flare_frame *frame,
-                                   const struct glint_light *light, int ghost)
+int glint_dim_compute_own_rays_fraction_q8(
+    const struct glint_flare_frame *frame, const struct glint_light *light,
+    int ghost)
 {
-    return q_clamp_sat(glint_dim_brightness_log2_q8(frame, light, ghost), 0,
-                       GLINT_DIM_WHOLE_Q8);
+    return q_clamp_sat(
+        glint_dim_compute_brightness_log2_q8(frame, light, ghost), 0,
+        GLINT_DIM_WHOLE_Q8);
 }
 
-int64_t glint_dim_wave_ratio_q16(const struct glint_flare_frame *frame,
-                                 int32_t sine_q30, int ghost, int wave)
+int64_t glint_dim_compute_wave_ratio_q16(const struct glint_flare_frame *frame,
+                                         int32_t sine_q30, int ghost, int wave)
 {
     const int32_t log2 = q_clamp_sat(
         interpolate_dim_value(frame, sine_q30, ghost, 1 + wave) -

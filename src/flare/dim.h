@@ -32,53 +32,57 @@ struct glint_flare;
 struct glint_dim_method {
     /* Computes those nodes (sampled angles) of the table that the plan's first
      * N_LIGHTS lights need and that have not been computed before. */
-    void (*fill)(struct glint_flare *flare, int n_lights);
+    void (*fill_nodes)(struct glint_flare *flare, int n_lights);
     /* Merges near lights of the plan's first N_LIGHTS lights, separately for
      * each ghost: if the ghost is so dim that the shift is invisible, a light
      * is merged into the nearest light that precedes it in the list, and both
      * are drawn as one light at a position between them. The merged fraction of
      * the light falls gradually with the brightness of the ghost. */
-    void (*gather)(struct glint_flare *flare, int n_lights);
+    void (*merge_near_lights)(struct glint_flare *flare, int n_lights);
     /* Returns the merged light that replaces LIGHT for GHOST, or NULL if
      * max_bundles is too small. The pointer is valid until the first bundle of
      * this ghost and light is planned. */
-    struct glint_light *(*gathered)(struct glint_flare *flare, int ghost,
-                                    int light);
+    struct glint_light *(*merged_light)(struct glint_flare *flare, int ghost,
+                                        int light);
     /* Returns the fraction of light I that is not merged into another light for
      * GHOST, 0 .. GLINT_DIM_WHOLE_Q8. LIGHT is light I plus all light that was
      * merged into it. */
-    int (*kept_q8)(const struct glint_flare_frame *frame,
-                   const struct glint_light *light, int i, int ghost);
-    /* Point to glint_dim_own_rays_fraction_q8() and glint_dim_wave_ratio_q16().
+    int (*unmerged_fraction_q8)(const struct glint_flare_frame *frame,
+                                const struct glint_light *light, int i,
+                                int ghost);
+    /* Point to glint_dim_compute_own_rays_fraction_q8() and
+     * glint_dim_compute_wave_ratio_q16().
      */
-    int (*share_q8)(const struct glint_flare_frame *frame,
-                    const struct glint_light *light, int ghost);
-    int64_t (*ratio_q16)(const struct glint_flare_frame *frame,
-                         int32_t sine_q30, int ghost, int wave);
+    int (*own_rays_fraction_q8)(const struct glint_flare_frame *frame,
+                                const struct glint_light *light, int ghost);
+    int64_t (*wave_ratio_q16)(const struct glint_flare_frame *frame,
+                              int32_t sine_q30, int ghost, int wave);
 };
 
 /* Returns log2 of the mean light of GHOST from LIGHT / the frame's parameter
  * dimmest, below which ghosts count as dim. If the table does not have the mean
  * light, returns 256, which is far above any ratio. */
-int32_t glint_dim_brightness_log2_q8(const struct glint_flare_frame *frame,
+int32_t
+glint_dim_compute_brightness_log2_q8(const struct glint_flare_frame *frame,
                                      const struct glint_light *light,
                                      int ghost);
 
 /* Returns the fraction of each wave's light, in ghost GHOST of LIGHT, that is
  * drawn with rays of the wave itself, 0 .. GLINT_DIM_WHOLE_Q8. The rest is
  * drawn with the rays of GLINT_DIM_WAVE. */
-int glint_dim_own_rays_fraction_q8(const struct glint_flare_frame *frame,
-                                   const struct glint_light *light, int ghost);
+int glint_dim_compute_own_rays_fraction_q8(
+    const struct glint_flare_frame *frame, const struct glint_light *light,
+    int ghost);
 
 /* Returns the light of GHOST in wave WAVE / its light in GLINT_DIM_WAVE, at the
  * angle whose sine is SINE, without the colours of the waves; at most 2^11. */
-int64_t glint_dim_wave_ratio_q16(const struct glint_flare_frame *frame,
-                                 int32_t sine_q30, int ghost, int wave);
+int64_t glint_dim_compute_wave_ratio_q16(const struct glint_flare_frame *frame,
+                                         int32_t sine_q30, int ghost, int wave);
 
 /* Returns the squared distance of two directions on the unit sphere, at most 4.
  */
-uint64_t glint_light_squared_distance_q60(const struct glint_light *a,
-                                          const struct glint_light *b);
+uint64_t glint_light_compute_squared_distance_q60(const struct glint_light *a,
+                                                  const struct glint_light *b);
 
 /* Merges light B into A: A gets the sum of the powers, and the means of colour
  * and direction weighted by power. Colours have GLINT_LIGHT_HELD additional

@@ -21,10 +21,10 @@ static void allocate_worker(struct glint_flare_worker *w, struct glint_arena *a,
     const size_t side = (size_t)1 << c->tile_log2;
     struct glint_tile_scratch *t = &w->tile;
 
-    t->light = glint_arena_take(a, 1, sizeof *t->light);
-    t->light_q20 = glint_arena_take(a, 3 * 2 * side, sizeof *t->light_q20);
-    t->codes = glint_arena_take(a, 1, sizeof *t->codes);
-    w->plan = glint_arena_take(a, 1, sizeof *w->plan);
+    t->light = glint_arena_allocate(a, 1, sizeof *t->light);
+    t->light_q20 = glint_arena_allocate(a, 3 * 2 * side, sizeof *t->light_q20);
+    t->codes = glint_arena_allocate(a, 1, sizeof *t->codes);
+    w->plan = glint_arena_allocate(a, 1, sizeof *w->plan);
     w->edges = glint_edges_allocate_worker(a, c);
 }
 
@@ -41,21 +41,24 @@ static struct glint_flare *allocate_flare(struct glint_arena *a,
     struct glint_flare_worker *workers;
     struct glint_flare *f, *placed;
 
-    placed = glint_arena_take(a, 1, sizeof *placed);
+    placed = glint_arena_allocate(a, 1, sizeof *placed);
     f = placed ? placed : &measured.flare;
-    f->bundle = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->bundle);
-    f->slot = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->slot);
+    f->bundle =
+        glint_arena_allocate(a, (size_t)c->max_bundles, sizeof *f->bundle);
+    f->slot = glint_arena_allocate(a, (size_t)c->max_bundles, sizeof *f->slot);
     f->planned =
-        glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->planned);
-    f->vertex = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->vertex);
+        glint_arena_allocate(a, (size_t)c->max_bundles, sizeof *f->planned);
+    f->vertex =
+        glint_arena_allocate(a, (size_t)c->max_vertices, sizeof *f->vertex);
     f->edges = glint_edges_allocate(a, c);
-    f->reuse = c->reuse ? c->reuse->carve(a, c) : NULL;
-    f->bins.start = glint_arena_take(
+    f->reuse = c->reuse ? c->reuse->allocate_state(a, c) : NULL;
+    f->bins.start = glint_arena_allocate(
         a, glint_flare_count_tiles(c->width, c->height, c->tile_log2) + 1,
         sizeof *f->bins.start);
-    f->bins.ref = glint_arena_take(a, (size_t)c->max_refs, sizeof *f->bins.ref);
-    f->worker = glint_arena_take(a, n_workers, sizeof *f->worker);
-    f->resolve = glint_arena_take(a, 1, sizeof *f->resolve);
+    f->bins.ref =
+        glint_arena_allocate(a, (size_t)c->max_refs, sizeof *f->bins.ref);
+    f->worker = glint_arena_allocate(a, n_workers, sizeof *f->worker);
+    f->resolve = glint_arena_allocate(a, 1, sizeof *f->resolve);
     workers = a->base ? f->worker : NULL;
     for (size_t i = 0; i < n_workers; i++)
         allocate_worker(workers ? &workers[i] : &measured.worker, a, c);
@@ -106,7 +109,7 @@ void glint_flare_reset_tile_state(struct glint_flare *flare)
 
 size_t glint_flare_bytes(const struct glint_flare_config *cfg)
 {
-    struct glint_arena arena = glint_arena_measure();
+    struct glint_arena arena = glint_arena_begin_measuring();
 
     if (!is_valid_config(cfg))
         return 0;
@@ -118,7 +121,7 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
                                    const struct glint_flare_config *cfg,
                                    void *mem, size_t bytes)
 {
-    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_arena arena = glint_arena_init_in_memory(mem, bytes);
     struct glint_flare *f;
 
     if (!is_valid_config(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0)
@@ -234,7 +237,7 @@ static void plan_ghost_and_light_job(void *ctx, int job, int worker)
     const int ghost = job % n_ghosts, i = job / n_ghosts;
     /* a copy, as a merged light is stored in the memory of the first bundle */
     const struct glint_light light =
-        f->plan.dims ? *r->dim->method->gathered(f, ghost, i)
+        f->plan.dims ? *r->dim->method->merged_light(f, ghost, i)
                      : f->plan.light[i];
 
     for (int wave = 0; wave < r->n_waves; wave++) {
@@ -316,7 +319,7 @@ void glint_flare_plan(struct glint_flare *flare,
     const int n_jobs = pairs < INT32_MAX ? (int)pairs : INT32_MAX;
 
     if (flare->cfg.reuse &&
-        flare->cfg.reuse->take(flare, frame, lights, n_lights))
+        flare->cfg.reuse->reuse_if_unchanged(flare, frame, lights, n_lights))
         return;
     glint_flare_begin(flare);
     flare->quads = frame->half;
@@ -341,10 +344,10 @@ void glint_flare_plan(struct glint_flare *flare,
     if (frame->dim && frame->dimmest.mantissa && !frame->sets &&
         frame->n_waves == GLINT_DIM_WAVES &&
         !(frame->lens && glint_basis_is_lens(frame->lens->header->basis))) {
-        frame->dim->method->fill(
+        frame->dim->method->fill_nodes(
             flare, count_lights_in_range(frame->lens, lights, n_lights));
         flare->plan.dims = 1;
-        frame->dim->method->gather(
+        frame->dim->method->merge_near_lights(
             flare, count_lights_in_range(frame->lens, lights, n_lights));
     }
     flare->flux = flare->brightest = (struct glint_real){0, 0};
@@ -423,7 +426,7 @@ void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
         sum_drawn_statistics(flare);
     }
     if (flare->reusable != GLINT_REUSABLE_NOT)
-        flare->cfg.reuse->turn(flare);
+        flare->cfg.reuse->apply_gains(flare);
     *stats = flare->stats;
 }
 

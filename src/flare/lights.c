@@ -58,8 +58,8 @@ static struct direction compute_light_direction(const struct glint_light *b)
                               b->cosine_q30};
 }
 
-uint64_t glint_light_squared_distance_q60(const struct glint_light *a,
-                                          const struct glint_light *b)
+uint64_t glint_light_compute_squared_distance_q60(const struct glint_light *a,
+                                                  const struct glint_light *b)
 {
     const struct direction p = compute_light_direction(a),
                            q = compute_light_direction(b);
@@ -237,7 +237,8 @@ void glint_light_merge(struct glint_light *a, const struct glint_light *b)
 static int compute_merge_cost_log2(const struct glint_light *a,
                                    const struct glint_light *b)
 {
-    const uint64_t d2_q59 = glint_light_squared_distance_q60(a, b) >> 1 | 1;
+    const uint64_t d2_q59 =
+        glint_light_compute_squared_distance_q60(a, b) >> 1 | 1;
     const struct glint_real light = real_times(a->power, b->power);
 
     return real_times(real_times(light, light), real_of((int64_t)d2_q59, -59))
@@ -256,8 +257,9 @@ struct rule {
 static int can_lights_merge(const struct rule *r, const struct glint_light *a,
                             const struct glint_light *b)
 {
-    return r->near2_q60 ? glint_light_squared_distance_q60(a, b) <= r->near2_q60
-                        : compute_merge_cost_log2(a, b) <= r->cost;
+    return r->near2_q60
+               ? glint_light_compute_squared_distance_q60(a, b) <= r->near2_q60
+               : compute_merge_cost_log2(a, b) <= r->cost;
 }
 
 /* Merges neighbours in the list of N lights that satisfy rule R. Returns the

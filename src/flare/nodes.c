@@ -164,7 +164,7 @@ static void find_nearest_preceding_lights(struct glint_flare *f, int n)
 
         for (int k = 0; k < i; k++) {
             const uint64_t apart2_q60 =
-                glint_light_squared_distance_q60(&light[k], &light[i]);
+                glint_light_compute_squared_distance_q60(&light[k], &light[i]);
 
             if (apart2_q60 < least2_q60) {
                 least2_q60 = apart2_q60;
@@ -190,9 +190,10 @@ static int compute_unmerged_fraction_q8(const struct glint_flare_frame *frame,
     if (i == 0 || i >= GLINT_DIM_LIGHTS ||
         glint_plan_is_light_outside_model(frame->lens, light))
         return GLINT_DIM_WHOLE_Q8;
-    return q_clamp_sat(glint_dim_brightness_log2_q8(frame, light, ghost) +
-                           frame->dim->apart_log2_q8[i],
-                       0, GLINT_DIM_WHOLE_Q8);
+    return q_clamp_sat(
+        glint_dim_compute_brightness_log2_q8(frame, light, ghost) +
+            frame->dim->apart_log2_q8[i],
+        0, GLINT_DIM_WHOLE_Q8);
 }
 
 /* Divides B, which is light I for GHOST, into a fraction that is drawn
@@ -263,5 +264,5 @@ const struct glint_dim_method glint_dim_method = {
     merge_near_lights_per_ghost,
     get_merged_light,
     compute_unmerged_fraction_q8,
-    glint_dim_own_rays_fraction_q8,
-    glint_dim_wave_ratio_q16};
+    glint_dim_compute_own_rays_fraction_q8,
+    glint_dim_compute_wave_ratio_q16};

@@ -25,7 +25,7 @@ static int64_t convert_to_pixels_q8(const struct glint_plan *p,
                                     const struct glint_transfer *t, int64_t x)
 {
     return real_integer(real_times(real_of(x, t->exponent[GLINT_OUT_SENSOR_X]),
-                                   plan_pixels_per_mm(p)),
+                                   plan_compute_pixels_per_mm(p)),
                         8, INT64_C(1) << 31);
 }
 
@@ -132,8 +132,8 @@ static int64_t compute_dim_factor_q16(const struct glint_plan *p,
 {
     if (wave == planned->wave)
         return 1 << 16;
-    return q_shift(p->frame->dim->method->ratio_q16(p->frame, planned->sine_q30,
-                                                    planned->ghost, wave) *
+    return q_shift(p->frame->dim->method->wave_ratio_q16(
+                       p->frame, planned->sine_q30, planned->ghost, wave) *
                        (GLINT_DIM_WHOLE_Q8 - share_q8),
                    8);
 }
@@ -222,7 +222,8 @@ compute_max_light(const struct glint_plan *p,
         return real_of(0, 0);
     area = real_times(real_of((int64_t)(s->least_area >> 1),
                               2 * t->exponent[GLINT_OUT_SENSOR_X] + 2),
-                      real_times(plan_pixels_per_mm(p), plan_pixels_per_mm(p)));
+                      real_times(plan_compute_pixels_per_mm(p),
+                                 plan_compute_pixels_per_mm(p)));
     if (planned->wider_q16)
         area = real_times(
             area,
@@ -286,7 +287,7 @@ glint_plan_map_sensor_to_picture(const struct glint_plan *plan,
     struct glint_place place = {
         .cos_q30 = planned->turn.cos_q30,
         .sin_q30 = planned->turn.sin_q30,
-        .pixels_per_mm = plan_pixels_per_mm(plan),
+        .pixels_per_mm = plan_compute_pixels_per_mm(plan),
         .middle_x_q8 = plan->width * 128 >> plan->half,
         .middle_y_q8 = plan->height * 128 >> plan->half,
         .stop_scale =
@@ -481,8 +482,9 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
         return GLINT_OUTCOME_CLOSED;
     planned->turn = choose_ghost_rotation(transfer, azimuth);
     transfer->sets = plan->sets;
-    share_q8 = plan->dims ? r->dim->method->share_q8(r, b, planned->ghost)
-                          : GLINT_DIM_WHOLE_Q8;
+    share_q8 = plan->dims
+                   ? r->dim->method->own_rays_fraction_q8(r, b, planned->ghost)
+                   : GLINT_DIM_WHOLE_Q8;
     if (share_q8 == 0 && planned->wave != GLINT_DIM_WAVE)
         return GLINT_OUTCOME_OTHER_SET;
     colour = compute_bundle_colour(plan, b, planned, share_q8, bundle->rgb_q14);

@@ -116,7 +116,7 @@ static int compute_cells_for_shade(const struct glint_plan *p,
     const struct glint_real pixels = real_times(
         real_of(compute_sensor_position_change(s),
                 t->exponent[GLINT_OUT_SENSOR_X] + GLINT_PROBE_FINE_LOG2),
-        plan_pixels_per_mm(p));
+        plan_compute_pixels_per_mm(p));
 
     return (int)real_integer(pixels, -SHADE_CELL_LOG2, MOST_SHADE_CELLS);
 }
@@ -156,7 +156,7 @@ static int compute_cells_per_side(const struct glint_plan *p,
     bend_q8 =
         real_integer(real_times(real_of(bend, t->exponent[GLINT_OUT_SENSOR_X] +
                                                   GLINT_PROBE_FINE_LOG2),
-                                plan_pixels_per_mm(p)),
+                                plan_compute_pixels_per_mm(p)),
                      8, INT64_C(1) << 40);
     /* sqrt(12.5 * curvature in pixels) * fineness / 64 */
     n = q_narrow(

@@ -10,7 +10,8 @@
 
 #include "flare/plan.h"
 
-static inline struct glint_real plan_pixels_per_mm(const struct glint_plan *p)
+static inline struct glint_real
+plan_compute_pixels_per_mm(const struct glint_plan *p)
 {
     struct glint_real x = p->frame->pixels_per_mm;
 

@@ -76,15 +76,17 @@ struct glint_flare {
 struct glint_reuse {
     /* Allocates the state of the reuse from arena A; returns NULL while A only
      * measures. */
-    void *(*carve)(struct glint_arena *a, const struct glint_flare_config *c);
+    void *(*allocate_state)(struct glint_arena *a,
+                            const struct glint_flare_config *c);
     /* Returns 1, and reuses the last plan, if its inputs were the same and its
      * edges are still in the bins. Otherwise records the inputs for the next
      * frame and returns 0. */
-    int (*take)(struct glint_flare *f, const struct glint_flare_frame *frame,
-                const struct glint_light *lights, int n_lights);
+    int (*reuse_if_unchanged)(struct glint_flare *f,
+                              const struct glint_flare_frame *frame,
+                              const struct glint_light *lights, int n_lights);
     /* Sets the colours of the binned bundles to their planned colours times the
      * frame's gain for each light (gain_q14). */
-    void (*turn)(struct glint_flare *f);
+    void (*apply_gains)(struct glint_flare *f);
 };
 
 /* Resets what the workers recorded in the last draw: the numbers of tiles and

@@ -38,7 +38,8 @@ static int find_first_wave_of_set(const struct glint_wave_sets *sets, int set)
     return first;
 }
 
-int glint_wave_sets_find_set(const struct glint_wave_sets *sets, int wave)
+int glint_wave_sets_find_set_of_wave(const struct glint_wave_sets *sets,
+                                     int wave)
 {
     int set = 0;
 

@@ -27,6 +27,7 @@ struct glint_wave_planner {
 };
 
 /* Returns the index of the set to which wave WAVE belongs. */
-int glint_wave_sets_find_set(const struct glint_wave_sets *sets, int wave);
+int glint_wave_sets_find_set_of_wave(const struct glint_wave_sets *sets,
+                                     int wave);
 
 #endif

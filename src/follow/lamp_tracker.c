@@ -70,13 +70,14 @@ allocate_tracker(struct glint_arena *a,
                  const struct glint_lamp_tracker_config *c)
 {
     const size_t n_records = (size_t)c->max_tracks;
-    struct glint_lamp_tracker *placed = glint_arena_take(a, 1, sizeof *placed);
+    struct glint_lamp_tracker *placed =
+        glint_arena_allocate(a, 1, sizeof *placed);
     struct glint_lamp_tracker measured;
     struct glint_lamp_tracker *t = placed ? placed : &measured;
 
-    t->record = glint_arena_take(a, n_records, sizeof *t->record);
-    t->owner = glint_arena_take(a, n_records, sizeof *t->owner);
-    t->order = glint_arena_take(a, MAX_SPOTS, sizeof *t->order);
+    t->record = glint_arena_allocate(a, n_records, sizeof *t->record);
+    t->owner = glint_arena_allocate(a, n_records, sizeof *t->owner);
+    t->order = glint_arena_allocate(a, MAX_SPOTS, sizeof *t->order);
     glint_match_allocate(&t->match, a, c->max_tracks, MAX_SPOTS);
     return a->used <= a->size ? placed : NULL;
 }
@@ -99,7 +100,7 @@ void glint_lamp_tracker_defaults(struct glint_lamp_tracker_config *cfg,
 
 size_t glint_lamp_tracker_bytes(const struct glint_lamp_tracker_config *cfg)
 {
-    struct glint_arena measured = glint_arena_measure();
+    struct glint_arena measured = glint_arena_begin_measuring();
 
     if (!is_valid_config(cfg))
         return 0;
@@ -112,7 +113,7 @@ glint_lamp_tracker_init(struct glint_lamp_tracker **tracks,
                         const struct glint_lamp_tracker_config *cfg, void *mem,
                         size_t bytes)
 {
-    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_arena arena = glint_arena_init_in_memory(mem, bytes);
     struct glint_lamp_tracker *t;
 
     if (!is_valid_config(cfg) || (uintptr_t)mem % GLINT_ALIGN)
@@ -364,7 +365,7 @@ static void begin_tracks_of_unmatched_spots(struct glint_lamp_tracker *t,
 
         if (!r)
             return;
-        glint_record_begin(r, ++t->last_id, s);
+        glint_record_begin_track(r, ++t->last_id, s);
     }
 }
 
@@ -418,7 +419,7 @@ static int write_shown_tracks(struct glint_lamp_tracker *t,
     for (int i = 0; i < n; i++) {
         struct glint_record *r = &t->record[t->order[i]];
 
-        glint_record_set_level(r, &t->step);
+        glint_record_update_fade_level(r, &t->step);
         if (r->level_q30 >= 1 << 15 && n_out < max)
             out[n_out++] = glint_record_make_track(r);
     }
@@ -432,7 +433,7 @@ int glint_lamp_tracker_step(struct glint_lamp_tracker *tracks,
 {
     struct glint_lamp_tracker *t = tracks;
 
-    t->step.pace = glint_pace_compute(
+    t->step.pace = glint_pace_compute_for_interval(
         q_clamp_sat(elapsed_us, 0, MAX_ELAPSED_US), t->cfg.smooth_ms * 1000);
     match_spots_to_tracks(t, spots, n);
     for (int i = 0; i < t->match.n_seekers; i++) {

@@ -23,11 +23,12 @@ void glint_match_allocate(struct glint_match *m, struct glint_arena *arena,
 {
     const size_t n_pairs = (size_t)max_seekers * NEAREST_SPOTS;
 
-    m->seeker = glint_arena_take(arena, (size_t)max_seekers, sizeof *m->seeker);
-    m->by_x = glint_arena_take(arena, (size_t)max_spots, sizeof *m->by_x);
-    m->taken = glint_arena_take(arena, (size_t)max_spots, sizeof *m->taken);
-    m->pair = glint_arena_take(arena, n_pairs, sizeof *m->pair);
-    m->order = glint_arena_take(arena, n_pairs, sizeof *m->order);
+    m->seeker =
+        glint_arena_allocate(arena, (size_t)max_seekers, sizeof *m->seeker);
+    m->by_x = glint_arena_allocate(arena, (size_t)max_spots, sizeof *m->by_x);
+    m->taken = glint_arena_allocate(arena, (size_t)max_spots, sizeof *m->taken);
+    m->pair = glint_arena_allocate(arena, n_pairs, sizeof *m->pair);
+    m->order = glint_arena_allocate(arena, n_pairs, sizeof *m->order);
 }
 
 /* ------------------------------------------------------------------- orders */

@@ -81,7 +81,8 @@ static int32_t compute_transition_fraction_q15(int32_t elapsed_us,
     return q_clamp_sat(((int64_t)elapsed_us << 15) / time_us, 0, ONE_Q15);
 }
 
-struct glint_pace glint_pace_compute(int32_t elapsed_us, int32_t smooth_us)
+struct glint_pace glint_pace_compute_for_interval(int32_t elapsed_us,
+                                                  int32_t smooth_us)
 {
     return (struct glint_pace){
         .elapsed_us = elapsed_us,
@@ -498,8 +499,8 @@ static void start_channel_filters(struct glint_record *r,
                      2 * compute_tolerated_error(c, target[c]));
 }
 
-void glint_record_begin(struct glint_record *r, uint32_t id,
-                        const struct glint_spot *spot)
+void glint_record_begin_track(struct glint_record *r, uint32_t id,
+                              const struct glint_spot *spot)
 {
     *r = (struct glint_record){.id = id, .last = *spot, .is_new = 3};
     start_channel_filters(r, spot);
@@ -619,8 +620,8 @@ static void lower_fade_level(struct glint_record *r,
     r->state = is_out ? GLINT_LAMP_LEAVING : GLINT_LAMP_FADING;
 }
 
-void glint_record_set_level(struct glint_record *r,
-                            const struct glint_record_step *step)
+void glint_record_update_fade_level(struct glint_record *r,
+                                    const struct glint_record_step *step)
 {
     if (r->lost_us == 0 && r->is_shown)
         raise_fade_level(r, step);

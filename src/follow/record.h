@@ -2,11 +2,11 @@
  *
  * The state of one tracked lamp (a record), and its update for each picture.
  *
- *     glint_record_begin(r, id, spot);               once
+ *     glint_record_begin_track(r, id, spot);               once
  *     glint_record_predict_position(r, &step);             each picture
  *     glint_record_update_with_spot(r, &step, spot);              or
  *     glint_record_update_without_spot(r, &step);
- *     glint_record_set_level(r, &step); */
+ *     glint_record_update_fade_level(r, &step); */
 #ifndef GLINT_FOLLOW_RECORD_H
 #define GLINT_FOLLOW_RECORD_H
 
@@ -31,7 +31,8 @@ struct glint_pace {
                            spots repeat exactly */
 };
 
-struct glint_pace glint_pace_compute(int32_t elapsed_us, int32_t smooth_us);
+struct glint_pace glint_pace_compute_for_interval(int32_t elapsed_us,
+                                                  int32_t smooth_us);
 
 /* Returns ELAPSED_US / (ELAPSED_US + TIME_US): the fraction of an error that an
  * average over TIME_US corrects. TIME_US must be at least 1. */
@@ -88,8 +89,8 @@ int64_t glint_record_clamp_flux_q16(const struct glint_spot *spot);
 /* Returns the power of a spot, clamped to 0 .. 2^42. */
 int64_t glint_record_clamp_power_q16(const struct glint_spot *spot);
 
-void glint_record_begin(struct glint_record *r, uint32_t id,
-                        const struct glint_spot *spot);
+void glint_record_begin_track(struct glint_record *r, uint32_t id,
+                              const struct glint_spot *spot);
 
 /* Sets ahead_q16 to the position that the velocity predicts for this picture.
  */
@@ -107,8 +108,8 @@ void glint_record_update_without_spot(struct glint_record *r,
 
 /* Raises or lowers the fade level by as much as the elapsed time allows, and
  * sets the lamp's state. */
-void glint_record_set_level(struct glint_record *r,
-                            const struct glint_record_step *step);
+void glint_record_update_fade_level(struct glint_record *r,
+                                    const struct glint_record_step *step);
 
 struct glint_lamp_track glint_record_make_track(const struct glint_record *r);
 

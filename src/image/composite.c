@@ -19,17 +19,17 @@ static struct glint_composite *allocate_composite(struct glint_arena *a)
     struct glint_composite measured = {0}, *placed;
     struct glint_composite *c;
 
-    placed = glint_arena_take(a, 1, sizeof *placed);
+    placed = glint_arena_allocate(a, 1, sizeof *placed);
     c = placed ? placed : &measured;
-    c->resolve = glint_arena_take(a, 1, sizeof *c->resolve);
-    c->light = glint_arena_take(a, 1, sizeof *c->light);
-    c->rows = glint_arena_take(a, 1, sizeof *c->rows);
+    c->resolve = glint_arena_allocate(a, 1, sizeof *c->resolve);
+    c->light = glint_arena_allocate(a, 1, sizeof *c->light);
+    c->rows = glint_arena_allocate(a, 1, sizeof *c->rows);
     return placed;
 }
 
 size_t glint_composite_bytes(void)
 {
-    struct glint_arena arena = glint_arena_measure();
+    struct glint_arena arena = glint_arena_begin_measuring();
 
     allocate_composite(&arena);
     return arena.used;
@@ -40,7 +40,7 @@ enum glint_status glint_composite_init(struct glint_composite **composite,
                                        unsigned sets, int dither, void *mem,
                                        size_t bytes)
 {
-    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_arena arena = glint_arena_init_in_memory(mem, bytes);
     struct glint_composite *c;
 
     if (image->format == GLINT_LINEAR_Q20 || (uintptr_t)mem % GLINT_ALIGN != 0)

@@ -13,12 +13,14 @@ static size_t count_blocks(int width)
 void glint_bright_allocate(struct glint_bright *b, struct glint_arena *arena,
                            int width)
 {
-    b->curve = glint_arena_take(arena, 1, sizeof *b->curve);
-    b->full_luma = glint_arena_take(arena, 256, 1);
-    b->beyond = glint_arena_take(arena, 256, 1);
-    b->value = glint_arena_take(arena, count_blocks(width), BRIGHT_BLOCK);
-    b->block = glint_arena_take(arena, count_blocks(width), sizeof *b->block);
-    b->marked = glint_arena_take(arena, count_blocks(width), sizeof *b->marked);
+    b->curve = glint_arena_allocate(arena, 1, sizeof *b->curve);
+    b->full_luma = glint_arena_allocate(arena, 256, 1);
+    b->beyond = glint_arena_allocate(arena, 256, 1);
+    b->value = glint_arena_allocate(arena, count_blocks(width), BRIGHT_BLOCK);
+    b->block =
+        glint_arena_allocate(arena, count_blocks(width), sizeof *b->block);
+    b->marked =
+        glint_arena_allocate(arena, count_blocks(width), sizeof *b->marked);
 }
 
 /* Clears the brightness values beyond WIDTH in the last block, as whole words

@@ -20,7 +20,8 @@ static WHOLLY_INLINE uint64_t find_bytes_at_or_above_code(const uint8_t *p,
     uint64_t found = 0;
 
     for (int i = 0; i < n; i++)
-        found |= bytes_reach(bytes_load(p + 8 * i), code, is_above_128);
+        found |=
+            bytes_find_at_or_above(bytes_load(p + 8 * i), code, is_above_128);
     return found;
 }
 

@@ -395,8 +395,8 @@ static WHOLLY_INLINE int count_codes_at_least(const uint8_t *value, int n,
     uint32_t found = 0;
 
     for (; n >= 8; value += 8, n -= 8)
-        found +=
-            bytes_count(bytes_reach(bytes_load(value), code, is_above_128));
+        found += bytes_count_high_bits(
+            bytes_find_at_or_above(bytes_load(value), code, is_above_128));
     for (int i = 0; i < n; i++)
         found += value[i] >= code;
     return (int)found;
@@ -553,7 +553,8 @@ static int is_valid_config(const struct glint_lamp_finder_config *c)
 static struct glint_lamp_finder *
 allocate_finder(struct glint_arena *a, const struct glint_lamp_finder_config *c)
 {
-    struct glint_lamp_finder *placed = glint_arena_take(a, 1, sizeof *placed);
+    struct glint_lamp_finder *placed =
+        glint_arena_allocate(a, 1, sizeof *placed);
     struct glint_lamp_finder measured;
     struct glint_regions measured_level;
     struct glint_lamp_finder *f = placed ? placed : &measured;
@@ -562,15 +563,15 @@ allocate_finder(struct glint_arena *a, const struct glint_lamp_finder_config *c)
                              : LIGHT_LEVELS - LIGHT_LEVELS_LOWER;
 
     glint_bright_allocate(&f->bright, a, c->width);
-    f->regions = glint_arena_take(a, (size_t)n_levels, sizeof *f->regions);
+    f->regions = glint_arena_allocate(a, (size_t)n_levels, sizeof *f->regions);
     for (int i = 0; i < n_levels; i++)
         glint_regions_allocate(f->regions ? &f->regions[i] : &measured_level, a,
                                c->width);
     glint_row_light_allocate(&f->row, a, c->width);
-    f->white = glint_arena_take(a, 1, sizeof *f->white);
+    f->white = glint_arena_allocate(a, 1, sizeof *f->white);
     f->candidate =
-        glint_arena_take(a, LIGHT_CANDIDATES + 1, sizeof *f->candidate);
-    f->order = glint_arena_take(a, LIGHT_CANDIDATES, sizeof *f->order);
+        glint_arena_allocate(a, LIGHT_CANDIDATES + 1, sizeof *f->candidate);
+    f->order = glint_arena_allocate(a, LIGHT_CANDIDATES, sizeof *f->order);
     return a->used <= a->size ? placed : NULL;
 }
 
@@ -592,7 +593,7 @@ void glint_lamp_finder_defaults(struct glint_lamp_finder_config *cfg, int width,
 
 size_t glint_lamp_finder_bytes(const struct glint_lamp_finder_config *cfg)
 {
-    struct glint_arena measured = glint_arena_measure();
+    struct glint_arena measured = glint_arena_begin_measuring();
 
     if (!is_valid_config(cfg))
         return 0;
@@ -605,7 +606,7 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
                        const struct glint_lamp_finder_config *cfg, void *mem,
                        size_t bytes)
 {
-    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_arena arena = glint_arena_init_in_memory(mem, bytes);
     struct glint_lamp_finder *f;
     int64_t merge_q8;
 

@@ -8,7 +8,7 @@
  * memory. No row is scanned, so tables for a width of one pixel are enough. */
 static struct glint_profile *allocate_profile(struct glint_arena *a)
 {
-    struct glint_profile *placed = glint_arena_take(a, 1, sizeof *placed);
+    struct glint_profile *placed = glint_arena_allocate(a, 1, sizeof *placed);
     struct glint_bright measured;
 
     glint_bright_allocate(placed ? &placed->rings.bright : &measured, a, 1);
@@ -17,7 +17,7 @@ static struct glint_profile *allocate_profile(struct glint_arena *a)
 
 size_t glint_profile_bytes(void)
 {
-    struct glint_arena measured = glint_arena_measure();
+    struct glint_arena measured = glint_arena_begin_measuring();
 
     allocate_profile(&measured);
     return measured.used;
@@ -26,7 +26,7 @@ size_t glint_profile_bytes(void)
 enum glint_status glint_profile_init(struct glint_profile **profile, void *mem,
                                      size_t bytes)
 {
-    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_arena arena = glint_arena_init_in_memory(mem, bytes);
     struct glint_profile *p;
 
     if ((uintptr_t)mem % GLINT_ALIGN)

@@ -101,7 +101,7 @@ void glint_region_compute_colour(const struct glint_region *sum,
 
     for (int i = 0; i < 3; i++)
         c[i] = 63 * sum->rim_rgb_q14[i] + sum->rgb_q14[i];
-    y = region_luminance(c[0], c[1], c[2]);
+    y = region_compute_luminance(c[0], c[1], c[2]);
     for (int i = 0; i < 3; i++)
         rgb_q15[i] =
             y > 0 ? q_narrow(divide_to_fixed_point((uint64_t)c[i], y, 15))
@@ -116,11 +116,12 @@ void glint_regions_allocate(struct glint_regions *r, struct glint_arena *arena,
     const size_t n_runs = ((size_t)width + 1) / 2;
 
     r->width = width;
-    r->above.run = glint_arena_take(arena, n_runs, sizeof *r->above.run);
-    r->here.run = glint_arena_take(arena, n_runs, sizeof *r->here.run);
-    r->component = glint_arena_take(arena, 2 * n_runs, sizeof *r->component);
-    r->active = glint_arena_take(arena, 2 * n_runs, sizeof *r->active);
-    r->idle = glint_arena_take(arena, 2 * n_runs, sizeof *r->idle);
+    r->above.run = glint_arena_allocate(arena, n_runs, sizeof *r->above.run);
+    r->here.run = glint_arena_allocate(arena, n_runs, sizeof *r->here.run);
+    r->component =
+        glint_arena_allocate(arena, 2 * n_runs, sizeof *r->component);
+    r->active = glint_arena_allocate(arena, 2 * n_runs, sizeof *r->active);
+    r->idle = glint_arena_allocate(arena, 2 * n_runs, sizeof *r->idle);
 }
 
 void glint_regions_begin_picture(struct glint_regions *r)
@@ -170,8 +171,8 @@ static WHOLLY_INLINE uint32_t make_bright_pixel_mask(
     uint32_t bits = 0;
 
     for (int i = 0; i < BRIGHT_BLOCK / 8; i++)
-        bits |= bytes_high_bits(
-                    bytes_reach(bytes_load(value + 8 * i), low, is_above_128))
+        bits |= bytes_pack_high_bits(bytes_find_at_or_above(
+                    bytes_load(value + 8 * i), low, is_above_128))
                 << 8 * i;
     return bits;
 }

@@ -61,17 +61,17 @@ struct glint_region_light {
 };
 
 /* Returns the linear luminance (BT.709) of linear R, G, B, times 2^15;
- * region_luminance() returns it without this factor. */
-static inline int64_t region_luminance_times_2_15(int64_t r, int64_t g,
-                                                  int64_t b)
+ * region_compute_luminance() returns it without this factor. */
+static inline int64_t region_compute_luminance_times_2_15(int64_t r, int64_t g,
+                                                          int64_t b)
 {
     return r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
            b * Q_CONST(0.0722, 15);
 }
 
-static inline int64_t region_luminance(int64_t r, int64_t g, int64_t b)
+static inline int64_t region_compute_luminance(int64_t r, int64_t g, int64_t b)
 {
-    return q_shift(region_luminance_times_2_15(r, g, b), 15);
+    return q_shift(region_compute_luminance_times_2_15(r, g, b), 15);
 }
 
 /* Converts linear light RGB, 0 .. white, of a pixel to the light that is added
@@ -81,10 +81,10 @@ region_compute_pixel_light(const int32_t rgb_q20[3])
 {
     struct glint_region_light light;
     /* rounded to _q20, then to _q14 */
-    const int64_t seen_q14 =
-        (region_luminance_times_2_15(rgb_q20[0], rgb_q20[1], rgb_q20[2]) +
-         (1 << 14) + (1 << 20)) >>
-        21;
+    const int64_t seen_q14 = (region_compute_luminance_times_2_15(
+                                  rgb_q20[0], rgb_q20[1], rgb_q20[2]) +
+                              (1 << 14) + (1 << 20)) >>
+                             21;
 
     light.w_q14 = seen_q14 > 1 ? seen_q14 : 1;
     for (int i = 0; i < 3; i++) /* at most 2^14 */

@@ -8,8 +8,9 @@
 void glint_row_light_allocate(struct glint_row_light *row,
                               struct glint_arena *arena, int width)
 {
-    row->sum = glint_arena_take(arena, (size_t)width + 1, sizeof *row->sum);
-    row->from = glint_arena_take(arena, (size_t)width + 1, sizeof *row->from);
+    row->sum = glint_arena_allocate(arena, (size_t)width + 1, sizeof *row->sum);
+    row->from =
+        glint_arena_allocate(arena, (size_t)width + 1, sizeof *row->from);
 }
 
 void glint_row_light_begin_row(struct glint_row_light *row)

@@ -67,7 +67,7 @@ struct check {
 
 uint32_t glint_model_crc32(const void *data, size_t bytes)
 {
-    return glint_blob_crc32(data, bytes);
+    return glint_blob_compute_crc32(data, bytes);
 }
 
 /* ------------------------------------------------------------------ header */
@@ -139,10 +139,10 @@ static const char *check_model_header(struct check *c)
         return "the band of wavelengths is empty or not above 0";
     if (h->sine_hi_q30 < 1 || h->sine_hi_q30 > LIMIT)
         return "the largest angle is out of range";
-    c->ghost = glint_blob_section(&c->blob, h->ghost_at, h->n_ghosts,
-                                  sizeof *c->ghost);
-    c->system = glint_blob_section(&c->blob, h->system_at, h->n_systems,
-                                   sizeof *c->system);
+    c->ghost = glint_blob_find_section(&c->blob, h->ghost_at, h->n_ghosts,
+                                       sizeof *c->ghost);
+    c->system = glint_blob_find_section(&c->blob, h->system_at, h->n_systems,
+                                        sizeof *c->system);
     return c->ghost && c->system ? NULL : outside;
 }
 
@@ -167,7 +167,7 @@ static const char *check_direction_range(struct check *c,
                                          const struct glint_model_system *s)
 {
     const int32_t *y_q30 =
-        glint_blob_section(&c->blob, s->across_at, 2, sizeof *y_q30);
+        glint_blob_find_section(&c->blob, s->across_at, 2, sizeof *y_q30);
 
     if (!y_q30)
         return outside;
@@ -218,8 +218,8 @@ static const char *check_system_box(struct check *c,
 
     if (s->box_exponent < MIN_EXPONENT || s->box_exponent > MAX_EXPONENT)
         return "the exponent of a box is out of range";
-    box = glint_blob_section(&c->blob, s->box_at, (uint64_t)sides * terms,
-                             sizeof *box);
+    box = glint_blob_find_section(&c->blob, s->box_at, (uint64_t)sides * terms,
+                                  sizeof *box);
     if (!box)
         return outside;
     for (int k = 0; k < sides; k++) {
@@ -263,8 +263,8 @@ static const char *check_output_terms(struct check *c,
 {
     const uint16_t *power;
 
-    power = glint_blob_section(&c->blob, o->term_at, (o->n_terms + 1U) / 2,
-                               2 * sizeof *power);
+    power = glint_blob_find_section(&c->blob, o->term_at, (o->n_terms + 1U) / 2,
+                                    2 * sizeof *power);
     if (!power)
         return outside;
     for (uint32_t k = 0; k < o->n_terms; k++) {
@@ -297,8 +297,8 @@ static const char *check_output_coefficients(struct check *c,
 
     if (n_narrow > o->n_terms || shift > MAX_SHIFT)
         return "an output's 16-bit coefficients are out of range";
-    wide = glint_blob_section(&c->blob, o->coef_at, n_wide + (n_narrow + 1) / 2,
-                              sizeof *wide);
+    wide = glint_blob_find_section(&c->blob, o->coef_at,
+                                   n_wide + (n_narrow + 1) / 2, sizeof *wide);
     if (!wide)
         return outside;
     narrow = (const int16_t *)(const void *)(wide + n_wide);
@@ -333,7 +333,8 @@ static const char *check_system_outputs(struct check *c,
 
     if (s->n_outputs < NEEDED_KINDS || s->n_outputs > GLINT_OUT_KINDS)
         return "a system has too few outputs or too many";
-    o = glint_blob_section(&c->blob, s->output_at, s->n_outputs, sizeof *o);
+    o = glint_blob_find_section(&c->blob, s->output_at, s->n_outputs,
+                                sizeof *o);
     if (!o)
         return outside;
     for (uint32_t k = 0; k < s->n_outputs; k++) {

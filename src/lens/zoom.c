@@ -449,7 +449,7 @@ static enum glint_status record_missing_ghosts(struct glint_zoom_lens *zoom,
         if (!m[k].has_at)
             continue;
         zoom->has[k] =
-            glint_blob_section(blob, m[k].has_at, words, sizeof(uint32_t));
+            glint_blob_find_section(blob, m[k].has_at, words, sizeof(uint32_t));
         *reason = end ? "a zoom's first or last position lacks ghosts"
                       : "a list of ghosts lies outside the file";
         if (end || !zoom->has[k])
@@ -474,7 +474,7 @@ enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
         *reason = fault_text[glint_blob_check_name(&blob)];
     if (*reason)
         return GLINT_E_LENS;
-    m = glint_blob_section(&blob, h->model_at, h->n_models, sizeof *m);
+    m = glint_blob_find_section(&blob, h->model_at, h->n_models, sizeof *m);
     *reason = "a table lies outside the file";
     if (!m)
         return GLINT_E_LENS;
@@ -483,7 +483,7 @@ enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
         return GLINT_E_LENS;
     for (uint32_t k = 0; k < h->n_models; k++) {
         const void *const at =
-            glint_blob_section(&blob, m[k].at, m[k].bytes, 1);
+            glint_blob_find_section(&blob, m[k].at, m[k].bytes, 1);
 
         *reason = "a model lies outside the file";
         if (!at || glint_lens_open(&zoom->model[k], at, m[k].bytes, reason) !=

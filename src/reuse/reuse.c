@@ -28,14 +28,14 @@ static void *allocate_reuse_state(struct glint_arena *a,
 {
     struct reuse measured, *placed, *own;
 
-    placed = glint_arena_take(a, 1, sizeof *placed);
+    placed = glint_arena_allocate(a, 1, sizeof *placed);
     own = placed ? placed : &measured;
     own->light =
-        glint_arena_take(a, (size_t)c->reuse_lights, sizeof *own->light);
+        glint_arena_allocate(a, (size_t)c->reuse_lights, sizeof *own->light);
     own->rgb_q14 = NULL;
     if (c->reuse_gains)
-        own->rgb_q14 =
-            glint_arena_take(a, (size_t)c->max_bundles, sizeof *own->rgb_q14);
+        own->rgb_q14 = glint_arena_allocate(a, (size_t)c->max_bundles,
+                                            sizeof *own->rgb_q14);
     return placed;
 }
 

@@ -25,7 +25,7 @@ static int find_nearest_planned_light(const struct glint_still *s,
     for (int i = 0; i < s->n; i++) {
         const int32_t apart_q30 = light->apart_q30 - s->light[i].apart_q30;
         const uint64_t apart2_q60 =
-            glint_light_squared_distance_q60(light, &s->light[i]);
+            glint_light_compute_squared_distance_q60(light, &s->light[i]);
 
         if (apart2_q60 > least2_q60 || apart_q30 > near_q30 ||
             apart_q30 < -near_q30 || (at >= 0 && apart2_q60 == least2_q60))

@@ -18,10 +18,10 @@ void glint_background_allocate(struct glint_around *around,
         around->cell_log2++;
     around->n_x = ((width - 1) >> around->cell_log2) + 1;
     around->n_y = ((height - 1) >> around->cell_log2) + 1;
-    around->curve = glint_arena_take(arena, 1, sizeof *around->curve);
+    around->curve = glint_arena_allocate(arena, 1, sizeof *around->curve);
     around->light_q15 =
-        glint_arena_take(arena, (size_t)around->n_x * (size_t)around->n_y,
-                         3 * sizeof *around->light_q15);
+        glint_arena_allocate(arena, (size_t)around->n_x * (size_t)around->n_y,
+                             3 * sizeof *around->light_q15);
 }
 
 /* -------------------------------------------------------------------- look */

@@ -94,10 +94,10 @@ int32_t glint_compute_power_q15(int32_t x_q30, int32_t k_q8)
 static int32_t compute_light_level(struct glint_real real, int unit_log2,
                                    uint64_t square)
 {
-    const int up = q_up(square);
+    const int up = q_count_normalising_shift(square);
     /* quotient of the mantissa and SQUARE, times 2^63 / 2^UP; below 2^63 */
     const uint64_t over =
-        (uint64_t)real.mantissa * q_reciprocal(q_upper(square, up));
+        (uint64_t)real.mantissa * q_reciprocal(q_shift_to_32_bits(square, up));
     const int down = 63 - up - real.exponent - 2 * unit_log2 - 15;
 
     if (real.mantissa == 0 || down > 63)

@@ -671,7 +671,7 @@ compute_triangle_box(const struct glint_scene *s, uint32_t object,
         return (struct glint_box){0, 0, 0, 0};
     if (n_near < 3)
         return all;
-    return glint_box_cut(
+    return glint_box_intersect(
         all, (struct glint_box){find_first_pixel(lo[0], all.x1, off_q8),
                                 find_first_pixel(lo[1], all.y1, off_q8),
                                 find_end_pixel(hi[0], all.x1, off_q8),
@@ -958,7 +958,7 @@ static void draw_triangle(struct glint_scene_worker *w, uint32_t id)
     const struct glint_scene_triangle *t =
         glint_mesh_triangle(s, glint_mesh_of(s, object), id & 0xfffff);
     int is_small;
-    const struct glint_box b = glint_box_cut(
+    const struct glint_box b = glint_box_intersect(
         w->touched, compute_triangle_box(s, object, t, &is_small));
     struct line line[3];
 

@@ -33,8 +33,8 @@ enum { SPAN = GLINT_SCENE_SPAN, UV_LIMIT = 1 << 24 };
 static const char *check_vertices(struct check *c,
                                   const struct glint_scene_mesh *m)
 {
-    const int32_t *at = glint_blob_section(&c->blob, m->vertex_at,
-                                           m->n_vertices, 3 * sizeof *at);
+    const int32_t *at = glint_blob_find_section(&c->blob, m->vertex_at,
+                                                m->n_vertices, 3 * sizeof *at);
     const int64_t reach = (int64_t)m->radius + 2;
 
     if (!at)
@@ -62,12 +62,12 @@ static const char *check_attributes(struct check *c,
     const int32_t *uv_q16 = NULL, *normal_q30 = NULL;
 
     if (m->uv_at &&
-        !(uv_q16 = glint_blob_section(&c->blob, m->uv_at, m->n_vertices,
-                                      2 * sizeof *uv_q16)))
+        !(uv_q16 = glint_blob_find_section(&c->blob, m->uv_at, m->n_vertices,
+                                           2 * sizeof *uv_q16)))
         return OUTSIDE;
     if (m->normal_at &&
-        !(normal_q30 = glint_blob_section(&c->blob, m->normal_at, m->n_vertices,
-                                          3 * sizeof *normal_q30)))
+        !(normal_q30 = glint_blob_find_section(
+              &c->blob, m->normal_at, m->n_vertices, 3 * sizeof *normal_q30)))
         return OUTSIDE;
     for (size_t i = 0; i < m->n_vertices; i++) {
         if (uv_q16 &&
@@ -82,8 +82,8 @@ static const char *check_attributes(struct check *c,
 static const char *check_triangles(struct check *c,
                                    const struct glint_scene_mesh *m)
 {
-    const struct glint_scene_triangle *t =
-        glint_blob_section(&c->blob, m->triangle_at, m->n_triangles, sizeof *t);
+    const struct glint_scene_triangle *t = glint_blob_find_section(
+        &c->blob, m->triangle_at, m->n_triangles, sizeof *t);
 
     if (!t)
         return OUTSIDE;
@@ -188,7 +188,8 @@ static const char *check_mesh_grid(struct check *c,
             return "a mesh's grid is out of range";
         cells *= m->cells[k];
     }
-    start = glint_blob_section(&c->blob, m->start_at, cells + 1, sizeof *start);
+    start = glint_blob_find_section(&c->blob, m->start_at, cells + 1,
+                                    sizeof *start);
     if (!start)
         return OUTSIDE;
     if (start[0] != 0)
@@ -196,7 +197,8 @@ static const char *check_mesh_grid(struct check *c,
     for (uint64_t i = 0; i < cells; i++)
         if (start[i] > start[i + 1])
             return "a grid's lists are not in rising order";
-    ref = glint_blob_section(&c->blob, m->ref_at, start[cells], sizeof *ref);
+    ref =
+        glint_blob_find_section(&c->blob, m->ref_at, start[cells], sizeof *ref);
     if (!ref)
         return OUTSIDE;
     for (uint32_t i = 0; i < start[cells]; i++)
@@ -262,7 +264,7 @@ static const char *check_translucent_medium(struct check *c,
         return "a translucent material has Phong weights";
     if (s->file_bytes < sizeof(struct glint_translucent_header) ||
         s->file_bytes % 4 ||
-        !glint_blob_section(&c->blob, s->file_at, s->file_bytes / 4, 4))
+        !glint_blob_find_section(&c->blob, s->file_at, s->file_bytes / 4, 4))
         return OUTSIDE;
     return NULL;
 }
@@ -287,7 +289,7 @@ static const char *check_ball_map(struct check *c,
                                   uint32_t side)
 {
     const int32_t *turn_q30 =
-        glint_blob_section(&c->blob, skin->texel_at, 3 * side, 8);
+        glint_blob_find_section(&c->blob, skin->texel_at, 3 * side, 8);
 
     if (!turn_q30)
         return OUTSIDE;
@@ -303,7 +305,7 @@ static const char *check_mesh_map(struct check *c,
                                   uint32_t side)
 {
     const uint32_t *texel =
-        glint_blob_section(&c->blob, skin->texel_at, side * side, 4);
+        glint_blob_find_section(&c->blob, skin->texel_at, side * side, 4);
 
     if (!texel)
         return OUTSIDE;
@@ -430,7 +432,8 @@ static const char *check_texture(struct check *c,
         return "a texture is too large";
     for (; w || h; w -= w > 0, h -= h > 0)
         texels += UINT64_C(1) << (w + h);
-    return glint_blob_section(&c->blob, t->texel_at, (3 * texels + 3) / 4, 4)
+    return glint_blob_find_section(&c->blob, t->texel_at, (3 * texels + 3) / 4,
+                                   4)
                ? NULL
                : OUTSIDE;
 }
@@ -473,8 +476,9 @@ static const char *check_environment(struct check *c,
     if (!glint_scene_is_unit_vector(e->turn_q30, 2) || e->scale.mantissa == 0 ||
         !glint_scene_is_valid_intensity(&e->scale))
         return "the environment's turn or scale is out of range";
-    return e->file_bytes % 4 == 0 && glint_blob_section(&c->blob, e->file_at,
-                                                        e->file_bytes / 4, 4)
+    return e->file_bytes % 4 == 0 &&
+                   glint_blob_find_section(&c->blob, e->file_at,
+                                           e->file_bytes / 4, 4)
                ? NULL
                : OUTSIDE;
 }
@@ -553,25 +557,29 @@ static const char *locate_tables(struct check *c)
     struct glint_blob *b = &c->blob;
 
     m->light =
-        glint_blob_section(b, h->light_at, h->n_lights, sizeof *m->light);
-    m->texture =
-        glint_blob_section(b, h->texture_at, h->n_textures, sizeof *m->texture);
-    m->material = glint_blob_section(b, h->material_at, h->n_materials,
-                                     sizeof *m->material);
-    m->mesh = glint_blob_section(b, h->mesh_at, h->n_meshes, sizeof *m->mesh);
-    m->object =
-        glint_blob_section(b, h->object_at, h->n_objects, sizeof *m->object);
-    m->ward = glint_blob_section(b, h->ward_at, h->n_wards, sizeof *m->ward);
+        glint_blob_find_section(b, h->light_at, h->n_lights, sizeof *m->light);
+    m->texture = glint_blob_find_section(b, h->texture_at, h->n_textures,
+                                         sizeof *m->texture);
+    m->material = glint_blob_find_section(b, h->material_at, h->n_materials,
+                                          sizeof *m->material);
+    m->mesh =
+        glint_blob_find_section(b, h->mesh_at, h->n_meshes, sizeof *m->mesh);
+    m->object = glint_blob_find_section(b, h->object_at, h->n_objects,
+                                        sizeof *m->object);
+    m->ward =
+        glint_blob_find_section(b, h->ward_at, h->n_wards, sizeof *m->ward);
     m->stone =
-        glint_blob_section(b, h->stone_at, h->n_stones, sizeof *m->stone);
-    m->skin = glint_blob_section(b, h->skin_at, h->n_skins, sizeof *m->skin);
-    m->environment = glint_blob_section(b, h->environment_at, h->n_environments,
-                                        sizeof *m->environment);
+        glint_blob_find_section(b, h->stone_at, h->n_stones, sizeof *m->stone);
+    m->skin =
+        glint_blob_find_section(b, h->skin_at, h->n_skins, sizeof *m->skin);
+    m->environment = glint_blob_find_section(
+        b, h->environment_at, h->n_environments, sizeof *m->environment);
     if (h->n_motions) {
-        m->motion = glint_blob_section(b, h->motion_at, 1, sizeof *m->motion);
-        if (!m->motion ||
-            !glint_blob_section(b, h->motion_at + (uint32_t)sizeof *m->motion,
-                                m->motion->bytes / 4, 4))
+        m->motion =
+            glint_blob_find_section(b, h->motion_at, 1, sizeof *m->motion);
+        if (!m->motion || !glint_blob_find_section(
+                              b, h->motion_at + (uint32_t)sizeof *m->motion,
+                              m->motion->bytes / 4, 4))
             return OUTSIDE;
     }
     return m->light && m->texture && m->material && m->mesh && m->object &&

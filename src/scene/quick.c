@@ -83,7 +83,7 @@ static void prepare_ball_spans(const struct glint_scene *s,
     /* the ball's outline must be an ellipse, and not too flat */
     if (p->span.a_q30 > -(1 << 26))
         return;
-    p->span.up = q_up((uint64_t)-p->span.a_q30);
+    p->span.up = q_count_normalising_shift((uint64_t)-p->span.a_q30);
     p->span.over = q_reciprocal((uint32_t)-p->span.a_q30 << p->span.up) >> 2;
     p->span.is_there = 1;
 }

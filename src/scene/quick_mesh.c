@@ -35,7 +35,8 @@ static int set_triangle_corners(const struct glint_scene *s, uint32_t object,
         t->down[k] = b->x - a->x;
         t->at[k] = (int64_t)(c[0]->x - a->x) * t->across[k] +
                    (int64_t)(c[0]->y - a->y) * t->down[k];
-        t->nearer_q30[k] = q_part_q30((uint64_t)nearest, (uint64_t)z[k]);
+        t->nearer_q30[k] =
+            q_divide_to_fraction_q30((uint64_t)nearest, (uint64_t)z[k]);
         sum += t->at[k];
     }
     if (sum == 0)
@@ -45,8 +46,8 @@ static int set_triangle_corners(const struct glint_scene *s, uint32_t object,
         t->down[k] = -t->down[k];
         t->at[k] = -t->at[k];
     }
-    t->up = q_up(q_magnitude(sum));
-    t->one_over = q_reciprocal(q_upper(q_magnitude(sum), t->up));
+    t->up = q_count_normalising_shift(q_magnitude(sum));
+    t->one_over = q_reciprocal(q_shift_to_32_bits(q_magnitude(sum), t->up));
     return 1;
 }
 
@@ -145,11 +146,12 @@ static void compute_vertex_weights(const struct glint_quick_triangle *t,
         part_q30[0] = part_q30[1] = 0;
         return;
     }
-    up = q_up(sum);
-    one_over = q_reciprocal(q_upper(sum, up));
+    up = q_count_normalising_shift(sum);
+    one_over = q_reciprocal(q_shift_to_32_bits(sum, up));
     for (int k = 0; k < 2; k++)
         part_q30[k] =
-            (int64_t)((uint64_t)q_upper(weight_q30[k + 1], up) * one_over >>
+            (int64_t)((uint64_t)q_shift_to_32_bits(weight_q30[k + 1], up) *
+                          one_over >>
                       33);
 }
 

@@ -179,12 +179,13 @@ void glint_set_vertex_weights(const int64_t edge[3], int64_t sum,
                               int32_t part_q30[3])
 {
     const uint64_t all = q_magnitude(sum);
-    const int up = q_up(all);
-    const uint64_t one_over = q_reciprocal(q_upper(all, up));
+    const int up = q_count_normalising_shift(all);
+    const uint64_t one_over = q_reciprocal(q_shift_to_32_bits(all, up));
 
     for (int k = 0; k < 2; k++)
         part_q30[k] =
-            (int32_t)((uint64_t)q_upper(q_magnitude(edge[k]), up) * one_over >>
+            (int32_t)((uint64_t)q_shift_to_32_bits(q_magnitude(edge[k]), up) *
+                          one_over >>
                       33);
     part_q30[2] = q_larger(0, ONE_Q30 - part_q30[0] - part_q30[1]);
     part_q30[1] = ONE_Q30 - part_q30[0] - part_q30[2];

@@ -115,18 +115,19 @@ static NEVER_INLINE void allocate_shadow_grids(struct glint_scene *s,
         if (!s->model.header->shadow ||
             s->model.light[i].kind != GLINT_LIGHT_SUN)
             continue;
-        m = glint_arena_take(a, 1, sizeof *m);
+        m = glint_arena_allocate(a, 1, sizeof *m);
         if (s->lit)
             s->lit[i].shadow = m;
         m = m ? m : &measured;
         m->light = (int)i;
         m->is_ready = 0;
         m->max_refs = (int)n_refs;
-        m->vertex = glint_arena_take(a, n_vertices, sizeof *m->vertex);
-        m->bins.start = glint_arena_take(a, cells + 1, sizeof *m->bins.start);
-        m->bins.ref = glint_arena_take(a, n_refs, sizeof *m->bins.ref);
-        m->thing = glint_arena_take(a, count_shadow_casters(&s->model),
-                                    sizeof *m->thing);
+        m->vertex = glint_arena_allocate(a, n_vertices, sizeof *m->vertex);
+        m->bins.start =
+            glint_arena_allocate(a, cells + 1, sizeof *m->bins.start);
+        m->bins.ref = glint_arena_allocate(a, n_refs, sizeof *m->bins.ref);
+        m->thing = glint_arena_allocate(a, count_shadow_casters(&s->model),
+                                        sizeof *m->thing);
     }
 }
 
@@ -139,18 +140,19 @@ static void allocate_worker(struct glint_scene *s, struct glint_arena *a,
     const size_t samples = side * side * (size_t)s->cfg.edge_samples;
     struct glint_scene_worker w = {.scene = s};
 
-    w.depth = glint_arena_take(a, samples, sizeof *w.depth);
-    w.id = glint_arena_take(a, samples, sizeof *w.id);
+    w.depth = glint_arena_allocate(a, samples, sizeof *w.depth);
+    w.id = glint_arena_allocate(a, samples, sizeof *w.id);
     w.scratch = (struct glint_tile_scratch){
-        .light = glint_arena_take(a, 1, sizeof *w.scratch.light),
+        .light = glint_arena_allocate(a, 1, sizeof *w.scratch.light),
         .light_q20 =
-            glint_arena_take(a, 3 * 2 * side, sizeof *w.scratch.light_q20),
-        .codes = glint_arena_take(a, 1, sizeof *w.scratch.codes),
-        .blend = glint_arena_take(a, 1, sizeof *w.scratch.blend)};
+            glint_arena_allocate(a, 3 * 2 * side, sizeof *w.scratch.light_q20),
+        .codes = glint_arena_allocate(a, 1, sizeof *w.scratch.codes),
+        .blend = glint_arena_allocate(a, 1, sizeof *w.scratch.blend)};
     if (s->cfg.half_shading)
-        w.quad = glint_arena_take(a, side / 2, sizeof *w.quad);
+        w.quad = glint_arena_allocate(a, side / 2, sizeof *w.quad);
     if (s->model.header->n_meshes)
-        w.quick = glint_arena_take(a, GLINT_QUICK_TRIANGLES, sizeof *w.quick);
+        w.quick =
+            glint_arena_allocate(a, GLINT_QUICK_TRIANGLES, sizeof *w.quick);
     if (s->model.motion)
         s->cfg.parts.motions->carve_worker(s, a, &w);
     if (worker)
@@ -177,7 +179,7 @@ static struct glint_scene *allocate_scene(struct glint_arena *a,
                                           const struct glint_scene_model *model)
 {
     struct glint_scene measured = {.cfg = *cfg, .model = *model};
-    struct glint_scene *placed = glint_arena_take(a, 1, sizeof *placed);
+    struct glint_scene *placed = glint_arena_allocate(a, 1, sizeof *placed);
     struct glint_scene *s = placed ? placed : &measured;
     const struct glint_box all = {0, 0, cfg->width, cfg->height};
     const size_t n_vertices = count_vertices(model);
@@ -185,29 +187,29 @@ static struct glint_scene *allocate_scene(struct glint_arena *a,
 
     *s = measured;
     s->placed =
-        glint_arena_take(a, model->header->n_objects, sizeof *s->placed);
-    s->lit = glint_arena_take(a, model->header->n_lights, sizeof *s->lit);
+        glint_arena_allocate(a, model->header->n_objects, sizeof *s->placed);
+    s->lit = glint_arena_allocate(a, model->header->n_lights, sizeof *s->lit);
     allocate_shadow_grids(s, a);
-    s->seen = glint_arena_take(a, n_vertices, sizeof *s->seen);
-    s->corner = glint_arena_take(a, n_vertices, sizeof *s->corner);
+    s->seen = glint_arena_allocate(a, n_vertices, sizeof *s->seen);
+    s->corner = glint_arena_allocate(a, n_vertices, sizeof *s->corner);
     glint_bins_init(&s->bins, all, cfg->tile_log2, NULL, NULL);
     if (n_vertices > 0) {
-        s->bins.start = glint_arena_take(
+        s->bins.start = glint_arena_allocate(
             a, (size_t)s->bins.tiles_x * (size_t)s->bins.tiles_y + 1,
             sizeof *s->bins.start);
         s->bins.ref =
-            glint_arena_take(a, (size_t)cfg->max_refs, sizeof *s->bins.ref);
+            glint_arena_allocate(a, (size_t)cfg->max_refs, sizeof *s->bins.ref);
     }
-    s->resolve = glint_arena_take(a, 1, sizeof *s->resolve);
+    s->resolve = glint_arena_allocate(a, 1, sizeof *s->resolve);
     s->gloss =
-        glint_arena_take(a, model->header->n_materials, sizeof *s->gloss);
+        glint_arena_allocate(a, model->header->n_materials, sizeof *s->gloss);
     if (model->header->n_textures > 0)
-        s->curve = glint_arena_take(a, 1, sizeof *s->curve);
+        s->curve = glint_arena_allocate(a, 1, sizeof *s->curve);
     if (needs_background_picture(model))
         cfg->parts.bounces->carve(s, a);
-    s->material =
-        glint_arena_take(a, model->header->n_materials, sizeof *s->material);
-    s->ward = glint_arena_take(a, model->header->n_wards, sizeof *s->ward);
+    s->material = glint_arena_allocate(a, model->header->n_materials,
+                                       sizeof *s->material);
+    s->ward = glint_arena_allocate(a, model->header->n_wards, sizeof *s->ward);
     s->wards =
         needs_ward_module(model->header) ? cfg->parts.wards->carve(s, a) : NULL;
     s->stones =
@@ -218,9 +220,9 @@ static struct glint_scene *allocate_scene(struct glint_arena *a,
     s->motion = model->motion ? cfg->parts.motions->carve(s, a) : NULL;
     s->cover_across = (cfg->width + 7) >> GLINT_COVER_LOG2;
     s->cover_down = (cfg->height + 7) >> GLINT_COVER_LOG2;
-    s->cover = glint_arena_take(
+    s->cover = glint_arena_allocate(
         a, (size_t)s->cover_across * (size_t)s->cover_down, sizeof *s->cover);
-    s->worker = glint_arena_take(a, (size_t)n_workers, sizeof *s->worker);
+    s->worker = glint_arena_allocate(a, (size_t)n_workers, sizeof *s->worker);
     for (int i = 0; i < n_workers; i++)
         allocate_worker(s, a, s->worker ? &s->worker[i] : NULL);
     return placed;
@@ -229,7 +231,7 @@ static struct glint_scene *allocate_scene(struct glint_arena *a,
 size_t glint_scene_bytes(const struct glint_scene_config *cfg,
                          const struct glint_scene_model *model)
 {
-    struct glint_arena arena = glint_arena_measure();
+    struct glint_arena arena = glint_arena_begin_measuring();
 
     if (!is_config_in_range(cfg) || glint_scene_lacks(&cfg->parts, model))
         return 0;
@@ -296,7 +298,7 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
                                    const struct glint_scene_model *model,
                                    void *mem, size_t bytes)
 {
-    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_arena arena = glint_arena_init_in_memory(mem, bytes);
     struct glint_scene_view view;
     struct glint_scene *s;
 

@@ -108,10 +108,10 @@ static void enlarge_grid_for_slant(struct glint_shadow *shadow)
 /* Returns the range of grid cells that the footprint T covers. */
 static struct glint_box find_footprint_cells(const struct glint_shadow_thing *t)
 {
-    return glint_box_cut((struct glint_box){0, 0, CELLS, CELLS},
-                         (struct glint_box){t->lo[0] >> 8, t->lo[1] >> 8,
-                                            (t->hi[0] >> 8) + 1,
-                                            (t->hi[1] >> 8) + 1});
+    return glint_box_intersect((struct glint_box){0, 0, CELLS, CELLS},
+                               (struct glint_box){t->lo[0] >> 8, t->lo[1] >> 8,
+                                                  (t->hi[0] >> 8) + 1,
+                                                  (t->hi[1] >> 8) + 1});
 }
 
 /* Sets T to the footprint of an object with bounds LO .. HI: the region that

@@ -87,7 +87,8 @@ int glint_normalise_vector(const int64_t v[3], int32_t unit_q30[3])
 
 int32_t glint_divide_rounded(uint64_t n, uint64_t d)
 {
-    const int up_n = q_up(n), up_d = q_up(d);
+    const int up_n = q_count_normalising_shift(n),
+              up_d = q_count_normalising_shift(d);
     const int down = 62 - up_d + up_n;
     uint64_t q;
 
@@ -97,7 +98,9 @@ int32_t glint_divide_rounded(uint64_t n, uint64_t d)
         return GLINT_FAR;
     if (down > 63)
         return 0;
-    q = (uint64_t)q_upper(n, up_n) * q_reciprocal(q_upper(d, up_d)) >> 1;
+    q = (uint64_t)q_shift_to_32_bits(n, up_n) *
+            q_reciprocal(q_shift_to_32_bits(d, up_d)) >>
+        1;
     q = ((q >> (down - 1)) + 1) >> 1;
     return q < GLINT_FAR ? (int32_t)q : GLINT_FAR;
 }

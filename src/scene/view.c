@@ -136,7 +136,7 @@ glint_view_project_vertex(const struct glint_scene_view *view,
     int fits = v[2] > 0;
 
     if (fits) {
-        const int up = q_up((uint64_t)v[2]);
+        const int up = q_count_normalising_shift((uint64_t)v[2]);
         const uint32_t one_over = q_reciprocal((uint32_t)v[2] << up);
 
         c.x =
@@ -163,7 +163,7 @@ struct glint_box glint_view_find_box(const struct glint_scene_view *view,
         hi[0] = q_larger(hi[0], c.x);
         hi[1] = q_larger(hi[1], c.y);
     }
-    return glint_box_cut(
+    return glint_box_intersect(
         all, (struct glint_box){((lo[0] + 128 * (all.x1 - 1)) >> 8) - 1,
                                 ((lo[1] + 128 * (all.y1 - 1)) >> 8) - 1,
                                 ((hi[0] + 128 * (all.x1 - 1)) >> 8) + 2,

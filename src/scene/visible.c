@@ -199,7 +199,7 @@ static void draw_plane(struct glint_scene_worker *w,
                        const struct glint_placed *placed, uint32_t id)
 {
     const struct glint_scene *s = w->scene;
-    const struct glint_box b = glint_box_cut(w->tile, placed->box);
+    const struct glint_box b = glint_box_intersect(w->tile, placed->box);
     const struct glint_depth *d = &placed->depth;
     const int n = s->cfg.edge_samples;
     struct deeper deeper;
@@ -228,7 +228,7 @@ static int can_partly_occlude(const struct glint_placed *a,
 {
     return b->is_seen && b->object->kind == GLINT_OBJECT_SPHERE &&
            a->z[0] <= b->z[1] + 2 && b->z[0] <= a->z[1] + 2 &&
-           !glint_box_empty(glint_box_cut(a->box, b->box));
+           !glint_box_empty(glint_box_intersect(a->box, b->box));
 }
 
 void glint_scene_set_flat_depths(struct glint_scene *s)
@@ -281,7 +281,7 @@ static void confine_catcher(const struct glint_scene *s,
             break;
         if (!s->lit[i].shadow || s->n_planes)
             return;
-        box = glint_box_join(
+        box = glint_box_unite(
             box, glint_shadow_find_plane_box(s, s->lit[i].shadow, plane));
     }
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
@@ -292,7 +292,7 @@ static void confine_catcher(const struct glint_scene *s,
         if (p->object->kind == GLINT_OBJECT_PLANE)
             return;
         if (!is_in_front_of_plane(s, p, plane))
-            box = glint_box_join(box, p->box);
+            box = glint_box_unite(box, p->box);
     }
     plane->box = box;
     plane->is_seen = !glint_box_empty(box);
@@ -320,7 +320,7 @@ static struct glint_box find_touched_pixels(const struct glint_scene *s,
 
         if (p->is_seen &&
             (has_triangles || p->object->kind != GLINT_OBJECT_MESH))
-            all = glint_box_join(all, glint_box_cut(tile, p->box));
+            all = glint_box_unite(all, glint_box_intersect(tile, p->box));
     }
     return all;
 }
@@ -352,7 +352,7 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
     w->touched = find_touched_pixels(s, tile, has_triangles);
     if (s->motion)
         w->touched =
-            glint_box_join(w->touched, s->cfg.parts.motions->touch(s, tile));
+            glint_box_unite(w->touched, s->cfg.parts.motions->touch(s, tile));
     clear_tile_samples(w);
     if (glint_box_empty(w->touched))
         return s->model.header->background != GLINT_BACKGROUND_CAMERA;
@@ -365,7 +365,7 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
             draw_plane(w, &s->placed[i], glint_make_triangle_id(i, 0));
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
         const struct glint_placed *placed = &s->placed[i];
-        const struct glint_box b = glint_box_cut(tile, placed->box);
+        const struct glint_box b = glint_box_intersect(tile, placed->box);
 
         if (!placed->is_seen || glint_box_empty(b))
             continue;

@@ -24,15 +24,15 @@ static struct glint_star *allocate_star(struct glint_arena *a,
     const size_t n = (size_t)c->max_lights, n_workers = (size_t)c->n_workers;
     struct glint_star measured, *placed, *s;
 
-    placed = glint_arena_take(a, 1, sizeof *placed);
+    placed = glint_arena_allocate(a, 1, sizeof *placed);
     s = placed ? placed : &measured;
-    s->lamp = glint_arena_take(a, n, sizeof *s->lamp);
-    s->worker = glint_arena_take(a, n_workers, sizeof *s->worker);
-    s->rows = glint_arena_take(a, n_workers, sizeof *s->rows);
+    s->lamp = glint_arena_allocate(a, n, sizeof *s->lamp);
+    s->worker = glint_arena_allocate(a, n_workers, sizeof *s->worker);
+    s->rows = glint_arena_allocate(a, n_workers, sizeof *s->rows);
     for (size_t i = 0; i < n_workers; i++) {
-        uint16_t *const near = glint_arena_take(a, 2 * n, sizeof *near);
+        uint16_t *const near = glint_arena_allocate(a, 2 * n, sizeof *near);
         int64_t(*const light_q20)[GLINT_CODES_WIDTH] =
-            glint_arena_take(a, 3, sizeof *light_q20);
+            glint_arena_allocate(a, 3, sizeof *light_q20);
 
         if (placed)
             s->worker[i] = (struct glint_star_row){
@@ -41,9 +41,9 @@ static struct glint_star *allocate_star(struct glint_arena *a,
     return placed;
 }
 
-size_t glint_star_bytes(const struct glint_star_config *cfg)
+size_t glint_star_count_bytes(const struct glint_star_config *cfg)
 {
-    struct glint_arena arena = glint_arena_measure();
+    struct glint_arena arena = glint_arena_begin_measuring();
 
     if (!is_valid_config(cfg))
         return 0;
@@ -55,12 +55,12 @@ enum glint_status glint_star_init(struct glint_star **star,
                                   const struct glint_star_config *cfg,
                                   void *mem, size_t bytes)
 {
-    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_arena arena = glint_arena_init_in_memory(mem, bytes);
     struct glint_star *s;
 
     if (!is_valid_config(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0)
         return GLINT_E_ARGUMENT;
-    if (glint_star_bytes(cfg) > bytes)
+    if (glint_star_count_bytes(cfg) > bytes)
         return GLINT_E_MEMORY;
     s = allocate_star(&arena, cfg);
     s->cfg = *cfg;

@@ -174,8 +174,8 @@ static void draw_star_without_flare(struct glint_star *star,
                       draw_tile_row_job, &d);
 }
 
-struct glint_pass glint_star_make_pass_on(struct glint_star *star,
-                                          const struct glint_image *image)
+struct glint_pass glint_star_make_pass(struct glint_star *star,
+                                       const struct glint_image *image)
 {
     star->is_linear = image && image->format == GLINT_LINEAR_Q20;
     return make_star_pass(star);

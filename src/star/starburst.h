@@ -3,7 +3,7 @@
  * Starburst: the light that the edges of the aperture stop diffract around each
  * lamp. Run-time half, integers only.
  *
- *     bytes = glint_star_bytes(&cfg);                       once
+ *     bytes = glint_star_count_bytes(&cfg);                       once
  *     glint_star_init(&star, &cfg, mem, bytes);
  *     glint_star_set_lights(star, &tables, lights, n, faintest);   each frame
  *     glint_star_draw(star, flare, &image);      instead of glint_flare_draw()
@@ -137,7 +137,7 @@ struct glint_flare;
 
 /* Returns the exact number of bytes that glint_star_init() needs for CFG, or 0
  * if CFG is out of range. */
-size_t glint_star_bytes(const struct glint_star_config *cfg);
+size_t glint_star_count_bytes(const struct glint_star_config *cfg);
 
 /* Initialises a starburst in MEM[BYTES], which must be aligned to 64 bytes;
  * nothing has to be freed. Returns GLINT_E_MEMORY if BYTES is too small,
@@ -168,8 +168,8 @@ void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
 
 /* Returns a pass that draws the starburst onto IMAGE, to be combined with other
  * passes. */
-struct glint_pass glint_star_make_pass_on(struct glint_star *star,
-                                          const struct glint_image *image);
+struct glint_pass glint_star_make_pass(struct glint_star *star,
+                                       const struct glint_image *image);
 
 /* Draws the starburst onto IMAGE without the ghosts of FLARE, whose workers and
  * tiles are used. */

@@ -19,7 +19,7 @@ void glint_bins_init(struct glint_bins *bins, struct glint_box region,
 static struct glint_box find_tile_range(const struct glint_bins *bins,
                                         struct glint_box box)
 {
-    const struct glint_box in = glint_box_cut(box, bins->region);
+    const struct glint_box in = glint_box_intersect(box, bins->region);
     const struct glint_box *r = &bins->region;
     const int log2 = bins->tile_log2;
 
@@ -89,6 +89,6 @@ struct glint_box glint_bins_compute_tile_box(const struct glint_bins *bins,
     const int x = bins->region.x0 + (tile % bins->tiles_x) * side;
     const int y = bins->region.y0 + (tile / bins->tiles_x) * side;
 
-    return glint_box_cut((struct glint_box){x, y, x + side, y + side},
-                         bins->region);
+    return glint_box_intersect((struct glint_box){x, y, x + side, y + side},
+                               bins->region);
 }

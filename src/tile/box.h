@@ -11,8 +11,8 @@ struct glint_box {
 };
 
 /* Returns the intersection of A and B. */
-static inline struct glint_box glint_box_cut(struct glint_box a,
-                                             struct glint_box b)
+static inline struct glint_box glint_box_intersect(struct glint_box a,
+                                                   struct glint_box b)
 {
     return (struct glint_box){
         a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0,
@@ -25,8 +25,8 @@ static inline int glint_box_empty(struct glint_box b)
 }
 
 /* Returns the smallest box that contains A and B. */
-static inline struct glint_box glint_box_join(struct glint_box a,
-                                              struct glint_box b)
+static inline struct glint_box glint_box_unite(struct glint_box a,
+                                               struct glint_box b)
 {
     if (glint_box_empty(a) || glint_box_empty(b))
         return glint_box_empty(a) ? b : a;

@@ -3,7 +3,7 @@
  * Veiling glare (the veil): a fraction of all light, scattered over the whole
  * picture. Run-time half, integers only.
  *
- *     bytes = glint_veil_bytes(&cfg);                         once
+ *     bytes = glint_veil_count_bytes(&cfg);                         once
  *     glint_veil_init(&veil, &cfg, mem, bytes);
  *     glint_veil_read_picture(veil, &image, white, workers);  each frame
  *     glint_veil_add_lamp(veil, x_q8, y_q8, power, rgb_q14);  light above white
@@ -100,7 +100,7 @@ void glint_veil_count_cells(int width, int height, int cells[2]);
 
 /* Returns the exact number of bytes that glint_veil_init() needs for CFG, or 0
  * if CFG is out of range. */
-size_t glint_veil_bytes(const struct glint_veil_config *cfg);
+size_t glint_veil_count_bytes(const struct glint_veil_config *cfg);
 
 /* Initialises a veil in MEM[BYTES], which must be aligned to 64 bytes; nothing
  * has to be freed. Returns GLINT_E_MEMORY if BYTES is too small,

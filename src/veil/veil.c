@@ -37,12 +37,12 @@ static void allocate_axis(struct glint_arena *a, struct glint_veil_axis *axis,
 {
     enum { N = GLINT_VEIL_CELLS };
 
-    axis->cell = glint_arena_take(a, (size_t)side, 1);
-    axis->start = glint_arena_take(a, N + 1, sizeof *axis->start);
+    axis->cell = glint_arena_allocate(a, (size_t)side, 1);
+    axis->start = glint_arena_allocate(a, N + 1, sizeof *axis->start);
     for (int k = 0; k < 3; k++)
-        axis->share_q16[k] = glint_arena_take(
+        axis->share_q16[k] = glint_arena_allocate(
             a, (size_t)side + GLINT_VEIL_LANES, sizeof *axis->share_q16[k]);
-    axis->fill_q16 = glint_arena_take(a, N, sizeof *axis->fill_q16);
+    axis->fill_q16 = glint_arena_allocate(a, N, sizeof *axis->fill_q16);
 }
 
 /* Allocates a veil and its arrays from arena A. Called twice: with an arena
@@ -56,20 +56,21 @@ static struct glint_veil *allocate_veil(struct glint_arena *a,
 
     glint_veil_count_cells(c->width, c->height, cells);
     n = 3 * (size_t)cells[0] * (size_t)cells[1];
-    placed = glint_arena_take(a, 1, sizeof *placed);
+    placed = glint_arena_allocate(a, 1, sizeof *placed);
     v = placed ? placed : &measured;
     allocate_axis(a, &v->across, c->width);
     allocate_axis(a, &v->down, c->height);
-    v->curve = glint_arena_take(a, 1, sizeof *v->curve);
-    v->light_q16 = glint_arena_take(a, n, sizeof *v->light_q16);
-    v->narrow = glint_arena_take(a, n, sizeof *v->narrow);
-    v->along = glint_arena_take(a, n, sizeof *v->along);
-    v->sum_q30 = glint_arena_take(a, n, sizeof *v->sum_q30);
-    v->cell_q20 = glint_arena_take(a, n, sizeof *v->cell_q20);
+    v->curve = glint_arena_allocate(a, 1, sizeof *v->curve);
+    v->light_q16 = glint_arena_allocate(a, n, sizeof *v->light_q16);
+    v->narrow = glint_arena_allocate(a, n, sizeof *v->narrow);
+    v->along = glint_arena_allocate(a, n, sizeof *v->along);
+    v->sum_q30 = glint_arena_allocate(a, n, sizeof *v->sum_q30);
+    v->cell_q20 = glint_arena_allocate(a, n, sizeof *v->cell_q20);
     v->front_q20 =
-        c->has_front ? glint_arena_take(a, n, sizeof *v->front_q20) : NULL;
-    v->worker = glint_arena_take(a, (size_t)c->n_workers, sizeof *v->worker);
-    v->rows = glint_arena_take(a, (size_t)c->n_workers, sizeof *v->rows);
+        c->has_front ? glint_arena_allocate(a, n, sizeof *v->front_q20) : NULL;
+    v->worker =
+        glint_arena_allocate(a, (size_t)c->n_workers, sizeof *v->worker);
+    v->rows = glint_arena_allocate(a, (size_t)c->n_workers, sizeof *v->rows);
     if (placed) {
         v->n_x = cells[0];
         v->n_y = cells[1];
@@ -77,9 +78,9 @@ static struct glint_veil *allocate_veil(struct glint_arena *a,
     return placed;
 }
 
-size_t glint_veil_bytes(const struct glint_veil_config *cfg)
+size_t glint_veil_count_bytes(const struct glint_veil_config *cfg)
 {
-    struct glint_arena arena = glint_arena_measure();
+    struct glint_arena arena = glint_arena_begin_measuring();
 
     if (!is_valid_config(cfg))
         return 0;
@@ -137,12 +138,12 @@ enum glint_status glint_veil_init(struct glint_veil **veil,
                                   const struct glint_veil_config *cfg,
                                   void *mem, size_t bytes)
 {
-    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_arena arena = glint_arena_init_in_memory(mem, bytes);
     struct glint_veil *v;
 
     if (!is_valid_config(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0)
         return GLINT_E_ARGUMENT;
-    if (glint_veil_bytes(cfg) > bytes)
+    if (glint_veil_count_bytes(cfg) > bytes)
         return GLINT_E_MEMORY;
     v = allocate_veil(&arena, cfg);
     v->cfg = *cfg;

@@ -94,7 +94,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (glint_scene_open(&model, copy, size, &reason) != GLINT_OK)
         require(reason && *reason);
     else if (model.header->n_objects <= 16)
-        draw_scene_model(&model, (int)(glint_blob_crc32(copy, size) & 3));
+        draw_scene_model(&model,
+                         (int)(glint_blob_compute_crc32(copy, size) & 3));
     free(copy);
     return 0;
 }

@@ -125,14 +125,14 @@ static int measure_instruction_sets(const struct glint_translucent *stone,
     const int side = 1 << stone->header->side_log2;
     const size_t n = (size_t)side * (size_t)side;
     struct glint_spread s = {.stone = stone, .width = side, .height = side};
-    struct glint_arena arena = glint_arena_measure();
+    struct glint_arena arena = glint_arena_begin_measuring();
     struct glint_spread_scratch scratch;
     int16_t *maps = calloc(2 * CHANNELS * n, sizeof *maps);
     void *mem = NULL;
 
     glint_spread_carve(&arena, stone, side);
     if (maps && posix_memalign(&mem, 64, arena.used) == 0) {
-        arena = glint_arena_over(mem, arena.used);
+        arena = glint_arena_init_in_memory(mem, arena.used);
         scratch = glint_spread_carve(&arena, stone, side);
         for (size_t c = 0; c < CHANNELS; c++) {
             s.light[c] = maps + 2 * c * n;

@@ -49,7 +49,7 @@ int make_frame_from_settings(const struct tool *tool,
     if (o->budget > 0 && frame->lens) {
         glint_budget_init(&frame->budget, o->budget);
         frame->dials =
-            glint_budget_current_dials(&frame->budget, &frame->dials);
+            glint_budget_get_quality_parameters(&frame->budget, &frame->dials);
         if (glint_frame_calibrate_budget(frame) != GLINT_OK)
             return tool_fail(tool, GLINT_E_MEMORY, NULL);
     }

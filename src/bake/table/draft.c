@@ -67,7 +67,7 @@ bool glint_draft_finish(struct glint_draft *d, const void *header,
         free(d->data);
         return false;
     }
-    glint_blob_seal(d->data, d->bytes);
+    glint_blob_set_size_and_checksum(d->data, d->bytes);
     *data = d->data;
     *bytes = d->bytes;
     return true;

@@ -36,7 +36,7 @@ enum glint_status glint_stone_light(const struct glint_translucent *stone,
 {
     const int side = 1 << stone->header->side_log2;
     const size_t n = (size_t)side * (size_t)side;
-    struct glint_arena arena = glint_arena_measure();
+    struct glint_arena arena = glint_arena_begin_measuring();
     struct glint_spread s = {.stone = stone,
                              .convolve = glint_convolve_c,
                              .width = side,
@@ -48,9 +48,9 @@ enum glint_status glint_stone_light(const struct glint_translucent *stone,
     mem = malloc(arena.used + GLINT_ALIGN + 2 * CHANNELS * n * sizeof(int16_t));
     if (!mem)
         return GLINT_E_MEMORY;
-    arena = glint_arena_over((uint8_t *)mem + GLINT_ALIGN -
-                                 (uintptr_t)mem % GLINT_ALIGN,
-                             arena.used);
+    arena = glint_arena_init_in_memory((uint8_t *)mem + GLINT_ALIGN -
+                                           (uintptr_t)mem % GLINT_ALIGN,
+                                       arena.used);
     scratch = glint_spread_carve(&arena, stone, side);
     for (size_t c = 0; c < CHANNELS; c++) {
         s.light[c] = (int16_t *)(void *)(arena.base + arena.used) + 2 * c * n;

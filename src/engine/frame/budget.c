@@ -37,7 +37,7 @@ void glint_budget_init(struct glint_budget *b, double ms)
         .ms = ms, .ms_per_minsn = 0.1, .step = GLINT_BUDGET_STEPS / 2};
 }
 
-double glint_budget_quality(const struct glint_budget *b)
+double glint_budget_get_quality(const struct glint_budget *b)
 {
     return (double)b->step / GLINT_BUDGET_STEPS;
 }
@@ -96,8 +96,9 @@ make_quality_parameters_at_step(int step, int cut,
     return d;
 }
 
-struct glint_dials glint_budget_current_dials(const struct glint_budget *b,
-                                              const struct glint_dials *asked)
+struct glint_dials
+glint_budget_get_quality_parameters(const struct glint_budget *b,
+                                    const struct glint_dials *asked)
 {
     return make_quality_parameters_at_step(b->step, b->cut, asked);
 }
@@ -127,7 +128,7 @@ static double predict_frame_ms(const struct glint_budget *b,
         make_quality_parameters_at_step(step, cut, &b->asked);
     const struct glint_cost cost = glint_cost_of(plan, &then);
 
-    return b->ms_per_minsn * glint_cost_to_minsn(&cost) *
+    return b->ms_per_minsn * glint_cost_convert_to_minsn(&cost) *
            exp2(interpolate_learned_correction(b, step) +
                 (b->n_frames > 1 ? 0 : FIRST));
 }
@@ -240,9 +241,9 @@ static int try_next_quality_step(struct glint_budget *b,
     return step + 1;
 }
 
-bool glint_budget_choose_dials(struct glint_budget *b,
-                               const struct glint_cost_plan *plan,
-                               struct glint_dials *dials)
+bool glint_budget_choose_quality_parameters(struct glint_budget *b,
+                                            const struct glint_cost_plan *plan,
+                                            struct glint_dials *dials)
 {
     const int cut = b->cut;
     int step;

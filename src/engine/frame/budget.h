@@ -47,19 +47,20 @@ void glint_budget_begin_frame(struct glint_budget *budget,
 /* Changes DIALS, the quality parameters with which PLAN was made, if the
  * predicted time exceeds the budget or leaves much of it unused. Returns
  * whether it changed them; the frame must then be planned again. */
-bool glint_budget_choose_dials(struct glint_budget *budget,
-                               const struct glint_cost_plan *plan,
-                               struct glint_dials *dials);
+bool glint_budget_choose_quality_parameters(struct glint_budget *budget,
+                                            const struct glint_cost_plan *plan,
+                                            struct glint_dials *dials);
 
 /* Returns the quality parameters of the current quality step; those that do not
  * depend on quality are taken from ASKED. */
-struct glint_dials glint_budget_current_dials(const struct glint_budget *budget,
-                                              const struct glint_dials *asked);
+struct glint_dials
+glint_budget_get_quality_parameters(const struct glint_budget *budget,
+                                    const struct glint_dials *asked);
 
 /* Corrects the predictions by MS, the measured time of the last frame,
  * milliseconds. */
 void glint_budget_learn_from_frame(struct glint_budget *budget, double ms);
 
-double glint_budget_quality(const struct glint_budget *budget);
+double glint_budget_get_quality(const struct glint_budget *budget);
 
 #endif

@@ -11,12 +11,13 @@ measure_test_frame_time(struct glint_frame *frame,
                         const struct glint_image *image,
                         struct glint_engine_report *report, double *least_ms)
 {
-    const struct glint_lamp lamp = {fmin(12, glint_frame_max_angle_deg(frame)),
-                                    33,
-                                    1e6,
-                                    {1, 1, 1},
-                                    {0, 0},
-                                    0};
+    const struct glint_lamp lamp = {
+        fmin(12, glint_frame_get_max_angle_deg(frame)),
+        33,
+        1e6,
+        {1, 1, 1},
+        {0, 0},
+        0};
     enum glint_status status = GLINT_OK;
 
     for (int i = 0; i < 4 && status == GLINT_OK; i++) {
@@ -52,7 +53,7 @@ enum glint_status glint_frame_calibrate_budget(struct glint_frame *frame)
         const struct glint_cost_plan plan = glint_frame_make_cost_plan(&plain);
         const struct glint_cost cost = glint_cost_of(&plan, &plan.dials);
 
-        b->calibrated_minsn = glint_cost_to_minsn(&cost);
+        b->calibrated_minsn = glint_cost_convert_to_minsn(&cost);
         b->ms_per_minsn = least_ms / b->calibrated_minsn;
     }
     glint_frame_finish(&plain);

@@ -40,7 +40,7 @@ const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS] = {
 };
 /* clang-format on */
 
-double glint_cost_to_minsn(const struct glint_cost *cost)
+double glint_cost_convert_to_minsn(const struct glint_cost *cost)
 {
     double sum = 0;
 

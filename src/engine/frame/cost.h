@@ -47,6 +47,6 @@ struct glint_cost glint_cost_of(const struct glint_cost_plan *plan,
  * 8 lanes of 32 bits; the weights were fitted to counts by callgrind. The time
  * of a frame is this number times the time per million instructions on this
  * machine. */
-double glint_cost_to_minsn(const struct glint_cost *cost);
+double glint_cost_convert_to_minsn(const struct glint_cost *cost);
 
 #endif

@@ -101,7 +101,7 @@ static void set_frame_waves(struct glint_frame *f)
  * the unit sphere. */
 static int32_t convert_px_to_chord_q30(const struct glint_frame *f, double px)
 {
-    const double pixels = glint_frame_pixels_per_tangent(f);
+    const double pixels = glint_frame_compute_pixels_per_tangent(f);
 
     return (int32_t)lrint(fmin(1, px / pixels) * 0x1p30);
 }
@@ -115,7 +115,7 @@ bool glint_frame_is_lamp_outside_model(const struct glint_frame *frame,
 }
 
 /* Uses atan2(), as asin() would make glint-live 25 KB larger. */
-double glint_frame_max_angle_deg(const struct glint_frame *frame)
+double glint_frame_get_max_angle_deg(const struct glint_frame *frame)
 {
     const double degree = GLINT_PI / 180;
     double sine;
@@ -170,7 +170,7 @@ static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
     const int room = compute_max_lights(f, n);
     int within = 0, total;
     const struct glint_area_rule rule =
-        glint_area_rule_of(lamps, n, glint_frame_pixels_per_tangent(f),
+        glint_area_rule_of(lamps, n, glint_frame_compute_pixels_per_tangent(f),
                            f->dials.area_points, room, &total);
 
     if (glint_frame_allocate_lights(f, total) != GLINT_OK)
@@ -269,7 +269,7 @@ static bool choose_quality_by_budget(struct glint_frame *f)
 {
     const struct glint_cost_plan plan = glint_frame_make_cost_plan(f);
 
-    return glint_budget_choose_dials(&f->budget, &plan, &f->dials);
+    return glint_budget_choose_quality_parameters(&f->budget, &plan, &f->dials);
 }
 
 static enum glint_status
@@ -465,7 +465,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     if (frame->lens && frame->budget.ms > 0) {
         report->predicted_ms = frame->budget.predicted_ms;
         report->calibrated_minsn = frame->budget.calibrated_minsn;
-        report->quality = glint_budget_quality(&frame->budget);
+        report->quality = glint_budget_get_quality(&frame->budget);
         report->dials = frame->dials;
         report->unveiled = glint_frame_has_veil(frame) &&
                            frame->dials.flags & GLINT_DIAL_NO_VEIL;

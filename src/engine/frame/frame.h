@@ -29,8 +29,8 @@
 #define GLINT_FRAME_STEP_CODES 2.0
 
 /* Default limits of a frame with one light that is drawn by a model: bytes, and
- * millions of instructions by glint_cost_to_minsn(), about ten seconds on one
- * processor. Each further light raises both limits by 1 /
+ * millions of instructions by glint_cost_convert_to_minsn(), about ten seconds
+ * on one processor. Each further light raises both limits by 1 /
  * GLINT_FRAME_PER_LIGHT. */
 #define GLINT_FRAME_MOST_BYTES ((size_t)384 << 20)
 #define GLINT_FRAME_MOST_MINSN 30000.0
@@ -255,7 +255,7 @@ bool glint_frame_is_lamp_outside_model(const struct glint_frame *frame,
 
 /* Returns the max angle of a light off the axis in FRAME's model, degrees; 89
  * for exact rays. */
-double glint_frame_max_angle_deg(const struct glint_frame *frame);
+double glint_frame_get_max_angle_deg(const struct glint_frame *frame);
 
 /* Sets how many points sample area lamps in the next frame. If IS_STILL, for a
  * still picture, there are more points per lamp (if MORE_POINTS) and more

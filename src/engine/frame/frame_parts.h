@@ -34,7 +34,7 @@ static inline bool is_planned_for_codes(const struct glint_frame *f,
 }
 
 /* Returns the focal length in pixels: pixels per unit tangent on the axis. */
-double glint_frame_pixels_per_tangent(const struct glint_frame *frame);
+double glint_frame_compute_pixels_per_tangent(const struct glint_frame *frame);
 
 /* Returns whether each ghost is drawn with one of the setup's sets of
  * wavelengths. */

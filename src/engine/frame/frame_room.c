@@ -388,7 +388,7 @@ static bool is_cost_mostly_dust(const struct glint_frame *f,
     return plan->shade && f->dials.dust_log2 > GLINT_SHADE_LEAST_LOG2 &&
            2e-3 * glint_cost_weight[GLINT_COST_PARTS].planned *
                    cost->count[GLINT_COST_PARTS] >
-               glint_cost_to_minsn(cost);
+               glint_cost_convert_to_minsn(cost);
 }
 
 /* Makes dust tables and grids coarser step by step until PLAN costs at most
@@ -403,7 +403,7 @@ static double coarsen_grids_to_minsn(struct glint_frame *f,
 
     if (plan->shade)
         f->dials.dust_log2 = min_int(f->dials.dust_log2, plan->shade->log2);
-    while (glint_cost_to_minsn(&cost) > minsn) {
+    while (glint_cost_convert_to_minsn(&cost) > minsn) {
         if (is_cost_mostly_dust(f, plan, &cost))
             f->dials.dust_log2--;
         else if (f->dials.fineness > LEAST_FINENESS)
@@ -414,7 +414,7 @@ static double coarsen_grids_to_minsn(struct glint_frame *f,
             break;
         cost = glint_cost_of(plan, &f->dials);
     }
-    return glint_cost_to_minsn(&cost);
+    return glint_cost_convert_to_minsn(&cost);
 }
 
 /* Limits each ghost to three wavelengths. MINSN is the cost of the plan;
@@ -442,7 +442,7 @@ struct glint_cost_plan glint_frame_make_cost_plan(const struct glint_frame *f)
         .width = f->cfg.width,
         .height = f->cfg.height,
         .n_star = f->star.is_set ? f->star.pixels : 0,
-        .n_veil = glint_frame_veil_cost_in_pixels(f),
+        .n_veil = glint_frame_veil_estimate_cost_px(f),
         .n_looked_at =
             f->memory.flare ? (double)glint_flare_looked(f->memory.flare) : 0,
         .can_half = f->picture.can_half,
@@ -464,7 +464,7 @@ bool glint_frame_limit_work(struct glint_frame *f)
     double then;
 
     if (f->limits.most_minsn <= 0 || f->plan.n_plans >= MOST_PLANS ||
-        glint_cost_to_minsn(&cost) <= left)
+        glint_cost_convert_to_minsn(&cost) <= left)
         return false;
     then = coarsen_grids_to_minsn(f, &plan, left - again);
     if (then > left - again && glint_frame_has_wave_sets(f))

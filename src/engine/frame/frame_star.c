@@ -118,7 +118,7 @@ static enum glint_status allocate_star_lights(struct glint_frame *f, int n)
         return GLINT_OK;
     s->star = NULL;
     free(s->mem);
-    bytes = glint_star_bytes(&cfg);
+    bytes = glint_star_count_bytes(&cfg);
     block = glint_block_allocate_aligned(bytes, &s->mem);
     light = realloc(s->light, (size_t)n * sizeof *s->light);
     if (light)
@@ -150,7 +150,7 @@ size_t glint_frame_star_count_bytes(const struct glint_frame *f)
     const struct glint_frame_star *s = &f->star;
 
     return glint_smear_count_bytes(&s->smear) +
-           (s->tables ? glint_star_tables_bytes(s->tables) : 0) +
+           (s->tables ? glint_star_tables_count_bytes(s->tables) : 0) +
            (s->star ? s->bytes + (size_t)s->max_lights * sizeof *s->light : 0) +
            f->veil.bytes + (f->veil.table ? f->veil.table->bytes : 0);
 }
@@ -234,7 +234,7 @@ static bool convert_lamp_to_star_light(const struct glint_frame *f,
                                        struct glint_star_light *light)
 {
     const double focal_mm = f->setup->optics.focal_mm;
-    const double pixels = glint_frame_pixels_per_tangent(f);
+    const double pixels = glint_frame_compute_pixels_per_tangent(f);
     const double most = fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
     const double found = lamp->power * most,
                  all = estimate_unclipped_power(f, seen, found);
@@ -336,7 +336,7 @@ void glint_frame_draw_passes(struct glint_frame *frame,
 {
     if (frame->veil.is_set && frame->star.is_set) {
         const struct glint_pass star =
-            glint_star_make_pass_on(frame->star.star, image);
+            glint_star_make_pass(frame->star.star, image);
 
         glint_veil_draw(frame->veil.veil, &star, frame->memory.flare, image);
     } else if (frame->veil.is_set)

@@ -7,7 +7,7 @@
 
 #include "engine/frame/frame_parts.h"
 
-double glint_frame_pixels_per_tangent(const struct glint_frame *f)
+double glint_frame_compute_pixels_per_tangent(const struct glint_frame *f)
 {
     return fabs(f->setup->optics.focal_mm * f->view.width /
                 f->view.sensor_width_mm);

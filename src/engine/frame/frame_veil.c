@@ -82,7 +82,7 @@ enum glint_status glint_frame_veil_allocate(struct glint_frame *f)
         return status;
     free(v->mem);
     v->veil = NULL;
-    bytes = glint_veil_bytes(&cfg);
+    bytes = glint_veil_count_bytes(&cfg);
     block = glint_block_allocate_aligned(bytes, &v->mem);
     if (!block)
         return GLINT_E_MEMORY;
@@ -181,10 +181,11 @@ static int set_haze_spreads(const struct glint_frame *f, double share,
                             struct glint_veil_spread spreads[N_HAZE])
 {
     for (int k = 0; k < N_HAZE; k++)
-        spreads[k] = make_gaussian_spread(f,
-                                          glint_frame_pixels_per_tangent(f) *
-                                              tan(haze_deg[k] * GLINT_PI / 180),
-                                          share / N_HAZE);
+        spreads[k] =
+            make_gaussian_spread(f,
+                                 glint_frame_compute_pixels_per_tangent(f) *
+                                     tan(haze_deg[k] * GLINT_PI / 180),
+                                 share / N_HAZE);
     return N_HAZE;
 }
 
@@ -249,9 +250,9 @@ static double compute_offscreen_fraction(const struct glint_frame *f,
                                                              : even_sigma));
     for (int k = 0; k < N_HAZE; k++)
         sum += haze / N_HAZE *
-               compute_gaussian_falloff(far,
-                                        glint_frame_pixels_per_tangent(f) *
-                                            tan(haze_deg[k] * GLINT_PI / 180));
+               compute_gaussian_falloff(
+                   far, glint_frame_compute_pixels_per_tangent(f) *
+                            tan(haze_deg[k] * GLINT_PI / 180));
     return sum / fmax(v->glare + haze, 1e-9);
 }
 
@@ -261,7 +262,7 @@ static const double front_pixels = 0.4;
 
 /* The unit of cost is drawing one pixel; convolving the light of one cell with
  * another costs 1 / SPREADING. */
-double glint_frame_veil_cost_in_pixels(const struct glint_frame *f)
+double glint_frame_veil_estimate_cost_px(const struct glint_frame *f)
 {
     const double spreading = 14;
     const int n = (f->veil.glare > 0 ? N_GLARE : 0) +

@@ -82,6 +82,6 @@ void glint_frame_veil_finish(struct glint_frame_veil *veil);
 
 /* Returns the cost of drawing the veil of FRAME, as the number of pixels that
  * cost as much. */
-double glint_frame_veil_cost_in_pixels(const struct glint_frame *frame);
+double glint_frame_veil_estimate_cost_px(const struct glint_frame *frame);
 
 #endif

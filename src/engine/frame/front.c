@@ -121,8 +121,8 @@ static void divide_stop_into_chords(struct chords *c,
 
         c->y[k] = (2 * k + 1.) / c->n - 1;
         for (int i = 0; i < STEPS; i++)
-            if (glint_iris_edge_distance(&sides, (2 * i + 1.) / STEPS - 1,
-                                         c->y[k]) >= 0) {
+            if (glint_iris_compute_edge_distance(
+                    &sides, (2 * i + 1.) / STEPS - 1, c->y[k]) >= 0) {
                 first = i < first ? i : first;
                 last = i;
             }
@@ -331,7 +331,7 @@ double glint_front_sum_pixel_cover(const struct glint_front_dirt *dirt,
             2;
         const float *row_at;
 
-        if (glint_iris_edge_distance(&sides, u, v) < 0)
+        if (glint_iris_compute_edge_distance(&sides, u, v) < 0)
             continue;
         n++;
         if (at_x < 0 || at_x >= SIDE || at_y < 0 || at_y >= SIDE)

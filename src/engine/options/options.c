@@ -129,7 +129,8 @@ void glint_options_defaults_sized(struct glint_options *options, size_t size)
             store_option_value(options, i, table[i].initial);
 }
 
-struct glint_options glint_options_complete(const struct glint_options *options)
+struct glint_options
+glint_options_complete_with_defaults(const struct glint_options *options)
 {
     struct glint_options whole;
 
@@ -403,7 +404,8 @@ enum glint_status glint_options_set_text(struct glint_options *options,
 
 struct glint_quality glint_options_quality(const struct glint_options *options)
 {
-    const struct glint_options whole = glint_options_complete(options);
+    const struct glint_options whole =
+        glint_options_complete_with_defaults(options);
     const struct glint_options *const o = &whole;
     struct glint_quality q = glint_quality_at(o->quality);
 

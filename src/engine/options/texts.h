@@ -16,6 +16,6 @@ bool glint_option_text_is_valid(enum glint_option_id id, const char *text);
  * contain, as the program was compiled for an older library, have their
  * defaults. */
 struct glint_options
-glint_options_complete(const struct glint_options *options);
+glint_options_complete_with_defaults(const struct glint_options *options);
 
 #endif

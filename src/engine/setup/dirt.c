@@ -52,7 +52,8 @@ static double compute_stop_transmission(const struct glint_dirt *d, double x,
 
     if (!(soft > 0))
         return compute_dirt_transmission(d, x, y);
-    in = fmin(fmax(glint_iris_edge_distance(&d->sides, x, y) / soft, 0), 1);
+    in = fmin(fmax(glint_iris_compute_edge_distance(&d->sides, x, y) / soft, 0),
+              1);
     return in * in * (3 - 2 * in) * compute_dirt_transmission(d, x, y);
 }
 
@@ -96,7 +97,7 @@ static void set_mean_transmission(struct glint_dirt *d)
         const double x = (2 * (k % N) + 1.0) / N - 1;
         const double y = (2 * row + 1.0) / N - 1;
 
-        if (glint_iris_edge_distance(&d->sides, x, y) < 0)
+        if (glint_iris_compute_edge_distance(&d->sides, x, y) < 0)
             continue;
         sum += compute_stop_transmission(d, x, y);
         n++;
@@ -271,7 +272,7 @@ enum glint_status glint_setup_iris(struct glint_setup *setup,
                                    struct glint_dirt **dirt,
                                    struct glint_error *error)
 {
-    const double before = glint_iris_area_fraction(setup);
+    const double before = glint_iris_compute_area_fraction(setup);
     const char *const wrong = check_iris_config(iris);
 
     *dirt = NULL;
@@ -292,6 +293,7 @@ enum glint_status glint_setup_iris(struct glint_setup *setup,
         setup->clear = (*dirt)->mean;
     }
     for (int i = 0; i < setup->n_wavelengths; i++)
-        setup->direct_flux[i] *= glint_iris_area_fraction(setup) / before;
+        setup->direct_flux[i] *=
+            glint_iris_compute_area_fraction(setup) / before;
     return glint_setup_set_unit_flux(setup, "the lens", error);
 }

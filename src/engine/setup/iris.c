@@ -34,8 +34,8 @@ void glint_iris_compute_sides(struct glint_iris_sides *sides,
     }
 }
 
-double glint_iris_side_distance(const struct glint_iris_sides *s, int side,
-                                double x, double y)
+double glint_iris_compute_side_distance(const struct glint_iris_sides *s,
+                                        int side, double x, double y)
 {
     const double straight =
         s->apothem - x * s->normal[side][0] - y * s->normal[side][1];
@@ -44,13 +44,13 @@ double glint_iris_side_distance(const struct glint_iris_sides *s, int side,
                    : straight;
 }
 
-double glint_iris_edge_distance(const struct glint_iris_sides *sides, double x,
-                                double y)
+double glint_iris_compute_edge_distance(const struct glint_iris_sides *sides,
+                                        double x, double y)
 {
     double depth = sides->n ? 4 : 1 - hypot(x, y);
 
     for (int i = 0; i < sides->n; i++)
-        depth = fmin(depth, glint_iris_side_distance(sides, i, x, y));
+        depth = fmin(depth, glint_iris_compute_side_distance(sides, i, x, y));
     return depth;
 }
 
@@ -68,7 +68,7 @@ static double compute_opening_area(int n, double round)
                : polygon + n * (turn - sin(turn)) / (2 * round * round);
 }
 
-double glint_iris_area_fraction(const struct glint_setup *setup)
+double glint_iris_compute_area_fraction(const struct glint_setup *setup)
 {
     return setup->n_blades
                ? compute_opening_area(setup->n_blades, setup->iris.roundness) /

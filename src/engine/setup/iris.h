@@ -25,12 +25,12 @@ void glint_iris_compute_sides(struct glint_iris_sides *sides,
 
 /* Returns the signed distance of (X, Y) from side SIDE, positive inside. Exact
  * near the side; for arcs an approximation farther away. */
-double glint_iris_side_distance(const struct glint_iris_sides *sides, int side,
-                                double x, double y);
+double glint_iris_compute_side_distance(const struct glint_iris_sides *sides,
+                                        int side, double x, double y);
 
 /* Returns the signed distance of (X, Y) from the nearest side, positive inside
  * the stop. */
-double glint_iris_edge_distance(const struct glint_iris_sides *sides, double x,
-                                double y);
+double glint_iris_compute_edge_distance(const struct glint_iris_sides *sides,
+                                        double x, double y);
 
 #endif

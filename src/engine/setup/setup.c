@@ -172,7 +172,7 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
     glint_setup_init_common(setup, n_blades, blade_rotation_deg, wavelength_nm,
                             n);
     for (int i = 0; i < n; i++)
-        setup->direct_flux[i] = glint_iris_area_fraction(setup) *
+        setup->direct_flux[i] = glint_iris_compute_area_fraction(setup) *
                                 compute_model_flux(h, 1, wavelength_nm[i]);
     return glint_setup_set_unit_flux(setup, h->name, error);
 }
@@ -200,7 +200,7 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
     setup->optics.stop_radius_mm *= by;
     for (int i = 0; i < setup->n_wavelengths; i++)
         setup->direct_flux[i] =
-            glint_iris_area_fraction(setup) *
+            glint_iris_compute_area_fraction(setup) *
             compute_model_flux(h, by, setup->wavelength_nm[i]);
     return glint_setup_set_unit_flux(setup, h->name, error);
 }
@@ -260,7 +260,7 @@ void glint_setup_spread(struct glint_setup *setup,
             wave[i].nm = nm[i];
             memcpy(wave[i].rgb, rgb[i], sizeof rgb[i]);
             wave[i].direct_flux =
-                lens ? glint_iris_area_fraction(setup) *
+                lens ? glint_iris_compute_area_fraction(setup) *
                            compute_model_flux(lens->header, setup->opening,
                                               nm[i])
                      : interpolate_direct_flux(setup, nm[i]);

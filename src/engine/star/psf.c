@@ -340,7 +340,7 @@ void glint_psf_finish(struct glint_psf *psf)
     psf->near = psf->far = NULL;
 }
 
-double glint_psf_line_angle(const struct glint_psf *p, int i)
+double glint_psf_compute_line_angle(const struct glint_psf *p, int i)
 {
     const double step = 180.0 / p->n_lines;
     /* y is up in the stop and down in the picture, which reverses the rotation
@@ -407,7 +407,8 @@ void glint_psf_compute_far_light(const struct glint_psf *p, double x, double y,
     }
     if (p->fans) {
         glint_fans_interpolate_light(
-            p, hypot(x, y), atan2(y, x) - glint_psf_line_angle(p, 0), rgb);
+            p, hypot(x, y), atan2(y, x) - glint_psf_compute_line_angle(p, 0),
+            rgb);
         return;
     }
     add_edge_light(p, x, y, window, self, rgb, &sum);
@@ -432,7 +433,8 @@ static double compute_angle_to_line(const struct glint_psf *p, double x,
 {
     const double step = GLINT_PI / p->n_lines;
 
-    return fabs(remainder(atan2(y, x) - glint_psf_line_angle(p, 0), step));
+    return fabs(
+        remainder(atan2(y, x) - glint_psf_compute_line_angle(p, 0), step));
 }
 
 static void interpolate_near_light(const struct glint_psf *p, double x,

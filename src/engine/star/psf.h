@@ -101,7 +101,7 @@ double glint_psf_compute_soft_edge_factor(double soft, double q);
 
 /* Returns the angle of line I, radians, y down: 0 <= angle < pi, rising with I.
  */
-double glint_psf_line_angle(const struct glint_psf *psf, int i);
+double glint_psf_compute_line_angle(const struct glint_psf *psf, int i);
 
 /* Sets RGB to the profile of a line, V pixels from its centre: light times r^4
  * / u^2. */

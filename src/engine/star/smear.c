@@ -52,7 +52,7 @@ static void set_amplitude_row(const struct glint_dirt *d, int j,
     for (int i = 0; i < HALF; i++) {
         const double x = (i + 0.5 - 0.5 * HALF) * cell;
         const double y = (j + 0.5 - 0.5 * HALF) * cell;
-        const double depth = glint_iris_edge_distance(&d->sides, x, y);
+        const double depth = glint_iris_compute_edge_distance(&d->sides, x, y);
         const double part = compute_inside_fraction(depth);
         double clear, light;
 

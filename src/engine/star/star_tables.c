@@ -97,13 +97,13 @@ static void make_line_tables(struct glint_star_tables *t,
     double peak = 0x1p-60, rgb[3];
 
     for (int i = 0; i < psf->n_lines; i++) {
-        filter_profile_by_pixel(psf, window, glint_psf_line_angle(psf, i), 0,
-                                rgb);
+        filter_profile_by_pixel(psf, window,
+                                glint_psf_compute_line_angle(psf, i), 0, rgb);
         peak = fmax(peak, glint_largest_channel(rgb) * 1.001);
     }
     t->step = glint_real_of(peak / 65535);
     for (int i = 0; i < psf->n_lines; i++) {
-        const double angle = glint_psf_line_angle(psf, i);
+        const double angle = glint_psf_compute_line_angle(psf, i);
 
         set_line_direction(&line[i], angle, fmod(angle + half, GLINT_PI));
         for (int k = 0; k < GLINT_STAR_PROFILE; k++) {
@@ -117,9 +117,10 @@ static void make_line_tables(struct glint_star_tables *t,
             }
         }
     }
-    t->first = glint_psf_line_angle(psf, psf->n_lines - 1) + half >= GLINT_PI
-                   ? psf->n_lines - 1
-                   : 0;
+    t->first =
+        glint_psf_compute_line_angle(psf, psf->n_lines - 1) + half >= GLINT_PI
+            ? psf->n_lines - 1
+            : 0;
 }
 
 /* -------------------------------------------------------------------- halo */
@@ -159,7 +160,7 @@ static void compute_halo_node(const struct glint_psf *psf,
     const double r = exp2(2 + 0.25 * row);
     const double v = 0.25 * reach * (exp2(0.25 * column) - 1);
     const double off = asin(fmin(v / r, sin(0.5 * GLINT_PI / psf->n_lines)));
-    const double angle = glint_psf_line_angle(psf, 0) + off;
+    const double angle = glint_psf_compute_line_angle(psf, 0) + off;
     double rgb[3] = {0, 0, 0};
 
     if (psf->fans)
@@ -269,7 +270,7 @@ enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
                                          const struct glint_star_optics *o)
 {
     const double airy_px =
-        fmin(fmax(glint_star_airy_px(o), least_airy_px), most_airy_px);
+        fmin(fmax(glint_star_compute_airy_px(o), least_airy_px), most_airy_px);
     struct glint_psf psf;
     struct window window;
     struct glint_star_tables *t = NULL;
@@ -312,7 +313,7 @@ void glint_star_tables_free(struct glint_star_tables *tables)
     free(tables);
 }
 
-size_t glint_star_tables_bytes(const struct glint_star_tables *t)
+size_t glint_star_tables_count_bytes(const struct glint_star_tables *t)
 {
     return sizeof *t + (size_t)t->n_lines * sizeof *t->line +
            (t->wide ? wide_bytes : 0) + (t->smear ? sizeof *t->smear : 0);

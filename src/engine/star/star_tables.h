@@ -18,7 +18,8 @@ struct glint_star_optics {
 };
 
 /* Returns airy_px: 550 nm times the f-number, pixels. */
-static inline double glint_star_airy_px(const struct glint_star_optics *o)
+static inline double
+glint_star_compute_airy_px(const struct glint_star_optics *o)
 {
     return 0.55 * o->f_number / o->pixel_um;
 }
@@ -29,6 +30,6 @@ enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
                                          const struct glint_star_optics *o);
 /* Frees TABLES, which may be NULL. */
 void glint_star_tables_free(struct glint_star_tables *tables);
-size_t glint_star_tables_bytes(const struct glint_star_tables *tables);
+size_t glint_star_tables_count_bytes(const struct glint_star_tables *tables);
 
 #endif

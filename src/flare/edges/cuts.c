@@ -44,10 +44,10 @@ static int64_t evaluate_round_stop_q16(const struct glint_stop *stop,
 }
 
 /* Returns a mask with a bit set for each straight side of the stop on or
- * outside of which V lies (glint_side_distance_q16() is 0 or less). LEAST is
- * the apothem minus half a unit of _q16, because that function rounds. HALF is
- * the number of pairs of parallel sides, which are tested together; 0: sides
- * are tested one by one. */
+ * outside of which V lies (glint_side_compute_signed_distance_q16() is 0 or
+ * less). LEAST is the apothem minus half a unit of _q16, because that function
+ * rounds. HALF is the number of pairs of parallel sides, which are tested
+ * together; 0: sides are tested one by one. */
 static inline uint64_t find_outside_sides(const struct glint_stop *stop,
                                           int half,
                                           const struct glint_vertex *v,
@@ -72,15 +72,15 @@ static inline uint64_t find_outside_sides(const struct glint_stop *stop,
 static uint64_t find_outside_arcs(const struct glint_stop *stop,
                                   const struct glint_vertex *v)
 {
-    const int64_t disc_q16 = glint_disc_function_q16(v);
+    const int64_t disc_q16 = glint_disc_evaluate_function_q16(v);
     uint64_t sides = 0;
 
     for (int k = stop->n_blades - 1; k >= 0; k--) {
         const int64_t straight_q16 =
-            glint_straight_side_distance_q16(stop, k, v);
+            glint_side_compute_straight_distance_q16(stop, k, v);
 
-        sides = 2 * sides +
-                (glint_arc_distance_q16(stop, straight_q16, disc_q16) <= 0);
+        sides = 2 * sides + (glint_arc_compute_signed_distance_q16(
+                                 stop, straight_q16, disc_q16) <= 0);
     }
     return sides;
 }
@@ -109,7 +109,7 @@ void glint_cuts_classify_row(const struct glint_stop *stop,
     }
 }
 
-int glint_cuts_count_crossed(struct glint_outside o)
+int glint_cuts_count_outside_bits(struct glint_outside o)
 {
     int n = (o.barrels & 1) + (o.barrels >> 1 & 1);
 
@@ -126,8 +126,8 @@ static int64_t evaluate_cut_function_q16(const struct glint_stop *stop, int cut,
                                          const struct glint_vertex *v)
 {
     if (cut >= BARREL)
-        return glint_barrel_function_q16(cut - BARREL, v);
-    return stop->n_blades ? glint_side_distance_q16(stop, cut, v)
+        return glint_barrel_evaluate_function_q16(cut - BARREL, v);
+    return stop->n_blades ? glint_side_compute_signed_distance_q16(stop, cut, v)
                           : evaluate_round_stop_q16(stop, v);
 }
 
@@ -152,7 +152,8 @@ static void clip_interval_by_cut(const struct glint_stop *stop,
         in->t_q30[1] = -1;
         return;
     }
-    t_q30 = q_part_q30(q_magnitude(fa), q_magnitude(fa) + q_magnitude(fb));
+    t_q30 = q_divide_to_fraction_q30(q_magnitude(fa),
+                                     q_magnitude(fa) + q_magnitude(fb));
     if (end ? t_q30 <= in->t_q30[1] : t_q30 >= in->t_q30[0]) {
         in->t_q30[end] = t_q30;
         in->cut[end] = cut;

@@ -33,7 +33,7 @@ void glint_cuts_classify_row(const struct glint_stop *stop,
                              uint64_t *sides, uint8_t *barrels);
 
 /* Returns the number of bits set in O, but at most 3. */
-int glint_cuts_count_crossed(struct glint_outside o);
+int glint_cuts_count_outside_bits(struct glint_outside o);
 
 /* The visible part of the edge between two neighbouring nodes. Its ends are in
  * the order of the nodes in the grid. */

@@ -14,7 +14,7 @@
  * magnitudes below 2^30. */
 static int64_t compute_slope_q40(int32_t across, int32_t down)
 {
-    const int up = q_up((uint32_t)down);
+    const int up = q_count_normalising_shift((uint32_t)down);
     const int64_t r = q_reciprocal((uint32_t)down << up);
     const int64_t size_q40 = (across < 0 ? -across : across) * r >> (31 - up);
 

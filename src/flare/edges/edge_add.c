@@ -110,8 +110,9 @@ static int64_t compute_area_rise(int64_t slope_q40)
     const int64_t least = INT64_C(1) << 24;
 
     const uint64_t by = (uint64_t)(size > least ? size : least);
-    const int up = q_up(by);                         /* 7 at most */
-    const int64_t r = q_reciprocal(q_upper(by, up)); /* 2^(63 - up) / size */
+    const int up = q_count_normalising_shift(by); /* 7 at most */
+    const int64_t r =
+        q_reciprocal(q_shift_to_32_bits(by, up)); /* 2^(63 - up) / size */
 
     /* 1/256 pixel of height is 2^8 in _q16 */
     return (r << 8) >> (7 - up);

@@ -102,8 +102,8 @@ static int64_t compute_corner_double_area_q16(const struct glint_corners *c,
     const struct glint_vertex *a = c->at[i], *b = c->at[i + 1];
     const struct glint_vertex *d = c->at[(i + 2) & 3];
 
-    return glint_cross_product_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8, d->x_q8,
-                                   d->y_q8);
+    return glint_compute_cross_product_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8,
+                                           d->x_q8, d->y_q8);
 }
 
 /* Returns 1 or -1, the sign of the cell's area, if the cell is convex, else 0.
@@ -228,9 +228,9 @@ void glint_ghost_add_clipped_primitive(struct glint_ghost_edges *g,
     for (int i = 0; i < n; i++)
         turned[i] = corner[c.area2_q16 >= 0 ? i : n - 1 - i];
     glint_corners_set(&c, turned, n);
-    cut = glint_outline_classify(&c, g->stop);
-    if (cut < 0 ||
-        glint_box_empty(glint_corners_pixel_box(&c, g->width, g->height)))
+    cut = glint_outline_classify_primitive(&c, g->stop);
+    if (cut < 0 || glint_box_empty(glint_corners_compute_pixel_box(&c, g->width,
+                                                                   g->height)))
         return;
     cut |= cut && (g->transfer || g->rays) ? GLINT_CUT_LOWERED : 0;
     thin = glint_corners_are_thin(&c);
@@ -248,7 +248,7 @@ void glint_ghost_add_clipped_primitive(struct glint_ghost_edges *g,
         if (thin) {
             share_q28 = o->share_q28;
             share -= cut && n == 4;
-            area2 = glint_outline_widen_q32(o);
+            area2 = glint_outline_replace_by_strip_q32(o);
             frac = 33;
         }
         light = compute_packed_cell_light(
@@ -291,7 +291,7 @@ add_cell_separately(struct glint_ghost_edges *g,
                     const struct glint_ghost_cell *c,
                     const struct glint_corners *corners, int turn)
 {
-    if (turn == 0 && !glint_corners_are_tiny(corners, 16))
+    if (turn == 0 && !glint_corners_fit_into_pixel_part(corners, 16))
         add_cell_as_triangles(g, c);
     else
         glint_ghost_add_clipped_primitive(g, c->corner, 4, 0);
@@ -426,7 +426,7 @@ static int32_t find_cell_light(struct glint_ghost_edges *g, int i, int j)
         return 0;
     set_grid_cell_corners(g, i, j, &corners);
     turn = find_convex_orientation(&corners);
-    cuts = any.sides || any.barrels ? glint_cuts_count_crossed(any) : 0;
+    cuts = any.sides || any.barrels ? glint_cuts_count_outside_bits(any) : 0;
     odd = turn == 0 || cuts > 2 ||
           (cuts && !g->transfer && !g->rays &&
            (g->stop->n_blades == 0 || g->stop->round_q30)) ||

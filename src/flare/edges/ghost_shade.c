@@ -195,10 +195,10 @@ static int set_patch_box(struct glint_patch *p,
         high[0] = q_larger(high[0], p->x_q8[i]);
         high[1] = q_larger(high[1], p->y_q8[i]);
     }
-    p->box = glint_box_cut((struct glint_box){low[0] >> 8, low[1] >> 8,
-                                              (high[0] + 255) >> 8,
-                                              (high[1] + 255) >> 8},
-                           (struct glint_box){0, 0, g->width, g->height});
+    p->box = glint_box_intersect((struct glint_box){low[0] >> 8, low[1] >> 8,
+                                                    (high[0] + 255) >> 8,
+                                                    (high[1] + 255) >> 8},
+                                 (struct glint_box){0, 0, g->width, g->height});
     return !glint_box_empty(p->box);
 }
 

@@ -8,7 +8,7 @@ enum { TO_Q16 = 16 - GLINT_VERTEX_FRAC, STRIP_HALF_Q16 = 1 << 11 };
 
 /* --------------------------------------------------------------- functions */
 
-int64_t glint_disc_function_q16(const struct glint_vertex *v)
+int64_t glint_disc_evaluate_function_q16(const struct glint_vertex *v)
 {
     const int64_t x = v->stop_x_q16 / 2, y = v->stop_y_q16 / 2;
 
@@ -18,8 +18,9 @@ int64_t glint_disc_function_q16(const struct glint_vertex *v)
 
 /* A point 2^14 stop radii away has a function value of 2^31; times 2^30 it fits
  * into 64 bits. */
-int64_t glint_arc_distance_q16(const struct glint_stop *stop,
-                               int64_t straight_q16, int64_t disc_q16)
+int64_t glint_arc_compute_signed_distance_q16(const struct glint_stop *stop,
+                                              int64_t straight_q16,
+                                              int64_t disc_q16)
 {
     return q_shift(straight_q16 * stop->off_q30 + disc_q16 * stop->round_q30,
                    30);
@@ -27,15 +28,16 @@ int64_t glint_arc_distance_q16(const struct glint_stop *stop,
 
 /* Sets VALUE[i], for each of N corners AT[i], to its distance inside side SIDE
  * of the stop, in stop radii; negative outside. If sides are round, DISC[i]
- * must be glint_disc_function_q16() of the corner. */
+ * must be glint_disc_evaluate_function_q16() of the corner. */
 static void compute_side_distances(const struct glint_stop *stop, int side,
                                    const struct glint_vertex *const *at, int n,
                                    const int64_t *disc, int64_t *value)
 {
     for (int i = 0; i < n; i++) {
-        value[i] = glint_straight_side_distance_q16(stop, side, at[i]);
+        value[i] = glint_side_compute_straight_distance_q16(stop, side, at[i]);
         if (stop->round_q30)
-            value[i] = glint_arc_distance_q16(stop, value[i], disc[i]);
+            value[i] =
+                glint_arc_compute_signed_distance_q16(stop, value[i], disc[i]);
     }
 }
 
@@ -65,7 +67,7 @@ static enum side classify_by_barrels(const struct glint_corners *c)
         int64_t value[4];
 
         for (int i = 0; i < c->n; i++)
-            value[i] = glint_barrel_function_q16(barrel, c->at[i]);
+            value[i] = glint_barrel_evaluate_function_q16(barrel, c->at[i]);
         all = merge_positions(all, classify_corner_values(value, c->n));
     }
     return all;
@@ -81,7 +83,7 @@ static enum side classify_by_disc(const struct glint_corners *c,
     enum side side;
 
     for (int i = 0; i < c->n; i++)
-        value[i] = glint_disc_function_q16(c->at[i]) - stop->inset_q16;
+        value[i] = glint_disc_evaluate_function_q16(c->at[i]) - stop->inset_q16;
     side = classify_corner_values(value, c->n);
     if (side != OUTSIDE)
         return side;
@@ -99,7 +101,7 @@ static enum side classify_by_stop(const struct glint_corners *c,
     if (stop->n_blades == 0)
         return classify_by_disc(c, stop);
     for (int i = 0; i < c->n && stop->round_q30; i++)
-        disc[i] = glint_disc_function_q16(c->at[i]);
+        disc[i] = glint_disc_evaluate_function_q16(c->at[i]);
     for (int side = 0; side < stop->n_blades && all != OUTSIDE; side++) {
         compute_side_distances(stop, side, c->at, c->n, disc, value);
         all = merge_positions(all, classify_corner_values(value, c->n));
@@ -107,8 +109,8 @@ static enum side classify_by_stop(const struct glint_corners *c,
     return all;
 }
 
-int glint_outline_classify(const struct glint_corners *corners,
-                           const struct glint_stop *stop)
+int glint_outline_classify_primitive(const struct glint_corners *corners,
+                                     const struct glint_stop *stop)
 {
     const enum side at_barrel = classify_by_barrels(corners);
     const enum side at_stop =
@@ -173,7 +175,7 @@ static void clip_by_barrels(struct glint_outline *o,
         int64_t value[3];
 
         for (int i = 0; i < 3; i++)
-            value[i] = glint_barrel_function_q16(barrel, at[i]);
+            value[i] = glint_barrel_evaluate_function_q16(barrel, at[i]);
         clip_by_half_plane(o, value);
     }
 }
@@ -209,7 +211,7 @@ static void clip_by_stop(struct glint_outline *o,
     int64_t disc[3] = {0}, value[3];
 
     for (int i = 0; i < 3 && (stop->n_blades == 0 || stop->round_q30); i++)
-        disc[i] = glint_disc_function_q16(at[i]);
+        disc[i] = glint_disc_evaluate_function_q16(at[i]);
     if (stop->n_blades == 0) {
         for (int i = 0; i < 3; i++)
             value[i] = disc[i] + lift_q16 - stop->inset_q16;
@@ -318,7 +320,7 @@ static int64_t lengthen_strip(int64_t a[2], int64_t b[2])
     return 2 * (b[0] - a[0]) * 2 * STRIP_HALF_Q16;
 }
 
-int64_t glint_outline_widen_q32(struct glint_outline *o)
+int64_t glint_outline_replace_by_strip_q32(struct glint_outline *o)
 {
     int left = 0, right = 0, top = 0, bottom = 0, flat;
     const int64_t *x = o->x_q16, *y = o->y_q16;

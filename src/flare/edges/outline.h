@@ -29,23 +29,24 @@
 /* Returns (1 - r^2) / 2 at V, where r is the distance from the stop's centre in
  * stop radii: the function of a round stop, positive inside. Clamped far
  * outside. */
-int64_t glint_disc_function_q16(const struct glint_vertex *v);
+int64_t glint_disc_evaluate_function_q16(const struct glint_vertex *v);
 
 /* Returns the distance of a point inside the arc between two corners of the
  * stop, in stop radii; negative outside. STRAIGHT is the distance of the point
  * inside the straight line between the corners, DISC is
- * glint_disc_function_q16() of the point. For a circle of radius 1 / k whose
- * centre lies d behind the stop's centre, k^-2 - |v + d n|^2 is 2 d STRAIGHT +
- * 1 - r^2 if both corners have r = 1. The result is that times k / 2, which
- * equals the distance where it is small. */
-int64_t glint_arc_distance_q16(const struct glint_stop *stop,
-                               int64_t straight_q16, int64_t disc_q16);
+ * glint_disc_evaluate_function_q16() of the point. For a circle of radius 1 / k
+ * whose centre lies d behind the stop's centre, k^-2 - |v + d n|^2 is 2 d
+ * STRAIGHT + 1 - r^2 if both corners have r = 1. The result is that times k /
+ * 2, which equals the distance where it is small. */
+int64_t glint_arc_compute_signed_distance_q16(const struct glint_stop *stop,
+                                              int64_t straight_q16,
+                                              int64_t disc_q16);
 
 /* Returns the distance of V inside the straight line between the corners of
  * side SIDE, in stop radii; negative outside. */
 static inline int64_t
-glint_straight_side_distance_q16(const struct glint_stop *stop, int side,
-                                 const struct glint_vertex *v)
+glint_side_compute_straight_distance_q16(const struct glint_stop *stop,
+                                         int side, const struct glint_vertex *v)
 {
     const int64_t nx = stop->normal_q30[side][0];
     const int64_t ny = stop->normal_q30[side][1];
@@ -57,20 +58,21 @@ glint_straight_side_distance_q16(const struct glint_stop *stop, int side,
 /* Return the distance of V inside side SIDE of the stop, in stop radii, and
  * inside a barrel, as 1 - (1 + r^2) / 2 with r in barrel radii. Both are
  * negative outside. */
-static inline int64_t glint_side_distance_q16(const struct glint_stop *stop,
-                                              int side,
-                                              const struct glint_vertex *v)
+static inline int64_t
+glint_side_compute_signed_distance_q16(const struct glint_stop *stop, int side,
+                                       const struct glint_vertex *v)
 {
     const int64_t straight_q16 =
-        glint_straight_side_distance_q16(stop, side, v);
+        glint_side_compute_straight_distance_q16(stop, side, v);
 
-    return stop->round_q30 ? glint_arc_distance_q16(stop, straight_q16,
-                                                    glint_disc_function_q16(v))
-                           : straight_q16;
+    return stop->round_q30
+               ? glint_arc_compute_signed_distance_q16(
+                     stop, straight_q16, glint_disc_evaluate_function_q16(v))
+               : straight_q16;
 }
 
-static inline int64_t glint_barrel_function_q16(int barrel,
-                                                const struct glint_vertex *v)
+static inline int64_t
+glint_barrel_evaluate_function_q16(int barrel, const struct glint_vertex *v)
 {
     return (INT64_C(1) << 16) - v->barrel_q16[barrel];
 }
@@ -94,8 +96,8 @@ struct glint_outline {
 /* Returns the GLINT_CUT_ flags of the boundaries that may cut the primitive, 0
  * if it is completely visible, or -1 if it is completely outside. Masks of the
  * stop are ignored. */
-int glint_outline_classify(const struct glint_corners *corners,
-                           const struct glint_stop *stop);
+int glint_outline_classify_primitive(const struct glint_corners *corners,
+                                     const struct glint_stop *stop);
 
 /* Sets OUTLINE to the unclipped primitive. */
 void glint_outline_set_unclipped(struct glint_outline *outline,
@@ -110,6 +112,6 @@ void glint_outline_clip_triangle(struct glint_outline *outline,
 /* Replaces OUTLINE, which is thinner than a sixteenth of a pixel, by a strip of
  * that width along its longer side, at least as long as wide. Returns twice the
  * area of the strip, pixels^2. */
-int64_t glint_outline_widen_q32(struct glint_outline *outline);
+int64_t glint_outline_replace_by_strip_q32(struct glint_outline *outline);
 
 #endif

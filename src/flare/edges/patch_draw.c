@@ -413,7 +413,7 @@ void glint_patch_draw(const struct glint_edge_sums *sums, int narrow,
 
     glint_patch_read_slots(&d->patch, e);
     d->sums = sums;
-    d->box = glint_box_cut(d->patch.box, sums->tile);
+    d->box = glint_box_intersect(d->patch.box, sums->tile);
     if (glint_box_empty(d->box))
         return;
     d->box.x0 &= ~(RUN - 1);

@@ -28,7 +28,8 @@ compute_bounding_box_q8(const struct glint_corners *corners)
     return b;
 }
 
-int glint_corners_are_tiny(const struct glint_corners *corners, int part)
+int glint_corners_fit_into_pixel_part(const struct glint_corners *corners,
+                                      int part)
 {
     const struct glint_box e = compute_bounding_box_q8(corners);
     const int64_t x = e.x1 - e.x0, y = e.y1 - e.y0;
@@ -49,8 +50,9 @@ int glint_corners_test_thinness(const struct glint_corners *corners)
 
 /* The box is enlarged by half the width of the strip that replaces thin
  * primitives, and by 1/256 pixel for rounding. */
-struct glint_box glint_corners_pixel_box(const struct glint_corners *corners,
-                                         int width, int height)
+struct glint_box
+glint_corners_compute_pixel_box(const struct glint_corners *corners, int width,
+                                int height)
 {
     const int grow = (1 << GLINT_VERTEX_FRAC) / 32 + 1;
     const struct glint_box e = compute_bounding_box_q8(corners);
@@ -84,8 +86,8 @@ int64_t glint_compute_irradiance_q22(const struct glint_bundle *bundle,
                                      int32_t limit_q8, int *n_held)
 {
     /* The area is normalised to 32 bits before the division. */
-    const int up = q_up((uint64_t)area);
-    const uint32_t area_32 = q_upper((uint64_t)area, up);
+    const int up = q_count_normalising_shift((uint64_t)area);
+    const uint32_t area_32 = q_shift_to_32_bits((uint64_t)area, up);
     /* exact, by rounding, if the area is a power of two */
     const int64_t ratio =
         (int64_t)(((uint64_t)bundle->flux_q31 * q_reciprocal(area_32) +

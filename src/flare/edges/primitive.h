@@ -33,9 +33,9 @@ struct glint_corners {
 /* Returns the cross product (B - A) x (P - A): positive if the triangle A, B, P
  * has the orientation from the x axis to the y axis. Within +-2^60 for
  * coordinates inside GLINT_VERTEX_LIMIT_Q8. */
-static inline int64_t glint_cross_product_q16(int32_t ax, int32_t ay,
-                                              int32_t bx, int32_t by,
-                                              int32_t px, int32_t py)
+static inline int64_t glint_compute_cross_product_q16(int32_t ax, int32_t ay,
+                                                      int32_t bx, int32_t by,
+                                                      int32_t px, int32_t py)
 {
     return (int64_t)(bx - ax) * (py - ay) - (int64_t)(by - ay) * (px - ax);
 }
@@ -51,8 +51,9 @@ int64_t glint_compute_irradiance_q22(const struct glint_bundle *bundle,
 /* Returns the bounding box of all pixels that a primitive may cover, including
  * the strip that replaces it if it is thin; clipped to a picture of WIDTH x
  * HEIGHT pixels. */
-struct glint_box glint_corners_pixel_box(const struct glint_corners *corners,
-                                         int width, int height);
+struct glint_box
+glint_corners_compute_pixel_box(const struct glint_corners *corners, int width,
+                                int height);
 
 /* Sets CORNERS to the N vertices AT (3 or 4), and computes the area. */
 static inline void glint_corners_set(struct glint_corners *corners,
@@ -72,13 +73,14 @@ static inline void glint_corners_set(struct glint_corners *corners,
             (int64_t)(p[2]->y_q8 - p[0]->y_q8) * (p[3]->x_q8 - p[1]->x_q8);
     else
         corners->area2_q16 =
-            glint_cross_product_q16(p[0]->x_q8, p[0]->y_q8, p[1]->x_q8,
-                                    p[1]->y_q8, p[2]->x_q8, p[2]->y_q8);
+            glint_compute_cross_product_q16(p[0]->x_q8, p[0]->y_q8, p[1]->x_q8,
+                                            p[1]->y_q8, p[2]->x_q8, p[2]->y_q8);
 }
 
 /* Returns the distance |x| + |y| between vertices A and B, pixels _q8. */
-static inline int64_t glint_vertex_distance_q8(const struct glint_vertex *a,
-                                               const struct glint_vertex *b)
+static inline int64_t
+glint_vertex_compute_distance_q8(const struct glint_vertex *a,
+                                 const struct glint_vertex *b)
 {
     const int64_t x = (int64_t)a->x_q8 - b->x_q8,
                   y = (int64_t)a->y_q8 - b->y_q8;
@@ -92,9 +94,10 @@ static inline int64_t glint_vertex_distance_q8(const struct glint_vertex *a,
 static inline int
 glint_corners_are_certainly_thick(const struct glint_corners *c)
 {
-    return c->n == 4 && (c->area2_q16 < 0 ? -c->area2_q16 : c->area2_q16) >=
-                            32 * (glint_vertex_distance_q8(c->at[0], c->at[2]) +
-                                  glint_vertex_distance_q8(c->at[1], c->at[3]));
+    return c->n == 4 &&
+           (c->area2_q16 < 0 ? -c->area2_q16 : c->area2_q16) >=
+               32 * (glint_vertex_compute_distance_q8(c->at[0], c->at[2]) +
+                     glint_vertex_compute_distance_q8(c->at[1], c->at[3]));
 }
 
 /* Return whether a primitive is thinner than a sixteenth of a pixel;
@@ -109,6 +112,7 @@ static inline int glint_corners_are_thin(const struct glint_corners *corners)
 
 /* Returns whether all corners lie in a square whose sides are 1 / PART of a
  * pixel long. */
-int glint_corners_are_tiny(const struct glint_corners *corners, int part);
+int glint_corners_fit_into_pixel_part(const struct glint_corners *corners,
+                                      int part);
 
 #endif

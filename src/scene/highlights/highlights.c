@@ -62,16 +62,16 @@ allocate_highlights(const struct glint_scene *scene, struct glint_arena *arena)
 {
     struct glint_highlight_state measured;
     struct glint_highlight_state *placed =
-        glint_arena_take(arena, 1, sizeof *placed);
+        glint_arena_allocate(arena, 1, sizeof *placed);
     struct glint_highlight_state *b = placed ? placed : &measured;
     size_t n;
 
     b->across = (scene->cfg.width + 7) >> SIDE_LOG2;
     b->down = (scene->cfg.height + 7) >> SIDE_LOG2;
     n = (size_t)b->across * (size_t)b->down;
-    b->cell = glint_arena_take(arena, n, sizeof *b->cell);
-    b->next = glint_arena_take(arena, n, sizeof *b->next);
-    b->kept = glint_arena_take(arena, KEPT, sizeof *b->kept);
+    b->cell = glint_arena_allocate(arena, n, sizeof *b->cell);
+    b->next = glint_arena_allocate(arena, n, sizeof *b->next);
+    b->kept = glint_arena_allocate(arena, KEPT, sizeof *b->kept);
     return placed;
 }
 
@@ -159,7 +159,7 @@ static void find_cell_middle(const struct glint_highlight_state *b, int i,
 static uint64_t compute_cell_weight(const struct glint_highlight_cell *c,
                                     int64_t flux_q19)
 {
-    const int up = q_up((uint64_t)flux_q19);
+    const int up = q_count_normalising_shift((uint64_t)flux_q19);
     const int down = q_larger(0, 32 - WEIGHT_LOG2 - up);
 
     return (uint64_t)c->flux_q19 >> down;
@@ -360,7 +360,8 @@ static void set_spot_colour(const struct gathered *g, struct glint_spot *spot)
 {
     const uint64_t flux = (uint64_t)g->flux_q19;
     /* Blue is at most 2^4 times the flux. */
-    const int up = (int)q_clamp_sat(q_up(flux) + 26, 0, 15);
+    const int up =
+        (int)q_clamp_sat(q_count_normalising_shift(flux) + 26, 0, 15);
     int64_t rest;
 
     spot->rgb_q15[0] =

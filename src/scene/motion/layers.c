@@ -47,8 +47,8 @@ static int clip_line_to_plane(const struct side *side, int32_t a[3],
         return 1;
     if (in[0] < 0 && in[1] < 0)
         return 0;
-    part_q30 =
-        q_part_q30(q_magnitude(in[0]), q_magnitude(in[0]) + q_magnitude(in[1]));
+    part_q30 = q_divide_to_fraction_q30(
+        q_magnitude(in[0]), q_magnitude(in[0]) + q_magnitude(in[1]));
     for (int k = 0; k < 3; k++) {
         int32_t *const out = in[0] < 0 ? a : b;
         const int32_t at =
@@ -93,9 +93,9 @@ static int clip_line_to_view(const struct glint_scene_view *v, int32_t near,
     if (behind[0] < 0 && behind[1] < 0)
         return 0;
     if (behind[0] < 0 || behind[1] < 0) {
-        const int32_t part_q30 =
-            q_part_q30(q_magnitude(behind[0]),
-                       q_magnitude(behind[0]) + q_magnitude(behind[1]));
+        const int32_t part_q30 = q_divide_to_fraction_q30(
+            q_magnitude(behind[0]),
+            q_magnitude(behind[0]) + q_magnitude(behind[1]));
         int32_t *const out = behind[0] < 0 ? a : b;
 
         for (int k = 0; k < 3; k++)
@@ -124,7 +124,7 @@ static void set_line_box(const struct glint_scene *s,
     const int32_t x_q8 = 128 * (s->view.width - 1);
     const int32_t y_q8 = 128 * (s->view.height - 1);
 
-    l->box = glint_box_cut(
+    l->box = glint_box_intersect(
         all, (struct glint_box){
                  (q_smaller(end[0].x, end[1].x) + x_q8 - far_q8) >> 8,
                  (q_smaller(end[0].y, end[1].y) + y_q8 - far_q8) >> 8,
@@ -236,7 +236,7 @@ static int32_t compute_inner_cosine_q30(const struct glint_placed *p)
 
     if (within <= 0)
         return INT32_MAX;
-    sine_q30 = q_part_q30((uint64_t)within, (uint64_t)p->radius);
+    sine_q30 = q_divide_to_fraction_q30((uint64_t)within, (uint64_t)p->radius);
     return (int32_t)glint_square_root((UINT64_C(1) << 60) -
                                       (uint64_t)(sine_q30 * sine_q30)) +
            1;
@@ -340,7 +340,8 @@ static struct glint_box find_layer_box(const struct glint_scene *s,
     struct glint_box all = {0, 0, 0, 0};
 
     for (int i = 0; i < s->motion->n_layers; i++)
-        all = glint_box_join(all, glint_box_cut(tile, s->motion->layer[i].box));
+        all = glint_box_unite(
+            all, glint_box_intersect(tile, s->motion->layer[i].box));
     return all;
 }
 
@@ -380,7 +381,8 @@ static void list_row_spans(struct glint_scene_worker *w, int y)
 
     w->n_spans = 0;
     for (int i = 0; i < m->n_layers; i++) {
-        const struct glint_box b = glint_box_cut(w->tile, m->layer[i].box);
+        const struct glint_box b =
+            glint_box_intersect(w->tile, m->layer[i].box);
         struct glint_layer_span span = {i, m->layer[i].kind, b.x0, b.x1};
 
         if (y < b.y0 || y >= b.y1)
@@ -429,8 +431,9 @@ static int compute_line_cover_q8(const struct glint_scene_worker *w,
 
     if (end <= 0 || across >= most + 128)
         return 0;
-    part_q30 = q_part_q30((uint64_t)q_smaller(q_larger(along, 0), l->length_q8),
-                          (uint64_t)l->length_q8);
+    part_q30 = q_divide_to_fraction_q30(
+        (uint64_t)q_smaller(q_larger(along, 0), l->length_q8),
+        (uint64_t)l->length_q8);
     half = l->half_q8[0] + q_mul(l->half_q8[1] - l->half_q8[0], part_q30, 30);
     half = q_smaller(MOST_HALF_Q8, half);
     cover = q_smaller(q_smaller(ALL_Q8, 2 * half), half + 128 - across);
@@ -506,8 +509,9 @@ static NEVER_INLINE int compute_rim_cover_q8(const struct glint_scene_worker *w,
             ((int64_t)ball->radius - ball->margin) * (INT64_C(1) << chord.up);
 
         cosine_q15 =
-            q_part_q30((uint64_t)chord.half,
-                       (uint64_t)(radius > chord.half ? radius : chord.half)) >>
+            q_divide_to_fraction_q30(
+                (uint64_t)chord.half,
+                (uint64_t)(radius > chord.half ? radius : chord.half)) >>
             15;
         is_inner =
             within > 0 && v3_dot(chord.middle, chord.middle) <= within * within;
@@ -618,9 +622,9 @@ static void allocate_worker_layers(const struct glint_scene *s,
                                    struct glint_arena *arena,
                                    struct glint_scene_worker *worker)
 {
-    worker->span = glint_arena_take(
+    worker->span = glint_arena_allocate(
         arena, glint_motion_max_layers(s->model.motion), sizeof *worker->span);
-    worker->over = glint_arena_take(
+    worker->over = glint_arena_allocate(
         arena, glint_motion_max_layers(s->model.motion), sizeof *worker->over);
 }
 

@@ -33,7 +33,8 @@ uint32_t glint_motion_sum(const uint8_t *at, uint32_t block)
     const size_t skipped =
         block ? 0 : offsetof(struct glint_motion_header, variant);
 
-    return glint_blob_crc32(at + skipped, GLINT_MOTION_BLOCK - 4 - skipped);
+    return glint_blob_compute_crc32(at + skipped,
+                                    GLINT_MOTION_BLOCK - 4 - skipped);
 }
 
 /* Sets AT to the address of block BLOCK, which is read from the file if

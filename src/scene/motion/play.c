@@ -38,15 +38,15 @@ glint_motion_allocate(const struct glint_scene *scene,
                       struct glint_arena *arena)
 {
     const struct glint_scene_motion *how = scene->model.motion;
-    struct glint_motion_state *m = glint_arena_take(arena, 1, sizeof *m);
+    struct glint_motion_state *m = glint_arena_allocate(arena, 1, sizeof *m);
     uint32_t n_foods, n_sensors;
     struct glint_placed *ball;
     struct glint_motion_layer *layer;
 
     read_object_counts(how, &n_foods, &n_sensors);
-    ball = glint_arena_take(arena, n_foods, sizeof *ball);
-    layer =
-        glint_arena_take(arena, glint_motion_max_layers(how), sizeof *layer);
+    ball = glint_arena_allocate(arena, n_foods, sizeof *ball);
+    layer = glint_arena_allocate(arena, glint_motion_max_layers(how),
+                                 sizeof *layer);
     if (m) {
         m->ball = ball;
         m->layer = layer;

@@ -140,9 +140,9 @@ static void mark_visible_ball_blocks(const struct glint_scene *s,
         mark_all_blocks_visible(skin);
         return;
     }
-    limit_q30 =
-        q_mul(q_part_q30((uint64_t)p->radius, away), reach.cosine_q30, 30) -
-        reach.sine_q30 - (1 << 20);
+    limit_q30 = q_mul(q_divide_to_fraction_q30((uint64_t)p->radius, away),
+                      reach.cosine_q30, 30) -
+                reach.sine_q30 - (1 << 20);
     for (int i = 0; i < skin->across * skin->down; i++)
         for (int k = 0; k < 4; k++)
             if (texel_faces_camera(p, skin,
@@ -525,11 +525,11 @@ static void allocate_map(const struct glint_scene *s, struct glint_arena *a,
     k.across = k.spread.width / GLINT_BLOCK_WIDTH;
     k.down = side / GLINT_BLOCK_HEIGHT;
     for (int c = 0; c < CHANNELS; c++) {
-        k.spread.light[c] = glint_arena_take(a, texels, sizeof(int16_t));
-        k.spread.map[c] = glint_arena_take(a, texels, sizeof(int16_t));
+        k.spread.light[c] = glint_arena_allocate(a, texels, sizeof(int16_t));
+        k.spread.map[c] = glint_arena_allocate(a, texels, sizeof(int16_t));
     }
-    k.block = glint_arena_take(a, blocks, sizeof *k.block);
-    k.list = glint_arena_take(a, blocks, sizeof *k.list);
+    k.block = glint_arena_allocate(a, blocks, sizeof *k.block);
+    k.list = glint_arena_allocate(a, blocks, sizeof *k.list);
     if (skin)
         *skin = k;
 }
@@ -567,11 +567,12 @@ allocate_translucency(const struct glint_scene *scene,
     const uint32_t n = scene->model.header->n_skins;
     const int workers = glint_workers_count(scene->cfg.workers);
     struct glint_stone_state *placed =
-        glint_arena_take(arena, 1, sizeof *placed);
+        glint_arena_allocate(arena, 1, sizeof *placed);
     struct glint_stone_state measured, *w = placed ? placed : &measured;
 
-    w->skin = glint_arena_take(arena, n, sizeof *w->skin);
-    w->scratch = glint_arena_take(arena, (size_t)workers, sizeof *w->scratch);
+    w->skin = glint_arena_allocate(arena, n, sizeof *w->skin);
+    w->scratch =
+        glint_arena_allocate(arena, (size_t)workers, sizeof *w->scratch);
     for (uint32_t i = 0; i < n; i++)
         allocate_map(scene, arena, i, placed ? &w->skin[i] : NULL);
     for (int i = 0; i < workers; i++) {

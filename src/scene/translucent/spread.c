@@ -17,14 +17,16 @@ glint_spread_carve(struct glint_arena *arena,
     const size_t rows = (size_t)height, all = rows + kernel;
 
     return (struct glint_spread_scratch){
-        .taps = glint_arena_take(arena, 1, sizeof(struct glint_spread_taps)),
-        .any = glint_arena_take(arena, all, sizeof(int32_t)),
-        .pair = glint_arena_take(arena, all * (GLINT_STRIP + kernel),
-                                 sizeof(int32_t)),
+        .taps =
+            glint_arena_allocate(arena, 1, sizeof(struct glint_spread_taps)),
+        .any = glint_arena_allocate(arena, all, sizeof(int32_t)),
+        .pair = glint_arena_allocate(arena, all * (GLINT_STRIP + kernel),
+                                     sizeof(int32_t)),
         .value =
-            glint_arena_take(arena, all / 2 * GLINT_STRIP, sizeof(int32_t)),
-        .sum = glint_arena_take(arena, rows * GLINT_STRIP, sizeof(int32_t)),
-        .total = glint_arena_take(arena, rows * GLINT_STRIP, sizeof(int32_t))};
+            glint_arena_allocate(arena, all / 2 * GLINT_STRIP, sizeof(int32_t)),
+        .sum = glint_arena_allocate(arena, rows * GLINT_STRIP, sizeof(int32_t)),
+        .total =
+            glint_arena_allocate(arena, rows * GLINT_STRIP, sizeof(int32_t))};
 }
 
 /* ------------------------------------------------------------------- taps */

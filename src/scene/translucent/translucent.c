@@ -128,19 +128,19 @@ static const char *locate_tables(struct glint_translucent *t,
     const uint32_t n = CHANNELS * h->n_planes * h->rank;
     const uint32_t texels = 1U << 2 * h->side_log2;
 
-    t->code = glint_blob_section(b, h->code_at,
-                                 count_words(count_weight_codes(h), 1), 4);
-    t->tap =
-        glint_blob_section(b, h->tap_at, count_words(2 * n * h->kernel, 2), 4);
-    t->shift = glint_blob_section(b, h->shift_at, n, 4);
-    t->transmit_q15 = glint_blob_section(
+    t->code = glint_blob_find_section(b, h->code_at,
+                                      count_words(count_weight_codes(h), 1), 4);
+    t->tap = glint_blob_find_section(b, h->tap_at,
+                                     count_words(2 * n * h->kernel, 2), 4);
+    t->shift = glint_blob_find_section(b, h->shift_at, n, 4);
+    t->transmit_q15 = glint_blob_find_section(
         b, h->transmit_at, count_words(GLINT_TRANSLUCENT_COSINES + 1, 2), 4);
     if (!t->code || !t->tap || !t->shift || !t->transmit_q15)
         return outside;
     if (h->variant != GLINT_TRANSLUCENT_CLUSTERED)
         return h->cluster_at ? "the translucent material has unused clusters"
                              : NULL;
-    t->cluster = glint_blob_section(b, h->cluster_at, texels / 4, 4);
+    t->cluster = glint_blob_find_section(b, h->cluster_at, texels / 4, 4);
     return t->cluster ? NULL : outside;
 }
 

@@ -60,8 +60,8 @@ static const char *check_mip_level(struct glint_environment *e,
             glint_environment_side_log2(h->variant, h->side_log2, k) ||
         l->zero[0] || l->zero[1])
         return "a level's side is out of range";
-    e->texel[k] = glint_blob_section(blob, l->texel_at,
-                                     UINT64_C(1) << (2 * l->side_log2), 4);
+    e->texel[k] = glint_blob_find_section(blob, l->texel_at,
+                                          UINT64_C(1) << (2 * l->side_log2), 4);
     return e->texel[k] ? NULL : outside;
 }
 
@@ -98,13 +98,13 @@ static const char *check_environment_contents(struct glint_environment *e,
         wrong = check_environment_header(h);
     if (wrong)
         return wrong;
-    e->level =
-        glint_blob_section(blob, h->level_at, h->n_levels, sizeof *e->level);
-    e->irradiance =
-        glint_blob_section(blob, h->irradiance_at,
-                           1 << (2 * GLINT_ENVIRONMENT_IRRADIANCE_LOG2), 4);
-    e->light =
-        glint_blob_section(blob, h->light_at, h->n_lights, sizeof *e->light);
+    e->level = glint_blob_find_section(blob, h->level_at, h->n_levels,
+                                       sizeof *e->level);
+    e->irradiance = glint_blob_find_section(
+        blob, h->irradiance_at, 1 << (2 * GLINT_ENVIRONMENT_IRRADIANCE_LOG2),
+        4);
+    e->light = glint_blob_find_section(blob, h->light_at, h->n_lights,
+                                       sizeof *e->light);
     if (!e->level || !e->irradiance || !e->light)
         return outside;
     e->texels = (struct glint_texels){.code = (const uint32_t *)(const void *)h,

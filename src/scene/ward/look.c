@@ -16,8 +16,8 @@ static void compute_map_position(const int32_t toward[3], int32_t *u_q17,
     const uint32_t y = (uint32_t)q_magnitude(toward[1]);
     const uint32_t z = (uint32_t)q_magnitude(toward[2]);
     const uint32_t sum = x + y + z;
-    int32_t p_q16 = q_part_q30(x, sum ? sum : 1) >> 14;
-    int32_t q_q16 = q_part_q30(z, sum ? sum : 1) >> 14;
+    int32_t p_q16 = q_divide_to_fraction_q30(x, sum ? sum : 1) >> 14;
+    int32_t q_q16 = q_divide_to_fraction_q30(z, sum ? sum : 1) >> 14;
 
     if (toward[1] < 0) {
         const int32_t unfolded_q16 = 65536 - q_q16;

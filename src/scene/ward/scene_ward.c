@@ -85,8 +85,9 @@ static void add_light_disc(const struct glint_ward_state *w,
         return;
     share_q15 = away_q30 <= r_q30 - width_q30 / 2
                     ? GLINT_SCENE_ONE_Q15
-                    : q_part_q30((uint64_t)(r_q30 + width_q30 / 2 - away_q30),
-                                 (uint64_t)width_q30) >>
+                    : q_divide_to_fraction_q30(
+                          (uint64_t)(r_q30 + width_q30 / 2 - away_q30),
+                          (uint64_t)width_q30) >>
                           15;
     per_disc = real_over(real_times(w->scale, real_of(share_q15, -15)),
                          real_times(r, r));
@@ -192,7 +193,7 @@ static int compute_half_vector(const struct glint_scene_ray *ray,
         (int32_t)glint_square_root((uint64_t)v3_dot(half_q30, half_q30));
     if (h->ho_q30 < hn_q30)
         h->ho_q30 = hn_q30;
-    h->hn_q30 = q_part_q30((uint64_t)hn_q30, (uint64_t)h->ho_q30);
+    h->hn_q30 = q_divide_to_fraction_q30((uint64_t)hn_q30, (uint64_t)h->ho_q30);
     for (int k = 0; k < 2; k++) {
         const uint64_t slope_q26 = (uint64_t)glint_divide_rounded(
             (uint64_t)along_q30[k] << 26, (uint64_t)hn_q30);
@@ -289,13 +290,15 @@ allocate_ward_state(const struct glint_scene *scene, struct glint_arena *arena)
     const uint32_t n = h->n_wards;
     struct glint_ward_state measured;
     struct glint_ward_state *placed =
-        glint_arena_take(arena, 1, sizeof *placed);
+        glint_arena_allocate(arena, 1, sizeof *placed);
     struct glint_ward_state *w = placed ? placed : &measured;
 
-    w->material = glint_arena_take(arena, n, sizeof *w->material);
-    w->lobe = glint_arena_take(arena, n, sizeof *w->lobe);
-    w->opened = glint_arena_take(arena, h->n_environments, sizeof *w->opened);
-    w->sun = glint_arena_take(arena, h->n_environment_lights, sizeof *w->sun);
+    w->material = glint_arena_allocate(arena, n, sizeof *w->material);
+    w->lobe = glint_arena_allocate(arena, n, sizeof *w->lobe);
+    w->opened =
+        glint_arena_allocate(arena, h->n_environments, sizeof *w->opened);
+    w->sun =
+        glint_arena_allocate(arena, h->n_environment_lights, sizeof *w->sun);
     return placed;
 }
 

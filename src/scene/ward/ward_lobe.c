@@ -116,8 +116,9 @@ static int32_t slope_spread_q16(int32_t alpha_q24, uint64_t b_q48,
 {
     const uint64_t square_q48 = (uint64_t)alpha_q24 * (uint64_t)alpha_q24;
     const int32_t matched_q16 =
-        ONE_Q16 -
-        (b_q48 < square_q48 ? q_part_q30(b_q48, square_q48) >> 14 : ONE_Q16);
+        ONE_Q16 - (b_q48 < square_q48
+                       ? q_divide_to_fraction_q30(b_q48, square_q48) >> 14
+                       : ONE_Q16);
 
     return (ONE_Q16 - f_q16 + matched_q16) / 2;
 }

@@ -302,7 +302,7 @@ void scene_seal_checksum(struct scene_file *s)
     /* no environment; the offset is the end of the file */
     h->environment_at = (uint32_t)s->bytes;
     memcpy(s->data, h, sizeof *h);
-    glint_blob_seal(s->data, s->bytes);
+    glint_blob_set_size_and_checksum(s->data, s->bytes);
 }
 
 struct glint_scene_model scene_open_model(struct scene_file *s)

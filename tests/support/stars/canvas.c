@@ -13,7 +13,7 @@ void star_canvas_open(struct star_canvas *c, int width, int height,
 {
     const struct glint_star_config star = {n_workers, width, height,
                                            STAR_CANVAS_LIGHTS};
-    const size_t bytes = glint_star_bytes(&star);
+    const size_t bytes = glint_star_count_bytes(&star);
 
     c->width = width;
     c->height = height;

@@ -145,7 +145,7 @@ static void quantise_and_open_model(struct made *m)
     assert_ok(glint_quantise(m->fitted.system, &m->quantised));
     assert_ok(
         glint_draft_write(&m->draft, &setup, &header, &m->fitted, &quantised));
-    glint_blob_seal(m->draft.data, m->draft.bytes);
+    glint_blob_set_size_and_checksum(m->draft.data, m->draft.bytes);
     if (glint_lens_open(&m->lens, m->draft.data, m->draft.bytes, &reason))
         fail_msg("%s", reason);
 }

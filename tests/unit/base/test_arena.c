@@ -13,28 +13,29 @@
 
 TEST(measure_and_place)
 {
-    /* glint_arena_over() leaves the alignment of the memory to the caller. */
+    /* glint_arena_init_in_memory() leaves the alignment of the memory to the
+     * caller. */
     static uint8_t mem[256];
-    struct glint_arena m = glint_arena_measure(), p;
+    struct glint_arena m = glint_arena_begin_measuring(), p;
 
-    assert_null(glint_arena_take(&m, 3, 4));  /* 64 bytes */
-    assert_null(glint_arena_take(&m, 0, 4));  /* 0 bytes */
-    assert_null(glint_arena_take(&m, 65, 1)); /* 128 bytes */
+    assert_null(glint_arena_allocate(&m, 3, 4));  /* 64 bytes */
+    assert_null(glint_arena_allocate(&m, 0, 4));  /* 0 bytes */
+    assert_null(glint_arena_allocate(&m, 65, 1)); /* 128 bytes */
     assert_int_equal(m.used, 192);
-    p = glint_arena_over(mem, 192);
-    assert_ptr_equal(glint_arena_take(&p, 3, 4), mem);
-    assert_ptr_equal(glint_arena_take(&p, 0, 4), mem + 64);
-    assert_ptr_equal(glint_arena_take(&p, 65, 1), mem + 64);
-    assert_null(glint_arena_take(&p, 1, 1));
+    p = glint_arena_init_in_memory(mem, 192);
+    assert_ptr_equal(glint_arena_allocate(&p, 3, 4), mem);
+    assert_ptr_equal(glint_arena_allocate(&p, 0, 4), mem + 64);
+    assert_ptr_equal(glint_arena_allocate(&p, 65, 1), mem + 64);
+    assert_null(glint_arena_allocate(&p, 1, 1));
     assert_true(p.used > p.size);
 }
 
 TEST(overflowing_size_fills_the_arena)
 {
-    struct glint_arena m = glint_arena_measure();
+    struct glint_arena m = glint_arena_begin_measuring();
 
-    assert_null(glint_arena_take(&m, SIZE_MAX / 2, 4));
-    assert_null(glint_arena_take(&m, 1, 1));
+    assert_null(glint_arena_allocate(&m, SIZE_MAX / 2, 4));
+    assert_null(glint_arena_allocate(&m, 1, 1));
     assert_true(m.used > SIZE_MAX - 256);
 }
 

@@ -28,7 +28,7 @@ static void make_baked_file(struct file *f)
     memcpy(&f->word[7], "Heliar", 6);
     for (int k = 0; k < 6; k++)
         f->word[HEADER / 4 + k] = (uint32_t)k;
-    glint_blob_seal(f, BYTES);
+    glint_blob_set_size_and_checksum(f, BYTES);
 }
 
 static enum glint_blob_fault open_baked_file(const struct file *f, size_t bytes)
@@ -40,8 +40,9 @@ static enum glint_blob_fault open_baked_file(const struct file *f, size_t bytes)
 
 TEST(crc32_of_known_text)
 {
-    assert_true(glint_blob_crc32("123456789", 9) == UINT32_C(0xcbf43926));
-    assert_true(glint_blob_crc32("", 0) == 0);
+    assert_true(glint_blob_compute_crc32("123456789", 9) ==
+                UINT32_C(0xcbf43926));
+    assert_true(glint_blob_compute_crc32("", 0) == 0);
 }
 
 /* Checks that fields have the offsets of existing files. */
@@ -52,7 +53,7 @@ TEST(fields_have_the_offsets_of_existing_files)
 
     make_baked_file(&f);
     assert_int_equal(f.word[2], BYTES);
-    assert_true(f.word[3] == glint_blob_crc32(&f.word[4], BYTES - 16));
+    assert_true(f.word[3] == glint_blob_compute_crc32(&f.word[4], BYTES - 16));
     assert_int_equal(glint_blob_open(&blob, &kind, &f, BYTES), GLINT_BLOB_OK);
     assert_true(blob.header->key[0] == 0x89abcdef);
     assert_true(blob.header->key[1] == 0x01234567);
@@ -109,7 +110,7 @@ static enum glint_blob_fault check_blob_name(const char *name, size_t length)
     make_baked_file(&f);
     memset(&f.word[7], 0, 64);
     memcpy(&f.word[7], name, length);
-    glint_blob_seal(&f, BYTES);
+    glint_blob_set_size_and_checksum(&f, BYTES);
     assert_int_equal(glint_blob_open(&blob, &kind, &f, BYTES), GLINT_BLOB_OK);
     return glint_blob_check_name(&blob);
 }
@@ -134,19 +135,19 @@ TEST(rejects_sections_outside_the_file)
 
     make_baked_file(&f);
     assert_int_equal(glint_blob_open(&blob, &kind, &f, BYTES), GLINT_BLOB_OK);
-    assert_ptr_equal(glint_blob_section(&blob, HEADER, 3, 8),
+    assert_ptr_equal(glint_blob_find_section(&blob, HEADER, 3, 8),
                      &f.word[HEADER / 4]);
-    assert_ptr_equal(glint_blob_section(&blob, HEADER + 4, 5, 4),
+    assert_ptr_equal(glint_blob_find_section(&blob, HEADER + 4, 5, 4),
                      &f.word[HEADER / 4 + 1]);
-    assert_ptr_equal(glint_blob_section(&blob, BYTES, 0, 4),
+    assert_ptr_equal(glint_blob_find_section(&blob, BYTES, 0, 4),
                      &f.word[BYTES / 4]);
     assert_true(blob.referred == 24 + 20);
-    assert_null(glint_blob_section(&blob, HEADER, 25, 1));
-    assert_null(glint_blob_section(&blob, HEADER + 4, 6, 4));
-    assert_null(glint_blob_section(&blob, HEADER + 2, 1, 4));
-    assert_null(glint_blob_section(&blob, HEADER - 4, 1, 4));
-    assert_null(glint_blob_section(&blob, BYTES + 4, 0, 4));
-    assert_null(glint_blob_section(&blob, UINT32_MAX - 3, 1, 4));
-    assert_null(
-        glint_blob_section(&blob, HEADER, (UINT64_C(1) << 38) - 1, 1 << 25));
+    assert_null(glint_blob_find_section(&blob, HEADER, 25, 1));
+    assert_null(glint_blob_find_section(&blob, HEADER + 4, 6, 4));
+    assert_null(glint_blob_find_section(&blob, HEADER + 2, 1, 4));
+    assert_null(glint_blob_find_section(&blob, HEADER - 4, 1, 4));
+    assert_null(glint_blob_find_section(&blob, BYTES + 4, 0, 4));
+    assert_null(glint_blob_find_section(&blob, UINT32_MAX - 3, 1, 4));
+    assert_null(glint_blob_find_section(&blob, HEADER, (UINT64_C(1) << 38) - 1,
+                                        1 << 25));
 }

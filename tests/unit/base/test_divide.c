@@ -68,7 +68,7 @@ TEST(divisions_near_multiples_are_exact)
 
 static void check_reciprocal(uint32_t x)
 {
-    assert_int_equal(glint_reciprocal(x), (UINT64_MAX >> 1) / x);
+    assert_int_equal(glint_compute_reciprocal(x), (UINT64_MAX >> 1) / x);
     assert_int_equal(q_reciprocal(x), (UINT64_MAX >> 1) / x);
 }
 
@@ -82,15 +82,15 @@ TEST(reciprocals_are_exact)
     }
 }
 
-/* Checks that q_part_q30() differs from n / d by at most 2^-30 upwards and
- * 2^-29 downwards. */
+/* Checks that q_divide_to_fraction_q30() differs from n / d by at most 2^-30
+ * upwards and 2^-29 downwards. */
 TEST(q30_fraction_is_within_its_error)
 {
     for (int i = 0; i < 300000; i++) {
         const uint64_t d = 1 + (random_bits() >> (2 + random_bits() % 62));
         const uint64_t n = i % 16 ? random_bits() % (d + 1) : i % 32 ? d : 0;
         const double part = (double)n / (double)d;
-        const double got = q_part_q30(n, d) * 0x1p-30;
+        const double got = q_divide_to_fraction_q30(n, d) * 0x1p-30;
 
         assert_true(got <= 1 && (n > 0 || got == 0));
         assert_true(got <= part + 0x1p-30 && got >= part - 0x1p-29);

@@ -58,7 +58,8 @@ draw_frames_with_budget(struct glint_frame *frame, double budget_ms, int n)
     struct glint_engine_report report;
 
     glint_budget_init(&frame->budget, budget_ms);
-    frame->dials = glint_budget_current_dials(&frame->budget, &frame->dials);
+    frame->dials =
+        glint_budget_get_quality_parameters(&frame->budget, &frame->dials);
     for (int i = 0; i < n; i++)
         assert_ok(glint_frame_draw(frame, lamps, 3, 1, &image, &report));
     return report;
@@ -213,7 +214,8 @@ TEST(first_frame_of_more_lights_keeps_to_the_budget)
     glint_budget_init(&frame.budget, 3);
     /* The simulated clock stands still, so this rate is not corrected. */
     frame.budget.ms_per_minsn = 0.1;
-    frame.dials = glint_budget_current_dials(&frame.budget, &frame.dials);
+    frame.dials =
+        glint_budget_get_quality_parameters(&frame.budget, &frame.dials);
     for (int i = 0; i < 4; i++)
         assert_ok(glint_frame_draw(&frame, lamps, 1, 1, &image, &one));
     assert_ok(glint_frame_draw(&frame, lamps, 3, 1, &image, &three));
@@ -261,7 +263,8 @@ TEST(counts_of_a_plan_equal_the_drawn_frame)
     for (int k = 0; k < GLINT_COST_KINDS; k++)
         if (k != GLINT_COST_PARTS) /* The stop has no dust. */
             assert_true(fabs(predicted.count[k] / fine.count[k] - 1) < 0.25);
-    assert_true(glint_cost_to_minsn(&fine) > glint_cost_to_minsn(&coarse));
+    assert_true(glint_cost_convert_to_minsn(&fine) >
+                glint_cost_convert_to_minsn(&coarse));
     /* Counts also scale to half resolution. */
     then = plan.dials;
     then.flags |= GLINT_DIAL_HALF;

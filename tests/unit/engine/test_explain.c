@@ -111,7 +111,7 @@ TEST(explains_lights_outside_and_inside_the_model)
 
     make_test_frame(&frame);
     draw_explained_frame(&frame, lamps, N_LAMPS, &report);
-    assert_ok(glint_explain_frame(&e, &frame, 1));
+    assert_ok(glint_explain_open_for_frame(&e, &frame, 1));
     assert_explanation_matches_report(&e, &report);
     assert_int_equal(e.n_lights, 2);
     assert_int_equal(glint_explain_bundles(&e.all), 2 * 13 * 3);
@@ -147,8 +147,8 @@ TEST(light_is_linear_in_the_unit)
                    ? rgb[i] + rgb[i + 1] + rgb[i + 2]
                    : most;
     assert_true(most > 60);
-    assert_ok(glint_explain_frame(&e, &frame, 1));
-    assert_ok(glint_explain_frame(&twice, &frame, 2));
+    assert_ok(glint_explain_open_for_frame(&e, &frame, 1));
+    assert_ok(glint_explain_open_for_frame(&twice, &frame, 2));
     assert_true(e.all.brightest > 0.001 && e.all.brightest < 0.2);
     assert_true(fabs(twice.all.brightest - 2 * e.all.brightest) < 1e-12);
     assert_true(fabs(twice.all.flux - 2 * e.all.flux) < 1e-6 * e.all.flux);
@@ -183,7 +183,7 @@ TEST(every_reason_occurs)
         make_test_frame(&frame);
         frame.only_ghost = cases[i].only_ghost;
         draw_explained_frame(&frame, &cases[i].lamp, 1, &report);
-        assert_ok(glint_explain_frame(&e, &frame, 1));
+        assert_ok(glint_explain_open_for_frame(&e, &frame, 1));
         assert_true(e.all.of[cases[i].outcome] > 0);
         if (e.all.edges)
             assert_explanation_matches_report(&e, &report);
@@ -192,7 +192,7 @@ TEST(every_reason_occurs)
     }
     make_test_frame(&frame);
     draw_explained_frame(&frame, &lamps[2], 1, &report);
-    assert_ok(glint_explain_frame(&e, &frame, 1));
+    assert_ok(glint_explain_open_for_frame(&e, &frame, 1));
     assert_int_equal(glint_explain_bundles(&e.all), 0);
     assert_true(e.all.flux == 0);
     glint_explain_close(&e);
@@ -215,7 +215,7 @@ TEST(explains_bundles_dropped_for_memory)
                                          N_LAMPS));
     draw_explained_frame(&frame, lamps, N_LAMPS, &report);
     assert_true(report.stats.dropped_bundles > 0);
-    assert_ok(glint_explain_frame(&e, &frame, 1));
+    assert_ok(glint_explain_open_for_frame(&e, &frame, 1));
     assert_explanation_matches_report(&e, &report);
     glint_explain_close(&e);
     glint_frame_finish(&frame);
@@ -230,7 +230,7 @@ TEST(ghosts_are_sorted_by_light)
 
     make_test_frame(&frame);
     draw_explained_frame(&frame, lamps, N_LAMPS, &report);
-    assert_ok(glint_explain_frame(&e, &frame, 1));
+    assert_ok(glint_explain_open_for_frame(&e, &frame, 1));
     glint_explain_sort(&e, at);
     for (int i = 1; i < e.n_ghosts; i++)
         assert_true(e.ghost[at[i]].flux <= e.ghost[at[i - 1]].flux);
@@ -268,7 +268,7 @@ TEST(picture_shades_the_tiles_of_a_ghost)
         &frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
         &report);
     assert_true(report.tiles > 10 && report.tiles < 200);
-    assert_ok(glint_explain_frame(&e, &frame, 1));
+    assert_ok(glint_explain_open_for_frame(&e, &frame, 1));
     memset(rgb, 0, sizeof rgb);
     assert_ok(explain_draw_marks(&e, &title, &image, &marked));
     assert_int_equal(marked.width, WIDTH);

@@ -48,7 +48,7 @@ static double find_outline_radius(const struct glint_iris_sides *s, double phi)
     for (int i = 0; i < 60; i++) {
         const double r = 0.5 * (in + out);
 
-        if (glint_iris_edge_distance(s, r * cos(phi), r * sin(phi)) > 0)
+        if (glint_iris_compute_edge_distance(s, r * cos(phi), r * sin(phi)) > 0)
             in = r;
         else
             out = r;
@@ -118,7 +118,8 @@ static void check_outline_is_convex(const struct glint_setup *s,
                         (y[j] - y[i]) * (x[k] - x[j]) >
                     -1e-9);
     }
-    assert_true(fabs(area / GLINT_PI - glint_iris_area_fraction(s)) < 2e-4);
+    assert_true(fabs(area / GLINT_PI - glint_iris_compute_area_fraction(s)) <
+                2e-4);
 }
 
 TEST(outline_is_convex_and_has_its_area)
@@ -146,9 +147,10 @@ static void check_integer_stop_test(const struct glint_setup *s,
         x = v.stop_x_q16 / 65536.0;
         y = v.stop_y_q16 / 65536.0;
         for (int k = 0; k < stop.n_blades; k++) {
-            const double d = glint_iris_side_distance(sides, k, x, y);
+            const double d = glint_iris_compute_side_distance(sides, k, x, y);
             const double got =
-                (double)glint_side_distance_q16(&stop, k, &v) / 65536;
+                (double)glint_side_compute_signed_distance_q16(&stop, k, &v) /
+                65536;
 
             assert_true(fabs(got - d) < 5e-5);
         }
@@ -170,8 +172,8 @@ TEST(rounder_stop_passes_more_light)
             const struct glint_setup s =
                 make_iris_setup(blades[i], 0, roundness[k]);
 
-            assert_true(glint_iris_area_fraction(&s) > last);
-            last = glint_iris_area_fraction(&s);
+            assert_true(glint_iris_compute_area_fraction(&s) > last);
+            last = glint_iris_compute_area_fraction(&s);
         }
         assert_true(fabs(last - 1) < 1e-9);
     }
@@ -187,7 +189,7 @@ TEST(setup_rejects_values_out_of_range)
     struct glint_error error;
 
     s.n_wavelengths = 1;
-    s.direct_flux[0] = glint_iris_area_fraction(&s);
+    s.direct_flux[0] = glint_iris_compute_area_fraction(&s);
     assert_int_equal(glint_setup_iris(&s, &iris, &dirt, &error),
                      GLINT_E_ARGUMENT);
     iris.roundness = NAN;
@@ -198,6 +200,7 @@ TEST(setup_rejects_values_out_of_range)
     assert_true(fabs(s.direct_flux[0] - 1) < 1e-9);
     iris.roundness = 0;
     assert_ok(glint_setup_iris(&s, &iris, &dirt, &error));
-    assert_true(fabs(s.direct_flux[0] - glint_iris_area_fraction(&s)) < 1e-9);
+    assert_true(fabs(s.direct_flux[0] - glint_iris_compute_area_fraction(&s)) <
+                1e-9);
     assert_true(s.direct_flux[0] < 0.83);
 }

@@ -119,7 +119,7 @@ static double exposed_flare_peak(double asked, double peak, double mean,
     const struct glint_response_light drawn = {{peak, 0, 0}, {mean, 0, 0}};
     struct glint_strength s;
 
-    glint_strength_defaults(&s);
+    glint_strength_set_defaults(&s);
     s.asked = asked;
     s.scale = 1;
     glint_strength_correct_exposure(&s, &drawn, &seen);

@@ -69,7 +69,7 @@ static double flare_peak_of_still(double asked, const struct glint_response *r,
     struct glint_engine_lamp lamp = make_lamp_at_angle(theta, power);
     struct glint_strength s;
 
-    glint_strength_defaults(&s);
+    glint_strength_set_defaults(&s);
     s.asked = asked;
     return exposed_flare_peak(&s, r, &lamp, NULL, 1, 0);
 }
@@ -80,7 +80,7 @@ static struct glint_strength strength;
 
 TEST_BEFORE
 {
-    glint_strength_defaults(&strength);
+    glint_strength_set_defaults(&strength);
 }
 
 TEST(a_quarter_of_white_by_default)
@@ -204,7 +204,7 @@ static double corrected_flare_peak(double asked, double stops,
     struct glint_strength s;
     struct glint_engine_lamp lamp = make_lamp_at_angle(5, common);
 
-    glint_strength_defaults(&s);
+    glint_strength_set_defaults(&s);
     s.asked = asked;
     exposed_flare_peak(&s, &r, &lamp, NULL, 1, 0);
     assert_false(s.is_drawn);
@@ -372,7 +372,7 @@ TEST(strength_of_key_frames_applies_at_once)
     const struct glint_response r = make_lens_response(0, 7);
     struct glint_strength s;
 
-    glint_strength_defaults(&s);
+    glint_strength_set_defaults(&s);
     for (int i = 0; i < 7; i++) {
         struct glint_engine_lamp lamp = make_lamp_at_angle(5, common);
 
@@ -422,7 +422,7 @@ static void check_automatic_exposure_of_lens(const char *lens,
 
         /* azimuths for which the lamp is inside the image */
         lamp.lamp.phi_deg = 29 + 180 * (i % 2);
-        glint_strength_defaults(&s);
+        glint_strength_set_defaults(&s);
         glint_strength_expose_frame(&s, &r, &all, 0);
         assert_ok(glint_response_draw_and_measure(
             &frame, &lamp.lamp, 1, GLINT_RESPONSE_FINE, NULL, &drawn, NULL));

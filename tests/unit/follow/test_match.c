@@ -22,12 +22,12 @@ static uint32_t seed = 1;
 
 TEST_OPEN
 {
-    struct glint_arena arena = glint_arena_measure();
+    struct glint_arena arena = glint_arena_begin_measuring();
 
     glint_match_allocate(&match, &arena, MAX, MAX);
     if (posix_memalign(&mem, 64, arena.used) != 0)
         fail();
-    arena = glint_arena_over(mem, arena.used);
+    arena = glint_arena_init_in_memory(mem, arena.used);
     glint_match_allocate(&match, &arena, MAX, MAX);
 }
 

@@ -34,14 +34,14 @@ static void fill_with_random_bytes(const struct glint_image *image, int rare)
 
 static struct glint_bright *create_bright_scanner(int width, void **mem)
 {
-    struct glint_arena arena = glint_arena_measure();
+    struct glint_arena arena = glint_arena_begin_measuring();
     struct glint_bright *b = malloc(sizeof *b);
 
     assert_non_null(b);
     glint_bright_allocate(b, &arena, width);
     assert_int_equal(posix_memalign(mem, 64, arena.used), 0);
     memset(*mem, 0x5a, arena.used);
-    arena = glint_arena_over(*mem, arena.used);
+    arena = glint_arena_init_in_memory(*mem, arena.used);
     glint_bright_allocate(b, &arena, width);
     glint_bright_clear_padding(b, width);
     return b;

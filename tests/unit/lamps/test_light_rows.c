@@ -31,7 +31,7 @@ struct fixture {
 /* Sets up an image of random codes, many of which repeat the previous pixel. */
 static void make_random_image(struct fixture *f, enum glint_pixel_format format)
 {
-    struct glint_arena arena = glint_arena_measure();
+    struct glint_arena arena = glint_arena_begin_measuring();
     const size_t bytes = glint_image_bytes(format, WIDTH, HEIGHT);
     const int dark =
         /* right shift of random codes, bits: 0, or 4 for dark images */
@@ -59,7 +59,7 @@ static void make_random_image(struct fixture *f, enum glint_pixel_format format)
         if (pass == 0) {
             assert_int_equal(posix_memalign(&f->mem, 64, arena.used), 0);
             memset(f->mem, 0x5a, arena.used);
-            arena = glint_arena_over(f->mem, arena.used);
+            arena = glint_arena_init_in_memory(f->mem, arena.used);
         }
     }
     glint_bright_clear_padding(&f->bright, WIDTH);

@@ -221,7 +221,8 @@ TEST(grey_image_of_each_format_is_even)
             struct glint_image image = {.format = (uint8_t)format,
                                         .width = side[i][0],
                                         .height = side[i][1]};
-            struct glint_arena arena = glint_arena_over(block, sizeof block);
+            struct glint_arena arena =
+                glint_arena_init_in_memory(block, sizeof block);
             struct glint_around around;
             int32_t rgb_q15[3];
 

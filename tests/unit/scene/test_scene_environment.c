@@ -332,7 +332,7 @@ static const char *reopen_modified_file_error(struct drawn *d)
     struct glint_scene_model model;
     const char *reason = "";
 
-    glint_blob_seal(d->data, d->bytes);
+    glint_blob_set_size_and_checksum(d->data, d->bytes);
     assert_int_equal(glint_scene_open(&model, d->data, d->bytes, &reason),
                      GLINT_E_FORMAT);
     return reason;

@@ -85,7 +85,7 @@ static void set_stop_amplitudes(const struct stop *s)
                 const double row = k / 4;
                 const double y = (j + (row + 0.5) / 4 - FINE) / FINE;
 
-                if (glint_iris_edge_distance(&s->dirt->sides, x, y) < 0)
+                if (glint_iris_compute_edge_distance(&s->dirt->sides, x, y) < 0)
                     continue;
                 in += 1.0 / 16;
                 light += sqrt(glint_dirt_light(s->dirt, x, y)) / 16;

@@ -134,7 +134,7 @@ static void open_haze_scene(struct scene *s, int tile_log2, int n_workers,
                             uint32_t order)
 {
     const struct glint_veil_config cfg = {n_workers, WIDTH, HEIGHT, 1};
-    const size_t bytes = glint_veil_bytes(&cfg);
+    const size_t bytes = glint_veil_count_bytes(&cfg);
     uint32_t seed = 9;
 
     bare_flare_open(&s->bare, WIDTH, HEIGHT, tile_log2, n_workers, order);

@@ -35,7 +35,7 @@ static void open_veil_canvas(struct canvas *c, int width, int height,
                              int tile_log2, int n_workers, uint32_t order)
 {
     const struct glint_veil_config veil = {n_workers, width, height, 0};
-    const size_t bytes = glint_veil_bytes(&veil);
+    const size_t bytes = glint_veil_count_bytes(&veil);
 
     c->width = width;
     c->height = height;
@@ -408,9 +408,10 @@ TEST(extreme_lamps_give_valid_veils)
     }
     close_veil_canvas(&c);
     assert_int_equal(
-        glint_veil_bytes(&(struct glint_veil_config){0, 160, 90, 0}), 0);
-    assert_int_equal(glint_veil_bytes(&(struct glint_veil_config){1, 0, 90, 0}),
-                     0);
+        glint_veil_count_bytes(&(struct glint_veil_config){0, 160, 90, 0}), 0);
     assert_int_equal(
-        glint_veil_bytes(&(struct glint_veil_config){1, 160, 40000, 0}), 0);
+        glint_veil_count_bytes(&(struct glint_veil_config){1, 0, 90, 0}), 0);
+    assert_int_equal(
+        glint_veil_count_bytes(&(struct glint_veil_config){1, 160, 40000, 0}),
+        0);
 }
