@@ -43,9 +43,9 @@ enum glint_status
 glint_lamp_detector_open(struct glint_lamp_detector *detector,
                          const struct glint_lamp_finder_config *cfg);
 
-/* Like glint_lamp_detector_open(), for pictures of WIDTH x HEIGHT. A lamp
- * needs a pixel of at least threshold_ev[0] stops relative to white, and
- * extends down to threshold_ev[1] stops. */
+/* Like glint_lamp_detector_open(), for pictures of WIDTH x HEIGHT. A lamp needs
+ * a pixel of at least threshold_ev[0] stops relative to white; its region
+ * consists of the pixels of at least threshold_ev[1] stops. */
 enum glint_status
 glint_lamp_detector_open_at(struct glint_lamp_detector *detector, int width,
                             int height, const double threshold_ev[2]);

@@ -35,25 +35,25 @@ static const char magic[8] = "glintRS";
 /* ---------------------------------------------------------------------- key */
 
 /* Adds the bytes of WORD to the hash KEY (FNV-1a), the lowest byte first. */
-static void hash_word(uint64_t *key, uint64_t word)
+static void add_word_to_hash(uint64_t *key, uint64_t word)
 {
     for (int shift = 0; shift < 64; shift += 8)
         *key = (*key ^ (word >> shift & 255)) * UINT64_C(0x100000001b3);
 }
 
-static void hash_values(uint64_t *key, const double *value, size_t n)
+static void add_values_to_hash(uint64_t *key, const double *value, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         uint64_t word;
 
         memcpy(&word, &value[i], sizeof word);
-        hash_word(key, word);
+        add_word_to_hash(key, word);
     }
 }
 
 /* Adds stop and wavelengths of a setup to the hash KEY; all other members
  * follow from the model. */
-static void hash_setup(uint64_t *key, const struct glint_setup *s)
+static void add_setup_to_hash(uint64_t *key, const struct glint_setup *s)
 {
     const size_t n = (size_t)s->n_wavelengths;
     const double stop[] = {s->n_blades, s->blade_rotation_deg, s->opening,
@@ -63,28 +63,28 @@ static void hash_setup(uint64_t *key, const struct glint_setup *s)
                            own->dust_seed, s->clear};
     const struct glint_set_wave *w = s->set_wave;
 
-    hash_values(key, stop, sizeof stop / sizeof *stop);
+    add_values_to_hash(key, stop, sizeof stop / sizeof *stop);
     if (own->roundness > 0 || s->dirt)
-        hash_values(key, iris, sizeof iris / sizeof *iris);
-    hash_values(key, s->wavelength_nm, n);
-    hash_values(key, s->rgb[0], 3 * n);
-    hash_values(key, s->unit_flux, n);
+        add_values_to_hash(key, iris, sizeof iris / sizeof *iris);
+    add_values_to_hash(key, s->wavelength_nm, n);
+    add_values_to_hash(key, s->rgb[0], 3 * n);
+    add_values_to_hash(key, s->unit_flux, n);
     for (int i = 0; i < s->n_sets; i++) {
         const double size = s->set_size[i];
 
-        hash_values(key, &size, 1);
+        add_values_to_hash(key, &size, 1);
         for (int j = 0; j < s->set_size[i]; j++, w++) {
-            hash_values(key, &w->nm, 1);
-            hash_values(key, w->rgb, 3);
-            hash_values(key, &w->unit_flux, 1);
+            add_values_to_hash(key, &w->nm, 1);
+            add_values_to_hash(key, w->rgb, 3);
+            add_values_to_hash(key, &w->unit_flux, 1);
         }
     }
 }
 
 /* Adds to the hash KEY those quality parameters that affect brightness and that
  * glint_response_measure() does not set itself. */
-static void hash_quality_parameters(uint64_t *key,
-                                    const struct glint_frame *like)
+static void add_quality_parameters_to_hash(uint64_t *key,
+                                           const struct glint_frame *like)
 {
     const struct glint_dials *d = &like->asked;
     const double value[] = {
@@ -92,7 +92,7 @@ static void hash_quality_parameters(uint64_t *key,
         d->max_lights,       d->flags,         d->cull_codes,
         d->area_points,      like->apart_px,   like->cfg.tile_log2};
 
-    hash_values(key, value, sizeof value / sizeof *value);
+    add_values_to_hash(key, value, sizeof value / sizeof *value);
 }
 
 /* Returns the key of a response: a hash of model, library version, setup and
@@ -108,12 +108,12 @@ static uint64_t compute_cache_key(const struct glint_frame *like, size_t bytes)
     uint64_t key = UINT64_C(0xcbf29ce484222325);
 
     for (size_t i = 0; i < sizeof model / sizeof *model; i++)
-        hash_word(&key, model[i]);
+        add_word_to_hash(&key, model[i]);
     for (const char *c = GLINT_VERSION; *c; c++)
-        hash_word(&key, (unsigned char)*c);
-    hash_values(&key, shape, sizeof shape / sizeof *shape);
-    hash_setup(&key, like->setup);
-    hash_quality_parameters(&key, like);
+        add_word_to_hash(&key, (unsigned char)*c);
+    add_values_to_hash(&key, shape, sizeof shape / sizeof *shape);
+    add_setup_to_hash(&key, like->setup);
+    add_quality_parameters_to_hash(&key, like);
     return key;
 }
 

@@ -28,9 +28,12 @@ enum {
      * visible edge. */
     GLINT_SEEN_BRIGHT = 160,
     GLINT_SEEN_WHITE = 248,
-    GLINT_SEEN_FEW = 50, /* one pixel in 50 counts as few, one in 4 as many */
+    GLINT_SEEN_FEW = 50, /* a flare that is visible in fewer than 1/50 of the
+                            pixels counts as invisible, in 1/4 or more as a veil
+                            */
     GLINT_SEEN_MANY = 4,
-    GLINT_SEEN_DISC = 1000 /* one pixel in 1000: the area of a small ghost */
+    GLINT_SEEN_DISC = 1000 /* number of pixels per pixel of a small ghost: its
+                              area is 1/1000 of the picture */
 };
 
 /* The picture under the flare, sampled to a small size: full-range R'G'B'

@@ -53,8 +53,8 @@ struct glint_dim_method {
     /* Point to glint_dim_compute_own_rays_fraction_q8() and
      * glint_dim_compute_wave_ratio_q16().
      */
-    int (*own_rays_fraction_q8)(const struct glint_flare_frame *frame,
-                                const struct glint_light *light, int ghost);
+    int (*own_rays_q8)(const struct glint_flare_frame *frame,
+                       const struct glint_light *light, int ghost);
     int64_t (*wave_ratio_q16)(const struct glint_flare_frame *frame,
                               int32_t sine_q30, int ghost, int wave);
 };

@@ -247,10 +247,10 @@ static int compute_merge_cost_log2(const struct glint_light *a,
 
 /* The condition under which neighbours on the curve are merged. */
 struct rule {
-    uint64_t near2_q60; /* if not 0: max squared distance of lights that are
-                           merged */
-    int cost; /* if near2_q60 is 0: max compute_merge_cost_log2() of lights that
-                 are merged */
+    uint64_t near2_q60; /* if not 0: only lights whose squared distance is at
+                           most this are merged */
+    int cost; /* if near2_q60 is 0: only lights whose compute_merge_cost_log2()
+                 is at most this are merged */
     int most; /* number of lights at which merging stops */
 };
 

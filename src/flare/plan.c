@@ -318,9 +318,9 @@ static int compute_energy_shift(int64_t energy)
     return up > 0 ? up : 0;
 }
 
-static void set_cell_flux(struct glint_bundle *b,
-                          const struct glint_transfer *t,
-                          struct glint_real flux)
+static void set_flux_per_cell(struct glint_bundle *b,
+                              const struct glint_transfer *t,
+                              struct glint_real flux)
 {
     const int rows = b->n_cells - (t->annulus ? 2 : 0);
     const struct glint_real cell =
@@ -482,9 +482,8 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
         return GLINT_OUTCOME_CLOSED;
     planned->turn = choose_ghost_rotation(transfer, azimuth);
     transfer->sets = plan->sets;
-    share_q8 = plan->dims
-                   ? r->dim->method->own_rays_fraction_q8(r, b, planned->ghost)
-                   : GLINT_DIM_WHOLE_Q8;
+    share_q8 = plan->dims ? r->dim->method->own_rays_q8(r, b, planned->ghost)
+                          : GLINT_DIM_WHOLE_Q8;
     if (share_q8 == 0 && planned->wave != GLINT_DIM_WAVE)
         return GLINT_OUTCOME_OTHER_SET;
     colour = compute_bundle_colour(plan, b, planned, share_q8, bundle->rgb_q14);
@@ -516,7 +515,7 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
     bundle->n_cells =
         glint_plan_choose_cells(plan, s, transfer, planned->irradiance);
     glint_plan_set_sags(planned, s, transfer, bundle->n_cells, plan->round_q16);
-    set_cell_flux(bundle, transfer, planned->flux);
+    set_flux_per_cell(bundle, transfer, planned->flux);
     return GLINT_OUTCOME_DRAWN;
 }
 

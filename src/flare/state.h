@@ -65,7 +65,8 @@ struct glint_flare {
     struct glint_vertex *vertex;
     struct glint_by_edges *edges;
     void *reuse;                  /* state of cfg.reuse, or NULL without it */
-    enum glint_reusable reusable; /* GLINT_REUSABLE_NOT if cfg.reuse is NULL */
+    enum glint_reusable reusable; /* what of this frame can be reused;
+                                     GLINT_REUSABLE_NOT if cfg.reuse is NULL */
     struct glint_bins bins;
     struct glint_flare_worker *worker;
     /* tables for the pixel format of the picture that is being drawn */

@@ -66,8 +66,9 @@ static void trace_window_nodes(struct glint_window_nodes *n,
 /* Returns 1/4 of the second difference of output K around node (I, J): twice
  * the distance by which the output may deviate from a straight line between
  * nodes. At most about 2^31, as values are below 2^30. */
-static int64_t compute_second_difference(const struct glint_window_nodes *n,
-                                         int k, int i, int j)
+static int64_t
+compute_quarter_second_difference(const struct glint_window_nodes *n, int k,
+                                  int i, int j)
 {
     const int32_t(*at)[ACROSS] = n->at[k];
     const int x = i < 1 ? 1 : i > ACROSS - 2 ? ACROSS - 2 : i;
@@ -98,8 +99,10 @@ static void classify_node_by_stop(struct glint_window_nodes *n, int i, int j)
 {
     const int64_t x = n->at[GLINT_OUT_STOP_X][j][i];
     const int64_t y = n->at[GLINT_OUT_STOP_Y][j][i];
-    const int64_t bend_x = compute_second_difference(n, GLINT_OUT_STOP_X, i, j);
-    const int64_t bend_y = compute_second_difference(n, GLINT_OUT_STOP_Y, i, j);
+    const int64_t bend_x =
+        compute_quarter_second_difference(n, GLINT_OUT_STOP_X, i, j);
+    const int64_t bend_y =
+        compute_quarter_second_difference(n, GLINT_OUT_STOP_Y, i, j);
     const int64_t bend = bend_x > bend_y ? bend_x : bend_y;
 
     n->bend[j][i] = (int32_t)(bend < INT32_MAX ? bend : INT32_MAX);
@@ -122,7 +125,8 @@ static void classify_nodes_by_barrels(struct glint_window_nodes *n,
             for (int i = 0; i < ACROSS; i++)
                 n->beyond[j][i] |=
                     (uint32_t)(n->at[k][j][i] >
-                               one + compute_second_difference(n, k, i, j))
+                               one + compute_quarter_second_difference(n, k, i,
+                                                                       j))
                     << (8 + k);
     }
 }

@@ -144,7 +144,7 @@ int glint_lamp_tracker_was_cut(const struct glint_lamp_tracker *tracks)
     return tracks->was_cut;
 }
 
-static int has_tracks(const struct glint_lamp_tracker *tracks)
+static int has_any_track(const struct glint_lamp_tracker *tracks)
 {
     for (int i = 0; i < tracks->cfg.max_tracks; i++)
         if (tracks->record[i].id)
@@ -157,7 +157,7 @@ int32_t glint_lamp_tracker_white_q15(const struct glint_lamp_tracker *tracks,
 {
     const int32_t us = q_clamp_sat(elapsed_us, 0, MAX_ELAPSED_US);
 
-    return has_tracks(tracks)
+    return has_any_track(tracks)
                ? (1 << 15) - glint_pace_compute_fraction_q15(us, WHITE_US)
                : 0;
 }

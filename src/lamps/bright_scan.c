@@ -123,8 +123,8 @@ mark_bright_blocks_without_chroma(struct glint_bright *b, const uint8_t *px,
     return any;
 }
 
-/* Calls mark_bright_blocks_without_chroma() with a constant step, so that its
- * inner loops have constant bounds. */
+/* Calls mark_bright_blocks_without_chroma() with a constant number of bytes per
+ * pixel, so that its inner loops have constant bounds. */
 static int mark_bright_blocks_by_pixel_bytes(struct glint_bright *b,
                                              const uint8_t *px)
 {

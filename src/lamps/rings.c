@@ -239,7 +239,8 @@ static void add_sample_to_sector(void *ctx, const struct sample *s)
     sectors->n[i]++;
 }
 
-/* Mean light of one channel in a sector, and its number of samples. */
+/* The mean light of one channel in a sector, and the sector's number of
+ * samples. */
 struct part {
     int32_t mean_q20;
     int64_t n;

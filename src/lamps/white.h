@@ -50,8 +50,8 @@ int glint_white_find_brightness_of_rank(const struct glint_white *white,
 int32_t glint_white_compute_fraction_q15(const struct glint_white *white,
                                          int value);
 
-/* Returns log2 of LIGHT / white, in 1/256 stops, with an error of at most 1/256
- * stop. Light of 0 counts as 2^-20. */
+/* Returns log2 of LIGHT / white in 1/256 stops, with an error of at most 1/256
+ * stop; 0 counts as light of 2^-20. */
 int32_t glint_compute_light_log2_q8(int64_t light_q20);
 
 #endif

@@ -39,22 +39,23 @@ static void *allocate_reuse_state(struct glint_arena *a,
     return placed;
 }
 
-static uint64_t mix_into_digest(uint64_t digest, int64_t x)
+static uint64_t add_word_to_digest(uint64_t digest, int64_t x)
 {
     const uint64_t y = (digest ^ (uint64_t)x) * UINT64_C(0x9e3779b97f4a7c15);
 
     return y ^ y >> 29;
 }
 
-static uint64_t mix_real_into_digest(uint64_t digest, struct glint_real x)
+static uint64_t add_real_to_digest(uint64_t digest, struct glint_real x)
 {
-    return mix_into_digest(mix_into_digest(digest, x.mantissa), x.exponent);
+    return add_word_to_digest(add_word_to_digest(digest, x.mantissa),
+                              x.exponent);
 }
 
-static uint64_t mix_rgb_into_digest(uint64_t digest, const int32_t rgb_q14[3])
+static uint64_t add_rgb_to_digest(uint64_t digest, const int32_t rgb_q14[3])
 {
     for (int c = 0; c < 3; c++)
-        digest = mix_into_digest(digest, rgb_q14[c]);
+        digest = add_word_to_digest(digest, rgb_q14[c]);
     return digest;
 }
 
@@ -63,21 +64,21 @@ static uint64_t compute_frame_digest(const struct glint_flare_frame *r)
     uint64_t d = 1;
 
     for (int i = 0; i < r->n_waves; i++) {
-        d = mix_real_into_digest(mix_into_digest(d, r->wave[i].wave_q24),
-                                 r->wave[i].weight);
-        d = mix_rgb_into_digest(d, r->wave[i].rgb_q14);
+        d = add_real_to_digest(add_word_to_digest(d, r->wave[i].wave_q24),
+                               r->wave[i].weight);
+        d = add_rgb_to_digest(d, r->wave[i].rgb_q14);
     }
-    d = mix_into_digest(d, r->sets != NULL);
+    d = add_word_to_digest(d, r->sets != NULL);
     if (r->sets) {
         for (int i = 0; i < r->sets->n_sets; i++)
-            d = mix_into_digest(d, r->sets->size[i]);
-        d = mix_real_into_digest(mix_into_digest(d, r->sets->apart_q8),
-                                 r->sets->step);
+            d = add_word_to_digest(d, r->sets->size[i]);
+        d = add_real_to_digest(add_word_to_digest(d, r->sets->apart_q8),
+                               r->sets->step);
     }
-    d = mix_into_digest(d, r->tints != NULL);
+    d = add_word_to_digest(d, r->tints != NULL);
     for (uint32_t i = 0; r->tints && i < r->lens->header->n_ghosts; i++)
-        d = mix_rgb_into_digest(mix_real_into_digest(d, r->tints[i].gain),
-                                r->tints[i].rgb_q14);
+        d = add_rgb_to_digest(add_real_to_digest(d, r->tints[i].gain),
+                              r->tints[i].rgb_q14);
     return d;
 }
 

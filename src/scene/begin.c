@@ -65,7 +65,7 @@ int32_t glint_scene_find_object_box(const struct glint_scene *s,
     p->z[1] = seen[2] + p->reach;
     p->box = compute_ball_box(s, seen, p->reach + 2);
     p->margin = compute_sample_margin(s, seen, p->reach);
-    p->is_seen = !glint_box_empty(p->box);
+    p->is_seen = !glint_box_is_empty(p->box);
     return p->is_seen ? seen[2] - p->reach : GLINT_FAR;
 }
 

@@ -734,7 +734,7 @@ static void bin_triangles(struct glint_scene *s, int facing)
             if (facing != BOTH_SIDES && facing != is_facing_camera(s, k, t))
                 continue;
             b = compute_triangle_box(s, k, t, &is_small);
-            if (glint_box_empty(b))
+            if (glint_box_is_empty(b))
                 continue;
             if (facing != BOTH_SIDES)
                 glint_bins_put_item(&s->bins, b,
@@ -962,7 +962,8 @@ static void draw_triangle(struct glint_scene_worker *w, uint32_t id)
         w->touched, compute_triangle_box(s, object, t, &is_small));
     struct line line[3];
 
-    if (glint_box_empty(b) || (is_small && is_triangle_hidden(w, id, t, b)) ||
+    if (glint_box_is_empty(b) ||
+        (is_small && is_triangle_hidden(w, id, t, b)) ||
         !compute_edge_lines(s, object, t, line))
         return;
     if (!is_small || !draw_small_triangle(w, id, t, line, b))

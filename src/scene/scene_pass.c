@@ -423,7 +423,7 @@ static inline int draw_pixel_row(struct glint_scene_worker *w,
     const struct glint_scene *s = w->scene;
     const struct glint_box b = w->touched;
     const int y = rows->y + row;
-    const int is_in = !glint_box_empty(b) && y >= b.y0 && y < b.y1;
+    const int is_in = !glint_box_is_empty(b) && y >= b.y0 && y < b.y1;
     const int x0 = is_in ? b.x0 : w->tile.x1, x1 = is_in ? b.x1 : w->tile.x1;
     const uint32_t *id = &w->id[glint_sample_index(w, x0, y, 0)];
     int any = s->model.header->background != GLINT_BACKGROUND_CAMERA;

@@ -190,7 +190,7 @@ static int64_t list_shadow_casters(const struct glint_scene *s,
     for (int i = 0; i < shadow->n_things; i++) {
         const struct glint_box b = find_footprint_cells(&shadow->thing[i]);
 
-        if (!glint_box_empty(b))
+        if (!glint_box_is_empty(b))
             n += (int64_t)(b.x1 - b.x0) * (b.y1 - b.y0);
     }
     return n;
@@ -202,7 +202,7 @@ static void list_casters_by_cell(struct glint_shadow *shadow)
     for (int i = 0; i < shadow->n_things; i++) {
         const struct glint_box b = find_footprint_cells(&shadow->thing[i]);
 
-        if (!glint_box_empty(b))
+        if (!glint_box_is_empty(b))
             glint_bins_count_box(&shadow->bins, b);
     }
     glint_bins_convert_counts_to_starts(&shadow->bins);

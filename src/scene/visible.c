@@ -228,7 +228,7 @@ static int can_partly_occlude(const struct glint_placed *a,
 {
     return b->is_seen && b->object->kind == GLINT_OBJECT_SPHERE &&
            a->z[0] <= b->z[1] + 2 && b->z[0] <= a->z[1] + 2 &&
-           !glint_box_empty(glint_box_intersect(a->box, b->box));
+           !glint_box_is_empty(glint_box_intersect(a->box, b->box));
 }
 
 void glint_scene_set_flat_depths(struct glint_scene *s)
@@ -295,7 +295,7 @@ static void confine_catcher(const struct glint_scene *s,
             box = glint_box_unite(box, p->box);
     }
     plane->box = box;
-    plane->is_seen = !glint_box_empty(box);
+    plane->is_seen = !glint_box_is_empty(box);
 }
 
 void glint_scene_confine_catchers(struct glint_scene *s)
@@ -354,7 +354,7 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
         w->touched =
             glint_box_unite(w->touched, s->cfg.parts.motions->touch(s, tile));
     clear_tile_samples(w);
-    if (glint_box_empty(w->touched))
+    if (glint_box_is_empty(w->touched))
         return s->model.header->background != GLINT_BACKGROUND_CAMERA;
     for (int32_t i = has_triangles ? s->bins.start[at] : 0;
          has_triangles && i < s->bins.start[at + 1]; i++)
@@ -367,7 +367,7 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
         const struct glint_placed *placed = &s->placed[i];
         const struct glint_box b = glint_box_intersect(tile, placed->box);
 
-        if (!placed->is_seen || glint_box_empty(b))
+        if (!placed->is_seen || glint_box_is_empty(b))
             continue;
         for (int y = b.y0; placed->radius > 0 && y < b.y1; y++) {
             struct glint_box row = b;

@@ -19,8 +19,8 @@ static int compute_halo_and_core_reach(const struct glint_star *star,
            2;
 }
 
-static int is_box_within_reach(const struct glint_star_lamp *lamp,
-                               struct glint_box box, int far)
+static int is_box_within_lamp_reach(const struct glint_star_lamp *lamp,
+                                    struct glint_box box, int far)
 {
     const int x = lamp->x_q8 >> 8, y = lamp->y_q8 >> 8;
 
@@ -35,7 +35,7 @@ static void *begin_tile_row(const void *self, struct glint_box row, int worker)
 
     r->n_near = 0;
     for (int i = 0; i < star->n_lamps; i++)
-        if (is_box_within_reach(
+        if (is_box_within_lamp_reach(
                 &star->lamp[i], row,
                 q_larger(compute_halo_and_core_reach(star, &star->lamp[i]),
                          star->lamp[i].reach)))
@@ -53,8 +53,8 @@ static int select_tile_lamps(void *state, struct glint_box tile)
     for (int i = 0; i < r->n_near; i++) {
         const struct glint_star_lamp *lamp = &s->lamp[r->near[i]];
 
-        if (is_box_within_reach(lamp, tile,
-                                compute_halo_and_core_reach(s, lamp)) ||
+        if (is_box_within_lamp_reach(lamp, tile,
+                                     compute_halo_and_core_reach(s, lamp)) ||
             glint_star_can_lines_reach_box(s, lamp, tile))
             r->here[r->n_here++] = r->near[i];
     }

@@ -23,7 +23,7 @@ static struct glint_box find_tile_range(const struct glint_bins *bins,
     const struct glint_box *r = &bins->region;
     const int log2 = bins->tile_log2;
 
-    if (glint_box_empty(in))
+    if (glint_box_is_empty(in))
         return (struct glint_box){0, 0, 0, 0};
     return (struct glint_box){(in.x0 - r->x0) >> log2, (in.y0 - r->y0) >> log2,
                               ((in.x1 - 1 - r->x0) >> log2) + 1,

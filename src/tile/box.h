@@ -19,7 +19,7 @@ static inline struct glint_box glint_box_intersect(struct glint_box a,
         a.x1 < b.x1 ? a.x1 : b.x1, a.y1 < b.y1 ? a.y1 : b.y1};
 }
 
-static inline int glint_box_empty(struct glint_box b)
+static inline int glint_box_is_empty(struct glint_box b)
 {
     return b.x0 >= b.x1 || b.y0 >= b.y1;
 }
@@ -28,8 +28,8 @@ static inline int glint_box_empty(struct glint_box b)
 static inline struct glint_box glint_box_unite(struct glint_box a,
                                                struct glint_box b)
 {
-    if (glint_box_empty(a) || glint_box_empty(b))
-        return glint_box_empty(a) ? b : a;
+    if (glint_box_is_empty(a) || glint_box_is_empty(b))
+        return glint_box_is_empty(a) ? b : a;
     return (struct glint_box){
         a.x0 < b.x0 ? a.x0 : b.x0, a.y0 < b.y0 ? a.y0 : b.y0,
         a.x1 > b.x1 ? a.x1 : b.x1, a.y1 > b.y1 ? a.y1 : b.y1};

@@ -32,8 +32,8 @@ void glint_veil_count_cells(int width, int height, int cells[2])
     cells[1] = count_cells_along_side(height, longer);
 }
 
-static void allocate_axis(struct glint_arena *a, struct glint_veil_axis *axis,
-                          int side)
+static void allocate_cell_axis(struct glint_arena *a,
+                               struct glint_veil_axis *axis, int side)
 {
     enum { N = GLINT_VEIL_CELLS };
 
@@ -58,8 +58,8 @@ static struct glint_veil *allocate_veil(struct glint_arena *a,
     n = 3 * (size_t)cells[0] * (size_t)cells[1];
     placed = glint_arena_allocate(a, 1, sizeof *placed);
     v = placed ? placed : &measured;
-    allocate_axis(a, &v->across, c->width);
-    allocate_axis(a, &v->down, c->height);
+    allocate_cell_axis(a, &v->across, c->width);
+    allocate_cell_axis(a, &v->down, c->height);
     v->curve = glint_arena_allocate(a, 1, sizeof *v->curve);
     v->light_q16 = glint_arena_allocate(a, n, sizeof *v->light_q16);
     v->narrow = glint_arena_allocate(a, n, sizeof *v->narrow);

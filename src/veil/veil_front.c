@@ -50,9 +50,10 @@ static void interpolate_front_cover(const struct glint_veil_front *front, int y,
 
 /* Adds LIGHT times PART to N pixels. The unit of LIGHT is white 2^(DOWN - 16).
  */
-static void add_covered_code_light(const uint16_t *restrict light,
-                                   const uint16_t *restrict part_q16, int down,
-                                   int n, uint16_t *restrict to_q16)
+static void add_cover_weighted_code_light(const uint16_t *restrict light,
+                                          const uint16_t *restrict part_q16,
+                                          int down, int n,
+                                          uint16_t *restrict to_q16)
 {
     const uint16_t most = (uint16_t)(65535 >> down);
 
@@ -66,9 +67,9 @@ static void add_covered_code_light(const uint16_t *restrict light,
     }
 }
 
-static void add_covered_linear_light(const int32_t *light_q20,
-                                     const uint16_t *part_q16, int n,
-                                     int32_t *to_q20)
+static void add_cover_weighted_linear_light(const int32_t *light_q20,
+                                            const uint16_t *part_q16, int n,
+                                            int32_t *to_q20)
 {
     for (int x = 0; x < n; x++) /* both are at most 2^28 */
         to_q20[x] += (int32_t)q_shift((int64_t)light_q20[x] * part_q16[x], 16);
@@ -88,12 +89,12 @@ void glint_veil_add_front_row(const struct glint_veil_row *r,
         if (v->is_linear) {
             glint_veil_interpolate_row(r, v->front_q20, c, y, 0, NULL,
                                        light_q20);
-            add_covered_linear_light(light_q20, part_q16, n,
-                                     rows->light_q20[c]);
+            add_cover_weighted_linear_light(light_q20, part_q16, n,
+                                            rows->light_q20[c]);
         } else {
             glint_veil_interpolate_row(r, v->front_q20, c, y, v->front_down,
                                        light, NULL);
-            add_covered_code_light(light, part_q16, v->front_down - 4, n,
-                                   rows->light->rgb_q16[c][k]);
+            add_cover_weighted_code_light(light, part_q16, v->front_down - 4, n,
+                                          rows->light->rgb_q16[c][k]);
         }
 }

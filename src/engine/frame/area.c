@@ -41,7 +41,7 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
         const double points = count_lamp_sample_points(&lamps[i], &rule);
 
         more += points - 1;
-        /* each of these lamps rounds its number of points up */
+        /* each of these lamps will round its number of points up */
         n_wide += points > 1;
     }
     if (n_wide && more > room - n - n_wide)

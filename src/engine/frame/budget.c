@@ -135,9 +135,9 @@ static double predict_frame_ms(const struct glint_budget *b,
 
 /* Returns the best quality step whose predicted time with cut CUT fits the
  * budget, or 0 if none does; by binary search. */
-static int find_best_affordable_step(const struct glint_budget *b,
-                                     const struct glint_cost_plan *plan,
-                                     int cut)
+static int find_best_affordable_quality_step(const struct glint_budget *b,
+                                             const struct glint_cost_plan *plan,
+                                             int cut)
 {
     int low = 0, high = GLINT_BUDGET_STEPS;
 
@@ -206,7 +206,7 @@ static int choose_quality_step_and_cut(struct glint_budget *b,
     some.every = n;
     for (int cut = 0; cut < N_CUTS; cut++) {
         const int here = cut == 0 || does_cut_reduce_work(plan, cut)
-                             ? find_best_affordable_step(b, &some, cut)
+                             ? find_best_affordable_quality_step(b, &some, cut)
                              : -1;
         const double error =
             here < 0 ? HUGE_VAL : estimate_picture_error(b, &some, here, cut);

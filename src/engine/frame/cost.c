@@ -237,13 +237,13 @@ static double compute_mean_subdivisions_per_cell(const struct glint_shade *s,
     return n ? sum / n : 0;
 }
 
-/* Estimates the number of subdivisions of the cells G by the shade of PLAN, if
- * only those tables of the shade are used that have at most 2^LOG2_USED cells
- * per side.
+/* Estimates the total number of subdivisions of the cells G by the shade of
+ * PLAN, if only tables of the shade with at most 2^LOG2_USED cells per side are
+ * used.
  */
-static double estimate_subdivided_cell_count(const struct glint_cost_plan *plan,
-                                             const struct cells *g,
-                                             int log2_used)
+static double
+estimate_cell_subdivision_count(const struct glint_cost_plan *plan,
+                                const struct cells *g, int log2_used)
 {
     const struct glint_shade *s = plan->shade;
     const int skipped =
@@ -284,7 +284,7 @@ static void add_bundle_cost(struct glint_cost *cost,
         drawn * estimate_edge_row_count(b, log_steps, height);
     if (p->shade && p->shade->log2)
         cost->count[GLINT_COST_PARTS] +=
-            drawn * estimate_subdivided_cell_count(
+            drawn * estimate_cell_subdivision_count(
                         p,
                         &(struct cells){b->cells, b->light / b->rings, b->area,
                                         b->inside, b->view},

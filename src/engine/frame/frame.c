@@ -484,7 +484,8 @@ void glint_frame_set_area_sampling(struct glint_frame *frame, bool is_still,
 {
     const struct glint_dials *const asked = &frame->asked;
 
-    /* A program that draws videos may have lowered the number of points itself.
+    /* Nothing to restore: keeps the numbers of points that a program may have
+     * set itself to draw a video.
      */
     if (!is_still && !frame->picture.is_still)
         return;

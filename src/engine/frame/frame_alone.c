@@ -6,7 +6,7 @@
 #include "engine/frame/frame_parts.h"
 
 /* Returns the max magnitude of N values. */
-static uint32_t find_max_magnitude(const int32_t *linear_q20, size_t n)
+static uint32_t find_max_light_magnitude(const int32_t *linear_q20, size_t n)
 {
     uint32_t peak = 0;
 
@@ -62,8 +62,8 @@ enum glint_status glint_frame_draw_flare_alone(
         memset(linear_q20, 0, n * sizeof *linear_q20);
         status = glint_frame_draw(frame, lamps, n_lamps, exp2(scale.likely),
                                   &layer, report);
-        up =
-            choose_picture_scale_log2(find_max_magnitude(linear_q20, n), scale);
+        up = choose_picture_scale_log2(find_max_light_magnitude(linear_q20, n),
+                                       scale);
         scale.likely += i < 3 ? up : 0;
     }
     for (size_t i = 0; i < n && status == GLINT_OK; i++)

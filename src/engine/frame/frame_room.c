@@ -70,8 +70,8 @@ static size_t compute_frame_memory_limit(const struct glint_frame *f)
 /* Returns the frame's configuration with the capacities that STATS, the result
  * of binning, needs. */
 static struct glint_flare_config
-make_needed_config(const struct glint_frame *f,
-                   const struct glint_flare_stats *s)
+make_config_with_needed_capacity(const struct glint_frame *f,
+                                 const struct glint_flare_stats *s)
 {
     struct glint_flare_config needed = f->cfg;
 
@@ -82,15 +82,15 @@ make_needed_config(const struct glint_frame *f,
     return needed;
 }
 
-/* Returns the bytes that the configuration of make_needed_config() needs with
- * one worker and UNEVEN times the primitives, so that the result does not
- * depend on the number of workers. Sets FIXED to the part of these bytes that
- * coarser grids do not save. */
+/* Returns the bytes that the configuration of
+ * make_config_with_needed_capacity() needs with one worker and UNEVEN times the
+ * primitives, so that the result does not depend on the number of workers. Sets
+ * FIXED to the part of these bytes that coarser grids do not save. */
 static double estimate_flare_bytes(const struct glint_frame *f,
                                    const struct glint_flare_stats *s,
                                    double *fixed)
 {
-    struct glint_flare_config needed = make_needed_config(f, s);
+    struct glint_flare_config needed = make_config_with_needed_capacity(f, s);
     double bytes;
 
     needed.workers = NULL;
@@ -340,7 +340,8 @@ size_t glint_frame_count_used_bytes(const struct glint_frame *f,
 size_t glint_frame_count_needed_bytes(const struct glint_frame *f,
                                       const struct glint_flare_stats *s)
 {
-    const struct glint_flare_config needed = make_needed_config(f, s);
+    const struct glint_flare_config needed =
+        make_config_with_needed_capacity(f, s);
 
     return f->limits.tight > 0 ? f->limits.tight_bytes
                                : glint_flare_bytes(&needed);

@@ -256,8 +256,8 @@ static double compute_offscreen_fraction(const struct glint_frame *f,
     return sum / fmax(v->glare + haze, 1e-9);
 }
 
-/* Additional cost of a pixel for dirt on the front element / cost of a pixel
- * without. */
+/* Cost that dirt on the front element adds to a pixel / cost of the pixel
+ * without it. */
 static const double front_pixels = 0.4;
 
 /* The unit of cost is drawing one pixel; convolving the light of one cell with

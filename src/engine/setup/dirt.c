@@ -166,7 +166,8 @@ static int find_node_roughness(const uint16_t *fine, const uint8_t *rough,
     return most < 255 ? most : 255;
 }
 
-/* Returns a digest of the N nodes and the sides of D, never 0 (FNV-1a). */
+/* Returns a digest (FNV-1a) of D's stop sides and of the N nodes of its table;
+ * never 0. */
 static uint64_t compute_shade_digest(const struct glint_dirt *d, int n)
 {
     uint64_t mark = UINT64_C(0xcbf29ce484222325);

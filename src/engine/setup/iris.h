@@ -14,9 +14,9 @@ struct glint_iris_sides {
     int n; /* number of sides; 0: circle */
     bool arcs;
     double apothem;
-    double round, off; /* curvature of arcs (round); distance of their centres
-                          from the stop's centre, times the curvature (off). 0
-                          and 1 for straight sides */
+    double round, off; /* round: curvature of arcs, 0 for straight sides; off:
+                          distance of the arcs' centres from the stop's centre
+                          times the curvature, 1 for straight sides */
     double normal[GLINT_MAX_BLADES][2]; /* outward unit normal of each side */
 };
 

@@ -128,7 +128,7 @@ static void set_spectrum_weights(struct glint_psf *p)
         }
 }
 
-static void set_line_profile(struct glint_psf *p)
+static void compute_line_profile(struct glint_psf *p)
 {
     for (int k = 0; k <= GLINT_PSF_PROFILE; k++) {
         const double v = span * k / GLINT_PSF_PROFILE;
@@ -144,7 +144,7 @@ static void set_line_profile(struct glint_psf *p)
 
 /* Sets the smooth profile: at each position the mean of the profile over one
  * fringe. */
-static void set_smooth_profile(struct glint_psf *p)
+static void compute_smooth_line_profile(struct glint_psf *p)
 {
     const int half = (int)(0.6 / span * GLINT_PSF_PROFILE);
 
@@ -270,7 +270,7 @@ static const double circle_round = 0.98;
 
 /* Moves the edge of a soft stop to the middle of its slope: scales airy_px to
  * the smaller stop, and SOFT to its radius. */
-static void apply_soft_edge(struct glint_psf *p, double soft)
+static void move_soft_edge_to_slope_middle(struct glint_psf *p, double soft)
 {
     const double apothem = p->n_blades ? cos(GLINT_PI / p->n_blades) : 1;
     const double size = fmax(1 - 0.5 * soft / apothem, 0.1);
@@ -322,10 +322,10 @@ enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
         psf->normal[i][1] = -sin(a);
     }
     set_spectrum_weights(psf);
-    set_line_profile(psf);
-    set_smooth_profile(psf);
+    compute_line_profile(psf);
+    compute_smooth_line_profile(psf);
     if (soft > 0 && !(n && is_straight))
-        apply_soft_edge(psf, soft);
+        move_soft_edge_to_slope_middle(psf, soft);
     if (n && !is_straight)
         set_fan_arcs(psf, round);
     if (psf->fans && glint_fans_make_table(psf) != GLINT_OK)

@@ -20,8 +20,9 @@ static const double step_q = 1.0 / GLINT_SMEAR_SPAN, edge_q = 112;
 struct totals {
     double light, area; /* integrals of the transmission T and of the clear
                            stop, stop radii^2 */
-    double rim, n_rim;  /* sum of the relative amplitude over the cells along
-                           the outline, and their number */
+    double rim, n_rim;  /* sum of amplitude with dirt / amplitude of the clear
+                           stop over the cells along the outline, and number of
+                           these cells */
 };
 
 /* ------------------------------------------------------------------ fields */

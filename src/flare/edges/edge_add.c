@@ -486,7 +486,8 @@ void glint_edges_add_to_sums(struct glint_edge_sums *sums,
                              const int32_t *ref, int n_refs)
 {
     const int64_t most = MOST_NARROW * 256;
-    int64_t far = 0; /* bound on light times area, in the units of the sums */
+    int64_t far = 0; /* upper bound of how far a running sum (light times area)
+                        deviates from its start, in the units of the sums */
 
     sums->in_narrow = 0;
     if (!sums->linear)

@@ -229,8 +229,8 @@ void glint_ghost_add_clipped_primitive(struct glint_ghost_edges *g,
         turned[i] = corner[c.area2_q16 >= 0 ? i : n - 1 - i];
     glint_corners_set(&c, turned, n);
     cut = glint_outline_classify_primitive(&c, g->stop);
-    if (cut < 0 || glint_box_empty(glint_corners_compute_pixel_box(&c, g->width,
-                                                                   g->height)))
+    if (cut < 0 || glint_box_is_empty(glint_corners_compute_pixel_box(
+                       &c, g->width, g->height)))
         return;
     cut |= cut && (g->transfer || g->rays) ? GLINT_CUT_LOWERED : 0;
     thin = glint_corners_are_thin(&c);

@@ -38,7 +38,8 @@ static int choose_rings_log2(const struct glint_ghost_edges *g)
         log2 = codes_log2 < log2 ? codes_log2 : log2;
     }
     if (g->irradiance.mantissa) {
-        /* (2 * pixels)^2 = area * soft^2 */
+        /* the width of the soft edge in pixels, squared and times 4: area of
+         * the ghost in pixels^2 * soft^2 */
         const struct glint_real soft = real_of(g->stop->shade->soft_q16, -16);
         const struct glint_real pixels2 = real_times(
             real_over(g->flux, g->irradiance), real_times(soft, soft));

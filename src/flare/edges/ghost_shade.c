@@ -199,7 +199,7 @@ static int set_patch_box(struct glint_patch *p,
                                                     (high[0] + 255) >> 8,
                                                     (high[1] + 255) >> 8},
                                  (struct glint_box){0, 0, g->width, g->height});
-    return !glint_box_empty(p->box);
+    return !glint_box_is_empty(p->box);
 }
 
 static void set_patch_level(struct glint_patch *p, const struct glint_shade *s)

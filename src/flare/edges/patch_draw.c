@@ -171,7 +171,8 @@ struct place {
                            matter */
 };
 
-static struct place find_stop_position(const struct draw *d, int y, int x)
+static struct place compute_stop_position_of_pixel(const struct draw *d, int y,
+                                                   int x)
 {
     const struct glint_patch *p = &d->patch;
     const uint32_t dx = (uint32_t)(d->box.x0 - p->box.x0 + x);
@@ -234,7 +235,7 @@ static inline void advance_stop_position(struct place *at,
  * the stop is AT. For linear pictures each pixel is computed; for codes every
  * second pixel, and the others are means of their neighbours. Returns nonzero
  * if any area is nonzero. */
-static int32_t set_run_areas(struct draw *d, struct place at, int x)
+static int32_t compute_run_areas(struct draw *d, struct place at, int x)
 {
     int32_t any = 0, area = compute_pixel_area(d, &at);
 
@@ -262,18 +263,18 @@ static int32_t set_run_areas(struct draw *d, struct place at, int x)
  * contain pixels of FROM .. END - 1. Runs begin at multiples of their length,
  * so that the picture does not depend on tiles. Returns whether any area is
  * nonzero. */
-static int set_uncut_row_areas(struct draw *d, int y, int from, int end)
+static int compute_uncut_row_areas(struct draw *d, int y, int from, int end)
 {
     int any = 0;
 
     for (int x = from & ~(RUN - 1); x < end; x += RUN) {
-        const struct place at = find_stop_position(d, y, x);
+        const struct place at = compute_stop_position_of_pixel(d, y, x);
 
         if (d->run_q15 && is_run_uniform(d, at))
             for (int i = 0; i < RUN; i++)
                 d->area[x + i] = 0;
         else
-            any |= set_run_areas(d, at, x);
+            any |= compute_run_areas(d, at, x);
     }
     return any;
 }
@@ -286,12 +287,12 @@ static void scale_pixel_area(struct draw *d, int x, int32_t cover_q16)
 /* Sets the areas of row Y in the columns FROM .. END - 1, which the patch may
  * touch, weighted by the covered fraction of each pixel. Returns 0 if all areas
  * are 0. */
-static int set_row_areas(struct draw *d, int y, int from, int end)
+static int compute_patch_row_areas(struct draw *d, int y, int from, int end)
 {
     int32_t cover;
     int x = from, last = end;
 
-    if (!set_uncut_row_areas(d, y, from, end))
+    if (!compute_uncut_row_areas(d, y, from, end))
         return 0;
     for (; x < last && (cover = compute_pixel_cover_q16(d, x)) < ONE_Q16; x++)
         scale_pixel_area(d, x, cover);
@@ -363,10 +364,10 @@ static void add_areas_to_wide_sums(uint64_t *row, const int32_t *area, int n,
     }
 }
 
-/* Adds LIGHT times the areas of row Y in the columns FROM .. END - 1 to the
- * sums. */
-static void add_row_to_sums(const struct draw *d, int narrow, int y, int from,
-                            int end, const int64_t light[3])
+/* Adds LIGHT times the areas (convert_light_to_area()) of the pixels of row Y
+ * in the columns FROM .. END - 1 to the sums of the tile. */
+static void add_patch_row_to_sums(const struct draw *d, int narrow, int y,
+                                  int from, int end, const int64_t light[3])
 {
     const struct glint_edge_sums *s = d->sums;
     const int row = d->box.y0 + y - s->tile.y0;
@@ -414,7 +415,7 @@ void glint_patch_draw(const struct glint_edge_sums *sums, int narrow,
     glint_patch_read_slots(&d->patch, e);
     d->sums = sums;
     d->box = glint_box_intersect(d->patch.box, sums->tile);
-    if (glint_box_empty(d->box))
+    if (glint_box_is_empty(d->box))
         return;
     d->box.x0 &= ~(RUN - 1);
     set_shade_levels(d);
@@ -425,7 +426,7 @@ void glint_patch_draw(const struct glint_edge_sums *sums, int narrow,
         if (from >= end)
             continue;
         find_cutting_sides(d, y, from, end);
-        if (set_row_areas(d, y, from, end))
-            add_row_to_sums(d, narrow, y, from, end, light);
+        if (compute_patch_row_areas(d, y, from, end))
+            add_patch_row_to_sums(d, narrow, y, from, end, light);
     }
 }

@@ -178,7 +178,7 @@ static void append_line(struct glint_scene *s, const int32_t a[3],
         l->along_q14[k] = (int32_t)q_shift(unit_q30[k], 16);
     l->z = v[0][2] / 2 + v[1][2] / 2;
     set_line_box(s, l, end, most + 128);
-    s->motion->n_layers += !glint_box_empty(l->box) && l->length_q8 > 0;
+    s->motion->n_layers += !glint_box_is_empty(l->box) && l->length_q8 > 0;
 }
 
 /* Moves point A by STEPS towards B; returns 0 if B is nearer than STEPS. */
