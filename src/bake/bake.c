@@ -25,11 +25,12 @@ struct bake_run {
     struct glint_setup setup;
     struct glint_setup beside[GLINT_MAX_BESIDE];
     struct glint_brightness brightness;
-    /* fits of each ghost, [n_ghosts] */
+    /* fitted polynomials of each ghost, [n_ghosts] */
     struct glint_fitted_ghost *fitted;
     /* integer polynomials, [n_ghosts][n_systems] */
     struct glint_quantised_system **quantised;
-    /* [n_ghosts]: result of the current step of each ghost */
+    /* [n_ghosts]: status of the current step (fitting, quantising) of each
+     * ghost */
     enum glint_status *status;
     struct glint_draft draft;
     /* [n_ghosts]: index of each ghost's first system in the model */
@@ -52,10 +53,11 @@ static struct glint_visible *allocate_visibility(const struct bake_run *run,
     struct glint_visible *const v = calloc((size_t)n + 1, sizeof *v);
 
     for (int k = 0; v && k <= n; k++) {
-        glint_visible_init(&v[k], k ? &run->beside[k - 1] : &run->setup, ghost,
-                           glint_bake_field_mm(run->lens, &run->options),
-                           run->options.band_nm);
-        glint_visible_reach(&v[k], run->options.max_deg);
+        glint_visible_init(
+            &v[k], k ? &run->beside[k - 1] : &run->setup, ghost,
+            glint_bake_get_field_radius_mm(run->lens, &run->options),
+            run->options.band_nm);
+        glint_visible_set_max_angle(&v[k], run->options.max_deg);
     }
     if (v) {
         v->beside = v + 1;
@@ -75,7 +77,7 @@ static enum glint_status quantise_ghost(struct bake_run *run, int ghost)
         return GLINT_E_MEMORY;
     run->quantised[ghost] = system;
     for (int i = 0; i < f->n_systems && status == GLINT_OK; i++)
-        status = glint_quantise(&f->system[i], &system[i]);
+        status = glint_quantise_system(&f->system[i], &system[i]);
     return status;
 }
 
@@ -88,7 +90,8 @@ static void report_bake_progress(struct bake_run *run)
     const struct glint_bake_options *o = &run->options;
 
     if (o->progress)
-        o->progress(o->progress_ctx, FITTED * glint_effort_done(&run->effort));
+        o->progress(o->progress_ctx,
+                    FITTED * glint_effort_estimate_progress(&run->effort));
 }
 
 /* context of report_fit_work() for one ghost */
@@ -98,9 +101,10 @@ struct fit_report {
     double work;         /* work reported by the last call, in zone fits */
 };
 
-/* Records the WORK done so far for a ghost, zone fits, and the fraction SHARE
- * of its angles that are done. Returns GLINT_E_UNSUPPORTED, without an error
- * text, if the caller's allow() denies more work. */
+/* Records progress for a ghost: WORK, the number of zone fits done so far, and
+ * SHARE, the fraction of the ghost's angles that are finished. Returns
+ * GLINT_E_UNSUPPORTED, without an error text, if the caller's allow() denies
+ * more work. */
 static enum glint_status report_fit_work(void *ctx, double work, double share)
 {
     struct fit_report *const r = ctx;
@@ -109,20 +113,21 @@ static enum glint_status report_fit_work(void *ctx, double work, double share)
 
     r->work = work;
     if (r->shows_progress) {
-        glint_effort_spend(&r->run->effort, work, share);
+        glint_effort_record_work(&r->run->effort, work, share);
         report_bake_progress(r->run);
     }
     return !o->allow || o->allow(o->allow_ctx, more) ? GLINT_OK
                                                      : GLINT_E_UNSUPPORTED;
 }
 
-/* Factor on all tolerances of lenses that are not round. Their directions
- * have two components, so errors of tenths of a pixel would need many times
- * as many systems. */
+/* Factor on all tolerances of lenses that are not round. Light directions then
+ * have two components; with the tolerances of round lenses, tenths of a pixel
+ * would cost many times as many systems. */
 #define SKEW_TOLERANCE 1.5
 
-/* Factor on the energy tolerance of lenses that are not round. It is
- * smaller, as dividing the band reduces energy errors cheaply. */
+/* Factor on the energy tolerance of lenses that are not round. Smaller than
+ * SKEW_TOLERANCE because dividing the band reduces energy errors at little
+ * cost. */
 #define SKEW_ENERGY 0.7
 
 static enum glint_status fit_ghost(struct bake_run *run, int ghost,
@@ -136,8 +141,8 @@ static enum glint_status fit_ghost(struct bake_run *run, int ghost,
         .faint_sensor_mm = 0.07 * t * film / 1920,
         .edge_mm = 0.04 * t * film / 1920,
         .stop = 4.5e-4 * t,
-        /* 1/16 of stop; smaller for lenses faster than GLINT_WIDE, as the model
-         * is also used for all smaller stops */
+        /* 1/16 of the max stop tolerance; less for lenses faster than
+         * GLINT_WIDE, because the model is also used for all smaller stops */
         .stop_least = 2.7e-5 * t * fmin(1, run->lens->f_number / GLINT_WIDE),
         .barrel = 4e-4 * t,
         .escape = 1e-3 * t,
@@ -150,8 +155,8 @@ static enum glint_status fit_ghost(struct bake_run *run, int ghost,
         .brightness = &run->brightness};
     enum glint_status (*const fit)(
         const struct glint_visible *, double, const struct glint_tolerance *,
-        glint_fit_told_fn *, void *, struct glint_fitted_ghost *) =
-        round ? glint_fit_ghost : glint_skew_fit;
+        glint_fit_progress_fn *, void *, struct glint_fitted_ghost *) =
+        round ? glint_fit_ghost : glint_skew_fit_ghost;
     struct glint_visible *const visible =
         allocate_visibility(run, ghost, run->options.n_beside);
     struct fit_report report = {run, shows_progress, 0};
@@ -176,13 +181,13 @@ static void run_fit_job(void *ctx, int ghost, int worker)
         return;
     }
     if (worker == 0)
-        glint_effort_begin(&run->effort, ghost);
+        glint_effort_begin_ghost(&run->effort, ghost);
     run->status[ghost] = run->options.ghosts && !run->options.ghosts[ghost]
                              ? GLINT_OK
                              : fit_ghost(run, ghost, worker == 0);
     if (worker != 0)
         return;
-    glint_effort_end(&run->effort);
+    glint_effort_end_ghost(&run->effort);
     report_bake_progress(run);
 }
 
@@ -196,7 +201,7 @@ static void run_quantise_job(void *ctx, int ghost, int worker)
 static void run_measure_job(void *ctx, int ghost, int worker)
 {
     struct bake_run *run = ctx;
-    const struct glint_lens lens = glint_draft_lens(&run->draft);
+    const struct glint_lens lens = glint_draft_get_lens(&run->draft);
     struct glint_visible *const visible = allocate_visibility(run, ghost, 0);
 
     (void)worker;
@@ -206,9 +211,9 @@ static void run_measure_job(void *ctx, int ghost, int worker)
     for (int i = 0; i < run->fitted[ghost].n_systems; i++) {
         struct glint_measured m;
 
-        glint_measure_system(visible, &lens, run->first[ghost] + i,
-                             &run->fitted[ghost].system[i], &m);
-        glint_draft_note(&run->draft, run->first[ghost] + i, &m);
+        glint_measure_system_errors(visible, &lens, run->first[ghost] + i,
+                                    &run->fitted[ghost].system[i], &m);
+        glint_draft_write_errors(&run->draft, run->first[ghost] + i, &m);
         run->intruders[ghost] += m.intruders;
         run->rays[ghost] += m.rays;
     }
@@ -216,7 +221,7 @@ static void run_measure_job(void *ctx, int ghost, int worker)
     free(visible);
 }
 
-/* A loop that runs one short job per ghost. */
+/* Context of a loop that runs one short job per ghost. */
 struct round {
     struct bake_run *run;
     glint_job_fn *job;
@@ -238,7 +243,7 @@ static void run_ghost_job(void *ctx, int job, int worker)
     o->progress(o->progress_ctx, r->from + (r->to - r->from) * job / n);
 }
 
-static enum glint_status get_first_ghost_error(const struct bake_run *run)
+static enum glint_status find_first_ghost_error(const struct bake_run *run)
 {
     for (int i = 0; i < run->setup.n_ghosts; i++)
         if (run->status[i] != GLINT_OK)
@@ -256,7 +261,7 @@ static enum glint_status run_jobs_for_ghosts(struct bake_run *run,
                       &round);
     if (run->options.progress)
         run->options.progress(run->options.progress_ctx, to);
-    return get_first_ghost_error(run);
+    return find_first_ghost_error(run);
 }
 
 static enum glint_effort_kind
@@ -278,15 +283,15 @@ static enum glint_status fit_ghosts(struct bake_run *run)
                       glint_workers_count(o->workers),
                       choose_effort_kind(run->lens));
     if (!glint_prescription_is_round(run->lens)) {
-        glint_skew_work(run->lens, run->setup.n_ghosts, o->max_deg,
-                        o->tolerance, &head, &typical);
-        glint_effort_expect(&run->effort, head, typical);
+        glint_skew_estimate_work(run->lens, run->setup.n_ghosts, o->max_deg,
+                                 o->tolerance, &head, &typical);
+        glint_effort_set_estimates(&run->effort, head, typical);
     }
     report_bake_progress(run);
     glint_workers_run(o->workers, run->setup.n_ghosts, run_fit_job, run);
     if (o->progress)
         o->progress(o->progress_ctx, FITTED);
-    return get_first_ghost_error(run);
+    return find_first_ghost_error(run);
 }
 
 /* ----------------------------------------------------------------- pipeline */
@@ -319,8 +324,8 @@ static enum glint_status split_ghosts_into_parts(struct bake_run *run)
                 return GLINT_E_LENS;
             }
             s->ghost[s->n_ghosts] = s->ghost[ghost];
-            status = glint_fitted_part(&run->fitted[ghost], part,
-                                       &run->fitted[s->n_ghosts]);
+            status = glint_fitted_move_part(&run->fitted[ghost], part,
+                                            &run->fitted[s->n_ghosts]);
             s->n_ghosts++;
             s->n_parts++;
         }
@@ -349,9 +354,9 @@ static void free_ghost_arrays(struct bake_run *run)
     for (int g = 0; g < run->setup.n_ghosts && run->fitted && run->quantised;
          g++) {
         for (int i = 0; i < run->fitted[g].n_systems && run->quantised[g]; i++)
-            glint_quantised_finish(&run->quantised[g][i]);
+            glint_quantised_free_system(&run->quantised[g][i]);
         free(run->quantised[g]);
-        glint_fitted_finish(&run->fitted[g]);
+        glint_fitted_free_ghost(&run->fitted[g]);
     }
     free(run->fitted);
     free(run->quantised);
@@ -362,7 +367,8 @@ static void free_ghost_arrays(struct bake_run *run)
     free(run->draft.data);
 }
 
-/* Checks that glint_lens_open() accepts the finished model. */
+/* Checks that glint_lens_open(), which the run time calls, accepts the finished
+ * model. */
 static enum glint_status check_model_opens(const struct bake_run *run)
 {
     struct glint_lens lens;
@@ -382,13 +388,13 @@ static enum glint_status bake_model(struct bake_run *run)
     enum glint_status status = allocate_ghost_arrays(run);
 
     if (status == GLINT_OK)
-        status = glint_model_header_of(run->lens, &run->options, &run->setup,
-                                       &header);
+        status = glint_model_set_header(run->lens, &run->options, &run->setup,
+                                        &header);
     if (status == GLINT_OK)
-        status = glint_brightness_find(
+        status = glint_brightness_find_levels(
             &run->brightness, &run->setup,
-            glint_bake_field_mm(run->lens, &run->options), run->options.max_deg,
-            run->options.band_nm, run->options.workers);
+            glint_bake_get_field_radius_mm(run->lens, &run->options),
+            run->options.max_deg, run->options.band_nm, run->options.workers);
     if (status == GLINT_OK)
         status = fit_ghosts(run);
     if (status == GLINT_OK)
@@ -396,8 +402,8 @@ static enum glint_status bake_model(struct bake_run *run)
     if (status == GLINT_OK)
         status = run_jobs_for_ghosts(run, run_quantise_job, FITTED, QUANTISED);
     if (status == GLINT_OK)
-        status = glint_draft_write(&run->draft, &run->setup, &header,
-                                   run->fitted, run->quantised);
+        status = glint_draft_write_model(&run->draft, &run->setup, &header,
+                                         run->fitted, run->quantised);
     if (status != GLINT_OK)
         return status;
     for (int g = 1; g < run->setup.n_ghosts; g++)
@@ -409,8 +415,8 @@ static enum glint_status bake_model(struct bake_run *run)
     return check_model_opens(run);
 }
 
-static void sum_bake_report(const struct bake_run *run,
-                            struct glint_bake_report *r)
+static void compute_bake_report(const struct bake_run *run,
+                                struct glint_bake_report *r)
 {
     *r = (struct glint_bake_report){0, 0, 0};
     for (int g = 0; g < run->setup.n_ghosts; g++) {
@@ -421,8 +427,8 @@ static void sum_bake_report(const struct bake_run *run,
     }
 }
 
-/* Initialises the neighbouring zoom positions. Rejects positions of another
- * lens. */
+/* Initialises setups for the neighbouring zoom positions. Rejects a position
+ * that belongs to another lens. */
 static enum glint_status init_neighbour_setups(struct bake_run *run,
                                                const double rgb_nm[3])
 {
@@ -464,7 +470,7 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
     run->lens = lens;
     run->options = *options;
     run->error = error;
-    status = glint_bake_check(options, error);
+    status = glint_bake_check_options(options, error);
     if (status == GLINT_OK)
         status = glint_setup_init(&run->setup, lens, 0, 0, rgb_nm, 3, error);
     if (status == GLINT_OK)
@@ -477,7 +483,7 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
                      "overflow",
                      lens->name);
         if (status == GLINT_OK) {
-            sum_bake_report(run, report);
+            compute_bake_report(run, report);
             *model = run->draft.data;
             *bytes = run->draft.bytes;
             run->draft.data = NULL;

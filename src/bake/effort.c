@@ -3,18 +3,20 @@
 
 #include <math.h>
 
-/* Estimated work in zone fits, per enum glint_effort_kind: head_work: finding
- * the brightness before the first ghost; angle_work: finding the visible angles
- * of a ghost; typical_work: one ghost. */
+/* Estimated work, in zone fits, for each enum glint_effort_kind. head_work:
+ * finding the brightness levels before the first ghost. angle_work: finding the
+ * visible angles of one ghost. typical_work: all work for one ghost. */
 static const double head_work[] = {32, 32, 90};
 static const double angle_work[] = {1.5, 1.5, 25};
 static const double typical_work[] = {4, 25, 110};
-/* weight of the typical work in the mean work per ghost, in ghosts */
+/* weight of typical_work when averaged with the measured work of finished
+ * ghosts, as a number of ghosts */
 #define TRUST 3.0
-/* max work of a ghost / typical work */
+/* max estimate of the work of a ghost / typical_work */
 #define MOST 10.0
-/* Blends the extrapolated work of the current ghost with the mean of other
- * ghosts: weight of that mean, as a fraction of the ghost's angles. */
+/* The work of the current ghost is extrapolated from the angles done so far and
+ * blended with the mean work of other ghosts. BLUR: weight of that mean, as a
+ * fraction of the ghost's angles. */
 #define BLUR 0.1
 
 void glint_effort_init(struct glint_effort *e, int n_ghosts, int n_workers,
@@ -28,7 +30,8 @@ void glint_effort_init(struct glint_effort *e, int n_ghosts, int n_workers,
                                .ghost = -1};
 }
 
-void glint_effort_expect(struct glint_effort *e, double head, double typical)
+void glint_effort_set_estimates(struct glint_effort *e, double head,
+                                double typical)
 {
     e->head = head;
     e->look = 1;
@@ -36,20 +39,20 @@ void glint_effort_expect(struct glint_effort *e, double head, double typical)
     e->expected = e->n_ghosts * typical;
 }
 
-void glint_effort_begin(struct glint_effort *e, int ghost)
+void glint_effort_begin_ghost(struct glint_effort *e, int ghost)
 {
     e->ghost = ghost > e->ghost ? ghost : e->ghost;
     e->work = e->look;
     e->share = 0;
 }
 
-void glint_effort_spend(struct glint_effort *e, double work, double share)
+void glint_effort_record_work(struct glint_effort *e, double work, double share)
 {
     e->work = e->look + work;
     e->share = fmin(1, share);
 }
 
-void glint_effort_end(struct glint_effort *e)
+void glint_effort_end_ghost(struct glint_effort *e)
 {
     e->n_ended++;
     e->ended += e->work;
@@ -71,7 +74,7 @@ static double estimate_remaining_work(const struct glint_effort *e)
         own = fmax(0, (e->work + BLUR * mean) / (e->share + BLUR) - e->work);
         all = (known + e->work + own) / (TRUST + e->n_ended + 1);
     }
-    /* The other workers' current ghosts count as half done. */
+    /* the ghosts that other workers are fitting count as half done */
     others = (rest - 0.5 * beside) * all;
     if (e->expected > 0)
         others =
@@ -80,7 +83,7 @@ static double estimate_remaining_work(const struct glint_effort *e)
     return fmax(own, (own + others) / e->n_workers);
 }
 
-double glint_effort_done(const struct glint_effort *e)
+double glint_effort_estimate_progress(const struct glint_effort *e)
 {
     const double spent = e->head / e->n_workers + e->ended + e->work;
 

@@ -3,10 +3,10 @@
  * Estimates the progress of a bake. The number of zones of a ghost is not known
  * before they are fitted.
  *
- *     glint_effort_begin(&effort, ghost);              worker 0, for each of
- *     glint_effort_spend(&effort, work, share); ...    its ghosts
- *     glint_effort_end(&effort);
- *     ... glint_effort_done(&effort) ...
+ *     glint_effort_begin_ghost(&effort, ghost);              worker 0, for each
+ * of glint_effort_record_work(&effort, work, share); ...    its ghosts
+ *     glint_effort_end_ghost(&effort);
+ *     ... glint_effort_estimate_progress(&effort) ...
  *
  * Work is counted in fits of a zone, about 40 ms each. The total work of the
  * current ghost is extrapolated from the fraction of its angles that are done;
@@ -22,11 +22,11 @@
 
 struct glint_effort {
     int n_ghosts, n_workers;
-    double head; /* work before the first ghost is fitted, zone fits */
+    double head; /* zone fits of work before the first ghost is fitted */
     double look; /* work of finding the visible angles of one ghost */
     /* assumed work per ghost until the first one is finished */
     double typical;
-    /* work of all ghosts as set by glint_effort_expect(); 0: unknown */
+    /* work of all ghosts as set by glint_effort_set_estimates(); 0: unknown */
     double expected;
     /* largest index of the ghosts that worker 0 has begun; -1: none */
     int ghost;
@@ -51,19 +51,20 @@ void glint_effort_init(struct glint_effort *effort, int n_ghosts, int n_workers,
 /* Sets the estimates HEAD (work before the first ghost) and TYPICAL (mean
  * work of a ghost). Used for lenses that are not round, whose last ghosts
  * cost a hundred times as much as the first ones, because their light folds. */
-void glint_effort_expect(struct glint_effort *effort, double head,
-                         double typical);
+void glint_effort_set_estimates(struct glint_effort *effort, double head,
+                                double typical);
 
-void glint_effort_begin(struct glint_effort *effort, int ghost);
+void glint_effort_begin_ghost(struct glint_effort *effort, int ghost);
 
-/* Records that the current ghost has cost WORK zone fits so far, for the
- * fraction SHARE of its angles. */
-void glint_effort_spend(struct glint_effort *effort, double work, double share);
+/* Records that worker 0 has spent WORK zone fits on its current ghost so far
+ * and finished the fraction SHARE of the ghost's angles. */
+void glint_effort_record_work(struct glint_effort *effort, double work,
+                              double share);
 
-void glint_effort_end(struct glint_effort *effort);
+void glint_effort_end_ghost(struct glint_effort *effort);
 
-/* Returns the fraction of the work that is done, 0 .. 1. It decreases when a
- * ghost costs more than expected. */
-double glint_effort_done(const struct glint_effort *effort);
+/* Returns the estimated fraction of the bake that is done, 0 .. 1. It decreases
+ * when a ghost costs more than expected. */
+double glint_effort_estimate_progress(const struct glint_effort *effort);
 
 #endif

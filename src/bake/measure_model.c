@@ -33,19 +33,19 @@ struct meter {
     struct glint_path path;
     double direction[3];
     int n;
-    double *error[GLINT_OUT_KINDS]; /* [RAYS] per output */
-    double *energy;                 /* [RAYS]: exact energies */
+    double *error[GLINT_OUT_KINDS]; /* [outputs][RAYS]: error of each ray */
+    double *energy;                 /* [RAYS]: exact energy of each ray */
     int n_of[GLINT_OUT_KINDS];
     struct glint_measured *out;
 };
 
-static double get_output(const struct meter *b, const struct glint_outputs *o,
-                         int kind)
+static double get_output_value(const struct meter *b,
+                               const struct glint_outputs *o, int kind)
 {
     return ldexp(o->at[kind], b->transfer.exponent[kind]);
 }
 
-static bool has_output(const struct meter *b, int kind)
+static bool is_output_in_system(const struct meter *b, int kind)
 {
     return (b->transfer.outputs >> kind & 1) != 0;
 }
@@ -55,11 +55,11 @@ static void record_error(struct meter *b, int kind, double error)
     b->error[kind][b->n_of[kind]++] = fabs(error);
 }
 
-/* Records errors of barrels for rays near the rim of the barrel, where an
- * error changes which rays are blocked. There the error of (1 + r^2) / 2
- * equals that of r. */
-static void record_barrels(struct meter *b, const struct glint_outputs *o,
-                           double (*hits)[2])
+/* Records the errors of barrel polynomials for rays near the rim of the barrel,
+ * where an error changes which rays are blocked. There the error of (1 + r^2) /
+ * 2 equals that of the relative radius r. */
+static void record_barrel_errors(struct meter *b, const struct glint_outputs *o,
+                                 double (*hits)[2])
 {
     for (int k = 0; k < b->fitted->n_outputs; k++) {
         const struct glint_fitted_output *f = &b->fitted->output[k];
@@ -71,60 +71,67 @@ static void record_barrels(struct meter *b, const struct glint_outputs *o,
             b->path.event[f->event].semi_mm;
         if (fabs(r - 1) < 0.2)
             record_error(b, (int)f->kind,
-                         get_output(b, o, (int)f->kind) - 0.5 * (1 + r * r));
+                         get_output_value(b, o, (int)f->kind) -
+                             0.5 * (1 + r * r));
     }
 }
 
-static void record_ray(struct meter *b, const struct glint_ray *ray,
-                       const struct glint_outputs *o, double (*hits)[2])
+static void record_ray_errors(struct meter *b, const struct glint_ray *ray,
+                              const struct glint_outputs *o, double (*hits)[2])
 {
     const struct glint_setup *s = b->visible->setup;
     const double px = 1920 / s->lens->film_width_mm;
     const double stop = s->optics.stop_radius_mm;
 
-    record_error(b, GLINT_OUT_SENSOR_X,
-                 px *
-                     (get_output(b, o, GLINT_OUT_SENSOR_X) - ray->sensor_x_mm));
-    record_error(b, GLINT_OUT_SENSOR_Y,
-                 px *
-                     (get_output(b, o, GLINT_OUT_SENSOR_Y) - ray->sensor_y_mm));
+    record_error(
+        b, GLINT_OUT_SENSOR_X,
+        px * (get_output_value(b, o, GLINT_OUT_SENSOR_X) - ray->sensor_x_mm));
+    record_error(
+        b, GLINT_OUT_SENSOR_Y,
+        px * (get_output_value(b, o, GLINT_OUT_SENSOR_Y) - ray->sensor_y_mm));
     record_error(b, GLINT_OUT_STOP_X,
-                 get_output(b, o, GLINT_OUT_STOP_X) - ray->stop_x_mm / stop);
+                 get_output_value(b, o, GLINT_OUT_STOP_X) -
+                     ray->stop_x_mm / stop);
     record_error(b, GLINT_OUT_STOP_Y,
-                 get_output(b, o, GLINT_OUT_STOP_Y) - ray->stop_y_mm / stop);
+                 get_output_value(b, o, GLINT_OUT_STOP_Y) -
+                     ray->stop_y_mm / stop);
     record_error(b, GLINT_OUT_ENERGY,
-                 get_output(b, o, GLINT_OUT_ENERGY) - ray->energy);
+                 get_output_value(b, o, GLINT_OUT_ENERGY) - ray->energy);
     b->energy[b->n++] = ray->energy;
-    if (has_output(b, GLINT_OUT_RADIUS))
+    if (is_output_in_system(b, GLINT_OUT_RADIUS))
         record_error(b, GLINT_OUT_RADIUS,
-                     get_output(b, o, GLINT_OUT_RADIUS) - ray->rel_radius);
-    record_barrels(b, o, hits);
+                     get_output_value(b, o, GLINT_OUT_RADIUS) -
+                         ray->rel_radius);
+    record_barrel_errors(b, o, hits);
 }
 
-static bool model_passes(const struct meter *b, const struct glint_outputs *o)
+static bool is_ray_passed_by_model(const struct meter *b,
+                                   const struct glint_outputs *o)
 {
-    bool clear =
-        hypot(get_output(b, o, GLINT_OUT_STOP_X),
-              get_output(b, o, GLINT_OUT_STOP_Y)) <= 1 &&
-        hypot(get_output(b, o, GLINT_OUT_SENSOR_X),
-              get_output(b, o, GLINT_OUT_SENSOR_Y)) <= b->visible->field_mm;
+    bool clear = hypot(get_output_value(b, o, GLINT_OUT_STOP_X),
+                       get_output_value(b, o, GLINT_OUT_STOP_Y)) <= 1 &&
+                 hypot(get_output_value(b, o, GLINT_OUT_SENSOR_X),
+                       get_output_value(b, o, GLINT_OUT_SENSOR_Y)) <=
+                     b->visible->field_mm;
 
     for (int kind = GLINT_OUT_RADIUS; kind < GLINT_OUT_KINDS; kind++)
-        clear &= !has_output(b, kind) || get_output(b, o, kind) <= 1;
+        clear &=
+            !is_output_in_system(b, kind) || get_output_value(b, o, kind) <= 1;
     return clear;
 }
 
 /* Returns whether the exact ray is blocked by a margin larger than any
  * tolerance. */
-static bool is_well_outside(const struct meter *b, enum glint_ray_status status,
-                            const struct glint_ray *ray)
+static bool is_ray_clearly_blocked(const struct meter *b,
+                                   enum glint_ray_status status,
+                                   const struct glint_ray *ray)
 {
     return status != GLINT_RAY_OK || ray->rel_radius > 1.03 ||
            hypot(ray->stop_x_mm, ray->stop_y_mm) >
                1.03 * b->visible->setup->optics.stop_radius_mm;
 }
 
-static void measure_ray(struct meter *b, double u, double v)
+static void measure_ray_errors(struct meter *b, double u, double v)
 {
     const double scale = ldexp(1, b->transfer.box_exponent);
     double hits[GLINT_MAX_EVENTS + 1][2];
@@ -137,15 +144,17 @@ static void measure_ray(struct meter *b, double u, double v)
 
     glint_transfer_ray(&b->transfer, (int32_t)lrint(u * 0x1p30),
                        (int32_t)lrint(v * 0x1p30), &o);
-    if (status == GLINT_RAY_OK && glint_visible_passes(b->visible, &ray))
-        record_ray(b, &ray, &o, hits);
-    else if (is_well_outside(b, status, &ray) && model_passes(b, &o))
+    if (status == GLINT_RAY_OK &&
+        glint_visible_is_ray_visible(b->visible, &ray))
+        record_ray_errors(b, &ray, &o, hits);
+    else if (is_ray_clearly_blocked(b, status, &ray) &&
+             is_ray_passed_by_model(b, &o))
         b->out->intruders++;
 }
 
 /* Divides each energy error by the ray's energy, or by 1/50 of the largest
  * energy if that is more. */
-static void divide_energy(struct meter *b)
+static void normalise_energy_errors(struct meter *b)
 {
     double most = 1e-30;
 
@@ -162,7 +171,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static struct glint_errors compute_errors(double *error, int n)
+static struct glint_errors compute_error_statistics(double *error, int n)
 {
     struct glint_errors e = {0, 0, 0, 0};
 
@@ -179,9 +188,9 @@ static struct glint_errors compute_errors(double *error, int n)
 }
 
 /* Substitutes direction and wavelength of the bundle into the model's
- * polynomials. */
-static bool init_transfer(struct meter *b, const struct glint_lens *lens,
-                          int32_t wave_q24)
+ * polynomials. Returns whether the model has light there. */
+static bool init_bundle_transfer(struct meter *b, const struct glint_lens *lens,
+                                 int32_t wave_q24)
 {
     const double sine = hypot(b->direction[0], b->direction[1]);
     const double c = sine > 0 ? b->direction[0] / sine : 1;
@@ -197,8 +206,9 @@ static bool init_transfer(struct meter *b, const struct glint_lens *lens,
 
 /* Sets the bundle to a random angle and wavelength of system S. Returns
  * false if the model uses another system there. */
-static bool set_bundle(struct meter *b, const struct glint_lens *lens,
-                       const struct glint_model_system *s, struct random *r)
+static bool choose_random_bundle(struct meter *b, const struct glint_lens *lens,
+                                 const struct glint_model_system *s,
+                                 struct random *r)
 {
     const struct glint_fitted_system *f = b->fitted;
     const double part = 0.5 + 0.5 * draw_random(r), w = draw_random(r);
@@ -213,10 +223,10 @@ static bool set_bundle(struct meter *b, const struct glint_lens *lens,
     b->direction[1] =
         f->skew ? f->y_lo + (0.5 + 0.5 * draw_random(r)) * (f->y_hi - f->y_lo)
                 : 0;
-    /* A bundle on the border of S may belong to the next system, and a
-     * corner of the box of directions may be no valid direction. */
+    /* A bundle on the border of system S may belong to the next system, and a
+     * corner of the box of directions may not be a valid direction. */
     if (hypot(b->direction[0], b->direction[1]) >= 1 ||
-        !init_transfer(b, lens, wave_q24) || b->transfer.system != s)
+        !init_bundle_transfer(b, lens, wave_q24) || b->transfer.system != s)
         return false;
     b->direction[2] = sqrt(1 - b->direction[0] * b->direction[0] -
                            b->direction[1] * b->direction[1]);
@@ -226,12 +236,12 @@ static bool set_bundle(struct meter *b, const struct glint_lens *lens,
     return true;
 }
 
-void glint_measure_system(const struct glint_visible *visible,
-                          const struct glint_lens *lens, int system,
-                          const struct glint_fitted_system *fitted,
-                          struct glint_measured *out)
+void glint_measure_system_errors(const struct glint_visible *visible,
+                                 const struct glint_lens *lens, int system,
+                                 const struct glint_fitted_system *fitted,
+                                 struct glint_measured *out)
 {
-    const double rim = glint_zone_rim(fitted->annulus);
+    const double rim = glint_zone_get_inner_rim(fitted->annulus);
     struct random random = {(uint64_t)system * 977 + 1};
     double error[GLINT_OUT_KINDS][RAYS], energy[RAYS];
     struct meter b = {
@@ -241,17 +251,17 @@ void glint_measure_system(const struct glint_visible *visible,
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         b.error[kind] = error[kind];
     for (int k = 0; k < TRIES / PER_BUNDLE && b.n < RAYS; k++) {
-        if (!set_bundle(&b, lens, &lens->system[system], &random))
+        if (!choose_random_bundle(&b, lens, &lens->system[system], &random))
             continue;
         for (int i = 0; i < PER_BUNDLE && b.n < RAYS; i++) {
             const double u = draw_random(&random), v = draw_random(&random);
 
-            measure_ray(&b, u,
-                        fitted->skew ? v : rim + (1 - rim) * (0.5 + 0.5 * v));
+            measure_ray_errors(
+                &b, u, fitted->skew ? v : rim + (1 - rim) * (0.5 + 0.5 * v));
         }
     }
     out->rays = b.n;
-    divide_energy(&b);
+    normalise_energy_errors(&b);
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
-        out->of[kind] = compute_errors(error[kind], b.n_of[kind]);
+        out->of[kind] = compute_error_statistics(error[kind], b.n_of[kind]);
 }

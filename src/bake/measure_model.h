@@ -26,9 +26,9 @@ struct glint_measured {
 
 /* Measures system SYSTEM of LENS, which was quantised from FITTED.
  * Deterministic. */
-void glint_measure_system(const struct glint_visible *visible,
-                          const struct glint_lens *lens, int system,
-                          const struct glint_fitted_system *fitted,
-                          struct glint_measured *out);
+void glint_measure_system_errors(const struct glint_visible *visible,
+                                 const struct glint_lens *lens, int system,
+                                 const struct glint_fitted_system *fitted,
+                                 struct glint_measured *out);
 
 #endif

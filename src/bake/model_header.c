@@ -19,7 +19,7 @@ enum {
     /* instead of REVISION for lenses faster than GLINT_WIDE */
     WIDE_REVISION = 17,
     SHAPED_REVISION = 1, /* for non-spherical surfaces, added to the key */
-    /* for lenses that are not rotationally symmetric, added to the key */
+    /* for lenses that are not round, added to the key */
     SKEW_REVISION = 2,
     /* for round lenses with lights beyond GLINT_FAR degrees, added to the
      * key */
@@ -32,18 +32,20 @@ void glint_bake_defaults(struct glint_bake_options *options)
         .band_nm = {400, 700}, .max_deg = 60, .tolerance = 1};
 }
 
-enum glint_status glint_bake_check(const struct glint_bake_options *options,
-                                   struct glint_error *error)
+enum glint_status
+glint_bake_check_options(const struct glint_bake_options *options,
+                         struct glint_error *error)
 {
     const struct glint_bake_options *const o = options;
     const char *wrong =
         !(o->band_nm[0] >= 300 && o->band_nm[1] <= 1100 &&
           o->band_nm[0] + 1 <= o->band_nm[1])
-            ? "the band must rise by 1 nm or more within 300 to 1100 nm"
+            ? "the band must be two ascending wavelengths, 1 nm or more apart, "
+              "within 300 to 1100 nm"
         : !(o->max_deg > 0 && o->max_deg <= 89)
             ? "the largest angle must be above 0 and at most 89 degrees"
         : !(o->field_mm >= 0 && o->field_mm < 1e6)
-            ? "the field must be a length above 0"
+            ? "the radius of the field must be a number of mm above 0"
         : !(o->tolerance >= 0.1 && o->tolerance <= 100)
             ? "the tolerance must be 0.1 to 100"
         : !(o->n_beside >= 0 && o->n_beside <= GLINT_MAX_BESIDE) ||
@@ -56,8 +58,8 @@ enum glint_status glint_bake_check(const struct glint_bake_options *options,
     return wrong ? GLINT_E_ARGUMENT : GLINT_OK;
 }
 
-double glint_bake_field_mm(const struct glint_prescription *lens,
-                           const struct glint_bake_options *o)
+double glint_bake_get_field_radius_mm(const struct glint_prescription *lens,
+                                      const struct glint_bake_options *o)
 {
     return o->field_mm > 0
                ? o->field_mm
@@ -142,7 +144,7 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
     add_value_to_key(&key, options->band_nm[0]);
     add_value_to_key(&key, options->band_nm[1]);
     add_value_to_key(&key, options->max_deg);
-    add_value_to_key(&key, glint_bake_field_mm(lens, options));
+    add_value_to_key(&key, glint_bake_get_field_radius_mm(lens, options));
     add_value_to_key(&key, options->tolerance);
     for (int g = 0; options->ghosts && g < glint_ghost_list(lens, NULL, 0); g++)
         add_value_to_key(&key, options->ghosts[g]);
@@ -186,20 +188,21 @@ static void fit_flux_polynomial(const double *w, const double *flux,
 
     for (int i = 0; i < FLUX_NODES; i++)
         one[i] = 1;
-    glint_regress_fit(scratch, &samples, flux, &degrees, 1e-7 * scale,
-                      1e-7 * scale, &poly);
+    glint_regress_fit_polynomial(scratch, &samples, flux, &degrees,
+                                 1e-7 * scale, 1e-7 * scale, &poly);
     for (int i = 0; i < poly.n; i++)
         coef[poly.power[i][3]] = glint_real_of(poly.coef[i]);
 }
 
-/* Returns the flux of the direct image at NM through a stop with the fraction
- * AREA of the full area, divided by AREA; below 0 if there is no memory.
+/* Returns the flux of the direct image at the wavelength NM through a stop
+ * closed to the fraction AREA of its full area, divided by AREA; below 0 if
+ * there is no memory.
  *
  * Lenses faster than GLINT_WIDE: barrels vignette the rim of the full stop,
- * which a bladed stop reaches only with its corners. Their flux is measured
- * through a bladed stop and divided by the area of the blades' opening /
- * circle, as the run time multiplies by that ratio. A circular stop would be
- * 10 % too bright at f/1.4 (merte-biotar) and 2.6 % at f/2
+ * which a stop of blades reaches only with its corners. Their flux is measured
+ * through such a stop and divided by (area of the blades' opening / area of the
+ * circle), because the run time multiplies by that ratio. A circular stop would
+ * be 10 % too bright at f/1.4 (merte-biotar) and 2.6 % at f/2
  * (tronnier-double-gauss). */
 static double measure_direct_flux(const struct glint_setup *whole, double area,
                                   double nm)
@@ -209,19 +212,19 @@ static double measure_direct_flux(const struct glint_setup *whole, double area,
     setup.optics.stop_radius_mm *= sqrt(area);
     if (whole->lens->f_number < GLINT_WIDE)
         setup.n_blades = BLADES;
-    return glint_direct_flux(&setup, nm) / area /
+    return glint_direct_compute_flux(&setup, nm) / area /
            glint_iris_compute_area_fraction(&setup);
 }
 
 /* Sets the flux of the direct image per stop area, for the full stop and for
- * smaller ones. Energy and pupil aberration are even functions of the position
- * on the pupil, so the flux is smooth in the square of the stop's radius. It is
- * measured at three squared radii: 1, 1/2 and 1/8. */
+ * smaller ones. Ray energy and pupil aberration are even functions of the
+ * position on the pupil, so the flux is a smooth function of the squared stop
+ * radius. It is measured at three squared radii: 1, 1/2 and 1/8. */
 static enum glint_status
 set_direct_flux(const struct glint_bake_options *options,
                 const struct glint_setup *whole, struct glint_model_header *h)
 {
-    /* fractions by which the stop's area is reduced */
+    /* fractions of the full stop area that are closed */
     static const double closed[2] = {0.5, 0.875};
     const double *band = options->band_nm;
     const double lo = 1 / (band[1] * band[1]), hi = 1 / (band[0] * band[0]);
@@ -251,10 +254,10 @@ set_direct_flux(const struct glint_bake_options *options,
 }
 
 enum glint_status
-glint_model_header_of(const struct glint_prescription *lens,
-                      const struct glint_bake_options *options,
-                      const struct glint_setup *setup,
-                      struct glint_model_header *header)
+glint_model_set_header(const struct glint_prescription *lens,
+                       const struct glint_bake_options *options,
+                       const struct glint_setup *setup,
+                       struct glint_model_header *header)
 {
     struct glint_model_header *const h = header;
     const struct glint_optics *o = &setup->optics;
@@ -266,7 +269,7 @@ glint_model_header_of(const struct glint_prescription *lens,
         .version = GLINT_MODEL_VERSION,
         .basis = glint_prescription_is_round(lens)
                      ? (uint32_t)GLINT_BASIS_AUTO
-                     : GLINT_BASIS_LENS + glint_skew_mirrors(lens),
+                     : GLINT_BASIS_LENS + glint_skew_find_mirror_planes(lens),
         .key = {(uint32_t)key, (uint32_t)(key >> 32)},
         .focal_mm = glint_real_of(o->focal_mm),
         .back_focal_mm = glint_real_of(o->back_focal_mm),
@@ -275,7 +278,8 @@ glint_model_header_of(const struct glint_prescription *lens,
         .f_number = glint_real_of(lens->f_number),
         .film_width_mm = glint_real_of(lens->film_width_mm),
         .film_height_mm = glint_real_of(lens->film_height_mm),
-        .field_mm = glint_real_of(glint_bake_field_mm(lens, options)),
+        .field_mm =
+            glint_real_of(glint_bake_get_field_radius_mm(lens, options)),
         .front_mm = glint_real_of(lens->surface[0].semi_mm),
         .wave_lo_q24 = (int32_t)lrint(0x1p24 * 1e6 / (band[1] * band[1])),
         .wave_hi_q24 = (int32_t)lrint(0x1p24 * 1e6 / (band[0] * band[0])),

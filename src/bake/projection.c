@@ -106,7 +106,8 @@ static void fit_projection(struct glint_projection *p, const double *rho, int n,
         bend[k] =
             ((k + 1) * step_deg * (GLINT_PI / 180) / atan(rho[k]) - 1) / square;
     }
-    glint_regress_fit(scratch, &samples, bend, &degrees, 1e-12, 1e-12, &poly);
+    glint_regress_fit_polynomial(scratch, &samples, bend, &degrees, 1e-12,
+                                 1e-12, &poly);
     for (int i = 0; i < poly.n; i++)
         p->b[poly.power[i][3]] = poly.coef[i];
     for (int k = 0; k < GLINT_PROJECTION_TERMS; k++) {

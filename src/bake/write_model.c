@@ -29,7 +29,7 @@ static uint32_t append_output_terms(struct glint_draft *d,
 
         power[k] = (uint16_t)(p[GLINT_U] | p[GLINT_V] << 4 | upper << 8);
     }
-    return glint_draft_put(d, power, (size_t)o->n_terms * sizeof *power);
+    return glint_draft_append(d, power, (size_t)o->n_terms * sizeof *power);
 }
 
 /* Appends the coefficients of an output, the 32-bit ones before the 16-bit
@@ -52,8 +52,8 @@ append_output_coefficients(struct glint_draft *d,
         else
             narrow[k - n_wide] = (int16_t)(coef / (INT32_C(1) << q->shift));
     }
-    where = glint_draft_put(d, wide, (size_t)n_wide * sizeof *wide);
-    glint_draft_put(d, narrow, (size_t)q->n_narrow * sizeof *narrow);
+    where = glint_draft_append(d, wide, (size_t)n_wide * sizeof *wide);
+    glint_draft_append(d, narrow, (size_t)q->n_narrow * sizeof *narrow);
     return where;
 }
 
@@ -86,7 +86,7 @@ static uint32_t append_system_outputs(struct glint_draft *d,
 
     for (int k = 0; k < f->n_outputs; k++)
         out[k] = append_model_output(d, &f->output[k], &q->output[k], f->skew);
-    return glint_draft_put(d, out, (size_t)f->n_outputs * sizeof *out);
+    return glint_draft_append(d, out, (size_t)f->n_outputs * sizeof *out);
 }
 
 static int32_t round_to_q30(double x)
@@ -95,7 +95,8 @@ static int32_t round_to_q30(double x)
 }
 
 /* Appends the polynomials of a system's box. Terms whose coefficient is 0 in
- * all sides are omitted; bit k of TERMS: term k is present. */
+ * all of its polynomials are omitted; bit k of TERMS is set if term k is
+ * stored. */
 static uint32_t append_system_box(struct glint_draft *d,
                                   const struct glint_quantised_system *q,
                                   uint8_t *terms)
@@ -110,7 +111,7 @@ static uint32_t append_system_box(struct glint_draft *d,
     for (int k = 0; k < q->n_box; k++)
         if (*terms >> k % GLINT_BOX_TERMS & 1)
             packed[n++] = q->box[k];
-    return glint_draft_put(d, packed, n * sizeof *packed);
+    return glint_draft_append(d, packed, n * sizeof *packed);
 }
 
 static void write_model_system(struct glint_draft *d, uint32_t where,
@@ -120,7 +121,7 @@ static void write_model_system(struct glint_draft *d, uint32_t where,
     /* The order of these calls determines the layout of the file. */
     const int32_t range_q30[2] = {round_to_q30(f->y_lo), round_to_q30(f->y_hi)};
     const uint32_t across_at =
-        f->skew ? glint_draft_put(d, range_q30, sizeof range_q30)
+        f->skew ? glint_draft_append(d, range_q30, sizeof range_q30)
                 : (uint32_t)d->bytes;
     uint8_t box_terms;
     const uint32_t box_at = append_system_box(d, q, &box_terms);
@@ -138,20 +139,21 @@ static void write_model_system(struct glint_draft *d, uint32_t where,
         .box_terms = box_terms,
         .annulus = (uint8_t)f->annulus};
 
-    glint_draft_amend(d, where, &system, sizeof system);
+    glint_draft_overwrite(d, where, &system, sizeof system);
 }
 
 enum glint_status
-glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
-                  const struct glint_model_header *header,
-                  const struct glint_fitted_ghost *fitted,
-                  struct glint_quantised_system *const *quantised)
+glint_draft_write_model(struct glint_draft *draft,
+                        const struct glint_setup *setup,
+                        const struct glint_model_header *header,
+                        const struct glint_fitted_ghost *fitted,
+                        struct glint_quantised_system *const *quantised)
 {
     struct glint_model_header h = *header;
     uint32_t n = 0;
 
     *draft = (struct glint_draft){0};
-    glint_draft_put(draft, NULL, sizeof h);
+    glint_draft_append(draft, NULL, sizeof h);
     h.n_ghosts = (uint32_t)setup->n_ghosts;
     h.n_parts = (uint32_t)setup->n_parts;
     h.ghost_at = (uint32_t)draft->bytes;
@@ -160,12 +162,12 @@ glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
                                                 (uint32_t)setup->ghost[k].j, n,
                                                 (uint32_t)fitted[k].n_systems};
 
-        glint_draft_put(draft, &ghost, sizeof ghost);
+        glint_draft_append(draft, &ghost, sizeof ghost);
         n += ghost.n_systems;
     }
     h.n_systems = n;
     h.system_at =
-        glint_draft_put(draft, NULL, n * sizeof(struct glint_model_system));
+        glint_draft_append(draft, NULL, n * sizeof(struct glint_model_system));
     n = 0;
     for (int k = 0; k < setup->n_ghosts; k++)
         for (int m = 0; m < fitted[k].n_systems; m++, n++)
@@ -173,11 +175,11 @@ glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
                 draft,
                 h.system_at + n * (uint32_t)sizeof(struct glint_model_system),
                 &fitted[k].system[m], &quantised[k][m]);
-    glint_draft_amend(draft, 0, &h, sizeof h);
+    glint_draft_overwrite(draft, 0, &h, sizeof h);
     return draft->out_of_memory ? GLINT_E_MEMORY : GLINT_OK;
 }
 
-struct glint_lens glint_draft_lens(const struct glint_draft *draft)
+struct glint_lens glint_draft_get_lens(const struct glint_draft *draft)
 {
     const struct glint_model_header *h = (const void *)draft->data;
 
@@ -197,10 +199,10 @@ static uint16_t encode_rounded_error(double x)
     return (uint16_t)(shift << 11 | (int)fmin(mantissa, 2047));
 }
 
-void glint_draft_note(struct glint_draft *draft, int system,
-                      const struct glint_measured *measured)
+void glint_draft_write_errors(struct glint_draft *draft, int system,
+                              const struct glint_measured *measured)
 {
-    const struct glint_lens lens = glint_draft_lens(draft);
+    const struct glint_lens lens = glint_draft_get_lens(draft);
     const struct glint_model_system *s = &lens.system[system];
     struct glint_model_output *o = (void *)(draft->data + s->output_at);
 

@@ -15,16 +15,18 @@
  * both [n_ghosts]. The errors are set to 0; size and checksum are not set. May
  * return GLINT_E_MEMORY. */
 enum glint_status
-glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
-                  const struct glint_model_header *header,
-                  const struct glint_fitted_ghost *fitted,
-                  struct glint_quantised_system *const *quantised);
+glint_draft_write_model(struct glint_draft *draft,
+                        const struct glint_setup *setup,
+                        const struct glint_model_header *header,
+                        const struct glint_fitted_ghost *fitted,
+                        struct glint_quantised_system *const *quantised);
 
-/* Returns a lens that points into DRAFT, without validating it. */
-struct glint_lens glint_draft_lens(const struct glint_draft *draft);
+/* Returns the model in DRAFT as a lens that points into it, without
+ * validation. */
+struct glint_lens glint_draft_get_lens(const struct glint_draft *draft);
 
 /* Writes MEASURED to the draft as the errors of system number SYSTEM. */
-void glint_draft_note(struct glint_draft *draft, int system,
-                      const struct glint_measured *measured);
+void glint_draft_write_errors(struct glint_draft *draft, int system,
+                              const struct glint_measured *measured);
 
 #endif

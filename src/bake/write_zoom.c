@@ -11,8 +11,8 @@
 #include "glint/bake.h"
 #include "glint/model.h"
 
-/* Appends a bit mask: which ghosts of the zoom MODEL contains. Returns its
- * offset in the file, or 0 if MODEL contains all. */
+/* Appends a bit mask that states which ghosts of the zoom lens MODEL contains.
+ * Returns its offset in the file, or 0 if MODEL contains all of them. */
 static uint32_t append_ghost_mask(struct glint_draft *d,
                                   const struct glint_bake_model *model)
 {
@@ -25,7 +25,7 @@ static uint32_t append_ghost_mask(struct glint_draft *d,
 
         for (uint32_t g = 32 * word; g < n && g < 32 * word + 32; g++)
             bits |= (uint32_t)model->ghosts[g] << g % 32;
-        to = glint_draft_put(d, &bits, sizeof bits);
+        to = glint_draft_append(d, &bits, sizeof bits);
         at = word ? at : to;
     }
     return at;
@@ -39,11 +39,11 @@ static void append_zoom_models(struct glint_draft *d, uint32_t list_at,
         struct glint_zoom_model entry = {.along_q30 = model[k].along_q30,
                                          .bytes = (uint32_t)model[k].bytes};
 
-        entry.at = glint_draft_put(d, model[k].data, model[k].bytes);
+        entry.at = glint_draft_append(d, model[k].data, model[k].bytes);
         entry.has_at = append_ghost_mask(d, &model[k]);
 
-        glint_draft_amend(d, list_at + (uint32_t)k * (uint32_t)sizeof entry,
-                          &entry, sizeof entry);
+        glint_draft_overwrite(d, list_at + (uint32_t)k * (uint32_t)sizeof entry,
+                              &entry, sizeof entry);
     }
 }
 
@@ -83,11 +83,12 @@ enum glint_status glint_bake_zoom(const struct glint_bake_model *model, int n,
                 header.key[i] * UINT32_C(16777619) ^
                 ((const struct glint_model_header *)(const void *)model[k].data)
                     ->key[i];
-    glint_draft_put(&draft, NULL, sizeof header);
-    header.model_at = glint_draft_put(
+    glint_draft_append(&draft, NULL, sizeof header);
+    header.model_at = glint_draft_append(
         &draft, NULL, (size_t)n * sizeof(struct glint_zoom_model));
     append_zoom_models(&draft, header.model_at, model, n);
-    if (!glint_draft_finish(&draft, &header, sizeof header, true, &data, bytes))
+    if (!glint_draft_finish_file(&draft, &header, sizeof header, true, &data,
+                                 bytes))
         return GLINT_E_MEMORY;
     status = check_zoom_opens(data, *bytes, error);
     if (status == GLINT_OK)

@@ -129,7 +129,8 @@ static int compute_cells_per_side(const struct glint_plan *p,
                                   struct glint_real irradiance)
 {
     const struct glint_flare_frame *r = p->frame;
-    const int folds = glint_grid_most(r->fineness, s->n_up && s->n_down);
+    const int folds =
+        glint_grid_get_max_cells(r->fineness, s->n_up && s->n_down);
     const int most = folds < GLINT_MAX_CELLS ? folds : GLINT_MAX_CELLS;
     int64_t bend =
         compute_output_curvature(s, GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y);
@@ -170,7 +171,7 @@ static int compute_cells_per_side(const struct glint_plan *p,
     if (r->faintest.mantissa)
         n = reduce_cells_for_codes(s, irradiance, n);
     n = n < GLINT_LEAST_CELLS ? GLINT_LEAST_CELLS : n;
-    n = glint_grid_fours(n);
+    n = glint_grid_round_up_to_four(n);
     return n < most ? n : most;
 }
 

@@ -2,21 +2,21 @@
  *
  * Mixes the polynomials of a ghost at two neighbouring positions of a zoom.
  *
- *    in   two transfers of the same ghost, angle and wavelength
- *    out  one transfer: each coefficient and the box interpolated linearly
+ *   in   two transfers of the same ghost, angle and wavelength
+ *   out  one transfer: each coefficient and the box interpolated linearly
  *
  * In the coordinates of its box a ghost changes slowly with the zoom. Between
- * both positions the weights are 0 or more and sum to 1, so that the sum of
- * magnitudes of each output does not exceed the larger of the two sums, and the
- * bounds on which the transfer relies hold. In extrapolation the weights reach
- * 2 and -1 and the sums triple, for which two bits are reserved. Each
+ * both positions the weights are not negative and sum to 1. So the sum of
+ * magnitudes of each mixed output is at most the larger sum of the two, and the
+ * bounds on which the transfer relies hold. In extrapolation the weights are up
+ * to 2 and -1, so sums may triple; two bits are reserved for this. Each
  * coefficient is rounded once. The unit of the result is the coarser unit of
- * the two.
+ * both.
  *
- * Barrels are mixed with the partners that pair.c finds. A barrel without a
- * partner keeps its position in the stop, as boxes may change faster than the
- * visible rays, and widens towards the position that lacks it, until it
- * blocks nothing.
+ * Each barrel is mixed with its partner, which pair.c finds at the other
+ * position. A barrel without a partner preserves its position in the stop,
+ * because boxes may change faster than the visible rays, and is widened towards
+ * the position that lacks it, until it blocks nothing.
  */
 #include "lens/blend.h"
 
@@ -27,18 +27,21 @@
 enum {
     ROWS = GLINT_MAX_POWER + 1,
     BARREL = GLINT_OUT_BARREL_0,
-    OPEN_Q16 = 1 << 15, /* value of a barrel's polynomial at its middle, where
-                           all light passes */
-    /* Min exponent above 2^-46 of a barrel's unit: OPEN_Q16 is then below 2^30
-     * units. */
+    /* value of a barrel's polynomial at the barrel's centre, where all light
+     * passes */
+    OPEN_Q16 = 1 << 15,
+    /* min exponent of a barrel's unit, relative to 2^-46: OPEN_Q16 is then
+     * below 2^30 units */
     LEAST_UP = 16,
     MOST_HEAD = 28,
-    NEAR_Q24 = 1 << 23, /* max move for first-order terms: half a half width */
-    LATE_Q30 = 3 << 28, /* fraction of the distance between both positions after
-                           which a barrel opens */
-    MOST_MOVE = 8,      /* max distance between the boxes, half widths */
-    BEYOND = 2          /* bits reserved for extrapolation, which triples
-                           sums */
+    /* max move for which first-order terms suffice: 1/2 of a half width */
+    NEAR_Q24 = 1 << 23,
+    /* fraction of the distance between both positions from which on a barrel
+     * opens */
+    LATE_Q30 = 3 << 28,
+    MOST_MOVE = 8, /* max distance between both boxes, in half widths */
+    /* number of bits reserved for extrapolation, which triples sums */
+    BEYOND = 2
 };
 
 /* Returns X / 2^S, rounded, for any S >= 0. */
@@ -47,13 +50,13 @@ static int64_t shift_right_rounded(int64_t x, int s)
     return s > 62 ? 0 : q_shift(x, s);
 }
 
-static uint8_t max_u8(uint8_t a, uint8_t b)
+static uint8_t get_max_u8(uint8_t a, uint8_t b)
 {
     return a > b ? a : b;
 }
 
-/* Returns A (1 - PART) + B PART, rounded, in units of 2^E. The units of A and B
- * are 2^EA and 2^EB, at most 2^E. */
+/* Returns A (1 - PART) + B PART, rounded, in units of 2^E. A is in units of
+ * 2^EA, B in units of 2^EB; EA and EB are at most E. */
 static int32_t mix_coefficient(int32_t a, int32_t ea, int32_t b, int32_t eb,
                                int32_t e, int32_t part_q30)
 {
@@ -63,9 +66,9 @@ static int32_t mix_coefficient(int32_t a, int32_t ea, int32_t b, int32_t eb,
                  shift_right_rounded((int64_t)b * part_q30, 30 + e - eb));
 }
 
-/* Returns (B - A) / SIZE, where the units of B, A and SIZE are 2^EB, 2^EA and
- * 2^ES. Sets *FAR and returns 0 if the quotient exceeds MOST_MOVE in
- * magnitude. */
+/* Returns (B - A) / SIZE, where B, A and SIZE are in units of 2^EB, 2^EA and
+ * 2^ES. Sets *FAR and returns 0 if the magnitude of the quotient exceeds
+ * MOST_MOVE. */
 static int32_t compute_box_move_q24(int64_t b, int32_t eb, int64_t a,
                                     int32_t ea, int64_t size, int32_t es,
                                     int *far)
@@ -86,8 +89,9 @@ static int32_t compute_box_move_q24(int64_t b, int32_t eb, int64_t a,
     return *far ? 0 : (int32_t)q;
 }
 
-/* Sets the moves of BLEND from BOX, this position's box in units of 2^EXPONENT,
- * to the box of the transfer, which is the other position's. */
+/* Sets the moves of BLEND: from BOX, the box of this position in units of
+ * 2^EXPONENT, to the box of the transfer, which still is that of the other
+ * position. */
 static void set_box_moves(struct glint_zoom_mix *blend, const int32_t box[3],
                           int32_t exponent)
 {
@@ -111,8 +115,8 @@ static void set_box_moves(struct glint_zoom_mix *blend, const int32_t box[3],
     blend->far = far;
 }
 
-/* Returns whether each component of M is at most half of a half width or half
- * height of the box. */
+/* Returns whether each component of M is at most NEAR_Q24, 1/2 of the box's
+ * half width or half height. */
 static int is_move_small(const struct glint_blend_move *m)
 {
     return q_magnitude(m->along_q24) <= NEAR_Q24 &&
@@ -140,7 +144,7 @@ static struct glint_blend_stop get_stop_position(struct glint_transfer *t)
     struct glint_blend_stop stop = {0, 0, 0, 0, 0};
 
     for (int kind = GLINT_OUT_STOP_X; kind <= GLINT_OUT_STOP_Y; kind++) {
-        const struct glint_blend_output o = glint_blend_of(t, kind);
+        const struct glint_blend_output o = glint_blend_get_output(t, kind);
 
         if (has_transfer_output(t, kind))
             record_stop_position(&stop, &o);
@@ -148,8 +152,8 @@ static struct glint_blend_stop get_stop_position(struct glint_transfer *t)
     return stop;
 }
 
-int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
-                    int32_t exponent)
+int glint_blend_mix_box(struct glint_zoom_mix *blend, const int32_t box[3],
+                        int32_t exponent)
 {
     struct glint_transfer *const t = blend->to;
     const int32_t e =
@@ -167,8 +171,8 @@ int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
             t->box[2] > 0);
 }
 
-/* Returns the first-order change of the coefficient of u^A v^B in ROW if points
- * of the box move by M. */
+/* Returns the first-order change of the coefficient of u^A v^B in ROW when
+ * points of the box move by M. */
 static int64_t compute_coefficient_change(int32_t (*row)[GLINT_TABLE_WIDTH],
                                           int a, int b,
                                           const struct glint_blend_move *m)
@@ -181,10 +185,10 @@ static int64_t compute_coefficient_change(int32_t (*row)[GLINT_TABLE_WIDTH],
     return q_shift(sum, 24);
 }
 
-/* Sets TO, in units of 2^E, to the changes of the coefficients of output KIND
- * of the transfer (unit 2^EXPONENT) and of O that make both refer to the same
- * point of the pupil. Returns whether the sums of the changes are small enough
- * for the transfer. */
+/* Sets TO to the changes of coefficients, in units of 2^E, that make output
+ * KIND of the transfer (unit 2^EXPONENT) and output O refer to the same point
+ * of the pupil. Returns whether the sums of the changes are small enough for
+ * the transfer. */
 static int compute_coefficient_changes(const struct glint_zoom_mix *blend,
                                        int kind, int32_t exponent,
                                        const struct glint_blend_output *o,
@@ -224,14 +228,14 @@ static int32_t mix_polynomial(const struct glint_zoom_mix *blend, int kind,
                               const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
-    /* one bit for the moves; BEYOND bits for extrapolation */
+    /* reserves one bit for the moves, or BEYOND bits for extrapolation */
     const int32_t e = (exponent > o->exponent ? exponent : o->exponent) +
                       (blend->part_q30 < 0 ? BEYOND : 1);
     int32_t more[ROWS][GLINT_TABLE_WIDTH];
     int moves;
 
-    t->degree_u[kind] = max_u8(t->degree_u[kind], o->degree_u);
-    t->degree_v[kind] = max_u8(t->degree_v[kind], o->degree_v);
+    t->degree_u[kind] = get_max_u8(t->degree_u[kind], o->degree_u);
+    t->degree_v[kind] = get_max_u8(t->degree_v[kind], o->degree_v);
     moves = compute_coefficient_changes(blend, kind, exponent, o, e, more);
     for (int b = 0; b <= t->degree_v[kind]; b++)
         for (int a = 0; a <= t->degree_u[kind]; a++)
@@ -255,8 +259,8 @@ static int32_t compute_energy_exponent(const struct glint_transfer *t)
     return e + t->head;
 }
 
-/* The head of an energy is the max scale at which all values fit; a coarser
- * unit allows a larger head. */
+/* The head of an energy is the max exponent by which all values can be scaled
+ * without overflow; a coarser unit allows a larger head. */
 static void mix_energy_output(const struct glint_zoom_mix *blend,
                               const struct glint_blend_output *o)
 {
@@ -285,7 +289,7 @@ static void scale_output_table(struct glint_transfer *t, int kind,
             t->table[kind][b][a] = q_mul(t->table[kind][b][a], share_q30, 30);
 }
 
-void glint_blend_fade(struct glint_transfer *t, int32_t share_q30)
+void glint_blend_scale_energy(struct glint_transfer *t, int32_t share_q30)
 {
     for (int k = 0; k < t->roots; k++)
         share_q30 = (int32_t)q_root((uint64_t)share_q30 << 30);
@@ -319,12 +323,12 @@ static int32_t compute_signed_box_move_q24(int64_t b, int32_t eb, int64_t a,
                     : compute_box_move_q24(b, eb, a, ea, size, es, far);
 }
 
-/* Sets M to the move from the MIXED box to the box OF one position that
- * preserves positions in the stop. Returns whether M is small enough for
- * first-order terms. */
-static int find_move_in_stop(const struct glint_blend_stop *of,
-                             const struct glint_blend_stop *mixed,
-                             struct glint_blend_move *m)
+/* Sets M to the move between boxes, from the mixed one to that of one position
+ * (stop positions MIXED and OF), that preserves positions in the stop. Returns
+ * whether M is small enough for first-order terms. */
+static int compute_move_preserving_stop(const struct glint_blend_stop *of,
+                                        const struct glint_blend_stop *mixed,
+                                        struct glint_blend_move *m)
 {
     int far = 0;
 
@@ -340,8 +344,8 @@ static int find_move_in_stop(const struct glint_blend_stop *of,
     return !far && is_move_small(m);
 }
 
-/* Returns the max value of a barrel's polynomial at the rim of the stop or of
- * the box, whichever is nearer. */
+/* Returns the max value of the polynomial of BARREL at the rim of the stop or
+ * at the rim of the box, whichever is nearer. */
 static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
                                    const struct glint_blend_stop *stop)
 {
@@ -357,7 +361,7 @@ static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
         const int32_t v_q24 =
             compute_signed_box_move_q24(place[k][1], -30, 0, stop->y_exponent,
                                         stop->up, stop->y_exponent, &far);
-        const int32_t value_q16 = glint_blend_value_q16(
+        const int32_t value_q16 = glint_blend_evaluate_q16(
             barrel, q_clamp_sat(u_q24, -(1 << 24), 1 << 24),
             q_clamp_sat(v_q24 < 0 ? -(int64_t)v_q24 : v_q24, 0, 1 << 24));
 
@@ -366,21 +370,21 @@ static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
     return most;
 }
 
-/* Moves barrel KIND, which position SIDE has, such that it keeps its place in
- * the stop, if it then blocks less and sums stay small enough for the
- * transfer. */
-static void keep_barrel_in_stop(const struct glint_zoom_mix *blend, int side,
-                                int kind)
+/* Moves barrel KIND, which only position SIDE (0: this one, 1: the other one)
+ * has, such that it preserves its place in the stop, if it then blocks less and
+ * sums stay small enough for the transfer. */
+static void preserve_barrel_position_in_stop(const struct glint_zoom_mix *blend,
+                                             int side, int kind)
 {
     struct glint_transfer *const t = blend->to;
     const struct glint_blend_stop stop = get_stop_position(t);
     int32_t moved_row[ROWS][GLINT_TABLE_WIDTH];
-    const struct glint_blend_output own = glint_blend_of(t, kind);
+    const struct glint_blend_output own = glint_blend_get_output(t, kind);
     struct glint_blend_output kept = own;
     struct glint_blend_move m;
     int64_t all = 0;
 
-    if (!find_move_in_stop(&blend->stop[side], &stop, &m))
+    if (!compute_move_preserving_stop(&blend->stop[side], &stop, &m))
         return;
     kept.row = moved_row;
     for (int b = 0; b <= own.degree_v; b++)
@@ -404,12 +408,12 @@ static void keep_barrel_in_stop(const struct glint_zoom_mix *blend, int side,
 static void add_unmatched_barrel(struct glint_zoom_mix *blend,
                                  const struct glint_blend_output *o)
 {
-    const int added = glint_blend_put(blend->to, o);
+    const int added = glint_blend_add_barrel(blend->to, o);
 
     if (added < 0)
         return;
     blend->taken |= UINT32_C(1) << added;
-    keep_barrel_in_stop(blend, 1, BARREL + added);
+    preserve_barrel_position_in_stop(blend, 1, BARREL + added);
     widen_barrel_opening(blend->to, BARREL + added,
                          TRANSFER_ONE_Q30 - blend->part_q30);
 }
@@ -430,8 +434,8 @@ static void mix_barrel_output(struct glint_zoom_mix *blend,
 
 /* -------------------------------------------------------------------- both */
 
-void glint_blend_output(struct glint_zoom_mix *blend,
-                        const struct glint_blend_output *o)
+void glint_blend_mix_output(struct glint_zoom_mix *blend,
+                            const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
 
@@ -445,14 +449,14 @@ void glint_blend_output(struct glint_zoom_mix *blend,
             mix_polynomial(blend, o->kind, t->exponent[o->kind], o);
 }
 
-void glint_blend_end(const struct glint_zoom_mix *blend)
+void glint_blend_widen_barrels(const struct glint_zoom_mix *blend)
 {
     if (blend->part_q30 < 0)
         return;
     for (int kind = BARREL; kind < GLINT_OUT_KINDS; kind++)
         if (has_transfer_output(blend->to, kind) &&
             !(blend->taken >> (kind - BARREL) & 1)) {
-            keep_barrel_in_stop(blend, 0, kind);
+            preserve_barrel_position_in_stop(blend, 0, kind);
             widen_barrel_opening(blend->to, kind, blend->part_q30);
         }
 }

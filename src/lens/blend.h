@@ -17,15 +17,16 @@ enum {
 struct glint_zoom_mix {
     struct glint_transfer *to;
     int32_t part_q30;
-    /* Difference between the box of the other position and the box of this
-     * position, in half widths and half heights of this position's box
-     * (move[0]) or of the other one's (move[1]). along: displacement of the
-     * middle along u; wider, higher: differences in size. All are 0 if one of
-     * them exceeds a few half widths. */
+    /* Difference between the boxes of both positions (other - this), in half
+     * widths and half heights of this position's box (move[0]) or of the other
+     * one's (move[1]). along: displacement of the middle along u; wider,
+     * higher: differences in size. All are 0 if one of them exceeds a few half
+     * widths. */
     struct glint_blend_move {
         int32_t along_q24, wider_q24, higher_q24;
     } move[2];
-    int far; /* 1: the boxes are so far apart that all moves are 0 */
+    /* 1: the boxes are too far apart to interpolate; all moves are 0 */
+    int far;
     /* Where rays pass the stop, in stop radii, at this position ([0]) and at
      * the other one ([1]): position of the box's middle, and its change with u
      * and v. */
@@ -33,9 +34,10 @@ struct glint_zoom_mix {
         int32_t middle, across, up;
         int32_t x_exponent, y_exponent;
     } stop[2];
-    /* Values, _q16, of the barrels of this position and of the other one: [0]
-     * at sample points of their own box, [1] at points of the pupil inside both
-     * boxes. n_others: number of barrels of the other position. */
+    /* Values, _q16, of all barrels. First index: 0 for barrels of this
+     * position, 1 for those of the other one. Third index: 0 at sample points
+     * of the barrel's own box, 1 at points of the pupil inside both boxes.
+     * n_others: number of barrels of the other position. */
     int32_t barrel_q16[2][GLINT_BLEND_BARRELS][2][GLINT_BLEND_PLACES];
     int n_others, n_mixed;
     /* Bit masks. partners: for each barrel of the other position, the barrels
@@ -57,41 +59,42 @@ struct glint_blend_output {
 /* Mixes the box of the transfer, which must be that of the other position, with
  * BOX, the box of this position in units of 2^EXPONENT. Returns 0 if part is
  * below 0 and the boxes are too far apart to extrapolate. */
-int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
-                    int32_t exponent);
+int glint_blend_mix_box(struct glint_zoom_mix *blend, const int32_t box[3],
+                        int32_t exponent);
 
 /* Returns output KIND of T as a struct that points into T. */
-struct glint_blend_output glint_blend_of(struct glint_transfer *t, int kind);
+struct glint_blend_output glint_blend_get_output(struct glint_transfer *t,
+                                                 int kind);
 
 /* Returns the value, _q16, of the polynomial O at point (U, V) of its box.
  * Barrels so far away that their value is clamped block nothing or everything.
  * Units coarser than 2^-16, which no barrel has, are not distinguished. */
-int32_t glint_blend_value_q16(const struct glint_blend_output *o, int64_t u_q24,
-                              int64_t v_q24);
+int32_t glint_blend_evaluate_q16(const struct glint_blend_output *o,
+                                 int64_t u_q24, int64_t v_q24);
 
 /* Registers output O if it is a barrel. Call for all outputs of the other
  * position, by ascending kind. */
-void glint_blend_look(struct glint_zoom_mix *blend,
-                      const struct glint_blend_output *o);
+void glint_blend_register_barrel(struct glint_zoom_mix *blend,
+                                 const struct glint_blend_output *o);
 
 /* Finds the partners of each registered barrel among the barrels of this
  * position. */
-void glint_blend_pair(struct glint_zoom_mix *blend);
+void glint_blend_pair_barrels(struct glint_zoom_mix *blend);
 
-/* Adds barrel O to T as an unused kind. Returns the barrel's number, or -1 if
- * all kinds are used. */
-int glint_blend_put(struct glint_transfer *t,
-                    const struct glint_blend_output *o);
+/* Adds barrel O to T as an output whose kind is unused. Returns the barrel's
+ * number, or -1 if all kinds are used. */
+int glint_blend_add_barrel(struct glint_transfer *t,
+                           const struct glint_blend_output *o);
 
 /* Mixes output O into the transfer. Call for all outputs of the other position,
  * by ascending kind. */
-void glint_blend_output(struct glint_zoom_mix *blend,
-                        const struct glint_blend_output *o);
+void glint_blend_mix_output(struct glint_zoom_mix *blend,
+                            const struct glint_blend_output *o);
 
 /* Widens the barrels that the other position lacks. Call it last. */
-void glint_blend_end(const struct glint_zoom_mix *blend);
+void glint_blend_widen_barrels(const struct glint_zoom_mix *blend);
 
 /* Multiplies the energy of T by the fraction SHARE_Q30. */
-void glint_blend_fade(struct glint_transfer *t, int32_t share_q30);
+void glint_blend_scale_energy(struct glint_transfer *t, int32_t share_q30);
 
 #endif

@@ -14,15 +14,15 @@
 
 #include "glint/bundle.h"
 
-/* Returns the max number of cells per side. It is doubled if FOLDS is set: the
- * ghost's light folds over itself. */
-static inline int glint_grid_most(int fineness, int folds)
+/* Returns the max number of cells per side for FINENESS. It is doubled if
+ * FOLDS: the ghost's light folds over itself. */
+static inline int glint_grid_get_max_cells(int fineness, int folds)
 {
     return (folds ? 4 : 2) * fineness;
 }
 
 /* Returns N rounded up to a multiple of four. */
-static inline int glint_grid_fours(int n)
+static inline int glint_grid_round_up_to_four(int n)
 {
     return (n + 3) / 4 * 4;
 }

@@ -37,7 +37,8 @@ STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 GLINT_BLOB_HEADER(struct glint_model_header, basis);
 
 enum {
-    LIMIT = 1 << 30, /* max sum of magnitudes; 1 in _q30 */
+    /* max sum of the magnitudes of an output's coefficients; 1 in _q30 */
+    LIMIT = 1 << 30,
     MAX_REAL_EXPONENT = 200,
     /* max number of bits by which narrow coefficients are shifted */
     MAX_SHIFT = 20,
@@ -47,16 +48,16 @@ enum {
     MIN_EXPONENT = -80,
     MAX_EXPONENT = 40,
     NEEDED_KINDS = GLINT_OUT_ENERGY + 1,
-    /* log2 of the number of intervals of angle at whose ends the sizes of a box
-     * are checked not to be negative */
+    /* log2 of the number of angle intervals at whose ends the half sizes of a
+     * box must not be negative */
     BOX_NODES_LOG2 = 5,
-    /* max total size of all tables that systems refer to, in file sizes;
-     * without a limit, checking systems that share large tables would need
-     * quadratic time */
+    /* max sum of the sizes of the tables of all systems, in file sizes. Systems
+     * may share tables; without a limit, checking many systems that share large
+     * tables would take quadratic time. */
     MAX_SHARED = 8
 };
 
-static const char outside[] = "a table lies outside the file";
+static const char outside[] = "damaged model: a table lies outside the file";
 
 struct check {
     struct glint_blob blob;
@@ -107,20 +108,21 @@ static const char *check_header_reals(const struct glint_model_header *h)
 
     if (!is_real_normalised(&h->focal_mm) ||
         !is_real_normalised(&h->back_focal_mm))
-        return "a number of the header is not normalised";
+        return "damaged model: a number of the header is not normalised";
     if (h->focal_mm.mantissa == 0)
-        return "the focal length is 0";
+        return "damaged model: the focal length is 0";
     for (size_t k = 0; k < sizeof positive / sizeof *positive; k++) {
         if (!is_real_normalised(positive[k]))
-            return "a number of the header is not normalised";
+            return "damaged model: a number of the header is not normalised";
         if (positive[k]->mantissa <= 0)
-            return "a length or the f-number is not above 0";
+            return "damaged model: a length or the f-number is not above 0";
     }
     for (int k = 0; k < GLINT_FLUX_TERMS; k++)
         if (!is_real_normalised(&h->direct_flux[k]) ||
             !is_real_normalised(&h->stopped_flux[0][k]) ||
             !is_real_normalised(&h->stopped_flux[1][k]))
-            return "the flux of the direct image is not normalised";
+            return "damaged model: the flux of the direct image is not "
+                   "normalised";
     return NULL;
 }
 
@@ -130,15 +132,15 @@ static const char *check_model_header(struct check *c)
     const char *reason = fault_text[glint_blob_check_name(&c->blob)];
 
     if (h->basis != GLINT_BASIS_AUTO && !glint_basis_is_lens(h->basis))
-        return "the basis is unknown";
+        return "damaged model: the basis is unknown";
     if (!reason)
         reason = check_header_reals(h);
     if (reason)
         return reason;
     if (h->wave_lo_q24 <= 0 || h->wave_lo_q24 >= h->wave_hi_q24)
-        return "the band of wavelengths is empty or not above 0";
+        return "damaged model: the band of wavelengths is empty or not above 0";
     if (h->sine_hi_q30 < 1 || h->sine_hi_q30 > LIMIT)
-        return "the largest angle is out of range";
+        return "damaged model: the largest angle is out of range";
     c->ghost = glint_blob_find_section(&c->blob, h->ghost_at, h->n_ghosts,
                                        sizeof *c->ghost);
     c->system = glint_blob_find_section(&c->blob, h->system_at, h->n_systems,
@@ -172,11 +174,11 @@ static const char *check_direction_range(struct check *c,
     if (!y_q30)
         return outside;
     return y_q30[0] < -LIMIT || y_q30[0] >= y_q30[1] || y_q30[1] > LIMIT
-               ? "a system's angles are out of range"
+               ? "damaged model: a system's angles are out of range"
                : NULL;
 }
 
-/* Returns whether the polynomial P of a half size is negative at any of a
+/* Returns whether the half-size polynomial P of a box is negative at any of a
  * series of angles, at either end of the band. */
 static int has_negative_size(const int32_t p[GLINT_BOX_TERMS])
 {
@@ -192,8 +194,8 @@ static int has_negative_size(const int32_t p[GLINT_BOX_TERMS])
     return 0;
 }
 
-/* Returns whether the polynomial P of a half size in the lens basis is negative
- * at any of a grid of directions, at either end of the band. */
+/* Returns whether the half-size polynomial P of a box in the lens basis is
+ * negative at any of a grid of directions, at either end of the band. */
 static int has_negative_lens_size(const int32_t p[GLINT_BOX_TERMS])
 {
     const int32_t half = 1 << (BOX_NODES_LOG2 - 2), step = LIMIT / half;
@@ -217,7 +219,7 @@ static const char *check_system_box(struct check *c,
     int32_t side[GLINT_BOX_TERMS];
 
     if (s->box_exponent < MIN_EXPONENT || s->box_exponent > MAX_EXPONENT)
-        return "the exponent of a box is out of range";
+        return "damaged model: the exponent of a box is out of range";
     box = glint_blob_find_section(&c->blob, s->box_at, (uint64_t)sides * terms,
                                   sizeof *box);
     if (!box)
@@ -225,10 +227,10 @@ static const char *check_system_box(struct check *c,
     for (int k = 0; k < sides; k++) {
         box = unpack_box_polynomial(box, s->box_terms, side);
         if (sum_magnitudes(side, GLINT_BOX_TERMS) >= LIMIT)
-            return "the terms of a box are too large";
+            return "damaged model: the terms of a box are too large";
         if ((k == 1 || k == 2) &&
             (lens ? has_negative_lens_size(side) : has_negative_size(side)))
-            return "a box has a negative size";
+            return "damaged model: a box has a negative size";
     }
     return NULL;
 }
@@ -243,8 +245,9 @@ static const char *check_auto_power(const struct glint_model_output *o,
         o->kind == GLINT_OUT_SENSOR_Y || o->kind == GLINT_OUT_STOP_Y;
 
     if (u > GLINT_MAX_POWER || v > GLINT_MAX_POWER)
-        return "a power of u or v is too high";
-    return v % 2 == odd ? NULL : "a power of v has the wrong parity";
+        return "damaged model: a power of u or v is too high";
+    return v % 2 == odd ? NULL
+                        : "damaged model: a power of v has the wrong parity";
 }
 
 static const char *check_lens_power(uint16_t power)
@@ -254,8 +257,8 @@ static const char *check_lens_power(uint16_t power)
         GLINT_LENS_POWERS * GLINT_LENS_POWERS * GLINT_LENS_WAVE_POWERS;
 
     if (u > GLINT_MAX_POWER || v > GLINT_MAX_POWER)
-        return "a power of u or v is too high";
-    return power >> 8 < most ? NULL : "a power of w is too high";
+        return "damaged model: a power of u or v is too high";
+    return power >> 8 < most ? NULL : "damaged model: a power of w is too high";
 }
 
 static const char *check_output_terms(struct check *c,
@@ -277,7 +280,7 @@ static const char *check_output_terms(struct check *c,
         /* an output has at most 120 terms, few enough to compare all pairs */
         for (uint32_t m = 0; m < k; m++)
             if (power[m] == power[k])
-                return "an output has a term twice";
+                return "damaged model: an output has a term twice";
     }
     return NULL;
 }
@@ -288,7 +291,7 @@ static const char *check_output_coefficients(struct check *c,
                                              const struct glint_model_output *o)
 {
     static const char too_large[] =
-        "the coefficients of an output are too large";
+        "damaged model: the coefficients of an output are too large";
     const uint32_t n_narrow = o->n_narrow, shift = o->narrow_shift;
     const uint32_t n_wide = o->n_terms - n_narrow;
     const int32_t *wide;
@@ -296,7 +299,8 @@ static const char *check_output_coefficients(struct check *c,
     int64_t sum;
 
     if (n_narrow > o->n_terms || shift > MAX_SHIFT)
-        return "an output's 16-bit coefficients are out of range";
+        return "damaged model: an output's 16-bit coefficients are out of "
+               "range";
     wide = glint_blob_find_section(&c->blob, o->coef_at,
                                    n_wide + (n_narrow + 1) / 2, sizeof *wide);
     if (!wide)
@@ -315,13 +319,13 @@ static const char *check_system_output(struct check *c,
 
     if ((o->roots || o->head) && (o->kind != GLINT_OUT_ENERGY ||
                                   o->roots > MAX_ROOTS || o->head > MAX_HEAD))
-        return "an output's roots or head are out of range";
+        return "damaged model: an output's roots or head are out of range";
     if (o->n_terms < 1 || o->n_terms > GLINT_MAX_MODEL_TERMS)
-        return "an output has no terms or too many";
+        return "damaged model: an output has no terms or too many";
     if (o->exponent < MIN_EXPONENT || o->exponent > MAX_EXPONENT)
-        return "the exponent of an output is out of range";
+        return "damaged model: the exponent of an output is out of range";
     if (o->bound >= LIMIT)
-        return "the bound of an output is too large";
+        return "damaged model: the bound of an output is too large";
     reason = check_output_terms(c, o);
     return reason ? reason : check_output_coefficients(c, o);
 }
@@ -332,7 +336,7 @@ static const char *check_system_outputs(struct check *c,
     const struct glint_model_output *o;
 
     if (s->n_outputs < NEEDED_KINDS || s->n_outputs > GLINT_OUT_KINDS)
-        return "a system has too few outputs or too many";
+        return "damaged model: a system has too few outputs or too many";
     o = glint_blob_find_section(&c->blob, s->output_at, s->n_outputs,
                                 sizeof *o);
     if (!o)
@@ -341,16 +345,18 @@ static const char *check_system_outputs(struct check *c,
         const char *reason;
 
         if (k < NEEDED_KINDS && o[k].kind != k)
-            return "a system lacks an output, or outputs are unsorted";
+            return "damaged model: a system lacks an output, or outputs are "
+                   "unsorted";
         if (o[k].kind >= GLINT_OUT_KINDS || (k && o[k].kind <= o[k - 1].kind))
-            return "an output's kind is unknown, or outputs are unsorted";
+            return "damaged model: an output's kind is unknown, or outputs are "
+                   "unsorted";
         reason = check_system_output(c, &o[k]);
         if (reason)
             return reason;
     }
     return o[GLINT_OUT_SENSOR_X].exponent != o[GLINT_OUT_SENSOR_Y].exponent ||
                    o[GLINT_OUT_STOP_X].exponent != o[GLINT_OUT_STOP_Y].exponent
-               ? "x and y of a position have different exponents"
+               ? "damaged model: x and y of a position have different exponents"
                : NULL;
 }
 
@@ -362,31 +368,32 @@ static const char *check_ghost_system(struct check *check,
 
     if (s->sine_lo_q30 < (lens ? -LIMIT : 0) ||
         s->sine_lo_q30 >= s->sine_hi_q30 || s->sine_hi_q30 > LIMIT)
-        return "a system's angles are out of range";
+        return "damaged model: a system's angles are out of range";
     if (s->annulus > GLINT_MAX_ANNULUS || (s->annulus && lens) || s->zero ||
         s->zero_word)
-        return "a system's annulus is out of range";
+        return "damaged model: a system's annulus is out of range";
     if (s->wave_lo_q24 <= 0 || s->wave_lo_q24 > s->wave_hi_q24)
-        return "a system's band is out of range";
+        return "damaged model: a system's band is out of range";
     reason = lens ? check_direction_range(check, s) : NULL;
     if (!reason)
         reason = check_system_box(check, s);
     if (!reason)
         reason = check_system_outputs(check, s);
     if (!reason && check->blob.referred / MAX_SHARED > check->blob.bytes)
-        reason = "systems share too many tables";
+        reason = "damaged model: systems share too many tables";
     return reason;
 }
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* Checks that system NEXT may follow LAST in the list of one ghost. */
+/* Checks that system NEXT may follow system LAST in the list of one ghost: NEXT
+ * must not begin before LAST ends, in both angle and wavelength. */
 static const char *check_system_order(const struct glint_model_system *last,
                                       const struct glint_model_system *next)
 {
     return next->sine_lo_q30 < last->sine_hi_q30 &&
                    next->wave_lo_q24 < last->wave_hi_q24
-               ? "a ghost's systems overlap or are unsorted"
+               ? "damaged model: a ghost's systems overlap or are unsorted"
                : NULL;
 }
 
@@ -398,22 +405,23 @@ static const char *check_ghost_lists(const struct check *c)
     uint32_t next = 0;
 
     if (h->n_parts > h->n_ghosts)
-        return "there are more parts than ghosts";
+        return "damaged model: there are more parts than ghosts";
     for (uint32_t k = 0; k < h->n_ghosts; k++) {
         const struct glint_model_ghost *g = &c->ghost[k];
 
         if (g->i >= g->j || g->j >= h->n_surfaces)
-            return "a ghost's surfaces are out of range";
+            return "damaged model: a ghost's surfaces are out of range";
         if (g->n_systems == 0)
             continue;
         if (g->first_system >= h->n_systems ||
             g->n_systems > h->n_systems - g->first_system)
-            return "a ghost's systems are out of range";
+            return "damaged model: a ghost's systems are out of range";
         if (g->first_system < next)
-            return "two ghosts share a system, or systems are unsorted";
+            return "damaged model: two ghosts share a system, or systems are "
+                   "unsorted";
         next = g->first_system + g->n_systems;
-        /* In the lens basis, directions of two components have no order; where
-         * two systems overlap, the first one is used. */
+        /* in the lens basis directions have two components and no order; where
+         * two systems overlap, the run time uses the first one */
         for (uint32_t m = g->first_system + 1;
              m < next && !glint_basis_is_lens(h->basis); m++) {
             const char *reason =

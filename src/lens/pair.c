@@ -20,13 +20,14 @@
 
 enum {
     BARREL = GLINT_OUT_BARREL_0,
-    /* max difference between the values of corresponding barrels */
+    /* max difference between the values of corresponding barrels, _q16 */
     LIKE_Q16 = 1 << 15,
     FAR_Q16 = 1 << 28,
-    ACROSS = 3 /* number of sample points in each of two rows */
+    ACROSS = 3 /* number of sample points per row; there are two rows */
 };
 
-struct glint_blend_output glint_blend_of(struct glint_transfer *t, int kind)
+struct glint_blend_output glint_blend_get_output(struct glint_transfer *t,
+                                                 int kind)
 {
     return (struct glint_blend_output){.kind = (uint8_t)kind,
                                        .exponent = t->exponent[kind],
@@ -35,8 +36,8 @@ struct glint_blend_output glint_blend_of(struct glint_transfer *t, int kind)
                                        .degree_v = t->degree_v[kind]};
 }
 
-int32_t glint_blend_value_q16(const struct glint_blend_output *o, int64_t u_q24,
-                              int64_t v_q24)
+int32_t glint_blend_evaluate_q16(const struct glint_blend_output *o,
+                                 int64_t u_q24, int64_t v_q24)
 {
     const int32_t exponent = o->exponent;
     int64_t sum = 0;
@@ -53,13 +54,13 @@ int32_t glint_blend_value_q16(const struct glint_blend_output *o, int64_t u_q24,
     return q_clamp_sat(sum, -FAR_Q16, FAR_Q16);
 }
 
-static int64_t min_i64(int64_t a, int64_t b)
+static int64_t get_min_i64(int64_t a, int64_t b)
 {
     return a < b ? a : b;
 }
 
-/* Finds the overlap of both boxes in the pupil: FIRST .. LAST along u and
- * 0 .. HIGH along v, in units of this position's box. Returns 0 if they do not
+/* Finds the overlap of both boxes in the pupil: FIRST .. LAST along u and 0 ..
+ * HIGH along v, in half sizes of this position's box. Returns 0 if they do not
  * overlap. */
 static int find_box_overlap(const struct glint_zoom_mix *blend, int64_t *first,
                             int64_t *last, int64_t *high)
@@ -67,9 +68,9 @@ static int find_box_overlap(const struct glint_zoom_mix *blend, int64_t *first,
     const struct glint_blend_move *const to = &blend->move[0];
     const int64_t one = 1 << 24, half = one + to->wider_q24;
 
-    *first = -min_i64(one, half - to->along_q24);
-    *last = min_i64(one, half + to->along_q24);
-    *high = min_i64(one, one + to->higher_q24);
+    *first = -get_min_i64(one, half - to->along_q24);
+    *last = get_min_i64(one, half + to->along_q24);
+    *high = get_min_i64(one, one + to->higher_q24);
     return !blend->far && *first < *last;
 }
 
@@ -91,19 +92,20 @@ static void set_barrel_values(const struct glint_zoom_mix *blend, int side,
         if (side) {
             u = q_shift(u * (one - back->wider_q24), 24) - back->along_q24;
             v = q_shift(v * (one - back->higher_q24), 24);
-            /* Moves are rounded in units that may be as large as a box, so U
-             * and V are clamped to the box. */
-            u = -min_i64(one, -min_i64(one, u));
-            v = min_i64(one, v);
+            /* moves are rounded, to units that may be as large as a box, so U
+             * and V are clamped to the box */
+            u = -get_min_i64(one, -get_min_i64(one, u));
+            v = get_min_i64(one, v);
         }
-        values[0][k] = glint_blend_value_q16(o, (k % ACROSS - 1) * one,
-                                             k < ACROSS ? 0 : one);
-        values[1][k] = any ? glint_blend_value_q16(o, u, v) : 0;
+        values[0][k] = glint_blend_evaluate_q16(o, (k % ACROSS - 1) * one,
+                                                k < ACROSS ? 0 : one);
+        values[1][k] = any ? glint_blend_evaluate_q16(o, u, v) : 0;
     }
 }
 
-/* Returns the max difference between the values of two barrels, compared in
- * their boxes or at points of the pupil, whichever is smaller. */
+/* Returns the max difference between the values of two barrels, over sample
+ * points of their own boxes or over points of the pupil, whichever max is
+ * smaller. */
 static int64_t compute_barrel_difference_q16(const struct glint_zoom_mix *blend,
                                              int ours, int theirs)
 {
@@ -120,13 +122,13 @@ static int64_t compute_barrel_difference_q16(const struct glint_zoom_mix *blend,
 
             most = off > most ? off : most;
         }
-        least = min_i64(least, most);
+        least = get_min_i64(least, most);
     }
     return least;
 }
 
-void glint_blend_look(struct glint_zoom_mix *blend,
-                      const struct glint_blend_output *o)
+void glint_blend_register_barrel(struct glint_zoom_mix *blend,
+                                 const struct glint_blend_output *o)
 {
     if (o->kind >= BARREL)
         set_barrel_values(blend, 1, o, blend->barrel_q16[1][blend->n_others++]);
@@ -175,15 +177,15 @@ static void pair_unmatched_barrels(struct glint_zoom_mix *blend, uint32_t own,
         if (find_most_similar_pair(blend, own, theirs & UINT32_C(1) << k,
                                    pair)) {
             const struct glint_blend_output copy =
-                glint_blend_of(blend->to, BARREL + pair[0]);
+                glint_blend_get_output(blend->to, BARREL + pair[0]);
 
-            pair[0] = glint_blend_put(blend->to, &copy);
+            pair[0] = glint_blend_add_barrel(blend->to, &copy);
             if (pair[0] >= 0)
                 record_barrel_pair(blend, pair);
         }
 }
 
-void glint_blend_pair(struct glint_zoom_mix *blend)
+void glint_blend_pair_barrels(struct glint_zoom_mix *blend)
 {
     const uint32_t own = blend->to->outputs >> BARREL;
     uint32_t ours = own, theirs = (UINT32_C(1) << blend->n_others) - 1;
@@ -191,7 +193,7 @@ void glint_blend_pair(struct glint_zoom_mix *blend)
 
     for (int k = 0; ours >> k; k++) {
         const struct glint_blend_output o =
-            glint_blend_of(blend->to, BARREL + k);
+            glint_blend_get_output(blend->to, BARREL + k);
 
         if (ours >> k & 1)
             set_barrel_values(blend, 0, &o, blend->barrel_q16[0][k]);
@@ -205,8 +207,8 @@ void glint_blend_pair(struct glint_zoom_mix *blend)
         pair_unmatched_barrels(blend, own, ours, theirs);
 }
 
-int glint_blend_put(struct glint_transfer *t,
-                    const struct glint_blend_output *o)
+int glint_blend_add_barrel(struct glint_transfer *t,
+                           const struct glint_blend_output *o)
 {
     int kind = BARREL;
 

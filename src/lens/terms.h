@@ -24,16 +24,18 @@ static inline void compute_powers_q30(int32_t x_q30, int n, int32_t *power_q30)
 /* Returns the system of GHOST for this angle and wavelength; NULL if no light
  * of the ghost passes the lens. */
 const struct glint_model_system *
-glint_transfer_system(const struct glint_lens *lens, int ghost,
-                      int32_t sine_q30, int32_t wave_q24);
+glint_transfer_find_system(const struct glint_lens *lens, int ghost,
+                           int32_t sine_q30, int32_t wave_q24);
 
 /* Mixes GHOST of LENS into TRANSFER, which must be set to the same ghost, angle
- * and wavelength at another zoom position. The result is PART_Q30 of LENS and 1
- * - PART_Q30 of TRANSFER. Returns 0 and does nothing if GHOST has no system
- * there or the two energies have different representations. */
-int glint_transfer_mix(struct glint_transfer *transfer,
-                       const struct glint_lens *lens, int ghost,
-                       int32_t sine_q30, int32_t wave_q24, int32_t part_q30);
+ * and wavelength at another zoom position. The weight of LENS is PART_Q30, that
+ * of TRANSFER 1 - PART_Q30. Returns 0 and does nothing if GHOST has no system
+ * for this angle and wavelength in LENS, or if the two energies have different
+ * representations. */
+int glint_transfer_mix_position(struct glint_transfer *transfer,
+                                const struct glint_lens *lens, int ghost,
+                                int32_t sine_q30, int32_t wave_q24,
+                                int32_t part_q30);
 
 static inline int has_transfer_output(const struct glint_transfer *t, int kind)
 {

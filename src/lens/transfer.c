@@ -60,7 +60,8 @@ static int is_direction_in_range(const struct glint_lens *lens,
     const int32_t *range_q30;
 
     if (!glint_basis_is_lens(lens->header->basis))
-        return 1; /* in this case across_at has not been validated */
+        /* auto basis: across_at has not been validated, so it is not read */
+        return 1;
     range_q30 = get_model_table(lens, s->across_at);
     return y_q30 >= range_q30[0] && y_q30 <= range_q30[1];
 }
@@ -88,8 +89,8 @@ find_ghost_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
 }
 
 const struct glint_model_system *
-glint_transfer_system(const struct glint_lens *lens, int ghost,
-                      int32_t sine_q30, int32_t wave_q24)
+glint_transfer_find_system(const struct glint_lens *lens, int ghost,
+                           int32_t sine_q30, int32_t wave_q24)
 {
     return find_ghost_system(lens, ghost, sine_q30, 0, wave_q24);
 }
@@ -143,8 +144,8 @@ static void evaluate_transfer_box(struct glint_transfer *t,
                                                set->p_q30[1], set->w_q30[1])
                 : evaluate_box_polynomial(side, set->s_q30[1], set->w_q30[1]);
     }
-    /* The check of a model tests half sizes on a grid of angles; between these
-     * a half size may be negative, so it is clamped to 0. */
+    /* glint_lens_open() tests half sizes on a grid of angles only; between
+     * these a half size may be negative, so it is clamped to 0. */
     for (int k = 1; k < 3; k++)
         t->box[k] = t->box[k] < 0 ? 0 : t->box[k];
 }
@@ -161,8 +162,8 @@ static WHOLLY_INLINE int32_t substitute_auto_term(
     return d ? q_mul(value, set->w_q30[d], 30) : value;
 }
 
-/* The check of a model limits powers of u and v to GLINT_MAX_POWER, and the
- * codes of the lens basis to values within these limits. */
+/* glint_lens_open() limits powers of u and v to GLINT_MAX_POWER, and powers in
+ * the lens basis to these limits. */
 STATIC_ASSERT(GLINT_MAX_POWER < GLINT_TABLE_WIDTH);
 STATIC_ASSERT(GLINT_LENS_POWERS <= TRANSFER_MAX_EXPONENT + 1);
 STATIC_ASSERT(GLINT_LENS_WAVE_POWERS <= TRANSFER_MAX_EXPONENT + 1);
@@ -343,8 +344,8 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
     return 1;
 }
 
-/* Returns output O of the other zoom position of a mix, and writes its
- * coefficients to ROW. */
+/* Returns output O of the other zoom position of a mix, with angle and
+ * wavelength substituted, and writes its coefficients to ROW. */
 static struct glint_blend_output make_blend_output(
     const struct glint_lens *lens, const struct glint_model_output *o,
     const struct substituted_powers *set, int32_t (*row)[GLINT_TABLE_WIDTH])
@@ -360,12 +361,13 @@ static struct glint_blend_output make_blend_output(
                                        .degree_v = (uint8_t)table.degree_v};
 }
 
-int glint_transfer_mix(struct glint_transfer *transfer,
-                       const struct glint_lens *lens, int ghost,
-                       int32_t sine_q30, int32_t wave_q24, int32_t part_q30)
+int glint_transfer_mix_position(struct glint_transfer *transfer,
+                                const struct glint_lens *lens, int ghost,
+                                int32_t sine_q30, int32_t wave_q24,
+                                int32_t part_q30)
 {
     const struct glint_model_system *const system =
-        glint_transfer_system(lens, ghost, sine_q30, wave_q24);
+        glint_transfer_find_system(lens, ghost, sine_q30, wave_q24);
     const struct glint_model_output *o;
     struct glint_zoom_mix blend = {.to = transfer, .part_q30 = part_q30};
     int32_t box[3] = {transfer->box[0], transfer->box[1], transfer->box[2]};
@@ -380,22 +382,22 @@ int glint_transfer_mix(struct glint_transfer *transfer,
     set_substituted_powers(&set, lens, system, sine_q30, 0, wave_q24);
     transfer->system = system;
     evaluate_transfer_box(transfer, lens, &set);
-    if (!glint_blend_box(&blend, box, box_exponent))
+    if (!glint_blend_mix_box(&blend, box, box_exponent))
         return 0;
     for (uint32_t k = 0; k < system->n_outputs; k++)
         if (o[k].kind >= GLINT_OUT_BARREL_0) {
             const struct glint_blend_output of =
                 make_blend_output(lens, &o[k], &set, transfer->of_u);
 
-            glint_blend_look(&blend, &of);
+            glint_blend_register_barrel(&blend, &of);
         }
-    glint_blend_pair(&blend);
+    glint_blend_pair_barrels(&blend);
     for (uint32_t k = 0; k < system->n_outputs; k++) {
         const struct glint_blend_output of =
             make_blend_output(lens, &o[k], &set, transfer->of_u);
 
-        glint_blend_output(&blend, &of);
+        glint_blend_mix_output(&blend, &of);
     }
-    glint_blend_end(&blend);
+    glint_blend_widen_barrels(&blend);
     return 1;
 }

@@ -12,15 +12,16 @@
 
 enum { RAYS = GLINT_RAYS };
 
-/* Returns whether all terms of KIND have odd powers of v, rather than even
- * ones. In the lens basis terms have both. */
+/* Auto basis: returns whether all terms of output KIND have odd powers of v;
+ * otherwise all have even ones. In the lens basis terms have both. */
 static int is_odd_in_v(int kind)
 {
     return kind & 1 && kind < GLINT_OUT_ENERGY;
 }
 
-/* Sets OF_U to the polynomial in u, along the row of rays at V_Q30, of the
- * terms of KIND with odd powers of v (ODD = 1) or even ones (ODD = 0). */
+/* Sets OF_U to the sum, as a polynomial in u, of those terms of output KIND
+ * that have odd (ODD = 1) or even (ODD = 0) powers of v, along the row of rays
+ * at V_Q30. */
 static void sum_powers_of_v(const struct glint_transfer *t,
                             const struct glint_horner *k, int kind, int odd,
                             int32_t v_q30, int32_t v2_q30, int32_t *of_u)
@@ -64,7 +65,8 @@ static void set_row_polynomials(const struct glint_transfer *t,
             set_row_polynomial(t, k, kind, v_q30, v2_q30, of_u[kind]);
 }
 
-/* Converts N values E of the energy polynomial to energies, in place. */
+/* Converts N values E of the energy polynomial to energies, in place: clamps
+ * and scales each value, then squares it ROOTS times. */
 static void convert_energy_values(const struct glint_transfer *t, int32_t *e,
                                   int n)
 {

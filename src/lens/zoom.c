@@ -6,12 +6,13 @@
  *   out  a header interpolated between those of two positions, a list of the
  *        ghosts of all models, and interpolated bundles
  *
- * All models contain the same pairs of surfaces as ghosts, in the same order.
- * A ghost whose pupil is divided has further parts; the list has as many as
- * the model with the most. Where both neighbouring models divide the pupil of
- * a ghost in the same way at an angle, the two are mixed; otherwise the nearer
- * model is drawn. Where one model has no light, the other one is extrapolated
- * using a third model farther away, or faded.
+ * All models contain the same pairs of surfaces as ghosts, in the same order. A
+ * ghost whose pupil is divided has additional parts; the combined list has as
+ * many parts as the model with the most. A zoom position lies between two
+ * models, one on either SIDE. If both divide the pupil of a ghost in the same
+ * way at an angle, their polynomials are mixed; otherwise the nearer model is
+ * drawn. If only one of them has light, it is extrapolated using a third model
+ * farther away, or faded.
  */
 #include "glint/model.h"
 
@@ -34,8 +35,8 @@ static int count_ghosts_without_parts(const struct glint_lens *lens)
     return (int)(lens->header->n_ghosts - lens->header->n_parts);
 }
 
-/* Returns the number of further parts of ghost G in model LENS. Advances *NEXT,
- * the index of the first part that has not been counted, past them. */
+/* Returns the number of additional parts of ghost G in model LENS. Advances
+ * *NEXT, the index of the first part that has not been counted, past them. */
 static int count_ghost_parts(const struct glint_lens *lens, int g,
                              uint32_t *next)
 {
@@ -86,7 +87,7 @@ static const char *list_all_ghosts(struct glint_zoom_lens *z)
     z->part_from[n] = (int16_t)end;
     for (int k = 0; k < z->n_models; k++)
         if (next[k] != z->model[k].header->n_ghosts)
-            return "parts of a zoom's ghosts are not in the order of ghosts";
+            return "damaged zoom model: parts of ghosts are unsorted";
     return NULL;
 }
 
@@ -95,9 +96,9 @@ static int has_model_ghost(const struct glint_zoom_lens *z, int k, int g)
     return !z->has[k] || (z->has[k][g / 32] >> g % 32 & 1);
 }
 
-/* Finds the nearest models on both sides of the zoom position that contain each
- * ghost. END receives the first and the last of these models. */
-static void find_side_models(struct glint_zoom_lens *z, int end[2])
+/* For each ghost, finds the nearest model on either side of the zoom position
+ * that contains it. END receives the first and the last of all these models. */
+static void find_neighbour_models(struct glint_zoom_lens *z, int end[2])
 {
     end[0] = z->below;
     end[1] = z->below + 1;
@@ -115,10 +116,10 @@ static void find_side_models(struct glint_zoom_lens *z, int end[2])
     }
 }
 
-/* Sets the indices of ghost G and its parts in the model on SIDE, which has
- * PARTS parts from index AT on. */
-static void set_side_indices(struct glint_zoom_lens *z, int side, int g,
-                             uint32_t at, int parts)
+/* Sets the indices of ghost G and its parts in the model on SIDE (0 or 1). That
+ * model has PARTS additional parts, from index AT on. */
+static void set_neighbour_indices(struct glint_zoom_lens *z, int side, int g,
+                                  uint32_t at, int parts)
 {
     z->place[side][g] = (int16_t)g;
     for (int e = z->part_from[g]; e < z->part_from[g + 1]; e++)
@@ -138,7 +139,7 @@ static void find_model_indices(struct glint_zoom_lens *z, int k)
 
         for (int side = 0; side < 2; side++)
             if (z->side[side][g] == k)
-                set_side_indices(z, side, g, at, parts);
+                set_neighbour_indices(z, side, g, at, parts);
     }
 }
 
@@ -163,8 +164,8 @@ static struct glint_real interpolate_real(struct glint_real a,
     return real_of(x + y, e - 30);
 }
 
-/* Returns the zoom position relative to model FROM (0) and model TO (1); below
- * 0 if FROM lies between the position and TO. */
+/* Returns the zoom position on a scale from 0 (model FROM) to 1 (model TO),
+ * extrapolated: below 0 if FROM lies between the position and TO. */
 static int32_t compute_zoom_position_q30(const struct glint_zoom_lens *z,
                                          int from, int to)
 {
@@ -203,15 +204,15 @@ static int are_reals_equal(struct glint_real a, struct glint_real b)
     return a.mantissa == b.mantissa && a.exponent == b.exponent;
 }
 
-/* Returns why B is not another position of the zoom lens A; NULL if it is
- * one. */
+/* Returns the reason why B cannot be another position of the zoom lens of A;
+ * NULL if it can. */
 static const char *check_zoom_positions(const struct glint_lens *a,
                                         const struct glint_lens *b)
 {
     const struct glint_model_header *const h = a->header, *const g = b->header;
 
     if (h->basis != GLINT_BASIS_AUTO || g->basis != GLINT_BASIS_AUTO)
-        return "a zoom's models must have the basis auto";
+        return "a zoom's models must be of round lenses (basis auto)";
     if (h->n_surfaces != g->n_surfaces ||
         count_ghosts_without_parts(a) != count_ghosts_without_parts(b))
         return "a zoom's models are of different lenses";
@@ -229,14 +230,15 @@ static const char *check_zoom_positions(const struct glint_lens *a,
 
 /* ---------------------------------------------------------------- transfers */
 
-/* Returns the model on SIDE that draws ghost or part E. */
-static const struct glint_lens *get_side_model(const struct glint_zoom_lens *z,
-                                               int e, int side)
+/* Returns the model on SIDE (0 or 1) that contains ghost or part E. */
+static const struct glint_lens *
+get_neighbour_model(const struct glint_zoom_lens *z, int e, int side)
 {
     return &z->model[z->side[side][z->whole[e]]];
 }
 
-/* Returns the zoom position between the two models that draw GHOST, 0 .. 1. */
+/* Returns the zoom position between the two models that contain GHOST, 0 ..
+ * 1. */
 static int32_t compute_mix_fraction_q30(const struct glint_zoom_lens *z,
                                         int ghost)
 {
@@ -245,22 +247,24 @@ static int32_t compute_mix_fraction_q30(const struct glint_zoom_lens *z,
     return compute_zoom_position_q30(z, z->side[0][g], z->side[1][g]);
 }
 
-/* Returns the annulus of the system of ghost or part E on SIDE at this angle
- * and wavelength; -1 if no light passes there. */
+/* Returns the annulus (ring of the pupil) of the system of ghost or part E in
+ * the model on SIDE at this angle and wavelength; -1 if no light passes
+ * there. */
 static int find_system_annulus(const struct glint_zoom_lens *z, int e, int side,
                                int32_t sine_q30, int32_t wave_q24)
 {
     const int at = z->place[side][e];
     const struct glint_model_system *const s =
         at < 0 ? NULL
-               : glint_transfer_system(get_side_model(z, e, side), at, sine_q30,
-                                       wave_q24);
+               : glint_transfer_find_system(get_neighbour_model(z, e, side), at,
+                                            sine_q30, wave_q24);
 
     return s ? s->annulus : -1;
 }
 
-/* Returns whether both sides divide the pupil of ghost G in the same way. Sets
- * LIT[side] to whether light passes any part on that side. */
+/* Returns whether the models on both sides divide the pupil of ghost G in the
+ * same way. Sets LIT[side] to whether light passes any part in that side's
+ * model. */
 static int is_pupil_divided_alike(const struct glint_zoom_lens *z, int g,
                                   int32_t sine_q30, int32_t wave_q24,
                                   int lit[2])
@@ -282,20 +286,21 @@ static int is_pupil_divided_alike(const struct glint_zoom_lens *z, int g,
 
 /* Sets TRANSFER to ghost or part E of the model on SIDE, without mixing.
  * Returns whether light passes. */
-static int set_transfer_from_side(struct glint_transfer *transfer,
-                                  const struct glint_zoom_lens *z, int e,
-                                  int side, int32_t sine_q30, int32_t wave_q24)
+static int set_transfer_from_neighbour(struct glint_transfer *transfer,
+                                       const struct glint_zoom_lens *z, int e,
+                                       int side, int32_t sine_q30,
+                                       int32_t wave_q24)
 {
     return z->place[side][e] >= 0 &&
-           glint_transfer_init(transfer, get_side_model(z, e, side),
+           glint_transfer_init(transfer, get_neighbour_model(z, e, side),
                                z->place[side][e], sine_q30, wave_q24);
 }
 
-/* Returns the nearest model behind SIDE that contains ghost G and is at least
- * as far from SIDE as both sides are from each other, so that extrapolation at
- * most doubles a distance; -1: none. */
-static int find_model_behind_side(const struct glint_zoom_lens *z, int g,
-                                  int side)
+/* Returns the index of the nearest model beyond the model on SIDE that contains
+ * ghost G and is at least as far from it as both side models are from each
+ * other, so that extrapolation at most doubles a distance; -1: none. */
+static int find_model_behind_neighbour(const struct glint_zoom_lens *z, int g,
+                                       int side)
 {
     const int from = z->side[side][g], step = side ? 1 : -1;
     const int64_t gap =
@@ -308,15 +313,15 @@ static int find_model_behind_side(const struct glint_zoom_lens *z, int g,
     return -1;
 }
 
-/* Sets TRANSFER to ghost G, extrapolated from the model on SIDE and one behind
- * it. The ghost must have light on SIDE only, and no further parts there.
- * Returns whether this is possible. */
+/* Sets TRANSFER to ghost G, extrapolated from the model on SIDE and one beyond
+ * it. The ghost must have light in the model on SIDE only, without additional
+ * parts there. Returns whether this is possible. */
 static int extrapolate_ghost_transfer(struct glint_transfer *transfer,
                                       const struct glint_zoom_lens *z, int g,
                                       int side, int32_t sine_q30,
                                       int32_t wave_q24)
 {
-    const int beyond = find_model_behind_side(z, g, side);
+    const int beyond = find_model_behind_neighbour(z, g, side);
     const struct glint_model_system *there;
 
     for (int q = z->part_from[g]; q < z->part_from[g + 1]; q++)
@@ -324,12 +329,14 @@ static int extrapolate_ghost_transfer(struct glint_transfer *transfer,
             return 0;
     if (beyond < 0)
         return 0;
-    there = glint_transfer_system(&z->model[beyond], g, sine_q30, wave_q24);
+    there =
+        glint_transfer_find_system(&z->model[beyond], g, sine_q30, wave_q24);
     if (!there || there->annulus != 0 ||
         find_system_annulus(z, g, side, sine_q30, wave_q24) != 0)
         return 0;
-    return set_transfer_from_side(transfer, z, g, side, sine_q30, wave_q24) &&
-           glint_transfer_mix(
+    return set_transfer_from_neighbour(transfer, z, g, side, sine_q30,
+                                       wave_q24) &&
+           glint_transfer_mix_position(
                transfer, &z->model[beyond], g, sine_q30, wave_q24,
                compute_zoom_position_q30(z, z->side[side][g], beyond));
 }
@@ -345,8 +352,8 @@ static int interpolate_transfer(struct glint_transfer *transfer,
     int alike;
 
     if (part_q30 <= 0 || part_q30 >= TRANSFER_ONE_Q30)
-        return set_transfer_from_side(transfer, z, ghost, part_q30 > 0,
-                                      sine_q30, wave_q24);
+        return set_transfer_from_neighbour(transfer, z, ghost, part_q30 > 0,
+                                           sine_q30, wave_q24);
     alike = is_pupil_divided_alike(z, z->whole[ghost], sine_q30, wave_q24, lit);
     if (!lit[0] || !lit[1]) {
         const int side = lit[1];
@@ -355,23 +362,24 @@ static int interpolate_transfer(struct glint_transfer *transfer,
             extrapolate_ghost_transfer(transfer, z, ghost, side, sine_q30,
                                        wave_q24))
             return 1;
-        if (!set_transfer_from_side(transfer, z, ghost, side, sine_q30,
-                                    wave_q24))
+        if (!set_transfer_from_neighbour(transfer, z, ghost, side, sine_q30,
+                                         wave_q24))
             return 0;
-        glint_blend_fade(transfer,
-                         side ? part_q30 : TRANSFER_ONE_Q30 - part_q30);
+        glint_blend_scale_energy(transfer,
+                                 side ? part_q30 : TRANSFER_ONE_Q30 - part_q30);
         return 1;
     }
     if (!alike)
-        return set_transfer_from_side(transfer, z, ghost, nearer, sine_q30,
-                                      wave_q24);
-    if (!set_transfer_from_side(transfer, z, ghost, 0, sine_q30, wave_q24))
+        return set_transfer_from_neighbour(transfer, z, ghost, nearer, sine_q30,
+                                           wave_q24);
+    if (!set_transfer_from_neighbour(transfer, z, ghost, 0, sine_q30, wave_q24))
         return 0;
-    return glint_transfer_mix(transfer, get_side_model(z, ghost, 1),
-                              z->place[1][ghost], sine_q30, wave_q24,
-                              part_q30) ||
+    return glint_transfer_mix_position(
+               transfer, get_neighbour_model(z, ghost, 1), z->place[1][ghost],
+               sine_q30, wave_q24, part_q30) ||
            !nearer ||
-           set_transfer_from_side(transfer, z, ghost, 1, sine_q30, wave_q24);
+           set_transfer_from_neighbour(transfer, z, ghost, 1, sine_q30,
+                                       wave_q24);
 }
 
 /* ------------------------------------------------------------------ opening */
@@ -388,7 +396,7 @@ void glint_zoom_set(struct glint_zoom_lens *zoom, int32_t along_q30)
         k++;
     z->now_q30 = along_q30;
     z->below = k;
-    find_side_models(z, end);
+    find_neighbour_models(z, end);
     for (int m = end[0]; m <= end[1]; m++)
         find_model_indices(z, m);
     interpolate_header(z);
@@ -433,8 +441,8 @@ enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
     return GLINT_OK;
 }
 
-/* Records which ghosts each model of the file contains. M: the file's table of
- * models. */
+/* Records which ghosts each model of the file contains. M: table of models in
+ * the file. */
 static enum glint_status record_missing_ghosts(struct glint_zoom_lens *zoom,
                                                struct glint_blob *blob,
                                                const struct glint_zoom_model *m,
@@ -450,8 +458,9 @@ static enum glint_status record_missing_ghosts(struct glint_zoom_lens *zoom,
             continue;
         zoom->has[k] =
             glint_blob_find_section(blob, m[k].has_at, words, sizeof(uint32_t));
-        *reason = end ? "a zoom's first or last position lacks ghosts"
-                      : "a list of ghosts lies outside the file";
+        *reason =
+            end ? "a zoom's first or last position lacks ghosts"
+                : "damaged zoom model: a list of ghosts lies outside the file";
         if (end || !zoom->has[k])
             return GLINT_E_LENS;
     }
@@ -475,7 +484,7 @@ enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
     if (*reason)
         return GLINT_E_LENS;
     m = glint_blob_find_section(&blob, h->model_at, h->n_models, sizeof *m);
-    *reason = "a table lies outside the file";
+    *reason = "damaged zoom model: a table lies outside the file";
     if (!m)
         return GLINT_E_LENS;
     *reason = "a zoom has fewer than 2 models or too many";
@@ -485,7 +494,7 @@ enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
         const void *const at =
             glint_blob_find_section(&blob, m[k].at, m[k].bytes, 1);
 
-        *reason = "a model lies outside the file";
+        *reason = "damaged zoom model: a model lies outside the file";
         if (!at || glint_lens_open(&zoom->model[k], at, m[k].bytes, reason) !=
                        GLINT_OK)
             return GLINT_E_LENS;

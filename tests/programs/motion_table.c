@@ -90,7 +90,7 @@ static const char *localise_track(const struct method *method, struct result *r,
     const double(*const seen)[3] = (const double(*)[3])f->seen;
 
     return method->all
-               ? glint_localise(&r->all, n, seen, f->is_new, located)
+               ? glint_localise_body(&r->all, n, seen, f->is_new, located)
                : four_localise_body(&r->four, n, seen, f->is_new, located);
 }
 

@@ -72,9 +72,9 @@ static int open_environment_map(struct map *m, const char *path)
             return 0;
     }
     o.turn_deg = 0;
-    if (!glint_sphere_open(&m->sphere, 512))
+    if (!glint_sphere_allocate(&m->sphere, 512))
         return 0;
-    glint_sphere_project(&m->sphere, &image, &o, &report);
+    glint_sphere_project_panorama(&m->sphere, &image, &o, &report);
     free(image.rgb);
     return 1;
 }
@@ -168,7 +168,7 @@ int main(int argc, char **argv)
         }
         for (int k = 0; k < 4; k++)
             free(m.data[k / 2][k % 2]);
-        glint_sphere_close(&m.sphere);
+        glint_sphere_free(&m.sphere);
     }
     for (int way = 0; way < WAYS; way++)
         print_psnr_table(sum, way, argc - 1);

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses the text of an environment map, line by line: its picture, its size,
- * and how lights are extracted.
- */
+ * Parses a file NAME.environment line by line: the panorama picture, the map
+ * size, and how lights are extracted from the map. */
 #include <string.h>
 
 #include "bake/scene/clauses.h"
@@ -18,11 +17,11 @@ enum { N_LINES = sizeof lines / sizeof *lines };
 
 static bool read_source_name(struct glint_text *text, char *source)
 {
-    const struct glint_word word = glint_text_rest(text);
+    const struct glint_word word = glint_text_get_rest(text);
 
     if (!word.length)
-        return glint_text_fail(text, word.place,
-                               "the name of the picture is missing");
+        return glint_text_set_error(text, word.place,
+                                    "the name of the picture is missing");
     memcpy(source, word.start, (size_t)word.length);
     source[word.length] = '\0';
     return true;
@@ -90,12 +89,12 @@ glint_environment_parse(struct glint_environment_options *options,
     while (good && glint_text_next_line(&text)) {
         int i;
 
-        good = glint_line_begin(&text, lines, N_LINES, first, &i) &&
+        good = glint_line_read_first_word(&text, lines, N_LINES, first, &i) &&
                (i < 0 || (read_environment_line(&text, i, options, source) &&
-                          glint_line_ends(&text, lines[i].word)));
+                          glint_line_check_end(&text, lines[i].word)));
     }
     if (good && !source[0])
-        good = glint_text_fail(&text, glint_text_end(&text),
-                               "the line 'source FILE' is missing");
+        good = glint_text_set_error(&text, glint_text_get_end_place(&text),
+                                    "the line 'source FILE' is missing");
     return good ? GLINT_OK : GLINT_E_LENS;
 }

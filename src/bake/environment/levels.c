@@ -23,8 +23,8 @@ struct block {
     /* axis and half angle, radians, of a cone that encloses the block's
      * texels */
     double toward[3], angle;
-    /* cosine of the max angle between the axis and any direction to which the
-     * block contributes */
+    /* cosine of the max angle between the cone's axis and a direction to which
+     * the block still contributes */
     double nearest;
 };
 
@@ -43,7 +43,8 @@ static void compute_block_cone(const struct glint_sphere *s, int i, int j,
         for (int x = i * side; x < (i + 1) * side; x++)
             for (int k = 0; k < 3; k++)
                 b->toward[k] +=
-                    s->texel[glint_sphere_index(s->side, x, y)].toward[k];
+                    s->texel[glint_sphere_get_texel_index(s->side, x, y)]
+                        .toward[k];
     length = sqrt(compute_dot_product(b->toward, b->toward));
     for (int k = 0; k < 3; k++)
         b->toward[k] /= length;
@@ -53,12 +54,14 @@ static void compute_block_cone(const struct glint_sphere *s, int i, int j,
                 fmin(cosine,
                      compute_dot_product(
                          b->toward,
-                         s->texel[glint_sphere_index(s->side, x, y)].toward));
+                         s->texel[glint_sphere_get_texel_index(s->side, x, y)]
+                             .toward));
     b->angle = acos(cosine);
 }
 
-/* Adds the light of block (I, J), SIDE texels wide, to SUM: the blurred light
- * in direction TOWARD (RGB) and its total weight. */
+/* Adds the Gaussian-weighted light of block (I, J), SIDE texels wide, to SUM[0
+ * .. 2] (RGB) and its weight to SUM[3]. TOWARD: direction for which the blur is
+ * computed. */
 static void add_block_light(const struct glint_sphere *s, int i, int j,
                             int side, const double toward[3], double sigma,
                             double nearest, double sum[4])
@@ -66,7 +69,7 @@ static void add_block_light(const struct glint_sphere *s, int i, int j,
     for (int y = j * side; y < (j + 1) * side; y++)
         for (int x = i * side; x < (i + 1) * side; x++) {
             const struct glint_sphere_texel *t =
-                &s->texel[glint_sphere_index(s->side, x, y)];
+                &s->texel[glint_sphere_get_texel_index(s->side, x, y)];
             const double cosine = compute_dot_product(toward, t->toward);
             double weight;
 
@@ -79,8 +82,8 @@ static void add_block_light(const struct glint_sphere *s, int i, int j,
         }
 }
 
-bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
-                       int side_log2, double (*light)[3])
+bool glint_sphere_blur_light(const struct glint_sphere *from, double sigma,
+                             int side_log2, double (*light)[3])
 {
     const int blocks = from->side < BLOCKS ? from->side : BLOCKS;
     const int side = from->side / blocks, n = 1 << side_log2;
@@ -99,7 +102,7 @@ bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
     for (int i = 0; i < n * n; i++) {
         double toward[3], sum[4] = {0, 0, 0, 0};
 
-        glint_sphere_middle(n, i, toward);
+        glint_sphere_compute_texel_direction(n, i, toward);
         for (int k = 0; k < blocks * blocks; k++)
             if (compute_dot_product(toward, block[k].toward) >=
                 block[k].nearest)
@@ -112,8 +115,8 @@ bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
     return true;
 }
 
-void glint_sphere_irradiance(const struct glint_sphere *from, int side_log2,
-                             double (*light)[3])
+void glint_sphere_compute_irradiance(const struct glint_sphere *from,
+                                     int side_log2, double (*light)[3])
 {
     const int n = 1 << side_log2;
     const size_t texels = (size_t)from->side * (size_t)from->side;
@@ -121,7 +124,7 @@ void glint_sphere_irradiance(const struct glint_sphere *from, int side_log2,
     for (int i = 0; i < n * n; i++) {
         double normal[3], sum[3] = {0, 0, 0};
 
-        glint_sphere_middle(n, i, normal);
+        glint_sphere_compute_texel_direction(n, i, normal);
         for (size_t k = 0; k < texels; k++) {
             const struct glint_sphere_texel *t = &from->texel[k];
             const double cosine = compute_dot_product(normal, t->toward);

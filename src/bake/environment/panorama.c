@@ -19,7 +19,8 @@ enum shape { LATITUDES, CUBE, NO_SHAPE };
 struct panorama {
     const struct glint_float_image *picture;
     enum shape shape;
-    double turn[2]; /* rotation about y: cosine and sine of its angle */
+    /* cosine and sine of the rotation of the panorama about y */
+    double turn[2];
     /* factor on all light; max finite sample of the picture */
     double scale, largest;
 };
@@ -127,8 +128,8 @@ static void resample_pixel(const struct panorama *p, int x, int y, int points,
             (points * points);
         struct glint_sphere_texel *t;
 
-        glint_sphere_place(toward, &u, &v);
-        t = &sphere->texel[glint_sphere_index(
+        glint_sphere_locate_direction(toward, &u, &v);
+        t = &sphere->texel[glint_sphere_get_texel_index(
             sphere->side, (int)fmin(u * sphere->side, sphere->side - 1),
             (int)fmin(v * sphere->side, sphere->side - 1))];
         for (int c = 0; c < 3; c++)
@@ -168,17 +169,18 @@ static void fill_empty_texel(const struct panorama *p,
                      t->light);
 }
 
-bool glint_sphere_project(struct glint_sphere *sphere,
-                          const struct glint_float_image *picture,
-                          const struct glint_environment_options *options,
-                          struct glint_environment_report *report)
+bool glint_sphere_project_panorama(
+    struct glint_sphere *sphere, const struct glint_float_image *picture,
+    const struct glint_environment_options *options,
+    struct glint_environment_report *report)
 {
     const double angle = options->turn_deg * GLINT_PI / 180;
     struct panorama p = {.picture = picture,
                          .shape = detect_panorama_shape(picture),
                          .turn = {cos(angle), sin(angle)},
                          .scale = options->scale};
-    /* the smallest texels of an octahedron map are 2 / side radians wide */
+    /* the smallest texels of an octahedron map of side x side texels are 2 /
+     * side radians wide */
     const int across =
         p.shape == CUBE ? 4 * picture->height / 2 : picture->width;
     const int points = (int)ceil(2 * GLINT_PI * sphere->side / (double)across);
@@ -202,7 +204,8 @@ bool glint_sphere_project(struct glint_sphere *sphere,
                 t->light[c] /= t->weight;
         } else {
             fill_empty_texel(&p, t);
-            t->weight = glint_sphere_middle(sphere->side, (int)i, unused) /
+            t->weight = glint_sphere_compute_texel_direction(sphere->side,
+                                                             (int)i, unused) /
                         (side * side);
         }
     }

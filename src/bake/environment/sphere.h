@@ -17,50 +17,53 @@ struct glint_sphere_texel {
     double toward[3]; /* unit vector to the texel's centre */
 };
 
-/* An octahedron map. glint_sphere_open() allocates texel; glint_sphere_close()
- * frees it. */
+/* An octahedron map. glint_sphere_allocate() allocates texel;
+ * glint_sphere_free() frees it. */
 struct glint_sphere {
     int side;
     struct glint_sphere_texel *texel; /* texels of the map, [side][side] */
 };
 
-/* Sets TOWARD to the direction of point (U, V) of the octahedron map, 0 .. 1
- * across and down. Returns d solid angle / d area of the map, sr. */
-double glint_sphere_toward(double u, double v, double toward[3]);
+/* Sets TOWARD to the direction of point (U, V) of the octahedron map; U
+ * (across) and V (down) are 0 .. 1. Returns the solid angle per unit of map
+ * area at that point, sr. */
+double glint_sphere_compute_direction(double u, double v, double toward[3]);
 
 /* Sets TOWARD to the direction of the centre of texel I of a map of SIDE x SIDE
- * texels. Returns d solid angle / d area of the map there, sr. */
-double glint_sphere_middle(int side, int i, double toward[3]);
+ * texels. Returns the solid angle per unit of map area there, sr. */
+double glint_sphere_compute_texel_direction(int side, int i, double toward[3]);
 
 /* Sets (U, V) to the point of the octahedron map in direction TOWARD, a unit
  * vector. */
-void glint_sphere_place(const double toward[3], double *u, double *v);
+void glint_sphere_locate_direction(const double toward[3], double *u,
+                                   double *v);
 
 /* Returns the index of texel (X, Y) of a map of SIDE x SIDE texels. X and Y are
  * -1 .. SIDE; a texel outside the map is replaced by its neighbour on the
  * octahedron. */
-size_t glint_sphere_index(int side, int x, int y);
+size_t glint_sphere_get_texel_index(int side, int x, int y);
 
 double glint_luminance(const double rgb[3]);
 
 /* Allocates a black map of SIDE x SIDE texels. Returns false if there is no
  * memory. */
-bool glint_sphere_open(struct glint_sphere *sphere, int side);
-void glint_sphere_close(struct glint_sphere *sphere);
+bool glint_sphere_allocate(struct glint_sphere *sphere, int side);
+void glint_sphere_free(struct glint_sphere *sphere);
 
 /* Allocates TO with SIDE x SIDE texels and sets it to FROM, averaged over
  * blocks of texels. SIDE must divide the side of FROM. Returns false if there
  * is no memory. */
-bool glint_sphere_shrink(struct glint_sphere *to, int side,
-                         const struct glint_sphere *from);
+bool glint_sphere_downsample(struct glint_sphere *to, int side,
+                             const struct glint_sphere *from);
 
-/* panorama.c: projects PICTURE onto SPHERE, which must be open and black,
- * rotated and scaled by OPTIONS. Clamps and counts invalid pixels. Preserves
- * energy. Returns false if the aspect ratio of PICTURE is not supported. */
-bool glint_sphere_project(struct glint_sphere *sphere,
-                          const struct glint_float_image *picture,
-                          const struct glint_environment_options *options,
-                          struct glint_environment_report *report);
+/* panorama.c: projects PICTURE, rotated and scaled by OPTIONS, onto SPHERE,
+ * which must be allocated and black. Clamps and counts invalid pixels.
+ * Preserves energy. Returns false if the aspect ratio of PICTURE is not
+ * supported. */
+bool glint_sphere_project_panorama(
+    struct glint_sphere *sphere, const struct glint_float_image *picture,
+    const struct glint_environment_options *options,
+    struct glint_environment_report *report);
 
 /* A light extracted from the map, as a disc. */
 struct glint_split_light {
@@ -71,28 +74,28 @@ struct glint_split_light {
 };
 
 /* split.c: moves the brightest lights, at most options->max_lights, from SPHERE
- * to LIGHTS and fills the holes from their surroundings. Returns the number of
- * lights, or -1 if there is no memory. */
-int glint_sphere_split(struct glint_sphere *sphere,
-                       const struct glint_environment_options *options,
-                       struct glint_split_light *lights,
-                       struct glint_environment_report *report);
+ * to LIGHTS and fills the holes with the mean light around them. Returns the
+ * number of lights, or -1 if there is no memory. */
+int glint_sphere_extract_lights(struct glint_sphere *sphere,
+                                const struct glint_environment_options *options,
+                                struct glint_split_light *lights,
+                                struct glint_environment_report *report);
 
-/* levels.c: sets LIGHT[4^SIDE_LOG2][3] at the centres of texels to FROM
- * convolved with exp((cos - 1) / SIGMA^2). Returns false if there is no
- * memory. */
-bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
-                       int side_log2, double (*light)[3]);
+/* levels.c: sets LIGHT[4^SIDE_LOG2][3] to FROM blurred by the kernel exp((cos -
+ * 1) / SIGMA^2), where cos is the cosine between two directions. One value per
+ * texel centre. Returns false if there is no memory. */
+bool glint_sphere_blur_light(const struct glint_sphere *from, double sigma,
+                             int side_log2, double (*light)[3]);
 
-/* Sets LIGHT[4^SIDE_LOG2][3] to the light that a white surface reflects under
- * FROM, indexed by the texel of the surface's normal. */
-void glint_sphere_irradiance(const struct glint_sphere *from, int side_log2,
-                             double (*light)[3]);
+/* Sets LIGHT[4^SIDE_LOG2][3] to the light that a white diffuse surface reflects
+ * under the environment FROM. The texel is that of the surface's normal. */
+void glint_sphere_compute_irradiance(const struct glint_sphere *from,
+                                     int side_log2, double (*light)[3]);
 
-/* Encodes the light of N texels as RGB codes with a shared exponent (9E5), in
- * multiples of UNIT, rounded to nearest. The max light of a texel is 511 * 2^19
+/* Encodes the light of N texels as RGB with a shared exponent (9E5), in
+ * multiples of UNIT, rounded to nearest. Max light of a texel: 511 * 2^19
  * units. */
-void glint_environment_put_9e5(const double (*light)[3], size_t n, double unit,
-                               uint32_t *code);
+void glint_environment_encode_9e5(const double (*light)[3], size_t n,
+                                  double unit, uint32_t *code);
 
 #endif

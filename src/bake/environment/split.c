@@ -16,14 +16,14 @@
 
 #include "glint/view.h"
 
-/* Min luminance x solid angle of a light, as a fraction of the sphere's
- * total. */
+/* Min luminance x solid angle of an extracted light, as a fraction of the sum
+ * over the whole sphere. */
 #define LEAST_SHARE .002
 
 enum {
     MAX_SPOTS = 4096,
-    /* width in texels of the ring around a light whose mean replaces the
-     * light */
+    /* width of the ring around a light, texels; its mean replaces the light in
+     * the map */
     RING = 2,
     NOBODY = -1
 };
@@ -39,7 +39,8 @@ struct split {
     double all;   /* total luminance x sr of the sphere */
     /* [texels]: index of the spot that contains the texel, or NOBODY */
     int *owner;
-    int *seen;  /* [texels]: number of the last round that visited the texel */
+    /* [texels]: number of the last flood fill that visited the texel */
+    int *seen;
     int *queue; /* [texels]: indices of the texels of the current flood fill */
     struct spot spot[MAX_SPOTS];
     int n_spots;
@@ -59,12 +60,13 @@ static void find_texel_neighbours(const struct split *s, int i, int near[8])
     for (int v = -1; v <= 1; v++)
         for (int u = -1; u <= 1; u++)
             if (u || v)
-                near[n++] = (int)glint_sphere_index(side, x + u, y + v);
+                near[n++] =
+                    (int)glint_sphere_get_texel_index(side, x + u, y + v);
 }
 
-/* Flood fill: sets the queue to the texels connected with texel I whose
- * luminance is at least THRESHOLD. ROUND marks visited texels. Returns their
- * number. */
+/* Flood fill: sets the queue to the texels that are connected with texel I and
+ * whose luminance is at least THRESHOLD. Marks visited texels with ROUND, the
+ * number of this fill. Returns the number of queued texels. */
 static int flood_fill_texels(struct split *s, int i, double threshold,
                              int round)
 {
@@ -159,9 +161,9 @@ static void find_bright_spots(struct split *s, int n, double above)
     }
 }
 
-/* Sets MEAN to the mean light of the ring around spot K, without texels of
- * other lights; 0 if other lights surround the spot. ROUND: an unused number
- * for marking visited texels. */
+/* Sets MEAN to the mean light of the ring around spot K, excluding texels of
+ * other lights; 0 if other lights fill the ring. ROUND: an unused flood-fill
+ * number for marking visited texels. */
 static void compute_mean_around_spot(struct split *s, int k, int n, int round,
                                      double mean[3])
 {
@@ -202,7 +204,8 @@ static void compute_mean_around_spot(struct split *s, int k, int n, int round,
         mean[c] = weight > 0 ? mean[c] / weight : 0;
 }
 
-/* Moves the part of spot K that exceeds MEAN from the map to LIGHT. */
+/* Moves the light of spot K above MEAN from the map to LIGHT; the map keeps
+ * MEAN there. */
 static void move_spot_to_light(struct split *s, int k, int n,
                                const double mean[3],
                                struct glint_split_light *light)
@@ -265,10 +268,10 @@ static int extract_strongest_spots(struct split *s, int n, int most,
     return taken;
 }
 
-int glint_sphere_split(struct glint_sphere *sphere,
-                       const struct glint_environment_options *options,
-                       struct glint_split_light *lights,
-                       struct glint_environment_report *report)
+int glint_sphere_extract_lights(struct glint_sphere *sphere,
+                                const struct glint_environment_options *options,
+                                struct glint_split_light *lights,
+                                struct glint_environment_report *report)
 {
     const size_t n = (size_t)sphere->side * (size_t)sphere->side;
     const double rms = options->light_deg * GLINT_PI / 180;

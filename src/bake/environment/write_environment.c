@@ -11,8 +11,8 @@
 #include "bake/table/draft.h"
 #include "glint/view.h"
 
-void glint_environment_put_9e5(const double (*light)[3], size_t n, double unit,
-                               uint32_t *code)
+void glint_environment_encode_9e5(const double (*light)[3], size_t n,
+                                  double unit, uint32_t *code)
 {
     for (size_t i = 0; i < n; i++) {
         const double most =
@@ -100,9 +100,10 @@ static bool project_picture_to_sphere(struct writer *w,
 {
     double unused;
 
-    if (!glint_sphere_open(&w->sphere, 2 << w->options->side_log2))
+    if (!glint_sphere_allocate(&w->sphere, 2 << w->options->side_log2))
         return false;
-    if (!glint_sphere_project(&w->sphere, picture, w->options, w->report)) {
+    if (!glint_sphere_project_panorama(&w->sphere, picture, w->options,
+                                       w->report)) {
         snprintf(error->text, sizeof error->text,
                  "an environment must be twice as wide as high, or 3 x 2 "
                  "faces of a cube, not %dx%d",
@@ -118,8 +119,8 @@ static bool project_picture_to_sphere(struct writer *w,
                  w->report->largest);
         return false;
     }
-    w->n_lights =
-        glint_sphere_split(&w->sphere, w->options, w->light, w->report);
+    w->n_lights = glint_sphere_extract_lights(&w->sphere, w->options, w->light,
+                                              w->report);
     measure_sphere_luminance(&w->sphere, &unused, &w->report->residual_largest);
     return w->n_lights >= 0;
 }
@@ -133,7 +134,8 @@ static void average_mipmap_level(struct writer *w, int k)
     for (int y = 0; y < side; y++)
         for (int x = 0; x < side; x++)
             for (int c = 0; c < 3; c++) {
-                const size_t at = glint_sphere_index(2 * side, 2 * x, 2 * y);
+                const size_t at =
+                    glint_sphere_get_texel_index(2 * side, 2 * x, 2 * y);
                 const size_t i[4] = {at, at + 1, at + 2 * (size_t)side,
                                      at + 2 * (size_t)side + 1};
                 double sum = 0;
@@ -141,12 +143,13 @@ static void average_mipmap_level(struct writer *w, int k)
                 for (int j = 0; j < 4; j++)
                     sum += k ? w->level[k - 1][i[j]][c]
                              : w->sphere.texel[i[j]].light[c];
-                w->level[k][glint_sphere_index(side, x, y)][c] = sum / 4;
+                w->level[k][glint_sphere_get_texel_index(side, x, y)][c] =
+                    sum / 4;
             }
 }
 
-/* Sets level K to the map blurred by a Gaussian. From level 4 on, the input is
- * averaged to texels about sigma / 8 wide, which is faster. */
+/* Sets level K to the map blurred by a Gaussian. From level 4 on, averages the
+ * map to texels of about sigma / 8 first, which is faster. */
 static bool blur_gaussian_level(struct writer *w, int k)
 {
     const double texel =
@@ -159,19 +162,20 @@ static bool blur_gaussian_level(struct writer *w, int k)
     if (side < 32)
         side = 32;
     if (side >= w->sphere.side)
-        return glint_sphere_blur(
+        return glint_sphere_blur_light(
             &w->sphere, ldexp(texel, k - 1),
             (int)glint_environment_side_log2(GLINT_ENVIRONMENT_GAUSS,
                                              (uint32_t)w->options->side_log2,
                                              (uint32_t)k),
             w->level[k]);
-    good = glint_sphere_shrink(&coarse, side, &w->sphere) &&
-           glint_sphere_blur(&coarse, ldexp(texel, k - 1),
-                             (int)glint_environment_side_log2(
-                                 GLINT_ENVIRONMENT_GAUSS,
-                                 (uint32_t)w->options->side_log2, (uint32_t)k),
-                             w->level[k]);
-    glint_sphere_close(&coarse);
+    good = glint_sphere_downsample(&coarse, side, &w->sphere) &&
+           glint_sphere_blur_light(
+               &coarse, ldexp(texel, k - 1),
+               (int)glint_environment_side_log2(GLINT_ENVIRONMENT_GAUSS,
+                                                (uint32_t)w->options->side_log2,
+                                                (uint32_t)k),
+               w->level[k]);
+    glint_sphere_free(&coarse);
     return good;
 }
 
@@ -210,12 +214,13 @@ static bool write_mipmap_level(struct writer *w, int k,
 
     if (!code)
         return false;
-    glint_environment_put_9e5((const double(*)[3])w->level[k], n, unit, code);
+    glint_environment_encode_9e5((const double(*)[3])w->level[k], n, unit,
+                                 code);
     *level = (struct glint_environment_level){
         .side_log2 = glint_environment_side_log2(
             (uint32_t)w->options->levels, (uint32_t)w->options->side_log2,
             (uint32_t)k),
-        .texel_at = glint_draft_put(&w->draft, code, n * sizeof *code)};
+        .texel_at = glint_draft_append(&w->draft, code, n * sizeof *code)};
     free(code);
     return true;
 }
@@ -228,18 +233,18 @@ static bool write_irradiance_map(struct writer *w)
     struct glint_sphere coarse = {.texel = NULL};
     const bool good =
         light && code &&
-        glint_sphere_shrink(
+        glint_sphere_downsample(
             &coarse, w->sphere.side < 128 ? w->sphere.side : 128, &w->sphere);
 
     if (good) {
-        glint_sphere_irradiance(&coarse, GLINT_ENVIRONMENT_IRRADIANCE_LOG2,
-                                light);
-        glint_environment_put_9e5((const double(*)[3])light, N,
-                                  ldexp(1, w->header.unit_log2), code);
+        glint_sphere_compute_irradiance(
+            &coarse, GLINT_ENVIRONMENT_IRRADIANCE_LOG2, light);
+        glint_environment_encode_9e5((const double(*)[3])light, N,
+                                     ldexp(1, w->header.unit_log2), code);
         w->header.irradiance_at =
-            glint_draft_put(&w->draft, code, N * sizeof *code);
+            glint_draft_append(&w->draft, code, N * sizeof *code);
     }
-    glint_sphere_close(&coarse);
+    glint_sphere_free(&coarse);
     free(light);
     free(code);
     return good;
@@ -258,7 +263,7 @@ static void write_environment_lights(struct writer *w)
             l.toward_q30[k] = (int32_t)lrint(0x1p30 * from->toward[k]);
             l.rgb[k] = glint_real_of(from->irradiance[k] / GLINT_PI);
         }
-        glint_draft_put(&w->draft, &l, sizeof l);
+        glint_draft_append(&w->draft, &l, sizeof l);
     }
 }
 
@@ -271,15 +276,15 @@ static bool write_environment_tables(struct writer *w)
     for (int k = 0; k < n; k++)
         most =
             fmax(most, find_max_channel(w->level[k], count_level_texels(w, k)));
-    /* The max code is 1/512 less than 2^28 units, and so is the brightest
-     * texel. */
+    /* The max code is 2^28 - 2^19 units; the unit is the smallest power of two
+     * for which the brightest texel is at most that. */
     w->header.unit_log2 = most > 0 ? (int)floor(log2(most / UNITS_9E5)) + 1 : 0;
     for (int k = 0; k < n; k++)
         if (!write_mipmap_level(w, k, &level[k]))
             return false;
     w->header.n_levels = (uint32_t)n;
     w->header.level_at =
-        glint_draft_put(&w->draft, level, (size_t)n * sizeof *level);
+        glint_draft_append(&w->draft, level, (size_t)n * sizeof *level);
     if (!write_irradiance_map(w))
         return false;
     write_environment_lights(w);
@@ -293,8 +298,8 @@ static void set_environment_header(struct writer *w, const char *name,
         .magic = GLINT_ENVIRONMENT_MAGIC, .version = GLINT_ENVIRONMENT_VERSION};
     struct glint_environment_header *h = &w->header;
 
-    glint_draft_begin(h, &kind, (uint32_t)w->options->levels, key, name,
-                      "environment");
+    glint_draft_begin_header(h, &kind, (uint32_t)w->options->levels, key, name,
+                             "environment");
     h->side_log2 = (uint32_t)w->options->side_log2;
     h->code = GLINT_ENVIRONMENT_9E5;
 }
@@ -313,15 +318,15 @@ glint_environment_bake(const struct glint_float_image *picture,
     error->text[0] = '\0';
     if (!are_options_in_range(options))
         return GLINT_E_ARGUMENT;
-    glint_draft_put(&w.draft, NULL, sizeof w.header);
+    glint_draft_append(&w.draft, NULL, sizeof w.header);
     good = project_picture_to_sphere(&w, picture, error) &&
            compute_all_levels(&w) && write_environment_tables(&w);
     set_environment_header(&w, name, key);
     for (int k = 0; k < GLINT_ENVIRONMENT_MAX_LEVELS; k++)
         free(w.level[k]);
-    glint_sphere_close(&w.sphere);
-    if (glint_draft_finish(&w.draft, &w.header, sizeof w.header, good, data,
-                           bytes))
+    glint_sphere_free(&w.sphere);
+    if (glint_draft_finish_file(&w.draft, &w.header, sizeof w.header, good,
+                                data, bytes))
         return GLINT_OK;
     return error->text[0] ? GLINT_E_UNSUPPORTED : GLINT_E_MEMORY;
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws the exact picture, the reference for measuring all others.
+ * Renders the exact picture, the reference for measuring models.
  *
  *   in   every visible piece of every cell (cells.h) as a polygon with a flux
  *   out  linear light per pixel, by the exact area that polygons cover
  *
- * Method: the signed area to the right of each polygon edge goes into a
+ * Method: the signed area to the right of each polygon edge is added to a
  * difference buffer; at the end one running sum along each row gives the
  * picture. Work is split into rows of rays and bands of pixels; every pixel
  * receives its contributions in a fixed order, so the result does not depend on
@@ -19,9 +19,10 @@
 
 #include "bake/trace/cells.h"
 
-/* height of a band of pixels, rows; the last band may be lower */
+/* height of a band, in pixel rows; the last band may be lower */
 enum { BAND = 32 };
-/* Max number of ghosts times lamps times wavelengths; more would take years. */
+/* Max number of bundles (ghosts x lamps x wavelengths); more would take
+ * years. */
 enum { MAX_BUNDLES = 1 << 24 };
 
 /* A bundle of rays: one ghost, lamp and wavelength. */
@@ -29,7 +30,7 @@ struct bundle {
     const struct glint_lamp *lamp;
     int ghost, wavelength;
     bool seen;
-    /* the grid of rays; its nodes and path are not set */
+    /* grid of rays for this bundle; path and nodes are set when it is drawn */
     struct glint_cells cells;
 };
 
@@ -43,7 +44,8 @@ struct picture {
     double *row_y;
     /* [height][3][width + 2]: differences along each row of pixels */
     double *difference;
-    /* flux of half a cell whose rays have energy 1, per colour channel */
+    /* flux of a triangle (half a cell) whose rays have energy 1, per colour
+     * channel */
     double weight[3];
 };
 
@@ -79,8 +81,9 @@ static void add_edge_to_row(double *row, double x0, double x1, double amount)
         const double b = i == last ? x1 : i + 1;
         const double slope = amount / (x1 - x0);
         const double come = slope * (a - x0), go = slope * (b - x0);
-        /* A pixel gets the height that the edge has gained before the pixel,
-         * plus the trapezium to the right of the edge within the pixel. */
+        /* A pixel gets the height that the edge has covered before the pixel,
+         * plus the area of the trapezium to the right of the edge inside the
+         * pixel. */
         const double area = come + (go - come) * (i + 1 - 0.5 * (a + b));
 
         row[i] += area - before;
@@ -120,8 +123,9 @@ static void add_polygon_edge(const struct picture *p, const struct band *band,
     }
 }
 
-/* Clips polygon P[N] to the half plane where SIGN times coordinate AXIS (0: x,
- * 1: y) is at most LIMIT. Returns the new number of corners. */
+/* Clips polygon P[N] to the half plane SIGN * coordinate <= LIMIT, where AXIS
+ * selects x (0) or y (1) and SIGN is 1 or -1. Returns the new number of
+ * corners. */
 static int clip_polygon_to_line(double (*p)[2], int n, int axis, double sign,
                                 double limit)
 {
@@ -160,8 +164,8 @@ static double compute_signed_area(double (*p)[2], int n)
     return 0.5 * sum;
 }
 
-/* Adds FLUX to the pixel at AT: for pieces that cover no area of the picture,
- * as at the fold of a caustic. */
+/* Adds FLUX to the pixel at AT. Used for pieces without area in the picture,
+ * such as those at the fold of a caustic. */
 static void add_flux_to_pixel(const struct picture *p, const struct band *band,
                               const double at[2], const double *flux)
 {
@@ -202,8 +206,8 @@ static void draw_cell_piece(const struct picture *p, const struct band *band,
         add_flux_to_pixel(p, band, polygon[0], light);
         return;
     }
-    /* Each edge of the polygon adds its height to all pixels on its right, with
-     * opposite signs for edges that run down and up the picture. */
+    /* Each edge of the polygon adds its height to all pixels on its right; the
+     * sign depends on whether the edge runs up or down the picture. */
     for (int c = 0; c < 3; c++)
         light[c] /= -area;
     if (low[1] < band->y0)
@@ -250,7 +254,7 @@ static void trace_ray_row(void *ctx, int job, int worker)
     struct picture *p = ctx;
 
     (void)worker;
-    glint_cells_trace(&p->cells, job);
+    glint_cells_trace_row(&p->cells, job);
     convert_row_to_pixels(p, job);
     if (p->path->round && job != p->cells.n - job)
         convert_row_to_pixels(p, p->cells.n - job);
@@ -273,9 +277,10 @@ static void draw_pixel_band(void *ctx, int job, int worker)
             fmax(range[1], range[3]) <= band.y0)
             continue;
         for (int k = 0; k < 2 * n; k++) {
-            if (!glint_cells_touch(&p->cells, k / 2, j, band.y0, band.y1))
+            if (!glint_cells_overlap_range(&p->cells, k / 2, j, band.y0,
+                                           band.y1))
                 continue;
-            glint_cells_clip(&p->cells, k / 2, j, k & 1, &piece);
+            glint_cells_clip_triangle(&p->cells, k / 2, j, k & 1, &piece);
             if (piece.n)
                 draw_cell_piece(p, &band, &piece);
         }
@@ -312,8 +317,8 @@ static enum glint_status list_ray_bundles(struct picture *p)
     const int ghosts = c->setup->n_ghosts, waves = c->setup->n_wavelengths;
     const uint64_t n = (uint64_t)c->n_lamps * (uint64_t)(ghosts * waves);
     const size_t most =
-        /* fits into half of the address space, also if addresses have 32
-         * bits */
+        /* limits the array to half of the address space, also with 32-bit
+         * addresses */
         SIZE_MAX / 2 / sizeof *p->bundle;
     const int all = n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 
@@ -345,17 +350,18 @@ static enum glint_status draw_ray_bundle(struct picture *p,
     init_bundle_path(p, b, p->path);
     p->cells = b->cells;
     p->cells.path = p->path;
-    p->cells.node = malloc(glint_cells_bytes(&p->cells));
+    p->cells.node = malloc(glint_cells_compute_bytes(&p->cells));
     if (!p->cells.node)
         return GLINT_E_MEMORY;
     flux = b->lamp->power * p->cells.direction[2] * 0.5 *
-           glint_cells_area(&p->cells) / s->unit_flux[b->wavelength];
+           glint_cells_compute_cell_area(&p->cells) /
+           s->unit_flux[b->wavelength];
     for (int k = 0; k < 3; k++)
         p->weight[k] =
             flux * s->rgb[b->wavelength][k] * b->lamp->rgb[k] *
             (c->tints ? glint_tint_factor(&c->tints[b->ghost], k) : 1);
-    glint_workers_run(c->workers, glint_cells_rows(&p->cells), trace_ray_row,
-                      p);
+    glint_workers_run(c->workers, glint_cells_count_traced_rows(&p->cells),
+                      trace_ray_row, p);
     glint_workers_run(c->workers, (c->view.height + BAND - 1) / BAND,
                       draw_pixel_band, p);
     free(p->cells.node);

@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws a frame of exact rays.
+ * Draws a frame with exactly traced rays instead of a model (--rays exact).
  *
- * Directions of lamps, and of the points of wide lamps, are gathered in
- * patches; each ghost has a field of rays over each patch (ray_field.h). Every
- * field takes as many wavelengths as its colours lie apart, and one that no
- * pixel shows is skipped. Vertices are computed from the fields while edges are
- * made of them. Memory is bounded: a field that finds no room is traced again
- * whenever it is needed, and a picture whose edges find none is drawn in parts,
- * from top to bottom. Neither changes a bit. */
+ * Light points (lamps, and the sample points of area lamps) whose directions
+ * are close to each other are grouped into patches. Each ghost has one ray
+ * field per patch (ray_field.h). The number of wavelengths of a field depends
+ * on how far its colours separate on the sensor. Fields too faint for any pixel
+ * are skipped. The flare rasteriser requests vertices row by row; they are
+ * interpolated from the traced rays of the field.
+ *
+ * Memory is bounded. A field whose rays do not fit is traced again each time
+ * that it is needed; a picture whose edges do not fit is drawn in bands of
+ * rows. Neither changes the result. */
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -19,46 +22,49 @@
 #include "engine/frame/frame_parts.h"
 #include "engine/setup/degrees.h"
 
-/* Most bundles of a frame. */
+/* Max number of bundles per frame. A bundle: one ghost, light point and
+ * wavelength. */
 enum { MAX_BUNDLES = 1 << 20 };
 
-/* Most memory of fields and of edges, each, unless the frame has a lower
+/* Max bytes for traced rays, and for edges; the frame may have a lower
  * limit. */
 #define MOST_BYTES ((size_t)128 << 20)
 
-/* Largest span of a patch, degrees: positions are then off by less than 0.1
- * pixel. */
+/* Max width of a patch, degrees. Interpolated positions are then off by less
+ * than 0.1 pixel. */
 #define SPAN_DEG 1.0
 
-/* Radius of a lamp's outermost points / its largest semi-axis, about. */
+/* Distance of the outermost sample point of an area lamp from its centre / the
+ * lamp's largest semi-axis, approximate. */
 #define REACH 2.2
 
-/* Parts of the work between which progress is reported, and min jobs of a
- * part.
- */
+/* PARTS: max number of progress reports per loop over jobs. LEAST_PART: min
+ * number of jobs between two reports. */
 enum { PARTS = 100, LEAST_PART = 4 };
 
-/* Edges of a bundle, and their references in tiles, that most frames have room
- * for at once. */
+/* Initial capacity per bundle: number of edges, and number of references to
+ * edges from tiles. Enough for most frames. */
 #define EDGES 128.0
 
-/* Progress of a frame whose rays are traced, 0 to 1. Finding its ghosts, if no
- * other frame has found them, ends at GLINT_FRAME_FOUND. */
+/* Progress when all rays are traced, 0 .. 1. Measuring the ghosts ends at
+ * GLINT_FRAME_FOUND; it is skipped if an earlier frame has measured them. */
 #define TRACED 0.85
 
-/* A lamp, in the patch that holds its direction, or several near each other
- * that stand for one: those of a level are about half as many as those of the
- * level before. Dim ghosts are drawn from fewer. */
+/* A light point: a lamp, a sample point of an area lamp, or the sum of several
+ * nearby points. Points form levels of detail: each level has about half as
+ * many points as the level before. Faint ghosts are drawn from a higher
+ * level. */
 enum { LEVELS = 8 };
 struct point {
     struct glint_lamp lamp;
     double at[2];
-    double reach; /* radius of what it stands for, in the same coordinates */
+    /* radius of the lamps that the point replaces, in units of at */
+    double reach;
     int patch;
-    int first, last; /* levels that it belongs to: FIRST .. LAST */
+    int first, last; /* the point belongs to the levels first .. last */
 };
 
-/* Wavelengths that stand for all light. */
+/* A set of wavelengths that samples the spectrum. */
 struct wave_set {
     int n;
     double nm[GLINT_MAX_WAVELENGTHS];
@@ -66,19 +72,22 @@ struct wave_set {
     double unit_flux[GLINT_MAX_WAVELENGTHS];
 };
 
-/* The rays of one field, one direction and one wavelength. */
+/* One bundle: the rays of a field for one light point and one wavelength. */
 struct ray_bundle {
     int field, point, wave;
-    float low, high; /* range of pixel rows; low > high: not known yet */
+    /* range of pixel rows that the bundle covers; low > high: unknown */
+    float low, high;
 };
 
-/* Where a worker is. */
-struct at_work {
+/* The bundle that a worker is drawing, and the worker's memory for rays. */
+struct ray_worker {
     struct ray_place place;
     struct ray_bundle *bundle;
     float low, high;
-    int in_mem; /* field whose rays are in MEM, or -1 */
-    void *mem;  /* room for the largest field that is not kept */
+    int in_mem; /* index of the field whose rays are in mem; -1: none */
+    /* memory for the rays of the largest field that is traced again on each
+     * use */
+    void *mem;
 };
 
 struct traced {
@@ -87,16 +96,21 @@ struct traced {
     int n_sets;
     struct point *point;
     struct ray_patch *patch;
-    /* [patches][n_ghosts of the setup]: as glint_ray_field_look() made them */
-    struct ray_field *looked;
-    struct ray_field *field; /* [fields]: those as this frame draws them */
-    int *set_of; /* [fields]: index of its set; -1: no pixel shows the field */
-    void **mem;  /* [fields]: its rays; NULL: they are traced when needed */
+    /* [patches][n_ghosts of the setup]: fields measured for whole patches */
+    struct ray_field *measured;
+    /* [fields]: fields of this frame, with their grids */
+    struct ray_field *field;
+    /* [fields]: index of the field's wavelength set; -1: field is skipped */
+    int *set_of;
+    /* [fields]: traced rays of the field; NULL: traced on each use */
+    void **mem;
     struct ray_bundle *bundle;
-    struct at_work *worker;
+    struct ray_worker *worker;
     bool in_codes;
-    int *level; /* [fields]: level of the points that a field is drawn from */
-    struct glint_optics optics; /* of the setup that was looked through */
+    /* [fields]: level of the light points from which the field is drawn */
+    int *level;
+    /* optics of the setup for which the fields were measured */
+    struct glint_optics optics;
     int n_ghosts;
     int n_points, n_patches, n_fields, n_bundles, n_workers;
     struct glint_flare_rays rays;
@@ -104,16 +118,17 @@ struct traced {
 
 struct job {
     struct glint_frame *frame;
-    int first; /* number of the first job of a part */
+    int first; /* index of the first job of the current part */
 };
 
-static struct traced *state_of(const struct glint_frame *f)
+static struct traced *get_traced_state(const struct glint_frame *f)
 {
     return f->memory.traced;
 }
 
-/* Frees all but the fields. */
-static void forget_plan(struct traced *t)
+/* Frees what depends on the current frame only; preserves points, patches and
+ * measured fields. */
+static void free_frame_plan(struct traced *t)
 {
     for (int i = 0; i < t->n_fields && t->mem; i++)
         free(t->mem[i]);
@@ -132,24 +147,24 @@ static void forget_plan(struct traced *t)
     t->n_bundles = t->n_workers = 0;
 }
 
-static void forget(struct traced *t)
+static void free_traced_arrays(struct traced *t)
 {
-    forget_plan(t);
+    free_frame_plan(t);
     free(t->point);
     free(t->patch);
-    free(t->looked);
+    free(t->measured);
     free(t->field);
     t->point = NULL;
     t->patch = NULL;
-    t->looked = NULL;
+    t->measured = NULL;
     t->field = NULL;
     t->n_points = t->n_patches = t->n_fields = 0;
 }
 
-/* Runs N jobs, in parts, and reports progress after each: FROM and TO,
- * fractions of the frame's work. */
-static void run(struct glint_frame *f, int n, glint_job_fn *each, double from,
-                double to)
+/* Runs N jobs in parts and reports progress after each part, from FROM to TO
+ * (fractions of the frame's work). */
+static void run_jobs_with_progress(struct glint_frame *f, int n,
+                                   glint_job_fn *each, double from, double to)
 {
     struct job job = {f, 0};
     const int part = f->progress ? max_int(n / PARTS, LEAST_PART) : n;
@@ -165,8 +180,8 @@ static void run(struct glint_frame *f, int n, glint_job_fn *each, double from,
 
 /* -------------------------------------------------------------- wavelengths */
 
-static void add_wave(struct wave_set *set, double nm, const double *rgb,
-                     double unit_flux)
+static void insert_wavelength(struct wave_set *set, double nm,
+                              const double *rgb, double unit_flux)
 {
     int i = set->n++;
 
@@ -180,9 +195,10 @@ static void add_wave(struct wave_set *set, double nm, const double *rgb,
     set->unit_flux[i] = unit_flux;
 }
 
-/* Sets the wavelengths, sorted: the setup's sets, or its only list. */
-static void set_waves(struct traced *t, const struct glint_setup *s,
-                      struct ray_field_config *cfg)
+/* Copies the wavelength sets of setup S, or its only list of wavelengths,
+ * sorted by wavelength. */
+static void set_wavelength_sets(struct traced *t, const struct glint_setup *s,
+                                struct ray_field_config *cfg)
 {
     const struct glint_set_wave *w = s->set_wave;
     const struct wave_set *widest;
@@ -191,29 +207,33 @@ static void set_waves(struct traced *t, const struct glint_setup *s,
     t->n_sets = max_int(s->n_sets, 1);
     for (int k = 0; k < s->n_sets; w += s->set_size[k++])
         for (int i = 0; i < s->set_size[k]; i++)
-            add_wave(&t->set[k], w[i].nm, w[i].rgb, w[i].unit_flux);
+            insert_wavelength(&t->set[k], w[i].nm, w[i].rgb, w[i].unit_flux);
     for (int i = 0; i < s->n_wavelengths && s->n_sets == 0; i++)
-        add_wave(&t->set[0], s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
+        insert_wavelength(&t->set[0], s->wavelength_nm[i], s->rgb[i],
+                          s->unit_flux[i]);
     widest = &t->set[t->n_sets - 1];
     cfg->wave_nm[0] = widest->nm[0];
     cfg->wave_nm[1] = widest->nm[widest->n / 2];
     cfg->wave_nm[2] = widest->nm[widest->n - 1];
 }
 
-static double span_of(const struct wave_set *set)
+static double compute_band_width(const struct wave_set *set)
 {
     const double a = set->nm[0], b = set->nm[set->n - 1];
 
     return 1 / (a * a) - 1 / (b * b);
 }
 
-/* Returns the smallest set whose steps from wavelength to wavelength do not
- * show in FIELD, a point of which gives LIGHT, display white in the mean: each
- * is below STEP or less than APART pixels wide. Compare wave_sets.c. */
-static int choose_set(const struct glint_frame *f,
-                      const struct ray_field *field, double light, double step)
+/* Returns the index of the smallest wavelength set whose separate wavelengths
+ * are not visible in FIELD: the brightness step between them is below STEP, or
+ * they lie less than the pixel distance of the dispersion dial apart. LIGHT:
+ * mean brightness of the field from one light point; 1: display white. Compare
+ * wave_sets.c. */
+static int choose_wavelength_set(const struct glint_frame *f,
+                                 const struct ray_field *field, double light,
+                                 double step)
 {
-    const struct traced *t = state_of(f);
+    const struct traced *t = get_traced_state(f);
     const double apart =
                      field->apart_mm * f->view.width / f->view.sensor_width_mm,
                  most = f->dials.dispersion_q8 / 256.0;
@@ -221,23 +241,24 @@ static int choose_set(const struct glint_frame *f,
 
     for (; k < t->n_sets - 1 && f->dials.dispersion_q8 > 0; k++)
         if (light / (2 * t->set[k].n) < step ||
-            apart * span_of(&t->set[k]) <=
-                most * (t->set[k].n - 1) * span_of(&t->set[0]))
+            apart * compute_band_width(&t->set[k]) <=
+                most * (t->set[k].n - 1) * compute_band_width(&t->set[0]))
             break;
     return k;
 }
 
 /* ------------------------------------------------------------------ patches */
 
-static int by_angle(const void *a, const void *b)
+static int compare_point_angles(const void *a, const void *b)
 {
     const struct point *p = a, *q = b;
 
     return (p->at[0] > q->at[0]) - (p->at[0] < q->at[0]);
 }
 
-/* Sets the coordinates of P in the frame of azimuth PHI_DEG. */
-static void set_at(const struct traced *t, struct point *p, double phi_deg)
+/* Sets the patch coordinates of point P relative to azimuth PHI_DEG. */
+static void set_point_coordinates(const struct traced *t, struct point *p,
+                                  double phi_deg)
 {
     const double sine = glint_sin_deg(p->lamp.theta_deg);
 
@@ -247,8 +268,9 @@ static void set_at(const struct traced *t, struct point *p, double phi_deg)
         t->cfg.round ? 0 : sine * glint_sin_deg(p->lamp.phi_deg - phi_deg);
 }
 
-/* Widens LOW .. HIGH to the coordinates of P and of what it stands for. */
-static void include_point(const struct point *p, double low[2], double high[2])
+/* Extends the range LOW .. HIGH by point P, including its radius. */
+static void extend_range_by_point(const struct point *p, double low[2],
+                                  double high[2])
 {
     for (int k = 0; k < 2; k++) {
         low[k] = fmin(low[k], p->at[k] - p->reach);
@@ -256,9 +278,12 @@ static void include_point(const struct point *p, double low[2], double high[2])
     }
 }
 
-/* Returns the patch from LOW to HIGH in the frame of azimuth PHI_DEG. */
-static struct ray_patch make_patch(const struct traced *t, double phi_deg,
-                                   const double low[2], const double high[2])
+/* Returns the patch that covers the coordinates LOW .. HIGH relative to azimuth
+ * PHI_DEG. */
+static struct ray_patch make_direction_patch(const struct traced *t,
+                                             double phi_deg,
+                                             const double low[2],
+                                             const double high[2])
 {
     struct ray_patch p = {.phi_deg = phi_deg};
 
@@ -266,57 +291,59 @@ static struct ray_patch make_patch(const struct traced *t, double phi_deg,
         p.middle[k] = 0.5 * (low[k] + high[k]);
         p.half[k] = 0.5 * (high[k] - low[k]);
     }
-    /* Both components or none, so that cross terms are known. */
+    /* either both half sizes are 0 or none, so that cross terms are known */
     if (!t->cfg.round && (p.half[0] > 0 || p.half[1] > 0))
         for (int k = 0; k < 2; k++)
             p.half[k] = fmax(p.half[k], 1e-4);
     return p;
 }
 
-/* Adds to PATCH, which has N, one that holds the points FIRST .. LAST - 1. */
-static void add_patch(const struct traced *t, struct point *point, int first,
-                      int last, double phi_deg, struct ray_patch *patch, int n)
+/* Sets PATCH[N] to a patch that contains the points FIRST .. LAST - 1. */
+static void add_patch_for_points(const struct traced *t, struct point *point,
+                                 int first, int last, double phi_deg,
+                                 struct ray_patch *patch, int n)
 {
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
 
     for (int i = first; i < last; i++) {
-        include_point(&point[i], low, high);
+        extend_range_by_point(&point[i], low, high);
         point[i].patch = n;
     }
-    patch[n] = make_patch(t, phi_deg, low, high);
+    patch[n] = make_direction_patch(t, phi_deg, low, high);
 }
 
-/* Sorts N points of a round lens by their angle, and adds their patches to
- * PATCH, which has HAD; returns how many there are. */
-static int gather_round(const struct traced *t, struct point *point, int n,
-                        struct ray_patch *patch, int had)
+/* Round lenses: sorts N points by angle off the axis and appends their patches
+ * to PATCH[HAD]. Returns the new number of patches. */
+static int group_points_by_angle(const struct traced *t, struct point *point,
+                                 int n, struct ray_patch *patch, int had)
 {
     double low = 0, high = 0;
     int first = 0;
 
     for (int i = 0; i < n; i++)
-        set_at(t, &point[i], 0);
-    qsort(point, (size_t)n, sizeof *point, by_angle);
+        set_point_coordinates(t, &point[i], 0);
+    qsort(point, (size_t)n, sizeof *point, compare_point_angles);
     for (int i = 0; i < n; i++) {
         const double from = point[i].at[0] - point[i].reach;
         const double to = point[i].at[0] + point[i].reach;
 
         if (i > first && fmax(high, to) - fmin(low, from) > SPAN_DEG) {
-            add_patch(t, point, first, i, 0, patch, had++);
+            add_patch_for_points(t, point, first, i, 0, patch, had++);
             first = i;
         }
         low = i > first ? fmin(low, from) : from;
         high = i > first ? fmax(high, to) : to;
     }
     if (n > 0)
-        add_patch(t, point, first, n, 0, patch, had++);
+        add_patch_for_points(t, point, first, n, 0, patch, had++);
     return had;
 }
 
-/* Puts each of N points that is in no patch yet, and all those near it, into
- * one of PATCH, which has HAD; returns how many there are. */
-static int gather_others(const struct traced *t, struct point *point, int n,
-                         struct ray_patch *patch, int had)
+/* Lenses that are not round: starts a patch at the first point without one,
+ * adds all points close to it, and repeats until all N points are in a patch.
+ * Appends to PATCH[HAD]. Returns the new number of patches. */
+static int group_nearby_points(const struct traced *t, struct point *point,
+                               int n, struct ray_patch *patch, int had)
 {
     const double near = 0.5 * SPAN_DEG * GLINT_PI / 180;
     int last;
@@ -325,39 +352,41 @@ static int gather_others(const struct traced *t, struct point *point, int n,
         const double phi_deg = point[first].lamp.phi_deg;
         struct point *seed = &point[first];
 
-        set_at(t, seed, phi_deg);
+        set_point_coordinates(t, seed, phi_deg);
         last = first + 1;
         for (int i = first + 1; i < n; i++) {
             struct point p = point[i];
 
-            set_at(t, &p, phi_deg);
+            set_point_coordinates(t, &p, phi_deg);
             if (fabs(p.at[0] - seed->at[0]) + p.reach > near ||
                 fabs(p.at[1] - seed->at[1]) + p.reach > near)
                 continue;
             point[i] = point[last];
             point[last++] = p;
         }
-        add_patch(t, point, first, last, phi_deg, patch, had++);
+        add_patch_for_points(t, point, first, last, phi_deg, patch, had++);
     }
     return had;
 }
 
-static int gather_points(const struct traced *t, struct point *point, int n,
-                         struct ray_patch *patch, int had)
+static int group_points_in_patches(const struct traced *t, struct point *point,
+                                   int n, struct ray_patch *patch, int had)
 {
-    return t->cfg.round ? gather_round(t, point, n, patch, had)
-                        : gather_others(t, point, n, patch, had);
+    return t->cfg.round ? group_points_by_angle(t, point, n, patch, had)
+                        : group_nearby_points(t, point, n, patch, had);
 }
 
-static bool is_inside(const struct ray_patch *patch, const struct point *p)
+static bool is_point_in_patch(const struct ray_patch *patch,
+                              const struct point *p)
 {
     return fabs(p->at[0] - patch->middle[0]) <= patch->half[0] &&
            fabs(p->at[1] - patch->middle[1]) <= patch->half[1];
 }
 
-/* Returns the radius of LAMP, in coordinates of patches; points of it lie
- * within. */
-static double reach_of(const struct traced *t, const struct glint_lamp *lamp)
+/* Returns the radius, in patch coordinates, that contains all sample points of
+ * LAMP. */
+static double compute_lamp_radius(const struct traced *t,
+                                  const struct glint_lamp *lamp)
 {
     const double cosine = glint_cos_deg(lamp->theta_deg);
 
@@ -365,27 +394,30 @@ static double reach_of(const struct traced *t, const struct glint_lamp *lamp)
            (t->cfg.round ? cosine * 180 / GLINT_PI : 1);
 }
 
-/* Sets PATCH[N] to patches of the N whole LAMPS, but for those that are wider
- * than a patch; returns how many there are. They do not depend on the size of
- * the picture, which decides into how many points a lamp is divided. */
-static int gather_lamps(const struct traced *t, const struct glint_lamp *lamps,
-                        int n, struct point *room, struct ray_patch *patch)
+/* Makes patches that each contain one or more whole LAMPS; skips lamps wider
+ * than a patch. Returns their number. These patches do not depend on the
+ * picture size, which determines the number of sample points per lamp, so their
+ * fields can be reused. ROOM: scratch memory. */
+static int make_lamp_patches(const struct traced *t,
+                             const struct glint_lamp *lamps, int n,
+                             struct point *room, struct ray_patch *patch)
 {
     const double span = t->cfg.round ? SPAN_DEG : SPAN_DEG * GLINT_PI / 180;
     int narrow = 0;
 
     for (int i = 0; i < n; i++) {
-        const double reach = reach_of(t, &lamps[i]);
+        const double reach = compute_lamp_radius(t, &lamps[i]);
 
         if (2 * reach <= span)
             room[narrow++] = (struct point){.lamp = lamps[i], .reach = reach};
     }
-    return gather_points(t, room, narrow, patch, 0);
+    return group_points_in_patches(t, room, narrow, patch, 0);
 }
 
-/* Puts points into those of the N patches FROM in which they lie. Moves the
- * others to the front; returns their number. */
-static int gather_inside(struct traced *t, const struct ray_patch *from, int n)
+/* Assigns points to those of the N patches FROM that contain them. Moves the
+ * other points to the front and returns their number. */
+static int assign_points_to_patches(struct traced *t,
+                                    const struct ray_patch *from, int n)
 {
     int left = t->n_points;
 
@@ -395,8 +427,8 @@ static int gather_inside(struct traced *t, const struct ray_patch *from, int n)
         for (int i = 0; i < left;) {
             struct point p = t->point[i];
 
-            set_at(t, &p, from[k].phi_deg);
-            if (!is_inside(&from[k], &p)) {
+            set_point_coordinates(t, &p, from[k].phi_deg);
+            if (!is_point_in_patch(&from[k], &p)) {
                 i++;
                 continue;
             }
@@ -412,8 +444,10 @@ static int gather_inside(struct traced *t, const struct ray_patch *from, int n)
 
 /* ------------------------------------------------------------------- levels */
 
-/* Sets D to the direction of LAMP times its light; returns that. */
-static double direction_of(const struct glint_lamp *lamp, double d[3])
+/* Sets D to the unit direction of LAMP times its light, and returns its
+ * light. */
+static double compute_weighted_direction(const struct glint_lamp *lamp,
+                                         double d[3])
 {
     const double light = lamp->power * glint_largest_channel(lamp->rgb);
     const double sine = glint_sin_deg(lamp->theta_deg);
@@ -424,16 +458,17 @@ static double direction_of(const struct glint_lamp *lamp, double d[3])
     return light;
 }
 
-/* Sets BOTH to a lamp with the light of A and B between them. */
-static void unite(const struct traced *t, const struct point *a,
-                  const struct point *b, struct point *both)
+/* Sets BOTH to a point with the summed light of A and B, in the mean direction
+ * weighted by light. */
+static void merge_two_points(const struct traced *t, const struct point *a,
+                             const struct point *b, struct point *both)
 {
     const double degree = GLINT_PI / 180;
     double d[3], e[3];
 
     *both = *a;
-    direction_of(&a->lamp, d);
-    direction_of(&b->lamp, e);
+    compute_weighted_direction(&a->lamp, d);
+    compute_weighted_direction(&b->lamp, e);
     for (int k = 0; k < 3; k++)
         d[k] += e[k];
     both->lamp.theta_deg = atan2(hypot(d[0], d[1]), d[2]) / degree;
@@ -443,15 +478,17 @@ static void unite(const struct traced *t, const struct point *a,
         both->lamp.rgb[c] =
             (a->lamp.rgb[c] * a->lamp.power + b->lamp.rgb[c] * b->lamp.power) /
             both->lamp.power;
-    set_at(t, both, t->patch[a->patch].phi_deg);
+    set_point_coordinates(t, both, t->patch[a->patch].phi_deg);
 }
 
-/* Returns the square of the sine between A and B, about. */
-static double apart2(const struct point *a, const struct point *b)
+/* Returns the squared distance between the unit directions of A and B, close to
+ * their squared angle in radians; HUGE_VAL if one has no light. */
+static double compute_squared_distance(const struct point *a,
+                                       const struct point *b)
 {
     double d[3], e[3], sum = 0;
-    const double by_a = direction_of(&a->lamp, d);
-    const double by_b = direction_of(&b->lamp, e);
+    const double by_a = compute_weighted_direction(&a->lamp, d);
+    const double by_b = compute_weighted_direction(&b->lamp, e);
 
     if (!(by_a > 0 && by_b > 0))
         return HUGE_VAL;
@@ -460,9 +497,9 @@ static double apart2(const struct point *a, const struct point *b)
     return sum;
 }
 
-/* Pairs points of LEVEL with their nearest ones of that level, into points of
- * the next. Returns whether any were. */
-static bool add_level(struct traced *t, int level)
+/* Merges pairs of nearest points of LEVEL into points of the next level.
+ * Returns whether any pair was merged. */
+static bool merge_nearest_points(struct traced *t, int level)
 {
     const int n = t->n_points;
     const double most = SPAN_DEG * GLINT_PI / 180;
@@ -479,7 +516,7 @@ static bool add_level(struct traced *t, int level)
             const struct point *b = &t->point[k];
             const double d =
                 b->patch == a->patch && b->first <= level && b->last == LEVELS
-                    ? apart2(a, b)
+                    ? compute_squared_distance(a, b)
                     : HUGE_VAL;
 
             if (d < least) {
@@ -489,8 +526,8 @@ static bool add_level(struct traced *t, int level)
         }
         if (with < 0)
             continue;
-        unite(t, a, &t->point[with], &both);
-        if (!is_inside(&t->patch[both.patch], &both))
+        merge_two_points(t, a, &t->point[with], &both);
+        if (!is_point_in_patch(&t->patch[both.patch], &both))
             continue;
         a->last = t->point[with].last = level;
         both.first = level + 1;
@@ -501,56 +538,57 @@ static bool add_level(struct traced *t, int level)
     return any;
 }
 
-static void add_levels(struct traced *t)
+static void build_point_levels(struct traced *t)
 {
     int level = 0;
 
-    while (level < LEVELS && add_level(t, level))
+    while (level < LEVELS && merge_nearest_points(t, level))
         level++;
 }
 
 /* --------------------------------------------------------------------- plan */
 
-/* Returns whether ghost or part GHOST is to be drawn. */
-static bool is_wanted(const struct glint_frame *f, int ghost)
+/* Returns whether GHOST, the index of a ghost or of a part of one, is drawn in
+ * this frame. */
+static bool is_ghost_drawn(const struct glint_frame *f, int ghost)
 {
     return (f->only_ghost < 0 ||
             glint_frame_is_part_of_ghost(f->setup, ghost, f->only_ghost)) &&
            (!f->tints || f->tints[ghost].gain.mantissa > 0);
 }
 
-/* Returns whether FIELD is to be drawn and no frame has looked at it. */
-static bool is_unknown(const struct glint_frame *f,
-                       const struct ray_field *field)
+/* Returns whether FIELD is drawn but was not measured by an earlier frame. */
+static bool is_field_unmeasured(const struct glint_frame *f,
+                                const struct ray_field *field)
 {
-    return !field->is_looked && is_wanted(f, field->ghost);
+    return !field->is_measured && is_ghost_drawn(f, field->ghost);
 }
 
-static int count_unknown(const struct glint_frame *f)
+static int count_unmeasured_fields(const struct glint_frame *f)
 {
-    const struct traced *const t = state_of(f);
+    const struct traced *const t = get_traced_state(f);
     int n = 0;
 
     for (int i = 0; i < t->n_patches * f->setup->n_ghosts; i++)
-        n += is_unknown(f, &t->looked[i]);
+        n += is_field_unmeasured(f, &t->measured[i]);
     return n;
 }
 
-static void look_job(void *ctx, int job, int worker)
+static void run_field_measure_job(void *ctx, int job, int worker)
 {
     const struct job *j = ctx;
-    struct traced *t = state_of(j->frame);
-    struct ray_field *const field = &t->looked[j->first + job];
+    struct traced *t = get_traced_state(j->frame);
+    struct ray_field *const field = &t->measured[j->first + job];
 
     (void)worker;
-    if (is_unknown(j->frame, field))
-        glint_ray_field_look(&t->cfg, field);
+    if (is_field_unmeasured(j->frame, field))
+        glint_ray_field_measure(&t->cfg, field);
 }
 
-/* Returns whether the box of FIELD on the sensor, turned by PHI_DEG, meets the
- * picture. */
-static bool in_view(const struct glint_frame *f, const struct ray_field *field,
-                    double phi_deg)
+/* Returns whether the bounding box of FIELD on the sensor, rotated by PHI_DEG,
+ * overlaps the picture. */
+static bool is_field_in_picture(const struct glint_frame *f,
+                                const struct ray_field *field, double phi_deg)
 {
     const double *s = field->pupil.sensor_mm;
     const double half_w = 0.5 * f->view.sensor_width_mm;
@@ -563,26 +601,28 @@ static bool in_view(const struct glint_frame *f, const struct ray_field *field,
            fabs(x * d + y * c) - fabs(d) * w - fabs(c) * h < half_h;
 }
 
-/* Returns the azimuth by which FIELD is turned for point P. */
-static double turn_of(const struct traced *t, const struct point *p)
+/* Returns the azimuth by which a ghost is rotated for point P, degrees. */
+static double get_field_azimuth(const struct traced *t, const struct point *p)
 {
     return t->cfg.round ? p->lamp.phi_deg : t->patch[p->patch].phi_deg;
 }
 
-/* Returns the light of P, largest channel, per mm^2 of the pupil's flux. */
-static double light_of(const struct glint_frame *f, const struct point *p,
-                       int ghost)
+/* Returns the light of point P through GHOST in its brightest channel, per mm^2
+ * of pupil flux. */
+static double compute_point_light(const struct glint_frame *f,
+                                  const struct point *p, int ghost)
 {
-    const struct traced *t = state_of(f);
+    const struct traced *t = get_traced_state(f);
     const double gain = f->tints ? glint_real_value(f->tints[ghost].gain) : 1;
 
     return p->lamp.power * glint_largest_channel(p->lamp.rgb) * gain *
            glint_cos_deg(p->lamp.theta_deg) / t->set[0].unit_flux[0];
 }
 
-/* Returns the size in pixels of the box that the light of FIELD falls in. */
-static double pixels_of(const struct glint_frame *f,
-                        const struct ray_field *field)
+/* Returns the area of the bounding box of FIELD on the sensor, pixels, plus
+ * 1. */
+static double compute_field_pixels(const struct glint_frame *f,
+                                   const struct ray_field *field)
 {
     const double *s = field->pupil.sensor_mm;
     const double pixel = f->view.sensor_width_mm / f->view.width;
@@ -590,37 +630,37 @@ static double pixels_of(const struct glint_frame *f,
     return (s[1] - s[0]) * (s[3] - s[2]) / (pixel * pixel) + 1;
 }
 
-/* Returns the flux of FIELD if all of its pupil were open, mm^2. */
-static double box_flux(const struct ray_field *field)
+/* Returns the flux of FIELD without any blocked rays, mm^2: an upper bound. */
+static double compute_unblocked_flux(const struct ray_field *field)
 {
     const struct glint_pupil *p = &field->pupil;
 
     return (p->x1_mm - p->x0_mm) * glint_pupil_height(p) * field->energy_unit;
 }
 
-/* Sets the light that all points of LEVEL give FIELD, and the most that one
- * does. */
-static void sum_light(const struct glint_frame *f, int field, int level,
-                      double *all, double *most)
+/* Computes the light through FIELD from the points of LEVEL: the sum ALL over
+ * all points, and the max MOST of a single point. */
+static void sum_point_light(const struct glint_frame *f, int field, int level,
+                            double *all, double *most)
 {
-    const struct traced *t = state_of(f);
+    const struct traced *t = get_traced_state(f);
     const struct ray_field *r = &t->field[field];
 
     *all = *most = 0;
     for (int i = 0; i < t->n_points; i++)
         if (&t->patch[t->point[i].patch] == r->patch &&
             t->point[i].first <= level && t->point[i].last >= level) {
-            const double light = light_of(f, &t->point[i], r->ghost);
+            const double light = compute_point_light(f, &t->point[i], r->ghost);
 
             *all += light;
             *most = fmax(*most, light);
         }
 }
 
-/* Returns whether the fields of T were looked at through the lens and with the
+/* Returns whether the fields of T were measured with the lens and the
  * wavelengths of CFG. */
-static bool is_same_lens(const struct traced *t,
-                         const struct ray_field_config *cfg)
+static bool is_same_lens_and_band(const struct traced *t,
+                                  const struct ray_field_config *cfg)
 {
     const struct glint_optics *const a = &t->optics;
     const struct glint_optics *const b = &cfg->setup->optics;
@@ -634,85 +674,93 @@ static bool is_same_lens(const struct traced *t,
     return same;
 }
 
-/* Patches, and their fields, of an earlier picture. */
-struct sights {
+/* Patches of an earlier frame and their measured fields. */
+struct measured_fields {
     struct ray_patch *patch;
     struct ray_field *field;
-    int n; /* patches */
+    int n; /* number of patches */
 };
 
-/* Takes the patches and fields of T, if they were made for the lens and the
- * wavelengths of CFG. */
-static void take_sights(struct traced *t, const struct ray_field_config *cfg,
-                        struct sights *had)
+/* Moves the patches and fields of T to HAD if they were measured with the lens
+ * and the wavelengths of CFG; else sets HAD empty. */
+static void take_measured_fields(struct traced *t,
+                                 const struct ray_field_config *cfg,
+                                 struct measured_fields *had)
 {
-    *had = (struct sights){NULL, NULL, 0};
-    if (!is_same_lens(t, cfg))
+    *had = (struct measured_fields){NULL, NULL, 0};
+    if (!is_same_lens_and_band(t, cfg))
         return;
-    *had = (struct sights){t->patch, t->looked, t->looked ? t->n_patches : 0};
+    *had = (struct measured_fields){t->patch, t->measured,
+                                    t->measured ? t->n_patches : 0};
     t->patch = NULL;
-    t->looked = NULL;
+    t->measured = NULL;
 }
 
-/* Gathers LAMPS, N points of the GIVEN lamps, in patches. */
-static enum glint_status gather(struct traced *t,
-                                const struct glint_lamp *lamps, int n,
-                                const struct glint_lamp *given, int n_given)
+/* Groups LAMPS in patches and builds their levels. LAMPS[N]: sample points of
+ * the N_GIVEN lamps GIVEN. */
+static enum glint_status
+group_lamps_in_patches(struct traced *t, const struct glint_lamp *lamps, int n,
+                       const struct glint_lamp *given, int n_given)
 {
     const size_t size = (size_t)n, all = (size_t)n_given;
     struct point *const room = calloc(all + 1, sizeof *room);
     struct ray_patch *const patch = calloc(all + 1, sizeof *patch);
     int left;
 
-    t->point = calloc(2 * size, sizeof *t->point); /* with all levels */
+    /* space for the points of all levels */
+    t->point = calloc(2 * size, sizeof *t->point);
     t->patch = calloc(size, sizeof *t->patch);
     if (room && patch && t->point && t->patch) {
         t->n_points = n;
         for (int i = 0; i < n; i++)
             t->point[i] = (struct point){.lamp = lamps[i], .last = LEVELS};
-        left = gather_inside(t, patch,
-                             gather_lamps(t, given, n_given, room, patch));
-        t->n_patches = gather_points(t, t->point, left, t->patch, t->n_patches);
-        add_levels(t);
+        left = assign_points_to_patches(
+            t, patch, make_lamp_patches(t, given, n_given, room, patch));
+        t->n_patches =
+            group_points_in_patches(t, t->point, left, t->patch, t->n_patches);
+        build_point_levels(t);
     }
     free(room);
     free(patch);
     return t->n_points ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-static bool is_same_patch(const struct ray_patch *a, const struct ray_patch *b)
+static bool are_patches_equal(const struct ray_patch *a,
+                              const struct ray_patch *b)
 {
     return a->phi_deg == b->phi_deg && a->middle[0] == b->middle[0] &&
            a->middle[1] == b->middle[1] && a->half[0] == b->half[0] &&
            a->half[1] == b->half[1];
 }
 
-/* Returns the fields of HAD over PATCH, or NULL. They are the same bits as if
- * they were looked at again. */
-static const struct ray_field *find_sight(const struct sights *had,
-                                          const struct ray_patch *patch,
-                                          int n_ghosts)
+/* Returns the fields of HAD for PATCH, or NULL. They are bit-identical to a new
+ * measurement. */
+static const struct ray_field *
+find_measured_fields(const struct measured_fields *had,
+                     const struct ray_patch *patch, int n_ghosts)
 {
     for (int k = 0; k < had->n; k++)
-        if (is_same_patch(&had->patch[k], patch))
+        if (are_patches_equal(&had->patch[k], patch))
             return had->field + k * n_ghosts;
     return NULL;
 }
 
-/* Sets the fields to look at: those of HAD as they are. */
-static enum glint_status set_fields(struct traced *t, const struct sights *had,
-                                    int n_ghosts)
+/* Allocates one field per ghost and patch. Copies those that HAD has
+ * measured. */
+static enum glint_status
+allocate_ghost_fields(struct traced *t, const struct measured_fields *had,
+                      int n_ghosts)
 {
     const size_t size = (size_t)t->n_patches * (size_t)n_ghosts;
 
-    t->looked = calloc(size + 1, sizeof *t->looked);
+    t->measured = calloc(size + 1, sizeof *t->measured);
     t->field = calloc(size + 1, sizeof *t->field);
-    if (!t->looked || !t->field)
+    if (!t->measured || !t->field)
         return GLINT_E_MEMORY;
     for (int patch = 0; patch < t->n_patches; patch++) {
-        struct ray_field *const field = t->looked + patch * n_ghosts;
+        struct ray_field *const field = t->measured + patch * n_ghosts;
         const struct ray_field *const from =
-            find_sight(had, &t->patch[patch], n_ghosts);
+            find_measured_fields(had, &t->patch[patch], n_ghosts);
 
         if (from)
             memcpy(field, from, (size_t)n_ghosts * sizeof *field);
@@ -724,48 +772,55 @@ static enum glint_status set_fields(struct traced *t, const struct sights *had,
     return GLINT_OK;
 }
 
-/* Lists the fields that are drawn, with grids for the picture of F. */
-static void list_fields(const struct glint_frame *f)
+/* Sets the list of fields to those drawn in this frame, and chooses their grids
+ * for the picture. */
+static void list_drawn_fields(const struct glint_frame *f)
 {
-    struct traced *const t = state_of(f);
+    struct traced *const t = get_traced_state(f);
 
     t->n_fields = 0;
     for (int i = 0; i < t->n_patches * f->setup->n_ghosts; i++)
-        if (t->looked[i].is_open && is_wanted(f, t->looked[i].ghost)) {
-            t->field[t->n_fields] = t->looked[i];
-            glint_ray_field_fit(&t->cfg, &t->field[t->n_fields++]);
+        if (t->measured[i].is_open && is_ghost_drawn(f, t->measured[i].ghost)) {
+            t->field[t->n_fields] = t->measured[i];
+            glint_ray_field_choose_grid(&t->cfg, &t->field[t->n_fields++]);
         }
 }
 
-/* Looks at the fields of N LAMPS, at least 1, but for those of HAD. */
-static enum glint_status look_at(struct glint_frame *f,
-                                 const struct glint_lamp *lamps, int n,
-                                 const struct sights *had)
+/* Groups N LAMPS, at least 1, into patches and measures their fields, except
+ * those that HAD has measured. */
+static enum glint_status measure_lamp_fields(struct glint_frame *f,
+                                             const struct glint_lamp *lamps,
+                                             int n,
+                                             const struct measured_fields *had)
 {
-    struct traced *const t = state_of(f);
+    struct traced *const t = get_traced_state(f);
     const int n_ghosts = f->setup->n_ghosts;
     enum glint_status status;
 
     if ((int64_t)n * n_ghosts * f->setup->n_wavelengths > INT_MAX)
         return GLINT_E_MEMORY;
-    status = gather(t, lamps, n, f->lights.given, f->lights.n_given);
+    status =
+        group_lamps_in_patches(t, lamps, n, f->lights.given, f->lights.n_given);
     if (status == GLINT_OK && (int64_t)t->n_patches * n_ghosts > INT_MAX / 2)
         status = GLINT_E_MEMORY;
     if (status == GLINT_OK)
-        status = set_fields(t, had, n_ghosts);
+        status = allocate_ghost_fields(t, had, n_ghosts);
     if (status != GLINT_OK)
         return status;
-    if (count_unknown(f) > 0)
-        run(f, t->n_patches * n_ghosts, look_job, 0, GLINT_FRAME_FOUND);
-    list_fields(f);
+    if (count_unmeasured_fields(f) > 0)
+        run_jobs_with_progress(f, t->n_patches * n_ghosts,
+                               run_field_measure_job, 0, GLINT_FRAME_FOUND);
+    list_drawn_fields(f);
     return GLINT_OK;
 }
 
-/* Finds the fields of LAMPS. */
-static enum glint_status look(struct glint_frame *f,
-                              const struct glint_lamp *lamps, int n)
+/* Measures the fields of LAMPS for frame F, with fields of the frame before
+ * reused if lens and wavelengths are the same. */
+static enum glint_status measure_frame_fields(struct glint_frame *f,
+                                              const struct glint_lamp *lamps,
+                                              int n)
 {
-    struct traced *const t = state_of(f);
+    struct traced *const t = get_traced_state(f);
     const struct glint_setup *s = f->setup;
     struct ray_field_config cfg = {.setup = s,
                                    .view = f->view,
@@ -774,29 +829,29 @@ static enum glint_status look(struct glint_frame *f,
                                    .max_cells = f->dials.fineness,
                                    .uniform = f->picture.uniform};
     enum glint_status status = GLINT_OK;
-    struct sights had;
+    struct measured_fields had;
 
-    set_waves(t, s, &cfg);
-    take_sights(t, &cfg, &had);
-    forget(t);
+    set_wavelength_sets(t, s, &cfg);
+    take_measured_fields(t, &cfg, &had);
+    free_traced_arrays(t);
     t->cfg = cfg;
     t->optics = s->optics;
     t->n_ghosts = s->n_ghosts;
     if (n > 0)
-        status = look_at(f, lamps, n, &had);
+        status = measure_lamp_fields(f, lamps, n, &had);
     if (status != GLINT_OK)
-        forget(t);
+        free_traced_arrays(t);
     free(had.patch);
     free(had.field);
     return status;
 }
 
-/* Skips ghosts that no pixel shows: by the most light that all points may give
- * a pixel together. */
-static enum glint_status skip_faint(struct glint_frame *f, double scale,
-                                    double faintest)
+/* Skips ghosts that cannot reach the brightness FAINTEST in any pixel even if
+ * the light of all points falls on the same pixel. */
+static enum glint_status skip_faint_ghosts(struct glint_frame *f, double scale,
+                                           double faintest)
 {
-    struct traced *const t = state_of(f);
+    struct traced *const t = get_traced_state(f);
     const double pixel = f->view.sensor_width_mm / f->view.width;
     double *peak;
 
@@ -808,7 +863,7 @@ static enum glint_status skip_faint(struct glint_frame *f, double scale,
     for (int i = 0; i < t->n_fields; i++) {
         double all, most;
 
-        sum_light(f, i, 0, &all, &most);
+        sum_point_light(f, i, 0, &all, &most);
         peak[t->field[i].ghost] +=
             scale * all * t->field[i].peak_mm2 * pixel * pixel;
     }
@@ -819,32 +874,35 @@ static enum glint_status skip_faint(struct glint_frame *f, double scale,
     return GLINT_OK;
 }
 
-/* Returns whether field I is drawn from point P. */
-static bool is_drawn_from(const struct traced *t, int i, int p)
+/* Returns whether field I uses point P: same patch, and P belongs to the
+ * field's level. */
+static bool is_field_drawn_from_point(const struct traced *t, int i, int p)
 {
     return &t->patch[t->point[p].patch] == t->field[i].patch &&
            t->point[p].first <= t->level[i] && t->point[p].last >= t->level[i];
 }
 
-/* Chooses the samples of field I for the points and wavelengths that it is
- * drawn from: fewer than for its whole patch. */
-static void choose_samples(struct traced *t, int i)
+/* Chooses the directions and wavelengths for which field I is traced. They
+ * cover only the points that the field uses, which are fewer than those of its
+ * patch. */
+static void choose_field_samples(struct traced *t, int i)
 {
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     const struct wave_set *const set = &t->set[t->set_of[i]];
     struct ray_patch range;
 
     for (int p = 0; p < t->n_points; p++)
-        if (is_drawn_from(t, i, p))
-            include_point(&t->point[p], low, high);
-    range = make_patch(t, t->field[i].patch->phi_deg, low, high);
-    glint_ray_field_choose(&t->field[i], &range, set->nm, set->n);
+        if (is_field_drawn_from_point(t, i, p))
+            extend_range_by_point(&t->point[p], low, high);
+    range = make_direction_patch(t, t->field[i].patch->phi_deg, low, high);
+    glint_ray_field_choose_samples(&t->field[i], &range, set->nm, set->n);
 }
 
-/* Lists the bundles that reach the picture: of each field by wavelength. */
-static enum glint_status list_bundles(struct glint_frame *f)
+/* Lists the bundles whose ghost overlaps the picture, sorted by field, then by
+ * wavelength. */
+static enum glint_status list_visible_bundles(struct glint_frame *f)
 {
-    struct traced *const t = state_of(f);
+    struct traced *const t = get_traced_state(f);
     size_t n = 0;
 
     for (int pass = 0; pass < 2; pass++) {
@@ -853,8 +911,10 @@ static enum glint_status list_bundles(struct glint_frame *f)
             for (int w = 0; t->set_of[i] >= 0 && w < t->set[t->set_of[i]].n;
                  w++)
                 for (int p = 0; p < t->n_points; p++) {
-                    if (!is_drawn_from(t, i, p) ||
-                        !in_view(f, &t->field[i], turn_of(t, &t->point[p])))
+                    if (!is_field_drawn_from_point(t, i, p) ||
+                        !is_field_in_picture(
+                            f, &t->field[i],
+                            get_field_azimuth(t, &t->point[p])))
                         continue;
                     if (pass)
                         t->bundle[n] = (struct ray_bundle){i, p, w, 1, 0};
@@ -871,9 +931,10 @@ static enum glint_status list_bundles(struct glint_frame *f)
     return GLINT_OK;
 }
 
-static enum glint_status set_scale(struct glint_frame *frame,
-                                   const struct glint_lamp *lamps, int n_lamps,
-                                   struct glint_frame_scale *scale)
+static enum glint_status choose_light_scale(struct glint_frame *frame,
+                                            const struct glint_lamp *lamps,
+                                            int n_lamps,
+                                            struct glint_frame_scale *scale)
 {
     enum glint_status status = GLINT_OK;
     double brightest = 0, together = 0;
@@ -883,16 +944,17 @@ static enum glint_status set_scale(struct glint_frame *frame,
     if (!frame->memory.traced)
         frame->memory.traced = calloc(1, sizeof *t);
     t = frame->memory.traced;
-    status = t ? look(frame, lamps, n_lamps) : GLINT_E_MEMORY;
+    status = t ? measure_frame_fields(frame, lamps, n_lamps) : GLINT_E_MEMORY;
     if (status != GLINT_OK)
         return status;
     for (int i = 0; i < t->n_fields; i++) {
         double all, most;
 
-        sum_light(frame, i, 0, &all, &most);
-        brightest = fmax(brightest, most * t->field[i].flux /
-                                        pixels_of(frame, &t->field[i]));
-        together += all * box_flux(&t->field[i]) * t->set[0].n;
+        sum_point_light(frame, i, 0, &all, &most);
+        brightest =
+            fmax(brightest, most * t->field[i].flux /
+                                compute_field_pixels(frame, &t->field[i]));
+        together += all * compute_unblocked_flux(&t->field[i]) * t->set[0].n;
     }
     if (brightest > 0)
         *scale = glint_frame_compute_scale((int)ceil(log2(brightest)),
@@ -902,38 +964,40 @@ static enum glint_status set_scale(struct glint_frame *frame,
 
 /* -------------------------------------------------------------------- trace */
 
-static size_t most_bytes(const struct glint_frame *f)
+static size_t get_memory_limit(const struct glint_frame *f)
 {
     const size_t most = f->limits.most_bytes / 2;
 
     return most && most < MOST_BYTES ? most : MOST_BYTES;
 }
 
-static void trace_job(void *ctx, int job, int worker)
+static void run_field_trace_job(void *ctx, int job, int worker)
 {
     const struct job *j = ctx;
-    struct traced *t = state_of(j->frame);
+    struct traced *t = get_traced_state(j->frame);
     const int i = j->first + job;
 
     (void)worker;
     if (t->mem[i])
-        glint_ray_field_trace(&t->cfg, &t->field[i], t->mem[i]);
+        glint_ray_field_trace_rays(&t->cfg, &t->field[i], t->mem[i]);
 }
 
-/* Takes memory for as many fields as have room, and for workers. */
-static enum glint_status hold_fields(struct glint_frame *f)
+/* Allocates memory for the rays of as many fields as fit into the limit, and
+ * per worker for one of the others. */
+static enum glint_status allocate_ray_memory(struct glint_frame *f)
 {
-    struct traced *const t = state_of(f);
-    size_t left = most_bytes(f), largest = 0;
+    struct traced *const t = get_traced_state(f);
+    size_t left = get_memory_limit(f), largest = 0;
 
     t->n_workers = glint_workers_count(f->cfg.workers);
     t->worker = calloc((size_t)t->n_workers, sizeof *t->worker);
     if (!t->worker)
         return GLINT_E_MEMORY;
     for (int i = 0; i < t->n_fields; i++) {
-        const size_t bytes = t->set_of[i] >= 0
-                                 ? glint_ray_field_bytes(&t->cfg, &t->field[i])
-                                 : 0;
+        const size_t bytes =
+            t->set_of[i] >= 0
+                ? glint_ray_field_compute_bytes(&t->cfg, &t->field[i])
+                : 0;
 
         if (bytes == 0)
             continue;
@@ -954,38 +1018,42 @@ static enum glint_status hold_fields(struct glint_frame *f)
     return GLINT_OK;
 }
 
-/* Draws field I, whose points give LIGHT each per unit of their own in the
- * mean, from fewer points and by a coarser grid as far as that does not show in
- * codes: a point gives less than half of STEP, and errors of faint light
- * shrink, in codes, by 2^(5/12) with each octave. Compare plan_cells.c. */
-static void coarsen(struct glint_frame *f, int i, double light, double step)
+/* Reduces the work for field I as long as the error is not visible in 8-bit
+ * codes: draws it from a level with fewer points, while each point adds less
+ * than half of STEP, and with a coarser grid. LIGHT: mean brightness of the
+ * field per unit of a point's light. Errors of faint light shrink, in codes, by
+ * 2^(5/12) per octave. Compare plan_cells.c. */
+static void coarsen_faint_field(struct glint_frame *f, int i, double light,
+                                double step)
 {
-    struct traced *const t = state_of(f);
+    struct traced *const t = get_traced_state(f);
     struct ray_field *r = &t->field[i];
     double all, most, brightness;
 
     while (t->level[i] < LEVELS) {
-        sum_light(f, i, t->level[i] + 1, &all, &most);
+        sum_point_light(f, i, t->level[i] + 1, &all, &most);
         if (!(light * most < 0.5 * step))
             break;
         t->level[i]++;
     }
-    sum_light(f, i, t->level[i], &all, &most);
+    sum_point_light(f, i, t->level[i], &all, &most);
     brightness = light * most * (r->folds ? 16 : 1);
     if (brightness < 1)
-        glint_ray_field_coarsen(&t->cfg, r,
-                                exp2(5.0 / 24 * fmax(log2(brightness), -12)));
+        glint_ray_field_coarsen_grid(
+            &t->cfg, r, exp2(5.0 / 24 * fmax(log2(brightness), -12)));
 }
 
-/* Plans a frame of LAMPS times SCALE for IMAGE, and traces its rays. */
-static enum glint_status plan(struct glint_frame *f,
-                              const struct glint_lamp *lamps, int n,
-                              double scale, const struct glint_image *image)
+/* Plans the frame: measures the fields of LAMPS, skips faint ghosts, and
+ * chooses wavelengths, levels and grids. SCALE: factor on the light. */
+static enum glint_status plan_ray_frame(struct glint_frame *f,
+                                        const struct glint_lamp *lamps, int n,
+                                        double scale,
+                                        const struct glint_image *image)
 {
-    struct traced *const t = state_of(f);
+    struct traced *const t = get_traced_state(f);
     const double step =
         glint_frame_convert_codes_to_light(f, image, GLINT_FRAME_STEP_CODES);
-    enum glint_status status = look(f, lamps, n);
+    enum glint_status status = measure_frame_fields(f, lamps, n);
 
     if (status != GLINT_OK)
         return status;
@@ -995,8 +1063,8 @@ static enum glint_status plan(struct glint_frame *f,
     if (!t->set_of || !t->mem || !t->level)
         return GLINT_E_MEMORY;
     t->in_codes = is_planned_for_codes(f, image);
-    list_fields(f);
-    status = skip_faint(
+    list_drawn_fields(f);
+    status = skip_faint_ghosts(
         f, scale,
         glint_frame_convert_codes_to_light(f, image, f->dials.cull_codes));
     if (status != GLINT_OK)
@@ -1007,23 +1075,25 @@ static enum glint_status plan(struct glint_frame *f,
 
         if (t->set_of[i] < 0)
             continue;
-        light = scale * r->flux / pixels_of(f, r);
-        sum_light(f, i, 0, &all, &most);
-        t->set_of[i] = choose_set(f, r, light * most, step);
+        light = scale * r->flux / compute_field_pixels(f, r);
+        sum_point_light(f, i, 0, &all, &most);
+        t->set_of[i] = choose_wavelength_set(f, r, light * most, step);
         if (t->in_codes)
-            coarsen(f, i, light, step);
-        choose_samples(t, i);
+            coarsen_faint_field(f, i, light, step);
+        choose_field_samples(t, i);
     }
-    status = list_bundles(f);
-    return status == GLINT_OK ? hold_fields(f) : status;
+    status = list_visible_bundles(f);
+    return status == GLINT_OK ? allocate_ray_memory(f) : status;
 }
 
-/* Begins bundle I: for struct glint_flare_rays. */
-static int open_bundle(void *ctx, int worker, int i, int y0, int y1)
+/* Prepares the interpolation of bundle I for compute_vertex_row(). Returns 0 if
+ * the bundle lies outside rows Y0 .. Y1. Callback of struct
+ * glint_flare_rays. */
+static int open_ray_bundle(void *ctx, int worker, int i, int y0, int y1)
 {
     const struct glint_frame *f = ctx;
-    struct traced *t = state_of(f);
-    struct at_work *w = &t->worker[worker];
+    struct traced *t = get_traced_state(f);
+    struct ray_worker *w = &t->worker[worker];
     struct ray_bundle *b = &t->bundle[i];
     const struct point *p = &t->point[b->point];
     const void *mem = t->mem[b->field];
@@ -1031,26 +1101,27 @@ static int open_bundle(void *ctx, int worker, int i, int y0, int y1)
     if (b->low <= b->high && (b->high < (float)y0 || b->low > (float)y1))
         return 0;
     if (!mem && w->in_mem != b->field) {
-        glint_ray_field_trace(&t->cfg, &t->field[b->field], w->mem);
+        glint_ray_field_trace_rays(&t->cfg, &t->field[b->field], w->mem);
         w->in_mem = b->field;
     }
     w->bundle = b;
     w->low = HUGE_VALF;
     w->high = -HUGE_VALF;
-    glint_ray_place_set(&w->place, &t->field[b->field], mem ? mem : w->mem,
-                        p->at, t->set[t->set_of[b->field]].nm[b->wave],
-                        turn_of(t, p));
+    glint_ray_place_set_weights(
+        &w->place, &t->field[b->field], mem ? mem : w->mem, p->at,
+        t->set[t->set_of[b->field]].nm[b->wave], get_field_azimuth(t, p));
     return 1;
 }
 
-static void row_of(void *ctx, int worker, int j, struct glint_vertex *row)
+static void compute_vertex_row(void *ctx, int worker, int j,
+                               struct glint_vertex *row)
 {
     const struct glint_frame *f = ctx;
-    struct traced *t = state_of(f);
-    struct at_work *w = &t->worker[worker];
+    struct traced *t = get_traced_state(f);
+    struct ray_worker *w = &t->worker[worker];
     const int n = w->place.field->n_cells;
 
-    glint_ray_place_row(&t->cfg, &w->place, j, row);
+    glint_ray_place_interpolate_row(&t->cfg, &w->place, j, row);
     for (int i = 0; i <= n; i++)
         if (row[i].energy_q16 >= 0) {
             const float y = (float)row[i].y_q8 / 256;
@@ -1058,18 +1129,18 @@ static void row_of(void *ctx, int worker, int j, struct glint_vertex *row)
             w->low = y < w->low ? y : w->low;
             w->high = y > w->high ? y : w->high;
         }
-    if (j == n) { /* cells may reach a pixel farther than their corners */
+    if (j == n) { /* cells may extend a pixel beyond their corners */
         w->bundle->low = w->low - 2;
         w->bundle->high = w->high + 2;
     }
 }
 
-/* Fills BUNDLE from bundle B of the frame, whose light is multiplied by
- * SCALE. */
-static void make_bundle(const struct glint_frame *f, const struct ray_bundle *b,
-                        double scale, struct glint_bundle *bundle)
+/* Sets BUNDLE to bundle B of the frame, with its light multiplied by SCALE. */
+static void set_flare_bundle(const struct glint_frame *f,
+                             const struct ray_bundle *b, double scale,
+                             struct glint_bundle *bundle)
 {
-    const struct traced *t = state_of(f);
+    const struct traced *t = get_traced_state(f);
     const struct ray_field *r = &t->field[b->field];
     const struct wave_set *set = &t->set[t->set_of[b->field]];
     const struct glint_lamp *lamp = &t->point[b->point].lamp;
@@ -1098,10 +1169,11 @@ static void make_bundle(const struct glint_frame *f, const struct ray_bundle *b,
 
 /* -------------------------------------------------------------------- frame */
 
-/* Takes a block for the capacities of F and adds all bundles to it. */
+/* Allocates the flare's memory block for the capacities of F and adds all
+ * bundles to the flare. */
 static enum glint_status begin_flare(struct glint_frame *f, double scale)
 {
-    struct traced *const t = state_of(f);
+    struct traced *const t = get_traced_state(f);
     const size_t bytes = glint_flare_bytes(&f->cfg);
     enum glint_status status;
 
@@ -1117,68 +1189,71 @@ static enum glint_status begin_flare(struct glint_frame *f, double scale)
         glint_flare_init(&f->memory.flare, &f->cfg, f->memory.block, bytes);
     if (status != GLINT_OK)
         return status;
-    t->rays =
-        (struct glint_flare_rays){open_bundle, row_of, f, t->in_codes,
-                                  t->in_codes ? f->dials.snap_codes_q8 : 0};
+    t->rays = (struct glint_flare_rays){
+        open_ray_bundle, compute_vertex_row, f, t->in_codes,
+        t->in_codes ? f->dials.snap_codes_q8 : 0};
     glint_flare_begin_rays(f->memory.flare, &t->rays);
     for (int i = 0; i < t->n_bundles; i++) {
         struct glint_bundle bundle;
 
-        make_bundle(f, &t->bundle[i], scale, &bundle);
+        set_flare_bundle(f, &t->bundle[i], scale, &bundle);
         glint_flare_add(f->memory.flare, &bundle);
     }
     return GLINT_OK;
 }
 
-/* Sets the capacities for N edges and REFS references. */
-static size_t bytes_for(struct glint_frame *f, double n, double refs)
+/* Sets the capacities to N edges and REFS references. Returns the size of the
+ * flare's memory block in bytes. */
+static size_t set_edge_capacity(struct glint_frame *f, double n, double refs)
 {
     f->cfg.max_primitives = (int)fmin(INT_MAX, n);
     f->cfg.max_refs = (int)fmin(INT_MAX, refs);
     return glint_flare_bytes(&f->cfg);
 }
 
-static bool has_capacity(const struct glint_frame *f,
-                         const struct glint_flare_stats *s)
+static bool has_edge_capacity(const struct glint_frame *f,
+                              const struct glint_flare_stats *s)
 {
     return s->need_primitives <= f->cfg.max_primitives &&
            s->need_refs <= f->cfg.max_refs;
 }
 
-/* Gives the flare more room for what S needs, as much as it may take unless
- * ANYWAY. Returns whether there is more than before. */
-static bool widen(struct glint_frame *f, const struct glint_flare_stats *s,
-                  bool anyway)
+/* Raises the capacities to the demand that S reports, within the memory limit
+ * unless ANYWAY. Returns whether a capacity grew. */
+static bool enlarge_edge_capacity(struct glint_frame *f,
+                                  const struct glint_flare_stats *s,
+                                  bool anyway)
 {
     const int had = f->cfg.max_primitives, refs_had = f->cfg.max_refs;
-    /* A row of tiles cannot be divided: it gets more until it is drawn. */
+    /* A single row of tiles cannot be divided: its capacity grows beyond the
+     * limit until it can be drawn. */
     const double least = anyway ? 1.25 * had + 1024 : had;
     const double least_refs = anyway ? 1.25 * refs_had + 1024 : refs_had;
-    /* Workers' shares are never quite even. */
+    /* Workers get unequal numbers of edges. */
     const double uneven = glint_workers_count(f->cfg.workers) > 1 ? 1.5 : 1;
     double part = 1;
 
-    while (bytes_for(f,
-                     fmax(least, part * (uneven * s->need_primitives + 1024)),
-                     fmax(least_refs, part * (s->need_refs + 1024.0))) >
-               most_bytes(f) &&
+    while (set_edge_capacity(
+               f, fmax(least, part * (uneven * s->need_primitives + 1024)),
+               fmax(least_refs, part * (s->need_refs + 1024.0))) >
+               get_memory_limit(f) &&
            !anyway && part > 1e-3)
         part *= 0.9;
     return f->cfg.max_primitives > had || f->cfg.max_refs > refs_had;
 }
 
-/* Bins rows Y0 .. Y1 - 1. */
-static void bin_rows(struct glint_frame *f, int y0, int y1,
-                     struct glint_flare_stats *s)
+/* Bins the edges of pixel rows Y0 .. Y1 - 1. */
+static void bin_pixel_rows(struct glint_frame *f, int y0, int y1,
+                           struct glint_flare_stats *s)
 {
     glint_flare_set_rows(f->memory.flare, y0, y1);
     glint_flare_bin(f->memory.flare, s);
 }
 
-/* Returns how many rows, whole tiles, to draw from Y0 on, where N rows need
- * what S says. */
-static int fewer_rows(const struct glint_frame *f, int n,
-                      const struct glint_flare_stats *s)
+/* Returns the number of pixel rows, a multiple of the tile side, that fit the
+ * capacities, if N rows have the demand S. */
+static int choose_fewer_rows(const struct glint_frame *f, int n,
+                             const struct glint_flare_stats *s)
 {
     const int side = 1 << f->cfg.tile_log2;
     const double part =
@@ -1188,8 +1263,8 @@ static int fewer_rows(const struct glint_frame *f, int n,
     return max_int(min_int((int)(0.8 * part * n), n - 1) / side, 1) * side;
 }
 
-static void add_stats(struct glint_flare_stats *all,
-                      const struct glint_flare_stats *s)
+static void add_flare_stats(struct glint_flare_stats *all,
+                            const struct glint_flare_stats *s)
 {
     all->bundles = max_int(all->bundles, s->bundles);
     all->need_bundles = s->need_bundles;
@@ -1201,10 +1276,10 @@ static void add_stats(struct glint_flare_stats *all,
     all->held_cells = max_int(all->held_cells, s->held_cells);
 }
 
-/* Bins and draws all rows of IMAGE, as many at a time as have room. */
-static enum glint_status draw_rows(struct glint_frame *f, double scale,
-                                   const struct glint_image *image,
-                                   struct glint_flare_stats *stats)
+/* Bins and draws all rows of IMAGE in bands as high as the capacities allow. */
+static enum glint_status draw_all_rows(struct glint_frame *f, double scale,
+                                       const struct glint_image *image,
+                                       struct glint_flare_stats *stats)
 {
     const int height = f->view.height, side = 1 << f->cfg.tile_log2;
     enum glint_status status = GLINT_OK;
@@ -1214,18 +1289,18 @@ static enum glint_status draw_rows(struct glint_frame *f, double scale,
         const int n = min_int(rows, height - y0);
         struct glint_flare_stats s;
 
-        bin_rows(f, y0, y0 + n, &s);
-        if (!has_capacity(f, &s) || s.dropped_bundles) {
-            const bool more = widen(f, &s, n <= side);
+        bin_pixel_rows(f, y0, y0 + n, &s);
+        if (!has_edge_capacity(f, &s) || s.dropped_bundles) {
+            const bool more = enlarge_edge_capacity(f, &s, n <= side);
 
             if (more)
                 status = begin_flare(f, scale);
-            if (!more || !has_capacity(f, &s))
-                rows = fewer_rows(f, n, &s);
+            if (!more || !has_edge_capacity(f, &s))
+                rows = choose_fewer_rows(f, n, &s);
             continue;
         }
         glint_frame_draw_passes(f, image);
-        add_stats(stats, &s);
+        add_flare_stats(stats, &s);
         y0 += n;
         if (f->progress)
             f->progress(f->progress_ctx, TRACED + (1 - TRACED) * y0 / height);
@@ -1233,10 +1308,10 @@ static enum glint_status draw_rows(struct glint_frame *f, double scale,
     return status;
 }
 
-static enum glint_status draw(struct glint_frame *frame,
-                              const struct glint_lamp *lamps, int n_lamps,
-                              double scale, const struct glint_image *image,
-                              struct glint_flare_stats *stats, double times[5])
+static enum glint_status
+draw_ray_frame(struct glint_frame *frame, const struct glint_lamp *lamps,
+               int n_lamps, double scale, const struct glint_image *image,
+               struct glint_flare_stats *stats, double times[5])
 {
     struct glint_flare_stats expected = {0};
     enum glint_status status;
@@ -1246,11 +1321,13 @@ static enum glint_status draw(struct glint_frame *frame,
     if (!frame->memory.traced)
         frame->memory.traced = calloc(1, sizeof *t);
     t = frame->memory.traced;
-    status = t ? plan(frame, lamps, n_lamps, scale, image) : GLINT_E_MEMORY;
+    status = t ? plan_ray_frame(frame, lamps, n_lamps, scale, image)
+               : GLINT_E_MEMORY;
     if (status != GLINT_OK)
         return status;
     times[1] = read_frame_clock(frame);
-    run(frame, t->n_fields, trace_job, GLINT_FRAME_FOUND, TRACED);
+    run_jobs_with_progress(frame, t->n_fields, run_field_trace_job,
+                           GLINT_FRAME_FOUND, TRACED);
     times[2] = times[3] = read_frame_clock(frame);
     expected.need_primitives = (int)fmin(EDGES * t->n_bundles, INT_MAX);
     expected.need_refs = expected.need_primitives;
@@ -1259,40 +1336,41 @@ static enum glint_status draw(struct glint_frame *frame,
     frame->cfg.max_vertices = 0;
     frame->cfg.max_primitives = max_int(frame->cfg.max_primitives, 1 << 13);
     frame->cfg.max_refs = max_int(frame->cfg.max_refs, 1 << 14);
-    widen(frame, &expected, false);
+    enlarge_edge_capacity(frame, &expected, false);
     status = begin_flare(frame, scale);
     if (status == GLINT_OK)
-        status = draw_rows(frame, scale, image, stats);
+        status = draw_all_rows(frame, scale, image, stats);
     times[4] = read_frame_clock(frame);
     return status;
 }
 
-static int n_bundles(const struct glint_frame *frame)
+static int count_ray_bundles(const struct glint_frame *frame)
 {
-    return state_of(frame)->n_bundles;
+    return get_traced_state(frame)->n_bundles;
 }
 
-static int ghost(const struct glint_frame *frame, int bundle)
+static int get_bundle_ghost(const struct glint_frame *frame, int bundle)
 {
-    const struct traced *const t = state_of(frame);
+    const struct traced *const t = get_traced_state(frame);
 
     return t->field[t->bundle[bundle].field].ghost;
 }
 
-static void finish(struct glint_frame *frame)
+static void free_ray_state(struct glint_frame *frame)
 {
     if (frame->memory.traced)
-        forget(frame->memory.traced);
+        free_traced_arrays(frame->memory.traced);
     free(frame->memory.traced);
     frame->memory.traced = NULL;
 }
 
-static void adopt(struct glint_frame *frame, struct glint_frame *from)
+static void move_ray_state(struct glint_frame *frame, struct glint_frame *from)
 {
-    finish(frame);
+    free_ray_state(frame);
     frame->memory.traced = from->memory.traced;
     from->memory.traced = NULL;
 }
 
-const struct glint_frame_rays glint_frame_traces = {draw,  set_scale, n_bundles,
-                                                    ghost, finish,    adopt};
+const struct glint_frame_rays glint_frame_traces = {
+    draw_ray_frame,   choose_light_scale, count_ray_bundles,
+    get_bundle_ghost, free_ray_state,     move_ray_state};

@@ -8,13 +8,13 @@
 #include "engine/setup/degrees.h"
 #include "lens/grid.h"
 
-/* cells per side of two grids: SAMPLING chooses barrels and grid size, LOOKS
- * measures the brightness of a ghost */
+/* Cells per side of two grids of rays. SAMPLING: grid for choosing barrels and
+ * the grid size. LOOKS: grid for measuring the brightness of a ghost. */
 enum { SAMPLING = 24, LOOKS = 16 };
-/* With fewer than FEW_INSIDE visible rays the sampling cannot choose the grid
- * size; the grid then gets CELLS_A_RADIUS cells per stop radius. */
+/* With fewer than FEW_INSIDE visible rays the sampling cannot determine the
+ * grid size; the grid then gets CELLS_A_RADIUS cells per stop radius. */
 enum { FEW_INSIDE = 6, CELLS_A_RADIUS = 4 };
-/* number of rays traced per call */
+/* number of rays per call of the tracer */
 enum { SOME = 8 };
 /* Channels of a node: position in pixels and in stop radii, both in the light's
  * frame; barrels as in struct glint_vertex; energy / energy_unit. */
@@ -23,8 +23,8 @@ enum { MOST_SIDE = GLINT_MAX_CELLS + 1 };
 
 #define MOST_SAG (1.0 / 16)
 
-void glint_ray_direction(const struct ray_field_config *cfg, const double at[2],
-                         double direction[3])
+void glint_ray_compute_direction(const struct ray_field_config *cfg,
+                                 const double at[2], double direction[3])
 {
     direction[0] = cfg->round ? glint_sin_deg(at[0]) : at[0];
     direction[1] = cfg->round ? 0 : at[1];
@@ -53,11 +53,11 @@ static double compute_stop_curvature(const struct ray_field_config *cfg)
 }
 
 /* Returns the number of cells per side: the rule of lens/grid.h, but at least
- * so many that their rays cannot miss the opening of the stop. Near total
- * reflection the pupil may be the whole front element, of which the opening can
- * be 1 %. LEAST_CELLS receives that minimum. */
+ * LEAST_CELLS, so that the rays cannot miss the opening of the stop. Near total
+ * reflection the pupil box may be the whole front element, while the light
+ * enters through 1 % of it. */
 static int choose_cell_count(const struct ray_field_config *cfg,
-                             const struct ray_sight *s, bool folds,
+                             const struct ray_measures *s, bool folds,
                              int *least_cells)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
@@ -65,7 +65,7 @@ static int choose_cell_count(const struct ray_field_config *cfg,
     const double outline = fmax(s->outline_mm, round);
     const double bend = fmax(s->bend_mm, 0.1 * outline);
     const double finer = cfg->max_cells / 64.0;
-    const double most = glint_grid_most(cfg->max_cells, folds);
+    const double most = glint_grid_get_max_cells(cfg->max_cells, folds);
     const double n = fmin(most, finer * sqrt(bend * pixels / (8 * 0.01)));
     const double least =
         s->n_inside < FEW_INSIDE
@@ -75,15 +75,15 @@ static int choose_cell_count(const struct ray_field_config *cfg,
     *least_cells = cfg->uniform ? cfg->max_cells : (int)ceil(least);
     if (cfg->uniform)
         return cfg->max_cells;
-    return glint_grid_fours((int)ceil(
+    return glint_grid_round_up_to_four((int)ceil(
         fmin(GLINT_MAX_CELLS, fmax(fmax(GLINT_LEAST_CELLS, least), n))));
 }
 
-/* Lists the barrels that block rays, the one that forms most of the outline
- * first. It is stored on its own, as the maximum over several barrels may have
- * kinks. */
-static void list_cutting_barrels(struct ray_field *field,
-                                 struct glint_sampling *sampling)
+/* Lists the barrels that block rays. First comes the barrel that forms most of
+ * the outline: it has a channel of its own, because the max over several
+ * barrels may have kinks. */
+static void list_blocking_barrels(struct ray_field *field,
+                                  struct glint_sampling *sampling)
 {
     for (field->n_cuts = 0; field->n_cuts < RAY_FIELD_CUTS; field->n_cuts++) {
         int most = 0;
@@ -125,8 +125,8 @@ static void merge_sampling(struct glint_sampling *all,
     all->folds |= more->folds;
 }
 
-/* Sets AT to the middle of side K (0 .. 3) of PATCH. Returns false if the patch
- * has no extent in that direction. */
+/* Sets AT to the direction at the middle of side K (0 .. 3) of PATCH. Returns
+ * false if the patch has no extent in that direction. */
 static bool get_patch_side_middle(const struct ray_field_config *cfg,
                                   const struct ray_patch *patch, int k,
                                   double at[2])
@@ -186,8 +186,8 @@ static double compute_barrel_value(const struct glint_path *path, int k,
     return 0.5 * (1 + x * x + y * y);
 }
 
-/* Sets VALUE[0] to the value of the first barrel in the list and VALUE[1] to
- * the max of the others; 0: no such barrel. */
+/* Sets VALUE[0] to the value of the field's first barrel and VALUE[1] to the
+ * max over its other barrels; 0 if there is no such barrel. */
 static void compute_barrel_values(const struct ray_field *field,
                                   const struct glint_path *path,
                                   double (*hits)[2], double value[2])
@@ -212,7 +212,7 @@ static void trace_coarse_grid(const struct ray_field_config *cfg,
     double d[3];
 
     init_field_path(cfg, field, nm, &path);
-    glint_ray_direction(cfg, field->patch->middle, d);
+    glint_ray_compute_direction(cfg, field->patch->middle, d);
     coarse_grid->rows = p->mirrored ? LOOKS / 2 + 1 : LOOKS + 1;
     coarse_grid->cell_mm2 = (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm) /
                             (LOOKS * (coarse_grid->rows - 1));
@@ -241,9 +241,9 @@ static void trace_coarse_grid(const struct ray_field_config *cfg,
 }
 
 /* Adds the flux of cell (I, J) to FLUX. Raises the max flux per cell and the
- * max flux per mm^2 on the sensor in SIGHT. */
+ * max flux per mm^2 on the sensor in MEASURES. */
 static void add_cell_flux(const struct coarse_grid *l, int i, int j,
-                          double *flux, struct ray_sight *sight)
+                          double *flux, struct ray_measures *measures)
 {
     const struct glint_ray *a = &l->ray[j][i], *b = a + 1;
     const struct glint_ray *c = &l->ray[j + 1][i], *d = c + 1;
@@ -258,29 +258,29 @@ static void add_cell_flux(const struct coarse_grid *l, int i, int j,
     energy = fmax(energy, l->inside[j + 1][i] ? c->energy : 0);
     energy = fmax(energy, l->inside[j + 1][i + 1] ? d->energy : 0);
     *flux += energy * l->cell_mm2 * n / 4;
-    sight->cell_flux = fmax(sight->cell_flux, energy * l->cell_mm2);
+    measures->cell_flux = fmax(measures->cell_flux, energy * l->cell_mm2);
     if (!(l->traced[j][i] && l->traced[j][i + 1] && l->traced[j + 1][i] &&
           l->traced[j + 1][i + 1])) {
-        sight->density = sight->cell_flux = HUGE_VAL;
+        measures->density = measures->cell_flux = HUGE_VAL;
         return;
     }
     area = 0.5 * fabs((d->sensor_x_mm - a->sensor_x_mm) *
                           (c->sensor_y_mm - b->sensor_y_mm) -
                       (d->sensor_y_mm - a->sensor_y_mm) *
                           (c->sensor_x_mm - b->sensor_x_mm));
-    sight->density =
-        fmax(sight->density, energy * l->cell_mm2 / fmax(area, 1e-12));
+    measures->density =
+        fmax(measures->density, energy * l->cell_mm2 / fmax(area, 1e-12));
 }
 
-/* Sums along the lines of a grid: squared steps in the stop, stop radii^2, and
- * second differences of the two barrel values. */
+/* Sums over pairs of neighbouring rays: squared distances in the stop, stop
+ * radii^2, and second differences of both barrel values. */
 struct difference_sums {
     int n_steps, n_bends;
     double step2, bend[2];
 };
 
-/* Adds the step in the stop from ray (I, J) to (I + DI, J + DJ), and the second
- * difference of the barrel values at ray (I, J). */
+/* Adds the squared distance in the stop between rays (I, J) and (I + DI, J +
+ * DJ), and the second difference of the barrel values at ray (I, J). */
 static void add_second_differences(const struct coarse_grid *l, int i, int j,
                                    int di, int dj, double stop_mm,
                                    struct difference_sums *b)
@@ -305,14 +305,15 @@ static void add_second_differences(const struct coarse_grid *l, int i, int j,
     b->n_bends++;
 }
 
-/* Sets the sags of SIGHT for one cell per side: (D + E) / 12 with the second
- * differences D along rows and E along columns. */
-static void compute_barrel_sags(struct ray_sight *sight, double stop_mm,
+/* Sets the sags of MEASURES, the interpolation errors of a grid of one cell: (D
+ * + E) / 12, where D and E are the second differences along rows and columns.
+ */
+static void compute_barrel_sags(struct ray_measures *measures, double stop_mm,
                                 const struct coarse_grid *l)
 {
     const double by = LOOKS;
 
-    sight->sag[0] = sight->sag[1] = sight->sag[2] = 0;
+    measures->sag[0] = measures->sag[1] = measures->sag[2] = 0;
     for (int way = 0; way < 2; way++) {
         struct difference_sums b = {0, 0, 0, {0, 0}};
 
@@ -320,31 +321,31 @@ static void compute_barrel_sags(struct ray_sight *sight, double stop_mm,
             for (int i = 0; i <= LOOKS; i++)
                 add_second_differences(l, i, j, !way, way, stop_mm, &b);
         for (int k = 0; k < 2 && b.n_bends; k++)
-            sight->sag[k] += b.bend[k] / b.n_bends * by * by / 12;
+            measures->sag[k] += b.bend[k] / b.n_bends * by * by / 12;
         if (b.n_steps)
-            sight->sag[2] += b.step2 / b.n_steps * by * by / 12;
+            measures->sag[2] += b.step2 / b.n_steps * by * by / 12;
     }
 }
 
-/* Measures flux, brightness, sags and the distance between wavelengths of
- * FIELD. */
+/* Measures flux, brightness and interpolation errors (sags) of FIELD, and how
+ * far its colours separate. */
 static void measure_brightness(const struct ray_field_config *cfg,
                                struct ray_field *field)
 {
-    struct ray_sight *const sight = &field->sight;
+    struct ray_measures *const measures = &field->measures;
     const double both = field->pupil.mirrored ? 2 : 1;
     struct coarse_grid look[3];
     double most = field->pupil.energy, squares = 0;
     int n = 0;
 
-    field->flux = sight->cell_flux = sight->density = 0;
+    field->flux = measures->cell_flux = measures->density = 0;
     for (int w = 0; w < 3; w++) {
         double flux = 0;
 
         trace_coarse_grid(cfg, field, cfg->wave_nm[w], &look[w]);
         for (int j = 0; j + 1 < look[w].rows; j++)
             for (int i = 0; i < LOOKS; i++)
-                add_cell_flux(&look[w], i, j, &flux, sight);
+                add_cell_flux(&look[w], i, j, &flux, measures);
         for (int j = 0; j < look[w].rows; j++)
             for (int i = 0; i <= LOOKS; i++)
                 if (look[w].inside[j][i])
@@ -364,20 +365,23 @@ static void measure_brightness(const struct ray_field_config *cfg,
                 n++;
             }
     field->apart_mm = n ? sqrt(squares / n) : HUGE_VAL;
-    compute_barrel_sags(sight, cfg->setup->optics.stop_radius_mm, &look[1]);
+    compute_barrel_sags(measures, cfg->setup->optics.stop_radius_mm, &look[1]);
     field->energy_unit = 1.5 * most;
-    if (field->flux == 0) { /* the stop's opening lies between the rays */
+    /* all rays of the coarse grid miss the opening of the stop */
+    if (field->flux == 0) {
         field->flux = field->pupil.energy *
                       (field->pupil.x1_mm - field->pupil.x0_mm) *
                       glint_pupil_height(&field->pupil);
-        sight->density = sight->cell_flux = HUGE_VAL;
+        measures->density = measures->cell_flux = HUGE_VAL;
     }
 }
 
-/* Finds the region of the pupil that covers all directions of the patch and all
- * wavelengths. Returns false if no light passes. */
-static bool find_common_pupil(const struct ray_field_config *cfg,
-                              struct ray_field *field, struct glint_path *path)
+/* Finds the region of the pupil that contains the visible rays for all
+ * directions of the patch and all wavelengths. Returns false if no light
+ * passes. */
+static bool find_pupil_of_whole_patch(const struct ray_field_config *cfg,
+                                      struct ray_field *field,
+                                      struct glint_path *path)
 {
     const struct ray_patch *patch = field->patch;
     const double stop_mm = cfg->setup->optics.stop_radius_mm;
@@ -391,7 +395,7 @@ static bool find_common_pupil(const struct ray_field_config *cfg,
         if (k > 2 && !get_patch_side_middle(cfg, patch, k - 3, at))
             continue;
         init_field_path(cfg, field, nm, path);
-        glint_ray_direction(cfg, at, d);
+        glint_ray_compute_direction(cfg, at, d);
         if (found)
             glint_pupil_extend(&field->pupil, path, d, stop_mm);
         else
@@ -401,8 +405,8 @@ static bool find_common_pupil(const struct ray_field_config *cfg,
     return found;
 }
 
-void glint_ray_field_look(const struct ray_field_config *cfg,
-                          struct ray_field *field)
+void glint_ray_field_measure(const struct ray_field_config *cfg,
+                             struct ray_field *field)
 {
     const struct ray_patch *patch = field->patch;
     const double stop_mm = cfg->setup->optics.stop_radius_mm;
@@ -410,34 +414,35 @@ void glint_ray_field_look(const struct ray_field_config *cfg,
     struct glint_path path;
     double at[2], d[3];
 
-    field->is_looked = true;
-    field->is_open = find_common_pupil(cfg, field, &path);
+    field->is_measured = true;
+    field->is_open = find_pupil_of_whole_patch(cfg, field, &path);
     if (!field->is_open)
         return;
     init_field_path(cfg, field, cfg->wave_nm[1], &path);
-    glint_ray_direction(cfg, patch->middle, d);
-    glint_sampling_run(&sampling, &path, &field->pupil, d, stop_mm, SAMPLING);
+    glint_ray_compute_direction(cfg, patch->middle, d);
+    glint_sampling_trace_grid(&sampling, &path, &field->pupil, d, stop_mm,
+                              SAMPLING);
     for (int k = 0; k < 4; k++)
         if (get_patch_side_middle(cfg, patch, k, at)) {
-            glint_ray_direction(cfg, at, d);
-            glint_sampling_run(&more, &path, &field->pupil, d, stop_mm,
-                               SAMPLING);
+            glint_ray_compute_direction(cfg, at, d);
+            glint_sampling_trace_grid(&more, &path, &field->pupil, d, stop_mm,
+                                      SAMPLING);
             merge_sampling(&sampling, &more);
         }
-    list_cutting_barrels(field, &sampling);
+    list_blocking_barrels(field, &sampling);
     field->folds = sampling.folds;
-    field->sight = (struct ray_sight){.bend_mm = sampling.bend_mm,
-                                      .outline_mm = sampling.outline_mm,
-                                      .round_mm = sampling.round_mm,
-                                      .step = sampling.step,
-                                      .n_inside = sampling.n_inside};
+    field->measures = (struct ray_measures){.bend_mm = sampling.bend_mm,
+                                            .outline_mm = sampling.outline_mm,
+                                            .round_mm = sampling.round_mm,
+                                            .step = sampling.step,
+                                            .n_inside = sampling.n_inside};
     measure_brightness(cfg, field);
 }
 
-void glint_ray_field_fit(const struct ray_field_config *cfg,
-                         struct ray_field *field)
+void glint_ray_field_choose_grid(const struct ray_field_config *cfg,
+                                 struct ray_field *field)
 {
-    const struct ray_sight *const s = &field->sight;
+    const struct ray_measures *const s = &field->measures;
     const double pixel = cfg->view.sensor_width_mm / cfg->view.width;
     const double curvature = compute_stop_curvature(cfg);
     double n;
@@ -453,10 +458,10 @@ void glint_ray_field_fit(const struct ray_field_config *cfg,
     enlarge_pupil_by_pixel(cfg, &field->pupil);
 }
 
-void glint_ray_field_coarsen(const struct ray_field_config *cfg,
-                             struct ray_field *field, double by)
+void glint_ray_field_coarsen_grid(const struct ray_field_config *cfg,
+                                  struct ray_field *field, double by)
 {
-    const int n = glint_grid_fours(
+    const int n = glint_grid_round_up_to_four(
         (int)ceil(fmax(field->least_cells, by * field->n_cells)));
     const double ratio = (double)field->n_cells / n;
 
@@ -477,8 +482,9 @@ static void add_ray_sample(struct ray_field *f, double nm, double x, double y)
                              f->range.middle[1] + y * f->range.half[1]}};
 }
 
-void glint_ray_field_choose(struct ray_field *f, const struct ray_patch *range,
-                            const double *nm, int n)
+void glint_ray_field_choose_samples(struct ray_field *f,
+                                    const struct ray_patch *range,
+                                    const double *nm, int n)
 {
     const int wide = (range->half[0] > 0) + 2 * (range->half[1] > 0);
 
@@ -522,8 +528,8 @@ static size_t count_traced_nodes(const struct ray_field *f)
     return (size_t)count_traced_rows(f) * (size_t)(f->n_cells + 1);
 }
 
-size_t glint_ray_field_bytes(const struct ray_field_config *cfg,
-                             const struct ray_field *field)
+size_t glint_ray_field_compute_bytes(const struct ray_field_config *cfg,
+                                     const struct ray_field *field)
 {
     (void)cfg;
     return count_traced_nodes(field) *
@@ -594,8 +600,8 @@ static void trace_node_row(const struct ray_field_config *cfg,
     }
 }
 
-void glint_ray_field_trace(const struct ray_field_config *cfg,
-                           const struct ray_field *field, void *mem)
+void glint_ray_field_trace_rays(const struct ray_field_config *cfg,
+                                const struct ray_field *field, void *mem)
 {
     const size_t nodes = count_traced_nodes(field),
                  wide = (size_t)field->n_cells + 1;
@@ -610,7 +616,7 @@ void glint_ray_field_trace(const struct ray_field_config *cfg,
 
         if (s == 0 || field->sample[s].nm != field->sample[s - 1].nm)
             init_field_path(cfg, field, field->sample[s].nm, &path);
-        glint_ray_direction(cfg, field->sample[s].at, d);
+        glint_ray_compute_direction(cfg, field->sample[s].at, d);
         for (int j = 0; j < count_traced_rows(field); j++)
             trace_node_row(cfg, field, &path, d, j,
                            node + ((size_t)s * nodes + (size_t)j * wide) *
@@ -629,7 +635,7 @@ static double compute_lagrange_weight(double x, const double at[3], int k)
     return (x - a) * (x - b) / ((at[k] - a) * (at[k] - b));
 }
 
-/* Adds BY times the interpolation weights of the traced wavelengths at NM. */
+/* Adds the weights that interpolate the traced wavelengths at NM, times BY. */
 static void add_wavelength_weights(struct ray_place *p, double nm, double by)
 {
     const struct ray_field *f = p->field;
@@ -656,8 +662,8 @@ static void add_wavelength_weights(struct ray_place *p, double nm, double by)
             (float)(by * compute_lagrange_weight(1 / (nm * nm), at, k));
 }
 
-/* Corrects the weights at both ends of the band: there the positions vary with
- * direction T by another amount than at the middle wavelength. */
+/* Corrects the weights at both ends of the band, where positions change with
+ * the direction offset T by another amount than at the middle wavelength. */
 static void add_band_end_weights(struct ray_place *p, const double t[2],
                                  double nm, int first, bool both)
 {
@@ -682,9 +688,9 @@ static void add_band_end_weights(struct ray_place *p, const double t[2],
     }
 }
 
-void glint_ray_place_set(struct ray_place *p, const struct ray_field *f,
-                         const void *mem, const double at[2], double nm,
-                         double phi_deg)
+void glint_ray_place_set_weights(struct ray_place *p, const struct ray_field *f,
+                                 const void *mem, const double at[2], double nm,
+                                 double phi_deg)
 {
     const struct ray_patch *range = &f->range;
     const int mid = f->n_nodes / 2, n = f->n_nodes;
@@ -717,7 +723,8 @@ void glint_ray_place_set(struct ray_place *p, const struct ray_field *f,
         add_band_end_weights(p, t, nm, n + (both ? 5 : 2), both);
 }
 
-/* Sets ROW to the weighted sum of row J over all samples. */
+/* Sets ROW to row J of the grid, interpolated: the weighted sum over all traced
+ * samples. */
 static void interpolate_node_row(const struct ray_place *p, int j, float *row)
 {
     const struct ray_field *f = p->field;
@@ -734,9 +741,9 @@ static void interpolate_node_row(const struct ray_place *p, int j, float *row)
     }
 }
 
-void glint_ray_place_row(const struct ray_field_config *cfg,
-                         const struct ray_place *p, int j,
-                         struct glint_vertex *row)
+void glint_ray_place_interpolate_row(const struct ray_field_config *cfg,
+                                     const struct ray_place *p, int j,
+                                     struct glint_vertex *row)
 {
     const struct ray_field *f = p->field;
     const int n = f->n_cells;

@@ -47,7 +47,7 @@ struct ray_field_config {
     bool round;    /* true: the lens is rotationally symmetric */
     int max_cells; /* max number of cells per side of a grid, 1 .. 1024 */
     bool uniform;  /* true: all ghosts get max_cells cells per side */
-    /* nm: both ends of the band and a wavelength near its middle */
+    /* wavelengths, nm: both ends of the band and one near its middle */
     double wave_nm[3];
 };
 
@@ -58,28 +58,30 @@ struct ray_sample {
 
 /* Measurements of the rays of one ghost that do not depend on the size of the
  * picture. */
-struct ray_sight {
-    /* see struct glint_sampling; bends in mm */
+struct ray_measures {
+    /* second differences as in struct glint_sampling, mm; step in stop radii */
     double bend_mm, outline_mm, round_mm, step;
     int n_inside;
-    /* max flux of a cell of a coarse grid, mm^2, and max flux per mm^2 of the
-     * sensor, both at irradiance 1; HUGE_VAL: unknown */
+    /* at irradiance 1: max flux of a cell of a coarse grid, mm^2, and max flux
+     * per mm^2 of the sensor; HUGE_VAL: unknown */
     double cell_flux, density;
-    /* see sag of struct ray_field, for one cell per side and a circular stop */
+    /* interpolation errors as in sag of struct ray_field, for a grid of one
+     * cell and a circular stop */
     double sag[3];
 };
 
 struct ray_field {
     int ghost;
     const struct ray_patch *patch;
-    /* Directions between which rays are interpolated, all within patch; set by
-     * glint_ray_field_choose(). */
+    /* Range of directions between which rays are interpolated, within patch;
+     * set by glint_ray_field_choose_samples(). */
     struct ray_patch range;
-    /* set by glint_ray_field_look(); is_open: some light of the ghost reaches
-     * the sensor */
-    bool is_looked, is_open;
-    struct ray_sight sight;
-    /* visible region of the pupil; glint_ray_field_fit() adds a margin */
+    /* set by glint_ray_field_measure(); is_open: some light of the ghost
+     * reaches the sensor */
+    bool is_measured, is_open;
+    struct ray_measures measures;
+    /* visible region of the pupil; glint_ray_field_choose_grid() adds a margin
+     */
     struct glint_pupil pupil;
     int n_cells; /* number of grid cells per side */
     /* min number of cells per side whose rays cannot miss the opening of the
@@ -90,17 +92,18 @@ struct ray_field {
      * events */
     int n_cuts, cut_event[RAY_FIELD_CUTS];
     double energy_unit; /* ray energy that a vertex stores as 65536 */
-    /* flux that reaches the sensor: mm^2 of pupil times ray energy */
+    /* flux that reaches the sensor at irradiance 1: pupil area, mm^2, times ray
+     * energy */
     double flux;
     /* upper bound of the flux per mm^2 on a pixel of the sensor, at irradiance
      * 1; HUGE_VAL: unknown */
     double peak_mm2;
-    /* Interpolation error: mean height by which linear interpolation in a cell
-     * exceeds (1 + r^2) / 2 of two barrels (0, 1) and of a curved stop (2), r:
-     * relative radius. */
+    /* Interpolation error: mean excess of the linear interpolation in a cell
+     * over (1 + r^2) / 2, r: relative radius, at the first barrel [0], the max
+     * of the other barrels [1] and a curved stop [2]. */
     double sag[3];
-    /* RMS distance on the sensor between rays of the first and the last
-     * wavelength, mm */
+    /* RMS distance on the sensor between the same rays at both ends of the
+     * band, mm */
     double apart_mm;
     int n_nodes, n_samples;
     double node_nm[RAY_FIELD_NODES];
@@ -110,35 +113,35 @@ struct ray_field {
 /* Measures a ghost: finds the region of its pupil, the barrels that block its
  * rays, and its brightness. Ghost and patch of FIELD must be set. The result
  * does not depend on the view and on max_cells of CFG. */
-void glint_ray_field_look(const struct ray_field_config *cfg,
-                          struct ray_field *field);
+void glint_ray_field_measure(const struct ray_field_config *cfg,
+                             struct ray_field *field);
 
 /* Chooses the number of cells of FIELD for the view of CFG and enlarges its
- * pupil by one pixel. FIELD must be open after glint_ray_field_look(). With
+ * pupil by one pixel. FIELD must be open after glint_ray_field_measure(). With
  * max_cells = 64, positions are off by 0.01 px (RMS) and outlines by 0.1 px; n
  * times as many cells per side reduce both by n^2. */
-void glint_ray_field_fit(const struct ray_field_config *cfg,
-                         struct ray_field *field);
+void glint_ray_field_choose_grid(const struct ray_field_config *cfg,
+                                 struct ray_field *field);
 
-/* Multiplies the number of cells per side by BY, at most 1; for faint
+/* Multiplies the number of cells per side by BY, at most 1. Used for faint
  * ghosts. */
-void glint_ray_field_coarsen(const struct ray_field_config *cfg,
-                             struct ray_field *field, double by);
+void glint_ray_field_coarsen_grid(const struct ray_field_config *cfg,
+                                  struct ray_field *field, double by);
 
 /* Chooses the directions and wavelengths to trace. RANGE: all directions
  * needed, within the patch of FIELD; NM[N]: all wavelengths needed,
  * ascending. */
-void glint_ray_field_choose(struct ray_field *field,
-                            const struct ray_patch *range, const double *nm,
-                            int n);
+void glint_ray_field_choose_samples(struct ray_field *field,
+                                    const struct ray_patch *range,
+                                    const double *nm, int n);
 
-/* Returns the size in bytes of the memory for glint_ray_field_trace(). */
-size_t glint_ray_field_bytes(const struct ray_field_config *cfg,
-                             const struct ray_field *field);
+/* Returns the size in bytes of the memory for glint_ray_field_trace_rays(). */
+size_t glint_ray_field_compute_bytes(const struct ray_field_config *cfg,
+                                     const struct ray_field *field);
 
 /* Traces the rays of all samples into MEM. */
-void glint_ray_field_trace(const struct ray_field_config *cfg,
-                           const struct ray_field *field, void *mem);
+void glint_ray_field_trace_rays(const struct ray_field_config *cfg,
+                                const struct ray_field *field, void *mem);
 
 /* Interpolation weights for one direction and wavelength in a traced field. */
 struct ray_place {
@@ -150,17 +153,18 @@ struct ray_place {
 
 /* Sets PLACE to the weights for direction AT and wavelength NM of FIELD, whose
  * traced rays are in MEM. The ghost is rotated by PHI_DEG. */
-void glint_ray_place_set(struct ray_place *place, const struct ray_field *field,
-                         const void *mem, const double at[2], double nm,
-                         double phi_deg);
+void glint_ray_place_set_weights(struct ray_place *place,
+                                 const struct ray_field *field, const void *mem,
+                                 const double at[2], double nm, double phi_deg);
 
 /* Interpolates row J of the grid and writes its vertices to ROW. */
-void glint_ray_place_row(const struct ray_field_config *cfg,
-                         const struct ray_place *place, int j,
-                         struct glint_vertex *row);
+void glint_ray_place_interpolate_row(const struct ray_field_config *cfg,
+                                     const struct ray_place *place, int j,
+                                     struct glint_vertex *row);
 
-/* Sets DIRECTION to the unit vector of the coordinates AT. */
-void glint_ray_direction(const struct ray_field_config *cfg, const double at[2],
-                         double direction[3]);
+/* Sets DIRECTION to the unit vector of the light direction with the patch
+ * coordinates AT. */
+void glint_ray_compute_direction(const struct ray_field_config *cfg,
+                                 const double at[2], double direction[3]);
 
 #endif

@@ -8,8 +8,8 @@
 #include "glint/model.h"
 #include "glint/trace.h"
 
-/* Cells of the grid over the pupil: ACROSS x DOWN over its upper half for round
- * lenses, else ACROSS x ACROSS over all of it. */
+/* Grid of rays over the pupil: ACROSS x DOWN cells over the upper half for
+ * round lenses, else ACROSS x ACROSS cells over all of it. */
 enum { ACROSS = 24, DOWN = 12, CELLS = ACROSS * DOWN, WAVES = 3 };
 
 /* The light of one cell of the pupil grid where it hits the sensor. Round
@@ -28,9 +28,9 @@ struct task {
     double nm[WAVES];
     double half_mm[2]; /* half width and half height of the picture, mm */
     double pixel_mm;   /* width of a pixel in a picture of 1920 pixels, mm */
-    /* Azimuths that are traced if the lens is not round, and the step between
-     * them in turns. They cover 0 .. 90 degrees if the lens has two planes of
-     * symmetry, else 360 degrees. */
+    /* Lenses that are not round: number of azimuths of the light, and the step
+     * between them in turns. They cover 0 .. 90 degrees if the lens has two
+     * planes of symmetry, else 360 degrees. */
     int n_azimuths;
     double turns;
     enum glint_status status[GLINT_BRIGHTNESS_ANGLES];
@@ -143,9 +143,9 @@ static double find_brightness_level(const struct task *t,
     return HUGE_VAL;
 }
 
-/* Finds the brightness level at one angle: the min over all azimuths. The
- * brightest ghosts may lie outside the picture, which is then exposed for other
- * ghosts. */
+/* Finds the brightness level of a round lens at one angle: the min over all
+ * azimuths. At some azimuths the brightest ghosts lie outside the picture,
+ * which is then exposed for other ghosts. */
 static void find_round_level_at_angle(void *ctx, int job, int worker)
 {
     enum { AZIMUTHS = 7 }; /* number of azimuths, 0 .. 90 degrees */
@@ -174,9 +174,9 @@ static void find_round_level_at_angle(void *ctx, int job, int worker)
 
 /* --------------------------------------------------------------- not round */
 
-/* Lenses that are not round: the picture does not simply rotate with the
- * azimuth of the light, so several azimuths are traced. Light is spread over at
- * least a pixel, so that thin streaks do not count as bright. */
+/* Lenses that are not round: the flare does not simply rotate with the azimuth
+ * of the light, so several azimuths are traced. Each patch of light is blurred
+ * by a pixel, so that thin streaks do not count as bright. */
 static bool is_ray_in_picture(const struct task *t, const struct glint_ray *ray)
 {
     return is_ray_transmitted(t, ray) &&
@@ -291,8 +291,8 @@ static double find_skew_brightness_level(const struct task *t,
     return patch[k].irradiance;
 }
 
-/* Finds the brightness level at one angle: the min over all azimuths with
- * light; HUGE_VAL if no azimuth has light. */
+/* Finds the brightness level of a lens that is not round at one angle: the min
+ * over all azimuths with light; HUGE_VAL if no azimuth has light. */
 static void find_skew_level_at_angle(void *ctx, int job, int worker)
 {
     struct task *t = ctx;
@@ -326,7 +326,8 @@ static void find_skew_level_at_angle(void *ctx, int job, int worker)
 static const double degrees[GLINT_BRIGHTNESS_ANGLES] = {0,  3,  6,  9,  12, 15,
                                                         18, 22, 27, 34, 45};
 
-int glint_brightness_angles(struct glint_brightness *brightness, double max_deg)
+int glint_brightness_set_angles(struct glint_brightness *brightness,
+                                double max_deg)
 {
     int n = 2;
 
@@ -337,14 +338,15 @@ int glint_brightness_angles(struct glint_brightness *brightness, double max_deg)
     return n;
 }
 
-uint32_t glint_skew_mirrors(const struct glint_prescription *lens)
+uint32_t glint_skew_find_mirror_planes(const struct glint_prescription *lens)
 {
     uint32_t mirrors = GLINT_MIRRORS_X | GLINT_MIRRORS_Y;
 
     for (int k = 0; k < lens->n_surfaces; k++) {
         const struct glint_shape *const a = &lens->surface[k].shape;
 
-        /* A tilt about the y axis breaks the symmetry in x, and vice versa. */
+        /* a tilt about the y axis breaks the symmetry in x, a tilt about x that
+         * in y */
         if (a->decentre_mm[0] != 0.0 || a->tilt_deg[1] != 0.0)
             mirrors &= ~(uint32_t)GLINT_MIRRORS_X;
         if (a->decentre_mm[1] != 0.0 || a->tilt_deg[0] != 0.0)
@@ -353,15 +355,15 @@ uint32_t glint_skew_mirrors(const struct glint_prescription *lens)
     return mirrors;
 }
 
-enum glint_status glint_brightness_find(struct glint_brightness *brightness,
-                                        const struct glint_setup *setup,
-                                        double field_mm, double max_deg,
-                                        const double band_nm[2],
-                                        struct glint_workers *workers)
+enum glint_status
+glint_brightness_find_levels(struct glint_brightness *brightness,
+                             const struct glint_setup *setup, double field_mm,
+                             double max_deg, const double band_nm[2],
+                             struct glint_workers *workers)
 {
     const bool round = glint_prescription_is_round(setup->lens);
-    const bool quarter =
-        glint_skew_mirrors(setup->lens) == (GLINT_MIRRORS_X | GLINT_MIRRORS_Y);
+    const bool quarter = glint_skew_find_mirror_planes(setup->lens) ==
+                         (GLINT_MIRRORS_X | GLINT_MIRRORS_Y);
     const double scale = field_mm / (1.1 * hypot(setup->lens->film_width_mm,
                                                  setup->lens->film_height_mm));
     struct task t = {.out = brightness,
@@ -372,11 +374,11 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
                      .nm = {0.5 * (band_nm[0] + band_nm[1])},
                      .n_azimuths = quarter ? 3 : 6,
                      .turns = quarter ? 0.125 : 1 / 6.0};
-    const int n = glint_brightness_angles(brightness, max_deg);
+    const int n = glint_brightness_set_angles(brightness, max_deg);
 
     t.pixel_mm = 2 * t.half_mm[0] / 1920;
     for (int k = 0; k < WAVES && !round; k++) {
-        /* the middle wavelength first, then the two others */
+        /* order of the wavelengths: the middle one first, then both ends */
         const double node = (k + 1) % WAVES - 1.0;
         const double lo = pow(band_nm[1], -2), hi = pow(band_nm[0], -2);
 
@@ -393,8 +395,8 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
     return GLINT_OK;
 }
 
-double glint_brightness_at(const struct glint_brightness *brightness,
-                           double sine)
+double glint_brightness_get_level(const struct glint_brightness *brightness,
+                                  double sine)
 {
     int k = 0;
 

@@ -8,17 +8,17 @@
 #include "engine/setup/degrees.h"
 #include "bake/fit/next.h"
 
-/* Min fraction of a zone's box that visible light must fill; emptier boxes
- * would waste cells of the ray grids. */
+/* Min fraction of a zone's box that visible light must fill. In emptier boxes
+ * most cells of the ray grids would be wasted. */
 #define LEAST_FILL 0.33
-/* Max width, degrees, of a zone with more than two barrels, as a vertex stores
- * the radii at two barrels only. Wider zones are halved. */
+/* Max width of a zone with more than two barrels, degrees; wider ones are
+ * halved. A vertex stores radii at two barrels only. */
 #define CROWD_DEG 1.5
 /* Zones narrower than this, degrees, may fill less than LEAST_FILL of their
  * boxes. */
 #define FILL_DEG 0.6
 /* A part of a box is cropped again if the last crop left less than this
- * fraction of it. */
+ * fraction of its size. */
 #define WORTH_CROP 0.8
 
 enum {
@@ -45,10 +45,10 @@ struct fitter {
     double profiled[4];
     /* number of fitted parts of the current zone's box */
     int n_parts;
-    glint_fit_told_fn *told; /* NULL: no progress reports */
-    void *told_ctx;
-    double work, share; /* arguments of the next call of told() */
-    double sines;       /* total width of all visible ranges, in sines */
+    glint_fit_progress_fn *progress; /* NULL: no progress reports */
+    void *progress_ctx;
+    double work, share; /* arguments of the next call of progress() */
+    double sines; /* sum of the widths of all visible angle ranges, sines */
 };
 
 /* ------------------------------------------------------------------- zones */
@@ -72,7 +72,8 @@ static bool is_full_band(double w0, double w1)
     return w0 <= -1 && w1 >= 1;
 }
 
-/* Returns the visible boxes by angle for the band of P. */
+/* Returns the visible boxes at all angles of the zone for the band of P.
+ * Computes them only if the band or the angles have changed. */
 static const struct glint_visible_profile *
 find_band_profile(struct fitter *f, const struct glint_zone_piece *p)
 {
@@ -81,10 +82,10 @@ find_band_profile(struct fitter *f, const struct glint_zone_piece *p)
 
     if (is_full_band(p->w0, p->w1))
         return &f->profile;
-    /* NOLINTNEXTLINE: -0 differs from 0 here, which recomputes a profile */
+    /* NOLINTNEXTLINE: -0 != 0 here only recomputes a profile */
     if (memcmp(key, f->profiled, sizeof key) != 0) {
-        glint_visible_narrow(&f->in_band, f->visible, p->w0, p->w1);
-        glint_visible_profile_find(&f->in_band, range, &f->band_profile);
+        glint_visible_narrow_band(&f->in_band, f->visible, p->w0, p->w1);
+        glint_visible_find_profile(&f->in_band, range, &f->band_profile);
         memcpy(f->profiled, key, sizeof key);
     }
     return &f->band_profile;
@@ -100,16 +101,17 @@ cut_zone_to_part(struct fitter *f, const struct glint_zone_piece *p,
     const struct glint_visible *band =
         is_full_band(p->w0, p->w1) ? f->visible : &f->in_band;
 
-    glint_zone_cut(zone, part);
+    glint_zone_cut_to_part(zone, part);
     if (is_full_band(part->w0, part->w1))
         return band;
-    glint_visible_narrow(&f->in_part, band, part->w0, part->w1);
+    glint_visible_narrow_band(&f->in_part, band, part->w0, part->w1);
     return &f->in_part;
 }
 
 /* Cuts ZONE to the part of P. If P is thorough, first crops the part to its
- * visible region, as much of the box is dark if red and blue light enter at
- * different places. Returns the visibility of the ghost in the part's band. */
+ * visible region, because much of the box is dark if red and blue light enter
+ * at different places. Returns the visibility of the ghost in the part's
+ * band. */
 static const struct glint_visible *crop_zone_to_part(struct fitter *f,
                                                      struct glint_zone_piece *p,
                                                      struct glint_zone *zone)
@@ -119,7 +121,7 @@ static const struct glint_visible *crop_zone_to_part(struct fitter *f,
     double rest = p->thorough ? 0 : 1;
 
     for (int round = 0; round < CROPS && rest < WORTH_CROP; round++) {
-        rest = glint_zone_crop(zone, band, &p->part);
+        rest = glint_zone_crop_part(zone, band, &p->part);
         *zone = uncropped;
         band = cut_zone_to_part(f, p, zone);
     }
@@ -141,27 +143,30 @@ static enum glint_status fit_zone_outputs(struct fitter *f,
                                    .tolerance = f->tolerance,
                                    .barrel = f->tolerance->barrel,
                                    .thorough = p->thorough,
-                                   .stacks = glint_next_stacks(f->visible)};
+                                   .stacks =
+                                       glint_next_has_film_stack(f->visible)};
     enum glint_status status;
 
-    glint_zone_trace(zone, band, &buffers->rays, &buffers->energies);
+    glint_zone_trace_rays(zone, band, &buffers->rays, &buffers->energies);
     a->errors.worst = 0;
     if ((p->depth > 0 || !is_full_band(p->w0, p->w1)) &&
-        glint_zone_rays_dark(&buffers->rays))
+        glint_zone_rays_are_all_blocked(&buffers->rays))
         return GLINT_OK;
     status = copy_zone_box(system, zone);
-    a->aim = glint_zone_aim_of(f->tolerance, zone, &buffers->rays);
-    task.hopeless = glint_next_hopeless(&f->rules, p, &a->aim);
-    task.settled = glint_next_settled(&f->rules, p, &a->aim);
+    a->aim =
+        glint_zone_aim_compute_tolerances(f->tolerance, zone, &buffers->rays);
+    task.hopeless = glint_next_get_hopeless_error(&f->rules, p, &a->aim);
+    task.settled = glint_next_get_settled_error(&f->rules, p, &a->aim);
     if (status == GLINT_OK)
-        status = glint_zone_fit(&task, &a->aim, buffers, system, &a->errors);
+        status =
+            glint_zone_fit_outputs(&task, &a->aim, buffers, system, &a->errors);
     system->met = a->errors.worst <= 1;
     return status;
 }
 
-/* Fits P. Sets an infinite error instead, so that P is halved, if visible light
- * fills too little of the box or too many barrels block rays. May crop the part
- * of P. */
+/* Fits the zone or part P, and may crop it. Sets an infinite error without
+ * fitting, so that P is halved, if visible light fills too little of the box or
+ * if too many barrels block rays. */
 static enum glint_status try_zone_fit(struct fitter *f,
                                       struct glint_zone_piece *p,
                                       struct glint_fitted_system *system,
@@ -184,7 +189,7 @@ static enum glint_status try_zone_fit(struct fitter *f,
                   fabs(zone.half_x[GLINT_BOX_POWERS])) /
                  zone.half_x[0];
     if (!p->thorough && zone.fill < LEAST_FILL &&
-        glint_next_degrees(p->lo, p->hi) > FILL_DEG)
+        glint_next_compute_width_deg(p->lo, p->hi) > FILL_DEG)
         return GLINT_OK;
     band = crop_zone_to_part(f, p, &zone);
     system->wave_lo = band->wave_lo;
@@ -192,18 +197,18 @@ static enum glint_status try_zone_fit(struct fitter *f,
     glint_zone_choose_barrels(&zone, band, f->tolerance->escape, &f->sampling,
                               &f->buffers.rays);
     if (!p->thorough && f->buffers.rays.n_barrels > 2 && !f->visible->shaped &&
-        glint_next_degrees(p->lo, p->hi) > CROWD_DEG)
+        glint_next_compute_width_deg(p->lo, p->hi) > CROWD_DEG)
         return GLINT_OK;
     return fit_zone_outputs(f, p, &zone, band, system, a);
 }
 
 static const struct glint_zone_part full_part = {-1, 1, 1, -1, 1, 0};
 
-/* Pushes both halves of P onto STACK and returns the new number of entries.
- * HOW: halve the angles, the band or the box. Boxes are halved along v first,
- * which separates the pupil's centre from its rim. */
-static int push_zone_halves(struct glint_zone_piece *stack, int n,
-                            struct glint_zone_piece p, enum glint_next how)
+/* Pushes both halves of P onto STACK and returns the new number of entries. HOW
+ * selects what is halved: the angles, the band or the box. Boxes are halved
+ * along v first, which separates the pupil's centre from its rim. */
+static int push_piece_halves(struct glint_zone_piece *stack, int n,
+                             struct glint_zone_piece p, enum glint_next how)
 {
     const double angle = 0.5 * (p.lo + p.hi);
     struct glint_zone_piece a = p, b = p;
@@ -215,28 +220,30 @@ static int push_zone_halves(struct glint_zone_piece *stack, int n,
         a.part = b.part = full_part;
     } else {
         a.depth = b.depth = p.depth + 1;
-        glint_zone_part_halve(&p.part, p.depth % 2 == 0, &a.part, &b.part);
+        glint_zone_halve_part(&p.part, p.depth % 2 == 0, &a.part, &b.part);
     }
     stack[n] = b;
     stack[n + 1] = a;
     return n + 2;
 }
 
-/* Adds the fit of P to the work done. ACCEPTED: the fit is accepted, so the
- * zone is done. Returns the status of told(). */
-static enum glint_status count_zone_fit(struct fitter *f,
-                                        const struct glint_zone_piece *p,
-                                        bool accepted)
+/* Adds the fit of P to the reported work. ACCEPTED: the fit is final, so the
+ * angles of P are done. Returns the status of the callback progress().
+ */
+static enum glint_status record_zone_fit(struct fitter *f,
+                                         const struct glint_zone_piece *p,
+                                         bool accepted)
 {
     f->work += p->thorough ? 2 : 1;
     if (accepted)
         f->share += (p->hi - p->lo) / f->sines * 0.5 * (p->w1 - p->w0) /
                     (double)(1 << p->depth);
-    return f->told ? f->told(f->told_ctx, f->work, f->share) : GLINT_OK;
+    return f->progress ? f->progress(f->progress_ctx, f->work, f->share)
+                       : GLINT_OK;
 }
 
-/* Fits all zones in a range of angles, sines, from the lowest angle up. The
- * upper halves of halved zones wait on a stack. */
+/* Fits all zones of the angle range RANGE, sines, in ascending order. The upper
+ * halves of divided zones wait on a stack. */
 static enum glint_status fit_angle_range(struct fitter *f,
                                          const double range[2])
 {
@@ -248,7 +255,7 @@ static enum glint_status fit_angle_range(struct fitter *f,
     enum glint_status status = GLINT_OK;
     int n = 1;
 
-    glint_visible_profile_find(f->visible, range, &f->profile);
+    glint_visible_find_profile(f->visible, range, &f->profile);
     if (f->profile.n == 0)
         return GLINT_OK;
     while (n > 0 && status == GLINT_OK) {
@@ -259,25 +266,26 @@ static enum glint_status fit_angle_range(struct fitter *f,
 
         status = try_zone_fit(f, &p, &system, &attempt);
         if (status == GLINT_OK) {
-            next =
-                n + 2 > DEEP ? GLINT_KEEP : glint_next(&f->rules, &p, &attempt);
-            status = count_zone_fit(f, &p, next == GLINT_KEEP);
+            next = n + 2 > DEEP
+                       ? GLINT_KEEP
+                       : glint_next_choose_step(&f->rules, &p, &attempt);
+            status = record_zone_fit(f, &p, next == GLINT_KEEP);
         }
         if (p.depth == 0 && p.w0 <= -1)
             f->n_parts = 0;
         system.part = f->n_parts;
         if (status == GLINT_OK && next == GLINT_KEEP && system.n_outputs > 0) {
-            status = glint_fitted_append(f->out, &system);
+            status = glint_fitted_append_system(f->out, &system);
             f->n_parts++;
         } else {
-            glint_fitted_drop(&system);
+            glint_fitted_free_system(&system);
         }
         p.before = attempt.errors.worst;
         p.thorough |= next == GLINT_THOROUGH || next == GLINT_BANDS;
         if (next == GLINT_THOROUGH) {
             stack[n++] = p;
         } else if (next != GLINT_KEEP) {
-            n = push_zone_halves(stack, n, p, next);
+            n = push_piece_halves(stack, n, p, next);
         }
     }
     return status;
@@ -286,7 +294,7 @@ static enum glint_status fit_angle_range(struct fitter *f,
 enum glint_status glint_fit_ghost(const struct glint_visible *visible,
                                   double max_deg,
                                   const struct glint_tolerance *tolerance,
-                                  glint_fit_told_fn *told, void *ctx,
+                                  glint_fit_progress_fn *progress, void *ctx,
                                   struct glint_fitted_ghost *out)
 {
     struct fitter *f = calloc(1, sizeof *f);
@@ -301,15 +309,15 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
     f->rules = (struct glint_next_rules){visible, tolerance};
     f->in_band.beside = f->beside_band;
     f->in_part.beside = f->beside_part;
-    /* no band_profile has been computed */
+    /* marks that no band_profile has been computed yet */
     f->profiled[0] = HUGE_VAL;
     f->out = out;
-    f->told = told;
-    f->told_ctx = ctx;
+    f->progress = progress;
+    f->progress_ctx = ctx;
     f->buffers.scratch =
         malloc(GLINT_ZONE_SCRATCH * sizeof *f->buffers.scratch);
     if (f->buffers.scratch) {
-        const int n = glint_visible_ranges(visible, max_deg, range);
+        const int n = glint_visible_find_ranges(visible, max_deg, range);
 
         status = GLINT_OK;
         for (int k = 0; k < n; k++)

@@ -3,8 +3,9 @@
 
 #include <stdlib.h>
 
-enum glint_status glint_fitted_part(struct glint_fitted_ghost *ghost, int part,
-                                    struct glint_fitted_ghost *out)
+enum glint_status glint_fitted_move_part(struct glint_fitted_ghost *ghost,
+                                         int part,
+                                         struct glint_fitted_ghost *out)
 {
     int kept = 0;
 
@@ -24,8 +25,9 @@ enum glint_status glint_fitted_part(struct glint_fitted_ghost *ghost, int part,
     return GLINT_OK;
 }
 
-enum glint_status glint_fitted_append(struct glint_fitted_ghost *ghost,
-                                      const struct glint_fitted_system *system)
+enum glint_status
+glint_fitted_append_system(struct glint_fitted_ghost *ghost,
+                           const struct glint_fitted_system *system)
 {
     const size_t n = (size_t)ghost->n_systems;
     struct glint_fitted_system *all =
@@ -38,17 +40,17 @@ enum glint_status glint_fitted_append(struct glint_fitted_ghost *ghost,
     return GLINT_OK;
 }
 
-void glint_fitted_drop(struct glint_fitted_system *system)
+void glint_fitted_free_system(struct glint_fitted_system *system)
 {
     for (int k = 0; k < system->n_outputs; k++)
         free(system->output[k].coef);
     free(system->box);
 }
 
-void glint_fitted_finish(struct glint_fitted_ghost *ghost)
+void glint_fitted_free_ghost(struct glint_fitted_ghost *ghost)
 {
     for (int k = 0; k < ghost->n_systems; k++)
-        glint_fitted_drop(&ghost->system[k]);
+        glint_fitted_free_system(&ghost->system[k]);
     free(ghost->system);
     *ghost = (struct glint_fitted_ghost){.n_systems = 0};
 }

@@ -16,14 +16,15 @@ struct glint_fitted_output {
     int n_terms; /* number of terms, 1 .. GLINT_MAX_MODEL_TERMS */
     uint8_t power[GLINT_MAX_MODEL_TERMS][GLINT_VARIABLES];
     double *coef;
-    /* max rounding error of a coefficient that is harmless; 0: no rounding
-     * allowed */
+    /* max rounding error of a coefficient that is harmless; 0: coefficients
+     * must not be rounded to 16 bits */
     double grain;
     int event; /* barrels only: index of the barrel among the path's events */
-    /* energy only: number of times that the polynomial is squared */
+    /* energy only: number of times that the polynomial's value is squared to
+     * get the energy */
     int roots;
-    /* energy only: max of the polynomial over rays that reach the sensor; 0:
-     * unknown */
+    /* energy only: max value of the polynomial over rays that reach the sensor;
+     * 0: unknown */
     double most;
     bool met; /* true: the fit meets its tolerance */
 };
@@ -34,8 +35,8 @@ struct glint_fitted_system {
     /* index of the ring of the pupil, as in struct glint_model_system */
     int annulus;
     double sine_lo, sine_hi;
-    /* true: directions have two components, x in sine_lo .. sine_hi and y in
-     * y_lo .. y_hi */
+    /* true: lens that is not round; directions have two components, x in
+     * sine_lo .. sine_hi and y in y_lo .. y_hi */
     bool skew;
     double y_lo, y_hi;
     double wave_lo, wave_hi; /* range of 1 / wavelength^2, um^-2 */
@@ -56,16 +57,18 @@ struct glint_fitted_ghost {
 
 /* Moves all systems of part PART of GHOST to OUT, which must be empty. May
  * return GLINT_E_MEMORY. */
-enum glint_status glint_fitted_part(struct glint_fitted_ghost *ghost, int part,
-                                    struct glint_fitted_ghost *out);
+enum glint_status glint_fitted_move_part(struct glint_fitted_ghost *ghost,
+                                         int part,
+                                         struct glint_fitted_ghost *out);
 
 /* Appends SYSTEM to GHOST, which then owns it. May return GLINT_E_MEMORY. */
-enum glint_status glint_fitted_append(struct glint_fitted_ghost *ghost,
-                                      const struct glint_fitted_system *system);
+enum glint_status
+glint_fitted_append_system(struct glint_fitted_ghost *ghost,
+                           const struct glint_fitted_system *system);
 
 /* Frees the memory that SYSTEM owns. */
-void glint_fitted_drop(struct glint_fitted_system *system);
+void glint_fitted_free_system(struct glint_fitted_system *system);
 
-void glint_fitted_finish(struct glint_fitted_ghost *ghost);
+void glint_fitted_free_ghost(struct glint_fitted_ghost *ghost);
 
 #endif

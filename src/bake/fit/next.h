@@ -51,11 +51,11 @@ enum glint_next {
 };
 
 /* Returns the width of the angle range with the sines LO .. HI, degrees. */
-double glint_next_degrees(double lo, double hi);
+double glint_next_compute_width_deg(double lo, double hi);
 
-/* Returns whether a reflection of the ghost is at a coating of several
- * films. */
-bool glint_next_stacks(const struct glint_visible *visible);
+/* Returns whether at least one of the ghost's two reflections is at a coating
+ * of several films. */
+bool glint_next_has_film_stack(const struct glint_visible *visible);
 
 /* A ghost and its tolerances, which determine how its zones are divided. */
 struct glint_next_rules {
@@ -63,23 +63,24 @@ struct glint_next_rules {
     const struct glint_tolerance *tolerance;
 };
 
-/* Returns the error, in tolerances, at which a fit of P may stop early because
- * P will be halved or divided in any case; 0: never. Narrow zones never stop
- * early, as they may not be halved again and their error must then be known. */
-double glint_next_hopeless(const struct glint_next_rules *f,
-                           const struct glint_zone_piece *p,
-                           const struct glint_zone_aim *aim);
+/* Returns the error, in tolerances, above which a fit of P may stop early
+ * because P will be halved or divided in any case; 0: never. Narrow zones never
+ * stop early: they may not be halved again, so their error must be known. */
+double glint_next_get_hopeless_error(const struct glint_next_rules *f,
+                                     const struct glint_zone_piece *p,
+                                     const struct glint_zone_aim *aim);
 
-/* Returns the error, in tolerances, above which glint_next() decides the same
- * for P, and later for its halves, whatever the error; 0: no such error. */
-double glint_next_settled(const struct glint_next_rules *f,
-                          const struct glint_zone_piece *p,
-                          const struct glint_zone_aim *aim);
+/* Returns an error, in tolerances, above which the exact value no longer
+ * matters: glint_next_choose_step() decides the same for P, and later for its
+ * halves; 0: there is no such error. */
+double glint_next_get_settled_error(const struct glint_next_rules *f,
+                                    const struct glint_zone_piece *p,
+                                    const struct glint_zone_aim *aim);
 
-/* Returns the next step for P after attempt A. Zones of bright ghosts are
+/* Returns the next step for P after the fit A. Zones of bright ghosts are
  * halved more often. */
-enum glint_next glint_next(const struct glint_next_rules *f,
-                           const struct glint_zone_piece *p,
-                           const struct glint_attempt *a);
+enum glint_next glint_next_choose_step(const struct glint_next_rules *f,
+                                       const struct glint_zone_piece *p,
+                                       const struct glint_attempt *a);
 
 #endif

@@ -20,8 +20,9 @@ static double sum_magnitudes(const double *value, int n)
 
 enum { LEAST_EXPONENT = -80 }; /* min binary exponent in a model */
 
-/* Returns the smallest exponent with which N rounded values sum to less than
- * GLINT_COEF_LIMIT. SUM: sum of the magnitudes before rounding. */
+/* Returns the smallest exponent E such that N values, divided by 2^E and
+ * rounded, have magnitudes that sum to less than GLINT_COEF_LIMIT. SUM: sum of
+ * the magnitudes before division. */
 static int choose_exponent(double sum, int n)
 {
     int exponent;
@@ -54,25 +55,26 @@ static enum glint_status round_to_integers(const double *value, int n,
 
 /* ---------------------------------------------------------------- intervals */
 
-/* Interval of a number computed at run time, and its max rounding error, both
- * in the number's unit. Doubles are precise enough: values stay below 2^31, and
- * errors are rounded up at the end. */
+/* Interval of the values that a number of the run time can have, and its max
+ * rounding error, both in the number's unit. Doubles are precise enough: values
+ * stay below 2^31, and errors are rounded up at the end. */
 struct range {
     double lo, hi, error;
 };
 
-static double max_range_magnitude(struct range r)
+static double get_max_range_magnitude(struct range r)
 {
     return fmax(fabs(r.lo), fabs(r.hi)) + r.error;
 }
 
 struct proof {
-    double bound; /* max magnitude of all intermediate results so far */
+    /* max magnitude of all intermediate results so far, units of the output */
+    double bound;
 };
 
 static struct range record_max_magnitude(struct proof *p, struct range r)
 {
-    p->bound = fmax(p->bound, max_range_magnitude(r));
+    p->bound = fmax(p->bound, get_max_range_magnitude(r));
     return r;
 }
 
@@ -82,7 +84,7 @@ static struct range add_ranges(struct proof *p, struct range a, struct range b)
         p, (struct range){a.lo + b.lo, a.hi + b.hi, a.error + b.error});
 }
 
-/* Returns the interval of q_mul(a, x, 30) for a variable X within -1 .. 1,
+/* Returns the interval of q_mul(a, x, 30), where X is a variable in -1 .. 1
  * whose error is in units of 2^-30. */
 static struct range multiply_range_by_variable(struct proof *p, struct range a,
                                                struct range x)
@@ -119,13 +121,12 @@ static struct range compute_coefficient_range(int32_t coef, int shift)
     return (struct range){coef, coef, 0.5 + (shift ? ldexp(0.5, shift) : 0)};
 }
 
-/* Computes the intervals of substituting angle and wavelength into all terms.
- * TABLE[v power][u power] receives the intervals of the remaining
- * coefficients. */
-static void bound_term_table(struct proof *p,
-                             const struct glint_fitted_output *o,
-                             const struct glint_quantised_output *q,
-                             struct range table[][GLINT_MAX_POWER + 1])
+/* Computes the coefficients' intervals after angle and wavelength are
+ * substituted into all terms: TABLE[v power][u power] receives them. */
+static void compute_term_ranges(struct proof *p,
+                                const struct glint_fitted_output *o,
+                                const struct glint_quantised_output *q,
+                                struct range table[][GLINT_MAX_POWER + 1])
 {
     for (int i = 0; i < o->n_terms; i++) {
         const int k = q->order[i];
@@ -142,8 +143,8 @@ static void bound_term_table(struct proof *p,
     }
 }
 
-/* Returns the interval of the sum over odd or even powers of v of all terms in
- * TABLE with power A of u. */
+/* Returns the interval of the sum over all odd or over all even powers of v of
+ * the terms of TABLE with u^A. */
 static struct range compute_row_range(struct proof *p,
                                       struct range table[][GLINT_MAX_POWER + 1],
                                       int a, bool odd)
@@ -157,16 +158,17 @@ static struct range compute_row_range(struct proof *p,
     return odd ? multiply_range_by_variable(p, sum, unit_range) : sum;
 }
 
-static void bound_output(struct proof *p, const struct glint_fitted_output *o,
-                         const struct glint_quantised_output *q, bool skew,
-                         struct range *result)
+static void compute_output_range(struct proof *p,
+                                 const struct glint_fitted_output *o,
+                                 const struct glint_quantised_output *q,
+                                 bool skew, struct range *result)
 {
     struct range table[GLINT_MAX_POWER + 1][GLINT_MAX_POWER + 1] = {
         {{0, 0, 0}}};
     const bool odd =
         o->kind == GLINT_OUT_SENSOR_Y || o->kind == GLINT_OUT_STOP_Y;
 
-    bound_term_table(p, o, q, table);
+    compute_term_ranges(p, o, q, table);
     for (int a = GLINT_MAX_POWER; a >= 0; a--) {
         struct range sum = compute_row_range(p, table, a, odd && !skew);
 
@@ -177,8 +179,8 @@ static void bound_output(struct proof *p, const struct glint_fitted_output *o,
     }
 }
 
-/* Returns the interval of the energy that the run time computes from its
- * polynomial X, scaled by 2^HEAD and squared ROOTS times. */
+/* Returns the interval of the energy that the run time computes from the value
+ * X of its polynomial: X scaled by 2^HEAD and squared ROOTS times. */
 static struct range compute_energy_range(struct range x, int head, int roots)
 {
     if (head || roots)
@@ -197,7 +199,7 @@ static void prove_no_overflow(const struct glint_fitted_system *s,
     struct proof p = {0};
     struct range result = {0, 0, 0};
 
-    bound_output(&p, o, out, s->skew, &result);
+    compute_output_range(&p, o, out, s->skew, &result);
     while (out->head > 0 &&
            compute_energy_range(result, out->head, o->roots).error >= 0x1p22)
         out->head--; /* a larger scale would only enlarge rounding errors */
@@ -210,9 +212,9 @@ static void prove_no_overflow(const struct glint_fitted_system *s,
 /* ------------------------------------------------------------------- narrow */
 
 /* Moves coefficients for which 16 bits are precise enough to the end of the
- * order. */
-static void choose_16_bit_terms(const struct glint_fitted_output *o,
-                                struct glint_quantised_output *out)
+ * order of terms. */
+static void move_16_bit_terms_to_end(const struct glint_fitted_output *o,
+                                     struct glint_quantised_output *out)
 {
     const double steps = ldexp(o->grain, -out->exponent);
     int n_wide = 0, end = o->n_terms;
@@ -235,9 +237,9 @@ static void choose_16_bit_terms(const struct glint_fitted_output *o,
 
 /* ------------------------------------------------------------------ systems */
 
-/* Returns the offset in the list of outputs from KIND to the other coordinate
- * of the position: 1 or -1; 0 if KIND is not a position. x and y share one
- * exponent so that they can be rotated. */
+/* Returns the distance in the list of outputs from position coordinate KIND to
+ * the other one (from x to y or y to x): 1 or -1; 0 if KIND is not a position.
+ * Both coordinates have the same exponent, so that they can be rotated. */
 static int find_paired_output_offset(enum glint_channel kind)
 {
     return kind == GLINT_OUT_SENSOR_X || kind == GLINT_OUT_STOP_X   ? 1
@@ -252,10 +254,11 @@ static int choose_output_exponent(const struct glint_fitted_system *s, int k)
     return choose_exponent(sum_magnitudes(o->coef, o->n_terms), o->n_terms);
 }
 
-/* Returns the number of bits by which the energy's polynomial can be scaled up
- * while it stays below half of the max integer for all rays that reach the
- * sensor. If the energy is the fourth power of the polynomial, the limit holds
- * for the energy, and one bit of the polynomial is four bits of the energy. */
+/* Returns the number of bits by which values of the energy polynomial can be
+ * scaled up while they stay below half of the max integer for all rays that
+ * reach the sensor. If the energy is the fourth power of the polynomial, the
+ * limit holds for the energy, and one bit of the polynomial is four bits of the
+ * energy. */
 static int choose_energy_scale(const struct glint_fitted_output *o,
                                int exponent)
 {
@@ -287,7 +290,7 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
     for (int i = 0; i < o->n_terms; i++)
         out->order[i] = (uint8_t)i;
     if (status == GLINT_OK) {
-        choose_16_bit_terms(o, out);
+        move_16_bit_terms_to_end(o, out);
         prove_no_overflow(s, o, out);
         status = out->proven ? GLINT_OK : GLINT_E_LENS;
     }
@@ -313,8 +316,9 @@ static bool is_system_finite(const struct glint_fitted_system *s)
     return are_all_finite(s->box, n_box);
 }
 
-enum glint_status glint_quantise(const struct glint_fitted_system *system,
-                                 struct glint_quantised_system *out)
+enum glint_status
+glint_quantise_system(const struct glint_fitted_system *system,
+                      struct glint_quantised_system *out)
 {
     enum glint_status status;
     double most = 0;
@@ -333,7 +337,7 @@ enum glint_status glint_quantise(const struct glint_fitted_system *system,
     return status;
 }
 
-void glint_quantised_finish(struct glint_quantised_system *system)
+void glint_quantised_free_system(struct glint_quantised_system *system)
 {
     for (int k = 0; k < GLINT_OUT_KINDS; k++)
         free(system->output[k].coef);

@@ -22,8 +22,8 @@
 /* limit of the sum of the magnitudes of an output's coefficients */
 #define GLINT_COEF_LIMIT (INT64_C(1) << 29)
 
-/* One output. The last n_narrow coefficients in the order are multiples of
- * 2^shift and fit 16 bits after division by it. */
+/* The integers of one output. The last n_narrow coefficients, in the order of
+ * order, are multiples of 2^shift and fit 16 bits after division by 2^shift. */
 struct glint_quantised_output {
     int32_t exponent;
     int32_t *coef; /* integer coefficients, [sets][n_terms]; owned */
@@ -44,11 +44,12 @@ struct glint_quantised_system {
 };
 
 /* Quantises SYSTEM. Returns GLINT_E_LENS if a value is not finite or the proof
- * fails, or GLINT_E_MEMORY. The caller must call glint_quantised_finish() on
- * OUT even after an error. */
-enum glint_status glint_quantise(const struct glint_fitted_system *system,
-                                 struct glint_quantised_system *out);
+ * fails, or GLINT_E_MEMORY. The caller must call glint_quantised_free_system()
+ * on OUT even after an error. */
+enum glint_status
+glint_quantise_system(const struct glint_fitted_system *system,
+                      struct glint_quantised_system *out);
 
-void glint_quantised_finish(struct glint_quantised_system *system);
+void glint_quantised_free_system(struct glint_quantised_system *system);
 
 #endif

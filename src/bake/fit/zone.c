@@ -5,20 +5,21 @@
 #include "bake/regress/regress.h"
 #include "engine/setup/degrees.h"
 
-/* A box is accepted if visible light fills this fraction of it. A tighter box
- * would need higher powers of s, which the polynomials on the box would have to
- * compensate. */
+/* A box is accepted if visible light fills at least this fraction of it. A
+ * tighter box would need higher powers of s, which the polynomials of the
+ * outputs would then have to compensate. */
 #define ENOUGH_FILL 0.6
-/* A higher degree in s is chosen only if light then fills the box this many
- * times as well. */
+/* A box of higher degree in s is chosen only if light fills this many times as
+ * much of it. */
 #define FULLER 1.6
 
-double glint_zone_node(int k, int n)
+double glint_zone_compute_node(int k, int n)
 {
     return n == 1 ? 0 : -cos(GLINT_PI * k / (n - 1));
 }
 
-double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w)
+double glint_zone_evaluate_round_side(const double side[GLINT_BOX_TERMS],
+                                      double s, double w)
 {
     double value = 0;
 
@@ -28,14 +29,14 @@ double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w)
            w * (side[GLINT_BOX_POWERS] + s * side[GLINT_BOX_POWERS + 1]);
 }
 
-double glint_zone_side(const struct glint_zone *zone,
-                       const double side[GLINT_BOX_TERMS],
-                       const double x[GLINT_VARIABLES])
+double glint_zone_evaluate_side(const struct glint_zone *zone,
+                                const double side[GLINT_BOX_TERMS],
+                                const double x[GLINT_VARIABLES])
 {
     const double s = x[GLINT_S], p = x[GLINT_P];
 
     if (!zone->skew)
-        return glint_zone_at(side, s, x[GLINT_W]);
+        return glint_zone_evaluate_round_side(side, s, x[GLINT_W]);
     return side[0] + s * (side[1] + s * side[2]) +
            p * (side[3] + s * side[4] + p * side[5]) +
            x[GLINT_W] *
@@ -93,7 +94,7 @@ static void collect_visible_boxes(const struct glint_visible_profile *p,
     }
 }
 
-/* Fits the box polynomial SIDE to VALUE within TOLERANCE, or as well as
+/* Fits the box polynomial SIDE to VALUE within TOLERANCE, or as closely as
  * possible. Terms: powers of s up to DEGREE; BY_COLOUR: also w and s w. */
 static void fit_box_side(const struct seen *seen, const double *value,
                          int degree, bool by_colour, double tolerance,
@@ -119,47 +120,50 @@ static void fit_box_side(const struct seen *seen, const double *value,
         weight[i] = 1;
     for (int k = 0; k < GLINT_BOX_TERMS; k++)
         side[k] = 0;
-    glint_regress_fit(scratch, &samples, value, &degrees, tolerance,
-                      4 * tolerance, &fit);
+    glint_regress_fit_polynomial(scratch, &samples, value, &degrees, tolerance,
+                                 4 * tolerance, &fit);
     for (int k = 0; k < fit.n; k++)
         side[fit.power[k][3] ? GLINT_BOX_POWERS + fit.power[k][2]
                              : fit.power[k][2]] = fit.coef[k];
 }
 
-/* Returns minus the min of the polynomial HALF (a half size, mm) over the zone,
- * sampled: adding it makes HALF 0 or more everywhere. */
-static double compute_height_deficit(const double half[GLINT_BOX_TERMS])
+/* Returns minus the min over the zone, sampled, of the half-size polynomial
+ * HALF, mm. After adding it, no sampled half size is negative. */
+static double compute_half_size_deficit(const double half[GLINT_BOX_TERMS])
 {
     double lowest = HUGE_VAL;
 
     for (int k = -8; k <= 8; k++)
-        lowest = fmin(lowest, fmin(glint_zone_at(half, k / 8.0, -1),
-                                   glint_zone_at(half, k / 8.0, 1)));
+        lowest = fmin(lowest,
+                      fmin(glint_zone_evaluate_round_side(half, k / 8.0, -1),
+                           glint_zone_evaluate_round_side(half, k / 8.0, 1)));
     return -lowest;
 }
 
 /* Enlarges the box of Z until it contains all visible boxes, with a margin of
  * 1 %. */
-static void enlarge_box_to_visible(struct glint_zone *z,
-                                   const struct seen *seen)
+static void enlarge_box_to_visible_boxes(struct glint_zone *z,
+                                         const struct seen *seen)
 {
     double more_x = 0, more_y = 0;
 
     for (int i = 0; i < seen->n; i++) {
         const double s = seen->s[i], w = seen->w[i];
-        const double off =
-            fabs(seen->middle[i] - glint_zone_at(z->middle, s, w));
+        const double off = fabs(
+            seen->middle[i] - glint_zone_evaluate_round_side(z->middle, s, w));
 
-        more_x = fmax(more_x,
-                      seen->half_x[i] + off - glint_zone_at(z->half_x, s, w));
-        more_y = fmax(more_y, seen->half_y[i] - glint_zone_at(z->half_y, s, w));
+        more_x =
+            fmax(more_x, seen->half_x[i] + off -
+                             glint_zone_evaluate_round_side(z->half_x, s, w));
+        more_y = fmax(more_y, seen->half_y[i] - glint_zone_evaluate_round_side(
+                                                    z->half_y, s, w));
     }
     z->half_x[0] += more_x;
     z->half_y[0] += more_y;
     z->half_x[0] +=
-        fmax(0.01 * z->half_x[0], 1.1 * compute_height_deficit(z->half_x));
+        fmax(0.01 * z->half_x[0], 1.1 * compute_half_size_deficit(z->half_x));
     z->half_y[0] +=
-        fmax(0.01 * z->half_y[0], 1.1 * compute_height_deficit(z->half_y));
+        fmax(0.01 * z->half_y[0], 1.1 * compute_half_size_deficit(z->half_y));
 }
 
 static double compute_box_fill(const struct glint_zone *z,
@@ -168,9 +172,10 @@ static double compute_box_fill(const struct glint_zone *z,
     double sum = 0;
 
     for (int i = 0; i < seen->n; i++)
-        sum += seen->half_x[i] * seen->half_y[i] /
-               (glint_zone_at(z->half_x, seen->s[i], seen->w[i]) *
-                glint_zone_at(z->half_y, seen->s[i], seen->w[i]));
+        sum +=
+            seen->half_x[i] * seen->half_y[i] /
+            (glint_zone_evaluate_round_side(z->half_x, seen->s[i], seen->w[i]) *
+             glint_zone_evaluate_round_side(z->half_y, seen->s[i], seen->w[i]));
     return sum / seen->n;
 }
 
@@ -183,7 +188,7 @@ static void fit_zone_box(struct glint_zone *z, const struct seen *seen,
     fit_box_side(seen, seen->middle, degree, by_colour, tolerance, z->middle);
     fit_box_side(seen, seen->half_x, tame, by_colour, tolerance, z->half_x);
     fit_box_side(seen, seen->half_y, tame, by_colour, tolerance, z->half_y);
-    enlarge_box_to_visible(z, seen);
+    enlarge_box_to_visible_boxes(z, seen);
     z->fill = compute_box_fill(z, seen);
 }
 
@@ -220,19 +225,20 @@ static void narrow_band_of_side(double side[GLINT_BOX_TERMS], double w0,
     }
 }
 
-double glint_zone_rim(int annulus)
+double glint_zone_get_inner_rim(int annulus)
 {
     return annulus / (annulus + 1.0);
 }
 
-void glint_zone_part_halve(const struct glint_zone_part *part, bool along_v,
+void glint_zone_halve_part(const struct glint_zone_part *part, bool along_v,
                            struct glint_zone_part *first,
                            struct glint_zone_part *second)
 {
     const int k = part->annulus;
 
     *first = *second = *part;
-    /* the part spans k .. k + 1 in units of 1 / (k + 1) of its outer height */
+    /* the part spans heights k .. k + 1, in units of 1 / (k + 1) of its outer
+     * height */
     if (along_v) {
         first->top *= (2 * k + 1) / (2 * k + 2.0);
         first->annulus = 2 * k;
@@ -242,7 +248,8 @@ void glint_zone_part_halve(const struct glint_zone_part *part, bool along_v,
     }
 }
 
-void glint_zone_cut(struct glint_zone *zone, const struct glint_zone_part *part)
+void glint_zone_cut_to_part(struct glint_zone *zone,
+                            const struct glint_zone_part *part)
 {
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {
         zone->middle[k] += 0.5 * (part->u0 + part->u1) * zone->half_x[k];
@@ -270,8 +277,8 @@ static void compute_4d_sequence_point(int k, double x[GLINT_VARIABLES])
     x[GLINT_P] = 0;
 }
 
-void glint_zone_scatter(const struct glint_zone *zone, int k,
-                        double x[GLINT_VARIABLES])
+void glint_zone_set_scattered_point(const struct glint_zone *zone, int k,
+                                    double x[GLINT_VARIABLES])
 {
     const double root = 1.13472413840151949260;
     double step = 1;
@@ -298,26 +305,27 @@ static void compute_light_direction(const struct glint_zone *z,
     d[2] = sqrt(fmax(1e-6, 1 - d[0] * d[0] - d[1] * d[1]));
 }
 
-void glint_zone_batch_add(struct glint_zone_batch *batch,
-                          const struct glint_zone *zone,
-                          const double x[GLINT_VARIABLES])
+void glint_zone_batch_add_ray(struct glint_zone_batch *batch,
+                              const struct glint_zone *zone,
+                              const double x[GLINT_VARIABLES])
 {
-    const double rim = glint_zone_rim(zone->annulus);
+    const double rim = glint_zone_get_inner_rim(zone->annulus);
     struct glint_launch *from = &batch->from[batch->n];
 
     for (int k = 0; k < GLINT_VARIABLES; k++)
         batch->x[batch->n][k] = x[k];
     batch->x[batch->n][1] = rim + (1 - rim) * x[1];
-    from->x_mm = glint_zone_side(zone, zone->middle, x) +
-                 x[0] * glint_zone_side(zone, zone->half_x, x);
-    from->y_mm = batch->x[batch->n][1] * glint_zone_side(zone, zone->half_y, x);
+    from->x_mm = glint_zone_evaluate_side(zone, zone->middle, x) +
+                 x[0] * glint_zone_evaluate_side(zone, zone->half_x, x);
+    from->y_mm =
+        batch->x[batch->n][1] * glint_zone_evaluate_side(zone, zone->half_y, x);
     if (zone->skew)
-        from->y_mm += glint_zone_side(zone, zone->middle_y, x);
+        from->y_mm += glint_zone_evaluate_side(zone, zone->middle_y, x);
     compute_light_direction(zone, x, from->direction);
     batch->n++;
 }
 
-void glint_zone_batch_trace(struct glint_zone_batch *batch)
+void glint_zone_batch_trace_rays(struct glint_zone_batch *batch)
 {
     for (int k = 0; k < batch->n * batch->path->n_events; k++)
         batch->hits[k][0] = batch->hits[k][1] = -1;
@@ -347,13 +355,14 @@ static void trace_at_zoom_positions(const struct glint_visible *visible,
                                     struct sighting *seen)
 {
     for (int m = 0; m <= visible->n_beside; m++) {
-        const struct glint_visible *const h = glint_visible_member(visible, m);
+        const struct glint_visible *const h =
+            glint_visible_get_member(visible, m);
 
         t->path = &h->position_path[wave];
-        glint_zone_batch_trace(t);
+        glint_zone_batch_trace_rays(t);
         for (int i = 0; i < t->n; i++)
             if (t->status[i] == GLINT_RAY_OK &&
-                glint_visible_passes(h, &t->ray[i]))
+                glint_visible_is_ray_visible(h, &t->ray[i]))
                 for (int k = 0; k < GLINT_VARIABLES; k++) {
                     seen->low[k] = fmin(seen->low[k], t->x[i][k]);
                     seen->high[k] = fmax(seen->high[k], t->x[i][k]);
@@ -361,9 +370,9 @@ static void trace_at_zoom_positions(const struct glint_visible *visible,
     }
 }
 
-double glint_zone_crop(const struct glint_zone *zone,
-                       const struct glint_visible *visible,
-                       struct glint_zone_part *part)
+double glint_zone_crop_part(const struct glint_zone *zone,
+                            const struct glint_visible *visible,
+                            struct glint_zone_part *part)
 {
     enum { ANGLES = 5, COLUMNS = GLINT_ZONE_BATCH, ROWS = 12 };
     /* Fewer wavelengths for non-spherical surfaces, through which rays are slow
@@ -383,9 +392,9 @@ double glint_zone_crop(const struct glint_zone *zone,
             const double x[GLINT_VARIABLES] = {
                 2.0 * t.n / (COLUMNS - 1) - 1, (double)row / ROWS,
                 2.0 * (k / (ROWS + 1) % ANGLES) / (ANGLES - 1) - 1,
-                glint_zone_node(wave, GLINT_VISIBLE_WAVES)};
+                glint_zone_compute_node(wave, GLINT_VISIBLE_WAVES)};
 
-            glint_zone_batch_add(&t, zone, x);
+            glint_zone_batch_add_ray(&t, zone, x);
         }
         trace_at_zoom_positions(visible, wave, &t, &seen);
     }

@@ -52,12 +52,13 @@ struct glint_zone_part {
 
 /* Evaluates SIDE, a box polynomial of a round lens (centre or half size, mm),
  * at S and W. */
-double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w);
+double glint_zone_evaluate_round_side(const double side[GLINT_BOX_TERMS],
+                                      double s, double w);
 
 /* Evaluates SIDE, a box polynomial of ZONE (centre or half size, mm), at X. */
-double glint_zone_side(const struct glint_zone *zone,
-                       const double side[GLINT_BOX_TERMS],
-                       const double x[GLINT_VARIABLES]);
+double glint_zone_evaluate_side(const struct glint_zone *zone,
+                                const double side[GLINT_BOX_TERMS],
+                                const double x[GLINT_VARIABLES]);
 
 /* Fits a box to the visible boxes of PROFILE at the angles LO .. HI, sines.
  * BY_COLOUR: the box depends on the wavelength; else it contains the light of
@@ -67,34 +68,35 @@ void glint_zone_init(struct glint_zone *zone,
                      double hi, bool by_colour);
 
 /* Returns the inner edge |v| of ring ANNULUS of the pupil / its outer edge. */
-double glint_zone_rim(int annulus);
+double glint_zone_get_inner_rim(int annulus);
 
 /* Halves PART along v, into an inner and an outer half, or along u. */
-void glint_zone_part_halve(const struct glint_zone_part *part, bool along_v,
+void glint_zone_halve_part(const struct glint_zone_part *part, bool along_v,
                            struct glint_zone_part *first,
                            struct glint_zone_part *second);
 
 /* Cuts box and band of ZONE to PART. */
-void glint_zone_cut(struct glint_zone *zone,
-                    const struct glint_zone_part *part);
+void glint_zone_cut_to_part(struct glint_zone *zone,
+                            const struct glint_zone_part *part);
 
 /* Crops PART to its visible region, with a margin. ZONE must have been cut to
  * PART, and VISIBLE narrowed to its band. Returns the fraction of PART that
  * remains, 0 .. 1. */
-double glint_zone_crop(const struct glint_zone *zone,
-                       const struct glint_visible *visible,
-                       struct glint_zone_part *part);
+double glint_zone_crop_part(const struct glint_zone *zone,
+                            const struct glint_visible *visible,
+                            struct glint_zone_part *part);
 
 /* Returns node K of N nodes on -1 .. 1, both ends included. Nodes are denser
  * towards the ends. */
-double glint_zone_node(int k, int n);
+double glint_zone_compute_node(int k, int n);
 
-/* A batch of rays of a zone that share a path and are traced together.
+/* A batch of rays of a zone that share a path (wavelength) and are traced
+ * together.
  *
- *     batch.path = &path;
- *     for (batch.n = 0; batch.n < GLINT_ZONE_BATCH;)
- *         glint_zone_batch_add(&batch, &zone, x);
- *     glint_zone_batch_trace(&batch); */
+ * batch.path = &path;
+ * for (batch.n = 0; batch.n < GLINT_ZONE_BATCH;)
+ *     glint_zone_batch_add_ray(&batch, &zone, x);
+ * glint_zone_batch_trace_rays(&batch); */
 enum { GLINT_ZONE_BATCH = 32 };
 
 struct glint_zone_batch {
@@ -113,22 +115,22 @@ struct glint_zone_batch {
 /* Adds the ray at zone coordinates X to BATCH. Its w must be the wavelength of
  * the path. v: 0 (centre or inner edge of the box) .. 1 (rim); in skew zones
  * -1 .. 1. */
-void glint_zone_batch_add(struct glint_zone_batch *batch,
-                          const struct glint_zone *zone,
-                          const double x[GLINT_VARIABLES]);
+void glint_zone_batch_add_ray(struct glint_zone_batch *batch,
+                              const struct glint_zone *zone,
+                              const double x[GLINT_VARIABLES]);
 
-void glint_zone_batch_trace(struct glint_zone_batch *batch);
+void glint_zone_batch_trace_rays(struct glint_zone_batch *batch);
 
 /* Returns the positions of ray K at the events of the path, mm, [n_events]. */
-static inline double (*glint_zone_batch_hits(struct glint_zone_batch *batch,
-                                             int k))[2]
+static inline double (*glint_zone_batch_get_hits(struct glint_zone_batch *batch,
+                                                 int k))[2]
 {
     return batch->hits + k * batch->path->n_events;
 }
 
 /* Sets X to point K of a low-discrepancy sequence that fills ZONE: four
  * dimensions with v >= 0; five if ZONE is skew. */
-void glint_zone_scatter(const struct glint_zone *zone, int k,
-                        double x[GLINT_VARIABLES]);
+void glint_zone_set_scattered_point(const struct glint_zone *zone, int k,
+                                    double x[GLINT_VARIABLES]);
 
 #endif

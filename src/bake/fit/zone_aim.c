@@ -5,12 +5,13 @@
 
 /* Min relative brightness of a ray for weighting its error. */
 #define LEAST_LIGHT 1e-3
-/* Skew zones brighter than white: min factor on position tolerances, as shifts
- * of their outlines are more visible by the same factor. */
+/* Min factor on position tolerances in skew zones. It applies if the ghost is
+ * brighter than white, as shifts of its outline are then more visible by the
+ * same factor. */
 #define CLIPPED 0.4
-/* Min factor on the position tolerance across a streak thinner than a pixel:
- * where such a streak crosses from one pixel row to the next, all of its light
- * moves. */
+/* Min factor on the position tolerance across a streak that is thinner than a
+ * pixel: where such a streak crosses from one pixel row to the next, all of its
+ * light moves to that row. */
 #define THIN 0.1
 
 /* Summary of the rays at one angle and wavelength: their sensor area, and the
@@ -29,9 +30,10 @@ summarise_rays_at_angle(const struct glint_zone_rays *r, int first)
     struct ray_summary s = {.low = {HUGE_VAL, HUGE_VAL},
                             .high = {-HUGE_VAL, -HUGE_VAL}};
 
-    for (int i = first; i < r->n && glint_zone_rays_alike(r, i, first);
+    for (int i = first;
+         i < r->n && glint_zone_rays_have_same_light(r, i, first);
          i++, s.n_all++) {
-        if (!glint_zone_rays_seen(r, i))
+        if (!glint_zone_rays_is_visible(r, i))
             continue;
         for (int k = 0; k < 2; k++) {
             s.low[k] = fmin(s.low[k], r->at[RAY_SENSOR_X + k][i]);
@@ -60,7 +62,8 @@ static double compute_light_sine(const struct glint_zone *zone,
                                   0.5 * x[GLINT_P] * (zone->y_hi - zone->y_lo));
 }
 
-/* Estimates the area on the sensor that the visible rays of V cover, mm^2. */
+/* Estimates the area on the sensor that the visible rays summarised in V cover,
+ * mm^2. */
 static double estimate_sensor_area(const struct glint_zone *zone,
                                    const struct ray_summary *v, double blur_mm)
 {
@@ -71,16 +74,17 @@ static double estimate_sensor_area(const struct glint_zone *zone,
     return fmax(1e-9, (v->high[0] - v->low[0] + blur_mm) * 1.6 * y);
 }
 
-/* Returns the brightness of the ghost relative to the level of struct
- * glint_brightness: the max over angles and wavelengths, or the mean for skew
- * zones, which have few rays per direction. In skew zones light spreads over at
- * least a pixel. THIN receives the factors on tolerances along x and y. */
+/* Returns the brightness of the ghost relative to the brightness level of
+ * struct glint_brightness: the max over angles and wavelengths, or the mean for
+ * skew zones, which have few rays per direction. In skew zones light is spread
+ * over at least a pixel. THIN receives the factors on the tolerances along x
+ * and y. */
 static double
 compute_relative_brightness(const struct glint_tolerance *tolerance,
                             const struct glint_zone *zone,
                             const struct glint_zone_rays *r, double thin[2])
 {
-    /* with at most this many visible rays the area is undefined */
+    /* number of visible rays up to which their area is too uncertain */
     enum { FEW = 4 };
     const double blur = zone->skew ? tolerance->pixel_mm : 0;
     double most = 0, light = 0, area = 0, covered = 0, on_screen[2] = {0},
@@ -90,12 +94,12 @@ compute_relative_brightness(const struct glint_tolerance *tolerance,
         const struct ray_summary v = summarise_rays_at_angle(r, i);
         const double x[GLINT_VARIABLES] = {0, 0, r->x[GLINT_S][i],
                                            r->x[GLINT_W][i], r->x[GLINT_P][i]};
-        const double pupil = 4 * (1 - glint_zone_rim(zone->annulus)) *
-                             glint_zone_side(zone, zone->half_x, x) *
-                             glint_zone_side(zone, zone->half_y, x) * v.n /
-                             v.n_all;
-        const double level = glint_brightness_at(tolerance->brightness,
-                                                 compute_light_sine(zone, x));
+        const double pupil = 4 * (1 - glint_zone_get_inner_rim(zone->annulus)) *
+                             glint_zone_evaluate_side(zone, zone->half_x, x) *
+                             glint_zone_evaluate_side(zone, zone->half_y, x) *
+                             v.n / v.n_all;
+        const double level = glint_brightness_get_level(
+            tolerance->brightness, compute_light_sine(zone, x));
         const double on = estimate_sensor_area(zone, &v, blur);
 
         next = i + v.n_all;
@@ -118,8 +122,9 @@ compute_relative_brightness(const struct glint_tolerance *tolerance,
     return zone->skew ? light / fmax(area, 1e-30) : most;
 }
 
-double glint_zone_aim_stretch(const struct glint_zone_rays *rays,
-                              const double *a, const double *b, double near)
+double glint_zone_aim_compute_stretch(const struct glint_zone_rays *rays,
+                                      const double *a, const double *b,
+                                      double near)
 {
     double moved2 = 0, change2 = 0;
 
@@ -128,9 +133,9 @@ double glint_zone_aim_stretch(const struct glint_zone_rays *rays,
 
         if ((rays->x[GLINT_V][i] != rays->x[GLINT_V][i - 1] &&
              !rays->scattered) ||
-            !glint_zone_rays_alike(rays, i, i - 1) ||
-            !glint_zone_rays_seen(rays, i) ||
-            !glint_zone_rays_seen(rays, i - 1) || a[i] < near)
+            !glint_zone_rays_have_same_light(rays, i, i - 1) ||
+            !glint_zone_rays_is_visible(rays, i) ||
+            !glint_zone_rays_is_visible(rays, i - 1) || a[i] < near)
             continue;
         moved2 += (x[i] - x[i - 1]) * (x[i] - x[i - 1]) +
                   (y[i] - y[i - 1]) * (y[i] - y[i - 1]);
@@ -148,15 +153,17 @@ static double clamp_outline_tolerance(const struct glint_zone_aim *aim,
     return fmax(least, fmin(most, aim->edge_mm / fmax(1e-12, stretch_mm)));
 }
 
-double glint_zone_aim_outline(const struct glint_zone_aim *aim, double least,
-                              double most, double stretch_mm)
+double glint_zone_aim_get_outline_tolerance(const struct glint_zone_aim *aim,
+                                            double least, double most,
+                                            double stretch_mm)
 {
     return clamp_outline_tolerance(aim, least * most, most, stretch_mm);
 }
 
-struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
-                                        const struct glint_zone *zone,
-                                        const struct glint_zone_rays *rays)
+struct glint_zone_aim
+glint_zone_aim_compute_tolerances(const struct glint_tolerance *tolerance,
+                                  const struct glint_zone *zone,
+                                  const struct glint_zone_rays *rays)
 {
     const struct glint_tolerance *t = tolerance;
     double thin[2];
@@ -178,14 +185,14 @@ struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
     aim.hidden = shows * t->sensor_mm / aim.sensor_mm;
     aim.stop = clamp_outline_tolerance(
         &aim, t->stop_least, t->stop,
-        glint_zone_aim_stretch(rays, rays->at[RAY_STOP_X], rays->at[RAY_STOP_Y],
-                               -HUGE_VAL));
+        glint_zone_aim_compute_stretch(rays, rays->at[RAY_STOP_X],
+                                       rays->at[RAY_STOP_Y], -HUGE_VAL));
     return aim;
 }
 
-double glint_zone_aim_off(const struct glint_zone_rays *r,
-                          const struct glint_fitted_output *o,
-                          const double *light, int step)
+double glint_zone_aim_compute_rms_error(const struct glint_zone_rays *r,
+                                        const struct glint_fitted_output *o,
+                                        const double *light, int step)
 {
     const double *value = r->at[o->kind];
     double sum2 = 0;
@@ -196,8 +203,9 @@ double glint_zone_aim_off(const struct glint_zone_rays *r,
 
         if (r->at[RAY_EXCESS][i] > 1.02 || r->at[RAY_FIELD][i] > 1)
             continue;
-        glint_zone_rays_x(r, i, x);
-        error = glint_poly_at(o->n_terms, o->power, o->coef, x) - value[i];
+        glint_zone_rays_get_coordinates(r, i, x);
+        error =
+            glint_poly_evaluate(o->n_terms, o->power, o->coef, x) - value[i];
         error *= light ? light[i] : 1;
         sum2 += error * error;
         n++;
@@ -213,10 +221,10 @@ static int find_ray_in_previous_row(const struct glint_zone_rays *r, int i)
 {
     int row = i, near = -1;
 
-    while (row >= 0 && glint_zone_rays_alike(r, row, i) &&
+    while (row >= 0 && glint_zone_rays_have_same_light(r, row, i) &&
            r->x[GLINT_V][row] == r->x[GLINT_V][i])
         row--;
-    for (int k = row; k >= 0 && glint_zone_rays_alike(r, k, i) &&
+    for (int k = row; k >= 0 && glint_zone_rays_have_same_light(r, k, i) &&
                       r->x[GLINT_V][k] == r->x[GLINT_V][row];
          k--)
         if (near < 0 || fabs(r->x[GLINT_U][k] - r->x[GLINT_U][i]) <
@@ -241,9 +249,9 @@ static double compute_round_irradiance(const struct glint_zone *zone,
 {
     double x[GLINT_VARIABLES], pupil;
 
-    glint_zone_rays_x(r, i, x);
-    pupil = glint_zone_side(zone, zone->half_x, x) *
-            glint_zone_side(zone, zone->half_y, x) *
+    glint_zone_rays_get_coordinates(r, i, x);
+    pupil = glint_zone_evaluate_side(zone, zone->half_x, x) *
+            glint_zone_evaluate_side(zone, zone->half_y, x) *
             compute_parallelogram_area(r->x[GLINT_U], r->x[GLINT_V], i, a, b);
 
     return r->at[RAY_ENERGY][i] * pupil /
@@ -252,7 +260,7 @@ static double compute_round_irradiance(const struct glint_zone *zone,
 }
 
 /* Returns the relative brightness at ray I of a skew zone, see
- * glint_zone_aim_light(). */
+ * glint_zone_aim_set_ray_brightness(). */
 static double compute_skew_brightness(const struct glint_tolerance *tolerance,
                                       const struct glint_zone *zone,
                                       const struct glint_zone_aim *aim,
@@ -260,40 +268,42 @@ static double compute_skew_brightness(const struct glint_tolerance *tolerance,
 {
     double x[GLINT_VARIABLES], level, pupil;
 
-    glint_zone_rays_x(r, i, x);
-    level = glint_brightness_at(tolerance->brightness,
-                                compute_light_sine(zone, x)) *
+    glint_zone_rays_get_coordinates(r, i, x);
+    level = glint_brightness_get_level(tolerance->brightness,
+                                       compute_light_sine(zone, x)) *
             aim->share;
-    pupil = glint_zone_side(zone, zone->half_x, x) *
-            glint_zone_side(zone, zone->half_y, x);
+    pupil = glint_zone_evaluate_side(zone, zone->half_x, x) *
+            glint_zone_evaluate_side(zone, zone->half_y, x);
     return fmin(
         1, fmax(LEAST_LIGHT, r->at[RAY_ENERGY][i] * pupil /
                                  fmax(1e-30, r->at[RAY_SPREAD][i] * level)));
 }
 
-void glint_zone_aim_light(const struct glint_tolerance *tolerance,
-                          const struct glint_zone *zone,
-                          const struct glint_zone_aim *aim,
-                          const struct glint_zone_rays *rays, double *light)
+void glint_zone_aim_set_ray_brightness(const struct glint_tolerance *tolerance,
+                                       const struct glint_zone *zone,
+                                       const struct glint_zone_aim *aim,
+                                       const struct glint_zone_rays *rays,
+                                       double *light)
 {
     for (int i = 0; i < rays->n && zone->skew; i++)
         light[i] = compute_skew_brightness(tolerance, zone, aim, rays, i);
     for (int i = 0; i < rays->n && !zone->skew; i++) {
         const int before = find_ray_in_previous_row(rays, i);
         const int beside =
-            i + 1 < rays->n && glint_zone_rays_alike(rays, i, i + 1) &&
+            i + 1 < rays->n &&
+                    glint_zone_rays_have_same_light(rays, i, i + 1) &&
                     rays->x[GLINT_V][i] == rays->x[GLINT_V][i + 1]
                 ? i + 1
                 : i - 1;
         double x[GLINT_VARIABLES], level;
 
-        glint_zone_rays_x(rays, i, x);
-        level = glint_brightness_at(tolerance->brightness,
-                                    compute_light_sine(zone, x)) *
+        glint_zone_rays_get_coordinates(rays, i, x);
+        level = glint_brightness_get_level(tolerance->brightness,
+                                           compute_light_sine(zone, x)) *
                 aim->share;
         light[i] = 1;
         if (before >= 0 && beside != before && beside >= 0 &&
-            glint_zone_rays_alike(rays, i, beside))
+            glint_zone_rays_have_same_light(rays, i, beside))
             light[i] =
                 fmin(1, fmax(LEAST_LIGHT, compute_round_irradiance(
                                               zone, rays, i, beside, before) /

@@ -14,17 +14,19 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 /* min ratio of max to min energy at which a root of the energy is fitted */
 #define WIDE_ENERGY 60
 
-/* Fast lenses: outline errors are visible at the rim of a ghost only, position
- * errors everywhere. A box is divided for outline errors only if they are this
- * many times as large. */
+/* Fast lenses: outline errors are visible only at the rim of a ghost, position
+ * errors everywhere. A box is divided because of outline errors only if they
+ * are this many times as large. */
 #define RIM 4.0
-/* Min tolerance of a barrel / max tolerance. LEAST_FAR: for lights beyond
- * GLINT_FAR, where light grazes a hemispherical surface and the whole ghost
- * lies within 0.003 of its rim. */
+/* Min tolerance of a barrel / its max tolerance. LEAST_FAR: the same for lights
+ * farther off the axis than GLINT_FAR degrees, whose light grazes a
+ * hemispherical surface, so that the whole ghost lies within 0.003 of its
+ * rim. */
 #define LEAST     0.06
 #define LEAST_FAR 5e-4
-/* For lights beyond GLINT_FAR: leaking rays / visible rays that count as an
- * outline error of one tolerance. */
+/* For lights farther off the axis than GLINT_FAR degrees: ratio of leaking rays
+ * to visible rays that counts as an outline error of one tolerance. Leaking:
+ * transmitted by the polynomials although the lens blocks the ray. */
 #define LEAK 0.02
 /* The second fit is discarded if its error is above one tolerance and above
  * this many times the first fit's error. */
@@ -112,9 +114,10 @@ static bool is_fast_lens(const struct fit *f)
 }
 
 /* Returns a factor on the weight of a blocked ray whose max relative radius is
- * EXCESS. For fast lenses it decreases with EXCESS: positions diverge towards
- * total reflection, and these invisible errors would dominate the fit. */
-static double compute_far_ray_factor(const struct fit *f, double excess)
+ * EXCESS. For fast lenses it decreases with EXCESS: towards total reflection
+ * positions diverge, and the large errors there, which are invisible, would
+ * dominate the fit. */
+static double compute_blocked_ray_weight(const struct fit *f, double excess)
 {
     return !is_fast_lens(f) ? 1
                             : 1 / (1 + 10 * fmax(0, excess * excess - 1.25));
@@ -128,13 +131,13 @@ static double compute_edge_weight(const struct fit *f, double excess)
     const double past = (excess - 1.02) / 0.05;
 
     return past <= 0 ? 1
-                     : fmax(0.002 * compute_far_ray_factor(f, excess),
+                     : fmax(0.002 * compute_blocked_ray_weight(f, excess),
                             exp(-past * past));
 }
 
-/* Returns a factor on the weight of a ray's position, FIELDS field radii from
- * the sensor's centre. Rays outside the field only have to stay outside: their
- * error may be 1/5 of their distance from the field. */
+/* Returns a factor on the weight of the position of a ray that hits the sensor
+ * plane FIELDS field radii from the centre. Rays outside the field only have to
+ * stay outside: their error may be 1/5 of their distance from the field. */
 static double compute_field_weight(const struct fit *f, double fields)
 {
     const double out_mm = (fields - 1.01) * f->task->visible->field_mm;
@@ -146,9 +149,10 @@ static double compute_field_weight(const struct fit *f, double fields)
  * surfaces. */
 static void set_brightness_weights(struct fit *f)
 {
-    if (glint_zone_by_light(f->task->zone, f->task->visible))
-        glint_zone_aim_light(f->task->tolerance, f->task->zone, f->aim,
-                             &f->buffers->rays, f->buffers->light);
+    if (glint_zone_is_weighted_by_brightness(f->task->zone, f->task->visible))
+        glint_zone_aim_set_ray_brightness(f->task->tolerance, f->task->zone,
+                                          f->aim, &f->buffers->rays,
+                                          f->buffers->light);
     else
         for (int i = 0; i < f->buffers->rays.n; i++)
             f->buffers->light[i] = 1;
@@ -179,12 +183,12 @@ static bool is_leaking_ray(const struct glint_zone_rays *r, int i,
     double x[GLINT_VARIABLES], at[GLINT_OUT_KINDS] = {0};
     bool passes = r->at[RAY_EXCESS][i] > 1.05;
 
-    glint_zone_rays_x(r, i, x);
+    glint_zone_rays_get_coordinates(r, i, x);
     for (int k = 0; k < system->n_outputs && passes; k++) {
         const struct glint_fitted_output *o = &system->output[k];
 
         if (o->kind != GLINT_OUT_ENERGY)
-            at[o->kind] = glint_poly_at(o->n_terms, o->power, o->coef, x);
+            at[o->kind] = glint_poly_evaluate(o->n_terms, o->power, o->coef, x);
         if (o->kind >= GLINT_OUT_BARREL_0)
             passes = at[o->kind] < 1;
     }
@@ -204,7 +208,7 @@ static bool raise_leak_weights(struct fit *f,
                            f->task->visible->field_mm)) {
             f->buffers->weight[i] =
                 fmax(f->buffers->weight[i],
-                     0.1 * compute_far_ray_factor(
+                     0.1 * compute_blocked_ray_weight(
                                f, f->buffers->rays.at[RAY_EXCESS][i]));
             any = true;
         }
@@ -220,7 +224,7 @@ static double compute_leak_ratio(const struct fit *f,
 
     for (int i = 0; i < r->n; i++) {
         n += is_leaking_ray(r, i, system, f->task->visible->field_mm);
-        n_seen += glint_zone_rays_seen(r, i);
+        n_seen += glint_zone_rays_is_visible(r, i);
     }
     return n / fmax(1, n_seen);
 }
@@ -237,8 +241,8 @@ append_fitted_output(struct glint_fitted_system *system,
         return GLINT_E_MEMORY;
     o->kind = kind;
     o->n_terms = poly->n;
-    /* errors of a few dozen coefficients then add up to less than 1/3 of the
-     * tolerance */
+    /* rounding errors of a few dozen coefficients then add up to less than 1/3
+     * of the tolerance */
     o->grain = rms / 6;
     o->met = met;
     memcpy(o->power, poly->power, (size_t)poly->n * sizeof *o->power);
@@ -257,13 +261,15 @@ static double fit_polynomial(struct fit *f, const struct glint_zone_rays *r,
         r->n,
         {r->x[0], r->x[1], r->x[2], r->x[3], r->x[4]},
         f->buffers->channel_weight};
-    const bool steep = f->task->thorough && kind == GLINT_OUT_ENERGY &&
-                       glint_zone_rays_spread(&f->buffers->rays) > GLINT_STEEP;
+    const bool steep =
+        f->task->thorough && kind == GLINT_OUT_ENERGY &&
+        glint_zone_rays_compute_energy_ratio(&f->buffers->rays) > GLINT_STEEP;
     const struct glint_degrees degrees =
         choose_allowed_terms(f->task, kind, steep);
 
-    return glint_regress_fit(f->buffers->scratch, &samples, f->buffers->value,
-                             &degrees, rms, PEAK * rms, poly);
+    return glint_regress_fit_polynomial(f->buffers->scratch, &samples,
+                                        f->buffers->value, &degrees, rms,
+                                        PEAK * rms, poly);
 }
 
 /* Fits output KIND and appends it to SYSTEM. Raises *WORST to its residual, in
@@ -313,30 +319,31 @@ static void extend_energy_range(const struct glint_zone_rays *r, double *least,
                                 double *most)
 {
     for (int i = 0; i < r->n; i++)
-        if (glint_zone_rays_seen(r, i)) {
+        if (glint_zone_rays_is_visible(r, i)) {
             *least = fmin(*least, r->at[RAY_ENERGY][i]);
             *most = fmax(*most, r->at[RAY_ENERGY][i]);
         }
 }
 
-/* Returns whether the energy of a ghost, reflected by coatings of several
- * films, hardly varies over the pupil. */
+/* Returns whether coatings of several films reflect the ghost and its energy
+ * hardly varies over the pupil. */
 static bool is_energy_smooth_over_pupil(const struct fit *f,
                                         const struct glint_zone_rays *r)
 {
-    return f->task->stacks && glint_zone_rays_spread(r) <= GLINT_STEEP;
+    return f->task->stacks &&
+           glint_zone_rays_compute_energy_ratio(r) <= GLINT_STEEP;
 }
 
-/* Returns the min divisor of relative energy errors. If two coatings of several
- * films reflect almost no light at some wavelengths, it is half of the band's
- * mean energy. */
+/* Returns the min energy by which energy errors are divided to get relative
+ * errors. If two coatings of several films reflect almost no light at some
+ * wavelengths, it is half of the band's mean energy. */
 static double compute_min_energy(const struct fit *f,
                                  const struct glint_zone_rays *r, double most)
 {
     double sum = 0, n = 1e-9;
 
     for (int i = 0; i < r->n && f->task->stacks; i++)
-        if (glint_zone_rays_seen(r, i))
+        if (glint_zone_rays_is_visible(r, i))
             sum += r->at[RAY_ENERGY][i], n++;
     return fmax(0.005 * most,
                 is_energy_smooth_over_pupil(f, r) ? 0.5 * sum / n : 0);
@@ -356,7 +363,8 @@ static double set_energy_values(struct fit *f, const struct glint_zone_rays *r,
         const double energy = r->at[RAY_ENERGY][i];
         const double share = fmax(energy, least);
 
-        /* relative error of the fourth root: a quarter of that of the energy */
+        /* the relative error of the fourth root is a quarter of that of the
+         * energy */
         f->buffers->value[i] = root ? sqrt(sqrt(energy)) : energy;
         f->buffers->channel_weight[i] =
             fmax(compute_edge_weight(f, out), 0.001) /
@@ -424,17 +432,17 @@ static enum glint_status fit_barrel_radius(struct fit *f, int barrel,
         f->buffers->channel_weight[i] =
             f->buffers->weight[i] * fmax(0.05, 1 / (1 + off * off));
     }
-    stretch = glint_zone_aim_stretch(r, f->buffers->value, NULL, 0.8);
+    stretch = glint_zone_aim_compute_stretch(r, f->buffers->value, NULL, 0.8);
     system->output[system->n_outputs].event = r->barrel[barrel];
     return fit_and_append_output(
         f, r, (enum glint_channel)(GLINT_OUT_BARREL_0 + barrel),
-        glint_zone_aim_outline(f->aim,
-                               f->task->visible->far ? LEAST_FAR : LEAST,
-                               f->task->barrel, stretch),
+        glint_zone_aim_get_outline_tolerance(
+            f->aim, f->task->visible->far ? LEAST_FAR : LEAST, f->task->barrel,
+            stretch),
         system, worst);
 }
 
-static void free_outputs(struct glint_fitted_system *system)
+static void free_system_outputs(struct glint_fitted_system *system)
 {
     while (system->n_outputs > 0)
         free(system->output[--system->n_outputs].coef);
@@ -505,28 +513,30 @@ static enum glint_status fit_all_outputs(struct fit *f,
 
 /* ------------------------------------------------------------------ checks */
 
-/* max RMS error, in tolerances, of rays that were not fitted */
+/* max RMS error, in tolerances, of rays between the fitted ones */
 #define CHECK_RMS 1.6
 
 /* Measures the position errors of rays between the fitted ones, in units of
  * CHECK_RMS tolerances, and raises the errors of the fit to these: a fit can be
  * good at every node and bad in between. */
-static void check_between_rays(struct fit *f,
-                               const struct glint_fitted_system *system)
+static void check_rays_between_samples(struct fit *f,
+                                       const struct glint_fitted_system *system)
 {
     struct glint_zone_errors *const e = f->errors;
     const bool shaped = f->task->visible->shaped;
-    const bool by_light = glint_zone_by_light(f->task->zone, f->task->visible);
+    const bool by_light =
+        glint_zone_is_weighted_by_brightness(f->task->zone, f->task->visible);
 
-    glint_zone_check(f->task->zone, f->task->visible, &f->buffers->rays);
+    glint_zone_trace_check_rays(f->task->zone, f->task->visible,
+                                &f->buffers->rays);
     set_brightness_weights(f);
     for (int k = 0; k < 4 && k < system->n_outputs; k++) {
         const bool sensor = k <= RAY_SENSOR_Y;
         double *const error = sensor ? &e->places : &e->outlines;
         const double left =
-            glint_zone_aim_off(&f->buffers->rays, &system->output[k],
-                               sensor && by_light ? f->buffers->light : NULL,
-                               shaped ? 3 : 1) /
+            glint_zone_aim_compute_rms_error(
+                &f->buffers->rays, &system->output[k],
+                sensor && by_light ? f->buffers->light : NULL, shaped ? 3 : 1) /
             get_position_tolerance(f, k);
 
         *error = fmax(*error, left / CHECK_RMS);
@@ -538,8 +548,8 @@ static void check_between_rays(struct fit *f,
 
 /* Fits SYSTEM again with the new weights. Fast lenses: restores the first fit
  * if removing leaks would cause larger visible errors. */
-static enum glint_status refit_without_leaks(struct fit *f,
-                                             struct glint_fitted_system *system)
+static enum glint_status
+refit_without_leaking_rays(struct fit *f, struct glint_fitted_system *system)
 {
     const struct glint_zone_errors errors = *f->errors;
     struct glint_fitted_system leaky = *system;
@@ -550,20 +560,20 @@ static enum glint_status refit_without_leaks(struct fit *f,
     if (is_fast_lens(f) &&
         fmax(f->errors->places, f->errors->outlines) >
             fmax(1, HARM * fmax(errors.places, errors.outlines))) {
-        free_outputs(system);
+        free_system_outputs(system);
         *system = leaky;
         *f->errors = errors;
     } else {
-        free_outputs(&leaky);
+        free_system_outputs(&leaky);
     }
     return status;
 }
 
-enum glint_status glint_zone_fit(const struct glint_zone_task *task,
-                                 const struct glint_zone_aim *aim,
-                                 struct glint_zone_buffers *buffers,
-                                 struct glint_fitted_system *system,
-                                 struct glint_zone_errors *errors)
+enum glint_status glint_zone_fit_outputs(const struct glint_zone_task *task,
+                                         const struct glint_zone_aim *aim,
+                                         struct glint_zone_buffers *buffers,
+                                         struct glint_fitted_system *system,
+                                         struct glint_zone_errors *errors)
 {
     struct fit f = {task, aim, buffers, errors};
     enum glint_status status;
@@ -574,11 +584,11 @@ enum glint_status glint_zone_fit(const struct glint_zone_task *task,
         return status;
     if ((task->thorough || errors->worst <= 1) &&
         raise_leak_weights(&f, system))
-        status = refit_without_leaks(&f, system);
+        status = refit_without_leaking_rays(&f, system);
     if (status == GLINT_OK && task->visible->far)
         errors->outlines =
             fmax(errors->outlines, compute_leak_ratio(&f, system) / LEAK);
     if (status == GLINT_OK)
-        check_between_rays(&f, system);
+        check_rays_between_samples(&f, system);
     return status;
 }

@@ -5,9 +5,10 @@
  *   in   rays of the zone, tolerances for its ghost
  *   out  a sparse polynomial per output, and its errors
  *
- *     glint_zone_trace(&zone, visible, &buffers->rays, &buffers->energies);
- *     aim = glint_zone_aim_of(tolerance, &zone, &buffers->rays);
- *     status = glint_zone_fit(&task, &aim, buffers, &system, &errors);
+ *     glint_zone_trace_rays(&zone, visible, &buffers->rays,
+ * &buffers->energies); aim = glint_zone_aim_compute_tolerances(tolerance,
+ * &zone, &buffers->rays); status = glint_zone_fit_outputs(&task, &aim, buffers,
+ * &system, &errors);
  *
  * Errors count where they are visible: a ray outside the visible region or the
  * field only has to stay outside. Rays that the polynomials transmit although
@@ -27,18 +28,19 @@ struct glint_zone_task {
     double barrel;
     bool thorough; /* true: allow a root of the energy, and more terms */
     bool stacks;   /* true: coatings of several films reflect the ghost */
-    /* error in tolerances; a fit stops once its error is sure to stay above; 0:
-     * never */
+    /* error, in tolerances; a fit stops early once it is clear that its error
+     * stays above this value; 0: never */
     double hopeless;
-    /* Error in tolerances. Once an output exceeds it, the remaining outputs are
-     * skipped, as the zone will be fitted again in any case. Skew zones compare
-     * positions and outlines, thorough fits dims of struct glint_zone_errors.
-     * 0: never skip. */
+    /* Error, in tolerances. Once the error of an output exceeds it, the
+     * remaining outputs are skipped, because the zone will be fitted again in
+     * any case. Skew zones compare the errors of positions and outlines,
+     * thorough fits dims of struct glint_zone_errors. 0: never skip. */
     double settled;
 };
 
-/* Size of the memory for one fit, in doubles. The number of moments follows
- * from twice the degrees of a skew zone's positions: 18, 16, 10, 8 and 10. */
+/* Number of doubles of scratch memory for one fit. The number of moments
+ * follows from twice the degrees of a skew zone's positions: 18, 16, 10, 8 and
+ * 10. */
 #define GLINT_ZONE_SCRATCH                                  \
     GLINT_REGRESS_DOUBLES(GLINT_ZONE_RAYS, GLINT_MAX_TERMS, \
                           GLINT_MAX_CANDIDATES, 19 * 17 * 11 * 9 * 11)
@@ -49,30 +51,31 @@ struct glint_zone_buffers {
     /* rays that are fitted; each fit overwrites them */
     struct glint_zone_rays rays, energies;
     double weight[GLINT_ZONE_RAYS], sensor_weight[GLINT_ZONE_RAYS];
-    /* brightness weights, see glint_zone_aim_light() */
+    /* brightness weights, see glint_zone_aim_set_ray_brightness() */
     double light[GLINT_ZONE_RAYS];
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
 };
 
 /* max errors of a fit, in tolerances */
 struct glint_zone_errors {
-    double places;   /* errors of positions on the sensor */
-    double outlines; /* outlines: positions in the stop and at barrels */
-    double shows;    /* visible part of the errors of positions and outlines */
-    /* shows or, for fast lenses, also the energy; decides whether a box is
+    double places; /* error of positions on the sensor */
+    /* error of outlines, from positions in the stop and at barrels */
+    double outlines;
+    double shows; /* visible part of the position and outline errors */
+    /* max of shows and, for fast lenses, energy; decides whether a box is
      * divided */
     double dims;
-    double worst;  /* max over positions, outlines and energy */
-    double energy; /* error of the energy */
+    double worst;  /* max of places, outlines and energy */
+    double energy; /* relative error of the energy */
 };
 
 /* Fits all outputs of SYSTEM, which must have none yet. Skips the remaining
  * outputs if errors exceed TASK->hopeless or TASK->settled. May return
  * GLINT_E_MEMORY. */
-enum glint_status glint_zone_fit(const struct glint_zone_task *task,
-                                 const struct glint_zone_aim *aim,
-                                 struct glint_zone_buffers *buffers,
-                                 struct glint_fitted_system *system,
-                                 struct glint_zone_errors *errors);
+enum glint_status glint_zone_fit_outputs(const struct glint_zone_task *task,
+                                         const struct glint_zone_aim *aim,
+                                         struct glint_zone_buffers *buffers,
+                                         struct glint_fitted_system *system,
+                                         struct glint_zone_errors *errors);
 
 #endif

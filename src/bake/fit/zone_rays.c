@@ -13,7 +13,8 @@ static double compute_max_radius(const struct glint_visible *h,
                                      h->setup->optics.stop_radius_mm);
 }
 
-/* Returns the distance of RAY from the sensor's centre, in field radii. */
+/* Returns the distance of RAY's sensor position from the sensor's centre, in
+ * field radii. */
 static double compute_field_radius(const struct glint_visible *h,
                                    const struct glint_ray *ray)
 {
@@ -47,25 +48,25 @@ static void append_zone_ray(const struct glint_visible *h,
     }
 }
 
-/* RAY_EXCESS and RAY_FIELD of each ray of a batch at the neighbouring zoom
- * position where the larger of both is smallest. */
+/* RAY_EXCESS and RAY_FIELD of each ray of a batch at that neighbouring zoom
+ * position where the larger one of both is smallest. */
 struct beside {
     double excess[GLINT_ZONE_BATCH], field[GLINT_ZONE_BATCH];
 };
 
-/* Returns whether (EXCESS, FIELD) is nearer to the visible region than entry I
- * of B. */
-static bool is_nearer_to_visible(const struct beside *b, int i, double excess,
-                                 double field)
+/* Returns whether a ray with these values of RAY_EXCESS and RAY_FIELD is nearer
+ * to the visible region than entry I of B. */
+static bool is_nearer_to_visible_region(const struct beside *b, int i,
+                                        double excess, double field)
 {
     return fmax(excess, field) < fmax(b->excess[i], b->field[i]);
 }
 
 /* Traces the rays of T, at wavelength index WAVE, at all neighbouring zoom
  * positions and records the values nearest to the visible region in B. */
-static void trace_neighbour_positions(const struct glint_visible *visible,
-                                      int wave, struct glint_zone_batch *t,
-                                      struct beside *b)
+static void trace_neighbour_zoom_positions(const struct glint_visible *visible,
+                                           int wave, struct glint_zone_batch *t,
+                                           struct beside *b)
 {
     for (int i = 0; i < t->n; i++)
         b->excess[i] = b->field[i] = HUGE_VAL;
@@ -73,7 +74,7 @@ static void trace_neighbour_positions(const struct glint_visible *visible,
         const struct glint_visible *const h = &visible->beside[m];
 
         t->path = &h->position_path[wave];
-        glint_zone_batch_trace(t);
+        glint_zone_batch_trace_rays(t);
         for (int i = 0; i < t->n; i++) {
             double excess, field;
 
@@ -81,7 +82,7 @@ static void trace_neighbour_positions(const struct glint_visible *visible,
                 continue;
             excess = compute_max_radius(h, &t->ray[i]);
             field = compute_field_radius(h, &t->ray[i]);
-            if (is_nearer_to_visible(b, i, excess, field)) {
+            if (is_nearer_to_visible_region(b, i, excess, field)) {
                 b->excess[i] = excess;
                 b->field[i] = field;
             }
@@ -89,35 +90,35 @@ static void trace_neighbour_positions(const struct glint_visible *visible,
     }
 }
 
-/* Replaces RAY_EXCESS and RAY_FIELD of the last of RAYS by entry I of B if that
- * is nearer to the visible region. */
-static void replace_by_nearer_position(const struct beside *b, int i,
-                                       struct glint_zone_rays *rays)
+/* Replaces RAY_EXCESS and RAY_FIELD of the last ray of RAYS by those of entry I
+ * of B if that entry is nearer to the visible region. */
+static void replace_by_nearer_zoom_position(const struct beside *b, int i,
+                                            struct glint_zone_rays *rays)
 {
     double *const excess = &rays->at[RAY_EXCESS][rays->n - 1];
     double *const field = &rays->at[RAY_FIELD][rays->n - 1];
 
-    if (is_nearer_to_visible(b, i, *excess, *field))
+    if (is_nearer_to_visible_region(b, i, *excess, *field))
         return;
     *excess = b->excess[i];
     *field = b->field[i];
 }
 
-/* Number of angles, and of grid cells across and down the pupil. Each variable
- * has more nodes than powers; otherwise a fit could be exact at all nodes and
- * wrong in between. */
+/* Number of angles (SINES) and of grid cells along both axes of the pupil. Each
+ * variable has more nodes than powers; otherwise a fit could be exact at all
+ * nodes and wrong in between. */
 enum { SINES = 9, ACROSS = 24, DOWN = 12 };
 
 /* Returns the fractional part of N * R. */
-static double compute_product_fraction(int n, double r)
+static double compute_fractional_product(int n, double r)
 {
     return fmod(n * r, 1);
 }
 
-/* Traces a grid of rays at one angle and wavelength. Fast lenses: each angle
- * and wavelength gets a shifted grid, as polynomials could oscillate between
- * rays. In the finest grid only every third ray far outside the visible region
- * is stored. */
+/* Traces a grid of rays at one angle and wavelength. Fast lenses: the grid is
+ * shifted by a different amount for each angle and wavelength, as polynomials
+ * could otherwise oscillate between rays. In the finest grid only every third
+ * ray far outside the visible region is stored. */
 static void trace_pupil_grid(const struct glint_zone *zone,
                              const struct glint_visible *visible, int sine,
                              int wave, int stride, struct glint_zone_rays *rays)
@@ -128,9 +129,9 @@ static void trace_pupil_grid(const struct glint_zone *zone,
     const int plane = sine * 4 + wave;
     const double move = visible->wide ? stride : 0;
     const double right =
-        move * compute_product_fraction(plane, 0.75487766624669276);
+        move * compute_fractional_product(plane, 0.75487766624669276);
     const double up =
-        move * compute_product_fraction(plane, 0.56984029099805327);
+        move * compute_fractional_product(plane, 0.56984029099805327);
     struct glint_zone_batch t;
     struct beside beside;
 
@@ -142,20 +143,20 @@ static void trace_pupil_grid(const struct glint_zone *zone,
                 zone->annulus
                     ? 0.5 - 0.5 * cos(GLINT_PI * fmin(j + up, DOWN) / DOWN)
                     : sin(0.5 * GLINT_PI * fmin(j + up, DOWN) / DOWN),
-                glint_zone_node(sine, SINES),
-                glint_zone_node(wave, GLINT_VISIBLE_WAVES)};
+                glint_zone_compute_node(sine, SINES),
+                glint_zone_compute_node(wave, GLINT_VISIBLE_WAVES)};
 
-            glint_zone_batch_add(&t, zone, x);
+            glint_zone_batch_add_ray(&t, zone, x);
         }
-        trace_neighbour_positions(visible, wave, &t, &beside);
+        trace_neighbour_zoom_positions(visible, wave, &t, &beside);
         t.path = &visible->path[wave];
-        glint_zone_batch_trace(&t);
+        glint_zone_batch_trace_rays(&t);
         for (int i = 0; i < t.n && rays->n < full; i++) {
             if (t.status[i] != GLINT_RAY_OK)
                 continue;
             append_zone_ray(visible, t.path, t.x[i], &t.ray[i],
-                            glint_zone_batch_hits(&t, i), rays);
-            replace_by_nearer_position(&beside, i, rays);
+                            glint_zone_batch_get_hits(&t, i), rays);
+            replace_by_nearer_zoom_position(&beside, i, rays);
             if (stride == 1 && (i + j) % 3 &&
                 fmax(rays->at[RAY_EXCESS][rays->n - 1],
                      rays->at[RAY_FIELD][rays->n - 1]) > 1.1)
@@ -169,7 +170,7 @@ static int count_visible_rays(const struct glint_zone_rays *rays)
     int n = 0;
 
     for (int i = 0; i < rays->n; i++)
-        n += glint_zone_rays_seen(rays, i);
+        n += glint_zone_rays_is_visible(rays, i);
     return n;
 }
 
@@ -196,8 +197,8 @@ static void trace_rays_for_positions(const struct glint_zone *zone,
 /* distance in u or v between a ray and its neighbours */
 #define ASIDE 0.01
 
-/* Adds the ray at X to batch T. THREE: also adds a neighbour in v before it and
- * a neighbour in u after it. */
+/* Adds the ray at zone coordinates X to batch T. THREE: also adds a neighbour
+ * in v before it and a neighbour in u after it. */
 static void add_ray_with_neighbours(struct glint_zone_batch *t,
                                     const struct glint_zone *zone,
                                     double x[GLINT_VARIABLES], bool three)
@@ -206,13 +207,13 @@ static void add_ray_with_neighbours(struct glint_zone_batch *t,
 
     if (three) {
         x[1] = v + (v < 0.5 ? ASIDE : -ASIDE);
-        glint_zone_batch_add(t, zone, x);
+        glint_zone_batch_add_ray(t, zone, x);
         x[1] = v;
     }
-    glint_zone_batch_add(t, zone, x);
+    glint_zone_batch_add_ray(t, zone, x);
     if (three) {
         x[0] += x[0] < 0 ? ASIDE : -ASIDE;
-        glint_zone_batch_add(t, zone, x);
+        glint_zone_batch_add_ray(t, zone, x);
     }
 }
 
@@ -229,7 +230,7 @@ static void append_middle_rays(const struct glint_visible *visible,
         if (t->status[i] != GLINT_RAY_OK)
             continue;
         append_zone_ray(visible, t->path, t->x[i], b,
-                        glint_zone_batch_hits(t, i), rays);
+                        glint_zone_batch_get_hits(t, i), rays);
         if (t->status[i - 1] == GLINT_RAY_OK &&
             t->status[i + 1] == GLINT_RAY_OK)
             rays->at[RAY_SPREAD][rays->n - 1] =
@@ -242,8 +243,8 @@ static void append_middle_rays(const struct glint_visible *visible,
 }
 
 /* Traces the rays of a skew zone for fitting positions and energies: a few rays
- * for each of many directions and wavelengths. Directions fill the zone up to
- * its borders. */
+ * for each of many light directions and wavelengths. The directions fill the
+ * zone up to its borders. */
 static void trace_scattered_rays(const struct glint_zone *zone,
                                  const struct glint_visible *visible,
                                  struct glint_zone_rays *rays)
@@ -256,39 +257,39 @@ static void trace_scattered_rays(const struct glint_zone *zone,
         const int wave = k / 3 % GLINT_VISIBLE_WAVES;
         double plane[GLINT_VARIABLES], x[GLINT_VARIABLES];
 
-        glint_zone_scatter(zone, k / 3, plane);
+        glint_zone_set_scattered_point(zone, k / 3, plane);
         t.path = &visible->path[wave];
         t.n = 0;
         for (int n = 0; n < AT_ONCE; n++) {
-            glint_zone_scatter(zone, k * AT_ONCE + n, x);
+            glint_zone_set_scattered_point(zone, k * AT_ONCE + n, x);
             for (int i = 0; i < GLINT_VARIABLES; i++)
                 x[i] = sin(0.5 * GLINT_PI * (i < GLINT_S ? x[i] : plane[i]));
-            x[GLINT_W] = glint_zone_node(wave, GLINT_VISIBLE_WAVES);
+            x[GLINT_W] = glint_zone_compute_node(wave, GLINT_VISIBLE_WAVES);
             add_ray_with_neighbours(&t, zone, x, true);
         }
-        glint_zone_batch_trace(&t);
+        glint_zone_batch_trace_rays(&t);
         append_middle_rays(visible, &t, rays);
     }
 }
 
-bool glint_zone_rays_dark(const struct glint_zone_rays *rays)
+bool glint_zone_rays_are_all_blocked(const struct glint_zone_rays *rays)
 {
     for (int i = 0; i < rays->n; i++)
-        if (glint_zone_rays_seen(rays, i))
+        if (glint_zone_rays_is_visible(rays, i))
             return false;
     return true;
 }
 
-double glint_zone_rays_spread(const struct glint_zone_rays *rays)
+double glint_zone_rays_compute_energy_ratio(const struct glint_zone_rays *rays)
 {
     double least = HUGE_VAL, most = 0, spread = 1;
 
     for (int i = 0; i < rays->n; i++) {
-        if (i == 0 || !glint_zone_rays_alike(rays, i, i - 1)) {
+        if (i == 0 || !glint_zone_rays_have_same_light(rays, i, i - 1)) {
             least = HUGE_VAL;
             most = 0;
         }
-        if (!glint_zone_rays_seen(rays, i))
+        if (!glint_zone_rays_is_visible(rays, i))
             continue;
         least = fmin(least, rays->at[RAY_ENERGY][i]);
         most = fmax(most, rays->at[RAY_ENERGY][i]);
@@ -298,9 +299,9 @@ double glint_zone_rays_spread(const struct glint_zone_rays *rays)
 }
 
 /* Traces rays for fitting energies, which hardly vary over the pupil, but
- * oscillate with the wavelength because of films. STEEP: energies vary over the
- * pupil, as towards total reflection; the grid is then finer, with five
- * wavelengths per angle. */
+ * oscillate with the wavelength if coatings have several films. STEEP: energies
+ * also vary over the pupil, as near total reflection; the grid is then finer,
+ * with five wavelengths per angle. */
 static void trace_rays_for_energies(const struct glint_zone *zone,
                                     const struct glint_visible *visible,
                                     bool steep, struct glint_zone_rays *rays)
@@ -316,10 +317,10 @@ static void trace_rays_for_energies(const struct glint_zone *zone,
                          (k / 5 + shift[k % 5]) % GLINT_VISIBLE_WAVES, 2, rays);
 }
 
-void glint_zone_trace(const struct glint_zone *zone,
-                      const struct glint_visible *visible,
-                      struct glint_zone_rays *rays,
-                      struct glint_zone_rays *energies)
+void glint_zone_trace_rays(const struct glint_zone *zone,
+                           const struct glint_visible *visible,
+                           struct glint_zone_rays *rays,
+                           struct glint_zone_rays *energies)
 {
     energies->n_barrels = energies->n = 0;
     rays->scattered = energies->scattered = zone->skew;
@@ -329,7 +330,8 @@ void glint_zone_trace(const struct glint_zone *zone,
     }
     trace_rays_for_positions(zone, visible, rays);
     trace_rays_for_energies(
-        zone, visible, glint_zone_rays_spread(rays) > GLINT_STEEP, energies);
+        zone, visible, glint_zone_rays_compute_energy_ratio(rays) > GLINT_STEEP,
+        energies);
 }
 
 /* Adds the rays of T to RAYS in groups of N consecutive ones. Skips groups with
@@ -345,16 +347,17 @@ static void append_ray_groups(const struct glint_visible *visible,
             all &= t->status[i + k] == GLINT_RAY_OK;
         for (int k = i; k < i + n && all; k++)
             append_zone_ray(visible, t->path, t->x[k], &t->ray[k],
-                            glint_zone_batch_hits(t, k), rays);
+                            glint_zone_batch_get_hits(t, k), rays);
     }
 }
 
-void glint_zone_check(const struct glint_zone *zone,
-                      const struct glint_visible *visible,
-                      struct glint_zone_rays *rays)
+void glint_zone_trace_check_rays(const struct glint_zone *zone,
+                                 const struct glint_visible *visible,
+                                 struct glint_zone_rays *rays)
 {
     enum { BUNDLES = 24, RAYS = 16, IN_THREES = 10 };
-    const int group = glint_zone_by_light(zone, visible) ? 3 : 1;
+    const int group =
+        glint_zone_is_weighted_by_brightness(zone, visible) ? 3 : 1;
     const int places = group == 3 ? IN_THREES : RAYS;
     double x[GLINT_VARIABLES], bundle[GLINT_VARIABLES];
     struct glint_path path;
@@ -363,18 +366,18 @@ void glint_zone_check(const struct glint_zone *zone,
     t.path = &path;
     rays->n = rays->n_barrels = 0;
     for (int k = 0; k < BUNDLES; k++) {
-        glint_zone_scatter(zone, k, bundle);
-        glint_visible_path(visible, bundle[3], &path);
+        glint_zone_set_scattered_point(zone, k, bundle);
+        glint_visible_init_path(visible, bundle[3], &path);
         path.places_only = group == 1;
         t.n = 0;
         for (int i = 0; i < places; i++) {
-            glint_zone_scatter(zone, k * RAYS + i, x);
+            glint_zone_set_scattered_point(zone, k * RAYS + i, x);
             x[GLINT_S] = bundle[GLINT_S];
             x[GLINT_W] = bundle[GLINT_W];
             x[GLINT_P] = bundle[GLINT_P];
             add_ray_with_neighbours(&t, zone, x, group == 3);
         }
-        glint_zone_batch_trace(&t);
+        glint_zone_batch_trace_rays(&t);
         if (zone->skew)
             append_middle_rays(visible, &t, rays);
         else
@@ -384,31 +387,33 @@ void glint_zone_check(const struct glint_zone *zone,
 
 /* ------------------------------------------------------------------ barrels */
 
-/* Chooses the barrels that get polynomials in a zone, such that no ray that
- * passes all of them is far outside any other barrel. */
+/* The following functions choose the barrels that get polynomials in a zone,
+ * such that no ray that passes all of them is far outside any other barrel. */
 
-/* Min range of the relative radii at a barrel. If the radii span less,
+/* Min width of the range of relative radii at a barrel. If the radii span less,
  * distances outside the barrel are scaled up as if they spanned this much.
  * Where light grazes a hemispherical surface of a fisheye, the whole ghost lies
  * within 0.003 of the rim. */
 #define LEAST_RANGE 0.1
 
-/* relative radius that marks a missed surface */
+/* relative radius stored for a ray that misses a surface */
 #define MISS 1.3
 
-/* relative radius of each sample ray at each event */
+/* sample rays, with the relative radius of each ray at each event */
 struct sampling {
     int n, n_events;
     /* true: the ray misses a surface, so its position in the stop is unknown */
     bool missed[GLINT_SAMPLING_RAYS];
     double (*radius)[GLINT_MAX_EVENTS + 1];
-    /* range of the relative radii of rays inside the stop and the field */
+    /* [events]: range of the relative radii of rays that pass the stop and hit
+     * the field */
     double low[GLINT_MAX_EVENTS + 1], high[GLINT_MAX_EVENTS + 1];
-    /* factor on distances outside each barrel */
+    /* [events]: factor on distances outside the barrel */
     double factor[GLINT_MAX_EVENTS + 1];
 };
 
-/* Returns whether HIT is the mark of an event that the ray does not reach. */
+/* Returns whether HIT is the mark (-1, -1) of an event that the ray does not
+ * reach. */
 static bool is_event_unreached(const double hit[2])
 {
     return hit[0] == -1 && hit[1] == -1;
@@ -490,22 +495,22 @@ static void sample_zone_rays(const struct glint_zone *z,
     for (int k = 0; k < n / GLINT_ZONE_BATCH; k++) {
         const int members = 1 + visible->n_beside;
         const struct glint_visible *const h =
-            glint_visible_member(visible, k % members);
+            glint_visible_get_member(visible, k % members);
         const int wave =
             glint_visible_colour[k / members % GLINT_VISIBLE_COLOURS];
         double x[GLINT_VARIABLES];
 
         t.path = &h->position_path[wave];
         for (t.n = 0; t.n < GLINT_ZONE_BATCH;) {
-            glint_zone_scatter(z, k * GLINT_ZONE_BATCH + t.n, x);
-            x[3] = glint_zone_node(wave, GLINT_VISIBLE_WAVES);
-            glint_zone_batch_add(&t, z, x);
+            glint_zone_set_scattered_point(z, k * GLINT_ZONE_BATCH + t.n, x);
+            x[3] = glint_zone_compute_node(wave, GLINT_VISIBLE_WAVES);
+            glint_zone_batch_add_ray(&t, z, x);
         }
-        glint_zone_batch_trace(&t);
+        glint_zone_batch_trace_rays(&t);
         for (int i = 0; i < GLINT_ZONE_BATCH; i++)
             sampling->n +=
                 sample_barrel_radii(h, t.path, t.status[i], &t.ray[i],
-                                    glint_zone_batch_hits(&t, i), sampling);
+                                    glint_zone_batch_get_hits(&t, i), sampling);
     }
     for (int k = 0; k < sampling->n_events; k++) {
         const double range = sampling->high[k] - sampling->low[k];
@@ -516,11 +521,11 @@ static void sample_zone_rays(const struct glint_zone *z,
     }
 }
 
-/* Returns how far ray RAY lies outside the barrels although it passes the N
+/* Returns how far ray RAY lies outside the barrels that are not among the N
  * barrels CHOSEN: its max relative radius - 1, weighted, at most 0.3; 0 if a
- * chosen barrel blocks it. */
-static double compute_barrel_escape(const struct sampling *s, int ray,
-                                    const int *chosen, int n)
+ * chosen barrel blocks the ray. */
+static double compute_unlisted_barrel_excess(const struct sampling *s, int ray,
+                                             const int *chosen, int n)
 {
     const double *r = s->radius[ray];
     double most = 0;
@@ -533,11 +538,13 @@ static double compute_barrel_escape(const struct sampling *s, int ray,
     return fmin(most, 0.3);
 }
 
-/* Returns the sum of compute_barrel_escape() over all rays, for N barrels
- * CHOSEN; *MOST receives the max. MISSED: also counts rays that miss a surface.
+/* Returns the sum of compute_unlisted_barrel_excess() over all rays, for N
+ * barrels CHOSEN; *MOST receives the max. MISSED: also counts rays that miss a
+ * surface.
  */
-static double sum_barrel_escapes(const struct sampling *s, bool missed,
-                                 const int *chosen, int n, double *most)
+static double sum_unlisted_barrel_excesses(const struct sampling *s,
+                                           bool missed, const int *chosen,
+                                           int n, double *most)
 {
     double sum = 0;
 
@@ -545,7 +552,7 @@ static double sum_barrel_escapes(const struct sampling *s, bool missed,
     for (int i = 0; i < s->n; i++) {
         const double e = !missed && s->missed[i]
                              ? 0
-                             : compute_barrel_escape(s, i, chosen, n);
+                             : compute_unlisted_barrel_excess(s, i, chosen, n);
 
         sum += e;
         *most = fmax(*most, e);
@@ -553,15 +560,16 @@ static double sum_barrel_escapes(const struct sampling *s, bool missed,
     return sum;
 }
 
-/* Adds barrels to RAYS, each time the one that blocks most, until
- * compute_barrel_escape() is at most SHOWS for all rays; without MISSED, for
- * all rays that hit every surface. */
+/* Adds barrels to the list of RAYS, each time the one that blocks most, until
+ * compute_unlisted_barrel_excess() is at most SHOWS for all rays. MISSED: also
+ * considers rays that miss a surface. */
 static void choose_fitted_barrels(const struct sampling *s, bool missed,
                                   double shows, struct glint_zone_rays *rays)
 {
     double most;
 
-    sum_barrel_escapes(s, missed, rays->barrel, rays->n_barrels, &most);
+    sum_unlisted_barrel_excesses(s, missed, rays->barrel, rays->n_barrels,
+                                 &most);
     while (most > shows && rays->n_barrels < GLINT_MAX_BARRELS) {
         const int n = rays->n_barrels;
         double least = HUGE_VAL;
@@ -571,7 +579,8 @@ static void choose_fitted_barrels(const struct sampling *s, bool missed,
             double sum;
 
             rays->barrel[n] = k;
-            sum = sum_barrel_escapes(s, missed, rays->barrel, n + 1, &most);
+            sum = sum_unlisted_barrel_excesses(s, missed, rays->barrel, n + 1,
+                                               &most);
             if (sum < least) {
                 least = sum;
                 best = k;
@@ -579,7 +588,7 @@ static void choose_fitted_barrels(const struct sampling *s, bool missed,
         }
         rays->barrel[n] = best;
         rays->n_barrels++;
-        sum_barrel_escapes(s, missed, rays->barrel, n + 1, &most);
+        sum_unlisted_barrel_excesses(s, missed, rays->barrel, n + 1, &most);
     }
     rays->missed_cut = most;
 }

@@ -41,28 +41,29 @@ struct glint_zone_rays {
     int n_barrels;
     int barrel[GLINT_MAX_BARRELS]; /* indices among the path's events */
     double radius[GLINT_MAX_BARRELS][GLINT_ZONE_RAYS];
-    /* max relative distance by which a ray lies outside a barrel that is not
-     * listed although it passes all listed barrels */
+    /* max relative distance by which a ray that passes all listed barrels lies
+     * outside a barrel that is not listed */
     double missed_cut;
 };
 
-static inline bool glint_zone_rays_seen(const struct glint_zone_rays *r,
-                                        int ray)
+static inline bool glint_zone_rays_is_visible(const struct glint_zone_rays *r,
+                                              int ray)
 {
     return r->at[RAY_EXCESS][ray] <= 1 && r->at[RAY_FIELD][ray] <= 1;
 }
 
 /* Sets X to the zone coordinates of ray I. */
-static inline void glint_zone_rays_x(const struct glint_zone_rays *r, int i,
-                                     double x[GLINT_VARIABLES])
+static inline void
+glint_zone_rays_get_coordinates(const struct glint_zone_rays *r, int i,
+                                double x[GLINT_VARIABLES])
 {
     for (int k = 0; k < GLINT_VARIABLES; k++)
         x[k] = r->x[k][i];
 }
 
 /* Returns whether rays I and J have the same direction and wavelength. */
-static inline bool glint_zone_rays_alike(const struct glint_zone_rays *r, int i,
-                                         int j)
+static inline bool
+glint_zone_rays_have_same_light(const struct glint_zone_rays *r, int i, int j)
 {
     return r->x[GLINT_S][i] == r->x[GLINT_S][j] &&
            r->x[GLINT_W][i] == r->x[GLINT_W][j] &&
@@ -70,20 +71,20 @@ static inline bool glint_zone_rays_alike(const struct glint_zone_rays *r, int i,
 }
 
 /* Returns whether no ray is visible. */
-bool glint_zone_rays_dark(const struct glint_zone_rays *rays);
+bool glint_zone_rays_are_all_blocked(const struct glint_zone_rays *rays);
 
-/* Returns the max over all angles and wavelengths of the ratio max / min energy
- * among visible rays. Films do not affect it. Above GLINT_STEEP the energy
- * varies strongly over the pupil. */
-double glint_zone_rays_spread(const struct glint_zone_rays *rays);
+/* Returns the ratio of max to min energy among the visible rays of one angle
+ * and wavelength: the max over all angles and wavelengths. Films do not affect
+ * it. Above GLINT_STEEP the energy varies strongly over the pupil. */
+double glint_zone_rays_compute_energy_ratio(const struct glint_zone_rays *rays);
 #define GLINT_STEEP 8
 
-/* radii of sample rays at all events, for choosing barrels */
+/* relative radii of sample rays at all events, used for choosing barrels */
 enum { GLINT_SAMPLING_RAYS = 6000 };
 typedef double glint_zone_sampling[GLINT_SAMPLING_RAYS][GLINT_MAX_EVENTS + 1];
 
-/* Chooses the barrels of RAYS such that every ray that passes them is at most
- * SHOWS (relative radius) outside any other barrel. */
+/* Chooses the listed barrels of RAYS such that every ray that passes them lies
+ * at most SHOWS (relative radius) outside any other barrel. */
 void glint_zone_choose_barrels(const struct glint_zone *zone,
                                const struct glint_visible *visible,
                                double shows, glint_zone_sampling *sampling,
@@ -91,26 +92,27 @@ void glint_zone_choose_barrels(const struct glint_zone *zone,
 
 /* Traces RAYS for positions and barrels, and ENERGIES at fewer pupil points but
  * more wavelengths. For skew zones RAYS serve for energies, too. */
-void glint_zone_trace(const struct glint_zone *zone,
-                      const struct glint_visible *visible,
-                      struct glint_zone_rays *rays,
-                      struct glint_zone_rays *energies);
+void glint_zone_trace_rays(const struct glint_zone *zone,
+                           const struct glint_visible *visible,
+                           struct glint_zone_rays *rays,
+                           struct glint_zone_rays *energies);
 
 /* Returns whether errors of rays in ZONE are weighted by the local brightness,
  * which is computed from neighbouring rays. */
-static inline bool glint_zone_by_light(const struct glint_zone *zone,
-                                       const struct glint_visible *visible)
+static inline bool
+glint_zone_is_weighted_by_brightness(const struct glint_zone *zone,
+                                     const struct glint_visible *visible)
 {
     return visible->shaped || zone->skew;
 }
 
 /* Sets RAYS to scattered rays of the zone, at angles and wavelengths between
- * the fitted ones, without barrels and neighbouring zoom positions.
- * Deterministic. If errors are weighted by brightness, rays come in groups of
- * three: a neighbour in v, the ray itself, and a neighbour in u; for skew zones
- * only the middle one is stored. */
-void glint_zone_check(const struct glint_zone *zone,
-                      const struct glint_visible *visible,
-                      struct glint_zone_rays *rays);
+ * the fitted ones, without barrels and neighbouring zoom positions. The result
+ * is deterministic. If errors are weighted by brightness, rays come in groups
+ * of three: a neighbour in v, the ray itself, and a neighbour in u; for skew
+ * zones only the middle one is stored. */
+void glint_zone_trace_check_rays(const struct glint_zone *zone,
+                                 const struct glint_visible *visible,
+                                 struct glint_zone_rays *rays);
 
 #endif

@@ -16,7 +16,8 @@ struct recorded_pose {
     float residual;
 };
 
-/* A food (a static landmark), from the frame in which it appears. */
+/* A food of the recording (a static landmark), from the frame in which it
+ * appears. */
 struct recorded_food {
     uint32_t frame, slot;
     double at[3]; /* final estimate of the food's position */
@@ -30,22 +31,25 @@ struct glint_motion_baker {
     uint32_t n_frames, pose_capacity;
     struct recorded_pose *pose; /* pose of the body per frame, [n_frames] */
     uint32_t n_events, event_capacity;
-    struct recorded_food *event; /* first frames of foods, [n_events] */
-    /* index in event of the food that is now in each slot */
+    /* foods in the order in which they appear, [n_events] */
+    struct recorded_food *event;
+    /* [slots]: index in event of the food that currently occupies the slot */
     uint32_t lives[GLINT_MOTION_MAX_FOODS];
     size_t n_bytes, byte_capacity;
     /* intensity codes, [n_frames][n_foods][n_intensities] */
     uint8_t *intensity;
-    long long number; /* number in the recording of the last frame */
-    /* pose by the body's own odometry: sum of all its motions rv, tv */
+    /* frame number of the last frame, as stated in the recording */
+    long long number;
+    /* pose by the body's own odometry: all its measured motions rv, tv
+     * combined */
     struct glint_rigid sensed;
     struct glint_motion_report report;
 };
 
 enum {
     USUAL_UNIT_LOG2 = 24,
-    REACH_LOG2 = 29, /* log2 of the max coordinate of any point, in steps */
-    /* a motion that is smaller by up to this many bits also uses
+    REACH_LOG2 = 29, /* log2 of the max coordinate of a point, steps */
+    /* motions up to this many bits smaller than the max also use
      * USUAL_UNIT_LOG2 */
     ROOMY_LOG2 = 3
 };
@@ -72,7 +76,7 @@ static void finish_motion_block(struct writer *w)
     memcpy(w->block + GLINT_MOTION_ROOM, end, sizeof end);
     end[1] = glint_motion_sum(w->block, w->number);
     memcpy(w->block + GLINT_MOTION_ROOM, end, sizeof end);
-    glint_draft_put(&w->draft, w->block, sizeof w->block);
+    glint_draft_append(&w->draft, w->block, sizeof w->block);
     memset(w->block, 0, sizeof w->block);
     w->used = 0;
     w->number++;
@@ -233,7 +237,7 @@ static void set_motion_header(struct writer *w, const char *name, uint64_t key)
     const double half = b->body.angle_deg * GLINT_PI / 360;
     double low[3], high[3];
 
-    glint_draft_begin(h, &kind, 0, key, name, "motion");
+    glint_draft_begin_header(h, &kind, 0, key, name, "motion");
     compute_bounding_box(b, low, high);
     choose_step_size(w, low, high);
     h->n_frames = b->n_frames;
@@ -271,15 +275,15 @@ static bool write_motion_file(const struct glint_motion_baker *baker,
     append_pose_table(&w);
     append_intensity_table(&w);
     w.header.bytes = (uint32_t)w.draft.bytes;
-    glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);
+    glint_draft_overwrite(&w.draft, 0, &w.header, sizeof w.header);
     sum = w.draft.out_of_memory ? 0 : glint_motion_sum(w.draft.data, 0);
-    glint_draft_amend(&w.draft, GLINT_MOTION_ROOM + 4, &sum, sizeof sum);
-    return glint_draft_finish(&w.draft, &w.header, sizeof w.header, true, data,
-                              bytes);
+    glint_draft_overwrite(&w.draft, GLINT_MOTION_ROOM + 4, &sum, sizeof sum);
+    return glint_draft_finish_file(&w.draft, &w.header, sizeof w.header, true,
+                                   data, bytes);
 }
 
-/* BAD_RESIDUAL: min residual of a bad frame, as a fraction of the motion's
- * span. REACH: max magnitude of a coordinate. */
+/* BAD_RESIDUAL: residual of the fitted pose above which a frame counts as bad,
+ * as a fraction of the motion's span. REACH: max magnitude of a coordinate. */
 #define BAD_RESIDUAL 1e-3
 #define REACH        1e6
 
@@ -396,12 +400,13 @@ static const char *check_frame_values(const struct glint_motion_baker *b,
                 return "the position of a food is not within +-1e6";
     for (int k = 0; k < 3; k++)
         if (!(fabs(s->tv[k]) <= REACH) || !(fabs(s->rv[k]) <= REACH))
-            return "rv or tv is not within +-1e6";
+            return "a number of rv or tv is not within +-1e6";
     return NULL;
 }
 
 /* Adds the motion that the body itself measured in this frame to its odometry,
- * and records the odometry's distance from POSE. */
+ * and updates the report's max distance between odometry and the fitted
+ * POSE. */
 static void add_body_odometry(struct glint_motion_baker *b,
                               const struct glint_motion_sight *s,
                               const struct glint_rigid *pose)
@@ -416,11 +421,11 @@ static void add_body_odometry(struct glint_motion_baker *b,
         b->report.has_senses |= s->rv[k] != 0 || s->tv[k] != 0;
         axis[k] = angle > 0 ? s->rv[k] / angle : 0;
     }
-    glint_rigid_take(r, s->tv, moved);
+    glint_rigid_transform_point(r, s->tv, moved);
     memcpy(r->at, moved, sizeof moved);
     for (int i = 0; i < 3; i++) {
-        /* Rodrigues' formula gives column i of the rotation: axis i of the body
-         * after the motion, in its axes before the motion. */
+        /* Rodrigues' formula gives column i of the rotation matrix: axis i of
+         * the body after the motion, in the body's axes before the motion. */
         double to[3];
 
         for (int k = 0; k < 3; k++) {
@@ -433,15 +438,15 @@ static void add_body_odometry(struct glint_motion_baker *b,
             row[k][i] = r->row[k][0] * to[0] + r->row[k][1] * to[1] +
                         r->row[k][2] * to[2];
     }
-    glint_rigid_nearest((const double(*)[3])row, r);
+    glint_rigid_set_nearest_rotation((const double(*)[3])row, r);
     for (int k = 0; k < 3; k++)
         off += (r->at[k] - pose->at[k]) * (r->at[k] - pose->at[k]);
     b->report.senses_off = sqrt(off);
     b->report.senses_most = fmax(b->report.senses_most, sqrt(off));
 }
 
-static void store_food_intensities(struct glint_motion_baker *b,
-                                   const struct glint_motion_sight *s)
+static void store_landmark_intensities(struct glint_motion_baker *b,
+                                       const struct glint_motion_sight *s)
 {
     for (int i = 0; i < s->n_foods; i++)
         for (int k = 0; k < b->n_intensities; k++) {
@@ -453,7 +458,7 @@ static void store_food_intensities(struct glint_motion_baker *b,
         }
 }
 
-/* Stores a frame whose pose was located. */
+/* Stores a frame whose pose was computed. */
 static void store_located_frame(struct glint_motion_baker *b,
                                 const struct glint_motion_sight *s,
                                 const bool *is_new,
@@ -477,7 +482,7 @@ static void store_located_frame(struct glint_motion_baker *b,
         memcpy(b->event[b->lives[i]].at, b->localiser.place[i],
                sizeof b->event->at);
     }
-    store_food_intensities(b, s);
+    store_landmark_intensities(b, s);
     b->n_frames++;
 }
 
@@ -495,8 +500,8 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
         sight->number != b->number + 1) {
         snprintf(error->text, sizeof error->text,
                  sight->number > b->number
-                     ? "frames are missing: %lld follows %lld"
-                     : "frames are out of order: %lld follows %lld",
+                     ? "frames are missing: frame %lld follows frame %lld"
+                     : "frames are out of order: frame %lld follows frame %lld",
                  sight->number, b->number);
         return GLINT_E_LENS;
     }
@@ -507,8 +512,8 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
     b->n_intensities = sight->n_intensities;
     if (!reserve_frame_memory(b, sight->n_foods))
         return GLINT_E_MEMORY;
-    wrong = glint_localise(&b->localiser, sight->n_foods, sight->food, is_new,
-                           &located);
+    wrong = glint_localise_body(&b->localiser, sight->n_foods, sight->food,
+                                is_new, &located);
     if (wrong)
         return set_error_text(error, wrong);
     b->n_foods = sight->n_foods;
@@ -562,8 +567,9 @@ enum glint_status glint_motion_baker_finish(struct glint_motion_baker *baker,
     error->text[0] = '\0';
     if (!b->has_body)
         return set_error_text(
-            error, "there is no structure: size, sensors, angle of view; "
-                   "read lens files of other programs by glint import");
+            error,
+            "there is no structure (a member with size, sensors and angle of "
+            "view); glint import reads lens files of other programs");
     if (!b->n_frames)
         return set_error_text(error, "the recording has no frames");
     if (b->n_intensities > 1 && b->n_intensities != b->body.n_sensors) {

@@ -13,11 +13,13 @@ void glint_localiser_init(struct glint_localiser *localiser, bool average)
 
 /* ------------------------------------------------------------------- rigid */
 
-/* Fits the pose to all known foods (not new in this frame), except food BUT.
- * Returns false if there are too few or they lie on a line. */
-static bool fit_pose_to_known_foods(const struct glint_localiser *l, int n,
-                                    const double (*seen)[3], const bool *is_new,
-                                    int but, struct glint_rigid *pose)
+/* Fits the pose to all foods (landmarks) that are not new in this frame, except
+ * food BUT. Returns false if there are fewer than three or they lie on a
+ * line. */
+static bool fit_pose_to_known_landmarks(const struct glint_localiser *l, int n,
+                                        const double (*seen)[3],
+                                        const bool *is_new, int but,
+                                        struct glint_rigid *pose)
 {
     double from[MOST][3], to[MOST][3];
     int m = 0;
@@ -29,14 +31,15 @@ static bool fit_pose_to_known_foods(const struct glint_localiser *l, int n,
         memcpy(to[m], l->place[i], sizeof *to);
         m++;
     }
-    return glint_rigid_fit(m, (const double(*)[3])from, (const double(*)[3])to,
-                           pose);
+    return glint_rigid_fit_points(m, (const double(*)[3])from,
+                                  (const double(*)[3])to, pose);
 }
 
 /* Moves the position of each known food towards the position that follows from
  * the pose fitted to all other foods. */
-static void update_food_positions(struct glint_localiser *l, int n,
-                                  const double (*seen)[3], const bool *is_new)
+static void update_landmark_positions(struct glint_localiser *l, int n,
+                                      const double (*seen)[3],
+                                      const bool *is_new)
 {
     double said[MOST][3];
     bool is_said[MOST];
@@ -44,10 +47,10 @@ static void update_food_positions(struct glint_localiser *l, int n,
     for (int i = 0; i < n; i++) {
         struct glint_rigid pose;
 
-        is_said[i] =
-            !is_new[i] && fit_pose_to_known_foods(l, n, seen, is_new, i, &pose);
+        is_said[i] = !is_new[i] &&
+                     fit_pose_to_known_landmarks(l, n, seen, is_new, i, &pose);
         if (is_said[i])
-            glint_rigid_take(&pose, seen[i], said[i]);
+            glint_rigid_transform_point(&pose, seen[i], said[i]);
     }
     for (int i = 0; i < n; i++) {
         if (!is_said[i])
@@ -64,23 +67,23 @@ static const char *locate_body(struct glint_localiser *l, int n,
                                const double (*seen)[3], const bool *is_new,
                                struct glint_located *located)
 {
-    if (!fit_pose_to_known_foods(l, n, seen, is_new, -1, &located->pose))
+    if (!fit_pose_to_known_landmarks(l, n, seen, is_new, -1, &located->pose))
         return located->n_known < 3
                    ? "fewer than three foods have known positions"
                    : "the foods with known positions lie on a line";
     if (l->average)
-        update_food_positions(l, n, seen, is_new);
+        update_landmark_positions(l, n, seen, is_new);
     for (int i = 0; i < n; i++)
         if (is_new[i]) {
-            glint_rigid_take(&located->pose, seen[i], l->place[i]);
+            glint_rigid_transform_point(&located->pose, seen[i], l->place[i]);
             l->age[i] = 1;
         }
     return NULL;
 }
 
-static void start_at_first_frame(struct glint_localiser *l, int n,
-                                 const double (*seen)[3],
-                                 struct glint_located *located)
+static void init_from_first_frame(struct glint_localiser *l, int n,
+                                  const double (*seen)[3],
+                                  struct glint_located *located)
 {
     located->pose = (struct glint_rigid){
         {0, 0, 0}, {1, 0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -92,8 +95,9 @@ static void start_at_first_frame(struct glint_localiser *l, int n,
     l->has_begun = true;
 }
 
-/* Sets the residual of the frame: max distance of any known food between its
- * position in this frame and its position known before. */
+/* Sets the residual of the frame: max distance, over all known foods, between
+ * the position seen in this frame and the position estimated from earlier
+ * frames. */
 static void compute_frame_residual(int n, const double (*places)[3],
                                    const double (*seen)[3], const bool *is_new,
                                    struct glint_located *located)
@@ -103,16 +107,16 @@ static void compute_frame_residual(int n, const double (*places)[3],
 
         if (is_new[i])
             continue;
-        glint_rigid_take(&located->pose, seen[i], at);
+        glint_rigid_transform_point(&located->pose, seen[i], at);
         for (int k = 0; k < 3; k++)
             square += (at[k] - places[i][k]) * (at[k] - places[i][k]);
         located->residual = fmax(located->residual, sqrt(square));
     }
 }
 
-const char *glint_localise(struct glint_localiser *localiser, int n,
-                           const double (*seen)[3], const bool *is_new,
-                           struct glint_located *located)
+const char *glint_localise_body(struct glint_localiser *localiser, int n,
+                                const double (*seen)[3], const bool *is_new,
+                                struct glint_located *located)
 {
     struct glint_localiser *l = localiser;
     double before[MOST][3];
@@ -121,7 +125,7 @@ const char *glint_localise(struct glint_localiser *localiser, int n,
     located->n_known = 0;
     located->residual = 0;
     if (!l->has_begun) {
-        start_at_first_frame(l, n, seen, located);
+        init_from_first_frame(l, n, seen, located);
         return NULL;
     }
     memcpy(before, l->place, sizeof before);

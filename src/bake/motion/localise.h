@@ -4,7 +4,8 @@
  * landmarks (foods), which are measured in the body's axes.
  *
  *     glint_localiser_init(&localiser, true);
- *     glint_localise(&localiser, n, seen, is_new, &located);        each frame
+ *     glint_localise_body(&localiser, n, seen, is_new, &located);        each
+ * frame
  *
  * In frame 0 the body is at the origin, not rotated. A pose is fitted to the
  * foods whose positions are known; it then gives the positions of new foods. If
@@ -30,7 +31,8 @@ struct glint_localiser {
 struct glint_located {
     struct glint_rigid pose;
     int n_known; /* number of foods to which the pose is fitted */
-    /* max distance of these foods from their expected positions */
+    /* max distance of these foods from the positions estimated from earlier
+     * frames */
     double residual;
 };
 
@@ -40,8 +42,8 @@ void glint_localiser_init(struct glint_localiser *localiser, bool average);
  * body's axes; IS_NEW marks foods that occur for the first time. N must be the
  * same for all frames. Returns NULL, or an error text; the pose is then not
  * set. */
-const char *glint_localise(struct glint_localiser *localiser, int n,
-                           const double (*seen)[3], const bool *is_new,
-                           struct glint_located *located);
+const char *glint_localise_body(struct glint_localiser *localiser, int n,
+                                const double (*seen)[3], const bool *is_new,
+                                struct glint_located *located);
 
 #endif

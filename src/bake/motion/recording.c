@@ -139,7 +139,7 @@ static bool consume_expected_char(struct recording *r, char c)
     if (r->c < 0)
         return set_error_at_end(r);
     if (r->c != c)
-        return set_error_at_byte(r, "'%c' is expected here", c);
+        return set_error_at_byte(r, "expected '%c' here", c);
     return consume_next_byte(r);
 }
 
@@ -189,7 +189,7 @@ static bool consume_json_value(struct recording *r)
     if (!consume_blanks(r))
         return false;
     if (r->c == ',' || r->c == '}' || r->c == ']')
-        return set_error_at_byte(r, "a value is expected here");
+        return set_error_at_byte(r, "expected a JSON value here");
     do {
         if (r->c == '"') {
             if (!consume_json_string(r, NULL))
@@ -198,15 +198,18 @@ static bool consume_json_value(struct recording *r)
         }
         if (r->c == '{' || r->c == '[') {
             if (deep == MOST_DEEP)
-                return set_error_at_byte(r, "brackets are more than %d deep",
-                                         MOST_DEEP);
+                return set_error_at_byte(
+                    r, "brackets are nested more than %d levels deep",
+                    MOST_DEEP);
             close[deep++] = r->c == '{' ? '}' : ']';
         } else if (r->c == '}' || r->c == ']') {
             if (deep == 0)
-                return true; /* a bracket or comma ends a number; it belongs to
-                                the enclosing value */
+                /* a bracket or comma ends a number and belongs to the enclosing
+                 * value */
+                return true;
             if (r->c != close[--deep])
-                return set_error_at_byte(r, "'%c' closes what '%c' opened",
+                return set_error_at_byte(r,
+                                         "'%c' does not match the opening '%c'",
                                          r->c, close[deep] == '}' ? '{' : '[');
             remove_trailing_comma(r);
         } else if (deep == 0 && (r->c == ',' || r->c <= ' ')) {
@@ -234,7 +237,8 @@ static bool set_error_in_piece(const struct recording *r, int line, int column,
     snprintf(r->error->text, sizeof r->error->text, "%.80s:%d:%d: %s%s",
              r->file_name, r->piece_line + line - 1,
              line > 1 ? column : r->piece_column + column - 1, frame, cause);
-    /* replaces control characters that jansson quotes from the file */
+    /* jansson quotes the file in its error texts: replaces control
+     * characters */
     for (char *c = r->error->text; *c; c++)
         *c = (unsigned char)*c < ' ' ? '?' : *c;
     return false;
@@ -243,7 +247,8 @@ static bool set_error_in_piece(const struct recording *r, int line, int column,
 /* ------------------------------------------------------------------- numbers
  */
 
-/* Returns the member NAME or else OTHER of OBJECT; NULL if it has neither. */
+/* Returns the member NAME of OBJECT, or else its member OTHER (the Hungarian
+ * name); NULL if it has neither. */
 static json_t *get_json_member(const json_t *object, const char *name,
                                const char *other)
 {
@@ -385,7 +390,7 @@ static bool read_frame_object(const struct recording *r, const json_t *object,
     if (of)
         s->number = json_integer_value(of);
     if (!json_is_array(foods))
-        return set_error_in_piece(r, 1, 1, "there is no array 'foods'");
+        return set_error_in_piece(r, 1, 1, "the frame has no array 'foods'");
     if (json_array_size(foods) > GLINT_MOTION_MAX_FOODS)
         return set_error_in_piece(r, 1, 1, "more than %d foods",
                                   GLINT_MOTION_MAX_FOODS);
@@ -446,8 +451,8 @@ static bool read_member_value(struct recording *r, int key)
     return r->status == GLINT_OK;
 }
 
-/* Consumes blanks and a comma. Sets DONE if CLOSE follows instead of another
- * item. */
+/* Consumes blanks, then a comma or the end of the list, CLOSE. Sets DONE if it
+ * was CLOSE. */
 static bool consume_list_separator(struct recording *r, char close, bool *done)
 {
     if (!consume_blanks(r))
@@ -456,7 +461,7 @@ static bool consume_list_separator(struct recording *r, char close, bool *done)
     if (*done)
         return true;
     if (r->c >= 0 && r->c != ',')
-        return set_error_at_byte(r, "',' or '%c' is expected here", close);
+        return set_error_at_byte(r, "expected ',' or '%c' here", close);
     if (!consume_next_byte(r) || !consume_blanks(r))
         return false;
     *done = r->c == close;
@@ -514,8 +519,8 @@ static bool read_recording(struct recording *r)
     load_next_byte(r);
     if (!consume_blanks(r))
         return false;
-    return r->c < 0 ||
-           set_error_at_byte(r, "text follows the end of the recording");
+    return r->c < 0 || set_error_at_byte(
+                           r, "unexpected text after the end of the recording");
 }
 
 enum glint_status glint_recording_read(struct glint_motion_baker *baker,

@@ -95,9 +95,9 @@ static void find_best_rotation(const double s[3][3], struct glint_rigid *r)
     set_rotation_matrix(r);
 }
 
-/* Returns whether points with the covariance C lie on a line: the sum of the
- * principal 2 x 2 minors of C is then far below its upper bound, 1/3 of the
- * squared trace. */
+/* Returns whether points with the covariance matrix C lie on a line: the sum of
+ * the principal 2 x 2 minors of C, which grows with the squared area that the
+ * points span, is then far below its upper bound, 1/3 of the squared trace. */
 static bool are_points_on_line(const double c[3][3])
 {
     const double trace = c[0][0] + c[1][1] + c[2][2];
@@ -108,8 +108,8 @@ static bool are_points_on_line(const double c[3][3])
     return !(area > GLINT_RIGID_LEAST * trace * trace);
 }
 
-bool glint_rigid_fit(int n, const double (*from)[3], const double (*to)[3],
-                     struct glint_rigid *r)
+bool glint_rigid_fit_points(int n, const double (*from)[3],
+                            const double (*to)[3], struct glint_rigid *r)
 {
     double a[3] = {0}, b[3] = {0}, s[3][3] = {{0}}, c[3][3] = {{0}}, moved[3];
 
@@ -129,13 +129,14 @@ bool glint_rigid_fit(int n, const double (*from)[3], const double (*to)[3],
     find_best_rotation((const double(*)[3])s, r);
     for (int k = 0; k < 3; k++)
         r->at[k] = 0;
-    glint_rigid_take(r, a, moved);
+    glint_rigid_transform_point(r, a, moved);
     for (int k = 0; k < 3; k++)
         r->at[k] = b[k] - moved[k];
     return true;
 }
 
-void glint_rigid_nearest(const double row[3][3], struct glint_rigid *rigid)
+void glint_rigid_set_nearest_rotation(const double row[3][3],
+                                      struct glint_rigid *rigid)
 {
     double s[3][3];
 
@@ -145,8 +146,8 @@ void glint_rigid_nearest(const double row[3][3], struct glint_rigid *rigid)
     find_best_rotation((const double(*)[3])s, rigid);
 }
 
-void glint_rigid_take(const struct glint_rigid *rigid, const double point[3],
-                      double to[3])
+void glint_rigid_transform_point(const struct glint_rigid *rigid,
+                                 const double point[3], double to[3])
 {
     for (int k = 0; k < 3; k++)
         to[k] = rigid->at[k] + rigid->row[k][0] * point[0] +

@@ -108,14 +108,14 @@ static WIDE_VECTORS double find_max_magnitude(const double *a, int n)
 /* A column counts as a combination of chosen columns if its remaining length is
  * below this fraction of its original length. */
 #define DEPENDENT 1e-9
-/* A squared length has lost half of its digits if subtractions have reduced it
- * below this fraction of its first value. */
+/* A squared length counts as inaccurate (half of its digits lost) if
+ * subtractions have reduced it below this fraction of its first value. */
 #define DOUBTFUL 1e-8
-/* A candidate term and its column of values. was2, left2 and pull are updated
- * from the column's components along all chosen directions, which follow from
- * products of terms as in a Cholesky factorisation. The column itself is
- * orthogonalised only when it is chosen, or when left2 has become too
- * inaccurate. */
+/* A candidate term and its column: the term's values at all rays. was2, left2
+ * and pull are updated from the column's components along the chosen
+ * directions, which follow from products of terms as in a Cholesky
+ * factorisation. The column itself is orthogonalised only when its term is
+ * chosen, or when left2 has become too inaccurate. */
 struct column {
     uint8_t power[GLINT_VARIABLES];
     bool dead, chosen;
@@ -123,8 +123,9 @@ struct column {
     double length; /* Euclidean length of at */
     /* components of at along each chosen direction */
     double on[GLINT_MAX_TERMS];
-    /* squared length of at minus its components along chosen directions: those
-     * chosen when it was last orthogonalised (was2), and all (left2) */
+    /* squared length of at without its components along chosen directions:
+     * along those that were chosen when it was last orthogonalised (was2), and
+     * along all (left2) */
     double was2, left2;
     double pull;      /* dot product of at with the residual */
     const double *at; /* [n]: values of the term times the weights */
@@ -150,7 +151,8 @@ struct search {
     double *values;    /* values of all columns, [n_columns][n] */
 };
 
-/* Returns the direction with index RANK; n_chosen is the next one to be set. */
+/* Returns the chosen direction with index RANK. Index n_chosen is the next
+ * direction, which is not set yet. */
 static double *get_chosen_direction(const struct search *s, int rank)
 {
     return s->direction + (size_t)rank * (size_t)s->s->n;
@@ -241,8 +243,8 @@ static void add_direction_products(const struct search *s, const double *a,
     }
 }
 
-/* Subtracts each chosen direction times its SHARE from A, for the M rays from
- * ray FIRST on. */
+/* Subtracts from A each chosen direction times its factor in SHARE, for the M
+ * rays from ray FIRST on. */
 static void subtract_chosen_directions(const struct search *s, double *a,
                                        int first, int m,
                                        const double share[GLINT_MAX_TERMS])
@@ -298,8 +300,8 @@ static void compute_column_values(const struct search *s, struct column *column,
     column->pull = compute_dot_product(at, s->residual, v->n);
 }
 
-/* Returns the index in the table of moments of the term with the powers POWER.
- * The index of a product of two terms is the sum of their indices. */
+/* Returns the index of the term POWER in the table of moments. The index of a
+ * product of two terms is the sum of their indices. */
 static int compute_moment_index(const struct glint_degrees *d,
                                 const uint8_t *power)
 {
@@ -310,9 +312,9 @@ static int compute_moment_index(const struct glint_degrees *d,
     return place;
 }
 
-/* Adds the term POWER as a candidate, without its components along chosen
- * directions. Returns it, or NULL if the term is not allowed or exists
- * already. */
+/* Adds the term POWER as a candidate; its components along chosen directions
+ * are not computed yet. Returns it, or NULL if the term is not allowed or
+ * exists already. */
 static struct column *add_candidate_term(struct search *s, const uint8_t *power,
                                          const struct column *parent)
 {
@@ -332,11 +334,11 @@ static struct column *add_candidate_term(struct search *s, const uint8_t *power,
     return column;
 }
 
-/* Adds the neighbours of COLUMN's term as candidates: one power more in one
- * variable, or two more in a variable of fixed parity. With leaps also two
- * powers more in variable 0, and in variable 1 if its parity is free: near the
- * axis ghosts are symmetric, so the odd power in between would reduce nothing
- * and would never be chosen. */
+/* Adds the neighbours of COLUMN's term as candidates: terms with one power more
+ * in one variable, or two more in a variable of fixed parity. With leaps also
+ * terms with two powers more in variable 0, and in variable 1 if its parity is
+ * free: near the axis ghosts are symmetric, so the odd power in between would
+ * not reduce the residual and would never be chosen. */
 static void add_neighbour_terms(struct search *s, const struct column *column)
 {
     struct column *added[NEIGHBOURS];
@@ -421,8 +423,8 @@ static bool is_fit_hopeless(const struct search *s, double left)
     return d->hopeless > 0 && left > d->hopeless && s->n_chosen >= d->patience;
 }
 
-/* Returns the residual in units of its limits: max of RMS residual / RMS and
- * max residual / PEAK. */
+/* Returns the residual relative to its limits: the larger of RMS residual / RMS
+ * and max residual / PEAK. */
 static double compute_residual_excess(const struct search *s, double rms,
                                       double peak)
 {
@@ -450,10 +452,12 @@ static void solve_coefficients(const struct search *s, const double *y,
     }
 }
 
-double glint_regress_fit(double *scratch,
-                         const struct glint_regress_samples *samples,
-                         const double *y, const struct glint_degrees *degrees,
-                         double rms, double peak, struct glint_poly *poly)
+double glint_regress_fit_polynomial(double *scratch,
+                                    const struct glint_regress_samples *samples,
+                                    const double *y,
+                                    const struct glint_degrees *degrees,
+                                    double rms, double peak,
+                                    struct glint_poly *poly)
 {
     const size_t n = (size_t)samples->n;
     const int n_moments = compute_moment_index(degrees, degrees->most) * 2 + 1;
@@ -488,8 +492,8 @@ double glint_regress_fit(double *scratch,
     return left;
 }
 
-double glint_poly_at(int n, const uint8_t (*power)[GLINT_VARIABLES],
-                     const double *coef, const double *x)
+double glint_poly_evaluate(int n, const uint8_t (*power)[GLINT_VARIABLES],
+                           const double *coef, const double *x)
 {
     double sum = 0;
 

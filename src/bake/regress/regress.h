@@ -54,9 +54,9 @@ struct glint_regress_samples {
     const double *weight;
 };
 
-/* Number of doubles in the scratch memory of a fit to N samples with at most
- * TERMS terms out of CANDIDATES. MOMENTS: product of 2 most + 1 over all
- * variables. */
+/* Size of the scratch memory of a fit, in doubles, for N samples and at most
+ * TERMS chosen terms out of CANDIDATES. MOMENTS: product of (2 most + 1) over
+ * all variables. */
 #define GLINT_REGRESS_DOUBLES(n, terms, candidates, moments) \
     ((size_t)(moments) + (size_t)(n) * (1 + (terms) + (candidates)))
 
@@ -65,13 +65,15 @@ struct glint_regress_samples {
  * result has at least one term, unless all weights are 0. Returns the max of
  * RMS residual / RMS and max residual / PEAK, which is at most 1 if the fit met
  * its tolerance. */
-double glint_regress_fit(double *scratch,
-                         const struct glint_regress_samples *samples,
-                         const double *y, const struct glint_degrees *degrees,
-                         double rms, double peak, struct glint_poly *poly);
+double glint_regress_fit_polynomial(double *scratch,
+                                    const struct glint_regress_samples *samples,
+                                    const double *y,
+                                    const struct glint_degrees *degrees,
+                                    double rms, double peak,
+                                    struct glint_poly *poly);
 
 /* Returns the value at X of the polynomial with N terms. */
-double glint_poly_at(int n, const uint8_t (*power)[GLINT_VARIABLES],
-                     const double *coef, const double *x);
+double glint_poly_evaluate(int n, const uint8_t (*power)[GLINT_VARIABLES],
+                           const double *coef, const double *x);
 
 #endif

@@ -7,7 +7,8 @@
 /* ------------------------------------------------------------ mistyped words
  */
 
-/* max letters of a compared word; size of a hint in bytes */
+/* NEAR_CHARS: number of letters from which words are not compared. NEAR_BYTES:
+ * size of a hint, bytes. */
 enum { NEAR_CHARS = 32, NEAR_BYTES = 64 };
 
 /* State of the search for the known word that is most similar to a mistyped
@@ -18,7 +19,7 @@ struct near {
     int distance;
 };
 
-static int min_of_three(int a, int b, int c)
+static int get_min_of_three(int a, int b, int c)
 {
     const int ab = a < b ? a : b;
 
@@ -38,16 +39,17 @@ static int compute_edit_distance(const struct glint_word *word,
     for (int k = 0; k <= m; k++)
         row[k] = k;
     for (int i = 1; i <= word->length; i++) {
-        /* entry of the previous row and column of the distance table */
+        /* entry of the distance table in the previous row and the previous
+         * column */
         int corner = row[0];
 
         row[0] = i;
         for (int k = 1; k <= m; k++) {
             const int above = row[k];
 
-            row[k] =
-                min_of_three(above + 1, row[k - 1] + 1,
-                             corner + (word->start[i - 1] != candidate[k - 1]));
+            row[k] = get_min_of_three(
+                above + 1, row[k - 1] + 1,
+                corner + (word->start[i - 1] != candidate[k - 1]));
             corner = above;
         }
     }
@@ -59,7 +61,7 @@ static struct near begin_word_search(const struct glint_word *word)
     return (struct near){*word, NULL, NEAR_CHARS};
 }
 
-static void compare_candidate(struct near *near, const char *candidate)
+static void compare_candidate_word(struct near *near, const char *candidate)
 {
     const int d = compute_edit_distance(&near->word, candidate);
     const int most = (int)strlen(candidate) / 3;
@@ -70,8 +72,8 @@ static void compare_candidate(struct near *near, const char *candidate)
     }
 }
 
-/* Writes "; did you mean 'BEST'?" to TEXT, or "" if no candidate is similar,
- * that is, differs in at most 1/3 of its letters. */
+/* Writes "; did you mean 'BEST'?" to TEXT, or "" if no candidate is similar
+ * enough: it may differ in at most 1/3 of its letters. */
 static const char *write_spelling_hint(const struct near *near,
                                        char text[NEAR_BYTES])
 {
@@ -107,11 +109,11 @@ static bool reject_unknown_word(struct glint_text *text, const char *line,
 
     glint_word_quote(word, quote);
     for (int i = 0; clause[i].word; i++)
-        compare_candidate(&near, clause[i].word);
+        compare_candidate_word(&near, clause[i].word);
     write_spelling_hint(&near, mean);
     list_clause_words(clause, words, sizeof words);
-    return glint_text_fail(text, word->place, "%s accepts %s, not '%s'%s", line,
-                           words, quote, mean);
+    return glint_text_set_error(text, word->place, "%s accepts %s, not '%s'%s",
+                                line, words, quote, mean);
 }
 
 bool glint_numbers_read(struct glint_text *text, const char *what, int n,
@@ -123,9 +125,9 @@ bool glint_numbers_read(struct glint_text *text, const char *what, int n,
         const struct glint_word word = glint_text_next_word(text);
 
         if (!word.length && n > 1)
-            return glint_text_fail(text, word.place,
-                                   "%s needs %d numbers, got %d", what, n, i);
-        if (!glint_text_value_of(text, &word, &range, &value[i]))
+            return glint_text_set_error(
+                text, word.place, "%s needs %d numbers, got %d", what, n, i);
+        if (!glint_text_parse_value(text, &word, &range, &value[i]))
             return false;
     }
     return true;
@@ -136,18 +138,18 @@ static bool read_clause_values(struct glint_text *text,
                                const struct glint_word *word)
 {
     if (clause->place.line)
-        return glint_text_fail(text, word->place, "a second '%s'",
-                               clause->word);
+        return glint_text_set_error(text, word->place, "a second '%s'",
+                                    clause->word);
     clause->place = word->place;
     if (!clause->name)
         return glint_numbers_read(text, clause->word, clause->n, clause->min,
                                   clause->max, clause->value);
     *clause->name = glint_text_next_word(text);
     return clause->name->length > 0 ||
-           glint_text_fail(text, clause->name->place,
-                           "the name of a %s is "
-                           "missing",
-                           clause->word);
+           glint_text_set_error(text, clause->name->place,
+                                "the name of a %s is "
+                                "missing",
+                                clause->word);
 }
 
 bool glint_clauses_read(struct glint_text *text, const char *line,
@@ -158,7 +160,7 @@ bool glint_clauses_read(struct glint_text *text, const char *line,
     while ((word = glint_text_next_word(text)).length) {
         struct glint_clause *c = clause;
 
-        while (c->word && !glint_word_is(&word, c->word))
+        while (c->word && !glint_word_equals(&word, c->word))
             c++;
         if (!c->word)
             return reject_unknown_word(text, line, clause, &word);
@@ -167,17 +169,17 @@ bool glint_clauses_read(struct glint_text *text, const char *line,
     }
     for (const struct glint_clause *c = clause; c->word; c++)
         if (c->required && !c->place.line)
-            return glint_text_fail(text, word.place, "%s needs '%s'", line,
-                                   c->word);
+            return glint_text_set_error(text, word.place, "%s needs '%s'", line,
+                                        c->word);
     return true;
 }
 
 /* --------------------------------------------------------------------- lines
  */
 
-bool glint_line_begin(struct glint_text *text,
-                      const struct glint_text_line *lines, int n, int *first,
-                      int *index)
+bool glint_line_read_first_word(struct glint_text *text,
+                                const struct glint_text_line *lines, int n,
+                                int *first, int *index)
 {
     const struct glint_word word = glint_text_next_word(text);
     char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES];
@@ -187,34 +189,34 @@ bool glint_line_begin(struct glint_text *text,
     *index = -1;
     if (!word.length)
         return true;
-    while (i < n && !glint_word_is(&word, lines[i].word))
-        compare_candidate(&near, lines[i++].word);
+    while (i < n && !glint_word_equals(&word, lines[i].word))
+        compare_candidate_word(&near, lines[i++].word);
     if (i == n)
-        return glint_text_fail(text, word.place, "unknown word '%s'%s",
-                               glint_word_quote(&word, quote),
-                               write_spelling_hint(&near, mean));
+        return glint_text_set_error(text, word.place, "unknown word '%s'%s",
+                                    glint_word_quote(&word, quote),
+                                    write_spelling_hint(&near, mean));
     if (first[i] && !lines[i].many)
-        return glint_text_fail(text, word.place,
-                               "a second %s; the first is on line %d",
-                               lines[i].word, first[i]);
+        return glint_text_set_error(text, word.place,
+                                    "a second %s; the first is on line %d",
+                                    lines[i].word, first[i]);
     first[i] = word.place.line;
     *index = i;
     return true;
 }
 
-bool glint_name_find(struct glint_text *text, const struct glint_word *word,
-                     const char *what, const char *names, size_t stride, int n,
-                     int *index)
+bool glint_name_find_index(struct glint_text *text,
+                           const struct glint_word *word, const char *what,
+                           const char *names, size_t stride, int n, int *index)
 {
     struct near near = begin_word_search(word);
     char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES];
 
     for (*index = 0; *index < n; ++*index, names += stride) {
-        if (glint_word_is(word, names))
+        if (glint_word_equals(word, names))
             return true;
-        compare_candidate(&near, names);
+        compare_candidate_word(&near, names);
     }
-    return glint_text_fail(
+    return glint_text_set_error(
         text, word->place, "no %s '%s' is defined above this line%s", what,
         glint_word_quote(word, quote), write_spelling_hint(&near, mean));
 }
@@ -226,12 +228,12 @@ int glint_choice_read(struct glint_text *text, const char *line,
     char quote[GLINT_QUOTE_BYTES];
 
     for (int i = 0; names[i]; i++)
-        if (glint_word_is(&word, names[i]))
+        if (glint_word_equals(&word, names[i]))
             return i;
-    glint_text_fail(text, word.place, "%s accepts %s%s%s%s", line, list,
-                    word.length ? ", not '" : "",
-                    word.length ? glint_word_quote(&word, quote) : "",
-                    word.length ? "'" : "");
+    glint_text_set_error(text, word.place, "%s accepts %s%s%s%s", line, list,
+                         word.length ? ", not '" : "",
+                         word.length ? glint_word_quote(&word, quote) : "",
+                         word.length ? "'" : "");
     return -1;
 }
 
@@ -242,10 +244,10 @@ bool glint_name_read(struct glint_text *text, const char *what, char *name,
     bool good = word.length > 0 && word.length < bytes;
 
     if (!word.length)
-        return glint_text_fail(text, word.place,
-                               "the name of the %s is "
-                               "missing",
-                               what);
+        return glint_text_set_error(text, word.place,
+                                    "the name of the %s is "
+                                    "missing",
+                                    what);
     for (int i = 0; good && i < word.length; i++) {
         const char c = word.start[i];
         const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
@@ -254,22 +256,23 @@ bool glint_name_read(struct glint_text *text, const char *what, char *name,
                (i > 0 && ((c >= '0' && c <= '9') || c == '-' || c == '_'));
     }
     if (!good)
-        return glint_text_fail(text, word.place,
-                               "a name must be a letter followed by at most %d "
-                               "letters, digits, - and _",
-                               bytes - 2);
+        return glint_text_set_error(
+            text, word.place,
+            "a name must be a letter followed by at most %d "
+            "letters, digits, - and _",
+            bytes - 2);
     memcpy(name, word.start, (size_t)word.length);
     name[word.length] = '\0';
     return true;
 }
 
-bool glint_line_ends(struct glint_text *text, const char *line)
+bool glint_line_check_end(struct glint_text *text, const char *line)
 {
     const struct glint_word word = glint_text_next_word(text);
     char quote[GLINT_QUOTE_BYTES];
 
     return !word.length ||
-           glint_text_fail(text, word.place,
-                           "'%s' is one value too many for %s",
-                           glint_word_quote(&word, quote), line);
+           glint_text_set_error(text, word.place,
+                                "'%s' is one value too many for %s",
+                                glint_word_quote(&word, quote), line);
 }

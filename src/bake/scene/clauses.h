@@ -28,9 +28,9 @@ struct glint_clause {
     struct glint_text_place place;
 };
 
-/* Parses the rest of the line: any of the clauses in CLAUSE, each at most once.
- * LINE names the line in error texts. Returns false and sets the error of TEXT
- * if the rest contains anything else or a required clause is missing. */
+/* Parses the rest of the line, which may contain each of the clauses in CLAUSE
+ * once. LINE names the line in error texts. Returns false and sets the error of
+ * TEXT if the rest contains anything else or a required clause is missing. */
 bool glint_clauses_read(struct glint_text *text, const char *line,
                         struct glint_clause *clause);
 
@@ -43,14 +43,16 @@ bool glint_numbers_read(struct glint_text *text, const char *what, int n,
 bool glint_name_read(struct glint_text *text, const char *what, char *name,
                      int bytes);
 
-/* Sets INDEX to the index of WORD in a table of N names: the first is at NAMES,
- * the next ones follow every STRIDE bytes. Rejects unknown words. */
-bool glint_name_find(struct glint_text *text, const struct glint_word *word,
-                     const char *what, const char *names, size_t stride, int n,
-                     int *index);
+/* Sets INDEX to the index of the name WORD in a table of N names, the first at
+ * NAMES, the others every STRIDE bytes after it. Rejects unknown names; WHAT
+ * says in error texts what is named. */
+bool glint_name_find_index(struct glint_text *text,
+                           const struct glint_word *word, const char *what,
+                           const char *names, size_t stride, int n, int *index);
 
-/* Parses one word of NAMES, a list terminated by NULL. Returns its index, or
- * -1. LIST describes the words in the error text about LINE. */
+/* Parses one word, which must be in NAMES, a list terminated by NULL. Returns
+ * its index, or -1 after an error. LIST describes the accepted words in the
+ * error text about LINE. */
 int glint_choice_read(struct glint_text *text, const char *line,
                       const char *list, const char *const *names);
 
@@ -63,11 +65,11 @@ struct glint_text_line {
 /* Parses the first word of the line. Sets INDEX to its index among N LINES, or
  * to -1 if the line is empty. FIRST[n], initially 0, records the line number at
  * which each type of line occurred last. */
-bool glint_line_begin(struct glint_text *text,
-                      const struct glint_text_line *lines, int n, int *first,
-                      int *index);
+bool glint_line_read_first_word(struct glint_text *text,
+                                const struct glint_text_line *lines, int n,
+                                int *first, int *index);
 
 /* Rejects any further words on the line. */
-bool glint_line_ends(struct glint_text *text, const char *line);
+bool glint_line_check_end(struct glint_text *text, const char *line);
 
 #endif

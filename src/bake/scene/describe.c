@@ -17,13 +17,13 @@ static const struct glint_text_line lines[] = {
 enum { N_LINES = sizeof lines / sizeof *lines };
 
 static bool (*const read[N_LINES])(struct glint_describer *) = {
-    glint_describe_hand,       glint_describe_camera,
-    glint_describe_background, glint_describe_environment,
-    glint_describe_light,      glint_describe_texture,
-    glint_describe_material,   glint_describe_sphere,
-    glint_describe_triangle,   glint_describe_plane,
-    glint_describe_mesh,       glint_describe_motion,
-    glint_describe_shadow,     glint_describe_flare};
+    glint_describe_parse_hand,       glint_describe_parse_camera,
+    glint_describe_parse_background, glint_describe_parse_environment,
+    glint_describe_parse_light,      glint_describe_parse_texture,
+    glint_describe_parse_material,   glint_describe_parse_sphere,
+    glint_describe_parse_triangle,   glint_describe_parse_plane,
+    glint_describe_parse_mesh,       glint_describe_parse_motion,
+    glint_describe_parse_shadow,     glint_describe_parse_flare};
 
 enum glint_status
 glint_description_parse(struct glint_description *scene, const char *text,
@@ -46,16 +46,17 @@ glint_description_parse(struct glint_description *scene, const char *text,
     while (good && glint_text_next_line(&d.text)) {
         int i;
 
-        good = glint_line_begin(&d.text, lines, N_LINES, first, &i) &&
+        good = glint_line_read_first_word(&d.text, lines, N_LINES, first, &i) &&
                (i < 0 || read[i](&d));
     }
-    good = good && glint_describe_axes(&d) && glint_describe_around(&d) &&
-           glint_describe_sensors(&d);
+    good = good && glint_describe_set_camera_axes(&d) &&
+           glint_describe_add_environment_lights(&d) &&
+           glint_describe_check_sensors(&d);
     if (good && !scene->n_objects)
-        good =
-            glint_text_fail(&d.text, glint_text_end(&d.text),
-                            "the scene has no object; add a sphere, triangle, "
-                            "plane, mesh or motion");
+        good = glint_text_set_error(
+            &d.text, glint_text_get_end_place(&d.text),
+            "the scene has no object; add a sphere, triangle, "
+            "plane, mesh or motion");
     if (good)
         return GLINT_OK;
     glint_description_free(scene);

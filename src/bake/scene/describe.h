@@ -26,72 +26,75 @@ struct glint_describer {
     bool has_orbit;
     /* position of the word "sensor" in the line "camera" */
     struct glint_text_place sensor;
-    /* position of the first lamp that is attached to a motion, and the motion's
-     * name */
+    /* position in the text of the first lamp that is attached to a motion, and
+     * the name of that motion */
     struct glint_text_place rides;
     char rides_on[GLINT_DESCRIPTION_NAME_BYTES];
 };
 
-/* describe_motion.c: parses the line "motion"; glint_describe_sensors() checks
- * its sensors after all lines were parsed */
-bool glint_describe_motion(struct glint_describer *d);
-bool glint_describe_sensors(struct glint_describer *d);
+/* describe_motion.c: parses the line "motion"; glint_describe_check_sensors()
+ * checks its sensors after all lines were parsed */
+bool glint_describe_parse_motion(struct glint_describer *d);
+bool glint_describe_check_sensors(struct glint_describer *d);
 
 /* describe_things.c: appends an object of KIND. Returns NULL if there are too
  * many objects or the name is already used; the error then refers to PLACE. */
 struct glint_described_object *
-glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
-                     const char *name, struct glint_text_place place);
+glint_describe_append_object(struct glint_describer *d,
+                             enum glint_described_kind kind, const char *name,
+                             struct glint_text_place place);
 
 /* describe_view.c: parse the lines "hand", "camera", "background", "shadow" and
  * "flare" */
-bool glint_describe_hand(struct glint_describer *d);
-bool glint_describe_camera(struct glint_describer *d);
-bool glint_describe_background(struct glint_describer *d);
-bool glint_describe_shadow(struct glint_describer *d);
-bool glint_describe_flare(struct glint_describer *d);
+bool glint_describe_parse_hand(struct glint_describer *d);
+bool glint_describe_parse_camera(struct glint_describer *d);
+bool glint_describe_parse_background(struct glint_describer *d);
+bool glint_describe_parse_shadow(struct glint_describer *d);
+bool glint_describe_parse_flare(struct glint_describer *d);
 /* Computes position and axes of the camera after all lines were parsed. */
-bool glint_describe_axes(struct glint_describer *d);
+bool glint_describe_set_camera_axes(struct glint_describer *d);
 
 /* describe_looks.c: parse the lines "light", "texture" and "material" */
-bool glint_describe_light(struct glint_describer *d);
-bool glint_describe_texture(struct glint_describer *d);
-bool glint_describe_material(struct glint_describer *d);
+bool glint_describe_parse_light(struct glint_describer *d);
+bool glint_describe_parse_texture(struct glint_describer *d);
+bool glint_describe_parse_material(struct glint_describer *d);
 /* Sets INDEX to the index of the material with the name WORD. */
-bool glint_describe_find(struct glint_describer *d,
-                         const struct glint_word *word, int *index);
+bool glint_describe_find_material(struct glint_describer *d,
+                                  const struct glint_word *word, int *index);
 
-/* Checks object O, the last one defined, if its material is translucent:
- * rejects it if its texture coordinates cannot map the surface to a texture;
- * warns if the mapping is stretched. PLACE: position of the material's name. */
-bool glint_describe_skin(struct glint_describer *d,
-                         const struct glint_described_object *o,
-                         struct glint_text_place place);
+/* Checks object O, the last one defined, if its material is translucent.
+ * Rejects the object if its texture coordinates cannot map the surface to a
+ * texture; warns if the mapping is stretched. PLACE: position of the material's
+ * name. */
+bool glint_describe_check_translucent_object(
+    struct glint_describer *d, const struct glint_described_object *o,
+    struct glint_text_place place);
 
-/* describe_around.c: parses the line "environment"; glint_describe_around()
- * adds the lights of environments after all lines were parsed */
-bool glint_describe_environment(struct glint_describer *d);
-bool glint_describe_around(struct glint_describer *d);
+/* describe_around.c: parses the line "environment";
+ * glint_describe_add_environment_lights() adds the lights of environments after
+ * all lines were parsed */
+bool glint_describe_parse_environment(struct glint_describer *d);
+bool glint_describe_add_environment_lights(struct glint_describer *d);
 
 /* describe_things.c: parse the lines "sphere", "triangle", "plane" and
  * "mesh" */
-bool glint_describe_sphere(struct glint_describer *d);
-bool glint_describe_triangle(struct glint_describer *d);
-bool glint_describe_plane(struct glint_describer *d);
-bool glint_describe_mesh(struct glint_describer *d);
+bool glint_describe_parse_sphere(struct glint_describer *d);
+bool glint_describe_parse_triangle(struct glint_describer *d);
+bool glint_describe_parse_plane(struct glint_describer *d);
+bool glint_describe_parse_mesh(struct glint_describer *d);
 
 /* describer.c: scales vector X to length 1. Returns false if X is 0. */
-bool glint_describe_unit(double x[3]);
+bool glint_describe_normalise_vector(double x[3]);
 
 /* Copies the file name WORD to NAME. */
 #define GLINT_FILE_BYTES (GLINT_LINE_BYTES + 1)
-void glint_describe_file(const struct glint_word *word,
-                         char name[GLINT_FILE_BYTES]);
+void glint_describe_copy_file_name(const struct glint_word *word,
+                                   char name[GLINT_FILE_BYTES]);
 
-/* Sets the error for a file that could not be read: the error text that FILES
- * set, or else that of STATUS. Returns false. */
-bool glint_describe_refuse(struct glint_describer *d,
-                           struct glint_text_place place,
-                           enum glint_status status);
+/* Sets the error for a file that could not be read: the error text that the
+ * caller's file reader has set, or else that of STATUS. Returns false. */
+bool glint_describe_set_file_error(struct glint_describer *d,
+                                   struct glint_text_place place,
+                                   enum glint_status status);
 
 #endif

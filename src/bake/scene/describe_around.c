@@ -42,15 +42,15 @@ append_environment(struct glint_describer *d, const char *file,
     struct glint_described_environment *e;
 
     if (s->n_environments == GLINT_DESCRIPTION_MAX_ENVIRONMENTS) {
-        glint_text_fail(&d->text, place, "more than %d environments",
-                        GLINT_DESCRIPTION_MAX_ENVIRONMENTS);
+        glint_text_set_error(&d->text, place, "more than %d environments",
+                             GLINT_DESCRIPTION_MAX_ENVIRONMENTS);
         return NULL;
     }
     e = &s->environment[s->n_environments];
     set_environment_name(file, e->name);
     for (int i = 0; i < s->n_environments; i++)
         if (strcmp(s->environment[i].name, e->name) == 0) {
-            glint_text_fail(
+            glint_text_set_error(
                 &d->text, place,
                 "environment '%s' is already defined; rename one of both "
                 "files",
@@ -62,7 +62,7 @@ append_environment(struct glint_describer *d, const char *file,
     return e;
 }
 
-bool glint_describe_environment(struct glint_describer *d)
+bool glint_describe_parse_environment(struct glint_describer *d)
 {
     const struct glint_word word = glint_text_next_word(&d->text);
     double turn_deg = 0, scale = 1;
@@ -76,14 +76,14 @@ bool glint_describe_environment(struct glint_describer *d)
     enum glint_status status;
 
     if (!word.length)
-        return glint_text_fail(&d->text, word.place,
-                               "the environment's file name is missing");
+        return glint_text_set_error(&d->text, word.place,
+                                    "the environment's file name is missing");
     if (!glint_clauses_read(&d->text, "environment", clause))
         return false;
-    glint_describe_file(&word, name);
+    glint_describe_copy_file_name(&word, name);
     if (!d->files->environment)
-        return glint_text_fail(&d->text, word.place,
-                               "this program does not read environments");
+        return glint_text_set_error(
+            &d->text, word.place, "this program cannot read environment files");
     e = append_environment(d, name, word.place);
     if (!e)
         return false;
@@ -92,10 +92,10 @@ bool glint_describe_environment(struct glint_describer *d)
     status = d->files->environment(d->files->ctx, name, &e->data, &e->bytes,
                                    d->error);
     if (status != GLINT_OK)
-        return glint_describe_refuse(d, word.place, status);
+        return glint_describe_set_file_error(d, word.place, status);
     return glint_environment_open(&opened, e->data, e->bytes, &reason) ==
                GLINT_OK ||
-           glint_text_fail(&d->text, word.place, "%s", reason);
+           glint_text_set_error(&d->text, word.place, "%s", reason);
 }
 
 /* Converts light FROM of an environment to the sun TO. The z axis of an
@@ -114,7 +114,7 @@ static void convert_light_to_sun(const struct glint_description *s,
         .radius_deg = asin(sine) * 180 / GLINT_PI,
         .at = {cos(angle) * x + sin(angle) * z, from->toward_q30[1],
                (s->left_handed ? 1 : -1) * (cos(angle) * z - sin(angle) * x)}};
-    glint_describe_unit(to->at);
+    glint_describe_normalise_vector(to->at);
     for (int c = 0; c < 3; c++)
         to->colour[c] = s->environment[0].scale *
                         glint_real_value(from->rgb[c]) / (sine * sine);
@@ -122,9 +122,10 @@ static void convert_light_to_sun(const struct glint_description *s,
              number ? "environment%d" : "environment", number + 1);
 }
 
-bool glint_describe_around(struct glint_describer *d)
+bool glint_describe_add_environment_lights(struct glint_describer *d)
 {
-    /* used for environments with fewer lights than others of the scene */
+    /* stands for the missing lights of environments that have fewer lights than
+     * others of the scene */
     static const struct glint_environment_light dark = {
         .toward_q30 = {0, 1 << 30, 0}};
     struct glint_description *s = d->scene;
@@ -133,15 +134,15 @@ bool glint_describe_around(struct glint_describer *d)
 
     if (!s->n_environments)
         return s->background != GLINT_BEHIND_ENVIRONMENT ||
-               glint_text_fail(
+               glint_text_set_error(
                    &d->text, d->background,
                    "'background environment' needs a line 'environment FILE'");
-    /* E is set to the first environment at last. */
+    /* iterates backwards, so that E is the first environment after the loop */
     for (int k = s->n_environments; k--;) {
         if (glint_environment_open(&e, s->environment[k].data,
                                    s->environment[k].bytes,
-                                   /* does not occur: the file was checked when
-                                    * its line was parsed */
+                                   /* cannot fail: the file was checked when its
+                                    * line was parsed */
                                    &reason) != GLINT_OK)
             return false;
         if ((int)e.header->n_lights > s->n_environment_lights)

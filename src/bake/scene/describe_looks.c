@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses the lines "light", "texture" and "material": Ward metal, translucent
- * media, Phong.
+ * Parses the lines "light", "texture" and "material". Materials are Ward
+ * metals, translucent media or Phong.
  */
 #include "bake/scene/describe.h"
 
@@ -25,16 +25,17 @@ static bool read_ward_norm(struct glint_describer *d,
 {
     char quote[GLINT_QUOTE_BYTES];
 
-    m->norm = glint_word_is(word, "1992") ? GLINT_DESCRIBED_1992
-                                          : GLINT_DESCRIBED_BOUNDED;
-    return glint_word_is(word, "1992") || glint_word_is(word, "bounded") ||
-           glint_text_fail(&d->text, word->place,
-                           "'norm' must be bounded or 1992, not '%s'",
-                           glint_word_quote(word, quote));
+    m->norm = glint_word_equals(word, "1992") ? GLINT_DESCRIBED_1992
+                                              : GLINT_DESCRIBED_BOUNDED;
+    return glint_word_equals(word, "1992") ||
+           glint_word_equals(word, "bounded") ||
+           glint_text_set_error(&d->text, word->place,
+                                "'norm' must be bounded or 1992, not '%s'",
+                                glint_word_quote(word, quote));
 }
 
-/* Raises the smaller of both Ward alphas to 1/10 of the larger, with a
- * warning. */
+/* Raises the smaller one of the two Ward alphas to 1/10 of the larger one, with
+ * a warning. */
 static void limit_alpha_ratio(struct glint_describer *d,
                               struct glint_described_material *m)
 {
@@ -87,7 +88,7 @@ static bool read_ward_material(struct glint_describer *d,
         return false;
     for (int c = 0; c < 3; c++)
         if (m->colour[c] + m->metal[c] > 1 + SLACK)
-            return glint_text_fail(
+            return glint_text_set_error(
                 &d->text, clause[1].place,
                 "'diffuse' and 'specular' sum to %.6g; above 1 the surface "
                 "would reflect more light than it receives",
@@ -95,8 +96,9 @@ static bool read_ward_material(struct glint_describer *d,
     return read_ward_lobe(d, m, &norm);
 }
 
-/* Limits for the warning about stretched texels: texel size / mean texel size,
- * and the fraction of the surface where this ratio is exceeded. */
+/* Limits for the warning about stretched texels. MOST_STRETCH: texel size /
+ * mean texel size of the mesh. STRETCHED_AREA: fraction of the surface on which
+ * MOST_STRETCH is exceeded. */
 #define MOST_STRETCH   1.5
 #define STRETCHED_AREA .02
 
@@ -116,22 +118,22 @@ static bool read_translucent_file(struct glint_describer *d,
     enum glint_status status;
 
     if (s->n_stones == GLINT_DESCRIPTION_MAX_STONES)
-        return glint_text_fail(&d->text, word->place,
-                               "more than %d translucent materials",
-                               GLINT_DESCRIPTION_MAX_STONES);
+        return glint_text_set_error(&d->text, word->place,
+                                    "more than %d translucent materials",
+                                    GLINT_DESCRIPTION_MAX_STONES);
     if (!d->files->stone)
-        return glint_text_fail(
+        return glint_text_set_error(
             &d->text, word->place,
-            "this program does not read translucent materials");
-    glint_describe_file(word, name);
+            "this program cannot read translucent materials");
+    glint_describe_copy_file_name(word, name);
     status = d->files->stone(d->files->ctx, name, &stone->data, &stone->bytes,
                              d->error);
     if (status != GLINT_OK)
-        return glint_describe_refuse(d, word->place, status);
+        return glint_describe_set_file_error(d, word->place, status);
     m->stone = s->n_stones++;
     return glint_translucent_open(&opened, stone->data, stone->bytes,
                                   &reason) == GLINT_OK ||
-           glint_text_fail(&d->text, word->place, "%s", reason);
+           glint_text_set_error(&d->text, word->place, "%s", reason);
 }
 
 static bool read_fresnel_switch(struct glint_describer *d,
@@ -140,11 +142,11 @@ static bool read_fresnel_switch(struct glint_describer *d,
 {
     char quote[GLINT_QUOTE_BYTES];
 
-    m->fresnel = !glint_word_is(word, "off");
-    return glint_word_is(word, "on") || glint_word_is(word, "off") ||
-           glint_text_fail(&d->text, word->place,
-                           "'fresnel' must be on or off, not '%s'",
-                           glint_word_quote(word, quote));
+    m->fresnel = !glint_word_equals(word, "off");
+    return glint_word_equals(word, "on") || glint_word_equals(word, "off") ||
+           glint_text_set_error(&d->text, word->place,
+                                "'fresnel' must be on or off, not '%s'",
+                                glint_word_quote(word, quote));
 }
 
 /* Parses a translucent material from the word "translucent" on. */
@@ -167,7 +169,7 @@ static bool read_translucent_material(struct glint_describer *d,
     glint_text_next_word(&d->text); /* skips the word "translucent" */
     file = glint_text_next_word(&d->text);
     if (!file.length)
-        return glint_text_fail(
+        return glint_text_set_error(
             &d->text, file.place,
             "the translucent material's file name is missing");
     if (!glint_clauses_read(&d->text, "material", clause) ||
@@ -175,26 +177,27 @@ static bool read_translucent_material(struct glint_describer *d,
         !read_translucent_file(d, &file, m))
         return false;
     m->is_metal = coat.length > 0;
-    if (m->is_metal && !glint_word_is(&coat, "ward"))
-        return glint_text_fail(&d->text, coat.place,
-                               "'coat' must be ward, not '%s'",
-                               glint_word_quote(&coat, quote));
+    if (m->is_metal && !glint_word_equals(&coat, "ward"))
+        return glint_text_set_error(&d->text, coat.place,
+                                    "'coat' must be ward, not '%s'",
+                                    glint_word_quote(&coat, quote));
     for (int i = 1; i <= 3; i++)
         if (clause[i].place.line && !m->is_metal)
-            return glint_text_fail(&d->text, clause[i].place,
-                                   "'%s' needs 'coat ward'", clause[i].word);
+            return glint_text_set_error(&d->text, clause[i].place,
+                                        "'%s' needs 'coat ward'",
+                                        clause[i].word);
     for (int i = 1; i <= 2; i++)
         if (!clause[i].place.line && m->is_metal)
-            return glint_text_fail(&d->text, coat.place, "a coat needs '%s'",
-                                   clause[i].word);
+            return glint_text_set_error(
+                &d->text, coat.place, "'coat ward' needs '%s'", clause[i].word);
     return !m->is_metal || read_ward_lobe(d, m, &norm);
 }
 
 /* ------------------------------------------------------------------ objects */
 
-/* Sets SHORTEST and LONGEST to the min and max length on triangle T of a unit
- * vector of the texture plane (u, v). Returns the triangle's area; 0 if its
- * area in (u, v) is 0. */
+/* Sets SHORTEST and LONGEST to the min and max length, on triangle T, of a unit
+ * vector of texture space (u, v). Returns the triangle's area; 0 if its area in
+ * (u, v) is 0. */
 static double compute_texel_stretch(const struct glint_described_triangle *t,
                                     double *shortest, double *longest)
 {
@@ -257,8 +260,8 @@ static void check_mesh_stretch(struct glint_describer *d,
                  o->name, worst, 100 * stretched / area);
 }
 
-/* Checks triangle T of a translucent object. FIRST: translucent material of
- * earlier triangles, or -1. */
+/* Checks triangle T of a translucent object. FIRST: index of the translucent
+ * material of earlier triangles; -1: none. */
 static bool check_translucent_triangle(struct glint_describer *d,
                                        const struct glint_described_triangle *t,
                                        struct glint_text_place place,
@@ -267,20 +270,22 @@ static bool check_translucent_triangle(struct glint_describer *d,
     const struct glint_described_material *m = &d->scene->material[t->material];
 
     if (!t->has_uv)
-        return glint_text_fail(&d->text, place,
-                               "material %s is translucent, but a face has no "
-                               "texture coordinates (uv, vt)",
-                               m->name);
+        return glint_text_set_error(
+            &d->text, place,
+            "material %s is translucent, but a face has no "
+            "texture coordinates (uv, vt)",
+            m->name);
     if (*first >= 0 && *first != t->material)
-        return glint_text_fail(&d->text, place,
-                               "materials %s and %s are both translucent: a "
-                               "mesh can have one translucent material",
-                               d->scene->material[*first].name, m->name);
+        return glint_text_set_error(
+            &d->text, place,
+            "materials %s and %s are both translucent: a "
+            "mesh can have one translucent material",
+            d->scene->material[*first].name, m->name);
     *first = t->material;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 2; i++)
             if (t->uv[k][i] < -1e-6 || t->uv[k][i] > 1 + 1e-6)
-                return glint_text_fail(
+                return glint_text_set_error(
                     &d->text, place,
                     "u and v of a translucent mesh must be 0 to 1, not %.4g: "
                     "its map does not repeat",
@@ -288,17 +293,18 @@ static bool check_translucent_triangle(struct glint_describer *d,
     return true;
 }
 
-bool glint_describe_skin(struct glint_describer *d,
-                         const struct glint_described_object *o,
-                         struct glint_text_place place)
+bool glint_describe_check_translucent_object(
+    struct glint_describer *d, const struct glint_described_object *o,
+    struct glint_text_place place)
 {
     const struct glint_description *s = d->scene;
     int first = -1;
 
     if (o->kind == GLINT_DESCRIBED_PLANE && s->material[o->material].is_stone)
-        return glint_text_fail(&d->text, place,
-                               "an infinite plane cannot be translucent: use a "
-                               "sphere or a mesh with uv");
+        return glint_text_set_error(
+            &d->text, place,
+            "an infinite plane cannot be translucent: use a "
+            "sphere or a mesh with uv");
     for (int i = 0; i < o->n_triangles; i++) {
         const struct glint_described_triangle *t =
             &s->triangle[o->first_triangle + i];
@@ -319,8 +325,8 @@ bool glint_describe_skin(struct glint_describer *d,
 /* default angular radius of a sun, degrees */
 #define SUN_DEG 0.267
 
-/* Warns if the colour of SUN seems to be its irradiance instead of its
- * radiance: its light would be below one 8-bit code. */
+/* Warns if the colour of SUN seems to be given as irradiance instead of
+ * radiance: its light would then be below one 8-bit code. */
 static void check_sun_radiance(struct glint_describer *d,
                                const struct glint_described_light *sun)
 {
@@ -351,23 +357,23 @@ static bool read_sun_light(struct glint_describer *d,
     if (!glint_clauses_read(&d->text, "light sun", clause))
         return false;
     check_sun_radiance(d, light);
-    return glint_describe_unit(light->at) ||
-           glint_text_fail(&d->text, clause[0].place,
-                           "the direction to the sun must not be 0 0 0");
+    return glint_describe_normalise_vector(light->at) ||
+           glint_text_set_error(&d->text, clause[0].place,
+                                "the direction to the sun must not be 0 0 0");
 }
 
 /* Attaches LIGHT to the motion named WORD. */
-static bool attach_to_motion(struct glint_describer *d,
-                             const struct glint_described_light *light,
-                             const struct glint_word *word,
-                             struct glint_text_place place)
+static bool attach_light_to_motion(struct glint_describer *d,
+                                   const struct glint_described_light *light,
+                                   const struct glint_word *word,
+                                   struct glint_text_place place)
 {
     char name[GLINT_FILE_BYTES];
 
-    glint_describe_file(word, name);
+    glint_describe_copy_file_name(word, name);
     if (d->rides.line && strcmp(d->rides_on, name) != 0)
-        return glint_text_fail(&d->text, place,
-                               "a scene has at most one motion");
+        return glint_text_set_error(&d->text, place,
+                                    "a scene has at most one motion");
     d->rides = place;
     snprintf(d->rides_on, sizeof d->rides_on, "%.31s", name);
     d->scene->motion.riders |= 1u << (light - d->scene->light);
@@ -388,7 +394,7 @@ static bool read_lamp_light(struct glint_describer *d,
     light->kind = GLINT_DESCRIBED_LAMP;
     return glint_clauses_read(&d->text, "light lamp", clause) &&
            (!clause[3].place.line ||
-            attach_to_motion(d, light, &on, clause[3].place));
+            attach_light_to_motion(d, light, &on, clause[3].place));
 }
 
 /* Names LIGHT by its kind, plus a number from the second light of this kind on:
@@ -404,7 +410,7 @@ static void set_light_name(struct glint_description *s,
     snprintf(light->name, sizeof light->name, n > 1 ? "%s%d" : "%s", kind, n);
 }
 
-bool glint_describe_light(struct glint_describer *d)
+bool glint_describe_parse_light(struct glint_describer *d)
 {
     struct glint_description *s = d->scene;
     struct glint_described_light *light = &s->light[s->n_lights];
@@ -413,17 +419,18 @@ bool glint_describe_light(struct glint_describer *d)
     bool good;
 
     if (s->n_lights == GLINT_DESCRIPTION_TEXT_LIGHTS)
-        return glint_text_fail(&d->text, word.place, "more than %d lights",
-                               GLINT_DESCRIPTION_TEXT_LIGHTS);
-    if (!glint_word_is(&word, "sun") && !glint_word_is(&word, "lamp"))
-        return word.length ? glint_text_fail(
-                                 &d->text, word.place,
-                                 "a light must be a sun or a lamp, not '%s'",
-                                 glint_word_quote(&word, quote))
-                           : glint_text_fail(&d->text, word.place,
-                                             "a light must be a sun or a lamp");
-    good = glint_word_is(&word, "sun") ? read_sun_light(d, light)
-                                       : read_lamp_light(d, light);
+        return glint_text_set_error(&d->text, word.place, "more than %d lights",
+                                    GLINT_DESCRIPTION_TEXT_LIGHTS);
+    if (!glint_word_equals(&word, "sun") && !glint_word_equals(&word, "lamp"))
+        return word.length
+                   ? glint_text_set_error(
+                         &d->text, word.place,
+                         "a light must be a sun or a lamp, not '%s'",
+                         glint_word_quote(&word, quote))
+                   : glint_text_set_error(&d->text, word.place,
+                                          "a light must be a sun or a lamp");
+    good = glint_word_equals(&word, "sun") ? read_sun_light(d, light)
+                                           : read_lamp_light(d, light);
     set_light_name(s, light,
                    light->kind == GLINT_DESCRIBED_SUN ? "sun" : "lamp");
     s->n_lights++;
@@ -440,7 +447,7 @@ static int64_t count_scene_texels(const struct glint_description *s)
     return n;
 }
 
-bool glint_describe_texture(struct glint_describer *d)
+bool glint_describe_parse_texture(struct glint_describer *d)
 {
     struct glint_description *s = d->scene;
     struct glint_described_texture *t = &s->texture[s->n_textures];
@@ -450,33 +457,36 @@ bool glint_describe_texture(struct glint_describer *d)
     enum glint_status status;
 
     if (s->n_textures == GLINT_DESCRIPTION_MAX_TEXTURES)
-        return glint_text_fail(&d->text, word.place, "more than %d textures",
-                               GLINT_DESCRIPTION_MAX_TEXTURES);
+        return glint_text_set_error(&d->text, word.place,
+                                    "more than %d textures",
+                                    GLINT_DESCRIPTION_MAX_TEXTURES);
     if (!glint_name_read(&d->text, "texture", t->name, sizeof t->name))
         return false;
     for (int i = 0; i < s->n_textures; i++)
         if (strcmp(s->texture[i].name, t->name) == 0)
-            return glint_text_fail(&d->text, word.place,
-                                   "a texture of this name is already defined");
+            return glint_text_set_error(
+                &d->text, word.place,
+                "a texture of this name is already defined");
     word = glint_text_next_word(&d->text);
     if (!word.length)
-        return glint_text_fail(&d->text, word.place,
-                               "the texture's file name is missing");
-    if (!glint_line_ends(&d->text, "texture"))
+        return glint_text_set_error(&d->text, word.place,
+                                    "the texture's file name is missing");
+    if (!glint_line_check_end(&d->text, "texture"))
         return false;
-    glint_describe_file(&word, name);
+    glint_describe_copy_file_name(&word, name);
     status = d->files->picture(d->files->ctx, name, &t->image, d->error);
     if (status != GLINT_OK)
-        return glint_describe_refuse(d, word.place, status);
+        return glint_describe_set_file_error(d, word.place, status);
     s->n_textures++;
-    d->status = glint_texels_fit(&t->image, GLINT_DESCRIPTION_MAX_SIDE);
+    d->status = glint_texels_resize_to_powers_of_two(
+        &t->image, GLINT_DESCRIPTION_MAX_SIDE);
     if (d->status != GLINT_OK)
-        return glint_describe_refuse(d, word.place, d->status);
+        return glint_describe_set_file_error(d, word.place, d->status);
     d->status = GLINT_E_LENS;
     if (count_scene_texels(s) > GLINT_DESCRIPTION_MAX_TEXELS)
-        return glint_text_fail(&d->text, word.place,
-                               "more than %d texels in all textures",
-                               GLINT_DESCRIPTION_MAX_TEXELS);
+        return glint_text_set_error(&d->text, word.place,
+                                    "more than %d texels in all textures",
+                                    GLINT_DESCRIPTION_MAX_TEXELS);
     return true;
 }
 
@@ -487,17 +497,18 @@ static bool find_texture_index(struct glint_describer *d,
 {
     const struct glint_description *s = d->scene;
 
-    return glint_name_find(&d->text, word, "texture", s->texture[0].name,
-                           sizeof *s->texture, s->n_textures, index);
+    return glint_name_find_index(&d->text, word, "texture", s->texture[0].name,
+                                 sizeof *s->texture, s->n_textures, index);
 }
 
-bool glint_describe_find(struct glint_describer *d,
-                         const struct glint_word *word, int *index)
+bool glint_describe_find_material(struct glint_describer *d,
+                                  const struct glint_word *word, int *index)
 {
     const struct glint_description *s = d->scene;
 
-    return glint_name_find(&d->text, word, "material", s->material[0].name,
-                           sizeof *s->material, s->n_materials, index);
+    return glint_name_find_index(&d->text, word, "material",
+                                 s->material[0].name, sizeof *s->material,
+                                 s->n_materials, index);
 }
 
 /* Checks that the fractions of light that a material reflects sum to at most
@@ -509,19 +520,20 @@ static bool check_reflected_fractions(struct glint_describer *d,
     const double sum = m->ambient + m->diffuse + m->specular;
 
     if (sum > 1 + SLACK)
-        return glint_text_fail(
+        return glint_text_set_error(
             &d->text, clause[0].place,
             "the weights of phong sum to %.6g; above 1 the surface would "
             "reflect more light than it receives",
             sum);
     if (m->reflect + m->pass > 1 + SLACK)
-        return glint_text_fail(&d->text, clause[4].place,
-                               "'reflect' and 'pass' sum to %.6g; above 1 the "
-                               "surface would emit more light than it receives",
-                               m->reflect + m->pass);
+        return glint_text_set_error(
+            &d->text, clause[4].place,
+            "'reflect' and 'pass' sum to %.6g; above 1 the "
+            "surface would emit more light than it receives",
+            m->reflect + m->pass);
     if (clause[6].place.line && !(m->pass > 0))
-        return glint_text_fail(&d->text, clause[6].place,
-                               "'refract' needs a 'pass' above 0");
+        return glint_text_set_error(&d->text, clause[6].place,
+                                    "'refract' needs a 'pass' above 0");
     if (sum < 1 - SLACK && !(m->reflect > 0 || m->pass > 0) &&
         !d->scene->warning[0])
         snprintf(d->scene->warning, sizeof d->scene->warning,
@@ -556,7 +568,7 @@ static bool read_phong_material(struct glint_describer *d,
     return check_reflected_fractions(d, m, clause);
 }
 
-bool glint_describe_material(struct glint_describer *d)
+bool glint_describe_parse_material(struct glint_describer *d)
 {
     struct glint_description *s = d->scene;
     struct glint_described_material *m = &s->material[s->n_materials];
@@ -566,19 +578,19 @@ bool glint_describe_material(struct glint_describer *d)
     struct glint_word texture = {0};
 
     if (s->n_materials == GLINT_DESCRIPTION_MAX_MATERIALS)
-        return glint_text_fail(&d->text, place, "more than %d materials",
-                               GLINT_DESCRIPTION_MAX_MATERIALS);
+        return glint_text_set_error(&d->text, place, "more than %d materials",
+                                    GLINT_DESCRIPTION_MAX_MATERIALS);
     *m = (struct glint_described_material){
         .power = 32, .colour = {1, 1, 1}, .texture = -1, .index = 1};
     if (!glint_name_read(&d->text, "material", m->name, sizeof m->name))
         return false;
     for (int i = 0; i < s->n_materials; i++)
         if (strcmp(s->material[i].name, m->name) == 0)
-            return glint_text_fail(&d->text, place,
-                                   "a material of this name is already "
-                                   "defined");
-    if (!(glint_word_is(&kind, "ward") ? read_ward_material
-          : glint_word_is(&kind, "translucent")
+            return glint_text_set_error(&d->text, place,
+                                        "a material of this name is already "
+                                        "defined");
+    if (!(glint_word_equals(&kind, "ward") ? read_ward_material
+          : glint_word_equals(&kind, "translucent")
               ? read_translucent_material
               : read_phong_material)(d, m, &texture) ||
         (texture.length && !find_texture_index(d, &texture, &m->texture)))

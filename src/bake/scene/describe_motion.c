@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses the line "motion". Body, sensors and foods of the recorded motion
- * become spheres of the scene, which the run time moves; shells, lines and box
- * only get materials.
+ * Parses the line "motion". The body, its sensors and the foods (landmarks) of
+ * a recorded motion become spheres of the scene, which the run time moves;
+ * shells, lines and box only get materials.
  */
 #include "bake/scene/describe.h"
 
@@ -57,8 +57,8 @@ static bool find_or_add_material(struct glint_describer *d,
         if (strcmp(s->material[*index].name, look->name) == 0)
             return true;
     if (s->n_materials == GLINT_DESCRIPTION_MAX_MATERIALS)
-        return glint_text_fail(&d->text, place, "more than %d materials",
-                               GLINT_DESCRIPTION_MAX_MATERIALS);
+        return glint_text_set_error(&d->text, place, "more than %d materials",
+                                    GLINT_DESCRIPTION_MAX_MATERIALS);
     s->material[*index] = *look;
     s->material[*index].index = 1;
     s->material[*index].texture = -1;
@@ -66,9 +66,9 @@ static bool find_or_add_material(struct glint_describer *d,
     return true;
 }
 
-/* Appends a sphere of RADIUS at AT. Its name is the motion's name, plus KIND
- * and NUMBER unless KIND is NULL. Sets FIRST to its index if NUMBER is at most
- * 1. */
+/* Appends a sphere of RADIUS at AT. Its name is the motion's name, followed by
+ * KIND and NUMBER unless KIND is NULL. If NUMBER is at most 1, sets FIRST to
+ * the sphere's index. */
 static bool append_motion_sphere(struct glint_describer *d, const char *kind,
                                  int number, const double at[3], double radius,
                                  int material, struct glint_text_place place,
@@ -84,7 +84,7 @@ static bool append_motion_sphere(struct glint_describer *d, const char *kind,
         snprintf(full, sizeof full, "%s", name);
     if (number <= 1)
         *first = d->scene->n_objects;
-    o = glint_describe_thing(d, GLINT_DESCRIBED_SPHERE, full, place);
+    o = glint_describe_append_object(d, GLINT_DESCRIBED_SPHERE, full, place);
     if (!o)
         return false;
     memcpy(o->at, at, sizeof o->at);
@@ -128,7 +128,7 @@ static bool append_motion_objects(struct glint_describer *d,
                                   material[1], place, &m->sensor))
             return false;
     }
-    /* does not occur: the file was checked when it was opened */
+    /* cannot fail: the file was checked when it was opened */
     if (glint_motion_frame(motion, 0, &frame) != GLINT_OK)
         return false;
     for (uint32_t i = 0; m->foods > 0 && i < h->n_foods; i++) {
@@ -156,21 +156,22 @@ static bool read_motion_file(struct glint_describer *d,
     const char *reason = "";
     enum glint_status status;
 
-    glint_describe_file(file, name);
+    glint_describe_copy_file_name(file, name);
     if (!d->files->motion)
-        return glint_text_fail(&d->text, file->place,
-                               "this program does not read motions");
+        return glint_text_set_error(&d->text, file->place,
+                                    "this program cannot read motion files");
     status =
         d->files->motion(d->files->ctx, name, &m->data, &m->bytes, d->error);
     if (status != GLINT_OK)
-        return glint_describe_refuse(d, file->place, status);
+        return glint_describe_set_file_error(d, file->place, status);
     if (glint_motion_open(&motion, m->data, m->bytes, &reason) != GLINT_OK)
-        return glint_text_fail(&d->text, file->place, "%s", reason);
+        return glint_text_set_error(&d->text, file->place, "%s", reason);
     if (!has_size)
         m->size = ldexp(motion.header.size, -motion.header.unit_log2);
     if (m->size > REACH || !append_motion_objects(d, &motion, file->place))
         return m->size <= REACH ||
-               glint_text_fail(&d->text, file->place, "the body is too large");
+               glint_text_set_error(&d->text, file->place,
+                                    "the body is too large");
     return true;
 }
 
@@ -181,17 +182,17 @@ static bool check_detect_clauses(struct glint_describer *d,
 {
     d->scene->motion.both = both->place.line > 0;
     if (detect->place.line && (angle->place.line > 0) == (both->place.line > 0))
-        return glint_text_fail(
+        return glint_text_set_error(
             &d->text, detect->place,
             "'detect' needs 'angle', or 'both' and a minimum intensity");
     if (!detect->place.line && (angle->place.line || both->place.line))
-        return glint_text_fail(&d->text,
-                               angle->place.line ? angle->place : both->place,
-                               "'angle' and 'both' may only follow 'detect'");
+        return glint_text_set_error(
+            &d->text, angle->place.line ? angle->place : both->place,
+            "'angle' and 'both' may only follow 'detect'");
     return true;
 }
 
-bool glint_describe_motion(struct glint_describer *d)
+bool glint_describe_parse_motion(struct glint_describer *d)
 {
     struct glint_described_motion *m = &d->scene->motion;
     struct glint_clause clause[] = {
@@ -212,23 +213,24 @@ bool glint_describe_motion(struct glint_describer *d)
         return false;
     file = glint_text_next_word(&d->text);
     if (!file.length)
-        return glint_text_fail(&d->text, file.place,
-                               "the motion's file name is missing");
+        return glint_text_set_error(&d->text, file.place,
+                                    "the motion's file name is missing");
     if (!glint_clauses_read(&d->text, "motion", clause) ||
         !check_detect_clauses(d, &clause[6], &clause[7], &clause[8]))
         return false;
     if (clause[3].place.line && !clause[2].place.line)
-        return glint_text_fail(&d->text, clause[3].place,
-                               "'shells' needs 'foods' with a radius");
+        return glint_text_set_error(&d->text, clause[3].place,
+                                    "'shells' needs 'foods' with a radius");
     if (m->box > 0 && !clause[4].place.line)
-        return glint_text_fail(&d->text, clause[5].place,
-                               "'box' is a factor on the width of 'lines', but "
-                               "'lines' is missing");
+        return glint_text_set_error(
+            &d->text, clause[5].place,
+            "'box' is a factor on the width of 'lines', but "
+            "'lines' is missing");
     m->box *= m->lines;
     return read_motion_file(d, &file, clause[0].place.line > 0);
 }
 
-bool glint_describe_sensors(struct glint_describer *d)
+bool glint_describe_check_sensors(struct glint_describer *d)
 {
     const struct glint_described_motion *m = &d->scene->motion;
     struct glint_motion motion;
@@ -239,13 +241,13 @@ bool glint_describe_sensors(struct glint_describer *d)
         glint_motion_open(&motion, m->data, m->bytes, &reason) == GLINT_OK)
         n = (int)motion.header.n_sensors;
     if (d->sensor.line && m->camera >= n)
-        return glint_text_fail(
+        return glint_text_set_error(
             &d->text, d->sensor,
             m->data ? "no such sensor: the motion has %d"
                     : "the scene has no motion, and so no sensors",
             n);
     if (d->rides.line && strcmp(d->rides_on, m->name) != 0)
-        return glint_text_fail(&d->text, d->rides,
-                               "the motion '%s' is not defined", d->rides_on);
+        return glint_text_set_error(
+            &d->text, d->rides, "the motion '%s' is not defined", d->rides_on);
     return true;
 }

@@ -20,25 +20,26 @@
 #define NO_AXIS "the axis of a rotation must not be 0 0 0"
 
 struct glint_described_object *
-glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
-                     const char *name, struct glint_text_place place)
+glint_describe_append_object(struct glint_describer *d,
+                             enum glint_described_kind kind, const char *name,
+                             struct glint_text_place place)
 {
     struct glint_description *s = d->scene;
     struct glint_described_object *o = &s->object[s->n_objects];
 
     if (s->n_objects == GLINT_DESCRIPTION_MAX_OBJECTS) {
-        glint_text_fail(&d->text, place, "more than %d objects",
-                        GLINT_DESCRIPTION_MAX_OBJECTS);
+        glint_text_set_error(&d->text, place, "more than %d objects",
+                             GLINT_DESCRIPTION_MAX_OBJECTS);
         return NULL;
     }
     if (strcmp(name, "camera") == 0) {
-        glint_text_fail(&d->text, place, "the name 'camera' is reserved");
+        glint_text_set_error(&d->text, place, "the name 'camera' is reserved");
         return NULL;
     }
     for (int i = 0; i < s->n_objects; i++)
         if (strcmp(s->object[i].name, name) == 0) {
-            glint_text_fail(&d->text, place,
-                            "an object of this name is already defined");
+            glint_text_set_error(&d->text, place,
+                                 "an object of this name is already defined");
             return NULL;
         }
     *o = (struct glint_described_object){.kind = kind,
@@ -61,7 +62,7 @@ begin_named_object(struct glint_describer *d, enum glint_described_kind kind,
     char name[GLINT_DESCRIPTION_NAME_BYTES];
 
     return glint_name_read(&d->text, what, name, sizeof name)
-               ? glint_describe_thing(d, kind, name, place)
+               ? glint_describe_append_object(d, kind, name, place)
                : NULL;
 }
 
@@ -86,7 +87,7 @@ static bool set_rotation_quaternion(double turn[4], double axis[3],
 {
     const double half = angle_deg * GLINT_PI / 360;
 
-    if (!glint_describe_unit(axis))
+    if (!glint_describe_normalise_vector(axis))
         return false;
     turn[0] = cos(half);
     for (int i = 0; i < 3; i++)
@@ -94,7 +95,7 @@ static bool set_rotation_quaternion(double turn[4], double axis[3],
     return true;
 }
 
-bool glint_describe_sphere(struct glint_describer *d)
+bool glint_describe_parse_sphere(struct glint_describer *d)
 {
     struct glint_described_object *o =
         begin_named_object(d, GLINT_DESCRIBED_SPHERE, "sphere");
@@ -109,10 +110,10 @@ bool glint_describe_sphere(struct glint_describer *d)
         {0}};
 
     return o && glint_clauses_read(&d->text, "sphere", clause) &&
-           glint_describe_find(d, &material, &o->material) &&
-           glint_describe_skin(d, o, clause[2].place) &&
+           glint_describe_find_material(d, &material, &o->material) &&
+           glint_describe_check_translucent_object(d, o, clause[2].place) &&
            (set_rotation_quaternion(o->turn, turn, turn[3]) ||
-            glint_text_fail(&d->text, clause[3].place, NO_AXIS));
+            glint_text_set_error(&d->text, clause[3].place, NO_AXIS));
 }
 
 /* Appends N triangles to the scene and returns the first one. Returns NULL if
@@ -124,8 +125,8 @@ append_triangles(struct glint_describer *d, int n,
     struct glint_description *s = d->scene;
 
     if (n > GLINT_DESCRIPTION_MAX_TRIANGLES - s->n_triangles) {
-        glint_text_fail(&d->text, place, "more than %d triangles",
-                        GLINT_DESCRIPTION_MAX_TRIANGLES);
+        glint_text_set_error(&d->text, place, "more than %d triangles",
+                             GLINT_DESCRIPTION_MAX_TRIANGLES);
         return NULL;
     }
     if (s->n_triangles + n > d->capacity) {
@@ -144,7 +145,7 @@ append_triangles(struct glint_describer *d, int n,
     return s->triangle + s->n_triangles - n;
 }
 
-bool glint_describe_triangle(struct glint_describer *d)
+bool glint_describe_parse_triangle(struct glint_describer *d)
 {
     struct glint_described_object *o =
         begin_named_object(d, GLINT_DESCRIBED_TRIANGLE, "triangle");
@@ -159,16 +160,16 @@ bool glint_describe_triangle(struct glint_describer *d)
         !glint_numbers_read(&d->text, "triangle", 9, -REACH, REACH,
                             t.place[0]) ||
         !glint_clauses_read(&d->text, "triangle", clause) ||
-        !glint_describe_find(d, &material, &o->material))
+        !glint_describe_find_material(d, &material, &o->material))
         return false;
     t.has_uv = clause[0].place.line > 0;
     t.object = d->scene->n_objects - 1;
     t.material = o->material;
     if (d->scene->material[t.material].texture >= 0 && !t.has_uv)
-        return glint_text_fail(&d->text, clause[1].place,
-                               "a material with a texture needs 'uv'");
+        return glint_text_set_error(&d->text, clause[1].place,
+                                    "a material with a texture needs 'uv'");
     if (is_texture_repeated_too_often(&t))
-        return glint_text_fail(
+        return glint_text_set_error(
             &d->text, clause[0].place,
             "a texture may repeat at most %g times over a triangle", REPEATS);
     to = append_triangles(d, 1, clause[1].place);
@@ -176,10 +177,10 @@ bool glint_describe_triangle(struct glint_describer *d)
         return false;
     *to = t;
     o->n_triangles = 1;
-    return glint_describe_skin(d, o, clause[1].place);
+    return glint_describe_check_translucent_object(d, o, clause[1].place);
 }
 
-bool glint_describe_plane(struct glint_describer *d)
+bool glint_describe_parse_plane(struct glint_describer *d)
 {
     struct glint_described_object *o =
         begin_named_object(d, GLINT_DESCRIBED_PLANE, "plane");
@@ -194,23 +195,24 @@ bool glint_describe_plane(struct glint_describer *d)
 
     if (!o || !glint_clauses_read(&d->text, "plane", clause))
         return false;
-    if (!glint_describe_unit(o->normal))
-        return glint_text_fail(&d->text, clause[1].place,
-                               "a normal must not be 0 0 0");
+    if (!glint_describe_normalise_vector(o->normal))
+        return glint_text_set_error(&d->text, clause[1].place,
+                                    "a normal must not be 0 0 0");
     if (!clause[2].place.line == !clause[3].place.line)
-        return glint_text_fail(
+        return glint_text_set_error(
             &d->text, clause[2].place.line ? clause[2].place : clause[0].place,
             "a plane needs a material or the word 'catcher'%s",
             clause[2].place.line ? ", not both" : "");
     return !clause[2].place.line ||
-           (glint_describe_find(d, &material, &o->material) &&
-            glint_describe_skin(d, o, clause[2].place));
+           (glint_describe_find_material(d, &material, &o->material) &&
+            glint_describe_check_translucent_object(d, o, clause[2].place));
 }
 
 /* -------------------------------------------------------------------- mesh */
 
-/* Sets OF[n_names] to the indices of the scene's materials that MESH names.
- * Unknown names get the material of object O; without one they are errors. */
+/* Sets OF[n_names] to the indices of those materials of the scene that MESH
+ * names. Unknown names get the material of object O; if O has no material, they
+ * are errors. */
 static bool find_mesh_materials(struct glint_describer *d,
                                 const struct glint_described_object *o,
                                 const struct glint_mesh *mesh, const char *file,
@@ -224,7 +226,7 @@ static bool find_mesh_materials(struct glint_describer *d,
             if (strcmp(s->material[m].name, mesh->name[i]) == 0)
                 of[i] = m;
         if (of[i] < 0)
-            return glint_text_fail(
+            return glint_text_set_error(
                 &d->text, place,
                 "%s uses '%s', which is not a material above this line; add "
                 "'material' to the mesh to replace it",
@@ -253,30 +255,34 @@ static bool append_mesh_triangles(struct glint_describer *d,
         t->object = s->n_objects - 1;
         t->material = t->material < 0 ? o->material : of[t->material];
         if (t->material < 0)
-            return glint_text_fail(&d->text, place,
-                                   "the mesh has faces without a material; "
-                                   "add 'material'");
+            return glint_text_set_error(
+                &d->text, place,
+                "the mesh has faces without a material; "
+                "add 'material'");
         if (s->material[t->material].texture >= 0 && !t->has_uv)
-            return glint_text_fail(&d->text, place,
-                                   "material %s has a texture, but faces of "
-                                   "the mesh have no texture coordinates (vt)",
-                                   s->material[t->material].name);
+            return glint_text_set_error(
+                &d->text, place,
+                "material %s has a texture, but faces of "
+                "the mesh have no texture coordinates (vt)",
+                s->material[t->material].name);
         if (is_texture_repeated_too_often(t))
-            return glint_text_fail(
+            return glint_text_set_error(
                 &d->text, place,
                 "a texture may repeat at most %g times over a triangle, but "
                 "repeats more often on this mesh",
                 REPEATS);
         for (int k = 0; k < 3; k++) {
-            if (t->has_normals && !glint_describe_unit(t->normal[k]))
+            if (t->has_normals &&
+                !glint_describe_normalise_vector(t->normal[k]))
                 t->has_normals = false;
             for (int axis = 0; axis < 3; axis++) {
                 t->place[k][axis] *= scale;
                 if (!(fabs(t->place[k][axis]) <= REACH))
-                    return glint_text_fail(&d->text, place,
-                                           "the mesh extends %.4g from its "
-                                           "origin; the limit is %g",
-                                           fabs(t->place[k][axis]), REACH);
+                    return glint_text_set_error(
+                        &d->text, place,
+                        "the mesh extends %.4g from its "
+                        "origin; the limit is %g",
+                        fabs(t->place[k][axis]), REACH);
             }
         }
     }
@@ -295,11 +301,11 @@ static bool read_mesh_file(struct glint_describer *d,
     bool good = false;
     enum glint_status status;
 
-    glint_describe_file(word, name);
+    glint_describe_copy_file_name(word, name);
     status = mesh ? d->files->read(d->files->ctx, name, &data, &bytes, d->error)
                   : GLINT_E_MEMORY;
     if (status != GLINT_OK) {
-        glint_describe_refuse(d, word->place, status);
+        glint_describe_set_file_error(d, word->place, status);
     } else {
         status =
             glint_mesh_read(mesh, (const char *)data, bytes, name, d->error);
@@ -307,7 +313,7 @@ static bool read_mesh_file(struct glint_describer *d,
         good = status == GLINT_OK &&
                find_mesh_materials(d, o, mesh, name, word->place, of) &&
                append_mesh_triangles(d, o, mesh, of, scale, word->place) &&
-               glint_describe_skin(d, o, word->place);
+               glint_describe_check_translucent_object(d, o, word->place);
         if (status == GLINT_OK)
             free(mesh->triangle);
     }
@@ -316,7 +322,7 @@ static bool read_mesh_file(struct glint_describer *d,
     return good;
 }
 
-bool glint_describe_mesh(struct glint_describer *d)
+bool glint_describe_parse_mesh(struct glint_describer *d)
 {
     struct glint_described_object *o =
         begin_named_object(d, GLINT_DESCRIBED_MESH, "mesh");
@@ -333,13 +339,13 @@ bool glint_describe_mesh(struct glint_describer *d)
         return false;
     file = glint_text_next_word(&d->text);
     if (!file.length)
-        return glint_text_fail(&d->text, file.place,
-                               "the mesh's file name is missing");
+        return glint_text_set_error(&d->text, file.place,
+                                    "the mesh's file name is missing");
     if (!glint_clauses_read(&d->text, "mesh", clause) ||
         (clause[2].place.line &&
-         !glint_describe_find(d, &material, &o->material)))
+         !glint_describe_find_material(d, &material, &o->material)))
         return false;
     if (!set_rotation_quaternion(o->turn, turn, turn[3]))
-        return glint_text_fail(&d->text, clause[3].place, NO_AXIS);
+        return glint_text_set_error(&d->text, clause[3].place, NO_AXIS);
     return read_mesh_file(d, o, &file, scale);
 }

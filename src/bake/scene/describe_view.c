@@ -38,16 +38,17 @@ static bool read_listed_word(struct glint_describer *d, const char *line,
     char quote[GLINT_QUOTE_BYTES];
 
     for (*index = 0; words[*index]; ++*index)
-        if (glint_word_is(&word, words[*index]))
+        if (glint_word_equals(&word, words[*index]))
             return true;
     if (!word.length)
-        return glint_text_fail(&d->text, word.place, "%s needs %s", line, list);
+        return glint_text_set_error(&d->text, word.place, "%s needs %s", line,
+                                    list);
     glint_word_quote(&word, quote);
-    return glint_text_fail(&d->text, word.place, "%s accepts %s, not '%s'",
-                           line, list, quote);
+    return glint_text_set_error(&d->text, word.place, "%s accepts %s, not '%s'",
+                                line, list, quote);
 }
 
-bool glint_describe_hand(struct glint_describer *d)
+bool glint_describe_parse_hand(struct glint_describer *d)
 {
     static const char *const words[] = {"right", "left", NULL};
     int index;
@@ -55,10 +56,10 @@ bool glint_describe_hand(struct glint_describer *d)
     if (!read_listed_word(d, "hand", "right or left", words, &index))
         return false;
     d->scene->left_handed = index == 1;
-    return glint_line_ends(&d->text, "hand");
+    return glint_line_check_end(&d->text, "hand");
 }
 
-bool glint_describe_background(struct glint_describer *d)
+bool glint_describe_parse_background(struct glint_describer *d)
 {
     static const char *const words[] = {"camera", "colour", "environment",
                                         NULL};
@@ -73,10 +74,10 @@ bool glint_describe_background(struct glint_describer *d)
     return (index != GLINT_BEHIND_COLOUR ||
             glint_numbers_read(&d->text, "colour", 3, 0, MAX_LIGHT,
                                d->scene->background_colour)) &&
-           glint_line_ends(&d->text, "background");
+           glint_line_check_end(&d->text, "background");
 }
 
-bool glint_describe_shadow(struct glint_describer *d)
+bool glint_describe_parse_shadow(struct glint_describer *d)
 {
     static const char *const words[] = {"off", "on", NULL};
     int index;
@@ -84,10 +85,10 @@ bool glint_describe_shadow(struct glint_describer *d)
     if (!read_listed_word(d, "shadow", "on or off", words, &index))
         return false;
     d->scene->has_shadows = index == 1;
-    return glint_line_ends(&d->text, "shadow");
+    return glint_line_check_end(&d->text, "shadow");
 }
 
-bool glint_describe_flare(struct glint_describer *d)
+bool glint_describe_parse_flare(struct glint_describer *d)
 {
     static const char *const words[] = {"off", "lights", NULL};
     struct glint_description *s = d->scene;
@@ -99,19 +100,19 @@ bool glint_describe_flare(struct glint_describer *d)
                           &index))
         return false;
     if (index == 0)
-        return glint_line_ends(&d->text, "flare off");
+        return glint_line_check_end(&d->text, "flare off");
     if (!glint_clauses_read(&d->text, "flare lights", clause))
         return false;
     s->n_highlights = (int)n;
     s->flare = s->n_highlights ? GLINT_DESCRIBED_FLARE_HIGHLIGHTS
                                : GLINT_DESCRIBED_FLARE_LIGHTS;
     return n == s->n_highlights ||
-           glint_text_fail(&d->text, clause[0].place,
-                           "'highlights' must be a whole number");
+           glint_text_set_error(&d->text, clause[0].place,
+                                "'highlights' must be a whole number");
 }
 
-/* Parses the first words of the line "camera": its field of view. Sets ALL if
- * no other words may follow. Returns false on errors. */
+/* Parses the first words of the line "camera": its field of view. Sets ALL to
+ * true if no other words may follow. Returns false on errors. */
 static bool read_field_of_view(struct glint_describer *d, bool *all)
 {
     struct glint_described_camera *c = &d->scene->camera;
@@ -119,12 +120,12 @@ static bool read_field_of_view(struct glint_describer *d, bool *all)
     const struct glint_word word = glint_text_next_word(&d->text);
 
     *all = false;
-    if (glint_word_is(&word, "corners")) {
+    if (glint_word_equals(&word, "corners")) {
         c->field = GLINT_DESCRIBED_CORNERS;
         *all = true;
-        return glint_line_ends(&d->text, "camera corners");
+        return glint_line_check_end(&d->text, "camera corners");
     }
-    if (glint_word_is(&word, "sensor")) {
+    if (glint_word_equals(&word, "sensor")) {
         double k;
 
         d->sensor = word.place;
@@ -132,19 +133,19 @@ static bool read_field_of_view(struct glint_describer *d, bool *all)
         if (!glint_numbers_read(&d->text, "sensor", 1, 1, 32, &k))
             return false;
         d->scene->motion.camera = (int)k - 1;
-        return glint_line_ends(&d->text, "camera sensor");
+        return glint_line_check_end(&d->text, "camera sensor");
     }
-    if (glint_word_is(&word, "lens")) {
+    if (glint_word_equals(&word, "lens")) {
         c->field = GLINT_DESCRIBED_LENS;
         return true;
     }
-    if (glint_word_is(&word, "fov"))
+    if (glint_word_equals(&word, "fov"))
         return glint_numbers_read(&d->text, "fov", 1, 0.1, 170, &c->fov_deg);
     d->text = at;
     return true;
 }
 
-bool glint_describe_camera(struct glint_describer *d)
+bool glint_describe_parse_camera(struct glint_describer *d)
 {
     struct glint_described_camera *c = &d->scene->camera;
     struct glint_clause clause[] = {
@@ -170,20 +171,22 @@ bool glint_describe_camera(struct glint_describer *d)
     if (d->has_orbit) {
         for (int i = 0; i < 3; i++)
             if (clause[i].place.line)
-                return glint_text_fail(&d->text, clause[i].place,
-                                       "'%s' and 'orbit' exclude each other",
-                                       clause[i].word);
+                return glint_text_set_error(
+                    &d->text, clause[i].place,
+                    "'%s' and 'orbit' cannot be combined", clause[i].word);
         return clause[4].place.line ||
-               glint_text_fail(&d->text, clause[3].place,
-                               "an orbit needs 'distance'");
+               glint_text_set_error(&d->text, clause[3].place,
+                                    "an orbit needs 'distance'");
     }
     for (int i = 4; i < 7; i++)
         if (clause[i].place.line)
-            return glint_text_fail(&d->text, clause[i].place,
-                                   "'%s' belongs to 'orbit'", clause[i].word);
+            return glint_text_set_error(&d->text, clause[i].place,
+                                        "'%s' may only be used with 'orbit'",
+                                        clause[i].word);
     return (clause[0].place.line && clause[1].place.line) ||
-           glint_text_fail(&d->text, d->camera,
-                           "camera needs 'at X Y Z toward X Y Z', or 'orbit'");
+           glint_text_set_error(
+               &d->text, d->camera,
+               "camera needs 'at X Y Z toward X Y Z', or 'orbit'");
 }
 
 /* Sets position and viewing direction of a camera that orbits a point. */
@@ -204,15 +207,15 @@ static void set_orbit_camera(struct glint_describer *d)
     }
 }
 
-bool glint_describe_axes(struct glint_describer *d)
+bool glint_describe_set_camera_axes(struct glint_describer *d)
 {
     struct glint_described_camera *c = &d->scene->camera;
     const double hand = d->scene->left_handed ? 1 : -1;
 
     if (c->field == GLINT_DESCRIBED_CORNERS || !d->camera.line ||
         d->sensor.line) {
-        /* A camera with GLINT_DESCRIBED_CORNERS looks along +z; without a line
-         * "camera" it looks into the picture. */
+        /* A camera whose field is GLINT_DESCRIBED_CORNERS looks along +z;
+         * without a line "camera" the camera looks into the picture. */
         c->forward[2] = c->field == GLINT_DESCRIBED_CORNERS ? 1 : hand;
     } else if (d->has_orbit) {
         set_orbit_camera(d);
@@ -220,19 +223,20 @@ bool glint_describe_axes(struct glint_describer *d)
         for (int i = 0; i < 3; i++)
             c->forward[i] = d->toward[i] - c->at[i];
     }
-    if (!glint_describe_unit(c->forward))
-        return glint_text_fail(
+    if (!glint_describe_normalise_vector(c->forward))
+        return glint_text_set_error(
             &d->text, d->camera,
             "the camera's position equals the point that it looks at");
-    if (!glint_describe_unit(d->up))
-        return glint_text_fail(&d->text, d->camera, "'up' must not be 0 0 0");
+    if (!glint_describe_normalise_vector(d->up))
+        return glint_text_set_error(&d->text, d->camera,
+                                    "'up' must not be 0 0 0");
     compute_cross_product(c->forward, d->up, c->right);
     if (!(compute_dot_product(c->right, c->right) > LEAST_RIGHT * LEAST_RIGHT))
-        return glint_text_fail(&d->text, d->camera,
-                               "the camera's direction is parallel to 'up'");
-    glint_describe_unit(c->right);
+        return glint_text_set_error(
+            &d->text, d->camera, "the camera's direction is parallel to 'up'");
+    glint_describe_normalise_vector(c->right);
     compute_cross_product(c->right, c->forward, c->up);
-    glint_describe_unit(c->up);
+    glint_describe_normalise_vector(c->up);
     if (d->scene->left_handed)
         for (int i = 0; i < 3; i++)
             c->right[i] = -c->right[i];

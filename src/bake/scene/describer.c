@@ -8,7 +8,7 @@
 
 #include "bake/scene/describe.h"
 
-bool glint_describe_unit(double x[3])
+bool glint_describe_normalise_vector(double x[3])
 {
     const double largest =
         /* scales X first, as the squares of small numbers would underflow */
@@ -25,21 +25,21 @@ bool glint_describe_unit(double x[3])
     return true;
 }
 
-void glint_describe_file(const struct glint_word *word,
-                         char name[GLINT_FILE_BYTES])
+void glint_describe_copy_file_name(const struct glint_word *word,
+                                   char name[GLINT_FILE_BYTES])
 {
     memcpy(name, word->start, (size_t)word->length);
     name[word->length] = '\0';
 }
 
-bool glint_describe_refuse(struct glint_describer *d,
-                           struct glint_text_place place,
-                           enum glint_status status)
+bool glint_describe_set_file_error(struct glint_describer *d,
+                                   struct glint_text_place place,
+                                   enum glint_status status)
 {
     const struct glint_error cause = *d->error;
 
     d->status = status;
-    return glint_text_fail(&d->text, place, "%s",
-                           cause.text[0] ? cause.text
-                                         : glint_status_text(status));
+    return glint_text_set_error(&d->text, place, "%s",
+                                cause.text[0] ? cause.text
+                                              : glint_status_text(status));
 }

@@ -6,15 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Limits of a mesh's grid: max number of cells per triangle; max number of list
- * entries per triangle, but at least FEW_REFS / number of objects. Cells are
- * enlarged until both hold, so that N triangles cost O(N) even if they
- * coincide. */
+/* Limits of a mesh's grid. CELLS_EACH: max number of cells per triangle.
+ * REFS_EACH: max number of list entries per triangle, but at least FEW_REFS /
+ * number of objects in total. Cells are enlarged until both hold, so that N
+ * triangles cost O(N) even if they coincide. */
 #define CELLS_EACH 2
 #define REFS_EACH  64
 #define FEW_REFS   (1 << 22)
-/* Max number of triangles per cell, on average. A mesh with more is rejected,
- * as a ray tests all triangles of a cell; ordinary meshes have a few. */
+/* Max mean number of triangles per cell. A mesh with more is rejected, as a ray
+ * tests all triangles of a cell; ordinary meshes have a few. */
 #define MOST_IN_CELL 4096
 
 /* A vertex as stored in the file. Members that the mesh does not use are 0. */
@@ -96,8 +96,9 @@ static bool has_triangle_area(const struct corner c[3])
            a[0] * b[1] != a[1] * b[0];
 }
 
-/* Converts the corners of T to vertices C. Subtracts an integer from large
- * texture coordinates, as textures repeat. v points down in the file. */
+/* Converts the corners of triangle T to vertices C. Subtracts an integer from
+ * large texture coordinates, which is possible because textures repeat. v
+ * points down in the file. */
 static void convert_triangle_corners(const struct mesher *m,
                                      const struct glint_described_triangle *t,
                                      struct corner c[3])
@@ -107,10 +108,11 @@ static void convert_triangle_corners(const struct mesher *m,
     compute_face_normal(t, face);
     memset(c, 0, 3 * sizeof *c);
     for (int k = 0; k < 3; k++) {
-        glint_steps_place(m->steps, t->place[k], c[k].place);
+        glint_steps_convert_position(m->steps, t->place[k], c[k].place);
         if (m->has_normals)
-            glint_steps_unit(m->steps, t->has_normals ? t->normal[k] : face,
-                             c[k].normal_q30);
+            glint_steps_convert_unit_vector(
+                m->steps, t->has_normals ? t->normal[k] : face,
+                c[k].normal_q30);
         for (int i = 0; m->has_uv && t->has_uv && i < 2; i++) {
             const double off =
                 floor(fmin(t->uv[0][i], fmin(t->uv[1][i], t->uv[2][i])));
@@ -251,8 +253,8 @@ static uint64_t divide_box_into_cells(struct glint_scene_mesh *mesh,
 }
 
 /* Returns the total number of list entries in all cells of MESH. */
-static uint64_t count_cell_entries(const struct mesher *m,
-                                   const struct glint_scene_mesh *mesh)
+static uint64_t count_cell_list_entries(const struct mesher *m,
+                                        const struct glint_scene_mesh *mesh)
 {
     uint64_t sum = 0;
 
@@ -284,7 +286,8 @@ static uint64_t choose_cell_size(const struct mesher *m,
     for (mesh->cell_log2 = 4;; mesh->cell_log2++) {
         const uint64_t n = divide_box_into_cells(mesh, low, high);
 
-        *refs = n > 0 && n <= most ? count_cell_entries(m, mesh) : UINT64_MAX;
+        *refs =
+            n > 0 && n <= most ? count_cell_list_entries(m, mesh) : UINT64_MAX;
         if (*refs <= most_refs || mesh->cell_log2 == 28)
             return n;
     }
@@ -340,9 +343,9 @@ static bool write_triangle_grid(struct glint_draft *draft,
         list_cell_triangles(m, mesh, start, NULL);
         for (uint64_t i = 1; i <= n; i++)
             start[i] += start[i - 1];
-        mesh->start_at = glint_draft_put(draft, start, ((size_t)n + 1) * 4);
+        mesh->start_at = glint_draft_append(draft, start, ((size_t)n + 1) * 4);
         list_cell_triangles(m, mesh, start, ref);
-        mesh->ref_at = glint_draft_put(draft, ref, (size_t)sum * 4);
+        mesh->ref_at = glint_draft_append(draft, ref, (size_t)sum * 4);
         report->cells += (int)n;
         report->refs += (int)sum;
     }
@@ -362,18 +365,18 @@ static uint32_t append_vertex_numbers(struct glint_draft *draft,
     const uint32_t at = (uint32_t)draft->bytes;
 
     for (uint32_t i = 0; i < m->n_corners; i++)
-        glint_draft_put(draft, (const unsigned char *)&m->corner[i] + offset,
-                        n * sizeof(int32_t));
+        glint_draft_append(draft, (const unsigned char *)&m->corner[i] + offset,
+                           n * sizeof(int32_t));
     return at;
 }
 
-bool glint_grid_write(struct glint_draft *draft,
-                      const struct glint_description *scene,
-                      const struct glint_described_object *object,
-                      const struct glint_steps *steps,
-                      struct glint_scene_mesh *mesh,
-                      struct glint_scene_bake_report *report,
-                      struct glint_error *error)
+bool glint_grid_write_mesh(struct glint_draft *draft,
+                           const struct glint_description *scene,
+                           const struct glint_described_object *object,
+                           const struct glint_steps *steps,
+                           struct glint_scene_mesh *mesh,
+                           struct glint_scene_bake_report *report,
+                           struct glint_error *error)
 {
     struct mesher m = {.scene = scene, .object = object, .steps = steps};
     int32_t low[3], high[3];
@@ -392,8 +395,8 @@ bool glint_grid_write(struct glint_draft *draft,
         if (m.has_normals)
             mesh->normal_at = append_vertex_numbers(
                 draft, &m, offsetof(struct corner, normal_q30), 3);
-        mesh->triangle_at = glint_draft_put(draft, m.triangle,
-                                            m.n_triangles * sizeof *m.triangle);
+        mesh->triangle_at = glint_draft_append(
+            draft, m.triangle, m.n_triangles * sizeof *m.triangle);
         good = write_triangle_grid(draft, &m, mesh, low, high, report, error);
         report->vertices += (int)m.n_corners;
         report->triangles += (int)m.n_triangles;

@@ -54,14 +54,15 @@ static struct glint_word read_next_word(struct reader *r)
 {
     struct glint_word word = glint_text_next_word(&r->text);
 
-    while (glint_word_is(&word, "\\") && r->text.at == r->text.stop &&
+    while (glint_word_equals(&word, "\\") && r->text.at == r->text.stop &&
            glint_text_next_line(&r->text))
         word = glint_text_next_word(&r->text);
     return word;
 }
 
-/* Parses an item of LIST: at least LEAST numbers; missing ones become 0.
- * Further numbers, such as weights and colours, are skipped. */
+/* Parses the numbers of a line into a new item of LIST. At least LEAST numbers
+ * are required; other missing ones become 0. Further numbers, such as weights
+ * and colours, are skipped. WHAT names the line in error texts. */
 static bool read_vertex_item(struct reader *r, struct list *list, int least,
                              const char *what)
 {
@@ -75,16 +76,17 @@ static bool read_vertex_item(struct reader *r, struct list *list, int least,
         if (!word.length && i >= least)
             continue;
         if (!word.length)
-            return glint_text_fail(&r->text, word.place,
-                                   "%s needs %d numbers, got %d", what, least,
-                                   i);
-        if (!glint_word_number_about(&word, &item[i]))
-            return glint_text_fail(&r->text, word.place, "'%s' is not a number",
-                                   glint_word_quote(&word, quote));
+            return glint_text_set_error(&r->text, word.place,
+                                        "%s needs %d numbers, got %d", what,
+                                        least, i);
+        if (!glint_word_parse_long_number(&word, &item[i]))
+            return glint_text_set_error(&r->text, word.place,
+                                        "'%s' is not a number",
+                                        glint_word_quote(&word, quote));
         if (!(fabs(item[i]) <=
               GLINT_DESCRIPTION_REACH * GLINT_DESCRIPTION_REACH))
-            return glint_text_fail(&r->text, word.place,
-                                   "numbers of a mesh must be at most 1e12");
+            return glint_text_set_error(
+                &r->text, word.place, "numbers of a mesh must be at most 1e12");
     }
     return item != NULL;
 }
@@ -111,14 +113,14 @@ static bool read_corner_index(struct reader *r, const struct glint_word *word,
     if (i == start || (i < word->length && word->start[i] != '/')) {
         char quote[GLINT_QUOTE_BYTES];
 
-        return glint_text_fail(
+        return glint_text_set_error(
             &r->text, word->place,
             "'%s' is not a corner; expected V, V/T, V//N or V/T/N",
             glint_word_quote(word, quote));
     }
     value = negative ? list->n - value : value - 1;
     if (value < 0 || value >= list->n)
-        return glint_text_fail(
+        return glint_text_set_error(
             &r->text, word->place,
             "%s %.*s does not exist; %d are defined above", what,
             i - start + negative < 12 ? i - start + negative : 12,
@@ -136,8 +138,8 @@ static bool read_face_corner(struct reader *r, const struct glint_word *word,
     if (!read_corner_index(r, word, &at, &r->place, "vertex", &corner->place))
         return false;
     if (corner->place < 0)
-        return glint_text_fail(&r->text, word->place,
-                               "a corner needs a vertex index (V)");
+        return glint_text_set_error(&r->text, word->place,
+                                    "a corner needs a vertex index (V)");
     if (at < word->length) {
         at++; /* skips the slash between two indices */
         if (!read_corner_index(r, word, &at, &r->uv, "texture coordinate",
@@ -151,8 +153,8 @@ static bool read_face_corner(struct reader *r, const struct glint_word *word,
             return false;
     }
     return at == word->length ||
-           glint_text_fail(&r->text, word->place,
-                           "a corner has at most three indices, V/T/N");
+           glint_text_set_error(&r->text, word->place,
+                                "a corner has at most three indices, V/T/N");
 }
 
 static bool append_mesh_triangle(struct reader *r,
@@ -163,8 +165,8 @@ static bool append_mesh_triangle(struct reader *r,
     struct glint_described_triangle *t;
 
     if (mesh->n_triangles == GLINT_DESCRIPTION_MAX_TRIANGLES)
-        return glint_text_fail(&r->text, place, "more than %d triangles",
-                               GLINT_DESCRIPTION_MAX_TRIANGLES);
+        return glint_text_set_error(&r->text, place, "more than %d triangles",
+                                    GLINT_DESCRIPTION_MAX_TRIANGLES);
     if (mesh->n_triangles == r->capacity) {
         const int capacity = r->capacity ? 2 * r->capacity : 64;
 
@@ -214,7 +216,7 @@ static bool read_face_line(struct reader *r, struct glint_text_place place)
             first = now;
         last = now;
     }
-    return n >= 3 || glint_text_fail(
+    return n >= 3 || glint_text_set_error(
                          &r->text, place,
                          "a face needs 3 or more corners; this face has %d", n);
 }
@@ -222,7 +224,7 @@ static bool read_face_line(struct reader *r, struct glint_text_place place)
 static bool read_material_name(struct reader *r)
 {
     struct glint_mesh *mesh = r->mesh;
-    const struct glint_word word = glint_text_rest(&r->text);
+    const struct glint_word word = glint_text_get_rest(&r->text);
     const int n = word.length < GLINT_DESCRIPTION_NAME_BYTES
                       ? word.length
                       : GLINT_DESCRIPTION_NAME_BYTES - 1;
@@ -238,8 +240,9 @@ static bool read_material_name(struct reader *r)
             return true;
         }
     if (mesh->n_names == GLINT_MESH_MAX_NAMES)
-        return glint_text_fail(&r->text, word.place, "more than %d materials",
-                               GLINT_MESH_MAX_NAMES);
+        return glint_text_set_error(&r->text, word.place,
+                                    "more than %d materials",
+                                    GLINT_MESH_MAX_NAMES);
     memcpy(mesh->name[mesh->n_names], name, sizeof name);
     r->material = mesh->n_names++;
     return true;
@@ -249,15 +252,15 @@ static bool read_obj_line(struct reader *r)
 {
     const struct glint_word word = glint_text_next_word(&r->text);
 
-    if (glint_word_is(&word, "v"))
+    if (glint_word_equals(&word, "v"))
         return read_vertex_item(r, &r->place, 3, "v");
-    if (glint_word_is(&word, "vt"))
+    if (glint_word_equals(&word, "vt"))
         return read_vertex_item(r, &r->uv, 1, "vt");
-    if (glint_word_is(&word, "vn"))
+    if (glint_word_equals(&word, "vn"))
         return read_vertex_item(r, &r->normal, 3, "vn");
-    if (glint_word_is(&word, "f"))
+    if (glint_word_equals(&word, "f"))
         return read_face_line(r, word.place);
-    if (glint_word_is(&word, "usemtl"))
+    if (glint_word_equals(&word, "usemtl"))
         return read_material_name(r);
     return true;
 }
@@ -277,14 +280,14 @@ enum glint_status glint_mesh_read(struct glint_mesh *mesh, const char *text,
     mesh->triangle = NULL;
     glint_text_open_data(&r.text, text, bytes, file_name, error);
     if (bytes > GLINT_DESCRIPTION_MAX_MESH_BYTES)
-        good = glint_text_fail(&r.text, (struct glint_text_place){1, 1},
-                               "a mesh has more than %d bytes",
-                               GLINT_DESCRIPTION_MAX_MESH_BYTES);
+        good = glint_text_set_error(&r.text, (struct glint_text_place){1, 1},
+                                    "a mesh has more than %d bytes",
+                                    GLINT_DESCRIPTION_MAX_MESH_BYTES);
     while (good && glint_text_next_line(&r.text))
         good = read_obj_line(&r);
     if (good && !mesh->n_triangles)
-        good = glint_text_fail(&r.text, glint_text_end(&r.text),
-                               "there is no face");
+        good = glint_text_set_error(&r.text, glint_text_get_end_place(&r.text),
+                                    "there is no face");
     free(r.place.at);
     free(r.uv.at);
     free(r.normal.at);

@@ -9,12 +9,12 @@
 #include "glint/scene/translucent.h"
 #include "glint/view.h"
 
-/* Max fraction of texels whose centre lies inside two triangles. A mesh with
- * more is rejected. */
+/* Max fraction of texels whose centre lies inside two triangles. A mesh with a
+ * larger fraction is rejected. */
 #define MOST_SHARED .02
 
-int glint_skin_material(const struct glint_description *scene,
-                        const struct glint_described_object *object)
+int glint_skin_find_material(const struct glint_description *scene,
+                             const struct glint_described_object *object)
 {
     if (object->material >= 0 && object->n_triangles == 0)
         return scene->material[object->material].is_stone ? object->material
@@ -129,8 +129,8 @@ static void assign_triangle_texels(struct painter *p, uint32_t triangle)
 /* ------------------------------------------------------------------- gutters
  */
 
-/* Assigns texel (X, Y), if it has no triangle, the triangle of a neighbour in
- * BEFORE. */
+/* If texel (X, Y) has no triangle, assigns it the triangle that one of its
+ * neighbours has in BEFORE. */
 static void assign_neighbour_triangle(struct painter *p, const uint32_t *before,
                                       int x, int y)
 {
@@ -144,9 +144,9 @@ static void assign_neighbour_triangle(struct painter *p, const uint32_t *before,
     }
 }
 
-/* Extends the charts of the map by RINGS texels: assigns these texels to the
- * nearest triangle, so that convolution kernels carry light from one chart to
- * the next. Returns false if there is no memory. */
+/* Extends each chart of the map by RINGS texels, which get the nearest
+ * triangle, so that convolution kernels carry light across the borders of
+ * charts. Returns false if there is no memory. */
 static bool dilate_texture_charts(struct painter *p, int rings)
 {
     const size_t bytes = (size_t)p->side * (size_t)p->side * sizeof *p->texel;
@@ -197,7 +197,8 @@ static void set_triangle_edge(const struct painter *p,
 
 /* Sets CLOSED to 1 if the mesh is closed, that is, each edge belongs to exactly
  * two triangles; else to 0. Returns false if there is no memory. */
-static bool check_mesh_closed(const struct painter *p, uint32_t *closed)
+static bool find_whether_mesh_is_closed(const struct painter *p,
+                                        uint32_t *closed)
 {
     const size_t n = 3 * (size_t)p->mesh->n_triangles;
     struct edge *edge = malloc((n ? n : 1) * sizeof *edge);
@@ -254,7 +255,7 @@ static bool assign_mesh_texels(struct painter *p, const char *name, int kernel,
         assign_triangle_texels(p, i);
     return check_texel_coverage(p, name, error) &&
            dilate_texture_charts(p, kernel / 2 + 2) &&
-           check_mesh_closed(p, &skin->closed);
+           find_whether_mesh_is_closed(p, &skin->closed);
 }
 
 /* Writes cosine and sine of longitude and latitude for the columns and rows of
@@ -272,15 +273,16 @@ static void write_sphere_map(struct glint_draft *draft, int side,
         turn_q30[i][0] = (int32_t)lrint(0x1p30 * cos(angle));
         turn_q30[i][1] = (int32_t)lrint(0x1p30 * sin(angle));
     }
-    skin->texel_at =
-        glint_draft_put(draft, turn_q30, 3 * (size_t)side * sizeof *turn_q30);
+    skin->texel_at = glint_draft_append(draft, turn_q30,
+                                        3 * (size_t)side * sizeof *turn_q30);
 }
 
-bool glint_skin_write(struct glint_draft *draft,
-                      const struct glint_description *scene,
-                      const struct glint_described_object *object,
-                      const struct glint_scene_mesh *mesh, int material,
-                      struct glint_scene_skin *skin, struct glint_error *error)
+bool glint_skin_write_map(struct glint_draft *draft,
+                          const struct glint_description *scene,
+                          const struct glint_described_object *object,
+                          const struct glint_scene_mesh *mesh, int material,
+                          struct glint_scene_skin *skin,
+                          struct glint_error *error)
 {
     const struct glint_described_stone *stone =
         &scene->stone[scene->material[material].stone];
@@ -304,7 +306,7 @@ bool glint_skin_write(struct glint_draft *draft,
     good = assign_mesh_texels(&p, object->name, (int)t.header->kernel, skin,
                               error);
     if (good)
-        skin->texel_at = glint_draft_put(
+        skin->texel_at = glint_draft_append(
             draft, p.texel, (size_t)p.side * (size_t)p.side * sizeof *p.texel);
     free(p.texel);
     free(p.inside);

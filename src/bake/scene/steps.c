@@ -5,10 +5,10 @@
 
 #include "glint/scene/model.h"
 
-/* log2 of (coordinate range of the run time / extent of the scene). The rest of
- * the range is reserved for moved objects and for planes, which end at its
- * limits: with PLANE_SHARE_LOG2 a plane ends less than a pixel below its
- * horizon. */
+/* log2 of (coordinate range of the run time / extent of the scene), without and
+ * with planes. The rest of the range is reserved for moved objects and for
+ * planes, which end at its limits: with PLANE_SHARE_LOG2 a plane ends less than
+ * a pixel below its horizon. */
 #define SHARE_LOG2       2
 #define PLANE_SHARE_LOG2 6
 
@@ -29,8 +29,9 @@ static double compute_object_reach(const struct glint_description *scene,
 {
     double reach = o->radius;
 
-    /* twice the distance, as a sphere around the centre of the bounding box
-     * extends beyond its corners, and its centre differs from the origin */
+    /* twice the distance of the corners: the bounding sphere around the centre
+     * of the bounding box extends beyond the corners, and its centre differs
+     * from the origin */
     for (int i = 0; i < o->n_triangles; i++)
         for (int k = 0; k < 3; k++)
             reach =
@@ -40,8 +41,8 @@ static double compute_object_reach(const struct glint_description *scene,
     return reach;
 }
 
-struct glint_steps glint_steps_of(const struct glint_description *scene,
-                                  double *reach)
+struct glint_steps
+glint_steps_choose_size(const struct glint_description *scene, double *reach)
 {
     struct glint_steps steps = {.hand = scene->left_handed ? 1 : -1};
     int exponent, share_log2 = SHARE_LOG2;
@@ -71,23 +72,23 @@ struct glint_steps glint_steps_of(const struct glint_description *scene,
     return steps;
 }
 
-void glint_steps_place(const struct glint_steps *steps, const double at[3],
-                       int32_t to[3])
+void glint_steps_convert_position(const struct glint_steps *steps,
+                                  const double at[3], int32_t to[3])
 {
     for (int i = 0; i < 3; i++)
         to[i] =
             (int32_t)lrint(at[i] * steps->scale * (i == 2 ? steps->hand : 1));
 }
 
-void glint_steps_unit(const struct glint_steps *steps, const double x[3],
-                      int32_t to_q30[3])
+void glint_steps_convert_unit_vector(const struct glint_steps *steps,
+                                     const double x[3], int32_t to_q30[3])
 {
     for (int i = 0; i < 3; i++)
         to_q30[i] = (int32_t)lrint(x[i] * 0x1p30 * (i == 2 ? steps->hand : 1));
 }
 
-void glint_steps_turn(const struct glint_steps *steps, const double turn[4],
-                      int32_t to_q30[4])
+void glint_steps_convert_rotation(const struct glint_steps *steps,
+                                  const double turn[4], int32_t to_q30[4])
 {
     /* mirroring one axis reverses the rotations about both other axes */
     for (int i = 0; i < 4; i++)
@@ -95,7 +96,8 @@ void glint_steps_turn(const struct glint_steps *steps, const double turn[4],
                                    (i == 1 || i == 2 ? steps->hand : 1));
 }
 
-void glint_turn_after(const double a[4], const double b[4], double turn[4])
+void glint_turn_multiply_quaternions(const double a[4], const double b[4],
+                                     double turn[4])
 {
     turn[0] = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];
     turn[1] = a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2];
@@ -106,7 +108,7 @@ void glint_turn_after(const double a[4], const double b[4], double turn[4])
 void glint_described_upright(const double normal[3], double turn[4])
 {
     /* (1 + y.n, y x n) is the quaternion (cos, sin) of half the angle between y
-     * and the normal n, times a length that is divided out */
+     * and the normal n, times a length by which it is divided */
     const double w = 1 + normal[1];
     const double size =
         sqrt(w * w + normal[0] * normal[0] + normal[2] * normal[2]);

@@ -20,8 +20,8 @@ static uint8_t encode_srgb(double light)
     return (uint8_t)lrint(255 * fmin(fmax(x, 0.0), 1.0));
 }
 
-/* Returns the weight of texel K in the mean of the range FROM .. TO, which is
- * RATIO texels long. */
+/* Returns the weight of source texel K in the mean over the source range FROM
+ * .. TO, which is RATIO texels long. */
 static double compute_texel_weight(int k, double from, double to, double ratio)
 {
     return (fmin(k + 1, to) - fmax(k, from)) / ratio;
@@ -48,12 +48,13 @@ static void resize_texel_row(double *dst, int n, const double *src, int src_n)
     }
 }
 
-/* Buffers of resize_picture(), one row each with three doubles per texel: a
- * whole picture would need 24 bytes per texel. */
+/* Buffers of resize_picture(). Each buffer has only one row of three doubles
+ * per texel, because a whole picture would need 24 bytes per texel. */
 struct rows {
     double table[256]; /* linear light of each 8-bit code */
     double *light;     /* a row of the source, linear light */
-    double *across;    /* source row HELD, resized to the width of the result */
+    /* source row held_row, resized to the width of the result */
+    double *across;
     /* the weighted sum of source rows for one row of the result */
     double *sum;
     int held_row; /* row of the source in across; -1: none */
@@ -73,7 +74,7 @@ static void load_source_row(struct rows *rows, int y, int width,
     rows->held_row = y;
 }
 
-/* Resizes as glint_texels_resize() does, using the buffers ROWS. */
+/* Resizes as glint_texels_resize_picture() does, using the buffers ROWS. */
 static void resize_picture(struct rows *rows, uint8_t *dst, int width,
                            int height, const uint8_t *src, int src_width,
                            int src_height)
@@ -98,9 +99,9 @@ static void resize_picture(struct rows *rows, uint8_t *dst, int width,
     }
 }
 
-enum glint_status glint_texels_resize(uint8_t *dst, int width, int height,
-                                      const uint8_t *src, int src_width,
-                                      int src_height)
+enum glint_status glint_texels_resize_picture(uint8_t *dst, int width,
+                                              int height, const uint8_t *src,
+                                              int src_width, int src_height)
 {
     struct rows rows = {.held_row = -1};
     bool good;
@@ -119,7 +120,8 @@ enum glint_status glint_texels_resize(uint8_t *dst, int width, int height,
     return good ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-/* Returns the power of two, at most MOST, with the smallest ratio to SIDE. */
+/* Returns the power of two, at most MOST, whose ratio to SIDE is nearest to
+ * 1. */
 static int find_nearest_power_of_two(int side, int most)
 {
     int power = 1;
@@ -129,7 +131,8 @@ static int find_nearest_power_of_two(int side, int most)
     return power;
 }
 
-enum glint_status glint_texels_fit(struct glint_image *image, int most)
+enum glint_status
+glint_texels_resize_to_powers_of_two(struct glint_image *image, int most)
 {
     const int width = find_nearest_power_of_two(image->width, most);
     const int height = find_nearest_power_of_two(image->height, most);
@@ -139,9 +142,10 @@ enum glint_status glint_texels_fit(struct glint_image *image, int most)
     if (width == image->width && height == image->height)
         return GLINT_OK;
     mem = malloc(3 * (size_t)width * (size_t)height);
-    status = mem ? glint_texels_resize(mem, width, height, image->plane[0],
-                                       image->width, image->height)
-                 : GLINT_E_MEMORY;
+    status =
+        mem ? glint_texels_resize_picture(mem, width, height, image->plane[0],
+                                          image->width, image->height)
+            : GLINT_E_MEMORY;
     if (status != GLINT_OK) {
         free(mem);
         return status;

@@ -41,11 +41,11 @@ convert_scene_light(const struct writer *w,
         const double sine = sin(light->radius_deg * GLINT_PI / 180);
 
         l.kind = GLINT_LIGHT_SUN;
-        glint_steps_unit(&w->steps, light->at, l.toward_q30);
+        glint_steps_convert_unit_vector(&w->steps, light->at, l.toward_q30);
         l.radius = (int32_t)lrint(sine * 0x1p30);
         scale = sine * sine;
     } else {
-        glint_steps_place(&w->steps, light->at, l.at);
+        glint_steps_convert_position(&w->steps, light->at, l.at);
         l.radius = (int32_t)lrint(light->radius * w->steps.scale);
     }
     for (int c = 0; c < 3; c++)
@@ -61,7 +61,7 @@ static void write_scene_lights(struct writer *w)
         const struct glint_scene_light l =
             convert_scene_light(w, &w->scene->light[i]);
 
-        glint_draft_put(&w->draft, &l, sizeof l);
+        glint_draft_append(&w->draft, &l, sizeof l);
     }
 }
 
@@ -99,10 +99,11 @@ static bool write_mipmap_levels(struct writer *w,
         at += 3 * (size_t)width * (size_t)height;
         width = (width + 1) / 2;
         height = (height + 1) / 2;
-        good = glint_texels_resize(at, width, height, image->plane[0],
-                                   image->width, image->height) == GLINT_OK;
+        good = glint_texels_resize_picture(at, width, height, image->plane[0],
+                                           image->width,
+                                           image->height) == GLINT_OK;
     }
-    glint_draft_put(&w->draft, mem, bytes);
+    glint_draft_append(&w->draft, mem, bytes);
     free(mem);
     return good;
 }
@@ -123,7 +124,8 @@ static bool write_textures(struct writer *w)
             return false;
     }
     w->header.n_textures = (uint32_t)n;
-    w->header.texture_at = glint_draft_put(&w->draft, t, (size_t)n * sizeof *t);
+    w->header.texture_at =
+        glint_draft_append(&w->draft, t, (size_t)n * sizeof *t);
     return true;
 }
 
@@ -134,8 +136,8 @@ static int32_t convert_to_q15(double x)
     return (int32_t)lrint(x * ONE_Q15);
 }
 
-/* Decreases the largest of N weights so that their sum, which rounding may have
- * raised above 1, is at most 1. */
+/* Decreases the largest one of N weights if rounding has raised their sum above
+ * 1, so that the sum is at most 1. */
 static void limit_weight_sum(int32_t *const weight_q15[], int n)
 {
     int32_t sum = 0;
@@ -191,7 +193,7 @@ convert_ward_lobe(const struct glint_described_material *from)
 
 static void write_materials(struct writer *w)
 {
-    /* material of objects that only show shadows */
+    /* material of objects that are invisible except for shadows on them */
     const struct glint_scene_material none = {.name = "none",
                                               .power_q8 = 256,
                                               .index_q16 = 1 << 16,
@@ -208,10 +210,10 @@ static void write_materials(struct writer *w)
 
         if (w->scene->material[i].is_metal)
             m.ward = n_wards++;
-        glint_draft_put(&w->draft, &m, sizeof m);
+        glint_draft_append(&w->draft, &m, sizeof m);
     }
     if (!n)
-        glint_draft_put(&w->draft, &none, sizeof none);
+        glint_draft_append(&w->draft, &none, sizeof none);
     w->header.n_wards = n_wards;
     w->header.ward_at = (uint32_t)w->draft.bytes;
     for (int i = 0; i < n; i++)
@@ -219,7 +221,7 @@ static void write_materials(struct writer *w)
             const struct glint_scene_ward ward =
                 convert_ward_lobe(&w->scene->material[i]);
 
-            glint_draft_put(&w->draft, &ward, sizeof ward);
+            glint_draft_append(&w->draft, &ward, sizeof ward);
         }
 }
 
@@ -233,12 +235,12 @@ static bool write_meshes(struct writer *w)
 
     for (int i = 0; good && i < s->n_objects; i++)
         if (s->object[i].n_triangles)
-            good = glint_grid_write(&w->draft, s, &s->object[i], &w->steps,
-                                    &w->mesh[n++], w->report, w->error);
+            good = glint_grid_write_mesh(&w->draft, s, &s->object[i], &w->steps,
+                                         &w->mesh[n++], w->report, w->error);
     w->header.n_meshes = n;
     if (good)
         w->header.mesh_at =
-            glint_draft_put(&w->draft, w->mesh, n * sizeof *w->mesh);
+            glint_draft_append(&w->draft, w->mesh, n * sizeof *w->mesh);
     return good;
 }
 
@@ -252,7 +254,7 @@ static bool convert_object(const struct writer *w,
     memcpy(o->name, from->name, sizeof o->name);
     memcpy(turn, from->turn, sizeof turn);
     o->material = (uint32_t)(from->material < 0 ? 0 : from->material);
-    glint_steps_place(&w->steps, from->at, o->at);
+    glint_steps_convert_position(&w->steps, from->at, o->at);
     switch (from->kind) {
     case GLINT_DESCRIBED_SPHERE:
         o->kind = GLINT_OBJECT_SPHERE;
@@ -269,7 +271,7 @@ static bool convert_object(const struct writer *w,
         o->kind = GLINT_OBJECT_PLANE;
         o->catcher_q15 = convert_to_q15(from->catcher);
         glint_described_upright(from->normal, upright);
-        glint_turn_after(from->turn, upright, turn);
+        glint_turn_multiply_quaternions(from->turn, upright, turn);
         break;
     default:
         o->kind = GLINT_OBJECT_MESH;
@@ -279,7 +281,7 @@ static bool convert_object(const struct writer *w,
             o->material =
                 (uint32_t)w->scene->triangle[from->first_triangle].material;
     }
-    glint_steps_turn(&w->steps, turn, o->turn_q30);
+    glint_steps_convert_rotation(&w->steps, turn, o->turn_q30);
     return true;
 }
 
@@ -295,7 +297,7 @@ static bool write_objects(struct writer *w)
         if (!convert_object(w, &w->scene->object[i], mesh, &o))
             return false;
         mesh += w->scene->object[i].n_triangles > 0;
-        glint_draft_put(&w->draft, &o, sizeof o);
+        glint_draft_append(&w->draft, &o, sizeof o);
     }
     return true;
 }
@@ -319,15 +321,15 @@ static bool write_translucent_media(struct writer *w)
             continue;
         stone[m->stone] = (struct glint_scene_stone){
             (uint32_t)i,
-            glint_draft_put(&w->draft, s->stone[m->stone].data,
-                            s->stone[m->stone].bytes),
+            glint_draft_append(&w->draft, s->stone[m->stone].data,
+                               s->stone[m->stone].bytes),
             (uint32_t)s->stone[m->stone].bytes, m->fresnel};
     }
     for (int i = 0; i < s->n_objects; i++) {
         const struct glint_described_object *o = &s->object[i];
         const struct glint_scene_mesh *of =
             o->n_triangles ? &w->mesh[mesh++] : NULL;
-        const int material = glint_skin_material(s, o);
+        const int material = glint_skin_find_material(s, o);
 
         if (material < 0)
             continue;
@@ -339,16 +341,16 @@ static bool write_translucent_media(struct writer *w)
         skin[n] = (struct glint_scene_skin){
             .object = (uint32_t)i,
             .stone = (uint32_t)s->material[material].stone};
-        if (!glint_skin_write(&w->draft, s, o, of, material, &skin[n],
-                              w->error))
+        if (!glint_skin_write_map(&w->draft, s, o, of, material, &skin[n],
+                                  w->error))
             return false;
         n++;
     }
     w->header.n_stones = (uint32_t)s->n_stones;
-    w->header.stone_at =
-        glint_draft_put(&w->draft, stone, (size_t)s->n_stones * sizeof *stone);
+    w->header.stone_at = glint_draft_append(
+        &w->draft, stone, (size_t)s->n_stones * sizeof *stone);
     w->header.n_skins = n;
-    w->header.skin_at = glint_draft_put(&w->draft, skin, n * sizeof *skin);
+    w->header.skin_at = glint_draft_append(&w->draft, skin, n * sizeof *skin);
     return true;
 }
 
@@ -359,10 +361,10 @@ static struct glint_scene_camera convert_camera(const struct writer *w)
     const struct glint_described_camera *from = &w->scene->camera;
     struct glint_scene_camera c = {.kind = GLINT_CAMERA_LENS};
 
-    glint_steps_place(&w->steps, from->at, c.at);
-    glint_steps_unit(&w->steps, from->right, c.axis_q30[0]);
-    glint_steps_unit(&w->steps, from->up, c.axis_q30[1]);
-    glint_steps_unit(&w->steps, from->forward, c.axis_q30[2]);
+    glint_steps_convert_position(&w->steps, from->at, c.at);
+    glint_steps_convert_unit_vector(&w->steps, from->right, c.axis_q30[0]);
+    glint_steps_convert_unit_vector(&w->steps, from->up, c.axis_q30[1]);
+    glint_steps_convert_unit_vector(&w->steps, from->forward, c.axis_q30[2]);
     if (from->field == GLINT_DESCRIBED_FIELD) {
         c.kind = GLINT_CAMERA_FIELD;
         c.tan_x_q24 =
@@ -387,7 +389,7 @@ static void write_environments(struct writer *w)
         const double angle = e->turn_deg * GLINT_PI / 180;
 
         to[i] = (struct glint_scene_environment){
-            .file_at = glint_draft_put(&w->draft, e->data, e->bytes),
+            .file_at = glint_draft_append(&w->draft, e->data, e->bytes),
             .file_bytes = (uint32_t)e->bytes,
             .turn_q30 = {(int32_t)lrint(0x1p30 * cos(angle)),
                          (int32_t)lrint(0x1p30 * sin(angle))},
@@ -397,7 +399,7 @@ static void write_environments(struct writer *w)
     w->header.n_environments = (uint32_t)n;
     w->header.n_environment_lights = (uint32_t)w->scene->n_environment_lights;
     w->header.environment_at =
-        glint_draft_put(&w->draft, to, (size_t)n * sizeof *to);
+        glint_draft_append(&w->draft, to, (size_t)n * sizeof *to);
 }
 
 static uint32_t convert_object_index(int object)
@@ -435,8 +437,8 @@ static void write_motion(struct writer *w)
         return;
     memcpy(m.name, from->name, sizeof m.name);
     w->header.n_motions = 1;
-    glint_draft_put(&w->draft, &m, sizeof m);
-    glint_draft_put(&w->draft, from->data, from->bytes);
+    glint_draft_append(&w->draft, &m, sizeof m);
+    glint_draft_append(&w->draft, from->data, from->bytes);
 }
 
 static void set_scene_header(struct writer *w, const char *name, uint64_t key)
@@ -446,9 +448,9 @@ static void set_scene_header(struct writer *w, const char *name, uint64_t key)
     const struct glint_description *s = w->scene;
     struct glint_scene_header *h = &w->header;
 
-    glint_draft_begin(h, &kind,
-                      s->left_handed ? GLINT_HAND_LEFT : GLINT_HAND_RIGHT, key,
-                      name, "scene");
+    glint_draft_begin_header(
+        h, &kind, s->left_handed ? GLINT_HAND_LEFT : GLINT_HAND_RIGHT, key,
+        name, "scene");
     h->unit_log2 = w->steps.unit_log2;
     h->shadow = s->has_shadows;
     h->background = s->background == GLINT_BEHIND_ENVIRONMENT
@@ -475,9 +477,9 @@ enum glint_status glint_scene_bake(const struct glint_description *scene,
 
     *report = (struct glint_scene_bake_report){0};
     error->text[0] = '\0';
-    w.steps = glint_steps_of(scene, &report->reach);
+    w.steps = glint_steps_choose_size(scene, &report->reach);
     report->step = 1 / w.steps.scale;
-    glint_draft_put(&w.draft, NULL, sizeof w.header);
+    glint_draft_append(&w.draft, NULL, sizeof w.header);
     write_scene_lights(&w);
     w.mesh = malloc(((size_t)scene->n_objects + 1) * sizeof *w.mesh);
     good = write_textures(&w);
@@ -488,8 +490,8 @@ enum glint_status glint_scene_bake(const struct glint_description *scene,
     write_environments(&w);
     write_motion(&w);
     set_scene_header(&w, name, key);
-    if (glint_draft_finish(&w.draft, &w.header, sizeof w.header, good, data,
-                           bytes))
+    if (glint_draft_finish_file(&w.draft, &w.header, sizeof w.header, good,
+                                data, bytes))
         return GLINT_OK;
     return error->text[0] ? GLINT_E_LENS : GLINT_E_MEMORY;
 }

@@ -22,49 +22,51 @@ struct glint_steps {
 
 /* Chooses the step size for SCENE. Sets REACH to the max coordinate of any
  * point, in units of the description. */
-struct glint_steps glint_steps_of(const struct glint_description *scene,
-                                  double *reach);
+struct glint_steps
+glint_steps_choose_size(const struct glint_description *scene, double *reach);
 
 /* Converts position AT from units of the description to steps TO. */
-void glint_steps_place(const struct glint_steps *steps, const double at[3],
-                       int32_t to[3]);
+void glint_steps_convert_position(const struct glint_steps *steps,
+                                  const double at[3], int32_t to[3]);
 
 /* Converts unit vector X to the baked scene's axes, _q30. */
-void glint_steps_unit(const struct glint_steps *steps, const double x[3],
-                      int32_t to_q30[3]);
+void glint_steps_convert_unit_vector(const struct glint_steps *steps,
+                                     const double x[3], int32_t to_q30[3]);
 
 /* Converts unit quaternion TURN to the baked scene's axes, _q30. */
-void glint_steps_turn(const struct glint_steps *steps, const double turn[4],
-                      int32_t to_q30[4]);
+void glint_steps_convert_rotation(const struct glint_steps *steps,
+                                  const double turn[4], int32_t to_q30[4]);
 
 /* Sets TURN to the quaternion product A B: rotation B followed by A. */
-void glint_turn_after(const double a[4], const double b[4], double turn[4]);
+void glint_turn_multiply_quaternions(const double a[4], const double b[4],
+                                     double turn[4]);
 
 /* Converts the triangles of OBJECT to a mesh: vertices in steps, each stored
  * once, and a uniform grid whose cells list the triangles that touch them.
  * Appends the tables to DRAFT, sets MESH to their offsets and adds to REPORT.
  * Needs O(N) time and memory for N triangles. Returns false if there is no
  * memory, or, with ERROR set, if too many triangles coincide. */
-bool glint_grid_write(struct glint_draft *draft,
-                      const struct glint_description *scene,
-                      const struct glint_described_object *object,
-                      const struct glint_steps *steps,
-                      struct glint_scene_mesh *mesh,
-                      struct glint_scene_bake_report *report,
-                      struct glint_error *error);
+bool glint_grid_write_mesh(struct glint_draft *draft,
+                           const struct glint_description *scene,
+                           const struct glint_described_object *object,
+                           const struct glint_steps *steps,
+                           struct glint_scene_mesh *mesh,
+                           struct glint_scene_bake_report *report,
+                           struct glint_error *error);
 
 /* Returns the index of the translucent material of OBJECT; -1: none. */
-int glint_skin_material(const struct glint_description *scene,
-                        const struct glint_described_object *object);
+int glint_skin_find_material(const struct glint_description *scene,
+                             const struct glint_described_object *object);
 
-/* Writes the texture map of a translucent object, SKIN: the surface point of
- * each texel. MESH: the object's mesh in DRAFT; NULL: a sphere. Returns false
- * if there is no memory, or, with ERROR set, if too many surface points share a
- * texel or none has one. */
-bool glint_skin_write(struct glint_draft *draft,
-                      const struct glint_description *scene,
-                      const struct glint_described_object *object,
-                      const struct glint_scene_mesh *mesh, int material,
-                      struct glint_scene_skin *skin, struct glint_error *error);
+/* Writes the map of a translucent object to DRAFT, which states the surface
+ * point of each texel, and sets SKIN to it. MESH: the object's mesh in DRAFT;
+ * NULL: a sphere. Returns false if there is no memory, or, with ERROR set, if
+ * too many surface points share a texel or no texel has one. */
+bool glint_skin_write_map(struct glint_draft *draft,
+                          const struct glint_description *scene,
+                          const struct glint_described_object *object,
+                          const struct glint_scene_mesh *mesh, int material,
+                          struct glint_scene_skin *skin,
+                          struct glint_error *error);
 
 #endif

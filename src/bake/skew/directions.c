@@ -9,15 +9,15 @@ static const int waves[GLINT_PATCH_WAVES] = {GLINT_VISIBLE_WAVES / 2, 0,
                                              GLINT_VISIBLE_WAVES - 1};
 
 /* Returns the value in LO .. HI that is nearest to 0. */
-static double clamp_zero_to_range(double lo, double hi)
+static double get_value_nearest_zero(double lo, double hi)
 {
     return fmax(lo, fmin(hi, 0));
 }
 
-double glint_directions_nearest(const struct glint_directions *patch)
+double glint_directions_get_min_sine(const struct glint_directions *patch)
 {
-    return hypot(clamp_zero_to_range(patch->x0, patch->x1),
-                 clamp_zero_to_range(patch->y0, patch->y1));
+    return hypot(get_value_nearest_zero(patch->x0, patch->x1),
+                 get_value_nearest_zero(patch->y0, patch->y1));
 }
 
 /* ------------------------------------------------------------------- boxes */
@@ -47,7 +47,8 @@ static bool trace_ray_grid(const struct glint_visible *h,
         row.y_mm = box->y0_mm + (box->y1_mm - box->y0_mm) * j / ACROSS;
         glint_trace_row(path, &row, ray, status, NULL);
         for (int i = 0; i <= ACROSS; i++) {
-            if (status[i] != GLINT_RAY_OK || !glint_visible_passes(h, &ray[i]))
+            if (status[i] != GLINT_RAY_OK ||
+                !glint_visible_is_ray_visible(h, &ray[i]))
                 continue;
             e->i0 = i < e->i0 ? i : e->i0;
             e->i1 = i > e->i1 ? i : e->i1;
@@ -88,9 +89,9 @@ static bool shrink_box_to_visible(const struct glint_visible *h,
     return true;
 }
 
-/* Finds the box of unblocked rays by enlarging NEAR, the box at another
+/* Finds the box of unblocked rays by enlarging NEAR, the box found for another
  * direction or wavelength, on each side where light still passes. Returns false
- * if it is not found. */
+ * if no box is found. */
 static bool grow_box_to_visible(const struct glint_visible *h,
                                 const struct glint_path *path,
                                 const double direction[3],
@@ -153,20 +154,20 @@ static void evaluate_zone_box(const struct glint_zone *zone,
 {
     const double x[GLINT_VARIABLES] = {
         [GLINT_S] = map_to_unit_range(direction[0], zone->lo, zone->hi),
-        [GLINT_W] = glint_zone_node(waves[k], GLINT_VISIBLE_WAVES),
+        [GLINT_W] = glint_zone_compute_node(waves[k], GLINT_VISIBLE_WAVES),
         [GLINT_P] = map_to_unit_range(direction[1], zone->y_lo, zone->y_hi)};
-    const double half_x = glint_zone_side(zone, zone->half_x, x);
-    const double half_y = glint_zone_side(zone, zone->half_y, x);
+    const double half_x = glint_zone_evaluate_side(zone, zone->half_x, x);
+    const double half_y = glint_zone_evaluate_side(zone, zone->half_y, x);
 
-    box->x0_mm = glint_zone_side(zone, zone->middle, x) - half_x;
+    box->x0_mm = glint_zone_evaluate_side(zone, zone->middle, x) - half_x;
     box->x1_mm = box->x0_mm + 2 * half_x;
-    box->y0_mm = glint_zone_side(zone, zone->middle_y, x) - half_y;
+    box->y0_mm = glint_zone_evaluate_side(zone, zone->middle_y, x) - half_y;
     box->y1_mm = box->y0_mm + 2 * half_y;
 }
 
 /* Finds the box of unblocked rays for direction AT and wavelength K. Searches
  * near the box found last, except for corners of the patch, then in the whole
- * pupil. WITHIN: see glint_sights_find(). */
+ * pupil. WITHIN: see glint_sights_find_boxes(). */
 static bool find_box_at_direction(const struct glint_visible *h,
                                   const struct place *at, int k,
                                   const struct glint_zone *within,
@@ -187,8 +188,8 @@ static bool find_box_at_direction(const struct glint_visible *h,
            find_visible_box(h, path, at->direction, box);
 }
 
-/* Adds the boxes for one direction. Every second direction uses the middle
- * wavelength only. */
+/* Adds the boxes of visible light for one direction to SIGHTS. Every second
+ * direction uses the middle wavelength only. */
 static void add_direction_boxes(const struct glint_visible *h,
                                 const struct place *at,
                                 const struct glint_zone *within,
@@ -204,15 +205,15 @@ static void add_direction_boxes(const struct glint_visible *h,
         to->x[GLINT_U] = to->x[GLINT_V] = 0;
         to->x[GLINT_S] = compute_patch_coordinate(at->i);
         to->x[GLINT_P] = compute_patch_coordinate(at->j);
-        to->x[GLINT_W] = glint_zone_node(waves[k], GLINT_VISIBLE_WAVES);
+        to->x[GLINT_W] = glint_zone_compute_node(waves[k], GLINT_VISIBLE_WAVES);
         sights->n++;
     }
 }
 
-void glint_sights_find(const struct glint_visible *visible,
-                       const struct glint_directions *patch, double sine_hi,
-                       const struct glint_zone *within,
-                       struct glint_sights *sights)
+void glint_sights_find_boxes(const struct glint_visible *visible,
+                             const struct glint_directions *patch,
+                             double sine_hi, const struct glint_zone *within,
+                             struct glint_sights *sights)
 {
     sights->n = 0;
     for (int k = 0; k < GLINT_PATCH_SIDE * GLINT_PATCH_SIDE; k++) {
@@ -233,8 +234,8 @@ void glint_sights_find(const struct glint_visible *visible,
 
 enum { MOST = GLINT_PATCH_SIDE * GLINT_PATCH_SIDE * GLINT_PATCH_WAVES };
 
-/* One component of each box (a middle or a half size) at its coordinates s, w
- * and p. */
+/* One component (a middle or a half size, along x or y) of each box, and the
+ * coordinates s, w and p of that box. */
 struct sides {
     int n;
     double x[3][MOST], value[MOST];
@@ -263,8 +264,8 @@ static void fit_box_side(const struct sides *sides, int degree,
         weight[i] = 1;
     for (int k = 0; k < GLINT_BOX_TERMS; k++)
         side[k] = 0;
-    glint_regress_fit(scratch, &samples, sides->value, &degrees, tolerance,
-                      4 * tolerance, &fit);
+    glint_regress_fit_polynomial(scratch, &samples, sides->value, &degrees,
+                                 tolerance, 4 * tolerance, &fit);
     for (int k = 0; k < fit.n; k++)
         side[fit.power[k][GLINT_W]
                  ? GLINT_BOX_POWERS
@@ -272,8 +273,8 @@ static void fit_box_side(const struct sides *sides, int degree,
             fit.coef[k];
 }
 
-/* Returns minus the min of the polynomial HALF, a half size, over ZONE,
- * sampled. */
+/* Returns minus the min over ZONE, sampled, of the half-size polynomial HALF.
+ * After adding it, no sampled half size is negative. */
 static double compute_size_deficit(const struct glint_zone *zone,
                                    const double half[GLINT_BOX_TERMS])
 {
@@ -283,7 +284,7 @@ static double compute_size_deficit(const struct glint_zone *zone,
         const double x[GLINT_VARIABLES] = {
             0, 0, (k % 9 - 4) / 4.0, k / 81 ? 1 : -1, (k / 9 % 9 - 4) / 4.0};
 
-        lowest = fmin(lowest, glint_zone_side(zone, half, x));
+        lowest = fmin(lowest, glint_zone_evaluate_side(zone, half, x));
     }
     return -lowest;
 }
@@ -300,8 +301,8 @@ static double compute_box_middle(const struct glint_pupil *box, bool y)
              : 0.5 * (box->x0_mm + box->x1_mm);
 }
 
-/* Sets the polynomials MIDDLE and HALF of ZONE, along x or y, such that its box
- * contains all sights. */
+/* Sets the polynomials MIDDLE and HALF of ZONE's box along x (or along y if Y)
+ * such that the box contains all boxes in SIGHTS. */
 static void fit_box_sides(const struct glint_sights *sights, int degree, bool y,
                           const struct glint_zone *zone,
                           double middle[GLINT_BOX_TERMS],
@@ -324,9 +325,10 @@ static void fit_box_sides(const struct glint_sights *sights, int degree, bool y,
     for (int i = 0; i < of.n; i++) {
         const double *x = sights->at[i].x;
         const double off = fabs(compute_box_middle(&sights->at[i].box, y) -
-                                glint_zone_side(zone, middle, x));
+                                glint_zone_evaluate_side(zone, middle, x));
 
-        more = fmax(more, of.value[i] + off - glint_zone_side(zone, half, x));
+        more = fmax(more, of.value[i] + off -
+                              glint_zone_evaluate_side(zone, half, x));
     }
     half[0] += more;
     half[0] += fmax(0.01 * half[0], 1.1 * compute_size_deficit(zone, half));
@@ -342,15 +344,15 @@ static double compute_box_fill(const struct glint_sights *sights,
 
         sum += compute_half_size(&v->box, false) *
                compute_half_size(&v->box, true) /
-               (glint_zone_side(zone, zone->half_x, v->x) *
-                glint_zone_side(zone, zone->half_y, v->x));
+               (glint_zone_evaluate_side(zone, zone->half_x, v->x) *
+                glint_zone_evaluate_side(zone, zone->half_y, v->x));
     }
     return sum / sights->n;
 }
 
-void glint_sights_zone(const struct glint_sights *sights,
-                       const struct glint_directions *patch,
-                       struct glint_zone *zone)
+void glint_sights_fit_zone(const struct glint_sights *sights,
+                           const struct glint_directions *patch,
+                           struct glint_zone *zone)
 {
     /* equal to ENOUGH_FILL and FULLER in zone.c */
     const double enough = 0.6, fuller = 1.6;

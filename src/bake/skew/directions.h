@@ -20,7 +20,7 @@ struct glint_directions {
 
 /* Returns the min sine of the angle between the lens axis and any direction of
  * PATCH. */
-double glint_directions_nearest(const struct glint_directions *patch);
+double glint_directions_get_min_sine(const struct glint_directions *patch);
 
 enum {
     GLINT_PATCH_SIDE = 4, /* number of directions along each side of a patch */
@@ -40,17 +40,19 @@ struct glint_sights {
         at[GLINT_PATCH_SIDE * GLINT_PATCH_SIDE * GLINT_PATCH_WAVES];
 };
 
-/* Finds the boxes of visible light from the directions of PATCH whose angle has
- * a sine of at most SINE_HI. Searches the whole pupil if WITHIN is NULL, else
- * only the box of WITHIN, a zone of the same band that covers the patch. */
-void glint_sights_find(const struct glint_visible *visible,
-                       const struct glint_directions *patch, double sine_hi,
-                       const struct glint_zone *within,
-                       struct glint_sights *sights);
+/* Finds the boxes of visible light for those directions of PATCH whose angle
+ * has a sine of at most SINE_HI. Searches the whole pupil if WITHIN is NULL,
+ * else only the box of WITHIN, a zone of the same band that covers the
+ * patch. */
+void glint_sights_find_boxes(const struct glint_visible *visible,
+                             const struct glint_directions *patch,
+                             double sine_hi, const struct glint_zone *within,
+                             struct glint_sights *sights);
 
-/* Fits ZONE to PATCH, with a box that contains all SIGHTS (at least one). */
-void glint_sights_zone(const struct glint_sights *sights,
-                       const struct glint_directions *patch,
-                       struct glint_zone *zone);
+/* Initialises ZONE for the directions of PATCH, with a box that contains all
+ * boxes in SIGHTS (at least one). */
+void glint_sights_fit_zone(const struct glint_sights *sights,
+                           const struct glint_directions *patch,
+                           struct glint_zone *zone);
 
 #endif

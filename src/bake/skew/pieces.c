@@ -5,7 +5,8 @@
 
 /* ------------------------------------------------------------------- halves */
 
-/* Substitutes VARIABLE (s, p or w) in the box polynomial SIDE by AT + x / 2. */
+/* Substitutes VARIABLE (s, p or w) in the box polynomial SIDE by AT + x / 2, so
+ * that x = -1 .. 1 covers half of its range. */
 static void substitute_variable_in_side(double side[GLINT_BOX_TERMS],
                                         int variable, double at)
 {
@@ -33,8 +34,9 @@ static void substitute_variable_in_side(double side[GLINT_BOX_TERMS],
     }
 }
 
-/* Cuts a box to the part LOW .. HIGH of its width or height, in relative
- * coordinates -1 .. 1. */
+/* Cuts a box along one axis to the part LOW .. HIGH of its width or height,
+ * where -1 .. 1 is the whole. MIDDLE, HALF: polynomials of the box's middle and
+ * half size along that axis. */
 static void cut_box_side(double middle[GLINT_BOX_TERMS],
                          double half[GLINT_BOX_TERMS], double low, double high)
 {
@@ -79,8 +81,8 @@ void glint_piece_halve(const struct glint_skew_piece *p, int variable,
 
 /* --------------------------------------------------------------------- crop */
 
-void glint_piece_crop(struct glint_skew_piece *p,
-                      const struct glint_visible *visible)
+void glint_piece_crop_box(struct glint_skew_piece *p,
+                          const struct glint_visible *visible)
 {
     enum { BUNDLES = 24, ACROSS = GLINT_ZONE_BATCH / 2, ROWS = 12 };
     const double margin[2] = {3.0 / (ACROSS - 1), 3.0 / (ROWS - 1)};
@@ -91,20 +93,20 @@ void glint_piece_crop(struct glint_skew_piece *p,
         const int wave = k % GLINT_VISIBLE_WAVES;
         double x[GLINT_VARIABLES];
 
-        glint_zone_scatter(&p->zone, k / (ROWS / 2), x);
-        x[GLINT_W] = glint_zone_node(wave, GLINT_VISIBLE_WAVES);
+        glint_zone_set_scattered_point(&p->zone, k / (ROWS / 2), x);
+        x[GLINT_W] = glint_zone_compute_node(wave, GLINT_VISIBLE_WAVES);
         t.path = &visible->position_path[wave];
         for (t.n = 0; t.n < GLINT_ZONE_BATCH;) {
             const int row = 2 * (k % (ROWS / 2)) + t.n / ACROSS;
 
             x[GLINT_U] = 2.0 * (t.n % ACROSS) / (ACROSS - 1) - 1;
             x[GLINT_V] = 2.0 * row / (ROWS - 1) - 1;
-            glint_zone_batch_add(&t, &p->zone, x);
+            glint_zone_batch_add_ray(&t, &p->zone, x);
         }
-        glint_zone_batch_trace(&t);
+        glint_zone_batch_trace_rays(&t);
         for (int i = 0; i < t.n; i++)
             if (t.status[i] == GLINT_RAY_OK &&
-                glint_visible_passes(visible, &t.ray[i]))
+                glint_visible_is_ray_visible(visible, &t.ray[i]))
                 for (int v = 0; v < 2; v++) {
                     low[v] = fmin(low[v], t.x[i][v]);
                     high[v] = fmax(high[v], t.x[i][v]);
@@ -145,8 +147,8 @@ static void add_high_power_shares(const struct glint_fitted_output *o,
                             (1 - pow(0.5, o->power[k][i]));
 }
 
-void glint_piece_shares(const struct glint_fitted_system *system,
-                        double share[GLINT_VARIABLES])
+void glint_piece_compute_shares(const struct glint_fitted_system *system,
+                                double share[GLINT_VARIABLES])
 {
     bool all = true;
 
@@ -161,8 +163,8 @@ void glint_piece_shares(const struct glint_fitted_system *system,
             add_high_power_shares(&system->output[k], share);
 }
 
-int glint_piece_number(const struct glint_fitted_ghost *ghost,
-                       const struct glint_fitted_system *system)
+int glint_piece_choose_part_number(const struct glint_fitted_ghost *ghost,
+                                   const struct glint_fitted_system *system)
 {
     const struct glint_fitted_system *const a = system;
     int number = 0;

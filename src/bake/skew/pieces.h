@@ -22,10 +22,11 @@ struct glint_skew_piece {
      * parts > 0 */
     struct glint_zone zone;
     double w0, w1; /* the piece's band, in w, -1 .. 1 */
-    double before; /* error, in tolerances, of the piece whose half this is */
-    int depth;     /* number of halvings that led to this piece */
-    int parts;     /* number of these halvings that divided the box */
-    bool known;    /* true: the box contains all light from the patch */
+    /* error, in tolerances, of the piece that was halved into this one */
+    double before;
+    int depth;  /* number of halvings of any variable that led to this piece */
+    int parts;  /* number of those halvings that divided the box */
+    bool known; /* true: the box contains all light from the patch */
 };
 
 /* Halves P in VARIABLE (GLINT_U .. GLINT_P). */
@@ -33,20 +34,20 @@ void glint_piece_halve(const struct glint_skew_piece *p, int variable,
                        struct glint_skew_piece *first,
                        struct glint_skew_piece *second);
 
-/* Crops the box of P, which is a part of a box, to its visible region, with a
- * margin. */
-void glint_piece_crop(struct glint_skew_piece *p,
-                      const struct glint_visible *visible);
+/* Crops the box of P to its visible region, with a margin. P must be a part of
+ * a divided box. */
+void glint_piece_crop_box(struct glint_skew_piece *p,
+                          const struct glint_visible *visible);
 
-/* Sets SHARE to how much of the high powers of SYSTEM's polynomials halving
- * each variable would remove. If any polynomial misses its tolerance, only
- * those that do count. */
-void glint_piece_shares(const struct glint_fitted_system *system,
-                        double share[GLINT_VARIABLES]);
+/* Sets SHARE[variable] to the fraction of the high powers of SYSTEM's
+ * polynomials that halving this variable would remove. If any polynomial misses
+ * its tolerance, only polynomials that miss theirs count. */
+void glint_piece_compute_shares(const struct glint_fitted_system *system,
+                                double share[GLINT_VARIABLES]);
 
 /* Returns the smallest part number that no system of GHOST uses for directions
  * and wavelengths that overlap those of SYSTEM. */
-int glint_piece_number(const struct glint_fitted_ghost *ghost,
-                       const struct glint_fitted_system *system);
+int glint_piece_choose_part_number(const struct glint_fitted_ghost *ghost,
+                                   const struct glint_fitted_system *system);
 
 #endif

@@ -13,48 +13,52 @@
 
 /* max side of a patch, as a difference of sines */
 #define MOST_SIDE 0.22
-/* patches with smaller sides are not halved */
+/* patches with sides below this difference of sines are not halved */
 #define LEAST_SIDE 0.04
-/* Patches with smaller sides are accepted if halving did not help and their
- * error is at most attempt.bearable. */
+/* Patches with sides below this difference of sines are accepted if the last
+ * halving did not help and their error is at most attempt.bearable. */
 #define STUCK_SIDE 0.12
 /* Halving a patch did not help if a half still has more than this fraction of
  * the patch's error. */
 #define STUCK 0.75
-/* Min fraction of a box that visible light must fill, in patches wider than
- * FILL_SIDE. */
+/* LEAST_FILL: min fraction of a box that visible light must fill. Applies to
+ * patches with sides above FILL_SIDE, a difference of sines. */
 #define LEAST_FILL 0.25
 #define FILL_SIDE  0.05
 /* Min error, in tolerances, at which the fit of a patch is abandoned. */
 #define HOPELESS 10.0
 /* Min width in w (0 .. 2) of a band that is halved. */
 #define LEAST_BAND 0.6
-/* Min fill of a patch's box at which its halves are searched only inside this
- * box, as its grids then miss no light. */
+/* If visible light fills at least this fraction of a patch's box, the halves of
+ * the patch are searched for light only inside this box, because the grids of
+ * that search then miss no light. */
 #define SOLID 0.08
-/* Min error, in tolerances, at which a box is divided into parts (see next.c);
- * for ghosts so faint that errors are hidden, up to MOST_HIDDEN times as
- * much. */
+/* PART_LEFT: min error, in tolerances, at which a box is divided into parts
+ * (see next.c). MOST_HIDDEN: max factor on it for ghosts so faint that errors
+ * are invisible. */
 #define PART_LEFT   5.0
 #define MOST_HIDDEN 3.0
-/* A part of a box is accepted up to this fraction of attempt.bearable. */
+/* A part of a box is accepted if its error is at most this fraction of
+ * attempt.bearable. */
 #define PART_KEPT 0.4
-/* Min error, in units of attempt.bearable, at which a box is divided at
+/* Min ratio of the error to attempt.bearable at which a box is divided at
  * once. */
 #define PART_HOPELESS 20.0
 /* max number of halvings of a box */
 #define MOST_PARTS 5
-/* The box is divided instead of the directions if that removes this many times
- * as much of the error: the run time draws all parts, but only one patch. */
+/* The box is divided instead of the patch if that removes at least this many
+ * times as much of the error. Parts of a box cost more at run time: all parts
+ * are drawn for each light, but only one patch. */
 #define RATHER 1.5
-/* Limits of the ease of a ghost: below NOT_FAINT errors are reduced by all
- * means; above FAINT any error up to attempt.bearable is accepted. */
+/* Limits of a ghost's ease (factor on tolerances): below NOT_FAINT all means
+ * are used to reduce errors; above FAINT any error up to attempt.bearable is
+ * accepted. */
 #define NOT_FAINT 1.5
 #define FAINT     6.0
-/* Constants of the work estimate, measured with anamorphic-schneider baked to 4
- * and to 8 degrees. SEEN_DEG: angle beyond which few ghosts have light. HEAD:
- * fits per ghost and direction. PER_AREA: fits per ghost, surface and area of
- * directions (in sines). */
+/* Constants of the work estimate, measured with anamorphic-schneider baked up
+ * to 4 and up to 8 degrees. SEEN_DEG: angle beyond which few ghosts have light.
+ * HEAD: fits per ghost and direction. PER_AREA: fits per ghost, surface and
+ * area of directions (in sines). */
 #define SEEN_DEG 25.0
 #define HEAD     0.16
 #define PER_AREA 175.0
@@ -70,10 +74,10 @@ struct fitter {
     glint_zone_sampling sampling;
     struct glint_visible in_band;
     struct glint_sights sights;
-    glint_fit_told_fn *told;
-    void *told_ctx;
-    /* arguments of told(): work in fits, fraction done; total area of all
-     * patches */
+    glint_fit_progress_fn *progress;
+    void *progress_ctx;
+    /* work and share: arguments of the callback progress(): number of
+     * fits, fraction done. area: total area of all patches. */
     double work, share, area;
 };
 
@@ -82,16 +86,16 @@ struct attempt {
     /* errors of the fit; worst is HUGE_VAL if nothing was fitted */
     struct glint_zone_errors errors;
     double bearable; /* min error, in tolerances, at which the box is divided */
-    /* max error, in tolerances, with which the patch is accepted at once */
+    /* max error, in tolerances, up to which the patch is accepted at once */
     double kept;
     bool dark;
 };
 
-void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
-                     double max_deg, double tolerance, double *head,
-                     double *typical)
+void glint_skew_estimate_work(const struct glint_prescription *lens,
+                              int n_ghosts, double max_deg, double tolerance,
+                              double *head, double *typical)
 {
-    const uint32_t mirrors = glint_skew_mirrors(lens);
+    const uint32_t mirrors = glint_skew_find_mirror_planes(lens);
     const int quarters = (mirrors & GLINT_MIRRORS_X ? 1 : 2) *
                          (mirrors & GLINT_MIRRORS_Y ? 1 : 2);
     /* few ghosts have light beyond SEEN_DEG */
@@ -120,7 +124,7 @@ static double compute_patch_height(const struct glint_skew_piece *p)
     return p->zone.y_hi - p->zone.y_lo;
 }
 
-static double compute_larger_side(const struct glint_skew_piece *p)
+static double compute_larger_patch_side(const struct glint_skew_piece *p)
 {
     return fmax(compute_patch_width(p), compute_patch_height(p));
 }
@@ -150,7 +154,7 @@ static enum glint_status copy_zone_box(struct glint_fitted_system *system,
 
 static bool can_halve_patch(const struct glint_skew_piece *p)
 {
-    return compute_larger_side(p) > LEAST_SIDE && p->depth < DEEP - 2;
+    return compute_larger_patch_side(p) > LEAST_SIDE && p->depth < DEEP - 2;
 }
 
 static bool can_divide_box(const struct glint_skew_piece *p)
@@ -158,10 +162,10 @@ static bool can_divide_box(const struct glint_skew_piece *p)
     return p->parts < MOST_PARTS && p->depth < DEEP - 2;
 }
 
-/* Sets the limits of the error of A: bearable and kept. */
-static void set_error_limits(const struct glint_skew_piece *p,
-                             const struct glint_zone_aim *aim,
-                             struct attempt *a)
+/* Sets the limits bearable and kept for the error of attempt A. */
+static void set_attempt_error_limits(const struct glint_skew_piece *p,
+                                     const struct glint_zone_aim *aim,
+                                     struct attempt *a)
 {
     const double faint =
         fmin(1, fmax(0, (aim->ease - NOT_FAINT) / (FAINT - NOT_FAINT)));
@@ -179,33 +183,34 @@ static enum glint_status fit_piece_zone(struct fitter *f,
                                         struct attempt *a)
 {
     const bool settled =
-        can_halve_patch(p) && compute_larger_side(p) > STUCK_SIDE;
+        can_halve_patch(p) && compute_larger_patch_side(p) > STUCK_SIDE;
     struct glint_zone_buffers *const b = &f->buffers;
     struct glint_zone_task task = {.zone = &p->zone,
                                    .tolerance = f->tolerance,
                                    .visible = band,
                                    .barrel = f->tolerance->barrel,
                                    .thorough = !settled,
-                                   .stacks = glint_next_stacks(f->visible)};
+                                   .stacks =
+                                       glint_next_has_film_stack(f->visible)};
     struct glint_zone_aim aim;
     enum glint_status status;
 
     glint_zone_choose_barrels(&p->zone, band, f->tolerance->escape,
                               &f->sampling, &b->rays);
-    glint_zone_trace(&p->zone, band, &b->rays, &b->energies);
-    /* If only a sliver at the rim of the patch is visible, its halves are
-     * fitted instead. */
-    if (glint_zone_rays_dark(&b->rays))
+    glint_zone_trace_rays(&p->zone, band, &b->rays, &b->energies);
+    /* if light passes only at the rim of the patch, no ray shows it; its halves
+     * are then fitted instead */
+    if (glint_zone_rays_are_all_blocked(&b->rays))
         return GLINT_OK;
     status = copy_zone_box(system, &p->zone);
-    aim = glint_zone_aim_of(f->tolerance, &p->zone, &b->rays);
-    set_error_limits(p, &aim, a);
+    aim = glint_zone_aim_compute_tolerances(f->tolerance, &p->zone, &b->rays);
+    set_attempt_error_limits(p, &aim, a);
     task.settled = settled ? a->kept : 0;
     task.hopeless = can_halve_patch(p)  ? fmax(HOPELESS, a->kept)
                     : can_divide_box(p) ? PART_HOPELESS * a->bearable
                                         : 0;
     if (status == GLINT_OK)
-        status = glint_zone_fit(&task, &aim, b, system, &a->errors);
+        status = glint_zone_fit_outputs(&task, &aim, b, system, &a->errors);
     system->met = a->errors.worst <= 1;
     return status;
 }
@@ -219,16 +224,17 @@ static bool find_piece_box(struct fitter *f, struct glint_skew_piece *p,
     const struct glint_zone within = p->zone;
 
     if (p->parts > 0) {
-        glint_piece_crop(p, band);
+        glint_piece_crop_box(p, band);
         return true;
     }
-    glint_sights_find(band, &patch, f->sine_hi, p->known ? &within : NULL,
-                      &f->sights);
+    glint_sights_find_boxes(band, &patch, f->sine_hi, p->known ? &within : NULL,
+                            &f->sights);
     a->dark = f->sights.n == 0;
     if (a->dark)
         return false;
-    glint_sights_zone(&f->sights, &patch, &p->zone);
-    return p->zone.fill >= LEAST_FILL || compute_larger_side(p) <= FILL_SIDE;
+    glint_sights_fit_zone(&f->sights, &patch, &p->zone);
+    return p->zone.fill >= LEAST_FILL ||
+           compute_larger_patch_side(p) <= FILL_SIDE;
 }
 
 static enum glint_status try_piece_fit(struct fitter *f,
@@ -239,7 +245,7 @@ static enum glint_status try_piece_fit(struct fitter *f,
     const struct glint_visible *band = f->visible;
 
     if (p->w0 > -1 || p->w1 < 1) {
-        glint_visible_narrow(&f->in_band, f->visible, p->w0, p->w1);
+        glint_visible_narrow_band(&f->in_band, f->visible, p->w0, p->w1);
         band = &f->in_band;
     }
     *system = (struct glint_fitted_system){.ghost = f->visible->ghost,
@@ -261,8 +267,9 @@ static enum glint_status try_piece_fit(struct fitter *f,
 
 enum { KEEP = -1 };
 
-/* Returns how much the box moves and grows over the terms FIRST and SQUARE of
- * its polynomials, relative to its half sizes. */
+/* Returns how far the box moves and grows over one variable, relative to its
+ * half sizes. FIRST, SQUARE: indices of the terms of the box polynomials that
+ * are linear and quadratic in this variable. */
 static double compute_box_motion(const struct glint_zone *z, int first,
                                  int square)
 {
@@ -296,7 +303,7 @@ static int choose_direction_component(const struct glint_skew_piece *p,
 }
 
 /* Returns the max error of positions and outlines, in tolerances. */
-static double compute_placing_error(const struct attempt *a)
+static double get_position_and_outline_error(const struct attempt *a)
 {
     return fmax(a->errors.places, a->errors.outlines);
 }
@@ -307,12 +314,12 @@ static int choose_halving_variable(const struct glint_skew_piece *p,
                                    const struct glint_fitted_system *system)
 {
     const bool parts = can_divide_box(p) &&
-                       compute_placing_error(a) > a->bearable &&
+                       get_position_and_outline_error(a) > a->bearable &&
                        system->n_outputs > 0;
     double share[GLINT_VARIABLES];
     int along, across;
 
-    glint_piece_shares(system, share);
+    glint_piece_compute_shares(system, share);
     across = share[GLINT_V] > share[GLINT_U] ? GLINT_V : GLINT_U;
     if (system->n_outputs == 0) {
         share[GLINT_S] = compute_box_motion(&p->zone, 1, 2);
@@ -324,23 +331,24 @@ static int choose_halving_variable(const struct glint_skew_piece *p,
     return can_halve_patch(p) ? along : KEEP;
 }
 
-static int choose_next_step(const struct glint_skew_piece *p,
-                            const struct attempt *a,
-                            const struct glint_fitted_system *system)
+static int choose_step_after_fit(const struct glint_skew_piece *p,
+                                 const struct attempt *a,
+                                 const struct glint_fitted_system *system)
 {
-    const double left = compute_placing_error(a);
+    const double left = get_position_and_outline_error(a);
     const bool helped = left <= STUCK * p->before;
 
     if (a->dark || (p->parts > 0 && system->n_outputs == 0))
         return KEEP;
     /* Coatings make energies oscillate with the wavelength. Dividing the band
-     * reduces this error, with 1/5 of the terms; smaller patches do not. */
+     * reduces this error, with 1/5 of the terms that smaller patches would
+     * need. */
     if (left <= a->kept)
         return a->errors.energy > 1 && p->parts == 0 &&
                        p->w1 - p->w0 > LEAST_BAND
                    ? GLINT_W
                    : KEEP;
-    if (!helped && compute_larger_side(p) < STUCK_SIDE &&
+    if (!helped && compute_larger_patch_side(p) < STUCK_SIDE &&
         left <= fmin(HOPELESS, a->bearable))
         return KEEP;
     return choose_halving_variable(p, a, system);
@@ -367,21 +375,21 @@ static enum glint_status fit_patch(struct fitter *f,
         struct attempt a = {.dark = true};
         int next = KEEP;
 
-        if (glint_directions_nearest(&at) < f->sine_hi)
+        if (glint_directions_get_min_sine(&at) < f->sine_hi)
             status = try_piece_fit(f, &p, &system, &a);
         if (status == GLINT_OK)
-            next = choose_next_step(&p, &a, &system);
+            next = choose_step_after_fit(&p, &a, &system);
         f->work++;
         f->share += next == KEEP ? compute_piece_area(&p) / f->area : 0;
-        if (f->told && status == GLINT_OK)
-            status = f->told(f->told_ctx, f->work, f->share);
+        if (f->progress && status == GLINT_OK)
+            status = f->progress(f->progress_ctx, f->work, f->share);
         if (status == GLINT_OK && next == KEEP && system.n_outputs > 0) {
-            system.part = glint_piece_number(f->out, &system);
-            status = glint_fitted_append(f->out, &system);
+            system.part = glint_piece_choose_part_number(f->out, &system);
+            status = glint_fitted_append_system(f->out, &system);
         } else {
-            glint_fitted_drop(&system);
+            glint_fitted_free_system(&system);
         }
-        p.before = compute_placing_error(&a);
+        p.before = get_position_and_outline_error(&a);
         p.known = next != GLINT_W && p.zone.fill > SOLID;
         if (next != KEEP) {
             glint_piece_halve(&p, next, &stack[n + 1], &stack[n]);
@@ -411,11 +419,12 @@ static enum glint_status fit_all_patches(struct fitter *f, uint32_t mirrors)
     return status;
 }
 
-enum glint_status glint_skew_fit(const struct glint_visible *visible,
-                                 double max_deg,
-                                 const struct glint_tolerance *tolerance,
-                                 glint_fit_told_fn *told, void *ctx,
-                                 struct glint_fitted_ghost *out)
+enum glint_status glint_skew_fit_ghost(const struct glint_visible *visible,
+                                       double max_deg,
+                                       const struct glint_tolerance *tolerance,
+                                       glint_fit_progress_fn *progress,
+                                       void *ctx,
+                                       struct glint_fitted_ghost *out)
 {
     struct fitter *f = calloc(1, sizeof *f);
     enum glint_status status = GLINT_E_MEMORY;
@@ -427,12 +436,13 @@ enum glint_status glint_skew_fit(const struct glint_visible *visible,
     f->tolerance = tolerance;
     f->sine_hi = glint_sin_deg(max_deg);
     f->out = out;
-    f->told = told;
-    f->told_ctx = ctx;
+    f->progress = progress;
+    f->progress_ctx = ctx;
     f->buffers.scratch =
         malloc(GLINT_ZONE_SCRATCH * sizeof *f->buffers.scratch);
     if (f->buffers.scratch)
-        status = fit_all_patches(f, glint_skew_mirrors(visible->setup->lens));
+        status = fit_all_patches(
+            f, glint_skew_find_mirror_planes(visible->setup->lens));
     free(f->buffers.scratch);
     free(f);
     return status;

@@ -16,18 +16,20 @@
 #include "bake/fit/fit.h"
 
 /* Estimates the work of a bake, in zone fits, from the area of directions and
- * the number of surfaces: HEAD before the first ghost, TYPICAL per ghost.
- * Limit: ghosts whose light folds cost ten times as much as others. */
-void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
-                     double max_deg, double tolerance, double *head,
-                     double *typical);
+ * the number of surfaces. HEAD: work before the first ghost. TYPICAL: mean work
+ * per ghost. Limit: ghosts whose light folds cost ten times as much as
+ * others. */
+void glint_skew_estimate_work(const struct glint_prescription *lens,
+                              int n_ghosts, double max_deg, double tolerance,
+                              double *head, double *typical);
 
 /* Fits a ghost of a lens that is not round; arguments as in
  * glint_fit_ghost(). */
-enum glint_status glint_skew_fit(const struct glint_visible *visible,
-                                 double max_deg,
-                                 const struct glint_tolerance *tolerance,
-                                 glint_fit_told_fn *told, void *ctx,
-                                 struct glint_fitted_ghost *out);
+enum glint_status glint_skew_fit_ghost(const struct glint_visible *visible,
+                                       double max_deg,
+                                       const struct glint_tolerance *tolerance,
+                                       glint_fit_progress_fn *progress,
+                                       void *ctx,
+                                       struct glint_fitted_ghost *out);
 
 #endif

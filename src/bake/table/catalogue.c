@@ -223,7 +223,7 @@ static const struct glint_glass catalogue[] = {
 
 enum { N_GLASSES = sizeof catalogue / sizeof *catalogue };
 
-double glint_sellmeier(const double c[6], double wavelength_nm)
+double glint_sellmeier_index(const double c[6], double wavelength_nm)
 {
     const double um2 = 1e-6 * wavelength_nm * wavelength_nm;
     double square = 1.0;

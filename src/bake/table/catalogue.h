@@ -14,6 +14,6 @@
 
 /* Returns the index of refraction by Sellmeier's formula n^2 = 1 + sum B L^2 /
  * (L^2 - C), with L in micrometres. C = B1, B2, B3, C1, C2, C3. */
-double glint_sellmeier(const double c[6], double wavelength_nm);
+double glint_sellmeier_index(const double c[6], double wavelength_nm);
 
 #endif

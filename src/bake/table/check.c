@@ -10,17 +10,20 @@
 
 /* max relative error of a focal length that the table states */
 #define STATED_TOLERANCE 1e-3
-/* height at which neighbouring spheres are compared / smaller semi-diameter */
+/* height at which the gap between neighbouring spheres is checked / smaller
+ * semi-diameter of both */
 #define CLEAR_SHARE 0.9
-#define CONTACT_MM  1e-6 /* max overlap that rounding may cause, mm */
+#define CONTACT_MM  1e-6 /* max overlap that is attributed to rounding, mm */
 #define MIN_STOP_MM 1e-6
-/* max relative error of the stop radius that rounding may cause */
+/* max relative excess of the required stop radius that is attributed to
+ * rounding */
 #define STOP_SLACK 1e-9
 
-/* number of heights and of azimuths at which neighbouring elements are compared
- * if one of them is not a sphere */
+/* Numbers of heights and of azimuths at which the gap between neighbouring
+ * elements is checked if one of them is not a sphere. */
 enum { HEIGHTS = 12, TURNS = 8 };
-/* max sum of a surface's aspheric terms at its rim, in semi-diameters */
+/* max sag that the aspheric terms of a surface may add at its rim, in
+ * semi-diameters */
 #define MOST_TERMS 4.0
 /* max ratio of the focal lengths in x and y of an anamorphic lens */
 #define MOST_SQUEEZE 16.0
@@ -41,7 +44,7 @@ static double compute_element_sag_mm(const struct glint_prescription *lens,
     glint_form_init(&form, &lens->surface[k], 0);
     for (int i = 0; i < 3; i++)
         at[i] = form.turn[i][0] * x + form.turn[i][1] * y + form.shift[i];
-    return (glint_form_sag(&form, at[0], at[1], slope) - at[2]) /
+    return (glint_form_compute_sag(&form, at[0], at[1], slope) - at[2]) /
            form.turn[2][2];
 }
 
@@ -101,26 +104,26 @@ static bool check_surface_profile(const struct glint_surface *s,
     double terms = 0.0, most = 0.0;
 
     if (radius != 0.0 && (1.0 + a->conic) * semi * semi >= radius * radius)
-        return glint_text_fail(text, place,
-                               a->conic == 0.0
-                                   ? "semi-diameter %g must be less than the "
-                                     "radius %g"
-                                   : "semi-diameter %g must be less than %g, "
-                                     "where the conic ends",
-                               semi, radius / sqrt(1.0 + a->conic));
+        return glint_text_set_error(
+            text, place,
+            a->conic == 0.0 ? "semi-diameter %g must be less than the "
+                              "radius %g"
+                            : "semi-diameter %g must be less than %g, "
+                              "where the conic ends",
+            semi, radius / sqrt(1.0 + a->conic));
     if (a->across_mm != 0.0 && semi >= fabs(a->across_mm))
-        return glint_text_fail(text, place,
-                               "semi-diameter %g must be less than the "
-                               "radius %g across",
-                               semi, fabs(a->across_mm));
+        return glint_text_set_error(text, place,
+                                    "semi-diameter %g must be less than the "
+                                    "radius %g across",
+                                    semi, fabs(a->across_mm));
     for (int k = GLINT_SHAPE_TERMS - 1; k >= 0; k--) {
         terms = terms * semi * semi + a->term[k];
         most = fmax(most, fabs(terms));
     }
     terms *= semi * semi * semi * semi;
     return (fabs(terms) <= MOST_TERMS * semi && most < 1e30) ||
-           glint_text_fail(text, place,
-                           "the aspheric terms add %.4g mm at the rim", terms);
+           glint_text_set_error(
+               text, place, "the aspheric terms add %.4g mm at the rim", terms);
 }
 
 /* Checks that elements do not overlap. The distance between two spheres is
@@ -139,7 +142,7 @@ static bool check_element_gaps(const struct glint_prescription *lens,
         const double gap = compute_min_gap_mm(lens, e, &height);
 
         if (!(gap >= -CONTACT_MM))
-            return glint_text_fail(
+            return glint_text_set_error(
                 text, places->thickness[e],
                 "element overlaps the next one by %.4g mm at "
                 "%.4g mm from the axis",
@@ -148,56 +151,62 @@ static bool check_element_gaps(const struct glint_prescription *lens,
     if (get_element_gap_mm(lens, last) <=
         fmax(0.0, compute_element_sag_mm(lens, last,
                                          get_element_semi_mm(lens, last), 0)))
-        return glint_text_fail(text, places->thickness[last],
-                               "the sensor must lie behind the last element");
+        return glint_text_set_error(
+            text, places->thickness[last],
+            "the sensor must lie behind the last element");
     return true;
 }
 
-/* Checks that the computed value FOUND agrees with STATED, the table's value.
- * Passes if the table states none (PLACE has line 0). */
+/* Checks that the computed focal length FOUND agrees with STATED, the value in
+ * the table. Passes if the table states none (PLACE has line 0). NAME: name of
+ * the length in error texts. */
 static bool check_stated_focal_length(const struct glint_text *text,
                                       struct glint_text_place place,
                                       const char *name, double stated,
                                       double found)
 {
     return !place.line || fabs(found - stated) <= STATED_TOLERANCE * stated ||
-           glint_text_fail(text, place, "%s is %.6g mm, not the stated %.6g mm",
-                           name, found, stated);
+           glint_text_set_error(text, place,
+                                "%s is %.6g mm, not the stated %.6g mm", name,
+                                found, stated);
 }
 
-/* Checks focal lengths and stop. Comparisons are written so that NaN fails. */
+/* Checks focal lengths and stop. All comparisons are written so that NaN values
+ * fail. */
 static bool check_focus_and_stop(const struct glint_prescription *lens,
                                  const struct glint_text *text,
                                  const struct glint_places *places)
 {
-    const struct glint_text_place end = glint_text_end(text);
+    const struct glint_text_place end = glint_text_get_end_place(text);
     struct glint_optics optics;
 
     glint_optics_of(lens, &optics);
     if (!(fabs(optics.focal_mm) <= GLINT_MAX_FOCAL_MM))
-        return glint_text_fail(text, end, "the lens has no refractive power");
+        return glint_text_set_error(text, end,
+                                    "the lens has no refractive power");
     if (!(optics.focal_mm > 0.0 && optics.back_focal_mm > 0.0))
-        return glint_text_fail(text, end,
-                               "the lens has no focus behind it: focal length "
-                               "%.6g mm, back focal length %.6g mm",
-                               optics.focal_mm, optics.back_focal_mm);
+        return glint_text_set_error(
+            text, end,
+            "the lens has no focus behind it: focal length "
+            "%.6g mm, back focal length %.6g mm",
+            optics.focal_mm, optics.back_focal_mm);
     if (!(optics.squeeze <= MOST_SQUEEZE &&
           optics.squeeze * MOST_SQUEEZE >= 1.0))
-        return glint_text_fail(text, end,
-                               "focal lengths of %.6g mm in x and %.6g mm in y "
-                               "differ too much",
-                               optics.focal_mm / optics.squeeze,
-                               optics.focal_mm);
+        return glint_text_set_error(
+            text, end,
+            "focal lengths of %.6g mm in x and %.6g mm in y must have the same "
+            "sign and a ratio of at most 16",
+            optics.focal_mm / optics.squeeze, optics.focal_mm);
     if (!(optics.stop_radius_mm >= MIN_STOP_MM))
-        return glint_text_fail(
+        return glint_text_set_error(
             text, places->stop,
             "the stop lies in the focal plane of the surfaces before it");
     if (!(optics.stop_radius_mm <= lens->stop_semi_mm * (1.0 + STOP_SLACK)))
-        return glint_text_fail(text, places->f_number,
-                               "f/%g needs a stop of %.4g mm radius, but its "
-                               "semi-diameter is %.4g mm",
-                               lens->f_number, optics.stop_radius_mm,
-                               lens->stop_semi_mm);
+        return glint_text_set_error(
+            text, places->f_number,
+            "f/%g needs a stop of %.4g mm radius, but its "
+            "semi-diameter is %.4g mm",
+            lens->f_number, optics.stop_radius_mm, lens->stop_semi_mm);
     return check_stated_focal_length(text, places->focal, "focal-length",
                                      lens->check_focal_mm, optics.focal_mm) &&
            check_stated_focal_length(text, places->back_focal,
@@ -213,14 +222,15 @@ bool glint_prescription_check(const struct glint_prescription *lens,
         if (!check_surface_profile(&lens->surface[k], text, places->semi[k]))
             return false;
     if (lens->surface[lens->n_surfaces - 1].vd > 0.0)
-        return glint_text_fail(text, places->medium,
-                               "the last medium must be air");
+        return glint_text_set_error(text, places->medium,
+                                    "the last medium must be air");
     return check_element_gaps(lens, text, places) &&
            check_focus_and_stop(lens, text, places);
 }
 
-enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
-                                          struct glint_error *error)
+enum glint_status
+glint_prescription_check_gaps_and_stop(const struct glint_prescription *lens,
+                                       struct glint_error *error)
 {
     const int last = count_elements(lens) - 1;
     struct glint_optics optics;
@@ -244,11 +254,11 @@ enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
                           lens, last, get_element_semi_mm(lens, last), 0)) &&
         optics.stop_radius_mm <= lens->stop_semi_mm * (1.0 + STOP_SLACK))
         return GLINT_OK;
-    snprintf(
-        error->text, sizeof error->text,
-        "%s: no image, or f/%g needs a stop of %.4g mm radius and it opens "
-        "to %.4g mm",
-        lens->name, lens->f_number, optics.stop_radius_mm, lens->stop_semi_mm);
+    snprintf(error->text, sizeof error->text,
+             "%s: the lens forms no image, or f/%g needs a stop of %.4g mm "
+             "radius, but it opens to %.4g mm only",
+             lens->name, lens->f_number, optics.stop_radius_mm,
+             lens->stop_semi_mm);
     return GLINT_E_ARGUMENT;
 }
 

@@ -22,7 +22,7 @@
 #include "bake/table/elements.h"
 #include "bake/table/text.h"
 
-/* Max focal length, mm; a lens with a longer one has no power. */
+/* Max focal length, mm; a lens with a longer one counts as having no power. */
 #define GLINT_MAX_FOCAL_MM 1e6
 #define GLINT_MIN_F_NUMBER 0.5
 #define GLINT_MAX_F_NUMBER 1000.0

@@ -12,13 +12,14 @@ static const struct glint_text_range quarters_range = {"coating thickness",
 
 /* ------------------------------------------------------------------- names */
 
-/* Index of refraction of magnesium fluoride: 1.38; aluminium oxide, evaporated:
- * 1.63 to 1.69; zirconium oxide: 2.1. The single layer of 1.38 and the two
- * quarter waves are textbook designs. The three layers of a quarter, a half and
- * a quarter wave follow Cox, Hass and Thelen, Triple-layer antireflection
- * coatings on glass for the visible and near infrared, JOSA 52(9), 1962. The
- * four layers use two materials; a search chose their thicknesses for the
- * smallest reflectance from 420 to 680 nm on glasses of 1.52 to 1.7. */
+/* Antireflection coatings by name. Indices of refraction: magnesium fluoride
+ * 1.38; aluminium oxide, evaporated, 1.63 to 1.69; zirconium oxide 2.1. The
+ * single layer of 1.38 and the two quarter waves are textbook designs. The
+ * three layers of a quarter, a half and a quarter wave follow Cox, Hass and
+ * Thelen, Triple-layer antireflection coatings on glass for the visible and
+ * near infrared, JOSA 52(9), 1962. The four layers use two materials; a search
+ * chose their thicknesses for the smallest reflectance from 420 to 680 nm on
+ * glasses of 1.52 to 1.7. */
 static const struct {
     const char *name;
     struct glint_coating coating;
@@ -42,7 +43,7 @@ const char *glint_coating_named(int k, struct glint_coating *coating)
     return named[k].name;
 }
 
-void glint_coating_single(struct glint_coating *coating, double nm)
+void glint_coating_set_single_layer(struct glint_coating *coating, double nm)
 {
     *coating = (struct glint_coating){nm, 1, {{GLINT_MGF2_INDEX, 1}}};
 }
@@ -81,7 +82,7 @@ static bool read_number_word(const struct glint_text *text,
 {
     if (word.length < 0)
         word.length = 0;
-    return glint_text_value_of(text, &word, range, value);
+    return glint_text_parse_value(text, &word, range, value);
 }
 
 /* Reads the first word of a coating: "none", a name or a wavelength. TAKES
@@ -95,29 +96,30 @@ static bool read_coating_kind(const struct glint_text *text,
 
     memset(coating, 0, sizeof *coating);
     *takes = 0;
-    if (glint_word_is(word, "none"))
+    if (glint_word_equals(word, "none"))
         return true;
     *takes = 1;
     for (size_t k = 0; k < sizeof named / sizeof *named; k++)
-        if (glint_word_is(word, named[k].name)) {
+        if (glint_word_equals(word, named[k].name)) {
             *coating = named[k].coating;
             return true;
         }
     if (word->length > 0 && word->start[0] >= 'a' && word->start[0] <= 'z')
-        return glint_text_fail(
-            text, word->place,
-            "'%s' is not a coating; known are none, %s, %s, %s and wavelengths",
-            glint_word_quote(word, quote), named[0].name, named[1].name,
-            named[2].name);
+        return glint_text_set_error(text, word->place,
+                                    "'%s' is not a coating; expected none, %s, "
+                                    "%s, %s or a wavelength in nm",
+                                    glint_word_quote(word, quote),
+                                    named[0].name, named[1].name,
+                                    named[2].name);
     if (!read_number_word(text, *word, &nm_range, &nm))
         return false;
-    glint_coating_single(coating, nm);
+    glint_coating_set_single_layer(coating, nm);
     *takes = GLINT_MAX_FILMS;
     return true;
 }
 
-/* Reads word number AT after the first word of COATING: a wavelength after a
- * name, else INDEX[:QUARTERS] of a film. */
+/* Reads a word that follows the first word of COATING; AT: its number. It is
+ * the design wavelength after a name, else INDEX[:QUARTERS] of a film. */
 static bool read_coating_word(const struct glint_text *text,
                               struct glint_word word, bool is_named, int at,
                               struct glint_coating *coating)
@@ -151,7 +153,7 @@ static struct glint_word read_next_coating_word(struct word_source *word_source)
         return glint_text_next_word(word_source->text);
     word_source->rest = split_word_at_sign(&part, '/');
     if (part.length == 0 && word_source->rest.length)
-        part.length = -1; /* no text between two slashes */
+        part.length = -1; /* marks a missing value between two slashes */
     return part;
 }
 
@@ -175,8 +177,8 @@ static bool read_coating_words(struct word_source *word_source,
         return true;
     part = read_next_coating_word(word_source);
     return !part.length ||
-           glint_text_fail(word_source->text, part.place, "more than %d films",
-                           GLINT_MAX_FILMS);
+           glint_text_set_error(word_source->text, part.place,
+                                "more than %d films", GLINT_MAX_FILMS);
 }
 
 bool glint_coating_read(struct glint_text *text, struct glint_coating *coating)
@@ -196,12 +198,12 @@ static bool read_coating_from_word(struct glint_text *text,
     if (!read_coating_words(&word_source, coating))
         return false;
     if (word_source.rest.length < 0)
-        return glint_text_fail(text, word_source.rest.place,
-                               "a value is missing after the slash");
+        return glint_text_set_error(text, word_source.rest.place,
+                                    "a value is missing after the slash");
     return !word_source.rest.length ||
-           glint_text_fail(text, word_source.rest.place,
-                           "'%s' is one value too many for the coating",
-                           glint_word_quote(&word_source.rest, quote));
+           glint_text_set_error(text, word_source.rest.place,
+                                "'%s' is one value too many for the coating",
+                                glint_word_quote(&word_source.rest, quote));
 }
 
 bool glint_coatings_read(struct glint_text *text,
@@ -213,8 +215,8 @@ bool glint_coatings_read(struct glint_text *text,
     *n = 0;
     do {
         if (*n == GLINT_MAX_COATINGS)
-            return glint_text_fail(text, word.place, "more than %d coatings",
-                                   GLINT_MAX_COATINGS);
+            return glint_text_set_error(
+                text, word.place, "more than %d coatings", GLINT_MAX_COATINGS);
         if (!read_coating_from_word(text, word, &coatings[*n]))
             return false;
         ++*n;
@@ -248,7 +250,7 @@ glint_coatings_parse(struct glint_coating coatings[GLINT_MAX_COATINGS], int *n,
         const char *cause = strstr(found.text, ": ");
 
         snprintf(error->text, sizeof error->text, "%.150s",
-                 cause ? cause + 2 : "there is no coating");
+                 cause ? cause + 2 : "the text of the coating is empty");
         return GLINT_E_ARGUMENT;
     }
     memcpy(coatings, read, (size_t)n_read * sizeof *coatings);
@@ -265,7 +267,7 @@ int glint_coatings_mixed(struct glint_coating coatings[GLINT_MAX_COATINGS])
     enum { N = sizeof nm / sizeof *nm };
 
     for (int i = 0; i < N; i++)
-        glint_coating_single(&coatings[i], nm[i]);
+        glint_coating_set_single_layer(&coatings[i], nm[i]);
     return N;
 }
 

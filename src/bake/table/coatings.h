@@ -12,7 +12,7 @@
 
 /* Sets COATING to a single layer of magnesium fluoride, a quarter wave at
  * NM. */
-void glint_coating_single(struct glint_coating *coating, double nm);
+void glint_coating_set_single_layer(struct glint_coating *coating, double nm);
 
 /* Reads one coating from the rest of the line: "none", NAME [NM] or NM
  * [INDEX[:QUARTERS]]... Leaves words after it unread. On errors, sets the error

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-uint32_t glint_draft_put(struct glint_draft *d, const void *data, size_t bytes)
+uint32_t glint_draft_append(struct glint_draft *d, const void *data,
+                            size_t bytes)
 {
     const size_t padded = (bytes + 3) / 4 * 4, where = d->bytes;
 
@@ -30,16 +31,16 @@ uint32_t glint_draft_put(struct glint_draft *d, const void *data, size_t bytes)
     return (uint32_t)where;
 }
 
-void glint_draft_amend(struct glint_draft *d, uint32_t where, const void *data,
-                       size_t bytes)
+void glint_draft_overwrite(struct glint_draft *d, uint32_t where,
+                           const void *data, size_t bytes)
 {
     if (!d->out_of_memory)
         memcpy(d->data + where, data, bytes);
 }
 
-void glint_draft_begin(void *header, const struct glint_blob_kind *kind,
-                       uint32_t variant, uint64_t key, const char *name,
-                       const char *instead)
+void glint_draft_begin_header(void *header, const struct glint_blob_kind *kind,
+                              uint32_t variant, uint64_t key, const char *name,
+                              const char *instead)
 {
     struct glint_blob_header *h = header;
     size_t n = 0;
@@ -58,11 +59,11 @@ void glint_draft_begin(void *header, const struct glint_blob_kind *kind,
         memcpy(h->name, instead, strlen(instead) + 1);
 }
 
-bool glint_draft_finish(struct glint_draft *d, const void *header,
-                        size_t header_bytes, bool good, unsigned char **data,
-                        size_t *bytes)
+bool glint_draft_finish_file(struct glint_draft *d, const void *header,
+                             size_t header_bytes, bool good,
+                             unsigned char **data, size_t *bytes)
 {
-    glint_draft_amend(d, 0, header, header_bytes);
+    glint_draft_overwrite(d, 0, header, header_bytes);
     if (!good || d->out_of_memory) {
         free(d->data);
         return false;

@@ -21,25 +21,25 @@ struct glint_draft {
 
 /* Appends BYTES from DATA, or zeros if DATA is NULL, padded to a multiple of 4
  * bytes. Returns their offset in the file. */
-uint32_t glint_draft_put(struct glint_draft *draft, const void *data,
-                         size_t bytes);
+uint32_t glint_draft_append(struct glint_draft *draft, const void *data,
+                            size_t bytes);
 
 /* Overwrites BYTES at offset WHERE of the file. */
-void glint_draft_amend(struct glint_draft *draft, uint32_t where,
-                       const void *data, size_t bytes);
+void glint_draft_overwrite(struct glint_draft *draft, uint32_t where,
+                           const void *data, size_t bytes);
 
-/* Sets the members with which every file header begins, except size and
- * checksum. The name is made of the first 63 characters of NAME, or if there
- * are none, of INSTEAD, that are a-z, A-Z, 0-9, '-' or '_'. */
-void glint_draft_begin(void *header, const struct glint_blob_kind *kind,
-                       uint32_t variant, uint64_t key, const char *name,
-                       const char *instead);
+/* Sets the members with which the header of every baked file begins, except
+ * size and checksum. The file's name is made of the characters a-z, A-Z, 0-9,
+ * '-' and '_' of NAME, at most 63; if it has none, of those of INSTEAD. */
+void glint_draft_begin_header(void *header, const struct glint_blob_kind *kind,
+                              uint32_t variant, uint64_t key, const char *name,
+                              const char *instead);
 
 /* Writes HEADER to the beginning of the file, sets its size and checksum, and
  * moves the file to *DATA[*BYTES]. Frees DRAFT and returns false if GOOD is
  * false or if there was no memory. */
-bool glint_draft_finish(struct glint_draft *draft, const void *header,
-                        size_t header_bytes, bool good, unsigned char **data,
-                        size_t *bytes);
+bool glint_draft_finish_file(struct glint_draft *draft, const void *header,
+                             size_t header_bytes, bool good,
+                             unsigned char **data, size_t *bytes);
 
 #endif

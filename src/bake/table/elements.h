@@ -58,7 +58,8 @@ get_element_curvature(const struct glint_prescription *lens, int e)
 }
 
 /* Returns a pointer to the gap behind element E, mm. */
-static inline double *glint_gap_of(struct glint_prescription *lens, int e)
+static inline double *glint_gap_get_pointer(struct glint_prescription *lens,
+                                            int e)
 {
     const int k = get_element_surface(lens, e);
 
@@ -67,11 +68,13 @@ static inline double *glint_gap_of(struct glint_prescription *lens, int e)
 
 /* Returns the distance of the paraxial image behind the last surface, mm, for a
  * point on the axis OBJECT_MM in front of the lens. */
-double glint_image_mm(const struct glint_prescription *lens, double object_mm);
+double glint_image_compute_distance_mm(const struct glint_prescription *lens,
+                                       double object_mm);
 
 /* Checks that elements do not overlap and that the stop is large enough for the
  * f-number. Returns GLINT_E_ARGUMENT if not; ERROR names the element. */
-enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
-                                          struct glint_error *error);
+enum glint_status
+glint_prescription_check_gaps_and_stop(const struct glint_prescription *lens,
+                                       struct glint_error *error);
 
 #endif

@@ -23,19 +23,20 @@ struct search {
     double object_mm, defocus_mm;
 };
 
-/* Moves the focusing group, or the whole lens, by D mm towards the light. */
+/* Moves the focusing group, or the whole lens if there is none, by D mm towards
+ * the light. */
 static void move_focusing_group(struct glint_prescription *lens, double d)
 {
     const int n = lens->n_focus, last = count_elements(lens) - 1;
     const int first = get_surface_element(lens, lens->focus_first);
 
     if (!n) {
-        *glint_gap_of(lens, last) += d;
+        *glint_gap_get_pointer(lens, last) += d;
         return;
     }
     if (first > 0)
-        *glint_gap_of(lens, first - 1) -= d;
-    *glint_gap_of(lens, first + n - 1) += d;
+        *glint_gap_get_pointer(lens, first - 1) -= d;
+    *glint_gap_get_pointer(lens, first + n - 1) += d;
 }
 
 /* Returns the distance of the image behind the sensor, mm, after moving the
@@ -47,12 +48,13 @@ static double compute_defocus(const struct search *s, double d)
     struct glint_optics optics;
 
     move_focusing_group(&lens, d);
-    if (glint_prescription_fits(&lens, &error) != GLINT_OK)
+    if (glint_prescription_check_gaps_and_stop(&lens, &error) != GLINT_OK)
         return (double)NAN;
     glint_optics_of(&lens, &optics);
     if (!(s->object_mm > optics.length_mm))
         return (double)NAN;
-    return glint_image_mm(&lens, s->object_mm - optics.length_mm) +
+    return glint_image_compute_distance_mm(&lens,
+                                           s->object_mm - optics.length_mm) +
            s->defocus_mm - get_element_gap_mm(&lens, count_elements(&lens) - 1);
 }
 

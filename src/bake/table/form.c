@@ -6,14 +6,15 @@
 
 #include "engine/setup/degrees.h"
 
-/* Height in semi-diameters up to which a profile follows the table. */
+/* Height, in semi-diameters, up to which a profile follows the table; it is
+ * continued smoothly beyond. */
 #define GLASS_ENDS 1.1
-/* Beyond the squared height end2 the curvature fades to 0 over this fraction of
- * end2. */
+/* Beyond the squared height end2, the end of the table's profile, the curvature
+ * decreases to 0 over this fraction of end2. */
 #define FADES 0.25
 
-/* Factor on the squares of sampled slopes, as slopes between samples may be
- * larger. */
+/* Factor on the max squared slope of the samples, because slopes between
+ * samples may be larger. */
 #define STEEPER 1.1
 
 enum { MOST_STEPS = 80, MOST_HALVINGS = 60, SLOPES = 64 };
@@ -85,8 +86,8 @@ static double evaluate_continued_profile(const struct glint_form *f, double h2,
            beyond * (f->end_at[1] + 0.5 * f->end_at[2] * beyond / fade);
 }
 
-double glint_form_sag(const struct glint_form *f, double x, double y,
-                      double slope[2])
+double glint_form_compute_sag(const struct glint_form *f, double x, double y,
+                              double slope[2])
 {
     const double along = f->bend == GLINT_BEND_X ? x : y;
     const double aside = f->bend == GLINT_BEND_X ? y : x;
@@ -99,7 +100,8 @@ double glint_form_sag(const struct glint_form *f, double x, double y,
         slope[1] = 2.0 * y * by_h2;
         return q;
     }
-    /* solves (R - z)^2 + aside^2 = (R - q)^2 without dividing by 1 / R */
+    /* toric: solves (R - z)^2 + aside^2 = (R - q)^2 for z without dividing by 1
+     * / R */
     q = evaluate_continued_profile(f, along * along, &by_h2);
     free = 1.0 - f->across * q;
     root = free * free - f->across * f->across * aside * aside;
@@ -118,15 +120,15 @@ struct line {
     const double *at, *direction;
 };
 
-/* Returns z - sag of the point at parameter T of the ray. RATE receives its
- * derivative by T. */
+/* Returns the height z - sag above the form of the point at parameter T of the
+ * ray. RATE receives its derivative by T. */
 static double compute_height_above_form(const struct glint_form *f,
                                         const struct line *line, double t,
                                         double *rate, double slope[2])
 {
     const double *const d = line->direction;
-    const double sag = glint_form_sag(f, line->at[0] + t * d[0],
-                                      line->at[1] + t * d[1], slope);
+    const double sag = glint_form_compute_sag(f, line->at[0] + t * d[0],
+                                              line->at[1] + t * d[1], slope);
 
     *rate = d[2] - slope[0] * d[0] - slope[1] * d[1];
     return t * d[2] - sag;
@@ -189,9 +191,9 @@ static double refine_ray_intersection(const struct glint_form *f,
     return t;
 }
 
-bool glint_form_meet(const struct glint_form *f, double at[3],
-                     const double direction[3], double normal[3],
-                     double *cosine)
+bool glint_form_intersect_ray(const struct glint_form *f, double at[3],
+                              const double direction[3], double normal[3],
+                              double *cosine)
 {
     const struct line line = {at, direction};
     double bracket[2], slope[2] = {0, 0}, rate, t, size;
@@ -217,8 +219,8 @@ bool glint_form_meet(const struct glint_form *f, double at[3],
 
 /* ------------------------------------------------------------------- frame */
 
-void glint_form_enter(const struct glint_form *f, double at[3],
-                      double direction[3])
+void glint_form_enter_frame(const struct glint_form *f, double at[3],
+                            double direction[3])
 {
     double p[3], d[3], t;
 
@@ -235,8 +237,8 @@ void glint_form_enter(const struct glint_form *f, double at[3],
     }
 }
 
-void glint_form_leave(const struct glint_form *f, double at[3],
-                      double direction[3])
+void glint_form_leave_frame(const struct glint_form *f, double at[3],
+                            double direction[3])
 {
     double p[3] = {0, 0, 0}, d[3] = {0, 0, 0};
 
@@ -251,15 +253,15 @@ void glint_form_leave(const struct glint_form *f, double at[3],
     }
 }
 
-/* Returns the squared height beyond which the profile no longer follows the
- * table. */
+/* Returns the squared height up to which the profile follows the table. */
 static double compute_profile_end(const struct glint_form *f)
 {
     const double c = f->curvature, a = (1.0 + f->conic) * c * c;
     const double semi2 = f->semi_mm * f->semi_mm;
     const double end2 = GLASS_ENDS * GLASS_ENDS * semi2;
 
-    /* a conic is vertical at its equator, so the profile must end before */
+    /* a conic has infinite slope at its equator, so the profile must end
+     * before */
     return a * end2 < 0.5 * (1.0 + a * semi2) ? end2 : 0.5 * (1.0 / a + semi2);
 }
 
@@ -293,7 +295,7 @@ static void set_light_to_form_transform(struct glint_form *f,
     f->shift[2] += s->pivot_mm;
 }
 
-/* Sets the members that glint_beam_meet_form() needs: level, along, round,
+/* Sets the members that glint_beam_move_to_form() needs: level, along, round,
  * n_terms and steepest2. */
 static void set_beam_members(struct glint_form *f, const struct glint_shape *s)
 {
@@ -343,7 +345,7 @@ bool glint_surface_point(const struct glint_surface *s, double phi_deg,
     glint_form_init(&form, s, phi_deg);
     at[0] = x;
     at[1] = y;
-    at[2] = glint_form_sag(&form, x, y, slope);
-    glint_form_leave(&form, at, direction);
+    at[2] = glint_form_compute_sag(&form, x, y, slope);
+    glint_form_leave_frame(&form, at, direction);
     return isfinite(at[2]);
 }

@@ -27,25 +27,25 @@ void glint_form_init(struct glint_form *form, const struct glint_surface *s,
 
 /* Returns the sag at (X, Y) in the form's own frame, mm; NAN where the form is
  * undefined. SLOPE receives its derivatives by x and y. */
-double glint_form_sag(const struct glint_form *form, double x, double y,
-                      double slope[2]);
+double glint_form_compute_sag(const struct glint_form *form, double x, double y,
+                              double slope[2]);
 
 /* Transforms the ray at AT along DIRECTION from the light's frame to the
  * form's own frame, and moves AT to the form's vertex plane. */
-void glint_form_enter(const struct glint_form *form, double at[3],
-                      double direction[3]);
+void glint_form_enter_frame(const struct glint_form *form, double at[3],
+                            double direction[3]);
 
 /* Transforms the ray at AT along DIRECTION back to the light's frame. */
-void glint_form_leave(const struct glint_form *form, double at[3],
-                      double direction[3]);
+void glint_form_leave_frame(const struct glint_form *form, double at[3],
+                            double direction[3]);
 
 /* Moves AT along the unit vector DIRECTION to the form. Both are in the form's
  * own frame, AT in its vertex plane. NORMAL receives the unit normal, with
  * positive z, and COSINE the cosine between NORMAL and DIRECTION, with the sign
  * of DIRECTION's z. Returns false if the ray misses the form; NORMAL and COSINE
  * may then be those on the axis. */
-bool glint_form_meet(const struct glint_form *form, double at[3],
-                     const double direction[3], double normal[3],
-                     double *cosine);
+bool glint_form_intersect_ray(const struct glint_form *form, double at[3],
+                              const double direction[3], double normal[3],
+                              double *cosine);
 
 #endif

@@ -55,7 +55,8 @@ static void trace_paraxial_ray(struct paraxial_ray *ray,
     }
 }
 
-double glint_image_mm(const struct glint_prescription *lens, double object_mm)
+double glint_image_compute_distance_mm(const struct glint_prescription *lens,
+                                       double object_mm)
 {
     struct paraxial_ray ray = {object_mm, 1.0};
 
@@ -65,10 +66,11 @@ double glint_image_mm(const struct glint_prescription *lens, double object_mm)
     return -ray.y_mm / ray.nu;
 }
 
-/* Returns the distance from the axis, mm, at which light through the centre of
- * the entrance pupil hits the sensor, divided by the tangent of its angle. */
-static double compute_sensor_scale(const struct glint_prescription *lens,
-                                   const struct glint_optics *optics)
+/* Returns the focal length that maps angles to the sensor, mm: distance from
+ * the axis at which light through the centre of the entrance pupil hits the
+ * sensor, divided by the tangent of the light's angle. */
+static double compute_chief_ray_scale(const struct glint_prescription *lens,
+                                      const struct glint_optics *optics)
 {
     struct paraxial_ray chief = {-optics->entrance_z_mm, 1.0};
 
@@ -101,12 +103,14 @@ void glint_optics_of(const struct glint_prescription *lens,
     optics->stop_radius_mm = optics->entrance_radius_mm * to_stop.y_mm;
     if (optics->stop_radius_mm < 0.0)
         optics->stop_radius_mm = -optics->stop_radius_mm;
-    /* A ray of height h and slope u crosses the axis at -h / u, and the stop at
-     * height h to_stop.y + u slanted.y, which is 0 for the chief ray. */
+    /* A ray of height h and slope u crosses the axis at -h / u. It reaches the
+     * stop at the height h to_stop.y + u slanted.y, which is 0 for the chief
+     * ray. */
     optics->entrance_z_mm = slanted.y_mm / to_stop.y_mm;
     optics->length_mm = 0.0;
     for (int e = lens->stop_after == 0; e < count_elements(lens); e++)
         optics->length_mm += get_element_gap_mm(lens, e);
-    optics->scale_mm = lens->focus_m > 0.0 ? compute_sensor_scale(lens, optics)
-                                           : optics->focal_mm;
+    optics->scale_mm = lens->focus_m > 0.0
+                           ? compute_chief_ray_scale(lens, optics)
+                           : optics->focal_mm;
 }

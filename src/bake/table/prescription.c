@@ -31,16 +31,16 @@ static bool read_surface_radius(struct glint_text *text, double *radius_mm)
     const struct glint_word word = glint_text_next_word(text);
 
     *radius_mm = 0.0;
-    if (glint_word_is(&word, "flat"))
+    if (glint_word_equals(&word, "flat"))
         return true;
-    if (!glint_text_number_of(text, &word, radius_range.name, radius_mm))
+    if (!glint_text_parse_number(text, &word, radius_range.name, radius_mm))
         return false;
     if (*radius_mm == 0.0)
-        return glint_text_fail(
+        return glint_text_set_error(
             text, word.place,
             "radius must not be 0; a plane has the radius 'flat'");
-    return glint_text_in_range(text, word.place, &radius_range,
-                               fabs(*radius_mm));
+    return glint_text_check_range(text, word.place, &radius_range,
+                                  fabs(*radius_mm));
 }
 
 /* Returns the index of the aspheric term WORD ("A4" .. "A20"), 0 for A4; -1 if
@@ -51,7 +51,7 @@ static int find_aspheric_term(const struct glint_word *word)
 
     for (int k = 0; k < GLINT_SHAPE_TERMS; k++) {
         snprintf(name, sizeof name, "A%d", 4 + 2 * k);
-        if (glint_word_is(word, name))
+        if (glint_word_equals(word, name))
             return k;
     }
     return -1;
@@ -62,9 +62,9 @@ static bool reject_repeated_item(struct glint_text *text,
 {
     char quote[GLINT_QUOTE_BYTES];
 
-    return glint_text_fail(text, word->place,
-                           "'%s' occurs twice for this surface",
-                           glint_word_quote(word, quote));
+    return glint_text_set_error(text, word->place,
+                                "'%s' occurs twice for this surface",
+                                glint_word_quote(word, quote));
 }
 
 /* Reads the axis of a cylinder or toric, x or y, and, unless CYLINDER, the
@@ -74,10 +74,10 @@ static bool read_bend_axis(struct glint_text *text, struct glint_shape *shape,
 {
     const struct glint_word word = glint_text_next_word(text);
 
-    if (!glint_word_is(&word, "x") && !glint_word_is(&word, "y"))
-        return glint_text_fail(text, word.place,
-                               "the plane of the profile must be x or y");
-    shape->bend = glint_word_is(&word, "x") ? GLINT_BEND_X : GLINT_BEND_Y;
+    if (!glint_word_equals(&word, "x") && !glint_word_equals(&word, "y"))
+        return glint_text_set_error(
+            text, word.place, "the axis of a cylinder or toric must be x or y");
+    shape->bend = glint_word_equals(&word, "x") ? GLINT_BEND_X : GLINT_BEND_Y;
     return cylinder || read_surface_radius(text, &shape->across_mm);
 }
 
@@ -85,24 +85,24 @@ static bool read_bend_axis(struct glint_text *text, struct glint_shape *shape,
 static bool read_shape_item(struct glint_text *text, struct glint_shape *shape,
                             const struct glint_word *word)
 {
-    const bool cylinder = glint_word_is(word, "cylinder");
+    const bool cylinder = glint_word_equals(word, "cylinder");
     const int term = find_aspheric_term(word);
     char quote[GLINT_QUOTE_BYTES];
 
-    if (cylinder || glint_word_is(word, "toric"))
+    if (cylinder || glint_word_equals(word, "toric"))
         return shape->bend != GLINT_BEND_ROUND
                    ? reject_repeated_item(text, word)
                    : read_bend_axis(text, shape, cylinder);
-    if (glint_word_is(word, "conic"))
-        return shape->conic != 0.0
-                   ? reject_repeated_item(text, word)
-                   : glint_text_value(text, &conic_range, &shape->conic, NULL);
+    if (glint_word_equals(word, "conic"))
+        return shape->conic != 0.0 ? reject_repeated_item(text, word)
+                                   : glint_text_read_value(text, &conic_range,
+                                                           &shape->conic, NULL);
     if (term >= 0)
         return shape->term[term] != 0.0
                    ? reject_repeated_item(text, word)
-                   : glint_text_value(text, &term_range, &shape->term[term],
-                                      NULL);
-    return glint_text_fail(
+                   : glint_text_read_value(text, &term_range,
+                                           &shape->term[term], NULL);
+    return glint_text_set_error(
         text, word->place,
         "'%s' is unknown; expected conic, A4, A6 .. A20, cylinder or toric",
         glint_word_quote(word, quote));
@@ -116,7 +116,7 @@ static bool read_shape_words(struct glint_text *text, struct glint_shape *shape)
     struct glint_word word = glint_text_next_word(text);
 
     if (!word.length)
-        return glint_text_fail(text, word.place, "shape is missing");
+        return glint_text_set_error(text, word.place, "shape is missing");
     for (; word.length; word = glint_text_next_word(text))
         if (!read_shape_item(text, shape, &word))
             return false;
@@ -130,28 +130,29 @@ static bool read_group_words(struct glint_text *text, struct glint_shape *shape)
     char quote[GLINT_QUOTE_BYTES];
 
     if (!word.length)
-        return glint_text_fail(text, word.place, "decentre or tilt is missing");
+        return glint_text_set_error(text, word.place,
+                                    "decentre or tilt is missing");
     for (; word.length; word = glint_text_next_word(text)) {
-        const bool tilt = glint_word_is(&word, "tilt");
+        const bool tilt = glint_word_equals(&word, "tilt");
         const struct glint_text_range *const range =
             tilt ? &tilt_range : &shift_range;
         double *const to = tilt ? shape->tilt_deg : shape->decentre_mm;
 
-        if (!tilt && !glint_word_is(&word, "decentre"))
-            return glint_text_fail(text, word.place,
-                                   "'%s' is neither decentre nor tilt",
-                                   glint_word_quote(&word, quote));
+        if (!tilt && !glint_word_equals(&word, "decentre"))
+            return glint_text_set_error(
+                text, word.place, "expected 'decentre' or 'tilt', not '%s'",
+                glint_word_quote(&word, quote));
         if (to[0] != 0.0 || to[1] != 0.0)
             return reject_repeated_item(text, &word);
-        if (!glint_text_value(text, range, &to[0], NULL) ||
-            !glint_text_value(text, range, &to[1], NULL))
+        if (!glint_text_read_value(text, range, &to[0], NULL) ||
+            !glint_text_read_value(text, range, &to[1], NULL))
             return false;
     }
     return true;
 }
 
-/* Min relative change of a zoom lens's focal length from position to
- * position. */
+/* Min relative change of the focal length between two positions of a zoom
+ * lens. */
 #define LEAST_ZOOM 1e-3
 
 /* Cuts REST after its first slash. Returns the text before that slash, or all
@@ -177,7 +178,8 @@ static int count_slashes(const struct glint_word *word)
     return n;
 }
 
-/* Reads columns as read_zoom_columns() does. Sets N to the count of numbers. */
+/* Reads a column as read_zoom_columns() does and sets N to the count of its
+ * numbers. */
 static bool read_and_count_columns(struct glint_text *text,
                                    const struct glint_text_range *range,
                                    struct glint_zoom *zoom,
@@ -190,17 +192,17 @@ static bool read_and_count_columns(struct glint_text *text,
     if (place)
         *place = word.place;
     if (*n > GLINT_MAX_POSITIONS)
-        return glint_text_fail(text, word.place, "more than %d positions",
-                               GLINT_MAX_POSITIONS);
+        return glint_text_set_error(text, word.place, "more than %d positions",
+                                    GLINT_MAX_POSITIONS);
     if (*n > 1 && zoom->n_positions && *n != zoom->n_positions)
-        return glint_text_fail(
+        return glint_text_set_error(
             text, word.place,
             "%s has %d positions, but the lines above have %d", range->name, *n,
             zoom->n_positions);
     for (int k = 0; k < *n; k++) {
         const struct glint_word one = cut_word_at_slash(&word);
 
-        if (!glint_text_value_of(text, &one, range, &column[k]))
+        if (!glint_text_parse_value(text, &one, range, &column[k]))
             return false;
     }
     if (*n > 1)
@@ -242,7 +244,7 @@ static bool read_gap_columns(struct glint_text *text,
     if (n == 1)
         return true;
     if (k == GLINT_MAX_MOVES)
-        return glint_text_fail(
+        return glint_text_set_error(
             text, *place, "more than %d thicknesses that change with the zoom",
             GLINT_MAX_MOVES);
     zoom->move[k] = element;
@@ -260,7 +262,7 @@ static void set_zoom_position(struct glint_prescription *lens, int k)
     const struct glint_zoom *const z = &lens->zoom;
 
     for (int m = 0; m < z->n_moves; m++)
-        *glint_gap_of(lens, z->move[m]) = z->gap_mm[m][k];
+        *glint_gap_get_pointer(lens, z->move[m]) = z->gap_mm[m][k];
     lens->f_number = z->f_number[k];
     lens->check_focal_mm = z->check_focal_mm[k];
     lens->check_back_mm = z->check_back_mm[k];
@@ -279,8 +281,10 @@ static bool set_zoom_parameters(struct glint_zoom *z,
         const double step = log(z->focal_mm[k] / z->focal_mm[k - 1]);
 
         if (!(step * (whole < 0 ? -1 : 1) > LEAST_ZOOM))
-            return glint_text_fail(
-                text, places->focal.line ? places->focal : glint_text_end(text),
+            return glint_text_set_error(
+                text,
+                places->focal.line ? places->focal
+                                   : glint_text_get_end_place(text),
                 "focal lengths must only rise or only fall from position to "
                 "position, not %.6g mm, %.6g mm",
                 z->focal_mm[k - 1], z->focal_mm[k]);
@@ -299,10 +303,10 @@ static bool check_all_zoom_positions(struct glint_prescription *lens,
     struct glint_zoom *const z = &lens->zoom;
 
     if (z->n_positions && !z->n_moves)
-        return glint_text_fail(text, glint_text_end(text),
-                               "there are %d positions, but no thickness "
-                               "changes",
-                               z->n_positions);
+        return glint_text_set_error(text, glint_text_get_end_place(text),
+                                    "the table has %d zoom positions, but no "
+                                    "thickness differs between them",
+                                    z->n_positions);
     for (int k = 0; k < (z->n_positions ? z->n_positions : 1); k++) {
         struct glint_optics optics;
 
@@ -326,7 +330,8 @@ STATIC_ASSERT(sizeof(((struct glint_prescription *)0)->source) >
 
 struct medium {
     double nd, vd;
-    double sellmeier[6]; /* all 0 unless the glass is in the catalogue */
+    /* Sellmeier coefficients; all 0 unless the glass is in the catalogue */
+    double sellmeier[6];
 };
 
 static const struct glint_text_range f_number_range = {
@@ -370,7 +375,7 @@ struct parser {
     /* position of the last line of each type; line 0: no such line */
     struct glint_text_place word[N_FIELDS];
     struct glint_places places;
-    /* coating of surfaces whose line states none */
+    /* coating of surfaces whose line in the table states none */
     struct glint_coating coating;
     bool has_coating[GLINT_MAX_SURFACES];
     int n_elements;
@@ -409,18 +414,18 @@ static bool read_lens_name(struct parser *p)
     const struct glint_word word = glint_text_next_word(&p->text);
 
     if (!word.length)
-        return glint_text_fail(&p->text, word.place, "name is missing");
+        return glint_text_set_error(&p->text, word.place, "name is missing");
     if (word.length >= GLINT_NAME_BYTES)
-        return glint_text_fail(&p->text, word.place,
-                               "name is longer than %d bytes",
-                               GLINT_NAME_BYTES - 1);
+        return glint_text_set_error(&p->text, word.place,
+                                    "name is longer than %d bytes",
+                                    GLINT_NAME_BYTES - 1);
     for (int i = 0; i < word.length; i++) {
         const char c = word.start[i];
 
         if (!is_lower_case_letter(c) && !is_digit(c) && (c != '-' || i == 0))
-            return glint_text_fail(
-                &p->text, word.place,
-                "a name must be a-z, 0-9 and -, and must not begin with -");
+            return glint_text_set_error(&p->text, word.place,
+                                        "a name may only contain a-z, 0-9 and "
+                                        "-, and must not begin with -");
     }
     memcpy(p->lens.name, word.start, (size_t)word.length);
     return true;
@@ -428,22 +433,22 @@ static bool read_lens_name(struct parser *p)
 
 static bool read_source_line(struct parser *p)
 {
-    const struct glint_word rest = glint_text_rest(&p->text);
+    const struct glint_word rest = glint_text_get_rest(&p->text);
 
     if (!rest.length)
-        return glint_text_fail(&p->text, rest.place,
-                               "the text of 'source' is missing");
+        return glint_text_set_error(&p->text, rest.place,
+                                    "the text of 'source' is missing");
     memcpy(p->lens.source, rest.start, (size_t)rest.length);
     return true;
 }
 
 static bool read_character_line(struct parser *p)
 {
-    const struct glint_word rest = glint_text_rest(&p->text);
+    const struct glint_word rest = glint_text_get_rest(&p->text);
 
     if (!rest.length)
-        return glint_text_fail(&p->text, rest.place,
-                               "the text of 'character' is missing");
+        return glint_text_set_error(&p->text, rest.place,
+                                    "the text of 'character' is missing");
     memcpy(p->lens.character, rest.start, (size_t)rest.length);
     return true;
 }
@@ -456,10 +461,10 @@ static bool read_f_number_line(struct parser *p)
 
 static bool read_film_size(struct parser *p)
 {
-    return glint_text_value(&p->text, &film_width_range, &p->lens.film_width_mm,
-                            NULL) &&
-           glint_text_value(&p->text, &film_height_range,
-                            &p->lens.film_height_mm, NULL);
+    return glint_text_read_value(&p->text, &film_width_range,
+                                 &p->lens.film_width_mm, NULL) &&
+           glint_text_read_value(&p->text, &film_height_range,
+                                 &p->lens.film_height_mm, NULL);
 }
 
 static bool read_stated_focal_length(struct parser *p)
@@ -493,7 +498,7 @@ static int find_table_glass(const struct parser *p,
 {
     int i = p->n_glasses - 1;
 
-    while (i >= 0 && !glint_word_is(word, p->glass[i].name))
+    while (i >= 0 && !glint_word_equals(word, p->glass[i].name))
         i--;
     return i;
 }
@@ -503,18 +508,20 @@ static bool check_glass_name(struct parser *p, const struct glint_word *word)
     bool good = word->length > 0 && is_letter(word->start[0]);
 
     if (!word->length)
-        return glint_text_fail(&p->text, word->place, "glass name is missing");
+        return glint_text_set_error(&p->text, word->place,
+                                    "glass name is missing");
     for (int i = 0; i < word->length; i++)
         good = good && (is_letter(word->start[i]) || is_digit(word->start[i]) ||
                         word->start[i] == '-');
     if (!good || word->length >= GLASS_NAME_BYTES)
-        return glint_text_fail(&p->text, word->place,
-                               "glass name must be a letter and at most %d "
-                               "letters, digits and -",
-                               GLASS_NAME_BYTES - 2);
-    if (glint_word_is(word, "air") || find_table_glass(p, word) >= 0)
-        return glint_text_fail(&p->text, word->place,
-                               "glass of this name is already defined");
+        return glint_text_set_error(
+            &p->text, word->place,
+            "glass name must be a letter and at most %d "
+            "letters, digits and -",
+            GLASS_NAME_BYTES - 2);
+    if (glint_word_equals(word, "air") || find_table_glass(p, word) >= 0)
+        return glint_text_set_error(&p->text, word->place,
+                                    "glass of this name is already defined");
     return true;
 }
 
@@ -526,13 +533,14 @@ static bool read_glass_definition(struct parser *p)
     if (!check_glass_name(p, &word))
         return false;
     if (n == MAX_GLASSES)
-        return glint_text_fail(&p->text, word.place, "more than %d glasses",
-                               MAX_GLASSES);
+        return glint_text_set_error(&p->text, word.place,
+                                    "more than %d glasses", MAX_GLASSES);
     memcpy(p->glass[n].name, word.start, (size_t)word.length);
     p->n_glasses++;
-    return glint_text_value(&p->text, &nd_range, &p->glass[n].medium.nd,
-                            NULL) &&
-           glint_text_value(&p->text, &vd_range, &p->glass[n].medium.vd, NULL);
+    return glint_text_read_value(&p->text, &nd_range, &p->glass[n].medium.nd,
+                                 NULL) &&
+           glint_text_read_value(&p->text, &vd_range, &p->glass[n].medium.vd,
+                                 NULL);
 }
 
 /* Sets MEDIUM to the glass WORD of the catalogue. */
@@ -546,7 +554,7 @@ static bool read_catalogue_glass(struct parser *p,
 
     if (!glass) {
         glass = glint_glass_near(word->start, bytes);
-        return glint_text_fail(
+        return glint_text_set_error(
             &p->text, word->place,
             "no glass '%s' is defined above this line, nor in the catalogue"
             "%s%s%s",
@@ -554,10 +562,10 @@ static bool read_catalogue_glass(struct parser *p,
             glass ? glass->name : "", glass ? "?" : "");
     }
     memcpy(medium->sellmeier, glass->sellmeier, sizeof medium->sellmeier);
-    medium->nd = glint_sellmeier(glass->sellmeier, LINE_D_NM);
-    medium->vd =
-        (medium->nd - 1.0) / (glint_sellmeier(glass->sellmeier, LINE_F_NM) -
-                              glint_sellmeier(glass->sellmeier, LINE_C_NM));
+    medium->nd = glint_sellmeier_index(glass->sellmeier, LINE_D_NM);
+    medium->vd = (medium->nd - 1.0) /
+                 (glint_sellmeier_index(glass->sellmeier, LINE_F_NM) -
+                  glint_sellmeier_index(glass->sellmeier, LINE_C_NM));
     return true;
 }
 
@@ -569,14 +577,16 @@ static bool read_lens_medium(struct parser *p, struct medium *medium)
 
     p->places.medium = word.place;
     if (!word.length)
-        return glint_text_fail(&p->text, word.place,
-                               "medium is missing: air, ND VD or a glass");
+        return glint_text_set_error(
+            &p->text, word.place,
+            "medium is missing: write air, ND VD or the name of a glass");
     *medium = (struct medium){.nd = 1.0};
-    if (glint_word_is(&word, "air"))
+    if (glint_word_equals(&word, "air"))
         return true;
     if (!is_letter(word.start[0]))
-        return glint_text_value_of(&p->text, &word, &nd_range, &medium->nd) &&
-               glint_text_value(&p->text, &vd_range, &medium->vd, NULL);
+        return glint_text_parse_value(&p->text, &word, &nd_range,
+                                      &medium->nd) &&
+               glint_text_read_value(&p->text, &vd_range, &medium->vd, NULL);
     glass = find_table_glass(p, &word);
     if (glass < 0)
         return read_catalogue_glass(p, &word, medium);
@@ -596,7 +606,7 @@ static bool read_gap_and_semi_diameter(struct parser *p,
 
     return read_gap_columns(&p->text, gap, &p->lens.zoom, e, thickness_mm,
                             &p->places.thickness[e]) &&
-           glint_text_value(&p->text, &semi_range, semi_mm, semi);
+           glint_text_read_value(&p->text, &semi_range, semi_mm, semi);
 }
 
 /* Reads the coating of surface K, if the line states one. CEMENTED: both sides
@@ -607,7 +617,7 @@ static bool read_surface_coating(struct parser *p, int k, bool cemented)
     struct glint_coating coating;
     struct glint_word word;
 
-    if (!glint_text_may_follow(&p->text, "coating", &word))
+    if (!glint_text_read_optional_word(&p->text, "coating", &word))
         return false;
     p->has_coating[k] = cemented || word.length;
     if (!word.length)
@@ -615,8 +625,8 @@ static bool read_surface_coating(struct parser *p, int k, bool cemented)
     if (!glint_coating_read(&p->text, &coating))
         return false;
     if (cemented && coating.n_films > 0)
-        return glint_text_fail(&p->text, word.place,
-                               "a cemented surface has no coating");
+        return glint_text_set_error(&p->text, word.place,
+                                    "a cemented surface has no coating");
     s->coating = coating;
     return true;
 }
@@ -628,8 +638,9 @@ static bool read_surface_line(struct parser *p)
     struct medium before = {.nd = 1.0}, medium = before;
 
     if (k == GLINT_MAX_SURFACES)
-        return glint_text_fail(&p->text, p->word[SURFACE],
-                               "more than %d surfaces", GLINT_MAX_SURFACES);
+        return glint_text_set_error(&p->text, p->word[SURFACE],
+                                    "more than %d surfaces",
+                                    GLINT_MAX_SURFACES);
     if (!read_surface_radius(&p->text, &s->radius_mm) ||
         !read_gap_and_semi_diameter(p, &thickness_range, &s->thickness_mm,
                                     &s->semi_mm, &p->places.semi[k]))
@@ -639,7 +650,7 @@ static bool read_surface_line(struct parser *p)
     if (k > 0)
         before = (struct medium){.nd = s[-1].nd, .vd = s[-1].vd};
     if (before.nd == medium.nd && before.vd == medium.vd)
-        return glint_text_fail(
+        return glint_text_set_error(
             &p->text, p->places.medium,
             "both sides of the surface have the same medium");
     s->nd = medium.nd;
@@ -656,8 +667,9 @@ static bool read_surface_line(struct parser *p)
 static bool read_shape_line(struct parser *p)
 {
     if (!p->is_surface)
-        return glint_text_fail(&p->text, p->word[SHAPE],
-                               "a shape must follow the line of its surface");
+        return glint_text_set_error(
+            &p->text, p->word[SHAPE],
+            "a shape must follow the line of its surface");
     return read_shape_words(&p->text,
                             &p->lens.surface[p->lens.n_surfaces - 1].shape);
 }
@@ -665,8 +677,8 @@ static bool read_shape_line(struct parser *p)
 static bool read_group_line(struct parser *p)
 {
     if (p->in_group || p->in_focus)
-        return glint_text_fail(&p->text, p->word[GROUP],
-                               "the group above has no line 'end'");
+        return glint_text_set_error(&p->text, p->word[GROUP],
+                                    "the group above has no line 'end'");
     p->in_group = true;
     return read_group_words(&p->text, &p->group);
 }
@@ -674,8 +686,8 @@ static bool read_group_line(struct parser *p)
 static bool read_focus_line(struct parser *p)
 {
     if (p->in_group)
-        return glint_text_fail(&p->text, p->word[FOCUS],
-                               "the group above has no line 'end'");
+        return glint_text_set_error(&p->text, p->word[FOCUS],
+                                    "the group above has no line 'end'");
     p->in_focus = true;
     p->lens.focus_first = p->lens.n_surfaces;
     return true;
@@ -684,14 +696,14 @@ static bool read_focus_line(struct parser *p)
 static bool read_end_line(struct parser *p)
 {
     if (!p->in_group && !p->in_focus)
-        return glint_text_fail(&p->text, p->word[END],
-                               "there is no group to end");
+        return glint_text_set_error(&p->text, p->word[END],
+                                    "'end' without a line 'group' above");
     if (!p->in_group) {
         p->in_focus = false;
         p->lens.n_focus = p->lens.n_surfaces - p->lens.focus_first;
         return p->lens.n_focus > 0 ||
-               glint_text_fail(&p->text, p->word[END],
-                               "the focusing group has no surface");
+               glint_text_set_error(&p->text, p->word[END],
+                                    "the focusing group has no surface");
     }
     p->in_group = false;
     p->group = (struct glint_shape){.conic = 0};
@@ -703,15 +715,16 @@ static bool read_stop_line(struct parser *p)
     struct glint_word word;
 
     if (p->in_group || p->in_focus)
-        return glint_text_fail(&p->text, p->word[STOP],
-                               "the stop cannot be in a group; end it above");
+        return glint_text_set_error(
+            &p->text, p->word[STOP],
+            "the stop cannot be in a group; end it above");
     p->is_surface = false;
     p->lens.stop_after = p->lens.n_surfaces;
     if (!read_gap_and_semi_diameter(
             p, p->lens.n_surfaces ? &thickness_range : &front_stop_range,
             &p->lens.stop_thickness_mm, &p->lens.stop_semi_mm,
             &p->places.stop) ||
-        !glint_text_may_follow(&p->text, "circle", &word))
+        !glint_text_read_optional_word(&p->text, "circle", &word))
         return false;
     p->lens.stop_is_circle = word.length > 0;
     return true;
@@ -751,23 +764,23 @@ static bool read_table_line(struct parser *p)
 
     if (!word.length)
         return true;
-    while (f < N_FIELDS && !glint_word_is(&word, fields[f].word))
+    while (f < N_FIELDS && !glint_word_equals(&word, fields[f].word))
         f++;
     if (f == N_FIELDS)
-        return glint_text_fail(&p->text, word.place, "unknown word '%s'",
-                               glint_word_quote(&word, quote));
+        return glint_text_set_error(&p->text, word.place, "unknown word '%s'",
+                                    glint_word_quote(&word, quote));
     if (p->word[f].line && !fields[f].repeats)
-        return glint_text_fail(&p->text, word.place,
-                               "a second %s; the first is on line %d",
-                               fields[f].word, p->word[f].line);
+        return glint_text_set_error(&p->text, word.place,
+                                    "a second %s; the first is on line %d",
+                                    fields[f].word, p->word[f].line);
     p->word[f] = word.place;
     if (!fields[f].read(p))
         return false;
     word = glint_text_next_word(&p->text);
     return !word.length ||
-           glint_text_fail(&p->text, word.place,
-                           "'%s' is one value too many for %s",
-                           glint_word_quote(&word, quote), fields[f].word);
+           glint_text_set_error(&p->text, word.place,
+                                "'%s' is one value too many for %s",
+                                glint_word_quote(&word, quote), fields[f].word);
 }
 
 static bool read_all_lines(struct parser *p)
@@ -777,11 +790,12 @@ static bool read_all_lines(struct parser *p)
             return false;
     for (int f = 0; f < N_FIELDS; f++)
         if (fields[f].required && !p->word[f].line)
-            return glint_text_fail(&p->text, glint_text_end(&p->text),
-                                   "the line '%s' is missing", fields[f].word);
+            return glint_text_set_error(
+                &p->text, glint_text_get_end_place(&p->text),
+                "the line '%s' is missing", fields[f].word);
     return (!p->in_group && !p->in_focus) ||
-           glint_text_fail(&p->text, p->word[p->in_group ? GROUP : FOCUS],
-                           "the group has no line 'end'");
+           glint_text_set_error(&p->text, p->word[p->in_group ? GROUP : FOCUS],
+                                "the group has no line 'end'");
 }
 
 /* ---------------------------------------------------------------- the lens */
@@ -801,7 +815,7 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
     struct parser p;
 
     memset(&p, 0, sizeof(p));
-    glint_coating_single(&p.coating, 550);
+    glint_coating_set_single_layer(&p.coating, 550);
     if (!glint_text_open(&p.text, text, bytes, file_name, error) ||
         !read_all_lines(&p) ||
         !check_all_zoom_positions(&p.lens, &p.text, &p.places))

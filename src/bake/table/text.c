@@ -26,8 +26,8 @@ static bool is_digit_char(char c)
     return c >= '0' && c <= '9';
 }
 
-/* Returns the bytes of the character at AT; 0 if it is a control character or
- * malformed UTF-8. */
+/* Returns the number of bytes of the UTF-8 character at AT; 0 if it is a
+ * control character or malformed. */
 static int compute_character_bytes(const char *at, const char *end)
 {
     static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
@@ -57,8 +57,8 @@ static int compute_character_bytes(const char *at, const char *end)
     return length;
 }
 
-/* Returns the bytes of the line end at AT: 0 (not a line end), 1 (LF) or 2
- * (CRLF). */
+/* Returns the number of bytes of the line end at AT: 0 (not a line end), 1 (LF)
+ * or 2 (CRLF). */
 static int compute_line_end_bytes(const char *at, const char *end)
 {
     if (at < end && *at == '\n')
@@ -81,12 +81,12 @@ static bool check_text_characters(struct glint_text *text)
             continue;
         }
         if (!length)
-            return glint_text_fail(text, place,
-                                   "byte 0x%02x is not text (UTF-8)",
-                                   (unsigned)(unsigned char)*at);
+            return glint_text_set_error(text, place,
+                                        "byte 0x%02x is not text (UTF-8)",
+                                        (unsigned)(unsigned char)*at);
         if (place.column + length - 1 > GLINT_LINE_BYTES)
-            return glint_text_fail(text, place, "line is longer than %d bytes",
-                                   GLINT_LINE_BYTES);
+            return glint_text_set_error(
+                text, place, "line is longer than %d bytes", GLINT_LINE_BYTES);
         place.column += length;
         at += length;
     }
@@ -116,9 +116,9 @@ bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
 {
     set_text_start(text, data, bytes, file_name, error);
     if (bytes > GLINT_TEXT_BYTES)
-        return glint_text_fail(text, (struct glint_text_place){1, 1},
-                               "text is longer than %d bytes",
-                               GLINT_TEXT_BYTES);
+        return glint_text_set_error(text, (struct glint_text_place){1, 1},
+                                    "text is longer than %d bytes",
+                                    GLINT_TEXT_BYTES);
     return check_text_characters(text);
 }
 
@@ -169,18 +169,19 @@ struct glint_word glint_text_next_word(struct glint_text *text)
     return word;
 }
 
-bool glint_text_may_follow(struct glint_text *text, const char *only,
-                           struct glint_word *word)
+bool glint_text_read_optional_word(struct glint_text *text, const char *only,
+                                   struct glint_word *word)
 {
     char quote[GLINT_QUOTE_BYTES];
 
     *word = glint_text_next_word(text);
-    return !word->length || glint_word_is(word, only) ||
-           glint_text_fail(text, word->place, "unexpected '%s'; expected %s",
-                           glint_word_quote(word, quote), only);
+    return !word->length || glint_word_equals(word, only) ||
+           glint_text_set_error(text, word->place,
+                                "unexpected '%s'; expected %s",
+                                glint_word_quote(word, quote), only);
 }
 
-struct glint_word glint_text_rest(struct glint_text *text)
+struct glint_word glint_text_get_rest(struct glint_text *text)
 {
     struct glint_word word = skip_blanks_to_word(text);
 
@@ -191,13 +192,14 @@ struct glint_word glint_text_rest(struct glint_text *text)
     return word;
 }
 
-struct glint_text_place glint_text_end(const struct glint_text *text)
+struct glint_text_place glint_text_get_end_place(const struct glint_text *text)
 {
     return (struct glint_text_place){text->line_number + 1, 1};
 }
 
-bool glint_text_fail(const struct glint_text *text,
-                     struct glint_text_place place, const char *format, ...)
+bool glint_text_set_error(const struct glint_text *text,
+                          struct glint_text_place place, const char *format,
+                          ...)
 {
     struct glint_error *error = text->error;
     const size_t length = strlen(text->file_name);
@@ -215,7 +217,7 @@ bool glint_text_fail(const struct glint_text *text,
     return false;
 }
 
-bool glint_word_is(const struct glint_word *word, const char *string)
+bool glint_word_equals(const struct glint_word *word, const char *string)
 {
     const size_t length = strlen(string);
 
@@ -239,7 +241,8 @@ const char *glint_word_quote(const struct glint_word *word,
     return quote;
 }
 
-/* A number while it is read: its unread characters, and its digits so far. */
+/* State of reading a number: its unread characters, and the digits read so
+ * far. */
 struct digits {
     const char *at, *end;
     uint64_t value; /* value of the significant digits read so far */
@@ -333,8 +336,8 @@ static bool split_decimal_number(const struct glint_word *word,
     return true;
 }
 
-/* Returns the double nearest to the digits of WORD times 10^EXPONENT. Passes
- * strtod() no decimal point, so the locale has no effect. */
+/* Returns the double nearest to the digits of WORD times 10^EXPONENT. The
+ * locale has no effect, because strtod() gets no decimal point. */
 static double find_nearest_double(const struct glint_word *word, int exponent)
 {
     char text[GLINT_LINE_BYTES + 16];
@@ -348,7 +351,8 @@ static double find_nearest_double(const struct glint_word *word, int exponent)
     return strtod(text, NULL);
 }
 
-const char *glint_word_number(const struct glint_word *word, double *value)
+const char *glint_word_parse_number(const struct glint_word *word,
+                                    double *value)
 {
     struct digits digits;
     bool negative;
@@ -360,7 +364,8 @@ const char *glint_word_number(const struct glint_word *word, double *value)
     more = digits.significant > GLINT_NUMBER_DIGITS
                ? digits.significant - GLINT_NUMBER_DIGITS
                : 0;
-    /* covers coefficients of h^20, such as 1e-25: 0.1 mm at h = 14 mm */
+    /* the limits include coefficients of h^20 such as 1e-25, which add 0.1 mm
+     * at h = 14 mm */
     if (exponent + more < -60 || exponent + more > 22)
         return "is too large or too small";
     /* With at most 15 digits and 10^22 both operands are exact, so rounding
@@ -373,7 +378,7 @@ const char *glint_word_number(const struct glint_word *word, double *value)
     return NULL;
 }
 
-bool glint_word_number_about(const struct glint_word *word, double *value)
+bool glint_word_parse_long_number(const struct glint_word *word, double *value)
 {
     struct digits digits;
     bool negative;
@@ -391,44 +396,45 @@ bool glint_word_number_about(const struct glint_word *word, double *value)
     return true;
 }
 
-bool glint_text_number_of(const struct glint_text *text,
-                          const struct glint_word *word, const char *name,
-                          double *value)
+bool glint_text_parse_number(const struct glint_text *text,
+                             const struct glint_word *word, const char *name,
+                             double *value)
 {
     char quote[GLINT_QUOTE_BYTES];
     const char *wrong;
 
     if (!word->length)
-        return glint_text_fail(text, word->place, "%s is missing", name);
-    wrong = glint_word_number(word, value);
-    return !wrong || glint_text_fail(text, word->place, "%s '%s' %s", name,
-                                     glint_word_quote(word, quote), wrong);
+        return glint_text_set_error(text, word->place, "%s is missing", name);
+    wrong = glint_word_parse_number(word, value);
+    return !wrong || glint_text_set_error(text, word->place, "%s '%s' %s", name,
+                                          glint_word_quote(word, quote), wrong);
 }
 
-bool glint_text_in_range(const struct glint_text *text,
-                         struct glint_text_place place,
-                         const struct glint_text_range *range, double value)
+bool glint_text_check_range(const struct glint_text *text,
+                            struct glint_text_place place,
+                            const struct glint_text_range *range, double value)
 {
     return (value >= range->min && value <= range->max) ||
-           glint_text_fail(text, place, "%s must be %.10g .. %.10g, not %g",
-                           range->name, range->min, range->max, value);
+           glint_text_set_error(text, place,
+                                "%s must be %.10g .. %.10g, not %g",
+                                range->name, range->min, range->max, value);
 }
 
-bool glint_text_value_of(const struct glint_text *text,
-                         const struct glint_word *word,
-                         const struct glint_text_range *range, double *value)
+bool glint_text_parse_value(const struct glint_text *text,
+                            const struct glint_word *word,
+                            const struct glint_text_range *range, double *value)
 {
-    return glint_text_number_of(text, word, range->name, value) &&
-           glint_text_in_range(text, word->place, range, *value);
+    return glint_text_parse_number(text, word, range->name, value) &&
+           glint_text_check_range(text, word->place, range, *value);
 }
 
-bool glint_text_value(struct glint_text *text,
-                      const struct glint_text_range *range, double *value,
-                      struct glint_text_place *place)
+bool glint_text_read_value(struct glint_text *text,
+                           const struct glint_text_range *range, double *value,
+                           struct glint_text_place *place)
 {
     const struct glint_word word = glint_text_next_word(text);
 
     if (place)
         *place = word.place;
-    return glint_text_value_of(text, &word, range, value);
+    return glint_text_parse_value(text, &word, range, value);
 }

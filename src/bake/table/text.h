@@ -11,7 +11,7 @@
  * lines of at most GLINT_LINE_BYTES, no control characters except tab, newline
  * and the return of a CRLF, and well-formed UTF-8. Spaces and tabs separate
  * words; a # at the start of a word begins a comment. Each word has its
- * position, for which glint_text_fail() writes "FILE:LINE:COLUMN: cause".
+ * position, for which glint_text_set_error() writes "FILE:LINE:COLUMN: cause".
  *
  * Numbers do not depend on the locale and are rounded to the nearest double.
  */
@@ -35,7 +35,8 @@ struct glint_text_place {
 
 struct glint_word {
     const char *start; /* not terminated by 0 */
-    int length;        /* bytes; 0: end of the line, at the position place */
+    /* number of bytes; 0: the line has ended, at the position place */
+    int length;
     struct glint_text_place place;
 };
 
@@ -65,20 +66,21 @@ bool glint_text_next_line(struct glint_text *text);
 /* Returns the next word of the line. */
 struct glint_word glint_text_next_word(struct glint_text *text);
 
-/* Reads the next word of the line into WORD; its length is 0 if there is none.
- * Rejects words other than ONLY. */
-bool glint_text_may_follow(struct glint_text *text, const char *only,
-                           struct glint_word *word);
+/* Reads an optional word, which must be ONLY, from the line into WORD; its
+ * length is 0 if the line has ended. Rejects any other word. */
+bool glint_text_read_optional_word(struct glint_text *text, const char *only,
+                                   struct glint_word *word);
 
 /* Returns the rest of the line, without blanks at either end. */
-struct glint_word glint_text_rest(struct glint_text *text);
+struct glint_word glint_text_get_rest(struct glint_text *text);
 
 /* Returns the position of the end of the text. */
-struct glint_text_place glint_text_end(const struct glint_text *text);
+struct glint_text_place glint_text_get_end_place(const struct glint_text *text);
 
 /* Sets the error to "FILE:LINE:COLUMN: FORMAT ...". Returns false. */
-bool glint_text_fail(const struct glint_text *text,
-                     struct glint_text_place place, const char *format, ...);
+bool glint_text_set_error(const struct glint_text *text,
+                          struct glint_text_place place, const char *format,
+                          ...);
 
 /* A quantity: its name in error texts and the range of its values. */
 struct glint_text_range {
@@ -89,28 +91,29 @@ struct glint_text_range {
 /* Reads WORD as a number of any magnitude. NAME names the number in error
  * texts. This function and the next three set the error and return false if
  * WORD is not a number or out of range. */
-bool glint_text_number_of(const struct glint_text *text,
-                          const struct glint_word *word, const char *name,
-                          double *value);
+bool glint_text_parse_number(const struct glint_text *text,
+                             const struct glint_word *word, const char *name,
+                             double *value);
 
-bool glint_text_in_range(const struct glint_text *text,
-                         struct glint_text_place place,
-                         const struct glint_text_range *range, double value);
+bool glint_text_check_range(const struct glint_text *text,
+                            struct glint_text_place place,
+                            const struct glint_text_range *range, double value);
 
 /* Reads WORD as a number in RANGE. */
-bool glint_text_value_of(const struct glint_text *text,
-                         const struct glint_word *word,
-                         const struct glint_text_range *range, double *value);
+bool glint_text_parse_value(const struct glint_text *text,
+                            const struct glint_word *word,
+                            const struct glint_text_range *range,
+                            double *value);
 
 /* Reads the next word as a number in RANGE. PLACE, unless NULL, receives the
  * word's position. */
-bool glint_text_value(struct glint_text *text,
-                      const struct glint_text_range *range, double *value,
-                      struct glint_text_place *place);
+bool glint_text_read_value(struct glint_text *text,
+                           const struct glint_text_range *range, double *value,
+                           struct glint_text_place *place);
 
-bool glint_word_is(const struct glint_word *word, const char *string);
+bool glint_word_equals(const struct glint_word *word, const char *string);
 
-/* Returns WORD in the form for error texts: printable ASCII characters only,
+/* Returns WORD as quoted in error texts: printable ASCII characters only,
  * truncated if it is long. */
 #define GLINT_QUOTE_BYTES 32
 const char *glint_word_quote(const struct glint_word *word,
@@ -118,11 +121,12 @@ const char *glint_word_quote(const struct glint_word *word,
 
 /* Parses WORD as [+-] digits [. digits] [e [+-] digits]. Returns NULL, or an
  * error text that continues the quoted word; VALUE is then unchanged. */
-const char *glint_word_number(const struct glint_word *word, double *value);
+const char *glint_word_parse_number(const struct glint_word *word,
+                                    double *value);
 
-/* Parses WORD as a number with any count of digits; the relative error of VALUE
- * is at most 4e-15. Returns false if WORD is not a number or is too large for a
- * double. */
-bool glint_word_number_about(const struct glint_word *word, double *value);
+/* Parses WORD as a number with any number of digits; the relative error of
+ * VALUE is at most 4e-15. Returns false if WORD is not a number or is too large
+ * for a double. */
+bool glint_word_parse_long_number(const struct glint_word *word, double *value);
 
 #endif

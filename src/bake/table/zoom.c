@@ -4,8 +4,8 @@
 
 #include "bake/table/elements.h"
 
-/* Max relative excess of a requested focal length over the zoom range, as lens
- * barrels state rounded values. */
+/* Max relative distance of a requested focal length from the zoom range. It is
+ * accepted because lens barrels state rounded values. */
 #define BEYOND 2e-3
 
 /* ---------------------------------------------------------------- cubic */
@@ -81,15 +81,15 @@ static void set_zoom_gaps(struct glint_prescription *lens, double along)
         column |= !(along < z->along[k] || along > z->along[k]);
     }
     for (int m = 0; m < z->n_moves; m++)
-        *glint_gap_of(lens, z->move[m]) =
+        *glint_gap_get_pointer(lens, z->move[m]) =
             interpolate_zoom_column(z, z->gap_mm[m], along);
-    *glint_gap_of(lens, last) =
+    *glint_gap_get_pointer(lens, last) =
         interpolate_zoom_column(z, z->last_gap_mm, along);
     lens->f_number = interpolate_zoom_column(z, z->f_number, along);
     if (column)
         return;
     glint_optics_of(lens, &optics);
-    *glint_gap_of(lens, last) =
+    *glint_gap_get_pointer(lens, last) =
         optics.back_focal_mm + interpolate_zoom_column(z, defocus, along);
 }
 
@@ -119,7 +119,7 @@ enum glint_status glint_prescription_zoom(struct glint_prescription *lens,
     set_zoom_gaps(&moved, along);
     moved.zoom_along = along;
     moved.check_focal_mm = moved.check_back_mm = 0;
-    status = glint_prescription_fits(&moved, error);
+    status = glint_prescription_check_gaps_and_stop(&moved, error);
     if (status == GLINT_OK)
         *lens = moved;
     return status;

@@ -27,8 +27,8 @@ struct beam {
     double cosine[LANES];    /* cosine between ray and normal at the surface */
     double normal[3][LANES]; /* unit normal; non-spherical surfaces only */
     double energy[LANES];
-    /* squared height and squared semi-diameter at the event where height /
-     * semi-diameter was largest so far */
+    /* squared height and squared semi-diameter at that event where height /
+     * semi-diameter has been largest so far */
     double height2[LANES], semi2[LANES];
     double stop_x[LANES], stop_y[LANES];
     /* status of each ray, enum glint_ray_status as a double */
@@ -45,18 +45,20 @@ static WHOLLY_INLINE double update_ray_status(double so_far, bool fine,
     return so_far > GLINT_RAY_OK ? so_far : now;
 }
 
-/* Moves N rays from the vertex plane to FORM. Also transforms them to its
- * frame, unless FORM is level: round or a cylinder, and on the axis. N: LANES
- * or 1. */
-void glint_beam_meet_form(struct beam *b, int n, const struct glint_form *form);
+/* Moves N rays from the vertex plane to FORM. Also transforms them to the
+ * form's own frame, unless FORM is level: a round form or a cylinder on the
+ * axis. N: LANES or 1. */
+void glint_beam_move_to_form(struct beam *b, int n,
+                             const struct glint_form *form);
 
-/* Refracts or reflects N rays at a form. RATIO: index of refraction before /
- * behind it; OUT: cosines behind it. */
-void glint_beam_cross_form(struct beam *b, int n, bool reflects, double ratio,
-                           const double *out);
+/* Refracts or reflects N rays at a form. RATIO: index of refraction in front of
+ * the form / index behind it. OUT[N]: cosines between the normal and the
+ * refracted rays. */
+void glint_beam_deflect_at_form(struct beam *b, int n, bool reflects,
+                                double ratio, const double *out);
 
 /* Transforms rays from the frame of FORM back to the light's frame. */
-void glint_beam_leave_form(struct beam *b, int n,
-                           const struct glint_form *form);
+void glint_beam_leave_form_frame(struct beam *b, int n,
+                                 const struct glint_form *form);
 
 #endif

@@ -8,15 +8,16 @@
 #include "engine/setup/degrees.h"
 #include "engine/setup/dirt.h"
 
-/* cells per side of the grid of rays that finds the barrels that block rays */
+/* cells per side of the grid of rays that determines which barrels block
+ * rays */
 enum { SAMPLING = 96 };
 
-static void find_cutting_barrels(struct glint_cells *c)
+static void find_blocking_barrels(struct glint_cells *c)
 {
     struct glint_sampling sampling;
 
-    glint_sampling_run(&sampling, c->path, &c->pupil, c->direction,
-                       c->setup->optics.stop_radius_mm, SAMPLING);
+    glint_sampling_trace_grid(&sampling, c->path, &c->pupil, c->direction,
+                              c->setup->optics.stop_radius_mm, SAMPLING);
     c->n_cuts =
         sampling.n_cuts < GLINT_MAX_CUTS ? sampling.n_cuts : GLINT_MAX_CUTS;
     for (int k = 0; k < c->n_cuts; k++)
@@ -40,12 +41,12 @@ bool glint_cells_init(struct glint_cells *cells,
     if (!glint_pupil_find(&cells->pupil, path, theta_deg,
                           setup->optics.stop_radius_mm, NULL))
         return false;
-    find_cutting_barrels(cells);
+    find_blocking_barrels(cells);
     cells->stride = NODE_CUT + 2 * cells->n_cuts;
     return true;
 }
 
-size_t glint_cells_bytes(const struct glint_cells *cells)
+size_t glint_cells_compute_bytes(const struct glint_cells *cells)
 {
     return (size_t)(cells->n + 1) * (size_t)(cells->n + 1) *
            (size_t)cells->stride * sizeof *cells->node;
@@ -57,12 +58,12 @@ static double *get_ray_node(const struct glint_cells *c, int i, int j)
            ((size_t)j * (size_t)(c->n + 1) + (size_t)i) * (size_t)c->stride;
 }
 
-int glint_cells_rows(const struct glint_cells *cells)
+int glint_cells_count_traced_rows(const struct glint_cells *cells)
 {
     return (cells->path->round ? cells->n / 2 : cells->n) + 1;
 }
 
-double glint_cells_area(const struct glint_cells *cells)
+double glint_cells_compute_cell_area(const struct glint_cells *cells)
 {
     const struct glint_pupil *p = &cells->pupil;
 
@@ -106,7 +107,7 @@ static void set_ray_node(const struct glint_cells *c,
     node[NODE_STATE] = clear ? 2 : 1;
 }
 
-void glint_cells_trace(const struct glint_cells *cells, int row)
+void glint_cells_trace_row(const struct glint_cells *cells, int row)
 {
     enum { SOME = 8 };
     const struct glint_pupil *p = &cells->pupil;
@@ -146,8 +147,8 @@ void glint_cells_trace(const struct glint_cells *cells, int row)
 
 /* --------------------------------------------------------------------- clip */
 
-/* A triangle and the polygon that remains of it after clipping, in barycentric
- * coordinates of its second and third corner. */
+/* A triangle, and the polygon that clipping leaves of it, in barycentric
+ * coordinates (weights of the second and the third corner). */
 struct shape {
     const double *corner[3];
     int n;
@@ -171,7 +172,8 @@ struct cut {
     double normal[2], limit, scale, middle[2];
 };
 
-/* Sets AT to the point UV (barycentric) in the unit disc of CUT. */
+/* Sets AT to the point UV (barycentric) mapped such that the disc of CUT
+ * becomes the unit disc. */
 static void map_point_to_cut_disc(const struct shape *s, const struct cut *cut,
                                   const double uv[2], double at[2])
 {
@@ -194,8 +196,9 @@ static double compute_cut_value(const struct shape *s, const struct cut *cut,
            cut->normal[1] * interpolate_node_channel(s, cut->first + 1, uv);
 }
 
-/* Returns the fraction of the way from A to B at which CUT is crossed. FA and
- * FB: compute_cut_value() at A and B, of different signs. */
+/* Returns the fraction of the way from A to B at which the boundary CUT is
+ * crossed. FA and FB: compute_cut_value() at A and B, which have different
+ * signs. */
 static double find_cut_crossing(const struct shape *s, const struct cut *cut,
                                 const double a[2], const double b[2], double fa,
                                 double fb)
@@ -289,9 +292,10 @@ static double compute_polygon_area(const double (*p)[2], int n)
     return 0.5 * sum;
 }
 
-/* Sets CORNER to the nodes of triangle HALF of cell (I, J). Returns false if
- * the ray of a corner is invalid. The cells' diagonals are mirrored about the
- * light's plane, so that the picture of a symmetric light is symmetric. */
+/* Sets CORNER to the nodes of triangle HALF (0 or 1) of cell (I, J). Returns
+ * false if the ray of a corner is invalid. The diagonals of the cells are
+ * mirrored about the light's plane, so that a symmetric light gives a symmetric
+ * picture. */
 static bool get_triangle_corners(const struct glint_cells *c, int i, int j,
                                  int half, const double **corner)
 {
@@ -304,15 +308,15 @@ static bool get_triangle_corners(const struct glint_cells *c, int i, int j,
 
     for (int k = 0; k < 3; k++) {
         corner[k] = q[pick[k]];
-        /* NOLINTNEXTLINE: each node was traced, or is a mirror image */
+        /* NOLINTNEXTLINE: all nodes are set: traced, or mirrored */
         if (corner[k][NODE_STATE] == 0)
             return false;
     }
     return true;
 }
 
-void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
-                      struct glint_piece *piece)
+void glint_cells_clip_triangle(const struct glint_cells *cells, int i, int j,
+                               int half, struct glint_piece *piece)
 {
     struct shape s = {.n = 3, .uv = {{0, 0}, {1, 0}, {0, 1}}};
     double middle[2] = {0, 0};
@@ -341,8 +345,8 @@ void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
             interpolate_node_channel(&s, NODE_STOP_Y, middle));
 }
 
-bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
-                       double low, double high)
+bool glint_cells_overlap_range(const struct glint_cells *cells, int i, int j,
+                               double low, double high)
 {
     bool above = true, below = true;
 
@@ -355,7 +359,8 @@ bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
     return !above && !below;
 }
 
-double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm)
+double glint_direct_compute_flux(const struct glint_setup *setup,
+                                 double wavelength_nm)
 {
     struct glint_piece piece;
     struct glint_cells cells;
@@ -365,18 +370,18 @@ double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm)
     glint_path_init(&path, setup->lens, NULL, wavelength_nm);
     if (!glint_cells_init(&cells, setup, &path, 0, 0, 256))
         return 0;
-    cells.node = malloc(glint_cells_bytes(&cells));
+    cells.node = malloc(glint_cells_compute_bytes(&cells));
     if (!cells.node)
         return -1;
-    for (int j = 0; j < glint_cells_rows(&cells); j++)
-        glint_cells_trace(&cells, j);
+    for (int j = 0; j < glint_cells_count_traced_rows(&cells); j++)
+        glint_cells_trace_row(&cells, j);
     for (int k = 0; k < 2 * cells.n * cells.n; k++) {
         /* NOLINTNEXTLINE: n is 256 */
-        glint_cells_clip(&cells, k / 2 % cells.n, k / 2 / cells.n, k & 1,
-                         &piece);
+        glint_cells_clip_triangle(&cells, k / 2 % cells.n, k / 2 / cells.n,
+                                  k & 1, &piece);
         if (piece.n)
             sum += piece.share * piece.energy;
     }
     free(cells.node);
-    return sum * 0.5 * glint_cells_area(&cells);
+    return sum * 0.5 * glint_cells_compute_cell_area(&cells);
 }

@@ -39,7 +39,7 @@ struct glint_cells {
     const struct glint_path *path;
     struct glint_pupil pupil;
     double direction[3];
-    /* rotation from the light's frame to the camera's */
+    /* cosine and sine of the rotation from the light's frame to the camera's */
     double cos_phi, sin_phi;
     int n; /* number of cells per side, even */
     int n_cuts;
@@ -57,38 +57,40 @@ bool glint_cells_init(struct glint_cells *cells,
                       double phi_deg, int n);
 
 /* Returns the size of the member node in bytes. */
-size_t glint_cells_bytes(const struct glint_cells *cells);
+size_t glint_cells_compute_bytes(const struct glint_cells *cells);
 
 /* Returns the number of rows of nodes that must be traced. */
-int glint_cells_rows(const struct glint_cells *cells);
+int glint_cells_count_traced_rows(const struct glint_cells *cells);
 
 /* Traces row ROW of the nodes. Round lenses: also sets its mirror image, row n
  * - ROW. */
-void glint_cells_trace(const struct glint_cells *cells, int row);
+void glint_cells_trace_row(const struct glint_cells *cells, int row);
 
 /* The visible part of a triangle: a convex polygon in the channels NODE_X and
  * NODE_Y. */
 struct glint_piece {
     int n; /* number of corners; 0: nothing is visible */
     double xy[GLINT_MAX_PIECE][2];
-    double share;  /* pupil area / the triangle's pupil area, 0 .. 1 */
+    /* visible fraction of the triangle, by area on the pupil, 0 .. 1 */
+    double share;
     double energy; /* mean energy over the piece */
 };
 
 /* Clips triangle HALF (0 or 1) of cell (I, J) and sets PIECE to its visible
  * part. */
-void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
-                      struct glint_piece *piece);
+void glint_cells_clip_triangle(const struct glint_cells *cells, int i, int j,
+                               int half, struct glint_piece *piece);
 
 /* Returns whether cell (I, J) overlaps the range LOW .. HIGH of NODE_Y. */
-bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
-                       double low, double high);
+bool glint_cells_overlap_range(const struct glint_cells *cells, int i, int j,
+                               double low, double high);
 
 /* Returns the area of a cell on the pupil, mm^2. */
-double glint_cells_area(const struct glint_cells *cells);
+double glint_cells_compute_cell_area(const struct glint_cells *cells);
 
 /* Returns the flux of the direct image of a light on the axis at irradiance 1,
  * mm^2; -1 if there is no memory. */
-double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm);
+double glint_direct_compute_flux(const struct glint_setup *setup,
+                                 double wavelength_nm);
 
 #endif

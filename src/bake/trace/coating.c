@@ -7,7 +7,8 @@ int glint_coating_at(const struct glint_coating *coating, double wavelength_nm,
                      struct glint_film_at film[GLINT_MAX_FILMS])
 {
     for (int k = 0; k < coating->n_films; k++)
-        /* phase 4 pi n d / wavelength; n d: number of quarters of nm */
+        /* the phase is 4 pi n d / wavelength, where the optical thickness n d
+         * is quarters * nm / 4 */
         film[k] = (struct glint_film_at){coating->film[k].index,
                                          GLINT_PI * coating->film[k].quarters *
                                              coating->nm / wavelength_nm};
@@ -20,8 +21,10 @@ struct matrix {
     double m11, m12, m21, m22;
 };
 
-/* Multiplies M from the right by the matrix of one film, (C, i S / F; i SIGN S
- * F, C). */
+/* Multiplies M from the right by the characteristic matrix of one film, (C, i S
+ * / F; i SIGN S F, C). C, S: cosine and sine of half the film's phase; F: its
+ * admittance; SIGN: -1 beyond the critical angle, where cosine and sine are
+ * hyperbolic, else 1. */
 static void multiply_by_film(struct matrix *m, double c, double s, double f,
                              double sign)
 {
@@ -48,25 +51,27 @@ static double compute_film_stack_reflectance(const struct matrix *m, double a,
     return part < 1.0 ? part : 1.0;
 }
 
-void glint_stack_reflectance_sp(double n1, double c1, double n2, double c2,
-                                const struct glint_film_at *film, int n,
-                                double *s, double *p)
+void glint_stack_compute_reflectance_sp(double n1, double c1, double n2,
+                                        double c2,
+                                        const struct glint_film_at *film, int n,
+                                        double *s, double *p)
 {
     struct matrix s_all = {1, 0, 0, 1}, p_all = s_all;
-    const bool turned = n1 > n2; /* true: light hits the last film first */
+    /* true: light hits the films in reverse order, the last one first */
+    const bool turned = n1 > n2;
 
     for (int k = 0; k < n; k++) {
         const struct glint_film_at *const f = &film[turned ? n - 1 - k : k];
         const double nf = f->n, inside = compute_film_cosine2(n1, c1, nf);
         const double size = sqrt(fabs(inside)), half = 0.5 * f->phase * size;
         const double sign = inside < 0.0 ? -1.0 : 1.0;
-        /* clamped: sinh(30) in each of 8 layers does not overflow, and hardly
-         * any light passes */
+        /* limits the phase to 30: products of sinh(30) over 8 layers do not
+         * overflow, and hardly any light passes */
         const double sine = inside < 0.0 ? sinh(fmin(half, 30.0)) : sin(half);
         const double cosine = inside < 0.0 ? cosh(fmin(half, 30.0)) : cos(half);
 
-        /* f is nf cos(t) for s and nf / cos(t) for p. If cos(t) is
-         * imaginary, i size, these become i nf size and -i nf / size, and
+        /* the admittance f is nf cos(t) for s and nf / cos(t) for p. If cos(t)
+         * is imaginary, i size, these become i nf size and -i nf / size, and
          * sin D becomes i sinh |D|. */
         multiply_by_film(&s_all, cosine, sine, nf * size, sign);
         multiply_by_film(&p_all, cosine, sign * sine, nf / size, sign);
@@ -114,6 +119,6 @@ void glint_reflectance_sp(double n_from, double n_to, double cos_from,
 
     *s = *p = 1.0;
     if (c2 > 0.0)
-        glint_stack_reflectance_sp(n_from, cos_from, n_to, c2, film, n_films, s,
-                                   p);
+        glint_stack_compute_reflectance_sp(n_from, cos_from, n_to, c2, film,
+                                           n_films, s, p);
 }

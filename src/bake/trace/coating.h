@@ -60,7 +60,8 @@ static inline double compute_film_cosine2(double n1, double c1, double nf)
 static inline double compute_film_sine2(double inside, double phase)
 {
     const double half = 0.5 * phase * sqrt(fabs(inside)); /* |D| */
-    /* clamped: sinh(100) does not overflow, and no light passes such a film */
+    /* limits the phase to 100: sinh(100) does not overflow, and no light passes
+     * such a film */
     const double root = inside < 0.0 ? sinh(fmin(half, 100.0)) : sin(half);
 
     return root * root;
@@ -75,10 +76,12 @@ static inline double compute_film_reflectance(double n1, double c1, double n2,
 {
     const double size = fabs(inside), sign = inside < 0.0 ? -1.0 : 1.0;
     const double cos2 = 1.0 - sign * sin2;
-    /* s is multiplied by f, p by f cos(t1) cos(t2); f^2 includes SIGN */
+    /* terms of s are multiplied by f, those of p by f cos(t1) cos(t2); f^2
+     * includes SIGN */
     const double f2_s = nf * nf * size, f2_p = nf * nf;
     const double a_s = n1 * c1, b_s = n2 * c2;
-    const double a_p = n1 * c2, b_p = n2 * c1; /* n / c, multiplied by c1 c2 */
+    /* admittances n / c of polarisation p, multiplied by c1 c2 */
+    const double a_p = n1 * c2, b_p = n2 * c1;
     const double ab_s = a_s * b_s, ab_p = n1 * n2 * size;
     const double g_s = sign * f2_s, g_p = sign * f2_p * c1 * c2;
     const double minus_s = (a_s - b_s) * (a_s - b_s) * f2_s * cos2 +
@@ -99,9 +102,10 @@ static inline double compute_film_reflectance(double n1, double c1, double n2,
  * D is half the film's phase and f its admittance. Off-diagonal elements stay
  * imaginary, and in a film with total reflection both f and D are imaginary, so
  * real numbers are sufficient. [Macleod, Thin-Film Optical Filters, ch. 2] */
-void glint_stack_reflectance_sp(double n1, double c1, double n2, double c2,
-                                const struct glint_film_at *film, int n,
-                                double *s, double *p);
+void glint_stack_compute_reflectance_sp(double n1, double c1, double n2,
+                                        double c2,
+                                        const struct glint_film_at *film, int n,
+                                        double *s, double *p);
 
 /* Returns the reflectance of FILM[N], the mean of both polarisations. */
 static inline double compute_stack_reflectance(double n1, double c1, double n2,
@@ -111,7 +115,7 @@ static inline double compute_stack_reflectance(double n1, double c1, double n2,
 {
     double s, p;
 
-    glint_stack_reflectance_sp(n1, c1, n2, c2, film, n, &s, &p);
+    glint_stack_compute_reflectance_sp(n1, c1, n2, c2, film, n, &s, &p);
     return 0.5 * (s + p);
 }
 

@@ -15,9 +15,10 @@
 #include "bake/table/form.h"
 
 enum { MOST_STEPS = 10 };
-/* Max relative length of the last Newton step; its square is the error. */
+/* Max relative length of the last Newton step; the remaining error is about its
+ * square. */
 #define LAST_STEP 1e-7
-/* number of terms of a short profile, up to A14 */
+/* number of aspheric terms of a short profile, up to A14 */
 #define SHORT 6
 
 static void set_beam_ray(struct beam *b, int k, const double at[3],
@@ -107,8 +108,8 @@ static WHOLLY_INLINE double find_min_value(int n, const double *x)
     return least;
 }
 
-/* Sets T to the parameters at which rays meet the form. SURE: 1 where the
- * result is certain, else 0. */
+/* Sets T to the ray parameters at which rays intersect the form. SURE: 1 for
+ * rays whose result is certain to be the nearest intersection, else 0. */
 static WHOLLY_INLINE void find_form_intersections(const struct beam *b, int n,
                                                   const struct glint_form *f,
                                                   const struct heights *h,
@@ -153,16 +154,16 @@ static void move_ray_to_form(struct beam *b, int k,
     double normal[3];
     bool met;
 
-    glint_form_enter(form, at, way);
-    met = glint_form_meet(form, at, way, normal, &b->cosine[k]);
+    glint_form_enter_frame(form, at, way);
+    met = glint_form_intersect_ray(form, at, way, normal, &b->cosine[k]);
     b->status[k] = update_ray_status(b->status[k], met, GLINT_RAY_MISSED);
     set_beam_ray(b, k, at, way);
     for (int i = 0; i < 3; i++)
         b->normal[i][k] = normal[i];
 }
 
-/* Moves ray K from its position in BEFORE to FORM; the result is in the light's
- * frame. */
+/* Moves ray K from its position in the batch BEFORE to FORM; the result is in
+ * the light's frame. */
 static void intersect_form_in_light_frame(struct beam *b, int k,
                                           const struct beam *before,
                                           const struct glint_form *form)
@@ -180,7 +181,7 @@ static void intersect_form_in_light_frame(struct beam *b, int k,
     }
     at[0] = b->x[k], at[1] = b->y[k], at[2] = b->z[k];
     way[0] = b->l[k], way[1] = b->m[k], way[2] = b->n[k];
-    glint_form_leave(form, at, way);
+    glint_form_leave_frame(form, at, way);
     set_beam_ray(b, k, at, way);
     for (int i = 0; i < 3; i++)
         b->normal[i][k] = normal[i];
@@ -231,7 +232,8 @@ static WHOLLY_INLINE void move_rays_to_level_form(struct beam *b, int n,
 }
 
 WIDE_VECTORS
-void glint_beam_meet_form(struct beam *b, int n, const struct glint_form *form)
+void glint_beam_move_to_form(struct beam *b, int n,
+                             const struct glint_form *form)
 {
     if (!form->level)
         for (int k = 0; k < n; k++)
@@ -242,21 +244,22 @@ void glint_beam_meet_form(struct beam *b, int n, const struct glint_form *form)
         move_rays_to_level_form(b, 1, form);
 }
 
-void glint_beam_leave_form(struct beam *b, int n, const struct glint_form *form)
+void glint_beam_leave_form_frame(struct beam *b, int n,
+                                 const struct glint_form *form)
 {
     if (form->level)
         return;
     for (int k = 0; k < n; k++) {
         double at[3] = {b->x[k], b->y[k], b->z[k]};
         double way[3] = {b->l[k], b->m[k], b->n[k]};
-        glint_form_leave(form, at, way);
+        glint_form_leave_frame(form, at, way);
         set_beam_ray(b, k, at, way);
     }
 }
 
-/* Refracts or reflects ray K at a form: direction = S * direction + PART *
- * normal. Marks it as missed unless the z direction keeps its sign (WAY = 1) or
- * changes it (WAY = -1). */
+/* Refracts or reflects ray K at a form: new direction = S * direction + PART *
+ * normal. Marks the ray as missed unless the z component of the direction keeps
+ * its sign (WAY = 1: refraction) or changes it (WAY = -1: reflection). */
 static WHOLLY_INLINE void deflect_ray_at_form(struct beam *b, int k, double s,
                                               double part, double way)
 {
@@ -286,8 +289,8 @@ static WHOLLY_INLINE void refract_or_reflect_at_form(struct beam *b, int n,
 }
 
 WIDE_VECTORS
-void glint_beam_cross_form(struct beam *b, int n, bool reflects, double ratio,
-                           const double *out)
+void glint_beam_deflect_at_form(struct beam *b, int n, bool reflects,
+                                double ratio, const double *out)
 {
     if (n == LANES)
         refract_or_reflect_at_form(b, LANES, reflects, ratio, out);

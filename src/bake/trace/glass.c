@@ -11,8 +11,8 @@
 #include "bake/table/catalogue.h"
 #include "glint/trace.h"
 
-/* Uses unrounded wavelengths of the lines: 587.56, 486.13 and 656.27 nm
- * would displace rays by about 1e-5 mm. */
+/* Uses the exact wavelengths of the Fraunhofer lines: the rounded ones, 587.56,
+ * 486.13 and 656.27 nm, would displace rays by about 1e-5 mm. */
 
 double glint_index(double nd, double vd, double wavelength_nm)
 {
@@ -29,6 +29,7 @@ double glint_index(double nd, double vd, double wavelength_nm)
 
 double glint_surface_index(const struct glint_surface *s, double wavelength_nm)
 {
-    return s->sellmeier[0] > 0.0 ? glint_sellmeier(s->sellmeier, wavelength_nm)
-                                 : glint_index(s->nd, s->vd, wavelength_nm);
+    return s->sellmeier[0] > 0.0
+               ? glint_sellmeier_index(s->sellmeier, wavelength_nm)
+               : glint_index(s->nd, s->vd, wavelength_nm);
 }

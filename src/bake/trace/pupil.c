@@ -30,9 +30,10 @@ enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
 #define EXTEND 0.125
 
 struct search {
-    /* openings that rays must pass; its path is the member places */
+    /* openings that rays must pass; openings.path points to places */
     struct glint_openings openings;
-    struct glint_path places; /* the path without energies */
+    /* the path, for tracing positions without energies */
+    struct glint_path places;
     const struct glint_path *path;
     int across, down; /* numbers of cells in this round */
     struct glint_ray ray[DOWN + 1][ACROSS + 1];
@@ -55,7 +56,7 @@ static double compute_row_y(const struct search *s, const struct glint_pupil *p,
     return p->y0_mm + (p->y1_mm - p->y0_mm) * j / s->down;
 }
 
-/* Traces row J of the grid over P along PATH. */
+/* Traces row J of the grid of rays over the pupil region P along PATH. */
 static void trace_grid_row(struct search *s, const struct glint_pupil *p,
                            const struct glint_path *path, int j)
 {
@@ -71,7 +72,8 @@ static void trace_grid_row(struct search *s, const struct glint_pupil *p,
 
 struct bounds {
     int n;
-    /* min and max of: stop x, stop y, relative radius, sensor x, sensor y */
+    /* min and max over rays of stop x, stop y, relative radius, sensor x and
+     * sensor y */
     double low[5], high[5];
 };
 
@@ -116,8 +118,8 @@ static bool can_cell_pass_light(const struct search *s, const struct bounds *b)
                s->openings.field_mm;
 }
 
-/* Marks cell (I, J), extends BOX by it, and extends FOUND by the sensor
- * positions of its rays. */
+/* Marks the corners of cell (I, J), extends BOX by the cell, and extends the
+ * sensor range of FOUND by the sensor positions CELL of the cell's rays. */
 static void mark_visible_cell(struct search *s, int i, int j,
                               const struct bounds *cell, struct bounds *box,
                               struct glint_pupil *found)
@@ -184,9 +186,9 @@ static bool shrink_to_visible_cells(struct search *s, struct glint_pupil *p)
     return true;
 }
 
-/* Returns how far from the vertex plane the front element's rim lies, mm: a
- * slanted ray crosses that plane up to this depth times its tangent outside the
- * rim. */
+/* Returns the distance in z of the front element's rim from its vertex plane,
+ * mm. A slanted ray through the rim crosses that plane outside the rim by up to
+ * this distance times the tangent of its angle. */
 static double compute_front_rim_depth(const struct glint_path *path,
                                       const struct glint_event *front)
 {
@@ -196,7 +198,7 @@ static double compute_front_rim_depth(const struct glint_path *path,
     if (!front->shaped)
         return c * h * h / (1 + sqrt(fmax(0, 1 - c * c * h * h)));
     for (int k = 0; k < TURNS; k++)
-        most = fmax(most, fabs(glint_form_sag(
+        most = fmax(most, fabs(glint_form_compute_sag(
                               &path->form[front->surface],
                               h * glint_cos_deg(360.0 / TURNS * k),
                               h * glint_sin_deg(360.0 / TURNS * k), slope)));
@@ -303,19 +305,19 @@ static bool find_visible_spot(struct search *s, const struct glint_pupil *front,
 {
     double x[2];
 
-    if (!glint_spot_find(&s->openings, front, x))
+    if (!glint_spot_find_passing_range(&s->openings, front, x))
         return false;
     *p = (struct glint_pupil){.x0_mm = x[0],
                               .x1_mm = x[1],
                               .y0_mm = front->mirrored ? 0 : x[0] - x[1],
                               .y1_mm = x[1] - x[0],
                               .mirrored = front->mirrored};
-    glint_spot_grow(&s->openings, p);
+    glint_spot_grow_pupil(&s->openings, p);
     return shrink_pupil_in_rounds(s, p, NEXT_ACROSS, NEXT_DOWN);
 }
 
-/* Finds the visible region within P, or else a spot on FRONT. NEAR: P is an
- * estimate of the region, so coarse grids suffice. */
+/* Finds the visible region within P; if there is none, searches FRONT for a
+ * small spot. NEAR: P is an estimate of the region, so coarse grids suffice. */
 static bool find_visible_region(struct search *s,
                                 const struct glint_pupil *front,
                                 struct glint_pupil *p, bool near)
@@ -328,7 +330,7 @@ static bool find_visible_region(struct search *s,
     /* Where rays bend by more than the margin, some visible ones enter outside
      * the marked cells. */
     wider = *p;
-    if (glint_spot_grow(&s->openings, &wider) &&
+    if (glint_spot_grow_pupil(&s->openings, &wider) &&
         shrink_pupil_in_rounds(s, &wider, NEXT_ACROSS, NEXT_DOWN))
         *p = wider;
     return true;
@@ -384,7 +386,7 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
                               const double direction[3], double stop_radius_mm,
                               double field_mm, const struct glint_pupil *near)
 {
-    struct search s; /* 150 KB: the offline half has a large stack */
+    struct search s; /* 150 KB on the stack; see GLINT_BAKE_STACK_BYTES */
     struct glint_pupil whole, p;
     bool found;
 

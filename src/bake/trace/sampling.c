@@ -4,10 +4,10 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* number of rays traced per call */
+/* number of rays per call of the tracer */
 enum { SOME = 8 };
 
-/* Weight of a pair of rays that proves that a barrel blocks rays; pairs that
+/* Weight of a pair of rays that proves that a barrel blocks light; pairs that
  * only suggest it have weight 1. */
 enum { SHOWN = 1000 };
 
@@ -21,9 +21,9 @@ struct probe {
 };
 
 /* Sets P from the traced RAY and its HITS. */
-static void set_ray_probe(struct probe *p, const struct glint_path *path,
-                          const struct glint_ray *ray, double (*hits)[2],
-                          double stop_radius_mm)
+static void set_probe_from_ray(struct probe *p, const struct glint_path *path,
+                               const struct glint_ray *ray, double (*hits)[2],
+                               double stop_radius_mm)
 {
     const double sx = ray->stop_x_mm / stop_radius_mm;
     const double sy = ray->stop_y_mm / stop_radius_mm;
@@ -67,15 +67,16 @@ static void trace_probe_row(struct probe *row, const struct glint_path *path,
         for (int k = 0; k < n; k++) {
             row[first + k].traced = false;
             if (status[k] == GLINT_RAY_OK)
-                set_ray_probe(&row[first + k], path, &ray[k],
-                              hits + k * path->n_events, stop_radius_mm);
+                set_probe_from_ray(&row[first + k], path, &ray[k],
+                                   hits + k * path->n_events, stop_radius_mm);
         }
     }
 }
 
-/* Adds weight to a barrel that alone blocks ray P, with a margin for the gaps
- * between rays. If several barrels block a ray that passes the stop, as beyond
- * a fold, the tightest one gets the weight. */
+/* If a single barrel blocks ray P, adds weight to it, with a margin for the
+ * gaps between rays. If several barrels block a ray that passes the stop, which
+ * occurs beyond a fold, the barrel with the largest relative radius gets the
+ * weight. */
 static void weigh_single_blocking_barrel(const struct probe *p, int n,
                                          int *weight)
 {
@@ -99,8 +100,9 @@ static void weigh_single_blocking_barrel(const struct probe *p, int n,
         weight[at]++;
 }
 
-/* Returns the fraction of the way from IN (below 1) to OUT at which the value
- * is 1; 2 if OUT is at most 1. */
+/* Returns the fraction of the way from a ray with the value IN, below 1, to a
+ * ray with the value OUT at which the interpolated value is 1 (the rim of a
+ * barrel); 2 if OUT is at most 1. */
 static double compute_rim_crossing(double in, double out)
 {
     return out > 1 ? (1 - in) / (out - in) : 2;
@@ -147,15 +149,18 @@ struct bend {
     int n;
     struct change sensor; /* mm */
     struct change stop;
-    /* differences of r^2 / 2 at each barrel, r: relative radius */
+    /* [barrels]: differences of r^2 / 2, r: relative radius */
     struct change barrel[GLINT_MAX_EVENTS + 1];
     /* numbers of cells whose image is mirrored and not mirrored */
     int up, down;
     int n_steps;
-    double thick; /* sum over neighbouring rays of rays per stop radius */
+    /* sum over pairs of neighbouring rays of 1 / their distance in the stop,
+     * stop radii */
+    double thick;
 };
 
-static void add_differences(struct change *change, double a, double b, double c)
+static void add_squared_differences(struct change *change, double a, double b,
+                                    double c)
 {
     change->first += 0.25 * (c - a) * (c - a);
     change->second += (a - 2 * b + c) * (a - 2 * b + c);
@@ -169,18 +174,18 @@ static void add_ray_differences(struct bend *bend, const struct probe *a,
 {
     if (!b->traced || !b->inside || !a->traced || !c->traced)
         return;
-    add_differences(&bend->sensor, a->x_mm, b->x_mm, c->x_mm);
-    add_differences(&bend->sensor, a->y_mm, b->y_mm, c->y_mm);
-    add_differences(&bend->stop, a->stop_x, b->stop_x, c->stop_x);
-    add_differences(&bend->stop, a->stop_y, b->stop_y, c->stop_y);
+    add_squared_differences(&bend->sensor, a->x_mm, b->x_mm, c->x_mm);
+    add_squared_differences(&bend->sensor, a->y_mm, b->y_mm, c->y_mm);
+    add_squared_differences(&bend->stop, a->stop_x, b->stop_x, c->stop_x);
+    add_squared_differences(&bend->stop, a->stop_y, b->stop_y, c->stop_y);
     for (int k = 0; k < n_events; k++)
-        add_differences(&bend->barrel[k], 0.5 * a->r2[k], 0.5 * b->r2[k],
-                        0.5 * c->r2[k]);
+        add_squared_differences(&bend->barrel[k], 0.5 * a->r2[k],
+                                0.5 * b->r2[k], 0.5 * c->r2[k]);
     bend->n++;
 }
 
-/* Returns the RMS second difference of CUT per grid step, converted to mm on
- * the sensor. */
+/* Returns the RMS second difference per grid step of CUT (values at the stop or
+ * at a barrel), converted to mm on the sensor. */
 static double convert_bend_to_sensor_mm(const struct bend *bend,
                                         const struct change *cut)
 {
@@ -201,11 +206,12 @@ static double compute_outline_bend_mm(const struct bend *bend,
     return most;
 }
 
-/* Adds the distance between A and B in the stop if the opening may lie between
- * both, that is, at most this distance away. Averages rays per radius instead
- * of radii per ray, as more light passes where rays are dense. */
-static void add_stop_step(struct bend *bend, const struct probe *a,
-                          const struct probe *b)
+/* Adds the distance in the stop between rays A and B if the stop's opening may
+ * lie between them, that is, both are at most this distance away from it.
+ * Averages rays per stop radius instead of its inverse, because more light
+ * passes where rays are dense. */
+static void add_distance_in_stop(struct bend *bend, const struct probe *a,
+                                 const struct probe *b)
 {
     double step;
 
@@ -250,11 +256,11 @@ static void process_grid_ray(const struct rows *r, int i, int j, int n_events,
     weigh_single_blocking_barrel(here, n_events, weight);
     if (i > 0) {
         weigh_first_crossed_barrel(here - 1, here, n_events, weight);
-        add_stop_step(bend, here - 1, here);
+        add_distance_in_stop(bend, here - 1, here);
     }
     if (j > 0) {
         weigh_first_crossed_barrel(above, here, n_events, weight);
-        add_stop_step(bend, above, here);
+        add_distance_in_stop(bend, above, here);
     }
     if (i > 1)
         add_ray_differences(bend, here - 2, here - 1, here, n_events);
@@ -265,10 +271,11 @@ static void process_grid_ray(const struct rows *r, int i, int j, int n_events,
         count_cell_orientation(bend, above - 1, above, here - 1);
 }
 
-void glint_sampling_run(struct glint_sampling *sampling,
-                        const struct glint_path *path,
-                        const struct glint_pupil *p, const double direction[3],
-                        double stop_radius_mm, int side)
+void glint_sampling_trace_grid(struct glint_sampling *sampling,
+                               const struct glint_path *path,
+                               const struct glint_pupil *p,
+                               const double direction[3], double stop_radius_mm,
+                               int side)
 {
     int weight[GLINT_MAX_EVENTS + 1] = {0};
     struct bend bend = {.n = 0};

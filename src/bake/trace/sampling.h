@@ -22,7 +22,8 @@ struct glint_sampling {
     int n_cuts;
     /* barrels that block rays: indices among the path's events, ascending */
     int cut_event[GLINT_MAX_EVENTS];
-    /* grows with the length of the outline that the barrel forms */
+    /* weight of each barrel, which increases with the length of the outline
+     * that it forms */
     int cut_weight[GLINT_MAX_EVENTS];
     /* Second difference of the sensor position over the pupil box, RMS over
      * visible rays, mm. A grid of n cells per side has the error bend_mm / (8
@@ -45,10 +46,10 @@ struct glint_sampling {
 
 /* Traces SIDE x SIDE cells over PUPIL for light along DIRECTION. SIDE: even, at
  * most GLINT_MAX_SAMPLING. */
-void glint_sampling_run(struct glint_sampling *sampling,
-                        const struct glint_path *path,
-                        const struct glint_pupil *pupil,
-                        const double direction[3], double stop_radius_mm,
-                        int side);
+void glint_sampling_trace_grid(struct glint_sampling *sampling,
+                               const struct glint_path *path,
+                               const struct glint_pupil *pupil,
+                               const double direction[3], double stop_radius_mm,
+                               int side);
 
 #endif

@@ -23,14 +23,15 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
         return status;
     setup->lens = lens;
     glint_optics_of(lens, &setup->optics);
-    /* positions in the picture are computed from focal_mm */
+    /* the run time computes positions in the picture from focal_mm */
     setup->optics.focal_mm = setup->optics.scale_mm;
     setup->n_ghosts = glint_ghost_list(lens, setup->ghost, GLINT_MAX_GHOSTS);
     setup->n_parts = 0;
     glint_setup_init_common(setup, n_blades, blade_rotation_deg, wavelength_nm,
                             n);
     for (int i = 0; i < n; i++) {
-        setup->direct_flux[i] = glint_direct_flux(setup, wavelength_nm[i]);
+        setup->direct_flux[i] =
+            glint_direct_compute_flux(setup, wavelength_nm[i]);
         if (setup->direct_flux[i] < 0) {
             snprintf(error->text, sizeof error->text, "not enough memory");
             return GLINT_E_MEMORY;

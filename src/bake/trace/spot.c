@@ -4,9 +4,12 @@
 #include <math.h>
 
 enum {
-    LINE = 64, /* number of cells of a segment of the search line */
+    /* number of cells (pairs of neighbouring rays) per segment of the search
+     * line */
+    LINE = 64,
     LINES = 4, /* number of segments of the search line */
-    /* number of times that a segment is searched, each time a narrower one */
+    /* number of times that a segment is searched, each time over a narrower
+     * range */
     CLOSER = 6,
     /* number of cells along a border of a box that is parallel to the rows */
     BORDER = 64,
@@ -15,15 +18,15 @@ enum {
     GROWTHS = 12
 };
 
-/* Margin around signed quantities of two neighbouring rays, as a fraction of
- * their difference. */
+/* Margin around the interval between the values of two neighbouring rays, as a
+ * fraction of their difference. */
 #define BENDS 0.5
 /* If one of two rays is invalid, rays between them may pass if both are at
  * least this far apart, in semi-diameters, at the last event that both
  * reached. */
 #define APART 0.25
-/* Fraction of its size by which a box grows on one side per step. Tips that
- * extend less than this beyond the box are found. */
+/* Fraction of its size by which a box grows on one side per step. Parts of the
+ * visible region that extend less than this beyond the box are found. */
 #define STEP 0.125
 
 /* a segment of neighbouring rays in the light's plane */
@@ -177,8 +180,9 @@ static void refine_passing_runs(const struct glint_openings *o,
     }
 }
 
-bool glint_spot_find(const struct glint_openings *o,
-                     const struct glint_pupil *front, double x_mm[2])
+bool glint_spot_find_passing_range(const struct glint_openings *o,
+                                   const struct glint_pupil *front,
+                                   double x_mm[2])
 {
     const double length = (front->x1_mm - front->x0_mm) / LINES;
     struct line line;
@@ -214,7 +218,8 @@ static bool has_passing_ray_on_segment(const struct glint_openings *o,
     return any;
 }
 
-bool glint_spot_grow(const struct glint_openings *o, struct glint_pupil *p)
+bool glint_spot_grow_pupil(const struct glint_openings *o,
+                           struct glint_pupil *p)
 {
     const struct glint_pupil before = *p;
 

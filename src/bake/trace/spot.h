@@ -28,11 +28,13 @@ struct glint_openings {
 
 /* Sets X_MM to the widest range, with a margin, of the line across FRONT in
  * which rays pass. Returns false if no ray passes. */
-bool glint_spot_find(const struct glint_openings *o,
-                     const struct glint_pupil *front, double x_mm[2]);
+bool glint_spot_find_passing_range(const struct glint_openings *o,
+                                   const struct glint_pupil *front,
+                                   double x_mm[2]);
 
 /* Moves each side of P outwards until no ray passes on it. Returns whether a
  * side was moved. */
-bool glint_spot_grow(const struct glint_openings *o, struct glint_pupil *p);
+bool glint_spot_grow_pupil(const struct glint_openings *o,
+                           struct glint_pupil *p);
 
 #endif

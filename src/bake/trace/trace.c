@@ -33,7 +33,7 @@ struct route {
     const struct glint_prescription *lens;
     struct glint_path *path;
     double wavelength_nm, phi_deg;
-    int at; /* index of the last element appended; -1: none yet */
+    int at; /* index of the element of the last event; -1: no event yet */
 };
 
 /* Sets the indices of refraction in front of and behind surface K. */
@@ -59,8 +59,8 @@ static double compute_event_distance_mm(const struct route *route, int e)
                          : -get_element_gap_mm(route->lens, e);
 }
 
-/* Appends an event of KIND at element E. FORWARD: the ray runs towards the
- * sensor. */
+/* Appends an event of KIND at element E. FORWARD: the ray arrives at E running
+ * towards the sensor. */
 static void append_path_event(struct route *route, int e,
                               enum glint_event_kind kind, bool forward)
 {
@@ -195,9 +195,9 @@ static WHOLLY_INLINE void deflect_ray_at_sphere(struct beam *b, int k, double c,
                                      GLINT_RAY_MISSED);
 }
 
-/* Sets PART to the reflectances of N rays at the surface of event E, coated
- * with FILM. OUT: cosines of the refracted rays; where they are 0, PART is
- * 1. */
+/* Sets PART[N] to the reflectances for N rays at the surface of event E, coated
+ * with FILM. OUT[N]: cosines of the refracted rays; 0: total reflection, for
+ * which PART is 1. */
 static WHOLLY_INLINE void compute_reflectances(const struct beam *b, int n,
                                                const struct glint_event *e,
                                                const struct glint_film_at *film,
@@ -244,7 +244,7 @@ refract_or_reflect_rays(struct beam *b, int n, const struct glint_event *e,
     for (int k = 0; k < n && energies; k++)
         b->energy[k] *= reflects ? part[k] : 1.0 - part[k];
     if (e->shaped) {
-        glint_beam_cross_form(b, n, reflects, ratio, out);
+        glint_beam_deflect_at_form(b, n, reflects, ratio, out);
         return;
     }
     for (int k = 0; k < n && reflects; k++)
@@ -306,8 +306,8 @@ static WHOLLY_INLINE void record_ray_hit(const struct beam *b, int k,
         hit[i] = form->turn[i][0] * b->x[k] + form->turn[i][1] * b->y[k];
 }
 
-/* Traces N rays through event E. For the first ASKED rays, HITS[k * n_events]
- * receives the position of ray k. */
+/* Traces N rays through event E. For each of the first ASKED rays, stores the
+ * position of ray k in HITS[k * n_events]. */
 static WHOLLY_INLINE void trace_rays_through_event(
     struct beam *b, int n, int asked, const struct glint_path *path,
     const struct glint_event *e, bool energies, double (*hits)[2])
@@ -319,7 +319,7 @@ static WHOLLY_INLINE void trace_rays_through_event(
             b->stop_y[k] = b->y[k];
         }
     else if (e->shaped)
-        glint_beam_meet_form(b, n, &path->form[e->surface]);
+        glint_beam_move_to_form(b, n, &path->form[e->surface]);
     else
         move_rays_to_sphere(b, n, e->curvature);
     for (int k = 0; k < asked && hits; k++)
@@ -331,7 +331,7 @@ static WHOLLY_INLINE void trace_rays_through_event(
     update_max_radius(b, n, e->semi_mm);
     refract_or_reflect_rays(b, n, e, path->film[e->surface], energies);
     if (e->shaped)
-        glint_beam_leave_form(b, n, &path->form[e->surface]);
+        glint_beam_leave_form_frame(b, n, &path->form[e->surface]);
 }
 
 /* Converts positions on the sensor to those in the picture of an anamorphic
@@ -360,7 +360,7 @@ static inline enum glint_ray_status read_traced_ray(const struct beam *b, int k,
     return GLINT_RAY_OK;
 }
 
-/* Traces LANES lanes; the first N are the rays FROM, the others repeat the
+/* Traces a batch of LANES rays: the first N are FROM[N], the others repeat the
  * first ray. */
 static WHOLLY_INLINE void
 trace_ray_lanes(const struct glint_path *path, int lanes, int n, bool energies,

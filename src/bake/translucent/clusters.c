@@ -16,17 +16,18 @@
 #include <string.h>
 
 enum {
-    ROUNDS = 8, /* errors decrease by less than 1 % in further rounds */
-    /* radius in texels of the neighbourhood over which the fractions of
-     * materials are averaged */
+    /* number of rounds; further rounds reduce errors by less than 1 % */
+    ROUNDS = 8,
+    /* radius of the neighbourhood over which the fractions of materials are
+     * averaged, texels */
     ABOUT = 2
 };
 
 struct clusters {
     const struct glint_scatter_rows *rows;
     struct glint_scatter_fit *fit;
-    /* numerators and denominators of least squares, one per texel or per kernel
-     * entry */
+    /* numerators and denominators of the least-squares solutions, one per texel
+     * or per kernel entry */
     double *above, *below;
 };
 
@@ -34,16 +35,16 @@ struct clusters {
 struct span {
     int x, c, u_from, u_to;
     const float *data;
-    /* in: in factors of the texels to which the entries lead, 3 doubles
-     * apart */
+    /* kernel: entries of the kernel. in: factors for entering light of the
+     * texels to which the entries lead, 3 doubles apart. */
     double *kernel, *in;
 };
 
 static double *get_cluster_kernel(const struct glint_scatter_fit *fit, int j,
                                   int c)
 {
-    return fit->h +
-           (size_t)(j * 3 + c) * (size_t)glint_scatter_kernel2(fit->kernel);
+    return fit->h + (size_t)(j * 3 + c) *
+                        (size_t)glint_scatter_count_entries(fit->kernel);
 }
 
 /* Returns line V of the row of texel X, with kernel J. */
@@ -58,7 +59,7 @@ static struct span get_row_line(const struct clusters *p,
         .c = c,
         .u_from = in->u_from,
         .u_to = in->u_to,
-        .data = glint_scatter_row(p->rows, x, c) + v * n,
+        .data = glint_scatter_get_row(p->rows, x, c) + v * n,
         .kernel = get_cluster_kernel(p->fit, j, c) + v * n,
         /* only entries inside the square are accessed */
         .in =
@@ -72,7 +73,7 @@ static void compute_row_sums(const struct clusters *p, int x, int c, int j,
                              double *product, double *square)
 {
     const struct glint_scatter_inside in =
-        glint_scatter_inside(p->fit->side, p->fit->kernel, x);
+        glint_scatter_find_offsets_inside(p->fit->side, p->fit->kernel, x);
 
     *product = *square = 0;
     for (int v = in.v_from; v < in.v_to; v++) {
@@ -92,7 +93,7 @@ static double divide_or_zero(double above, double below)
     return below > 0 ? above / below : 0;
 }
 
-static void fit_out_factors(const struct clusters *p)
+static void fit_leaving_factors(const struct clusters *p)
 {
     for (int x = 0; x < p->fit->side * p->fit->side; x++)
         for (int c = 0; c < 3; c++) {
@@ -103,8 +104,8 @@ static void fit_out_factors(const struct clusters *p)
         }
 }
 
-/* Sets SCALE[N] to its least-squares solution: in factors if IN_SCALES, else
- * kernel entries. */
+/* Sets SCALE[N] to its least-squares solution. SCALE: factors for entering
+ * light if IN_SCALES, else kernel entries. */
 static void fit_least_squares_scales(const struct clusters *p, bool in_scales,
                                      double *scale, size_t n)
 {
@@ -115,7 +116,7 @@ static void fit_least_squares_scales(const struct clusters *p, bool in_scales,
     for (int i = 0; i < 3 * side * side; i++) {
         const int x = i / 3, c = i % 3;
         const struct glint_scatter_inside in =
-            glint_scatter_inside(side, p->fit->kernel, x);
+            glint_scatter_find_offsets_inside(side, p->fit->kernel, x);
 
         for (int v = in.v_from; v < in.v_to; v++) {
             const struct span s =
@@ -136,7 +137,7 @@ static void fit_least_squares_scales(const struct clusters *p, bool in_scales,
         scale[i] = divide_or_zero(p->above[i], p->below[i]);
 }
 
-static void fit_in_factors(const struct clusters *p)
+static void fit_entering_factors(const struct clusters *p)
 {
     fit_least_squares_scales(p, true, p->fit->in,
                              3 * (size_t)p->fit->side * (size_t)p->fit->side);
@@ -144,12 +145,14 @@ static void fit_in_factors(const struct clusters *p)
 
 static void fit_cluster_kernels(const struct clusters *p)
 {
-    fit_least_squares_scales(p, false, p->fit->h,
-                             3 * (size_t)p->fit->kernels *
-                                 (size_t)glint_scatter_kernel2(p->fit->kernel));
+    fit_least_squares_scales(
+        p, false, p->fit->h,
+        3 * (size_t)p->fit->kernels *
+            (size_t)glint_scatter_count_entries(p->fit->kernel));
 }
 
-/* Assigns each texel to the kernel that explains most of its row. */
+/* Assigns each texel to the kernel with the smallest residual of the texel's
+ * row. */
 static void assign_texels_to_kernels(const struct clusters *p)
 {
     for (int x = 0; x < p->fit->side * p->fit->side; x++) {
@@ -174,8 +177,8 @@ static void assign_texels_to_kernels(const struct clusters *p)
     }
 }
 
-/* Returns the value, 0 .. 1, by which texel X is initially assigned to a
- * cluster. MOST: max sum of a texel's albedos. */
+/* Returns the value, 0 .. 1, that determines the initial cluster of texel X.
+ * MOST: max sum of a texel's albedos. */
 static double compute_initial_position(const struct clusters *p, int x,
                                        double most)
 {
@@ -187,7 +190,7 @@ static double compute_initial_position(const struct clusters *p, int x,
     if (!p->rows->share)
         return most > 0 ? (a[0] + a[1] + a[2]) / most : 0;
     for (int d = 0; d < window * window; d++) {
-        const int to = glint_scatter_target(side, window, x, d);
+        const int to = glint_scatter_get_target_texel(side, window, x, d);
 
         if (to >= 0) {
             sum += p->rows->share[to];
@@ -218,12 +221,12 @@ static void set_initial_clusters(const struct clusters *p)
     }
 }
 
-/* Scales each kernel to the sum 1, so that out factors are near the albedo and
- * in factors near 1. */
+/* Scales each kernel to the sum 1, so that factors for leaving light are near
+ * the albedo and factors for entering light near 1. */
 static void normalise_kernels(const struct clusters *p)
 {
     const int texels = p->fit->side * p->fit->side;
-    const int k2 = glint_scatter_kernel2(p->fit->kernel);
+    const int k2 = glint_scatter_count_entries(p->fit->kernel);
 
     for (int c = 0; c < 3; c++) {
         double mean = 0;
@@ -249,26 +252,27 @@ static enum glint_status fit_clusters(struct clusters *p,
     set_initial_clusters(p);
     fit_cluster_kernels(p);
     for (int i = 0; i < ROUNDS; i++) {
-        if (glint_watch_ends(watch, (double)i / ROUNDS))
+        if (glint_watch_report_progress(watch, (double)i / ROUNDS))
             return GLINT_E_CLOSED;
         if (i > 0)
             assign_texels_to_kernels(p);
-        fit_out_factors(p);
-        fit_in_factors(p);
+        fit_leaving_factors(p);
+        fit_entering_factors(p);
         fit_cluster_kernels(p);
     }
     normalise_kernels(p);
-    fit_out_factors(p);
+    fit_leaving_factors(p);
     return GLINT_OK;
 }
 
-enum glint_status glint_scatter_clusters(const struct glint_scatter_rows *rows,
-                                         const struct glint_watch *watch,
-                                         struct glint_scatter_fit *fit)
+enum glint_status
+glint_scatter_fit_clusters(const struct glint_scatter_rows *rows,
+                           const struct glint_watch *watch,
+                           struct glint_scatter_fit *fit)
 {
     const size_t texels = (size_t)fit->side * (size_t)fit->side;
-    const size_t entries =
-        (size_t)fit->kernels * 3 * (size_t)glint_scatter_kernel2(fit->kernel);
+    const size_t entries = (size_t)fit->kernels * 3 *
+                           (size_t)glint_scatter_count_entries(fit->kernel);
     const size_t sums = entries > 3 * texels ? entries : 3 * texels;
     struct clusters p = {.rows = rows, .fit = fit};
     enum glint_status status = GLINT_E_MEMORY;

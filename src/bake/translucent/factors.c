@@ -22,13 +22,14 @@ struct factors {
     const struct glint_scatter_rows *rows;
     struct glint_scatter_fit *fit;
     int c;
-    /* arrays of channel c for kernel 0; those of other kernels follow at
-     * distances of 3 */
+    /* h: kernels; f: weights of texels; column, row: kernels of low rank. Each
+     * points to the array of channel c of kernel 0; arrays of other kernels
+     * follow at distances of 3 arrays. */
     double *h, *f, *column, *row;
-    /* indices of the texels whose rows lie completely inside the square */
+    /* indices of the texels whose rows lie completely inside the map */
     int *complete;
-    /* normal equations, one system per entry of a kernel: matrices, right
-     * sides */
+    /* normal equations, one system per kernel entry: matrices (gram) and right
+     * sides (side) */
     double *gram, *side;
 };
 
@@ -37,13 +38,13 @@ static double *get_channel_array(double *all, int j, size_t n)
     return all + (size_t)j * 3 * n;
 }
 
-static double *get_factor_kernel(const struct factors *p, int j)
+static double *get_kernel_entries(const struct factors *p, int j)
 {
-    return get_channel_array(p->h, j,
-                             (size_t)glint_scatter_kernel2(p->fit->kernel));
+    return get_channel_array(
+        p->h, j, (size_t)glint_scatter_count_entries(p->fit->kernel));
 }
 
-static double *get_texel_weights(const struct factors *p, int j)
+static double *get_kernel_weights_of_texels(const struct factors *p, int j)
 {
     return get_channel_array(p->f, j,
                              (size_t)p->fit->side * (size_t)p->fit->side);
@@ -52,9 +53,9 @@ static double *get_texel_weights(const struct factors *p, int j)
 static void read_complete_row(const void *ctx, int i, double *to)
 {
     const struct factors *p = ctx;
-    const float *row = glint_scatter_row(p->rows, p->complete[i], p->c);
+    const float *row = glint_scatter_get_row(p->rows, p->complete[i], p->c);
 
-    for (int d = 0; d < glint_scatter_kernel2(p->fit->kernel); d++)
+    for (int d = 0; d < glint_scatter_count_entries(p->fit->kernel); d++)
         to[d] = (double)row[d];
 }
 
@@ -69,17 +70,17 @@ static bool set_initial_kernels(struct factors *p)
     for (int some = 0; some < 2 && a.rows == 0; some++)
         for (int x = 0; x < side * side; x++) {
             const struct glint_scatter_inside in =
-                glint_scatter_inside(side, n, x);
+                glint_scatter_find_offsets_inside(side, n, x);
 
             if (some || (in.u_to - in.u_from) * (in.v_to - in.v_from) == k2)
                 p->complete[a.rows++] = x;
         }
-    if (!glint_terms_of(&a, p->fit->kernels, &terms))
+    if (!glint_terms_compute(&a, p->fit->kernels, &terms))
         return false;
     for (int j = 0; j < terms.n; j++)
-        memcpy(get_factor_kernel(p, j), terms.right + (size_t)j * (size_t)k2,
+        memcpy(get_kernel_entries(p, j), terms.right + (size_t)j * (size_t)k2,
                (size_t)k2 * sizeof *terms.right);
-    glint_terms_close(&terms);
+    glint_terms_free(&terms);
     return true;
 }
 
@@ -88,7 +89,7 @@ static bool set_initial_kernels(struct factors *p)
 static void truncate_kernel(const struct factors *p, int j)
 {
     const int n = p->fit->kernel, rank = p->fit->rank;
-    double *h = get_factor_kernel(p, j), *a = p->gram, *turn = p->gram + n * n;
+    double *h = get_kernel_entries(p, j), *a = p->gram, *turn = p->gram + n * n;
     double *column = get_channel_array(p->column, j, (size_t)rank * (size_t)n);
     double *row = get_channel_array(p->row, j, (size_t)rank * (size_t)n);
 
@@ -97,7 +98,7 @@ static void truncate_kernel(const struct factors *p, int j)
             a[u * n + v] = h[v * n + u];
             turn[u * n + v] = u == v;
         }
-    glint_jacobi(a, n, n, turn, n);
+    glint_jacobi_orthogonalise(a, n, n, turn, n);
     memset(h, 0, (size_t)(n * n) * sizeof *h);
     memset(column, 0, (size_t)rank * (size_t)n * sizeof *column);
     memset(row, 0, (size_t)rank * (size_t)n * sizeof *row);
@@ -106,7 +107,7 @@ static void truncate_kernel(const struct factors *p, int j)
 
         for (int v = 0; v < n; v++)
             length += a[q * n + v] * a[q * n + v];
-        /* distributes the length equally over column and row */
+        /* distributes the magnitude equally between column and row */
         root = sqrt(sqrt(length));
         for (int v = 0; v < n && root > 0; v++) {
             column[q * n + v] = a[q * n + v] / root;
@@ -125,19 +126,19 @@ static void set_weight_equations(const struct factors *p, int x, double *gram,
 {
     const int n = p->fit->kernel, k = p->fit->kernels;
     const struct glint_scatter_inside in =
-        glint_scatter_inside(p->fit->side, n, x);
-    const float *data = glint_scatter_row(p->rows, x, p->c);
+        glint_scatter_find_offsets_inside(p->fit->side, n, x);
+    const float *data = glint_scatter_get_row(p->rows, x, p->c);
 
     memset(gram, 0, (size_t)(k * k) * sizeof *gram);
     memset(sums, 0, (size_t)k * sizeof *sums);
     for (int j = 0; j < k; j++)
         for (int v = in.v_from; v < in.v_to; v++) {
-            const double *h = get_factor_kernel(p, j) + v * n;
+            const double *h = get_kernel_entries(p, j) + v * n;
 
             for (int u = in.u_from; u < in.u_to; u++)
                 sums[j] += h[u] * (double)data[v * n + u];
             for (int i = 0; i <= j; i++) {
-                const double *other = get_factor_kernel(p, i) + v * n;
+                const double *other = get_kernel_entries(p, i) + v * n;
 
                 for (int u = in.u_from; u < in.u_to; u++)
                     gram[j * k + i] += h[u] * other[u];
@@ -162,9 +163,9 @@ static void fit_texel_weights(const struct factors *p)
     for (int x = 0; x < p->fit->side * p->fit->side; x++) {
         set_weight_equations(p, x, gram, sums);
         mirror_lower_triangle(gram, k);
-        glint_solve(gram, k, sums);
+        glint_solve_symmetric_system(gram, k, sums);
         for (int j = 0; j < k; j++)
-            get_texel_weights(p, j)[x] = sums[j];
+            get_kernel_weights_of_texels(p, j)[x] = sums[j];
     }
 }
 
@@ -173,12 +174,12 @@ static void add_row_to_equations(const struct factors *p, int x)
 {
     const int n = p->fit->kernel, k = p->fit->kernels;
     const struct glint_scatter_inside in =
-        glint_scatter_inside(p->fit->side, n, x);
-    const float *data = glint_scatter_row(p->rows, x, p->c);
+        glint_scatter_find_offsets_inside(p->fit->side, n, x);
+    const float *data = glint_scatter_get_row(p->rows, x, p->c);
     double f[GLINT_SCATTER_MAX_TERMS];
 
     for (int j = 0; j < k; j++)
-        f[j] = get_texel_weights(p, j)[x];
+        f[j] = get_kernel_weights_of_texels(p, j)[x];
     for (int v = in.v_from; v < in.v_to; v++)
         for (int d = v * n + in.u_from; d < v * n + in.u_to; d++) {
             double *gram = p->gram + (size_t)d * (size_t)(k * k);
@@ -194,7 +195,8 @@ static void add_row_to_equations(const struct factors *p, int x)
 /* Fits all kernels by least squares, for the current weights. */
 static void fit_factor_kernels(const struct factors *p)
 {
-    const int k2 = glint_scatter_kernel2(p->fit->kernel), k = p->fit->kernels;
+    const int k2 = glint_scatter_count_entries(p->fit->kernel),
+              k = p->fit->kernels;
 
     memset(p->gram, 0, (size_t)(k2 * k * k) * sizeof *p->gram);
     memset(p->side, 0, (size_t)(k2 * k) * sizeof *p->side);
@@ -204,9 +206,9 @@ static void fit_factor_kernels(const struct factors *p)
         double *gram = p->gram + (size_t)d * (size_t)(k * k);
 
         mirror_lower_triangle(gram, k);
-        glint_solve(gram, k, p->side + d * k);
+        glint_solve_symmetric_system(gram, k, p->side + d * k);
         for (int j = 0; j < k; j++)
-            get_factor_kernel(p, j)[d] = p->side[d * k + j];
+            get_kernel_entries(p, j)[d] = p->side[d * k + j];
     }
 }
 
@@ -214,7 +216,7 @@ static enum glint_status fit_all_channels(struct factors *p,
                                           const struct glint_watch *watch)
 {
     const size_t texels = (size_t)p->fit->side * (size_t)p->fit->side;
-    const size_t k2 = (size_t)glint_scatter_kernel2(p->fit->kernel);
+    const size_t k2 = (size_t)glint_scatter_count_entries(p->fit->kernel);
     const size_t line = (size_t)p->fit->rank * (size_t)p->fit->kernel;
 
     for (p->c = 0; p->c < 3; p->c++) {
@@ -225,7 +227,8 @@ static enum glint_status fit_all_channels(struct factors *p,
         if (!set_initial_kernels(p))
             return GLINT_E_MEMORY;
         for (int i = 0; i < ROUNDS; i++) {
-            if (glint_watch_ends(watch, (p->c + (i + 1.0) / (ROUNDS + 1)) / 3))
+            if (glint_watch_report_progress(
+                    watch, (p->c + (i + 1.0) / (ROUNDS + 1)) / 3))
                 return GLINT_E_CLOSED;
             if (i > 0)
                 fit_factor_kernels(p);
@@ -237,12 +240,13 @@ static enum glint_status fit_all_channels(struct factors *p,
     return GLINT_OK;
 }
 
-enum glint_status glint_scatter_factors(const struct glint_scatter_rows *rows,
-                                        const struct glint_watch *watch,
-                                        struct glint_scatter_fit *fit)
+enum glint_status
+glint_scatter_fit_factors(const struct glint_scatter_rows *rows,
+                          const struct glint_watch *watch,
+                          struct glint_scatter_fit *fit)
 {
     const size_t texels = (size_t)fit->side * (size_t)fit->side;
-    const size_t k2 = (size_t)glint_scatter_kernel2(fit->kernel);
+    const size_t k2 = (size_t)glint_scatter_count_entries(fit->kernel);
     const size_t k = (size_t)fit->kernels;
     const size_t line = (size_t)fit->rank * (size_t)fit->kernel;
     struct factors p = {.rows = rows, .fit = fit};
@@ -253,7 +257,7 @@ enum glint_status glint_scatter_factors(const struct glint_scatter_rows *rows,
     fit->column = calloc(3 * k * line, sizeof *fit->column);
     fit->row = calloc(3 * k * line, sizeof *fit->row);
     p.complete = malloc(texels * sizeof *p.complete);
-    /* truncate_kernel() stores two kernels there, too */
+    /* truncate_kernel() also stores two kernels in gram */
     p.gram = malloc(k2 * (k * k + k + 2) * sizeof *p.gram);
     p.side = p.gram + k2 * (k * k + 2);
     if (fit->h && fit->f && fit->column && fit->row && p.complete && p.gram)

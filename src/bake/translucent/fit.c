@@ -25,8 +25,8 @@ void glint_scatter_fit_close(struct glint_scatter_fit *fit)
 static const double *get_fit_kernel(const struct glint_scatter_fit *fit, int j,
                                     int c)
 {
-    return fit->h +
-           (size_t)(j * 3 + c) * (size_t)glint_scatter_kernel2(fit->kernel);
+    return fit->h + (size_t)(j * 3 + c) *
+                        (size_t)glint_scatter_count_entries(fit->kernel);
 }
 
 /* Returns the factor of kernel J for light that leaves texel X in channel C. */
@@ -44,7 +44,7 @@ static double get_leaving_factor(const struct glint_scatter_fit *fit, int j,
 double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
                            int d)
 {
-    const int to = glint_scatter_target(fit->side, fit->kernel, x, d);
+    const int to = glint_scatter_get_target_texel(fit->side, fit->kernel, x, d);
     double sum = 0;
 
     if (to < 0)
@@ -55,13 +55,14 @@ double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
 }
 
 /* Returns the light of channel C that texel X receives from LIGHT through
- * kernel H, whose offsets lead to the source. */
+ * kernel H. Offsets of H lead from a texel to the source of its light. */
 static double gather_light_by_kernel(const struct glint_scatter_fit *fit, int x,
                                      const double *h, const double *light,
                                      int c)
 {
     const int side = fit->side, n = fit->kernel, half = n / 2;
-    const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
+    const struct glint_scatter_inside in =
+        glint_scatter_find_offsets_inside(side, n, x);
     double sum = 0;
 
     for (int v = in.v_from; v < in.v_to; v++)
@@ -136,15 +137,15 @@ void glint_scatter_defaults(struct glint_scatter_options *options,
     };
 }
 
-/* Sets ALBEDO to the sums of the rows, per texel and channel. */
+/* Sets ALBEDO to the sum of each row, per texel and channel. */
 static void compute_row_albedo(const struct glint_scatter_rows *rows,
                                double *albedo)
 {
-    const int k2 = glint_scatter_kernel2(rows->kernel);
+    const int k2 = glint_scatter_count_entries(rows->kernel);
 
     for (int x = 0; x < rows->side * rows->side; x++)
         for (int c = 0; c < 3; c++) {
-            const float *row = glint_scatter_row(rows, x, c);
+            const float *row = glint_scatter_get_row(rows, x, c);
             double sum = 0;
 
             for (int d = 0; d < k2; d++)
@@ -160,22 +161,22 @@ static double compute_uniform_response(const struct glint_scatter_fit *fit,
 {
     const int n = fit->kernel;
     const struct glint_scatter_inside in =
-        glint_scatter_inside(fit->side, n, x);
+        glint_scatter_find_offsets_inside(fit->side, n, x);
     double sum = 0;
 
     for (int v = in.v_from; v < in.v_to; v++)
         for (int u = in.u_from; u < in.u_to; u++) {
             const int d = v * n + u;
 
-            sum += glint_scatter_entry(fit,
-                                       glint_scatter_target(fit->side, n, x, d),
-                                       c, n * n - 1 - d);
+            sum += glint_scatter_entry(
+                fit, glint_scatter_get_target_texel(fit->side, n, x, d), c,
+                n * n - 1 - d);
         }
     return sum;
 }
 
-/* Scales the light that leaves each texel such that under uniform irradiance it
- * equals the albedo of the data. */
+/* Scales the light that leaves each texel such that it equals the albedo of the
+ * data under uniform irradiance 1. */
 static void scale_fit_to_albedo(struct glint_scatter_fit *fit)
 {
     const int texels = fit->side * fit->side;
@@ -184,7 +185,7 @@ static void scale_fit_to_albedo(struct glint_scatter_fit *fit)
         for (int c = 0; c < 3; c++) {
             const double sum = compute_uniform_response(fit, x, c);
             const double want = fit->albedo[3 * x + c];
-            /* a fit with almost no light cannot be scaled */
+            /* a texel with almost no light in the fit cannot be scaled */
             const double scale = sum > 0.1 * want && want > 0 ? want / sum : 1;
 
             for (int j = 0; fit->f && j < fit->kernels; j++)
@@ -219,14 +220,14 @@ static void mirror_kernels(struct glint_scatter_fit *fit)
     }
 }
 
-/* Returns the sum of the entries of kernel H around texel X that lie inside the
- * square. */
+/* Returns the sum of those entries of kernel H around texel X that lie inside
+ * the map. */
 static double sum_kernel_inside(const struct glint_scatter_fit *fit, int x,
                                 const double *h)
 {
     const int n = fit->kernel;
     const struct glint_scatter_inside in =
-        glint_scatter_inside(fit->side, n, x);
+        glint_scatter_find_offsets_inside(fit->side, n, x);
     double sum = 0;
 
     for (int v = in.v_from; v < in.v_to; v++)
@@ -247,8 +248,9 @@ static void compute_mean_kernel(const struct glint_scatter_rows *rows,
     memset(h, 0, (size_t)k2 * sizeof *h);
     memset(square, 0, (size_t)k2 * sizeof *square);
     for (int x = 0; x < side * side; x++) {
-        const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
-        const float *row = glint_scatter_row(rows, x, c);
+        const struct glint_scatter_inside in =
+            glint_scatter_find_offsets_inside(side, n, x);
+        const float *row = glint_scatter_get_row(rows, x, c);
         const double a = fit->out[3 * x + c];
 
         for (int v = in.v_from; v < in.v_to; v++)
@@ -265,14 +267,14 @@ static void compute_mean_kernel(const struct glint_scatter_rows *rows,
         h[d] /= sum;
 }
 
-/* Fits one kernel and an albedo per texel. Rows at the rim are only partly
- * inside the square; their complete sums follow from the kernel, and the kernel
+/* Fits one kernel, and an albedo per texel. Rows at the rim lie only partly
+ * inside the map; their complete sums follow from the kernel, and the kernel
  * from these sums, so both are iterated. */
 static enum glint_status fit_albedo_model(const struct glint_scatter_rows *rows,
                                           struct glint_scatter_fit *fit)
 {
     const int n = 3 * fit->side * fit->side;
-    const size_t k2 = (size_t)glint_scatter_kernel2(fit->kernel);
+    const size_t k2 = (size_t)glint_scatter_count_entries(fit->kernel);
     double *square = malloc(k2 * sizeof *square);
 
     fit->h = calloc(3 * k2, sizeof *fit->h);
@@ -302,16 +304,16 @@ static double compute_psnr_db(double square, double peak)
                                   : NO_ERROR_DB;
 }
 
-/* Measures the errors of entries and of row sums of the fit. */
+/* Measures the errors of the entries and of the row sums of the fit. */
 static void measure_entry_errors(const struct glint_scatter_rows *rows,
                                  struct glint_scatter_fit *fit)
 {
-    const int k2 = glint_scatter_kernel2(fit->kernel);
+    const int k2 = glint_scatter_count_entries(fit->kernel);
     double square = 0, peak = 0;
 
     for (int x = 0; x < fit->side * fit->side; x++)
         for (int c = 0; c < 3; c++) {
-            const float *row = glint_scatter_row(rows, x, c);
+            const float *row = glint_scatter_get_row(rows, x, c);
             double sum = 0;
 
             for (int d = 0; d < k2; d++) {
@@ -369,9 +371,9 @@ static enum glint_status fit_chosen_model(const struct glint_scatter_rows *rows,
 {
     switch (fit->model) {
     case GLINT_SCATTER_CLUSTERED:
-        return glint_scatter_clusters(rows, watch, fit);
+        return glint_scatter_fit_clusters(rows, watch, fit);
     case GLINT_SCATTER_FACTORED:
-        return glint_scatter_factors(rows, watch, fit);
+        return glint_scatter_fit_factors(rows, watch, fit);
     case GLINT_SCATTER_ALBEDO:
     default:
         return fit_albedo_model(rows, fit);
@@ -397,12 +399,12 @@ enum glint_status glint_scatter_fit(struct glint_scatter_rows *rows,
     fit->albedo = calloc(3 * texels, sizeof *fit->albedo);
     status = fit->albedo ? GLINT_OK : GLINT_E_MEMORY;
     if (status == GLINT_OK) {
-        /* Fits the transposed rows, as errors are visible where light
-         * leaves. */
-        glint_scatter_turn(rows);
+        /* fits the transposed rows, because errors are visible where light
+         * leaves */
+        glint_scatter_transpose_rows(rows);
         compute_row_albedo(rows, fit->albedo);
         status = fit_chosen_model(rows, watch, fit);
-        glint_scatter_turn(rows);
+        glint_scatter_transpose_rows(rows);
     }
     if (status == GLINT_OK) {
         mirror_kernels(fit);

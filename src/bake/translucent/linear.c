@@ -9,8 +9,8 @@
 #include "glint/scene/translucent_bake.h"
 
 enum {
-    /* number of additional vectors, which accelerate the convergence of the
-     * last requested one */
+    /* number of additional vectors in the subspace iteration, which accelerate
+     * the convergence of the last requested one */
     SPARE = 8,
     ROUNDS = 300,
     SWEEPS = 60
@@ -18,7 +18,8 @@ enum {
 
 /* cosine below which two columns are orthogonal */
 #define SAME 1e-15
-/* length after / length before orthogonalisation below which a vector is 0 */
+/* a vector counts as 0 if orthogonalisation reduces its length below this
+ * fraction */
 #define NOTHING 1e-13
 /* relative change of the sum of eigenvalues at which the iteration stops */
 #define STILL 1e-15
@@ -53,8 +54,8 @@ static void swap_rows(double *a, double *b, int n)
     }
 }
 
-/* One Jacobi rotation: makes columns I and K of A orthogonal; rotates TURN with
- * them. Returns false if they were orthogonal already. */
+/* One Jacobi rotation: makes columns I and K of A orthogonal and applies the
+ * same rotation to TURN. Returns false if they were orthogonal already. */
 static bool orthogonalise_column_pair(double *a, int rows, int i, int k,
                                       double *turn, int m)
 {
@@ -82,7 +83,7 @@ static bool orthogonalise_column_pair(double *a, int rows, int i, int k,
     return true;
 }
 
-void glint_jacobi(double *a, int rows, int n, double *turn, int m)
+void glint_jacobi_orthogonalise(double *a, int rows, int n, double *turn, int m)
 {
     bool turned = true;
 
@@ -94,13 +95,13 @@ void glint_jacobi(double *a, int rows, int n, double *turn, int m)
     }
 }
 
-void glint_solve(double *a, int n, double *b)
+void glint_solve_symmetric_system(double *a, int n, double *b)
 {
     double most = 0;
 
     for (int i = 0; i < n; i++)
         most = fmax(most, a[i * n + i]);
-    /* factorises A = L D L', D on the diagonal */
+    /* factorises A = L D L'; D replaces the diagonal of A */
     for (int i = 0; i < n; i++) {
         double *row = a + (size_t)i * (size_t)n;
 
@@ -214,8 +215,8 @@ static void compute_gram_matrix(const struct glint_tall *a, double *g,
             g[j * m + k] = g[k * m + j];
 }
 
-/* Sets TERMS to its N leading terms from Y[][rows], whose rows must be
- * orthogonal, and V[][columns]. */
+/* Sets TERMS to the leading terms of A from the left vectors Y[][rows], which
+ * must be orthogonal but not normalised, and the right vectors V[][columns]. */
 static void set_leading_terms(const double *y, const double *v,
                               const struct glint_tall *a,
                               struct glint_terms *terms)
@@ -233,8 +234,8 @@ static void set_leading_terms(const double *y, const double *v,
     }
 }
 
-bool glint_terms_of(const struct glint_tall *a, int n,
-                    struct glint_terms *terms)
+bool glint_terms_compute(const struct glint_tall *a, int n,
+                         struct glint_terms *terms)
 {
     const int m = a->columns, wanted = n < m ? n : m;
     const int wide = wanted + SPARE < m ? wanted + SPARE : m;
@@ -261,10 +262,10 @@ bool glint_terms_of(const struct glint_tall *a, int n,
                 y[(size_t)i * rows + (size_t)x] =
                     compute_dot_product(row, v + (size_t)i * columns, m);
         }
-        glint_jacobi(y, a->rows, wide, v, m);
+        glint_jacobi_orthogonalise(y, a->rows, wide, v, m);
         set_leading_terms(y, v, a, terms);
     } else {
-        glint_terms_close(terms);
+        glint_terms_free(terms);
     }
     free(g);
     free(v);
@@ -272,7 +273,7 @@ bool glint_terms_of(const struct glint_tall *a, int n,
     return good;
 }
 
-void glint_terms_close(struct glint_terms *terms)
+void glint_terms_free(struct glint_terms *terms)
 {
     free(terms->value);
     free(terms->left);
@@ -289,8 +290,9 @@ enum { MOST = GLINT_SCATTER_MAX_KERNEL, FEW_SWEEPS = 30 };
  * PSNR under lamps by less than .3 dB; 0 lowers it by 1 to 10 dB. */
 static const double correlation = 0.8;
 
-/* State of a singular value decomposition of the kernel K. a[i] and v[i] are
- * columns: v is initially the unit matrix; A = K V holds at all times. */
+/* State of the singular value decomposition of a kernel K. a[i] and v[i] are
+ * columns of A and V. V is initially the unit matrix; A = K V holds at all
+ * times. */
 struct work {
     int n;
     double a[MOST][MOST], v[MOST][MOST];
@@ -315,8 +317,9 @@ static int orthogonalise_work_columns(struct work *w, int i, int j)
     return 1;
 }
 
-/* Multiplies the N numbers at X, STEP apart, by L', where L L' is the
- * correlation matrix of light, which decreases by the same factor per texel. */
+/* Multiplies the vector of N numbers at X, STEP apart, by L', where L L' is the
+ * correlation matrix of light. Correlation decreases by the same factor per
+ * texel of distance. */
 static void weigh_by_correlation(double *x, int n, int step)
 {
     const double own = sqrt(1 - correlation * correlation);
@@ -360,8 +363,8 @@ static void decompose_kernel(struct work *w, const double *kernel)
     }
 }
 
-void glint_separate(const double *kernel, int n, int rank,
-                    struct glint_separated *to)
+void glint_separate_kernel(const double *kernel, int n, int rank,
+                           struct glint_separated *to)
 {
     struct work w;
     double square[MOST];

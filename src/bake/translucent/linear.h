@@ -33,20 +33,21 @@ struct glint_terms {
 };
 
 /* Computes the leading terms of A: at most N and at most as many as A has
- * columns. The caller frees TERMS by glint_terms_close(). Returns false if
+ * columns. The caller frees TERMS by glint_terms_free(). Returns false if
  * there is no memory. Needs 8 columns^2 + 8 rows (N + 8) bytes. */
-bool glint_terms_of(const struct glint_tall *a, int n,
-                    struct glint_terms *terms);
-void glint_terms_close(struct glint_terms *terms);
+bool glint_terms_compute(const struct glint_tall *a, int n,
+                         struct glint_terms *terms);
+void glint_terms_free(struct glint_terms *terms);
 
 /* Rotates the N columns A[n][rows] until they are orthogonal and sorts them by
  * descending length. Applies the same rotations to TURN[n][m] unless it is
  * NULL. */
-void glint_jacobi(double *a, int rows, int n, double *turn, int m);
+void glint_jacobi_orthogonalise(double *a, int rows, int n, double *turn,
+                                int m);
 
 /* Solves the symmetric system A[n][n] X = B[n]; X overwrites B. Components that
  * A does not determine become 0. Overwrites A. */
-void glint_solve(double *a, int n, double *b);
+void glint_solve_symmetric_system(double *a, int n, double *b);
 
 /* A kernel as a sum of products of a column and a row, with the min error of
  * the scattered light. Light on a surface varies slowly, so errors of
@@ -54,14 +55,16 @@ void glint_solve(double *a, int n, double *b);
  * of light, and the products are the terms with the largest singular values of
  * the weighted kernel. */
 struct glint_separated {
-    double *column, *row; /* [rank][n]; product r is column[r][v] * row[r][u] */
-    /* sums of squares of all weighted entries, and of their residuals */
+    /* factors of the products, [rank][n]; product r at (u, v) is column[r][v] *
+     * row[r][u] */
+    double *column, *row;
+    /* sum of squares of all weighted entries, and of the weighted residuals */
     double all, lost;
 };
 
 /* Separates KERNEL[N][N], N at most GLINT_SCATTER_MAX_KERNEL, into RANK
  * products. If RANK exceeds N, the products beyond N are 0. */
-void glint_separate(const double *kernel, int n, int rank,
-                    struct glint_separated *to);
+void glint_separate_kernel(const double *kernel, int n, int rank,
+                           struct glint_separated *to);
 
 #endif

@@ -19,7 +19,7 @@ enum {
      * up to MORE */
     IMAGES = 8,
     MORE = 32,
-    /* nodes per side of the grid that represents an infinite one; it is at
+    /* nodes per side of the periodic grid that represents an infinite one; at
      * least four kernels wide */
     LATTICE = 256
 };
@@ -31,12 +31,13 @@ static double compute_fluence_flux_ratio(double index)
     const double back =
         -1.440 / (index * index) + 0.710 / index + 0.668 + 0.0636 * index;
 
-    /* at index 1 the empirical formula would not give 1 */
+    /* index 1 is a special case, because the empirical formula does not give
+     * 1 */
     return index > 1 ? (1 + back) / (1 - back) : 1;
 }
 
-void glint_slab_of(const struct glint_stone *stone, double share, int c,
-                   struct glint_slab *slab)
+void glint_slab_init_mix(const struct glint_stone *stone, double share, int c,
+                         struct glint_slab *slab)
 {
     const struct glint_stone_material *m = stone->material;
     const double scatter =
@@ -56,20 +57,21 @@ void glint_slab_of(const struct glint_stone *stone, double share, int c,
     };
 }
 
-double glint_slab_wave(const struct glint_slab *slab, int n)
+double glint_slab_compute_wave_number(const struct glint_slab *slab, int n)
 {
     return n * PI / (slab->slab + 2 * slab->beyond);
 }
 
-double glint_slab_source(const struct glint_slab *slab, int n)
+double glint_slab_compute_source(const struct glint_slab *slab, int n)
 {
     return slab->albedo * 2 / (slab->slab + 2 * slab->beyond) *
-           sin(glint_slab_wave(slab, n) * (slab->depth + slab->beyond));
+           sin(glint_slab_compute_wave_number(slab, n) *
+               (slab->depth + slab->beyond));
 }
 
-double glint_slab_exit(const struct glint_slab *slab, int n)
+double glint_slab_compute_exit(const struct glint_slab *slab, int n)
 {
-    const double k = glint_slab_wave(slab, n);
+    const double k = glint_slab_compute_wave_number(slab, n);
 
     return slab->diffusion * k * cos(k * slab->beyond);
 }
@@ -81,9 +83,9 @@ static double compute_rectangle_solid_angle(double u, double v, double z)
     return atan2(u * v, z * sqrt(u * u + v * v + z * z)) / (4 * PI);
 }
 
-/* Returns the flux through a square of side STEP around (U, V) from a source at
- * depth Z, which may be negative. LOSS: attenuation, 1 / mm, applied at the
- * square's centre. */
+/* Returns the flux through a square of side STEP around (U, V), in the plane z
+ * = 0, from a point source at depth Z, which may be negative. LOSS:
+ * attenuation, 1 / mm, applied at the square's centre. */
 static double compute_source_flux(double u, double v, double z, double step,
                                   double loss)
 {
@@ -97,8 +99,8 @@ static double compute_source_flux(double u, double v, double z, double step,
     return (z < 0 ? -1 : 1) * angle * (1 + far) * exp(-far);
 }
 
-/* Returns the flux through a square of side STEP around (U, V) from all sources
- * and their images, in PAIRS pairs on either side. */
+/* Returns the flux through a square of side STEP around (U, V) from the source
+ * and its images: PAIRS pairs on either side of the slab. */
 static double sum_image_fluxes(const struct glint_slab *s, int pairs, double u,
                                double v, double step)
 {
@@ -131,7 +133,8 @@ static double compute_average_entry(const struct glint_slab *s, int pairs,
     return sum / (parts * parts);
 }
 
-void glint_slab_closed(const struct glint_slab *slab, int kernel, double *entry)
+void glint_slab_compute_closed_form(const struct glint_slab *slab, int kernel,
+                                    double *entry)
 {
     const int half = kernel / 2;
     const double reach = half * slab->texel / (slab->slab + 2 * slab->beyond);
@@ -150,17 +153,20 @@ void glint_slab_closed(const struct glint_slab *slab, int kernel, double *entry)
         }
 }
 
-/* Adds mode N of a lattice of SIZE x SIZE nodes to ENTRY. WAVE[SIZE]: 4 sin^2(q
- * / 2); COSINE[half + 1][SIZE]: cos(q u); ACROSS[half + 1] is scratch. */
+/* Adds mode N of a periodic lattice of SIZE x SIZE nodes to ENTRY. WAVE[SIZE]:
+ * 4 sin^2(q / 2) for each wave number q; COSINE[half + 1][SIZE]: cos(q u) for
+ * each offset u; ACROSS[half + 1]: scratch. */
 static void add_lattice_mode(const struct glint_slab *s, int kernel, int size,
                              int n, const double *wave, const double *cosine,
                              double *across, double *entry)
 {
     const int half = kernel / 2;
-    const double k = glint_slab_wave(s, n), area = s->texel * s->texel;
+    const double k = glint_slab_compute_wave_number(s, n),
+                 area = s->texel * s->texel;
     const double own = (s->diffusion * k * k + s->absorb) * area;
-    const double power = glint_slab_source(s, n) * glint_slab_exit(s, n) *
-                         area / ((double)size * size);
+    const double power = glint_slab_compute_source(s, n) *
+                         glint_slab_compute_exit(s, n) * area /
+                         ((double)size * size);
 
     for (int p = 0; p < size; p++) {
         for (int v = 0; v <= half; v++) {
@@ -176,8 +182,8 @@ static void add_lattice_mode(const struct glint_slab *s, int kernel, int size,
     }
 }
 
-bool glint_slab_lattice(const struct glint_slab *slab, int kernel,
-                        double *entry)
+bool glint_slab_compute_by_modes(const struct glint_slab *slab, int kernel,
+                                 double *entry)
 {
     const int size = 4 * kernel > LATTICE ? 4 * kernel : LATTICE;
     const int half = kernel / 2;

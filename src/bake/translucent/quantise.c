@@ -34,8 +34,10 @@ struct writer {
     int rank, texels;
     /* columns and rows of all kernels, [kernels][3][rank][kernel] */
     double *column, *row;
-    double *largest; /* [3][kernels]: max factor of each plane */
-    /* max of the in factors of the clustered model; else 1 */
+    /* [3][kernels]: max factor of each plane (channel and kernel) */
+    double *largest;
+    /* max factor for entering light, per channel, of the clustered model; 1 for
+     * other models */
     double in[CHANNELS];
 };
 
@@ -68,7 +70,7 @@ static bool separate_kernels(struct writer *w)
                                         w->column + i * (size_t)w->rank * k,
                                     .row = w->row + i * (size_t)w->rank * k};
 
-        glint_separate(fit->h + i * k * k, fit->kernel, w->rank, &s);
+        glint_separate_kernel(fit->h + i * k * k, fit->kernel, w->rank, &s);
         lost += s.lost;
         all += s.all;
     }
@@ -102,7 +104,7 @@ static bool append_unsigned_codes(struct writer *w, const double *value, int n,
     for (int i = 0; code && i < n; i++)
         code[i] = (uint8_t)lrint(value[i] * full);
     if (code)
-        glint_draft_put(&w->draft, code, (size_t)n);
+        glint_draft_append(&w->draft, code, (size_t)n);
     free(code);
     return code != NULL;
 }
@@ -165,7 +167,7 @@ static bool write_all_codes(struct writer *w)
     free(value);
     if (w->fit->model == GLINT_SCATTER_CLUSTERED)
         w->header.cluster_at =
-            glint_draft_put(&w->draft, w->fit->cluster, (size_t)w->texels);
+            glint_draft_append(&w->draft, w->fit->cluster, (size_t)w->texels);
     return good;
 }
 
@@ -278,9 +280,9 @@ static bool write_filter_taps(struct writer *w)
         }
     if (good) {
         w->header.tap_at =
-            glint_draft_put(&w->draft, tap, CHANNELS * n * k * sizeof *tap);
+            glint_draft_append(&w->draft, tap, CHANNELS * n * k * sizeof *tap);
         w->header.shift_at =
-            glint_draft_put(&w->draft, shift, CHANNELS * n * sizeof *shift);
+            glint_draft_append(&w->draft, shift, CHANNELS * n * sizeof *shift);
     }
     free(tap);
     free(shift);
@@ -319,7 +321,7 @@ static void write_surface_table(struct writer *w)
                                               (i + .5) / FINE) /
                 FINE;
     w->header.transmit_at =
-        glint_draft_put(&w->draft, table_q15, sizeof table_q15);
+        glint_draft_append(&w->draft, table_q15, sizeof table_q15);
     w->header.mean_transmit_q15 = (int32_t)lrint(0x1p15 * mean);
 }
 
@@ -353,7 +355,7 @@ static bool set_translucent_header(struct writer *w, const char *name,
                  w->fit->side);
         return false;
     }
-    glint_draft_begin(
+    glint_draft_begin_header(
         h, &kind,
         w->fit->model == GLINT_SCATTER_FACTORED    ? GLINT_TRANSLUCENT_FACTORED
         : w->fit->model == GLINT_SCATTER_CLUSTERED ? GLINT_TRANSLUCENT_CLUSTERED
@@ -390,15 +392,15 @@ enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
     if (!is_fit_in_range(fit, text))
         return GLINT_E_ARGUMENT;
     w.largest = malloc(CHANNELS * (size_t)fit->kernels * sizeof *w.largest);
-    glint_draft_put(&w.draft, NULL, sizeof w.header);
+    glint_draft_append(&w.draft, NULL, sizeof w.header);
     good = w.largest && set_translucent_header(&w, name, key) &&
            separate_kernels(&w) && write_all_codes(&w) && write_filter_taps(&w);
     write_surface_table(&w);
     free(w.column);
     free(w.row);
     free(w.largest);
-    if (glint_draft_finish(&w.draft, &w.header, sizeof w.header, good, data,
-                           bytes))
+    if (glint_draft_finish_file(&w.draft, &w.header, sizeof w.header, good,
+                                data, bytes))
         return GLINT_OK;
     return error->text[0] ? GLINT_E_UNSUPPORTED : GLINT_E_MEMORY;
 }

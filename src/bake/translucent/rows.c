@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows of a scattering matrix: allocation, import of measured rows, and
- * scattering of light.
+ * Rows of a scattering matrix: allocates them, imports measured rows from a
+ * picture, and scatters light by them.
  */
 #include "bake/translucent/rows.h"
 
@@ -10,11 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool glint_scatter_open(struct glint_scatter_rows *rows, int side, int kernel,
-                        bool shared)
+bool glint_scatter_allocate_rows(struct glint_scatter_rows *rows, int side,
+                                 int kernel, bool shared)
 {
     const size_t texels = (size_t)side * (size_t)side;
-    const size_t entries = texels * 3 * (size_t)glint_scatter_kernel2(kernel);
+    const size_t entries =
+        texels * 3 * (size_t)glint_scatter_count_entries(kernel);
 
     *rows = (struct glint_scatter_rows){.side = side, .kernel = kernel};
     rows->r = calloc(entries, sizeof *rows->r);
@@ -43,7 +44,8 @@ static int max_int(int a, int b)
     return a > b ? a : b;
 }
 
-struct glint_scatter_inside glint_scatter_inside(int side, int kernel, int x)
+struct glint_scatter_inside glint_scatter_find_offsets_inside(int side,
+                                                              int kernel, int x)
 {
     const int half = kernel / 2, i = x % side, j = x / side;
 
@@ -55,7 +57,7 @@ struct glint_scatter_inside glint_scatter_inside(int side, int kernel, int x)
     };
 }
 
-int glint_scatter_target(int side, int kernel, int x, int d)
+int glint_scatter_get_target_texel(int side, int kernel, int x, int d)
 {
     const int i = x % side + d % kernel - kernel / 2;
     const int j = x / side + d / kernel - kernel / 2;
@@ -63,17 +65,17 @@ int glint_scatter_target(int side, int kernel, int x, int d)
     return i < 0 || j < 0 || i >= side || j >= side ? -1 : j * side + i;
 }
 
-void glint_scatter_turn(struct glint_scatter_rows *rows)
+void glint_scatter_transpose_rows(struct glint_scatter_rows *rows)
 {
     const int side = rows->side, n = rows->kernel, last = n * n - 1;
 
     for (int x = 0; x < side * side; x++)
         for (int d = last / 2 + 1; d <= last; d++) {
-            const int to = glint_scatter_target(side, n, x, d);
+            const int to = glint_scatter_get_target_texel(side, n, x, d);
 
             for (int c = 0; c < 3 && to >= 0; c++) {
-                float *there = glint_scatter_row(rows, x, c) + d;
-                float *back = glint_scatter_row(rows, to, c) + last - d;
+                float *there = glint_scatter_get_row(rows, x, c) + d;
+                float *back = glint_scatter_get_row(rows, to, c) + last - d;
                 const float r = *there;
 
                 *there = *back;
@@ -82,7 +84,7 @@ void glint_scatter_turn(struct glint_scatter_rows *rows)
         }
 }
 
-bool glint_watch_ends(const struct glint_watch *watch, double done)
+bool glint_watch_report_progress(const struct glint_watch *watch, double done)
 {
     if (!watch)
         return false;
@@ -108,20 +110,20 @@ static bool is_part_stopped(void *ctx)
            part->whole->stop(part->whole->ctx);
 }
 
-struct glint_watch glint_watch_of(struct glint_watch_part *part)
+struct glint_watch glint_watch_make_for_part(struct glint_watch_part *part)
 {
     return (struct glint_watch){report_part_progress, is_part_stopped, part};
 }
 
 /* Sets the row of texel X from its tile of PICTURE. Returns the number of
- * invalid values, which are replaced by 0. */
+ * invalid values, which become 0. */
 static long long read_row_from_picture(const struct glint_float_image *picture,
                                        const struct glint_scatter_rows *rows,
                                        int x)
 {
     const int n = rows->kernel, i = x % rows->side, j = x / rows->side;
     const struct glint_scatter_inside in =
-        glint_scatter_inside(rows->side, n, x);
+        glint_scatter_find_offsets_inside(rows->side, n, x);
     long long held = 0;
 
     for (int v = in.v_from; v < in.v_to; v++)
@@ -134,7 +136,8 @@ static long long read_row_from_picture(const struct glint_float_image *picture,
                 const bool good = isfinite(from[c]) && from[c] >= 0;
 
                 held += !good;
-                glint_scatter_row(rows, x, c)[v * n + u] = good ? from[c] : 0;
+                glint_scatter_get_row(rows, x, c)[v * n + u] =
+                    good ? from[c] : 0;
             }
         }
     return held;
@@ -156,13 +159,13 @@ enum glint_status glint_scatter_read(const struct glint_float_image *picture,
     }
     if (picture->width != side * kernel || picture->height != side * kernel) {
         snprintf(error->text, sizeof error->text,
-                 "rows must be a picture of %d x %d, not %d x %d: %d x %d "
-                 "tiles of %d x %d",
+                 "the picture of rows must have %d x %d pixels, not %d x %d: "
+                 "%d x %d tiles of %d x %d",
                  side * kernel, side * kernel, picture->width, picture->height,
                  side, side, kernel, kernel);
         return GLINT_E_UNSUPPORTED;
     }
-    if (!glint_scatter_open(rows, side, kernel, false)) {
+    if (!glint_scatter_allocate_rows(rows, side, kernel, false)) {
         snprintf(error->text, sizeof error->text, "out of memory");
         return GLINT_E_MEMORY;
     }
@@ -178,10 +181,11 @@ void glint_scatter_light_rows(const struct glint_scatter_rows *rows,
 
     memset(radiosity, 0, 3 * (size_t)side * (size_t)side * sizeof *radiosity);
     for (int x = 0; x < side * side; x++) {
-        const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
+        const struct glint_scatter_inside in =
+            glint_scatter_find_offsets_inside(side, n, x);
 
         for (int c = 0; c < 3; c++) {
-            const float *row = glint_scatter_row(rows, x, c);
+            const float *row = glint_scatter_get_row(rows, x, c);
 
             for (int v = in.v_from; v < in.v_to; v++)
                 for (int u = in.u_from; u < in.u_to; u++)

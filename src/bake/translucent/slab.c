@@ -19,14 +19,15 @@
 
 /* ------------------------------------------------------------------- blocks */
 
-/* Computes the band of blocks around the diagonal of a grid's inverse.
+/* Computes the blocks of the inverse of a grid's matrix that lie near its
+ * diagonal.
  *
- * S_j are the diagonal blocks after elimination from the top, E_j the
- * couplings to the next block. T_j = S_j^-1 E_j transfers columns of the
- * inverse upwards: G(j, l) = T_j G(j + 1, l) for l > j, and G(j, j) = S_j^-1
- * + T_j G(j + 1, j). Only blocks up to REACH below the diagonal are stored.
- * Entries of T decrease exponentially away from the diagonal; entries below
- * SMALL times the largest are dropped. */
+ * S_j are the diagonal blocks after elimination from the top, E_j the couplings
+ * of block j to the next block, G(j, l) the blocks of the inverse. T_j = S_j^-1
+ * E_j gives blocks above from blocks below: G(j, l) = T_j G(j + 1, l) for l >
+ * j, and G(j, j) = S_j^-1 + T_j G(j + 1, j). Only blocks up to REACH from the
+ * diagonal are stored. Entries of T decrease exponentially away from its
+ * diagonal; entries below SMALL times the largest are dropped. */
 #define SMALL 1e-11
 
 /* A symmetric positive definite matrix of side x side blocks of side x side
@@ -47,7 +48,7 @@ typedef void blocks_fn(void *ctx, int j, int l, const double *block);
 struct inverse {
     const struct blocks *b;
     int reach;
-    double *eliminated; /* S_j^-1 of all blocks, [side][side][side] */
+    double *eliminated; /* [blocks][side][side]: S_j^-1 of each block */
     double *t, *scratch;
     /* the blocks G(j, j + i) of the current row j, i = 0 .. reach */
     double **ring;
@@ -79,7 +80,7 @@ static void factorise_cholesky(double *a, int n)
 static void invert_definite_matrix(double *a, double *to, int n)
 {
     factorise_cholesky(a, n);
-    /* from the top, the rows of TO become those of U'^-1 */
+    /* computes U'^-1 in TO, row by row from the top */
     memset(to, 0, (size_t)n * (size_t)n * sizeof *to);
     for (int i = 0; i < n; i++) {
         double *row = to + (size_t)i * (size_t)n;
@@ -164,7 +165,7 @@ static void compute_transfer_block(struct inverse *v, int j)
     }
 }
 
-/* Adds the product T G to TO. */
+/* Adds the product T G of the current transfer block T and block G to TO. */
 static void add_transfer_product(const struct inverse *v, const double *g,
                                  double *to)
 {
@@ -226,13 +227,13 @@ static enum glint_status compute_inverse_blocks(struct inverse *v, int reach,
                                                 blocks_fn *add_block, void *ctx)
 {
     const int n = v->b->side;
-    /* Fraction of the time until all blocks are eliminated: a row of reach + 1
-     * blocks costs as much as (reach + 1) / 2 eliminations, as measured. */
+    /* estimated fraction of the time for the elimination: a row of reach + 1
+     * blocks costs as much as (reach + 1) / 2 eliminations, as measured */
     const double first = 2.0 / (reach + 2.0);
 
     for (int j = 0; j < n; j++) {
         eliminate_block(v, j);
-        if (glint_watch_ends(watch, first * (j + 1) / n))
+        if (glint_watch_report_progress(watch, first * (j + 1) / n))
             return GLINT_E_CLOSED;
     }
     for (int j = n - 1; j >= 0; j--) {
@@ -241,15 +242,16 @@ static enum glint_status compute_inverse_blocks(struct inverse *v, int reach,
         compute_row_blocks(v, j);
         for (int l = j; l < n && l <= j + reach; l++)
             add_block(ctx, j, l, v->ring[l - j]);
-        if (glint_watch_ends(watch, first + (1.0 - first) * done / n))
+        if (glint_watch_report_progress(watch,
+                                        first + (1.0 - first) * done / n))
             return GLINT_E_CLOSED;
     }
     return GLINT_OK;
 }
 
 /* Calls ADD_BLOCK for each block of the inverse of BLOCKS that is at most REACH
- * from the diagonal. Needs about side^3 doubles. May return GLINT_E_MEMORY or
- * GLINT_E_CLOSED. */
+ * blocks from the diagonal. Needs about side^3 doubles. May return
+ * GLINT_E_MEMORY, or GLINT_E_CLOSED if the caller stops the work. */
 static enum glint_status compute_inverse_band(const struct blocks *blocks,
                                               int reach,
                                               const struct glint_watch *watch,
@@ -299,8 +301,8 @@ static double interpolate_by_smoothstep(double t)
     return t * t * (3 - 2 * t);
 }
 
-/* Returns value noise, 0 .. 1, at (U, V), each 0 .. 1, which repeats with
- * period 1; CELLS x CELLS cells. */
+/* Returns value noise, 0 .. 1, at (U, V) on a lattice of CELLS x CELLS cells. U
+ * and V are 0 .. 1; the noise is periodic with period 1. */
 static double compute_value_noise(uint32_t seed, int cells, double u, double v)
 {
     const int x = (int)floor(u * cells), y = (int)floor(v * cells);
@@ -332,7 +334,8 @@ static double compute_vein_intensity(uint32_t seed, double u, double v)
                        : interpolate_by_smoothstep(fmax(0, (wave - 0.1) / 0.3));
 }
 
-void glint_stone_shares(const struct glint_stone *stone, double *share)
+void glint_stone_compute_fractions(const struct glint_stone *stone,
+                                   double *share)
 {
     const int side = stone->side;
 
@@ -361,11 +364,11 @@ void glint_stone_shares(const struct glint_stone *stone, double *share)
 }
 
 enum {
-    /* texels added on each side of the lattice; they repeat the texels at the
-     * rim */
+    /* number of texels added on each side of the lattice; they repeat the
+     * texels at the rim */
     MARGIN = 8,
-    /* number of steps in the mix of both materials for which the closed form is
-     * computed */
+    /* number of mixing steps from one material to the other for which the
+     * closed form is computed */
     LEVELS = 8
 };
 
@@ -379,7 +382,7 @@ struct compute {
     double *diffusion, *absorb;
     /* matrix, source and exit factor of each texel for the current mode */
     double *own, *right, *down, *source, *exit;
-    /* [kernel * kernel] per mix: closed form minus modes; NULL: not computed
+    /* [mixes][kernel * kernel]: closed form minus modes; NULL: not computed
      * yet */
     double *closed[LEVELS + 1];
     double beyond; /* z_b of the slab, mm */
@@ -420,7 +423,7 @@ static const char *find_invalid_parameter(const struct glint_stone *s)
         !(s->fields >= 1 && s->fields <= s->side))
         return "chess needs 1 or more fields per side, at most one per texel";
     if (s->pattern == GLINT_STONE_MASK && !s->mask)
-        return "a mask is missing";
+        return "the mask picture of the pattern is missing";
     for (int i = 0; i < 2; i++)
         for (int c = 0; c < 3; c++) {
             const double scatter = s->material[i].scatter[c];
@@ -452,7 +455,7 @@ static void set_channel_diffusion(struct compute *p, int c)
 
     p->channel = c;
     for (int i = 0; i < n; i++) {
-        glint_slab_of(p->stone, p->share[i], c, &slab);
+        glint_slab_init_mix(p->stone, p->share[i], c, &slab);
         p->diffusion[i] = slab.diffusion;
         p->absorb[i] = slab.absorb;
         sum += slab.beyond;
@@ -477,11 +480,11 @@ static void set_mode_matrix(struct compute *p, int n)
         struct glint_slab slab;
         double k;
 
-        glint_slab_of(p->stone, p->share[i], p->channel, &slab);
+        glint_slab_init_mix(p->stone, p->share[i], p->channel, &slab);
         slab.beyond = p->beyond;
-        k = glint_slab_wave(&slab, n);
-        p->source[i] = glint_slab_source(&slab, n) * area;
-        p->exit[i] = glint_slab_exit(&slab, n);
+        k = glint_slab_compute_wave_number(&slab, n);
+        p->source[i] = glint_slab_compute_source(&slab, n) * area;
+        p->exit[i] = glint_slab_compute_exit(&slab, n);
         p->right[i] = i % w < w - 1 ? compute_harmonic_mean(d[0], d[1]) : 0;
         p->down[i] = i / w < w - 1 ? compute_harmonic_mean(d[0], d[w]) : 0;
         p->own[i] = (d[0] * k * k + p->absorb[i]) * area + p->right[i] +
@@ -512,20 +515,20 @@ static void add_block_to_rows(void *ctx, int j, int l, const double *block)
                 g * 0.5 *
                 (p->source[a] * p->exit[b] + p->source[b] * p->exit[a]);
 
-            glint_scatter_row(p->rows, y * side + x, p->channel)[middle + d] +=
-                (float)r;
+            glint_scatter_get_row(p->rows, y * side + x,
+                                  p->channel)[middle + d] += (float)r;
             if (d)
-                glint_scatter_row(p->rows, (l - MARGIN) * side + to,
-                                  p->channel)[middle - d] += (float)r;
+                glint_scatter_get_row(p->rows, (l - MARGIN) * side + to,
+                                      p->channel)[middle - d] += (float)r;
         }
     }
 }
 
-/* Computes closed form minus modes for the mix LEVEL / LEVELS, unless the
- * channel has it already. Returns false if there is no memory. */
+/* Computes the correction (closed form minus modes) for the mix LEVEL / LEVELS,
+ * unless the channel has it already. Returns false if there is no memory. */
 static bool compute_closed_correction(struct compute *p, int level)
 {
-    const int k2 = glint_scatter_kernel2(p->rows->kernel);
+    const int k2 = glint_scatter_count_entries(p->rows->kernel);
     struct glint_slab slab;
     double *modes;
 
@@ -535,9 +538,9 @@ static bool compute_closed_correction(struct compute *p, int level)
     if (!p->closed[level])
         return false;
     modes = p->closed[level] + k2;
-    glint_slab_of(p->stone, (double)level / LEVELS, p->channel, &slab);
-    glint_slab_closed(&slab, p->rows->kernel, p->closed[level]);
-    if (!glint_slab_lattice(&slab, p->rows->kernel, modes))
+    glint_slab_init_mix(p->stone, (double)level / LEVELS, p->channel, &slab);
+    glint_slab_compute_closed_form(&slab, p->rows->kernel, p->closed[level]);
+    if (!glint_slab_compute_by_modes(&slab, p->rows->kernel, modes))
         return false;
     for (int d = 0; d < k2; d++)
         p->closed[level][d] -= modes[d];
@@ -580,10 +583,10 @@ static bool add_closed_corrections(struct compute *p)
             return false;
     }
     for (int x = 0; x < side * side; x++) {
-        float *row = glint_scatter_row(p->rows, x, p->channel);
+        float *row = glint_scatter_get_row(p->rows, x, p->channel);
 
         for (int d = 0; d < n * n; d++) {
-            const int to = glint_scatter_target(side, n, x, d);
+            const int to = glint_scatter_get_target_texel(side, n, x, d);
 
             if (to >= 0)
                 row[d] = (float)fmax(
@@ -600,11 +603,11 @@ static bool add_closed_corrections(struct compute *p)
 static void limit_row_sums(const struct compute *p)
 {
     const int side = p->rows->side, n = p->rows->kernel;
-    /* large enough, as the lattice has at least as many texels */
+    /* scratch; large enough, because the lattice has at least as many texels */
     double *scale = p->own;
 
     for (int x = 0; x < side * side; x++) {
-        const float *row = glint_scatter_row(p->rows, x, p->channel);
+        const float *row = glint_scatter_get_row(p->rows, x, p->channel);
         double sum = 0;
 
         for (int d = 0; d < n * n; d++)
@@ -612,10 +615,10 @@ static void limit_row_sums(const struct compute *p)
         scale[x] = sum > 1 ? 1 / sum : 1;
     }
     for (int x = 0; x < side * side; x++) {
-        float *row = glint_scatter_row(p->rows, x, p->channel);
+        float *row = glint_scatter_get_row(p->rows, x, p->channel);
 
         for (int d = 0; d < n * n; d++) {
-            const int to = glint_scatter_target(side, n, x, d);
+            const int to = glint_scatter_get_target_texel(side, n, x, d);
 
             if (to >= 0 && (scale[x] < 1 || scale[to] < 1))
                 row[d] *= (float)(scale[x] * scale[to]);
@@ -630,14 +633,14 @@ static enum glint_status compute_channel_rows(struct compute *p, int c,
     double all = 0, done = 0;
 
     set_channel_diffusion(p, c);
-    /* The cost of mode n is proportional to 1 / sqrt(n), as measured: higher
-     * modes spread less far. */
+    /* The progress of mode n is weighted by 1 / sqrt(n), to which its cost is
+     * proportional, as measured: light of higher modes spreads less far. */
     for (int n = 1; n <= GLINT_SLAB_MODES; n++)
         all += 3.0 * sqrt(1.0 / n);
     for (int n = 1; n <= GLINT_SLAB_MODES; n++) {
         struct glint_watch_part part = {watch, c / 3.0 + done / all,
                                         sqrt(1.0 / n) / all};
-        const struct glint_watch mode = glint_watch_of(&part);
+        const struct glint_watch mode = glint_watch_make_for_part(&part);
         enum glint_status status;
 
         set_mode_matrix(p, n);
@@ -667,7 +670,7 @@ static enum glint_status compute_all_rows(struct compute *p,
         return GLINT_E_MEMORY;
     for (size_t i = 0; i < 8; i++)
         *part[i] = memory + i * n;
-    glint_stone_shares(p->stone, p->rows->share);
+    glint_stone_compute_fractions(p->stone, p->rows->share);
     for (int i = 0; i < p->wide * p->wide; i++)
         p->share[i] =
             p->rows
@@ -696,7 +699,7 @@ enum glint_status glint_scatter_compute(const struct glint_stone *stone,
         snprintf(error->text, sizeof error->text, "%s", cause);
         return GLINT_E_ARGUMENT;
     }
-    if (glint_scatter_open(rows, stone->side, stone->kernel, true))
+    if (glint_scatter_allocate_rows(rows, stone->side, stone->kernel, true))
         status = compute_all_rows(&p, watch);
     if (status != GLINT_OK) {
         glint_scatter_close(rows);

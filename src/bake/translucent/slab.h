@@ -28,37 +28,39 @@ struct glint_slab {
     /* z_b, distance outside the faces at which the fluence is 0, mm */
     double beyond;
     double depth; /* depth of the source, mm */
-    /* single-scattering albedo, which is the power of the source */
+    /* single-scattering albedo = power of the source for incident light of
+     * power 1 */
     double albedo;
 };
 
 /* Sets SLAB to channel C of a mix of the two materials of STONE, with the
  * fraction SHARE of material 0. z_b is computed from the mix's D. */
-void glint_slab_of(const struct glint_stone *stone, double share, int c,
-                   struct glint_slab *slab);
+void glint_slab_init_mix(const struct glint_stone *stone, double share, int c,
+                         struct glint_slab *slab);
 
 /* Returns the wave number k of mode N (1 .. GLINT_SLAB_MODES), 1/mm. */
-double glint_slab_wave(const struct glint_slab *slab, int n);
-/* glint_slab_source() returns the source of mode N for incident light of power
- * 1, 1/mm; glint_slab_exit() the light that leaves the slab per unit of the
- * mode. */
-double glint_slab_source(const struct glint_slab *slab, int n);
-double glint_slab_exit(const struct glint_slab *slab, int n);
+double glint_slab_compute_wave_number(const struct glint_slab *slab, int n);
+/* glint_slab_compute_source() returns the source of mode N for incident light
+ * of power 1, 1/mm. glint_slab_compute_exit() returns the light that leaves the
+ * slab per unit of mode N. */
+double glint_slab_compute_source(const struct glint_slab *slab, int n);
+double glint_slab_compute_exit(const struct glint_slab *slab, int n);
 
 /* Sets ENTRY[kernel * kernel] to the row of an infinitely wide homogeneous
  * medium in closed form: sources and their images at the faces, integrated over
  * the area of source and target texel (multipole; its first pair is the
  * dipole). */
-void glint_slab_closed(const struct glint_slab *slab, int kernel,
-                       double *entry);
+void glint_slab_compute_closed_form(const struct glint_slab *slab, int kernel,
+                                    double *entry);
 
 /* Sets ENTRY[kernel * kernel] to the row of an infinitely wide homogeneous
  * medium, computed by modes and finite volumes. Returns false if there is no
  * memory. */
-bool glint_slab_lattice(const struct glint_slab *slab, int kernel,
-                        double *entry);
+bool glint_slab_compute_by_modes(const struct glint_slab *slab, int kernel,
+                                 double *entry);
 
 /* Sets SHARE[side * side] to the fraction of material 0 in each texel. */
-void glint_stone_shares(const struct glint_stone *stone, double *share);
+void glint_stone_compute_fractions(const struct glint_stone *stone,
+                                   double *share);
 
 #endif

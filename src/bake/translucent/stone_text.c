@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses the text that describes a translucent medium, line by line.
+ * Parses a file NAME.translucent, which describes a translucent medium, line by
+ * line.
  */
 #include <string.h>
 
@@ -34,11 +35,12 @@ static bool read_integer(struct reader *r, const char *what, int min, int max,
     const struct glint_text_range range = {what, min, max};
     double x;
 
-    if (!glint_text_value(&r->text, &range, &x, &place))
+    if (!glint_text_read_value(&r->text, &range, &x, &place))
         return false;
     *value = (int)x;
     return (double)*value == x ||
-           glint_text_fail(&r->text, place, "%s needs a whole number", what);
+           glint_text_set_error(&r->text, place, "%s needs a whole number",
+                                what);
 }
 
 static bool read_number(struct reader *r, const char *what, double min,
@@ -55,8 +57,9 @@ static bool read_size_line(struct reader *r)
 
     return read_integer(r, "size", 32, 256, side) &&
            ((*side & (*side - 1)) == 0 ||
-            glint_text_fail(&r->text, place,
-                            "size must be 32, 64, 128 or 256, not %d", *side));
+            glint_text_set_error(&r->text, place,
+                                 "size must be 32, 64, 128 or 256, not %d",
+                                 *side));
 }
 
 static bool read_kernel_line(struct reader *r)
@@ -67,8 +70,9 @@ static bool read_kernel_line(struct reader *r)
 
     return read_integer(r, "kernel", 1, GLINT_SCATTER_MAX_KERNEL, kernel) &&
            (*kernel % 2 == 1 ||
-            glint_text_fail(&r->text, place,
-                            "kernel must be an odd number, not %d", *kernel));
+            glint_text_set_error(&r->text, place,
+                                 "kernel must be an odd number, not %d",
+                                 *kernel));
 }
 
 /* Sets INDEX to the index of the medium named WORD. */
@@ -76,10 +80,10 @@ static bool find_medium(struct reader *r, const struct glint_word *word,
                         int *index)
 {
     if (!word->length)
-        return glint_text_fail(&r->text, word->place,
-                               "the name of a 'stone' is missing");
-    return glint_name_find(&r->text, word, "stone", r->name[0],
-                           sizeof r->name[0], r->n_stones, index);
+        return glint_text_set_error(&r->text, word->place,
+                                    "the name of a 'stone' is missing");
+    return glint_name_find_index(&r->text, word, "stone", r->name[0],
+                                 sizeof r->name[0], r->n_stones, index);
 }
 
 static bool read_medium_line(struct reader *r)
@@ -93,15 +97,16 @@ static bool read_medium_line(struct reader *r)
         {0}};
 
     if (r->n_stones == MOST_STONES)
-        return glint_text_fail(&r->text, word.place, "more than %d stones",
-                               MOST_STONES);
+        return glint_text_set_error(&r->text, word.place, "more than %d stones",
+                                    MOST_STONES);
     if (!glint_name_read(&r->text, "stone", r->name[r->n_stones],
                          sizeof r->name[0]))
         return false;
     for (int i = 0; i < r->n_stones; i++)
         if (strcmp(r->name[i], r->name[r->n_stones]) == 0)
-            return glint_text_fail(&r->text, word.place,
-                                   "a stone of this name is already defined");
+            return glint_text_set_error(
+                &r->text, word.place,
+                "a stone of this name is already defined");
     if (!glint_clauses_read(&r->text, "stone", clause))
         return false;
     r->n_stones++;
@@ -113,8 +118,8 @@ static bool read_file_name(struct reader *r, const char *what,
                            char file[GLINT_STONE_FILE_BYTES])
 {
     if (!word->length)
-        return glint_text_fail(&r->text, word->place,
-                               "the name of the %s is missing", what);
+        return glint_text_set_error(&r->text, word->place,
+                                    "the name of the %s is missing", what);
     memcpy(file, word->start, (size_t)word->length);
     file[word->length] = '\0';
     return true;
@@ -131,8 +136,8 @@ static bool read_medium_pair(struct reader *r)
         if (!find_medium(r, &word, &index[i]))
             return false;
         if (i && index[0] == index[1])
-            return glint_text_fail(&r->text, word.place,
-                                   "a pattern needs two different stones");
+            return glint_text_set_error(&r->text, word.place,
+                                        "a pattern needs two different stones");
     }
     r->is_turned = index[0] == 1;
     return true;
@@ -146,26 +151,26 @@ static bool read_pattern_line(struct reader *r)
     int seed;
 
     r->pattern = word.place;
-    if (glint_word_is(&word, "chess")) {
+    if (glint_word_equals(&word, "chess")) {
         s->pattern = GLINT_STONE_CHESS;
         return read_integer(r, "chess", 1, 256, &s->fields) &&
                read_medium_pair(r);
     }
-    if (glint_word_is(&word, "veins")) {
+    if (glint_word_equals(&word, "veins")) {
         s->pattern = GLINT_STONE_VEINS;
         if (!read_integer(r, "veins", 0, 1 << 30, &seed))
             return false;
         s->seed = (uint32_t)seed;
         return read_medium_pair(r);
     }
-    if (glint_word_is(&word, "image")) {
+    if (glint_word_equals(&word, "image")) {
         const struct glint_word file = glint_text_next_word(&r->text);
 
         s->pattern = GLINT_STONE_MASK;
         return read_file_name(r, "mask", &file, r->to->mask) &&
                read_medium_pair(r);
     }
-    return glint_text_fail(
+    return glint_text_set_error(
         &r->text, word.place,
         "a pattern must be chess N A B, veins SEED A B or image MASK A B%s%s%s",
         word.length ? ", not '" : "",
@@ -206,7 +211,7 @@ static bool read_index_line(struct reader *r)
 
 static bool read_data_line(struct reader *r)
 {
-    const struct glint_word word = glint_text_rest(&r->text);
+    const struct glint_word word = glint_text_get_rest(&r->text);
 
     return read_file_name(r, "rows", &word, r->to->rows);
 }
@@ -229,21 +234,24 @@ static bool check_line_consistency(struct reader *r)
     struct glint_stone_text *t = r->to;
 
     if (!t->rows[0] && !r->n_stones)
-        return glint_text_fail(&r->text, glint_text_end(&r->text),
-                               "a line 'stone NAME scatter R G B absorb R G B' "
-                               "or 'data ROWS.pfm' is missing");
+        return glint_text_set_error(
+            &r->text, glint_text_get_end_place(&r->text),
+            "a line 'stone NAME scatter R G B absorb R G B' "
+            "or 'data ROWS.pfm' is missing");
     if (t->rows[0] && (r->n_stones || r->pattern.line))
-        return glint_text_fail(&r->text, glint_text_end(&r->text),
-                               "'data' excludes 'stone' and 'pattern'");
+        return glint_text_set_error(&r->text,
+                                    glint_text_get_end_place(&r->text),
+                                    "'data' excludes 'stone' and 'pattern'");
     if (r->n_stones == 2 && !r->pattern.line)
-        return glint_text_fail(&r->text, glint_text_end(&r->text),
-                               "two stones need a pattern: chess N A B, veins "
-                               "SEED A B or image MASK A B");
+        return glint_text_set_error(
+            &r->text, glint_text_get_end_place(&r->text),
+            "two stones need a pattern: chess N A B, veins "
+            "SEED A B or image MASK A B");
     if (t->stone.pattern == GLINT_STONE_CHESS &&
         t->stone.fields > t->stone.side)
-        return glint_text_fail(&r->text, r->pattern,
-                               "%d fields per side are more than %d texels",
-                               t->stone.fields, t->stone.side);
+        return glint_text_set_error(
+            &r->text, r->pattern, "%d fields per side are more than %d texels",
+            t->stone.fields, t->stone.side);
     if (t->fit.model == GLINT_SCATTER_ALBEDO)
         t->fit.kernels = 1;
     return true;
@@ -263,9 +271,9 @@ enum glint_status glint_stone_parse(struct glint_stone_text *text,
     while (good && glint_text_next_line(&r.text)) {
         int i;
 
-        good =
-            glint_line_begin(&r.text, lines, N_LINES, first, &i) &&
-            (i < 0 || (read[i](&r) && glint_line_ends(&r.text, lines[i].word)));
+        good = glint_line_read_first_word(&r.text, lines, N_LINES, first, &i) &&
+               (i < 0 ||
+                (read[i](&r) && glint_line_check_end(&r.text, lines[i].word)));
     }
     good = good && check_line_consistency(&r);
     if (good && r.is_turned) {

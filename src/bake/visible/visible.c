@@ -16,8 +16,8 @@ static double compute_wave_number(const struct glint_visible *visible, double w)
            0.5 * w * (visible->wave_hi - visible->wave_lo);
 }
 
-void glint_visible_path(const struct glint_visible *visible, double w,
-                        struct glint_path *path)
+void glint_visible_init_path(const struct glint_visible *visible, double w,
+                             struct glint_path *path)
 {
     glint_path_init(path, visible->setup->lens,
                     &visible->setup->ghost[visible->ghost],
@@ -27,9 +27,9 @@ void glint_visible_path(const struct glint_visible *visible, double w,
 static void init_band_paths(struct glint_visible *visible)
 {
     for (int k = 0; k < GLINT_VISIBLE_WAVES; k++) {
-        glint_visible_path(visible,
-                           -cos(GLINT_PI * k / (GLINT_VISIBLE_WAVES - 1)),
-                           &visible->path[k]);
+        glint_visible_init_path(visible,
+                                -cos(GLINT_PI * k / (GLINT_VISIBLE_WAVES - 1)),
+                                &visible->path[k]);
         visible->position_path[k] = visible->path[k];
         visible->position_path[k].places_only = true;
     }
@@ -54,16 +54,16 @@ void glint_visible_init(struct glint_visible *visible,
     init_band_paths(visible);
 }
 
-void glint_visible_reach(struct glint_visible *visible, double max_deg)
+void glint_visible_set_max_angle(struct glint_visible *visible, double max_deg)
 {
     visible->far = max_deg > GLINT_FAR &&
                    glint_prescription_is_round(visible->setup->lens);
     visible->wide |= visible->far;
 }
 
-void glint_visible_narrow(struct glint_visible *visible,
-                          const struct glint_visible *whole, double w0,
-                          double w1)
+void glint_visible_narrow_band(struct glint_visible *visible,
+                               const struct glint_visible *whole, double w0,
+                               double w1)
 {
     visible->setup = whole->setup;
     visible->ghost = whole->ghost;
@@ -76,11 +76,12 @@ void glint_visible_narrow(struct glint_visible *visible,
     init_band_paths(visible);
     visible->n_beside = whole->n_beside;
     for (int k = 0; k < whole->n_beside; k++)
-        glint_visible_narrow(&visible->beside[k], &whole->beside[k], w0, w1);
+        glint_visible_narrow_band(&visible->beside[k], &whole->beside[k], w0,
+                                  w1);
 }
 
-bool glint_visible_passes(const struct glint_visible *visible,
-                          const struct glint_ray *ray)
+bool glint_visible_is_ray_visible(const struct glint_visible *visible,
+                                  const struct glint_ray *ray)
 {
     return ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <=
@@ -88,7 +89,8 @@ bool glint_visible_passes(const struct glint_visible *visible,
            hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= visible->field_mm;
 }
 
-void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b)
+void glint_visible_join_boxes(struct glint_pupil *a,
+                              const struct glint_pupil *b)
 {
     a->x0_mm = fmin(a->x0_mm, b->x0_mm);
     a->x1_mm = fmax(a->x1_mm, b->x1_mm);
@@ -122,7 +124,8 @@ static bool trace_box_grid(const struct glint_visible *h,
         row.y_mm = box->y1_mm * j / down;
         glint_trace_row(path, &row, ray, status, NULL);
         for (int i = 0; i <= across; i++) {
-            if (status[i] != GLINT_RAY_OK || !glint_visible_passes(h, &ray[i]))
+            if (status[i] != GLINT_RAY_OK ||
+                !glint_visible_is_ray_visible(h, &ray[i]))
                 continue;
             extent->i0 = i < extent->i0 ? i : extent->i0;
             extent->i1 = i > extent->i1 ? i : extent->i1;
@@ -173,8 +176,9 @@ static bool grow_box_to_visible(const struct glint_visible *h,
     return false;
 }
 
-/* Moves sides of BOX outwards where rays pass outside it, as at tips of
- * crescents that are thinner than the cells of its grid. */
+/* Moves sides of BOX outwards where rays pass outside it. This happens if the
+ * visible region has tips, as a crescent does, that are thinner than the cells
+ * of the box's grid. */
 static void grow_box_at_tips(const struct glint_visible *h,
                              const struct glint_path *path, double sine,
                              struct glint_pupil *box)
@@ -187,7 +191,7 @@ static void grow_box_at_tips(const struct glint_visible *h,
 
     box->y0_mm = 0;
     box->mirrored = true;
-    glint_spot_grow(&openings, box);
+    glint_spot_grow_pupil(&openings, box);
 }
 
 /* Shrinks BOX, which must contain all unblocked rays, to their bounding box.
@@ -211,8 +215,8 @@ static bool find_tight_visible_box(const struct glint_visible *h,
     return found;
 }
 
-/* Returns the max ratio of RAY's distance to the radius of the stop, a barrel
- * or the field; at most 1 for visible rays. */
+/* Returns the max, over the stop, all barrels and the field, of RAY's distance
+ * from the centre / radius; at most 1 for visible rays. */
 static double compute_miss_ratio(const struct glint_visible *h,
                                  const struct glint_ray *ray)
 {
@@ -256,12 +260,12 @@ static double shrink_box_to_nearest_ray(const struct glint_visible *h,
     return least;
 }
 
-/* Finds visible rays that the grid over BOX misses: if the field is much
- * smaller than the front element, so is the visible region of the pupil. Sets
- * BOX to contain them. Returns false if there are none. */
-static bool find_missed_region(const struct glint_visible *h,
-                               const struct glint_path *path, double sine,
-                               struct glint_pupil *box)
+/* Finds visible rays that lie between the rays of the grid over BOX: if the
+ * field is much smaller than the front element, so is the visible region of the
+ * pupil. Sets BOX to contain them. Returns false if there are none. */
+static bool find_region_missed_by_grid(const struct glint_visible *h,
+                                       const struct glint_path *path,
+                                       double sine, struct glint_pupil *box)
 {
     enum { ROUNDS = 4 };
 
@@ -273,7 +277,7 @@ static bool find_missed_region(const struct glint_visible *h,
     return false;
 }
 
-static double convert_to_degrees(double sine)
+static double convert_sine_to_degrees(double sine)
 {
     return asin(sine) * (180 / GLINT_PI);
 }
@@ -286,7 +290,7 @@ static bool find_visible_box(const struct glint_visible *h,
 {
     struct glint_pupil spot;
 
-    if (!glint_pupil_find_within(box, path, convert_to_degrees(sine),
+    if (!glint_pupil_find_within(box, path, convert_sine_to_degrees(sine),
                                  h->setup->optics.stop_radius_mm, h->field_mm,
                                  NULL))
         return false;
@@ -294,7 +298,7 @@ static bool find_visible_box(const struct glint_visible *h,
     if (find_tight_visible_box(h, path, sine, box))
         return true;
     *box = spot;
-    return find_missed_region(h, path, sine, box) &&
+    return find_region_missed_by_grid(h, path, sine, box) &&
            find_tight_visible_box(h, path, sine, box);
 }
 
@@ -311,10 +315,10 @@ static struct glint_pupil enlarge_box_by_margin(const struct glint_pupil *near)
 }
 
 /* Finds the box of unblocked rays at SINE. Searches around NEAR first. */
-static bool find_box_near(const struct glint_visible *h,
-                          const struct glint_path *path, double sine,
-                          const struct glint_pupil *near,
-                          struct glint_pupil *box)
+static bool find_box_near_previous(const struct glint_visible *h,
+                                   const struct glint_path *path, double sine,
+                                   const struct glint_pupil *near,
+                                   struct glint_pupil *box)
 {
     *box = enlarge_box_by_margin(near);
     return (grow_box_to_visible(h, path, sine, box) &&
@@ -325,7 +329,8 @@ static bool find_box_near(const struct glint_visible *h,
 /* ------------------------------------------------------------------ profile */
 
 enum {
-    /* number of angles after which the whole pupil is searched again */
+    /* number of angles after which the whole pupil is searched again instead of
+     * the surroundings of the last box */
     AFRESH = 4,
     /* the same for non-spherical surfaces, through which rays are slow to
      * trace */
@@ -360,7 +365,7 @@ static void find_boxes_of_wave(const struct glint_visible *h,
 {
     const struct glint_path *path = &h->position_path[wave];
     struct glint_pupil box = {.y1_mm = 0}, before = box;
-    /* number of consecutive angles, up to the last one, that have a box */
+    /* number of consecutive angles with a box, up to the previous angle */
     int have = 0;
 
     for (int k = 0; k < GLINT_PROFILE; k++) {
@@ -376,12 +381,12 @@ static void find_boxes_of_wave(const struct glint_visible *h,
             near = extrapolate_box(&before, &box,
                                    (s[0] - s[-1]) / (s[-1] - s[-2]));
         before = box;
-        now = have ? find_box_near(h, path, *s, &near, &box)
+        now = have ? find_box_near_previous(h, path, *s, &near, &box)
                    : find_visible_box(h, path, *s, &box);
         if (have && k % (h->shaped ? AFRESH_SHAPED : AFRESH) == 0 &&
             find_visible_box(h, path, *s, &near)) {
             if (now)
-                glint_visible_join(&near, &box);
+                glint_visible_join_boxes(&near, &box);
             box = near;
             now = true;
         }
@@ -406,14 +411,14 @@ static void add_profile_angle(struct glint_visible_profile *p, double sine,
     p->sine[p->n] = sine;
     p->box[p->n] = p->sample[first].box;
     for (int i = first + 1; i < p->n_samples; i++)
-        glint_visible_join(&p->box[p->n], &p->sample[i].box);
+        glint_visible_join_boxes(&p->box[p->n], &p->sample[i].box);
     p->n++;
 }
 
 /* Finds the boxes of one ghost at the angles SINE. ALONE: there are no
- * neighbouring zoom positions, so the ghost is visible at each angle at some
- * wavelength; if the first three wavelengths have no light, all others are
- * tried. With neighbouring positions the ghost may be invisible. */
+ * neighbouring zoom positions. Then the ghost is visible at each angle at some
+ * wavelength, so if the first three wavelengths have no light, all others are
+ * tried. With neighbouring positions the ghost may be invisible at an angle. */
 static void find_boxes_at_angles(const struct glint_visible *h, bool alone,
                                  const double *sine, struct box_samples *g)
 {
@@ -438,20 +443,21 @@ static void find_boxes_at_angles(const struct glint_visible *h, bool alone,
             find_boxes_of_wave(h, sine, wanted, wave, g);
 }
 
-/* Extends each box of A to contain that of B. */
+/* Extends each box of A to contain the box of B at the same angle and
+ * wavelength. */
 static void join_box_samples(struct box_samples *a, const struct box_samples *b)
 {
     for (int k = 0; k < GLINT_PROFILE; k++)
         for (int wave = 0; wave < GLINT_VISIBLE_WAVES; wave++) {
             if (a->seen[k][wave] && b->seen[k][wave])
-                glint_visible_join(&a->box[k][wave], &b->box[k][wave]);
+                glint_visible_join_boxes(&a->box[k][wave], &b->box[k][wave]);
             else if (b->seen[k][wave])
                 a->box[k][wave] = b->box[k][wave];
             a->seen[k][wave] |= b->seen[k][wave];
         }
 }
 
-void glint_visible_profile_find(const struct glint_visible *visible,
+void glint_visible_find_profile(const struct glint_visible *visible,
                                 const double range[2],
                                 struct glint_visible_profile *profile)
 {
@@ -478,8 +484,9 @@ void glint_visible_profile_find(const struct glint_visible *visible,
 enum {
     SCAN_DEG = 1,
     BISECTIONS = 8,
-    /* max number of scan steps by which an end of a range of angles is
-     * extended, because light passes only at the ends of the band */
+    /* max number of scan steps by which an end of an angle range is extended
+     * beyond the last angle with light at mid band, because light may still
+     * pass at the ends of the band */
     FARTHER = 4
 };
 
@@ -495,18 +502,20 @@ static bool find_box_at_any_colour(const struct glint_visible *h, double sine,
     return false;
 }
 
-static bool is_light_visible(const struct glint_visible *h, double sine, int n)
+static bool is_ghost_visible_at_angle(const struct glint_visible *h,
+                                      double sine, int n)
 {
     struct glint_pupil box;
 
     return find_box_at_any_colour(h, sine, n, &box);
 }
 
-/* Returns whether light at the middle of the band passes, and sets BOX. For
- * non-spherical surfaces, through which rays are slow to trace, searches around
- * BOX, the box at the previous angle, first if INSIDE is set. */
-static bool is_middle_light_visible(const struct glint_visible *h, double sine,
-                                    bool inside, struct glint_pupil *box)
+/* Returns whether light at the middle of the band passes, and sets BOX.
+ * Non-spherical surfaces, through which rays are slow to trace: if INSIDE,
+ * first searches around BOX, the box at the previous angle. */
+static bool is_ghost_visible_at_mid_band(const struct glint_visible *h,
+                                         double sine, bool inside,
+                                         struct glint_pupil *box)
 {
     if (h->shaped && inside) {
         struct glint_pupil near = enlarge_box_by_margin(box);
@@ -520,16 +529,16 @@ static bool is_middle_light_visible(const struct glint_visible *h, double sine,
     return find_box_at_any_colour(h, sine, 1, box);
 }
 
-/* Returns the last sine, on the way from WITH to WITHOUT, at which light of any
- * of the three wavelengths passes. Light at the middle of the band passes at
- * WITH, but not at WITHOUT. */
+/* Returns the end of an angle range: the last sine, from WITH towards WITHOUT,
+ * at which light of any of the three wavelengths passes. At the middle of the
+ * band light passes at WITH, but not at WITHOUT. */
 static double find_range_end(const struct glint_visible *h, double with,
                              double without)
 {
     for (int k = 0; k < FARTHER && without > 0 && without < 1; k++) {
         const double next = without + (without - with);
 
-        if (!is_light_visible(h, without, 3))
+        if (!is_ghost_visible_at_angle(h, without, 3))
             break;
         with = without;
         without = fmin(1, fmax(0, next));
@@ -537,7 +546,7 @@ static double find_range_end(const struct glint_visible *h, double with,
     for (int k = 0; k < BISECTIONS; k++) {
         const double middle = 0.5 * (with + without);
 
-        if (is_light_visible(h, middle, 3))
+        if (is_ghost_visible_at_angle(h, middle, 3))
             with = middle;
         else
             without = middle;
@@ -545,8 +554,9 @@ static double find_range_end(const struct glint_visible *h, double with,
     return with;
 }
 
-/* Ends the last of N ranges at HI. Drops it if it is empty and merges it with
- * the previous range if both overlap. Returns the new number of ranges. */
+/* Sets the end of the last of N ranges to HI. Drops the range if it is empty;
+ * merges it with the previous range if both overlap. Returns the new number of
+ * ranges. */
 static int end_angle_range(double (*range)[2], int n, double hi)
 {
     double *last = range[n - 1];
@@ -571,7 +581,8 @@ static int find_angle_ranges(const struct glint_visible *visible,
 
     for (int k = 0; k <= steps; k++) {
         const double sine = glint_sin_deg(fmin(k * SCAN_DEG, max_deg));
-        const bool now = is_middle_light_visible(visible, sine, inside, &box);
+        const bool now =
+            is_ghost_visible_at_mid_band(visible, sine, inside, &box);
 
         if (now && !inside && n == GLINT_MAX_RANGES)
             break;
@@ -613,8 +624,8 @@ int glint_visible_add_range(double (*range)[2], int n, const double more[2])
     return kept + 1;
 }
 
-int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
-                         double (*range)[2])
+int glint_visible_find_ranges(const struct glint_visible *visible,
+                              double max_deg, double (*range)[2])
 {
     int n = find_angle_ranges(visible, max_deg, range);
 

@@ -62,16 +62,18 @@ struct glint_visible {
     /* the same paths, for tracing positions without energies */
     struct glint_path position_path[GLINT_VISIBLE_WAVES];
     /* The same ghost at neighbouring zoom positions. Rays that are visible or
-     * blocked there count here, too, so that models of several positions can be
-     * interpolated. */
+     * blocked at those positions count here, too, so that models of several
+     * positions can be interpolated. */
     int n_beside;
-    struct glint_visible *beside; /* [n_beside]; their n_beside is 0 */
+    /* visibilities at neighbouring positions, [n_beside]; their n_beside is
+     * 0 */
+    struct glint_visible *beside;
 };
 
-/* Returns the ghost itself for K = 0, else the ghost at neighbouring zoom
- * position K - 1. */
+/* Returns VISIBLE for K = 0, else the same ghost at neighbouring zoom position
+ * K - 1. */
 static inline const struct glint_visible *
-glint_visible_member(const struct glint_visible *visible, int k)
+glint_visible_get_member(const struct glint_visible *visible, int k)
 {
     return k == 0 ? visible : &visible->beside[k - 1];
 }
@@ -80,23 +82,23 @@ void glint_visible_init(struct glint_visible *visible,
                         const struct glint_setup *setup, int ghost,
                         double field_mm, const double band_nm[2]);
 
-/* Sets the max angle of lights off the axis. */
-void glint_visible_reach(struct glint_visible *visible, double max_deg);
+/* Sets the max angle between lights and the lens axis, degrees. */
+void glint_visible_set_max_angle(struct glint_visible *visible, double max_deg);
 
 /* Sets VISIBLE to WHOLE with the band narrowed to W0 .. W1, in w, -1 .. 1.
  * VISIBLE->beside must have memory for WHOLE->n_beside entries. */
-void glint_visible_narrow(struct glint_visible *visible,
-                          const struct glint_visible *whole, double w0,
-                          double w1);
+void glint_visible_narrow_band(struct glint_visible *visible,
+                               const struct glint_visible *whole, double w0,
+                               double w1);
 
 /* Sets PATH to the ghost's path at the wavelength W, -1 .. 1 over the band. */
-void glint_visible_path(const struct glint_visible *visible, double w,
-                        struct glint_path *path);
+void glint_visible_init_path(const struct glint_visible *visible, double w,
+                             struct glint_path *path);
 
 /* Finds the ranges of angles, as sines, up to MAX_DEG at which light passes.
  * Returns their number. */
-int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
-                         double (*range)[2]);
+int glint_visible_find_ranges(const struct glint_visible *visible,
+                              double max_deg, double (*range)[2]);
 
 /* Inserts the range MORE into N disjoint ascending ranges and merges it with
  * ranges that overlap or touch it. Drops MORE if there would be more than
@@ -105,7 +107,7 @@ int glint_visible_add_range(double (*range)[2], int n, const double more[2]);
 
 /* the box of visible light at one angle and wavelength */
 struct glint_box_sample {
-    double sine, w; /* position in the band, -1 .. 1, is w */
+    double sine, w; /* sine of the angle; position w in the band, -1 .. 1 */
     struct glint_pupil box;
 };
 
@@ -118,15 +120,16 @@ struct glint_visible_profile {
     struct glint_box_sample sample[GLINT_PROFILE * GLINT_VISIBLE_WAVES];
 };
 
-void glint_visible_profile_find(const struct glint_visible *visible,
+void glint_visible_find_profile(const struct glint_visible *visible,
                                 const double range[2],
                                 struct glint_visible_profile *profile);
 
 /* Returns whether RAY passes the stop and all barrels and hits the field. */
-bool glint_visible_passes(const struct glint_visible *visible,
-                          const struct glint_ray *ray);
+bool glint_visible_is_ray_visible(const struct glint_visible *visible,
+                                  const struct glint_ray *ray);
 
 /* Extends box A to contain box B. */
-void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b);
+void glint_visible_join_boxes(struct glint_pupil *a,
+                              const struct glint_pupil *b);
 
 #endif

@@ -237,7 +237,7 @@ static const char *compute_body_pose(struct four *l, int n,
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
             row[k][i] = map[i][k];
-    glint_rigid_nearest((const double(*)[3])row, &located->pose);
+    glint_rigid_set_nearest_rotation((const double(*)[3])row, &located->pose);
     memcpy(located->pose.at, map[3], sizeof located->pose.at);
     for (int i = 0; i < n; i++)
         if (is_new[i])

@@ -38,7 +38,7 @@ double four_round_value(enum four_arithmetic arithmetic, double x);
 void four_init_localiser(struct four *four, enum four_fit fit,
                          enum four_arithmetic arithmetic);
 
-/* Like glint_localise(), but sets only the pose of LOCATED. */
+/* Like glint_localise_body(), but sets only the pose of LOCATED. */
 const char *four_localise_body(struct four *four, int n,
                                const double (*seen)[3], const bool *is_new,
                                struct glint_located *located);

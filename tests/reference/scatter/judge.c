@@ -100,7 +100,7 @@ glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
 double glint_scatter_peak(const struct glint_scatter_rows *rows)
 {
     const size_t n = (size_t)rows->side * (size_t)rows->side * 3 *
-                     (size_t)glint_scatter_kernel2(rows->kernel);
+                     (size_t)glint_scatter_count_entries(rows->kernel);
     float most = 0;
 
     for (size_t i = 0; i < n; i++)
@@ -111,10 +111,11 @@ double glint_scatter_peak(const struct glint_scatter_rows *rows)
 void glint_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x, int c,
                        const double *row)
 {
-    float *to = glint_scatter_row(rebuilt, x, c);
+    float *to = glint_scatter_get_row(rebuilt, x, c);
 
-    for (int d = 0; d < glint_scatter_kernel2(rebuilt->kernel); d++)
-        to[d] = glint_scatter_target(rebuilt->side, rebuilt->kernel, x, d) < 0
+    for (int d = 0; d < glint_scatter_count_entries(rebuilt->kernel); d++)
+        to[d] = glint_scatter_get_target_texel(rebuilt->side, rebuilt->kernel,
+                                               x, d) < 0
                     ? 0
                     : (float)row[d];
 }
@@ -129,7 +130,7 @@ static enum glint_status rebuild_rows_by_runtime_fit(
         GLINT_SCATTER_CLUSTERED, GLINT_SCATTER_FACTORED, GLINT_SCATTER_ALBEDO};
     const struct glint_scatter_options options = {model[o->kind], o->terms,
                                                   o->rank};
-    const int k2 = glint_scatter_kernel2(rows->kernel);
+    const int k2 = glint_scatter_count_entries(rows->kernel);
     struct glint_scatter_fit fit;
     const enum glint_status status =
         glint_scatter_fit(rows, &options, watch, &fit);
@@ -139,7 +140,7 @@ static enum glint_status rebuild_rows_by_runtime_fit(
     for (int x = 0; x < rows->side * rows->side; x++)
         for (int c = 0; c < 3; c++)
             for (int d = 0; d < k2; d++)
-                glint_scatter_row(rebuilt, x, c)[d] =
+                glint_scatter_get_row(rebuilt, x, c)[d] =
                     (float)glint_scatter_entry(&fit, x, c, d);
     glint_scatter_fit_close(&fit);
     return GLINT_OK;
@@ -178,16 +179,17 @@ static double measure_row_errors(const struct glint_scatter_rows *rows,
                                  int x, struct glint_scatter_judgement *j,
                                  double *one_way)
 {
-    const int k2 = glint_scatter_kernel2(rows->kernel);
+    const int k2 = glint_scatter_count_entries(rows->kernel);
     double square = 0;
 
     for (int c = 0; c < 3; c++) {
-        const float *want = glint_scatter_row(rows, x, c);
-        const float *got = glint_scatter_row(rebuilt, x, c);
+        const float *want = glint_scatter_get_row(rows, x, c);
+        const float *got = glint_scatter_get_row(rebuilt, x, c);
         double sum = 0;
 
         for (int d = 0; d < k2; d++) {
-            const int to = glint_scatter_target(rows->side, rows->kernel, x, d);
+            const int to =
+                glint_scatter_get_target_texel(rows->side, rows->kernel, x, d);
             const double g = (double)got[d];
 
             if (to < 0)
@@ -196,7 +198,8 @@ static double measure_row_errors(const struct glint_scatter_rows *rows,
             sum += g;
             j->negative += g < 0;
             *one_way += pow(
-                g - (double)glint_scatter_row(rebuilt, to, c)[k2 - 1 - d], 2);
+                g - (double)glint_scatter_get_row(rebuilt, to, c)[k2 - 1 - d],
+                2);
         }
         j->energy = fmax(j->energy, sum);
     }
@@ -210,7 +213,7 @@ static double count_entries_in_square(const struct glint_scatter_rows *rows)
 
     for (int x = 0; x < rows->side * rows->side; x++) {
         const struct glint_scatter_inside in =
-            glint_scatter_inside(rows->side, rows->kernel, x);
+            glint_scatter_find_offsets_inside(rows->side, rows->kernel, x);
 
         n += (in.u_to - in.u_from) * (in.v_to - in.v_from);
     }
@@ -290,7 +293,7 @@ glint_scatter_judge(struct glint_scatter_rows *rows,
                     struct glint_scatter_judgement *judgement)
 {
     const double texels = (double)rows->side * rows->side;
-    const double entries = glint_scatter_kernel2(rows->kernel);
+    const double entries = glint_scatter_count_entries(rows->kernel);
     struct glint_scatter_rows rebuilt;
     const clock_t start = clock();
     enum glint_status status;
@@ -298,7 +301,7 @@ glint_scatter_judge(struct glint_scatter_rows *rows,
     *judgement = (struct glint_scatter_judgement){.candidate = *candidate};
     if (!is_in_range(candidate))
         return GLINT_E_ARGUMENT;
-    if (!glint_scatter_open(&rebuilt, rows->side, rows->kernel, false))
+    if (!glint_scatter_allocate_rows(&rebuilt, rows->side, rows->kernel, false))
         return GLINT_E_MEMORY;
     status = rebuild_rows(rows, &judgement->candidate, watch, &rebuilt);
     judgement->seconds = (double)(clock() - start) / CLOCKS_PER_SEC;

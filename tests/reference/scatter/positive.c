@@ -131,7 +131,7 @@ enum glint_status glint_positive_fit(const struct glint_positive *p, int rounds,
             add_row_to_sums(p, x, &s);
         }
         fit_kernels_h(p, &s);
-        if (glint_watch_ends(watch, (double)i / rounds))
+        if (glint_watch_report_progress(watch, (double)i / rounds))
             status = GLINT_E_CLOSED;
     }
     free(memory);
@@ -152,8 +152,8 @@ static void read_relative_row(const void *ctx, int x, double *value,
                               double *weight)
 {
     const struct over *p = ctx;
-    const int k2 = glint_scatter_kernel2(p->rows->kernel);
-    const float *row = glint_scatter_row(p->rows, x, p->c);
+    const int k2 = glint_scatter_count_entries(p->rows->kernel);
+    const float *row = glint_scatter_get_row(p->rows, x, p->c);
     const double *g = p->mean + (size_t)p->cluster[x] * (size_t)k2;
 
     for (int d = 0; d < k2; d++) {
@@ -166,22 +166,22 @@ static void read_relative_row(const void *ctx, int x, double *value,
 
 static double compute_row_distance(const struct over *p, int x, const double *g)
 {
-    const float *row = glint_scatter_row(p->rows, x, p->c);
+    const float *row = glint_scatter_get_row(p->rows, x, p->c);
     double sum = 0;
 
-    for (int d = 0; d < glint_scatter_kernel2(p->rows->kernel); d++)
+    for (int d = 0; d < glint_scatter_count_entries(p->rows->kernel); d++)
         sum += pow((double)row[d] - g[d], 2);
     return sum;
 }
 
 static void set_cluster_means(struct over *p)
 {
-    const size_t k2 = (size_t)glint_scatter_kernel2(p->rows->kernel);
+    const size_t k2 = (size_t)glint_scatter_count_entries(p->rows->kernel);
     int n[GLINT_SCATTER_MAX_TERMS] = {0};
 
     memset(p->mean, 0, (size_t)p->clusters * k2 * sizeof *p->mean);
     for (int x = 0; x < p->rows->side * p->rows->side; x++) {
-        const float *row = glint_scatter_row(p->rows, x, p->c);
+        const float *row = glint_scatter_get_row(p->rows, x, p->c);
 
         n[p->cluster[x]]++;
         for (size_t d = 0; d < k2; d++)
@@ -197,7 +197,7 @@ static void set_cluster_means(struct over *p)
 static void cluster_rows(struct over *p)
 {
     const int texels = p->rows->side * p->rows->side;
-    const int k2 = glint_scatter_kernel2(p->rows->kernel);
+    const int k2 = glint_scatter_count_entries(p->rows->kernel);
 
     for (int x = 0; x < texels; x++)
         p->cluster[x] = (int)((long long)x * p->clusters / texels);
@@ -251,7 +251,7 @@ static enum glint_status rebuild_rows(struct over *p, int terms,
                                       struct glint_scatter_rows *rebuilt)
 {
     const int texels = p->rows->side * p->rows->side;
-    const int k2 = glint_scatter_kernel2(p->rows->kernel);
+    const int k2 = glint_scatter_count_entries(p->rows->kernel);
     struct glint_positive q = {texels, k2,   terms, read_relative_row,
                                p,      NULL, NULL};
     double *row = malloc((size_t)k2 * sizeof *row);
@@ -265,7 +265,7 @@ static enum glint_status rebuild_rows(struct over *p, int terms,
         status = GLINT_OK;
     for (p->c = 0; p->c < 3 && status == GLINT_OK; p->c++) {
         struct glint_watch_part part = {watch, p->c / 3.0, 1 / 3.0};
-        const struct glint_watch share = glint_watch_of(&part);
+        const struct glint_watch share = glint_watch_make_for_part(&part);
 
         status = rebuild_channel(p, &q, row, &share, rebuilt);
     }

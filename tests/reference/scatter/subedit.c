@@ -51,12 +51,12 @@ static void set_entry_radii(const struct subedit *p)
  * row and the other profiles require. ALONE: ignores the other profiles. */
 static void solve_radial_profile(const struct subedit *p, int x, bool alone)
 {
-    const float *row = glint_scatter_row(p->rows, x, p->c);
+    const float *row = glint_scatter_get_row(p->rows, x, p->c);
     double sum[VALUES] = {0}, weight[VALUES] = {0};
 
-    for (int d = 0; d < glint_scatter_kernel2(p->rows->kernel); d++) {
-        const int to =
-            glint_scatter_target(p->rows->side, p->rows->kernel, x, d);
+    for (int d = 0; d < glint_scatter_count_entries(p->rows->kernel); d++) {
+        const int to = glint_scatter_get_target_texel(p->rows->side,
+                                                      p->rows->kernel, x, d);
         const int low = (int)fmin(p->radius[d], VALUES - 2);
         const double t = p->radius[d] - low;
         double value;
@@ -86,9 +86,9 @@ static void rebuild_channel(const struct subedit *p, double *row,
                             struct glint_scatter_rows *rebuilt)
 {
     for (int x = 0; x < p->rows->side * p->rows->side; x++) {
-        for (int d = 0; d < glint_scatter_kernel2(p->rows->kernel); d++) {
-            const int to =
-                glint_scatter_target(p->rows->side, p->rows->kernel, x, d);
+        for (int d = 0; d < glint_scatter_count_entries(p->rows->kernel); d++) {
+            const int to = glint_scatter_get_target_texel(
+                p->rows->side, p->rows->kernel, x, d);
 
             row[d] = to < 0 ? 0
                             : exp((interpolate_profile(p->profile + VALUES * x,
@@ -112,7 +112,8 @@ static enum glint_status rebuild_channels(struct subedit *p, double *row,
         for (int i = 0; i < ROUNDS; i++) {
             double *other;
 
-            if (glint_watch_ends(watch, (p->c + (double)i / ROUNDS) / 3))
+            if (glint_watch_report_progress(watch,
+                                            (p->c + (double)i / ROUNDS) / 3))
                 return GLINT_E_CLOSED;
             for (int x = 0; x < texels; x++)
                 solve_radial_profile(p, x, i == 0);
@@ -131,7 +132,7 @@ enum glint_status glint_rebuild_subedit(const struct glint_scatter_rows *rows,
                                         struct glint_scatter_rows *rebuilt)
 {
     const size_t values = VALUES * (size_t)rows->side * (size_t)rows->side;
-    const size_t k2 = (size_t)glint_scatter_kernel2(rows->kernel);
+    const size_t k2 = (size_t)glint_scatter_count_entries(rows->kernel);
     struct subedit p = {.rows = rows,
                         .floor = FLOOR * glint_scatter_peak(rows)};
     double *memory = calloc(2 * values + 2 * k2, sizeof *memory);

@@ -22,9 +22,9 @@ struct channel {
 static void read_row(const void *ctx, int i, double *to)
 {
     const struct channel *p = ctx;
-    const float *row = glint_scatter_row(p->rows, i * p->step, p->c);
+    const float *row = glint_scatter_get_row(p->rows, i * p->step, p->c);
 
-    for (int d = 0; d < glint_scatter_kernel2(p->rows->kernel); d++)
+    for (int d = 0; d < glint_scatter_count_entries(p->rows->kernel); d++)
         to[d] = p->logs ? log((double)row[d] / p->a + p->b) : (double)row[d];
 }
 
@@ -53,8 +53,8 @@ static struct glint_tall make_row_matrix(const struct channel *p)
     const int texels = p->rows->side * p->rows->side;
 
     return (struct glint_tall){(texels + p->step - 1) / p->step,
-                               glint_scatter_kernel2(p->rows->kernel), read_row,
-                               p};
+                               glint_scatter_count_entries(p->rows->kernel),
+                               read_row, p};
 }
 
 static enum glint_status rebuild_channel(const struct channel *p, int n,
@@ -64,7 +64,7 @@ static enum glint_status rebuild_channel(const struct channel *p, int n,
     double *row = malloc((size_t)m.columns * sizeof *row);
     struct glint_terms terms;
 
-    if (!row || !glint_terms_of(&m, n, &terms)) {
+    if (!row || !glint_terms_compute(&m, n, &terms)) {
         free(row);
         return GLINT_E_MEMORY;
     }
@@ -75,7 +75,7 @@ static enum glint_status rebuild_channel(const struct channel *p, int n,
         glint_rebuilt_row(rebuilt, x, p->c, row);
     }
     free(row);
-    glint_terms_close(&terms);
+    glint_terms_free(&terms);
     return GLINT_OK;
 }
 
@@ -87,7 +87,7 @@ static enum glint_status rebuild_channels(struct channel *p, int n,
 
     p->step = 1;
     for (p->c = 0; p->c < 3 && status == GLINT_OK; p->c++)
-        status = glint_watch_ends(watch, p->c / 3.0)
+        status = glint_watch_report_progress(watch, p->c / 3.0)
                      ? GLINT_E_CLOSED
                      : rebuild_channel(p, n, rebuilt);
     return status;
@@ -112,19 +112,19 @@ static bool measure_log_fit_error(const struct channel *p, int n,
     struct glint_terms terms;
 
     *square = 0;
-    if (!row || !glint_terms_of(&m, n, &terms)) {
+    if (!row || !glint_terms_compute(&m, n, &terms)) {
         free(row);
         return false;
     }
     for (int x = 0; x < m.rows; x++) {
-        const float *data = glint_scatter_row(p->rows, x * p->step, p->c);
+        const float *data = glint_scatter_get_row(p->rows, x * p->step, p->c);
 
         set_row_from_terms(&terms, m.rows, m.columns, x, row);
         for (int d = 0; d < m.columns; d++)
             *square += pow(invert_log_encoding(p, row[d]) - (double)data[d], 2);
     }
     free(row);
-    glint_terms_close(&terms);
+    glint_terms_free(&terms);
     return true;
 }
 
@@ -149,7 +149,7 @@ search_parameters(const struct glint_scatter_rows *rows,
 
         p.a = as[i % 8] * peak;
         p.b = bs[i / 8];
-        if (glint_watch_ends(watch, i / 24.0))
+        if (glint_watch_report_progress(watch, i / 24.0))
             return GLINT_E_CLOSED;
         if (!measure_log_fit_error(&p, o->terms, &square))
             return GLINT_E_MEMORY;
@@ -168,8 +168,8 @@ enum glint_status glint_rebuild_log_svd(const struct glint_scatter_rows *rows,
                                         struct glint_scatter_rows *rebuilt)
 {
     struct glint_watch_part first = {watch, 0, 0.5}, second = {watch, 0.5, 0.5};
-    const struct glint_watch early = glint_watch_of(&first);
-    const struct glint_watch late = glint_watch_of(&second);
+    const struct glint_watch early = glint_watch_make_for_part(&first);
+    const struct glint_watch late = glint_watch_make_for_part(&second);
     const double peak = glint_scatter_peak(rows);
     struct channel p = {.rows = rows, .logs = true};
     enum glint_status status = GLINT_OK;

@@ -113,7 +113,7 @@ TEST(c3_turned)
     turned = judge_rows(&stone[0], &o).rmse;
     assert_true(turned < 1.05 * plain);
 
-    assert_true(glint_scatter_open(&off, SIDE, KERNEL, false));
+    assert_true(glint_scatter_allocate_rows(&off, SIDE, KERNEL, false));
     for (int x = 0; x < TEXELS; x++) {
         const bool is_off = rng_unit(&seed) < 0.3;
 
@@ -121,9 +121,9 @@ TEST(c3_turned)
             for (int d = 0; d < K2; d++) {
                 const int from = is_off && d > 0 ? d - 1 : d;
 
-                if (glint_scatter_target(SIDE, KERNEL, x, d) >= 0)
-                    glint_scatter_row(&off, x, c)[d] =
-                        glint_scatter_row(&stone[0], x, c)[from];
+                if (glint_scatter_get_target_texel(SIDE, KERNEL, x, d) >= 0)
+                    glint_scatter_get_row(&off, x, c)[d] =
+                        glint_scatter_get_row(&stone[0], x, c)[from];
             }
     }
     o.turned = false;
@@ -143,7 +143,7 @@ static void read_green_row(const void *ctx, int i, double *to)
     const struct greens *g = ctx;
 
     for (int d = 0; d < K2; d++)
-        to[d] = (double)glint_scatter_row(g->rows, i, 1)[d];
+        to[d] = (double)glint_scatter_get_row(g->rows, i, 1)[d];
 }
 
 /* C4: checks that rank-1 fits of the running error equal the truncated singular
@@ -157,15 +157,15 @@ TEST(c4_tucker)
     struct glint_terms terms;
 
     assert_non_null(left);
-    assert_true(glint_terms_of(&m, 5, &terms));
+    assert_true(glint_terms_compute(&m, 5, &terms));
     for (int x = 0; x < TEXELS; x++)
-        memcpy(left + x * K2, glint_scatter_row(&stone[1], x, 1),
+        memcpy(left + x * K2, glint_scatter_get_row(&stone[1], x, 1),
                K2 * sizeof *left);
     for (int t = 0; t < 5; t++)
         assert_near(sqrt(glint_tucker_term(left, TEXELS, K2, f, h)),
                     terms.value[t], 1e-5 * terms.value[0]);
     free(left);
-    glint_terms_close(&terms);
+    glint_terms_free(&terms);
 }
 
 /* C5: checks that the error decreases with the degree, and with the number of
@@ -301,12 +301,12 @@ TEST(c11_albedo)
     assert_near(glint_scatter_candidate_sums(&o, 16384, 841, false) /
                     glint_scatter_candidate_sums(&o, 16384, 841, true),
                 800, 1);
-    assert_true(glint_terms_of(&m, K2, &terms));
+    assert_true(glint_terms_compute(&m, K2, &terms));
     for (int x = 0; x < TEXELS; x += 7) {
         double kept = 0, all = 0;
 
         for (int d = 0; d < K2; d++)
-            all += (double)glint_scatter_row(&stone[0], x, 1)[d];
+            all += (double)glint_scatter_get_row(&stone[0], x, 1)[d];
         for (int j = 0; j < terms.n; j++) {
             double sum = 0;
 
@@ -316,7 +316,7 @@ TEST(c11_albedo)
         }
         assert_near(kept, all, 1e-9);
     }
-    glint_terms_close(&terms);
+    glint_terms_free(&terms);
 }
 
 /* C13: checks that the error map sums to the total error, and the percentiles
@@ -350,8 +350,8 @@ TEST(extremes)
         make_candidate(GLINT_CANDIDATE_SVD, 21);
     struct glint_scatter_judgement j;
 
-    assert_true(glint_scatter_open(&black, 4, 9, false));
-    assert_true(glint_scatter_open(&one, 1, 3, false));
+    assert_true(glint_scatter_allocate_rows(&black, 4, 9, false));
+    assert_true(glint_scatter_allocate_rows(&one, 1, 3, false));
     one.r[4] = one.r[13] = one.r[22] = 0.25f;
     for (int kind = 0; kind < GLINT_CANDIDATES; kind++) {
         const struct glint_scatter_candidate o =

@@ -41,7 +41,7 @@ static float *residual_row(const struct tucker *p, float *all, int x)
 static void compute_residual_rows(const struct tucker *p, bool turned)
 {
     for (int x = 0; x < p->n; x++) {
-        const float *rgb = glint_scatter_row(p->rows, x, 0);
+        const float *rgb = glint_scatter_get_row(p->rows, x, 0);
         float *to = residual_row(p, p->left, x),
               *scratch = residual_row(p, p->model, x);
         int first = 0;
@@ -135,14 +135,15 @@ static void fit_row_polynomial(const struct tucker *p, int x, int c, int degree,
                                const double *mean, double *coef)
 {
     double gram[COEFFICIENTS * COEFFICIENTS] = {0};
-    const float *row = glint_scatter_row(p->rows, x, c);
+    const float *row = glint_scatter_get_row(p->rows, x, c);
     const int n = degree + 1;
 
     memset(coef, 0, COEFFICIENTS * sizeof *coef);
     for (int d = 0; d < p->k2; d++) {
         double power[2 * COEFFICIENTS] = {1};
 
-        if (glint_scatter_target(p->rows->side, p->rows->kernel, x, d) < 0)
+        if (glint_scatter_get_target_texel(p->rows->side, p->rows->kernel, x,
+                                           d) < 0)
             continue;
         for (int i = 1; i <= 2 * degree; i++)
             power[i] = power[i - 1] * mean[d];
@@ -152,7 +153,7 @@ static void fit_row_polynomial(const struct tucker *p, int x, int c, int degree,
                 gram[i * n + k] += power[i + k];
         }
     }
-    glint_solve(gram, n, coef);
+    glint_solve_symmetric_system(gram, n, coef);
 }
 
 /* Sets MEAN[k2] to the sum of the terms for row X, rotated back. */
@@ -194,7 +195,7 @@ static enum glint_status rebuild_rows(const struct tucker *p,
 {
     compute_residual_rows(p, o->turned);
     for (int t = 0; t < o->terms; t++) {
-        if (glint_watch_ends(watch, (double)t / (o->terms + 1)))
+        if (glint_watch_report_progress(watch, (double)t / (o->terms + 1)))
             return GLINT_E_CLOSED;
         fit_and_subtract_term(p);
     }
@@ -209,7 +210,7 @@ enum glint_status glint_rebuild_tucker(const struct glint_scatter_rows *rows,
                                        struct glint_scatter_rows *rebuilt)
 {
     const size_t n = (size_t)rows->side * (size_t)rows->side;
-    const size_t k2 = (size_t)glint_scatter_kernel2(rows->kernel);
+    const size_t k2 = (size_t)glint_scatter_count_entries(rows->kernel);
     struct tucker p = {.rows = rows, .n = (int)n, .k2 = (int)k2};
     enum glint_status status = GLINT_E_MEMORY;
 

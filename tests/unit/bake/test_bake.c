@@ -409,7 +409,7 @@ TEST(near_second_barrel_needs_a_small_tolerance)
     load_lens(&lens, "canon-zoom-long");
     assert_ok(glint_setup_init(&zoom, &lens, 0, 0, band_nm, 2, &error));
     glint_visible_init(&visible, &zoom, 71, 23.8, band_nm);
-    glint_visible_profile_find(&visible, range, &profile);
+    glint_visible_find_profile(&visible, range, &profile);
     glint_zone_init(&zone, &profile, range[0], range[1], false);
     glint_zone_choose_barrels(&zone, &visible, 1e-3, &sampling, &rays);
     assert_int_equal(rays.n_barrels, 1);
@@ -433,20 +433,23 @@ TEST(cut_zone_keeps_its_box)
         zone.half_y[k] = rng_signed(&seed);
     }
     cut = zone;
-    glint_zone_cut(&cut, &part);
+    glint_zone_cut_to_part(&cut, &part);
     assert_int_equal(cut.annulus, 3);
     for (int k = 0; k < 100; k++) {
         const double u = rng_signed(&seed), s = rng_signed(&seed),
                      w = rng_signed(&seed);
         const double whole_w = 0.125 + 0.625 * w, whole_u = 0.125 + 0.375 * u;
 
-        assert_near(glint_zone_at(cut.middle, s, w) +
-                        u * glint_zone_at(cut.half_x, s, w),
-                    glint_zone_at(zone.middle, s, whole_w) +
-                        whole_u * glint_zone_at(zone.half_x, s, whole_w),
+        assert_near(glint_zone_evaluate_round_side(cut.middle, s, w) +
+                        u * glint_zone_evaluate_round_side(cut.half_x, s, w),
+                    glint_zone_evaluate_round_side(zone.middle, s, whole_w) +
+                        whole_u * glint_zone_evaluate_round_side(zone.half_x, s,
+                                                                 whole_w),
                     1e-12);
-        assert_near(glint_zone_at(cut.half_y, s, w),
-                    0.75 * glint_zone_at(zone.half_y, s, whole_w), 1e-12);
+        assert_near(glint_zone_evaluate_round_side(cut.half_y, s, w),
+                    0.75 *
+                        glint_zone_evaluate_round_side(zone.half_y, s, whole_w),
+                    1e-12);
     }
 }
 
@@ -464,19 +467,19 @@ TEST(cropping_removes_only_invisible_regions)
     int seen = 0;
 
     glint_visible_init(&visible, &setup, 7, field_mm, options.band_nm);
-    glint_visible_narrow(&narrow, &visible, -0.5, 1);
+    glint_visible_narrow_band(&narrow, &visible, -0.5, 1);
     assert_near(narrow.wave_lo,
                 visible.wave_lo + 0.25 * (visible.wave_hi - visible.wave_lo),
                 1e-12);
     assert_near(narrow.wave_hi, visible.wave_hi, 1e-12);
-    glint_visible_profile_find(&visible, range, &profile);
+    glint_visible_find_profile(&visible, range, &profile);
     glint_zone_init(&zone, &profile, range[0], range[1], true);
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {
         zone.half_x[k] *= 3;
         zone.half_y[k] *= 2;
     }
-    assert_in_range((long)(100 * glint_zone_crop(&zone, &visible, &part)), 10,
-                    45);
+    assert_in_range((long)(100 * glint_zone_crop_part(&zone, &visible, &part)),
+                    10, 45);
     for (int k = 0; k < 4000; k++) {
         const double u = rng_signed(&seed), v = fabs(rng_signed(&seed)),
                      s = rng_signed(&seed), w = rng_signed(&seed);
@@ -486,13 +489,14 @@ TEST(cropping_removes_only_invisible_regions)
         struct glint_path path;
         struct glint_ray ray;
 
-        glint_visible_path(&visible, w, &path);
-        if (glint_trace(&path,
-                        glint_zone_at(zone.middle, s, w) +
-                            u * glint_zone_at(zone.half_x, s, w),
-                        v * glint_zone_at(zone.half_y, s, w), direction, &ray,
-                        NULL) ||
-            !glint_visible_passes(&visible, &ray))
+        glint_visible_init_path(&visible, w, &path);
+        if (glint_trace(
+                &path,
+                glint_zone_evaluate_round_side(zone.middle, s, w) +
+                    u * glint_zone_evaluate_round_side(zone.half_x, s, w),
+                v * glint_zone_evaluate_round_side(zone.half_y, s, w),
+                direction, &ray, NULL) ||
+            !glint_visible_is_ray_visible(&visible, &ray))
             continue;
         seen++;
         assert_true(u >= part.u0 && u <= part.u1 && v <= part.top);
@@ -705,14 +709,14 @@ TEST(wrong_coefficient_is_detected)
     b.lens.ghost = (const void *)(b.data + b.lens.header->ghost_at);
     b.lens.system = (const void *)(b.data + b.lens.header->system_at);
     glint_visible_init(&visible, &setup, 0, field_mm, band_nm);
-    glint_measure_system(&visible, &b.lens, 0, &no_barrels, &before);
+    glint_measure_system_errors(&visible, &b.lens, 0, &no_barrels, &before);
     o = system_outputs(&b, 0);
     assert_near(decode_stated_error(o->rms) / before.of[0].rms, 1, 1e-3);
     coef = (void *)(b.data + o->coef_at);
     for (uint32_t k = 1; k < o->n_terms; k++)
         largest = labs(coef[k]) > labs(coef[largest]) ? k : largest;
     coef[largest] = -coef[largest];
-    glint_measure_system(&visible, &b.lens, 0, &no_barrels, &after);
+    glint_measure_system_errors(&visible, &b.lens, 0, &no_barrels, &after);
     measure_system_errors(&b.lens, 0, 0, rms);
     assert_true(after.of[0].rms > 50 * before.of[0].rms);
     assert_true(after.of[0].max > 50 * before.of[0].max);
@@ -856,7 +860,7 @@ TEST(ranges_of_a_tiny_field_have_width)
         int n;
 
         glint_visible_init(&visible, &doublet, g, 1e-3, band_nm);
-        n = glint_visible_ranges(&visible, 15, range);
+        n = glint_visible_find_ranges(&visible, 15, range);
         for (int k = 0; k < n; k++)
             assert_true(range[k][1] > range[k][0]);
     }
@@ -881,7 +885,7 @@ TEST(ranges_of_spots_extend_to_where_ghosts_vanish)
     assert_ok(glint_setup_init(&zoom, &lens, 0, 0, band_nm, 2, &error));
     for (size_t i = 0; i < sizeof spot / sizeof *spot; i++) {
         glint_visible_init(&visible, &zoom, spot[i].ghost, 23.8, band_nm);
-        assert_int_equal(glint_visible_ranges(&visible, 60, range), 1);
+        assert_int_equal(glint_visible_find_ranges(&visible, 60, range), 1);
         assert_near(range[0][0], 0, 1e-12);
         assert_true(range[0][1] > sin(spot[i].end_deg * 0.0174532925));
     }

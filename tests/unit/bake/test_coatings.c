@@ -93,8 +93,8 @@ TEST(rejects_wrong_lines)
          "x.lens:10:19: coating index must be 1.01 .. 4, not 5"},
         {"mixed-coating 450/\n", "x.lens:10:19: coating index is missing"},
         {"mixed-coating blue\n",
-         "x.lens:10:15: 'blue' is not a coating; known are none, v-coat, "
-         "broadband-3, broadband-4 and wavelengths"},
+         "x.lens:10:15: 'blue' is not a coating; expected none, v-coat, "
+         "broadband-3, broadband-4 or a wavelength in nm"},
         {"mixed-coating 450\nmixed-coating 500\n",
          "x.lens:11:1: a second mixed-coating; the first is on line 10"}};
 
@@ -129,9 +129,9 @@ TEST(coatings_are_assigned_in_turn)
 TEST(rejects_invalid_coatings)
 {
     static const char *const bad[][2] = {
-        {"", "there is no coating"},
-        {"blue", "'blue' is not a coating; known are none, v-coat, "
-                 "broadband-3, broadband-4 and wavelengths"},
+        {"", "the text of the coating is empty"},
+        {"blue", "'blue' is not a coating; expected none, v-coat, "
+                 "broadband-3, broadband-4 or a wavelength in nm"},
         {"v-coat/500/2", "'2' is one value too many for the coating"},
         {"none/2", "'2' is one value too many for the coating"},
         {"none/", "a value is missing after the slash"},
@@ -143,8 +143,8 @@ TEST(rejects_invalid_coatings)
         {"450,99", "coating wavelength must be 100 .. 5000, not 99"},
         {"5001", "coating wavelength must be 100 .. 5000, not 5001"},
         {"450/1", "coating index must be 1.01 .. 4, not 1"},
-        {"nan", "'nan' is not a coating; known are none, v-coat, broadband-3, "
-                "broadband-4 and wavelengths"}};
+        {"nan", "'nan' is not a coating; expected none, v-coat, broadband-3, "
+                "broadband-4 or a wavelength in nm"}};
 
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct glint_coating coating[GLINT_MAX_COATINGS] = {{.nm = 1}};

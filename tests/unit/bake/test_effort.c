@@ -13,9 +13,9 @@
 enum { HEAD = 32 }; /* work before the first ghost, in fits; see effort.c */
 
 /* Simulates the bake of N ghosts of WORK[] fits each on one worker. EXPECTED:
- * work passed to glint_effort_expect(), fits; 0: the function is not called.
- * Sets SAID to reported / true remaining time after 1/4, 1/2 and 3/4 of the
- * bake. */
+ * work passed to glint_effort_set_estimates(), fits; 0: the function is not
+ * called. Sets SAID to reported / true remaining time after 1/4, 1/2 and 3/4 of
+ * the bake. */
 static void simulate_bake_progress(const double *work, int n, bool wide,
                                    double expected, double said[3])
 {
@@ -26,14 +26,14 @@ static void simulate_bake_progress(const double *work, int n, bool wide,
         all += work[g];
     glint_effort_init(&e, n, 1, wide ? GLINT_EFFORT_WIDE : GLINT_EFFORT_NARROW);
     if (expected > 0)
-        glint_effort_expect(&e, HEAD, expected);
+        glint_effort_set_estimates(&e, HEAD, expected);
     for (int g = 0; g < n; g++) {
-        glint_effort_begin(&e, g);
+        glint_effort_begin_ghost(&e, g);
         for (int w = 1; w <= (int)work[g]; w++) {
             double done;
 
-            glint_effort_spend(&e, w, w / work[g]);
-            done = glint_effort_done(&e);
+            glint_effort_record_work(&e, w, w / work[g]);
+            done = glint_effort_estimate_progress(&e);
             assert_true(done > 0 && done <= 1);
             now++;
             for (int k = 0; k < 3; k++)
@@ -41,9 +41,9 @@ static void simulate_bake_progress(const double *work, int n, bool wide,
                     now >= 0.25 * (k + 1) * all)
                     said[k] = now * (1 - done) / done / (all - now);
         }
-        glint_effort_end(&e);
+        glint_effort_end_ghost(&e);
     }
-    assert_true(glint_effort_done(&e) > 0.999);
+    assert_true(glint_effort_estimate_progress(&e) > 0.999);
 }
 
 /* Checks, for ghosts of equal work, that the reported remaining time is within
@@ -101,25 +101,25 @@ TEST(workers_share_ghosts)
         struct glint_effort e;
 
         glint_effort_init(&e, 50, 1 + 3 * k, GLINT_EFFORT_NARROW);
-        glint_effort_begin(&e, 10 * k);
-        glint_effort_spend(&e, 10, 0.5);
-        done[k] = glint_effort_done(&e);
+        glint_effort_begin_ghost(&e, 10 * k);
+        glint_effort_record_work(&e, 10, 0.5);
+        done[k] = glint_effort_estimate_progress(&e);
     }
     assert_true(done[1] > done[0]);
     for (int k = 0; k < 2; k++) {
         struct glint_effort e;
 
         glint_effort_init(&e, 1, 1 + 3 * k, GLINT_EFFORT_NARROW);
-        glint_effort_begin(&e, 0);
-        glint_effort_spend(&e, 1000, 0.5);
-        done[k] = glint_effort_done(&e);
+        glint_effort_begin_ghost(&e, 0);
+        glint_effort_record_work(&e, 1000, 0.5);
+        done[k] = glint_effort_estimate_progress(&e);
         assert_true(done[k] > 0.4 && done[k] < 0.65);
     }
 }
 
-/* Checks, if the last ghosts take most of the time and glint_effort_expect()
- * announced their work, that the estimate is within a factor of two from the
- * first quarter on. */
+/* Checks, if the last ghosts take most of the time and
+ * glint_effort_set_estimates() announced their work, that the estimate is
+ * within a factor of two from the first quarter on. */
 TEST(announced_work_improves_early_estimates)
 {
     double work[100], said[3];

@@ -47,16 +47,16 @@ TEST(octahedral_mapping_inverts)
         double d[3], back[3], u, v;
 
         random_unit_vector(&seed, d);
-        glint_sphere_place(d, &u, &v);
+        glint_sphere_locate_direction(d, &u, &v);
         assert_true(u >= 0 && u <= 1 && v >= 0 && v <= 1);
-        glint_sphere_toward(u, v, back);
+        glint_sphere_compute_direction(u, v, back);
         assert_true(compute_dot_product(d, back) > 1 - 1e-12);
     }
     for (int i = 0; i < 128 * 128; i++) {
         double d[3];
 
-        sum += glint_sphere_toward((i % 128 + .5) / 128,
-                                   ((double)(i / 128) + .5) / 128, d);
+        sum += glint_sphere_compute_direction(
+            (i % 128 + .5) / 128, ((double)(i / 128) + .5) / 128, d);
     }
     assert_true(fabs(sum / (128 * 128) / (4 * GLINT_PI) - 1) < 1e-3);
 }
@@ -67,7 +67,7 @@ TEST(texels_outside_an_edge_map_to_neighbours)
 {
     struct glint_sphere s;
 
-    assert_true(glint_sphere_open(&s, SIDE));
+    assert_true(glint_sphere_allocate(&s, SIDE));
     for (int k = -1; k <= SIDE; k++) {
         const int across[4][4] = {{-1, k, 0, k},
                                   {SIDE, k, SIDE - 1, k},
@@ -76,9 +76,9 @@ TEST(texels_outside_an_edge_map_to_neighbours)
 
         for (int e = 0; e < 4; e++) {
             const size_t a =
-                glint_sphere_index(SIDE, across[e][0], across[e][1]);
+                glint_sphere_get_texel_index(SIDE, across[e][0], across[e][1]);
             const size_t b =
-                glint_sphere_index(SIDE, across[e][2], across[e][3]);
+                glint_sphere_get_texel_index(SIDE, across[e][2], across[e][3]);
 
             assert_true(a < SIDE * SIDE && b < SIDE * SIDE);
             /* distance of at most the diagonal of the largest texels */
@@ -87,7 +87,7 @@ TEST(texels_outside_an_edge_map_to_neighbours)
                 cos(2 * sqrt(6) / SIDE));
         }
     }
-    glint_sphere_close(&s);
+    glint_sphere_free(&s);
 }
 
 /* ------------------------------------------------------------------ baking */
@@ -214,8 +214,8 @@ TEST(irradiance_matches_closed_form)
         for (int i = 0; i < 1024; i++) {
             double n[3], want;
 
-            glint_sphere_toward((i % 32 + .5) / 32,
-                                ((double)(i / 32) + .5) / 32, n);
+            glint_sphere_compute_direction((i % 32 + .5) / 32,
+                                           ((double)(i / 32) + .5) / 32, n);
             want = o.scale * (1 + 2. / 3 * n[turned ? 0 : 1]);
             worst =
                 fmax(worst, fabs(decode_rgb9e5(&b.environment,
@@ -248,8 +248,8 @@ TEST(levels_equal_sums_over_all_texels)
     paint_panorama(patchy_environment_light);
     o.max_lights = 0;
     bake_panorama(&b, &o);
-    assert_true(glint_sphere_open(&s, 2 * SIDE));
-    assert_true(glint_sphere_project(&s, &image, &o, &report));
+    assert_true(glint_sphere_allocate(&s, 2 * SIDE));
+    assert_true(glint_sphere_project_panorama(&s, &image, &o, &report));
     for (int k = 0; k <= SIDE_LOG2; k++) {
         const double sigma = sqrt(4 * GLINT_PI) / SIDE * ldexp(1, k - 1);
         const int side = 1 << b.environment.level[k].side_log2;
@@ -257,8 +257,8 @@ TEST(levels_equal_sums_over_all_texels)
         for (int i = 0; i < side * side; i += side * side / 16 + 1) {
             double d[3], sum = 0, weight = 0;
 
-            glint_sphere_toward((i % side + .5) / side,
-                                ((double)(i / side) + .5) / side, d);
+            glint_sphere_compute_direction((i % side + .5) / side,
+                                           ((double)(i / side) + .5) / side, d);
             for (int j = 0; j < 4 * SIDE * SIDE; j++) {
                 const double w =
                     s.texel[j].weight *
@@ -276,7 +276,7 @@ TEST(levels_equal_sums_over_all_texels)
     }
     print_message("blur: off by %.3f %% at most\n", 100 * worst);
     assert_true(worst < .004);
-    glint_sphere_close(&s);
+    glint_sphere_free(&s);
     free(b.data);
 }
 
@@ -368,10 +368,10 @@ TEST(disc_light_is_extracted)
     assert_true(fabs(glint_real_value(l->rgb[1]) / glint_real_value(l->rgb[0]) -
                      .5) < 1e-6);
     assert_true(b.report.residual_largest < 1.6);
-    glint_sphere_place(sun, &u, &v);
+    glint_sphere_locate_direction(sun, &u, &v);
     assert_true(fabs(decode_texel(&b.environment, 0,
-                                  glint_sphere_index(SIDE, (int)(SIDE * u),
-                                                     (int)(SIDE * v)),
+                                  glint_sphere_get_texel_index(
+                                      SIDE, (int)(SIDE * u), (int)(SIDE * v)),
                                   0) -
                      1.3) < .08);
     /* map levels and extracted lights together have the picture's light */
@@ -461,13 +461,13 @@ TEST(cube_faces_have_their_directions)
         for (int x = 0; x < 24; x++)
             for (int c = 0; c < 3; c++)
                 faces[y][x][c] = (float)(1 + x / 8 + 3 * (y / 8));
-    assert_true(glint_sphere_open(&s, SIDE));
-    assert_true(glint_sphere_project(&s, &cube, &o, &report));
+    assert_true(glint_sphere_allocate(&s, SIDE));
+    assert_true(glint_sphere_project_panorama(&s, &cube, &o, &report));
     for (int i = 0; i < SIDE * SIDE; i++)
         for (int f = 0; f < 6; f++)
             if (compute_dot_product(s.texel[i].toward, middle[f]) > .82)
                 assert_true(fabs(s.texel[i].light[0] - (1 + f)) < 1e-9);
-    glint_sphere_close(&s);
+    glint_sphere_free(&s);
 }
 
 /* ------------------------------------------------------------------- codes */
@@ -484,7 +484,7 @@ TEST(rgb9e5_codes_round_trip)
             light[i][c] =
                 ldexp(rng_int_below(&seed, 65536), -rng_int_below(&seed, 20));
     light[0][0] = 65536;
-    glint_environment_put_9e5((const double(*)[3])light, N, 0x1p-8, words);
+    glint_environment_encode_9e5((const double(*)[3])light, N, 0x1p-8, words);
     for (int i = 0; i < N; i++) {
         const double top = fmax(light[i][0], fmax(light[i][1], light[i][2]));
         const int e = (int)(words[i] >> 27);

@@ -28,7 +28,7 @@ static void make_model_and_exact_setups(const char *name, double f_number,
     load_lens(&lens, name);
     glint_bake_defaults(&options);
     assert_ok(glint_setup_init(&whole, &lens, 0, 0, nm, 3, &error));
-    assert_ok(glint_model_header_of(&lens, &options, &whole, &header));
+    assert_ok(glint_model_set_header(&lens, &options, &whole, &header));
     header.n_ghosts = header.n_parts = 0;
     assert_ok(glint_setup_from_model(model, &file, 8, 0, nm, 3, &error));
     assert_ok(glint_setup_stop_down(model, &file, f_number, &error));

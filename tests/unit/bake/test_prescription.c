@@ -258,11 +258,14 @@ static const struct {
     {1, "", "x.lens:11:1: the line 'name' is missing"},
     {1, "name", "x.lens:1:5: name is missing"},
     {1, "name Tiny",
-     "x.lens:1:6: a name must be a-z, 0-9 and -, and must not begin with -"},
+     "x.lens:1:6: a name may only contain a-z, 0-9 and -, and must not begin "
+     "with -"},
     {1, "name -a",
-     "x.lens:1:6: a name must be a-z, 0-9 and -, and must not begin with -"},
+     "x.lens:1:6: a name may only contain a-z, 0-9 and -, and must not begin "
+     "with -"},
     {1, "name ../a",
-     "x.lens:1:6: a name must be a-z, 0-9 and -, and must not begin with -"},
+     "x.lens:1:6: a name may only contain a-z, 0-9 and -, and must not begin "
+     "with -"},
     {1, "name a b", "x.lens:1:8: 'b' is one value too many for name"},
     {1,
      "name aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",
@@ -328,8 +331,7 @@ static const struct {
     /* mistakes in surfaces */
     {6, "surface", "x.lens:6:8: radius is missing"},
     {6, "surface 50 6 12",
-     "x.lens:6:16: medium is missing: air, ND VD or a "
-     "glass"},
+     "x.lens:6:16: medium is missing: write air, ND VD or the name of a glass"},
     {6, "surface 0 6 12 N-BK7",
      "x.lens:6:9: radius must not be 0; a plane has the radius 'flat'"},
     {6, "surface plane 6 12 N-BK7",
@@ -371,8 +373,8 @@ static const struct {
     {6, "surface 50 6 12 N-BK7 coating broadband-4 99",
      "x.lens:6:43: coating wavelength must be 100 .. 5000, not 99"},
     {6, "surface 50 6 12 N-BK7 coating v2",
-     "x.lens:6:31: 'v2' is not a coating; known are none, v-coat, broadband-3, "
-     "broadband-4 and wavelengths"},
+     "x.lens:6:31: 'v2' is not a coating; expected none, v-coat, broadband-3, "
+     "broadband-4 or a wavelength in nm"},
     {7, "surface -50 3 12 1.7 30 coating v-coat\nsurface -50 2 12 air",
      "x.lens:7:25: a cemented surface has no coating"},
     {7, "surface -50 3 12 1.7 30 coating 550\nsurface -50 2 12 air",
@@ -701,7 +703,7 @@ TEST(numbers_of_any_length_are_rounded_to_nearest)
                                         .length = (int)strlen(number[i].text)};
         double value = 0;
 
-        assert_null(glint_word_number(&word, &value));
+        assert_null(glint_word_parse_number(&word, &value));
         assert_true(value == number[i].value);
     }
 }

@@ -243,7 +243,7 @@ static void check_shrunk_box_grows(const struct glint_path *path,
     p.x1_mm -= k == 1 ? 0.2 * wide : 0;
     p.y0_mm += k == 2 ? 0.4 * high : 0;
     p.y1_mm -= k == 3 ? 0.4 * high : 0;
-    assert_true(glint_spot_grow(&openings, &p));
+    assert_true(glint_spot_grow_pupil(&openings, &p));
     for (int j = -SCAN / 8; j <= SCAN / 8; j++)
         for (int i = 0; i <= SCAN / 4; i++) {
             const double x = whole->x0_mm + wide * i * 4 / SCAN;

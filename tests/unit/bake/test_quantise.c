@@ -142,9 +142,9 @@ static void quantise_and_open_model(struct made *m)
 
     setup.n_ghosts = 1;
     setup.ghost[0] = (struct glint_ghost){0, 1};
-    assert_ok(glint_quantise(m->fitted.system, &m->quantised));
-    assert_ok(
-        glint_draft_write(&m->draft, &setup, &header, &m->fitted, &quantised));
+    assert_ok(glint_quantise_system(m->fitted.system, &m->quantised));
+    assert_ok(glint_draft_write_model(&m->draft, &setup, &header, &m->fitted,
+                                      &quantised));
     glint_blob_set_size_and_checksum(m->draft.data, m->draft.bytes);
     if (glint_lens_open(&m->lens, m->draft.data, m->draft.bytes, &reason))
         fail_msg("%s", reason);
@@ -152,8 +152,8 @@ static void quantise_and_open_model(struct made *m)
 
 static void free_made_model(struct made *m)
 {
-    glint_quantised_finish(&m->quantised);
-    glint_fitted_finish(&m->fitted);
+    glint_quantised_free_system(&m->quantised);
+    glint_fitted_free_ghost(&m->fitted);
     free(m->draft.data);
 }
 
@@ -405,7 +405,7 @@ TEST(exponents_use_half_of_the_range)
 
         seed = 7 + (uint32_t)k;
         make_random_system(&m);
-        assert_ok(glint_quantise(m.fitted.system, &m.quantised));
+        assert_ok(glint_quantise_system(m.fitted.system, &m.quantised));
         for (int i = 0; i < KINDS; i++) {
             const struct glint_quantised_output *q = &m.quantised.output[i];
             const int64_t sum =
@@ -436,7 +436,7 @@ TEST(energy_limit_has_headroom)
 
         seed = 11 + (uint32_t)k;
         make_random_system(&m);
-        assert_ok(glint_quantise(m.fitted.system, &m.quantised));
+        assert_ok(glint_quantise_system(m.fitted.system, &m.quantised));
         o = &m.fitted.system->output[GLINT_OUT_ENERGY];
         q = &m.quantised.output[GLINT_OUT_ENERGY];
         if (q->head > 0)
@@ -468,7 +468,7 @@ TEST(tiny_coefficients_use_the_smallest_exponent)
 
 static void check_system_is_rejected(struct made *m)
 {
-    assert_int_equal(glint_quantise(m->fitted.system, &m->quantised),
+    assert_int_equal(glint_quantise_system(m->fitted.system, &m->quantised),
                      GLINT_E_LENS);
     free_made_model(m);
 }

@@ -38,7 +38,8 @@ static double fit_polynomial_on_grid(double (*value)(double u, double v),
         one[i] = 1;
         y[i] = value(u[i], v[i]);
     }
-    left = glint_regress_fit(scratch, &samples, y, &degrees, 1e-9, 5e-9, poly);
+    left = glint_regress_fit_polynomial(scratch, &samples, y, &degrees, 1e-9,
+                                        5e-9, poly);
     free(scratch);
     return left;
 }
@@ -56,7 +57,7 @@ static double odd_polynomial(double u, double v)
 static double evaluate_polynomial(const struct glint_poly *poly,
                                   const double *x)
 {
-    return glint_poly_at(poly->n, poly->power, poly->coef, x);
+    return glint_poly_evaluate(poly->n, poly->power, poly->coef, x);
 }
 
 /* On a grid symmetric in u, odd powers explain nothing of an even function

@@ -57,14 +57,15 @@ static double synthetic_kernel_entry(int j, int d)
 static void make_synthetic_rows(struct glint_scatter_rows *rows,
                                 double (*weight)[2], const double *in)
 {
-    assert_true(glint_scatter_open(rows, SIDE, KERNEL, false));
+    assert_true(glint_scatter_allocate_rows(rows, SIDE, KERNEL, false));
     for (int x = 0; x < TEXELS; x++)
         for (int c = 0; c < 3; c++)
             for (int d = 0; d < K2; d++) {
-                const int to = glint_scatter_target(SIDE, KERNEL, x, d);
+                const int to =
+                    glint_scatter_get_target_texel(SIDE, KERNEL, x, d);
 
                 if (to >= 0)
-                    glint_scatter_row(rows, x, c)[d] =
+                    glint_scatter_get_row(rows, x, c)[d] =
                         (float)(in[x] * (c + 1) *
                                 (weight[to][0] * synthetic_kernel_entry(0, d) +
                                  weight[to][1] * synthetic_kernel_entry(1, d)));
@@ -115,7 +116,7 @@ TEST(fit_scatters_light_like_its_entries)
         got[3 * TEXELS];
 
     make_checkerboard_rows(&rows, SIDE, KERNEL);
-    assert_true(glint_scatter_open(&same, SIDE, KERNEL, false));
+    assert_true(glint_scatter_allocate_rows(&same, SIDE, KERNEL, false));
     glint_scatter_test_light(SIDE, light);
     for (int m = 0; m < 3; m++) {
         struct glint_scatter_fit fit;
@@ -124,7 +125,7 @@ TEST(fit_scatters_light_like_its_entries)
         for (int x = 0; x < TEXELS; x++)
             for (int c = 0; c < 3; c++)
                 for (int d = 0; d < K2; d++)
-                    glint_scatter_row(&same, x, c)[d] =
+                    glint_scatter_get_row(&same, x, c)[d] =
                         (float)glint_scatter_entry(&fit, x, c, d);
         glint_scatter_light_rows(&same, light, want);
         glint_scatter_light(&fit, light, got);
@@ -192,7 +193,8 @@ TEST(extreme_media_give_finite_results)
             if (i < 3)
                 make_checkerboard_rows(&rows, side, kernel);
             else
-                assert_true(glint_scatter_open(&rows, side, kernel, false));
+                assert_true(
+                    glint_scatter_allocate_rows(&rows, side, kernel, false));
             fit_rows_by_model(&rows, models[m], &fit);
             assert_true(isfinite(fit.error.rmse) && fit.error.albedo < 0.5);
             for (int d = 0; d < 3 * kernel * kernel; d++)
@@ -289,7 +291,7 @@ TEST(decomposition_matches_lapack)
     memcpy(copy, a, sizeof a);
     assert_int_equal(
         dgesdd(101, 'S', TALL, WIDE, copy, WIDE, s, u, WIDE, vt, WIDE), 0);
-    assert_true(glint_terms_of(&m, TERMS, &terms));
+    assert_true(glint_terms_compute(&m, TERMS, &terms));
     for (int j = 0; j < TERMS; j++) {
         /* The sign of a pair of vectors is arbitrary. */
         const double sign = u[j] * terms.left[j * TALL] < 0 ? -1 : 1;
@@ -302,7 +304,7 @@ TEST(decomposition_matches_lapack)
             assert_near(sign * terms.right[j * WIDE + i], vt[j * WIDE + i],
                         1e-10 * s[0] / s[j]);
     }
-    glint_terms_close(&terms);
+    glint_terms_free(&terms);
     dlclose(library);
 }
 
@@ -317,7 +319,7 @@ TEST(decomposition_is_orthogonal_and_optimal)
 
     a[0] = a[WIDE + 1] = a[2 * WIDE + 2] = 3;
     a[3 * WIDE + 3] = -0.5;
-    assert_true(glint_terms_of(&m, 6, &terms));
+    assert_true(glint_terms_compute(&m, 6, &terms));
     for (int j = 0; j < 6; j++)
         assert_near(terms.value[j], j < 3 ? 3 : j == 3 ? 0.5 : 0, 1e-12);
     for (int i = 0; i < 6; i++)
@@ -331,7 +333,7 @@ TEST(decomposition_is_orthogonal_and_optimal)
             assert_near(left, i == j, 1e-10);
             assert_near(right, i == j, 1e-10);
         }
-    glint_terms_close(&terms);
+    glint_terms_free(&terms);
 }
 
 /* Solves a regular system, and a singular one with an undetermined
@@ -341,9 +343,9 @@ TEST(solves_regular_and_singular_systems)
     double a[9] = {4, 2, 1, 2, 5, 3, 1, 3, 6}, b[3] = {7, 10, 10};
     double open[4] = {1, 1, 1, 1}, c[2] = {2, 2};
 
-    glint_solve(a, 3, b);
+    glint_solve_symmetric_system(a, 3, b);
     for (int i = 0; i < 3; i++)
         assert_near(b[i], 1, 1e-14);
-    glint_solve(open, 2, c);
+    glint_solve_symmetric_system(open, 2, c);
     assert_near(c[0] + c[1], 2, 1e-14);
 }

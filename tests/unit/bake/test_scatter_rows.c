@@ -39,7 +39,7 @@ static double sum_row_entries(const struct glint_scatter_rows *rows, int x,
     double sum = 0;
 
     for (int d = 0; d < rows->kernel * rows->kernel; d++)
-        sum += (double)glint_scatter_row(rows, x, c)[d];
+        sum += (double)glint_scatter_get_row(rows, x, c)[d];
     return sum;
 }
 
@@ -81,14 +81,14 @@ TEST(homogeneous_rows_match_the_closed_form)
         struct glint_slab slab;
         double closed[K2], sum = 0;
 
-        glint_slab_of(&stone, 1, c, &slab);
-        glint_slab_closed(&slab, KERNEL, closed);
-        assert_true(glint_slab_lattice(&slab, KERNEL, modes));
+        glint_slab_init_mix(&stone, 1, c, &slab);
+        glint_slab_compute_closed_form(&slab, KERNEL, closed);
+        assert_true(glint_slab_compute_by_modes(&slab, KERNEL, modes));
         for (int u = 2; u <= KERNEL / 2; u++) {
             const int d = K2 / 2 + u;
             const double want =
                 area * compute_radiant_exitance(&slab, u * stone.texel_mm);
-            const float *row = glint_scatter_row(&rows, x, c);
+            const float *row = glint_scatter_get_row(&rows, x, c);
 
             /* the mean over a texel exceeds the value at its centre */
             assert_near(closed[d], want, (u < 4 ? 0.3 : 0.06) * want);
@@ -116,8 +116,8 @@ TEST(total_light_matches_the_dipole)
     stone.texel_mm = 3;
     stone.material[0] =
         (struct glint_stone_material){{2, 2, 2}, {0.02, 0.02, 0.02}};
-    glint_slab_of(&stone, 1, 0, &slab);
-    glint_slab_closed(&slab, 63, entry);
+    glint_slab_init_mix(&stone, 1, 0, &slab);
+    glint_slab_compute_closed_form(&slab, 63, entry);
     loss = sqrt(slab.absorb / slab.diffusion);
     want =
         slab.albedo / 2 *
@@ -142,7 +142,7 @@ TEST(c1_reciprocal)
 
         compute_scatter_rows(&stone, &rows);
         compute_scatter_rows(&stone, &turned);
-        glint_scatter_turn(&turned);
+        glint_scatter_transpose_rows(&turned);
         for (size_t e = 0; e < bytes / sizeof(float); e++) {
             assert_true(rows.r[e] >= 0);
             assert_near((double)rows.r[e], (double)turned.r[e], 1e-7);
@@ -176,14 +176,14 @@ TEST(c2_places)
     for (int x = 0; x < S * S; x++)
         for (int d = 0; d < N * N; d++) {
             const int u = x % S + d % N - 2, v = x / S + d / N - 2;
-            const int to = glint_scatter_target(S, N, x, d);
+            const int to = glint_scatter_get_target_texel(S, N, x, d);
             const int at = (x / S * N + d / N) * WIDE + x % S * N + d % N;
             const float *from = rgb + 3 * at;
 
             assert_int_equal(to, u >= 0 && v >= 0 && u < S && v < S ? v * S + u
                                                                     : -1);
             for (int c = 0; c < 3; c++)
-                assert_true(glint_scatter_row(&rows, x, c)[d] ==
+                assert_true(glint_scatter_get_row(&rows, x, c)[d] ==
                             (to >= 0 && from[c] >= 0 ? from[c] : 0));
         }
     glint_scatter_close(&rows);
@@ -205,11 +205,12 @@ TEST(c2_light)
     light[3 * x + 1] = 2;
     glint_scatter_light_rows(&rows, light, seen);
     for (int d = 0; d < K2; d++) {
-        const int to = glint_scatter_target(SIDE, KERNEL, x, d);
+        const int to = glint_scatter_get_target_texel(SIDE, KERNEL, x, d);
 
         if (to >= 0)
             assert_near(seen[3 * to + 1],
-                        2 * (double)glint_scatter_row(&rows, x, 1)[d], 1e-12);
+                        2 * (double)glint_scatter_get_row(&rows, x, 1)[d],
+                        1e-12);
     }
     assert_true(seen[3 * (x + KERNEL)] == 0 && seen[3 * x] == 0);
     glint_scatter_close(&rows);
@@ -248,7 +249,7 @@ TEST(extreme_materials_give_valid_rows)
                 if ((i & 3) == 2 && i >> 2 == 2)
                     assert_true(sum < 1e-5);
                 for (int d = 0; d < 49; d++)
-                    assert_true(glint_scatter_row(&rows, x, c)[d] >= 0);
+                    assert_true(glint_scatter_get_row(&rows, x, c)[d] >= 0);
             }
         glint_scatter_close(&rows);
     }

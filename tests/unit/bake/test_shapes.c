@@ -444,14 +444,14 @@ TEST(rejects_wrong_shape_lines)
         {"surface 20 9 9 1.5 60\nshape toric y 8\nsurface flat 9 9 air\n",
          "t.lens:5:14: semi-diameter 9 must be less than the radius 8 across"},
         {"surface 20 9 9 1.5 60\nshape cylinder z",
-         "t.lens:6:16: the plane of the profile must be x or y"},
+         "t.lens:6:16: the axis of a cylinder or toric must be x or y"},
         {"surface 20 9 9 1.5 60\nshape cylinder x toric x 9",
          "t.lens:6:18: 'toric' occurs twice for this surface"},
         {"group", "t.lens:5:6: decentre or tilt is missing"},
         {"group tilt 50 0", "t.lens:5:12: tilt must be -45 .. 45, not 50"},
         {"group tilt 5 0\ngroup tilt 5 0",
          "t.lens:6:1: the group above has no line 'end'"},
-        {"end", "t.lens:5:1: there is no group to end"},
+        {"end", "t.lens:5:1: 'end' without a line 'group' above"},
         {"group tilt 1 0\nsurface 20 9 9 1.5 60\nsurface flat 9 9 air",
          "t.lens:5:1: the group has no line 'end'"}};
 
@@ -608,8 +608,8 @@ TEST(steep_rays_hit_the_nearest_intersection)
                              .m = {way[1]},
                              .n = {way[2]}};
 
-            glint_beam_meet_form(&b, 1, form);
-            if (!glint_form_meet(form, at, way, normal, &cosine)) {
+            glint_beam_move_to_form(&b, 1, form);
+            if (!glint_form_intersect_ray(form, at, way, normal, &cosine)) {
                 assert_true(b.status[0] > GLINT_RAY_OK);
                 continue;
             }

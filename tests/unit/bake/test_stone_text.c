@@ -177,7 +177,7 @@ TEST(veins_continue_across_edges)
     double edge = 0, within = 0;
 
     for (; stone.seed < SEEDS; stone.seed++) {
-        glint_stone_shares(&stone, share);
+        glint_stone_compute_fractions(&stone, share);
         for (int rows = 0; rows < 2; rows++) {
             edge += mean_neighbour_difference(share, SIDE, rows, true);
             within += mean_neighbour_difference(share, SIDE, rows, false);

@@ -14,7 +14,7 @@ static bool part_contains_position(const struct glint_zone_part *p, double u,
                                    double v)
 {
     return u >= p->u0 && u < p->u1 && v < p->top &&
-           v >= p->top * glint_zone_rim(p->annulus);
+           v >= p->top * glint_zone_get_inner_rim(p->annulus);
 }
 
 /* Checks that after any number of halvings each pupil position lies in exactly
@@ -30,13 +30,13 @@ TEST(parts_are_disjoint)
         for (int k = (1 << depth) - 1; k >= 0; k--) {
             const struct glint_zone_part whole = part[k];
 
-            glint_zone_part_halve(&whole, depth % 2 == 0, &part[2 * k],
+            glint_zone_halve_part(&whole, depth % 2 == 0, &part[2 * k],
                                   &part[2 * k + 1]);
         }
     for (int k = 0; k < PARTS; k++) {
         assert_in_range(part[k].annulus, 0, GLINT_MAX_ANNULUS);
         area += (part[k].u1 - part[k].u0) * part[k].top *
-                (1 - glint_zone_rim(part[k].annulus));
+                (1 - glint_zone_get_inner_rim(part[k].annulus));
     }
     assert_near(area, 2, 1e-12);
     for (int i = 0; i < 1000; i++) {
@@ -88,7 +88,7 @@ static enum glint_next decide_next_division(const struct attempted *c)
     visible.wide = true;
     visible.shaped = c->shaped;
     visible.far = c->far;
-    return glint_next(&rules, &piece, &attempt);
+    return glint_next_choose_step(&rules, &piece, &attempt);
 }
 
 /* Parts of wide zones of aspheric lenses have gaps between them. So these zones

@@ -138,47 +138,49 @@ struct rule {
 #define SYSTEM_(k, field) SYSTEM, k * 40 + FIELD_(glint_model_system, field)
 #define OUTPUT_(k, field) OUTPUT, k * 32 + FIELD_(glint_model_output, field)
 
-static const char outside[] = "a table lies outside the file",
-                  unnormal[] = "a number of the header is not normalised",
-                  not_above[] = "a length or the f-number is not above 0",
-                  no_band[] = "the band of wavelengths is empty or not above 0",
-                  no_angle[] = "the largest angle is out of range",
-                  bad_pair[] = "a ghost's surfaces are out of range",
-                  no_systems[] = "a ghost's systems are out of range",
-                  shared[] =
-                      "two ghosts share a system, or systems are unsorted",
-                  overlap[] = "a ghost's systems overlap or are unsorted",
-                  energy[] = "an output's roots or head are out of range",
-                  annulus[] = "a system's annulus is out of range",
-                  bad_angles[] = "a system's angles are out of range",
-                  bad_band[] = "a system's band is out of range",
-                  far_box[] = "the terms of a box are too large",
-                  small_box[] = "a box has a negative size",
-                  box_exponent[] = "the exponent of a box is out of range",
-                  n_outputs[] = "a system has too few outputs or too many",
-                  lacking[] =
-                      "a system lacks an output, or outputs are unsorted",
-                  bad_kind[] =
-                      "an output's kind is unknown, or outputs are unsorted",
-                  n_terms[] = "an output has no terms or too many",
-                  exponent[] = "the exponent of an output is out of range",
-                  xy_exponent[] =
-                      "x and y of a position have different exponents",
-                  bound[] = "the bound of an output is too large",
-                  power[] = "a power of u or v is too high",
-                  parity[] = "a power of v has the wrong parity",
-                  twice[] = "an output has a term twice",
-                  coefs[] = "the coefficients of an output are too large";
+static const char
+    outside[] = "damaged model: a table lies outside the file",
+    unnormal[] = "damaged model: a number of the header is not normalised",
+    not_above[] = "damaged model: a length or the f-number is not above 0",
+    no_band[] =
+        "damaged model: the band of wavelengths is empty or not above 0",
+    no_angle[] = "damaged model: the largest angle is out of range",
+    bad_pair[] = "damaged model: a ghost's surfaces are out of range",
+    no_systems[] = "damaged model: a ghost's systems are out of range",
+    shared[] =
+        "damaged model: two ghosts share a system, or systems are unsorted",
+    overlap[] = "damaged model: a ghost's systems overlap or are unsorted",
+    energy[] = "damaged model: an output's roots or head are out of range",
+    annulus[] = "damaged model: a system's annulus is out of range",
+    bad_angles[] = "damaged model: a system's angles are out of range",
+    bad_band[] = "damaged model: a system's band is out of range",
+    far_box[] = "damaged model: the terms of a box are too large",
+    small_box[] = "damaged model: a box has a negative size",
+    box_exponent[] = "damaged model: the exponent of a box is out of range",
+    n_outputs[] = "damaged model: a system has too few outputs or too many",
+    lacking[] =
+        "damaged model: a system lacks an output, or outputs are unsorted",
+    bad_kind[] =
+        "damaged model: an output's kind is unknown, or outputs are unsorted",
+    n_terms[] = "damaged model: an output has no terms or too many",
+    exponent[] = "damaged model: the exponent of an output is out of range",
+    xy_exponent[] =
+        "damaged model: x and y of a position have different exponents",
+    bound[] = "damaged model: the bound of an output is too large",
+    power[] = "damaged model: a power of u or v is too high",
+    parity[] = "damaged model: a power of v has the wrong parity",
+    twice[] = "damaged model: an output has a term twice",
+    coefs[] = "damaged model: the coefficients of an output are too large";
 
 /* clang-format off */
 static const struct rule auto_rules[] = {
-    {HEADER_(basis), 2, "the basis is unknown"},
-    {HEADER_(basis), 1, "the basis is unknown"},
+    {HEADER_(basis), 2, "damaged model: the basis is unknown"},
+    {HEADER_(basis), 1, "damaged model: the basis is unknown"},
     {HEADER_(name[0]), 0, "the name is empty"},
     {HEADER_(name[0]), 0x1b, "the name has a control character"},
     {HEADER_(name[0]), 0x7f, "the name has a control character"},
     {HEADER_(name[0]), 0x9b, "the name has a byte beyond ASCII"},
-    {HEADER_(focal_mm.mantissa), 0, "the focal length is 0"},
+    {HEADER_(focal_mm.mantissa), 0, "damaged model: the focal length is 0"},
     {HEADER_(focal_mm.mantissa), (1 << 30) - 1, unnormal},
     {HEADER_(focal_mm.mantissa), 1 - (1 << 30), unnormal},
     {HEADER_(focal_mm.mantissa), INT32_MIN, unnormal},
@@ -206,11 +208,11 @@ static const struct rule auto_rules[] = {
     {HEADER_(sine_hi_q30), 0, no_angle},
     {HEADER_(sine_hi_q30), (1 << 30) + 1, no_angle},
     {HEADER_(direct_flux[5].mantissa), 1,
-        "the flux of the direct image is not normalised"},
+        "damaged model: the flux of the direct image is not normalised"},
     {HEADER_(n_surfaces), 3, bad_pair},
     {HEADER_(n_ghosts), 1 << 28, outside},
     {HEADER_(n_ghosts), UINT32_MAX, outside},
-    {HEADER_(n_parts), 4, "there are more parts than ghosts"},
+    {HEADER_(n_parts), 4, "damaged model: there are more parts than ghosts"},
     {HEADER_(n_parts), 3, NULL},
     {HEADER_(ghost_at), 246, outside},
     {HEADER_(ghost_at), 240, outside},
@@ -387,7 +389,7 @@ TEST(rejects_too_many_shared_tables)
     }
     model_append_ghosts(&m, &ghost, 1, s, N);
     assert_string_equal(open_model_error(m.data, m.bytes),
-                        "systems share too many tables");
+                        "damaged model: systems share too many tables");
     free(m.data);
 }
 

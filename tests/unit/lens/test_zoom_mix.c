@@ -107,8 +107,9 @@ static void interpolate_models(const struct glint_lens *a,
 {
     assert_int_equal(glint_transfer_init(&mixed, a, 0, 0, MODEL_WAVE_LO_Q24),
                      1);
-    assert_int_equal(glint_transfer_mix(&mixed, b, 0, 0, MODEL_WAVE_LO_Q24,
-                                        (int32_t)ldexp(part, 30)),
+    assert_int_equal(glint_transfer_mix_position(&mixed, b, 0, 0,
+                                                 MODEL_WAVE_LO_Q24,
+                                                 (int32_t)ldexp(part, 30)),
                      1);
 }
 
@@ -307,7 +308,7 @@ TEST(energies_keep_the_smaller_head)
         head[1] = (uint8_t)(k % 3 == 1 ? 1 : 2);
         interpolate_barrels(NULL, 0, NULL, 0, 0.5);
         check_output_at(GLINT_OUT_ENERGY, 0, 0, roots ? value * value : value);
-        glint_blend_fade(&mixed, ONE / 4);
+        glint_blend_scale_energy(&mixed, ONE / 4);
         check_output_at(GLINT_OUT_ENERGY, 0, 0,
                         (roots ? value * value : value) / 4);
     }

@@ -45,8 +45,8 @@ static struct errors measure_pose_errors(const struct track_options *options,
         track_next_frame(&track, &f);
         if (four ? four_localise_body(four, options->n_foods, seen, f.is_new,
                                       &located)
-                 : glint_localise(all, options->n_foods, seen, f.is_new,
-                                  &located))
+                 : glint_localise_body(all, options->n_foods, seen, f.is_new,
+                                       &located))
             break;
         for (int k = 0; k < 3; k++)
             square += (located.pose.at[k] - f.pose.at[k]) *
@@ -189,13 +189,13 @@ TEST(two_foods_may_vanish_at_once)
     track_begin_motion(&track, &o);
     for (int i = 0; i < 100; i++) {
         track_next_frame(&track, &f);
-        assert_null(glint_localise(&l, 5, (const double(*)[3])f.seen,
-                                   i == 50 ? two : f.is_new, &located));
+        assert_null(glint_localise_body(&l, 5, (const double(*)[3])f.seen,
+                                        i == 50 ? two : f.is_new, &located));
         for (int k = 0; k < 3; k++)
             assert_true(fabs(located.pose.at[k] - f.pose.at[k]) < 1e-12);
     }
     assert_non_null(strstr(
-        glint_localise(&l, 5, (const double(*)[3])f.seen, three, &located),
+        glint_localise_body(&l, 5, (const double(*)[3])f.seen, three, &located),
         "three foods"));
     four_init_localiser(&four, FOUR_FIRST, FOUR_DOUBLE);
     assert_null(four_localise_body(&four, 5, (const double(*)[3])f.seen,
@@ -218,9 +218,9 @@ TEST(rejects_collinear_and_coplanar_foods)
     struct glint_located located;
 
     glint_localiser_init(&l, true);
-    assert_null(glint_localise(&l, 4, line, none, &located));
+    assert_null(glint_localise_body(&l, 4, line, none, &located));
     assert_non_null(
-        strstr(glint_localise(&l, 4, line, none, &located), "on a line"));
+        strstr(glint_localise_body(&l, 4, line, none, &located), "on a line"));
     for (int k = 0; k < 2; k++) {
         four_init_localiser(&four, FOUR_FIRST, FOUR_DOUBLE);
         assert_null(four_localise_body(&four, 5, (const double(*)[3])flat, none,

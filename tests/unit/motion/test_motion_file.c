@@ -55,7 +55,7 @@ static void bake_track(struct baked *baked, int n_frames, int reset_every,
         s.n_intensities = 2;
         for (int k = 0; k < FOODS; k++) {
             s.is_new[k] = f.is_new[k];
-            glint_rigid_take(&f.pose, f.seen[k], true_food[i][k]);
+            glint_rigid_transform_point(&f.pose, f.seen[k], true_food[i][k]);
             s.intensity[k][1] = (i % 256) / 255.;
             for (int axis = 0; axis < 3; axis++)
                 s.food[k][axis] = scale * f.seen[k][axis];

@@ -90,14 +90,14 @@ static void bake_must_fail(const char *text, const char *why)
 TEST(rejects_invalid_recordings)
 {
     bake_must_fail("", "run.json:1:1: the file ends within the recording");
-    bake_must_fail("[]", "run.json:1:1: '{' is expected here");
+    bake_must_fail("[]", "run.json:1:1: expected '{' here");
     bake_must_fail("{" BODY ", \"frames\": [" FRAME "]}", "invalid token");
     bake_must_fail("{\"frames\": [" FRAME "]}", "there is no structure");
     bake_must_fail("{" BODY_0 ", \"frames\": []}",
                    "the recording has no frames");
     bake_must_fail("{" BODY_0 "}", "the recording has no frames");
     bake_must_fail("{" BODY_0 ", \"frames\": 3}", "'[' is expected");
-    bake_must_fail(RUN("{}"), "frame 0: there is no array 'foods'");
+    bake_must_fail(RUN("{}"), "frame 0: the frame has no array 'foods'");
     bake_must_fail(RUN("3"), "frame 0: the frame is not a JSON object");
     bake_must_fail(RUN(FRAME ",\n {\"foods\": 5}"), "run.json:2:2: frame 1: ");
     bake_must_fail(RUN(FRAME ", {\"foods\": " FOODS("NaN") "}"),
@@ -117,7 +117,7 @@ TEST(rejects_invalid_recordings)
                    "the number of foods differs");
     bake_must_fail(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
                        "2") "}, {\"frame_num\": 6, \"foods\": " FOODS("2") "}"),
-                   "frame 1: frames are missing: 6 follows 4");
+                   "frame 1: frames are missing: frame 6 follows frame 4");
     bake_must_fail(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
                        "2") "}, {\"frame_num\": 4, \"foods\": " FOODS("2") "}"),
                    "out of order: 4 follows 4");
@@ -126,12 +126,13 @@ TEST(rejects_invalid_recordings)
     bake_must_fail(RUN("{\"rv\": [1, 2], \"foods\": " FOODS("2") "}"),
                    "'rv' needs three numbers");
     bake_must_fail(RUN("{\"foods\": " FOODS("2")),
-                   "']' closes what '{' opened");
+                   "']' does not match the opening '{'");
     bake_must_fail("{" BODY_0 ", \"frames\": [" FRAME
                    ", {\"foods\": [{\"x\": 1",
                    "the file ends within frame 1");
     bake_must_fail("{" BODY_0 ", " BODY_0 "}", "a second 'structure'");
-    bake_must_fail(RUN(FRAME) " {", "text follows the end of the recording");
+    bake_must_fail(RUN(FRAME) " {",
+                   "unexpected text after the end of the recording");
     bake_must_fail("{\"structure\": {\"size\": -1, \"angleofview\": 60}}",
                    "the size of the body");
     bake_must_fail("{\"structure\": {\"size\": 1, \"angleofview\": 0}}",
@@ -142,7 +143,7 @@ TEST(rejects_invalid_recordings)
         "{\"structure\": {\"angleofview\": 1, \"size\": 1, \"sensors\": "
         "[{\"theta\": 1}]}}",
         "a sensor has no 'phi'");
-    bake_must_fail("{\"a\": [1, 2}", "'}' closes what '[' opened");
+    bake_must_fail("{\"a\": [1, 2}", "'}' does not match the opening '['");
     bake_must_fail("{\"a\": \"b\nc\"}", "a string must end on its line");
     bake_must_fail("{\"a\" 1}", "':' is expected");
     bake_must_fail("{\"a\": , }", "a value is expected");

@@ -139,14 +139,14 @@ static double lookup_level_in_double(const struct glint_environment *e, int k,
     const int side = 1 << e->level[k].side_log2;
     double u, v, x, y, sum = 0;
 
-    glint_sphere_place(toward, &u, &v);
+    glint_sphere_locate_direction(toward, &u, &v);
     x = u * side - .5;
     y = v * side - .5;
     for (int j = 0; j < 4; j++) {
         const int i = (int)floor(x) + (j & 1), l = (int)floor(y) + (j >> 1);
 
         sum += (1 - fabs(x - i)) * (1 - fabs(y - l)) *
-               decode_texel(e, k, glint_sphere_index(side, i, l), c);
+               decode_texel(e, k, glint_sphere_get_texel_index(side, i, l), c);
     }
     return sum;
 }
@@ -304,10 +304,10 @@ static void render_by_sum_of_texels(const double alpha[2], struct reference *r)
     struct glint_environment_report report = {0};
 
     glint_environment_defaults(&o);
-    assert_true(glint_sphere_open(&r->sphere, 1 << SIDE_LOG2));
-    assert_true(glint_sphere_project(&r->sphere, &image, &o, &report));
+    assert_true(glint_sphere_allocate(&r->sphere, 1 << SIDE_LOG2));
+    assert_true(glint_sphere_project_panorama(&r->sphere, &image, &o, &report));
     ward_sum_texels(&r->sphere, alpha, r->want);
-    glint_sphere_close(&r->sphere);
+    glint_sphere_free(&r->sphere);
 }
 
 /* Row B1: half vectors drawn by the published density of the lobe have less

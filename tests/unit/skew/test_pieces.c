@@ -26,13 +26,14 @@ static struct entry compute_pupil_entry(const struct glint_skew_piece *p,
 {
     const struct glint_zone *z = &p->zone;
 
-    return (struct entry){glint_zone_side(z, z->middle, x) +
-                              x[GLINT_U] * glint_zone_side(z, z->half_x, x),
-                          glint_zone_side(z, z->middle_y, x) +
-                              x[GLINT_V] * glint_zone_side(z, z->half_y, x),
-                          {interpolate_linearly(z->lo, z->hi, x[GLINT_S]),
-                           interpolate_linearly(z->y_lo, z->y_hi, x[GLINT_P])},
-                          interpolate_linearly(p->w0, p->w1, x[GLINT_W])};
+    return (struct entry){
+        glint_zone_evaluate_side(z, z->middle, x) +
+            x[GLINT_U] * glint_zone_evaluate_side(z, z->half_x, x),
+        glint_zone_evaluate_side(z, z->middle_y, x) +
+            x[GLINT_V] * glint_zone_evaluate_side(z, z->half_y, x),
+        {interpolate_linearly(z->lo, z->hi, x[GLINT_S]),
+         interpolate_linearly(z->y_lo, z->y_hi, x[GLINT_P])},
+        interpolate_linearly(p->w0, p->w1, x[GLINT_W])};
 }
 
 static void assert_pieces_are_same(const struct entry *a, const struct entry *b)
@@ -119,13 +120,13 @@ TEST(error_is_shared_by_variables)
     set_output_to_one_term(&system.output[2], &coef[2], GLINT_OUT_ENERGY,
                            GLINT_W, 5, false);
     system.n_outputs = 3;
-    glint_piece_shares(&system, share);
+    glint_piece_compute_shares(&system, share);
     assert_true(share[GLINT_V] == 2 * 0.875);
     assert_true(share[GLINT_S] == 0 && share[GLINT_W] == 0);
 
     /* If all outputs meet their tolerances, all outputs count. */
     system.output[1].met = true;
-    glint_piece_shares(&system, share);
+    glint_piece_compute_shares(&system, share);
     assert_true(share[GLINT_V] == 2 * 0.875 && share[GLINT_S] == 2 * 0.5);
     assert_true(share[GLINT_U] == 0 && share[GLINT_W] == 0);
 }
@@ -140,15 +141,15 @@ TEST(pieces_are_numbered_by_part)
     const struct glint_fitted_ghost ghost = {3, has};
     struct glint_fitted_system next = has[0];
 
-    assert_int_equal(glint_piece_number(&ghost, &next), 2);
+    assert_int_equal(glint_piece_choose_part_number(&ghost, &next), 2);
     next.sine_lo = 0.1;
     next.sine_hi = 0.15;
-    assert_int_equal(glint_piece_number(&ghost, &next), 1);
+    assert_int_equal(glint_piece_choose_part_number(&ghost, &next), 1);
     next.y_lo = 0.1;
     next.y_hi = 0.2;
-    assert_int_equal(glint_piece_number(&ghost, &next), 0);
+    assert_int_equal(glint_piece_choose_part_number(&ghost, &next), 0);
     next = has[0];
     next.wave_lo = 6;
     next.wave_hi = 7;
-    assert_int_equal(glint_piece_number(&ghost, &next), 0);
+    assert_int_equal(glint_piece_choose_part_number(&ghost, &next), 0);
 }

@@ -88,9 +88,9 @@ TEST(ranges_cover_those_of_both_positions)
         int n[3];
 
         set_ghost_of_both_setups(g);
-        n[2] = glint_visible_ranges(&both[0], MAX_DEG, of[2]);
+        n[2] = glint_visible_find_ranges(&both[0], MAX_DEG, of[2]);
         for (int k = 0; k < 2; k++) {
-            n[k] = glint_visible_ranges(&alone[k], MAX_DEG, of[k]);
+            n[k] = glint_visible_find_ranges(&alone[k], MAX_DEG, of[k]);
             for (int i = 0; i < n[k]; i++)
                 assert_true(
                     is_in_a_range(of[2], n[2], of[k][i][0], of[k][i][1]));
@@ -181,11 +181,11 @@ TEST(rays_land_as_at_a_single_position)
     int own = 0, beside = 0;
 
     set_ghost_of_both_setups(CUT);
-    glint_visible_profile_find(&both[0], range, &profile);
+    glint_visible_find_profile(&both[0], range, &profile);
     glint_zone_init(&zone, &profile, range[0], range[1], false);
     for (int k = 0; k < 3; k++)
-        glint_zone_trace(&zone, k < 2 ? &alone[k] : &both[0], &of[k],
-                         &energies);
+        glint_zone_trace_rays(&zone, k < 2 ? &alone[k] : &both[0], &of[k],
+                              &energies);
     for (int i = 0; i < of[2].n; i++) {
         const int a = find_ray_at_position(&of[0], &of[2], i);
         const int b = find_ray_at_position(&of[1], &of[2], i);
@@ -217,15 +217,15 @@ TEST(boxes_contain_those_of_both_positions)
     for (int g = 1; g < 4; g++) {
         set_ghost_of_both_setups(g);
         for (int k = 0; k < 2; k++)
-            glint_visible_profile_find(&alone[k], range, &of[k]);
-        glint_visible_profile_find(&both[0], range, &of[2]);
+            glint_visible_find_profile(&alone[k], range, &of[k]);
+        glint_visible_find_profile(&both[0], range, &of[2]);
         if (of[0].n < GLINT_PROFILE || of[1].n < GLINT_PROFILE)
             continue;
         assert_int_equal(of[2].n, GLINT_PROFILE);
         for (int i = 0; i < GLINT_PROFILE; i++) {
             struct glint_pupil box = of[0].box[i];
 
-            glint_visible_join(&box, &of[1].box[i]);
+            glint_visible_join_boxes(&box, &of[1].box[i]);
             assert_true(box.x0_mm == of[2].box[i].x0_mm &&
                         box.x1_mm == of[2].box[i].x1_mm &&
                         box.y1_mm == of[2].box[i].y1_mm);
@@ -291,7 +291,7 @@ TEST(barrel_of_the_other_position_is_chosen)
     if (glint_setup_init(&narrower, &lens, 0, 0, rgb_nm, 3, &error) != GLINT_OK)
         fail_msg("%s", error.text);
     glint_visible_init(&both[1], &narrower, UNCUT, 16, band_nm);
-    glint_visible_profile_find(&both[0], range, &profile);
+    glint_visible_find_profile(&both[0], range, &profile);
     glint_zone_init(&zone, &profile, range[0], range[1], false);
     for (int k = 0; k < 2; k++) {
         glint_zone_choose_barrels(&zone, k ? &both[0] : &alone[0], 0.01,

@@ -27,7 +27,7 @@ static void open_ghost_of_lens(const char *name, double f_number, int ghost,
     assert_ok(glint_prescription_set_f_number(&lens, f_number, &error));
     assert_ok(glint_setup_init(&setup, &lens, 0, 0, band_nm, 2, &error));
     glint_visible_init(&visible, &setup, ghost, 12.65, band_nm);
-    glint_visible_reach(&visible, max_deg);
+    glint_visible_set_max_angle(&visible, max_deg);
 }
 
 TEST(wide_angle_ghosts_are_marked_far)
@@ -38,7 +38,7 @@ TEST(wide_angle_ghosts_are_marked_far)
     assert_false(visible.far || visible.wide);
     open_ghost_of_lens("wide/fisheye-zuiko-8", 11, 37, 61);
     assert_true(visible.far && visible.wide && !visible.shaped);
-    glint_visible_narrow(&part, &visible, -1, 0);
+    glint_visible_narrow_band(&part, &visible, -1, 0);
     assert_true(part.far && part.wide);
     open_ghost_of_lens("anamorphic/anamorphic-schneider", 11, 7, 85);
     assert_false(visible.far);
@@ -54,7 +54,7 @@ static void find_barrels_of_zone(int ghost, const double deg[2], bool far,
     const double range[2] = {glint_sin_deg(deg[0]), glint_sin_deg(deg[1])};
 
     open_ghost_of_lens("wide/fisheye-zuiko-8", 11, ghost, 85);
-    glint_visible_profile_find(&visible, range, &profile);
+    glint_visible_find_profile(&visible, range, &profile);
     assert_true(profile.n > 0);
     glint_zone_init(&zone, &profile, range[0], range[1], true);
     visible.far = far;
@@ -127,18 +127,18 @@ static void fit_zone_of_grazed_barrel(bool far, int stopped,
                                    .thorough = true};
     struct glint_zone_aim aim;
 
-    glint_brightness_angles(&brightness, 85);
+    glint_brightness_set_angles(&brightness, 85);
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
         /* a level much lower than this ghost's brightness */
         brightness.level[k] = 1e-9;
     find_barrels_of_zone(GRAZED, grazed_deg, true, &buffers.rays);
     visible.far = far;
-    glint_zone_trace(&zone, &visible, &buffers.rays, &buffers.energies);
+    glint_zone_trace_rays(&zone, &visible, &buffers.rays, &buffers.energies);
     for (int i = 0; stopped && i < buffers.rays.n; i += stopped)
         buffers.rays.at[RAY_EXCESS][i] = 2;
-    aim = glint_zone_aim_of(&tolerance, &zone, &buffers.rays);
+    aim = glint_zone_aim_compute_tolerances(&tolerance, &zone, &buffers.rays);
     *system = (struct glint_fitted_system){.ghost = GRAZED};
-    assert_ok(glint_zone_fit(&task, &aim, &buffers, system, errors));
+    assert_ok(glint_zone_fit_outputs(&task, &aim, &buffers, system, errors));
 }
 
 static void free_fitted_system(struct glint_fitted_system *system)
@@ -157,13 +157,13 @@ static double compute_barrel_rms_error(const struct glint_fitted_system *system)
     glint_zone_choose_barrels(&zone, &visible, tolerance.escape,
                               (glint_zone_sampling *)buffers.scratch,
                               &buffers.rays);
-    glint_zone_trace(&zone, &visible, &buffers.rays, &buffers.energies);
+    glint_zone_trace_rays(&zone, &visible, &buffers.rays, &buffers.energies);
     for (int i = 0; i < buffers.rays.n; i++) {
         const double radius = buffers.rays.radius[0][i];
         double x[GLINT_VARIABLES], off;
 
-        glint_zone_rays_x(&buffers.rays, i, x);
-        off = glint_poly_at(o->n_terms, o->power, o->coef, x) -
+        glint_zone_rays_get_coordinates(&buffers.rays, i, x);
+        off = glint_poly_evaluate(o->n_terms, o->power, o->coef, x) -
               0.5 * (1 + radius * radius);
         if (fabs(radius - 1) < 0.003) {
             sum += off * off;
