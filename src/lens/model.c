@@ -32,8 +32,8 @@ STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
-/* The header begins like the header of every baked file, whose variant is the
- * basis here. */
+/* The header begins with the members that the header of every baked file has;
+ * their member variant is the basis here. */
 GLINT_BLOB_HEADER(struct glint_model_header, basis);
 
 enum {

@@ -99,7 +99,9 @@ glint_transfer_find_system(const struct glint_lens *lens, int ghost,
  * powers 0, 1, 2 ... */
 struct substituted_powers {
     int32_t s_q30[TRANSFER_MAX_EXPONENT + 1], w_q30[TRANSFER_MAX_EXPONENT + 1];
-    int lens; /* 1: the model uses the lens basis; 0: the auto basis */
+    /* 1: the model uses the lens basis (lenses that are not round); 0: auto
+     * basis */
+    int lens;
     /* powers of the y component; lens basis only */
     int32_t p_q30[GLINT_LENS_POWERS];
 };

@@ -106,9 +106,10 @@ struct rotations {
     struct glint_turn sensor, stop;
 };
 
-static struct glint_turn make_rotation(const struct glint_place *p,
-                                       struct glint_real size, int exponent,
-                                       int frac, int32_t limit)
+static struct glint_turn compute_vertex_rotation(const struct glint_place *p,
+                                                 struct glint_real size,
+                                                 int exponent, int frac,
+                                                 int32_t limit)
 {
     return (struct glint_turn){
         (int32_t)q_shift((int64_t)p->cos_q30 * size.mantissa, 30),
@@ -116,16 +117,18 @@ static struct glint_turn make_rotation(const struct glint_place *p,
         -(exponent + size.exponent + frac), limit};
 }
 
-static struct rotations make_rotations(const struct glint_transfer *t,
-                                       const struct glint_place *p)
+static struct rotations compute_vertex_rotations(const struct glint_transfer *t,
+                                                 const struct glint_place *p)
 {
     const struct glint_real one = {TRANSFER_ONE_Q30, -30};
     const struct glint_real stop = p->stop_scale.mantissa ? p->stop_scale : one;
 
     return (struct rotations){
-        make_rotation(p, p->pixels_per_mm, t->exponent[GLINT_OUT_SENSOR_X], 8,
-                      GLINT_VERTEX_LIMIT_Q8 / 2),
-        make_rotation(p, stop, t->exponent[GLINT_OUT_STOP_X], 16, LIMIT_Q16)};
+        compute_vertex_rotation(p, p->pixels_per_mm,
+                                t->exponent[GLINT_OUT_SENSOR_X], 8,
+                                GLINT_VERTEX_LIMIT_Q8 / 2),
+        compute_vertex_rotation(p, stop, t->exponent[GLINT_OUT_STOP_X], 16,
+                                LIMIT_Q16)};
 }
 
 static void rotate_ray_positions(const struct glint_turn *turn, unsigned sets,
@@ -201,7 +204,8 @@ int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n)
 
 /* Returns whether row J is the middle row of an annular box, which has no
  * rays. */
-static int is_row_hidden(const struct glint_transfer *t, int n_cells, int j)
+static int is_row_without_rays(const struct glint_transfer *t, int n_cells,
+                               int j)
 {
     return t->annulus && 2 * j == n_cells;
 }
@@ -229,7 +233,7 @@ static void compute_row_pair(struct glint_transfer *t,
                              int j, struct glint_vertex *row,
                              struct glint_vertex *mirrored)
 {
-    const struct rotations rotations = make_rotations(t, place);
+    const struct rotations rotations = compute_vertex_rotations(t, place);
     const int32_t v_q30 = compute_row_v_q30(t, n_cells, j);
 
     if (t->n_nodes != n_cells + 1) {
@@ -263,7 +267,7 @@ void glint_transfer_row(struct glint_transfer *transfer,
                         const struct glint_place *place, int n_cells, int j,
                         struct glint_vertex *row)
 {
-    if (is_row_hidden(transfer, n_cells, j))
+    if (is_row_without_rays(transfer, n_cells, j))
         invalidate_row(row, n_cells);
     else if (transfer->whole || 2 * j <= n_cells)
         compute_row_pair(transfer, place, n_cells, j, row, NULL);
@@ -276,7 +280,7 @@ void glint_transfer_rows(struct glint_transfer *transfer,
                          struct glint_vertex *row,
                          struct glint_vertex *mirrored)
 {
-    if (is_row_hidden(transfer, n_cells, j)) {
+    if (is_row_without_rays(transfer, n_cells, j)) {
         invalidate_row(row, n_cells);
         invalidate_row(mirrored, n_cells);
     } else if (transfer->whole) {
@@ -299,7 +303,7 @@ void glint_transfer_grid(struct glint_transfer *transfer,
         struct glint_vertex *mirrored =
             vertices + (ptrdiff_t)(n_cells - j) * nodes;
 
-        if (is_row_hidden(transfer, n_cells, j))
+        if (is_row_without_rays(transfer, n_cells, j))
             invalidate_row(row, n_cells);
         else if (alone)
             compute_row_pair(transfer, place, n_cells, j, row, NULL);

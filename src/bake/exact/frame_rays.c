@@ -58,7 +58,7 @@ enum { LEVELS = 8 };
 struct point {
     struct glint_lamp lamp;
     double at[2];
-    /* radius of the lamps that the point replaces, in units of at */
+    /* radius of the lamps that the point represents, in the unit of at */
     double reach;
     int patch;
     int first, last; /* the point belongs to the levels first .. last */
@@ -126,8 +126,8 @@ static struct traced *get_traced_state(const struct glint_frame *f)
     return f->memory.traced;
 }
 
-/* Frees what depends on the current frame only; preserves points, patches and
- * measured fields. */
+/* Frees the arrays that depend on the current frame only; preserves points,
+ * patches and measured fields. */
 static void free_frame_plan(struct traced *t)
 {
     for (int i = 0; i < t->n_fields && t->mem; i++)
@@ -601,7 +601,8 @@ static bool is_field_in_picture(const struct glint_frame *f,
            fabs(x * d + y * c) - fabs(d) * w - fabs(c) * h < half_h;
 }
 
-/* Returns the azimuth by which a ghost is rotated for point P, degrees. */
+/* Returns the azimuth, degrees, by which the ghost of a field is rotated for
+ * point P. */
 static double get_field_azimuth(const struct traced *t, const struct point *p)
 {
     return t->cfg.round ? p->lamp.phi_deg : t->patch[p->patch].phi_deg;
@@ -619,8 +620,8 @@ static double compute_point_light(const struct glint_frame *f,
            glint_cos_deg(p->lamp.theta_deg) / t->set[0].unit_flux[0];
 }
 
-/* Returns the area of the bounding box of FIELD on the sensor, pixels, plus
- * 1. */
+/* Returns the area of the bounding box of FIELD on the sensor in pixels, plus
+ * 1, so that it is never 0. */
 static double compute_field_pixels(const struct glint_frame *f,
                                    const struct ray_field *field)
 {
@@ -814,8 +815,8 @@ static enum glint_status measure_lamp_fields(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Measures the fields of LAMPS for frame F, with fields of the frame before
- * reused if lens and wavelengths are the same. */
+/* Measures the fields of LAMPS for frame F. Reuses those of the last frame if
+ * lens and wavelengths are the same. */
 static enum glint_status measure_frame_fields(struct glint_frame *f,
                                               const struct glint_lamp *lamps,
                                               int n)

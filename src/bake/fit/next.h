@@ -50,7 +50,7 @@ enum glint_next {
     GLINT_PART
 };
 
-/* Returns the width of the angle range with the sines LO .. HI, degrees. */
+/* Returns the width, degrees, of the angle range whose sines are LO .. HI. */
 double glint_next_compute_width_deg(double lo, double hi);
 
 /* Returns whether at least one of the ghost's two reflections is at a coating

@@ -18,8 +18,9 @@ double glint_zone_compute_node(int k, int n)
     return n == 1 ? 0 : -cos(GLINT_PI * k / (n - 1));
 }
 
-double glint_zone_evaluate_round_side(const double side[GLINT_BOX_TERMS],
-                                      double s, double w)
+double
+glint_zone_evaluate_round_box_polynomial(const double side[GLINT_BOX_TERMS],
+                                         double s, double w)
 {
     double value = 0;
 
@@ -29,14 +30,14 @@ double glint_zone_evaluate_round_side(const double side[GLINT_BOX_TERMS],
            w * (side[GLINT_BOX_POWERS] + s * side[GLINT_BOX_POWERS + 1]);
 }
 
-double glint_zone_evaluate_side(const struct glint_zone *zone,
-                                const double side[GLINT_BOX_TERMS],
-                                const double x[GLINT_VARIABLES])
+double glint_zone_evaluate_box_polynomial(const struct glint_zone *zone,
+                                          const double side[GLINT_BOX_TERMS],
+                                          const double x[GLINT_VARIABLES])
 {
     const double s = x[GLINT_S], p = x[GLINT_P];
 
     if (!zone->skew)
-        return glint_zone_evaluate_round_side(side, s, x[GLINT_W]);
+        return glint_zone_evaluate_round_box_polynomial(side, s, x[GLINT_W]);
     return side[0] + s * (side[1] + s * side[2]) +
            p * (side[3] + s * side[4] + p * side[5]) +
            x[GLINT_W] *
@@ -96,9 +97,9 @@ static void collect_visible_boxes(const struct glint_visible_profile *p,
 
 /* Fits the box polynomial SIDE to VALUE within TOLERANCE, or as closely as
  * possible. Terms: powers of s up to DEGREE; BY_COLOUR: also w and s w. */
-static void fit_box_side(const struct seen *seen, const double *value,
-                         int degree, bool by_colour, double tolerance,
-                         double side[GLINT_BOX_TERMS])
+static void fit_box_polynomial(const struct seen *seen, const double *value,
+                               int degree, bool by_colour, double tolerance,
+                               double side[GLINT_BOX_TERMS])
 {
     static const double zero[MAX_BOXES];
     double scratch[GLINT_REGRESS_DOUBLES(MAX_BOXES, GLINT_BOX_TERMS,
@@ -134,9 +135,10 @@ static double compute_half_size_deficit(const double half[GLINT_BOX_TERMS])
     double lowest = HUGE_VAL;
 
     for (int k = -8; k <= 8; k++)
-        lowest = fmin(lowest,
-                      fmin(glint_zone_evaluate_round_side(half, k / 8.0, -1),
-                           glint_zone_evaluate_round_side(half, k / 8.0, 1)));
+        lowest = fmin(
+            lowest,
+            fmin(glint_zone_evaluate_round_box_polynomial(half, k / 8.0, -1),
+                 glint_zone_evaluate_round_box_polynomial(half, k / 8.0, 1)));
     return -lowest;
 }
 
@@ -149,14 +151,18 @@ static void enlarge_box_to_visible_boxes(struct glint_zone *z,
 
     for (int i = 0; i < seen->n; i++) {
         const double s = seen->s[i], w = seen->w[i];
-        const double off = fabs(
-            seen->middle[i] - glint_zone_evaluate_round_side(z->middle, s, w));
+        const double off =
+            fabs(seen->middle[i] -
+                 glint_zone_evaluate_round_box_polynomial(z->middle, s, w));
 
         more_x =
-            fmax(more_x, seen->half_x[i] + off -
-                             glint_zone_evaluate_round_side(z->half_x, s, w));
-        more_y = fmax(more_y, seen->half_y[i] - glint_zone_evaluate_round_side(
-                                                    z->half_y, s, w));
+            fmax(more_x,
+                 seen->half_x[i] + off -
+                     glint_zone_evaluate_round_box_polynomial(z->half_x, s, w));
+        more_y =
+            fmax(more_y,
+                 seen->half_y[i] -
+                     glint_zone_evaluate_round_box_polynomial(z->half_y, s, w));
     }
     z->half_x[0] += more_x;
     z->half_y[0] += more_y;
@@ -172,10 +178,11 @@ static double compute_box_fill(const struct glint_zone *z,
     double sum = 0;
 
     for (int i = 0; i < seen->n; i++)
-        sum +=
-            seen->half_x[i] * seen->half_y[i] /
-            (glint_zone_evaluate_round_side(z->half_x, seen->s[i], seen->w[i]) *
-             glint_zone_evaluate_round_side(z->half_y, seen->s[i], seen->w[i]));
+        sum += seen->half_x[i] * seen->half_y[i] /
+               (glint_zone_evaluate_round_box_polynomial(z->half_x, seen->s[i],
+                                                         seen->w[i]) *
+                glint_zone_evaluate_round_box_polynomial(z->half_y, seen->s[i],
+                                                         seen->w[i]));
     return sum / seen->n;
 }
 
@@ -185,9 +192,12 @@ static void fit_zone_box(struct glint_zone *z, const struct seen *seen,
     const double tolerance = 0.02 * seen->narrowest;
     const int tame = degree < 2 ? degree : 2;
 
-    fit_box_side(seen, seen->middle, degree, by_colour, tolerance, z->middle);
-    fit_box_side(seen, seen->half_x, tame, by_colour, tolerance, z->half_x);
-    fit_box_side(seen, seen->half_y, tame, by_colour, tolerance, z->half_y);
+    fit_box_polynomial(seen, seen->middle, degree, by_colour, tolerance,
+                       z->middle);
+    fit_box_polynomial(seen, seen->half_x, tame, by_colour, tolerance,
+                       z->half_x);
+    fit_box_polynomial(seen, seen->half_y, tame, by_colour, tolerance,
+                       z->half_y);
     enlarge_box_to_visible_boxes(z, seen);
     z->fill = compute_box_fill(z, seen);
 }
@@ -214,8 +224,8 @@ void glint_zone_init(struct glint_zone *zone,
 
 /* Substitutes w in the box polynomial SIDE such that -1 .. 1 becomes
  * W0 .. W1. */
-static void narrow_band_of_side(double side[GLINT_BOX_TERMS], double w0,
-                                double w1)
+static void narrow_band_of_polynomial(double side[GLINT_BOX_TERMS], double w0,
+                                      double w1)
 {
     double *of_w = side + GLINT_BOX_POWERS;
 
@@ -256,9 +266,9 @@ void glint_zone_cut_to_part(struct glint_zone *zone,
         zone->half_x[k] *= 0.5 * (part->u1 - part->u0);
         zone->half_y[k] *= part->top;
     }
-    narrow_band_of_side(zone->middle, part->w0, part->w1);
-    narrow_band_of_side(zone->half_x, part->w0, part->w1);
-    narrow_band_of_side(zone->half_y, part->w0, part->w1);
+    narrow_band_of_polynomial(zone->middle, part->w0, part->w1);
+    narrow_band_of_polynomial(zone->half_x, part->w0, part->w1);
+    narrow_band_of_polynomial(zone->half_y, part->w0, part->w1);
     zone->annulus = part->annulus;
 }
 
@@ -315,12 +325,14 @@ void glint_zone_batch_add_ray(struct glint_zone_batch *batch,
     for (int k = 0; k < GLINT_VARIABLES; k++)
         batch->x[batch->n][k] = x[k];
     batch->x[batch->n][1] = rim + (1 - rim) * x[1];
-    from->x_mm = glint_zone_evaluate_side(zone, zone->middle, x) +
-                 x[0] * glint_zone_evaluate_side(zone, zone->half_x, x);
-    from->y_mm =
-        batch->x[batch->n][1] * glint_zone_evaluate_side(zone, zone->half_y, x);
+    from->x_mm =
+        glint_zone_evaluate_box_polynomial(zone, zone->middle, x) +
+        x[0] * glint_zone_evaluate_box_polynomial(zone, zone->half_x, x);
+    from->y_mm = batch->x[batch->n][1] *
+                 glint_zone_evaluate_box_polynomial(zone, zone->half_y, x);
     if (zone->skew)
-        from->y_mm += glint_zone_evaluate_side(zone, zone->middle_y, x);
+        from->y_mm +=
+            glint_zone_evaluate_box_polynomial(zone, zone->middle_y, x);
     compute_light_direction(zone, x, from->direction);
     batch->n++;
 }

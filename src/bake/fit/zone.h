@@ -52,13 +52,14 @@ struct glint_zone_part {
 
 /* Evaluates SIDE, a box polynomial of a round lens (centre or half size, mm),
  * at S and W. */
-double glint_zone_evaluate_round_side(const double side[GLINT_BOX_TERMS],
-                                      double s, double w);
+double
+glint_zone_evaluate_round_box_polynomial(const double side[GLINT_BOX_TERMS],
+                                         double s, double w);
 
 /* Evaluates SIDE, a box polynomial of ZONE (centre or half size, mm), at X. */
-double glint_zone_evaluate_side(const struct glint_zone *zone,
-                                const double side[GLINT_BOX_TERMS],
-                                const double x[GLINT_VARIABLES]);
+double glint_zone_evaluate_box_polynomial(const struct glint_zone *zone,
+                                          const double side[GLINT_BOX_TERMS],
+                                          const double x[GLINT_VARIABLES]);
 
 /* Fits a box to the visible boxes of PROFILE at the angles LO .. HI, sines.
  * BY_COLOUR: the box depends on the wavelength; else it contains the light of
@@ -67,7 +68,8 @@ void glint_zone_init(struct glint_zone *zone,
                      const struct glint_visible_profile *profile, double lo,
                      double hi, bool by_colour);
 
-/* Returns the inner edge |v| of ring ANNULUS of the pupil / its outer edge. */
+/* Returns the inner radius |v| of the pupil's ring ANNULUS, as a fraction of
+ * its outer radius. */
 double glint_zone_get_inner_rim(int annulus);
 
 /* Halves PART along v, into an inner and an outer half, or along u. */

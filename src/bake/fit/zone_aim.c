@@ -94,10 +94,11 @@ compute_relative_brightness(const struct glint_tolerance *tolerance,
         const struct ray_summary v = summarise_rays_at_angle(r, i);
         const double x[GLINT_VARIABLES] = {0, 0, r->x[GLINT_S][i],
                                            r->x[GLINT_W][i], r->x[GLINT_P][i]};
-        const double pupil = 4 * (1 - glint_zone_get_inner_rim(zone->annulus)) *
-                             glint_zone_evaluate_side(zone, zone->half_x, x) *
-                             glint_zone_evaluate_side(zone, zone->half_y, x) *
-                             v.n / v.n_all;
+        const double pupil =
+            4 * (1 - glint_zone_get_inner_rim(zone->annulus)) *
+            glint_zone_evaluate_box_polynomial(zone, zone->half_x, x) *
+            glint_zone_evaluate_box_polynomial(zone, zone->half_y, x) * v.n /
+            v.n_all;
         const double level = glint_brightness_get_level(
             tolerance->brightness, compute_light_sine(zone, x));
         const double on = estimate_sensor_area(zone, &v, blur);
@@ -250,8 +251,8 @@ static double compute_round_irradiance(const struct glint_zone *zone,
     double x[GLINT_VARIABLES], pupil;
 
     glint_zone_rays_get_coordinates(r, i, x);
-    pupil = glint_zone_evaluate_side(zone, zone->half_x, x) *
-            glint_zone_evaluate_side(zone, zone->half_y, x) *
+    pupil = glint_zone_evaluate_box_polynomial(zone, zone->half_x, x) *
+            glint_zone_evaluate_box_polynomial(zone, zone->half_y, x) *
             compute_parallelogram_area(r->x[GLINT_U], r->x[GLINT_V], i, a, b);
 
     return r->at[RAY_ENERGY][i] * pupil /
@@ -272,8 +273,8 @@ static double compute_skew_brightness(const struct glint_tolerance *tolerance,
     level = glint_brightness_get_level(tolerance->brightness,
                                        compute_light_sine(zone, x)) *
             aim->share;
-    pupil = glint_zone_evaluate_side(zone, zone->half_x, x) *
-            glint_zone_evaluate_side(zone, zone->half_y, x);
+    pupil = glint_zone_evaluate_box_polynomial(zone, zone->half_x, x) *
+            glint_zone_evaluate_box_polynomial(zone, zone->half_y, x);
     return fmin(
         1, fmax(LEAST_LIGHT, r->at[RAY_ENERGY][i] * pupil /
                                  fmax(1e-30, r->at[RAY_SPREAD][i] * level)));

@@ -38,7 +38,7 @@ enum {
     FEW_TERMS = 64,
     /* max number of terms of a position output in thorough fits */
     MANY_TERMS = 96,
-    /* number of terms after which a fit with far too large an error stops */
+    /* number of terms after which a fit stops if its error is far too large */
     PATIENCE = 36
 };
 

@@ -25,7 +25,8 @@ struct glint_localiser {
     double place[GLINT_MOTION_MAX_FOODS][3];
     /* number of frames over which each food's position is averaged */
     double age[GLINT_MOTION_MAX_FOODS];
-    bool has_begun; /* private: true after the first frame */
+    /* true after the first frame; set by glint_localise_body() */
+    bool has_begun;
 };
 
 struct glint_located {

@@ -120,7 +120,7 @@ struct column {
     uint8_t power[GLINT_VARIABLES];
     bool dead, chosen;
     int place;     /* index of the term in the table of moments */
-    double length; /* Euclidean length of at */
+    double length; /* Euclidean length of the column at */
     /* components of at along each chosen direction */
     double on[GLINT_MAX_TERMS];
     /* squared length of at without its components along chosen directions:

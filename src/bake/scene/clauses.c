@@ -56,7 +56,7 @@ static int compute_edit_distance(const struct glint_word *word,
     return row[m];
 }
 
-static struct near begin_word_search(const struct glint_word *word)
+static struct near begin_similar_word_search(const struct glint_word *word)
 {
     return (struct near){*word, NULL, NEAR_CHARS};
 }
@@ -104,7 +104,7 @@ static bool reject_unknown_word(struct glint_text *text, const char *line,
                                 const struct glint_clause *clause,
                                 const struct glint_word *word)
 {
-    struct near near = begin_word_search(word);
+    struct near near = begin_similar_word_search(word);
     char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES], words[120];
 
     glint_word_quote(word, quote);
@@ -183,7 +183,7 @@ bool glint_line_read_first_word(struct glint_text *text,
 {
     const struct glint_word word = glint_text_next_word(text);
     char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES];
-    struct near near = begin_word_search(&word);
+    struct near near = begin_similar_word_search(&word);
     int i = 0;
 
     *index = -1;
@@ -208,7 +208,7 @@ bool glint_name_find_index(struct glint_text *text,
                            const struct glint_word *word, const char *what,
                            const char *names, size_t stride, int n, int *index)
 {
-    struct near near = begin_word_search(word);
+    struct near near = begin_similar_word_search(word);
     char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES];
 
     for (*index = 0; *index < n; ++*index, names += stride) {

@@ -21,7 +21,8 @@ struct glint_describer {
     /* Position of the line "camera". It is evaluated after all other lines, as
      * it depends on the line "hand". */
     struct glint_text_place camera;
-    struct glint_text_place background; /* position of the line "background" */
+    /* position in the text of the line "background" */
+    struct glint_text_place background;
     double toward[3], up[3], orbit[3], distance, yaw_deg, pitch_deg;
     bool has_orbit;
     /* position of the word "sensor" in the line "camera" */

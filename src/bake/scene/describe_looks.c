@@ -36,8 +36,8 @@ static bool read_ward_norm(struct glint_describer *d,
 
 /* Raises the smaller one of the two Ward alphas to 1/10 of the larger one, with
  * a warning. */
-static void limit_alpha_ratio(struct glint_describer *d,
-                              struct glint_described_material *m)
+static void limit_ward_alpha_ratio(struct glint_describer *d,
+                                   struct glint_described_material *m)
 {
     const int smaller = m->alpha[0] > m->alpha[1];
     const double least = m->alpha[1 - smaller] / GLINT_DESCRIPTION_MAX_RATIO;
@@ -60,7 +60,7 @@ static bool read_ward_lobe(struct glint_describer *d,
 {
     if (norm->length && !read_ward_norm(d, norm, m))
         return false;
-    limit_alpha_ratio(d, m);
+    limit_ward_alpha_ratio(d, m);
     return true;
 }
 

@@ -123,7 +123,8 @@ static void convert_triangle_corners(const struct mesher *m,
     }
 }
 
-static void convert_triangle(struct mesher *m,
+static void
+convert_triangle_to_vertices(struct mesher *m,
                              const struct glint_described_triangle *t,
                              struct glint_scene_bake_report *report)
 {
@@ -170,7 +171,7 @@ static bool convert_all_triangles(struct mesher *m,
     if (!m->corner || !m->triangle || !m->slot)
         return false;
     for (uint32_t i = 0; i < n; i++)
-        convert_triangle(m, &t[i], report);
+        convert_triangle_to_vertices(m, &t[i], report);
     return true;
 }
 
@@ -211,10 +212,10 @@ static void compute_mesh_bounds(const struct mesher *m,
 
 /* Sets FROM and TO to the first and last cell along each axis that triangle T
  * touches, with GLINT_SCENE_MARGIN around T. */
-static void find_touched_cells(const struct mesher *m,
-                               const struct glint_scene_mesh *mesh,
-                               const struct glint_scene_triangle *t,
-                               int32_t from[3], int32_t to[3])
+static void find_cells_touched_by_triangle(const struct mesher *m,
+                                           const struct glint_scene_mesh *mesh,
+                                           const struct glint_scene_triangle *t,
+                                           int32_t from[3], int32_t to[3])
 {
     for (int i = 0; i < 3; i++) {
         const int32_t last = (int32_t)mesh->cells[i] - 1;
@@ -262,7 +263,7 @@ static uint64_t count_cell_list_entries(const struct mesher *m,
         int32_t from[3], to[3];
         uint64_t n = 1;
 
-        find_touched_cells(m, mesh, &m->triangle[k], from, to);
+        find_cells_touched_by_triangle(m, mesh, &m->triangle[k], from, to);
         for (int i = 0; i < 3; i++)
             n *= (uint64_t)(to[i] - from[i] + 1);
         sum += n;
@@ -302,7 +303,7 @@ static void list_cell_triangles(const struct mesher *m,
     for (uint32_t i = 0; i < m->n_triangles; i++) {
         int32_t from[3], to[3];
 
-        find_touched_cells(m, mesh, &m->triangle[i], from, to);
+        find_cells_touched_by_triangle(m, mesh, &m->triangle[i], from, to);
         for (int32_t z = from[2]; z <= to[2]; z++)
             for (int32_t y = from[1]; y <= to[1]; y++)
                 for (int32_t x = from[0]; x <= to[0]; x++) {

@@ -66,7 +66,7 @@ glint_steps_choose_size(const struct glint_description *scene, double *reach)
                           scene->motion.foods * fmax(1, scene->motion.shells));
     if (*reach < GLINT_DESCRIPTION_LEAST)
         *reach = GLINT_DESCRIPTION_LEAST;
-    frexp(*reach, &exponent); /* now reach < 2^exponent */
+    frexp(*reach, &exponent); /* sets exponent such that reach < 2^exponent */
     steps.unit_log2 = 28 - share_log2 - exponent;
     steps.scale = ldexp(1, steps.unit_log2);
     return steps;

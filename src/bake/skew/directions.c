@@ -156,12 +156,16 @@ static void evaluate_zone_box(const struct glint_zone *zone,
         [GLINT_S] = map_to_unit_range(direction[0], zone->lo, zone->hi),
         [GLINT_W] = glint_zone_compute_node(waves[k], GLINT_VISIBLE_WAVES),
         [GLINT_P] = map_to_unit_range(direction[1], zone->y_lo, zone->y_hi)};
-    const double half_x = glint_zone_evaluate_side(zone, zone->half_x, x);
-    const double half_y = glint_zone_evaluate_side(zone, zone->half_y, x);
+    const double half_x =
+        glint_zone_evaluate_box_polynomial(zone, zone->half_x, x);
+    const double half_y =
+        glint_zone_evaluate_box_polynomial(zone, zone->half_y, x);
 
-    box->x0_mm = glint_zone_evaluate_side(zone, zone->middle, x) - half_x;
+    box->x0_mm =
+        glint_zone_evaluate_box_polynomial(zone, zone->middle, x) - half_x;
     box->x1_mm = box->x0_mm + 2 * half_x;
-    box->y0_mm = glint_zone_evaluate_side(zone, zone->middle_y, x) - half_y;
+    box->y0_mm =
+        glint_zone_evaluate_box_polynomial(zone, zone->middle_y, x) - half_y;
     box->y1_mm = box->y0_mm + 2 * half_y;
 }
 
@@ -243,8 +247,8 @@ struct sides {
 
 /* Fits the box polynomial SIDE, of DEGREE in s and p plus a term in w, to the
  * values within TOLERANCE, or as well as possible. */
-static void fit_box_side(const struct sides *sides, int degree,
-                         double tolerance, double side[GLINT_BOX_TERMS])
+static void fit_box_polynomial(const struct sides *sides, int degree,
+                               double tolerance, double side[GLINT_BOX_TERMS])
 {
     static const double zero[MOST];
     static const int place[3][3] = {{0, 3, 5}, {1, 4, 0}, {2, 0, 0}};
@@ -284,7 +288,8 @@ static double compute_size_deficit(const struct glint_zone *zone,
         const double x[GLINT_VARIABLES] = {
             0, 0, (k % 9 - 4) / 4.0, k / 81 ? 1 : -1, (k / 9 % 9 - 4) / 4.0};
 
-        lowest = fmin(lowest, glint_zone_evaluate_side(zone, half, x));
+        lowest =
+            fmin(lowest, glint_zone_evaluate_box_polynomial(zone, half, x));
     }
     return -lowest;
 }
@@ -303,10 +308,11 @@ static double compute_box_middle(const struct glint_pupil *box, bool y)
 
 /* Sets the polynomials MIDDLE and HALF of ZONE's box along x (or along y if Y)
  * such that the box contains all boxes in SIGHTS. */
-static void fit_box_sides(const struct glint_sights *sights, int degree, bool y,
-                          const struct glint_zone *zone,
-                          double middle[GLINT_BOX_TERMS],
-                          double half[GLINT_BOX_TERMS])
+static void fit_middle_and_half_size(const struct glint_sights *sights,
+                                     int degree, bool y,
+                                     const struct glint_zone *zone,
+                                     double middle[GLINT_BOX_TERMS],
+                                     double half[GLINT_BOX_TERMS])
 {
     struct sides of = {.n = sights->n};
     double narrowest = HUGE_VAL, more = 0;
@@ -318,17 +324,19 @@ static void fit_box_sides(const struct glint_sights *sights, int degree, bool y,
         narrowest = fmin(narrowest, compute_half_size(&sights->at[i].box, y));
         of.value[i] = compute_box_middle(&sights->at[i].box, y);
     }
-    fit_box_side(&of, degree, 0.02 * narrowest, middle);
+    fit_box_polynomial(&of, degree, 0.02 * narrowest, middle);
     for (int i = 0; i < of.n; i++)
         of.value[i] = compute_half_size(&sights->at[i].box, y);
-    fit_box_side(&of, degree, 0.02 * narrowest, half);
+    fit_box_polynomial(&of, degree, 0.02 * narrowest, half);
     for (int i = 0; i < of.n; i++) {
         const double *x = sights->at[i].x;
-        const double off = fabs(compute_box_middle(&sights->at[i].box, y) -
-                                glint_zone_evaluate_side(zone, middle, x));
+        const double off =
+            fabs(compute_box_middle(&sights->at[i].box, y) -
+                 glint_zone_evaluate_box_polynomial(zone, middle, x));
 
-        more = fmax(more, of.value[i] + off -
-                              glint_zone_evaluate_side(zone, half, x));
+        more =
+            fmax(more, of.value[i] + off -
+                           glint_zone_evaluate_box_polynomial(zone, half, x));
     }
     half[0] += more;
     half[0] += fmax(0.01 * half[0], 1.1 * compute_size_deficit(zone, half));
@@ -344,8 +352,8 @@ static double compute_box_fill(const struct glint_sights *sights,
 
         sum += compute_half_size(&v->box, false) *
                compute_half_size(&v->box, true) /
-               (glint_zone_evaluate_side(zone, zone->half_x, v->x) *
-                glint_zone_evaluate_side(zone, zone->half_y, v->x));
+               (glint_zone_evaluate_box_polynomial(zone, zone->half_x, v->x) *
+                glint_zone_evaluate_box_polynomial(zone, zone->half_y, v->x));
     }
     return sum / sights->n;
 }
@@ -365,8 +373,9 @@ void glint_sights_fit_zone(const struct glint_sights *sights,
                                .y_lo = patch->y0,
                                .y_hi = patch->y1};
 
-        fit_box_sides(sights, degree, false, &z, z.middle, z.half_x);
-        fit_box_sides(sights, degree, true, &z, z.middle_y, z.half_y);
+        fit_middle_and_half_size(sights, degree, false, &z, z.middle, z.half_x);
+        fit_middle_and_half_size(sights, degree, true, &z, z.middle_y,
+                                 z.half_y);
         z.fill = compute_box_fill(sights, &z);
         if (z.fill > fuller * zone->fill)
             *zone = z;

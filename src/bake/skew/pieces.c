@@ -7,8 +7,8 @@
 
 /* Substitutes VARIABLE (s, p or w) in the box polynomial SIDE by AT + x / 2, so
  * that x = -1 .. 1 covers half of its range. */
-static void substitute_variable_in_side(double side[GLINT_BOX_TERMS],
-                                        int variable, double at)
+static void substitute_variable_in_polynomial(double side[GLINT_BOX_TERMS],
+                                              int variable, double at)
 {
     double *const c = side;
 
@@ -37,8 +37,9 @@ static void substitute_variable_in_side(double side[GLINT_BOX_TERMS],
 /* Cuts a box along one axis to the part LOW .. HIGH of its width or height,
  * where -1 .. 1 is the whole. MIDDLE, HALF: polynomials of the box's middle and
  * half size along that axis. */
-static void cut_box_side(double middle[GLINT_BOX_TERMS],
-                         double half[GLINT_BOX_TERMS], double low, double high)
+static void cut_box_along_axis(double middle[GLINT_BOX_TERMS],
+                               double half[GLINT_BOX_TERMS], double low,
+                               double high)
 {
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {
         middle[k] += 0.5 * (low + high) * half[k];
@@ -60,14 +61,16 @@ static void reduce_piece_to_half(struct glint_skew_piece *p, int variable,
     if (variable == GLINT_U || variable == GLINT_V) {
         p->parts++;
         if (variable == GLINT_U)
-            cut_box_side(z->middle, z->half_x, fmin(0, side), fmax(0, side));
+            cut_box_along_axis(z->middle, z->half_x, fmin(0, side),
+                               fmax(0, side));
         else
-            cut_box_side(z->middle_y, z->half_y, fmin(0, side), fmax(0, side));
+            cut_box_along_axis(z->middle_y, z->half_y, fmin(0, side),
+                               fmax(0, side));
         return;
     }
     *ends[variable][side < 0] = 0.5 * (*ends[variable][0] + *ends[variable][1]);
     for (int k = 0; k < GLINT_LENS_SIDES; k++)
-        substitute_variable_in_side(all[k], variable, 0.5 * side);
+        substitute_variable_in_polynomial(all[k], variable, 0.5 * side);
 }
 
 void glint_piece_halve(const struct glint_skew_piece *p, int variable,
@@ -114,10 +117,12 @@ void glint_piece_crop_box(struct glint_skew_piece *p,
     }
     if (low[0] > high[0])
         return;
-    cut_box_side(p->zone.middle, p->zone.half_x, fmax(-1, low[0] - margin[0]),
-                 fmin(1, high[0] + margin[0]));
-    cut_box_side(p->zone.middle_y, p->zone.half_y, fmax(-1, low[1] - margin[1]),
-                 fmin(1, high[1] + margin[1]));
+    cut_box_along_axis(p->zone.middle, p->zone.half_x,
+                       fmax(-1, low[0] - margin[0]),
+                       fmin(1, high[0] + margin[0]));
+    cut_box_along_axis(p->zone.middle_y, p->zone.half_y,
+                       fmax(-1, low[1] - margin[1]),
+                       fmin(1, high[1] + margin[1]));
 }
 
 /* ------------------------------------------------------------------- choice */

@@ -297,7 +297,8 @@ static void set_light_to_form_transform(struct glint_form *f,
 
 /* Sets the members that glint_beam_move_to_form() needs: level, along, round,
  * n_terms and steepest2. */
-static void set_beam_members(struct glint_form *f, const struct glint_shape *s)
+static void set_constants_for_beams(struct glint_form *f,
+                                    const struct glint_shape *s)
 {
     const double *const along = f->turn[f->bend == GLINT_BEND_Y];
 
@@ -333,7 +334,7 @@ void glint_form_init(struct glint_form *form, const struct glint_surface *s,
     form->end2 = compute_profile_end(form);
     evaluate_table_profile(form, form->end2, form->end_at);
     set_light_to_form_transform(form, shape, phi_deg);
-    set_beam_members(form, shape);
+    set_constants_for_beams(form, shape);
 }
 
 bool glint_surface_point(const struct glint_surface *s, double phi_deg,

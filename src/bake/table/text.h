@@ -43,7 +43,7 @@ struct glint_word {
 struct glint_text {
     const char *file_name;
     struct glint_error *error;
-    const char *next, *end; /* unread lines of the text */
+    const char *next, *end; /* start and end of the unread lines */
     /* current line; at .. stop: its unread part */
     const char *line, *at, *stop;
     int line_number;

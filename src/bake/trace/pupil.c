@@ -35,7 +35,7 @@ struct search {
     /* the path, for tracing positions without energies */
     struct glint_path places;
     const struct glint_path *path;
-    int across, down; /* numbers of cells in this round */
+    int across, down; /* numbers of cells across and down in this round */
     struct glint_ray ray[DOWN + 1][ACROSS + 1];
     enum glint_ray_status status[DOWN + 1][ACROSS + 1];
     /* region that the grid of this round covers */
@@ -207,8 +207,8 @@ static double compute_front_rim_depth(const struct glint_path *path,
 
 /* Returns the max displacement of the front element's rim by its decentre and
  * tilt, mm. */
-static double compute_front_displacement(const struct glint_path *path,
-                                         const struct glint_event *front)
+static double compute_max_rim_displacement(const struct glint_path *path,
+                                           const struct glint_event *front)
 {
     const struct glint_form *f = &path->form[front->surface];
 
@@ -217,11 +217,12 @@ static double compute_front_displacement(const struct glint_path *path,
                : 0;
 }
 
-static struct glint_pupil compute_front_box(const struct glint_path *path,
-                                            const struct glint_event *front,
-                                            const double direction[3])
+static struct glint_pupil
+compute_front_element_box(const struct glint_path *path,
+                          const struct glint_event *front,
+                          const double direction[3])
 {
-    const double off = compute_front_displacement(path, front),
+    const double off = compute_max_rim_displacement(path, front),
                  h = front->semi_mm + off;
     const double deep = fabs(compute_front_rim_depth(path, front)) + off;
     const double x = h + deep * fabs(direction[0] / direction[2]);
@@ -377,7 +378,7 @@ static bool begin_pupil_search(struct search *s, const struct glint_path *path,
     s->path = path;
     s->places = *path;
     s->places.places_only = true;
-    *whole = compute_front_box(path, front, direction);
+    *whole = compute_front_element_box(path, front, direction);
     return true;
 }
 

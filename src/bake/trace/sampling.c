@@ -77,8 +77,8 @@ static void trace_probe_row(struct probe *row, const struct glint_path *path,
  * gaps between rays. If several barrels block a ray that passes the stop, which
  * occurs beyond a fold, the barrel with the largest relative radius gets the
  * weight. */
-static void weigh_single_blocking_barrel(const struct probe *p, int n,
-                                         int *weight)
+static void add_weight_to_blocking_barrel(const struct probe *p, int n,
+                                          int *weight)
 {
     const double margin = 1.1;
     double worst = p->traced ? p->stop_r2 : 0, second = 0;
@@ -111,9 +111,9 @@ static double compute_rim_crossing(double in, double out)
 /* Adds weight to the barrel whose rim is crossed first on the way from a
  * visible to a blocked ray, and a small weight to barrels crossed soon
  * after. */
-static void weigh_first_crossed_barrel(const struct probe *a,
-                                       const struct probe *b, int n,
-                                       int *weight)
+static void add_weight_to_first_crossed_barrel(const struct probe *a,
+                                               const struct probe *b, int n,
+                                               int *weight)
 {
     const struct probe *in = a, *out = b;
     double first;
@@ -247,19 +247,19 @@ struct rows {
     struct probe row[3][GLINT_MAX_SAMPLING + 1];
 };
 
-static void process_grid_ray(const struct rows *r, int i, int j, int n_events,
-                             int *weight, struct bend *bend)
+static void add_grid_ray_to_sums(const struct rows *r, int i, int j,
+                                 int n_events, int *weight, struct bend *bend)
 {
     const struct probe *here = &r->row[j % 3][i];
     const struct probe *above = &r->row[(j + 2) % 3][i];
 
-    weigh_single_blocking_barrel(here, n_events, weight);
+    add_weight_to_blocking_barrel(here, n_events, weight);
     if (i > 0) {
-        weigh_first_crossed_barrel(here - 1, here, n_events, weight);
+        add_weight_to_first_crossed_barrel(here - 1, here, n_events, weight);
         add_distance_in_stop(bend, here - 1, here);
     }
     if (j > 0) {
-        weigh_first_crossed_barrel(above, here, n_events, weight);
+        add_weight_to_first_crossed_barrel(above, here, n_events, weight);
         add_distance_in_stop(bend, above, here);
     }
     if (i > 1)
@@ -290,7 +290,7 @@ void glint_sampling_trace_grid(struct glint_sampling *sampling,
                             : p->y0_mm + (p->y1_mm - p->y0_mm) * j / side,
                         direction, stop_radius_mm, side);
         for (int i = 0; i <= side; i++)
-            process_grid_ray(&r, i, j, path->n_events, weight, &bend);
+            add_grid_ray_to_sums(&r, i, j, path->n_events, weight, &bend);
     }
     sampling->bend_mm = sampling->outline_mm = sampling->round_mm = 0;
     sampling->n_inside = bend.n;

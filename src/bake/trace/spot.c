@@ -84,8 +84,8 @@ static int count_reached_events(const struct line *line, int i, int n_events)
 
 /* Returns whether any ray between rays I and I + 1 may pass. An invalid ray
  * often lies next to a spot from which light fans out. */
-static bool can_ray_pass_between(const struct glint_openings *o,
-                                 const struct line *line, int i)
+static bool can_any_ray_pass_between(const struct glint_openings *o,
+                                     const struct line *line, int i)
 {
     const struct glint_ray *a = &line->ray[i], *b = &line->ray[i + 1];
     const int all = o->path->n_events;
@@ -142,7 +142,7 @@ static bool refine_passing_range(const struct glint_openings *o, double x_mm[2])
         if (find_passing_range(o, &line, x_mm))
             return true;
         for (int i = 0; i < LINE; i++)
-            if (can_ray_pass_between(o, &line, i)) {
+            if (can_any_ray_pass_between(o, &line, i)) {
                 first = i < first ? i : first;
                 last = i;
             }
@@ -156,13 +156,13 @@ static bool refine_passing_range(const struct glint_openings *o, double x_mm[2])
 
 /* Searches each run of cells of LINE in which rays may pass. Sets X_MM to the
  * widest range of rays that pass, if it is wider than X_MM. */
-static void refine_passing_runs(const struct glint_openings *o,
-                                const struct line *line, double x_mm[2])
+static void refine_runs_of_passing_rays(const struct glint_openings *o,
+                                        const struct line *line, double x_mm[2])
 {
     int first = -1;
 
     for (int i = 0; i <= LINE; i++) {
-        const bool may = i < LINE && can_ray_pass_between(o, line, i);
+        const bool may = i < LINE && can_any_ray_pass_between(o, line, i);
 
         if (may && first < 0)
             first = i;
@@ -191,7 +191,7 @@ bool glint_spot_find_passing_range(const struct glint_openings *o,
     for (int k = 0; k < LINES; k++) {
         trace_line_segment(o, front->x0_mm + k * length,
                            front->x0_mm + (k + 1) * length, &line);
-        refine_passing_runs(o, &line, x_mm);
+        refine_runs_of_passing_rays(o, &line, x_mm);
     }
     return x_mm[1] > x_mm[0];
 }

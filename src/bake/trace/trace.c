@@ -281,8 +281,8 @@ static WHOLLY_INLINE bool are_all_rays_invalid(const struct beam *b, int n)
     return least > GLINT_RAY_OK;
 }
 
-static WHOLLY_INLINE void start_beam_ray(struct beam *b, int k,
-                                         const struct glint_launch *from)
+static WHOLLY_INLINE void init_beam_ray(struct beam *b, int k,
+                                        const struct glint_launch *from)
 {
     b->x[k] = from->x_mm;
     b->y[k] = from->y_mm;
@@ -347,7 +347,7 @@ static void apply_anamorphic_matrix(struct beam *b, int n,
     }
 }
 
-static inline enum glint_ray_status read_traced_ray(const struct beam *b, int k,
+static inline enum glint_ray_status copy_traced_ray(const struct beam *b, int k,
                                                     struct glint_ray *ray)
 {
     if (b->status[k] > GLINT_RAY_OK)
@@ -370,7 +370,7 @@ trace_ray_lanes(const struct glint_path *path, int lanes, int n, bool energies,
     struct beam b;
 
     for (int k = 0; k < lanes; k++)
-        start_beam_ray(&b, k, &from[k < n ? k : 0]);
+        init_beam_ray(&b, k, &from[k < n ? k : 0]);
     for (int i = 0; i < path->n_events && !are_all_rays_invalid(&b, lanes); i++)
         trace_rays_through_event(&b, lanes, n, path, &path->event[i], energies,
                                  hits ? hits + i : NULL);
@@ -378,7 +378,7 @@ trace_ray_lanes(const struct glint_path *path, int lanes, int n, bool energies,
     if (!path->round)
         apply_anamorphic_matrix(&b, n, path->widen);
     for (int k = 0; k < n; k++)
-        status[k] = read_traced_ray(&b, k, &ray[k]);
+        status[k] = copy_traced_ray(&b, k, &ray[k]);
 }
 
 WIDE_VECTORS

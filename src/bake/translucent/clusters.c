@@ -104,8 +104,8 @@ static void fit_leaving_factors(const struct clusters *p)
         }
 }
 
-/* Sets SCALE[N] to its least-squares solution. SCALE: factors for entering
- * light if IN_SCALES, else kernel entries. */
+/* Solves least squares for SCALE[N]: factors for entering light if IN_SCALES,
+ * else kernel entries. */
 static void fit_least_squares_scales(const struct clusters *p, bool in_scales,
                                      double *scale, size_t n)
 {

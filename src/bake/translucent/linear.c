@@ -320,7 +320,7 @@ static int orthogonalise_work_columns(struct work *w, int i, int j)
 /* Multiplies the vector of N numbers at X, STEP apart, by L', where L L' is the
  * correlation matrix of light. Correlation decreases by the same factor per
  * texel of distance. */
-static void weigh_by_correlation(double *x, int n, int step)
+static void apply_correlation_weights(double *x, int n, int step)
 {
     const double own = sqrt(1 - correlation * correlation);
     double sum = 0;
@@ -331,8 +331,8 @@ static void weigh_by_correlation(double *x, int n, int step)
     }
 }
 
-/* Inverts weigh_by_correlation() for STEP = 1. */
-static void unweigh_by_correlation(double *x, int n)
+/* Inverts apply_correlation_weights() for STEP = 1. */
+static void invert_correlation_weights(double *x, int n)
 {
     const double own = sqrt(1 - correlation * correlation);
 
@@ -351,10 +351,10 @@ static void decompose_kernel(struct work *w, const double *kernel)
         w->v[i][i] = 1;
         for (int k = 0; k < w->n; k++)
             w->a[i][k] = kernel[k * w->n + i];
-        weigh_by_correlation(w->a[i], w->n, 1);
+        apply_correlation_weights(w->a[i], w->n, 1);
     }
     for (int k = 0; k < w->n; k++)
-        weigh_by_correlation(&w->a[0][k], w->n, MOST);
+        apply_correlation_weights(&w->a[0][k], w->n, MOST);
     for (int sweep = 0; any && sweep < FEW_SWEEPS; sweep++) {
         any = 0;
         for (int i = 0; i < w->n; i++)
@@ -390,8 +390,8 @@ void glint_separate_kernel(const double *kernel, int n, int rank,
             to->column[r * n + k] = w.a[best][k];
             to->row[r * n + k] = w.v[best][k];
         }
-        unweigh_by_correlation(to->column + r * n, n);
-        unweigh_by_correlation(to->row + r * n, n);
+        invert_correlation_weights(to->column + r * n, n);
+        invert_correlation_weights(to->row + r * n, n);
         to->lost -= square[best];
         square[best] = 0;
     }

@@ -102,7 +102,7 @@ static void report_part_progress(void *ctx, double done)
                               part->from + done * part->length);
 }
 
-static bool is_part_stopped(void *ctx)
+static bool is_stop_requested(void *ctx)
 {
     const struct glint_watch_part *part = ctx;
 
@@ -112,7 +112,7 @@ static bool is_part_stopped(void *ctx)
 
 struct glint_watch glint_watch_make_for_part(struct glint_watch_part *part)
 {
-    return (struct glint_watch){report_part_progress, is_part_stopped, part};
+    return (struct glint_watch){report_part_progress, is_stop_requested, part};
 }
 
 /* Sets the row of texel X from its tile of PICTURE. Returns the number of

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Functions shared by all code for rows of a scattering matrix: indices of
- * entries, progress.
+ * Functions for rows of a scattering matrix, shared by slab.c and all fits:
+ * indices of entries, and progress.
  */
 #ifndef GLINT_BAKE_TRANSLUCENT_ROWS_H
 #define GLINT_BAKE_TRANSLUCENT_ROWS_H

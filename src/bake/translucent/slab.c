@@ -385,7 +385,8 @@ struct compute {
     /* [mixes][kernel * kernel]: closed form minus modes; NULL: not computed
      * yet */
     double *closed[LEVELS + 1];
-    double beyond; /* z_b of the slab, mm */
+    /* z_b: distance outside the slab's faces at which the fluence is 0, mm */
+    double beyond;
 };
 
 void glint_stone_defaults(struct glint_stone *stone)

@@ -440,15 +440,16 @@ TEST(cut_zone_keeps_its_box)
                      w = rng_signed(&seed);
         const double whole_w = 0.125 + 0.625 * w, whole_u = 0.125 + 0.375 * u;
 
-        assert_near(glint_zone_evaluate_round_side(cut.middle, s, w) +
-                        u * glint_zone_evaluate_round_side(cut.half_x, s, w),
-                    glint_zone_evaluate_round_side(zone.middle, s, whole_w) +
-                        whole_u * glint_zone_evaluate_round_side(zone.half_x, s,
-                                                                 whole_w),
-                    1e-12);
-        assert_near(glint_zone_evaluate_round_side(cut.half_y, s, w),
-                    0.75 *
-                        glint_zone_evaluate_round_side(zone.half_y, s, whole_w),
+        assert_near(
+            glint_zone_evaluate_round_box_polynomial(cut.middle, s, w) +
+                u * glint_zone_evaluate_round_box_polynomial(cut.half_x, s, w),
+            glint_zone_evaluate_round_box_polynomial(zone.middle, s, whole_w) +
+                whole_u * glint_zone_evaluate_round_box_polynomial(zone.half_x,
+                                                                   s, whole_w),
+            1e-12);
+        assert_near(glint_zone_evaluate_round_box_polynomial(cut.half_y, s, w),
+                    0.75 * glint_zone_evaluate_round_box_polynomial(zone.half_y,
+                                                                    s, whole_w),
                     1e-12);
     }
 }
@@ -492,9 +493,10 @@ TEST(cropping_removes_only_invisible_regions)
         glint_visible_init_path(&visible, w, &path);
         if (glint_trace(
                 &path,
-                glint_zone_evaluate_round_side(zone.middle, s, w) +
-                    u * glint_zone_evaluate_round_side(zone.half_x, s, w),
-                v * glint_zone_evaluate_round_side(zone.half_y, s, w),
+                glint_zone_evaluate_round_box_polynomial(zone.middle, s, w) +
+                    u * glint_zone_evaluate_round_box_polynomial(zone.half_x, s,
+                                                                 w),
+                v * glint_zone_evaluate_round_box_polynomial(zone.half_y, s, w),
                 direction, &ray, NULL) ||
             !glint_visible_is_ray_visible(&visible, &ray))
             continue;

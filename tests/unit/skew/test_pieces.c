@@ -27,10 +27,10 @@ static struct entry compute_pupil_entry(const struct glint_skew_piece *p,
     const struct glint_zone *z = &p->zone;
 
     return (struct entry){
-        glint_zone_evaluate_side(z, z->middle, x) +
-            x[GLINT_U] * glint_zone_evaluate_side(z, z->half_x, x),
-        glint_zone_evaluate_side(z, z->middle_y, x) +
-            x[GLINT_V] * glint_zone_evaluate_side(z, z->half_y, x),
+        glint_zone_evaluate_box_polynomial(z, z->middle, x) +
+            x[GLINT_U] * glint_zone_evaluate_box_polynomial(z, z->half_x, x),
+        glint_zone_evaluate_box_polynomial(z, z->middle_y, x) +
+            x[GLINT_V] * glint_zone_evaluate_box_polynomial(z, z->half_y, x),
         {interpolate_linearly(z->lo, z->hi, x[GLINT_S]),
          interpolate_linearly(z->y_lo, z->y_hi, x[GLINT_P])},
         interpolate_linearly(p->w0, p->w1, x[GLINT_W])};
