@@ -15,7 +15,7 @@ struct random {
 };
 
 /* Returns a uniform random number, -1 .. 1. [Steele14] */
-static double draw_random(struct random *r)
+static double draw_random_number(struct random *r)
 {
     uint64_t z = r->state += UINT64_C(0x9e3779b97f4a7c15);
 
@@ -50,7 +50,7 @@ static bool is_output_in_system(const struct meter *b, int kind)
     return (b->transfer.outputs >> kind & 1) != 0;
 }
 
-static void record_error(struct meter *b, int kind, double error)
+static void record_output_error(struct meter *b, int kind, double error)
 {
     b->error[kind][b->n_of[kind]++] = fabs(error);
 }
@@ -70,9 +70,9 @@ static void record_barrel_errors(struct meter *b, const struct glint_outputs *o,
         r = hypot(hits[f->event][0], hits[f->event][1]) /
             b->path.event[f->event].semi_mm;
         if (fabs(r - 1) < 0.2)
-            record_error(b, (int)f->kind,
-                         get_output_value(b, o, (int)f->kind) -
-                             0.5 * (1 + r * r));
+            record_output_error(b, (int)f->kind,
+                                get_output_value(b, o, (int)f->kind) -
+                                    0.5 * (1 + r * r));
     }
 }
 
@@ -83,25 +83,25 @@ static void record_ray_errors(struct meter *b, const struct glint_ray *ray,
     const double px = 1920 / s->lens->film_width_mm;
     const double stop = s->optics.stop_radius_mm;
 
-    record_error(
+    record_output_error(
         b, GLINT_OUT_SENSOR_X,
         px * (get_output_value(b, o, GLINT_OUT_SENSOR_X) - ray->sensor_x_mm));
-    record_error(
+    record_output_error(
         b, GLINT_OUT_SENSOR_Y,
         px * (get_output_value(b, o, GLINT_OUT_SENSOR_Y) - ray->sensor_y_mm));
-    record_error(b, GLINT_OUT_STOP_X,
-                 get_output_value(b, o, GLINT_OUT_STOP_X) -
-                     ray->stop_x_mm / stop);
-    record_error(b, GLINT_OUT_STOP_Y,
-                 get_output_value(b, o, GLINT_OUT_STOP_Y) -
-                     ray->stop_y_mm / stop);
-    record_error(b, GLINT_OUT_ENERGY,
-                 get_output_value(b, o, GLINT_OUT_ENERGY) - ray->energy);
+    record_output_error(b, GLINT_OUT_STOP_X,
+                        get_output_value(b, o, GLINT_OUT_STOP_X) -
+                            ray->stop_x_mm / stop);
+    record_output_error(b, GLINT_OUT_STOP_Y,
+                        get_output_value(b, o, GLINT_OUT_STOP_Y) -
+                            ray->stop_y_mm / stop);
+    record_output_error(b, GLINT_OUT_ENERGY,
+                        get_output_value(b, o, GLINT_OUT_ENERGY) - ray->energy);
     b->energy[b->n++] = ray->energy;
     if (is_output_in_system(b, GLINT_OUT_RADIUS))
-        record_error(b, GLINT_OUT_RADIUS,
-                     get_output_value(b, o, GLINT_OUT_RADIUS) -
-                         ray->rel_radius);
+        record_output_error(b, GLINT_OUT_RADIUS,
+                            get_output_value(b, o, GLINT_OUT_RADIUS) -
+                                ray->rel_radius);
     record_barrel_errors(b, o, hits);
 }
 
@@ -211,7 +211,8 @@ static bool choose_random_bundle(struct meter *b, const struct glint_lens *lens,
                                  struct random *r)
 {
     const struct glint_fitted_system *f = b->fitted;
-    const double part = 0.5 + 0.5 * draw_random(r), w = draw_random(r);
+    const double part = 0.5 + 0.5 * draw_random_number(r),
+                 w = draw_random_number(r);
     const double wave = 0.5 * ((double)s->wave_lo_q24 + s->wave_hi_q24) +
                         0.5 * w * ((double)s->wave_hi_q24 - s->wave_lo_q24);
     const int32_t sine_q30 =
@@ -220,9 +221,9 @@ static bool choose_random_bundle(struct meter *b, const struct glint_lens *lens,
     const int32_t wave_q24 = (int32_t)lrint(wave);
 
     b->direction[0] = sine_q30 * 0x1p-30;
-    b->direction[1] =
-        f->skew ? f->y_lo + (0.5 + 0.5 * draw_random(r)) * (f->y_hi - f->y_lo)
-                : 0;
+    b->direction[1] = f->skew ? f->y_lo + (0.5 + 0.5 * draw_random_number(r)) *
+                                              (f->y_hi - f->y_lo)
+                              : 0;
     /* A bundle on the border of system S may belong to the next system, and a
      * corner of the box of directions may not be a valid direction. */
     if (hypot(b->direction[0], b->direction[1]) >= 1 ||
@@ -254,7 +255,8 @@ void glint_measure_system_errors(const struct glint_visible *visible,
         if (!choose_random_bundle(&b, lens, &lens->system[system], &random))
             continue;
         for (int i = 0; i < PER_BUNDLE && b.n < RAYS; i++) {
-            const double u = draw_random(&random), v = draw_random(&random);
+            const double u = draw_random_number(&random),
+                         v = draw_random_number(&random);
 
             measure_ray_errors(
                 &b, u, fitted->skew ? v : rim + (1 - rim) * (0.5 + 0.5 * v));

@@ -117,7 +117,7 @@ static void set_box_moves(struct glint_zoom_mix *blend, const int32_t box[3],
 
 /* Returns whether each component of M is at most NEAR_Q24, 1/2 of the box's
  * half width or half height. */
-static int is_move_small(const struct glint_blend_move *m)
+static int is_box_move_small(const struct glint_blend_move *m)
 {
     return q_magnitude(m->along_q24) <= NEAR_Q24 &&
            q_magnitude(m->wider_q24) <= NEAR_Q24 &&
@@ -167,8 +167,8 @@ int glint_blend_mix_box(struct glint_zoom_mix *blend, const int32_t box[3],
                                     t->box_exponent, e, blend->part_q30);
     t->box_exponent = e;
     return blend->part_q30 >= 0 ||
-           (!blend->far && is_move_small(&blend->move[1]) && t->box[1] > 0 &&
-            t->box[2] > 0);
+           (!blend->far && is_box_move_small(&blend->move[1]) &&
+            t->box[1] > 0 && t->box[2] > 0);
 }
 
 /* Returns the first-order change of the coefficient of u^A v^B in ROW when
@@ -341,7 +341,7 @@ static int compute_move_preserving_stop(const struct glint_blend_stop *of,
     m->higher_q24 = compute_signed_box_move_q24(mixed->up, mixed->y_exponent,
                                                 of->up, of->y_exponent, of->up,
                                                 of->y_exponent, &far);
-    return !far && is_move_small(m);
+    return !far && is_box_move_small(m);
 }
 
 /* Returns the max value of the polynomial of BARREL at the rim of the stop or

@@ -228,10 +228,11 @@ static int32_t compute_row_v_q30(const struct glint_transfer *t, int n_cells,
 /* Sets ROW to row J of the grid and MIRRORED to its mirror image, row N_CELLS -
  * J. Either may be NULL; MIRRORED must be NULL if rows have no mirror
  * images. */
-static void compute_row_pair(struct glint_transfer *t,
-                             const struct glint_place *place, int n_cells,
-                             int j, struct glint_vertex *row,
-                             struct glint_vertex *mirrored)
+static void compute_mirrored_row_pair(struct glint_transfer *t,
+                                      const struct glint_place *place,
+                                      int n_cells, int j,
+                                      struct glint_vertex *row,
+                                      struct glint_vertex *mirrored)
 {
     const struct rotations rotations = compute_vertex_rotations(t, place);
     const int32_t v_q30 = compute_row_v_q30(t, n_cells, j);
@@ -270,9 +271,10 @@ void glint_transfer_row(struct glint_transfer *transfer,
     if (is_row_without_rays(transfer, n_cells, j))
         invalidate_row(row, n_cells);
     else if (transfer->whole || 2 * j <= n_cells)
-        compute_row_pair(transfer, place, n_cells, j, row, NULL);
+        compute_mirrored_row_pair(transfer, place, n_cells, j, row, NULL);
     else
-        compute_row_pair(transfer, place, n_cells, n_cells - j, NULL, row);
+        compute_mirrored_row_pair(transfer, place, n_cells, n_cells - j, NULL,
+                                  row);
 }
 
 void glint_transfer_rows(struct glint_transfer *transfer,
@@ -284,10 +286,11 @@ void glint_transfer_rows(struct glint_transfer *transfer,
         invalidate_row(row, n_cells);
         invalidate_row(mirrored, n_cells);
     } else if (transfer->whole) {
-        compute_row_pair(transfer, place, n_cells, j, row, NULL);
-        compute_row_pair(transfer, place, n_cells, n_cells - j, mirrored, NULL);
+        compute_mirrored_row_pair(transfer, place, n_cells, j, row, NULL);
+        compute_mirrored_row_pair(transfer, place, n_cells, n_cells - j,
+                                  mirrored, NULL);
     } else {
-        compute_row_pair(transfer, place, n_cells, j, row, mirrored);
+        compute_mirrored_row_pair(transfer, place, n_cells, j, row, mirrored);
     }
 }
 
@@ -306,8 +309,9 @@ void glint_transfer_grid(struct glint_transfer *transfer,
         if (is_row_without_rays(transfer, n_cells, j))
             invalidate_row(row, n_cells);
         else if (alone)
-            compute_row_pair(transfer, place, n_cells, j, row, NULL);
+            compute_mirrored_row_pair(transfer, place, n_cells, j, row, NULL);
         else if (2 * j <= n_cells)
-            compute_row_pair(transfer, place, n_cells, j, row, mirrored);
+            compute_mirrored_row_pair(transfer, place, n_cells, j, row,
+                                      mirrored);
     }
 }

@@ -684,7 +684,7 @@ struct measured_fields {
 
 /* Moves the patches and fields of T to HAD if they were measured with the lens
  * and the wavelengths of CFG; else sets HAD empty. */
-static void take_measured_fields(struct traced *t,
+static void move_measured_fields(struct traced *t,
                                  const struct ray_field_config *cfg,
                                  struct measured_fields *had)
 {
@@ -833,7 +833,7 @@ static enum glint_status measure_frame_fields(struct glint_frame *f,
     struct measured_fields had;
 
     set_wavelength_sets(t, s, &cfg);
-    take_measured_fields(t, &cfg, &had);
+    move_measured_fields(t, &cfg, &had);
     free_traced_arrays(t);
     t->cfg = cfg;
     t->optics = s->optics;

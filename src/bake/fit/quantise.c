@@ -23,7 +23,7 @@ enum { LEAST_EXPONENT = -80 }; /* min binary exponent in a model */
 /* Returns the smallest exponent E such that N values, divided by 2^E and
  * rounded, have magnitudes that sum to less than GLINT_COEF_LIMIT. SUM: sum of
  * the magnitudes before division. */
-static int choose_exponent(double sum, int n)
+static int choose_coefficient_exponent(double sum, int n)
 {
     int exponent;
 
@@ -251,7 +251,8 @@ static int choose_output_exponent(const struct glint_fitted_system *s, int k)
 {
     const struct glint_fitted_output *o = &s->output[k];
 
-    return choose_exponent(sum_magnitudes(o->coef, o->n_terms), o->n_terms);
+    return choose_coefficient_exponent(sum_magnitudes(o->coef, o->n_terms),
+                                       o->n_terms);
 }
 
 /* Returns the number of bits by which values of the energy polynomial can be
@@ -329,7 +330,7 @@ glint_quantise_system(const struct glint_fitted_system *system,
         return GLINT_E_LENS;
     for (int k = 0; k < out->n_box; k += GLINT_BOX_TERMS)
         most = fmax(most, sum_magnitudes(system->box + k, GLINT_BOX_TERMS));
-    out->box_exponent = choose_exponent(most, GLINT_BOX_TERMS);
+    out->box_exponent = choose_coefficient_exponent(most, GLINT_BOX_TERMS);
     status = round_to_integers(system->box, out->n_box, out->box_exponent,
                                &out->box);
     for (int k = 0; k < system->n_outputs && status == GLINT_OK; k++)

@@ -198,8 +198,8 @@ static bool is_leaking_ray(const struct glint_zone_rays *r, int i,
 
 /* Increases the weights of leaking rays, so that the next fit blocks them.
  * Returns whether any ray leaks. */
-static bool raise_leak_weights(struct fit *f,
-                               const struct glint_fitted_system *system)
+static bool raise_leaking_ray_weights(struct fit *f,
+                                      const struct glint_fitted_system *system)
 {
     bool any = false;
 
@@ -216,8 +216,9 @@ static bool raise_leak_weights(struct fit *f,
 }
 
 /* Returns the number of leaking rays / number of visible rays. */
-static double compute_leak_ratio(const struct fit *f,
-                                 const struct glint_fitted_system *system)
+static double
+compute_leaking_ray_ratio(const struct fit *f,
+                          const struct glint_fitted_system *system)
 {
     const struct glint_zone_rays *r = &f->buffers->rays;
     int n = 0, n_seen = 0;
@@ -583,11 +584,11 @@ enum glint_status glint_zone_fit_outputs(const struct glint_zone_task *task,
     if (status != GLINT_OK || is_next_step_decided(&f))
         return status;
     if ((task->thorough || errors->worst <= 1) &&
-        raise_leak_weights(&f, system))
+        raise_leaking_ray_weights(&f, system))
         status = refit_without_leaking_rays(&f, system);
     if (status == GLINT_OK && task->visible->far)
-        errors->outlines =
-            fmax(errors->outlines, compute_leak_ratio(&f, system) / LEAK);
+        errors->outlines = fmax(errors->outlines,
+                                compute_leaking_ray_ratio(&f, system) / LEAK);
     if (status == GLINT_OK)
         check_rays_between_samples(&f, system);
     return status;

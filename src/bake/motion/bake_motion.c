@@ -407,9 +407,9 @@ static const char *check_frame_values(const struct glint_motion_baker *b,
 /* Adds the motion that the body itself measured in this frame to its odometry,
  * and updates the report's max distance between odometry and the fitted
  * POSE. */
-static void add_body_odometry(struct glint_motion_baker *b,
-                              const struct glint_motion_sight *s,
-                              const struct glint_rigid *pose)
+static void accumulate_body_odometry(struct glint_motion_baker *b,
+                                     const struct glint_motion_sight *s,
+                                     const struct glint_rigid *pose)
 {
     struct glint_rigid *r = &b->sensed;
     double moved[3], row[3][3] = {{0}}, axis[3] = {0, 0, 0}, off = 0;
@@ -519,7 +519,7 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
     b->n_foods = sight->n_foods;
     b->number = sight->number;
     if (b->n_frames)
-        add_body_odometry(b, sight, &located.pose);
+        accumulate_body_odometry(b, sight, &located.pose);
     store_located_frame(b, sight, is_new, &located);
     return GLINT_OK;
 }

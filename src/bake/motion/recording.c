@@ -88,7 +88,7 @@ static bool set_error_at_end(struct recording *r)
     return set_error_at_byte(r, "the file ends within the recording");
 }
 
-static bool append_piece_char(struct recording *r, char c)
+static bool append_char_to_piece(struct recording *r, char c)
 {
     if (r->bytes == MOST_BYTES)
         return set_error_at_byte(
@@ -113,7 +113,7 @@ static bool consume_next_byte(struct recording *r)
 {
     if (r->c < 0)
         return set_error_at_end(r);
-    if (r->is_kept && !append_piece_char(r, (char)r->c))
+    if (r->is_kept && !append_char_to_piece(r, (char)r->c))
         return false;
     if (r->c == '\n') {
         r->line++;
@@ -292,7 +292,8 @@ static bool read_vector_member(const struct recording *r, const json_t *object,
 /* ---------------------------------------------------------------------- body
  */
 
-static bool read_structure(const struct recording *r, const json_t *object)
+static bool read_structure_object(const struct recording *r,
+                                  const json_t *object)
 {
     struct glint_motion_body body = {.n_sensors = 0};
     const json_t *sensors = get_json_member(object, "sensors", "erzosejtek");
@@ -445,7 +446,7 @@ static bool read_member_value(struct recording *r, int key)
                            wrong.text);
     else if (key == FRAMES)
         r->status = bake_frame_object(r, value);
-    else if (read_structure(r, value))
+    else if (read_structure_object(r, value))
         r->status = GLINT_OK;
     json_decref(value);
     return r->status == GLINT_OK;

@@ -159,7 +159,7 @@ static double *get_chosen_direction(const struct search *s, int rank)
 }
 
 /* Returns the number of rays in the block that begins at ray I, of N rays. */
-static int count_block_rays(int n, int i)
+static int count_rays_in_block(int n, int i)
 {
     return n - i < BLOCK ? n - i : BLOCK;
 }
@@ -265,11 +265,12 @@ static void orthogonalise_column(const struct search *s, struct column *column)
 
     memcpy(q, column->at, (size_t)n * sizeof *q);
     for (int i = 0; i < n; i += BLOCK) {
-        subtract_chosen_directions(s, q, i, count_block_rays(n, i), column->on);
-        add_direction_products(s, q, i, count_block_rays(n, i), again);
+        subtract_chosen_directions(s, q, i, count_rays_in_block(n, i),
+                                   column->on);
+        add_direction_products(s, q, i, count_rays_in_block(n, i), again);
     }
     for (int i = 0; i < n; i += BLOCK)
-        subtract_chosen_directions(s, q, i, count_block_rays(n, i), again);
+        subtract_chosen_directions(s, q, i, count_rays_in_block(n, i), again);
     for (int k = 0; k < s->n_chosen; k++)
         column->on[k] += again[k];
     column->was2 = column->left2 = compute_dot_product(q, q, n);
@@ -285,7 +286,7 @@ static void compute_column_values(const struct search *s, struct column *column,
     const double *const from = parent ? parent->at : v->weight;
 
     for (int i = 0; i < v->n; i += BLOCK) {
-        const int n = count_block_rays(v->n, i);
+        const int n = count_rays_in_block(v->n, i);
 
         memcpy(at + i, from + i, (size_t)n * sizeof *at);
         for (int k = 0; k < GLINT_VARIABLES; k++)

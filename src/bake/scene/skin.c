@@ -131,8 +131,9 @@ static void assign_triangle_texels(struct painter *p, uint32_t triangle)
 
 /* If texel (X, Y) has no triangle, assigns it the triangle that one of its
  * neighbours has in BEFORE. */
-static void assign_neighbour_triangle(struct painter *p, const uint32_t *before,
-                                      int x, int y)
+static void assign_triangle_of_neighbour_texel(struct painter *p,
+                                               const uint32_t *before, int x,
+                                               int y)
 {
     uint32_t *to = &p->texel[(ptrdiff_t)y * p->side + x];
 
@@ -156,7 +157,7 @@ static bool dilate_texture_charts(struct painter *p, int rings)
         memcpy(before, p->texel, bytes);
         for (int y = 0; y < p->side; y++)
             for (int x = 0; x < p->side; x++)
-                assign_neighbour_triangle(p, before, x, y);
+                assign_triangle_of_neighbour_texel(p, before, x, y);
     }
     free(before);
     return before != NULL;

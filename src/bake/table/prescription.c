@@ -57,8 +57,8 @@ static int find_aspheric_term(const struct glint_word *word)
     return -1;
 }
 
-static bool reject_repeated_item(struct glint_text *text,
-                                 const struct glint_word *word)
+static bool reject_repeated_shape_item(struct glint_text *text,
+                                       const struct glint_word *word)
 {
     char quote[GLINT_QUOTE_BYTES];
 
@@ -69,8 +69,9 @@ static bool reject_repeated_item(struct glint_text *text,
 
 /* Reads the axis of a cylinder or toric, x or y, and, unless CYLINDER, the
  * radius across it. */
-static bool read_bend_axis(struct glint_text *text, struct glint_shape *shape,
-                           bool cylinder)
+static bool read_cylinder_or_toric_axis(struct glint_text *text,
+                                        struct glint_shape *shape,
+                                        bool cylinder)
 {
     const struct glint_word word = glint_text_next_word(text);
 
@@ -91,15 +92,15 @@ static bool read_shape_item(struct glint_text *text, struct glint_shape *shape,
 
     if (cylinder || glint_word_equals(word, "toric"))
         return shape->bend != GLINT_BEND_ROUND
-                   ? reject_repeated_item(text, word)
-                   : read_bend_axis(text, shape, cylinder);
+                   ? reject_repeated_shape_item(text, word)
+                   : read_cylinder_or_toric_axis(text, shape, cylinder);
     if (glint_word_equals(word, "conic"))
-        return shape->conic != 0.0 ? reject_repeated_item(text, word)
+        return shape->conic != 0.0 ? reject_repeated_shape_item(text, word)
                                    : glint_text_read_value(text, &conic_range,
                                                            &shape->conic, NULL);
     if (term >= 0)
         return shape->term[term] != 0.0
-                   ? reject_repeated_item(text, word)
+                   ? reject_repeated_shape_item(text, word)
                    : glint_text_read_value(text, &term_range,
                                            &shape->term[term], NULL);
     return glint_text_set_error(
@@ -143,7 +144,7 @@ static bool read_group_words(struct glint_text *text, struct glint_shape *shape)
                 text, word.place, "expected 'decentre' or 'tilt', not '%s'",
                 glint_word_quote(&word, quote));
         if (to[0] != 0.0 || to[1] != 0.0)
-            return reject_repeated_item(text, &word);
+            return reject_repeated_shape_item(text, &word);
         if (!glint_text_read_value(text, range, &to[0], NULL) ||
             !glint_text_read_value(text, range, &to[1], NULL))
             return false;
@@ -693,7 +694,7 @@ static bool read_focus_line(struct parser *p)
     return true;
 }
 
-static bool read_end_line(struct parser *p)
+static bool read_group_end_line(struct parser *p)
 {
     if (!p->in_group && !p->in_focus)
         return glint_text_set_error(&p->text, p->word[END],
@@ -752,7 +753,7 @@ static const struct {
     [SHAPE] = {"shape", read_shape_line, false, true},
     [GROUP] = {"group", read_group_line, false, true},
     [FOCUS] = {"focus", read_focus_line, false, false},
-    [END] = {"end", read_end_line, false, true},
+    [END] = {"end", read_group_end_line, false, true},
     [STOP] = {"stop", read_stop_line, true, false},
 };
 

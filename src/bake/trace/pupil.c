@@ -44,14 +44,14 @@ struct search {
     bool kept[DOWN + 1][ACROSS + 1];
 };
 
-static double compute_column_x(const struct search *s,
-                               const struct glint_pupil *p, int i)
+static double compute_grid_column_x(const struct search *s,
+                                    const struct glint_pupil *p, int i)
 {
     return p->x0_mm + (p->x1_mm - p->x0_mm) * i / s->across;
 }
 
-static double compute_row_y(const struct search *s, const struct glint_pupil *p,
-                            double j)
+static double compute_grid_row_y(const struct search *s,
+                                 const struct glint_pupil *p, double j)
 {
     return p->y0_mm + (p->y1_mm - p->y0_mm) * j / s->down;
 }
@@ -64,7 +64,7 @@ static void trace_grid_row(struct search *s, const struct glint_pupil *p,
     const struct glint_row row = {s->across + 1,
                                   p->x0_mm,
                                   (p->x1_mm - p->x0_mm) / s->across,
-                                  compute_row_y(s, p, j),
+                                  compute_grid_row_y(s, p, j),
                                   {d[0], d[1], d[2]}};
 
     glint_trace_row(path, &row, s->ray[j], s->status[j], NULL);
@@ -175,13 +175,13 @@ static bool shrink_to_visible_cells(struct search *s, struct glint_pupil *p)
         }
     if (box.n == 0)
         return false;
-    found.x0_mm = compute_column_x(s, p, (int)box.low[0]);
-    found.x1_mm = compute_column_x(s, p, (int)box.high[0]);
-    found.y1_mm = compute_row_y(s, p, box.high[2]);
+    found.x0_mm = compute_grid_column_x(s, p, (int)box.low[0]);
+    found.x1_mm = compute_grid_column_x(s, p, (int)box.high[0]);
+    found.y1_mm = compute_grid_row_y(s, p, box.high[2]);
     if (s->path->round)
         mirror_sensor_range(&found);
     else
-        found.y0_mm = compute_row_y(s, p, box.low[2]);
+        found.y0_mm = compute_grid_row_y(s, p, box.low[2]);
     *p = found;
     return true;
 }
@@ -412,7 +412,8 @@ static bool is_box_side_reached(const struct glint_pupil *a,
            (a->y1_mm >= b->y1_mm && b->y1_mm < front->y1_mm);
 }
 
-static void unite_pupils(struct glint_pupil *all, const struct glint_pupil *p)
+static void extend_pupil_to_contain(struct glint_pupil *all,
+                                    const struct glint_pupil *p)
 {
     all->x0_mm = fmin(all->x0_mm, p->x0_mm);
     all->x1_mm = fmax(all->x1_mm, p->x1_mm);
@@ -442,12 +443,12 @@ bool glint_pupil_extend(struct glint_pupil *pupil,
     if (shrink_to_visible_cells(&s, &p) &&
         !is_box_side_reached(&p, &grown, &whole)) {
         p.energy = pupil->energy;
-        unite_pupils(pupil, &p);
+        extend_pupil_to_contain(pupil, &p);
         return true;
     }
     p = enlarge_pupil_box(pupil, 0.5, &whole);
     if (!find_visible_region(&s, &whole, &p, true))
         return false;
-    unite_pupils(pupil, &p);
+    extend_pupil_to_contain(pupil, &p);
     return true;
 }

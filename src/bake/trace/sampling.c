@@ -103,7 +103,7 @@ static void add_weight_to_blocking_barrel(const struct probe *p, int n,
 /* Returns the fraction of the way from a ray with the value IN, below 1, to a
  * ray with the value OUT at which the interpolated value is 1 (the rim of a
  * barrel); 2 if OUT is at most 1. */
-static double compute_rim_crossing(double in, double out)
+static double compute_rim_crossing_fraction(double in, double out)
 {
     return out > 1 ? (1 - in) / (out - in) : 2;
 }
@@ -124,11 +124,12 @@ static void add_weight_to_first_crossed_barrel(const struct probe *a,
         in = b;
         out = a;
     }
-    first = compute_rim_crossing(in->stop_r2, out->stop_r2);
+    first = compute_rim_crossing_fraction(in->stop_r2, out->stop_r2);
     for (int k = 0; k < n; k++)
-        first = fmin(first, compute_rim_crossing(in->r2[k], out->r2[k]));
+        first =
+            fmin(first, compute_rim_crossing_fraction(in->r2[k], out->r2[k]));
     for (int k = 0; k < n; k++) {
-        const double at = compute_rim_crossing(in->r2[k], out->r2[k]);
+        const double at = compute_rim_crossing_fraction(in->r2[k], out->r2[k]);
 
         if (at <= first)
             weight[k] += SHOWN;

@@ -113,8 +113,8 @@ static bool can_any_ray_pass_between(const struct glint_openings *o,
 
 /* Sets X_MM to the range of rays of LINE that pass, and their neighbours.
  * Returns whether any ray passes. */
-static bool find_passing_range(const struct glint_openings *o,
-                               const struct line *line, double x_mm[2])
+static bool find_range_of_passing_rays(const struct glint_openings *o,
+                                       const struct line *line, double x_mm[2])
 {
     bool seen = false;
 
@@ -131,7 +131,8 @@ static bool find_passing_range(const struct glint_openings *o,
 
 /* Shrinks the range X_MM, in which rays may pass, to the rays that do. Returns
  * whether any ray passes. */
-static bool refine_passing_range(const struct glint_openings *o, double x_mm[2])
+static bool refine_range_of_passing_rays(const struct glint_openings *o,
+                                         double x_mm[2])
 {
     struct line line;
 
@@ -139,7 +140,7 @@ static bool refine_passing_range(const struct glint_openings *o, double x_mm[2])
         int first = LINE, last = -1;
 
         trace_line_segment(o, x_mm[0], x_mm[1], &line);
-        if (find_passing_range(o, &line, x_mm))
+        if (find_range_of_passing_rays(o, &line, x_mm))
             return true;
         for (int i = 0; i < LINE; i++)
             if (can_any_ray_pass_between(o, &line, i)) {
@@ -170,7 +171,7 @@ static void refine_runs_of_passing_rays(const struct glint_openings *o,
             double run[2] = {line->x0_mm + first * line->step_mm,
                              line->x0_mm + i * line->step_mm};
 
-            if (refine_passing_range(o, run) &&
+            if (refine_range_of_passing_rays(o, run) &&
                 run[1] - run[0] > x_mm[1] - x_mm[0]) {
                 x_mm[0] = run[0];
                 x_mm[1] = run[1];

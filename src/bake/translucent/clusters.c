@@ -48,9 +48,9 @@ static double *get_cluster_kernel(const struct glint_scatter_fit *fit, int j,
 }
 
 /* Returns line V of the row of texel X, with kernel J. */
-static struct span get_row_line(const struct clusters *p,
-                                const struct glint_scatter_inside *in, int x,
-                                int c, int j, int v)
+static struct span get_line_of_row(const struct clusters *p,
+                                   const struct glint_scatter_inside *in, int x,
+                                   int c, int j, int v)
 {
     const int n = p->fit->kernel, side = p->fit->side;
 
@@ -77,7 +77,7 @@ static void compute_row_sums(const struct clusters *p, int x, int c, int j,
 
     *product = *square = 0;
     for (int v = in.v_from; v < in.v_to; v++) {
-        const struct span s = get_row_line(p, &in, x, c, j, v);
+        const struct span s = get_line_of_row(p, &in, x, c, j, v);
 
         for (int u = s.u_from; u < s.u_to; u++) {
             const double b = s.kernel[u] * s.in[3 * (u - s.u_from)];
@@ -120,7 +120,7 @@ static void fit_least_squares_scales(const struct clusters *p, bool in_scales,
 
         for (int v = in.v_from; v < in.v_to; v++) {
             const struct span s =
-                get_row_line(p, &in, x, c, p->fit->cluster[x], v);
+                get_line_of_row(p, &in, x, c, p->fit->cluster[x], v);
 
             for (int u = s.u_from; u < s.u_to; u++) {
                 const double *lit = s.in + 3 * (ptrdiff_t)(u - s.u_from);

@@ -222,8 +222,8 @@ static void mirror_kernels(struct glint_scatter_fit *fit)
 
 /* Returns the sum of those entries of kernel H around texel X that lie inside
  * the map. */
-static double sum_kernel_inside(const struct glint_scatter_fit *fit, int x,
-                                const double *h)
+static double sum_kernel_inside_map(const struct glint_scatter_fit *fit, int x,
+                                    const double *h)
 {
     const int n = fit->kernel;
     const struct glint_scatter_inside in =
@@ -288,8 +288,8 @@ static enum glint_status fit_albedo_model(const struct glint_scatter_rows *rows,
         for (int c = 0; c < 3; c++)
             compute_mean_kernel(rows, fit, c, fit->h + (size_t)c * k2, square);
         for (int x = 0; x < n; x++) {
-            const double share =
-                sum_kernel_inside(fit, x / 3, fit->h + (size_t)(x % 3) * k2);
+            const double share = sum_kernel_inside_map(
+                fit, x / 3, fit->h + (size_t)(x % 3) * k2);
 
             fit->out[x] = share > 0 ? fit->albedo[x] / share : 0;
         }

@@ -86,8 +86,8 @@ static double compute_rectangle_solid_angle(double u, double v, double z)
 /* Returns the flux through a square of side STEP around (U, V), in the plane z
  * = 0, from a point source at depth Z, which may be negative. LOSS:
  * attenuation, 1 / mm, applied at the square's centre. */
-static double compute_source_flux(double u, double v, double z, double step,
-                                  double loss)
+static double compute_flux_through_square(double u, double v, double z,
+                                          double step, double loss)
 {
     const double h = step / 2, depth = fabs(z);
     const double far = loss * sqrt(u * u + v * v + z * z);
@@ -109,9 +109,10 @@ static double sum_image_fluxes(const struct glint_slab *s, int pairs, double u,
     double sum = 0;
 
     for (int i = -pairs; i <= pairs; i++)
-        sum += compute_source_flux(u, v, i * period + s->depth, step, loss) -
-               compute_source_flux(u, v, i * period - s->depth - 2 * s->beyond,
-                                   step, loss);
+        sum += compute_flux_through_square(u, v, i * period + s->depth, step,
+                                           loss) -
+               compute_flux_through_square(
+                   u, v, i * period - s->depth - 2 * s->beyond, step, loss);
     return s->albedo * sum;
 }
 

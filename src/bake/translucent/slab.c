@@ -117,7 +117,7 @@ static double *get_eliminated_block(const struct inverse *v, int j)
 }
 
 /* Computes S_j^-1 for block J from that of block J - 1. */
-static void eliminate_block(struct inverse *v, int j)
+static void eliminate_matrix_block(struct inverse *v, int j)
 {
     const struct blocks *b = v->b;
     const int n = b->side;
@@ -232,7 +232,7 @@ static enum glint_status compute_inverse_blocks(struct inverse *v, int reach,
     const double first = 2.0 / (reach + 2.0);
 
     for (int j = 0; j < n; j++) {
-        eliminate_block(v, j);
+        eliminate_matrix_block(v, j);
         if (glint_watch_report_progress(watch, first * (j + 1) / n))
             return GLINT_E_CLOSED;
     }
@@ -527,7 +527,7 @@ static void add_block_to_rows(void *ctx, int j, int l, const double *block)
 
 /* Computes the correction (closed form minus modes) for the mix LEVEL / LEVELS,
  * unless the channel has it already. Returns false if there is no memory. */
-static bool compute_closed_correction(struct compute *p, int level)
+static bool compute_closed_form_correction(struct compute *p, int level)
 {
     const int k2 = glint_scatter_count_entries(p->rows->kernel);
     struct glint_slab slab;
@@ -548,7 +548,7 @@ static bool compute_closed_correction(struct compute *p, int level)
     return true;
 }
 
-static void free_closed_corrections(struct compute *p)
+static void free_closed_form_corrections(struct compute *p)
 {
     for (int i = 0; i <= LEVELS; i++) {
         free(p->closed[i]);
@@ -571,7 +571,7 @@ static double compute_entry_correction(const struct compute *p, int x, int d)
 
 /* Adds the correction by the closed form to all rows of the channel and clamps
  * negative entries to 0. Returns false if there is no memory. */
-static bool add_closed_corrections(struct compute *p)
+static bool add_closed_form_corrections(struct compute *p)
 {
     const int side = p->rows->side, n = p->rows->kernel;
 
@@ -579,8 +579,8 @@ static bool add_closed_corrections(struct compute *p)
         const double at = p->rows->share[x] * LEVELS;
         const int level = clamp_index((int)at, LEVELS - 1);
 
-        if ((at < level + 1 && !compute_closed_correction(p, level)) ||
-            (at > level && !compute_closed_correction(p, level + 1)))
+        if ((at < level + 1 && !compute_closed_form_correction(p, level)) ||
+            (at > level && !compute_closed_form_correction(p, level + 1)))
             return false;
     }
     for (int x = 0; x < side * side; x++) {
@@ -651,9 +651,9 @@ static enum glint_status compute_channel_rows(struct compute *p, int c,
             return status;
         done += sqrt(1.0 / n);
     }
-    if (!add_closed_corrections(p))
+    if (!add_closed_form_corrections(p))
         return GLINT_E_MEMORY;
-    free_closed_corrections(p);
+    free_closed_form_corrections(p);
     limit_row_sums(p);
     return GLINT_OK;
 }
@@ -680,7 +680,7 @@ static enum glint_status compute_all_rows(struct compute *p,
                         clamp_index(i % p->wide - MARGIN, p->rows->side - 1)];
     for (int c = 0; c < 3 && status == GLINT_OK; c++)
         status = compute_channel_rows(p, c, watch);
-    free_closed_corrections(p);
+    free_closed_form_corrections(p);
     free(memory);
     return status;
 }

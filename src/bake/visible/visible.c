@@ -217,8 +217,8 @@ static bool find_tight_visible_box(const struct glint_visible *h,
 
 /* Returns the max, over the stop, all barrels and the field, of RAY's distance
  * from the centre / radius; at most 1 for visible rays. */
-static double compute_miss_ratio(const struct glint_visible *h,
-                                 const struct glint_ray *ray)
+static double compute_ray_miss_ratio(const struct glint_visible *h,
+                                     const struct glint_ray *ray)
 {
     const double stop =
         hypot(ray->stop_x_mm, ray->stop_y_mm) / h->setup->optics.stop_radius_mm;
@@ -229,7 +229,8 @@ static double compute_miss_ratio(const struct glint_visible *h,
 }
 
 /* Shrinks BOX to 1.5 cells around the ray of its grid with the smallest
- * compute_miss_ratio(). Returns this value; HUGE_VAL if all rays are invalid.
+ * compute_ray_miss_ratio(). Returns this value; HUGE_VAL if all rays are
+ * invalid.
  */
 static double shrink_box_to_nearest_ray(const struct glint_visible *h,
                                         const struct glint_path *path,
@@ -249,9 +250,9 @@ static double shrink_box_to_nearest_ray(const struct glint_visible *h,
         glint_trace_row(path, &row, ray, status, NULL);
         for (int i = 0; i <= ACROSS; i++) {
             if (status[i] != GLINT_RAY_OK ||
-                compute_miss_ratio(h, &ray[i]) >= least)
+                compute_ray_miss_ratio(h, &ray[i]) >= least)
                 continue;
-            least = compute_miss_ratio(h, &ray[i]);
+            least = compute_ray_miss_ratio(h, &ray[i]);
             box->x0_mm = x0 + (i - 1.5) * dx;
             box->x1_mm = x0 + (i + 1.5) * dx;
             box->y1_mm = (j + 1.5) * dy;
@@ -396,8 +397,9 @@ static void find_boxes_of_wave(const struct glint_visible *h,
     }
 }
 
-static void add_profile_angle(struct glint_visible_profile *p, double sine,
-                              const struct box_samples *g, int k)
+static void append_angle_to_profile(struct glint_visible_profile *p,
+                                    double sine, const struct box_samples *g,
+                                    int k)
 {
     const int first = p->n_samples;
 
@@ -476,7 +478,7 @@ void glint_visible_find_profile(const struct glint_visible *visible,
     }
     profile->n = profile->n_samples = 0;
     for (int k = 0; k < GLINT_PROFILE; k++)
-        add_profile_angle(profile, sine[k], &g, k);
+        append_angle_to_profile(profile, sine[k], &g, k);
 }
 
 /* ------------------------------------------------------------------- ranges */
@@ -532,8 +534,8 @@ static bool is_ghost_visible_at_mid_band(const struct glint_visible *h,
 /* Returns the end of an angle range: the last sine, from WITH towards WITHOUT,
  * at which light of any of the three wavelengths passes. At the middle of the
  * band light passes at WITH, but not at WITHOUT. */
-static double find_range_end(const struct glint_visible *h, double with,
-                             double without)
+static double find_end_of_angle_range(const struct glint_visible *h,
+                                      double with, double without)
 {
     for (int k = 0; k < FARTHER && without > 0 && without < 1; k++) {
         const double next = without + (without - with);
@@ -587,10 +589,11 @@ static int find_angle_ranges(const struct glint_visible *visible,
         if (now && !inside && n == GLINT_MAX_RANGES)
             break;
         if (now && !inside)
-            range[n++][0] = k ? find_range_end(visible, sine, before) : 0;
+            range[n++][0] =
+                k ? find_end_of_angle_range(visible, sine, before) : 0;
         if (!now && inside)
             n = end_angle_range(range, n,
-                                find_range_end(visible, before, sine));
+                                find_end_of_angle_range(visible, before, sine));
         inside = now;
         before = sine;
     }
