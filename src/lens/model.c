@@ -40,7 +40,7 @@ enum {
     /* max sum of the magnitudes of an output's coefficients; 1 in _q30 */
     LIMIT = 1 << 30,
     MAX_REAL_EXPONENT = 200,
-    /* max number of bits by which narrow coefficients are shifted */
+    /* max number of bits by which narrow (16-bit) coefficients are shifted */
     MAX_SHIFT = 20,
     MAX_ROOTS = 2,
     MAX_HEAD = 28,

@@ -76,8 +76,8 @@ struct ray_field {
     /* Range of directions between which rays are interpolated, within patch;
      * set by glint_ray_field_choose_samples(). */
     struct ray_patch range;
-    /* set by glint_ray_field_measure(); is_open: some light of the ghost
-     * reaches the sensor */
+    /* is_measured: glint_ray_field_measure() was called; is_open: some light of
+     * the ghost reaches the sensor */
     bool is_measured, is_open;
     struct ray_measures measures;
     /* visible region of the pupil; glint_ray_field_choose_grid() adds a margin

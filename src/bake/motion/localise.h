@@ -23,7 +23,7 @@ struct glint_localiser {
     /* true: the position of a food is averaged over all its frames */
     bool average;
     double place[GLINT_MOTION_MAX_FOODS][3];
-    /* number of frames over which each food's position is averaged */
+    /* [foods]: number of frames over which the food's position is averaged */
     double age[GLINT_MOTION_MAX_FOODS];
     /* true after the first frame; set by glint_localise_body() */
     bool has_begun;

@@ -121,13 +121,13 @@ struct column {
     bool dead, chosen;
     int place;     /* index of the term in the table of moments */
     double length; /* Euclidean length of the column at */
-    /* components of at along each chosen direction */
+    /* components of the column (at) along each chosen direction */
     double on[GLINT_MAX_TERMS];
-    /* squared length of at without its components along chosen directions:
-     * along those that were chosen when it was last orthogonalised (was2), and
-     * along all (left2) */
+    /* squared length of the column (at) without its components along chosen
+     * directions: along those that were chosen when it was last orthogonalised
+     * (was2), and along all (left2) */
     double was2, left2;
-    double pull;      /* dot product of at with the residual */
+    double pull;      /* dot product of the column (at) with the residual */
     const double *at; /* [n]: values of the term times the weights */
 };
 

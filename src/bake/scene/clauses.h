@@ -69,7 +69,7 @@ bool glint_line_read_first_word(struct glint_text *text,
                                 const struct glint_text_line *lines, int n,
                                 int *first, int *index);
 
-/* Rejects any further words on the line. */
+/* Rejects any further words on the line. LINE names the line in error texts. */
 bool glint_line_check_end(struct glint_text *text, const char *line);
 
 #endif

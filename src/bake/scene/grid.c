@@ -30,8 +30,8 @@ struct mesher {
     bool has_uv, has_normals;
     struct corner *corner;
     struct glint_scene_triangle *triangle;
-    /* [n_slots]: hash table of vertices by content; entry: index + 1, 0:
-     * free */
+    /* [n_slots]: hash table of vertices by content; an entry is the vertex
+     * index + 1; 0: free */
     uint32_t *slot;
     uint32_t n_slots, n_corners, n_triangles;
 };

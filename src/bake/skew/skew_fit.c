@@ -175,7 +175,8 @@ static void set_attempt_error_limits(const struct glint_skew_piece *p,
         p->parts > 0 ? PART_KEPT * a->bearable : 1 + faint * (a->bearable - 1);
 }
 
-/* Fits the zone of P within BAND. */
+/* Fits the outputs of P's zone. BAND: visibility of the ghost in the band of
+ * P. */
 static enum glint_status fit_piece_zone(struct fitter *f,
                                         const struct glint_skew_piece *p,
                                         const struct glint_visible *band,

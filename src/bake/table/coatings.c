@@ -262,7 +262,8 @@ glint_coatings_parse(struct glint_coating coatings[GLINT_MAX_COATINGS], int *n,
 
 int glint_coatings_mixed(struct glint_coating coatings[GLINT_MAX_COATINGS])
 {
-    /* 1080: a half wave at the middle of the band, which reflects green */
+    /* 1080 nm: this quarter wave is a half wave at 540 nm, mid band, and
+     * reflects green */
     static const double nm[] = {450, 620, 1080, 520, 680, 490, 560};
     enum { N = sizeof nm / sizeof *nm };
 

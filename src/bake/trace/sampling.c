@@ -20,7 +20,7 @@ struct probe {
     double r2[GLINT_MAX_EVENTS + 1];
 };
 
-/* Sets P from the traced RAY and its HITS. */
+/* Sets P from the traced RAY and its positions HITS at the events of PATH. */
 static void set_probe_from_ray(struct probe *p, const struct glint_path *path,
                                const struct glint_ray *ray, double (*hits)[2],
                                double stop_radius_mm)

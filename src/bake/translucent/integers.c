@@ -11,8 +11,8 @@
 
 enum { CHANNELS = 3, FULL = 32767 };
 
-/* Sets the light of S to IRRADIANCE as integers. Returns the integer that
- * represents irradiance 1. */
+/* Sets the integer light of S, per texel, to IRRADIANCE. Returns the integer
+ * that represents irradiance 1. */
 static double set_integer_light(const struct glint_spread *s,
                                 const double *irradiance)
 {

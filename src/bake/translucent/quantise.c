@@ -48,7 +48,8 @@ static size_t compute_kernel_index(int p, int c)
     return (size_t)p * CHANNELS + (size_t)c;
 }
 
-/* Sets rows and columns of all kernels. Returns false if there is no memory. */
+/* Sets the members column and row to the separable products of all kernels.
+ * Returns false if there is no memory. */
 static bool separate_kernels(struct writer *w)
 {
     const struct glint_scatter_fit *fit = w->fit;
