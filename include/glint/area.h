@@ -19,10 +19,10 @@ extern "C" {
 
 enum {
     GLINT_AREA_SAMPLES = 7, /* default max points of the brightest lamp */
-    /* Factor, in still pictures, on (number of points of a lamp - 1). */
+    /* Factor on (number of points of a lamp - 1) for still pictures. */
     GLINT_AREA_STILL = 20,
-    /* Factor, in still pictures, on the points that all wide lamps together may
-     * have, max_lights. */
+    /* Factor for still pictures on max_lights, the max number of points that
+     * all wide lamps together may have. */
     GLINT_AREA_STILL_ROOM = 4,
     /* Side of the square whose area each point represents, pixels. */
     GLINT_AREA_SPACING_PX = 4,
@@ -33,16 +33,16 @@ enum {
 struct glint_area {
     struct glint_lamp lamp;
     double points; /* number of points, 1 or more; the last may be fractional */
-    /* Middle of the pattern of points, which is moved to the lamp's
-     * position. */
+    /* Middle of the pattern of points; the pattern is moved so that it
+     * coincides with the lamp's position. */
     double centre[2];
-    /* Factor on the pattern that gives it the lamp's RMS extent. */
+    /* Factor on the size of the pattern that gives it the lamp's RMS extent. */
     double spread;
     double u, v; /* position of the lamp, tangents */
     /* xx, xy, yy of the symmetric matrix that maps the unit circle to the
-     * ellipse, tangents. The sign of the axes does not matter, so points
-     * stay in place when the orientation jumps from 90 degrees to -90, or
-     * when the axes of a nearly round lamp swing. */
+     * lamp's ellipse, tangents. The sign of the axes does not matter, so points
+     * stay in place when the orientation jumps from 90 degrees to -90, or when
+     * the axes of a nearly round lamp rotate. */
     double stretch[3];
 };
 
@@ -57,23 +57,24 @@ struct glint_area_rule {
     double thinning;
 };
 
-/* Returns the rule by which LAMPS[N] get at most ROOM points in total, or one
+/* Returns the rule by which LAMPS[N] get at most ROOM points in total; one
  * point each if N exceeds ROOM. MOST is the max number of points of one lamp.
- * Sets *TOTAL to an upper bound of the number of points. */
+ * Sets *TOTAL to an upper bound of the number of all points. */
 struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
                                           double pixels_per_tangent,
                                           double most, int room, int *total);
 
-/* Sets AREA to the points of LAMP by RULE; returns their number. */
+/* Sets AREA to the points into which RULE divides LAMP; returns their
+ * number. */
 int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
                     const struct glint_area_rule *rule);
 
-/* Returns the distance between neighbouring points of AREA, the tangent of an
- * angle; 0 if there is only one point. */
+/* Returns the distance between neighbouring points of AREA, as the tangent of
+ * an angle; 0 if there is only one point. */
 double glint_area_apart(const struct glint_area *area);
 
-/* Returns point I of AREA, with its fraction of the power, as a lamp without
- * extent. */
+/* Returns point I of AREA as a lamp without extent, with its fraction of the
+ * whole lamp's power. */
 struct glint_lamp glint_area_point(const struct glint_area *area, int i);
 
 /* Makes LAMP a disc with an RMS radius of TANGENT. */

@@ -31,21 +31,22 @@ struct glint_bake_options {
                           up to 89 */
     double field_mm;   /* radius of the field around the sensor's centre within
                           which the model is accurate, mm; 0: 1.1 times the
-                          distance to the corners of the film */
+                          distance to the corners of the image area that the
+                          lens table states (film) */
     /* Factor on all tolerances, 0.1 .. 100. At 1, the brightest ghosts are
-     * fitted with RMS errors of 0.04 pixels (film 1920 pixels wide) for
-     * positions and outlines, and of 0.12 % for the energy. Faint ghosts get at
-     * most 0.07 pixels for positions, 0.4 for outlines, and 1.2 % for the
-     * energy. */
+     * fitted with RMS errors of 0.04 pixels (if the picture is 1920 pixels
+     * wide) for positions and outlines, and of 0.12 % for the energy. Faint
+     * ghosts may have errors of 0.07 pixels for positions, 0.4 pixels for
+     * outlines, and 1.2 % for the energy. */
     double tolerance;
     /* [ghosts of the lens]: true: bake this ghost; NULL: bake all ghosts.
      * Ghosts that are not baked have no systems in the model. */
     const bool *ghosts;
-    /* [n_beside], at most 2: the lens at neighbouring zoom positions. The model
-     * includes light that is visible at these positions or cut there, so that
-     * the models of several positions can be interpolated. glint_bake() returns
-     * GLINT_E_ARGUMENT if they are positions of another lens, or not symmetric
-     * about the axis. */
+    /* [n_beside], at most 2: the same lens at neighbouring zoom positions. The
+     * model includes light that is visible at these positions, and the barrels
+     * that cut light there, so that the models of several positions can be
+     * interpolated. glint_bake() returns GLINT_E_ARGUMENT if they are not
+     * positions of this lens, or not symmetric about the axis. */
     const struct glint_prescription *beside;
     int n_beside;
     struct glint_workers *workers; /* NULL: one thread. The output is the same
@@ -55,10 +56,10 @@ struct glint_bake_options {
     glint_progress_fn *progress;
     void *progress_ctx;
     /* Called by several workers at once: before each ghost with WORK 0, and
-     * after each fit with its work, 1 or 2 (about 40 ms of processor time
-     * each). The sum does not depend on the number of workers. If it returns
-     * false, glint_bake() ends and returns GLINT_E_UNSUPPORTED with an empty
-     * ERROR. NULL: no limit. */
+     * after each fit with the fit's work, 1 or 2 units of about 40 ms of
+     * processor time. The sum does not depend on the number of workers. If it
+     * returns false, glint_bake() ends and returns GLINT_E_UNSUPPORTED with an
+     * empty ERROR. NULL: no limit. */
     bool (*allow)(void *ctx, int work);
     void *allow_ctx;
 };
@@ -70,12 +71,12 @@ void glint_bake_defaults(struct glint_bake_options *options);
 uint64_t glint_bake_key(const struct glint_prescription *lens,
                         const struct glint_bake_options *options);
 
-/* Sets PROJECTION to the projection of LENS at the d line. Uses chief rays at
- * whole degrees (finer for narrow lenses) up to 85 degrees or the last ray that
- * passes the lens. Sets *MISS_DEG to the max error of the polynomial at these
- * rays, degrees. Returns GLINT_E_LENS if LENS is not round, or if hardly any
- * light passes; ERROR states the cause, and PROJECTION becomes a pinhole
- * projection. */
+/* Sets PROJECTION to the projection of LENS at the d line. It is fitted to
+ * chief rays at whole degrees (smaller steps for narrow lenses) up to 85
+ * degrees or the last ray that passes the lens. Sets *MISS_DEG to the max error
+ * of the polynomial at these rays, degrees. Returns GLINT_E_LENS if LENS is not
+ * round, or if hardly any light passes; then ERROR states the cause, and
+ * PROJECTION is that of a pinhole. */
 enum glint_status glint_projection_of(struct glint_projection *projection,
                                       const struct glint_prescription *lens,
                                       double *miss_deg,
@@ -83,12 +84,12 @@ enum glint_status glint_projection_of(struct glint_projection *projection,
 
 /* Results of a bake that are not stored in the model. */
 struct glint_bake_report {
-    /* Number of rays for which errors were measured: rays that pass the
+    /* Number of rays at which errors were measured; all of them pass the
      * lens. */
     int rays;
-    /* number of further rays that the model transmits although the lens
-     * clearly blocks them: they miss a surface, or lie more than 3 % outside
-     * a surface's semi-diameter or the stop's radius */
+    /* number of further rays that the model transmits although the lens clearly
+     * blocks them: these rays miss a surface, or lie more than 3 % outside a
+     * surface's semi-diameter or the stop's radius */
     int intruders;
     int unmet; /* number of systems whose errors exceed the tolerance */
 };
@@ -104,7 +105,7 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
                              struct glint_bake_report *report,
                              struct glint_error *error);
 
-/* A model of a zoom lens at the zoom position along_q30, 0 .. 2^30. */
+/* A model of a zoom lens, and its zoom position along_q30, 0 .. 2^30. */
 struct glint_bake_model {
     unsigned char *data;
     size_t bytes;

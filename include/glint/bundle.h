@@ -23,13 +23,13 @@ struct glint_vertex {
                            down; within +-GLINT_VERTEX_LIMIT_Q8 */
     int32_t stop_x_q16,
         stop_y_q16; /* position in the stop, in stop radii, within +-2^14 */
-    /* (1 + r^2) / 2 at each of two barrels that may cut the ray, where r is the
-     * ray's distance from the axis / semi-diameter; above 1 the ray is cut. The
-     * value is smooth everywhere, and its slope at r = 1 is the slope of r. 0
-     * .. 2^14; 0: there is no such barrel. */
+    /* (1 + r^2) / 2 at each of two barrels that may cut the ray, where r is
+     * (distance of the ray from the axis) / (semi-diameter); the ray is cut if
+     * the value is above 1. The value is smooth everywhere, and its slope at r
+     * = 1 equals that of r. 0 .. 2^14; 0: there is no such barrel. */
     int32_t barrel_q16[2];
-    /* 0 .. 65536 (1 in the unit of the bundle); below 0: the ray is invalid,
-     * and its other members are undefined. */
+    /* energy, 0 .. 65536, where 65536 is the bundle's unit; below 0: the ray is
+     * invalid, and its other members are undefined. */
     int32_t energy_q16;
 };
 
@@ -38,9 +38,9 @@ struct glint_vertex {
 /* The rays of one ghost, one light and one wavelength: a square grid of rays
  * over the part of the entrance pupil from which light forms the ghost. */
 struct glint_bundle {
-    int n_cells; /* cells per side, 1 .. GLINT_MAX_CELLS: (n_cells + 1)^2
-                    vertices, row by row */
-    /* Flux of a cell at energy 1, display white x pixels: flux_q31 *
+    int n_cells; /* number of cells per side, 1 .. GLINT_MAX_CELLS; there are
+                    (n_cells + 1)^2 vertices, row by row */
+    /* Flux of a cell whose energy is 1, display white x pixels: flux_q31 *
      * 2^(flux_exponent - 31). */
     int32_t flux_q31; /* mantissa, 2^30 .. 2^31 - 1, or 0 */
     int flux_exponent;
@@ -48,10 +48,11 @@ struct glint_bundle {
                            linear BT.709, -4 .. 4 */
 };
 
-/* Functions that compute the vertices of bundles while these are binned, so
- * that vertices need not be stored. Bundles are numbered in the order in which
- * they were added. Any worker may call both functions, with its number WORKER;
- * they must give the same result each time. */
+/* Functions that compute the vertices of bundles while the bundles are sorted
+ * into tiles (binned), so that vertices need not be stored. Bundles are
+ * numbered in the order in which they were added. Any worker may call both
+ * functions, with its number WORKER; they must give the same result each
+ * time. */
 struct glint_flare_rays {
     /* Starts bundle I; returns 0 if the whole bundle lies outside the pixel
      * rows Y0 .. Y1 - 1. */
@@ -62,7 +63,7 @@ struct glint_flare_rays {
     void *ctx;
     int coded;         /* 1: the picture has integer codes, so faint light needs
                           less precision */
-    int snap_codes_q8; /* the member of that name in struct glint_flare_frame */
+    int snap_codes_q8; /* snap_codes_q8 of struct glint_flare_frame */
 };
 
 #ifdef __cplusplus

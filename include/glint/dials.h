@@ -18,7 +18,7 @@
 extern "C" {
 #endif
 
-/* Max fraction of all light that may be veil. */
+/* Max sum of veil and haze, as a fraction of all light. */
 #define GLINT_MOST_VEIL 0.9
 
 enum glint_dial_flag {
@@ -47,16 +47,17 @@ struct glint_dials {
     int max_lights; /* max number of lights; more are merged, faint ones first
                      */
     unsigned flags; /* enum glint_dial_flag */
-    /* Light that adds fewer codes than this to black may be left out. */
+    /* Light that adds fewer codes than this to a black pixel may be left
+     * out. */
     double cull_codes;
     double area_points; /* max number of points into which a lamp with an extent
                            is divided */
-    /* Ghosts that add fewer codes than this to black are drawn with the rays of
-     * one of the three wavelengths, and merged with ghosts of near-by lights,
-     * see dimmest of struct glint_flare_frame. */
+    /* Ghosts that add fewer codes than this to a black pixel are drawn with the
+     * rays of only one of the three wavelengths, and merged with the ghosts of
+     * near-by lights; see dimmest of struct glint_flare_frame. */
     double dim_codes;
-    /* Tolerance, pixels, for reusing rays in a video: a light that moved less
-     * reuses its traced rays; 0: rays are always traced. */
+    /* Tolerance for reusing rays in a video, pixels: if a light moved less, its
+     * traced rays are used again; 0: rays are always traced. */
     double still_px;
     /* Log2 of the number of cells per side of the finest tables of dust and
      * masks, 3 .. GLINT_SHADE_MOST_LOG2. Lower values blur the specks and
@@ -69,8 +70,9 @@ struct glint_dials {
  * Pareto front of error and time; 2^14 is the default. */
 struct glint_dials glint_dials_at(int quality_q15);
 
-/* Returns, for each quality parameter, the coarser of its values in A and B,
- * except that irradiance_steps or dispersion_q8 is 0 if it is 0 in A or B. */
+/* Returns, for each quality parameter, the coarser of its two values in A and
+ * B. Exception: irradiance_steps and dispersion_q8 are 0 if they are 0 in A or
+ * B. */
 struct glint_dials glint_dials_coarser(struct glint_dials a,
                                        struct glint_dials b);
 

@@ -53,20 +53,21 @@ struct glint_engine_lamp {
                                level */
     uint32_t id;            /* number of the lamp, constant while it is
                                tracked */
-    /* Factor on the lamp's power, above 0, at most 1: rises and fades with the
-     * track; glint_engine_apply_shares() lowers it for partly hidden lamps. */
+    /* Factor on the lamp's power, above 0, at most 1: rises when tracking
+     * begins and falls when the lamp vanishes. glint_engine_apply_shares()
+     * lowers it for partly hidden lamps. */
     double level;
     /* Visible fraction of the lamp, above 0: GLINT_ENGINE_HIDDEN if all is
      * hidden. */
     double share;
-    /* RMS radius, pixels, of the spot of a lamp that the picture clips; 0: the
-     * lamp is not clipped; -1: the picture does not show the lamp. */
+    /* RMS radius, pixels, of the lamp's spot if the picture clips the lamp; 0:
+     * not clipped; -1: the picture does not show the lamp. */
     double seen_px;
     int is_found; /* 1: the lamp was found in a picture, and TRACK is its
                      track */
     struct glint_lamp_track track;
-    /* Light of the lamp minus the light of it that the picture shows; set by
-     * glint_engine_expose(). */
+    /* Light of the lamp minus the part of this light that the picture shows;
+     * set by glint_engine_expose(). */
     double excess;
 };
 
@@ -81,8 +82,8 @@ struct glint_frame_rays;   /* opaque: traces exact rays */
 struct glint_engine_stops; /* opaque: makes the iris and the dirt on the
                               front */
 
-/* A program that names it links the code for dust, masks and other stops than
- * straight, clean blades. */
+/* A program that names this variable links the code for dust, for masks and for
+ * stops that do not have straight, clean blades. */
 extern const struct glint_engine_stops glint_engine_all_stops;
 
 /* Lens, stop and sensor. */
@@ -122,26 +123,27 @@ struct glint_engine_camera {
     /* &glint_engine_all_stops, which glint_engine_configure() sets, or NULL:
      * the stop is of straight, clean blades, and the front element is clean. */
     const struct glint_engine_stops *stops;
-    uint64_t reserved[15]; /* 0 */
+    uint64_t reserved[15]; /* must be 0 */
 };
 
 /* Parameters of the search for lamps. */
 struct glint_engine_search {
-    /* Thresholds, stops from the picture's white, -20 .. 0. The brightest
-     * pixels of a lamp must reach the first; a lamp extends to the pixels that
-     * reach the second, which must not be higher. */
+    /* Thresholds, in stops relative to the picture's white, -20 .. 0. The
+     * brightest pixels of a lamp must reach the first; a lamp extends to the
+     * pixels that reach the second, which must not be higher than the first. */
     double threshold_ev[2];
-    double headroom_ev; /* stops by which clipped pixels exceed white; below 0:
-                           estimated from the halo of each lamp */
+    double headroom_ev; /* number of stops by which clipped pixels are brighter
+                           than white; below 0: estimated from the halo of each
+                           lamp */
     /* Max number of lamps that are found, 1 .. GLINT_ENGINE_MAX_LAMPS; 0: no
      * search, and no memory is allocated for it. */
     int max_found;
     /* Max number of lamps, 0 or more, that the program passes to
      * glint_engine_draw() in addition to the lamps found. */
     int more_lamps;
-    /* Max number of lamps for which an arena has capacity; more lamps are
-     * merged. 0: 2 * max_found + more_lamps, as fading lamps are drawn in
-     * addition to rising lamps. */
+    /* Max number of lamps for which an arena has memory; if there are more,
+     * lamps are merged. 0: 2 * max_found + more_lamps, as lamps that fade out
+     * are drawn in addition to lamps that appear. */
     int max_drawn;
     uint64_t reserved[16]; /* must be 0 */
 };
@@ -150,8 +152,8 @@ struct glint_engine_search {
 struct glint_engine_light {
     /* Strength, 0 .. 100: at 0.5 the brightest part of the flare is about a
      * quarter of white for any lamps and lens; src/engine/strength.h states the
-     * rule. If by_hand is not 0, exposure_ev, in stops, replaces strength. Gain
-     * is a factor on the resulting light. */
+     * rule. If by_hand is not 0, exposure_ev (in stops) is used instead of
+     * strength. gain is a factor on the resulting light. */
     double strength, exposure_ev, gain;
     int by_hand;
     /* Factor on the star around each lamp (light diffracted by the edges of the
@@ -166,8 +168,9 @@ struct glint_engine_light {
 };
 
 /* Bits that select the components of a flare, and two flags. CORES: stars
- * include the cores of the lamps, for layers without the picture. CODES:
- * accuracy that suffices for pictures of 8 bits, at about half the cost. */
+ * include the cores of the lamps, for layers that are drawn without the
+ * picture. CODES: accuracy that suffices for pictures of 8 bits, at about half
+ * the cost. */
 enum glint_engine_part {
     GLINT_ENGINE_GHOSTS = 1,
     GLINT_ENGINE_STAR = 2,
@@ -188,7 +191,7 @@ struct glint_engine_drawing {
      * a 16th to the limit. 0: no limit. */
     double most_minsn;
     double apart_px; /* merge distance, pixels: lights whose images are closer
-                        are merged */
+                        than this are merged */
     int tile_log2;   /* log2 of the side of tiles, 3 .. 6 */
     /* Bits of enum glint_engine_part: the components that are drawn. */
     unsigned parts;
@@ -273,9 +276,9 @@ static inline void glint_engine_defaults(struct glint_engine_config *cfg,
 }
 
 /* Sets the members of CFG for light, drawing, search, camera and memory from
- * OPTIONS (glint/options.h). Members without a set option get the option's
- * default, except for the shape of the stop, its dust and front_dirt, which
- * stay. */
+ * OPTIONS (glint/options.h). Members whose options are not set get the options'
+ * defaults, except for the shape of the stop, its dust and front_dirt, which do
+ * not change. */
 struct glint_options;
 void glint_engine_configure(struct glint_engine_config *cfg,
                             const struct glint_options *options);
@@ -307,8 +310,8 @@ struct glint_engine_exposure {
     double scale; /* factor on the powers of lamps; 0: nothing is drawn */
     /* Light of the flare with powers multiplied by scale. */
     struct glint_response_light light;
-    /* Not 0: the light was measured in a flare that was drawn at reduced
-     * size. */
+    /* Not 0: the light was measured in a flare that was drawn at reduced size
+     * for this. */
     int is_drawn;
     /* Not 0: the exposure restarted in this picture, as after a cut. */
     int is_new;
@@ -321,7 +324,7 @@ struct glint_engine_report {
     int beyond_lights;
     /* Number of lights left after merging lights closer than apart_px. */
     int apart_lights;
-    /* Number of lights drawn, after merging down to max_lights, too. */
+    /* Number of lights drawn, after further merging because of max_lights. */
     int drawn_lights;
     int ghosts, tiles; /* number of ghosts drawn, and number of tiles that
                           contain light */
@@ -341,7 +344,8 @@ struct glint_engine_report {
     /* Number of plans until one was within the limits, and number of these
      * plans that were binned. */
     int plans, binned;
-    long long looked; /* number of rays that the plans probed */
+    long long looked; /* number of rays that the plans traced to estimate
+                         ghosts */
     double plan_ms, trace_ms, bin_ms, draw_ms;
     /* With a budget: the predicted time and the quality that was chosen.
      * Without a budget: 0 and -1. */
@@ -461,8 +465,8 @@ void glint_engine_forget_lamps(struct glint_engine *engine);
 int glint_engine_doubtful(const struct glint_engine *engine, int i,
                           struct glint_spot *spot);
 
-/* Visible fraction of a completely hidden lamp. Not 0, so that power / fraction
- * is still the lamp's power. */
+/* Visible fraction that stands for a completely hidden lamp. It is not 0, so
+ * that power / fraction is still the lamp's power. */
 #define GLINT_ENGINE_HIDDEN 1e-18
 
 /* Multiplies power and share of each of N LAMPS by the fraction of the lamp

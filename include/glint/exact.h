@@ -33,8 +33,8 @@ struct glint_exact_config {
 };
 
 /* Draws the reference picture to RGB, [height][width][3], row 0 on top, in the
- * unit of the power of lamps. Every ray is traced in double precision. Each
- * cell of the ray grid is clipped exactly by the stop and by the circles of all
+ * unit of the lamps' power. Every ray is traced in double precision. Each cell
+ * of the ray grid is clipped exactly by the stop and by the circles of all
  * barrels, and its light is distributed over pixels by area, so that energy is
  * conserved. The result is deterministic. Returns GLINT_E_MEMORY if there is no
  * memory for about 100 bytes per cell of one ghost and 24 bytes per pixel, or

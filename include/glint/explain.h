@@ -19,23 +19,24 @@
 extern "C" {
 #endif
 
-/* Items whose numbers determine the cost of a frame, either predicted from its
- * plan or counted after drawing. */
+/* Kinds of items whose numbers determine the cost of a frame. The numbers are
+ * either predicted from the frame's plan or counted after drawing. */
 enum glint_cost_kind {
-    /* Bundles that a plan probes; for a drawn frame, the rays that its plans
-     * probed. */
+    /* In a plan: bundles for which rays are traced to estimate them (probed);
+     * in a drawn frame: rays that its plans traced for this. */
     GLINT_COST_LOOKED_AT,
-    /* Bundles drawn: each costs a few rays, and a substitution into polynomials
-     * per row. */
+    /* Bundles drawn: each costs a few rays, and for each row a substitution
+     * into polynomials. */
     GLINT_COST_BUNDLES,
     GLINT_COST_VERTICES, /* vertices of ray grids */
     GLINT_COST_EDGES,    /* edges across which light changes */
     GLINT_COST_ROWS,     /* pixel rows that these edges cross */
-    GLINT_COST_PARTS,    /* pieces of cells shaded by dust or a mask */
+    GLINT_COST_PARTS,    /* pieces of cells that dust or a mask shades */
     GLINT_COST_LIT,      /* pixels with any light */
-    GLINT_COST_STAR,     /* pixels lit by stars, counted once for each part of a
-                            star */
-    GLINT_COST_VEIL, /* pixels under a veil, including the cost of its blur */
+    GLINT_COST_STAR,     /* pixels lit by stars; a pixel lit by several parts of
+                            a star is counted several times */
+    GLINT_COST_VEIL,     /* pixels that a veil covers; includes the cost of its
+                            blur */
     GLINT_COST_KINDS
 };
 
@@ -55,10 +56,10 @@ struct glint_explain_part {
     int of[GLINT_OUTCOMES]; /* number of bundles per outcome */
     int cells;              /* number of cells per side of the largest ray
                                grid */
-    /* Maxima over the bundles: number of terms of all polynomials of a bundle,
-     * and number of barrels that can cut a bundle. */
+    /* Maxima over the bundles: number of terms of all polynomials of one
+     * bundle, and number of barrels that can cut it. */
     int terms, barrels;
-    long long probed; /* number of rays that the plan probed for these
+    long long probed; /* number of rays that the plan traced to estimate these
                          bundles */
     /* all_terms: number of polynomial terms of each vertex, summed over all
      * vertices. */
@@ -79,7 +80,7 @@ struct glint_frame; /* opaque: a planned frame */
 
 struct glint_explain {
     struct glint_frame *frame;
-    /* Equals FRAME if glint_explain_at() created the frame, else NULL. */
+    /* the frame if glint_explain_at() created it, else NULL */
     struct glint_frame *own;
     /* Inputs of the frame. */
     const struct glint_view *view;
@@ -90,16 +91,16 @@ struct glint_explain {
     const struct glint_light *lights; /* [n_lights] */
     const struct glint_wave_sets
         *sets; /* sets of waves; NULL: all ghosts use the same waves */
-    /* Brightness, in codes near black, below which ghosts shared rays; 0: no
-     * ghosts shared rays. */
+    /* Brightness, in codes near black, below which ghosts of several lights
+     * were drawn with the same rays; 0: no ghosts were. */
     double dim_codes;
     int n_ghosts; /* number of pairs of reflecting surfaces */
     int n_lights;
     /* Number of wavelengths, or, if each ghost chooses a set, number of
      * sets. */
     int n_waves;
-    /* [ghosts of the lens, parts included]: index of the ghost's surface
-     * pair. */
+    /* [ghosts of the lens, additional pupil regions included]: index of the
+     * pair of surfaces that causes the ghost. */
     int *ghost_of;
     struct glint_explain_part all, *ghost, *light, *wave;
     int barrels[GLINT_EXPLAIN_BARRELS]; /* number of bundles that 0, 1, ...
@@ -119,16 +120,17 @@ struct glint_explain {
 enum glint_status glint_explain_open(struct glint_explain *explain,
                                      struct glint_engine *engine, double gain);
 
-/* Does the same for N LAMPS, drawn at SCALE on a black picture of WIDTH x
- * HEIGHT with the settings of ENGINE and three wavelengths. If ENGINE has no
- * model, or all lamps are outside its range, there are no ghosts. */
+/* Like glint_explain_open(), for N LAMPS drawn at SCALE on a black picture of
+ * WIDTH x HEIGHT with the settings of ENGINE and three wavelengths. If ENGINE
+ * has no model, or all lamps are outside its range, there are no ghosts. */
 enum glint_status glint_explain_at(struct glint_explain *explain,
                                    struct glint_engine *engine,
                                    const struct glint_engine_lamp *lamps, int n,
                                    double scale, int width, int height);
 void glint_explain_close(struct glint_explain *explain);
 
-/* Draws only ghost GHOST, or all ghosts for -1, into linear_q20. */
+/* Draws into linear_q20: only the ghost with index GHOST, or all ghosts if
+ * GHOST is -1. */
 void glint_explain_draw(struct glint_explain *explain, int ghost);
 
 /* Return the number of all bundles of PART, and the number of bundles that were

@@ -52,11 +52,11 @@ struct glint_wave_sets {
     /* Number of waves of each set, 2 or more, in rising order. The sets follow
      * each other in glint_flare_frame.wave. */
     int size[GLINT_MAX_WAVE_SETS];
-    /* Max distance between outlines of a ghost in neighbouring waves,
+    /* Max distance between the outlines of a ghost in neighbouring waves,
      * pixels. */
     int32_t apart_q8;
-    /* Display white: a set also suffices if its steps of light are smaller than
-     * this, whatever the distance of outlines; 0: every step counts as
+    /* Step of light, display white: a set whose steps of light are smaller than
+     * this suffices, too, for any distance of outlines; 0: every step counts as
      * visible. */
     struct glint_real step;
 };
@@ -80,8 +80,8 @@ struct glint_dim {
      * first plan, and when lens, stop, waves or size change. */
     uint8_t done[GLINT_DIM_NODES];
     /* Set by each plan: for each light but the first, the index of the nearest
-     * light before it, and log2 of its distance. Lights with an index of
-     * GLINT_DIM_LIGHTS or more share no rays. */
+     * one of the lights before it, and log2 of the distance. Lights with an
+     * index of GLINT_DIM_LIGHTS or more do not share rays. */
     int16_t nearest[GLINT_DIM_LIGHTS];
     int16_t apart_log2_q8[GLINT_DIM_LIGHTS];
 };
@@ -100,25 +100,25 @@ struct glint_flare_frame {
      * off by 0.01 pixels on average, outlines by 0.1. */
     int fineness;
     int uniform; /* 1: all ray grids have FINENESS cells per side */
-    /* Index of the only ghost of the lens that is drawn, with its parts; -1:
-     * all ghosts. */
+    /* Index of the only ghost of the lens that is drawn, with its additional
+     * pupil regions (parts); -1: all ghosts. */
     int only_ghost;
     /* [ghosts of the lens, parts included]: tints; NULL: no ghost is tinted. */
     const struct glint_tint *tints;
     /* For a picture in codes: the max light that changes no pixel, display
-     * white. Ghosts fainter than this may be left out; the closer a ghost is to
-     * it, the coarser are its grid and its steps of irradiance. 0: the picture
-     * is in linear light. */
+     * white. Ghosts fainter than this may be left out; the closer a ghost's
+     * light is to this limit, the coarser are its grid and its steps of
+     * irradiance. 0: the picture is in linear light. */
     struct glint_real faintest;
-    /* For three waves without sets. Lights must be in the order of
-     * glint_lights_merge(). Dim ghosts of lights near each other are drawn as
-     * one ghost, between them, if their light is low enough for the distance. A
-     * ghost whose mean light in wave 1, from one light, is below DIMMEST
-     * (display white), or below DIMMEST / 8 if it folds, is drawn with the rays
-     * of wave 1 alone, in the colours of all three waves. Between DIMMEST and
-     * twice DIMMEST, waves 0 and 2 draw a fraction of their light with their
-     * own rays. DIM NULL or DIMMEST {0, 0}: every wave draws all of its
-     * light. */
+    /* Used only with three waves and without sets. Lights must be in the order
+     * of glint_lights_merge(). Dim ghosts of lights near each other are drawn
+     * as one ghost, between them, if their light is low enough for the
+     * distance. A ghost is drawn with the rays of wave 1 alone, in the colours
+     * of all three waves, if its mean light in wave 1, from one light, is below
+     * DIMMEST (display white), or below DIMMEST / 8 if the ghost folds. Between
+     * DIMMEST and twice DIMMEST, waves 0 and 2 draw a fraction of their light
+     * with their own rays. DIM NULL or DIMMEST {0, 0}: every wave draws all of
+     * its light. */
     struct glint_dim *dim;
     struct glint_real dimmest;
     /* Codes, 0 .. 2^15 in _q8. In a picture in codes, edges across which light
@@ -138,8 +138,8 @@ struct glint_flare_frame {
 };
 
 /* Static lights: they represent the lights of several frames of a video, so
- * that rays can be reused. The caller owns the arrays, MAX_LIGHTS entries each,
- * and sets N to 0 before the first frame. */
+ * that rays can be reused in these frames. The caller owns the arrays, which
+ * have MAX_LIGHTS entries each, and sets N to 0 before the first frame. */
 struct glint_still {
     int max_lights;
     int n; /* number of static lights in LIGHT, and of their factors */
@@ -150,13 +150,14 @@ struct glint_still {
     int64_t (*sum_q20)[3]; /* scratch */
 };
 
-/* Decides whether the static lights can represent LIGHTS. If each of LIGHTS is
- * within NEAR_Q30 (chord of the angle) of a static light, and is at most 1.5
- * times as bright as planned for it, the static lights stay, with factors that
- * reproduce LIGHTS: 0 for lights that have vanished. Otherwise LIGHTS become
- * the static lights. Returns the number of static lights; 0: more than
- * max_lights. Factors are accurate to 2^-14; if the colour has changed, each
- * channel is accurate to 1/64 of the largest channel. */
+/* Decides whether the static lights can represent LIGHTS. They can if each of
+ * LIGHTS is within NEAR_Q30 (chord of the angle) of a static light, and is at
+ * most 1.5 times as bright as planned for it. Then the static lights stay the
+ * same, with factors that reproduce LIGHTS: 0 for lights that have vanished.
+ * Otherwise LIGHTS become the static lights. Returns the number of static
+ * lights, or 0 if there are more than max_lights. Factors are accurate to
+ * 2^-14; if the colour has changed, each channel is accurate to 1/64 of the
+ * largest channel. */
 int glint_lights_still(struct glint_still *still,
                        const struct glint_light *lights, int n_lights,
                        int32_t near_q30);
@@ -195,8 +196,8 @@ struct glint_flare_config {
     int dither;             /* 1: 8-bit output is dithered, deterministically */
     struct glint_stop stop; /* opening of the stop; copied */
 
-    /* The irradiance of a cell is rounded to so many steps per octave, 1 ..
-     * 4096, and to fewer steps for faint ghosts of a picture in codes. Edges
+    /* Number of steps per octave to which the irradiance of a cell is rounded,
+     * 1 .. 4096; fewer are used for faint ghosts of a picture in codes. Edges
      * between cells of equal irradiance are not drawn. 0: irradiance is not
      * rounded. */
     int irradiance_steps;
@@ -205,9 +206,9 @@ struct glint_flare_config {
      * that a frame needed. */
     int max_bundles;
     int max_vertices; /* vertices of all bundles of a frame */
-    /* Primitives (edges) of a frame. Each worker gets an equal section; with
-     * half as many again as needed, few bundles must wait for capacity in the
-     * section of another worker. */
+    /* Primitives (edges) of a frame. Each worker gets an equal section of them.
+     * If the capacity is 1.5 times the number needed, few bundles must wait for
+     * capacity in the section of another worker. */
     int max_primitives;
     int max_refs; /* entries in the lists of all tiles */
 
@@ -314,9 +315,9 @@ void glint_flare_begin_rays(struct glint_flare *flare,
 
 /* Restricts glint_flare_bin() and glint_flare_draw() to the pixel rows Y0 .. Y1
  * - 1 until the next begin or plan. 0 <= Y0 < Y1 <= height; Y0 must be a
- * multiple of the side of a tile, Y1 a multiple or the height. A picture that
- * is drawn in several bands of rows gets the same bits, with less memory.
- * Bundles may be binned again after each call. Must not be used at half
+ * multiple of the side of a tile, Y1 must be such a multiple or the height. A
+ * picture that is drawn in several bands of rows gets the same bits, with less
+ * memory. Bundles may be binned again after each call. Must not be used at half
  * resolution. */
 void glint_flare_set_rows(struct glint_flare *flare, int y0, int y1);
 
@@ -349,7 +350,8 @@ struct glint_planned {
     /* Mean irradiance of the pixels that the bundle covers, display white. */
     struct glint_real irradiance;
     int ghost, light, wave; /* indices, as in glint_flare_account() */
-    /* Fraction of the probed rays that stop and barrels transmit, 0 .. 255. */
+    /* Fraction of the rays traced by the plan that the stop and the barrels
+     * transmit, 0 .. 255. */
     int inside_q8;
     /* Fraction of the bounding box of its light that lies in the picture, 0 ..
      * 255. */
@@ -370,7 +372,7 @@ int glint_flare_planned(const struct glint_flare *flare, int i,
 void glint_flare_light(const struct glint_flare *flare,
                        struct glint_real *brightest, struct glint_real *flux);
 
-/* Returns the number of rays that the last plan probed. */
+/* Returns the number of rays that the last plan traced to estimate ghosts. */
 int64_t glint_flare_looked(const struct glint_flare *flare);
 
 /* Converts the grids of all bundles into primitives and sorts the primitives
@@ -389,8 +391,8 @@ void glint_flare_draw(struct glint_flare *flare,
 /* Returns the number of small tiles to which the last draw added light. */
 int glint_flare_tiles(const struct glint_flare *flare);
 
-/* Returns the number of samples of a linear picture that the last draw
- * clamped to the range. */
+/* Returns the number of samples of a linear picture that the last draw clamped
+ * to the range of int32. */
 int glint_flare_held(const struct glint_flare *flare);
 
 /* ------------------------------------------------------------ what and why */
@@ -398,7 +400,7 @@ int glint_flare_held(const struct glint_flare *flare);
 /* Why the bundle of one ghost, light and wave was drawn or left out. */
 enum glint_outcome {
     GLINT_OUTCOME_DRAWN,
-    GLINT_OUTCOME_EMPTY, /* the bundle was planned, but no edge of its grid
+    GLINT_OUTCOME_EMPTY, /* the bundle was planned, but no edge of its ray grid
                             changes a pixel */
     /* Not drawn, as only_ghost selects another ghost, or a tint mutes this
      * one. */
@@ -431,11 +433,11 @@ struct glint_account {
     int probed; /* number of rays that the plan probed for the bundle */
     /* Cells per side of the grid, and vertices of the whole grid. */
     int cells, vertices;
-    /* Number of polynomials per ray, and number of these that are of barrels
-     * that cut. */
+    /* Number of polynomials per ray, and how many of these belong to barrels
+     * that cut rays. */
     int outputs, barrels;
-    /* Number of terms of all these polynomials after substituting angle and
-     * wavelength. */
+    /* Number of terms of all these polynomials after angle and wavelength were
+     * substituted. */
     int terms;
     /* Number of edges drawn; their sum over all bundles is PRIMITIVES of struct
      * glint_flare_stats. */
@@ -456,16 +458,17 @@ struct glint_account {
 void glint_flare_account(struct glint_flare *flare, int ghost, int light,
                          int wave, struct glint_account *account);
 
-/* Restricts drawing to those bundles, of the bundles planned and binned last,
- * that belong to ghost GHOST with all its parts, to light LIGHT and to wave
- * WAVE (with sets of waves: to all waves of set WAVE). Each may be -1 for all.
- * The restriction lasts until the next call of this function or of
- * glint_flare_bin(). */
+/* Restricts drawing to bundles that belong to ghost GHOST with all its
+ * additional pupil regions, to light LIGHT and to wave WAVE (with sets of
+ * waves: to all waves of set WAVE), among the bundles planned and binned last.
+ * Each number may be -1 for all. The restriction lasts until the next call of
+ * this function or of glint_flare_bin(). */
 void glint_flare_keep(struct glint_flare *flare, int ghost, int light,
                       int wave);
 
 /* Returns the number of edges in the list of small tile TILE; tiles are
- * numbered row by row. Light that enters a tile from the left is in no list. */
+ * numbered row by row. Light that enters a tile from the tile to its left is in
+ * no list. */
 int glint_flare_listed(const struct glint_flare *flare, int tile);
 
 #ifdef __cplusplus

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/kernels.h - which instruction sets the hot loops may use.
+ * glint/kernels.h - the instruction sets that the hot loops may use.
  *
  * The output is bit-identical for all sets; only the speed differs. If all CPUs
- * that the library is built for have NEON, as on aarch64, the kernels for
+ * for which the library is built have NEON, as on aarch64, the kernels for
  * pixels exist for NEON only. */
 #ifndef GLINT_KERNELS_H
 #define GLINT_KERNELS_H

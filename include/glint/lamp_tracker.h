@@ -35,10 +35,10 @@ extern "C" {
 enum glint_lamp_state {
     GLINT_LAMP_RISING,
     GLINT_LAMP_STEADY, /* the lamp is visible, at full level */
-    /* The lamp is hidden or off, or too many lamps are brighter: the track
-     * moves on, slower and slower. */
+    /* The lamp is hidden or off, or too many lamps are brighter. The track
+     * continues to move, slower and slower. */
     GLINT_LAMP_FADING,
-    /* The lamp has left the picture, and the track moves on off-screen. */
+    /* The lamp has left the picture; its track continues to move off-screen. */
     GLINT_LAMP_LEAVING
 };
 
@@ -54,8 +54,8 @@ struct glint_lamp_track {
     int32_t level_q15;
     /* Linear luminance in the picture, 1 = white pixel. */
     int64_t flux_q16;
-    /* Linear luminance as if the picture clipped nothing, as in struct
-     * glint_spot. */
+    /* Linear luminance that the lamp would have if the picture clipped nothing,
+     * as in struct glint_spot. */
     int64_t power_q16;
     int32_t axis_q8[2]; /* RMS semi-axes of the core, pixels */
     /* Direction of the major axis, to 1/4 degree; cos >= 0. */
@@ -73,10 +73,10 @@ struct glint_lamp_tracker_config {
     /* Max distance of a spot from the predicted position of its track, as a
      * fraction of the picture's width. */
     int32_t match_q15;
-    /* Min fraction of the flux that changes at a cut; above 32768: no cuts are
-     * detected. There is a cut if this fraction of the flux before vanishes and
-     * this fraction of the flux now is new, or if three or more lamps appear or
-     * vanish at once. */
+    /* Min fraction of the flux that changes at a cut; above 32768: cuts are not
+     * detected. There is a cut if this fraction of the previous picture's flux
+     * vanishes and this fraction of the new picture's flux is new, or if three
+     * or more lamps appear or vanish at once. */
     int32_t cut_q15;
     /* Milliseconds in which the level rises from 0 to full, or the flux to a
      * greater flux. */

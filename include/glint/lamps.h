@@ -46,8 +46,8 @@ extern "C" {
 /* The main reason for which a region was rejected as a lamp. */
 enum glint_doubt {
     GLINT_DOUBT_NONE, /* not rejected: the region is a lamp */
-    GLINT_DOUBT_DIM,  /* too few pixels at the upper threshold, or too few at
-                         all */
+    GLINT_DOUBT_DIM,  /* too few pixels reach the upper threshold, or the region
+                         has too few pixels */
     /* The surroundings of the region are nearly as bright as the region. */
     GLINT_DOUBT_AROUND,
     /* Light around the region does not fall off, or falls off unevenly. */
@@ -80,8 +80,8 @@ struct glint_spot {
     enum glint_doubt doubt;
 
     /* glint_profile_measure() (glint/profile.h) sets these members and refines
-     * rgb; before that call, they hold the flux, and a circle of the same RMS
-     * radius. */
+     * rgb_q15. Before that call they hold the flux, and a circle with the same
+     * RMS radius as the spot. */
     int64_t power_q16;  /* estimated flux minus background, as if nothing were
                            clipped; 1 = one white pixel */
     int32_t axis_q8[2]; /* RMS semi-axes of its core, pixels, the major axis
@@ -98,8 +98,9 @@ struct glint_lamp_finder_config {
     /* Lower threshold, stops from white, -20 .. threshold_high_q8: a region
      * extends to the pixels that reach it. */
     int32_t threshold_low_q8;
-    /* 8-bit full-range code of white, 1 .. 255; 0: the code at which codes
-     * clip, and also the white of the picture if it is darker. */
+    /* 8-bit full-range code of white, 1 .. 255. 0: white is the code at which
+     * codes clip and, in a picture that does not reach it, the white of the
+     * picture, too. */
     int white_code;
     int min_area; /* min area, pixels, 1 or more; smaller regions are noise */
     /* Max area of a lamp, as a fraction of the area of the picture; larger
@@ -110,7 +111,7 @@ struct glint_lamp_finder_config {
     /* 1: regions are scored by appearance and surroundings; 0: all bright
      * regions are lamps. */
     int32_t judge;
-    /* 1: after the lamps the list has regions marked faint, for
+    /* 1: the list also has, after the lamps, regions marked faint, for
      * glint/lamp_tracker.h: regions with too few pixels at the upper threshold,
      * with an area of only half of min_area, or with a score slightly too
      * low. */
@@ -144,11 +145,11 @@ int glint_lamp_finder_find(struct glint_lamp_finder *finder,
                            struct glint_spot *spots, int max);
 
 /* Prepares the next call of glint_lamp_finder_find(), and only that call, for a
- * picture of a video. White will be at least the fraction PART_Q15, 0 .. 2^15,
- * of the white of the last picture: otherwise, while a lamp is hidden for a
+ * picture of a video. The white level will be at least the fraction PART_Q15, 0
+ * .. 2^15, of that of the last picture: otherwise, while a lamp is hidden for a
  * moment, its glow would be the brightest light and count as a lamp. If no
  * region is a lamp, the best region needs a slightly higher score than in a
- * still picture, as other pictures may show it, too. */
+ * still picture, as the region may be visible in other pictures, too. */
 void glint_lamp_finder_keep_white(struct glint_lamp_finder *finder,
                                   int32_t part_q15);
 

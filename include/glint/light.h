@@ -26,24 +26,24 @@ struct glint_shade {
     /* &glint_shade_method. It is a pointer so that only programs that use it
      * link it. */
     const struct glint_shade_method *method;
-    /* Width of the soft edge, stop radii, 0 .. 2^16: across it the light rises
-     * from 0 at the outline as 3 x^2 - 2 x^3, where x is the distance from the
-     * outline / width. */
+    /* Width of the soft edge, stop radii, 0 .. 2^16. Across it the transmission
+     * rises from 0 at the outline as 3 x^2 - 2 x^3, where x = (distance from
+     * the outline) / width. */
     int32_t soft_q16;
     /* Log2 of the number of cells per side of the finest table; 0: there are no
-     * tables, and all inside the soft edge is clear. */
+     * tables, and everything inside the soft edge is clear. */
     int log2;
-    /* [log2]: table k has 2^(log2 - k) + 1 nodes per side over +-1 stop radius,
-     * row 0 at the lowest y; points outside take the value of the nearest node.
-     * Both must outlive the stop. LEVEL: transmission, 0 .. 2^15. ROUGH: max
-     * difference between the transmission in a finer table and in this table
-     * within a node and a half, in 256ths. */
+    /* [log2]: table k has 2^(log2 - k) + 1 nodes per side over +-1 stop radius;
+     * row 0 has the lowest y. Points outside have the value of the nearest
+     * node. Both arrays must outlive the stop. LEVEL: transmission, 0 .. 2^15.
+     * ROUGH: max difference, within a node and a half, between the transmission
+     * in a finer table and in this table, in 256ths. */
     const uint16_t *level_q15[GLINT_SHADE_MOST_LOG2];
     const uint8_t *rough_q8[GLINT_SHADE_MOST_LOG2];
 };
 
-/* The opening of the aperture stop, fixed to the camera: x right, y up. Its
- * unit is the stop radius: 1 is the circle of the frame's f-number. */
+/* The opening of the aperture stop, in axes fixed to the camera: x right, y up.
+ * Its unit is the stop radius: 1 is the circle of the frame's f-number. */
 struct glint_stop {
     int n_blades; /* 0: circle; else 3 .. GLINT_MAX_BLADES */
     /* Unit normal of each side, outwards. */
@@ -58,8 +58,8 @@ struct glint_stop {
     /* Soft edge, dust and mask of the stop; must outlive the stop. NULL: all of
      * the opening is clear. */
     const struct glint_shade *shade;
-    /* For bundles of a model only: radius of the stop / radius of the stop that
-     * the model was baked with, 2^20 .. 2^30; 0: the radii are equal. */
+    /* For bundles of a model only: (radius of the stop) / (radius of the stop
+     * with which the model was baked), 2^20 .. 2^30; 0: the radii are equal. */
     int32_t opening_q30;
 };
 
@@ -69,13 +69,13 @@ struct glint_light {
     int32_t sine_q30, cosine_q30;
     /* Cosine and sine of the azimuth: 0 = right, 90 degrees = up. */
     int32_t cos_q30, sin_q30;
-    /* Value that the in-focus image of the light would have if it were spread
-     * over one pixel; 1 = display white. */
+    /* Value that the pixels of the light's in-focus image would have if the
+     * image covered one pixel; 1 = display white. */
     struct glint_real power;
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
-    /* If the light is one of many points of a lamp: tangent of the angle to the
-     * neighbouring points. Ghosts of the light that are too small to touch the
-     * ghosts of these points are enlarged. 0: a single light. */
+    /* If the light is one of the many points of a lamp: tangent of the angle to
+     * the neighbouring points. Ghosts of the light that are too small to touch
+     * the ghosts of those points are enlarged. 0: a single light. */
     int32_t apart_q30;
 };
 
@@ -93,9 +93,9 @@ double glint_tint_factor(const struct glint_tint *tint, int c);
 struct glint_wave {
     int32_t wave_q24;   /* 1 / wavelength^2, um^-2 */
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
-    /* Factor on rgb_q14, 1 / mm^2: the largest channel of the colour before it
-     * was normalised to 1, divided by the flux in mm^2 of the direct image at
-     * angle 0, the unit of light (unit_flux of struct glint_setup). */
+    /* Factor on rgb_q14, 1 / mm^2: (largest channel of the colour before it was
+     * normalised to 1) / (flux in mm^2 of the direct image at angle 0, the unit
+     * of light; unit_flux of struct glint_setup). */
     struct glint_real weight;
 };
 

@@ -3,10 +3,10 @@
  * glint/measure.h - measures the difference of two pictures in linear light.
  *
  * Both pictures are multiplied by a factor, clipped, sRGB-encoded and rounded
- * to 8 bits. The factor is given, or makes the 99.9th percentile of luminance
- * over all pixels of the reference 1. Metrics are computed from the codes; if
- * all codes are equal, PSNR is computed from the values before rounding. Flux
- * is compared before clipping. */
+ * to 8 bits. The caller gives the factor, or it is chosen so that the 99.9th
+ * percentile of luminance over all pixels of the reference becomes 1. Metrics
+ * are computed from the codes; if all codes are equal, PSNR is computed from
+ * the values before rounding. Flux is compared before clipping. */
 #ifndef GLINT_MEASURE_H
 #define GLINT_MEASURE_H
 
@@ -25,8 +25,8 @@ struct glint_measure {
     /* Structural similarity of luma, 8 x 8 blocks every 4 pixels. */
     double ssim;
     double p99;      /* 99th percentile of |difference|, codes */
-    double flux;     /* sum of the light of the test picture / sum of the light
-                        of the reference */
+    double flux;     /* (sum of the light of the test picture) / (sum of the
+                        light of the reference) */
     double factor;   /* factor that the test picture was multiplied by to fit
                         the reference */
     double exposure; /* factor that the reference was multiplied by before it

@@ -86,15 +86,16 @@ struct glint_model_header {
     /* Sine of the max angle of lights that the model covers; lights farther off
      * the axis are not drawn. */
     int32_t sine_hi_q30;
-    /* Flux of the direct image at angle 0 for irradiance 1 through a circular
-     * stop, mm^2: coefficients of powers of w over the band. */
+    /* Flux, mm^2, of the direct image at angle 0 through a circular stop if the
+     * irradiance is 1: coefficients of powers of w over the band. */
     struct glint_real direct_flux[GLINT_FLUX_TERMS];
-    /* At R times the radius of the stop, the flux is R^2 (direct_flux + c
-     * (stopped_flux[0] + c stopped_flux[1])) with c = 1 - R^2. */
+    /* Correction for smaller stops: at R times the radius of the stop, the flux
+     * is R^2 (direct_flux + c (stopped_flux[0] + c stopped_flux[1])) with c = 1
+     * - R^2. */
     struct glint_real stopped_flux[2][GLINT_FLUX_TERMS];
     uint32_t n_surfaces;
     uint32_t n_ghosts, ghost_at; /* array of struct glint_model_ghost */
-    /* The last n_parts ghosts are additional pupil regions of earlier
+    /* The last n_parts ghosts are additional pupil regions (parts) of earlier
      * ghosts. */
     uint32_t n_parts;
     uint32_t n_systems, system_at; /* array of struct glint_model_system */
@@ -127,8 +128,9 @@ struct glint_model_system {
     int32_t box_exponent;
     uint32_t output_at; /* array of struct glint_model_output, by rising kind */
     uint8_t n_outputs, box_terms;
-    /* If annulus is k, the system omits |v| < k / (k + 1), which other parts of
-     * the pupil cover; at most GLINT_MAX_ANNULUS, 0 in the lens basis. */
+    /* If annulus is k, the system omits |v| < k / (k + 1), which other pupil
+     * regions of the ghost cover; at most GLINT_MAX_ANNULUS, 0 in the lens
+     * basis. */
     uint8_t annulus;
     uint8_t zero;
 };
@@ -157,11 +159,11 @@ enum glint_channel {
     GLINT_OUT_STOP_X, /* position in the stop, stop radii */
     GLINT_OUT_STOP_Y,
     GLINT_OUT_ENERGY,
-    /* Max over all surfaces of (height of the ray / semi-diameter)
+    /* Max of (height of the ray) / (semi-diameter) over all surfaces
      * [Bodonyi25]. */
     GLINT_OUT_RADIUS,
-    /* (1 + r^2) / 2, where r = (height of the ray / semi-diameter) at a barrel
-     * that cuts rays: above 1 the ray is cut. */
+    /* (1 + r^2) / 2, where r = (height of the ray) / (semi-diameter) at a
+     * barrel that cuts rays: the ray is cut if the value is above 1. */
     GLINT_OUT_BARREL_0,
     GLINT_OUT_BARREL_1,
     GLINT_OUT_BARREL_2,
@@ -173,13 +175,14 @@ enum glint_channel {
  * have the same exponent, and so have stop x and y. */
 struct glint_model_output {
     uint8_t kind, n_terms;
-    uint8_t n_narrow;     /* number of coefficients at the end that are int16
-                             instead of int32, padded to whole words */
+    uint8_t n_narrow;     /* number of coefficients, at the end of the list,
+                             that are int16 instead of int32, padded to whole
+                             words */
     uint8_t narrow_shift; /* int16 coefficients are multiplied by
                              2^narrow_shift; at most 20 */
-    /* Of the energy; both are 0 for other kinds. If head, at most 28, is not 0,
-     * the polynomial P is clamped to 2^(29 - head), far above its values where
-     * light gets through. The energy is P, squared ROOTS times (at most 2), and
+    /* For the energy only; both are 0 for other kinds. If head, at most 28, is
+     * not 0, the polynomial P is clamped to 2^(29 - head), far above its values
+     * where light passes. The energy is P, squared ROOTS times (at most 2), or
      * 0 if P is below 0. */
     uint8_t head, roots;
     int16_t exponent; /* value of the polynomial = integer * 2^exponent */
@@ -193,9 +196,9 @@ struct glint_model_output {
     uint32_t rounding_q8; /* proven bound of the rounding error of the
                              polynomial, in units of the integer */
     /* Measured errors of the run-time arithmetic against exact rays, coded for
-     * glint_model_error_q20(). Unit: pixels (film 1920 pixels wide), stop
-     * radii, fraction of the energy (for energies of at least a fiftieth of the
-     * maximum in the system), or relative radius. */
+     * glint_model_error_q20(). Units: pixels (of a picture 1920 pixels wide),
+     * stop radii, fraction of the energy (for energies of at least a fiftieth
+     * of the system's max), or relative radius. */
     uint16_t rms, p50, p99, max;
 };
 
@@ -286,18 +289,19 @@ struct glint_zoom_lens {
      * ghosts. */
     const uint32_t *has[GLINT_MAX_ZOOM_MODELS];
     int32_t now_q30; /* current position */
-    /* Index of the model at or below the current position; the next model is
-     * above. */
+    /* Index of the model at or below the current position; the model after it
+     * is above. */
     int below;
-    /* For each ghost, the two nearest models that have it: below, above. */
+    /* For each ghost, the indices of the two nearest models that have it: the
+     * one below and the one above the current position. */
     uint8_t side[2][GLINT_MAX_ZOOM_GHOSTS];
     /* Storage that LENS points to. */
     struct glint_model_header header;
     struct glint_model_ghost ghost[GLINT_MAX_ZOOM_GHOSTS];
-    /* For each ghost and part: the ghost that it belongs to, its number among
-     * the parts of that ghost, and its index in both models of that ghost, -1
-     * where a model lacks it. Additional parts of ghost G are PART_FROM[G] ..
-     * PART_FROM[G + 1] - 1. */
+    /* For each ghost and additional pupil region (part): the ghost to which it
+     * belongs, its number among the parts of that ghost, and its index in both
+     * models of that ghost, -1 in a model that lacks it. The additional parts
+     * of ghost G are PART_FROM[G] .. PART_FROM[G + 1] - 1. */
     int16_t whole[GLINT_MAX_ZOOM_GHOSTS], number[GLINT_MAX_ZOOM_GHOSTS];
     int16_t place[2][GLINT_MAX_ZOOM_GHOSTS];
     int16_t part_from[GLINT_MAX_ZOOM_GHOSTS + 1];

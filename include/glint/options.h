@@ -121,7 +121,7 @@ struct glint_options {
 #include "glint/options.inc"
 };
 
-/* True if the caller has set option MEMBER of OPTIONS. */
+/* True if the caller has set option MEMBER in OPTIONS. */
 #define GLINT_OPTION_GIVEN(options, member) \
     ((options)->given[GLINT_OPTION_OF_##member])
 
@@ -154,9 +154,9 @@ enum glint_status glint_options_set_text(struct glint_options *options,
                                          const char *name, const char *text,
                                          struct glint_error *error);
 
-/* Returns the quality parameters that OPTIONS select: those of option quality,
- * replaced by parameters that were set individually, except max_lights and
- * area_points. */
+/* Returns the quality parameters that OPTIONS select: those of the option
+ * quality, except that parameters that were set individually replace them.
+ * max_lights and area_points are not replaced. */
 struct glint_quality glint_options_quality(const struct glint_options *options);
 
 /* Writes to TEXT[BYTES] a description of the values that OPTION accepts. */

@@ -31,7 +31,7 @@ extern "C" {
 
 #define GLINT_MAX_FILMS 8
 
-/* A layer of a coating: a film without absorption. */
+/* A layer of a coating, without absorption. */
 struct glint_film {
     /* Index of refraction, 1.01 .. 4, the same at all wavelengths. */
     double index;
@@ -84,8 +84,8 @@ struct glint_surface {
     double nd;      /* index of refraction, at 587.56 nm, of the medium
                        behind the surface */
     double vd; /* Abbe number of the medium behind the surface; 0 for air */
-    /* Dispersion of a catalogue glass, as glint_glass.sellmeier; all 0:
-     * dispersion is given by nd and vd. */
+    /* Dispersion of a catalogue glass, as glint_glass.sellmeier; all 0: nd and
+     * vd give the dispersion. */
     double sellmeier[6];
     struct glint_coating coating; /* coating of the surface; cemented surfaces
                                      have none */
@@ -98,13 +98,13 @@ struct glint_form {
     int bend;      /* enum glint_bend */
     double across; /* 1 / across_mm; 0: a cylinder */
     double semi_mm;
-    /* end2: square of the height up to which the profile follows the table.
-     * end_at: value, first and second derivative of the profile by the squared
-     * height at end2; they continue the profile, with a curvature that fades
-     * out. */
+    /* end2: square of the height up to which the profile follows the lens
+     * table. end_at: value of the profile at end2, and its first and second
+     * derivative by the squared height; they continue the profile with a
+     * curvature that fades out. */
     double end2, end_at[3];
-    /* Rigid transform of a point p from the frame of the light at the vertex
-     * to the frame of the surface: turn p + shift; rows of TURN are unit
+    /* Rigid transform of a point p from the axes of the light at the vertex to
+     * the axes of the surface: TURN p + SHIFT; rows of TURN are unit
      * vectors. */
     double turn[3][3], shift[3];
     /* LEVEL: the form is round or a cylinder, and on the axis, so rays stay in
@@ -148,15 +148,15 @@ double glint_surface_index(const struct glint_surface *s, double wavelength_nm);
 #define GLINT_MAX_POSITIONS 8  /* max columns of the table of a zoom lens */
 #define GLINT_MAX_MOVES     12 /* max gaps of a zoom lens that change */
 
-/* The values of a zoom lens at each of its positions, sorted by ascending or
- * descending focal length. Monotone cubics interpolate them over the zoom
- * parameter, which is 0 at the first and 1 at the last column and
- * proportional to the logarithm of the focal length. */
+/* The values of a zoom lens at each of its positions (columns of the table),
+ * sorted by ascending or descending focal length. Monotone cubics interpolate
+ * the values over the zoom parameter, which is 0 at the first and 1 at the last
+ * column and proportional to the logarithm of the focal length. */
 struct glint_zoom {
     int n_positions; /* number of columns; 0: the lens does not zoom */
     int n_moves;     /* number of gaps that change */
-    /* Index of the element before each such gap, among surfaces and the stop,
-     * counted from the front. */
+    /* For each gap that changes: index of the element before it, among surfaces
+     * and the stop, counted from the front. */
     int move[GLINT_MAX_MOVES];
     double gap_mm[GLINT_MAX_MOVES][GLINT_MAX_POSITIONS];
     double f_number[GLINT_MAX_POSITIONS];
@@ -297,8 +297,8 @@ struct glint_optics {
     /* Squeeze of an anamorphic lens: focal length in the y-z plane (focal_mm) /
      * focal length in the x-z plane. 1 for round lenses. */
     double squeeze;
-    /* Image scale: distance of a light's image from the centre of the sensor
-     * / tangent of the light's angle. It equals the focal length if the lens
+    /* Image scale: (distance of a light's image from the centre of the sensor)
+     * / (tangent of the light's angle). It equals the focal length if the lens
      * is focused at infinity; its change with focus is called breathing. */
     double scale_mm;
 };

@@ -22,15 +22,16 @@ extern const char
                                                            the last is NULL */
 double glint_quality_named(int name);
 
-/* Returns the level of QUALITY, a fraction between 0 and GLINT_QUALITY_LEVELS -
- * 1. It is rounded to a whole level between a level that draws at half
- * resolution and one that does not. */
+/* Returns the level of QUALITY, a real number from 0 to GLINT_QUALITY_LEVELS -
+ * 1. Between a level that draws at half resolution and one that does not, it is
+ * rounded to one of the two. */
 double glint_quality_place(double quality);
 
 /* Parameters that a quality selects: those of a frame, and two others. */
 struct glint_quality {
     struct glint_dials dials;
-    /* Percent by which irradiance is rounded; determines irradiance_steps. */
+    /* Mean step, in percent, to which irradiance is rounded; determines
+     * irradiance_steps. */
     double quantum;
     /* Tolerance with which the model is baked, as in struct
      * glint_bake_options. */

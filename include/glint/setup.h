@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 #define GLINT_MAX_WAVELENGTHS 32
-/* Number of waves in all sets together, see glint_setup_spread(). */
+/* Number of waves of all sets together, see glint_setup_spread(). */
 #define GLINT_SET_WAVES 65
 
 /* Chooses N wavelengths, 1 .. GLINT_MAX_WAVELENGTHS, that represent the
@@ -106,8 +106,9 @@ struct glint_setup {
     double direct_flux[GLINT_MAX_WAVELENGTHS]; /* flux of the direct image
                                                   through the stop at angle 0
                                                   for irradiance 1, mm^2 */
-    /* Flux that counts as light 1, mm^2: the mean of direct_flux over the
-     * wavelengths, or, after glint_setup_balance(), direct_flux itself. */
+    /* Flux, mm^2, that counts as light 1: the mean of direct_flux over the
+     * wavelengths or, after glint_setup_balance(), each wavelength's own
+     * direct_flux. */
     double unit_flux[GLINT_MAX_WAVELENGTHS];
     /* Set by glint_setup_spread(): sets of wavelengths, one after the other,
      * the smallest set first. Each ghost uses one set. */

@@ -19,7 +19,7 @@
 extern "C" {
 #endif
 
-/* Max events of a path: the light of a ghost crosses surfaces up to three
+/* Max events of a path: the light of a ghost crosses each surface at most three
  * times. */
 #define GLINT_MAX_EVENTS (3 * GLINT_MAX_SURFACES)
 
@@ -32,15 +32,16 @@ struct glint_event {
     enum glint_event_kind kind;
     int surface;       /* index of the surface; -1 for the stop */
     double curvature;  /* 1 / radius, 0 for a plane and the stop */
-    double advance_mm; /* z from the vertex of the previous event (or the start
-                          plane) to the vertex of this event; negative where
-                          light runs backwards */
+    double advance_mm; /* distance along z from the vertex of the previous event
+                          (or from the start plane) to the vertex of this event;
+                          negative where light runs backwards */
     double semi_mm;    /* semi-diameter */
     /* Index of refraction before and after the surface, in the direction of the
      * ray. */
     double n_from, n_to;
     int n_films; /* layers of the surface's coating; 0: bare */
-    bool shaped; /* true: the surface is not a centred sphere, but path->form */
+    bool shaped; /* true: the surface is not a centred sphere; path->form
+                    describes it */
 };
 
 /* A layer of a coating at the wavelength of a path. */

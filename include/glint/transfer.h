@@ -32,10 +32,11 @@ struct glint_box_window {
 /* The polynomials of one bundle: one ghost, light and wavelength. */
 struct glint_transfer {
     const struct glint_model_system *system;
-    uint32_t outputs; /* bit KIND is set if the system has that output */
+    uint32_t outputs; /* bit KIND is set if the system has an output of that
+                         kind */
     /* Exponents: value of an output = integer * 2^exponent. */
     int32_t exponent[GLINT_OUT_KINDS];
-    /* The members of these names of the energy's struct glint_model_output. */
+    /* head and roots of the struct glint_model_output of the energy */
     uint8_t head, roots;
     /* Log2 of the factor on the energy of a vertex, 0 .. 29;
      * glint_transfer_init() sets it to 0, the caller may raise it. */
@@ -45,10 +46,10 @@ struct glint_transfer {
     int32_t box[4];
     int32_t box_exponent;
     uint8_t annulus;
-    /* In the lens basis WHOLE is 1: v runs over all of the box. Outputs for a
-     * light in any quadrant are then mirrored from a light in the quadrant of
-     * the model: x and y are multiplied by SIGN, and y is negated again if SIDE
-     * is 1. Otherwise WHOLE and SIDE are 0, and SIGN is 1. */
+    /* WHOLE is 1 in the lens basis: v runs over all of the box. The light is
+     * mirrored into the quadrant that the model covers, and its outputs are
+     * mirrored back: x and y are multiplied by SIGN, and y is negated again if
+     * SIDE is 1. In other bases WHOLE and SIDE are 0, and SIGN is 1. */
     uint8_t whole, side;
     int8_t sign;
     /* Window of the box that rows and grids of rays cover.
@@ -114,19 +115,19 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
 
 /* How outputs in mm of the sensor map to pixels of the picture. */
 struct glint_place {
-    /* Cosine and sine of the angle by which outputs are rotated: the azimuth of
-     * the light; in the lens basis SIGN and 0. */
+    /* Cosine and sine of the angle by which outputs are rotated: of the azimuth
+     * of the light; in the lens basis SIGN of struct glint_transfer and 0. */
     int32_t cos_q30, sin_q30;
     struct glint_real pixels_per_mm;
     int32_t middle_x_q8, middle_y_q8; /* position of the centre of the sensor,
                                          pixels */
-    /* (Radius of the stop of the model / radius of the stop of the frame), 1 or
-     * more; 0: the radii are equal. */
+    /* (Radius of the model's stop) / (radius of the frame's stop), 1 or more;
+     * 0: the radii are equal. */
     struct glint_real stop_scale;
 };
 
-/* Return u at X_Q30, where -1 .. 1 is the width of the window; and v after J of
- * N equal steps from the lower to the upper end of the upper half of the
+/* Return u where X_Q30 = -1 .. 1 runs over the width of the window; and v after
+ * J of N equal steps from the lower to the upper end of the upper half of the
  * window, or of the whole window if WHOLE is 1. */
 int32_t glint_transfer_u(const struct glint_transfer *transfer, int32_t x_q30);
 int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
@@ -147,8 +148,8 @@ void glint_transfer_row(struct glint_transfer *transfer,
                         const struct glint_place *place, int n_cells, int j,
                         struct glint_vertex *row);
 
-/* Sets ROW to row J of that grid and, for little more time, MIRRORED to row
- * N_CELLS - J, its mirror image. */
+/* Sets ROW to row J of that grid and MIRRORED to row N_CELLS - J, its mirror
+ * image, for little more time than ROW alone. */
 void glint_transfer_rows(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells, int j,
                          struct glint_vertex *row,

@@ -15,8 +15,8 @@ extern "C" {
 struct glint_lamp {
     double theta_deg; /* angle off the axis, 0 .. 89.9 */
     double phi_deg;   /* angle about the axis: 0 = +x, 90 = up */
-    /* Value that the lamp's in-focus image would have if it were spread over
-     * one pixel, linear; 1 = display white. */
+    /* Value that the pixels of the lamp's in-focus image would have if the
+     * image covered one pixel, linear; 1 = display white. */
     double power;
     double rgb[3]; /* colour, linear BT.709; white is 1 1 1 */
     /* RMS semi-axes of its extent, the major one first, in tangents of angles

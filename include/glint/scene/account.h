@@ -31,41 +31,45 @@ enum glint_scene_fate {
 
 /* Items of work in a frame that are counted for each object. */
 enum glint_scene_item {
-    GLINT_SCENE_TRIANGLES, /* entries of its triangles in the lists of tiles */
+    GLINT_SCENE_TRIANGLES, /* entries of the object's triangles in the lists of
+                              tiles */
     GLINT_SCENE_SAMPLED,   /* samples of pixels that see the object */
     GLINT_SCENE_COVERING,  /* pixels that see the object */
     GLINT_SCENE_SHADED,    /* points of the object that are shaded */
-    GLINT_SCENE_SHADOWS,   /* sample points of lights that are tested for
-                              shadows */
-    GLINT_SCENE_TEXELS,    /* texels read for its textures and maps */
+    GLINT_SCENE_SHADOWS,   /* sample points of lights to which shadow rays are
+                              traced */
+    GLINT_SCENE_TEXELS,    /* texels read for the object's textures and light
+                              maps */
     GLINT_SCENE_LOOKUPS,   /* lookups in an environment, for brushed metal */
-    GLINT_SCENE_BOUNCED,   /* reflected and transmitted rays that start on it */
+    GLINT_SCENE_BOUNCED,   /* reflected and transmitted rays that start on the
+                              object */
     GLINT_SCENE_ITEMS
 };
 
 struct glint_scene_part {
     enum glint_scene_fate fate;
-    /* For COVERED: index of the object that hides most of it; else -1. */
+    /* For COVERED: index of the object that hides most of this object; else
+     * -1. */
     int by;
     int64_t count[GLINT_SCENE_ITEMS];
 };
 
 /* Sets OBJECTS[n_objects] to the statistics of each object in the frame that
- * was begun last; ALL to their sums (BY is -1, and GLINT_SCENE_COVERING counts
- * pixels in which any object is visible); and SEEN, [height][width] or NULL, to
- * the index of the object that the first sample of each pixel sees, or -1.
- * Refracted rays are traced without refraction. */
+ * was begun last. Sets ALL to their sums; in ALL, BY is -1, and
+ * GLINT_SCENE_COVERING counts pixels in which any object is visible. Sets SEEN,
+ * [height][width] or NULL, to the index of the object that the first sample of
+ * each pixel sees, or -1. Refracted rays are traced without refraction. */
 void glint_scene_account(struct glint_scene *scene,
                          struct glint_scene_part *objects,
                          struct glint_scene_part *all, int16_t *seen);
 
-/* Returns the approximate number of tests of reflected, transmitted and shadow
- * rays in the frame that was begun last, each with an object, a cell of a
- * mesh's grid or a triangle: counted in about 2000 pixels, and scaled to all
- * pixels. The light of one source at a point counts as 4 tests, a pixel of the
- * box around a ball as 3. Ends early, with a number above MOST, if there are
- * that many. The result does not depend on the processor or the number of
- * threads. */
+/* Returns the approximate number of tests that reflected, transmitted and
+ * shadow rays need in the frame that was begun last; each test is with an
+ * object, a cell of a mesh's grid or a triangle. They are counted in about 2000
+ * pixels, and scaled to all pixels. The light of one source at a point counts
+ * as 4 tests, a pixel of the box around a ball as 3. Ends early if there are
+ * more than MOST tests, and returns a number above MOST. The result does not
+ * depend on the processor or the number of threads. */
 int64_t glint_scene_count_tests(struct glint_scene *scene, int64_t most);
 
 /* Overlays of a recorded motion of one kind: number of shells, lines or box

@@ -131,20 +131,21 @@ struct glint_described_environment {
     double scale;    /* factor on all light of the environment */
 };
 
-/* A recorded motion, and how it is shown. Lengths are in units of the scene,
- * which equal the units of the recording; 0: such objects are not shown. */
+/* A recorded motion, and how it is shown: a body with sensors, and food items
+ * that the sensors may see. Lengths are in units of the scene, which equal the
+ * units of the recording; objects of length 0 are not shown. */
 struct glint_described_motion {
     char name[GLINT_DESCRIPTION_NAME_BYTES];
     uint8_t *data; /* a baked motion, malloc'ed; NULL: there is no motion */
     size_t bytes;
-    double reach;          /* max coordinate of the body and the foods */
-    double size;           /* radius of the body, on whose surface the sensors
-                              are */
-    double sensors, foods; /* radii of the spheres of sensors and foods */
-    double shells;         /* radius of a shell / radius of the food that it
-                              surrounds */
+    double reach;          /* max coordinate of the body and the food items */
+    double size;           /* radius of the body; sensors lie on its surface */
+    double sensors, foods; /* radii of the spheres of sensors and of food
+                              items */
+    double shells;         /* (radius of a shell) / (radius of the food item
+                              that it surrounds) */
     double lines, box;     /* widths of lines and of the edges of the box */
-    /* true: sensors detect only foods with an intensity above LEAST. */
+    /* true: sensors detect only food items whose intensity is above LEAST. */
     bool both;
     double least;           /* threshold of intensity, 0 .. 1 */
     int body, sensor, food; /* index of the first object of each kind; -1:
@@ -152,7 +153,7 @@ struct glint_described_motion {
     int shell_material, line_material, box_material;
     /* Index of the sensor that is the camera, from 0; -1: none. */
     int camera;
-    /* Bit mask, by index, of lamps that move with the body: their positions are
+    /* Bit mask, by index, of lamps that move with the body; their positions are
      * in the axes of the body. */
     uint32_t riders;
 };
@@ -176,8 +177,9 @@ struct glint_described_object {
                          axes */
     double catcher;   /* plane: fraction by which a shadow darkens the picture
                          behind it; 0: not a shadow catcher */
-    int material;     /* -1: none, for a catcher; for a mesh: material of
-                         triangles whose file names no other */
+    int material;     /* index of the material; -1 for a catcher, which has
+                         none. For a mesh: material of triangles whose file
+                         names no other material */
     int first_triangle, n_triangles;
 };
 

@@ -51,8 +51,8 @@ enum {
 
 enum glint_environment_levels {
     GLINT_ENVIRONMENT_GAUSS,
-    GLINT_ENVIRONMENT_MIP /* texels are means of 2 x 2 texels of the previous
-                             level */
+    GLINT_ENVIRONMENT_MIP /* texels are means of 2 x 2 texels of the level
+                             before */
 };
 
 enum glint_environment_code {
@@ -73,7 +73,7 @@ struct glint_environment_level {
 struct glint_environment_light {
     int32_t toward_q30[3]; /* unit vector to its middle */
     int32_t radius_q30;    /* sine of its angular radius, 0 .. 2^29 */
-    /* R, G, B of a white surface that faces the light, each 0 or more. */
+    /* R, G, B of a white surface that faces the light; each is 0 or more. */
     struct glint_real rgb[3];
 };
 
@@ -94,8 +94,9 @@ struct glint_environment_header {
     int32_t unit_log2;  /* log2 of the unit of light, -160 .. 100 */
     uint32_t n_levels, level_at; /* side_log2 + 1 entries of struct
                                     glint_environment_level */
-    /* Irradiance map: value of a white surface lit by the levels, by its
-     * normal, as 9e5 codes; the side is 2^GLINT_ENVIRONMENT_IRRADIANCE_LOG2. */
+    /* Irradiance map: value of a white surface that the levels light, by the
+     * surface's normal, as 9e5 codes; the side is
+     * 2^GLINT_ENVIRONMENT_IRRADIANCE_LOG2. */
     uint32_t irradiance_at;
     uint32_t n_lights, light_at; /* array of struct glint_environment_light */
 };

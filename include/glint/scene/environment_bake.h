@@ -36,9 +36,9 @@ struct glint_environment_options {
                        */
     double light_deg; /* max RMS radius of a light, 0.1 .. 20; wider bright
                          spots are not lights */
-    double light_above; /* lights are sought at falling thresholds, down to this
-                           many times the mean luminance of darker texels, 2 ..
-                           1000 */
+    double light_above; /* lights are sought at falling thresholds, of which the
+                           lowest is this factor times the mean luminance of
+                           darker texels; 2 .. 1000 */
     double turn_deg;    /* rotation of the environment about y to the right,
                            degrees, -360 .. 360 */
     double scale;       /* factor on all light, 1e-6 .. 1e6 */
@@ -47,14 +47,14 @@ struct glint_environment_options {
 /* Results of baking. Luminance is that of BT.709. */
 struct glint_environment_report {
     int width, height; /* size of the picture, pixels */
-    /* Number of pixels that were clamped to 0, or to the largest finite value
-     * if they were +inf. */
+    /* Number of pixels that were clamped: negative ones to 0, +inf to the
+     * largest finite value. */
     long long negative, not_finite;
     double mean, largest; /* mean and max luminance over the sphere */
     /* Max luminance of texels after the lights were removed. */
     double residual_largest;
-    double light_share; /* fraction of all light that is in the list
-                           of lights */
+    double light_share; /* fraction of all light that comes from the listed
+                           lights */
     /* Number of spots that were found to be lights; at most max_lights of them
      * are listed. */
     int spots;
@@ -66,7 +66,8 @@ void glint_environment_defaults(struct glint_environment_options *options);
 /* Bakes PICTURE. The file stores KEY and the first 63 characters of NAME that
  * are a-z, A-Z, 0-9, '-' or '_'. *DATA is malloc'ed. Returns GLINT_E_ARGUMENT
  * if OPTIONS are out of range. Returns GLINT_E_UNSUPPORTED if PICTURE has
- * another shape, or no light that can be scaled. May return GLINT_E_MEMORY. */
+ * another aspect ratio, or no light that can be scaled. May return
+ * GLINT_E_MEMORY. */
 enum glint_status
 glint_environment_bake(const struct glint_float_image *picture,
                        const struct glint_environment_options *options,

@@ -33,8 +33,9 @@ enum {
 };
 
 struct glint_scene_highlight {
-    /* Power equals flux, up to 2^42 _q16; area is the area of its squares; size
-     * and axes follow from its moments, at least half a pixel. */
+    /* power equals the flux, at most 2^42 _q16; area is the area of the
+     * highlight's squares; size and axes follow from the moments of its light
+     * and are at least half a pixel. */
     struct glint_spot spot;
     int object; /* index of the object that the brightest pixel shows */
 };

@@ -33,25 +33,25 @@ struct glint_texels_level {
 struct glint_texels {
     const uint32_t *code; /* texels of all levels, RGB9E5 */
     int32_t last;         /* index of the last (coarsest) level */
-    /* The last level is stored twice, so that each level has a next one. */
+    /* The last level is stored twice, so that there is a level after each. */
     struct glint_texels_level level[GLINT_TEXELS_LEVELS + 1];
 };
 
 struct glint_ward_lobe;
 struct glint_ward_place;
 
-/* Sets SUM_Q12 to the sum of the light in TEXELS, in their unit, at the samples
- * of LOBE, each multiplied by the sample's weight, 0 .. 8. The sum is below
- * 2^48. */
+/* Sets SUM_Q12 to the sum over the samples of LOBE of the light that TEXELS (in
+ * their unit) have at each sample, multiplied by the sample's weight, 0 .. 8.
+ * The sum is below 2^48. */
 typedef void glint_ward_sum_fn(const struct glint_ward_lobe *lobe,
                                const struct glint_texels *texels,
                                const struct glint_ward_place *place,
                                uint64_t sum_q12[3]);
 
-/* A reflection lobe, as a set of sampled half vectors; those from index N on
+/* A reflection lobe, as a set of sampled half vectors. Those from index N on
  * face away from the eye, so they add no light. Each sample reads mip level l,
- * where 4^l is (variance of its blur / variance of level 0): SPAN_Q14
- * 2^span_log2 times the cosine between half vector and eye. */
+ * where 4^l is (variance of its blur) / (variance of level 0): SPAN_Q14
+ * 2^span_log2 times the cosine between half vector and direction to the eye. */
 struct glint_ward_lobe {
     glint_ward_sum_fn *sum;
     int n; /* number of samples */
@@ -62,7 +62,8 @@ struct glint_ward_lobe {
     /* Components of the half vectors along tangent, bitangent and normal. */
     int32_t half_q14[3][GLINT_WARD_SAMPLES];
     int32_t factor_q14[GLINT_WARD_SAMPLES]; /* GLINT_WARD_1992: cube of the
-                                               normal component of half */
+                                               normal component of each half
+                                               vector */
     int32_t span_q14[GLINT_WARD_SAMPLES];   /* mantissa of each sample's span,
                                                1 .. 2 */
     int32_t span_log2[GLINT_WARD_SAMPLES];

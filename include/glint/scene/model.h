@@ -43,11 +43,11 @@ extern "C" {
 
 #define GLINT_SCENE_MAGIC   UINT32_C(0x53544e47) /* "GNTS" */
 #define GLINT_SCENE_VERSION 5
-#define GLINT_SCENE_NONE    UINT32_C(0xffffffff) /* index: no such entry */
+#define GLINT_SCENE_NONE    UINT32_C(0xffffffff) /* stands for no index */
 
 enum {
-    GLINT_SCENE_SPAN = 1 << 28, /* steps: the magnitude of every coordinate is
-                                   below this */
+    GLINT_SCENE_SPAN = 1 << 28, /* number of steps: every coordinate is smaller
+                                   in magnitude */
     GLINT_SCENE_MAX_OBJECTS = 4095,
     GLINT_SCENE_MAX_LIGHTS = 32, /* max number of lights, including those of the
                                     environment */
@@ -77,16 +77,16 @@ enum glint_scene_camera_kind {
                              flare */
 };
 
-/* A pinhole camera. A point P with camera coordinates (x, y, z) = axis (P - at)
- * is imaged x / z to the right of the middle of the picture and y / z above
- * it. */
+/* A pinhole camera. A point P has the camera coordinates (x, y, z) = axis (P -
+ * at). Its image is x / z to the right of the middle of the picture and y / z
+ * above it. */
 struct glint_scene_camera {
     uint32_t kind;          /* enum glint_scene_camera_kind */
     int32_t at[3];          /* position, steps */
     int32_t axis_q30[3][3]; /* unit vectors: to the right, up, ahead */
-    /* Tangents from the middle, 2^12 .. 2^30: of half the width of the picture,
-     * and (GLINT_CAMERA_CORNERS) of half its height; 0 if the kind has no such
-     * member. */
+    /* Tangents of the angles from the middle to the edge of the picture, 2^12
+     * .. 2^30: of half its width and (GLINT_CAMERA_CORNERS) of half its height;
+     * 0 if cameras of this kind do not use the member. */
     int32_t tan_x_q24, tan_y_q24;
 };
 
@@ -109,9 +109,9 @@ struct glint_scene_light {
     /* Sun: sine of its angular radius, _q30, 0 .. 2^29. Lamp: its radius,
      * steps, 0 .. GLINT_SCENE_SPAN. 0: a point. */
     int32_t radius;
-    /* R, G, B of a white surface that faces the light (a lamp at a distance of
-     * one unit of the scene), each 0 or more. The radiance of the disc is rgb /
-     * sine^2 of its angular radius. */
+    /* R, G, B of a white surface that faces the light (for a lamp: at a
+     * distance of one unit of the scene); each is 0 or more. The radiance of
+     * the light's disc is rgb / sine^2 of its angular radius. */
     struct glint_real rgb[3];
 };
 
@@ -137,8 +137,8 @@ struct glint_scene_texture {
  * (R.V)^k. */
 struct glint_scene_material {
     char name[GLINT_SCENE_NAME]; /* terminated */
-    /* Weights, 0 .. 32768. The sum of each of the next two lines is at most
-     * 32768. */
+    /* Weights, 0 .. 32768. The sum of the three weights of the next line, and
+     * of the two weights after it, is at most 32768. */
     int32_t ambient_q15, diffuse_q15, specular_q15;
     int32_t reflect_q15, pass_q15;
     int32_t rgb_q15[3]; /* colour, each channel 0 .. 32768; multiplied by the
@@ -187,8 +187,8 @@ struct glint_scene_skin {
      * of the longitude of each column, where 0 is in front of a camera that is
      * not rotated; then of the angle of each row from the upper pole. */
     uint32_t texel_at;
-    uint32_t closed; /* mesh: 1: backs of its triangles are never visible; else
-                        0 */
+    uint32_t closed; /* for a mesh, 1: the backs of its triangles are never
+                        visible; else 0 */
 };
 
 struct glint_scene_triangle {
@@ -220,7 +220,7 @@ struct glint_scene_mesh {
     uint32_t cells[3];  /* number along each axis, 1 .. GLINT_SCENE_MAX_CELLS;
                            the far corner of the grid is within
                            GLINT_SCENE_SPAN */
-    /* Cell c lists triangles ref[start[c]] .. ref[start[c + 1] - 1], in rising
+    /* Cell c lists triangles ref[start[c]] .. ref[start[c + 1] - 1] in rising
      * order: all triangles whose bounding box, enlarged by GLINT_SCENE_MARGIN
      * steps on each side, touches the cell. glint_scene_open() rejects
      * incomplete lists. */
@@ -253,7 +253,7 @@ struct glint_scene_object {
     int32_t catcher_q15;
     uint32_t hidden; /* 1: the object is not shown */
     /* The initial pose: point p of the object is at AT + TURN p. */
-    int32_t at[3];       /* steps; the whole object must be within
+    int32_t at[3];       /* position, steps; the whole object must be within
                             GLINT_SCENE_SPAN */
     int32_t turn_q30[4]; /* unit quaternion w, x, y, z */
 };
@@ -265,38 +265,41 @@ struct glint_scene_environment {
     /* Cosine and sine of the angle by which the environment is rotated to the
      * right. */
     int32_t turn_q30[2];
-    struct glint_real scale; /* factor on all its light, above 0 */
+    struct glint_real scale; /* factor on all light of the environment, above
+                                0 */
 };
 
 enum glint_scene_detect {
-    GLINT_DETECT_ANGLE, /* a sensor sees all foods within its angle of view */
-    GLINT_DETECT_BOTH   /* only if they are also brighter than a threshold */
+    GLINT_DETECT_ANGLE, /* a sensor sees all food items within its angle of
+                           view */
+    GLINT_DETECT_BOTH   /* a sensor sees food items within its angle of view
+                           that are also brighter than a threshold */
 };
 
-/* How a recorded motion is shown. The file of the motion (glint/scene/motion.h)
- * follows; its axes are those of the scene's text. */
+/* How a recorded motion is shown: a body with sensors, and food items that the
+ * sensors may see. The file of the motion (glint/scene/motion.h) follows; its
+ * axes are those of the scene's text. */
 struct glint_scene_motion {
     char name[GLINT_SCENE_NAME]; /* terminated */
     /* Index of the first object of each kind, or GLINT_SCENE_NONE: the body,
-     * the sensors and the foods. All are spheres; there are as many sensors and
-     * foods as the motion has. */
+     * the sensors and the food items. All are spheres; there are as many
+     * sensors and food items as in the motion's file. */
     uint32_t body, sensor, food;
-    int32_t size;  /* radius of the body, on whose surface the sensors are;
-                      steps */
-    int32_t shell; /* radius of the shell around a food that is seen, steps; 0:
-                      no shells */
-    int32_t line;  /* width of the lines from foods to the sensors that see
+    int32_t size;  /* radius of the body, steps; sensors lie on its surface */
+    int32_t shell; /* radius of the shell around a food item that a sensor sees,
+                      steps; 0: no shells */
+    int32_t line;  /* width of the lines from food items to the sensors that see
                       them, steps; 0: no lines */
     int32_t box;   /* width of the edges of the bounding box of all frames,
                       steps; 0: no box */
-    /* Material of shells, with its fraction of transmitted light; of lines and
-     * of the box, where only the colour matters. */
+    /* Indices of materials: of shells, whose fraction of transmitted light is
+     * used; and of lines and of the box, for which only the colour matters. */
     uint32_t shell_material, line_material, box_material;
     uint32_t detect; /* enum glint_scene_detect */
-    uint32_t least;  /* threshold of GLINT_DETECT_BOTH, 255ths */
-    uint32_t camera; /* index of the sensor that is the camera, or
+    uint32_t least;  /* threshold of intensity for GLINT_DETECT_BOTH, 255ths */
+    uint32_t camera; /* index of the sensor in which the camera is, or
                         GLINT_SCENE_NONE */
-    /* Bit mask, by index, of lamps that move with the body: their positions are
+    /* Bit mask, by index, of lamps that move with the body; their positions are
      * in the axes of the body. */
     uint32_t riders;
     uint32_t bytes; /* size of the file of the motion, a multiple of 4 */
@@ -316,7 +319,8 @@ struct glint_scene_header {
                          0xedb88320, reflected; initial value and final XOR
                          are all ones */
     uint32_t variant; /* enum glint_scene_hand */
-    /* Key of all texts and the files that they name, low word first. */
+    /* Key (hash) of all texts and of the files that they name, low word
+     * first. */
     uint32_t key[2];
     char name[64]; /* name of the scene, terminated */
     /* Log2 of the steps in one unit of the scene, -28 .. 60. */
@@ -326,7 +330,7 @@ struct glint_scene_header {
     int32_t background_q15[3]; /* colour of GLINT_BACKGROUND_COLOUR, 0 .. 2^30;
                                   else 0 */
     struct glint_scene_camera camera;
-    uint32_t flare;      /* 1: the lights cause flares; else 0 */
+    uint32_t flare;      /* 1: lights of the scene cause flares; else 0 */
     uint32_t highlights; /* max highlights that cause flares, 0 ..
                             8 */
     /* Number of entries and offset of each array of structs. */
@@ -338,9 +342,9 @@ struct glint_scene_header {
     uint32_t n_wards, ward_at;               /* struct glint_scene_ward */
     uint32_t n_environments, environment_at; /* struct
                                                 glint_scene_environment */
-    /* Number of suns at the end of the list of lights that stand for the lights
-     * of the environment that is shown: the max number of lights of an
-     * environment. */
+    /* Number of suns at the end of the list of lights that stand for the bright
+     * lights of the environment that is shown: the max over all environments of
+     * their number. */
     uint32_t n_environment_lights;
     uint32_t n_motions, motion_at; /* 0 or 1 struct glint_scene_motion */
     uint32_t n_stones, stone_at;   /* struct glint_scene_stone */

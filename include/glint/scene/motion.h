@@ -7,10 +7,11 @@
  *     status = glint_motion_over(&motion, &blocks, buffer, &reason); elsewhere
  *     status = glint_motion_frame(&motion, k, &frame); any frame
  *
- * A body with sensors moves among foods (objects that the sensors detect). Each
- * frame of the file has position and rotation of the body and the position of
- * each food. In frame 0 the body is at the origin and not rotated, so positions
- * are relative to that pose. Axes are those of the recording, right-handed.
+ * A body with sensors moves among food items, the objects that the sensors
+ * detect. Each frame of the file has position and rotation of the body and the
+ * position of each food item. In frame 0 the body is at the origin and not
+ * rotated, so positions are relative to that pose. Axes are those of the
+ * recording, right-handed.
  *
  * Lengths are in steps: one unit of the recording is 2^unit_log2 steps;
  * unit_log2 is 24 except for very large or tiny recordings.
@@ -19,8 +20,8 @@
  * of GLINT_MOTION_BLOCK bytes, little-endian. A block has as many records as
  * fit into the first GLINT_MOTION_ROOM bytes, then the number of the block and
  * its glint_motion_sum(). To read any frame, three blocks are needed (poses,
- * index and intensities), and the blocks with the events since the block of
- * poses began. */
+ * index and intensities), and the blocks with the events since the first frame
+ * of the block of poses. */
 #ifndef GLINT_SCENE_MOTION_H
 #define GLINT_SCENE_MOTION_H
 
@@ -42,8 +43,8 @@ enum {
     GLINT_MOTION_MAX_FOODS = 32,
     GLINT_MOTION_MAX_SENSORS = 32,
     GLINT_MOTION_MAX_FRAMES = 1 << 26,
-    GLINT_MOTION_SPAN = 1 << 30 /* steps: the magnitude of every coordinate is
-                                   below this */
+    GLINT_MOTION_SPAN = 1 << 30 /* number of steps: every coordinate is smaller
+                                   in magnitude */
 };
 
 /* The pose of the body in a frame, 20 bytes. */
@@ -53,19 +54,20 @@ struct glint_motion_pose {
                             of the body to the axes of frame 0 */
 };
 
-/* An event: from frame FRAME on, a new food at AT replaces food SLOT. */
+/* An event: from frame FRAME on, a new food item at AT replaces the food item
+ * with index SLOT. */
 struct glint_motion_event {
     uint32_t frame, slot;
-    int32_t at[3]; /* steps */
+    int32_t at[3]; /* position, steps */
 };
 
-/* State of the foods at the first frame of a block of poses. */
+/* State of the food items at the first frame of a block of poses. */
 struct glint_motion_index {
     uint32_t event; /* index of the first event after that frame */
-    /* Max distance, over the frames of the block, between the position of a
-     * food and where it was observed, steps. */
+    /* Max distance, over the frames of the block, between the stored position
+     * of a food item and the position where it was observed, steps. */
     uint32_t residual;
-    /* Index of the event that placed each food. */
+    /* Index of the event that placed each food item. */
     uint32_t food[GLINT_MOTION_MAX_FOODS];
 };
 
@@ -82,26 +84,27 @@ struct glint_motion_header {
     uint32_t crc32;    /* CRC-32 of all bytes after this word: polynomial
                           0xedb88320, reflected; initial value and final XOR are
                           all ones */
-    uint32_t variant;  /* 0 */
+    uint32_t variant;  /* must be 0 */
     uint32_t key[2];   /* key of the recording, low word first */
     char name[64];     /* name of the motion, terminated */
     int32_t unit_log2; /* log2 of the steps in a unit of the recording, -30 ..
                           60 */
     uint32_t n_frames; /* number of frames, 1 .. GLINT_MOTION_MAX_FRAMES */
-    uint32_t n_foods;  /* number of foods, 0 .. GLINT_MOTION_MAX_FOODS */
+    uint32_t n_foods;  /* number of food items, 0 .. GLINT_MOTION_MAX_FOODS */
     uint32_t n_sensors;
-    uint32_t n_events; /* at least n_foods: the events that place the foods of
-                          frame 0 come first */
+    uint32_t n_events; /* number of events, at least n_foods: the events that
+                          place the food items of frame 0 come first */
     int32_t size;      /* radius of the body, steps */
-    /* Half of the angle of view of a sensor: its cosine, -1 .. 1, and its
-     * tangent (for cameras), clamped to 2^30, that is 64. */
+    /* Half of the angle of view of a sensor: its cosine, -1 .. 1; and its
+     * tangent, for cameras, clamped to 64 (2^30). */
     int32_t cos_half_q30, tan_half_q24;
-    int32_t low[3], high[3]; /* bounding box of the body's positions and the
-                                foods, over all frames; steps */
+    int32_t low[3], high[3]; /* bounding box of the positions of the body and of
+                                the food items in all frames; steps */
     uint32_t residual;       /* max of residual over all blocks, steps */
     uint32_t residual_frame;
     /* Number of intensities of a frame, a byte each, in 255ths: one for each
-     * food, or for each food and sensor. 0: all intensities are 1. */
+     * food item, or one for each pair of food item and sensor. 0: all
+     * intensities are 1. */
     uint32_t intensities;
     /* Number of the first block of each table; tables are in this order. */
     uint32_t sensor_block, event_block, index_block, pose_block,
@@ -128,11 +131,12 @@ struct glint_motion {
     uint32_t held; /* number of the block that BUFFER holds; 0: none */
 };
 
-/* State of body and foods in one frame. */
+/* State of the body and the food items in one frame. */
 struct glint_motion_frame {
     struct glint_motion_pose pose;
-    int32_t food[GLINT_MOTION_MAX_FOODS][3]; /* positions of the foods, steps */
-    /* Intensity of each food at each sensor, 255ths. */
+    int32_t food[GLINT_MOTION_MAX_FOODS][3]; /* positions of the food items,
+                                                steps */
+    /* Intensity of each food item at each sensor, 255ths. */
     uint8_t intensity[GLINT_MOTION_MAX_FOODS][GLINT_MOTION_MAX_SENSORS];
 };
 
@@ -161,14 +165,15 @@ enum glint_status glint_motion_frame(struct glint_motion *motion, uint32_t k,
 enum glint_status glint_motion_event(struct glint_motion *motion, uint32_t i,
                                      struct glint_motion_event *event);
 
-/* Sets INDEX to entry I, for the block of poses that begins with frame I *
- * glint_motion_per_block(sizeof (struct glint_motion_pose)). */
+/* Sets INDEX to entry I of the index. The entry is for the block of poses that
+ * begins with frame I * glint_motion_per_block(sizeof (struct
+ * glint_motion_pose)). */
 enum glint_status glint_motion_index(struct glint_motion *motion, uint32_t i,
                                      struct glint_motion_index *index);
 
-/* Returns the checksum of block number BLOCK at address AT without its last 4
- * bytes, by the method of crc32 of the header; for block 0, the sum starts at
- * the variant of the header. */
+/* Returns the checksum of block BLOCK, which is at address AT, without its last
+ * 4 bytes, by the method of crc32 of the header. For block 0 the sum starts at
+ * the header's member VARIANT. */
 uint32_t glint_motion_sum(const uint8_t *at, uint32_t block);
 
 /* Returns the number of records of BYTES each (1 .. GLINT_MOTION_ROOM) in a

@@ -8,10 +8,11 @@
  *     glint_motion_baker_finish(baker, "run", &data, &bytes, &report, &error);
  *     glint_motion_baker_close(baker);
  *
- *   in   for each frame, the positions of foods in the axes of the body, and
- *        which foods are new
+ *   in   for each frame, the positions of food items (objects that sensors of
+ *        the body detect) in the axes of the body, and which food items are new
  *   out  a file of glint/scene/motion.h: for each frame, position and rotation
- *        of the body in the axes of the first frame; and positions of the foods
+ *        of the body in the axes of the first frame, and positions of the food
+ *        items
  *
  * The same recording gives the same bytes. Frames are read one by one: memory
  * grows by about 60 bytes per frame. */
@@ -42,15 +43,15 @@ struct glint_motion_body {
 /* Observations of one frame. */
 struct glint_motion_sight {
     long long number; /* number of the frame in the recording; -1: not stated */
-    /* Odometry of the body: translation tv and rotation rv since the previous
-     * frame, in the axes of the body at that frame; rv is an axis times an
-     * angle in radians. */
+    /* Odometry of the body: its translation tv and rotation rv since the
+     * previous frame, in the axes that the body had in that frame. rv is an
+     * axis times an angle in radians. */
     double tv[3], rv[3];
     int n_foods;
     double food[GLINT_MOTION_MAX_FOODS][3];
     bool is_new[GLINT_MOTION_MAX_FOODS]; /* ignored in the first frame */
-    /* Number of intensities per food. 0: all intensities are 1; 1: the same for
-     * all sensors; otherwise one for each sensor. */
+    /* Number of intensities per food item. 0: all intensities are 1; 1: the
+     * same for all sensors; otherwise one for each sensor. */
     int n_intensities;
     double intensity[GLINT_MOTION_MAX_FOODS][GLINT_MOTION_MAX_SENSORS];
 };
@@ -66,7 +67,7 @@ struct glint_motion_report {
                                         to 0 .. 1 */
     /* has_senses: the recording has tv or rv. senses_off, senses_most: distance
      * between the reconstructed position and the position integrated from tv
-     * and rv, in the last frame and max. */
+     * and rv; in the last frame, and its max over all frames. */
     bool has_senses;
     double senses_off, senses_most;
 };

@@ -51,8 +51,8 @@ extern const struct glint_scene_stones glint_scene_stones;
 extern const struct glint_scene_highlights glint_scene_highlights;
 extern const struct glint_scene_motions glint_scene_motions;
 
-/* Optional modules, each a pointer to the variable of that name, or NULL:
- * models that need the module are then rejected. */
+/* Optional modules. Each member points to the global variable of the same name,
+ * or is NULL: then models that need the module are rejected. */
 struct glint_scene_parts {
     const struct glint_scene_meshes *meshes;
     const struct glint_scene_textures *textures;
@@ -74,8 +74,8 @@ struct glint_scene_config {
     int tile_log2; /* log2 of the side of a tile in pixels, 3 .. 6. The output
                       is the same for any side */
     int edge_samples; /* 1, 4, 8 or 16: samples per pixel */
-    /* Number of points, 1, 4 or 16, of a light with an extent that are tested
-     * for shadows. */
+    /* Number of sample points of a light with an extent to which shadow rays
+     * are traced: 1, 4 or 16. */
     int shadow_points;
     /* 1: blocks of 2 x 2 pixels whose samples all see the same object are
      * shaded once, in their middle. */
@@ -167,9 +167,10 @@ enum glint_status glint_scene_get_look(const struct glint_scene *scene,
                                        struct glint_scene_look *look);
 
 /* Changes the appearance of a material from the next frame on, without baking
- * again; the lobe of brushed metal is rebuilt. An alpha below a tenth of the
- * other is raised to that. Returns GLINT_E_ARGUMENT if LOOK is out of range, or
- * has members for brushed metal and the material is not brushed metal. */
+ * again; the lobe of brushed metal is rebuilt. If one alpha is below a tenth of
+ * the other, it is raised to a tenth. Returns GLINT_E_ARGUMENT if LOOK is out
+ * of range, or has members for brushed metal and the material is not brushed
+ * metal. */
 enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
                                        const struct glint_scene_look *look);
 
@@ -223,8 +224,9 @@ enum glint_scene_kind {
     GLINT_KIND_BODY,
     GLINT_KIND_SENSORS,
     GLINT_KIND_FOODS,
-    GLINT_KIND_SHELLS, /* shells around foods that a sensor sees */
-    GLINT_KIND_LINES,  /* lines from these foods to the sensors that see them */
+    GLINT_KIND_SHELLS, /* shells around food items that a sensor sees */
+    GLINT_KIND_LINES,  /* lines from these food items to the sensors that see
+                          them */
     GLINT_KIND_BOX,    /* the bounding box of all frames */
     GLINT_KINDS
 };
@@ -232,9 +234,10 @@ enum glint_scene_kind {
 /* Returns the number of frames of SCENE's motion, 0 if it has no motion. */
 uint32_t glint_scene_frames(const struct glint_scene *scene);
 
-/* Moves body, sensors, foods, attached lamps, and a camera in a sensor to frame
- * FRAME, or to the last frame if FRAME is beyond it. The result does not depend
- * on earlier calls. A scene begins at frame 0. */
+/* Moves body, sensors, food items, attached lamps, and a camera in a sensor to
+ * their positions in frame FRAME, or in the last frame if there is no frame
+ * FRAME. The result does not depend on earlier calls. A scene begins at frame
+ * 0. */
 void glint_scene_seek(struct glint_scene *scene, uint32_t frame);
 
 /* Moves the camera into sensor SENSOR, with the field of view of the sensor;
@@ -254,7 +257,8 @@ enum glint_status glint_scene_size_kind(struct glint_scene *scene,
                                         enum glint_scene_kind kind,
                                         int32_t steps);
 
-/* Returns a bit mask of the sensors that see food FOOD in the current frame. */
+/* Returns a bit mask of the sensors that see food item FOOD in the current
+ * frame. */
 uint32_t glint_scene_seen_by(const struct glint_scene *scene, uint32_t food);
 
 /* ------------------------------------------------------------------- frame */
@@ -274,8 +278,8 @@ int glint_scene_spread(struct glint_scene *scene);
 void glint_scene_draw(struct glint_scene *scene,
                       const struct glint_image *image);
 
-/* Returns the fraction, in 256ths, of a disc in the picture drawn last that
- * objects hide, at a resolution of 8 x 8 pixels; shadows on catchers do not
+/* Returns the fraction, in 256ths, that objects hide of a disc in the picture
+ * drawn last, at a resolution of 8 x 8 pixels; shadows on catchers do not
  * count. (X, Y) is the middle of the disc, pixels from the top left corner. */
 int glint_scene_cover(const struct glint_scene *scene, int32_t x_q8,
                       int32_t y_q8, int32_t radius_q8);
@@ -283,7 +287,7 @@ int glint_scene_cover(const struct glint_scene *scene, int32_t x_q8,
 /* A light of the scene as the camera sees it. */
 struct glint_scene_lamp {
     int light; /* index of the light in the model */
-    int share; /* number of visible points, among 16 sample points of its
+    int share; /* number of visible points among 16 sample points of the light's
                   disc */
     /* Middle of the disc, pixels from the top left corner, y down. */
     int32_t x_q8, y_q8;

@@ -41,11 +41,11 @@ struct glint_stone_text {
 /* Results of baking. */
 struct glint_stone_report {
     double kernel_loss; /* fraction, root mean square, of the response of all
-                           kernels to light that is lost because their rank is
-                           limited; 0 for factored fits */
-    int tap_bits;       /* bits of the largest tap of a column: with many taps
-                           their sum allows fewer bits than
-                           GLINT_TRANSLUCENT_TAP_BITS */
+                           kernels to light that is lost because the rank of
+                           kernels is limited; 0 for factored fits */
+    int tap_bits;       /* number of bits of the largest tap of a column; with
+                           many taps the limit of their sum allows fewer bits
+                           than GLINT_TRANSLUCENT_TAP_BITS */
 };
 
 /* Sets TEXT to the slab of glint_stone_defaults(), with a clustered fit of rank

@@ -50,10 +50,10 @@ enum {
                                         2^11 */
     GLINT_TRANSLUCENT_COSINES =
         128, /* number of steps of the cosine in the table of transmittance */
-    /* Max sum of the magnitudes of the taps of one row of a kernel, and of the
-     * columns of all planes of a channel together. With values within +-32767
-     * sums stay below 2^31 - 2^20, which leaves capacity for rounding them
-     * before they are multiplied by codes. */
+    /* Max sum of the magnitudes of the taps of one row of a kernel, and of
+     * those of the columns of all planes of a channel together. If values are
+     * within +-32767, sums stay below 2^31 - 2^20, so that they can still be
+     * rounded before they are multiplied by codes. */
     GLINT_TRANSLUCENT_MOST_TAPS = 65504
 };
 

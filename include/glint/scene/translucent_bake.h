@@ -104,8 +104,8 @@ struct glint_scatter_rows {
 /* Computes ROWS of STONE by diffusion in the slab [Jensen01]. Each entry is at
  * least 0, the sum of a row at most 1, and R'(x, y - x) = R'(y, x - y). Uses 12
  * bytes per entry plus about 25 MB: 158 MiB for 128 texels per side with
- * kernels of 29 texels. On GLINT_E_ARGUMENT, ERROR names what is out of range.
- * On GLINT_E_MEMORY or GLINT_E_CLOSED, ROWS is empty. */
+ * kernels of 29 texels. On GLINT_E_ARGUMENT, ERROR names the member that is out
+ * of range. On GLINT_E_MEMORY or GLINT_E_CLOSED, ROWS is empty. */
 enum glint_status glint_scatter_compute(const struct glint_stone *stone,
                                         const struct glint_watch *watch,
                                         struct glint_scatter_rows *rows,
@@ -159,7 +159,8 @@ struct glint_scatter_error {
     double entry_db; /* rmse in decibels */
     double light_db; /* error of the radiosity under glint_scatter_test_light(),
                         relative to its peak, in decibels */
-    double albedo;   /* max error of the sum of a row, i.e. of energy */
+    double albedo;   /* max error of the sum of a row, which is a fraction of
+                        energy */
 };
 
 /* A fit. All pointers are malloc'ed, or NULL where the model has no such array;

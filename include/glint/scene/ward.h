@@ -32,8 +32,8 @@ enum glint_ward_rule {
     /* Half vectors are contracted and all read the same level, so that their
      * spread and the blur of the level together give the lobe. */
     GLINT_WARD_CONSTANT,
-    /* Each half vector reads the level of the solid angle that it
-     * represents. */
+    /* Each half vector reads the level whose texels have the solid angle that
+     * the half vector represents. */
     GLINT_WARD_PUBLISHED
 };
 
@@ -56,12 +56,12 @@ struct glint_ward_options {
 /* Sets OPTIONS to 8 samples with GLINT_WARD_CONSTANT. */
 void glint_ward_defaults(struct glint_ward_options *options);
 
-/* Raises the smaller alpha to a tenth of the other if it is below that; returns
- * 1 if it was raised. */
+/* Raises the smaller alpha to a tenth of the larger if it is below that;
+ * returns 1 if it was raised. */
 int glint_ward_hold(int32_t alpha_q24[2]);
 
 /* Computes the reflection lobe LOBE of MATERIAL for ENVIRONMENT. Returns 1 if
- * the smaller alpha was raised to a tenth of the other, else 0. */
+ * the smaller alpha was raised to a tenth of the larger, else 0. */
 int glint_ward_prepare(struct glint_ward_lobe *lobe,
                        const struct glint_environment *environment,
                        const struct glint_ward_material *material,
